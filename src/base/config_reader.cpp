@@ -1,0 +1,162 @@
+#include "base/config_reader.h"
+
+#include <cmath>
+#include <sstream>
+
+#include "base/errors.h"
+
+namespace microinjection {
+
+struct ConfigReader::Level {
+  YAML::Node map;
+  std::string path;  ///< "" or "cell/material/"
+  std::set<std::string> known;
+};
+
+bool Range::contains(double value) const {
+  if (!std::isfinite(value)) return false;
+  return (low_open ? value > low : value >= low) && (high_open ? value < high : value <= high);
+}
+
+std::string Range::text() const {
+  std::ostringstream out;
+  const bool open_low = low_open || std::isinf(low), open_high = high_open || std::isinf(high);
+  out << (open_low ? '(' : '[') << low << ", " << high << (open_high ? ')' : ']');
+  return out.str();
+}
+
+ConfigReader::ConfigReader(const YAML::Node& map, const std::string& origin)
+    : ConfigReader(map, origin, "", std::make_shared<std::vector<std::string>>(),
+                   std::make_shared<std::vector<std::shared_ptr<Level>>>()) {}
+
+ConfigReader::ConfigReader(const YAML::Node& map, const std::string& origin, const std::string& path,
+                           std::shared_ptr<std::vector<std::string>> errors,
+                           std::shared_ptr<std::vector<std::shared_ptr<Level>>> levels)
+    : origin_(origin), errors_(std::move(errors)), levels_(std::move(levels)), level_(std::make_shared<Level>()) {
+  level_->map.reset(map);
+  level_->path = path;
+  levels_->push_back(level_);
+}
+
+bool ConfigReader::has(const std::string& key) const {
+  const YAML::Node& map = level_->map;
+  return map.IsMap() && map[key].IsDefined();
+}
+
+const YAML::Node ConfigReader::find(const std::string& key, Presence presence) {
+  level_->known.insert(key);
+  if (has(key)) return static_cast<const YAML::Node&>(level_->map)[key];
+  if (presence == kRequired) errors_->push_back(origin_ + ": " + level_->path + key + " is missing");
+  return YAML::Node(YAML::NodeType::Undefined);
+}
+
+std::string ConfigReader::valueText(const std::string& key) const {
+  if (!has(key)) return "";
+  YAML::Emitter out;
+  out << YAML::Flow << static_cast<const YAML::Node&>(level_->map)[key];
+  return std::string(" = ") + out.c_str();
+}
+
+void ConfigReader::error(const std::string& key, const std::string& message) {
+  errors_->push_back(origin_ + ": " + level_->path + key + valueText(key) + ": " + message);
+}
+
+void ConfigReader::number(const std::string& key, double& value, const Range& range, Presence presence) {
+  const YAML::Node node = find(key, presence);
+  if (!node.IsDefined()) return;
+  double read = 0;
+  if (!node.IsScalar() || !YAML::convert<double>::decode(node, read)) return error(key, "must be a number");
+  if (!range.contains(read)) return error(key, "must be a number in " + range.text());
+  value = read;
+}
+
+void ConfigReader::integer(const std::string& key, int& value, const Range& range, Presence presence) {
+  const YAML::Node node = find(key, presence);
+  if (!node.IsDefined()) return;
+  int read = 0;
+  if (!node.IsScalar() || !YAML::convert<int>::decode(node, read)) return error(key, "must be an integer");
+  if (!range.contains(read)) return error(key, "must be an integer in " + range.text());
+  value = read;
+}
+
+void ConfigReader::boolean(const std::string& key, bool& value, Presence presence) {
+  const YAML::Node node = find(key, presence);
+  if (!node.IsDefined()) return;
+  bool read = false;
+  if (!node.IsScalar() || !YAML::convert<bool>::decode(node, read)) return error(key, "must be true or false");
+  value = read;
+}
+
+void ConfigReader::text(const std::string& key, std::string& value, Presence presence) {
+  const YAML::Node node = find(key, presence);
+  if (!node.IsDefined()) return;
+  if (!node.IsScalar()) return error(key, "must be text");
+  value = node.Scalar();
+}
+
+void ConfigReader::choice(const std::string& key, std::string& value, const std::vector<std::string>& allowed,
+                          Presence presence) {
+  const YAML::Node node = find(key, presence);
+  if (!node.IsDefined()) return;
+  for (const std::string& option : allowed) {
+    if (node.IsScalar() && node.Scalar() == option) {
+      value = option;
+      return;
+    }
+  }
+  std::string list;
+  for (const std::string& option : allowed) list += (list.empty() ? "" : ", ") + option;
+  error(key, "must be one of: " + list);
+}
+
+void ConfigReader::vector(const std::string& key, Eigen::Ref<Eigen::VectorXd> value, const Range& range,
+                          Presence presence) {
+  const YAML::Node node = find(key, presence);
+  if (!node.IsDefined()) return;
+  const std::string wanted =
+      "must be a list of " + std::to_string(value.size()) + " numbers in " + range.text();
+  if (!node.IsSequence() || static_cast<Eigen::Index>(node.size()) != value.size()) return error(key, wanted);
+  Eigen::VectorXd read(value.size());
+  for (Eigen::Index i = 0; i < value.size(); ++i) {
+    if (!YAML::convert<double>::decode(node[i], read[i]) || !range.contains(read[i])) return error(key, wanted);
+  }
+  value = read;
+}
+
+ConfigReader ConfigReader::section(const std::string& key, Presence presence) {
+  YAML::Node node = find(key, presence);
+  if (node.IsDefined() && !node.IsMap()) {
+    error(key, "must be a map");
+    node = YAML::Node(YAML::NodeType::Map);
+  }
+  if (!node.IsDefined()) node = YAML::Node(YAML::NodeType::Map);
+  return ConfigReader(node, origin_, level_->path + key + "/", errors_, levels_);
+}
+
+void ConfigReader::finish() {
+  for (const auto& level : *levels_) {
+    if (!level->map.IsMap()) continue;
+    for (const auto& item : level->map) {
+      const std::string key = item.first.Scalar();
+      if (level->known.count(key)) continue;
+      std::string known;
+      for (const std::string& name : level->known) known += (known.empty() ? "" : ", ") + name;
+      errors_->push_back(origin_ + ": " + level->path + key + ": unknown key; known here: " + known);
+    }
+  }
+  if (!errors_->empty()) throw ConfigError(*errors_);
+}
+
+YAML::Node loadYamlMap(const std::string& path) {
+  try {
+    YAML::Node node = YAML::LoadFile(path);
+    if (!node.IsMap()) throw ConfigError(path + ": must be a YAML map");
+    return node;
+  } catch (const YAML::BadFile&) {
+    throw ConfigError(path + ": cannot be read");
+  } catch (const YAML::ParserException& exception) {
+    throw ConfigError(path + ": " + exception.what());
+  }
+}
+
+}  // namespace microinjection

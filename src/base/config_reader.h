@@ -1,0 +1,84 @@
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include <Eigen/Core>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace microinjection {
+
+/// Closed, half-open or open interval of allowed values, and how to say it.
+struct Range {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool low_open = false;
+  bool high_open = false;
+
+  static Range positive() { return {0, std::numeric_limits<double>::infinity(), true, true}; }
+  static Range nonNegative() { return {0, std::numeric_limits<double>::infinity(), false, true}; }
+  static Range closed(double low, double high) { return {low, high, false, false}; }
+  static Range open(double low, double high) { return {low, high, true, true}; }
+  static Range finite() { return {}; }
+
+  bool contains(double value) const;  ///< false for NaN and infinities
+  std::string text() const;           ///< for example "(0, inf)" or "[0, 0.5)"
+};
+
+/// Strict reader of one YAML map. Collects every error (missing, wrong type, out of range, unknown key) with the full
+/// key path, its value and what is allowed; finish() throws them all at once as ConfigError.
+///
+///     ConfigReader reader(YAML::LoadFile(path), path);
+///     reader.number("diameter", config.diameter, Range::positive());        // optional: keeps the default
+///     ConfigReader cell = reader.section("cell");                            // nested map, shares the error list
+///     reader.finish();                                                       // unknown keys anywhere are errors
+class ConfigReader {
+ public:
+  enum class Presence { kOptional, kRequired };
+  static constexpr Presence kOptional = Presence::kOptional;
+  static constexpr Presence kRequired = Presence::kRequired;
+
+  /// `origin` names the file or the parameter namespace in messages.
+  ConfigReader(const YAML::Node& map, const std::string& origin);
+
+  bool has(const std::string& key) const;
+  void number(const std::string& key, double& value, const Range& range = Range::finite(), Presence = kOptional);
+  void integer(const std::string& key, int& value, const Range& range = Range::finite(), Presence = kOptional);
+  void boolean(const std::string& key, bool& value, Presence = kOptional);
+  void text(const std::string& key, std::string& value, Presence = kOptional);
+  /// One of `allowed`.
+  void choice(const std::string& key, std::string& value, const std::vector<std::string>& allowed,
+              Presence = kOptional);
+  /// A list of exactly value.size() numbers, each in `range`.
+  void vector(const std::string& key, Eigen::Ref<Eigen::VectorXd> value, const Range& range = Range::finite(),
+              Presence = kOptional);
+  /// The map under `key`; an empty map when it is absent and optional.
+  ConfigReader section(const std::string& key, Presence = kOptional);
+
+  /// Adds an error about `key`: "origin: cell/diameter = 3: MESSAGE".
+  void error(const std::string& key, const std::string& message);
+
+  /// Throws ConfigError when there was any error here or in a section, or a key that nobody asked for.
+  void finish();
+
+ private:
+  struct Level;
+  ConfigReader(const YAML::Node& map, const std::string& origin, const std::string& path,
+               std::shared_ptr<std::vector<std::string>> errors, std::shared_ptr<std::vector<std::shared_ptr<Level>>>);
+  const YAML::Node find(const std::string& key, Presence presence);
+  std::string valueText(const std::string& key) const;
+
+  std::string origin_;
+  std::shared_ptr<std::vector<std::string>> errors_;
+  std::shared_ptr<std::vector<std::shared_ptr<Level>>> levels_;
+  std::shared_ptr<Level> level_;
+};
+
+/// Loads a YAML map; ConfigError names the file when it is absent, malformed (with line) or not a map.
+YAML::Node loadYamlMap(const std::string& path);
+
+}  // namespace microinjection

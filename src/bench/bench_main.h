@@ -1,0 +1,36 @@
+#pragma once
+
+#include <boost/program_options.hpp>
+#include <exception>
+#include <iostream>
+#include <string>
+
+#include "base/atomic_file.h"
+
+namespace microinjection {
+
+/// The main of a benchmark program: `table` makes the CSV table, printing its rows as it goes; --csv FILE stores it.
+template <typename Table>
+int benchMain(int argc, char** argv, const std::string& title, const Table& table) {
+  namespace po = boost::program_options;
+  try {
+    std::string csv;
+    po::options_description options(title + "\nPrints the table. Options");
+    options.add_options()("help", "this text")("csv", po::value(&csv), "file to write the table to as well");
+    po::variables_map values;
+    po::store(po::parse_command_line(argc, argv, options), values);
+    po::notify(values);
+    if (values.count("help") != 0) {
+      std::cout << options;
+      return 0;
+    }
+    const std::string rows = table();
+    if (!csv.empty()) writeFileAtomically(csv, rows);
+    return 0;
+  } catch (const std::exception& exception) {
+    std::cerr << argv[0] << ": " << exception.what() << '\n';
+    return 2;
+  }
+}
+
+}  // namespace microinjection

@@ -1,0 +1,109 @@
+#include "cell/cell_tracker.h"
+
+#include <sstream>
+
+namespace microinjection {
+
+CellTrackerConfig CellTrackerConfig::read(ConfigReader& reader) {
+  CellTrackerConfig config;
+  reader.number("prepare_distance", config.prepare_distance, Range::positive());
+  reader.number("extrapolation_limit", config.extrapolation_limit, Range::positive());
+  reader.number("solution_period", config.solution_period, Range::positive());
+  return config;
+}
+
+CellTracker::CellTracker(std::shared_ptr<const CellModel> cell, const CellTrackerConfig& config)
+    : cell_(std::move(cell)), config_(config), thread_(cell_) {}
+
+void CellTracker::ask(double time, const Eigen::Vector3d& displacement) {
+  thread_.ask(patch_, displacement);
+  asked_ = true;
+  asked_at_ = time;
+  patch_asked_ = true;
+}
+
+void CellTracker::collect(double time) {
+  if (!asked_) return;
+  std::shared_ptr<const CellSolution> solution;
+  if (!config_.fixed_period) {
+    solution = thread_.take();
+  } else if (time - asked_at_ >= config_.solution_period - 1e-9) {
+    solution = thread_.wait();
+  }
+  if (!solution) return;
+  asked_ = false;
+  if (solution->patch.vertices != patch_.vertices) return;  // the needle has moved on to another place
+  solution_ = std::move(solution);
+  solution_time_ = asked_at_;
+}
+
+void CellTracker::prepare(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, const SurfaceHit& hit, double time) {
+  if ((tip - hit.point).dot(axis) > config_.prepare_distance) return;
+  TipPatch patch = cell_->patchAt(hit.point, axis);
+  if (patch.vertices != patch_.vertices) {
+    patch_ = std::move(patch);
+    patch_asked_ = false;
+    solution_.reset();
+  }
+  if (!patch_asked_ && !asked_) ask(time, Eigen::Vector3d::Zero());
+}
+
+TipForce CellTracker::distrustBecause(const std::string& reason) {
+  distrust_ = reason;
+  return {false, Eigen::Vector3d::Zero()};
+}
+
+void CellTracker::release() {
+  contact_.reset();
+  patch_asked_ = false;  // prepares the contact afresh, from the undeformed cell
+  solution_.reset();
+}
+
+TipForce CellTracker::touchForce(double time) {
+  if (!asked_) ask(time, contact_->displacement);
+  if (!solution_) return distrustBecause("the contact is still being prepared");
+  const IndentationSolution& solved = solution_->indentation;
+  if (!solved.converged) return distrustBecause(solved.reason);
+  const Eigen::Vector3d ahead = contact_->displacement - solved.tip_displacement;
+  if (ahead.norm() > config_.extrapolation_limit) {
+    std::ostringstream text;
+    text << "the tip is " << ahead.norm() << " m ahead of the last solution, allowed " << config_.extrapolation_limit;
+    return distrustBecause(text.str());
+  }
+  TipForce result;
+  result.force = solved.force - solved.stiffness * ahead;
+  return result;
+}
+
+TipForce CellTracker::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time) {
+  distrust_.clear();
+  collect(time);
+  if (punctured_) return {};
+  if (!contact_) {
+    const double outside = 2 * cell_->scene().cell.diameter;
+    const Eigen::Vector3d origin = tip + (outside + tip.norm()) * axis;  // from outside, wherever the tip is
+    const auto hit = cell_->hit(origin, -axis, start_triangle_);
+    if (!hit) return {};
+    start_triangle_ = hit->triangle;
+    prepare(tip, axis, *hit, time);
+    if ((tip - hit->point).dot(axis) > 0) return {};
+    contact_ = Contact{};
+    contact_->touched_at = hit->point;
+  }
+  contact_->displacement = tip - contact_->touched_at;
+  contact_->indentation = -contact_->displacement.dot(axis);
+  const TipForce result = touchForce(time);
+  const double push = result.force.dot(axis);
+  if (result.trusted ? push < 0 : contact_->indentation < 0) {  // would pull: the tip has left the cell
+    release();
+    return {};
+  }
+  if (push >= cell_->scene().cell.puncture_force) {
+    punctured_ = true;
+    release();
+    return {};
+  }
+  return result;
+}
+
+}  // namespace microinjection

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+
+#include "cell/cell_model.h"
+#include "contact/tip_patch.h"
+#include "mechanics/equilibrium_path.h"
+
+namespace microinjection {
+
+/// The cell at rest under a needle tip.
+struct IndentationSolution {
+  bool converged = false;
+  std::string reason;                                          ///< why not, for people; empty when converged
+  Eigen::Vector3d tip_displacement = Eigen::Vector3d::Zero();  ///< m, reached: the one asked for when converged
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();             ///< N, of the cell on the needle, at tip_displacement
+  Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();  ///< N/m, d(force)/d(tip_displacement) = -stiffness; symmetric
+  double smallest_jacobian = 1;                         ///< det F of the element that is compressed most
+  int newton_iterations = 0;
+  double cpu_time = 0;  ///< s, of the calling thread
+};
+
+/// Quasi-static deformation of a cell under one sticking patch: every vertex of the patch moves by the displacement of
+/// the tip. Keeps its state and continues from it, so a needle that moves little costs little. One thread at a time.
+class Indentation {
+ public:
+  /// Throws std::invalid_argument when the patch and the held vertices overlap or leave nothing free.
+  Indentation(std::shared_ptr<const CellModel> cell, const TipPatch& patch);
+
+  /// Equilibrium at `tip_displacement` (m), reached along the straight line from the present one in adaptive load
+  /// steps. On failure the state stays at the last equilibrium that was found.
+  IndentationSolution solve(const Eigen::Vector3d& tip_displacement);
+
+  /// Displacement of the mesh's vertices, m, xyz per vertex.
+  const Eigen::VectorXd& displacement() const { return path_.displacement(); }
+
+  /// Displacement of the tip in the present state, m.
+  const Eigen::Vector3d& tipDisplacement() const { return path_.translation(); }
+
+  /// Back to the undeformed state.
+  void reset() { path_.reset(); }
+
+ private:
+  std::shared_ptr<const CellModel> cell_;
+  EquilibriumPath path_;
+};
+
+}  // namespace microinjection

@@ -1,0 +1,73 @@
+#include "cell/solution_thread.h"
+
+#include <utility>
+
+namespace microinjection {
+
+SolutionThread::SolutionThread(std::shared_ptr<const CellModel> cell)
+    : cell_(std::move(cell)), thread_([this] { run(); }) {}
+
+SolutionThread::~SolutionThread() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    stop_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void SolutionThread::ask(const TipPatch& patch, const Eigen::Vector3d& tip_displacement) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    question_ = Question{patch, tip_displacement};
+  }
+  changed_.notify_all();
+}
+
+std::shared_ptr<const CellSolution> SolutionThread::take() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+  return std::exchange(answer_, nullptr);
+}
+
+std::shared_ptr<const CellSolution> SolutionThread::wait() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  changed_.wait(lock, [this] { return answer_ || failure_; });
+  if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+  return std::exchange(answer_, nullptr);
+}
+
+void SolutionThread::run() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  while (true) {
+    changed_.wait(lock, [this] { return stop_ || question_; });
+    if (stop_) return;
+    const Question question = *std::exchange(question_, std::nullopt);
+    lock.unlock();
+    std::shared_ptr<const CellSolution> answer;
+    std::exception_ptr failure;
+    try {
+      answer = solve(question);
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    lock.lock();
+    answer_ = std::move(answer);
+    failure_ = failure;
+    changed_.notify_all();
+  }
+}
+
+std::shared_ptr<const CellSolution> SolutionThread::solve(const Question& question) {
+  if (!indentation_ || question.patch.vertices != patch_.vertices) {
+    indentation_ = std::make_unique<Indentation>(cell_, question.patch);
+    patch_ = question.patch;
+  }
+  auto solution = std::make_shared<CellSolution>();
+  solution->patch = question.patch;
+  solution->indentation = indentation_->solve(question.tip_displacement);
+  solution->displacement = indentation_->displacement();
+  return solution;
+}
+
+}  // namespace microinjection

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <condition_variable>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "cell/indentation.h"
+
+namespace microinjection {
+
+/// An equilibrium and the deformation that goes with it.
+struct CellSolution {
+  TipPatch patch;
+  IndentationSolution indentation;
+  Eigen::VectorXd displacement;  ///< m, xyz per vertex of the mesh
+};
+
+/// Solves indentations one after the other in a thread of its own. The asking thread never waits for more than the
+/// exchange of a pointer, unless it calls wait().
+class SolutionThread {
+ public:
+  explicit SolutionThread(std::shared_ptr<const CellModel> cell);
+  ~SolutionThread();
+  SolutionThread(const SolutionThread&) = delete;
+  SolutionThread& operator=(const SolutionThread&) = delete;
+
+  /// Asks for the equilibrium of `patch` at a tip displacement (m). @pre the answer before was taken.
+  void ask(const TipPatch& patch, const Eigen::Vector3d& tip_displacement);
+  /// The answer when it is there, else null. Rethrows what the solver threw.
+  std::shared_ptr<const CellSolution> take();
+  /// As take(), but waits for the answer. @pre an answer is due.
+  std::shared_ptr<const CellSolution> wait();
+
+ private:
+  struct Question {
+    TipPatch patch;
+    Eigen::Vector3d tip_displacement;
+  };
+  void run();
+  std::shared_ptr<const CellSolution> solve(const Question& question);
+
+  std::shared_ptr<const CellModel> cell_;
+  std::unique_ptr<Indentation> indentation_;  ///< of the solving thread only
+  TipPatch patch_;                            ///< of the solving thread only
+
+  std::mutex mutex_;  ///< guards what follows
+  std::condition_variable changed_;
+  bool stop_ = false;
+  std::optional<Question> question_;
+  std::shared_ptr<const CellSolution> answer_;
+  std::exception_ptr failure_;
+
+  std::thread thread_;  ///< last: starts when all else is there
+};
+
+}  // namespace microinjection

@@ -1,0 +1,140 @@
+#include "control/injection_controller.h"
+
+#include <algorithm>
+#include <sstream>
+
+namespace microinjection {
+namespace {
+
+bool trusted(const std::optional<Eigen::Vector3d>& value) { return value && value->allFinite(); }
+
+}  // namespace
+
+InjectionControllerConfig InjectionControllerConfig::read(ConfigReader& reader) {
+  InjectionControllerConfig config;
+  reader.choice("source", config.source, {"teleop", "approach"});
+  reader.number("speed_limit", config.speed_limit, Range::positive());
+  reader.number("jump_limit", config.jump_limit, Range::positive());
+  reader.number("tracking_limit", config.tracking_limit, Range::positive());
+  reader.number("force_limit", config.force_limit, Range::positive());
+  ConfigReader approach = reader.section("approach");
+  config.approach = ApproachConfig::read(approach);
+  return config;
+}
+
+const char* toText(OperatingState state) {
+  switch (state) {
+    case OperatingState::kEnabled: return "ENABLED";
+    case OperatingState::kPaused: return "PAUSED";
+    case OperatingState::kFault: return "FAULT";
+    default: return "DISABLED";
+  }
+}
+
+InjectionController::InjectionController(const InjectionControllerConfig& config)
+    : config_(config), approach_(config.approach) {}
+
+bool InjectionController::busy() const {
+  return state_ == OperatingState::kEnabled && (homing_ || (config_.source == "approach" && !approach_.done()));
+}
+
+std::string InjectionController::command(const std::string& command) {
+  const std::string refusal = std::string("state is ") + toText(state_) + ", ";
+  if (command == "disable") {
+    state_ = OperatingState::kDisabled;
+    held_because_ = "DISABLED";
+    setpoint_.reset();
+  } else if (command == "enable") {
+    if (state_ == OperatingState::kFault) return refusal + "enable is allowed after disable";
+    if (state_ == OperatingState::kDisabled) setpoint_.reset();
+    state_ = OperatingState::kEnabled;
+  } else if (command == "pause") {
+    if (state_ != OperatingState::kEnabled) return refusal + "pause is allowed in ENABLED";
+    state_ = OperatingState::kPaused;
+    held_because_ = "PAUSED";
+  } else if (command == "resume") {
+    if (state_ != OperatingState::kPaused) return refusal + "resume is allowed in PAUSED";
+    state_ = OperatingState::kEnabled;
+  } else if (command == "home") {
+    if (!setpoint_ || state_ == OperatingState::kFault) return refusal + "home is allowed in ENABLED and PAUSED";
+    state_ = OperatingState::kEnabled;
+  } else {
+    return "\"" + command + "\" is no command here; allowed: enable, disable, pause, resume, home";
+  }
+  homing_ = command == "home";
+  return "";
+}
+
+std::optional<Eigen::Vector3d> InjectionController::step(const Input& input, double dt) {
+  needle_known_ = needle_known_ || trusted(input.needle);
+  if (state_ == OperatingState::kDisabled || state_ == OperatingState::kFault) return std::nullopt;
+  if (!trusted(input.needle)) {
+    held_because_ = "no trusted needle position";
+    return setpoint_;  // before the first pose there is nothing to hold yet
+  }
+  if (!setpoint_) {
+    setpoint_ = input.needle;
+    home_ = *setpoint_;
+    approach_.start(*setpoint_);
+  }
+  if (needleIsLost(*input.needle)) return std::nullopt;
+  if (state_ == OperatingState::kPaused) return setpoint_;
+  if (homing_) {
+    goHome(input.axis, dt);
+    return setpoint_;
+  }
+  if (const auto target = wanted(input, dt)) follow(*target, input, dt);
+  return setpoint_;
+}
+
+bool InjectionController::needleIsLost(const Eigen::Vector3d& needle) {
+  const double error = (needle - *setpoint_).norm();
+  if (error <= config_.tracking_limit) return false;
+  std::ostringstream text;
+  text << "the needle is " << error << " m from its set-point, allowed " << config_.tracking_limit << " m";
+  held_because_ = text.str();
+  state_ = OperatingState::kFault;
+  return true;
+}
+
+std::optional<Eigen::Vector3d> InjectionController::wanted(const Input& input, double dt) {
+  const bool own = config_.source == "approach";
+  held_because_.clear();
+  if (!own && !trusted(input.target)) held_because_ = "no trusted target";
+  if (!trusted(input.force)) held_because_ = "no trusted force";
+  if (!held_because_.empty()) return std::nullopt;
+  return own ? approach_.step(input.axis, *input.force, dt) : input.target;
+}
+
+void InjectionController::goHome(const Eigen::Vector3d& axis, double dt) {
+  held_because_ = "homing";
+  const Eigen::Vector3d way = home_ - *setpoint_;
+  const double out = way.dot(axis);
+  // First out of the cell along the pipette, then across: a needle that goes sideways tears.
+  const Eigen::Vector3d motion = out > 1e-9 ? Eigen::Vector3d(out * axis) : way;
+  const double largest = config_.speed_limit * dt;
+  *setpoint_ += motion.norm() > largest ? Eigen::Vector3d(motion * (largest / motion.norm())) : motion;
+  if ((home_ - *setpoint_).norm() > 1e-9) return;
+  homing_ = false;
+  state_ = OperatingState::kPaused;
+  held_because_ = "PAUSED";
+}
+
+void InjectionController::follow(const Eigen::Vector3d& target, const Input& input, double dt) {
+  Eigen::Vector3d motion = target - *setpoint_;
+  if (motion.norm() > config_.jump_limit) {
+    std::ostringstream text;
+    text << "target is " << motion.norm() << " m away, allowed " << config_.jump_limit << " m; press the clutch to take hold afresh";
+    held_because_ = text.str();
+    return;
+  }
+  if (input.force->norm() > config_.force_limit) {
+    held_because_ = "force limit reached: the needle may only be withdrawn";
+    motion = input.axis * std::max(0.0, motion.dot(input.axis));
+  }
+  const double largest = config_.speed_limit * dt;
+  if (motion.norm() > largest) motion *= largest / motion.norm();
+  *setpoint_ += motion;
+}
+
+}  // namespace microinjection

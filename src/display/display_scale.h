@@ -1,0 +1,14 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace microinjection {
+
+/// Metres shown in rviz for a metre of the scene: 100 um becomes 1 m. rviz cannot show micrometres, because its near
+/// clip and its least orbit distance are millimetres.
+constexpr double kDisplayScale = 1e4;
+
+/// From SI (m) to display units (m at x 1e4).
+inline Eigen::Vector3d toDisplay(const Eigen::Vector3d& point) { return kDisplayScale * point; }
+
+}  // namespace microinjection

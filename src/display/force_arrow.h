@@ -1,0 +1,23 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+namespace microinjection {
+
+/// An arrow in display units.
+struct Arrow {
+  Eigen::Vector3d tail;
+  Eigen::Vector3d head;
+  double shaft_diameter = 0;
+  double head_diameter = 0;
+  double head_length = 0;
+};
+
+/// The arrow of a force, or nothing when it is too short to be seen.
+/// @param tail   m, where the arrow starts
+/// @param force  N, in the frame of `tail`
+/// @param scale  m/N, the arrow's length in the scene per newton, before x 1e4
+std::optional<Arrow> forceArrow(const Eigen::Vector3d& tail, const Eigen::Vector3d& force, double scale);
+
+}  // namespace microinjection

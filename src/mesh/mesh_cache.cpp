@@ -1,0 +1,108 @@
+#include "mesh/mesh_cache.h"
+
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+
+#include "base/atomic_file.h"
+
+namespace microinjection {
+namespace {
+
+/// FNV-1a, 64 bit: to name files and to notice damage, not against malice.
+std::string hash(const std::string& text) {
+  std::uint64_t value = 14695981039346656037ull;
+  for (const char c : text) value = (value ^ static_cast<unsigned char>(c)) * 1099511628211ull;
+  std::ostringstream out;
+  out << std::hex << value;
+  return out.str();
+}
+
+/// Everything that determines a mesh, exactly.
+std::string describe(const CellMeshConfig& config) {
+  std::ostringstream out;
+  out << mesherVersion() << std::hexfloat << " diameter " << config.diameter << " size " << config.size << " density "
+      << config.density << " zone " << config.zone_diameter << " tip " << config.tip_radius << " offset "
+      << config.offset.x() << ' ' << config.offset.y() << " hold " << config.contact_radius;
+  return out.str();
+}
+
+template <typename T>
+void append(std::string& bytes, const T* data, std::size_t count) {
+  bytes.append(reinterpret_cast<const char*>(data), count * sizeof(T));
+}
+
+std::string encodeBody(const TetMesh& mesh) {
+  std::string body;
+  const std::uint64_t counts[2] = {mesh.vertices.size(), mesh.tetrahedra.size()};
+  append(body, counts, 2);
+  for (const Eigen::Vector3d& vertex : mesh.vertices) append(body, vertex.data(), 3);
+  for (const std::array<int, 4>& tetrahedron : mesh.tetrahedra) append(body, tetrahedron.data(), 4);
+  return body;
+}
+
+/// @pre the checksum was right, so the bytes are what encodeBody wrote.
+TetMesh decodeBody(const std::string& body) {
+  std::uint64_t counts[2];
+  std::memcpy(counts, body.data(), sizeof(counts));
+  TetMesh mesh;
+  mesh.vertices.resize(counts[0]);
+  mesh.tetrahedra.resize(counts[1]);
+  const char* bytes = body.data() + sizeof(counts);
+  std::memcpy(static_cast<void*>(mesh.vertices.data()), bytes, counts[0] * sizeof(Eigen::Vector3d));
+  std::memcpy(mesh.tetrahedra.data(), bytes + counts[0] * sizeof(Eigen::Vector3d), counts[1] * sizeof(int[4]));
+  return mesh;
+}
+
+/// First line: what the mesh is of, and the checksum of the rest.
+std::string header(const std::string& description, const std::string& body) {
+  return description + " checksum " + hash(body) + '\n';
+}
+
+std::optional<TetMesh> readMesh(const std::string& path, const std::string& description) {
+  std::ifstream file(path, std::ios::binary);
+  std::string first;
+  if (!file || !std::getline(file, first)) return std::nullopt;
+  const std::string body((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  if (body.size() < 2 * sizeof(std::uint64_t) || first + '\n' != header(description, body)) return std::nullopt;
+  return decodeBody(body);
+}
+
+}  // namespace
+
+MeshCache::MeshCache(std::string directory) : directory_(std::move(directory)) {}
+
+std::string MeshCache::defaultDirectory() {
+  const char* cache = std::getenv("XDG_CACHE_HOME");
+  const char* home = std::getenv("HOME");
+  const std::string below = "cell_microinjection/meshes";
+  if (cache != nullptr && cache[0] == '/') return std::string(cache) + "/" + below;  // the standard ignores relative ones
+  if (home != nullptr && home[0] != '\0') return std::string(home) + "/.cache/" + below;
+  return "";
+}
+
+std::string MeshCache::path(const CellMeshConfig& config) const {
+  return directory_.empty() ? "" : directory_ + "/" + hash(describe(config)) + ".mesh";
+}
+
+TetMesh MeshCache::get(const CellMeshConfig& config) const {
+  const std::string file = path(config), description = describe(config);
+  if (!file.empty()) {
+    if (std::optional<TetMesh> mesh = readMesh(file, description)) return *mesh;
+  }
+  TetMesh mesh = makeCellMesh(config);
+  try {
+    const std::string body = encodeBody(mesh);
+    if (!file.empty()) writeFileAtomically(file, header(description, body) + body);
+  } catch (const std::runtime_error&) {
+    // The cache saves time and nothing else.
+  }
+  return mesh;
+}
+
+}  // namespace microinjection

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <geometry_msgs/PoseStamped.h>
+#include <geometry_msgs/WrenchStamped.h>
+#include <ros/ros.h>
+
+#include <memory>
+#include <string>
+
+#include "cell/cell_tracker.h"
+#include "cell_microinjection/CellState.h"
+#include "nodes/cycle.h"
+
+namespace microinjection {
+
+/// The finite-element cell under the needle. Where it has no trustworthy force it says so: the wrench then has stamp 0.
+///
+/// In:  /needle/measured_cp (PoseStamped, tip in `world`)
+/// Out: /cell/predicted_cf (WrenchStamped, of the cell on the tip, in `world`), /cell/state (CellState)
+///
+/// Parameters (private): those of CellTrackerConfig and
+///   scene           path of the scene file; required
+///   rate            Hz; default 1000, in [50, 5000]
+///   state_rate      Hz of /cell/state; default 30, in (0, 100]
+///   needle_timeout  s, a needle pose older than this is stale; default 0.05, in (0, inf)
+class CellSimulatorNode {
+ public:
+  static const char* const kHelp;
+  /// Meshes the cell, which may take seconds the first time. @throws ConfigError
+  CellSimulatorNode(ros::NodeHandle node, ros::NodeHandle private_node);
+  void run();
+
+ private:
+  struct Parameters {
+    std::string scene;
+    double rate = 1000;
+    double state_rate = 30;
+    double needle_timeout = 0.05;
+    CellTrackerConfig tracker;
+    static Parameters read(const ros::NodeHandle& private_node);
+  };
+
+  void step(const Cycle::Tick& tick);
+  void publishState(const ros::Time& now, const TipForce& force);
+  void fillSurface(cell_microinjection::CellState& state) const;
+  void report(diagnostic_updater::DiagnosticStatusWrapper& status);
+
+  Parameters parameters_;
+  Cycle cycle_;
+  std::shared_ptr<const CellModel> cell_;
+  std::unique_ptr<CellTracker> tracker_;
+  Input<geometry_msgs::PoseStamped>& needle_;
+  Output<geometry_msgs::WrenchStamped>& force_;
+  Output<cell_microinjection::CellState>& state_;
+  cell_microinjection::CellState undeformed_;  ///< what stays the same in every message
+  ros::Time state_sent_;
+  std::string untrusted_;  ///< why the last force was not to be trusted; else empty
+};
+
+}  // namespace microinjection

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <geometry_msgs/PoseStamped.h>
+#include <geometry_msgs/TwistStamped.h>
+#include <geometry_msgs/WrenchStamped.h>
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <string>
+
+namespace microinjection {
+
+constexpr char kWorldFrame[] = "world";
+constexpr char kTipFrame[] = "needle_tip";
+
+/// A pose in `world`; empty when the message is null, in another frame (an empty frame_id counts as world), not finite
+/// or its quaternion is not of unit length within 1e-3.
+std::optional<Eigen::Isometry3d> trustedPose(const geometry_msgs::PoseStamped* message);
+
+/// As trustedPose, the position alone (m) and without looking at the orientation, in `frame`.
+std::optional<Eigen::Vector3d> trustedPosition(const geometry_msgs::PoseStamped* message, const std::string& frame);
+
+/// A force (N) in `world`, from a message in `world` (or without frame) or in `needle_tip`, whose orientation in world is
+/// `tip`. Empty when the message is null, in another frame or not finite.
+std::optional<Eigen::Vector3d> trustedForce(const geometry_msgs::WrenchStamped* message, const Eigen::Matrix3d& tip);
+
+geometry_msgs::PoseStamped toPose(const Eigen::Isometry3d& pose, const ros::Time& stamp, const std::string& frame);
+/// With the identity as orientation.
+geometry_msgs::PoseStamped toPose(const Eigen::Vector3d& position, const ros::Time& stamp, const std::string& frame);
+geometry_msgs::WrenchStamped toWrench(const Eigen::Vector3d& force, const ros::Time& stamp, const std::string& frame);
+geometry_msgs::TwistStamped toTwist(const Eigen::Vector3d& velocity, const ros::Time& stamp, const std::string& frame);
+
+}  // namespace microinjection

@@ -1,0 +1,82 @@
+#include "nodes/cycle.h"
+
+#include <algorithm>
+
+#include "nodes/lockstep.h"
+
+namespace microinjection {
+
+Cycle::Cycle(const ros::NodeHandle& node, double rate)
+    : period_(1 / rate), lockstep_(takesPartInLockstep()), node_(node), diagnostics_(rate) {
+  node_.setCallbackQueue(&queue_);
+}
+
+void Cycle::run(const std::function<void(const Tick&)>& step) {
+  step_ = step;
+  if (lockstep_) {
+    runLockstep();
+  } else {
+    runLive();
+  }
+}
+
+void Cycle::step(const ros::Time& now) {
+  const double dt = last_step_.isZero() ? period_ : (now - last_step_).toSec();
+  if (dt <= 0) return;  // a simulated clock that stands still
+  diagnostics_.beginStep();
+  step_({now, std::min(dt, 10 * period_)});
+  diagnostics_.endStep(now);
+  last_step_ = now;
+}
+
+void Cycle::runLive() {
+  const bool driven =
+      std::any_of(inputs_.begin(), inputs_.end(), [](const auto& input) { return input->phase == Phase::kSameTick; });
+  ros::SteadyTime deadline = ros::SteadyTime::now();
+  while (goesOn()) {
+    const ros::WallDuration wait((deadline - ros::SteadyTime::now()).toSec());
+    queue_.callAvailable(std::clamp(wait, ros::WallDuration(0), ros::WallDuration(0.1)));
+    const ros::SteadyTime now = ros::SteadyTime::now();
+    if (!triggered_ && now < deadline) continue;
+    // An input that is late by half a period is not waited for.
+    deadline = driven ? now + ros::WallDuration((triggered_ ? 1.5 : 1.0) * period_) : deadline + ros::WallDuration(period_);
+    if ((now - deadline).toSec() > 10 * period_) deadline = now;  // after a stall: do not catch up
+    triggered_ = false;
+    step(ros::Time::now());
+  }
+}
+
+bool Cycle::allAnswered(const ros::Time& now) const {
+  return std::all_of(inputs_.begin(), inputs_.end(), [&](const auto& input) {
+    if (input->phase == Phase::kTickBefore && stepped_tick_.isZero()) return true;  // nothing was said before the start
+    return input->answered(input->phase == Phase::kSameTick ? now : stepped_tick_);
+  });
+}
+
+void Cycle::runLockstep() {
+  const ros::Subscriber clock = node_.subscribe<rosgraph_msgs::Clock>(
+      "/clock", 10, [this](const rosgraph_msgs::ClockConstPtr& message) { tick_ = message->clock; }, {},
+      ros::TransportHints().tcpNoDelay());
+  acknowledgement_ = node_.advertise<std_msgs::Header>(kAcknowledgementTopic, 10, true);
+  acknowledge(ros::Time());  // ready for the first tick
+  while (goesOn()) {
+    queue_.callAvailable(ros::WallDuration(0.1));
+    if (tick_ == stepped_tick_ || !allAnswered(tick_)) continue;
+    const ros::Time now = tick_;
+    for (auto& input : inputs_) input->take(input->phase == Phase::kSameTick ? now : stepped_tick_, now);
+    for (auto& output : outputs_) output->beginTick(now);
+    step(now);
+    for (auto& output : outputs_) output->endTick();
+    stepped_tick_ = now;
+    acknowledge(now);
+  }
+}
+
+void Cycle::acknowledge(const ros::Time& now) {
+  std_msgs::Header header;
+  header.stamp = now;
+  header.frame_id = ros::this_node::getName();
+  acknowledgement_.publish(header);
+}
+
+}  // namespace microinjection

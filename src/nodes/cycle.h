@@ -1,0 +1,112 @@
+#pragma once
+
+#include <ros/callback_queue.h>
+#include <ros/ros.h>
+#include <rosgraph_msgs/Clock.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "nodes/cycle_diagnostics.h"
+#include "nodes/ports.h"
+
+namespace microinjection {
+
+/// When a node steps, and with which inputs. All callbacks and steps run in the one thread that calls run().
+///
+/// Live, a step follows the arrival of a kSameTick input, so that a hand's motion runs through the whole chain at once;
+/// without such an input, or when it fails to come, the node steps at its own rate. In lock step (the parameter
+/// /lockstep/participants names this node) it steps once for each tick of /clock, when each input has brought that
+/// tick's message or said that it has none, and tells the clock; see nodes/lockstep_clock_node.h.
+class Cycle {
+ public:
+  struct Tick {
+    ros::Time now;
+    double dt = 0;  ///< s since the step before, the nominal period in the first; ten periods at the most, so that
+                    ///< a machine that stalls makes nothing leap
+  };
+
+  /// `rate` in Hz.
+  Cycle(const ros::NodeHandle& node, double rate);
+
+  /// References stay good for the life of the cycle. `timeout`: age in s past which the input is stale.
+  template <typename Message>
+  Input<Message>& input(const std::string& topic, Phase phase, double timeout);
+  template <typename Message>
+  Output<Message>& output(const std::string& topic, bool latch = false);
+
+  /// A node handle whose callbacks run in this thread between steps, for topics outside of the lock step.
+  ros::NodeHandle& node() { return node_; }
+  CycleDiagnostics& diagnostics() { return diagnostics_; }
+  bool lockstep() const { return lockstep_; }
+  double period() const { return period_; }  ///< s
+
+  /// Steps until ROS shuts down or stop() is called.
+  void run(const std::function<void(const Tick&)>& step);
+  void stop() { stopped_ = true; }
+
+ private:
+  bool goesOn() const { return ros::ok() && !stopped_; }
+  void runLive();
+  void runLockstep();
+  bool allAnswered(const ros::Time& now) const;
+  void step(const ros::Time& now);
+  void acknowledge(const ros::Time& now);
+
+  double period_;
+  bool stopped_ = false;
+  bool lockstep_ = false;
+  ros::CallbackQueue queue_;
+  ros::NodeHandle node_;
+  CycleDiagnostics diagnostics_;
+  std::function<void(const Tick&)> step_;
+  std::vector<std::unique_ptr<InputPort>> inputs_;
+  std::vector<std::unique_ptr<OutputPort>> outputs_;
+  std::vector<ros::Subscriber> subscribers_;
+  ros::Time last_step_;
+  bool triggered_ = false;         // live: a kSameTick input has come
+  ros::Time tick_;                 // lock step: the clock's newest
+  ros::Time stepped_tick_;         // lock step: the last one answered
+  ros::Publisher acknowledgement_;
+};
+
+template <typename Message>
+Input<Message>& Cycle::input(const std::string& topic, Phase phase, double timeout) {
+  auto owned = std::make_unique<Input<Message>>(topic, phase, timeout);
+  Input<Message>& port = *owned;
+  inputs_.push_back(std::move(owned));
+  diagnostics_.watch(port);
+  const auto hints = ros::TransportHints().tcpNoDelay();
+  if (lockstep_) {
+    subscribers_.push_back(node_.subscribe<Message>(
+        topic, 10, [&port](const boost::shared_ptr<const Message>& message) { port.queue(message); }, {}, hints));
+    subscribers_.push_back(node_.subscribe<std_msgs::Header>(
+        topic + kSilentSuffix, 10, [&port](const std_msgs::HeaderConstPtr& header) { port.queueSilence(*header); }, {},
+        hints));
+  } else {
+    subscribers_.push_back(node_.subscribe<Message>(
+        topic, 10,
+        [this, &port](const boost::shared_ptr<const Message>& message) {
+          port.receive(message);
+          triggered_ = triggered_ || port.phase == Phase::kSameTick;
+        },
+        {}, hints));
+  }
+  return port;
+}
+
+template <typename Message>
+Output<Message>& Cycle::output(const std::string& topic, bool latch) {
+  auto owned = std::make_unique<Output<Message>>(topic);
+  Output<Message>& port = *owned;
+  outputs_.push_back(std::move(owned));
+  diagnostics_.watch(port);
+  // In lock step every topic is latched: whoever connects late still gets the message of the tick that waits for it.
+  port.publisher = node_.advertise<Message>(topic, 10, latch || lockstep_);
+  if (lockstep_) port.silent_publisher = node_.advertise<std_msgs::Header>(topic + kSilentSuffix, 10, true);
+  return port;
+}
+
+}  // namespace microinjection

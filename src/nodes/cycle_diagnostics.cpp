@@ -1,0 +1,71 @@
+#include "nodes/cycle_diagnostics.h"
+
+#include <diagnostic_msgs/DiagnosticStatus.h>
+
+#include <algorithm>
+
+namespace microinjection {
+
+using diagnostic_msgs::DiagnosticStatus;
+using diagnostic_updater::DiagnosticStatusWrapper;
+
+void CycleDiagnostics::add(const std::string& name, const std::function<void(DiagnosticStatusWrapper&)>& report) {
+  extra_.emplace_back(name, report);
+}
+
+void CycleDiagnostics::start() {
+  updater_ = std::make_unique<diagnostic_updater::Updater>();
+  updater_->setHardwareID("none");
+  updater_->add("cycle", [this](DiagnosticStatusWrapper& status) { reportCycle(status); });
+  if (!inputs_.empty()) updater_->add("inputs", [this](DiagnosticStatusWrapper& status) { reportInputs(status); });
+  for (const auto& task : extra_) updater_->add(task.first, task.second);
+  began_ = reported_ = now_;
+}
+
+void CycleDiagnostics::beginStep() {
+  const ros::SteadyTime now = ros::SteadyTime::now();
+  if (!step_began_.isZero()) intervals_.add((now - step_began_).toSec());
+  step_began_ = now;
+}
+
+void CycleDiagnostics::endStep(const ros::Time& now) {
+  const double took = (ros::SteadyTime::now() - step_began_).toSec();
+  ++steps_;
+  ++all_steps_;
+  step_time_ += took;
+  longest_step_ = std::max(longest_step_, took);
+  now_ = now;
+  if (!updater_) start();
+  if ((now - reported_).toSec() < 1) return;
+  updater_->force_update();
+  reported_ = now;
+  steps_ = 0;
+  step_time_ = longest_step_ = 0;
+}
+
+void CycleDiagnostics::reportCycle(DiagnosticStatusWrapper& status) {
+  const double reached = steps_ / std::max(1e-9, (now_ - reported_).toSec());
+  const bool slow = reached < 0.9 * rate_;
+  status.summary(slow ? DiagnosticStatus::WARN : DiagnosticStatus::OK, slow ? "rate is too low" : "runs at its rate");
+  status.add("rate (Hz)", reached);
+  status.add("nominal rate (Hz)", rate_);
+  status.add("mean step time (s)", step_time_ / std::max(1u, steps_));
+  status.add("longest step time (s)", longest_step_);
+  status.add("steps since the start", all_steps_);
+  status.add("mean rate since the start (Hz)", (all_steps_ - 1) / std::max(1e-9, (now_ - began_).toSec()));
+  status.add("median interval since the start (s of wall time)", intervals_.quantile(0.5));
+  status.add("99 % interval since the start (s of wall time)", intervals_.quantile(0.99));
+  for (const OutputPort* output : outputs_) status.add("sent on " + output->topic, output->count);
+}
+
+void CycleDiagnostics::reportInputs(DiagnosticStatusWrapper& status) {
+  status.summary(DiagnosticStatus::OK, "all inputs are fresh");
+  for (const InputPort* input : inputs_) {
+    status.add("age of " + input->topic + " (s)", input->age(now_));
+    if (!input->fresh(now_)) {
+      status.mergeSummary(DiagnosticStatus::WARN, input->topic + (input->valid() ? " is stale" : " has nothing valid"));
+    }
+  }
+}
+
+}  // namespace microinjection

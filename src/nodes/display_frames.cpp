@@ -1,0 +1,74 @@
+#include "nodes/display_frames.h"
+
+#include <geometry_msgs/TransformStamped.h>
+#include <ros/time.h>
+
+#include "display/display_scale.h"
+
+namespace microinjection {
+namespace {
+
+geometry_msgs::TransformStamped enlarged(const std::string& frame, const Eigen::Isometry3d& pose,
+                                         const ros::Time& stamp) {
+  const Eigen::Vector3d position = toDisplay(pose.translation());
+  const Eigen::Quaterniond rotation(pose.linear());
+  geometry_msgs::TransformStamped message;
+  message.header.stamp = stamp;
+  message.header.frame_id = "viz/world";
+  message.child_frame_id = "viz/" + frame;
+  message.transform.translation.x = position.x();
+  message.transform.translation.y = position.y();
+  message.transform.translation.z = position.z();
+  message.transform.rotation.x = rotation.x();
+  message.transform.rotation.y = rotation.y();
+  message.transform.rotation.z = rotation.z();
+  message.transform.rotation.w = rotation.w();
+  return message;
+}
+
+}  // namespace
+
+DisplayFrames::DisplayFrames(const std::vector<std::string>& fixed) : fixed_(fixed) {}
+
+std::optional<Eigen::Isometry3d> DisplayFrames::find(const std::string& parent, const std::string& frame) const {
+  try {
+    const auto transform = buffer_.lookupTransform(parent, frame, ros::Time(0)).transform;
+    const auto& t = transform.translation;
+    const auto& q = transform.rotation;
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.linear() = Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized().toRotationMatrix();
+    pose.translation() << t.x, t.y, t.z;
+    return pose;
+  } catch (const tf2::TransformException&) {
+    return std::nullopt;
+  }
+}
+
+void DisplayFrames::update() {
+  for (const std::string& frame : fixed_) {
+    const std::optional<Eigen::Isometry3d> pose = find("world", frame);
+    if (!pose) continue;
+    const auto last = published_.find(frame);
+    if (last != published_.end() && last->second.matrix() == pose->matrix()) continue;
+    static_broadcaster_.sendTransform(enlarged(frame, *pose, ros::Time::now()));
+    published_[frame] = *pose;
+  }
+}
+
+void DisplayFrames::publishNeedleTip(const Eigen::Isometry3d& tip) {
+  // tf refuses two transforms of one time, which happens while a simulated clock stands still.
+  const ros::Time now = ros::Time::now();
+  if (now.toSec() == tip_stamp_) return;
+  broadcaster_.sendTransform(enlarged("needle_tip", tip, now));
+  tip_stamp_ = now.toSec();
+}
+
+std::vector<std::string> DisplayFrames::missing() const {
+  std::vector<std::string> names;
+  for (const std::string& frame : fixed_) {
+    if (!published_.count(frame)) names.push_back(frame);
+  }
+  return names;
+}
+
+}  // namespace microinjection

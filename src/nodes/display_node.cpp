@@ -1,0 +1,193 @@
+#include "nodes/display_node.h"
+
+#include <visualization_msgs/MarkerArray.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "nodes/conversions.h"
+#include "nodes/node_parameters.h"
+
+namespace microinjection {
+namespace {
+
+constexpr double kStillPeriod = 1;  // s of wall time; an rviz that joins late sees the whole scene by then
+constexpr double kStaleAge = 1;     // s of wall time
+
+CellSurface toSurface(const cell_microinjection::CellState& message) {
+  CellSurface surface;
+  for (const auto& p : message.vertices) surface.vertices.emplace_back(p.x, p.y, p.z);
+  for (std::size_t i = 0; i + 2 < message.triangles.size(); i += 3) {
+    const auto* t = &message.triangles[i];
+    surface.triangles.push_back({static_cast<int>(t[0]), static_cast<int>(t[1]), static_cast<int>(t[2])});
+  }
+  surface.displacement.assign(message.displacement.begin(), message.displacement.end());
+  surface.contact_vertices.assign(message.contact_vertices.begin(), message.contact_vertices.end());
+  surface.held_vertices.assign(message.held_vertices.begin(), message.held_vertices.end());
+  return surface;
+}
+
+/// CRTK: a message with stamp 0 says that what was said before does not hold any more.
+template <typename Message>
+bool isValid(const Message& message) {
+  return !message.header.stamp.isZero();
+}
+
+std::string describe(const cell_microinjection::CellState& message) {
+  if (message.punctured) return "PUNCTURED";
+  if (!message.converged) return "no solution: " + message.reason;
+  return message.in_contact ? "in contact" : "no contact";
+}
+
+std::optional<double> magnitude(const std::optional<Eigen::Vector3d>& vector) {
+  if (!vector) return std::nullopt;
+  return vector->norm();
+}
+
+DisplayConfig readConfig(const ros::NodeHandle& private_node) {
+  ConfigReader reader = parameterReader(private_node);
+  const DisplayConfig config = DisplayConfig::read(reader);
+  reader.finish();
+  return config;
+}
+
+}  // namespace
+
+const char* const DisplayNode::kHelp =
+    "display: shows the scene in rviz, ten thousand times enlarged.\n"
+    "In: /cell/state /needle/measured_cp /cell/predicted_cf /force_sensor/measured_cf /haptic/measured_cp tf.\n"
+    "Out: viz/markers (MarkerArray), tf below viz/world.\n"
+    "Parameters: ~rate (Hz of wall time), ~edges, ~colour_range (m), ~force_scale (m/N), ~injection_pipette,\n"
+    "~holding_pipette; see config/display.yaml.\n";
+
+DisplayNode::DisplayNode(ros::NodeHandle node, ros::NodeHandle private_node)
+    : config_(readConfig(private_node)),
+      scene_(config_),
+      frames_({"cell", "holding_pipette", "manipulator_base"}),
+      inputs_{{{"/cell/state", true},
+               {"/needle/measured_cp", true},
+               {"/cell/predicted_cf", true},
+               {"/force_sensor/measured_cf", true},
+               {"/haptic/measured_cp", false}}},
+      reported_(ros::WallTime::now()),
+      diagnostics_(node, private_node) {
+  state_.readout.state = "waiting for the cell";
+  markers_ = node.advertise<visualization_msgs::MarkerArray>("viz/markers", 5);
+  // Only the latest message is worth a picture.
+  const auto hints = ros::TransportHints().tcpNoDelay();
+  const auto topic = [this](InputId input) { return inputs_[input].topic; };
+  using Wrench = geometry_msgs::WrenchStampedConstPtr;
+  subscribers_ = {
+      node.subscribe(topic(kState), 1, &DisplayNode::onState, this, hints),
+      node.subscribe(topic(kTip), 1, &DisplayNode::onTip, this, hints),
+      node.subscribe<geometry_msgs::WrenchStamped>(
+          topic(kPredicted), 1, [this](const Wrench& force) { onForce(kPredicted, *force); }, nullptr, hints),
+      node.subscribe<geometry_msgs::WrenchStamped>(
+          topic(kMeasured), 1, [this](const Wrench& force) { onForce(kMeasured, *force); }, nullptr, hints),
+      node.subscribe(topic(kHand), 1, &DisplayNode::onHand, this, hints)};
+  diagnostics_.setHardwareID("none");
+  diagnostics_.add("drawing", this, &DisplayNode::reportDrawing);
+  diagnostics_.add("inputs", this, &DisplayNode::reportInputs);
+  timer_ = node.createWallTimer(ros::WallDuration(1 / config_.rate), [this](const ros::WallTimerEvent&) { draw(); });
+}
+
+void DisplayNode::run() { ros::spin(); }
+
+void DisplayNode::count(InputId input, bool drawn) {
+  inputs_[input].received = ros::WallTime::now();
+  if (!drawn) ++inputs_[input].refused;
+}
+
+void DisplayNode::onState(const cell_microinjection::CellState& message) {
+  CellSurface surface = toSurface(message);
+  const std::string defect = surface.defect();
+  count(kState, defect.empty());
+  state_.readout.state = defect.empty() ? describe(message) : "not drawn: " + defect;
+  state_.alarm = !defect.empty() || message.punctured || !message.converged;
+  state_.readout.indentation = std::nullopt;
+  if (std::isfinite(message.indentation)) state_.readout.indentation = message.indentation;
+  if (!defect.empty()) return;
+  state_.cell_frame = message.header.frame_id.empty() ? "cell" : message.header.frame_id;
+  state_.surface = std::move(surface);
+  cell_changed_ = true;
+}
+
+void DisplayNode::onTip(const geometry_msgs::PoseStamped& message) {
+  const bool was_known = state_.tip.has_value();
+  state_.tip = isValid(message) ? trustedPose(&message) : std::nullopt;
+  count(kTip, state_.tip.has_value());
+  if (state_.tip.has_value() != was_known) still_drawn_ = {};  // the pipette comes or goes at once
+}
+
+void DisplayNode::onHand(const geometry_msgs::PoseStamped& message) {
+  state_.readout.hand = isValid(message) ? trustedPosition(&message, message.header.frame_id) : std::nullopt;
+  count(kHand, state_.readout.hand.has_value());
+}
+
+void DisplayNode::onForce(InputId input, const geometry_msgs::WrenchStamped& message) {
+  const Eigen::Isometry3d tip = state_.tip.value_or(Eigen::Isometry3d::Identity());
+  const auto force = isValid(message) ? trustedForce(&message, tip.linear()) : std::nullopt;
+  count(input, force.has_value());
+  (input == kPredicted ? state_.predicted : state_.measured) = force;
+  (input == kPredicted ? state_.readout.predicted : state_.readout.measured) = magnitude(force);
+}
+
+void DisplayNode::draw() {
+  const ros::WallTime start = ros::WallTime::now();
+  frames_.update();
+  if (state_.tip) frames_.publishNeedleTip(*state_.tip);
+  if (markers_.getNumSubscribers() > 0) {
+    visualization_msgs::MarkerArray markers;
+    if (cell_changed_) scene_.drawCell(state_, markers);
+    cell_changed_ = false;
+    if (start - still_drawn_ > ros::WallDuration(kStillPeriod)) {
+      state_.holding_from_cell = frames_.find("holding_pipette", state_.cell_frame);
+      scene_.drawStill(state_, markers);
+      still_drawn_ = start;
+    }
+    scene_.drawMoving(state_, markers);
+    markers_.publish(markers);
+  }
+  ++drawings_;
+  longest_drawing_ = std::max(longest_drawing_, (ros::WallTime::now() - start).toSec());
+  diagnostics_.update();
+}
+
+void DisplayNode::reportDrawing(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  const ros::WallTime now = ros::WallTime::now();
+  const double rate = drawings_ / std::max(1e-9, (now - reported_).toSec());
+  const std::vector<std::string> missing = frames_.missing();
+  status.summary(diagnostic_msgs::DiagnosticStatus::OK, "drawing");
+  if (rate < 0.5 * config_.rate) status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "slow");
+  for (const std::string& frame : missing) {
+    status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "tf does not know world -> " + frame);
+  }
+  status.add("rate (Hz of wall time)", rate);
+  status.add("rate wanted (Hz)", config_.rate);
+  status.add("longest drawing (ms)", 1e3 * longest_drawing_);
+  reported_ = now;
+  drawings_ = 0;
+  longest_drawing_ = 0;
+}
+
+void DisplayNode::reportInputs(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  const ros::WallTime now = ros::WallTime::now();
+  status.summary(diagnostic_msgs::DiagnosticStatus::OK, "inputs are fresh");
+  for (const Input& input : inputs_) {
+    const bool silent = input.received.isZero();
+    const double age = silent ? 0 : (now - input.received).toSec();
+    if (input.needed && (silent || age > kStaleAge)) {
+      status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, input.topic + (silent ? " is silent" : " is stale"));
+    }
+    if (input.refused > 0) {
+      status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN,
+                          input.topic + ": some were not finite, invalid or in an unknown frame");
+    }
+    status.add(input.topic + " age (s of wall time)", silent ? std::string("never received") : std::to_string(age));
+    status.add(input.topic + " messages not drawn", input.refused);
+  }
+}
+
+}  // namespace microinjection

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cell_microinjection/CellState.h>
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <geometry_msgs/PoseStamped.h>
+#include <geometry_msgs/WrenchStamped.h>
+#include <ros/ros.h>
+
+#include <array>
+#include <string>
+
+#include "nodes/display_frames.h"
+#include "nodes/display_scene.h"
+
+namespace microinjection {
+
+/// Shows the scene in rviz at x 1e4. For eyes only: nothing that controls reads its topics.
+///
+/// In:  /cell/state, /needle/measured_cp, /cell/predicted_cf, /force_sensor/measured_cf, /haptic/measured_cp, tf
+/// Out: viz/markers (MarkerArray), tf of viz/{cell, holding_pipette, manipulator_base, needle_tip} below viz/world
+///
+/// Parameters: private those of DisplayConfig; see config/display.yaml.
+///
+/// It counts wall time, unlike the nodes that control: eyes want as many pictures a second however fast a simulated
+/// clock runs. Input that is not finite, invalid (stamp 0) or in an unknown frame is not drawn; the diagnostics count
+/// it.
+class DisplayNode {
+ public:
+  static const char* const kHelp;
+  /// @throws ConfigError when a parameter is unknown or out of range.
+  DisplayNode(ros::NodeHandle node, ros::NodeHandle private_node);
+  void run();
+
+ private:
+  enum InputId { kState, kTip, kPredicted, kMeasured, kHand, kInputs };
+  struct Input {
+    Input(const std::string& input_topic, bool is_needed) : topic(input_topic), needed(is_needed) {}
+    std::string topic;
+    bool needed;             ///< its absence is worth a warning
+    ros::WallTime received;  ///< of the last message, drawn or not; zero: none yet
+    unsigned refused = 0;    ///< messages that were not drawn
+  };
+
+  void onState(const cell_microinjection::CellState& message);
+  void onTip(const geometry_msgs::PoseStamped& message);
+  void onHand(const geometry_msgs::PoseStamped& message);
+  void onForce(InputId input, const geometry_msgs::WrenchStamped& message);
+  void count(InputId input, bool drawn);
+
+  void draw();
+  void reportDrawing(diagnostic_updater::DiagnosticStatusWrapper& status);
+  void reportInputs(diagnostic_updater::DiagnosticStatusWrapper& status);
+
+  DisplayConfig config_;  // read-only after construction
+  DisplayScene scene_;
+  DisplayFrames frames_;
+  DisplayedState state_;       ///< the latest input
+  bool cell_changed_ = false;  ///< since it was drawn
+  std::array<Input, kInputs> inputs_;
+
+  ros::WallTime still_drawn_;  ///< when the markers that stay were last sent
+  ros::WallTime reported_;
+  unsigned drawings_ = 0;       ///< since reported_
+  double longest_drawing_ = 0;  ///< s of wall time, since reported_
+
+  ros::Publisher markers_;
+  std::array<ros::Subscriber, kInputs> subscribers_;
+  diagnostic_updater::Updater diagnostics_;
+  ros::WallTimer timer_;
+};
+
+}  // namespace microinjection

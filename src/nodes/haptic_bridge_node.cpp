@@ -1,0 +1,87 @@
+#include "nodes/haptic_bridge_node.h"
+
+#include <limits>
+
+#include "nodes/conversions.h"
+#include "nodes/force_topic.h"
+#include "nodes/node_parameters.h"
+
+namespace microinjection {
+
+const char* const HapticBridgeNode::kHelp =
+    "haptic_bridge: couples a haptic device to the needle, position forward and force back.\n"
+    "In: /haptic/measured_cp /haptic/clutch /needle/measured_cp and /cell/predicted_cf or /force_sensor/measured_cf.\n"
+    "Out: /haptic/servo_cf /teleop/servo_cp.\n"
+    "Parameters: ~position_scale, ~force_gain, ~force_limit (N), ~ramp_time (s), ~force_source (predicted|measured),\n"
+    "~rate (Hz), ~input_timeout (s); see config/haptic_bridge.yaml.\n";
+
+HapticBridgeNode::Parameters HapticBridgeNode::Parameters::read(const ros::NodeHandle& private_node) {
+  Parameters parameters;
+  ConfigReader reader = parameterReader(private_node);
+  reader.number("rate", parameters.rate, Range::closed(50, 5000));
+  reader.number("input_timeout", parameters.input_timeout, Range::positive());
+  reader.choice("force_source", parameters.force_source, {"predicted", "measured"});
+  parameters.model = HapticBridgeConfig::read(reader);
+  reader.finish();
+  return parameters;
+}
+
+HapticBridgeNode::HapticBridgeNode(ros::NodeHandle node, ros::NodeHandle private_node)
+    : parameters_(Parameters::read(private_node)),
+      model_(parameters_.model),
+      cycle_(node, parameters_.rate),
+      hand_(cycle_.input<geometry_msgs::PoseStamped>("haptic/measured_cp", Phase::kSameTick, parameters_.input_timeout)),
+      clutch_(cycle_.input<sensor_msgs::Joy>("haptic/clutch", Phase::kTickBefore,
+                                             std::numeric_limits<double>::infinity())),
+      needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", Phase::kTickBefore, parameters_.input_timeout)),
+      force_(cycle_.input<geometry_msgs::WrenchStamped>(forceTopic(parameters_.force_source), Phase::kTickBefore,
+                                                        parameters_.input_timeout)),
+      hand_force_(cycle_.output<geometry_msgs::WrenchStamped>("haptic/servo_cf")),
+      target_(cycle_.output<geometry_msgs::PoseStamped>("teleop/servo_cp")),
+      trace_(cycle_.output<cell_microinjection::LatencyTrace>("haptic/force_trace")) {
+  cycle_.diagnostics().add("loop", [this](auto& status) { report(status); });
+}
+
+void HapticBridgeNode::run() {
+  cycle_.run([this](const Cycle::Tick& tick) { step(tick); });
+}
+
+bool HapticBridgeNode::clutchPressed(const ros::Time& now) const {
+  const sensor_msgs::Joy* joy = clutch_.get(now);
+  return joy && !joy->buttons.empty() && joy->buttons[0] != 0;
+}
+
+void HapticBridgeNode::step(const Cycle::Tick& tick) {
+  const auto* hand = hand_.get(tick.now);
+  const auto* force = force_.get(tick.now);
+  const auto needle = trustedPose(needle_.get(tick.now));
+  HapticBridge::Input input;
+  if (hand) input.hand = trustedPosition(hand, hand->header.frame_id);
+  if (needle) {
+    input.needle = needle->translation();
+    input.force = trustedForce(force, needle->linear());
+  }
+  input.clutch = clutchPressed(tick.now);
+  const HapticBridge::Output output = model_.step(input, tick.dt);
+  held_because_ = output.held_because;
+
+  hand_force_.publish(toWrench(output.hand_force, tick.now, hand ? hand->header.frame_id : ""));
+  if (!output.needle) {
+    target_.publishInvalid(toPose(Eigen::Vector3d::Zero(), tick.now, kWorldFrame));
+    return;
+  }
+  target_.publish(toPose(*output.needle, hand->header.stamp, kWorldFrame));
+  cell_microinjection::LatencyTrace trace;
+  trace.header.stamp = tick.now;
+  trace.origin = force->header.stamp;
+  trace_.publish(trace);
+}
+
+void HapticBridgeNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) const {
+  const bool good = held_because_.empty();
+  status.summary(good ? diagnostic_msgs::DiagnosticStatus::OK : diagnostic_msgs::DiagnosticStatus::WARN,
+                 good ? "the loop is closed" : "needle held, zero force: " + held_because_);
+  status.add("force source", parameters_.force_source);
+}
+
+}  // namespace microinjection

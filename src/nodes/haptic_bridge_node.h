@@ -1,0 +1,61 @@
+#pragma once
+
+#include <geometry_msgs/PoseStamped.h>
+#include <geometry_msgs/WrenchStamped.h>
+#include <ros/ros.h>
+#include <sensor_msgs/Joy.h>
+
+#include <string>
+
+#include "cell_microinjection/LatencyTrace.h"
+#include "nodes/cycle.h"
+#include "teleoperation/haptic_bridge.h"
+
+namespace microinjection {
+
+/// Couples a haptic device to the needle. Without a trusted hand, needle or force it renders zero force and withdraws
+/// its target (stamp 0), so that the controller holds the needle.
+///
+/// In:  /haptic/measured_cp (PoseStamped, axes as `world`), /haptic/clutch (Joy, buttons[0] is 1 while pressed),
+///      /needle/measured_cp (PoseStamped), /cell/predicted_cf or /force_sensor/measured_cf (WrenchStamped)
+/// Out: /haptic/servo_cf (WrenchStamped, N at the hand), /teleop/servo_cp (PoseStamped, tip in `world`),
+///      /haptic/force_trace (LatencyTrace)
+///
+/// Parameters (private): those of HapticBridgeConfig and
+///   rate           Hz; default 1000, in [50, 5000]
+///   input_timeout  s, past which an input is stale; default 0.05, in (0, inf)
+///   force_source   predicted or measured; default predicted
+class HapticBridgeNode {
+ public:
+  static const char* const kHelp;
+  /// @throws ConfigError
+  HapticBridgeNode(ros::NodeHandle node, ros::NodeHandle private_node);
+  void run();
+
+ private:
+  struct Parameters {
+    double rate = 1000;
+    double input_timeout = 0.05;
+    std::string force_source = "predicted";
+    HapticBridgeConfig model;
+    static Parameters read(const ros::NodeHandle& private_node);
+  };
+
+  void step(const Cycle::Tick& tick);
+  bool clutchPressed(const ros::Time& now) const;
+  void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
+
+  Parameters parameters_;
+  HapticBridge model_;
+  Cycle cycle_;
+  Input<geometry_msgs::PoseStamped>& hand_;
+  Input<sensor_msgs::Joy>& clutch_;
+  Input<geometry_msgs::PoseStamped>& needle_;
+  Input<geometry_msgs::WrenchStamped>& force_;
+  Output<geometry_msgs::WrenchStamped>& hand_force_;
+  Output<geometry_msgs::PoseStamped>& target_;
+  Output<cell_microinjection::LatencyTrace>& trace_;
+  std::string held_because_;
+};
+
+}  // namespace microinjection

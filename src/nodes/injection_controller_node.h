@@ -1,0 +1,61 @@
+#pragma once
+
+#include <geometry_msgs/PoseStamped.h>
+#include <geometry_msgs/WrenchStamped.h>
+#include <ros/ros.h>
+
+#include <string>
+
+#include "cell_microinjection/OperatingState.h"
+#include "cell_microinjection/StringStamped.h"
+#include "control/injection_controller.h"
+#include "nodes/cycle.h"
+
+namespace microinjection {
+
+/// The one that moves the needle, simulated or real. Holds it when an input cannot be trusted.
+///
+/// In:  /teleop/servo_cp (PoseStamped, `world`; with source teleop), /needle/measured_cp (PoseStamped),
+///      /cell/predicted_cf or /force_sensor/measured_cf (WrenchStamped), /controller/state_command (StringStamped)
+/// Out: /needle/servo_cp (PoseStamped, `world`), /controller/operating_state (OperatingState, latched, on change)
+///
+/// Parameters (private): those of InjectionControllerConfig and
+///   rate           Hz; default 1000, in [50, 5000]
+///   input_timeout  s, past which an input is stale; default 0.05, in (0, inf)
+///   force_source   predicted or measured; default predicted
+///   auto_enable    go to ENABLED at the start, for simulated rigs; default false
+class InjectionControllerNode {
+ public:
+  static const char* const kHelp;
+  /// @throws ConfigError
+  InjectionControllerNode(ros::NodeHandle node, ros::NodeHandle private_node);
+  void run();
+
+ private:
+  struct Parameters {
+    double rate = 1000;
+    double input_timeout = 0.05;
+    std::string force_source = "predicted";
+    bool auto_enable = false;
+    InjectionControllerConfig model;
+    static Parameters read(const ros::NodeHandle& private_node);
+  };
+
+  void obey(const std::string& command);
+  void step(const Cycle::Tick& tick);
+  void publishState(const ros::Time& now);
+  void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
+
+  Parameters parameters_;
+  InjectionController model_;
+  Cycle cycle_;
+  Input<geometry_msgs::PoseStamped>* target_ = nullptr;  ///< null with source approach
+  Input<geometry_msgs::PoseStamped>& needle_;
+  Input<geometry_msgs::WrenchStamped>& force_;
+  Output<geometry_msgs::PoseStamped>& setpoint_;
+  ros::Subscriber commands_;
+  ros::Publisher state_;
+  cell_microinjection::OperatingState said_;  ///< the last that was published
+};
+
+}  // namespace microinjection

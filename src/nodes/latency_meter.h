@@ -1,0 +1,31 @@
+#pragma once
+
+#include <ros/ros.h>
+
+#include <map>
+
+#include "base/interval_histogram.h"
+#include "cell_microinjection/LatencyTrace.h"
+
+namespace microinjection {
+
+/// Time from a sample of the hand to the first force at the hand that depends on it, joined from two traces: which hand
+/// sample the needle's pose obeyed (/needle/setpoint_trace) and which needle pose the rendered force came from
+/// (/haptic/force_trace).
+class LatencyMeter {
+ public:
+  explicit LatencyMeter(ros::NodeHandle& node);
+  const IntervalHistogram& latencies() const { return latencies_; }  ///< s
+
+ private:
+  void onSetpoint(const cell_microinjection::LatencyTraceConstPtr& trace);
+  void onForce(const cell_microinjection::LatencyTraceConstPtr& trace);
+
+  std::map<ros::Time, ros::Time> hand_of_needle_;  ///< stamp of the hand sample by stamp of the needle pose; recent
+  std::map<ros::Time, ros::Time> force_waiting_;   ///< rendered at, by needle pose whose setpoint trace is to come
+  ros::Time last_hand_;                            ///< newest hand sample that was counted
+  IntervalHistogram latencies_;
+  ros::Subscriber setpoints_, forces_;
+};
+
+}  // namespace microinjection

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <set>
+#include <string>
+
+namespace microinjection {
+
+/// Nodes tell the clock on this topic that they have done the tick `stamp`; frame_id is the node's name, stamp 0 means
+/// that it is ready for the first.
+constexpr char kAcknowledgementTopic[] = "/lockstep/acknowledgement";
+
+/// Names of the nodes that step together, from the parameter /lockstep/participants; empty when the session is live.
+std::set<std::string> lockstepParticipants();
+
+/// Whether this node is one of them.
+bool takesPartInLockstep();
+
+}  // namespace microinjection

@@ -1,0 +1,67 @@
+#include "nodes/lockstep_clock_node.h"
+
+#include <rosgraph_msgs/Clock.h>
+
+#include "base/errors.h"
+#include "nodes/lockstep.h"
+#include "nodes/node_parameters.h"
+
+namespace microinjection {
+
+const char* const LockstepClockNode::kHelp =
+    "lockstep_clock: steps /clock when every node of /lockstep/participants has done the tick before.\n"
+    "Parameters: ~step (s), ~real_time_factor (0: as fast as it goes), ~warn_after (s).\n";
+
+LockstepClockNode::LockstepClockNode(ros::NodeHandle node, ros::NodeHandle private_node)
+    : participants_(lockstepParticipants()) {
+  ConfigReader reader = parameterReader(private_node);
+  reader.number("step", step_, {0, 1, true, false});
+  reader.number("real_time_factor", real_time_factor_, Range::nonNegative());
+  reader.number("warn_after", warn_after_, Range::positive());
+  reader.finish();
+  if (participants_.empty()) throw ConfigError("/lockstep/participants must be a list of at least one node's name");
+  missing_ = participants_;
+  node.setCallbackQueue(&queue_);
+  clock_ = node.advertise<rosgraph_msgs::Clock>("/clock", 10, true);
+  acknowledgements_ = node.subscribe(kAcknowledgementTopic, 100, &LockstepClockNode::onAcknowledgement, this,
+                                     ros::TransportHints().tcpNoDelay());
+}
+
+void LockstepClockNode::onAcknowledgement(const std_msgs::HeaderConstPtr& header) {
+  if (header->stamp == tick_) missing_.erase(header->frame_id);
+}
+
+void LockstepClockNode::waitForAll() {
+  ros::SteadyTime warned = ros::SteadyTime::now();
+  while (ros::ok() && !missing_.empty()) {
+    queue_.callAvailable(ros::WallDuration(0.1));
+    if ((ros::SteadyTime::now() - warned).toSec() < warn_after_) continue;
+    warned = ros::SteadyTime::now();
+    std::string names;
+    for (const std::string& name : missing_) names += " " + name;
+    ROS_WARN_STREAM("the clock stands at " << tick_ << " s and waits for:" << names);
+  }
+}
+
+void LockstepClockNode::pace(const ros::SteadyTime& began) const {
+  if (real_time_factor_ <= 0) return;
+  const double due = tick_.toSec() / real_time_factor_;
+  const double ahead = due - (ros::SteadyTime::now() - began).toSec();
+  if (ahead > 0) ros::WallDuration(ahead).sleep();
+}
+
+void LockstepClockNode::run() {
+  waitForAll();
+  const ros::SteadyTime began = ros::SteadyTime::now();
+  while (ros::ok()) {
+    tick_ += ros::Duration(step_);
+    missing_ = participants_;
+    rosgraph_msgs::Clock message;
+    message.clock = tick_;
+    clock_.publish(message);
+    waitForAll();
+    pace(began);
+  }
+}
+
+}  // namespace microinjection

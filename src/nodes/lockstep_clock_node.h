@@ -1,0 +1,45 @@
+#pragma once
+
+#include <ros/callback_queue.h>
+#include <ros/ros.h>
+#include <std_msgs/Header.h>
+
+#include <set>
+#include <string>
+
+namespace microinjection {
+
+/// Steps /clock when every participant of the lock step has done the tick before. The same session then gives the same
+/// bits on any machine, faster or slower than real time.
+///
+/// In:  /lockstep/acknowledgement (std_msgs/Header of each participant)
+/// Out: /clock (rosgraph_msgs/Clock)
+///
+/// Parameters: /lockstep/participants (names of nodes), and private:
+///   step              s, of one tick; default 0.001, in (0, 1]
+///   real_time_factor  times real time at the most, 0: as fast as it goes; default 0, in [0, inf)
+///   warn_after        s of wall time without an answer after which the silent nodes are named; default 5, in (0, inf)
+class LockstepClockNode {
+ public:
+  static const char* const kHelp;
+  /// @throws ConfigError when a parameter is unknown or out of range, or there are no participants.
+  LockstepClockNode(ros::NodeHandle node, ros::NodeHandle private_node);
+  void run();
+
+ private:
+  void onAcknowledgement(const std_msgs::HeaderConstPtr& header);
+  void waitForAll();
+  void pace(const ros::SteadyTime& began) const;
+
+  double step_ = 1e-3;            ///< s
+  double real_time_factor_ = 0;   ///< 0: as fast as it goes
+  double warn_after_ = 5;         ///< s of wall time
+  std::set<std::string> participants_;
+  std::set<std::string> missing_;  ///< those that have not answered the present tick
+  ros::Time tick_;
+  ros::CallbackQueue queue_;
+  ros::Publisher clock_;
+  ros::Subscriber acknowledgements_;
+};
+
+}  // namespace microinjection

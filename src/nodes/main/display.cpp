@@ -1,0 +1,4 @@
+#include "nodes/display_node.h"
+#include "nodes/run_node.h"
+
+int main(int argc, char** argv) { return microinjection::runNode<microinjection::DisplayNode>(argc, argv, "display"); }

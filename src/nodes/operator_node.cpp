@@ -1,0 +1,86 @@
+#include "nodes/operator_node.h"
+
+#include <algorithm>
+
+#include "nodes/conversions.h"
+#include "nodes/node_parameters.h"
+
+namespace microinjection {
+namespace {
+
+constexpr char kHapticFrame[] = "haptic";
+
+}  // namespace
+
+const char* const OperatorNode::kHelp =
+    "operator: a virtual haptic device in a virtual hand that follows a recorded motion.\n"
+    "In: /haptic/servo_cf. Out: /haptic/measured_cp /haptic/clutch /operator/phase.\n"
+    "Parameters: ~motion (file, required), ~start_delay (s), ~wait_for_go, ~mass (kg), ~damping (N s/m),\n"
+    "~stiffness (N/m), ~rate (Hz), ~force_timeout (s); see config/operator.yaml.\n";
+
+OperatorNode::Parameters OperatorNode::Parameters::read(const ros::NodeHandle& private_node) {
+  Parameters parameters;
+  ConfigReader reader = parameterReader(private_node);
+  reader.text("motion", parameters.motion, ConfigReader::kRequired);
+  reader.number("start_delay", parameters.start_delay, Range::nonNegative());
+  reader.boolean("wait_for_go", parameters.wait_for_go);
+  reader.number("rate", parameters.rate, Range::closed(50, 5000));
+  reader.number("force_timeout", parameters.force_timeout, Range::positive());
+  parameters.hand = VirtualHandConfig::read(reader);
+  reader.finish();
+  return parameters;
+}
+
+OperatorNode::OperatorNode(ros::NodeHandle node, ros::NodeHandle private_node)
+    : parameters_(Parameters::read(private_node)),
+      motion_(HandMotion::load(parameters_.motion)),
+      hand_(parameters_.hand, motion_.at(0).position),
+      cycle_(node, parameters_.rate),
+      force_(cycle_.input<geometry_msgs::WrenchStamped>("haptic/servo_cf", Phase::kTickBefore, parameters_.force_timeout)),
+      position_(cycle_.output<geometry_msgs::PoseStamped>("haptic/measured_cp")),
+      clutch_(cycle_.output<sensor_msgs::Joy>("haptic/clutch", true)),
+      phase_(cycle_.output<cell_microinjection::StringStamped>("operator/phase", true)) {}
+
+void OperatorNode::waitForGo() const {
+  bool go = !parameters_.wait_for_go;
+  while (ros::ok() && !go) {
+    ros::WallDuration(0.1).sleep();
+    ros::param::get("/session/go", go);
+  }
+}
+
+void OperatorNode::run() {
+  waitForGo();
+  cycle_.run([this](const Cycle::Tick& tick) { step(tick); });
+}
+
+void OperatorNode::step(const Cycle::Tick& tick) {
+  elapsed_ += tick.dt;
+  const double time = std::max(0.0, elapsed_ - parameters_.start_delay);
+  const HandMotion::Sample meant = motion_.at(time);
+  const auto force = trustedForce(force_.get(tick.now), Eigen::Matrix3d::Identity());
+  hand_.step(meant.position, force.value_or(Eigen::Vector3d::Zero()), tick.dt);
+  position_.publish(toPose(hand_.position(), tick.now, kHapticFrame));
+  publishClutch(tick.now, meant.clutch);
+  publishPhase(tick.now, time >= motion_.duration() ? "done" : meant.phase);
+}
+
+void OperatorNode::publishClutch(const ros::Time& now, bool pressed) {
+  if (clutch_said_ == pressed) return;
+  sensor_msgs::Joy message;
+  message.header.stamp = now;
+  message.buttons = {pressed ? 1 : 0};
+  clutch_.publish(message);
+  clutch_said_ = pressed;
+}
+
+void OperatorNode::publishPhase(const ros::Time& now, const std::string& phase) {
+  if (phase_said_ == phase) return;
+  cell_microinjection::StringStamped message;
+  message.header.stamp = now;
+  message.string = phase;
+  phase_.publish(message);
+  phase_said_ = phase;
+}
+
+}  // namespace microinjection

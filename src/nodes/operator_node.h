@@ -1,0 +1,66 @@
+#pragma once
+
+#include <geometry_msgs/PoseStamped.h>
+#include <geometry_msgs/WrenchStamped.h>
+#include <ros/ros.h>
+#include <sensor_msgs/Joy.h>
+
+#include <optional>
+#include <string>
+
+#include "cell_microinjection/StringStamped.h"
+#include "nodes/cycle.h"
+#include "teleoperation/hand_motion.h"
+#include "teleoperation/virtual_hand.h"
+
+namespace microinjection {
+
+/// A virtual haptic device in a virtual hand that follows a recorded motion and yields to the force it feels.
+///
+/// In:  /haptic/servo_cf (WrenchStamped, N; none while it is stale)
+/// Out: /haptic/measured_cp (PoseStamped, m, frame `haptic`), /haptic/clutch (Joy, on change),
+///      /operator/phase (StringStamped, latched, on change: the motion's phases, then done)
+///
+/// Parameters (private): those of VirtualHandConfig and
+///   motion         path of a hand motion (see teleoperation/hand_motion.h); required
+///   start_delay    s, in which the hand rests before the motion; default 1, in [0, inf)
+///   wait_for_go    do nothing until the parameter /session/go is true; default false
+///   rate           Hz; default 1000, in [50, 5000]
+///   force_timeout  s; default 0.05, in (0, inf)
+class OperatorNode {
+ public:
+  static const char* const kHelp;
+  /// @throws ConfigError
+  OperatorNode(ros::NodeHandle node, ros::NodeHandle private_node);
+  void run();
+
+ private:
+  struct Parameters {
+    std::string motion;
+    double start_delay = 1;
+    bool wait_for_go = false;
+    double rate = 1000;
+    double force_timeout = 0.05;
+    VirtualHandConfig hand;
+    static Parameters read(const ros::NodeHandle& private_node);
+  };
+
+  void waitForGo() const;
+  void step(const Cycle::Tick& tick);
+  void publishClutch(const ros::Time& now, bool pressed);
+  void publishPhase(const ros::Time& now, const std::string& phase);
+
+  Parameters parameters_;
+  HandMotion motion_;
+  VirtualHand hand_;
+  Cycle cycle_;
+  Input<geometry_msgs::WrenchStamped>& force_;
+  Output<geometry_msgs::PoseStamped>& position_;
+  Output<sensor_msgs::Joy>& clutch_;
+  Output<cell_microinjection::StringStamped>& phase_;
+  double elapsed_ = 0;  ///< s of steps; a stall of the machine pauses the hand
+  std::optional<bool> clutch_said_;
+  std::string phase_said_;
+};
+
+}  // namespace microinjection

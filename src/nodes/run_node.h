@@ -1,0 +1,32 @@
+#pragma once
+
+#include <ros/ros.h>
+
+#include <cstdio>
+#include <exception>
+#include <string>
+
+namespace microinjection {
+
+/// The whole `main` of a node: starts ROS, constructs Node(node, private_node) and runs it until shutdown. A node whose
+/// parameters are wrong must not come alive: what its constructor throws is logged and the exit status is 1.
+template <typename Node>
+int runNode(int argc, char** argv, const std::string& name) {
+  for (int i = 1; i < argc; ++i) {
+    if (std::string(argv[i]) == "--help" || std::string(argv[i]) == "-h") {
+      std::printf("%s", Node::kHelp);
+      return 0;
+    }
+  }
+  ros::init(argc, argv, name);
+  try {
+    Node node(ros::NodeHandle(), ros::NodeHandle("~"));
+    node.run();
+  } catch (const std::exception& error) {
+    ROS_FATAL_STREAM(error.what());
+    return 1;
+  }
+  return 0;
+}
+
+}  // namespace microinjection

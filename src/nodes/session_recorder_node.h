@@ -1,0 +1,82 @@
+#pragma once
+
+#include <diagnostic_msgs/DiagnosticArray.h>
+#include <geometry_msgs/PoseStamped.h>
+#include <geometry_msgs/WrenchStamped.h>
+#include <ros/ros.h>
+
+#include <Eigen/Core>
+#include <map>
+#include <memory>
+#include <sstream>
+#include <string>
+
+#include "base/interval_histogram.h"
+#include "cell_microinjection/CellState.h"
+#include "cell_microinjection/StringStamped.h"
+#include "nodes/bare_timer_loop.h"
+#include "nodes/cycle.h"
+#include "nodes/latency_meter.h"
+
+namespace microinjection {
+
+/// Writes what a session did: force_depth.csv (one row a `row_period`), summary.yaml (rates of every node and, live, the
+/// latency from hand to force beside a bare timer loop). Both files are written whole at the end of the session.
+///
+/// In: /needle/measured_cp, /cell/predicted_cf, /force_sensor/measured_cf, /haptic/servo_cf, /cell/state,
+///     /operator/phase, /needle/setpoint_trace, /haptic/force_trace, /diagnostics
+///
+/// Depth is the travel of the tip along the pipette since the predicted force last rose from zero; empty before.
+///
+/// Parameters (private):
+///   output_dir  path, made when absent; required
+///   row_period  s; default 0.005, in (0, inf)
+///   hand        whether there is a haptic bridge to record; default true
+///   end_when_done  write the files and end this node when the operator's phase is done; default false
+class SessionRecorderNode {
+ public:
+  static const char* const kHelp;
+  /// @throws ConfigError
+  SessionRecorderNode(ros::NodeHandle node, ros::NodeHandle private_node);
+  void run();
+
+ private:
+  struct Parameters {
+    std::string output_dir;
+    double row_period = 0.005;
+    bool hand = true;
+    bool end_when_done = false;
+    static Parameters read(const ros::NodeHandle& private_node);
+  };
+  struct NodeFigures {
+    std::string topic, count, rate, median, p99;
+  };
+
+  void step(const Cycle::Tick& tick);
+  void followContact(const Eigen::Vector3d& tip, bool in_contact);
+  void writeRow(const ros::Time& now);
+  void onDiagnostics(const diagnostic_msgs::DiagnosticArrayConstPtr& message);
+  std::string summary() const;
+
+  Parameters parameters_;
+  Cycle cycle_;
+  Input<geometry_msgs::WrenchStamped>& predicted_;
+  Input<geometry_msgs::PoseStamped>& needle_;
+  Input<geometry_msgs::WrenchStamped>& measured_;
+  Input<cell_microinjection::CellState>& cell_;
+  Input<geometry_msgs::WrenchStamped>* hand_force_ = nullptr;      ///< null without a hand
+  Input<cell_microinjection::StringStamped>* phase_ = nullptr;  ///< null without a hand
+  ros::Subscriber diagnostics_;
+  std::unique_ptr<LatencyMeter> latency_;      ///< null in lock step, where wall time means nothing
+  std::unique_ptr<BareTimerLoop> timer_loop_;  ///< null in lock step
+
+  std::ostringstream rows_;
+  ros::Time began_, row_written_;
+  bool in_contact_ = false;
+  bool touched_ = false;                                  ///< ever
+  Eigen::Vector3d tip_before_ = Eigen::Vector3d::Zero();  ///< m, of the step before
+  Eigen::Vector3d touched_at_ = Eigen::Vector3d::Zero();  ///< m
+  std::map<std::string, NodeFigures> figures_;            ///< by node
+};
+
+}  // namespace microinjection

@@ -1,0 +1,198 @@
+#!/usr/bin/env python3
+"""Runs a session: the virtual operator approaches, touches, indents and retracts.
+
+Leaves in the output folder: force_depth.csv and force_depth.png (force against depth), scene.png (rviz at the deepest
+point), session.bag, summary.yaml (rates and latency) and log/. Exit code 1 when one of them is missing or a node died.
+"""
+import argparse
+import os
+import shutil
+import signal
+import sys
+import time
+from pathlib import Path
+
+import demo_summary
+import plot_force_depth
+from demo_session import DemoSession, SessionError
+from processes import wait_until
+from rviz_view import RvizError, RvizView
+from session_monitor import Progress
+
+ROOT = Path(os.environ.get('MICROINJECTION_ROOT') or Path(__file__).resolve().parents[2])
+RESULTS = ('force_depth.csv', 'force_depth.png', 'scene.png', 'session.bag', 'summary.yaml')
+
+RVIZ_TIMEOUT = 90    # s of wall time, for rviz to come up
+PHASE_TIMEOUT = 300  # s, for a phase of the operator
+SETTLE = 0.8         # s, for rviz to draw what the nodes have just said
+
+
+class DemoError(Exception):
+    """What went wrong, for the user."""
+
+
+def parse_arguments():
+    parser = argparse.ArgumentParser(prog='./dev demo --', description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('--out', type=Path, default=ROOT / 'out' / 'demo', help='folder of the results (%(default)s)')
+    parser.add_argument('--cell', default='mouse_oocyte', help='name in config/cells, or path of a scene file')
+    parser.add_argument('--clock', choices=('wall', 'lockstep'), default='wall',
+                        help='wall time, or a simulated clock that gives the same bits on any machine')
+    parser.add_argument('--haptic', choices=('operator', 'external', 'none'), default='operator',
+                        help='who moves the hand; a session without the operator ends with Ctrl-C')
+    parser.add_argument('--no-rviz', action='store_true', help='no rviz and no scene.png')
+    parser.add_argument('--close', action='store_true', help='close rviz when the session is over')
+    return parser.parse_args()
+
+
+def say(text):
+    print(f'demo: {text}', flush=True)
+
+
+class Demo:
+    """One run. Whatever happens, close() takes everything down again."""
+
+    def __init__(self, arguments):
+        self._arguments = arguments
+        self._out = arguments.out.resolve()
+        self._logs = self._out / 'log'
+        self._session = None
+        self._view = None
+
+    def prepare(self):
+        """Removes the results of the run before."""
+        shutil.rmtree(self._logs, ignore_errors=True)
+        self._logs.mkdir(parents=True)
+        for name in RESULTS:
+            if (self._out / name).exists():
+                (self._out / name).unlink()
+
+    def start(self):
+        cell = Path(self._arguments.cell)
+        scene = {'scene': cell.resolve()} if cell.is_file() else {'cell': self._arguments.cell}
+        say(f'starting the session; its log is in {self._logs}')
+        self._session = DemoSession(self._logs, {
+            **scene, 'rig': 'sim', 'rviz': 'false', 'haptic': self._arguments.haptic, 'clock': self._arguments.clock,
+            'record': self._out})
+        self._session.wait_ready()
+        if not self._arguments.no_rviz:
+            self._start_rviz()
+        self._session.monitor.go()
+
+    def _start_rviz(self):
+        self._view = RvizView(ROOT / 'config' / 'session.rviz', self._logs)
+        say('starting rviz' + (' on a virtual display' if self._view.virtual else ''))
+        def ready():
+            self._session.check()
+            self._view.check()
+            return self._session.monitor.has_subscriber('/viz/markers')
+        if not wait_until(ready, RVIZ_TIMEOUT, period=0.5):
+            raise DemoError(f'rviz did not subscribe to /viz/markers within {RVIZ_TIMEOUT} s; see {self._logs}')
+
+    def follow_operator(self):
+        """Sees the session through; takes the picture while the needle is held at its deepest."""
+        monitor, progress, pictured = self._session.monitor, Progress(), self._view is None
+        while monitor.phase != 'done':
+            self._session.check()
+            if self._view and self._view.virtual:
+                self._view.check()
+            progress.show(monitor)
+            if monitor.phase_age() > PHASE_TIMEOUT:
+                raise DemoError(f'phase {monitor.phase} did not end within {PHASE_TIMEOUT} s')
+            settled = monitor.phase == 'hold' and monitor.phase_age() > SETTLE
+            if not pictured and (settled or monitor.phase == 'retract'):
+                pictured = True
+                self._view.picture(self._out / 'scene.png', 10, self._session.check)
+            time.sleep(0.1)
+        progress.show(monitor)
+        progress.end()
+
+    def follow_hand(self):
+        """Until Ctrl-C, or until rviz is closed; keeps a picture of the deepest indentation."""
+        say('move the hand; Ctrl-C, or closing rviz, ends the session')
+        monitor, progress, deepest = self._session.monitor, Progress(), -1.0
+        try:
+            while not self._view or self._view.running():
+                self._session.check()
+                progress.show(monitor)
+                if self._view and monitor.state and monitor.state.indentation > deepest + 1e-6:
+                    deepest = monitor.state.indentation
+                    self._view.picture(self._out / 'scene.png', 5, self._session.check)
+                time.sleep(0.1)
+        except KeyboardInterrupt:
+            pass
+        progress.end()
+
+    def end_session(self):
+        """Stops the nodes; rviz stays when somebody looks at it."""
+        if self._view and (self._view.virtual or self._arguments.close):
+            self._view.close()
+            self._view = None
+        say('stopping the session')
+        self._session.stop()
+
+    def report(self):
+        """Plots, prints the summary. @raises DemoError when a result is missing."""
+        csv = self._out / 'force_depth.csv'
+        if csv.is_file() and csv.stat().st_size > 0:
+            plot_force_depth.plot(csv, self._out / 'force_depth.png')
+        if (self._out / 'summary.yaml').is_file():
+            print(demo_summary.text(self._out / 'summary.yaml'), flush=True)
+        wanted = [name for name in RESULTS if not (name == 'scene.png' and self._arguments.no_rviz)]
+        missing = [name for name in wanted if not (self._out / name).is_file() or not (self._out / name).stat().st_size]
+        if missing:
+            raise DemoError(f'missing or empty in {self._out}: {", ".join(missing)}; see {self._logs}')
+        say(f'results are in {self._out}: {", ".join(wanted)}')
+
+    def leave_rviz_open(self):
+        if not self._view:
+            return
+        say('rviz stays open; close it or press Ctrl-C')
+        try:
+            while self._view.running():
+                time.sleep(0.2)
+        except KeyboardInterrupt:
+            pass
+
+    def close(self):
+        if self._view:
+            self._view.close()
+        if self._session:
+            self._session.stop()
+
+
+def interrupt(number, _frame):
+    raise KeyboardInterrupt(signal.Signals(number).name)
+
+
+def run(demo, arguments):
+    demo.prepare()
+    demo.start()
+    if arguments.haptic == 'operator':
+        demo.follow_operator()
+    else:
+        demo.follow_hand()
+    demo.end_session()
+    demo.report()
+    demo.leave_rviz_open()
+
+
+def main():
+    arguments = parse_arguments()
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, interrupt)
+    demo = Demo(arguments)
+    try:
+        run(demo, arguments)
+    except (DemoError, SessionError, RvizError) as error:
+        sys.exit(f'demo: {error}')
+    except KeyboardInterrupt:
+        sys.exit('demo: interrupted')
+    finally:
+        # Taking down is bounded in time; a second Ctrl-C would leave processes behind.
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        demo.close()
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,67 @@
+"""The nodes of a session with a ROS master of their own, started and watched from outside."""
+import os
+import re
+import xmlrpc.client
+
+from processes import Child, free_port, wait_until
+from session_monitor import SessionMonitor
+
+START_TIMEOUT = 180  # s of wall time, for the nodes to come up and the cell to be meshed
+STOP_PATIENCE = 40   # s, for the nodes to end by themselves and the bag to be closed
+
+
+class SessionError(Exception):
+    """What went wrong, for the user."""
+
+
+class DemoSession:
+    """session.launch, whose hand rests until monitor.go()."""
+
+    def __init__(self, logs, arguments):
+        """@param arguments  of session.launch, name -> value."""
+        self._lockstep = arguments['clock'] == 'lockstep'
+        port = free_port()
+        # By address, so that it does not matter what this machine's name resolves to.
+        os.environ.pop('ROS_HOSTNAME', None)
+        os.environ.update(ROS_MASTER_URI=f'http://127.0.0.1:{port}', ROS_IP='127.0.0.1', ROS_LOG_DIR=str(logs))
+        command = ['roslaunch', '-p', str(port), 'cell_microinjection', 'session.launch', 'wait_for_go:=true']
+        command += [f'{name}:={value}' for name, value in arguments.items()]
+        self._launch = Child(command, logs / 'session.log')
+        self.monitor = None
+
+    def wait_ready(self):
+        """Until the session can begin. @raises SessionError when it cannot within START_TIMEOUT."""
+        self._wait(self._master_answers, 'the ROS master does not answer')
+        self.monitor = SessionMonitor()
+        # In lock step nothing moves before the hand does, and nothing is lost by a node that comes late.
+        if not self._lockstep:
+            self._wait(lambda: self.monitor.state is not None, 'nothing came on /cell/state')
+
+    def check(self):
+        """@raises SessionError when a node or the launch has died."""
+        dead = re.findall(r'\[(\S+)-\d+\] process has died', self._launch.output())
+        if dead:
+            raise SessionError(f'died: {", ".join(dead)}; {self._launch.log} ends with\n{self._launch.tail(20)}')
+        if not self._launch.running():
+            raise SessionError(f'roslaunch has ended; {self._launch.log} ends with\n{self._launch.tail(20)}')
+
+    def stop(self):
+        """Ends the nodes in order, so that the recorder closes its files."""
+        if self.monitor:
+            self.monitor.close()
+        self._launch.stop(STOP_PATIENCE)
+
+    def _master_answers(self):
+        try:
+            with xmlrpc.client.ServerProxy(os.environ['ROS_MASTER_URI']) as master:
+                return master.getPid('/demo')[0] == 1
+        except (OSError, xmlrpc.client.Error):
+            return False
+
+    def _wait(self, condition, otherwise):
+        def there():
+            self.check()
+            return condition()
+        if not wait_until(there, START_TIMEOUT):
+            raise SessionError(f'{otherwise} within {START_TIMEOUT} s; {self._launch.log} ends with\n'
+                               f'{self._launch.tail(20)}')

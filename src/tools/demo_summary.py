@@ -1,0 +1,40 @@
+"""The closing summary of a demo from the recorder's summary.yaml."""
+import yaml
+
+
+def _table(rows):
+    widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
+    lines = []
+    for row in rows:
+        # Names to the left, figures to the right.
+        cells = [cell.ljust(width) if column < 2 else cell.rjust(width)
+                 for column, (cell, width) in enumerate(zip(row, widths))]
+        lines.append('  ' + '  '.join(cells).rstrip())
+    return lines
+
+
+def _figure(value):
+    return '-' if value is None else f'{value:.3f}' if isinstance(value, float) else str(value)
+
+
+def _intervals(name, figures):
+    text = ', '.join(f'{key[:-3].replace("_", " ")} {_figure(figures[key])} ms' for key in figures if key.endswith('_ms'))
+    return f'  {name}: {text} (of {figures.get("count", "?")})'
+
+
+def text(path):
+    """Returns the summary as text for people."""
+    with open(path, encoding='utf-8') as file:
+        summary = yaml.safe_load(file)
+    clock = 'simulated time, in lock step' if summary['clock'] == 'lockstep' else 'wall time'
+    lines = ['', f'Session of {_figure(summary["duration_s"])} s of {clock}. Steps that each node really did:']
+    rows = [('node', 'topic', 'steps', 'rate (Hz)', 'median interval (ms)', '99 % (ms)')]
+    for node in summary['nodes'] or []:
+        rows.append((node['node'], node['topic'], *(_figure(node[key]) for key in (
+            'count', 'rate_hz', 'interval_median_ms', 'interval_p99_ms'))))
+    lines += _table(rows)
+    if 'hand_to_force_latency' in summary:
+        lines.append(_intervals('hand to force', summary['hand_to_force_latency']))
+    if 'bare_timer_loop' in summary:
+        lines.append(_intervals('bare 1 kHz timer loop of the same run', summary['bare_timer_loop']))
+    return '\n'.join(lines) + '\n'

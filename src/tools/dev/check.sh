@@ -1,0 +1,62 @@
+# shellcheck shell=bash
+# ./dev format and ./dev lint: the house style, as far as tools can hold it.
+
+command_format() {
+  [[ $* == "" || $* == --check ]] || misuse "format takes nothing or --check, not '$*'"
+  setup
+  format_code "$@"
+}
+
+format_code() {
+  if [[ ${1:-} == --check ]]; then
+    say "format: checking"
+    cpp_files | xargs -0r clang-format --dry-run -Werror || return 1
+    echo "formatted as .clang-format says"
+  else
+    say "format: clang-format of src and test"
+    cpp_files | xargs -0r clang-format -i
+  fi
+}
+
+cpp_files() { find "$ROOT/src" "$ROOT/test" -name '*.cpp' -print0 -o -name '*.h' -print0; }
+
+command_lint() {
+  [[ $# -le 1 ]] || misuse "lint takes one regular expression at the most"
+  setup
+  build_workspace
+  local failed=()
+  format_code --check || failed+=(clang-format)
+  check_python || failed+=(Python)
+  check_package || failed+=(catkin_lint)
+  run_clang_tidy "${1:-.}" || failed+=(clang-tidy)
+  [[ ${#failed[@]} -eq 0 ]] || fail "lint: complaints of ${failed[*]} (above)"
+  say "lint: no complaints"
+}
+
+check_python() {
+  say "lint: Python syntax"
+  find "$ROOT/src" "$ROOT/test" -name '*.py' -print0 |
+    PYTHONPYCACHEPREFIX="$ROOT/out/pycache" xargs -0r /usr/bin/python3 -m py_compile
+}
+
+# Ignored: no other package uses our libraries, so that it does not matter that their targets carry include folders of the
+# system; the two branches of an if() that add test/ are not seen as such; urdfdom's package has another name (liburdfdom-dev).
+check_package() {
+  local copy="$ROOT/out/lint/cell_microinjection"
+  say "lint: catkin_lint"
+  # Of a copy: its walk would follow the workspace's link back to the package itself, and see what was built.
+  rm -rf "$copy"
+  mkdir -p "$copy"
+  cp -r "$ROOT"/{package.xml,CMakeLists.txt,src,msg,launch,config,urdf,test} "$copy"
+  catkin_lint -W1 --strict --offline --ignore EXTERNAL_INTERFACE_PATH --ignore DUPLICATE_SUBDIR "$copy"
+}
+
+run_clang_tidy() {
+  local pattern="^$WORKSPACE/src/cell_microinjection/src/.*$1" database="$WORKSPACE/build"
+  say "lint: clang-tidy of the files below src/ that match '$1' (some minutes for all)"
+  # Without this, a mistyped pattern would pass.
+  grep -E '"file":' "$database/compile_commands.json" | sed -e 's/.*: "//' | grep -qE "$pattern" ||
+    { echo "no file matches"; return 1; }
+  /usr/bin/run-clang-tidy -quiet -p "$database" -j "$(jobs)" "$pattern" 2>&1 |
+    sed -e '/^clang-tidy/d; /warnings\{0,1\} generated\.$/d'
+}

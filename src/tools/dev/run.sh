@@ -1,0 +1,69 @@
+# shellcheck shell=bash
+# ./dev demo, bench and shell: programs of the workspace in its environment.
+
+command_demo() {
+  [[ ${1:-} != -- ]] || shift
+  setup
+  build_workspace
+  use_private_master
+  say "demo: src/tools/demo.py $*"
+  exec /usr/bin/python3 "$ROOT/src/tools/demo.py" "$@"
+}
+
+command_bench() {
+  if [[ $# -eq 0 ]]; then
+    list_benches
+    return
+  fi
+  local name=$1 folder="$ROOT/out/bench"
+  shift
+  bench_names | grep -qxF "$name" || misuse "no benchmark '$name'; there are: $(bench_names | xargs)"
+  setup
+  build_workspace
+  use_private_master
+  mkdir -p "$folder"
+  rm -f "$folder/$name.csv" "$folder/$name.png"
+  say "bench: $name"
+  if [[ -f $ROOT/src/bench/$name.cpp ]]; then
+    "$(bench_program "$name")" --csv "$folder/$name.csv" "$@"
+  else
+    /usr/bin/python3 "$ROOT/src/bench/$name.py" --out "$folder" "$@"
+  fi
+  [[ -s $folder/$name.csv ]] || fail "the benchmark left no $folder/$name.csv"
+  if [[ -f $ROOT/src/bench/plot_$name.py ]]; then
+    /usr/bin/python3 "$ROOT/src/bench/plot_$name.py" "$folder/$name.csv" "$folder/$name.png"
+  fi
+  say "bench: results are in"
+  ls "$folder/$name".*
+}
+
+bench_names() {
+  find "$ROOT/src/bench" -maxdepth 1 \( -name '*.cpp' -o -name '*.py' \) -not -name 'plot_*' -printf '%f\n' |
+    sed -e 's/\.[a-z]*$//' | sort
+}
+
+# One line a benchmark: its name and the first comment line of its source.
+list_benches() {
+  local name
+  for name in $(bench_names); do
+    printf '%-20s %s\n' "$name" "$(sed -n -e '/^#!/d; s/^\(\/\/\/*\|"""\|#\) *//p' "$ROOT/src/bench/$name".{cpp,py} 2>/dev/null |
+      head -n 1)"
+  done
+}
+
+bench_program() {
+  local program
+  program=$(find "$WORKSPACE/devel/lib" "$WORKSPACE/build" -name "bench_$1" -type f -perm -u+x -print -quit)
+  [[ -n $program ]] || fail "the build made no bench_$1; is it in src/bench/CMakeLists.txt?"
+  echo "$program"
+}
+
+command_shell() {
+  [[ ${1:-} != -- ]] || shift
+  setup
+  build_workspace
+  if [[ $# -gt 0 ]]; then
+    exec "$@"
+  fi
+  MICROINJECTION_ROOT=$ROOT exec bash --rcfile "$ROOT/src/tools/dev/shell.rc" -i
+}

@@ -1,0 +1,60 @@
+# shellcheck shell=bash
+# ./dev test: builds the tests, runs them one after the other with ctest, and sums the results up.
+
+readonly RESULTS="$ROOT/out/test"
+
+command_test() {
+  local kind=ros
+  if [[ ${1:-} == --core ]]; then
+    kind=core
+    shift
+  fi
+  check_test_folders "$@"
+  setup
+  "test_$kind" "$@"
+}
+
+test_ros() {
+  build_workspace
+  build_workspace tests
+  use_private_master
+  run_tests ros "$WORKSPACE/build" "$WORKSPACE/build/test_results" "$@"
+}
+
+test_core() {
+  build_core
+  # Makes each gtest program write a JUnit file there.
+  export GTEST_OUTPUT="xml:$RESULTS/core/"
+  run_tests core "$CORE_BUILD" "$RESULTS/core" "$@"
+}
+
+# run_tests KIND BUILD_FOLDER JUNIT_FOLDER [TEST_FOLDER...]
+# Two witnesses: ctest sees exit codes, the JUnit files name the failed cases and show a program without any case.
+run_tests() {
+  local kind=$1 build=$2 junit=$3 log="$RESULTS/$1.log" status=0
+  shift 3
+  say "test: $kind, ${*:-all folders of test/}"
+  # What an earlier run left must neither hide nor fake a failure.
+  rm -rf "$junit" "$log"
+  mkdir -p "$junit" "$RESULTS"
+  (cd "$build" && ctest --output-on-failure --no-tests=error -R "$(name_pattern "$@")") || status=$?
+  cp "$build/Testing/Temporary/LastTest.log" "$log" || status=1
+  say "test: summary of $kind"
+  /usr/bin/python3 "$ROOT/src/tools/test_summary.py" "$junit" || status=1
+  [[ $status -eq 0 ]] || fail "tests failed; the full output of all tests is in $log"
+  echo "all passed; their full output is in $log"
+}
+
+# ctest's names begin with the folder of test/ in the core, and have it behind the kind of the test with catkin.
+name_pattern() {
+  local IFS='|'
+  [[ $# -eq 0 ]] && echo . || echo "^($*)(_|\$)|_(gtest|python|rostest_test)_($*)_"
+}
+
+check_test_folders() {
+  local folder folders
+  folders=$(find "$ROOT/test" -mindepth 1 -maxdepth 1 -type d -not -name '__*' -printf '%f ' | xargs -n1 | sort | xargs)
+  for folder in "$@"; do
+    [[ " $folders " == *" $folder "* ]] || misuse "no tests in '$folder'; the folders of test/ are: $folders"
+  done
+}

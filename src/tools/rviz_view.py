@@ -1,0 +1,49 @@
+"""rviz on the user's display, or on a virtual one, and pictures of what it shows."""
+import os
+
+import screenshot
+from processes import Child
+from screen import Screen
+
+
+class RvizError(Exception):
+    """What went wrong, for the user."""
+
+
+class RvizView:
+    """rviz with a configuration; close it before the program ends."""
+
+    def __init__(self, config, logs):
+        """@raises RvizError when there is no display to be had."""
+        self._screen = Screen(logs / 'xvfb.log')
+        self.virtual = self._screen.virtual
+        self._environment = {**os.environ, **self._screen.environment}
+        # The whole virtual screen is rviz's; of the user's screen the picture takes nothing but rviz's window, whose
+        # title has an asterisk once the view was changed.
+        self._windows = ('root',) if self.virtual else (f'{config.name} - RViz', f'{config.name}* - RViz')
+        command = ['rviz', '-d', str(config)] + (['--fullscreen'] if self.virtual else [])
+        try:
+            self._rviz = Child(command, logs / 'rviz.log', self._environment)
+        except OSError as error:
+            self._screen.close()
+            raise RvizError(f'rviz does not start: {error}') from error
+
+    def running(self):
+        return self._rviz.running()
+
+    def check(self):
+        """@raises RvizError when rviz has ended."""
+        if not self.running():
+            raise RvizError(f'rviz has ended; {self._rviz.log} ends with\n{self._rviz.tail(8)}')
+
+    def picture(self, path, timeout, check=lambda: None):
+        """Writes a PNG as soon as rviz shows the scene. Returns whether it did within `timeout` s.
+        @param check  called between attempts; may raise."""
+        def go_on():
+            check()
+            return self.running()
+        return screenshot.take_scene(path, self._windows, self._environment, timeout, go_on)
+
+    def close(self):
+        self._rviz.stop(5)
+        self._screen.close()

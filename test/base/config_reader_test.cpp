@@ -1,0 +1,123 @@
+#include "base/config_reader.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <functional>
+#include <string>
+
+#include "base/errors.h"
+
+namespace microinjection {
+namespace {
+
+std::string errorsOf(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(ConfigReader, ReadsEveryType) {
+  const YAML::Node node =
+      YAML::Load("{length: 2e-6, count: 3, on: true, name: needle, shape: disc, at: [1, -2], inner: {x: 4}}");
+  ConfigReader reader(node, "test");
+  double length = 0, x = 0;
+  int count = 0;
+  bool on = false;
+  std::string name, shape;
+  Eigen::VectorXd at(2);
+  reader.number("length", length, Range::positive());
+  reader.integer("count", count);
+  reader.boolean("on", on);
+  reader.text("name", name);
+  reader.choice("shape", shape, {"disc", "ball"});
+  reader.vector("at", at);
+  reader.section("inner").number("x", x);
+  reader.finish();
+  EXPECT_EQ(length, 2e-6);
+  EXPECT_EQ(count, 3);
+  EXPECT_TRUE(on);
+  EXPECT_EQ(name, "needle");
+  EXPECT_EQ(shape, "disc");
+  EXPECT_EQ(at, Eigen::Vector2d(1, -2));
+  EXPECT_EQ(x, 4);
+}
+
+TEST(ConfigReader, KeepsDefaultsOfAbsentKeys) {
+  ConfigReader reader(YAML::Load("{}"), "test");
+  double length = 7, inner = 8;
+  reader.number("length", length);
+  reader.section("inner").number("x", inner);
+  reader.finish();
+  EXPECT_EQ(length, 7);
+  EXPECT_EQ(inner, 8);
+}
+
+TEST(ConfigReader, ReportsAllErrorsAtOnceWithKeyValueAndRange) {
+  const std::string text = errorsOf([] {
+    ConfigReader reader(YAML::Load("{length: -1, inner: {x: many, y: 1}, shape: cube, at: [1]}"), "file.yaml");
+    double number = 0;
+    std::string shape;
+    Eigen::VectorXd at(2);
+    reader.number("length", number, Range::positive());
+    reader.number("missing", number, Range::finite(), ConfigReader::kRequired);
+    reader.choice("shape", shape, {"disc", "ball"});
+    reader.vector("at", at);
+    reader.section("inner").number("x", number);
+    reader.finish();
+  });
+  EXPECT_NE(text.find("file.yaml: length = -1: must be a number in (0, inf)"), std::string::npos) << text;
+  EXPECT_NE(text.find("file.yaml: missing is missing"), std::string::npos) << text;
+  EXPECT_NE(text.find("file.yaml: shape = cube: must be one of: disc, ball"), std::string::npos) << text;
+  EXPECT_NE(text.find("file.yaml: at = [1]: must be a list of 2 numbers"), std::string::npos) << text;
+  EXPECT_NE(text.find("file.yaml: inner/x = many: must be a number"), std::string::npos) << text;
+  EXPECT_NE(text.find("file.yaml: inner/y: unknown key; known here: x"), std::string::npos) << text;
+}
+
+TEST(ConfigReader, RefusesUnknownSectionsAndMapsInPlaceOfValues) {
+  EXPECT_NE(errorsOf([] { ConfigReader(YAML::Load("{tip: {radius: 1}}"), "f").finish(); }).find("tip: unknown key"),
+            std::string::npos);
+  EXPECT_NE(errorsOf([] {
+              ConfigReader reader(YAML::Load("{tip: 3}"), "f");
+              reader.section("tip");
+              reader.finish();
+            }).find("tip = 3: must be a map"),
+            std::string::npos);
+}
+
+TEST(ConfigReader, RefusesNumbersThatAreNotFinite) {
+  for (const char* value : {".nan", ".inf", "-.inf", "1e400", "''"}) {
+    EXPECT_NE(errorsOf([&] {
+                ConfigReader reader(YAML::Load(std::string("{x: ") + value + "}"), "f");
+                double x = 0;
+                reader.number("x", x);
+                reader.finish();
+              }),
+              "")
+        << value;
+  }
+}
+
+TEST(Range, KnowsItsEnds) {
+  EXPECT_FALSE(Range::positive().contains(0));
+  EXPECT_TRUE(Range::nonNegative().contains(0));
+  EXPECT_TRUE(Range::closed(1, 2).contains(2));
+  EXPECT_FALSE(Range::open(1, 2).contains(2));
+  EXPECT_EQ(Range::open(-1, 0.5).text(), "(-1, 0.5)");
+  EXPECT_EQ(Range::nonNegative().text(), "[0, inf)");
+}
+
+TEST(LoadYamlMap, NamesTheFile) {
+  EXPECT_NE(errorsOf([] { loadYamlMap("/no/such.yaml"); }).find("/no/such.yaml: cannot be read"), std::string::npos);
+  const std::string path = testing::TempDir() + "bad.yaml";
+  std::ofstream(path) << "a: [1, 2\nb: }";
+  EXPECT_NE(errorsOf([&] { loadYamlMap(path); }).find(path), std::string::npos);
+  std::ofstream(path) << "- 1\n- 2\n";
+  EXPECT_NE(errorsOf([&] { loadYamlMap(path); }).find("must be a YAML map"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace microinjection

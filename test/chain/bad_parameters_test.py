@@ -1,0 +1,106 @@
+#!/usr/bin/python3
+"""A node whose parameters are wrong ends with status 1, names key, value and range, and never comes alive."""
+
+import subprocess
+import unittest
+
+import rosnode
+import rospkg
+import rospy
+import rostest
+
+SCENE = rospkg.RosPack().get_path("cell_microinjection") + "/test/chain/coarse_oocyte.yaml"
+MOTION = rospkg.RosPack().get_path("cell_microinjection") + "/config/hand_motions/indent_and_retract.csv"
+GOOD = {  # what each node cannot do without
+    "cell_simulator": {"scene": SCENE},
+    "display": {},
+    "force_sensor": {},
+    "haptic_bridge": {},
+    "injection_controller": {},
+    "micromanipulator": {},
+    "operator": {"motion": MOTION},
+    "session_recorder": {"output_dir": "/tmp/never_written"},
+}
+BAD = [  # node, wrong parameters, what the message must say
+    ("cell_simulator", {"scene": "/nowhere.yaml"}, ["/nowhere.yaml"]),
+    ("cell_simulator", {"rate": 1e6}, ["rate = 1000000", "[50, 5000]"]),
+    ("cell_simulator", {"extrapolation_limit": 0.0}, ["extrapolation_limit = 0", "(0, inf)"]),
+    ("display", {"rate": -1}, ["rate = -1"]),
+    ("force_sensor", {"bits": 2}, ["bits = 2", "[4, 32]"]),
+    ("force_sensor", {"axial_range": "wide"}, ["axial_range = wide", "number"]),
+    ("haptic_bridge", {"position_scale": 0}, ["position_scale = 0", "(0, inf)"]),
+    ("haptic_bridge", {"force_source": "guessed"}, ["force_source = guessed", "predicted, measured"]),
+    ("injection_controller", {"force_limit": -1e-6}, ["force_limit = -1", "(0, inf)"]),
+    ("injection_controller", {"source": "moon", "rate": 1}, ["source = moon", "teleop, approach", "rate = 1"]),
+    ("micromanipulator", {"acceleration": 0}, ["acceleration = 0", "(0, inf)"]),
+    ("operator", {"motion": "/nowhere.csv"}, ["/nowhere.csv"]),
+    ("operator", {"mass": -0.1}, ["mass = -0.1", "(0, inf)"]),
+    ("session_recorder", {"row_period": 0}, ["row_period = 0", "(0, inf)"]),
+]
+
+
+def start(node, parameters):
+    arguments = [f"_{key}:={value}" for key, value in parameters.items()]
+    return subprocess.Popen(["rosrun", "cell_microinjection", node, *arguments, f"__name:=tried_{node}"],
+                            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+
+
+class BadParametersTest(unittest.TestCase):
+    def check_refused(self, node, parameters, words):
+        for key in rospy.get_param(f"/tried_{node}", {}):
+            rospy.delete_param(f"/tried_{node}/{key}")
+        process = start(node, {**GOOD[node], **parameters})
+        try:
+            output, _ = process.communicate(timeout=60)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            self.fail(f"{node} came alive with {parameters}")
+        self.assertEqual(process.returncode, 1, output)
+        for word in words:
+            self.assertIn(word, output)
+        self.assertNotIn(f"/tried_{node}", rosnode.get_node_names())
+
+    def test_out_of_range(self):
+        for node, parameters, words in BAD:
+            with self.subTest(node=node, parameters=parameters):
+                self.check_refused(node, parameters, words)
+
+    def test_unknown_key(self):
+        for node in GOOD:
+            with self.subTest(node=node):
+                self.check_refused(node, {"forse_limit": 3}, ["forse_limit", "unknown key"])
+
+    def test_missing_key(self):
+        for node, needed in GOOD.items():
+            for key in needed:
+                with self.subTest(node=node, key=key):
+                    parameters = dict(needed)
+                    del parameters[key]
+                    saved, GOOD[node] = GOOD[node], parameters
+                    try:
+                        self.check_refused(node, {}, [f"{key} is missing"])
+                    finally:
+                        GOOD[node] = saved
+
+    def test_good_ones_do_come_alive(self):
+        """Without this the tests above would pass for a node that never starts."""
+        for node, parameters in GOOD.items():
+            with self.subTest(node=node):
+                for key in rospy.get_param(f"/tried_{node}", {}):
+                    rospy.delete_param(f"/tried_{node}/{key}")
+                process = start(node, parameters)
+                try:
+                    for _ in range(600):
+                        if f"/tried_{node}" in rosnode.get_node_names() or process.poll() is not None:
+                            break
+                        rospy.rostime.wallsleep(0.1)
+                    self.assertIsNone(process.poll(), "ended")
+                    self.assertIn(f"/tried_{node}", rosnode.get_node_names())
+                finally:
+                    process.terminate()
+                    process.communicate()
+
+
+if __name__ == "__main__":
+    rospy.init_node("bad_parameters")
+    rostest.rosrun("cell_microinjection", "bad_parameters", BadParametersTest)

@@ -1,0 +1,63 @@
+"""A Python participant of the lock step: a test that plays the part of one or more nodes, tick by tick."""
+
+import queue
+
+import rospy
+from diagnostic_msgs.msg import DiagnosticArray
+from rosgraph_msgs.msg import Clock
+from std_msgs.msg import Header
+
+PATIENCE = 120  # s of wall time; only a chain that hangs takes that long
+
+
+class Participant:
+    """Takes part in the lock step under the name of this node. Between two ticks time stands still."""
+
+    def __init__(self, outputs, inputs):
+        """@param outputs, inputs  topic -> message class; inputs keep their newest message in `seen`."""
+        self.seen = {}
+        self.now = rospy.Time()
+        self.diagnostics = {}
+        self._ticks = queue.Queue()
+        self._outputs = {topic: self._advertise(topic, kind) for topic, kind in outputs.items()}
+        self._silences = {topic: self._advertise(topic + "/silent", Header) for topic in outputs}
+        self._acknowledgement = self._advertise("/lockstep/acknowledgement", Header)
+        self._subscribers = [
+            rospy.Subscriber(topic, kind, lambda message, topic=topic: self.seen.update({topic: message}))
+            for topic, kind in inputs.items()
+        ]
+        self._subscribers.append(rospy.Subscriber("/diagnostics", DiagnosticArray, self._on_diagnostics))
+        self._subscribers.append(rospy.Subscriber("/clock", Clock, lambda message: self._ticks.put(message.clock)))
+        self._acknowledge(rospy.Time())
+        self.now = self._ticks.get(timeout=PATIENCE)
+
+    def _advertise(self, topic, kind):
+        return rospy.Publisher(topic, kind, queue_size=100, latch=True)
+
+    def _on_diagnostics(self, message):
+        for status in message.status:
+            self.diagnostics[status.name] = status
+
+    def _acknowledge(self, stamp):
+        self._acknowledgement.publish(Header(stamp=stamp, frame_id=rospy.get_name()))
+
+    def tick(self, messages=None):
+        """One tick with {topic: message}; outputs without one are silent. Returns when the next tick has begun."""
+        messages = messages or {}
+        for topic, publisher in self._outputs.items():
+            if topic in messages:
+                messages[topic].header.stamp = self.now
+                publisher.publish(messages[topic])
+            else:
+                self._silences[topic].publish(Header(stamp=self.now))
+        self._acknowledge(self.now)
+        self.now = self._ticks.get(timeout=PATIENCE)
+
+    def run(self, ticks, messages=None):
+        for _ in range(ticks):
+            self.tick(messages() if callable(messages) else messages)
+
+    def status(self, name):
+        """(level, message) that the diagnostics say of e.g. 'haptic_bridge: loop'."""
+        status = self.diagnostics[name]
+        return status.level, status.message

@@ -1,0 +1,55 @@
+#!/usr/bin/env python3
+"""Two lock-step runs of one session give the same bytes, and the session does what a session is for."""
+
+import csv
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "src" / "tools"))
+from processes import free_port  # noqa: E402
+
+PATIENCE = 200  # s of wall time; only a session that hangs takes that long
+
+
+def run_session(folder, *arguments):
+    """A lock-step session on a master of its own; returns the bytes of its force_depth.csv."""
+    motion = pathlib.Path(folder) / "motion.csv"
+    subprocess.run(["/usr/bin/python3", str(ROOT / "src/tools/make_hand_motion.py"), "--out", str(motion), "--depth",
+                    "4e-6", "--speed", "10e-6", "--hold", "0.2"], check=True)
+    port = free_port()
+    out = pathlib.Path(folder) / "out"
+    subprocess.run(
+        ["roslaunch", "-p", str(port), "cell_microinjection", "session.launch", "clock:=lockstep", "display:=false",
+         f"scene:={ROOT}/test/chain/coarse_oocyte.yaml", f"motion:={motion}", f"record:={out}", "bag:=false",
+         "end_when_done:=true", *arguments],
+        check=True, timeout=PATIENCE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+        env={**os.environ, "ROS_MASTER_URI": f"http://127.0.0.1:{port}", "ROS_IP": "127.0.0.1"})
+    return (out / "force_depth.csv").read_bytes()
+
+
+class RepeatTest(unittest.TestCase):
+    def test_same_session_same_bytes(self):
+        with tempfile.TemporaryDirectory() as a, tempfile.TemporaryDirectory() as b:
+            first, second = run_session(a), run_session(b)
+        self.assertEqual(first, second)
+        self.check_is_a_session(first)
+
+    def check_is_a_session(self, content):
+        rows = list(csv.DictReader(content.decode().splitlines()))
+        depths = [float(row["depth_m"]) for row in rows if row["depth_m"]]
+        forces = [float(row["predicted_axial_N"]) for row in rows if row["predicted_axial_N"]]
+        self.assertGreater(max(depths), 2.5e-6)  # of 4 um meant: the hand yields
+        self.assertLess(max(depths), 4.1e-6)
+        self.assertGreater(max(forces), 0.3e-6)
+        self.assertEqual(forces[-1], 0)
+        self.assertEqual({row["phase"] for row in rows if row["phase"]},
+                         {"approach", "touch", "indent", "hold", "retract"})
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,73 @@
+#!/usr/bin/python3
+"""The micromanipulator refuses what it cannot do, stays where it was, and stops when a velocity command grows old."""
+
+import math
+import unittest
+
+import numpy as np
+import rospy
+import rostest
+from geometry_msgs.msg import PoseStamped, TwistStamped
+
+from messages import pose, position
+from participant import Participant
+
+
+class TrustTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.world = Participant({"/needle/servo_cp": PoseStamped}, {"/needle/measured_cp": PoseStamped})
+        cls.velocity = rospy.Publisher("/needle/servo_cv", TwistStamped, queue_size=10)
+        cls.move = rospy.Publisher("/needle/move_cp", PoseStamped, queue_size=10)
+        while not (cls.velocity.get_num_connections() and cls.move.get_num_connections()):
+            rospy.rostime.wallsleep(0.05)
+
+    def setUp(self):
+        self.world.run(100, lambda: {"/needle/servo_cp": pose(0, 0, 50e-6)})
+        self.world.run(3)
+        np.testing.assert_allclose(self.needle(), [0, 0, 50e-6], atol=1e-9)
+
+    def needle(self):
+        return position(self.world.seen["/needle/measured_cp"])
+
+    def check_refused(self, command, why):
+        self.world.run(1200, {"/needle/servo_cp": command})
+        np.testing.assert_allclose(self.needle(), [0, 0, 50e-6], atol=1e-9)
+        level, text = self.world.status("micromanipulator: commands")
+        self.assertNotEqual(level, 0)
+        self.assertIn(why, text)
+
+    def test_refuses_servo_cp(self):
+        self.check_refused(pose(0, 0, math.nan), "not a finite pose in world")
+        self.check_refused(pose(0, 0, 40e-6, "camera"), "not a finite pose in world")
+        self.check_refused(pose(1, 0, 0), "manipulator_x = 1 m, allowed [-0.0125, 0.0125] m")
+        tilted = pose(0, 0, 40e-6)
+        tilted.pose.orientation.x, tilted.pose.orientation.w = 0.6, 0.8
+        self.check_refused(tilted, "orientation differs")
+
+    def tick_until(self, condition):
+        for _ in range(20000):
+            self.world.tick()
+            if condition():
+                return
+        self.fail("did not happen within 20 s of ROS time")
+
+    def test_stale_velocity_stops(self):
+        command = TwistStamped()
+        command.twist.linear.x = 50e-6
+        self.velocity.publish(command)
+        self.tick_until(lambda: self.needle()[0] > 1e-6)
+        self.world.run(300)
+        held = self.needle()
+        self.world.run(300)
+        np.testing.assert_array_equal(self.needle(), held)
+        self.assertLess(held[0], 50e-6 * 0.2)  # 0.1 s of command, and its braking
+
+    def test_move_arrives(self):
+        self.move.publish(pose(20e-6, -10e-6, 70e-6))
+        self.tick_until(lambda: np.allclose(self.needle(), [20e-6, -10e-6, 70e-6], atol=1e-9))
+
+
+if __name__ == "__main__":
+    rospy.init_node("world")
+    rostest.rosrun("cell_microinjection", "trust_micromanipulator", TrustTest)

@@ -1,0 +1,124 @@
+"""Tests of the demo's tools below src/tools: pictures, plots, the summary and the taking down of child processes."""
+import os
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / 'src' / 'tools'))
+
+import matplotlib.image  # noqa: E402
+import numpy  # noqa: E402
+
+import demo_summary  # noqa: E402
+import plot_force_depth  # noqa: E402
+import processes  # noqa: E402
+import screenshot  # noqa: E402
+
+HEADER = ('time_s,phase,depth_m,predicted_axial_N,measured_axial_N,measured_lateral_N,hand_force_N,in_contact,'
+          'punctured\n')
+
+
+class InFolder(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def write(self, name, text):
+        path = self.folder / name
+        path.write_text(text, encoding='utf-8')
+        return path
+
+
+class ScreenshotTest(InFolder):
+    def picture(self, cell_size):
+        """Returns a dark picture with a blue square of `cell_size` pixels among 100 x 100."""
+        pixels = numpy.full((100, 100, 3), (24, 27, 34), numpy.uint8)
+        pixels[:cell_size, :cell_size] = (58, 100, 150)
+        path = self.folder / 'picture.png'
+        matplotlib.image.imsave(path, pixels)
+        return path
+
+    def test_a_coloured_cell_is_seen(self):
+        self.assertTrue(screenshot.shows_cell(self.picture(30)))
+        self.assertAlmostEqual(screenshot.coloured_share(self.picture(30)), 0.09)
+
+    def test_an_empty_view_is_not_taken_for_one(self):
+        self.assertFalse(screenshot.shows_cell(self.picture(0)))
+        self.assertFalse(screenshot.shows_cell(self.picture(5)))
+
+    def test_without_a_picture_the_file_stays_as_it_was(self):
+        path = self.folder / 'scene.png'
+        environment = {**os.environ, 'DISPLAY': ':no-such-display'}
+        self.assertFalse(screenshot.take_scene(path, env=environment, timeout=0))
+        self.assertEqual(list(self.folder.iterdir()), [])
+
+
+class PlotTest(InFolder):
+    def test_empty_fields_are_not_numbers(self):
+        path = self.write('f.csv', HEADER + '0,approach,,0,,,,0,0\n0.005,indent,1e-6,2e-6,2.1e-6,0,0.4,1,0\n')
+        table = plot_force_depth.read(path)
+        self.assertTrue(numpy.isnan(table['depth_m'][0]))
+        self.assertEqual(table['depth_m'][1], 1e-6)
+        self.assertEqual(list(table['phase']), ['approach', 'indent'])
+
+    def test_a_session_without_contact_can_be_plotted(self):
+        path = self.write('f.csv', HEADER + '0,,,,,,,0,0\n0.005,,,0,0,0,,0,0\n')
+        plot_force_depth.plot(path, self.folder / 'f.png')
+        self.assertGreater((self.folder / 'f.png').stat().st_size, 0)
+
+    def test_a_file_without_rows_is_an_error(self):
+        with self.assertRaisesRegex(ValueError, 'no rows'):
+            plot_force_depth.plot(self.write('f.csv', HEADER), self.folder / 'f.png')
+
+    def test_thinning_keeps_few_points_and_the_first(self):
+        rows = plot_force_depth.thinned(numpy.arange(100000) >= 7)
+        self.assertLessEqual(rows.size, plot_force_depth.MOST_POINTS)
+        self.assertGreater(rows.size, plot_force_depth.MOST_POINTS // 2)
+        self.assertEqual(rows[0], 7)
+
+
+class SummaryTest(InFolder):
+    NODES = ('nodes:\n  - {node: cell_simulator, topic: /cell/predicted_cf, count: 1234, rate_hz: 999.8,'
+             ' interval_median_ms: 1.0, interval_p99_ms: 1.5}\n')
+
+    def test_live_it_has_latency_beside_the_bare_loop(self):
+        text = demo_summary.text(self.write('s.yaml', (
+            'clock: wall\nduration_s: 12.5\n' + self.NODES +
+            'hand_to_force_latency: {count: 10, median_ms: 2.5, p99_ms: 7}\n'
+            'bare_timer_loop: {count: 11, median_ms: 1, p99_ms: 3, max_ms: 40}\n')))
+        for wanted in ('cell_simulator', '1234', '999.800', 'median 2.500 ms', 'max 40 ms', 'wall time'):
+            self.assertIn(wanted, text)
+
+    def test_in_lock_step_it_has_none(self):
+        text = demo_summary.text(self.write('s.yaml', 'clock: lockstep\nduration_s: 12.5\n' + self.NODES))
+        self.assertIn('lock step', text)
+        self.assertNotIn('hand to force', text)
+
+
+class ProcessesTest(InFolder):
+    def test_a_deaf_child_is_stopped_with_its_grandchild(self):
+        log = self.folder / 'log'
+        # Both are deaf to polite signals; the grandchild is even in a session of its own, as the nodes of roslaunch are.
+        script = 'trap "" INT TERM; setsid sh -c \'trap "" INT TERM; echo $$; while :; do sleep 1; done\' & wait; wait'
+        child = processes.Child(['sh', '-c', script], log)
+        self.assertTrue(processes.wait_until(lambda: log.read_text().endswith('\n'), 60))
+        grandchild = int(log.read_text())
+        child.stop(0.1, force_after=0.1)
+        self.assertFalse(child.running())
+        self.assertTrue(processes.wait_until(lambda: processes.gone(grandchild), 60))
+
+    def test_stopping_what_has_ended_is_nothing(self):
+        child = processes.Child(['true'], self.folder / 'log')
+        self.assertTrue(processes.wait_until(lambda: not child.running(), 60))
+        child.stop(0)
+
+    def test_its_output_is_kept(self):
+        child = processes.Child(['sh', '-c', 'echo one; echo two >&2'], self.folder / 'log')
+        self.assertTrue(processes.wait_until(lambda: not child.running(), 60))
+        self.assertEqual(child.tail(1), 'two')
+
+
+if __name__ == '__main__':
+    unittest.main()

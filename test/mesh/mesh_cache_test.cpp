@@ -1,0 +1,93 @@
+#include "mesh/mesh_cache.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <set>
+
+#include "base/atomic_file.h"
+
+namespace microinjection {
+namespace {
+
+namespace fs = std::filesystem;
+
+class MeshCacheTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    fs::remove_all(directory_);
+    config_.size = 25e-6;  // quick
+    config_.density = 2;
+  }
+  void TearDown() override { fs::remove_all(directory_); }
+
+  std::string read() const {
+    std::ifstream file(cache_.path(config_), std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  }
+
+  const std::string directory_ = testing::TempDir() + "microinjection_mesh_cache";
+  const MeshCache cache_{directory_};
+  CellMeshConfig config_;
+};
+
+TEST_F(MeshCacheTest, HitGivesTheIdenticalMesh) {
+  const TetMesh made = cache_.get(config_);
+  ASSERT_TRUE(fs::exists(cache_.path(config_)));
+  const auto time = fs::last_write_time(cache_.path(config_));
+  const TetMesh loaded = cache_.get(config_);
+  EXPECT_EQ(made.vertices, loaded.vertices);
+  EXPECT_EQ(made.tetrahedra, loaded.tetrahedra);
+  EXPECT_EQ(fs::last_write_time(cache_.path(config_)), time) << "it was made again";
+}
+
+TEST_F(MeshCacheTest, DamagedFilesAreMadeAnew) {
+  const TetMesh made = cache_.get(config_);
+  const std::string good = read();
+  std::string flipped = good;
+  flipped[good.size() - 5] ^= 1;
+  CellMeshConfig other = config_;
+  other.contact_radius *= 1.1;
+  cache_.get(other);
+  std::ifstream foreign_file(cache_.path(other), std::ios::binary);
+  const std::string foreign{std::istreambuf_iterator<char>(foreign_file), std::istreambuf_iterator<char>()};
+  for (const std::string& bad : {std::string(), good.substr(0, good.size() / 2), good + "x", flipped, foreign,
+                                 std::string("no mesh at all\n")}) {
+    writeFileAtomically(cache_.path(config_), bad);
+    const TetMesh mesh = cache_.get(config_);
+    EXPECT_EQ(mesh.vertices, made.vertices);
+    EXPECT_EQ(mesh.tetrahedra, made.tetrahedra);
+    EXPECT_EQ(read(), good) << "the damaged file was left";
+  }
+}
+
+TEST_F(MeshCacheTest, EveryInputChangesTheFile) {
+  std::set<std::string> paths = {cache_.path(config_)};
+  const auto changed = [&](auto change) {
+    CellMeshConfig config = config_;
+    change(config);
+    EXPECT_TRUE(paths.insert(cache_.path(config)).second);
+  };
+  changed([](CellMeshConfig& c) { c.diameter *= 1 + 1e-12; });
+  changed([](CellMeshConfig& c) { c.size *= 1 + 1e-12; });
+  changed([](CellMeshConfig& c) { c.density *= 1 + 1e-12; });
+  changed([](CellMeshConfig& c) { c.zone_diameter *= 1 + 1e-12; });
+  changed([](CellMeshConfig& c) { c.tip_radius *= 1 + 1e-12; });
+  changed([](CellMeshConfig& c) { c.contact_radius *= 1 + 1e-12; });
+  changed([](CellMeshConfig& c) { c.offset.x() = 1e-20; });
+  changed([](CellMeshConfig& c) { c.offset.y() = 1e-20; });
+}
+
+TEST_F(MeshCacheTest, WorksWithoutAPlaceToKeep) {
+  EXPECT_EQ(MeshCache("").path(config_), "");
+  const TetMesh made = MeshCache("").get(config_);
+  fs::create_directories(directory_);
+  std::ofstream(directory_ + "/file") << "x";
+  const TetMesh again = MeshCache(directory_ + "/file/below").get(config_);  // cannot be written
+  EXPECT_EQ(made.vertices, again.vertices);
+}
+
+}  // namespace
+}  // namespace microinjection
