@@ -100,7 +100,7 @@ class SummaryTest(InFolder):
 class ProcessesTest(InFolder):
     def test_a_deaf_child_is_stopped_with_its_grandchild(self):
         log = self.folder / 'log'
-        # Both are deaf to polite signals; the grandchild is even in a session of its own, as the nodes of roslaunch are.
+        # Both are deaf to polite signals; the grandchild has a session of its own, as the nodes of roslaunch have.
         script = 'trap "" INT TERM; setsid sh -c \'trap "" INT TERM; echo $$; while :; do sleep 1; done\' & wait; wait'
         child = processes.Child(['sh', '-c', script], log)
         self.assertTrue(processes.wait_until(lambda: log.read_text().endswith('\n'), 60))

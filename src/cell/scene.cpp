@@ -45,7 +45,7 @@ void readMesh(ConfigReader mesh, Scene::Mesh& value) {
 
 double Scene::meshSize() const {
   if (mesh.size) return *mesh.size;
-  return std::min(0.9 * needle.tip.radius * mesh.refinement.density, cell.diameter / 4);
+  return std::min(needle.tip.radius * mesh.refinement.density, 0.3 * cell.diameter);
 }
 
 void Scene::validate() const {
@@ -71,8 +71,8 @@ void Scene::validate() const {
           "holding_pipette/contact_radius", holding_pipette.contact_radius, reach.str());
   require(positive(needle.tip.radius) && needle.tip.radius < 0.95 * radius(), "needle/tip/radius", needle.tip.radius,
           reach.str());
-  require(needle.offset.norm() + needle.tip.radius < 0.95 * radius(), "needle/offset (its length)", needle.offset.norm(),
-          "with the tip's radius " + reach.str());
+  require(needle.offset.norm() + needle.tip.radius < 0.95 * radius(), "needle/offset (its length)",
+          needle.offset.norm(), "with the tip's radius " + reach.str());
   require(positive(meshSize()) && meshSize() <= cell.diameter / 2, "mesh/size", meshSize(),
           "positive, half of the cell's diameter at the most (m)");
   require(positive(mesh.refinement.zone), "mesh/refinement/zone", mesh.refinement.zone, "positive");

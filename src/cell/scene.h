@@ -46,7 +46,7 @@ struct Scene {
 
   double radius() const { return cell.diameter / 2; }  ///< m
 
-  /// mesh.size, or by default what puts elements of 0.9 tip radii into the puncture zone, a quarter of the diameter at
+  /// mesh.size, or by default what puts elements of one tip radius into the puncture zone, 0.3 of the diameter at
   /// the most; m.
   double meshSize() const;
 

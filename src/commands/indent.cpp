@@ -9,6 +9,7 @@
 #include <iostream>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -67,16 +68,34 @@ std::vector<double> parseNumbers(const std::string& option, const std::string& t
   return numbers;
 }
 
-Arguments parseArguments(int argc, char** argv, bool& help) {
+std::vector<double> parseDepths(const std::string& text) {
+  const std::string wanted = "numbers >= 0 (m) separated by commas";
+  const std::vector<double> depths = parseNumbers("depths", text, wanted);
+  for (const double depth : depths) {
+    if (depth < 0) throw ConfigError("--depths = " + text + ": each must be >= 0 (m)");
+  }
+  return depths;
+}
+
+Eigen::Vector2d parseLateral(const std::string& text) {
+  const std::string wanted = "two numbers X,Y (m)";
+  const std::vector<double> xy = parseNumbers("lateral", text, wanted);
+  if (xy.size() != 2) throw ConfigError("--lateral = " + text + ": must be " + wanted);
+  return {xy[0], xy[1]};
+}
+
+/// Empty when the help was asked for, and printed.
+std::optional<Arguments> parseArguments(int argc, char** argv) {
   namespace po = boost::program_options;
   Arguments arguments;
   std::string depths, lateral;
   po::options_description options(kHelp, 118);
-  options.add_options()("help", "this text")(
-      "scene", po::value(&arguments.scene), "scene file (YAML, SI units), for example config/cells/mouse_oocyte.yaml")(
-      "depths", po::value(&depths), "depths of the tip below the undeformed surface, m, separated by commas; each >= 0")(
-      "lateral", po::value(&lateral),
-      "X,Y: at every depth the tip has also moved by (X, Y), m, along a straight line; default 0,0")(
+  options.add_options()("help", "this text")("scene", po::value(&arguments.scene),
+                                             "scene file (YAML, SI units), for example config/cells/mouse_oocyte.yaml")(
+      "depths", po::value(&depths),
+      "depths of the tip below the undeformed surface, m, separated by commas; each >= 0")(
+      "lateral", po::value(&lateral)->default_value("0,0"),
+      "X,Y: at every depth the tip has also moved by (X, Y), m, along a straight line to (X, Y, -depth)")(
       "csv", po::value(&arguments.csv)->default_value("-"), "file to write; - is the standard output");
   // No short options, so that -1e-6 is a value.
   using Style = po::command_line_style::style_t;
@@ -84,22 +103,14 @@ Arguments parseArguments(int argc, char** argv, bool& help) {
   po::variables_map values;
   po::store(po::command_line_parser(argc, argv).options(options).style(style).positional({}).run(), values);
   po::notify(values);
-  help = values.count("help") != 0;
-  if (help) {
+  if (values.count("help") != 0) {
     std::cout << options;
-    return arguments;
+    return std::nullopt;
   }
   if (values.count("scene") == 0) throw ConfigError("--scene is missing: a scene file, see --help");
   if (values.count("depths") == 0) throw ConfigError("--depths is missing: for example 1e-6,2e-6 (m), see --help");
-  arguments.depths = parseNumbers("depths", depths, "numbers >= 0 (m) separated by commas");
-  for (const double depth : arguments.depths) {
-    if (depth < 0) throw ConfigError("--depths = " + depths + ": each must be >= 0 (m)");
-  }
-  if (values.count("lateral") != 0) {
-    const std::vector<double> xy = parseNumbers("lateral", lateral, "two numbers X,Y (m)");
-    if (xy.size() != 2) throw ConfigError("--lateral = " + lateral + ": must be two numbers X,Y (m)");
-    arguments.lateral = {xy[0], xy[1]};
-  }
+  arguments.depths = parseDepths(depths);
+  arguments.lateral = parseLateral(lateral);
   return arguments;
 }
 
@@ -132,9 +143,9 @@ Row solveDepth(Indentation& indentation, double depth, const Eigen::Vector2d& la
 }
 
 int run(int argc, char** argv) {
-  bool help = false;
-  const Arguments arguments = parseArguments(argc, argv, help);
-  if (help) return kConverged;
+  const std::optional<Arguments> parsed = parseArguments(argc, argv);
+  if (!parsed) return kConverged;
+  const Arguments& arguments = *parsed;
   const Scene scene = loadScene(arguments.scene);
   const auto cell = std::make_shared<const CellModel>(scene);
   const Eigen::Vector2d& offset = scene.needle.offset;

@@ -26,6 +26,7 @@ struct ReadoutLine {
   std::string text;  ///< ASCII, since rviz's font has no Greek
 };
 
+/// Top to bottom; a long state takes several lines, broken at spaces, five at the most.
 std::vector<ReadoutLine> lines(const Readout& readout);
 
 }  // namespace microinjection

@@ -3,7 +3,9 @@
 namespace microinjection {
 namespace {
 
-Eigen::Matrix3d smallStrain(const Eigen::Matrix3d& F) { return 0.5 * (F + F.transpose()) - Eigen::Matrix3d::Identity(); }
+Eigen::Matrix3d smallStrain(const Eigen::Matrix3d& F) {
+  return 0.5 * (F + F.transpose()) - Eigen::Matrix3d::Identity();
+}
 
 }  // namespace
 

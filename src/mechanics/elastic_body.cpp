@@ -17,7 +17,8 @@ ElasticBody::ElasticBody(const TetMesh& mesh, std::unique_ptr<const Material> ma
     element.volume = tetrahedronVolume(mesh, static_cast<int>(t));
     if (!(element.volume > 0)) throw std::invalid_argument("tetrahedron " + std::to_string(t) + " is inverted or flat");
     Eigen::Matrix3d edges;
-    for (int i = 0; i < 3; ++i) edges.col(i) = mesh.vertices[element.corners[i + 1]] - mesh.vertices[element.corners[0]];
+    for (int i = 0; i < 3; ++i)
+      edges.col(i) = mesh.vertices[element.corners[i + 1]] - mesh.vertices[element.corners[0]];
     element.gradients.rightCols<3>() = edges.inverse().transpose();
     element.gradients.col(0) = -element.gradients.rightCols<3>().rowwise().sum();
     elements_.push_back(element);

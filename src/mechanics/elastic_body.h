@@ -10,9 +10,9 @@
 
 namespace microinjection {
 
-/// Finite elements of a hyperelastic body: one linear (P1) displacement per tetrahedron, hence one deformation gradient.
-/// Displacements `u` and forces are vectors of 3 numbers per vertex, xyz, in metres and newtons.
-/// Immutable, safe to share between threads.
+/// Finite elements of a hyperelastic body: one linear (P1) displacement per tetrahedron, hence one deformation
+/// gradient. Displacements `u` and forces are vectors of 3 numbers per vertex, xyz, in metres and newtons. Immutable,
+/// safe to share between threads.
 class ElasticBody {
  public:
   using ElementMatrix = Eigen::Matrix<double, 12, 12>;

@@ -7,14 +7,14 @@
 namespace microinjection {
 namespace {
 
-constexpr double kTolerance = 1e-9;       ///< of the residual, relative to the reaction
-constexpr double kRounding = 1e-13;       ///< of the residual, relative to stiffness times length
-constexpr double kLargestStep = 1.0 / 16; ///< of the length
-constexpr double kSmallestStep = 1e-5;    ///< of the length
-constexpr double kWorkMismatch = 1e-3;    ///< of the energy, relative to the work of the step
-constexpr double kSlow = 0.2;             ///< contraction that is too slow to keep an old factorisation
-constexpr int kMaximumIterations = 15;    ///< a step that needs more is too long
-constexpr int kMaximumHalvings = 8;       ///< of a line search
+constexpr double kTolerance = 1e-9;        ///< of the residual, relative to the reaction
+constexpr double kRounding = 1e-13;        ///< of the residual, relative to stiffness times length
+constexpr double kLargestStep = 1.0 / 16;  ///< of the length
+constexpr double kSmallestStep = 1e-5;     ///< of the length
+constexpr double kWorkMismatch = 1e-3;     ///< of the energy, relative to the work of the step
+constexpr double kSlow = 0.2;              ///< contraction that is too slow to keep an old factorisation
+constexpr int kMaximumIterations = 15;     ///< a step that needs more is too long
+constexpr int kMaximumHalvings = 8;        ///< of a line search
 
 }  // namespace
 
@@ -142,8 +142,8 @@ bool EquilibriumPath::workMatches(const State& trial) const {
   if (body_.material().isLinear()) return true;
   // Hermite's rule: exact to fourth order in the step on a smooth branch.
   const Eigen::Vector3d step = trial.translation - state_.translation;
-  const double work = 0.5 * step.dot(state_.reaction + trial.reaction) +
-                      step.dot((state_.stiffness - trial.stiffness) * step) / 12;
+  const double work =
+      0.5 * step.dot(state_.reaction + trial.reaction) + step.dot((state_.stiffness - trial.stiffness) * step) / 12;
   const double scale = std::abs(step.dot(state_.stiffness * step)) + std::abs(work);
   const double rounding = force_floor_ * length_;
   return std::abs(trial.energy - state_.energy - work) <= kWorkMismatch * scale + rounding;

@@ -32,12 +32,12 @@ class EquilibriumPath {
   /// Back to the undeformed state.
   void reset();
 
-  const Eigen::VectorXd& displacement() const { return state_.u; }             ///< m, xyz per vertex
-  const Eigen::Vector3d& translation() const { return state_.translation; }    ///< m, of the patch
-  const Eigen::Vector3d& reaction() const { return state_.reaction; }          ///< N, that holds the patch there
-  const Eigen::Matrix3d& stiffness() const { return state_.stiffness; }        ///< N/m, d(reaction)/d(translation)
-  double energy() const { return state_.energy; }                              ///< J
-  double smallestJacobian() const { return body_.smallestJacobian(state_.u); } ///< min det F
+  const Eigen::VectorXd& displacement() const { return state_.u; }              ///< m, xyz per vertex
+  const Eigen::Vector3d& translation() const { return state_.translation; }     ///< m, of the patch
+  const Eigen::Vector3d& reaction() const { return state_.reaction; }           ///< N, that holds the patch there
+  const Eigen::Matrix3d& stiffness() const { return state_.stiffness; }         ///< N/m, d(reaction)/d(translation)
+  double energy() const { return state_.energy; }                               ///< J
+  double smallestJacobian() const { return body_.smallestJacobian(state_.u); }  ///< min det F
 
  private:
   /// A stable equilibrium with its first derivatives.

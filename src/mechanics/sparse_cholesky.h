@@ -6,16 +6,16 @@
 namespace microinjection {
 
 /// Sparse Cholesky factorisation L L^T of a symmetric positive definite matrix given by its lower triangle. The one
-/// place that chooses the library: CHOLMOD's simplicial factorisation after nested dissection by METIS. It calls no
-/// BLAS, so the bits do not depend on which BLAS a machine has, and it is the fastest of those that `bench solver`
-/// compares.
+/// place that chooses the library: CHOLMOD's simplicial factorisation after nested dissection. It calls no BLAS, so the
+/// bits do not depend on which BLAS a machine has, and on the meshes of a live session it is the fastest of those that
+/// `./dev bench solver` compares.
 class SparseCholesky {
  public:
   SparseCholesky() {
     cholmod_common& settings = solver_.cholmod();
     settings.print = 0;  // a matrix that is not positive definite is an answer, not a warning
     settings.nmethods = 1;
-    settings.method[0].ordering = CHOLMOD_METIS;
+    settings.method[0].ordering = CHOLMOD_NESDIS;
   }
 
   /// Symbolic analysis; the pattern must not change afterwards.

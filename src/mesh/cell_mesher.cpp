@@ -71,9 +71,7 @@ struct Circle {
     const Eigen::Vector2d xy = centre + radius * direction;
     return {xy.x(), xy.y(), side * std::sqrt(std::max(0.0, 1 - xy.squaredNorm()))};
   }
-  Eigen::Vector3d project(const Eigen::Vector3d& point) const {
-    return at((point.head<2>() - centre).normalized());
-  }
+  Eigen::Vector3d project(const Eigen::Vector3d& point) const { return at((point.head<2>() - centre).normalized()); }
   double distance(const Eigen::Vector3d& point) const {
     return point.z() * side > 0 ? (point - project(point)).norm() : std::numeric_limits<double>::infinity();
   }

@@ -9,11 +9,11 @@ namespace microinjection {
 
 /// What determines the mesh of a cell: a sphere about the origin, refined where the needle enters from above.
 struct CellMeshConfig {
-  double diameter = 56e-6;                           ///< m
-  double size = 12e-6;                               ///< m, of elements outside of the puncture zone
-  double density = 5;                                ///< elements in the puncture zone are this many times smaller, >= 1
-  double zone_diameter = 30e-6;                      ///< m, of the puncture zone: a ball about the point of entry
-  double tip_radius = 3e-6;                          ///< m, of the disc under the tip
+  double diameter = 56e-6;       ///< m
+  double size = 12e-6;           ///< m, of elements outside of the puncture zone
+  double density = 5;            ///< elements in the puncture zone are this many times smaller, >= 1
+  double zone_diameter = 30e-6;  ///< m, of the puncture zone: a ball about the point of entry
+  double tip_radius = 3e-6;      ///< m, of the disc under the tip
   Eigen::Vector2d offset = Eigen::Vector2d::Zero();  ///< m, (x, y) of the needle's line, along z
   double contact_radius = 10e-6;                     ///< m, of the holding pipette's circle
 

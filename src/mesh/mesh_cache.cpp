@@ -81,7 +81,8 @@ std::string MeshCache::defaultDirectory() {
   const char* cache = std::getenv("XDG_CACHE_HOME");
   const char* home = std::getenv("HOME");
   const std::string below = "cell_microinjection/meshes";
-  if (cache != nullptr && cache[0] == '/') return std::string(cache) + "/" + below;  // the standard ignores relative ones
+  if (cache != nullptr && cache[0] == '/')
+    return std::string(cache) + "/" + below;  // the standard ignores relative ones
   if (home != nullptr && home[0] != '\0') return std::string(home) + "/.cache/" + below;
   return "";
 }

@@ -36,13 +36,18 @@ std::optional<Eigen::Isometry3d> trustedPose(const geometry_msgs::PoseStamped* m
   return pose;
 }
 
-std::optional<Eigen::Vector3d> trustedForce(const geometry_msgs::WrenchStamped* message, const Eigen::Matrix3d& tip) {
+std::optional<Eigen::Vector3d> finiteForce(const geometry_msgs::WrenchStamped* message) {
   if (!message) return std::nullopt;
   const auto& f = message->wrench.force;
   const Eigen::Vector3d force(f.x, f.y, f.z);
   if (!force.allFinite()) return std::nullopt;
-  if (isIn(message->header.frame_id, kWorldFrame)) return force;
-  if (message->header.frame_id == kTipFrame) return Eigen::Vector3d(tip * force);
+  return force;
+}
+
+std::optional<Eigen::Vector3d> trustedForce(const geometry_msgs::WrenchStamped* message, const Eigen::Matrix3d& tip) {
+  const auto force = finiteForce(message);
+  if (!force || isIn(message->header.frame_id, kWorldFrame)) return force;
+  if (message->header.frame_id == kTipFrame) return Eigen::Vector3d(tip * *force);
   return std::nullopt;
 }
 

@@ -24,6 +24,10 @@ std::optional<Eigen::Vector3d> trustedPosition(const geometry_msgs::PoseStamped*
 /// `tip`. Empty when the message is null, in another frame or not finite.
 std::optional<Eigen::Vector3d> trustedForce(const geometry_msgs::WrenchStamped* message, const Eigen::Matrix3d& tip);
 
+/// A force (N) in the message's own frame, whichever that is: for the haptic device, whose frame only its driver knows.
+/// Empty when the message is null or not finite.
+std::optional<Eigen::Vector3d> finiteForce(const geometry_msgs::WrenchStamped* message);
+
 geometry_msgs::PoseStamped toPose(const Eigen::Isometry3d& pose, const ros::Time& stamp, const std::string& frame);
 /// With the identity as orientation.
 geometry_msgs::PoseStamped toPose(const Eigen::Vector3d& position, const ros::Time& stamp, const std::string& frame);

@@ -58,7 +58,7 @@ void OperatorNode::step(const Cycle::Tick& tick) {
   elapsed_ += tick.dt;
   const double time = std::max(0.0, elapsed_ - parameters_.start_delay);
   const HandMotion::Sample meant = motion_.at(time);
-  const auto force = trustedForce(force_.get(tick.now), Eigen::Matrix3d::Identity());
+  const auto force = finiteForce(force_.get(tick.now));
   hand_.step(meant.position, force.value_or(Eigen::Vector3d::Zero()), tick.dt);
   position_.publish(toPose(hand_.position(), tick.now, kHapticFrame));
   publishClutch(tick.now, meant.clutch);

@@ -19,8 +19,10 @@ int runNode(int argc, char** argv, const std::string& name) {
     }
   }
   ros::init(argc, argv, name);
+  // These outlive the try block: the end of the last handle shuts ROS down, and its log with it.
+  const ros::NodeHandle node_handle, private_node_handle("~");
   try {
-    Node node(ros::NodeHandle(), ros::NodeHandle("~"));
+    Node node(node_handle, private_node_handle);
     node.run();
   } catch (const std::exception& error) {
     ROS_FATAL_STREAM(error.what());

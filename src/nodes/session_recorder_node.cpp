@@ -91,7 +91,7 @@ void SessionRecorderNode::writeRow(const ros::Time& now) {
   const auto needle = trustedPose(needle_.get(now));
   const auto predicted = needle ? trustedForce(predicted_.get(now), needle->linear()) : std::nullopt;
   const auto* measured = measured_.get(now);
-  const auto hand = trustedForce(hand_force_ ? hand_force_->get(now) : nullptr, Eigen::Matrix3d::Identity());
+  const auto hand = finiteForce(hand_force_ ? hand_force_->get(now) : nullptr);
   const auto* phase = phase_ ? phase_->get(now) : nullptr;
   const auto* cell = cell_.get(now);
   rows_ << (now - began_).toSec() << ',' << (phase ? phase->string : "") << ',';

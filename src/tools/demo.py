@@ -71,7 +71,7 @@ class Demo:
         cell = Path(self._arguments.cell)
         scene = {'scene': cell.resolve()} if cell.is_file() else {'cell': self._arguments.cell}
         say(f'starting the session; its log is in {self._logs}')
-        self._session = DemoSession(self._logs, {
+        self._session = DemoSession(ROOT / 'launch' / 'session.launch', self._logs, {
             **scene, 'rig': 'sim', 'rviz': 'false', 'haptic': self._arguments.haptic, 'clock': self._arguments.clock,
             'record': self._out})
         self._session.wait_ready()
@@ -82,6 +82,7 @@ class Demo:
     def _start_rviz(self):
         self._view = RvizView(ROOT / 'config' / 'session.rviz', self._logs)
         say('starting rviz' + (' on a virtual display' if self._view.virtual else ''))
+
         def ready():
             self._session.check()
             self._view.check()
@@ -184,7 +185,7 @@ def main():
     demo = Demo(arguments)
     try:
         run(demo, arguments)
-    except (DemoError, SessionError, RvizError) as error:
+    except (DemoError, SessionError, RvizError, OSError) as error:
         sys.exit(f'demo: {error}')
     except KeyboardInterrupt:
         sys.exit('demo: interrupted')

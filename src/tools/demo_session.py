@@ -17,14 +17,15 @@ class SessionError(Exception):
 class DemoSession:
     """session.launch, whose hand rests until monitor.go()."""
 
-    def __init__(self, logs, arguments):
+    def __init__(self, launch_file, logs, arguments):
         """@param arguments  of session.launch, name -> value."""
         self._lockstep = arguments['clock'] == 'lockstep'
         port = free_port()
         # By address, so that it does not matter what this machine's name resolves to.
         os.environ.pop('ROS_HOSTNAME', None)
         os.environ.update(ROS_MASTER_URI=f'http://127.0.0.1:{port}', ROS_IP='127.0.0.1', ROS_LOG_DIR=str(logs))
-        command = ['roslaunch', '-p', str(port), 'cell_microinjection', 'session.launch', 'wait_for_go:=true']
+        # By its path: a search by name would follow catkin_ws's link to the repository round and round.
+        command = ['roslaunch', '-p', str(port), str(launch_file), 'wait_for_go:=true']
         command += [f'{name}:={value}' for name, value in arguments.items()]
         self._launch = Child(command, logs / 'session.log')
         self.monitor = None

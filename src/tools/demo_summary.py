@@ -18,8 +18,9 @@ def _figure(value):
 
 
 def _intervals(name, figures):
-    text = ', '.join(f'{key[:-3].replace("_", " ")} {_figure(figures[key])} ms' for key in figures if key.endswith('_ms'))
-    return f'  {name}: {text} (of {figures.get("count", "?")})'
+    quantiles = [key[:-len('_ms')] for key in figures if key.endswith('_ms')]
+    said = ', '.join(f'{quantile} {_figure(figures[quantile + "_ms"])} ms' for quantile in quantiles)
+    return f'  {name}: {said} (of {figures.get("count", "?")})'
 
 
 def text(path):

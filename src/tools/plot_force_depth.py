@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Plots the recorder's force_depth.csv: force against depth, and the force at the hand against time.
+"""Plots the recorder's force_depth.csv: forces against depth, and the force at the hand against time.
 
     plot_force_depth.py CSV PNG
 """
@@ -68,21 +68,34 @@ def plot_hand(axes, table):
         axes.axvline(time[start], color='0.8', linewidth=0.8, zorder=0)
         # At two heights in turn, since a short phase has no room for its name.
         axes.annotate(str(phases[start]), (time[start], 1), xycoords=('data', 'axes fraction'),
-                      xytext=(3, -3 - 10 * (number % 2)), textcoords='offset points', va='top', fontsize=8, color='0.35')
-    axes.margins(x=0, y=0.4)
+                      xytext=(3, -3 - 10 * (number % 2)), textcoords='offset points', va='top', fontsize=8,
+                      color='0.35')
+    axes.set_xlim(0, max(time[-1], 1e-3))
+    axes.margins(y=0.4)
     axes.set_title('Force felt at the hand')
     axes.set_xlabel('time (s)')
     axes.set_ylabel('force (N)')
 
 
+def plot_difference(axes, table):
+    rows = thinned(table['in_contact'] == 1)
+    difference = 1e9 * (table['measured_axial_N'] - table['predicted_axial_N'])
+    axes.plot(1e6 * table['depth_m'][rows], difference[rows], '.', color='#4a7fb5', markersize=2)
+    axes.set_title('What the sensor adds: measured less predicted')
+    axes.set_xlabel('indentation depth (µm)')
+    axes.set_ylabel('force (nN)')
+    axes.set_xlim(left=0)
+
+
 def plot(csv_path, png):
     """Writes the picture. @raises ValueError or KeyError when the file has no rows or lacks a column."""
     table = read(csv_path)
-    figure, (force, hand) = plt.subplots(2, 1, figsize=(7.5, 7.5), gridspec_kw={'height_ratios': (3, 1)},
-                                         constrained_layout=True)
+    figure, (force, difference, hand) = plt.subplots(3, 1, figsize=(7.5, 9), constrained_layout=True,
+                                                     gridspec_kw={'height_ratios': (3, 1, 1)})
     plot_force(force, table)
+    plot_difference(difference, table)
     plot_hand(hand, table)
-    for axes in (force, hand):
+    for axes in (force, difference, hand):
         axes.spines[['top', 'right']].set_visible(False)
         axes.grid(color='0.92')
         axes.set_axisbelow(True)

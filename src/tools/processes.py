@@ -62,8 +62,8 @@ class Child:
         return self._process.poll() is None
 
     def stop(self, patience, force_after=5):
-        """Interrupts it and waits `patience` s; then terminates it and waits `force_after` s; then kills it. Leaves none
-        of its descendants behind. Returns at once when it has already ended."""
+        """Interrupts it and waits `patience` s; then terminates it and waits `force_after` s; then kills it. Leaves
+        none of its descendants behind. Returns at once when it has already ended."""
         family = set()
         for number, wait in ((signal.SIGINT, patience), (signal.SIGTERM, force_after), (signal.SIGKILL, 5)):
             if not self.running():

@@ -15,7 +15,10 @@ class RvizView:
 
     def __init__(self, config, logs):
         """@raises RvizError when there is no display to be had."""
-        self._screen = Screen(logs / 'xvfb.log')
+        try:
+            self._screen = Screen(logs / 'xvfb.log')
+        except (OSError, RuntimeError) as error:
+            raise RvizError(f'there is no display, and no virtual one: {error}') from error
         self.virtual = self._screen.virtual
         self._environment = {**os.environ, **self._screen.environment}
         # The whole virtual screen is rviz's; of the user's screen the picture takes nothing but rviz's window, whose

@@ -21,7 +21,7 @@ LEAST_SHARE = 0.03           # of the picture that the cell fills; in our view o
 
 
 def take(path, window='root', env=None):
-    """Writes the window with this title ('root': the whole screen) to the PNG file `path`. Returns whether it worked."""
+    """Writes the window with this title ('root': the whole screen) to the PNG file `path`. Returns whether it did."""
     try:
         subprocess.run(['import', '-silent', '-window', window, f'png24:{path}'], env=env, check=True, timeout=20,
                        stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -41,8 +41,8 @@ def shows_cell(path):
 
 
 def take_scene(path, windows=('root',), env=None, timeout=20.0, go_on=lambda: True):
-    """Tries these windows until a picture shows the cell, which becomes the PNG file `path`; gives up after `timeout` s or
-    when not go_on(), with `path` as it was. Returns whether there is such a picture."""
+    """Tries these windows until a picture shows the cell, which becomes the PNG file `path`; gives up after `timeout` s
+    or when not go_on(), with `path` as it was. Returns whether there is such a picture."""
     end = time.monotonic() + timeout
     with tempfile.TemporaryDirectory(dir=path.parent) as folder:
         draft = Path(folder) / 'draft.png'

@@ -39,11 +39,11 @@ TEST(Convergence, LinearTetrahedraLockAsMuchAsTheyShould) {
 }
 
 /// Where they do not lock, they converge. The reference has no nu = 0.3; what it should be: the compliance of a bonded
-/// flat punch on a half space, (1 - nu^2) / (2 a E) / b with b = (1 - nu) ln(3 - 4 nu) / (1 - 2 nu) (Mossakovskii 1954),
-/// plus that of the ball, C / (2 a E): linear.csv gives C = 0.1614 at nu = 0.45 and 0.1591 at 0.49, a straight line
-/// gives 0.1700 at 0.3, and so F / d = 2 a E / (0.91 / 1.0287 + 0.1700) = 0.1018 N/m; judged good to 2 %.
-/// The error of P1 elements at the disc's sharp edge falls with the element's size, so halving all elements should
-/// about halve it, and extrapolation should give the reference.
+/// flat punch on a half space, (1 - nu^2) / (2 a E) / b with b = (1 - nu) ln(3 - 4 nu) / (1 - 2 nu) (Mossakovskii
+/// 1954), plus that of the ball, C / (2 a E): linear.csv gives C = 0.1614 at nu = 0.45 and 0.1591 at 0.49, a straight
+/// line gives 0.1700 at 0.3, and so F / d = 2 a E / (0.91 / 1.0287 + 0.1700) = 0.1018 N/m; judged good to 2 %. The
+/// error of P1 elements at the disc's sharp edge falls with the element's size, so halving all elements should about
+/// halve it, and extrapolation should give the reference.
 TEST(Convergence, WithoutLockingTheForceConverges) {
   const double reference = 0.1018;
   const MaterialConfig material{"linear", 17.9e3, 0.3};

@@ -1,7 +1,9 @@
 #!/usr/bin/python3
 """A node whose parameters are wrong ends with status 1, names key, value and range, and never comes alive."""
 
+import pathlib
 import subprocess
+import sys
 import unittest
 
 import rosnode
@@ -9,6 +11,7 @@ import rospkg
 import rospy
 import rostest
 
+NODES = pathlib.Path(sys.argv[0]).parent  # this program is found beside them
 SCENE = rospkg.RosPack().get_path("cell_microinjection") + "/test/chain/coarse_oocyte.yaml"
 MOTION = rospkg.RosPack().get_path("cell_microinjection") + "/config/hand_motions/indent_and_retract.csv"
 GOOD = {  # what each node cannot do without
@@ -41,7 +44,7 @@ BAD = [  # node, wrong parameters, what the message must say
 
 def start(node, parameters):
     arguments = [f"_{key}:={value}" for key, value in parameters.items()]
-    return subprocess.Popen(["rosrun", "cell_microinjection", node, *arguments, f"__name:=tried_{node}"],
+    return subprocess.Popen([str(NODES / node), *arguments, f"__name:=tried_{node}"],
                             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
 
 

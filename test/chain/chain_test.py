@@ -4,7 +4,9 @@
 import csv
 import math
 import os
+import pathlib
 import subprocess
+import sys
 import tempfile
 import unittest
 
@@ -19,6 +21,7 @@ from sensor_msgs.msg import Joy
 from messages import force, pose, position
 from participant import Participant
 
+NODES = pathlib.Path(sys.argv[0]).parent  # this program is found beside them
 PACKAGE = rospkg.RosPack().get_path("cell_microinjection")
 GAIN = 2e5  # config/haptic_bridge.yaml
 SCALE = 1e-3
@@ -80,7 +83,7 @@ class ChainTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             out = os.path.join(folder, "indent.csv")
             scene = PACKAGE + "/test/chain/coarse_oocyte.yaml"
-            subprocess.run(["rosrun", "cell_microinjection", "indent", "--scene", scene, "--depths", repr(depth),
+            subprocess.run([str(NODES / "indent"), "--scene", scene, "--depths", repr(depth),
                             "--csv", out], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
             with open(out, encoding="utf-8") as file:
                 return float(next(csv.DictReader(file))["force_z_N"])

@@ -24,7 +24,7 @@ def run_session(folder, *arguments):
     port = free_port()
     out = pathlib.Path(folder) / "out"
     subprocess.run(
-        ["roslaunch", "-p", str(port), "cell_microinjection", "session.launch", "clock:=lockstep", "display:=false",
+        ["roslaunch", "-p", str(port), str(ROOT / "launch/session.launch"), "clock:=lockstep", "display:=false",
          f"scene:={ROOT}/test/chain/coarse_oocyte.yaml", f"motion:={motion}", f"record:={out}", "bag:=false",
          "end_when_done:=true", *arguments],
         check=True, timeout=PATIENCE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
@@ -47,8 +47,16 @@ class RepeatTest(unittest.TestCase):
         self.assertLess(max(depths), 4.1e-6)
         self.assertGreater(max(forces), 0.3e-6)
         self.assertEqual(forces[-1], 0)
+        self.check_hand_yields(rows)
         self.assertEqual({row["phase"] for row in rows if row["phase"]},
                          {"approach", "touch", "indent", "hold", "retract"})
+
+    def check_hand_yields(self, rows):
+        """At rest in the cell the hand's spring and the rendered force are in balance."""
+        held = [row for row in rows if row["phase"] == "hold"][-1]
+        force, depth = float(held["hand_force_N"]), float(held["depth_m"])
+        self.assertAlmostEqual(force, 2e5 * float(held["predicted_axial_N"]), delta=0.02 * force)
+        self.assertAlmostEqual(depth + 1e-3 * force / 400, 4e-6, delta=0.2e-6)  # 400 N/m; the hand trembles
 
 
 if __name__ == "__main__":

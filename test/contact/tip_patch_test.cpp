@@ -53,7 +53,8 @@ TEST_F(TipPatchTest, FinerThanTheMeshItIsTheTriangle) {
   const auto hit = castRay(surface_, {20e-6, 15e-6, 60e-6}, {0, 0, -1});
   const Vector3d centre = [&] {
     const std::array<int, 3>& corners = surface_.triangles[hit->triangle];
-    return Vector3d((surface_.vertices[corners[0]] + surface_.vertices[corners[1]] + surface_.vertices[corners[2]]) / 3);
+    return Vector3d((surface_.vertices[corners[0]] + surface_.vertices[corners[1]] + surface_.vertices[corners[2]]) /
+                    3);
   }();
   TipPatch patch = findTipPatch(surface_, centre, Vector3d::UnitZ(), 1e-9);
   std::vector<int> corners;

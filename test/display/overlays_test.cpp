@@ -65,5 +65,20 @@ TEST(Readout, ShowsMicrometresAndMicronewtons) {
   EXPECT_EQ(lines(readout).size(), 4U);
 }
 
+TEST(Readout, BreaksALongState) {
+  Readout readout;
+  readout.state = "no solution: the contact is still being prepared";
+  const std::vector<ReadoutLine> shown = lines(readout);
+  ASSERT_EQ(shown.size(), 3U + 3);
+  EXPECT_EQ(shown[0].text, "no solution: the");
+  EXPECT_EQ(shown[1].text, "contact is still");
+  EXPECT_EQ(shown[2].text, "being prepared");
+  EXPECT_EQ(shown[2].about, ReadoutLine::About::kState);
+  readout.state = std::string(200, 'x') + " a b c" + std::string(300, ' ') + std::string(99, 'y') +
+                  " z z zzzzzzzzzzzzzzzzzzzz" + " zzzzzzzzzzzzzzzzzzzz zzzzzzzzzzzzzzzzzzzz";
+  ASSERT_EQ(lines(readout).size(), 5U + 3);
+  EXPECT_EQ(lines(readout)[4].text, "zzzzzzzzzzzzzzzzzzzz ...");
+}
+
 }  // namespace
 }  // namespace microinjection

@@ -54,8 +54,7 @@ TEST_F(PatchSystemTest, CondensedStiffnessIsThatOfTheDenseSystem) {
   }
   const Eigen::MatrixXd reduced = Q.transpose() * K * Q;
   const Eigen::MatrixXd K_ff = reduced.topLeftCorner(free, free), K_ft = reduced.topRightCorner(free, 3);
-  const Eigen::Matrix3d condensed =
-      reduced.bottomRightCorner<3, 3>() - K_ft.transpose() * K_ff.ldlt().solve(K_ft);
+  const Eigen::Matrix3d condensed = reduced.bottomRightCorner<3, 3>() - K_ft.transpose() * K_ff.ldlt().solve(K_ft);
   EXPECT_LT((system_.stiffness() - condensed).norm(), 1e-12 * condensed.norm());
   EXPECT_LT((system_.sensitivity() + K_ff.ldlt().solve(K_ft)).norm(), 1e-11 * system_.sensitivity().norm());
   const Eigen::MatrixXd sparse = Eigen::MatrixXd(system_.matrix()).selfadjointView<Eigen::Lower>();
@@ -83,7 +82,8 @@ TEST_F(PatchSystemTest, TangentOfACrushedStVenantKirchhoffIsNotPositiveDefinite)
   const ElasticBody soft(mesh_, makeMaterial({"st_venant_kirchhoff", 2.0, 0.3}));
   PatchSystem system(soft, held_, patch_);
   Eigen::VectorXd u(3 * soft.vertexCount());
-  for (int v = 0; v < soft.vertexCount(); ++v) u.segment<3>(3 * v) = Eigen::Vector3d(0, 0, -0.6 * mesh_.vertices[v].z());
+  for (int v = 0; v < soft.vertexCount(); ++v)
+    u.segment<3>(3 * v) = Eigen::Vector3d(0, 0, -0.6 * mesh_.vertices[v].z());
   EXPECT_TRUE(system.factorise(Eigen::VectorXd::Zero(u.size())));
   EXPECT_FALSE(system.factorise(u));
   EXPECT_TRUE(system.factorise(Eigen::VectorXd::Zero(u.size())));  // and it recovers

@@ -30,8 +30,9 @@ class CellMesher : public testing::TestWithParam<CellMeshConfig> {
   const SurfaceMesh surface_ = extractSurface(mesh_);
 };
 
-/// What the facets cut off the ball: over a triangle of area A the cap's height is (rho^2 - s^2) / 2R at distance s from
-/// its circumcentre, whose integral is A (a^2 + b^2 + c^2) / 24 R, a, b, c the edges; to first order in (edge / R)^2.
+/// What the facets cut off the ball: over a triangle of area A the cap's height is (rho^2 - s^2) / 2R at distance s
+/// from its circumcentre, whose integral is A (a^2 + b^2 + c^2) / 24 R, a, b, c the edges; to first order in (edge /
+/// R)^2.
 double facetingDeficit(const SurfaceMesh& surface, double radius) {
   double deficit = 0;
   for (const std::array<int, 3>& triangle : surface.triangles) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -78,6 +79,26 @@ TEST_F(MeshCacheTest, EveryInputChangesTheFile) {
   changed([](CellMeshConfig& c) { c.contact_radius *= 1 + 1e-12; });
   changed([](CellMeshConfig& c) { c.offset.x() = 1e-20; });
   changed([](CellMeshConfig& c) { c.offset.y() = 1e-20; });
+}
+
+TEST_F(MeshCacheTest, LivesWhereTheUserKeepsCaches) {
+  const auto with = [](const char* cache, const char* home) {
+    const auto set = [](const char* name, const char* value) {
+      value != nullptr ? ::setenv(name, value, 1) : ::unsetenv(name);
+    };
+    const std::string old_cache = std::getenv("XDG_CACHE_HOME") != nullptr ? std::getenv("XDG_CACHE_HOME") : "";
+    const std::string old_home = std::getenv("HOME") != nullptr ? std::getenv("HOME") : "";
+    set("XDG_CACHE_HOME", cache);
+    set("HOME", home);
+    const std::string directory = MeshCache::defaultDirectory();
+    set("XDG_CACHE_HOME", old_cache.empty() ? nullptr : old_cache.c_str());
+    set("HOME", old_home.empty() ? nullptr : old_home.c_str());
+    return directory;
+  };
+  EXPECT_EQ(with("/caches", "/home/user"), "/caches/cell_microinjection/meshes");
+  EXPECT_EQ(with(nullptr, "/home/user"), "/home/user/.cache/cell_microinjection/meshes");
+  EXPECT_EQ(with("relative", "/home/user"), "/home/user/.cache/cell_microinjection/meshes");
+  EXPECT_EQ(with(nullptr, nullptr), "");
 }
 
 TEST_F(MeshCacheTest, WorksWithoutAPlaceToKeep) {

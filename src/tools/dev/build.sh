@@ -16,21 +16,25 @@ command_build() {
 
 command_clean() {
   [[ $# -eq 0 ]] || misuse "clean takes no arguments"
-  rm -rf "$WORKSPACE/build" "$WORKSPACE/devel" "$WORKSPACE/.catkin_workspace" "$ROOT/build" "$ROOT/out"
-  say "clean: removed catkin_ws/build, catkin_ws/devel, build and out"
+  rm -rf "$WORKSPACE/build" "$WORKSPACE/devel" "$WORKSPACE/install" "$WORKSPACE/.catkin_workspace" "$ROOT/build" "$ROOT/out"
+  say "clean: removed catkin_ws/build, devel and install, build and out"
 }
 
 jobs() { echo "${JOBS:-$(nproc)}"; }
 
-# Makes the given targets (everything but the tests when there are none), then takes the workspace's environment on.
+# Makes the given targets (by default everything but the tests, installed), then takes the workspace's environment on.
+# Programs are looked for in the install space, because ROS's search of a source package follows the workspace's link back
+# to the package itself, forty times over: slow, and roslaunch then sees each launch file many times.
 build_workspace() {
   [[ $ROOT != *" "* ]] || fail "catkin cannot build below a path with a space in it: $ROOT"
-  forget_moved_build "$WORKSPACE/build" "$WORKSPACE/devel"
+  forget_moved_build "$WORKSPACE/build" "$WORKSPACE/devel" "$WORKSPACE/install"
   # catkin keeps the environment of its tests from the first configuration, and leaves out folders that are not there yet.
   mkdir -p "$WORKSPACE/devel/lib/python3/dist-packages"
+  # An installation never forgets by itself a file that has since been renamed.
+  [[ $# -gt 0 ]] || rm -rf "$WORKSPACE"/install/share/cell_microinjection/{launch,config,urdf}
   say "build: catkin_make in catkin_ws ($(jobs) jobs)"
   catkin_make -C "$WORKSPACE" -j"$(jobs)" -DPYTHON_EXECUTABLE=/usr/bin/python3 -DCMAKE_BUILD_TYPE=RelWithDebInfo \
-    -DCMAKE_EXPORT_COMPILE_COMMANDS=ON "$@" || fail "the build failed (messages above)"
+    -DCMAKE_EXPORT_COMPILE_COMMANDS=ON "${@:-install}" || fail "the build failed (messages above)"
   source_workspace
 }
 

@@ -30,7 +30,7 @@ source_ros() {
 }
 
 source_workspace() {
-  source_ros "$ROOT/catkin_ws/devel/setup.bash"
+  source_ros "$ROOT/catkin_ws/install/setup.bash"
 }
 
 # Nodes name themselves by address, so that it does not matter what, if anything, this machine's name resolves to.

@@ -37,7 +37,7 @@ run_tests() {
   # What an earlier run left must neither hide nor fake a failure.
   rm -rf "$junit" "$log"
   mkdir -p "$junit" "$RESULTS"
-  (cd "$build" && ctest --output-on-failure --no-tests=error -R "$(name_pattern "$@")") || status=$?
+  (cd "$build" && ctest --output-on-failure --no-tests=error --timeout 900 -R "$(name_pattern "$@")") || status=$?
   cp "$build/Testing/Temporary/LastTest.log" "$log" || status=1
   say "test: summary of $kind"
   /usr/bin/python3 "$ROOT/src/tools/test_summary.py" "$junit" || status=1

@@ -1,0 +1,157 @@
+// The command as its users run it.
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Outcome {
+  int status;
+  std::string out, err;
+};
+
+class IndentCommand : public testing::Test {
+ protected:
+  void SetUp() override {
+    fs::remove_all(directory_);
+    fs::create_directories(directory_);
+    write("scene.yaml", "linear", "");
+    write("st_vk.yaml", "st_venant_kirchhoff", "");
+  }
+  void TearDown() override { fs::remove_all(directory_); }
+
+  void write(const std::string& name, const std::string& model, const std::string& more) const {
+    std::ofstream(directory_ + name) << "cell: {diameter: 56e-6, material: {model: " << model
+                                     << ", young_modulus: 17.9e3, poisson_ratio: 0.49}}\n"
+                                     << "holding_pipette: {contact_radius: 10e-6}\n"
+                                     << "needle: {tip: {shape: disc, radius: 3e-6}}\n"
+                                     << "mesh: {size: 20e-6}\n"
+                                     << more;
+  }
+
+  static std::string read(const std::string& path) {
+    std::ifstream file(path);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+  }
+
+  Outcome run(const std::string& arguments) const {
+    const std::string command =
+        "cd " + directory_ + " && " MICROINJECTION_INDENT " " + arguments + " >out.txt 2>err.txt";
+    const int status = std::system(command.c_str());
+    return {WEXITSTATUS(status), read(directory_ + "out.txt"), read(directory_ + "err.txt")};
+  }
+
+  /// Numbers of the table; the header must be the one that is promised.
+  static std::vector<std::vector<double>> table(const std::string& csv) {
+    std::istringstream lines(csv);
+    std::string line;
+    std::getline(lines, line);
+    EXPECT_EQ(line, "depth_m,force_x_N,force_y_N,force_z_N,wall_s,converged");
+    std::vector<std::vector<double>> rows;
+    while (std::getline(lines, line)) {
+      rows.emplace_back();
+      std::istringstream cells(line);
+      for (std::string cell; std::getline(cells, cell, ',');) rows.back().push_back(std::stod(cell));
+      EXPECT_EQ(rows.back().size(), 6u);
+    }
+    return rows;
+  }
+
+  const std::string directory_ = testing::TempDir() + "microinjection_indent/";
+};
+
+TEST_F(IndentCommand, WritesARowADepthInTheOrderGiven) {
+  const Outcome result = run("--scene scene.yaml --depths 2e-6,0,1e-6 --csv force.csv");
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.out, "");
+  const auto rows = table(read(directory_ + "force.csv"));
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[0][0], 2e-6);
+  EXPECT_EQ(rows[1][0], 0);
+  EXPECT_EQ(rows[2][0], 1e-6);
+  EXPECT_GT(rows[2][3], 0.1e-6);
+  EXPECT_NEAR(rows[0][3] / rows[2][3], 2, 1e-8);  // linear
+  EXPECT_EQ(rows[1][3], 0);
+  for (const auto& row : rows) EXPECT_EQ(row[5], 1);
+}
+
+TEST_F(IndentCommand, WritesToTheStandardOutputByDefault) {
+  const Outcome result = run("--scene scene.yaml --depths 1e-6");
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(table(result.out).size(), 1u);
+  EXPECT_EQ(run("--scene scene.yaml --depths 1e-6 --csv -").status, 0);
+  EXPECT_FALSE(fs::exists(directory_ + "-"));
+}
+
+TEST_F(IndentCommand, MovesSidewaysBothWays) {
+  const Outcome there = run("--scene scene.yaml --depths 1e-6 --lateral 1e-6,-2e-6");
+  const Outcome back = run("--scene scene.yaml --depths 1e-6 --lateral -1e-6,2e-6");
+  const Outcome down = run("--scene scene.yaml --depths 1e-6");
+  ASSERT_EQ(there.status, 0) << there.err;
+  ASSERT_EQ(back.status, 0) << back.err;
+  const auto a = table(there.out).at(0), b = table(back.out).at(0), c = table(down.out).at(0);
+  EXPECT_LT(a[1], 0);  // the cell pushes back
+  EXPECT_GT(a[2], 0);
+  for (int i = 1; i <= 3; ++i) EXPECT_NEAR(a[i] + b[i], 2 * c[i], 1e-12);  // linear
+}
+
+TEST_F(IndentCommand, RowsThatDoNotConvergeAreWrittenAsSuch) {
+  const Outcome result = run("--scene st_vk.yaml --depths 1e-6,30e-6,0.5e-6");
+  EXPECT_EQ(result.status, 3);
+  EXPECT_NE(result.err.find("not converged: "), std::string::npos);
+  const auto rows = table(result.out);
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[0][5], 1);
+  EXPECT_EQ(rows[1][5], 0);
+  for (int i = 1; i <= 3; ++i) EXPECT_TRUE(std::isnan(rows[1][i]));
+  EXPECT_EQ(rows[2][5], 1);
+  EXPECT_GT(rows[2][3], 0);
+}
+
+TEST_F(IndentCommand, RefusesBadUsageWithTheKeyAndWhatIsAllowed) {
+  write("bad.yaml", "linear", "needel: 1\n");
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"--depths 1e-6", "--scene is missing"},
+      {"--scene scene.yaml", "--depths is missing"},
+      {"--scene none.yaml --depths 1e-6", "none.yaml: cannot be read"},
+      {"--scene bad.yaml --depths 1e-6", "needel: unknown key"},
+      {"--scene scene.yaml --depths 1e-6,-1e-6", "each must be >= 0"},
+      {"--scene scene.yaml --depths 1e-6,,2e-6", "'' is not a number"},
+      {"--scene scene.yaml --depths 1um", "'1um' is not a number"},
+      {"--scene scene.yaml --depths nan", "'nan' is not a number"},
+      {"--scene scene.yaml --depths 1e-6 --lateral 1e-6", "two numbers X,Y"},
+      {"--scene scene.yaml --depths 1e-6 --depth 1e-6", "depth"},
+      {"--scene scene.yaml --depths 1e-6 stray", "positional"},
+      {"--scene scene.yaml --depths 1e-6 --csv scene.yaml/force.csv", "scene.yaml/force.csv: cannot be written"}};
+  for (const auto& [arguments, message] : cases) {
+    const Outcome result = run(arguments);
+    EXPECT_EQ(result.status, 2) << arguments;
+    EXPECT_NE(result.err.find(message), std::string::npos) << arguments << "\n" << result.err;
+    EXPECT_EQ(result.out, "") << arguments;
+  }
+}
+
+TEST_F(IndentCommand, ExplainsItself) {
+  const Outcome result = run("--help");
+  EXPECT_EQ(result.status, 0);
+  for (const char* word :
+       {"--scene", "--depths", "--lateral", "--csv", "depth_m,force_x_N", "Example:", "Exit status:"}) {
+    EXPECT_NE(result.out.find(word), std::string::npos) << word;
+  }
+}
+
+}  // namespace
