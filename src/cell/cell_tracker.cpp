@@ -56,7 +56,6 @@ TipForce CellTracker::distrustBecause(const std::string& reason) {
 void CellTracker::release() {
   contact_.reset();
   patch_asked_ = false;  // prepares the contact afresh, from the undeformed cell
-  solution_.reset();
 }
 
 TipForce CellTracker::touchForce(double time) {
@@ -94,10 +93,11 @@ TipForce CellTracker::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& ax
   contact_->indentation = -contact_->displacement.dot(axis);
   const TipForce result = touchForce(time);
   const double push = result.force.dot(axis);
-  if (result.trusted ? push < 0 : contact_->indentation < 0) {  // would pull: the tip has left the cell
+  if (contact_->indentation < 0 && (push <= 0 || !result.trusted)) {
     release();
     return {};
   }
+  if (push < 0) return {};  // there is no adhesion; what pulls is the extrapolation
   if (push >= cell_->scene().cell.puncture_force) {
     punctured_ = true;
     release();

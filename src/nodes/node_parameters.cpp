@@ -1,23 +1,30 @@
 #include "nodes/node_parameters.h"
 
+#include <cstdlib>
 #include <sstream>
+#include <string>
 
 namespace microinjection {
 namespace {
 
-template <typename Value>
-YAML::Node scalar(const Value& value) {
-  std::ostringstream text;
-  text.precision(17);
-  text << value;
-  return YAML::Node(text.str());
+/// The shortest text that reads back as the same number, so that a message shows what the user wrote.
+std::string shortest(double value) {
+  std::string text;
+  for (int digits = 6; digits <= 17; ++digits) {
+    std::ostringstream out;
+    out.precision(digits);
+    out << value;
+    text = out.str();
+    if (std::strtod(text.c_str(), nullptr) == value) break;
+  }
+  return text;
 }
 
 YAML::Node toYaml(XmlRpc::XmlRpcValue& value) {
   switch (value.getType()) {
     case XmlRpc::XmlRpcValue::TypeBoolean: return YAML::Node(static_cast<bool>(value));
-    case XmlRpc::XmlRpcValue::TypeInt: return scalar(static_cast<int>(value));
-    case XmlRpc::XmlRpcValue::TypeDouble: return scalar(static_cast<double>(value));
+    case XmlRpc::XmlRpcValue::TypeInt: return YAML::Node(std::to_string(static_cast<int>(value)));
+    case XmlRpc::XmlRpcValue::TypeDouble: return YAML::Node(shortest(static_cast<double>(value)));
     case XmlRpc::XmlRpcValue::TypeString: return YAML::Node(static_cast<std::string>(value));
     case XmlRpc::XmlRpcValue::TypeArray: {
       YAML::Node list(YAML::NodeType::Sequence);

@@ -45,10 +45,17 @@ run_tests() {
   echo "all passed; their full output is in $log"
 }
 
-# ctest's names begin with the folder of test/ in the core, and have it behind the kind of the test with catkin.
+# In the core, ctest's names begin with the folder of test/; with catkin they have it behind the kind of the test, except for
+# a rostest with arguments, which is named after its file alone.
 name_pattern() {
+  [[ $# -gt 0 ]] || { echo . && return; }
+  local folder names=()
+  for folder in "$@"; do
+    names+=("^$folder(_|\$)" "_(gtest|python)_${folder}_")
+    compgen -G "$ROOT/test/$folder/*.test" >/dev/null && names+=(_rostest_)
+  done
   local IFS='|'
-  [[ $# -eq 0 ]] && echo . || echo "^($*)(_|\$)|_(gtest|python|rostest_test)_($*)_"
+  echo "${names[*]}"
 }
 
 check_test_folders() {
