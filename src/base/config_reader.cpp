@@ -113,8 +113,7 @@ void ConfigReader::vector(const std::string& key, Eigen::Ref<Eigen::VectorXd> va
                           Presence presence) {
   const YAML::Node node = find(key, presence);
   if (!node.IsDefined()) return;
-  const std::string wanted =
-      "must be a list of " + std::to_string(value.size()) + " numbers in " + range.text();
+  const std::string wanted = "must be a list of " + std::to_string(value.size()) + " numbers in " + range.text();
   if (!node.IsSequence() || static_cast<Eigen::Index>(node.size()) != value.size()) return error(key, wanted);
   Eigen::VectorXd read(value.size());
   for (Eigen::Index i = 0; i < value.size(); ++i) {

@@ -12,11 +12,11 @@
 namespace microinjection {
 
 struct CellTrackerConfig {
-  double prepare_distance = 25e-6;   ///< m before the surface at which the contact is prepared
+  double prepare_distance = 25e-6;    ///< m before the surface at which the contact is prepared
   double extrapolation_limit = 3e-6;  ///< m of tip travel from the last solution past which force is not trusted
-  double solution_period = 0.03;     ///< s between solutions when `fixed_period`
-  bool fixed_period = false;         ///< take every solution exactly solution_period after it was asked for, waiting
-                                     ///< for it if need be: same answers on any machine (lock step)
+  double solution_period = 0.03;      ///< s between solutions when `fixed_period`
+  bool fixed_period = false;          ///< take every solution exactly solution_period after it was asked for, waiting
+                                      ///< for it if need be: same answers on any machine (lock step)
 
   static CellTrackerConfig read(ConfigReader& reader);
 };
@@ -29,9 +29,10 @@ struct TipForce {
 
 /// The cell under a moving needle, at the needle's rate: contact, force and puncture.
 ///
-/// A thread of its own solves the cell's equilibrium for the newest tip pose; between solutions step() extrapolates with
-/// the condensed contact stiffness, f = f_s - K (x - x_s). The surface vertices under the tip stick to it from touch
-/// until the pull would be adhesive; a force along the pipette of scene.cell.puncture_force punctures the cell for good.
+/// A thread of its own solves the cell's equilibrium for the newest tip pose; between solutions step() extrapolates
+/// with the condensed contact stiffness, f = f_s - K (x - x_s). The surface vertices under the tip stick to it from
+/// touch until the pull would be adhesive; a force along the pipette of scene.cell.puncture_force punctures the cell
+/// for good.
 class CellTracker {
  public:
   struct Contact {
@@ -67,10 +68,10 @@ class CellTracker {
   SolutionThread thread_;
   int start_triangle_ = 0;
   TipPatch patch_;
-  bool asked_ = false;         ///< a solution is under way
-  double asked_at_ = 0;        ///< s
-  double solution_time_ = 0;   ///< s, when the solution at hand was asked for
-  bool patch_asked_ = false;   ///< the thread works on patch_, not on an older one
+  bool asked_ = false;        ///< a solution is under way
+  double asked_at_ = 0;       ///< s
+  double solution_time_ = 0;  ///< s, when the solution at hand was asked for
+  bool patch_asked_ = false;  ///< the thread works on patch_, not on an older one
   std::shared_ptr<const CellSolution> solution_;
   std::optional<Contact> contact_;
   bool punctured_ = false;

@@ -24,10 +24,14 @@ InjectionControllerConfig InjectionControllerConfig::read(ConfigReader& reader) 
 
 const char* toText(OperatingState state) {
   switch (state) {
-    case OperatingState::kEnabled: return "ENABLED";
-    case OperatingState::kPaused: return "PAUSED";
-    case OperatingState::kFault: return "FAULT";
-    default: return "DISABLED";
+    case OperatingState::kEnabled:
+      return "ENABLED";
+    case OperatingState::kPaused:
+      return "PAUSED";
+    case OperatingState::kFault:
+      return "FAULT";
+    default:
+      return "DISABLED";
   }
 }
 
@@ -124,7 +128,8 @@ void InjectionController::follow(const Eigen::Vector3d& target, const Input& inp
   Eigen::Vector3d motion = target - *setpoint_;
   if (motion.norm() > config_.jump_limit) {
     std::ostringstream text;
-    text << "target is " << motion.norm() << " m away, allowed " << config_.jump_limit << " m; press the clutch to take hold afresh";
+    text << "target is " << motion.norm() << " m away, allowed " << config_.jump_limit
+         << " m; press the clutch to take hold afresh";
     held_because_ = text.str();
     return;
   }

@@ -32,16 +32,16 @@ class InjectionController {
  public:
   /// What the controller can trust now; empty: absent, stale or not finite.
   struct Input {
-    std::optional<Eigen::Vector3d> target;  ///< m, `world`
-    std::optional<Eigen::Vector3d> needle;  ///< m, tip in `world`
-    std::optional<Eigen::Vector3d> force;   ///< N, of the cell on the tip, `world`
+    std::optional<Eigen::Vector3d> target;            ///< m, `world`
+    std::optional<Eigen::Vector3d> needle;            ///< m, tip in `world`
+    std::optional<Eigen::Vector3d> force;             ///< N, of the cell on the tip, `world`
     Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< of the pipette, out of the cell, `world`
   };
 
   explicit InjectionController(const InjectionControllerConfig& config);
 
-  /// enable, disable, pause, resume, home (CRTK state_command). home withdraws the needle along the pipette and takes it
-  /// back to where it was enabled, also without a trusted force, then pauses: the way out when the needle is held.
+  /// enable, disable, pause, resume, home (CRTK state_command). home withdraws the needle along the pipette and takes
+  /// it back to where it was enabled, also without a trusted force, then pauses: the way out when the needle is held.
   /// Empty when obeyed, otherwise the reason for the refusal; the state is then as before.
   std::string command(const std::string& command);
 
@@ -49,7 +49,7 @@ class InjectionController {
   std::optional<Eigen::Vector3d> step(const Input& input, double dt);
 
   OperatingState state() const { return state_; }
-  bool busy() const;  ///< moves of its own accord: homes or approaches
+  bool busy() const;                            ///< moves of its own accord: homes or approaches
   bool homed() const { return needle_known_; }  ///< axes are absolute: homed as soon as the needle's pose is known
   const std::string& heldBecause() const { return held_because_; }  ///< empty while the needle follows
   bool followsTarget() const { return state_ == OperatingState::kEnabled && held_because_.empty(); }
@@ -63,7 +63,7 @@ class InjectionController {
   InjectionControllerConfig config_;
   OperatingState state_ = OperatingState::kDisabled;
   Approach approach_;
-  std::optional<Eigen::Vector3d> setpoint_;  ///< m; taken from the needle when it is enabled
+  std::optional<Eigen::Vector3d> setpoint_;         ///< m; taken from the needle when it is enabled
   Eigen::Vector3d home_ = Eigen::Vector3d::Zero();  ///< m, where the needle was enabled
   bool homing_ = false;
   bool needle_known_ = false;

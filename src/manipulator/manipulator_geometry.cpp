@@ -63,7 +63,8 @@ ManipulatorGeometry ManipulatorGeometry::fromUrdf(const std::string& xml) {
     geometry.axes[axis++] = toAxis(*joint);
   }
   if (axis != 3) throw ConfigError("URDF: between world and needle_tip must be three prismatic joints");
-  if (std::abs(geometry.directions.determinant()) < 1e-3) throw ConfigError("URDF: the three axes must not lie in a plane");
+  if (std::abs(geometry.directions.determinant()) < 1e-3)
+    throw ConfigError("URDF: the three axes must not lie in a plane");
   geometry.tip_at_zero = pose;
   return geometry;
 }

@@ -16,8 +16,8 @@ struct ManipulatorGeometry {
   };
 
   std::array<Axis, 3> axes;
-  Eigen::Matrix3d directions;       ///< columns: unit vectors of the axes in `world`
-  Eigen::Isometry3d tip_at_zero;    ///< pose of `needle_tip` in `world` with all joints at 0
+  Eigen::Matrix3d directions;     ///< columns: unit vectors of the axes in `world`
+  Eigen::Isometry3d tip_at_zero;  ///< pose of `needle_tip` in `world` with all joints at 0
 
   /// Reads the chain from link `world` to link `needle_tip`: exactly three prismatic joints, the others fixed.
   /// @throws ConfigError when the text is no URDF, or the chain or its limits are not as said.

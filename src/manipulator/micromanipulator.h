@@ -9,8 +9,8 @@
 namespace microinjection {
 
 struct MicromanipulatorConfig {
-  double servo_time_constant = 2e-3;    ///< s, first-order lag of the tip behind its set-point
-  double acceleration = 0.02;           ///< m/s^2, of move_cp and servo_cv
+  double servo_time_constant = 2e-3;      ///< s, first-order lag of the tip behind its set-point
+  double acceleration = 0.02;             ///< m/s^2, of move_cp and servo_cv
   double velocity_command_timeout = 0.1;  ///< s, a servo_cv older than this means stop
 
   static MicromanipulatorConfig read(ConfigReader& reader);
@@ -25,16 +25,16 @@ class Micromanipulator {
   Micromanipulator(const ManipulatorGeometry& geometry, const MicromanipulatorConfig& config);
 
   /// Each command returns an empty text when accepted, otherwise the reason for its refusal. `time` in s.
-  std::string servoPosition(const Eigen::Isometry3d& tip_pose);                   ///< CRTK servo_cp; m, `world`
-  std::string servoVelocity(const Eigen::Vector3d& velocity, double time);       ///< CRTK servo_cv; m/s, `world`
-  std::string movePosition(const Eigen::Isometry3d& tip_pose);                    ///< CRTK move_cp; m, `world`
-  void stop();                                                                    ///< holds where the set-point is
+  std::string servoPosition(const Eigen::Isometry3d& tip_pose);             ///< CRTK servo_cp; m, `world`
+  std::string servoVelocity(const Eigen::Vector3d& velocity, double time);  ///< CRTK servo_cv; m/s, `world`
+  std::string movePosition(const Eigen::Isometry3d& tip_pose);              ///< CRTK move_cp; m, `world`
+  void stop();                                                              ///< holds where the set-point is
 
   /// Advances by dt (s, > 0) to `time` (s).
   void step(double time, double dt);
 
-  Eigen::Isometry3d tipPose() const;               ///< `needle_tip` in `world`
-  Eigen::Vector3d tipVelocity() const;             ///< m/s, `world`
+  Eigen::Isometry3d tipPose() const;                         ///< `needle_tip` in `world`
+  Eigen::Vector3d tipVelocity() const;                       ///< m/s, `world`
   const Eigen::Vector3d& joints() const { return joints_; }  ///< m
   bool moving() const { return mode_ != Mode::kHold; }       ///< a move or a velocity command is under way
 

@@ -7,8 +7,8 @@
 
 namespace microinjection {
 
-/// A thread that does nothing but sleep for a millisecond at a time and notes how long it slept: what this machine allows
-/// any 1 kHz loop, measured in the same run as what is compared with it.
+/// A thread that does nothing but sleep for a millisecond at a time and notes how long it slept: what this machine
+/// allows any 1 kHz loop, measured in the same run as what is compared with it.
 class BareTimerLoop {
  public:
   BareTimerLoop();

@@ -24,7 +24,8 @@ std::vector<std::uint32_t> onSurface(const SurfaceMesh& surface, const std::vect
   std::vector<std::uint32_t> result;
   for (const int vertex : mesh_vertices) {
     const auto found = std::lower_bound(surface.mesh_vertices.begin(), surface.mesh_vertices.end(), vertex);
-    if (found != surface.mesh_vertices.end() && *found == vertex) result.push_back(found - surface.mesh_vertices.begin());
+    if (found != surface.mesh_vertices.end() && *found == vertex)
+      result.push_back(found - surface.mesh_vertices.begin());
   }
   return result;
 }
@@ -52,7 +53,8 @@ CellSimulatorNode::Parameters CellSimulatorNode::Parameters::read(const ros::Nod
 CellSimulatorNode::CellSimulatorNode(ros::NodeHandle node, ros::NodeHandle private_node)
     : parameters_(Parameters::read(private_node)),
       cycle_(node, parameters_.rate),
-      needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", Phase::kSameTick, parameters_.needle_timeout)),
+      needle_(
+          cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", Phase::kSameTick, parameters_.needle_timeout)),
       force_(cycle_.output<geometry_msgs::WrenchStamped>("cell/predicted_cf")),
       state_(cycle_.output<cell_microinjection::CellState>("cell/state", true)) {
   const Scene scene = loadScene(parameters_.scene);
@@ -141,7 +143,10 @@ void CellSimulatorNode::publishState(const ros::Time& now, const TipForce& force
 void CellSimulatorNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   const bool good = untrusted_.empty();
   status.summary(good ? diagnostic_msgs::DiagnosticStatus::OK : diagnostic_msgs::DiagnosticStatus::WARN,
-                 good ? (tracker_->punctured() ? "punctured" : tracker_->contact() ? "in contact" : "free") : untrusted_);
+                 good ? (tracker_->punctured() ? "punctured"
+                         : tracker_->contact() ? "in contact"
+                                               : "free")
+                      : untrusted_);
   if (const auto& solution = tracker_->solution()) {
     status.add("Newton iterations", solution->indentation.newton_iterations);
     status.add("solution time (s of CPU)", solution->indentation.cpu_time);

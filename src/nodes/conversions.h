@@ -20,8 +20,8 @@ std::optional<Eigen::Isometry3d> trustedPose(const geometry_msgs::PoseStamped* m
 /// As trustedPose, the position alone (m) and without looking at the orientation, in `frame`.
 std::optional<Eigen::Vector3d> trustedPosition(const geometry_msgs::PoseStamped* message, const std::string& frame);
 
-/// A force (N) in `world`, from a message in `world` (or without frame) or in `needle_tip`, whose orientation in world is
-/// `tip`. Empty when the message is null, in another frame or not finite.
+/// A force (N) in `world`, from a message in `world` (or without frame) or in `needle_tip`, whose orientation in world
+/// is `tip`. Empty when the message is null, in another frame or not finite.
 std::optional<Eigen::Vector3d> trustedForce(const geometry_msgs::WrenchStamped* message, const Eigen::Matrix3d& tip);
 
 /// A force (N) in the message's own frame, whichever that is: for the haptic device, whose frame only its driver knows.

@@ -7,8 +7,9 @@
 namespace microinjection {
 
 Cycle::Cycle(const ros::NodeHandle& node, double rate)
-    : period_(1 / rate), lockstep_(takesPartInLockstep()), node_(node), diagnostics_(rate) {
+    : period_(1 / rate), lockstep_(takesPartInLockstep()), node_(node), sampled_node_(node), diagnostics_(rate) {
   node_.setCallbackQueue(&queue_);
+  sampled_node_.setCallbackQueue(&sampled_queue_);
 }
 
 void Cycle::run(const std::function<void(const Tick&)>& step) {
@@ -21,6 +22,7 @@ void Cycle::run(const std::function<void(const Tick&)>& step) {
 }
 
 void Cycle::step(const ros::Time& now) {
+  sampled_queue_.callAvailable();
   const double dt = last_step_.isZero() ? period_ : (now - last_step_).toSec();
   if (dt <= 0) return;  // a simulated clock that stands still
   diagnostics_.beginStep();
@@ -39,7 +41,8 @@ void Cycle::runLive() {
     const ros::SteadyTime now = ros::SteadyTime::now();
     if (!triggered_ && now < deadline) continue;
     // An input that is late by half a period is not waited for.
-    deadline = driven ? now + ros::WallDuration((triggered_ ? 1.5 : 1.0) * period_) : deadline + ros::WallDuration(period_);
+    deadline =
+        driven ? now + ros::WallDuration((triggered_ ? 1.5 : 1.0) * period_) : deadline + ros::WallDuration(period_);
     if ((now - deadline).toSec() > 10 * period_) deadline = now;  // after a stall: do not catch up
     triggered_ = false;
     step(ros::Time::now());

@@ -37,8 +37,8 @@ class Cycle {
   template <typename Message>
   Output<Message>& output(const std::string& topic, bool latch = false);
 
-  /// A node handle whose callbacks run in this thread between steps, for topics outside of the lock step.
-  ros::NodeHandle& node() { return node_; }
+  /// A node handle whose callbacks run in this thread right before a step, for topics outside of the lock step.
+  ros::NodeHandle& node() { return sampled_node_; }
   CycleDiagnostics& diagnostics() { return diagnostics_; }
   bool lockstep() const { return lockstep_; }
   double period() const { return period_; }  ///< s
@@ -58,17 +58,19 @@ class Cycle {
   double period_;
   bool stopped_ = false;
   bool lockstep_ = false;
-  ros::CallbackQueue queue_;
+  ros::CallbackQueue queue_;          // what the node wakes up for
+  ros::CallbackQueue sampled_queue_;  // what it looks at before a step: waking up for it would cost more than the step
   ros::NodeHandle node_;
+  ros::NodeHandle sampled_node_;
   CycleDiagnostics diagnostics_;
   std::function<void(const Tick&)> step_;
   std::vector<std::unique_ptr<InputPort>> inputs_;
   std::vector<std::unique_ptr<OutputPort>> outputs_;
   std::vector<ros::Subscriber> subscribers_;
   ros::Time last_step_;
-  bool triggered_ = false;         // live: a kSameTick input has come
-  ros::Time tick_;                 // lock step: the clock's newest
-  ros::Time stepped_tick_;         // lock step: the last one answered
+  bool triggered_ = false;  // live: a kSameTick input has come
+  ros::Time tick_;          // lock step: the clock's newest
+  ros::Time stepped_tick_;  // lock step: the last one answered
   ros::Publisher acknowledgement_;
 };
 
@@ -86,13 +88,15 @@ Input<Message>& Cycle::input(const std::string& topic, Phase phase, double timeo
         topic + kSilentSuffix, 10, [&port](const std_msgs::HeaderConstPtr& header) { port.queueSilence(*header); }, {},
         hints));
   } else {
-    subscribers_.push_back(node_.subscribe<Message>(
-        topic, 10,
-        [this, &port](const boost::shared_ptr<const Message>& message) {
-          port.receive(message);
-          triggered_ = triggered_ || port.phase == Phase::kSameTick;
-        },
-        {}, hints));
+    const bool trigger = phase == Phase::kSameTick;
+    subscribers_.push_back((trigger ? node_ : sampled_node_)
+                               .subscribe<Message>(
+                                   topic, 10,
+                                   [this, &port, trigger](const boost::shared_ptr<const Message>& message) {
+                                     port.receive(message);
+                                     triggered_ = triggered_ || trigger;
+                                   },
+                                   {}, hints));
   }
   return port;
 }

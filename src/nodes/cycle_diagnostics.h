@@ -41,9 +41,9 @@ class CycleDiagnostics {
   ros::Time now_;
   ros::Time reported_;
   ros::SteadyTime step_began_;
-  unsigned steps_ = 0;        ///< since reported_
-  double step_time_ = 0;      ///< s of wall time, sum since reported_
-  double longest_step_ = 0;   ///< s of wall time, since reported_
+  unsigned steps_ = 0;           ///< since reported_
+  double step_time_ = 0;         ///< s of wall time, sum since reported_
+  double longest_step_ = 0;      ///< s of wall time, since reported_
   std::uint64_t all_steps_ = 0;  ///< since the start
   ros::Time began_;
   IntervalHistogram intervals_;  ///< of wall time between steps, since the start

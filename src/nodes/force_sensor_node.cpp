@@ -24,8 +24,10 @@ ForceSensorNode::ForceSensorNode(ros::NodeHandle node, ros::NodeHandle private_n
     : parameters_(Parameters::read(private_node)),
       model_(parameters_.model),
       cycle_(node, parameters_.rate),
-      force_(cycle_.input<geometry_msgs::WrenchStamped>("cell/predicted_cf", Phase::kSameTick, parameters_.input_timeout)),
-      needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", Phase::kTickBefore, parameters_.input_timeout)),
+      force_(
+          cycle_.input<geometry_msgs::WrenchStamped>("cell/predicted_cf", Phase::kSameTick, parameters_.input_timeout)),
+      needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", Phase::kTickBefore,
+                                                       parameters_.input_timeout)),
       measured_(cycle_.output<geometry_msgs::WrenchStamped>("force_sensor/measured_cf")) {
   cycle_.diagnostics().add("sensor", [this](auto& status) { report(status); });
 }
@@ -52,7 +54,9 @@ void ForceSensorNode::step(const Cycle::Tick& tick) {
 void ForceSensorNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) const {
   const bool good = untrusted_.empty() && !model_.saturated();
   status.summary(good ? diagnostic_msgs::DiagnosticStatus::OK : diagnostic_msgs::DiagnosticStatus::WARN,
-                 good ? "measures" : untrusted_.empty() ? "saturated" : untrusted_);
+                 good                 ? "measures"
+                 : untrusted_.empty() ? "saturated"
+                                      : untrusted_);
 }
 
 }  // namespace microinjection

@@ -4,6 +4,7 @@
 
 #include "nodes/conversions.h"
 #include "nodes/force_topic.h"
+#include "nodes/latency_meter.h"
 #include "nodes/node_parameters.h"
 
 namespace microinjection {
@@ -30,10 +31,12 @@ HapticBridgeNode::HapticBridgeNode(ros::NodeHandle node, ros::NodeHandle private
     : parameters_(Parameters::read(private_node)),
       model_(parameters_.model),
       cycle_(node, parameters_.rate),
-      hand_(cycle_.input<geometry_msgs::PoseStamped>("haptic/measured_cp", Phase::kSameTick, parameters_.input_timeout)),
-      clutch_(cycle_.input<sensor_msgs::Joy>("haptic/clutch", Phase::kTickBefore,
-                                             std::numeric_limits<double>::infinity())),
-      needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", Phase::kTickBefore, parameters_.input_timeout)),
+      hand_(
+          cycle_.input<geometry_msgs::PoseStamped>("haptic/measured_cp", Phase::kSameTick, parameters_.input_timeout)),
+      clutch_(
+          cycle_.input<sensor_msgs::Joy>("haptic/clutch", Phase::kTickBefore, std::numeric_limits<double>::infinity())),
+      needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", Phase::kTickBefore,
+                                                       parameters_.input_timeout)),
       force_(cycle_.input<geometry_msgs::WrenchStamped>(forceTopic(parameters_.force_source), Phase::kTickBefore,
                                                         parameters_.input_timeout)),
       hand_force_(cycle_.output<geometry_msgs::WrenchStamped>("haptic/servo_cf")),
@@ -71,6 +74,7 @@ void HapticBridgeNode::step(const Cycle::Tick& tick) {
     return;
   }
   target_.publish(toPose(*output.needle, hand->header.stamp, kWorldFrame));
+  if (!isTraced(force->header.stamp)) return;
   cell_microinjection::LatencyTrace trace;
   trace.header.stamp = tick.now;
   trace.origin = force->header.stamp;

@@ -31,7 +31,8 @@ InjectionControllerNode::InjectionControllerNode(ros::NodeHandle node, ros::Node
     : parameters_(Parameters::read(private_node)),
       model_(parameters_.model),
       cycle_(node, parameters_.rate),
-      needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", Phase::kTickBefore, parameters_.input_timeout)),
+      needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", Phase::kTickBefore,
+                                                       parameters_.input_timeout)),
       force_(cycle_.input<geometry_msgs::WrenchStamped>(forceTopic(parameters_.force_source), Phase::kTickBefore,
                                                         parameters_.input_timeout)),
       setpoint_(cycle_.output<geometry_msgs::PoseStamped>("needle/servo_cp")) {
@@ -91,8 +92,9 @@ void InjectionControllerNode::publishState(const ros::Time& now) {
 void InjectionControllerNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) const {
   const bool fault = model_.state() == OperatingState::kFault;
   const bool good = model_.heldBecause().empty();
-  status.summary(fault ? diagnostic_msgs::DiagnosticStatus::ERROR
-                       : good ? diagnostic_msgs::DiagnosticStatus::OK : diagnostic_msgs::DiagnosticStatus::WARN,
+  status.summary(fault  ? diagnostic_msgs::DiagnosticStatus::ERROR
+                 : good ? diagnostic_msgs::DiagnosticStatus::OK
+                        : diagnostic_msgs::DiagnosticStatus::WARN,
                  good ? "the needle follows" : "needle held: " + model_.heldBecause());
   status.add("state", toText(model_.state()));
 }

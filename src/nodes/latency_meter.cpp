@@ -3,7 +3,7 @@
 namespace microinjection {
 namespace {
 
-constexpr std::size_t kRemembered = 2000;  // needle poses, two seconds of them
+constexpr std::size_t kRemembered = 200;  // traced needle poses, two seconds of them
 
 }  // namespace
 

@@ -31,9 +31,9 @@ class LockstepClockNode {
   void waitForAll();
   void pace(const ros::SteadyTime& began) const;
 
-  double step_ = 1e-3;            ///< s
-  double real_time_factor_ = 0;   ///< 0: as fast as it goes
-  double warn_after_ = 5;         ///< s of wall time
+  double step_ = 1e-3;           ///< s
+  double real_time_factor_ = 0;  ///< 0: as fast as it goes
+  double warn_after_ = 5;        ///< s of wall time
   std::set<std::string> participants_;
   std::set<std::string> missing_;  ///< those that have not answered the present tick
   ros::Time tick_;

@@ -4,6 +4,7 @@
 
 #include "base/errors.h"
 #include "nodes/conversions.h"
+#include "nodes/latency_meter.h"
 #include "nodes/node_parameters.h"
 
 namespace microinjection {
@@ -21,7 +22,8 @@ ManipulatorGeometry geometryFromParameter() {
 
 const char* const MicromanipulatorNode::kHelp =
     "micromanipulator: a simulated three-axis micromanipulator with CRTK topics below /needle.\n"
-    "In: /needle/servo_cp /needle/servo_cv /needle/move_cp. Out: /needle/measured_cp /needle/measured_cv joint_states.\n"
+    "In: /needle/servo_cp /needle/servo_cv /needle/move_cp. Out: /needle/measured_cp /needle/measured_cv "
+    "joint_states.\n"
     "Parameters: /robot_description, ~rate (Hz), ~joint_states_rate (Hz), ~servo_time_constant (s),\n"
     "~acceleration (m/s^2), ~velocity_command_timeout (s); see config/micromanipulator.yaml.\n";
 
@@ -75,6 +77,7 @@ void MicromanipulatorNode::obeyServo(const Cycle::Tick& tick) {
   if (!message) return;
   const auto pose = trustedPose(message.get());
   judge("servo_cp", pose ? model_.servoPosition(*pose) : "not a finite pose in world");
+  if (!isTraced(tick.now)) return;
   cell_microinjection::LatencyTrace trace;
   trace.header.stamp = tick.now;
   trace.origin = message->header.stamp;

@@ -13,8 +13,8 @@
 
 namespace microinjection {
 
-/// The simulated micromanipulator behind the topics of a real one. A refused command leaves the needle where it was; the
-/// reason is logged and shown on the diagnostics.
+/// The simulated micromanipulator behind the topics of a real one. A refused command leaves the needle where it was;
+/// the reason is logged and shown on the diagnostics.
 ///
 /// In:  /needle/servo_cp (PoseStamped), /needle/servo_cv (TwistStamped), /needle/move_cp (PoseStamped), in `world`
 /// Out: /needle/measured_cp (PoseStamped), /needle/measured_cv (TwistStamped), both at the tip in `world`;

@@ -22,10 +22,14 @@ std::string shortest(double value) {
 
 YAML::Node toYaml(XmlRpc::XmlRpcValue& value) {
   switch (value.getType()) {
-    case XmlRpc::XmlRpcValue::TypeBoolean: return YAML::Node(static_cast<bool>(value));
-    case XmlRpc::XmlRpcValue::TypeInt: return YAML::Node(std::to_string(static_cast<int>(value)));
-    case XmlRpc::XmlRpcValue::TypeDouble: return YAML::Node(shortest(static_cast<double>(value)));
-    case XmlRpc::XmlRpcValue::TypeString: return YAML::Node(static_cast<std::string>(value));
+    case XmlRpc::XmlRpcValue::TypeBoolean:
+      return YAML::Node(static_cast<bool>(value));
+    case XmlRpc::XmlRpcValue::TypeInt:
+      return YAML::Node(std::to_string(static_cast<int>(value)));
+    case XmlRpc::XmlRpcValue::TypeDouble:
+      return YAML::Node(shortest(static_cast<double>(value)));
+    case XmlRpc::XmlRpcValue::TypeString:
+      return YAML::Node(static_cast<std::string>(value));
     case XmlRpc::XmlRpcValue::TypeArray: {
       YAML::Node list(YAML::NodeType::Sequence);
       for (int i = 0; i < value.size(); ++i) list.push_back(toYaml(value[i]));
@@ -36,7 +40,8 @@ YAML::Node toYaml(XmlRpc::XmlRpcValue& value) {
       for (auto& item : value) map[item.first] = toYaml(item.second);
       return map;
     }
-    default: return YAML::Node(YAML::NodeType::Null);
+    default:
+      return YAML::Node(YAML::NodeType::Null);
   }
 }
 

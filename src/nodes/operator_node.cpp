@@ -36,7 +36,8 @@ OperatorNode::OperatorNode(ros::NodeHandle node, ros::NodeHandle private_node)
       motion_(HandMotion::load(parameters_.motion)),
       hand_(parameters_.hand, motion_.at(0).position),
       cycle_(node, parameters_.rate),
-      force_(cycle_.input<geometry_msgs::WrenchStamped>("haptic/servo_cf", Phase::kTickBefore, parameters_.force_timeout)),
+      force_(
+          cycle_.input<geometry_msgs::WrenchStamped>("haptic/servo_cf", Phase::kTickBefore, parameters_.force_timeout)),
       position_(cycle_.output<geometry_msgs::PoseStamped>("haptic/measured_cp")),
       clutch_(cycle_.output<sensor_msgs::Joy>("haptic/clutch", true)),
       phase_(cycle_.output<cell_microinjection::StringStamped>("operator/phase", true)) {}

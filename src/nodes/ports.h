@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -43,7 +44,8 @@ class InputPort {
   ros::Time received;    ///< of the last message
 };
 
-/// The newest message of a topic, for one thread. A message with stamp 0 is invalid (CRTK) and withdraws the one before.
+/// The newest message of a topic, for one thread. A message with stamp 0 is invalid (CRTK) and withdraws the one
+/// before.
 template <typename Message>
 class Input : public InputPort {
  public:
@@ -62,18 +64,26 @@ class Input : public InputPort {
       silence_.pop_front();
     }
     while (!waiting_.empty() && waiting_.front()->header.stamp <= stamp) {
+      if (on_message) on_message(*waiting_.front(), now);
       accept(waiting_.front(), now);
       waiting_.pop_front();
     }
   }
 
   /// Live.
-  void receive(const Pointer& message) { accept(message->header.stamp.isZero() ? nullptr : message, ros::Time::now()); }
+  void receive(const Pointer& message) {
+    const ros::Time now = ros::Time::now();
+    if (on_message) on_message(*message, now);
+    accept(message->header.stamp.isZero() ? nullptr : message, now);
+  }
   /// Lock step; see kSilentSuffix.
   void queue(const Pointer& message) {
     if (!message->header.stamp.isZero()) waiting_.push_back(message);
   }
   void queueSilence(const std_msgs::Header& header) { silence_.push_back(header); }
+
+  /// Sees every message, also those that a newer one replaces before the next step.
+  std::function<void(const Message&, const ros::Time& now)> on_message;
 
   bool valid() const override { return newest_ != nullptr; }
   /// The newest message if fresh(now), else null.

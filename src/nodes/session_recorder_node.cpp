@@ -1,9 +1,12 @@
 #include "nodes/session_recorder_node.h"
 
+#include <tf2_msgs/TFMessage.h>
+
 #include <cstdlib>
 #include <limits>
 
 #include "base/atomic_file.h"
+#include "cell_microinjection/OperatingState.h"
 #include "nodes/conversions.h"
 #include "nodes/node_parameters.h"
 
@@ -27,8 +30,8 @@ void writeIntervals(std::ostream& out, const std::string& name, const IntervalHi
 }  // namespace
 
 const char* const SessionRecorderNode::kHelp =
-    "session_recorder: writes force_depth.csv and summary.yaml of a session when it ends.\n"
-    "Parameters: ~output_dir (required), ~row_period (s), ~hand (record a hand),\n~end_when_done.\n";
+    "session_recorder: writes force_depth.csv, summary.yaml and session.bag of a session when it ends.\n"
+    "Parameters: ~output_dir (required), ~row_period (s), ~hand (record a hand), ~bag,\n~end_when_done.\n";
 
 SessionRecorderNode::Parameters SessionRecorderNode::Parameters::read(const ros::NodeHandle& private_node) {
   Parameters parameters;
@@ -36,6 +39,7 @@ SessionRecorderNode::Parameters SessionRecorderNode::Parameters::read(const ros:
   reader.text("output_dir", parameters.output_dir, ConfigReader::kRequired);
   reader.number("row_period", parameters.row_period, Range::positive());
   reader.boolean("hand", parameters.hand);
+  reader.boolean("bag", parameters.bag);
   reader.boolean("end_when_done", parameters.end_when_done);
   reader.finish();
   return parameters;
@@ -47,21 +51,46 @@ SessionRecorderNode::SessionRecorderNode(ros::NodeHandle node, ros::NodeHandle p
       predicted_(cycle_.input<geometry_msgs::WrenchStamped>("cell/predicted_cf", Phase::kSameTick, 0.05)),
       needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", Phase::kTickBefore, 0.05)),
       measured_(cycle_.input<geometry_msgs::WrenchStamped>("force_sensor/measured_cf", Phase::kTickBefore, 0.05)),
-      cell_(cycle_.input<cell_microinjection::CellState>("cell/state", Phase::kTickBefore, kForever)) {
+      cell_(cycle_.input<cell_microinjection::CellState>("cell/state", Phase::kTickBefore, kForever)),
+      setpoint_(cycle_.input<geometry_msgs::PoseStamped>("needle/servo_cp", Phase::kTickBefore, kForever)) {
   if (parameters_.hand) {
+    hand_ = &cycle_.input<geometry_msgs::PoseStamped>("haptic/measured_cp", Phase::kTickBefore, kForever);
+    clutch_ = &cycle_.input<sensor_msgs::Joy>("haptic/clutch", Phase::kTickBefore, kForever);
     hand_force_ = &cycle_.input<geometry_msgs::WrenchStamped>("haptic/servo_cf", Phase::kTickBefore, 0.05);
     phase_ = &cycle_.input<cell_microinjection::StringStamped>("operator/phase", Phase::kTickBefore, kForever);
   }
   diagnostics_ = cycle_.node().subscribe("/diagnostics", 100, &SessionRecorderNode::onDiagnostics, this);
   rows_.precision(9);
-  rows_ << "time_s,phase,depth_m,predicted_axial_N,measured_axial_N,measured_lateral_N,hand_force_N,in_contact,punctured\n";
+  rows_ << "time_s,phase,depth_m,predicted_axial_N,measured_axial_N,measured_lateral_N,hand_force_N,in_contact,"
+           "punctured\n";
+  if (parameters_.bag) recordBag();
   if (cycle_.lockstep()) return;
   latency_ = std::make_unique<LatencyMeter>(cycle_.node());
   timer_loop_ = std::make_unique<BareTimerLoop>();
 }
 
+void SessionRecorderNode::recordBag() {
+  bag_ = std::make_unique<SessionBag>(parameters_.output_dir + "/session.bag");
+  bag_->follow(needle_);
+  bag_->follow(setpoint_);
+  bag_->follow(predicted_);
+  bag_->follow(measured_);
+  bag_->follow(cell_);
+  if (parameters_.hand) {
+    bag_->follow(*hand_);
+    bag_->follow(*clutch_);
+    bag_->follow(*hand_force_);
+    bag_->follow(*phase_);
+  }
+  bag_->follow<tf2_msgs::TFMessage>(cycle_.node(), "/tf");
+  bag_->follow<tf2_msgs::TFMessage>(cycle_.node(), "/tf_static");
+  bag_->follow<diagnostic_msgs::DiagnosticArray>(cycle_.node(), "/diagnostics");
+  bag_->follow<cell_microinjection::OperatingState>(cycle_.node(), "/controller/operating_state");
+}
+
 void SessionRecorderNode::run() {
   cycle_.run([this](const Cycle::Tick& tick) { step(tick); });
+  if (bag_) bag_->close();
   writeFileAtomically(parameters_.output_dir + "/force_depth.csv", rows_.str());
   writeFileAtomically(parameters_.output_dir + "/summary.yaml", summary());
 }

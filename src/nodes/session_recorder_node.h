@@ -4,6 +4,7 @@
 #include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/WrenchStamped.h>
 #include <ros/ros.h>
+#include <sensor_msgs/Joy.h>
 
 #include <Eigen/Core>
 #include <map>
@@ -17,14 +18,17 @@
 #include "nodes/bare_timer_loop.h"
 #include "nodes/cycle.h"
 #include "nodes/latency_meter.h"
+#include "nodes/session_bag.h"
 
 namespace microinjection {
 
-/// Writes what a session did: force_depth.csv (one row a `row_period`), summary.yaml (rates of every node and, live, the
-/// latency from hand to force beside a bare timer loop). Both files are written whole at the end of the session.
+/// Writes what a session did: force_depth.csv (one row a `row_period`), summary.yaml (rates of every node and, live,
+/// the latency from hand to force beside a bare timer loop), session.bag. All are there, whole, at the end of the
+/// session.
 ///
-/// In: /needle/measured_cp, /cell/predicted_cf, /force_sensor/measured_cf, /haptic/servo_cf, /cell/state,
-///     /operator/phase, /needle/setpoint_trace, /haptic/force_trace, /diagnostics
+/// In: /needle/measured_cp, /needle/servo_cp, /cell/predicted_cf, /force_sensor/measured_cf, /cell/state, with a hand
+///     /haptic/measured_cp, /haptic/servo_cf, /haptic/clutch, /operator/phase; /needle/setpoint_trace,
+///     /haptic/force_trace; /diagnostics, /tf, /tf_static, /controller/operating_state
 ///
 /// Depth is the travel of the tip along the pipette since the predicted force last rose from zero; empty before.
 ///
@@ -32,6 +36,7 @@ namespace microinjection {
 ///   output_dir  path, made when absent; required
 ///   row_period  s; default 0.005, in (0, inf)
 ///   hand        whether there is a haptic bridge to record; default true
+///   bag         write session.bag too; default true
 ///   end_when_done  write the files and end this node when the operator's phase is done; default false
 class SessionRecorderNode {
  public:
@@ -45,6 +50,7 @@ class SessionRecorderNode {
     std::string output_dir;
     double row_period = 0.005;
     bool hand = true;
+    bool bag = true;
     bool end_when_done = false;
     static Parameters read(const ros::NodeHandle& private_node);
   };
@@ -54,6 +60,7 @@ class SessionRecorderNode {
 
   void step(const Cycle::Tick& tick);
   void followContact(const Eigen::Vector3d& tip, bool in_contact);
+  void recordBag();
   void writeRow(const ros::Time& now);
   void onDiagnostics(const diagnostic_msgs::DiagnosticArrayConstPtr& message);
   std::string summary() const;
@@ -64,9 +71,13 @@ class SessionRecorderNode {
   Input<geometry_msgs::PoseStamped>& needle_;
   Input<geometry_msgs::WrenchStamped>& measured_;
   Input<cell_microinjection::CellState>& cell_;
-  Input<geometry_msgs::WrenchStamped>* hand_force_ = nullptr;      ///< null without a hand
+  Input<geometry_msgs::PoseStamped>& setpoint_;
+  Input<geometry_msgs::PoseStamped>* hand_ = nullptr;           ///< null without a hand
+  Input<sensor_msgs::Joy>* clutch_ = nullptr;                   ///< null without a hand
+  Input<geometry_msgs::WrenchStamped>* hand_force_ = nullptr;   ///< null without a hand
   Input<cell_microinjection::StringStamped>* phase_ = nullptr;  ///< null without a hand
   ros::Subscriber diagnostics_;
+  std::unique_ptr<SessionBag> bag_;            ///< null without a bag
   std::unique_ptr<LatencyMeter> latency_;      ///< null in lock step, where wall time means nothing
   std::unique_ptr<BareTimerLoop> timer_loop_;  ///< null in lock step
 

@@ -10,15 +10,15 @@ namespace microinjection {
 
 /// Defaults are illustrative figures of a two-axis capacitive MEMS cellular force sensor (after Sun and Nelson).
 struct ForceSensorConfig {
-  double axial_range = 490e-6;        ///< N, along the pipette
-  double lateral_range = 900e-6;      ///< N, across the pipette
-  double axial_noise = 10e-9;         ///< N rms at the sample rate
-  double lateral_noise = 240e-9;      ///< N rms at the sample rate
-  double natural_frequency = 1500;    ///< Hz, of the second-order response
-  double damping_ratio = 0.7;         ///< 1
-  double cross_axis = 0.02;           ///< 1, share of each axis that shows on the other
-  int bits = 16;                      ///< of the converter
-  int seed = 1;                       ///< of the noise
+  double axial_range = 490e-6;      ///< N, along the pipette
+  double lateral_range = 900e-6;    ///< N, across the pipette
+  double axial_noise = 10e-9;       ///< N rms at the sample rate
+  double lateral_noise = 240e-9;    ///< N rms at the sample rate
+  double natural_frequency = 1500;  ///< Hz, of the second-order response
+  double damping_ratio = 0.7;       ///< 1
+  double cross_axis = 0.02;         ///< 1, share of each axis that shows on the other
+  int bits = 16;                    ///< of the converter
+  int seed = 1;                     ///< of the noise
 
   static ForceSensorConfig read(ConfigReader& reader);
 };

@@ -10,10 +10,10 @@ namespace microinjection {
 class HandMotion {
  public:
   struct Sample {
-    double time = 0;                                       ///< s, from the start of the motion
-    Eigen::Vector3d position = Eigen::Vector3d::Zero();    ///< m, haptic device
-    bool clutch = false;                                   ///< pressed
-    std::string phase;                                     ///< for people: approach, touch, indent, ...
+    double time = 0;                                     ///< s, from the start of the motion
+    Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m, haptic device
+    bool clutch = false;                                 ///< pressed
+    std::string phase;                                   ///< for people: approach, touch, indent, ...
   };
 
   /// Reads `time_s,x_m,y_m,z_m,clutch,phase` with a header line; lines that begin with # are comments.

@@ -31,9 +31,9 @@ class HapticBridge {
     bool clutch = false;                    ///< pressed
   };
   struct Output {
-    std::optional<Eigen::Vector3d> needle;                  ///< m, where the tip shall go; empty: hold
-    Eigen::Vector3d hand_force = Eigen::Vector3d::Zero();   ///< N, at the hand
-    std::string held_because;                               ///< empty while the loop is closed
+    std::optional<Eigen::Vector3d> needle;                 ///< m, where the tip shall go; empty: hold
+    Eigen::Vector3d hand_force = Eigen::Vector3d::Zero();  ///< N, at the hand
+    std::string held_because;                              ///< empty while the loop is closed
   };
 
   explicit HapticBridge(const HapticBridgeConfig& config) : config_(config) {}
@@ -46,7 +46,7 @@ class HapticBridge {
 
   HapticBridgeConfig config_;
   bool engaged_ = false;
-  double ramp_ = 0;  ///< 0..1, share of the force that is rendered
+  double ramp_ = 0;                                           ///< 0..1, share of the force that is rendered
   Eigen::Vector3d hand_initial_ = Eigen::Vector3d::Zero();    ///< m
   Eigen::Vector3d needle_initial_ = Eigen::Vector3d::Zero();  ///< m
 };

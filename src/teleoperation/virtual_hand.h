@@ -20,7 +20,8 @@ struct VirtualHandConfig {
 ///     mass x'' = stiffness (x_meant - x) + damping (x_meant' - x') + force
 class VirtualHand {
  public:
-  VirtualHand(const VirtualHandConfig& config, const Eigen::Vector3d& start) : config_(config), position_(start), meant_(start) {}
+  VirtualHand(const VirtualHandConfig& config, const Eigen::Vector3d& start)
+      : config_(config), position_(start), meant_(start) {}
 
   /// Advances by dt (s) with the device's force (N) on the hand; returns the device's position (m).
   const Eigen::Vector3d& step(const Eigen::Vector3d& meant, const Eigen::Vector3d& force, double dt);

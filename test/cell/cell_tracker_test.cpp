@@ -45,7 +45,7 @@ class Driver {
   CellTracker tracker;
   Eigen::Vector3d tip{0, 0, 40e-6};
   TipForce force;
-  double smallest_push = 0;   ///< N along the axis, over the whole way
+  double smallest_push = 0;  ///< N along the axis, over the whole way
   bool always_trusted = true;
 
  private:

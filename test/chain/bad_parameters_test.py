@@ -4,6 +4,7 @@
 import pathlib
 import subprocess
 import sys
+import tempfile
 import unittest
 
 import rosnode
@@ -22,7 +23,7 @@ GOOD = {  # what each node cannot do without
     "injection_controller": {},
     "micromanipulator": {},
     "operator": {"motion": MOTION},
-    "session_recorder": {"output_dir": "/tmp/never_written"},
+    "session_recorder": {"output_dir": tempfile.gettempdir() + "/never_written", "bag": False},
 }
 BAD = [  # node, wrong parameters, what the message must say
     ("cell_simulator", {"scene": "/nowhere.yaml"}, ["/nowhere.yaml"]),

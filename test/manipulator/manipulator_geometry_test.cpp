@@ -19,7 +19,8 @@ std::string rigUrdf() {
 }
 
 /// A rig whose x axis is tilted by 30 degrees about y and whose tip hangs 1 mm below the last stage.
-std::string tiltedUrdf(const std::string& z_limit = R"(<limit lower="-1e-3" upper="2e-3" velocity="1e-3" effort="1"/>)") {
+std::string tiltedUrdf(
+    const std::string& z_limit = R"(<limit lower="-1e-3" upper="2e-3" velocity="1e-3" effort="1"/>)") {
   return R"(<robot name="r"><link name="world"/><link name="a"/><link name="b"/><link name="c"/><link name="needle_tip"/>
     <joint name="jx" type="prismatic"><parent link="world"/><child link="a"/><origin xyz="0.1 0 0" rpy="0 0.5235987755982988 0"/>
       <axis xyz="1 0 0"/><limit lower="-1e-3" upper="1e-3" velocity="1e-3" effort="1"/></joint>
@@ -64,11 +65,13 @@ TEST(ManipulatorGeometry, NamesTheAxisThatIsOutside) {
 
 TEST(ManipulatorGeometry, RefusesWhatIsNoThreeAxisRig) {
   EXPECT_THROW(ManipulatorGeometry::fromUrdf("not XML"), ConfigError);
-  EXPECT_THROW(ManipulatorGeometry::fromUrdf(tiltedUrdf(R"(<limit lower="1e-3" upper="2e-3" velocity="1" effort="1"/>)")),
-               ConfigError);
+  EXPECT_THROW(
+      ManipulatorGeometry::fromUrdf(tiltedUrdf(R"(<limit lower="1e-3" upper="2e-3" velocity="1" effort="1"/>)")),
+      ConfigError);
   const std::string missing = std::regex_replace(tiltedUrdf(), std::regex("needle_tip"), "tool");
   EXPECT_THROW(ManipulatorGeometry::fromUrdf(missing), ConfigError);
-  const std::string two_axes = std::regex_replace(tiltedUrdf(), std::regex("\"jy\" type=\"prismatic\""), "\"jy\" type=\"fixed\"");
+  const std::string two_axes =
+      std::regex_replace(tiltedUrdf(), std::regex("\"jy\" type=\"prismatic\""), "\"jy\" type=\"fixed\"");
   EXPECT_THROW(ManipulatorGeometry::fromUrdf(two_axes), ConfigError);
   const std::string flat = std::regex_replace(tiltedUrdf(), std::regex("axis xyz=\"0 1 0\""), "axis xyz=\"1 0 0\"");
   EXPECT_THROW(ManipulatorGeometry::fromUrdf(flat), ConfigError);

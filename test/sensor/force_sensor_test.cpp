@@ -24,7 +24,8 @@ TEST(ForceSensor, StepResponseIsThatOfTheSecondOrderSystem) {
   const double omega = 2 * M_PI * 50, zeta = 0.3, damped = omega * std::sqrt(1 - zeta * zeta);
   for (int i = 1; i <= 40; ++i) {
     const double t = i * kStep;
-    const double exact = 1 - std::exp(-zeta * omega * t) * (std::cos(damped * t) + zeta * omega / damped * std::sin(damped * t));
+    const double exact =
+        1 - std::exp(-zeta * omega * t) * (std::cos(damped * t) + zeta * omega / damped * std::sin(damped * t));
     EXPECT_NEAR(sensor.sample({1e-6, 0}, kStep)[0], 1e-6 * exact, 1e-11) << "at " << t;
   }
 }

@@ -27,8 +27,8 @@ std::string complaintAbout(const std::string& text) {
 constexpr char kHeader[] = "time_s,x_m,y_m,z_m,clutch,phase\n";
 
 TEST(HandMotion, InterpolatesPositionAndHoldsTheRest) {
-  const HandMotion motion = HandMotion::load(
-      fileWith(std::string("# comment\n") + kHeader + "0,0,0,0,0,approach\n1,0.1,0,-0.2,1,touch\n2,0.1,0,-0.2,0,hold\n"));
+  const HandMotion motion = HandMotion::load(fileWith(
+      std::string("# comment\n") + kHeader + "0,0,0,0,0,approach\n1,0.1,0,-0.2,1,touch\n2,0.1,0,-0.2,0,hold\n"));
   EXPECT_DOUBLE_EQ(motion.duration(), 2);
   const HandMotion::Sample half = motion.at(0.5);
   EXPECT_LT((half.position - Eigen::Vector3d(0.05, 0, -0.1)).norm(), 1e-15);
@@ -46,7 +46,8 @@ TEST(HandMotion, NamesFileLineAndValueOfWhatIsWrong) {
   EXPECT_NE(complaintAbout(std::string(kHeader) + "0,0,0,nan,0,a\n").find("\"nan\""), std::string::npos);
   EXPECT_NE(complaintAbout(std::string(kHeader) + "0,0,0,0,2,a\n").find("clutch = 2"), std::string::npos);
   EXPECT_NE(complaintAbout(std::string(kHeader) + "0,0,0,0,0\n").find("six cells"), std::string::npos);
-  EXPECT_NE(complaintAbout(std::string(kHeader) + "1,0,0,0,0,a\n1,0,0,0,0,a\n").find("must be later"), std::string::npos);
+  EXPECT_NE(complaintAbout(std::string(kHeader) + "1,0,0,0,0,a\n1,0,0,0,0,a\n").find("must be later"),
+            std::string::npos);
   EXPECT_NE(complaintAbout(std::string(kHeader) + "1,0,0,0,0,a\n").find("two samples"), std::string::npos);
   EXPECT_THROW(HandMotion::load("/nowhere/motion.csv"), ConfigError);
 }

@@ -25,8 +25,9 @@ TEST(VirtualHand, SwingsAsMassDamperAndSpringDo) {
   for (int i = 1; i <= 20000; ++i) {
     hand.step(Eigen::Vector3d::Zero(), {force, 0, 0}, dt);
     const double t = i * dt;
-    const double exact = force / config.stiffness *
-                         (1 - std::exp(-zeta * omega * t) * (std::cos(damped * t) + zeta * omega / damped * std::sin(damped * t)));
+    const double exact =
+        force / config.stiffness *
+        (1 - std::exp(-zeta * omega * t) * (std::cos(damped * t) + zeta * omega / damped * std::sin(damped * t)));
     ASSERT_NEAR(hand.position().x(), exact, 2e-3 * force / config.stiffness) << "at " << t;
   }
 }
