@@ -91,7 +91,7 @@ TipForce CellTracker::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& ax
   }
   contact_->displacement = tip - contact_->touched_at;
   contact_->indentation = -contact_->displacement.dot(axis);
-  const TipForce result = touchForce(time);
+  TipForce result = touchForce(time);
   const double push = result.force.dot(axis);
   if (contact_->indentation < 0 && (push <= 0 || !result.trusted)) {
     release();

@@ -70,7 +70,7 @@ std::vector<double> parseNumbers(const std::string& option, const std::string& t
 
 std::vector<double> parseDepths(const std::string& text) {
   const std::string wanted = "numbers >= 0 (m) separated by commas";
-  const std::vector<double> depths = parseNumbers("depths", text, wanted);
+  std::vector<double> depths = parseNumbers("depths", text, wanted);
   for (const double depth : depths) {
     if (depth < 0) throw ConfigError("--depths = " + text + ": each must be >= 0 (m)");
   }

@@ -66,6 +66,7 @@ std::string InjectionController::command(const std::string& command) {
     return "\"" + command + "\" is no command here; allowed: enable, disable, pause, resume, home";
   }
   homing_ = command == "home";
+  target_offset_.reset();
   return "";
 }
 
@@ -107,7 +108,10 @@ std::optional<Eigen::Vector3d> InjectionController::wanted(const Input& input, d
   if (!own && !trusted(input.target)) held_because_ = "no trusted target";
   if (!trusted(input.force)) held_because_ = "no trusted force";
   if (!held_because_.empty()) return std::nullopt;
-  return own ? approach_.step(input.axis, *input.force, dt) : input.target;
+  if (own) return approach_.step(input.axis, *input.force, dt);
+  // The hand may have gone anywhere while the needle was not enabled: the target counts from where it is now.
+  if (!target_offset_) target_offset_ = *setpoint_ - *input.target;
+  return *input.target + *target_offset_;
 }
 
 void InjectionController::goHome(const Eigen::Vector3d& axis, double dt) {

@@ -27,7 +27,8 @@ const char* toText(OperatingState state);
 /// Decides where the needle goes: takes the hand's target or its own approach, and lets through only what is safe.
 ///
 /// Without a trusted target, force or needle pose it holds the needle where its set-point is. When the needle does not
-/// follow it goes to FAULT, which only `disable` leaves. It moves the needle in no state but ENABLED.
+/// follow it goes to FAULT, which only `disable` leaves. It moves the needle in no state but ENABLED; targets count from
+/// where the needle was when it was enabled or resumed.
 class InjectionController {
  public:
   /// What the controller can trust now; empty: absent, stale or not finite.
@@ -64,6 +65,7 @@ class InjectionController {
   OperatingState state_ = OperatingState::kDisabled;
   Approach approach_;
   std::optional<Eigen::Vector3d> setpoint_;         ///< m; taken from the needle when it is enabled
+  std::optional<Eigen::Vector3d> target_offset_;    ///< m, added to targets; taken with the first one once enabled
   Eigen::Vector3d home_ = Eigen::Vector3d::Zero();  ///< m, where the needle was enabled
   bool homing_ = false;
   bool needle_known_ = false;

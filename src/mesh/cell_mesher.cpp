@@ -175,7 +175,7 @@ TetMesh collectMesh(const std::map<std::size_t, Eigen::Vector3d>& vertices, doub
   std::map<std::size_t, int> index;
   for (std::size_t tag : used) {
     index[tag] = static_cast<int>(mesh.vertices.size());
-    mesh.vertices.push_back(radius * vertices.at(tag));
+    mesh.vertices.emplace_back(radius * vertices.at(tag));
   }
   for (std::size_t t = 0; t < elements.size(); ++t) {
     std::array<int, 4> tetrahedron;

@@ -23,7 +23,7 @@ GOOD = {  # what each node cannot do without
     "injection_controller": {},
     "micromanipulator": {},
     "operator": {"motion": MOTION},
-    "session_recorder": {"output_dir": tempfile.gettempdir() + "/never_written", "bag": False},
+    "session_recorder": {"output_dir": tempfile.mkdtemp()},
 }
 BAD = [  # node, wrong parameters, what the message must say
     ("cell_simulator", {"scene": "/nowhere.yaml"}, ["/nowhere.yaml"]),

@@ -90,6 +90,19 @@ TEST_F(InjectionControllerTest, HoldsWithoutATrustedInput) {
   }
 }
 
+TEST_F(InjectionControllerTest, TargetsCountFromWhereTheNeedleWasEnabledOrResumed) {
+  controller_.command("enable");
+  input_.target = kStart + Eigen::Vector3d(0, 0, 40e-6);
+  EXPECT_EQ(*run(100), kStart);
+  controller_.command("pause");
+  *input_.target += Eigen::Vector3d(7e-6, 0, 0);
+  run(10);
+  controller_.command("resume");
+  EXPECT_EQ(*run(100), kStart);
+  *input_.target += Eigen::Vector3d(0, 0, -3e-6);
+  EXPECT_LT((*run(100) - kStart - Eigen::Vector3d(0, 0, -3e-6)).norm(), 1e-15);
+}
+
 TEST_F(InjectionControllerTest, DoesNotFollowATargetThatLeaps) {
   controller_.command("enable");
   run(1);
