@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <stdexcept>
 
 namespace microinjection {
@@ -35,6 +36,13 @@ void writeFileAtomically(const std::string& path, const std::string& content) {
   std::error_code error;
   if (!directory.empty()) std::filesystem::create_directories(directory, error);
   if (error) fail(path, error.message());
+
+  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)) {
+    // A device or a pipe is written to, not replaced.
+    std::ofstream out(path, std::ios::binary);
+    if (!out.write(content.data(), static_cast<std::streamsize>(content.size())).flush()) fail(path, "write failed");
+    return;
+  }
 
   std::string temporary = path + ".XXXXXX";
   const int file = ::mkstemp(temporary.data());

@@ -134,9 +134,14 @@ ConfigReader ConfigReader::section(const std::string& key, Presence presence) {
 
 void ConfigReader::finish() {
   for (const auto& level : *levels_) {
-    if (!level->map.IsMap()) continue;
+    if (!level->map.IsMap()) {
+      errors_->push_back(origin_ + ": " + level->path + " must be a map");
+      continue;
+    }
+    std::set<std::string> seen;
     for (const auto& item : level->map) {
       const std::string key = item.first.Scalar();
+      if (!seen.insert(key).second) errors_->push_back(origin_ + ": " + level->path + key + ": is there twice");
       if (level->known.count(key)) continue;
       std::string known;
       for (const std::string& name : level->known) known += (known.empty() ? "" : ", ") + name;

@@ -1,5 +1,6 @@
 #include "cell/cell_tracker.h"
 
+#include <exception>
 #include <sstream>
 
 namespace microinjection {
@@ -25,12 +26,20 @@ void CellTracker::ask(double time, const Eigen::Vector3d& displacement) {
 void CellTracker::collect(double time) {
   if (!asked_) return;
   std::shared_ptr<const CellSolution> solution;
-  if (!config_.fixed_period) {
-    solution = thread_.take();
-  } else if (time - asked_at_ >= config_.solution_period - 1e-9) {
-    solution = thread_.wait();
+  try {
+    if (!config_.fixed_period) {
+      solution = thread_.take();
+    } else if (time - asked_at_ >= config_.solution_period - 1e-9) {
+      solution = thread_.wait();
+    }
+  } catch (const std::exception& error) {  // a contact that the solver refuses, as on the held vertices
+    failure_ = error.what();
+    asked_ = false;
+    solution_.reset();
+    return;
   }
   if (!solution) return;
+  failure_.clear();
   asked_ = false;
   if (solution->patch.vertices != patch_.vertices) return;  // the needle has moved on to another place
   solution_ = std::move(solution);
@@ -55,11 +64,12 @@ TipForce CellTracker::distrustBecause(const std::string& reason) {
 
 void CellTracker::release() {
   contact_.reset();
-  patch_asked_ = false;  // prepares the contact afresh, from the undeformed cell
+  patch_asked_ = false;  // asks for the contact at zero displacement before the next touch
 }
 
 TipForce CellTracker::touchForce(double time) {
   if (!asked_) ask(time, contact_->displacement);
+  if (!failure_.empty()) return distrustBecause(failure_);
   if (!solution_) return distrustBecause("the contact is still being prepared");
   const IndentationSolution& solved = solution_->indentation;
   if (!solved.converged) return distrustBecause(solved.reason);

@@ -76,6 +76,7 @@ class CellTracker {
   std::optional<Contact> contact_;
   bool punctured_ = false;
   std::string distrust_;
+  std::string failure_;  ///< what the solver threw at the last question; else empty
 };
 
 }  // namespace microinjection

@@ -73,8 +73,8 @@ void Scene::validate() const {
           reach.str());
   require(needle.offset.norm() + needle.tip.radius < 0.95 * radius(), "needle/offset (its length)",
           needle.offset.norm(), "with the tip's radius " + reach.str());
-  require(positive(meshSize()) && meshSize() <= cell.diameter / 2, "mesh/size", meshSize(),
-          "positive, half of the cell's diameter at the most (m)");
+  require(meshSize() >= cell.diameter / 200 && meshSize() <= cell.diameter / 2, "mesh/size", meshSize(),
+          "from 1/200 to half of the cell's diameter (m)");
   require(positive(mesh.refinement.zone), "mesh/refinement/zone", mesh.refinement.zone, "positive");
   require(mesh.refinement.density >= 1 && mesh.refinement.density <= 100, "mesh/refinement/density",
           mesh.refinement.density, "in [1, 100]");

@@ -23,6 +23,10 @@ void Approach::start(const Eigen::Vector3d& start) {
   phase_ = Phase::kApproach;
 }
 
+void Approach::withdraw() {
+  if (phase_ != Phase::kDone) phase_ = Phase::kRetract;
+}
+
 Eigen::Vector3d Approach::step(const Eigen::Vector3d& axis, const Eigen::Vector3d& force, double dt) {
   switch (phase_) {
     case Phase::kApproach:

@@ -32,6 +32,9 @@ class Approach {
   /// Where the tip shall be after dt (s). `axis`: unit, out of the cell; `force` (N): of the cell on the tip.
   Eigen::Vector3d step(const Eigen::Vector3d& axis, const Eigen::Vector3d& force, double dt);
 
+  void withdraw();  ///< gives up what it was doing and goes back to the start
+  void end() { phase_ = Phase::kDone; }
+
   Phase phase() const { return phase_; }
   bool done() const { return phase_ == Phase::kDone; }
   bool touched() const { return touched_; }  ///< false at the end: no cell was found within travel_limit

@@ -66,6 +66,7 @@ std::string InjectionController::command(const std::string& command) {
     return "\"" + command + "\" is no command here; allowed: enable, disable, pause, resume, home";
   }
   homing_ = command == "home";
+  if (homing_) approach_.end();
   target_offset_.reset();
   return "";
 }
@@ -75,6 +76,7 @@ std::optional<Eigen::Vector3d> InjectionController::step(const Input& input, dou
   if (state_ == OperatingState::kDisabled || state_ == OperatingState::kFault) return std::nullopt;
   if (!trusted(input.needle)) {
     held_because_ = "no trusted needle position";
+    target_offset_.reset();
     return setpoint_;  // before the first pose there is nothing to hold yet
   }
   if (!setpoint_) {
@@ -107,22 +109,35 @@ std::optional<Eigen::Vector3d> InjectionController::wanted(const Input& input, d
   held_because_.clear();
   if (!own && !trusted(input.target)) held_because_ = "no trusted target";
   if (!trusted(input.force)) held_because_ = "no trusted force";
-  if (!held_because_.empty()) return std::nullopt;
-  if (own) return approach_.step(input.axis, *input.force, dt);
-  // The hand may have gone anywhere while the needle was not enabled: the target counts from where it is now.
+  if (!held_because_.empty()) {
+    target_offset_.reset();
+    return std::nullopt;
+  }
+  if (own) return approachTarget(input, dt);
+  // The hand may have gone anywhere while the needle was held: the target counts from where it is now.
   if (!target_offset_) target_offset_ = *setpoint_ - *input.target;
   return *input.target + *target_offset_;
+}
+
+std::optional<Eigen::Vector3d> InjectionController::approachTarget(const Input& input, double dt) {
+  if (approach_.done()) {
+    held_because_ = "the approach is over";
+    return std::nullopt;
+  }
+  if (input.force->norm() > config_.force_limit) approach_.withdraw();
+  return approach_.step(input.axis, *input.force, dt);
 }
 
 void InjectionController::goHome(const Eigen::Vector3d& axis, double dt) {
   held_because_ = "homing";
   const Eigen::Vector3d way = home_ - *setpoint_;
   const double out = way.dot(axis);
-  // First out of the cell along the pipette, then across: a needle that goes sideways tears.
-  const Eigen::Vector3d motion = out > 1e-9 ? Eigen::Vector3d(out * axis) : way;
+  // First out of the cell along the pipette, then across, for a needle that goes sideways tears; never deeper.
+  const Eigen::Vector3d motion = out > 1e-9 ? Eigen::Vector3d(out * axis) : Eigen::Vector3d(way - out * axis);
   const double largest = config_.speed_limit * dt;
   *setpoint_ += motion.norm() > largest ? Eigen::Vector3d(motion * (largest / motion.norm())) : motion;
-  if ((home_ - *setpoint_).norm() > 1e-9) return;
+  const Eigen::Vector3d left = home_ - *setpoint_;
+  if (std::max(0.0, left.dot(axis)) + (left - left.dot(axis) * axis).norm() > 1e-9) return;
   homing_ = false;
   state_ = OperatingState::kPaused;
   held_because_ = "PAUSED";
@@ -140,6 +155,8 @@ void InjectionController::follow(const Eigen::Vector3d& target, const Input& inp
   if (input.force->norm() > config_.force_limit) {
     held_because_ = "force limit reached: the needle may only be withdrawn";
     motion = input.axis * std::max(0.0, motion.dot(input.axis));
+    // What was refused is forgotten: when the force falls, as in a puncture, the needle must not catch up with it.
+    if (target_offset_) *target_offset_ += *setpoint_ + motion - target;
   }
   const double largest = config_.speed_limit * dt;
   if (motion.norm() > largest) motion *= largest / motion.norm();

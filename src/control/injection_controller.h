@@ -27,8 +27,8 @@ const char* toText(OperatingState state);
 /// Decides where the needle goes: takes the hand's target or its own approach, and lets through only what is safe.
 ///
 /// Without a trusted target, force or needle pose it holds the needle where its set-point is. When the needle does not
-/// follow it goes to FAULT, which only `disable` leaves. It moves the needle in no state but ENABLED; targets count from
-/// where the needle was when it was enabled or resumed.
+/// follow it goes to FAULT, which only `disable` leaves. It moves the needle in no state but ENABLED; targets count
+/// from where the needle was when it was enabled, resumed or held.
 class InjectionController {
  public:
   /// What the controller can trust now; empty: absent, stale or not finite.
@@ -42,8 +42,8 @@ class InjectionController {
   explicit InjectionController(const InjectionControllerConfig& config);
 
   /// enable, disable, pause, resume, home (CRTK state_command). home withdraws the needle along the pipette and takes
-  /// it back to where it was enabled, also without a trusted force, then pauses: the way out when the needle is held.
-  /// Empty when obeyed, otherwise the reason for the refusal; the state is then as before.
+  /// it over where it was enabled, never deeper than it is, also without a trusted force; then pauses: the way out when
+  /// the needle is held. Empty when obeyed, otherwise the reason for the refusal; the state is then as before.
   std::string command(const std::string& command);
 
   /// One cycle of dt (s): the set-point for the needle (m, `world`); empty while DISABLED or in FAULT.
@@ -58,6 +58,7 @@ class InjectionController {
  private:
   std::optional<Eigen::Vector3d> wanted(const Input& input, double dt);
   bool needleIsLost(const Eigen::Vector3d& needle);
+  std::optional<Eigen::Vector3d> approachTarget(const Input& input, double dt);
   void goHome(const Eigen::Vector3d& axis, double dt);
   void follow(const Eigen::Vector3d& target, const Input& input, double dt);
 

@@ -33,10 +33,10 @@ class Micromanipulator {
   /// Advances by dt (s, > 0) to `time` (s).
   void step(double time, double dt);
 
-  Eigen::Isometry3d tipPose() const;                         ///< `needle_tip` in `world`
-  Eigen::Vector3d tipVelocity() const;                       ///< m/s, `world`
-  const Eigen::Vector3d& joints() const { return joints_; }  ///< m
-  bool moving() const { return mode_ != Mode::kHold; }       ///< a move or a velocity command is under way
+  Eigen::Isometry3d tipPose() const;                                                ///< `needle_tip` in `world`
+  Eigen::Vector3d tipVelocity() const;                                              ///< m/s, `world`
+  const Eigen::Vector3d& joints() const { return joints_; }                         ///< m
+  bool moving() const { return mode_ == Mode::kMove || mode_ == Mode::kVelocity; }  ///< of such a command
 
  private:
   enum class Mode { kHold, kServo, kVelocity, kMove };

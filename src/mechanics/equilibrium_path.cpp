@@ -57,7 +57,7 @@ EquilibriumPath::Result EquilibriumPath::advance(const Eigen::Vector3d& target) 
       continue;
     }
     load_step_ = length / 2;
-    if (load_step_ < kSmallestStep * length_) {
+    if (body_.material().isLinear() || load_step_ < kSmallestStep * length_) {
       load_step_ = kLargestStep * length_;
       return result;
     }

@@ -18,7 +18,7 @@ void fill(geometry_msgs::Vector3& message, const Eigen::Vector3d& vector) {
 }  // namespace
 
 std::optional<Eigen::Vector3d> trustedPosition(const geometry_msgs::PoseStamped* message, const std::string& frame) {
-  if (!message || !isIn(message->header.frame_id, frame)) return std::nullopt;
+  if (!message || message->header.stamp.isZero() || !isIn(message->header.frame_id, frame)) return std::nullopt;
   const Eigen::Vector3d position = toEigen(message->pose.position);
   if (!position.allFinite()) return std::nullopt;
   return position;
@@ -34,6 +34,14 @@ std::optional<Eigen::Isometry3d> trustedPose(const geometry_msgs::PoseStamped* m
   pose.linear() = orientation.normalized().toRotationMatrix();
   pose.translation() = *position;
   return pose;
+}
+
+std::optional<Eigen::Vector3d> trustedVelocity(const geometry_msgs::TwistStamped* message) {
+  if (message->header.stamp.isZero() || !isIn(message->header.frame_id, kWorldFrame)) return std::nullopt;
+  const auto& v = message->twist.linear;
+  const Eigen::Vector3d velocity(v.x, v.y, v.z);
+  if (!velocity.allFinite()) return std::nullopt;
+  return velocity;
 }
 
 std::optional<Eigen::Vector3d> finiteForce(const geometry_msgs::WrenchStamped* message) {

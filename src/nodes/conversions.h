@@ -13,9 +13,12 @@ namespace microinjection {
 constexpr char kWorldFrame[] = "world";
 constexpr char kTipFrame[] = "needle_tip";
 
-/// A pose in `world`; empty when the message is null, in another frame (an empty frame_id counts as world), not finite
-/// or its quaternion is not of unit length within 1e-3.
+/// A pose in `world`; empty when the message is null, has stamp 0, is in another frame (an empty frame_id counts as
+/// world), not finite or its quaternion is not of unit length within 1e-3.
 std::optional<Eigen::Isometry3d> trustedPose(const geometry_msgs::PoseStamped* message);
+
+/// A velocity (m/s) in `world`; empty in the same cases.
+std::optional<Eigen::Vector3d> trustedVelocity(const geometry_msgs::TwistStamped* message);
 
 /// As trustedPose, the position alone (m) and without looking at the orientation, in `frame`.
 std::optional<Eigen::Vector3d> trustedPosition(const geometry_msgs::PoseStamped* message, const std::string& frame);

@@ -23,6 +23,11 @@ void Cycle::run(const std::function<void(const Tick&)>& step) {
 
 void Cycle::step(const ros::Time& now) {
   sampled_queue_.callAvailable();
+  if (now.isZero()) return;  // a simulated clock that has not begun
+  if (now < last_step_) {    // a clock set back: nothing that was received before can be trusted
+    for (auto& input : inputs_) input->invalidate();
+    last_step_ = now;
+  }
   const double dt = last_step_.isZero() ? period_ : (now - last_step_).toSec();
   if (dt <= 0) return;  // a simulated clock that stands still
   diagnostics_.beginStep();
@@ -61,6 +66,11 @@ void Cycle::runLockstep() {
       "/clock", 10, [this](const rosgraph_msgs::ClockConstPtr& message) { tick_ = message->clock; }, {},
       ros::TransportHints().tcpNoDelay());
   acknowledgement_ = node_.advertise<std_msgs::Header>(kAcknowledgementTopic, 10, true);
+  for (auto& output : outputs_) output->greet();
+  const auto connected = [](const auto& input) { return input->connected; };
+  while (goesOn() && !std::all_of(inputs_.begin(), inputs_.end(), connected)) {
+    queue_.callAvailable(ros::WallDuration(0.1));
+  }
   acknowledge(ros::Time());  // ready for the first tick
   while (goesOn()) {
     queue_.callAvailable(ros::WallDuration(0.1));

@@ -50,8 +50,9 @@ void HapticBridgeNode::run() {
 }
 
 bool HapticBridgeNode::clutchPressed(const ros::Time& now) const {
+  if (clutch_.received.isZero()) return false;  // a device without a clutch
   const sensor_msgs::Joy* joy = clutch_.get(now);
-  return joy && !joy->buttons.empty() && joy->buttons[0] != 0;
+  return !joy || joy->buttons.empty() || joy->buttons[0] != 0;  // one that cannot be read counts as pressed
 }
 
 void HapticBridgeNode::step(const Cycle::Tick& tick) {

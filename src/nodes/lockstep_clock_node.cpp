@@ -15,7 +15,7 @@ const char* const LockstepClockNode::kHelp =
 LockstepClockNode::LockstepClockNode(ros::NodeHandle node, ros::NodeHandle private_node)
     : participants_(lockstepParticipants()) {
   ConfigReader reader = parameterReader(private_node);
-  reader.number("step", step_, {0, 1, true, false});
+  reader.number("step", step_, Range::closed(1e-6, 1));
   reader.number("real_time_factor", real_time_factor_, Range::nonNegative());
   reader.number("warn_after", warn_after_, Range::positive());
   reader.finish();

@@ -1,7 +1,5 @@
 #include "nodes/micromanipulator_node.h"
 
-#include <limits>
-
 #include "base/errors.h"
 #include "nodes/conversions.h"
 #include "nodes/latency_meter.h"
@@ -24,7 +22,8 @@ const char* const MicromanipulatorNode::kHelp =
     "micromanipulator: a simulated three-axis micromanipulator with CRTK topics below /needle.\n"
     "In: /needle/servo_cp /needle/servo_cv /needle/move_cp. Out: /needle/measured_cp /needle/measured_cv "
     "joint_states.\n"
-    "Parameters: /robot_description, ~rate (Hz), ~joint_states_rate (Hz), ~servo_time_constant (s),\n"
+    "Parameters: /robot_description, ~rate (Hz), ~joint_states_rate (Hz), ~command_timeout (s), ~servo_time_constant "
+    "(s),\n"
     "~acceleration (m/s^2), ~velocity_command_timeout (s); see config/micromanipulator.yaml.\n";
 
 MicromanipulatorNode::Parameters MicromanipulatorNode::Parameters::read(const ros::NodeHandle& private_node) {
@@ -32,6 +31,7 @@ MicromanipulatorNode::Parameters MicromanipulatorNode::Parameters::read(const ro
   ConfigReader reader = parameterReader(private_node);
   reader.number("rate", parameters.rate, Range::closed(50, 5000));
   reader.number("joint_states_rate", parameters.joint_states_rate, {0, 1000, true, false});
+  reader.number("command_timeout", parameters.command_timeout, Range::positive());
   parameters.model = MicromanipulatorConfig::read(reader);
   reader.finish();
   return parameters;
@@ -42,20 +42,20 @@ MicromanipulatorNode::MicromanipulatorNode(ros::NodeHandle node, ros::NodeHandle
       geometry_(geometryFromParameter()),
       model_(geometry_, parameters_.model),
       cycle_(node, parameters_.rate),
-      servo_(cycle_.input<geometry_msgs::PoseStamped>("needle/servo_cp", Phase::kSameTick,
-                                                      std::numeric_limits<double>::infinity())),
+      servo_(
+          cycle_.input<geometry_msgs::PoseStamped>("needle/servo_cp", Phase::kSameTick, parameters_.command_timeout)),
       measured_(cycle_.output<geometry_msgs::PoseStamped>("needle/measured_cp")),
       velocity_(cycle_.output<geometry_msgs::TwistStamped>("needle/measured_cv")),
       trace_(cycle_.output<cell_microinjection::LatencyTrace>("needle/setpoint_trace")) {
   servo_velocity_ = cycle_.node().subscribe<geometry_msgs::TwistStamped>(
       "needle/servo_cv", 10, [this](const geometry_msgs::TwistStampedConstPtr& message) {
-        const auto& v = message->twist.linear;
-        judge("servo_cv", model_.servoVelocity({v.x, v.y, v.z}, now_.toSec()));
+        const auto velocity = trustedVelocity(message.get());
+        judge("servo_cv", velocity ? model_.servoVelocity(*velocity, now_.toSec()) : "not a valid velocity in world");
       });
   move_ = cycle_.node().subscribe<geometry_msgs::PoseStamped>(
       "needle/move_cp", 10, [this](const geometry_msgs::PoseStampedConstPtr& message) {
         const auto pose = trustedPose(message.get());
-        judge("move_cp", pose ? model_.movePosition(*pose) : "not a finite pose in world");
+        judge("move_cp", pose ? model_.movePosition(*pose) : "not a valid pose in world");
       });
   joint_states_ = node.advertise<sensor_msgs::JointState>("joint_states", 10);
   cycle_.diagnostics().add("commands", [this](auto& status) { report(status); });
@@ -75,8 +75,9 @@ void MicromanipulatorNode::judge(const std::string& command, const std::string& 
 void MicromanipulatorNode::obeyServo(const Cycle::Tick& tick) {
   const auto message = servo_.takeNews();
   if (!message) return;
+  if (!servo_.fresh(tick.now)) return judge("servo_cp", "it is stale");
   const auto pose = trustedPose(message.get());
-  judge("servo_cp", pose ? model_.servoPosition(*pose) : "not a finite pose in world");
+  judge("servo_cp", pose ? model_.servoPosition(*pose) : "not a valid pose in world");
   if (!isTraced(tick.now)) return;
   cell_microinjection::LatencyTrace trace;
   trace.header.stamp = tick.now;

@@ -23,6 +23,7 @@ namespace microinjection {
 /// Parameters: /robot_description (URDF), and private those of MicromanipulatorConfig and
 ///   rate               Hz; default 1000, in [50, 5000]
 ///   joint_states_rate  Hz; default 50, in (0, 1000]
+///   command_timeout    s, a servo_cp older than this is refused; default 0.1, in (0, inf)
 class MicromanipulatorNode {
  public:
   static const char* const kHelp;
@@ -34,6 +35,7 @@ class MicromanipulatorNode {
   struct Parameters {
     double rate = 1000;
     double joint_states_rate = 50;
+    double command_timeout = 0.1;
     MicromanipulatorConfig model;
     static Parameters read(const ros::NodeHandle& private_node);
   };

@@ -3,6 +3,7 @@
 #include <ros/ros.h>
 #include <std_msgs/Header.h>
 
+#include <algorithm>
 #include <cmath>
 #include <deque>
 #include <functional>
@@ -18,6 +19,7 @@ enum class Phase { kSameTick, kTickBefore };
 
 /// Beside each topic T that takes part in lock step runs T + kSilentSuffix, on which the publisher says in every tick
 /// without a message that there is none, so that nobody waits for it. frame_id "invalid" also withdraws the last one.
+/// Silence with stamp 0 is the publisher's greeting: nobody begins before all its publishers have greeted it.
 constexpr char kSilentSuffix[] = "/silent";
 
 /// One subscribed topic as a Cycle sees it.
@@ -32,16 +34,20 @@ class InputPort {
   /// Lock step: makes that answer the present one, as of `now`.
   virtual void take(const ros::Time& stamp, const ros::Time& now) = 0;
   virtual bool valid() const = 0;
+  /// Forgets the last message.
+  virtual void invalidate() = 0;
 
-  /// Age of the last message in s of ROS time; infinite before the first.
+  /// Age of the last message in s of ROS time, from its stamp or its arrival, whichever is older; infinite before the
+  /// first.
   double age(const ros::Time& now) const { return received.isZero() ? INFINITY : (now - received).toSec(); }
   /// The last message is there, valid and not older than `timeout`.
-  bool fresh(const ros::Time& now) const { return valid() && age(now) <= timeout; }
+  bool fresh(const ros::Time& now) const { return valid() && age(now) >= 0 && age(now) <= timeout; }
 
   const std::string topic;
   const Phase phase;
-  const double timeout;  ///< s of ROS time
-  ros::Time received;    ///< of the last message
+  const double timeout;    ///< s of ROS time
+  ros::Time received;      ///< of the last message
+  bool connected = false;  ///< lock step: the publisher's greeting is here, silence with stamp 0
 };
 
 /// The newest message of a topic, for one thread. A message with stamp 0 is invalid (CRTK) and withdraws the one
@@ -53,20 +59,20 @@ class Input : public InputPort {
   using Pointer = boost::shared_ptr<const Message>;
 
   bool answered(const ros::Time& stamp) const override {
-    if (!silence_.empty() && silence_.back().stamp >= stamp) return true;
-    return !waiting_.empty() && waiting_.back()->header.stamp >= stamp;
+    const auto is_it = [&](const ros::Time& other) { return other == stamp; };
+    return std::any_of(silence_.begin(), silence_.end(), [&](const auto& header) { return is_it(header.stamp); }) ||
+           std::any_of(waiting_.begin(), waiting_.end(),
+                       [&](const auto& message) { return is_it(message->header.stamp); });
   }
 
   void take(const ros::Time& stamp, const ros::Time& now) override {
     news_ = false;
-    while (!silence_.empty() && silence_.front().stamp <= stamp) {
+    for (; !silence_.empty() && silence_.front().stamp <= stamp; silence_.pop_front()) {
       if (silence_.front().frame_id == "invalid") newest_.reset();
-      silence_.pop_front();
     }
-    while (!waiting_.empty() && waiting_.front()->header.stamp <= stamp) {
+    for (; !waiting_.empty() && waiting_.front()->header.stamp <= stamp; waiting_.pop_front()) {
       if (on_message) on_message(*waiting_.front(), now);
       accept(waiting_.front(), now);
-      waiting_.pop_front();
     }
   }
 
@@ -76,11 +82,15 @@ class Input : public InputPort {
     if (on_message) on_message(*message, now);
     accept(message->header.stamp.isZero() ? nullptr : message, now);
   }
+  void invalidate() override { newest_.reset(); }
   /// Lock step; see kSilentSuffix.
   void queue(const Pointer& message) {
     if (!message->header.stamp.isZero()) waiting_.push_back(message);
   }
-  void queueSilence(const std_msgs::Header& header) { silence_.push_back(header); }
+  void queueSilence(const std_msgs::Header& header) {
+    connected = true;
+    if (!header.stamp.isZero()) silence_.push_back(header);
+  }
 
   /// Sees every message, also those that a newer one replaces before the next step.
   std::function<void(const Message&, const ros::Time& now)> on_message;
@@ -94,7 +104,8 @@ class Input : public InputPort {
  private:
   void accept(const Pointer& message, const ros::Time& now) {
     newest_ = message;
-    received = now;
+    // Whichever is older: a relay that repeats an old sample must not keep it fresh.
+    received = message ? std::min(now, message->header.stamp) : now;
     news_ = message != nullptr;
   }
 
@@ -109,6 +120,9 @@ class OutputPort {
  public:
   explicit OutputPort(const std::string& name) : topic(name) {}
   virtual ~OutputPort() = default;
+
+  /// Lock step: see kSilentSuffix.
+  void greet() { silent_publisher.publish(std_msgs::Header()); }
 
   /// Lock step: every message is stamped with the tick that it was sent in.
   void beginTick(const ros::Time& now) { tick_ = now; }

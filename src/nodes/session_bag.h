@@ -42,7 +42,13 @@ class SessionBag {
  private:
   template <typename Message>
   void write(const std::string& topic, const ros::Time& now, const Message& message) {
-    if (open_ && now > ros::TIME_MIN) bag_.write(topic, now, message);
+    if (!open_ || now <= ros::TIME_MIN) return;
+    try {
+      bag_.write(topic, now, message);
+    } catch (const rosbag::BagException& error) {  // a full disk must not take the session with it
+      ROS_ERROR_STREAM(path_ << ".active: " << error.what());
+      open_ = false;
+    }
   }
 
   std::string path_;

@@ -88,6 +88,18 @@ TEST(ConfigReader, RefusesUnknownSectionsAndMapsInPlaceOfValues) {
             std::string::npos);
 }
 
+TEST(ConfigReader, RefusesKeysThatAreThereTwiceAndRootsThatAreNoMap) {
+  EXPECT_NE(errorsOf([] {
+              ConfigReader reader(YAML::Load("{diameter: 1, diameter: 2}"), "cell.yaml");
+              double diameter = 0;
+              reader.number("diameter", diameter);
+              reader.finish();
+            }).find("diameter: is there twice"),
+            std::string::npos);
+  EXPECT_NE(errorsOf([] { ConfigReader(YAML::Load("[1, 2]"), "cell.yaml").finish(); }).find("must be a map"),
+            std::string::npos);
+}
+
 TEST(ConfigReader, RefusesNumbersThatAreNotFinite) {
   for (const char* value : {".nan", ".inf", "-.inf", "1e400", "''"}) {
     EXPECT_NE(errorsOf([&] {

@@ -159,6 +159,16 @@ TEST(CellTracker, ATipThatLeapsIsNotTrustedUntilTheSolverHasFollowed) {
   EXPECT_TRUE(drive.rest(100).trusted);
 }
 
+TEST(CellTracker, AContactThatTheSolverRefusesIsNotTrusted) {
+  Driver drive(coarseScene("neo_hookean"));
+  TipForce force;
+  for (int i = 0; i < 200; ++i) {
+    force = drive.tracker.step({0, 0, -27e-6}, -kAxis, i * kStep);  // from below, onto the held vertices
+  }
+  EXPECT_FALSE(force.trusted);
+  EXPECT_NE(drive.tracker.distrust().find("held"), std::string::npos) << drive.tracker.distrust();
+}
+
 TEST(CellTracker, TouchesWhereTheNeedlesLineMeetsTheCell) {
   Driver drive(coarseScene("neo_hookean"));
   drive.tip = {8e-6, 0, 40e-6};

@@ -7,6 +7,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from rosgraph_msgs.msg import Clock
 from std_msgs.msg import Header
 
+INVALID = object()
 PATIENCE = 120  # s of wall time; only a chain that hangs takes that long
 
 
@@ -28,6 +29,8 @@ class Participant:
         ]
         self._subscribers.append(rospy.Subscriber("/diagnostics", DiagnosticArray, self._on_diagnostics))
         self._subscribers.append(rospy.Subscriber("/clock", Clock, lambda message: self._ticks.put(message.clock)))
+        for publisher in self._silences.values():
+            publisher.publish(Header())  # the greeting that nodes wait for
         self._acknowledge(rospy.Time())
         self.now = self._ticks.get(timeout=PATIENCE)
 
@@ -42,10 +45,13 @@ class Participant:
         self._acknowledgement.publish(Header(stamp=stamp, frame_id=rospy.get_name()))
 
     def tick(self, messages=None):
-        """One tick with {topic: message}; outputs without one are silent. Returns when the next tick has begun."""
+        """One tick with {topic: message}; outputs without one are silent; INVALID withdraws the one before as stamp 0
+        does. Returns when the next tick has begun."""
         messages = messages or {}
         for topic, publisher in self._outputs.items():
-            if topic in messages:
+            if messages.get(topic) is INVALID:
+                self._silences[topic].publish(Header(stamp=self.now, frame_id="invalid"))
+            elif topic in messages:
                 messages[topic].header.stamp = self.now
                 publisher.publish(messages[topic])
             else:

@@ -11,7 +11,7 @@ from cell_microinjection.msg import CellState
 from geometry_msgs.msg import PoseStamped, WrenchStamped
 
 from messages import force, pose
-from participant import Participant
+from participant import INVALID, Participant
 
 
 class TrustTest(unittest.TestCase):
@@ -44,6 +44,9 @@ class TrustTest(unittest.TestCase):
 
     def test_stale(self):
         self.check_untrusted({})
+
+    def test_invalid(self):
+        self.check_untrusted({"/needle/measured_cp": INVALID})
 
     def test_not_finite(self):
         self.check_untrusted(lambda: self.needle(math.nan))

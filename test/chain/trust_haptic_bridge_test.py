@@ -11,7 +11,7 @@ from geometry_msgs.msg import PoseStamped, WrenchStamped
 from sensor_msgs.msg import Joy
 
 from messages import force, pose, wrench
-from participant import Participant
+from participant import INVALID, Participant
 
 
 class TrustTest(unittest.TestCase):
@@ -46,7 +46,15 @@ class TrustTest(unittest.TestCase):
         self.check_open({"/needle/measured_cp": None}, "no trusted needle position")
         self.check_open({"/needle/measured_cp": pose(0, 0, math.inf)}, "no trusted needle position")
 
+    def test_clutch_that_cannot_be_read(self):
+        self.world.tick({**self.good(), "/haptic/clutch": Joy(buttons=[0])})
+        self.world.tick({**self.good(), "/haptic/clutch": INVALID})
+        self.world.run(200, self.good)
+        self.assertTrue(self.world.seen["/teleop/servo_cp"].header.stamp.is_zero())
+        self.world.tick({**self.good(), "/haptic/clutch": Joy(buttons=[0])})
+
     def test_force(self):
+        self.check_open({"/cell/predicted_cf": INVALID}, "no trusted force")
         self.check_open({"/cell/predicted_cf": None}, "no trusted force")
         self.check_open({"/cell/predicted_cf": wrench(0, math.nan, 0)}, "no trusted force")
         self.check_open({"/cell/predicted_cf": wrench(0, 0, 1e-6, "camera")}, "no trusted force")

@@ -38,8 +38,8 @@ class TrustTest(unittest.TestCase):
         self.assertIn(why, text)
 
     def test_refuses_servo_cp(self):
-        self.check_refused(pose(0, 0, math.nan), "not a finite pose in world")
-        self.check_refused(pose(0, 0, 40e-6, "camera"), "not a finite pose in world")
+        self.check_refused(pose(0, 0, math.nan), "not a valid pose in world")
+        self.check_refused(pose(0, 0, 40e-6, "camera"), "not a valid pose in world")
         self.check_refused(pose(1, 0, 0), "manipulator_x = 1 m, allowed [-0.0125, 0.0125] m")
         tilted = pose(0, 0, 40e-6)
         tilted.pose.orientation.x, tilted.pose.orientation.w = 0.6, 0.8
@@ -54,6 +54,7 @@ class TrustTest(unittest.TestCase):
 
     def test_stale_velocity_stops(self):
         command = TwistStamped()
+        command.header.stamp = self.world.now
         command.twist.linear.x = 50e-6
         self.velocity.publish(command)
         self.tick_until(lambda: self.needle()[0] > 1e-6)
@@ -63,8 +64,27 @@ class TrustTest(unittest.TestCase):
         np.testing.assert_array_equal(self.needle(), held)
         self.assertLess(held[0], 50e-6 * 0.2)  # 0.1 s of command, and its braking
 
+    def tick_until_refused(self, why):
+        self.tick_until(lambda: why in self.world.diagnostics["micromanipulator: commands"].message)
+        np.testing.assert_allclose(self.needle(), [0, 0, 50e-6], atol=1e-9)
+
+    def test_refuses_what_is_marked_invalid_or_in_another_frame(self):
+        self.move.publish(pose(20e-6, -10e-6, 70e-6))  # stamp 0
+        self.tick_until_refused("move_cp refused: not a valid pose")
+        command = TwistStamped()
+        command.twist.linear.x = 50e-6
+        self.velocity.publish(command)  # stamp 0
+        self.tick_until_refused("servo_cv refused: not a valid velocity")
+        self.world.run(100, lambda: {"/needle/servo_cp": pose(0, 0, 50e-6)})
+        command.header.stamp = self.world.now
+        command.header.frame_id = "camera"
+        self.velocity.publish(command)
+        self.tick_until_refused("servo_cv refused: not a valid velocity")
+
     def test_move_arrives(self):
-        self.move.publish(pose(20e-6, -10e-6, 70e-6))
+        command = pose(20e-6, -10e-6, 70e-6)
+        command.header.stamp = self.world.now
+        self.move.publish(command)
         self.tick_until(lambda: np.allclose(self.needle(), [20e-6, -10e-6, 70e-6], atol=1e-9))
 
 

@@ -5,7 +5,7 @@ prepare_environment() {
   # A python3 of pyenv, conda or a virtual environment knows neither catkin nor matplotlib; another workspace's paths
   # would win over ours.
   export PATH="/usr/bin:$PATH"
-  unset PYTHONHOME PYTHONPATH CMAKE_PREFIX_PATH ROS_PACKAGE_PATH
+  unset PYTHONHOME PYTHONPATH CMAKE_PREFIX_PATH ROS_PACKAGE_PATH ROS_NAMESPACE
   # A decimal comma breaks the numbers that rviz and the URDF parser read.
   export LC_ALL=C.UTF-8
   export ROS_HOME="$ROOT/out/ros" ROS_LOG_DIR="$ROOT/out/ros/log"

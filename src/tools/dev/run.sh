@@ -60,8 +60,8 @@ bench_program() {
 
 command_shell() {
   [[ ${1:-} != -- ]] || shift
-  setup
-  build_workspace
+  # Standard output belongs to the command.
+  { setup; build_workspace; } >&2
   if [[ $# -gt 0 ]]; then
     exec "$@"
   fi
