@@ -1,5 +1,6 @@
 #include "cell/solution_thread.h"
 
+#include <sched.h>
 #include <sys/resource.h>
 
 #include <utility>
@@ -40,8 +41,10 @@ std::shared_ptr<const CellSolution> SolutionThread::wait() {
 }
 
 void SolutionThread::run() {
-  // A solution takes tens of milliseconds; the threads that step the chain every millisecond come first. On Linux this
-  // concerns the calling thread alone, and it may fail without harm.
+  // A solution takes tens of milliseconds; the threads that step the chain every millisecond come first, which may run
+  // in real time. On Linux this concerns the calling thread alone, and it may fail without harm.
+  const sched_param ordinary{};
+  sched_setscheduler(0, SCHED_OTHER, &ordinary);
   setpriority(PRIO_PROCESS, 0, 5);
   std::unique_lock<std::mutex> lock(mutex_);
   while (true) {

@@ -57,7 +57,7 @@ DisplayConfig readConfig(const ros::NodeHandle& private_node) {
 
 const char* const DisplayNode::kHelp =
     "display: shows the scene in rviz, ten thousand times enlarged.\n"
-    "In: /cell/state /needle/measured_cp /cell/predicted_cf /force_sensor/measured_cf /haptic/measured_cp tf.\n"
+    "In: /cell/state /force_sensor/measured_cf /haptic/measured_cp, tf of world, cell, needle_tip and the rig.\n"
     "Out: viz/markers (MarkerArray), tf below viz/world.\n"
     "Parameters: ~rate (Hz of wall time), ~edges, ~colour_range (m), ~force_scale (m/N), ~injection_pipette,\n"
     "~holding_pipette; see config/display.yaml.\n";
@@ -67,8 +67,6 @@ DisplayNode::DisplayNode(ros::NodeHandle node, ros::NodeHandle private_node)
       scene_(config_),
       frames_({"cell", "holding_pipette", "manipulator_base"}),
       inputs_{{{"/cell/state", true},
-               {"/needle/measured_cp", true},
-               {"/cell/predicted_cf", true},
                {"/force_sensor/measured_cf", true},
                {"/haptic/measured_cp", false}}},
       reported_(ros::WallTime::now()),
@@ -78,14 +76,9 @@ DisplayNode::DisplayNode(ros::NodeHandle node, ros::NodeHandle private_node)
   // Only the latest message is worth a picture.
   const auto hints = ros::TransportHints().tcpNoDelay();
   const auto topic = [this](InputId input) { return inputs_[input].topic; };
-  using Wrench = geometry_msgs::WrenchStampedConstPtr;
   subscribers_ = {
       node.subscribe(topic(kState), 1, &DisplayNode::onState, this, hints),
-      node.subscribe(topic(kTip), 1, &DisplayNode::onTip, this, hints),
-      node.subscribe<geometry_msgs::WrenchStamped>(
-          topic(kPredicted), 1, [this](const Wrench& force) { onForce(kPredicted, *force); }, nullptr, hints),
-      node.subscribe<geometry_msgs::WrenchStamped>(
-          topic(kMeasured), 1, [this](const Wrench& force) { onForce(kMeasured, *force); }, nullptr, hints),
+      node.subscribe(topic(kMeasured), 1, &DisplayNode::onMeasuredForce, this, hints),
       node.subscribe(topic(kHand), 1, &DisplayNode::onHand, this, hints)};
   diagnostics_.setHardwareID("none");
   diagnostics_.add("drawing", this, &DisplayNode::reportDrawing);
@@ -108,16 +101,19 @@ void DisplayNode::onState(const cell_microinjection::CellState& message) {
   state_.alarm = !defect.empty() || message.punctured || !message.converged;
   state_.readout.indentation = std::nullopt;
   if (std::isfinite(message.indentation)) state_.readout.indentation = message.indentation;
+  const Eigen::Vector3d force(message.force.x, message.force.y, message.force.z);
+  state_.predicted = std::nullopt;
+  if (message.converged && force.allFinite()) state_.predicted = force;
+  state_.readout.predicted = magnitude(state_.predicted);
   if (!defect.empty()) return;
   state_.cell_frame = message.header.frame_id.empty() ? "cell" : message.header.frame_id;
   state_.surface = std::move(surface);
   cell_changed_ = true;
 }
 
-void DisplayNode::onTip(const geometry_msgs::PoseStamped& message) {
+void DisplayNode::lookForTip() {
   const bool was_known = state_.tip.has_value();
-  state_.tip = isValid(message) ? trustedPose(&message) : std::nullopt;
-  count(kTip, state_.tip.has_value());
+  state_.tip = frames_.find("needle_tip", "world");
   if (state_.tip.has_value() != was_known) still_drawn_ = {};  // the pipette comes or goes at once
 }
 
@@ -126,17 +122,17 @@ void DisplayNode::onHand(const geometry_msgs::PoseStamped& message) {
   count(kHand, state_.readout.hand.has_value());
 }
 
-void DisplayNode::onForce(InputId input, const geometry_msgs::WrenchStamped& message) {
+void DisplayNode::onMeasuredForce(const geometry_msgs::WrenchStamped& message) {
   const Eigen::Isometry3d tip = state_.tip.value_or(Eigen::Isometry3d::Identity());
-  const auto force = isValid(message) ? trustedForce(&message, tip.linear()) : std::nullopt;
-  count(input, force.has_value());
-  (input == kPredicted ? state_.predicted : state_.measured) = force;
-  (input == kPredicted ? state_.readout.predicted : state_.readout.measured) = magnitude(force);
+  state_.measured = isValid(message) ? trustedForce(&message, tip.linear()) : std::nullopt;
+  state_.readout.measured = magnitude(state_.measured);
+  count(kMeasured, state_.measured.has_value());
 }
 
 void DisplayNode::draw() {
   const ros::WallTime start = ros::WallTime::now();
   frames_.update();
+  lookForTip();
   if (state_.tip) frames_.publishNeedleTip(*state_.tip);
   if (markers_.getNumSubscribers() > 0) {
     visualization_msgs::MarkerArray markers;

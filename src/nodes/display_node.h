@@ -16,7 +16,8 @@ namespace microinjection {
 
 /// Shows the scene in rviz at x 1e4. For eyes only: nothing that controls reads its topics.
 ///
-/// In:  /cell/state, /needle/measured_cp, /cell/predicted_cf, /force_sensor/measured_cf, /haptic/measured_cp, tf
+/// In:  /cell/state (with the predicted force), /force_sensor/measured_cf, /haptic/measured_cp, and from tf the frames of the
+///      rig, needle_tip among them: a picture needs no pose a thousand times a second
 /// Out: viz/markers (MarkerArray), tf of viz/{cell, holding_pipette, manipulator_base, needle_tip} below viz/world
 ///
 /// Parameters: private those of DisplayConfig; see config/display.yaml.
@@ -32,7 +33,7 @@ class DisplayNode {
   void run();
 
  private:
-  enum InputId { kState, kTip, kPredicted, kMeasured, kHand, kInputs };
+  enum InputId { kState, kMeasured, kHand, kInputs };
   struct Input {
     Input(const std::string& input_topic, bool is_needed) : topic(input_topic), needed(is_needed) {}
     std::string topic;
@@ -42,9 +43,9 @@ class DisplayNode {
   };
 
   void onState(const cell_microinjection::CellState& message);
-  void onTip(const geometry_msgs::PoseStamped& message);
   void onHand(const geometry_msgs::PoseStamped& message);
-  void onForce(InputId input, const geometry_msgs::WrenchStamped& message);
+  void onMeasuredForce(const geometry_msgs::WrenchStamped& message);
+  void lookForTip();
   void count(InputId input, bool drawn);
 
   void draw();

@@ -6,12 +6,18 @@
 #include <exception>
 #include <string>
 
+#include "nodes/lockstep.h"
+#include "nodes/real_time.h"
+
 namespace microinjection {
 
+enum class Priority { kOrdinary, kRealTime };
+
 /// The whole `main` of a node: starts ROS, constructs Node(node, private_node) and runs it until shutdown. A node whose
-/// parameters are wrong must not come alive: what its constructor throws is logged and the exit status is 1.
+/// parameters are wrong must not come alive: what its constructor throws is logged and the exit status is 1. Live,
+/// nodes of the 1 kHz chain run in real time where the system allows it.
 template <typename Node>
-int runNode(int argc, char** argv, const std::string& name) {
+int runNode(int argc, char** argv, const std::string& name, Priority priority = Priority::kRealTime) {
   for (int i = 1; i < argc; ++i) {
     if (std::string(argv[i]) == "--help" || std::string(argv[i]) == "-h") {
       std::printf("%s", Node::kHelp);
@@ -19,6 +25,7 @@ int runNode(int argc, char** argv, const std::string& name) {
     }
   }
   ros::init(argc, argv, name);
+  if (priority == Priority::kRealTime && !takesPartInLockstep()) preferRealTime();
   // These outlive the try block: the end of the last handle shuts ROS down, and its log with it.
   const ros::NodeHandle node_handle, private_node_handle("~");
   try {

@@ -51,8 +51,7 @@ SessionRecorderNode::SessionRecorderNode(ros::NodeHandle node, ros::NodeHandle p
       predicted_(cycle_.input<geometry_msgs::WrenchStamped>("cell/predicted_cf", Phase::kSameTick, 0.05)),
       needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", Phase::kTickBefore, 0.05)),
       measured_(cycle_.input<geometry_msgs::WrenchStamped>("force_sensor/measured_cf", Phase::kTickBefore, 0.05)),
-      cell_(cycle_.input<cell_microinjection::CellState>("cell/state", Phase::kTickBefore, kForever)),
-      setpoint_(cycle_.input<geometry_msgs::PoseStamped>("needle/servo_cp", Phase::kTickBefore, kForever)) {
+      cell_(cycle_.input<cell_microinjection::CellState>("cell/state", Phase::kTickBefore, kForever)) {
   if (parameters_.hand) {
     hand_ = &cycle_.input<geometry_msgs::PoseStamped>("haptic/measured_cp", Phase::kTickBefore, kForever);
     clutch_ = &cycle_.input<sensor_msgs::Joy>("haptic/clutch", Phase::kTickBefore, kForever);
@@ -72,7 +71,6 @@ SessionRecorderNode::SessionRecorderNode(ros::NodeHandle node, ros::NodeHandle p
 void SessionRecorderNode::recordBag() {
   bag_ = std::make_unique<SessionBag>(parameters_.output_dir + "/session.bag");
   bag_->follow(needle_);
-  bag_->follow(setpoint_);
   bag_->follow(predicted_);
   bag_->follow(measured_);
   bag_->follow(cell_);

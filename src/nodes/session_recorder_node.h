@@ -26,7 +26,7 @@ namespace microinjection {
 /// the latency from hand to force beside a bare timer loop), session.bag. All are there, whole, at the end of the
 /// session.
 ///
-/// In: /needle/measured_cp, /needle/servo_cp, /cell/predicted_cf, /force_sensor/measured_cf, /cell/state, with a hand
+/// In: /needle/measured_cp, /cell/predicted_cf, /force_sensor/measured_cf, /cell/state, with a hand
 ///     /haptic/measured_cp, /haptic/servo_cf, /haptic/clutch, /operator/phase; /needle/setpoint_trace,
 ///     /haptic/force_trace; /diagnostics, /tf, /tf_static, /controller/operating_state
 ///
@@ -71,7 +71,6 @@ class SessionRecorderNode {
   Input<geometry_msgs::PoseStamped>& needle_;
   Input<geometry_msgs::WrenchStamped>& measured_;
   Input<cell_microinjection::CellState>& cell_;
-  Input<geometry_msgs::PoseStamped>& setpoint_;
   Input<geometry_msgs::PoseStamped>* hand_ = nullptr;           ///< null without a hand
   Input<sensor_msgs::Joy>* clutch_ = nullptr;                   ///< null without a hand
   Input<geometry_msgs::WrenchStamped>* hand_force_ = nullptr;   ///< null without a hand

@@ -38,7 +38,7 @@ class RvizView:
         self._windows = ('root',) if self.virtual else (f'{config.name} - RViz', f'{config.name}* - RViz')
         # Rendering in software takes a whole core; the nodes at 1 kHz come first.
         shown = _for_one_picture(config, logs) if self.virtual else config
-        command = ['nice', '-n', '15', 'rviz', '-d', str(shown)] + (['--fullscreen'] if self.virtual else [])
+        command = ['chrt', '--idle', '0', 'rviz', '-d', str(shown)] + (['--fullscreen'] if self.virtual else [])
         try:
             self._rviz = Child(command, logs / 'rviz.log', self._environment)
         except OSError as error:

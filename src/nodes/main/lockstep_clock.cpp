@@ -2,5 +2,6 @@
 #include "nodes/run_node.h"
 
 int main(int argc, char** argv) {
-  return microinjection::runNode<microinjection::LockstepClockNode>(argc, argv, "lockstep_clock");
+  return microinjection::runNode<microinjection::LockstepClockNode>(argc, argv, "lockstep_clock",
+                                                                    microinjection::Priority::kOrdinary);
 }
