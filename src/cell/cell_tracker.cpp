@@ -48,9 +48,15 @@ void CellTracker::collect(double time) {
 
 void CellTracker::prepare(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, const SurfaceHit& hit, double time) {
   if ((tip - hit.point).dot(axis) > config_.prepare_distance) return;
-  TipPatch patch = cell_->patchAt(hit.point, axis);
-  if (patch.vertices != patch_.vertices) {
-    patch_ = std::move(patch);
+  // A hand trembles: a tenth of the tip's radius makes no other contact, and near the scene's line, where the mesh has
+  // the tip's circle, that circle is meant.
+  const Scene::Needle& needle = cell_->scene().needle;
+  const double tremble = 0.1 * needle.tip.radius;
+  Eigen::Vector3d point = hit.point;
+  if ((point.head<2>() - needle.offset).norm() < tremble) point.head<2>() = needle.offset;
+  if (patch_.vertices.empty() || (point - patch_at_).norm() > tremble) {
+    patch_ = cell_->patchAt(point, axis);
+    patch_at_ = point;
     patch_asked_ = false;
     solution_.reset();
   }

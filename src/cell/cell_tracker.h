@@ -68,10 +68,11 @@ class CellTracker {
   SolutionThread thread_;
   int start_triangle_ = 0;
   TipPatch patch_;
-  bool asked_ = false;        ///< a solution is under way
-  double asked_at_ = 0;       ///< s
-  double solution_time_ = 0;  ///< s, when the solution at hand was asked for
-  bool patch_asked_ = false;  ///< the thread works on patch_, not on an older one
+  Eigen::Vector3d patch_at_ = Eigen::Vector3d::Zero();  ///< m, what patch_ was made for
+  bool asked_ = false;                                  ///< a solution is under way
+  double asked_at_ = 0;                                 ///< s
+  double solution_time_ = 0;                            ///< s, when the solution at hand was asked for
+  bool patch_asked_ = false;                            ///< the thread works on patch_, not on an older one
   std::shared_ptr<const CellSolution> solution_;
   std::optional<Contact> contact_;
   bool punctured_ = false;

@@ -41,11 +41,13 @@ std::shared_ptr<const CellSolution> SolutionThread::wait() {
 }
 
 void SolutionThread::run() {
-  // A solution takes tens of milliseconds; the threads that step the chain every millisecond come first, which may run
-  // in real time. On Linux this concerns the calling thread alone, and it may fail without harm.
+  // A solution takes tens of milliseconds; the threads that step the chain every millisecond come first. Where those
+  // run in real time, and this one inherits it, it need only come before the rest of the machine. On Linux these calls
+  // concern the calling thread alone, and they may fail without harm.
+  const bool real_time = sched_getscheduler(0) != SCHED_OTHER;
   const sched_param ordinary{};
   sched_setscheduler(0, SCHED_OTHER, &ordinary);
-  setpriority(PRIO_PROCESS, 0, 5);
+  setpriority(PRIO_PROCESS, 0, real_time ? -10 : 5);
   std::unique_lock<std::mutex> lock(mutex_);
   while (true) {
     changed_.wait(lock, [this] { return stop_ || question_; });

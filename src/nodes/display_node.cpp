@@ -66,9 +66,7 @@ DisplayNode::DisplayNode(ros::NodeHandle node, ros::NodeHandle private_node)
     : config_(readConfig(private_node)),
       scene_(config_),
       frames_({"cell", "holding_pipette", "manipulator_base"}),
-      inputs_{{{"/cell/state", true},
-               {"/force_sensor/measured_cf", true},
-               {"/haptic/measured_cp", false}}},
+      inputs_{{{"/cell/state", true}, {"/force_sensor/measured_cf", true}, {"/haptic/measured_cp", false}}},
       reported_(ros::WallTime::now()),
       diagnostics_(node, private_node) {
   state_.readout.state = "waiting for the cell";
@@ -76,10 +74,9 @@ DisplayNode::DisplayNode(ros::NodeHandle node, ros::NodeHandle private_node)
   // Only the latest message is worth a picture.
   const auto hints = ros::TransportHints().tcpNoDelay();
   const auto topic = [this](InputId input) { return inputs_[input].topic; };
-  subscribers_ = {
-      node.subscribe(topic(kState), 1, &DisplayNode::onState, this, hints),
-      node.subscribe(topic(kMeasured), 1, &DisplayNode::onMeasuredForce, this, hints),
-      node.subscribe(topic(kHand), 1, &DisplayNode::onHand, this, hints)};
+  subscribers_ = {node.subscribe(topic(kState), 1, &DisplayNode::onState, this, hints),
+                  node.subscribe(topic(kMeasured), 1, &DisplayNode::onMeasuredForce, this, hints),
+                  node.subscribe(topic(kHand), 1, &DisplayNode::onHand, this, hints)};
   diagnostics_.setHardwareID("none");
   diagnostics_.add("drawing", this, &DisplayNode::reportDrawing);
   diagnostics_.add("inputs", this, &DisplayNode::reportInputs);

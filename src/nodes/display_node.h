@@ -16,7 +16,8 @@ namespace microinjection {
 
 /// Shows the scene in rviz at x 1e4. For eyes only: nothing that controls reads its topics.
 ///
-/// In:  /cell/state (with the predicted force), /force_sensor/measured_cf, /haptic/measured_cp, and from tf the frames of the
+/// In:  /cell/state (with the predicted force), /force_sensor/measured_cf, /haptic/measured_cp, and from tf the frames
+/// of the
 ///      rig, needle_tip among them: a picture needs no pose a thousand times a second
 /// Out: viz/markers (MarkerArray), tf of viz/{cell, holding_pipette, manipulator_base, needle_tip} below viz/world
 ///

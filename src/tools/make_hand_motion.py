@@ -65,8 +65,8 @@ def samples(args):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", default="-", help="CSV file; - for standard output (default)")
-    parser.add_argument("--depth", type=float, default=15e-6, help="indentation meant by the hand, m (default 15e-6)")
-    parser.add_argument("--speed", type=float, default=5e-6, help="of the needle while it indents, m/s (default 5e-6)")
+    parser.add_argument("--depth", type=float, default=12e-6, help="indentation meant by the hand, m (default 12e-6)")
+    parser.add_argument("--speed", type=float, default=2.5e-6, help="of the needle while it indents, m/s (default 2.5e-6)")
     parser.add_argument("--hold", type=float, default=3.0, help="at depth, s (default 3)")
     parser.add_argument("--gap", type=float, default=32e-6, help="needle's way to the cell, m (default 32e-6)")
     parser.add_argument("--scale", type=float, default=1e-3, help="metres of needle per metre of hand (default 1e-3)")

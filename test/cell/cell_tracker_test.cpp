@@ -159,6 +159,17 @@ TEST(CellTracker, ATipThatLeapsIsNotTrustedUntilTheSolverHasFollowed) {
   EXPECT_TRUE(drive.rest(100).trusted);
 }
 
+TEST(CellTracker, ATremblingHandMakesNoOtherContact) {
+  Driver still(coarseScene("neo_hookean")), trembling(coarseScene("neo_hookean"));
+  still.moveTo({0, 0, 29e-6}, 50e-6);
+  for (int i = 0; i < 200; ++i) trembling.moveTo({(i % 7 - 3) * 0.05e-6, (i % 5 - 2) * 0.05e-6, 29e-6}, 1);
+  still.moveTo({0, 0, 26e-6}, 50e-6);
+  trembling.moveTo({0.1e-6, -0.1e-6, 26e-6}, 50e-6);
+  EXPECT_EQ(trembling.tracker.patch().vertices, still.tracker.patch().vertices);
+  EXPECT_TRUE(trembling.always_trusted) << trembling.tracker.distrust();
+  EXPECT_NEAR(trembling.rest(100).force.z(), still.rest(100).force.z(), 0.02 * still.force.force.z());
+}
+
 TEST(CellTracker, AContactThatTheSolverRefusesIsNotTrusted) {
   Driver drive(coarseScene("neo_hookean"));
   TipForce force;

@@ -2,5 +2,6 @@
 #include "nodes/run_node.h"
 
 int main(int argc, char** argv) {
-  return microinjection::runNode<microinjection::ForceSensorNode>(argc, argv, "force_sensor");
+  return microinjection::runNode<microinjection::ForceSensorNode>(argc, argv, "force_sensor",
+                                                                  microinjection::Priority::kOrdinary);
 }
