@@ -14,6 +14,10 @@
 
 namespace microinjection {
 
+/// Messages that may wait for a node of ordinary priority while the machine is busy, half a second of them: the
+/// recorder must see each one.
+constexpr int kBacklog = 500;
+
 /// When a node steps, and with which inputs. All callbacks and steps run in the one thread that calls run().
 ///
 /// Live, a step follows the arrival of a kSameTick input, so that a hand's motion runs through the whole chain at once;
@@ -91,7 +95,7 @@ Input<Message>& Cycle::input(const std::string& topic, Phase phase, double timeo
     const bool trigger = phase == Phase::kSameTick;
     subscribers_.push_back((trigger ? node_ : sampled_node_)
                                .subscribe<Message>(
-                                   topic, 10,
+                                   topic, kBacklog,
                                    [this, &port, trigger](const boost::shared_ptr<const Message>& message) {
                                      port.receive(message);
                                      triggered_ = triggered_ || trigger;
