@@ -132,6 +132,25 @@ ConfigReader ConfigReader::section(const std::string& key, Presence presence) {
   return ConfigReader(node, origin_, level_->path + key + "/", errors_, levels_);
 }
 
+std::vector<ConfigReader> ConfigReader::sections(const std::string& key, Presence presence) {
+  const YAML::Node list = find(key, presence);
+  std::vector<ConfigReader> readers;
+  if (!list.IsDefined()) return readers;
+  if (!list.IsSequence()) {
+    error(key, "must be a list of maps");
+    return readers;
+  }
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const std::string path = level_->path + key + "/" + std::to_string(i);
+    if (list[i].IsMap()) {
+      readers.push_back(ConfigReader(list[i], origin_, path + "/", errors_, levels_));
+    } else {
+      errors_->push_back(origin_ + ": " + path + ": must be a map");
+    }
+  }
+  return readers;
+}
+
 void ConfigReader::finish() {
   for (const auto& level : *levels_) {
     if (!level->map.IsMap()) {

@@ -58,6 +58,9 @@ class ConfigReader {
               Presence = kOptional);
   /// The map under `key`; an empty map when it is absent and optional.
   ConfigReader section(const std::string& key, Presence = kOptional);
+  /// The maps in the list under `key`, one reader each; none when it is absent and optional. Messages name them key/0,
+  /// key/1 and so on.
+  std::vector<ConfigReader> sections(const std::string& key, Presence = kOptional);
 
   /// Adds an error about `key`: "origin: cell/diameter = 3: MESSAGE".
   void error(const std::string& key, const std::string& message);

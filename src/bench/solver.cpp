@@ -1,7 +1,5 @@
-// Time of a solution against vertices, for the factorisations that were tried: ./dev bench solver.
+// Time of a solution of the live cell against vertices, for each method of SymmetricSolver: ./dev bench solver.
 
-#include <Eigen/CholmodSupport>
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
@@ -13,21 +11,13 @@
 
 #include "bench/bench_main.h"
 #include "cell/cell_model.h"
-#include "mechanics/patch_system.h"
+#include "mechanics/equilibrium_system.h"
 
 namespace microinjection {
 namespace {
 
 using Matrix = Eigen::SparseMatrix<double>;
-
-/// As mechanics/sparse_cholesky.h has it; the others order as their library does by default.
-class NestedDissection : public Eigen::CholmodSimplicialLLT<Matrix, Eigen::Lower> {
- public:
-  NestedDissection() {
-    cholmod().nmethods = 1;
-    cholmod().method[0].ordering = CHOLMOD_NESDIS;
-  }
-};
+using Method = SymmetricSolver::Method;
 
 double cpuTime() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
@@ -45,55 +35,64 @@ double median(const std::function<void()>& call) {
 }
 
 struct Timing {
-  std::string solver;
   double analyse = 0, factorise = 0, solve = 0;  ///< s; solve: three right-hand sides
+  double entries = 0;                            ///< of the factor
 };
 
-template <typename Solver>
-Timing timeSolver(const std::string& name, const Matrix& lower) {
-  Solver solver;
+Timing timeSolver(Method method, const Matrix& lower) {
+  SymmetricSolver solver(method);
   const Eigen::MatrixXd right = Eigen::MatrixXd::Ones(lower.rows(), 3);
   Eigen::MatrixXd solution;
   Timing timing;
-  timing.solver = name;
-  timing.analyse = median([&] { solver.analyzePattern(lower); });
-  timing.factorise = median([&] { solver.factorize(lower); });
+  timing.analyse = median([&] { solver.analyse(lower); });
+  timing.factorise = median([&] { solver.factorise(lower); });
   timing.solve = median([&] { solution = solver.solve(right); });
+  timing.entries = solver.factorEntries();
   return timing;
 }
 
-std::vector<Timing> timeSolvers(const Matrix& lower) {
-  constexpr int kLower = Eigen::Lower;
-  return {timeSolver<NestedDissection>("cholmod_simplicial_llt_nested_dissection", lower),
-          timeSolver<Eigen::SimplicialLLT<Matrix, kLower>>("eigen_simplicial_llt", lower),
-          timeSolver<Eigen::SimplicialLDLT<Matrix, kLower>>("eigen_simplicial_ldlt", lower),
-          timeSolver<Eigen::CholmodSimplicialLLT<Matrix, kLower>>("cholmod_simplicial_llt", lower),
-          timeSolver<Eigen::CholmodSimplicialLDLT<Matrix, kLower>>("cholmod_simplicial_ldlt", lower),
-          timeSolver<Eigen::CholmodSupernodalLLT<Matrix, kLower>>("cholmod_supernodal_llt", lower)};
+/// Of the cell with what is held fixed and a disc that sticks to the tip.
+Constraints makeConstraints(const CellModel& cell) {
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  Constraints constraints;
+  constraints.entries.assign(cell.body()->stateSize(), Constraints::kFree);
+  for (int k = 0; k < 3; ++k) {
+    for (int v : cell.heldVertices()) constraints.entries[3 * v + k] = Constraints::kFixed;
+    for (int v : cell.patchAt(cell.scene().radius() * up, up).vertices) {
+      constraints.entries[3 * v + k] = Constraints::tip(k);
+    }
+    constraints.entries[cell.body()->tipEntry() + k] = Constraints::tip(k);
+  }
+  return constraints;
 }
 
 std::string measure(double size) {
   Scene scene;
   scene.mesh.size = size;
   const CellModel cell(scene);
-  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
-  PatchSystem system(cell.body(), cell.heldVertices(), cell.patchAt(scene.radius() * up, up).vertices);
-  const Eigen::VectorXd u = Eigen::VectorXd::Zero(3 * cell.body().vertexCount());
-  system.factorise(u);
-  const double whole = median([&] { system.factorise(u); });
+  const Constraints constraints = makeConstraints(cell);
+  const Eigen::VectorXd undeformed = Eigen::VectorXd::Zero(cell.body()->stateSize());
   std::ostringstream rows;
-  for (const Timing& timing : timeSolvers(system.matrix())) {
+  for (const auto& [method, name] : {std::pair(Method::kSimplicial, "simplicial"),
+                                     {Method::kSupernodal, "supernodal"},
+                                     {Method::kIndefinite, "indefinite"}}) {
+    EquilibriumSystem system({cell.body()}, constraints, method);
+    const double assemble = median([&] { system.assemble(undeformed); });
+    const double whole = median([&] { system.factorise(undeformed); });
+    const Timing timing = timeSolver(method, system.matrix());
     char row[200];
-    std::snprintf(row, sizeof(row), "%zu,%zu,%s,%.3f,%.3f,%.3f,%.3f\n", cell.mesh().vertices.size(),
-                  cell.mesh().tetrahedra.size(), timing.solver.c_str(), 1e3 * timing.analyse, 1e3 * timing.factorise,
-                  1e3 * timing.solve, 1e3 * whole);
+    std::snprintf(row, sizeof(row), "%zu,%zu,%s,%.0f,%.3f,%.3f,%.3f,%.3f,%.3f\n", cell.mesh().vertices.size(),
+                  cell.mesh().tetrahedra.size(), name, timing.entries, 1e3 * timing.analyse, 1e3 * timing.factorise,
+                  1e3 * timing.solve, 1e3 * assemble, 1e3 * whole);
     rows << row;
   }
   return rows.str();
 }
 
 std::string table() {
-  std::string table = "vertices,tetrahedra,solver,analyse_ms,factorise_ms,solve_3_ms,assemble_and_condense_ms\n";
+  std::string table =
+      "vertices,tetrahedra,method,factor_entries,analyse_ms,factorise_ms,solve_3_ms,assemble_ms,assemble_and_condense_"
+      "ms\n";
   std::cout << table;
   for (const double size : {20e-6, 15e-6, 12e-6, 9e-6, 7e-6}) {
     const std::string rows = measure(size);
@@ -108,6 +107,8 @@ std::string table() {
 
 int main(int argc, char** argv) {
   return microinjection::benchMain(
-      argc, argv, "solver: CPU time of a solution against vertices, for the sparse Cholesky factorisations tried",
+      argc, argv,
+      "solver: CPU time of a solution of the live cell against vertices, for the methods of "
+      "the sparse solver",
       microinjection::table);
 }

@@ -1,32 +1,74 @@
 #include "cell/cell_model.h"
 
+#include <sstream>
+#include <string>
+
 #include "base/errors.h"
 #include "mesh/mesh_cache.h"
+#include "mesh/quadratic_mesh.h"
 
 namespace microinjection {
 namespace {
 
-CellMeshConfig meshConfig(const Scene& scene) {
+/// Names what the scene has that the live cell does not.
+void refuseWhatIsNotLive(const Scene& scene) {
+  constexpr char kNotLive[] = " (indent can do it, the live cell not yet)";
+  std::vector<std::string> errors;
+  if (scene.needle.tip.shape != "disc") {
+    errors.push_back("needle/tip/shape = " + scene.needle.tip.shape + ": must be disc" + kNotLive);
+  }
+  const std::vector<Scene::Layer>& layers = scene.cell.layers;
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    const std::string path = layers.size() == 1 ? "cell/" : "cell/layers/" + std::to_string(i) + "/";
+    if (layers[i].surface_tension > 0) {
+      std::ostringstream message;
+      message << path << "surface_tension = " << layers[i].surface_tension << " N/m: must be 0" << kNotLive;
+      errors.push_back(message.str());
+    }
+    if (!layers[i].material.viscoelasticity.empty()) {
+      errors.push_back(path + "material/viscoelasticity: must be left out" + kNotLive);
+    }
+  }
+  if (!errors.empty()) throw ConfigError(errors);
+}
+
+std::vector<double> outerRadii(const Scene& scene) {
+  std::vector<double> radii;
+  for (const Scene::Layer& layer : scene.cell.layers) radii.push_back(layer.outer_radius);
+  return radii;
+}
+
+TetMesh makeMesh(const Scene& scene) {
   scene.validate();
+  refuseWhatIsNotLive(scene);
+  const double tip = scene.needle.tip.radius, size = scene.meshSize();
   CellMeshConfig config;
-  config.diameter = scene.cell.diameter;
-  config.size = scene.meshSize();
-  config.density = scene.mesh.refinement.density;
-  config.zone_diameter = scene.mesh.refinement.zone * 2 * scene.needle.tip.radius;
-  config.tip_radius = scene.needle.tip.radius;
-  config.offset = scene.needle.offset;
-  config.contact_radius = scene.holding_pipette.contact_radius;
-  return config;
+  config.radii = outerRadii(scene);
+  config.size = size;
+  config.refinements = {{CellMeshConfig::Shape::kBall, scene.needle.offset, scene.mesh.refinement.zone * tip, +1,
+                         size / scene.mesh.refinement.density}};
+  config.imprints = {{scene.needle.offset, tip, +1},
+                     {Eigen::Vector2d::Zero(), scene.holding_pipette.contact_radius, -1}};
+  return MeshCache().get(config);
+}
+
+LayeredBody<3>::Materials makeMaterials(const Scene& scene) {
+  LayeredBody<3>::Materials materials;
+  for (const Scene::Layer& layer : scene.cell.layers) materials.push_back(makeMaterial(layer.material));
+  return materials;
 }
 
 }  // namespace
 
 CellModel::CellModel(const Scene& scene)
-    : scene_(scene), mesh_(MeshCache().get(meshConfig(scene))), surface_(extractSurface(mesh_)) {
+    : scene_(scene),
+      mesh_(makeMesh(scene)),
+      surface_(extractSurface(mesh_)),
+      body_(std::make_shared<LayeredBody<3>>(makeQuadratic(mesh_, outerRadii(scene)), ElementKind::kP1,
+                                             makeMaterials(scene))) {
   // The same rule as under the needle: the pipette's mouth is a disc below, along -z.
   const Eigen::Vector3d down = -Eigen::Vector3d::UnitZ();
   held_vertices_ = findTipPatch(surface_, scene.radius() * down, down, scene.holding_pipette.contact_radius).vertices;
-  body_ = std::make_unique<const ElasticBody>(mesh_, makeMaterial(scene.cell.material));
 }
 
 std::optional<SurfaceHit> CellModel::hit(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,

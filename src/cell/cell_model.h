@@ -8,24 +8,27 @@
 #include "cell/scene.h"
 #include "contact/ray_cast.h"
 #include "contact/tip_patch.h"
-#include "mechanics/elastic_body.h"
+#include "mechanics/layered_body.h"
 #include "mesh/surface_mesh.h"
 #include "mesh/tet_mesh.h"
 
 namespace microinjection {
 
-/// The cell that a scene describes, undeformed: mesh, elasticity, held vertices and contact queries. Centre at the
-/// origin, metres. Immutable after construction and safe to share between threads.
+/// The cell that a scene describes, undeformed, on linear (P1) tetrahedra: mesh, elasticity of each layer, held
+/// vertices and contact queries. Centre at the origin, metres. Immutable after construction and safe to share between
+/// threads.
 class CellModel {
  public:
   /// Meshes the cell or takes its mesh from the cache (see mesh/mesh_cache.h). Throws ConfigError when the scene is
-  /// not valid, std::runtime_error when meshing fails.
+  /// not valid or has what these elements cannot do in time (a rounded tip, surface tension, viscoelasticity),
+  /// std::runtime_error when meshing fails.
   explicit CellModel(const Scene& scene);
 
   const Scene& scene() const { return scene_; }
   const TetMesh& mesh() const { return mesh_; }
   const SurfaceMesh& surface() const { return surface_; }
-  const ElasticBody& body() const { return *body_; }
+  /// To be shared by the systems of equations of many threads: it remembers nothing, see LayeredBody.
+  const std::shared_ptr<LayeredBody<3>>& body() const { return body_; }
 
   /// Vertices of mesh() stuck to the holding pipette: on the surface, z < 0, within contact_radius of the z axis.
   const std::vector<int>& heldVertices() const { return held_vertices_; }
@@ -42,7 +45,7 @@ class CellModel {
   TetMesh mesh_;
   SurfaceMesh surface_;
   std::vector<int> held_vertices_;
-  std::unique_ptr<const ElasticBody> body_;
+  std::shared_ptr<LayeredBody<3>> body_;
 };
 
 }  // namespace microinjection

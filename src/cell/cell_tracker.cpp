@@ -95,7 +95,7 @@ TipForce CellTracker::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& ax
   collect(time);
   if (punctured_) return {};
   if (!contact_) {
-    const double outside = 2 * cell_->scene().cell.diameter;
+    const double outside = 2 * cell_->scene().cell.diameter();
     const Eigen::Vector3d origin = tip + (outside + tip.norm()) * axis;  // from outside, wherever the tip is
     const auto hit = cell_->hit(origin, -axis, start_triangle_);
     if (!hit) return {};

@@ -6,7 +6,8 @@
 
 #include "cell/cell_model.h"
 #include "contact/tip_patch.h"
-#include "mechanics/equilibrium_path.h"
+#include "mechanics/equilibrium_system.h"
+#include "mechanics/load_path.h"
 
 namespace microinjection {
 
@@ -28,13 +29,15 @@ class Indentation {
  public:
   /// Throws std::invalid_argument when the patch and the held vertices overlap or leave nothing free.
   Indentation(std::shared_ptr<const CellModel> cell, const TipPatch& patch);
+  Indentation(const Indentation&) = delete;  // the path refers to the system
+  Indentation& operator=(const Indentation&) = delete;
 
   /// Equilibrium at `tip_displacement` (m), reached along the straight line from the present one in adaptive load
   /// steps. On failure the state stays at the last equilibrium that was found.
   IndentationSolution solve(const Eigen::Vector3d& tip_displacement);
 
   /// Displacement of the mesh's vertices, m, xyz per vertex.
-  const Eigen::VectorXd& displacement() const { return path_.displacement(); }
+  Eigen::VectorXd displacement() const;
 
   /// Displacement of the tip in the present state, m.
   const Eigen::Vector3d& tipDisplacement() const { return path_.translation(); }
@@ -44,7 +47,8 @@ class Indentation {
 
  private:
   std::shared_ptr<const CellModel> cell_;
-  EquilibriumPath path_;
+  EquilibriumSystem system_;
+  LoadPath path_;
 };
 
 }  // namespace microinjection

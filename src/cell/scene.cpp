@@ -3,29 +3,123 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
-#include <vector>
 
 #include "base/config_reader.h"
 #include "base/errors.h"
+#include "cell/scene_check.h"
 
 namespace microinjection {
 namespace {
 
-const Range kPoisson = Range::open(-1, 0.5);
+constexpr double kAgreement = 1e-6;  // of a diameter that is given twice, relative
+
+/// As ConfigReader::number, with the unit in the message.
+void quantity(ConfigReader reader, const std::string& key, double& value, const Range& range, const std::string& unit,
+              ConfigReader::Presence presence = ConfigReader::kOptional) {
+  double read = std::numeric_limits<double>::quiet_NaN();
+  reader.number(key, read, Range::finite(), presence);
+  if (std::isnan(read)) return;
+  if (!range.contains(read)) {
+    return reader.error(key, "must be a number in " + range.text() + (unit.empty() ? "" : " " + unit));
+  }
+  value = read;
+}
+
+void readViscoelasticity(ConfigReader reader, ViscoelasticityConfig& value) {
+  for (ConfigReader& term_reader : reader.sections("prony")) {
+    PronyTerm& term = value.prony.emplace_back();
+    quantity(term_reader, "modulus_ratio", term.modulus_ratio, Range::positive(), "", ConfigReader::kRequired);
+    quantity(term_reader, "relaxation_time", term.relaxation_time, Range::positive(), "s", ConfigReader::kRequired);
+  }
+  quantity(reader, "viscosity", value.viscosity, Range::nonNegative(), "Pa s");
+}
+
+void readMaterial(ConfigReader reader, MaterialConfig& value) {
+  value.model.clear();  // unless it is read
+  reader.choice("model", value.model, materialModels(), ConfigReader::kRequired);
+  quantity(reader, "young_modulus", value.young_modulus, Range::positive(), "Pa", ConfigReader::kRequired);
+  quantity(reader, "poisson_ratio", value.poisson_ratio, Range::open(-1, 0.5), "", ConfigReader::kRequired);
+  quantity(reader, "mooney_ratio", value.mooney_ratio, Range::closed(0, 1), "");
+  if (reader.has("mooney_ratio") && !value.model.empty() && value.model != "mooney_rivlin") {
+    reader.error("mooney_ratio", "must be left out: it belongs to model mooney_rivlin only");
+  }
+  readViscoelasticity(reader.section("viscoelasticity"), value.viscoelasticity);
+}
+
+void readSurfaceTension(ConfigReader reader, Scene::Layer& value) {
+  quantity(reader, "surface_tension", value.surface_tension, Range::nonNegative(), "N/m");
+}
+
+void readLayers(ConfigReader cell, std::vector<Scene::Layer>& layers) {
+  layers.clear();
+  for (ConfigReader& reader : cell.sections("layers", ConfigReader::kRequired)) {
+    Scene::Layer& layer = layers.emplace_back();
+    layer.outer_radius = std::numeric_limits<double>::quiet_NaN();  // unless it is read
+    reader.text("name", layer.name, ConfigReader::kRequired);
+    quantity(reader, "outer_radius", layer.outer_radius, Range::positive(), "m", ConfigReader::kRequired);
+    readMaterial(reader.section("material", ConfigReader::kRequired), layer.material);
+    readSurfaceTension(reader, layer);
+  }
+  if (layers.empty()) cell.error("layers", "must have at least one layer");
+}
+
+void readLayeredCell(ConfigReader cell, Scene::Cell& value) {
+  readLayers(cell, value.layers);
+  Scene::Layer refused;
+  if (cell.has("material")) {
+    readMaterial(cell.section("material"), refused.material);
+    cell.error("material", "must be left out where there are layers: each has its own");
+  }
+  if (cell.has("surface_tension")) {
+    readSurfaceTension(cell, refused);
+    cell.error("surface_tension", "must be left out where there are layers: each has its own");
+  }
+  double diameter = std::numeric_limits<double>::quiet_NaN();
+  quantity(cell, "diameter", diameter, Range::positive(), "m");
+  const double outer_radius = value.layers.empty() ? diameter : value.layers.front().outer_radius;
+  if (std::abs(diameter - 2 * outer_radius) > kAgreement * diameter) {
+    std::ostringstream message;
+    message << "must be twice cell/layers/0/outer_radius = " << outer_radius << " m, or left out";
+    cell.error("diameter", message.str());
+  }
+}
+
+void readHomogeneousCell(ConfigReader cell, Scene::Cell& value) {
+  Scene::Layer& layer = value.layers.front();
+  double diameter = value.diameter();
+  quantity(cell, "diameter", diameter, Range::positive(), "m", ConfigReader::kRequired);
+  layer.outer_radius = diameter / 2;
+  if (!cell.has("material")) cell.error("material", "is missing; or give layers");
+  readMaterial(cell.section("material"), layer.material);
+  readSurfaceTension(cell, layer);
+}
 
 void readCell(ConfigReader cell, Scene::Cell& value) {
-  cell.number("diameter", value.diameter, Range::positive(), ConfigReader::kRequired);
-  ConfigReader material = cell.section("material", ConfigReader::kRequired);
-  material.choice("model", value.material.model, materialModels(), ConfigReader::kRequired);
-  material.number("young_modulus", value.material.young_modulus, Range::positive(), ConfigReader::kRequired);
-  material.number("poisson_ratio", value.material.poisson_ratio, kPoisson, ConfigReader::kRequired);
-  cell.section("puncture").number("force", value.puncture_force, Range::positive());
+  cell.has("layers") ? readLayeredCell(cell, value) : readHomogeneousCell(cell, value);
+  quantity(cell.section("puncture"), "force", value.puncture_force, Range::positive(), "N");
 }
 
 void readNeedle(ConfigReader needle, Scene::Needle& value) {
   ConfigReader tip = needle.section("tip", ConfigReader::kRequired);
-  tip.choice("shape", value.tip.shape, {"disc"}, ConfigReader::kRequired);
-  tip.number("radius", value.tip.radius, Range::positive(), ConfigReader::kRequired);
+  value.tip.shape.clear();  // unless it is read
+  tip.choice("shape", value.tip.shape, tipShapes(), ConfigReader::kRequired);
+  quantity(tip, "radius", value.tip.radius, Range::positive(), "m", ConfigReader::kRequired);
+  const bool has_edge = value.tip.shape == "rounded_flat";
+  quantity(tip, "edge_radius", value.tip.edge_radius, Range::positive(), "m",
+           has_edge ? ConfigReader::kRequired : ConfigReader::kOptional);
+  if (!has_edge && !value.tip.shape.empty() && tip.has("edge_radius")) {
+    tip.error("edge_radius", "must be left out: it belongs to shape rounded_flat only");
+  }
+  ConfigReader contact = needle.section("contact");
+  if (contact.has("mode")) value.contact.mode.clear();  // unless it is read
+  contact.choice("mode", value.contact.mode, {"sticking", "sliding"});
+  quantity(contact, "friction", value.contact.friction, Range::nonNegative(), "");
+  if (value.contact.mode == "sliding" && value.tip.shape == "disc") {
+    contact.error("mode", std::string("must be ") + kDiscSticks);
+  }
+  if (value.contact.mode == "sticking" && contact.has("friction")) {
+    contact.error("friction", "must be left out: it belongs to mode sliding only");
+  }
   Eigen::VectorXd offset = value.offset;
   needle.vector("offset", offset, Range::finite());
   value.offset = offset;
@@ -34,59 +128,34 @@ void readNeedle(ConfigReader needle, Scene::Needle& value) {
 void readMesh(ConfigReader mesh, Scene::Mesh& value) {
   if (mesh.has("size")) {
     value.size = 0;
-    mesh.number("size", *value.size, Range::positive());
+    quantity(mesh, "size", *value.size, Range::positive(), "m");
   }
   ConfigReader refinement = mesh.section("refinement");
-  refinement.number("zone", value.refinement.zone, Range::positive());
-  refinement.number("density", value.refinement.density, {1, 100, false, false});
+  quantity(refinement, "zone", value.refinement.zone, Range::positive(), "needle diameters");
+  quantity(refinement, "density", value.refinement.density, {1, 100, false, false}, "");
 }
 
 }  // namespace
 
 double Scene::meshSize() const {
   if (mesh.size) return *mesh.size;
-  return std::min(needle.tip.radius * mesh.refinement.density, 0.3 * cell.diameter);
+  const double wanted = needle.tip.radius * mesh.refinement.density;
+  return std::min(std::max(wanted, 0.05 * cell.diameter()), 0.3 * cell.diameter());
 }
 
-void Scene::validate() const {
-  std::vector<std::string> errors;
-  const auto require = [&](bool good, const std::string& key, double value, const std::string& allowed) {
-    std::ostringstream message;
-    message << key << " = " << value << ": must be " << allowed;
-    if (!good) errors.push_back(message.str());
-  };
-  const auto positive = [](double value) { return std::isfinite(value) && value > 0; };
-  try {
-    cell.material.validate();
-  } catch (const ConfigError& error) {
-    errors.push_back(std::string("cell/") + error.what());
-  }
-  require(positive(cell.diameter), "cell/diameter", cell.diameter, "positive (m)");
-  require(cell.puncture_force > 0, "cell/puncture/force", cell.puncture_force, "positive (N)");
-  if (needle.tip.shape != "disc") errors.push_back("needle/tip/shape = " + needle.tip.shape + ": must be disc");
-  // Beyond 0.95 of the radius the surface is so steep that a circle on it cannot be meshed well.
-  std::ostringstream reach;
-  reach << "in (0, 0.95) of the cell's radius " << radius() << " m";
-  require(positive(holding_pipette.contact_radius) && holding_pipette.contact_radius < 0.95 * radius(),
-          "holding_pipette/contact_radius", holding_pipette.contact_radius, reach.str());
-  require(positive(needle.tip.radius) && needle.tip.radius < 0.95 * radius(), "needle/tip/radius", needle.tip.radius,
-          reach.str());
-  require(needle.offset.norm() + needle.tip.radius < 0.95 * radius(), "needle/offset (its length)",
-          needle.offset.norm(), "with the tip's radius " + reach.str());
-  require(meshSize() >= cell.diameter / 200 && meshSize() <= cell.diameter / 2, "mesh/size", meshSize(),
-          "from 1/200 to half of the cell's diameter (m)");
-  require(positive(mesh.refinement.zone), "mesh/refinement/zone", mesh.refinement.zone, "positive");
-  require(mesh.refinement.density >= 1 && mesh.refinement.density <= 100, "mesh/refinement/density",
-          mesh.refinement.density, "in [1, 100]");
-  if (!errors.empty()) throw ConfigError(errors);
+const std::vector<std::string>& tipShapes() {
+  static const std::vector<std::string> shapes = {"disc", "hemisphere", "rounded_flat"};
+  return shapes;
 }
+
+void Scene::validate() const { checkScene(*this); }
 
 Scene parseScene(const YAML::Node& node, const std::string& origin) {
   Scene scene;
   ConfigReader reader(node, origin);
   readCell(reader.section("cell", ConfigReader::kRequired), scene.cell);
-  reader.section("holding_pipette", ConfigReader::kRequired)
-      .number("contact_radius", scene.holding_pipette.contact_radius, Range::positive(), ConfigReader::kRequired);
+  quantity(reader.section("holding_pipette", ConfigReader::kRequired), "contact_radius",
+           scene.holding_pipette.contact_radius, Range::positive(), "m", ConfigReader::kRequired);
   readNeedle(reader.section("needle", ConfigReader::kRequired), scene.needle);
   readMesh(reader.section("mesh"), scene.mesh);
   reader.finish();

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "material/material.h"
 
@@ -14,20 +15,41 @@ namespace microinjection {
 /// One cell, the pipette that holds it and the needle that enters it: the contents of a scene file
 /// (config/cells/*.yaml), SI units. The cell's centre is the origin; the needle comes along -z.
 struct Scene {
-  struct Cell {
-    double diameter = 56e-6;  ///< m
+  /// A ball or, with another layer inside of it, a spherical shell, bonded to its neighbours.
+  struct Layer {
+    std::string name = "cell";
+    double outer_radius = 28e-6;  ///< m; the inner one is that of the next layer, or 0
     MaterialConfig material;
+    double surface_tension = 0;  ///< N/m, of the outer surface or interface
+  };
+  struct Cell {
+    std::vector<Layer> layers = {Layer()};  ///< outermost first; a homogeneous cell is one layer named "cell"
     double puncture_force = std::numeric_limits<double>::infinity();  ///< N; infinity: is never punctured
+
+    /// Of the outermost layer: of the whole cell when it is homogeneous.
+    MaterialConfig& material() { return layers.front().material; }
+    const MaterialConfig& material() const { return layers.front().material; }
+    double radius() const { return layers.front().outer_radius; }  ///< m
+    double diameter() const { return 2 * radius(); }               ///< m
   };
   struct HoldingPipette {
     double contact_radius = 10e-6;  ///< m, of the circle of the surface that sticks to the mouth
   };
   struct Tip {
-    std::string shape = "disc";  ///< flat and sticking; the one shape there is
-    double radius = 3e-6;        ///< m
+    std::string shape = "disc";  ///< one of tipShapes()
+    double radius = 3e-6;        ///< m, of the disc or of the shaft
+    double edge_radius = 0;      ///< m, of rounded_flat only, in (0, radius]
+
+    bool rounded() const { return shape != "disc"; }
+    double edgeRadius() const { return shape == "hemisphere" ? radius : edge_radius; }  ///< m, of any shape; disc: 0
+  };
+  struct Contact {
+    std::string mode = "sticking";  ///< what touches sticks; or sliding, for rounded tips
+    double friction = 0;            ///< Coulomb's coefficient, of sliding only, >= 0
   };
   struct Needle {
     Tip tip;
+    Contact contact;
     Eigen::Vector2d offset = Eigen::Vector2d::Zero();  ///< m, (x, y) of the needle's line
   };
   struct Refinement {
@@ -44,15 +66,18 @@ struct Scene {
   Needle needle;
   Mesh mesh;
 
-  double radius() const { return cell.diameter / 2; }  ///< m
+  double radius() const { return cell.radius(); }  ///< m
 
-  /// mesh.size, or by default what puts elements of one tip radius into the puncture zone, 0.3 of the diameter at
-  /// the most; m.
+  /// mesh.size, or by default what puts elements of one tip radius into the puncture zone, but from 1/20 to 0.3 of the
+  /// diameter (a finer tip in a large cell wants a higher density); m.
   double meshSize() const;
 
   /// Throws ConfigError with all errors at once.
   void validate() const;
 };
+
+/// disc (flat, with a sharp edge), hemisphere, rounded_flat.
+const std::vector<std::string>& tipShapes();
 
 /// Reads a scene file; ConfigError names file, key, value and what is allowed.
 Scene loadScene(const std::string& path);

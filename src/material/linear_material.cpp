@@ -9,29 +9,27 @@ Eigen::Matrix3d smallStrain(const Eigen::Matrix3d& F) {
 
 }  // namespace
 
-LinearMaterial::LinearMaterial(const Lame& lame) : lame_(lame) {}
+LinearMaterial::LinearMaterial(const Lame& lame) : Material(lame.lambda, lame.mu), mu_(lame.mu) {}
 
-double LinearMaterial::energyDensity(const Eigen::Matrix3d& F) const {
-  const Eigen::Matrix3d strain = smallStrain(F);
-  const double trace = strain.trace();
-  return lame_.mu * strain.squaredNorm() + 0.5 * lame_.lambda * trace * trace;
+Material::Kinematics LinearMaterial::kinematics(const Eigen::Matrix3d& F) const {
+  return {F, F.trace() - 3, Eigen::Matrix3d::Identity()};
 }
 
-Eigen::Matrix3d LinearMaterial::stress(const Eigen::Matrix3d& F) const {
-  const Eigen::Matrix3d strain = smallStrain(F);
-  return 2 * lame_.mu * strain + lame_.lambda * strain.trace() * Eigen::Matrix3d::Identity();
+double LinearMaterial::modelEnergy(const Kinematics& kinematics) const {
+  return mu_ * smallStrain(kinematics.deformation_gradient).squaredNorm();
 }
 
-Material::Matrix9d LinearMaterial::tangent(const Eigen::Matrix3d&) const {
-  Matrix9d result = Matrix9d::Zero();
+Eigen::Matrix3d LinearMaterial::modelStress(const Kinematics& kinematics) const {
+  return 2 * mu_ * smallStrain(kinematics.deformation_gradient);
+}
+
+void LinearMaterial::addModelTangent(const Kinematics&, double energy_weight, double, Matrix9d& result) const {
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
-      result(i + 3 * j, i + 3 * j) += lame_.mu;
-      result(i + 3 * j, j + 3 * i) += lame_.mu;
-      result(i + 3 * i, j + 3 * j) += lame_.lambda;
+      result(i + 3 * j, i + 3 * j) += energy_weight * mu_;
+      result(i + 3 * j, j + 3 * i) += energy_weight * mu_;
     }
   }
-  return result;
 }
 
 }  // namespace microinjection

@@ -1,38 +1,28 @@
 #include "material/neo_hookean.h"
 
-#include <Eigen/LU>
-#include <cmath>
-#include <limits>
+#include "material/second_derivatives.h"
+#include "material/volume.h"
 
 namespace microinjection {
 
-NeoHookean::NeoHookean(const Lame& lame) : lame_(lame) {}
+NeoHookean::NeoHookean(const Lame& lame) : Material(lame.lambda, lame.mu), mu_(lame.mu) {}
 
-double NeoHookean::energyDensity(const Eigen::Matrix3d& F) const {
-  const double J = F.determinant();
-  if (!(J > 0)) return std::numeric_limits<double>::infinity();
-  const double log_J = std::log(J);
-  return 0.5 * lame_.mu * (F.squaredNorm() - 3) - lame_.mu * log_J + 0.5 * lame_.lambda * log_J * log_J;
+Material::Kinematics NeoHookean::kinematics(const Eigen::Matrix3d& F) const { return logarithmicDilatation(F); }
+
+double NeoHookean::modelEnergy(const Kinematics& kinematics) const {
+  return 0.5 * mu_ * (kinematics.deformation_gradient.squaredNorm() - 3) - mu_ * kinematics.dilatation;
 }
 
-Eigen::Matrix3d NeoHookean::stress(const Eigen::Matrix3d& F) const {
-  const Eigen::Matrix3d F_inverse_transposed = F.inverse().transpose();
-  return lame_.mu * F + (lame_.lambda * std::log(F.determinant()) - lame_.mu) * F_inverse_transposed;
+Eigen::Matrix3d NeoHookean::modelStress(const Kinematics& kinematics) const {
+  return mu_ * (kinematics.deformation_gradient - kinematics.dilatation_gradient);
 }
 
-Material::Matrix9d NeoHookean::tangent(const Eigen::Matrix3d& F) const {
-  // d(F^-T) = -F^-T dF^T F^-T and d(ln J) = F^-T : dF.
-  const Eigen::Matrix3d G = F.inverse().transpose();
-  const Eigen::Map<const Eigen::Matrix<double, 9, 1>> g(G.data());
-  const double factor = lame_.mu - lame_.lambda * std::log(F.determinant());
-  Matrix9d result = lame_.lambda * g * g.transpose();
-  result.diagonal().array() += lame_.mu;
-  for (int J = 0; J < 3; ++J) {
-    for (int L = 0; L < 3; ++L) {
-      result.block<3, 3>(3 * J, 3 * L) += factor * G.col(L) * G.col(J).transpose();
-    }
-  }
-  return result;
+void NeoHookean::addModelTangent(const Kinematics& kinematics, double energy_weight, double dilatation_weight,
+                                 Matrix9d& result) const {
+  // d(F^-T) = -F^-T dF^T F^-T.
+  const double mu = energy_weight * mu_;
+  addTransposingProduct(mu - dilatation_weight, kinematics.dilatation_gradient, result);
+  result.diagonal().array() += mu;
 }
 
 }  // namespace microinjection

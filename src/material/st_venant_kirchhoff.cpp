@@ -1,5 +1,7 @@
 #include "material/st_venant_kirchhoff.h"
 
+#include "material/second_derivatives.h"
+
 namespace microinjection {
 namespace {
 
@@ -9,35 +11,30 @@ Eigen::Matrix3d greenStrain(const Eigen::Matrix3d& F) {
 
 }  // namespace
 
-StVenantKirchhoff::StVenantKirchhoff(const Lame& lame) : lame_(lame) {}
+StVenantKirchhoff::StVenantKirchhoff(const Lame& lame) : Material(lame.lambda, lame.mu), mu_(lame.mu) {}
 
-double StVenantKirchhoff::energyDensity(const Eigen::Matrix3d& F) const {
-  const Eigen::Matrix3d strain = greenStrain(F);
-  const double trace = strain.trace();
-  return lame_.mu * strain.squaredNorm() + 0.5 * lame_.lambda * trace * trace;
+Material::Kinematics StVenantKirchhoff::kinematics(const Eigen::Matrix3d& F) const {
+  return {F, 0.5 * (F.squaredNorm() - 3), F};
 }
 
-Eigen::Matrix3d StVenantKirchhoff::secondPiola(const Eigen::Matrix3d& F) const {
-  const Eigen::Matrix3d strain = greenStrain(F);
-  return 2 * lame_.mu * strain + lame_.lambda * strain.trace() * Eigen::Matrix3d::Identity();
+double StVenantKirchhoff::modelEnergy(const Kinematics& kinematics) const {
+  return mu_ * greenStrain(kinematics.deformation_gradient).squaredNorm();
 }
 
-Eigen::Matrix3d StVenantKirchhoff::stress(const Eigen::Matrix3d& F) const { return F * secondPiola(F); }
+Eigen::Matrix3d StVenantKirchhoff::modelStress(const Kinematics& kinematics) const {
+  return 2 * mu_ * kinematics.deformation_gradient * greenStrain(kinematics.deformation_gradient);
+}
 
-Material::Matrix9d StVenantKirchhoff::tangent(const Eigen::Matrix3d& F) const {
-  // dP = dF S + F dS with dS = 2 mu dE + lambda tr(dE) I and dE = sym(F^T dF).
-  const Eigen::Matrix3d S = secondPiola(F);
-  const Eigen::Matrix3d B = F * F.transpose();
-  const Eigen::Map<const Eigen::Matrix<double, 9, 1>> f(F.data());
-  Matrix9d result = lame_.lambda * f * f.transpose();
-  for (int J = 0; J < 3; ++J) {
-    for (int L = 0; L < 3; ++L) {
-      result.block<3, 3>(3 * J, 3 * L) += lame_.mu * F.col(L) * F.col(J).transpose();
-      result.block<3, 3>(3 * J, 3 * L).diagonal().array() += S(J, L);
-    }
-    result.block<3, 3>(3 * J, 3 * J) += lame_.mu * B;
-  }
-  return result;
+void StVenantKirchhoff::addModelTangent(const Kinematics& kinematics, double energy_weight, double dilatation_weight,
+                                        Matrix9d& result) const {
+  // P = F S with S = 2 mu E: dP = dF S + 2 mu F sym(F^T dF); and dg/dF = F.
+  const Eigen::Matrix3d& F = kinematics.deformation_gradient;
+  const double mu = energy_weight * mu_;
+  Eigen::Matrix3d S = 2 * mu * greenStrain(F);
+  S.diagonal().array() += dilatation_weight;
+  addTransposingProduct(mu, F, result);
+  addRightProduct(S, result);
+  addLeftProduct(mu * F * F.transpose(), result);
 }
 
 }  // namespace microinjection

@@ -26,9 +26,15 @@ std::string hash(const std::string& text) {
 /// Everything that determines a mesh, exactly.
 std::string describe(const CellMeshConfig& config) {
   std::ostringstream out;
-  out << mesherVersion() << std::hexfloat << " diameter " << config.diameter << " size " << config.size << " density "
-      << config.density << " zone " << config.zone_diameter << " tip " << config.tip_radius << " offset "
-      << config.offset.x() << ' ' << config.offset.y() << " hold " << config.contact_radius;
+  out << mesherVersion() << std::hexfloat << " size " << config.size << " growth " << config.growth << " radii";
+  for (double radius : config.radii) out << ' ' << radius;
+  for (const auto& [shape, centre, radius, side, size] : config.refinements) {
+    out << (shape == CellMeshConfig::Shape::kBall ? " ball " : " circle ") << centre.x() << ' ' << centre.y() << ' '
+        << radius << ' ' << side << ' ' << size;
+  }
+  for (const auto& [centre, radius, side] : config.imprints) {
+    out << " imprint " << centre.x() << ' ' << centre.y() << ' ' << radius << ' ' << side;
+  }
   return out.str();
 }
 
@@ -43,7 +49,15 @@ std::string encodeBody(const TetMesh& mesh) {
   append(body, counts, 2);
   for (const Eigen::Vector3d& vertex : mesh.vertices) append(body, vertex.data(), 3);
   for (const std::array<int, 4>& tetrahedron : mesh.tetrahedra) append(body, tetrahedron.data(), 4);
+  append(body, mesh.layers.data(), mesh.layers.size());
   return body;
+}
+
+template <typename T>
+const char* take(const char* bytes, std::vector<T>& values, std::uint64_t count) {
+  values.resize(count);
+  std::memcpy(static_cast<void*>(values.data()), bytes, count * sizeof(T));
+  return bytes + count * sizeof(T);
 }
 
 /// @pre the checksum was right, so the bytes are what encodeBody wrote.
@@ -51,11 +65,9 @@ TetMesh decodeBody(const std::string& body) {
   std::uint64_t counts[2];
   std::memcpy(counts, body.data(), sizeof(counts));
   TetMesh mesh;
-  mesh.vertices.resize(counts[0]);
-  mesh.tetrahedra.resize(counts[1]);
-  const char* bytes = body.data() + sizeof(counts);
-  std::memcpy(static_cast<void*>(mesh.vertices.data()), bytes, counts[0] * sizeof(Eigen::Vector3d));
-  std::memcpy(mesh.tetrahedra.data(), bytes + counts[0] * sizeof(Eigen::Vector3d), counts[1] * sizeof(int[4]));
+  const char* bytes = take(body.data() + sizeof(counts), mesh.vertices, counts[0]);
+  bytes = take(bytes, mesh.tetrahedra, counts[1]);
+  take(bytes, mesh.layers, counts[1]);
   return mesh;
 }
 

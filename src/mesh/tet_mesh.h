@@ -11,6 +11,7 @@ namespace microinjection {
 struct TetMesh {
   std::vector<Eigen::Vector3d> vertices;
   std::vector<std::array<int, 4>> tetrahedra;
+  std::vector<int> layers;  ///< of each tetrahedron, 0 the outermost; made by a mesher it is never empty
 };
 
 /// Signed volume of one tetrahedron, m^3.

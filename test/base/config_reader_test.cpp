@@ -5,6 +5,7 @@
 #include <fstream>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "base/errors.h"
 
@@ -86,6 +87,28 @@ TEST(ConfigReader, RefusesUnknownSectionsAndMapsInPlaceOfValues) {
               reader.finish();
             }).find("tip = 3: must be a map"),
             std::string::npos);
+}
+
+TEST(ConfigReader, ReadsListsOfMaps) {
+  const auto read = [](const char* text, ConfigReader::Presence presence) {
+    ConfigReader reader(YAML::Load(text), "f");
+    std::vector<double> values;
+    for (ConfigReader& item : reader.sections("layers", presence)) {
+      item.number("x", values.emplace_back(0), Range::positive(), ConfigReader::kRequired);
+    }
+    reader.finish();
+    return values;
+  };
+  EXPECT_EQ(read("{layers: [{x: 2}, {x: 1}]}", ConfigReader::kRequired), (std::vector<double>{2, 1}));
+  EXPECT_TRUE(read("{}", ConfigReader::kOptional).empty());
+  EXPECT_EQ(errorsOf([&] { read("{}", ConfigReader::kRequired); }), "f: layers is missing");
+  EXPECT_EQ(errorsOf([&] { read("{layers: {x: 1}}", ConfigReader::kOptional); }),
+            "f: layers = {x: 1}: must be a list of maps");
+  const std::string text = errorsOf([&] { read("{layers: [{x: -1}, 3, {y: 1}]}", ConfigReader::kOptional); });
+  for (const char* part : {"f: layers/0/x = -1: must be a number in (0, inf)", "f: layers/1: must be a map",
+                           "f: layers/2/x is missing", "f: layers/2/y: unknown key; known here: x"}) {
+    EXPECT_NE(text.find(part), std::string::npos) << part << "\nis not in\n" << text;
+  }
 }
 
 TEST(ConfigReader, RefusesKeysThatAreThereTwiceAndRootsThatAreNoMap) {

@@ -4,7 +4,11 @@
 
 #include <algorithm>
 #include <iterator>
+#include <set>
+#include <string>
 #include <vector>
+
+#include "base/errors.h"
 
 namespace microinjection {
 namespace {
@@ -52,6 +56,65 @@ TEST_F(CellModelTest, PatchIsUnderTheTip) {
   std::set_intersection(patch.vertices.begin(), patch.vertices.end(), cell_.heldVertices().begin(),
                         cell_.heldVertices().end(), std::back_inserter(common));
   EXPECT_TRUE(common.empty());
+}
+
+TEST(CellModel, LayersAreMeshedAndHaveTheirMaterial) {
+  Scene scene;
+  scene.mesh.size = 12e-6;
+  Scene::Layer core = scene.cell.layers.front();
+  core.name = "core";
+  core.outer_radius = 18e-6;
+  core.material.young_modulus = 1e3;
+  scene.cell.layers.push_back(core);
+  const CellModel cell(scene);
+  EXPECT_EQ(std::set<int>(cell.mesh().layers.begin(), cell.mesh().layers.end()), (std::set<int>{0, 1}));
+  const LayeredBody<3>& body = *cell.body();
+  EXPECT_EQ(body.kind(), ElementKind::kP1);
+  EXPECT_EQ(body.elementCount(), static_cast<int>(cell.mesh().tetrahedra.size()));
+  // Stretched alike, the outer layer's elements store 17.9 times the energy.
+  Eigen::VectorXd state = Eigen::VectorXd::Zero(body.stateSize());
+  for (std::size_t v = 0; v < cell.mesh().vertices.size(); ++v) state.segment<3>(3 * v) = 0.1 * cell.mesh().vertices[v];
+  double density[2] = {0, 0};
+  LocalEnergy local;
+  for (int e = 0; e < body.elementCount(); ++e) {
+    ASSERT_TRUE(body.evaluate(e, state, Order::kEnergy, local));
+    density[cell.mesh().layers[e]] = local.energy / tetrahedronVolume(cell.mesh(), e);
+  }
+  EXPECT_NEAR(density[0] / density[1], 17.9, 1e-9);
+}
+
+TEST(CellModel, RefusesWhatTheLiveCellCannotDoAndNamesAllOfIt) {
+  Scene scene;
+  scene.needle.tip.shape = "hemisphere";
+  scene.cell.layers.front().surface_tension = 1e-3;
+  scene.cell.layers.push_back(scene.cell.layers.front());
+  scene.cell.layers.back().name = "core";
+  scene.cell.layers.back().outer_radius = 20e-6;
+  scene.cell.layers.back().surface_tension = 0;
+  scene.cell.layers.back().material.viscoelasticity.viscosity = 2;
+  const auto errors = [&]() -> std::string {
+    try {
+      const CellModel cell(scene);
+    } catch (const ConfigError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string layered = errors();
+  for (const char* part :
+       {"needle/tip/shape = hemisphere: must be disc", "cell/layers/0/surface_tension = 0.001 N/m: must be 0",
+        "cell/layers/1/material/viscoelasticity: must be left out", "the live cell not yet"}) {
+    EXPECT_NE(layered.find(part), std::string::npos) << part << "\nis not in\n" << layered;
+  }
+  EXPECT_EQ(layered.find("layers/1/surface_tension"), std::string::npos) << layered;
+  EXPECT_EQ(layered.find("layers/0/material"), std::string::npos) << layered;
+
+  scene.needle.tip.shape = "disc";
+  scene.cell.layers.resize(1);
+  const std::string homogeneous = errors();
+  EXPECT_NE(homogeneous.find("cell/surface_tension"), std::string::npos) << homogeneous;
+  scene.cell.layers.front().surface_tension = 0;
+  EXPECT_EQ(errors(), "");
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ const Eigen::Vector3d kAxis = Eigen::Vector3d::UnitZ();
 
 Scene coarseScene(const std::string& model) {
   Scene scene;
-  scene.cell.material = {model, 17.9e3, 0.45};
+  scene.cell.material() = {model, 17.9e3, 0.45};
   scene.mesh.size = 20e-6;
   return scene;
 }

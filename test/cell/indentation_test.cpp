@@ -4,6 +4,8 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <stdexcept>
+#include <thread>
 
 #include "base/finite_difference.h"
 
@@ -17,7 +19,7 @@ class IndentationTest : public testing::Test {
  protected:
   static std::shared_ptr<const CellModel> makeCell(const std::string& model, double size = 20e-6) {
     Scene scene;
-    scene.cell.material.model = model;
+    scene.cell.material().model = model;
     scene.mesh.size = size;
     return std::make_shared<const CellModel>(scene);
   }
@@ -142,6 +144,51 @@ TEST_F(IndentationTest, AMovingNeedleTakesFewIterations) {
     EXPECT_TRUE(solution.converged);
     EXPECT_LE(solution.newton_iterations, 3);
   }
+}
+
+TEST_F(IndentationTest, ASofterCoreMakesTheCellSofter) {
+  const auto force = [](double core_modulus) {
+    Scene scene;
+    scene.mesh.size = 15e-6;
+    scene.cell.layers.push_back(scene.cell.layers.front());
+    scene.cell.layers.back().name = "core";
+    scene.cell.layers.back().outer_radius = 20e-6;
+    scene.cell.layers.back().material.young_modulus = core_modulus;
+    const auto cell = std::make_shared<const CellModel>(scene);
+    const IndentationSolution solution =
+        Indentation(cell, cell->patchAt({0, 0, 28e-6}, Vector3d::UnitZ())).solve({0, 0, -3e-6});
+    EXPECT_TRUE(solution.converged) << solution.reason;
+    return solution.force.z();
+  };
+  const double homogeneous = force(17.9e3), soft = force(1e3);
+  EXPECT_LT(soft, 0.9 * homogeneous);
+  EXPECT_GT(soft, 0.2 * homogeneous);
+}
+
+TEST_F(IndentationTest, ThreadsShareACell) {
+  const std::shared_ptr<const CellModel> cell = makeCell("neo_hookean");
+  const TipPatch patch = cell->patchAt({0, 0, 28e-6}, Vector3d::UnitZ());
+  const auto push = [&](IndentationSolution& solution) {
+    Indentation indentation(cell, patch);
+    for (int i = 1; i <= 10; ++i) solution = indentation.solve({0, 0, -0.5e-6 * i});
+    indentation.reset();
+    solution = indentation.solve({0, 0, -2e-6});
+  };
+  IndentationSolution alone, one, other;
+  push(alone);
+  std::thread first([&] { push(one); }), second([&] { push(other); });
+  first.join();
+  second.join();
+  EXPECT_EQ(one.force, alone.force);
+  EXPECT_EQ(other.force, alone.force);
+  EXPECT_EQ(other.stiffness, alone.stiffness);
+}
+
+TEST_F(IndentationTest, RefusesAPatchOnTheHeldVertices) {
+  const std::shared_ptr<const CellModel> cell = makeCell("linear");
+  TipPatch patch;
+  patch.vertices = {cell->heldVertices().front()};
+  EXPECT_THROW(Indentation(cell, patch), std::invalid_argument);
 }
 
 }  // namespace

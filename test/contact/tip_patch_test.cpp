@@ -7,14 +7,15 @@
 
 #include "contact/ray_cast.h"
 #include "mesh/cell_mesher.h"
+#include "mesh/needle_cell.h"
 
 namespace microinjection {
 namespace {
 
 using Eigen::Vector3d;
 
-const CellMeshConfig kConfig;
-const double kRadius = kConfig.diameter / 2;
+const CellMeshConfig kConfig = needleCell();
+const double kRadius = kConfig.radii[0];
 
 class TipPatchTest : public testing::Test {
  protected:
@@ -23,14 +24,14 @@ class TipPatchTest : public testing::Test {
 };
 
 TEST_F(TipPatchTest, IsTheDiscWithItsRim) {
-  const TipPatch patch = findTipPatch(surface_, {0, 0, kRadius}, Vector3d::UnitZ(), kConfig.tip_radius);
+  const TipPatch patch = findTipPatch(surface_, {0, 0, kRadius}, Vector3d::UnitZ(), kTipRadius);
   int on_rim = 0;
   for (int v : patch.vertices) {
     const Vector3d& vertex = mesh_.vertices[v];
     EXPECT_GT(vertex.z(), 0);
     EXPECT_NEAR(vertex.norm(), kRadius, 1e-15);
-    EXPECT_LE(vertex.head<2>().norm(), kConfig.tip_radius * (1 + 1e-6));
-    if (vertex.head<2>().norm() > kConfig.tip_radius * (1 - 1e-9)) ++on_rim;
+    EXPECT_LE(vertex.head<2>().norm(), kTipRadius * (1 + 1e-6));
+    if (vertex.head<2>().norm() > kTipRadius * (1 - 1e-9)) ++on_rim;
   }
   EXPECT_GE(on_rim, 8);
   EXPECT_TRUE(std::is_sorted(patch.vertices.begin(), patch.vertices.end()));

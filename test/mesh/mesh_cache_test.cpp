@@ -9,6 +9,7 @@
 #include <set>
 
 #include "base/atomic_file.h"
+#include "mesh/needle_cell.h"
 
 namespace microinjection {
 namespace {
@@ -19,8 +20,9 @@ class MeshCacheTest : public testing::Test {
  protected:
   void SetUp() override {
     fs::remove_all(directory_);
+    config_.radii = {28e-6, 14e-6};
     config_.size = 25e-6;  // quick
-    config_.density = 2;
+    config_.refinements[0].size = 12e-6;
   }
   void TearDown() override { fs::remove_all(directory_); }
 
@@ -31,7 +33,7 @@ class MeshCacheTest : public testing::Test {
 
   const std::string directory_ = testing::TempDir() + "microinjection_mesh_cache";
   const MeshCache cache_{directory_};
-  CellMeshConfig config_;
+  CellMeshConfig config_ = needleCell();
 };
 
 TEST_F(MeshCacheTest, HitGivesTheIdenticalMesh) {
@@ -41,25 +43,29 @@ TEST_F(MeshCacheTest, HitGivesTheIdenticalMesh) {
   const TetMesh loaded = cache_.get(config_);
   EXPECT_EQ(made.vertices, loaded.vertices);
   EXPECT_EQ(made.tetrahedra, loaded.tetrahedra);
+  EXPECT_EQ(made.layers, loaded.layers);
+  EXPECT_EQ(std::set<int>(loaded.layers.begin(), loaded.layers.end()), (std::set<int>{0, 1}));
   EXPECT_EQ(fs::last_write_time(cache_.path(config_)), time) << "it was made again";
 }
 
 TEST_F(MeshCacheTest, DamagedFilesAreMadeAnew) {
   const TetMesh made = cache_.get(config_);
   const std::string good = read();
-  std::string flipped = good;
-  flipped[good.size() - 5] ^= 1;
+  std::string flipped = good, other_layer = good;
+  flipped[good.size() / 2] ^= 1;
+  other_layer[good.size() - sizeof(int)] ^= 1;  // of the last tetrahedron, on a machine that puts low bytes first
   CellMeshConfig other = config_;
-  other.contact_radius *= 1.1;
+  other.imprints[1].radius *= 1.1;
   cache_.get(other);
   std::ifstream foreign_file(cache_.path(other), std::ios::binary);
   const std::string foreign{std::istreambuf_iterator<char>(foreign_file), std::istreambuf_iterator<char>()};
-  for (const std::string& bad : {std::string(), good.substr(0, good.size() / 2), good + "x", flipped, foreign,
-                                 std::string("no mesh at all\n")}) {
+  for (const std::string& bad : {std::string(), good.substr(0, good.size() / 2), good + "x", flipped, other_layer,
+                                 foreign, std::string("no mesh at all\n")}) {
     writeFileAtomically(cache_.path(config_), bad);
     const TetMesh mesh = cache_.get(config_);
     EXPECT_EQ(mesh.vertices, made.vertices);
     EXPECT_EQ(mesh.tetrahedra, made.tetrahedra);
+    EXPECT_EQ(mesh.layers, made.layers);
     EXPECT_EQ(read(), good) << "the damaged file was left";
   }
 }
@@ -71,14 +77,27 @@ TEST_F(MeshCacheTest, EveryInputChangesTheFile) {
     change(config);
     EXPECT_TRUE(paths.insert(cache_.path(config)).second);
   };
-  changed([](CellMeshConfig& c) { c.diameter *= 1 + 1e-12; });
-  changed([](CellMeshConfig& c) { c.size *= 1 + 1e-12; });
-  changed([](CellMeshConfig& c) { c.density *= 1 + 1e-12; });
-  changed([](CellMeshConfig& c) { c.zone_diameter *= 1 + 1e-12; });
-  changed([](CellMeshConfig& c) { c.tip_radius *= 1 + 1e-12; });
-  changed([](CellMeshConfig& c) { c.contact_radius *= 1 + 1e-12; });
-  changed([](CellMeshConfig& c) { c.offset.x() = 1e-20; });
-  changed([](CellMeshConfig& c) { c.offset.y() = 1e-20; });
+  const double little = 1 + 1e-12;
+  changed([=](CellMeshConfig& c) { c.radii[0] *= little; });
+  changed([=](CellMeshConfig& c) { c.radii[1] *= little; });
+  changed([](CellMeshConfig& c) { c.radii.pop_back(); });
+  changed([](CellMeshConfig& c) { c.radii.push_back(3e-6); });
+  changed([=](CellMeshConfig& c) { c.size *= little; });
+  changed([=](CellMeshConfig& c) { c.growth *= little; });
+  changed([](CellMeshConfig& c) { c.refinements[0].shape = CellMeshConfig::Shape::kCircle; });
+  changed([](CellMeshConfig& c) { c.refinements[0].centre.x() = 1e-20; });
+  changed([](CellMeshConfig& c) { c.refinements[0].centre.y() = 1e-20; });
+  changed([=](CellMeshConfig& c) { c.refinements[0].radius *= little; });
+  changed([](CellMeshConfig& c) { c.refinements[0].side = -1; });
+  changed([=](CellMeshConfig& c) { c.refinements[0].size *= little; });
+  changed([](CellMeshConfig& c) { c.refinements.push_back(c.refinements[0]); });
+  changed([](CellMeshConfig& c) { c.refinements.clear(); });
+  changed([](CellMeshConfig& c) { c.imprints[0].centre.x() = 1e-20; });
+  changed([](CellMeshConfig& c) { c.imprints[0].centre.y() = 1e-20; });
+  changed([=](CellMeshConfig& c) { c.imprints[0].radius *= little; });
+  changed([=](CellMeshConfig& c) { c.imprints[1].radius *= little; });
+  changed([](CellMeshConfig& c) { c.imprints[0].side = -1; });
+  changed([](CellMeshConfig& c) { c.imprints.pop_back(); });
 }
 
 TEST_F(MeshCacheTest, LivesWhereTheUserKeepsCaches) {

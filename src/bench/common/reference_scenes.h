@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cell/scene.h"
+
+namespace microinjection {
+
+/// A scene with forces that others found on converged meshes: test/reference/README.md.
+struct ReferenceScene {
+  struct Point {
+    double depth;  ///< m
+    double force;  ///< N
+  };
+  std::string name;
+  Scene scene;
+  std::vector<Point> points;  ///< ascending
+};
+
+/// Read from test/reference; std::runtime_error when a file cannot be.
+std::vector<ReferenceScene> referenceScenes();
+
+}  // namespace microinjection

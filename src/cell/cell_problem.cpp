@@ -1,0 +1,173 @@
+#include "cell/cell_problem.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <utility>
+#include <vector>
+
+#include "contact/tip_contact.h"
+#include "mechanics/surface_tension.h"
+#include "mechanics/viscous_stress.h"
+
+namespace microinjection {
+namespace {
+
+/// Contact's stiffness, times Young's modulus over the tip's radius. The tip then enters the surface by a thousandth of
+/// its radius where the pressure is that modulus.
+constexpr double kPenalty = 1000;
+constexpr double kOnCircle = 1 + 1e-9;
+
+template <int Dim>
+typename LayeredBody<Dim>::Materials materials(const Scene& scene) {
+  typename LayeredBody<Dim>::Materials result;
+  for (const Scene::Layer& layer : scene.cell.layers) result.push_back(makeMaterial(layer.material));
+  return result;
+}
+
+double cpuTime() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+SymmetricSolver::Method method(ElementKind element, int dimension) {
+  if (hasContinuousPressure(element)) return SymmetricSolver::Method::kIndefinite;
+  return dimension == 3 ? SymmetricSolver::Method::kSupernodal : SymmetricSolver::Method::kSimplicial;
+}
+
+double distanceFromLine(const Eigen::Vector2d& rz, const Eigen::Vector2d& /*on the axis*/) { return rz[0]; }
+double distanceFromLine(const Eigen::Vector3d& x, const Eigen::Vector2d& line) { return (x.head<2>() - line).norm(); }
+
+/// Nodes of the mesh that the body's elements displace: all, or the vertices.
+template <int Dim>
+int displacedNodes(const LayeredBody<Dim>& body) {
+  return isQuadratic(body.kind()) ? static_cast<int>(body.mesh().nodes.size()) : body.mesh().vertex_count;
+}
+
+/// Nodes of the outer surface's facets that lie within `radius` of a vertical line on one side.
+template <int Dim>
+std::vector<int> nodesWithin(const LayeredBody<Dim>& body, const Eigen::Vector2d& line, double radius, double side) {
+  const QuadraticMesh<Dim>& mesh = body.mesh();
+  std::vector<char> inside(mesh.nodes.size(), 0);
+  for (const auto& facet : mesh.facets) {
+    bool all = facet.layer == 0;
+    for (int corner = 0; corner < Dim; ++corner) {
+      const auto& x = mesh.nodes[facet.nodes[corner]];
+      all = all && side * x[Dim - 1] > 0 && distanceFromLine(x, line) <= kOnCircle * radius;
+    }
+    for (int node : facet.nodes) inside[node] |= all;
+  }
+  std::vector<int> nodes;
+  for (int node = 0; node < displacedNodes(body); ++node) {
+    if (inside[node]) nodes.push_back(node);
+  }
+  return nodes;
+}
+
+}  // namespace
+
+template <int Dim>
+CellProblem<Dim>::CellProblem(const Scene& scene, QuadraticMesh<Dim> mesh, ElementKind element)
+    : body_(std::make_shared<LayeredBody<Dim>>(std::move(mesh), element, materials<Dim>(scene))) {
+  EquilibriumSystem::Terms terms = {body_};
+  bool linear = body_->isLinear() && !scene.needle.tip.rounded();
+  for (std::size_t i = 0; i < scene.cell.layers.size(); ++i) {
+    const Scene::Layer& layer = scene.cell.layers[i];
+    if (layer.surface_tension == 0) continue;
+    linear = false;
+    terms.push_back(std::make_shared<SurfaceTension<Dim>>(*body_, static_cast<int>(i), layer.outer_radius,
+                                                          layer.surface_tension));
+  }
+  std::vector<ViscoelasticityConfig> viscoelasticity;
+  for (const Scene::Layer& layer : scene.cell.layers) viscoelasticity.push_back(layer.material.viscoelasticity);
+  if (!std::all_of(viscoelasticity.begin(), viscoelasticity.end(), [](const auto& layer) { return layer.empty(); })) {
+    linear = false;
+    terms.push_back(std::make_shared<ViscousStress<Dim>>(body_, viscoelasticity));
+  }
+  if (scene.needle.tip.rounded()) addContact(scene, terms);
+  system_ = std::make_unique<EquilibriumSystem>(terms, constraints(scene), method(element, Dim));
+  path_ = std::make_unique<LoadPath>(*system_, pathConfig(scene, linear));
+}
+
+template <int Dim>
+Constraints CellProblem<Dim>::constraints(const Scene& scene) const {
+  Constraints result;
+  result.entries.assign(body_->stateSize(), Constraints::kFree);
+  if (hasContinuousPressure(body_->kind())) {
+    result.pressures = body_->pressureCount();
+  } else {
+    std::fill_n(result.entries.end() - 3 - body_->pressureCount(), body_->pressureCount(), Constraints::kInternal);
+  }
+  for (int k = 0; k < 3; ++k) {  // a section's needle moves along the axis only
+    result.entries[body_->tipEntry() + k] = Dim == 2 && k != 2 ? Constraints::kFixed : Constraints::tip(k);
+  }
+  for (int node = 0; Dim == 2 && node < displacedNodes(*body_); ++node) {
+    if (body_->mesh().nodes[node][0] == 0) result.entries[Dim * node] = Constraints::kFixed;
+  }
+  std::vector<char> held(body_->nodeCount(), 0);
+  for (int node : nodesWithin(*body_, Eigen::Vector2d::Zero(), scene.holding_pipette.contact_radius, -1)) {
+    held[node] = 1;
+    for (int k = 0; k < Dim; ++k) result.entries[Dim * node + k] = Constraints::kFixed;
+  }
+  if (scene.needle.tip.rounded()) return result;
+  for (int node : nodesWithin(*body_, scene.needle.offset, scene.needle.tip.radius, +1)) {
+    if (held[node]) throw std::invalid_argument("the tip's patch and the held vertices overlap");
+    for (int k = 0; k < Dim; ++k) result.entries[Dim * node + k] = Constraints::tip(k);
+    if (Dim == 2) {  // along the axis only
+      result.entries[Dim * node] = Constraints::kFixed;
+      result.entries[Dim * node + 1] = Constraints::tip(2);
+    }
+  }
+  return result;
+}
+
+template <int Dim>
+void CellProblem<Dim>::addContact(const Scene& scene, EquilibriumSystem::Terms& terms) const {
+  const Scene::Needle& needle = scene.needle;
+  const RoundedTip tip = RoundedTip::make(needle.tip.shape, needle.tip.radius, needle.tip.edge_radius);
+  TipContactConfig config;
+  config.mode = needle.contact.mode == "sliding" ? TipContactConfig::Mode::kSliding : TipContactConfig::Mode::kSticking;
+  config.friction = needle.contact.friction;
+  config.origin << needle.offset, tip.touchHeight(scene.radius(), needle.offset);
+  config.penalty = kPenalty * scene.cell.material().young_modulus / needle.tip.radius;
+  terms.push_back(std::make_shared<TipContact<Dim>>(*body_, tip, config));
+}
+
+template <int Dim>
+LoadPathConfig CellProblem<Dim>::pathConfig(const Scene& scene, bool linear) {
+  const double diameter = scene.cell.diameter(), tip = scene.needle.tip.radius;
+  LoadPathConfig config;
+  config.length = diameter;
+  config.first_step = config.largest_step = diameter / 16;
+  config.smallest_step = 1e-3 * tip;
+  config.linear = linear;
+  if (scene.needle.tip.rounded()) {  // points stick where they first touch: the path must be followed closely
+    config.smooth = false;
+    config.first_step = tip / 40;
+    config.largest_step = tip / 8;
+    config.smallest_step = 1e-5 * tip;
+  }
+  return config;
+}
+
+template <int Dim>
+IndentationSolution CellProblem<Dim>::solve(const Eigen::Vector3d& tip_displacement, double duration) {
+  const double start = cpuTime();
+  const LoadPath::Result result = path_->advance(tip_displacement, duration);
+  IndentationSolution solution;
+  solution.converged = result.converged;
+  solution.reason = result.reason;
+  solution.tip_displacement = path_->translation();
+  solution.force = -path_->reaction();
+  solution.stiffness = path_->stiffness();
+  solution.smallest_jacobian = body_->smallestJacobian(path_->state());
+  solution.newton_iterations = result.newton_iterations;
+  solution.cpu_time = cpuTime() - start;
+  return solution;
+}
+
+template class CellProblem<2>;
+template class CellProblem<3>;
+
+}  // namespace microinjection

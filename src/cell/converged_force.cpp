@@ -1,0 +1,147 @@
+#include "cell/converged_force.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "base/errors.h"
+#include "cell/cell_problem.h"
+#include "cell/scene_mesh.h"
+
+namespace microinjection {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kEver = std::numeric_limits<double>::infinity();  ///< s
+constexpr int kCoarsestInSpace = -1;
+/// A finer mesh takes about this many times longer: in the section, in space.
+constexpr double kCostOfLevel[2] = {3, 7};
+
+double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+std::string micrometres(double metres) {
+  char text[40];
+  std::snprintf(text, sizeof(text), "%.4g um", 1e6 * metres);
+  return text;
+}
+
+}  // namespace
+
+/// Equilibria on one mesh.
+struct ConvergedForce::Level {
+  LevelReport report;
+  Forces forces;
+  std::vector<double> wall_times;                      ///< s
+  double reached = 0;                                  ///< m, deepest equilibrium
+  std::string reason;                                  ///< why no deeper
+};
+
+ConvergedForce::ConvergedForce(const Scene& scene, const Indenting& indenting, const ConvergedForceConfig& config)
+    : scene_(scene), indenting_(indenting), config_(config) {
+  scene_.validate();
+  const bool possible = isAxisymmetric(scene) && indenting.lateral.isZero(0);
+  if (config.model == ConvergedForceConfig::Model::kAxisymmetric && !possible) {
+    throw ConfigError("model = axisymmetric: needle/offset and lateral must be 0; use spatial or auto");
+  }
+  axisymmetric_ = possible && config.model != ConvergedForceConfig::Model::kSpatial;
+}
+
+template <int Dim>
+ConvergedForce::Level ConvergedForce::solveLevel(int number) const {
+  const Clock::time_point start = Clock::now();
+  Level level;
+  CellProblem<Dim> problem(scene_, makeSceneMesh<Dim>(scene_, number), config_.element);
+  level.report.level = number;
+  level.report.nodes = problem.body().nodeCount();
+  level.report.elements = problem.body().elementCount();
+  level.report.unknowns = problem.unknowns();
+  const std::size_t count = indenting_.depths.size();
+  level.forces.resize(count);
+  level.wall_times.assign(count, 0);
+  level.report.forces.assign(count, kNan);
+  std::vector<std::size_t> order(count);
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](auto a, auto b) { return indenting_.depths[a] < indenting_.depths[b]; });
+  Clock::time_point mark = start;
+  for (std::size_t i : order) {
+    const Eigen::Vector3d target(indenting_.lateral.x(), indenting_.lateral.y(), -indenting_.depths[i]);
+    if (!indenting_.lateral.isZero(0)) problem.reset();  // each depth lies on a line of its own
+    const double way = (target - problem.tipDisplacement()).norm();
+    IndentationSolution solution = problem.solve(target, way > 0 && indenting_.speed ? way / *indenting_.speed : kEver);
+    if (solution.converged && indenting_.hold > 0) solution = problem.solve(target, indenting_.hold);
+    level.wall_times[i] = secondsSince(mark);
+    mark = Clock::now();
+    level.reached = std::max(level.reached, -solution.tip_displacement.z());
+    if (!solution.converged) {
+      level.reason = solution.reason;
+      break;
+    }
+    level.forces[i] = solution.force;
+    level.report.forces[i] = solution.force.norm();
+  }
+  level.report.wall_time = secondsSince(start);
+  return level;
+}
+
+/// Takes what a level tells. `before`: force at each depth on the finest mesh so far that had one.
+void ConvergedForce::takeOver(const Level& level, Forces& before, std::vector<ForcePoint>& points) const {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    ForcePoint& point = points[i];
+    const std::optional<Eigen::Vector3d> coarser = before[i];
+    if (level.forces[i]) before[i] = level.forces[i];
+    point.wall_time += level.wall_times[i];
+    if (point.converged && point.error_estimate <= config_.tolerance) continue;
+    if (!level.forces[i]) {
+      const bool lost = coarser.has_value();
+      if (lost || point.reason.empty()) {
+        point.reason = (lost ? "finer meshes lose the solution before: " : "") + level.reason + "; the tip came to " +
+                       micrometres(level.reached);
+      }
+      continue;
+    }
+    if (!coarser) continue;
+    const double change = (*level.forces[i] - *coarser).norm(), size = level.forces[i]->norm();
+    point.converged = true;
+    point.reason.clear();
+    point.force = *level.forces[i];
+    point.error_estimate = size > 0 ? change / size : 0;
+    point.level = level.report.level;
+  }
+}
+
+/// Whether a finer level may help some depth.
+bool ConvergedForce::goOn(const std::vector<ForcePoint>& points, const Level& level) const {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const bool done = points[i].converged && points[i].error_estimate <= config_.tolerance;
+    const bool may = level.forces[i] || level.report.level < 1;  // the coarsest meshes are not the last word
+    if (!done && may) return true;
+  }
+  return false;
+}
+
+std::vector<ForcePoint> ConvergedForce::solve(const std::function<void(const LevelReport&)>& report) {
+  const Clock::time_point start = Clock::now();
+  std::vector<ForcePoint> points(indenting_.depths.size());
+  for (std::size_t i = 0; i < points.size(); ++i) points[i].depth = indenting_.depths[i];
+  Forces before(points.size());
+  for (int number = axisymmetric_ ? 0 : kCoarsestInSpace; number <= config_.finest; ++number) {
+    const Level level = axisymmetric_ ? solveLevel<2>(number) : solveLevel<3>(number);
+    takeOver(level, before, points);
+    if (report) report(level.report);
+    const double next = level.report.wall_time * kCostOfLevel[axisymmetric_ ? 0 : 1];
+    if (!goOn(points, level) || secondsSince(start) + next > config_.time) break;
+  }
+  for (ForcePoint& point : points) {
+    if (!point.converged && point.reason.empty()) point.reason = "one mesh only has a solution";
+  }
+  return points;
+}
+
+}  // namespace microinjection

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cell/scene.h"
+#include "mechanics/reference_element.h"
+
+namespace microinjection {
+
+/// A needle pushed to one depth after the other.
+struct Indenting {
+  std::vector<double> depths;                             ///< m, each >= 0, in any order
+  Eigen::Vector2d lateral = Eigen::Vector2d::Zero();  ///< m, of the tip at every depth, reached along a straight line
+  std::optional<double> speed;  ///< m/s, of the tip; none: so slowly that nothing viscous resists
+  double hold = 0;              ///< s at each depth before the force is taken
+};
+
+struct ConvergedForceConfig {
+  enum class Model {
+    kAuto,          ///< axisymmetric where the scene allows it
+    kAxisymmetric,  ///< the section
+    kSpatial        ///< in space, see sweepSection
+  };
+  Model model = Model::kAuto;
+  ElementKind element = ElementKind::kP2P0;
+  double tolerance = 0.005;  ///< wanted relative error of the force
+  int finest = 6;            ///< last level of refinement that may be tried, see scene_mesh.h
+  double time = 600;         ///< s of wall time after which no finer level is begun
+};
+
+/// Force at one depth.
+struct ForcePoint {
+  double depth = 0;  ///< m
+  bool converged = false;
+  std::string reason;  ///< why not, or, when converged, why no finer mesh has a solution; else empty
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< N, of the cell on the needle
+  double error_estimate = std::numeric_limits<double>::quiet_NaN();  ///< relative, from the last two levels
+  int level = -1;                                    ///< of the mesh that the force was found on
+  double wall_time = 0;                              ///< s, of all levels
+};
+
+/// What was done on one mesh.
+struct LevelReport {
+  int level = 0;
+  std::size_t nodes = 0, elements = 0;
+  int unknowns = 0;
+  double wall_time = 0;         ///< s
+  std::vector<double> forces;   ///< N, size of the force at each depth (order of Indenting::depths), nan where none
+};
+
+/// Solves a scene on finer and finer meshes until two of them agree to the tolerance at every depth. Elements at the
+/// needle's edge are halved from mesh to mesh and the error is of first order in their size, or better, so that the
+/// difference of two meshes bounds the error of the finer one. A depth is converged when there is an equilibrium on two
+/// meshes at least, the second the finest that was needed; where finer meshes lose the solution before a depth that a
+/// single coarse one reaches, there is none to be trusted, and the point says so.
+class ConvergedForce {
+ public:
+  /// Throws ConfigError when the model does not fit the scene.
+  ConvergedForce(const Scene& scene, const Indenting& indenting, const ConvergedForceConfig& config);
+
+  /// `report` is called after each mesh.
+  std::vector<ForcePoint> solve(const std::function<void(const LevelReport&)>& report = {});
+
+  bool axisymmetric() const { return axisymmetric_; }
+
+ private:
+  struct Level;
+  using Forces = std::vector<std::optional<Eigen::Vector3d>>;  ///< of each depth; empty where there is no equilibrium
+  template <int Dim>
+  Level solveLevel(int level) const;
+  void takeOver(const Level& level, Forces& before, std::vector<ForcePoint>& points) const;
+  bool goOn(const std::vector<ForcePoint>& points, const Level& level) const;
+
+  Scene scene_;
+  Indenting indenting_;
+  ConvergedForceConfig config_;
+  bool axisymmetric_;
+};
+
+}  // namespace microinjection

@@ -1,0 +1,156 @@
+#include "cell/scene_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <sstream>
+
+#include "base/errors.h"
+
+namespace microinjection {
+namespace {
+
+constexpr double kRounding = 1e-9;  // relative
+
+/// A circle nearer to the equator than this lies on so steep a surface that it cannot be meshed well.
+constexpr double kReach = 0.95;  // of the cell's radius
+
+constexpr double kThinnestLayer = 1.0 / 500;  // of the cell's radius
+
+bool positive(double value) { return std::isfinite(value) && value > 0; }
+bool notNegative(double value) { return std::isfinite(value) && value >= 0; }
+
+class Errors {
+ public:
+  /// "KEY = VALUE UNIT: must be ALLOWED" unless `good`.
+  template <typename Value>
+  void require(bool good, const std::string& key, const Value& value, const std::string& unit,
+               const std::string& allowed) {
+    std::ostringstream message;
+    message << key << " = " << value << unit << ": must be " << allowed;
+    if (!good) add(message.str());
+  }
+  void add(const std::string& message) { messages_.push_back(message); }
+  void throwAny() const {
+    if (!messages_.empty()) throw ConfigError(messages_);
+  }
+
+ private:
+  std::vector<std::string> messages_;
+};
+
+std::string metres(double value) {
+  std::ostringstream text;
+  text << value << " m";
+  return text.str();
+}
+
+void checkLayer(const Scene::Layer& layer, const std::string& path, Errors& errors) {
+  try {
+    layer.material.validate();
+  } catch (const ConfigError& error) {
+    std::istringstream lines(error.what());  // "material: KEY = ..."
+    for (std::string line; std::getline(lines, line);) {
+      const std::size_t colon = line.find(": ");
+      errors.add(path + (line.compare(0, colon, "material") ? line : line.replace(colon, 2, "/")));
+    }
+  }
+  errors.require(notNegative(layer.surface_tension), path + "surface_tension", layer.surface_tension, " N/m",
+                 "0 or more N/m");
+}
+
+void checkLayers(const std::vector<Scene::Layer>& layers, Errors& errors) {
+  std::set<std::string> names;
+  const double radius = layers.front().outer_radius;
+  const double thinnest = kThinnestLayer * radius;
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    const Scene::Layer& layer = layers[i];
+    const std::string path = "cell/layers/" + std::to_string(i) + "/";
+    checkLayer(layer, path, errors);
+    errors.require(!layer.name.empty() && names.insert(layer.name).second, path + "name", layer.name, "",
+                   "a name that no other layer has");
+    errors.require(positive(layer.outer_radius), path + "outer_radius", layer.outer_radius, " m", "positive (m)");
+    if (!positive(layer.outer_radius) || !positive(radius)) continue;
+    const double inner = i + 1 < layers.size() ? layers[i + 1].outer_radius : 0;
+    if (inner >= layer.outer_radius) {
+      errors.add("cell/layers/" + std::to_string(i + 1) + "/outer_radius = " + metres(inner) + ": must be below the " +
+                 metres(layer.outer_radius) + " of the layer around it (outermost first)");
+    } else if (layer.outer_radius - inner < thinnest * (1 - kRounding)) {
+      errors.add("cell/layers/" + std::to_string(i) + " (" + layer.name + ") is " + metres(layer.outer_radius - inner) +
+                 " thick: must be at least 1/500 of the cell's radius, " + metres(thinnest));
+    }
+  }
+}
+
+void checkCell(const Scene::Cell& cell, Errors& errors) {
+  if (cell.layers.size() == 1) {
+    checkLayer(cell.layers.front(), "cell/", errors);
+    errors.require(positive(cell.diameter()), "cell/diameter", cell.diameter(), " m", "positive (m)");
+  } else {
+    checkLayers(cell.layers, errors);
+  }
+  errors.require(cell.puncture_force > 0, "cell/puncture/force", cell.puncture_force, " N", "positive (N)");
+}
+
+void checkTip(const Scene::Tip& tip, double cell_radius, Errors& errors) {
+  const std::vector<std::string>& shapes = tipShapes();
+  errors.require(std::find(shapes.begin(), shapes.end(), tip.shape) != shapes.end(), "needle/tip/shape", tip.shape, "",
+                 "one of: disc, hemisphere, rounded_flat");
+  const double limit = tip.rounded() ? cell_radius * (1 + kRounding) : kReach * cell_radius;
+  errors.require(
+      positive(tip.radius) && tip.radius <= limit, "needle/tip/radius", tip.radius, " m",
+      "above 0 and at most " + metres(limit) + (tip.rounded() ? ", the cell's radius" : ", 0.95 of the cell's radius"));
+  if (tip.shape == "rounded_flat") {
+    errors.require(positive(tip.edge_radius) && tip.edge_radius <= tip.radius, "needle/tip/edge_radius",
+                   tip.edge_radius, " m", "above 0 and at most the tip's radius " + metres(tip.radius));
+  } else {
+    errors.require(tip.edge_radius == 0, "needle/tip/edge_radius", tip.edge_radius, " m",
+                   "left out: it belongs to rounded_flat only");
+  }
+}
+
+void checkNeedle(const Scene::Needle& needle, double cell_radius, Errors& errors) {
+  checkTip(needle.tip, cell_radius, errors);
+  const std::string& mode = needle.contact.mode;
+  errors.require(mode == "sticking" || mode == "sliding", "needle/contact/mode", mode, "", "one of: sticking, sliding");
+  errors.require(mode != "sliding" || needle.tip.rounded(), "needle/contact/mode", mode, "", kDiscSticks);
+  errors.require(notNegative(needle.contact.friction), "needle/contact/friction", needle.contact.friction, "",
+                 "0 or more");
+  errors.require(mode == "sliding" || needle.contact.friction == 0, "needle/contact/friction", needle.contact.friction,
+                 "", "left out: it belongs to mode sliding only");
+  const double reach = kReach * cell_radius, length = needle.offset.norm();
+  if (needle.tip.rounded()) {
+    errors.require(length < reach, "needle/offset (its length)", length, " m",
+                   "below 0.95 of the cell's radius, " + metres(reach));
+  } else {
+    errors.require(length + needle.tip.radius < reach, "needle/offset (its length)", length, " m",
+                   "with the tip's radius below 0.95 of the cell's radius, " + metres(reach));
+  }
+}
+
+void checkMesh(const Scene& scene, Errors& errors) {
+  const double diameter = scene.cell.diameter();
+  errors.require(scene.meshSize() >= diameter / 200 && scene.meshSize() <= diameter / 2, "mesh/size", scene.meshSize(),
+                 " m", "from 1/200 to half of the cell's diameter, " + metres(diameter));
+  const Scene::Refinement& refinement = scene.mesh.refinement;
+  errors.require(positive(refinement.zone), "mesh/refinement/zone", refinement.zone, "", "positive");
+  errors.require(refinement.density >= 1 && refinement.density <= 100, "mesh/refinement/density", refinement.density,
+                 "", "in [1, 100]");
+}
+
+}  // namespace
+
+void checkScene(const Scene& scene) {
+  if (scene.cell.layers.empty()) throw ConfigError("cell/layers: must have at least one layer");
+  Errors errors;
+  checkCell(scene.cell, errors);
+  const double contact_radius = scene.holding_pipette.contact_radius;
+  const double reach = kReach * scene.radius();
+  errors.require(positive(contact_radius) && contact_radius < reach, "holding_pipette/contact_radius", contact_radius,
+                 " m", "above 0 and below 0.95 of the cell's radius, " + metres(reach));
+  checkNeedle(scene.needle, scene.radius(), errors);
+  checkMesh(scene, errors);
+  errors.throwAny();
+}
+
+}  // namespace microinjection

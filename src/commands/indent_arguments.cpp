@@ -1,0 +1,156 @@
+#include "commands/indent_arguments.h"
+
+#include <algorithm>
+#include <boost/program_options.hpp>
+#include <cmath>
+#include <iostream>
+#include <limits>
+#include <sstream>
+
+#include "base/errors.h"
+
+namespace microinjection {
+namespace {
+
+constexpr char kHelp[] = R"(indent: quasi-static force on a needle tip pushed into a cell, as converged as you ask for.
+
+Usage: indent --scene FILE --depths D1,D2,... [--tolerance T] [--lateral X,Y] [--csv FILE] [...]
+
+The tip goes down along -z from where it touches the undeformed cell at the scene's needle/offset (a disc: its centre).
+The scene is solved on finer and finer meshes until two of them agree. One CSV row a depth, in the order given:
+  depth_m,force_x_N,force_y_N,force_z_N,wall_s,converged,error_estimate
+force: of the cell on the needle, so force_z is positive when the cell is indented; nan where there is no solution.
+wall_s: time of that row's solutions. converged: 1, or 0 where finer meshes have no solution, for a reason that stderr tells.
+error_estimate: relative error of the force, from the last two meshes; nan for the live model, whose error is unknown
+(about 1 to 3, see the README).
+
+Models:
+  auto          axisymmetric where offset and lateral are 0, else spatial
+  axisymmetric  the cell's section, in seconds
+  spatial       in space
+  live          the P1 tetrahedra of a live session (the scene's mesh keys), which lock; discs only
+
+Example:
+  indent --scene config/cells/mouse_oocyte.yaml --depths 1e-6,2e-6,5e-6 --tolerance 0.01 --csv force.csv
+
+Exit status: 0 all depths converged; 2 bad usage or scene; 3 some depth did not converge (its row is written);
+4 all converged, but some depth not to the --tolerance that was given.
+
+Options)";
+
+std::vector<double> parseNumbers(const std::string& option, const std::string& text, const std::string& wanted) {
+  std::vector<double> numbers;
+  std::istringstream items(text + ",");
+  for (std::string item; std::getline(items, item, ',');) {
+    std::size_t used = 0;
+    double number = std::numeric_limits<double>::quiet_NaN();
+    try {
+      number = std::stod(item, &used);
+    } catch (const std::exception&) {
+      used = std::string::npos;
+    }
+    if (used != item.size() || !std::isfinite(number)) {
+      throw ConfigError("--" + option + " = " + text + ": '" + item + "' is not a number; must be " + wanted);
+    }
+    numbers.push_back(number);
+  }
+  return numbers;
+}
+
+std::vector<double> parseDepths(const std::string& text) {
+  const std::string wanted = "numbers >= 0 (m) separated by commas";
+  std::vector<double> depths = parseNumbers("depths", text, wanted);
+  for (const double depth : depths) {
+    if (depth < 0) throw ConfigError("--depths = " + text + ": each must be >= 0 (m)");
+  }
+  return depths;
+}
+
+Eigen::Vector2d parseLateral(const std::string& text) {
+  const std::string wanted = "two numbers X,Y (m)";
+  const std::vector<double> xy = parseNumbers("lateral", text, wanted);
+  if (xy.size() != 2) throw ConfigError("--lateral = " + text + ": must be " + wanted);
+  return {xy[0], xy[1]};
+}
+
+double parsePositive(const std::string& option, const std::string& text, const std::string& unit, bool zero = false) {
+  const std::string wanted = std::string("a number ") + (zero ? ">= 0" : "> 0") + unit;
+  const std::vector<double> numbers = parseNumbers(option, text, wanted);
+  if (numbers.size() != 1 || numbers[0] < 0 || (!zero && numbers[0] == 0)) {
+    throw ConfigError("--" + option + " = " + text + ": must be " + wanted);
+  }
+  return numbers[0];
+}
+
+/// Position of a name; ConfigError tells all names.
+std::size_t parseChoice(const std::string& option, const std::string& name, const std::vector<std::string>& names) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found != names.end()) return found - names.begin();
+  std::string all;
+  for (const std::string& one : names) all += (all.empty() ? "" : ", ") + one;
+  throw ConfigError("--" + option + " = " + name + ": must be one of: " + all);
+}
+
+struct Texts {
+  std::string depths, lateral, model, element, tolerance, speed, hold, time;
+};
+
+void interpret(const Texts& texts, IndentArguments& arguments) {
+  using Model = ConvergedForceConfig::Model;
+  arguments.indenting.depths = parseDepths(texts.depths);
+  arguments.indenting.lateral = parseLateral(texts.lateral);
+  if (!texts.speed.empty()) arguments.indenting.speed = parsePositive("speed", texts.speed, " (m/s)");
+  arguments.indenting.hold = parsePositive("hold", texts.hold, " (s)", true);
+  const std::size_t model = parseChoice("model", texts.model, {"auto", "axisymmetric", "spatial", "live"});
+  arguments.live = model == 3;
+  if (!arguments.live) arguments.converged.model = static_cast<Model>(model);
+  parseChoice("element", texts.element, elementNames());
+  arguments.converged.element = elementKind(texts.element);
+  arguments.tolerance_given = !texts.tolerance.empty();
+  if (arguments.tolerance_given) {
+    arguments.converged.tolerance = parsePositive("tolerance", texts.tolerance, "");
+  } else {
+    const Scene scene = loadScene(arguments.scene);
+    const bool on_axis = scene.needle.offset.isZero(0) && arguments.indenting.lateral.isZero(0);
+    arguments.converged.tolerance = on_axis && arguments.converged.model != Model::kSpatial ? 0.005 : 0.03;
+  }
+  arguments.converged.time = parsePositive("time", texts.time, " (s)");
+}
+
+}  // namespace
+
+std::optional<IndentArguments> parseIndentArguments(int argc, char** argv) {
+  namespace po = boost::program_options;
+  IndentArguments arguments;
+  Texts texts;
+  po::options_description options(kHelp, 118);
+  options.add_options()("help", "this text")("scene", po::value(&arguments.scene),
+                                             "scene file (YAML, SI units), for example config/cells/mouse_oocyte.yaml")(
+      "depths", po::value(&texts.depths), "depths of the tip, m, separated by commas; each >= 0")(
+      "lateral", po::value(&texts.lateral)->default_value("0,0"),
+      "X,Y: at every depth the tip has also moved by (X, Y), m, along a straight line to (X, Y, -depth)")(
+      "model", po::value(&texts.model)->default_value("auto"), "auto, axisymmetric, spatial or live: see above")(
+      "tolerance", po::value(&texts.tolerance),
+      "relative error of the force that is asked for; default 0.005 on the axis, 0.03 in space")(
+      "element", po::value(&texts.element)->default_value("p2_p0"), "p1, mini, p1_p1, p2, p2_p0 or p2_p1")(
+      "speed", po::value(&texts.speed), "of the tip, m/s, for viscoelastic cells; default: so slow that they relax")(
+      "hold", po::value(&texts.hold)->default_value("0"), "s that the tip rests at each depth before the force is taken")(
+      "time", po::value(&texts.time)->default_value("600"), "s after which no finer mesh is begun")(
+      "csv", po::value(&arguments.csv)->default_value("-"), "file to write; - is the standard output");
+  // No short options, so that -1e-6 is a value.
+  using Style = po::command_line_style::style_t;
+  const int style = Style::allow_long | Style::long_allow_adjacent | Style::long_allow_next;
+  po::variables_map values;
+  po::store(po::command_line_parser(argc, argv).options(options).style(style).positional({}).run(), values);
+  po::notify(values);
+  if (values.count("help") != 0) {
+    std::cout << options;
+    return std::nullopt;
+  }
+  if (values.count("scene") == 0) throw ConfigError("--scene is missing: a scene file, see --help");
+  if (values.count("depths") == 0) throw ConfigError("--depths is missing: for example 1e-6,2e-6 (m), see --help");
+  interpret(texts, arguments);
+  return arguments;
+}
+
+}  // namespace microinjection

@@ -1,0 +1,170 @@
+#include "mechanics/load_path.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace microinjection {
+namespace {
+
+constexpr double kTolerance = 1e-8;     ///< of the residual, relative to the reaction
+constexpr double kRounding = 1e-13;     ///< of the residual, relative to stiffness times length
+constexpr double kWorkMismatch = 1e-3;  ///< of the energy, relative to the work of the step
+constexpr double kSlow = 0.2;           ///< contraction that is too slow to keep an old factorisation
+constexpr int kMaximumIterations = 15;  ///< a step that needs more is too long
+constexpr int kEasy = 5;                ///< iterations of a step after which a longer one is tried
+constexpr int kMaximumHalvings = 8;     ///< of a line search
+
+}  // namespace
+
+LoadPath::LoadPath(EquilibriumSystem& system, const LoadPathConfig& config)
+    : system_(system), config_(config), load_step_(config.first_step) {
+  undeformed_.x.setZero(system.stateSize());
+  if (!refactorise(undeformed_)) throw std::invalid_argument("the undeformed state is not stable");
+  undeformed_.stiffness = system_.stiffness();
+  undeformed_.sensitivity = system_.sensitivity();
+  force_floor_ = kRounding * config.length * system_.matrix().diagonal().maxCoeff();
+  state_ = undeformed_;
+}
+
+void LoadPath::reset() {
+  for (const auto& term : system_.terms()) term->reset();
+  state_ = undeformed_;
+  viscous_ = false;
+  load_step_ = config_.first_step;
+  refactorise(undeformed_);  // so that what follows is the same, to the bit, as for a new path
+}
+
+bool LoadPath::refactorise(const State& state) {
+  factorised_ = system_.factorise(state.x);
+  return factorised_;
+}
+
+LoadPath::Result LoadPath::advance(const Eigen::Vector3d& target, double duration) {
+  Result result;
+  double remaining_time = duration;
+  bool waiting = target == state_.translation && (std::isfinite(duration) || viscous_);
+  while (waiting || target != state_.translation) {
+    const Eigen::Vector3d remaining = target - state_.translation;
+    const double distance = remaining.norm();
+    const bool whole = load_step_ > (1 - 1e-6) * distance || config_.linear;  // no crumb for the next step
+    const double share = whole ? 1 : load_step_ / distance;
+    const Eigen::Vector3d increment = whole ? remaining : Eigen::Vector3d(share * remaining);
+    const int before = result.newton_iterations;
+    if (step(increment, share * remaining_time, result.newton_iterations, result.reason)) {
+      waiting = false;
+      remaining_time -= std::isfinite(remaining_time) ? share * remaining_time : 0;
+      if (whole) state_.translation = target;
+      const bool easy = result.newton_iterations - before <= kEasy;
+      if (easy && !whole) load_step_ = std::min(2 * load_step_, config_.largest_step);
+      continue;
+    }
+    load_step_ = std::min(load_step_, distance) / 2;
+    if (config_.linear || load_step_ < config_.smallest_step) {
+      load_step_ = config_.largest_step;
+      return result;
+    }
+  }
+  result.converged = true;
+  result.reason.clear();
+  return result;
+}
+
+bool LoadPath::step(const Eigen::Vector3d& increment, double duration, int& iterations, std::string& reason) {
+  for (const auto& term : system_.terms()) term->beginStep(duration);
+  const bool other = std::isfinite(duration) || viscous_;
+  if (other) {  // the energy is that of this step now
+    factorised_ = false;
+    system_.energy(state_.x, state_.energy);
+  }
+  trial_ = state_;
+  system_.addTo(trial_.x, state_.sensitivity * increment, increment);
+  trial_.translation += increment;
+  if (!balance(trial_, iterations, reason)) return false;
+  system_.energy(trial_.x, trial_.energy);
+  if (!config_.linear) {
+    if (!refactorise(trial_)) {
+      reason = "the equilibrium is not stable: its tangent is not positive definite";
+      return false;
+    }
+    trial_.stiffness = system_.stiffness();
+    trial_.sensitivity = system_.sensitivity();
+  }
+  // A viscous step dissipates, and its energy's derivative at the start is not the force at the end of the last one.
+  if (config_.smooth && !other && !workMatches(trial_)) {
+    reason = "the branch of stable equilibria ends: the next one is not reached continuously";
+    factorised_ = false;
+    return false;
+  }
+  std::swap(state_, trial_);
+  viscous_ = std::isfinite(duration);
+  return accept(iterations, reason);
+}
+
+bool LoadPath::accept(int& iterations, std::string& reason) {
+  bool changed = false;
+  for (const auto& term : system_.terms()) changed = term->accept(state_.x) || changed;
+  if (!changed) return true;
+  factorised_ = false;
+  if (!balance(state_, iterations, reason) || !refactorise(state_)) return false;
+  system_.energy(state_.x, state_.energy);
+  state_.stiffness = system_.stiffness();
+  state_.sensitivity = system_.sensitivity();
+  return true;
+}
+
+bool LoadPath::balance(State& trial, int& iterations, std::string& reason) {
+  if (!system_.residual(trial.x, residual_, trial.reaction)) {
+    reason = "an element would be inverted";
+    return false;
+  }
+  double last = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kMaximumIterations; ++i) {
+    const double norm = residual_.norm();
+    if (norm <= std::max(kTolerance * trial.reaction.norm(), force_floor_)) return true;
+    if ((!factorised_ || norm > kSlow * last) && !refactorise(trial)) {
+      reason = "no stable equilibrium: the tangent on the way is not positive definite";
+      return false;
+    }
+    last = norm;
+    ++iterations;
+    if (!correct(trial)) {
+      reason = "Newton's method does not reduce the residual";
+      factorised_ = false;
+      return false;
+    }
+  }
+  reason = "Newton's method does not converge";
+  factorised_ = false;
+  return false;
+}
+
+bool LoadPath::correct(State& trial) {
+  const Eigen::VectorXd direction = -system_.solve(residual_);
+  const double norm = residual_.norm();
+  double scale = 1;
+  for (int i = 0; i < kMaximumHalvings; ++i, scale /= 2) {
+    candidate_ = trial.x;
+    system_.addTo(candidate_, scale * direction, Eigen::Vector3d::Zero());
+    if (!system_.residual(candidate_, candidate_residual_, trial.reaction)) continue;
+    if (candidate_residual_.norm() >= norm) continue;
+    trial.x.swap(candidate_);
+    residual_.swap(candidate_residual_);
+    return true;
+  }
+  return false;
+}
+
+bool LoadPath::workMatches(const State& trial) const {
+  if (config_.linear) return true;
+  // Hermite's rule: exact to fourth order in the step on a smooth branch.
+  const Eigen::Vector3d step = trial.translation - state_.translation;
+  const double work =
+      0.5 * step.dot(state_.reaction + trial.reaction) + step.dot((state_.stiffness - trial.stiffness) * step) / 12;
+  const double scale = std::abs(step.dot(state_.stiffness * step)) + std::abs(work);
+  const double rounding = force_floor_ * config_.length;
+  return std::abs(trial.energy - state_.energy - work) <= kWorkMismatch * scale + rounding;
+}
+
+}  // namespace microinjection

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace microinjection {
+
+/// What determines the axisymmetric mesh of a cell: half a disc r >= 0 about the origin, made of concentric layers.
+/// Places on the outer arc are given by their distance from the axis and the side: +1 the upper quarter, -1 the lower
+/// one. Metres.
+struct SectionMeshConfig {
+  /// Where elements are smaller, about a point of the outer arc, which becomes a vertex.
+  struct Refinement {
+    double r = 0;      ///< m, distance of the point from the axis
+    double side = 1;   ///< +1 upper, -1 lower quarter
+    double reach = 0;  ///< m, the size holds up to this distance from the point
+    double size = 0;   ///< m
+  };
+
+  /// A point of the outer arc that becomes a vertex.
+  struct Point {
+    double r = 0;     ///< m, distance from the axis
+    double side = 1;  ///< +1 upper, -1 lower quarter
+  };
+
+  std::vector<double> radii = {28e-6};  ///< m, outer radius of each layer, outermost first; the first is the cell's
+  double size = 4e-6;                   ///< m, of the largest elements
+  double growth = 0.3;                  ///< the size grows by this times the distance from what is finer, in (0, 1]
+  std::vector<Refinement> refinements;
+  std::vector<Point> vertices;
+
+  /// Throws ConfigError with all errors at once.
+  void validate() const;
+};
+
+/// The point (r, z) of a circle about the origin, m. @pre 0 <= r <= radius
+Eigen::Vector2d pointOnArc(double r, double side, double radius);
+
+/// The ends of a layer's arc on the axis and, of the outer one, the named points and the refinements' centres: (r, z)
+/// in m, from top to bottom, each once. @pre the configuration is good
+std::vector<Eigen::Vector2d> namedPoints(const SectionMeshConfig& config, std::size_t layer);
+
+}  // namespace microinjection
