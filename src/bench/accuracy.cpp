@@ -105,8 +105,8 @@ std::string table() {
       for (int level = 0; level <= (rounded ? 1 : 4); ++level) {
         table.add(scene.name + " axisymmetric " + element, [&] { return converging<2>(scene, element, level); });
       }
-      // In space the rounded tips take minutes; what the elements are worth shows on the discs.
-      for (int level = -1; !rounded && level <= (isQuadratic(elementKind(element)) ? 0 : 1); ++level) {
+      // Space takes minutes; what the elements are worth there shows on two scenes.
+      for (int level = -1; !rounded && scene.scene.cell.layers.size() == 1 && level <= 0; ++level) {
         table.add(scene.name + " spatial " + element, [&] { return converging<3>(scene, element, level); });
       }
     }

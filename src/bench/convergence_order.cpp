@@ -249,6 +249,8 @@ std::string rows(const std::vector<double>& sizes) {
     for (const double poisson_ratio : {0.3, 0.499}) {
       Measurement before;
       for (const QuadraticMesh<Dim>& mesh : meshes) {
+        // In space the factor of p2_p1 on the finest mesh takes more than a minute.
+        if (Dim == 3 && element == "p2_p1" && &mesh == &meshes.back()) continue;
         const Measurement now = measure(mesh, elementKind(element), poisson_ratio);
         const double order = before.size == 0 ? std::numeric_limits<double>::quiet_NaN()
                                               : std::log(now.error / before.error) / std::log(now.size / before.size);

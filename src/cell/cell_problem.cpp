@@ -144,8 +144,8 @@ LoadPathConfig CellProblem<Dim>::pathConfig(const Scene& scene, bool linear) {
   config.linear = linear;
   if (scene.needle.tip.rounded()) {  // points stick where they first touch: the path must be followed closely
     config.smooth = false;
-    config.first_step = tip / 40;
-    config.largest_step = tip / 8;
+    config.first_step = tip / (Dim == 2 ? 40 : 20);  // steps in space cost seconds
+    config.largest_step = tip / (Dim == 2 ? 8 : 4);
     config.smallest_step = 1e-5 * tip;
   }
   return config;

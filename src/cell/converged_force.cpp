@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <numeric>
 #include <optional>
+#include <sstream>
+#include <stdexcept>
 #include <utility>
 
 #include "base/errors.h"
@@ -52,11 +54,26 @@ ConvergedForce::ConvergedForce(const Scene& scene, const Indenting& indenting, c
   axisymmetric_ = possible && config.model != ConvergedForceConfig::Model::kSpatial;
 }
 
+/// The swept mesh is bent towards the needle's place, and not without end.
+template <int Dim>
+CellProblem<Dim> ConvergedForce::makeProblem(int level) const {
+  try {
+    return CellProblem<Dim>(scene_, makeSceneMesh<Dim>(scene_, level), config_.element);
+  } catch (const std::invalid_argument& error) {
+    if (Dim == 2) throw;
+    std::ostringstream message;
+    message << "needle/offset (its length) = " << scene_.needle.offset.norm()
+            << ": the spatial mesh cannot be ordered around a needle so far out; must be at most about "
+            << 0.7 * scene_.radius() << " m (0.7 of the cell's radius), or use the live model (" << error.what() << ")";
+    throw ConfigError(message.str());
+  }
+}
+
 template <int Dim>
 ConvergedForce::Level ConvergedForce::solveLevel(int number) const {
   const Clock::time_point start = Clock::now();
   Level level;
-  CellProblem<Dim> problem(scene_, makeSceneMesh<Dim>(scene_, number), config_.element);
+  CellProblem<Dim> problem = makeProblem<Dim>(number);
   level.report.level = number;
   level.report.nodes = problem.body().nodeCount();
   level.report.elements = problem.body().elementCount();
@@ -131,12 +148,14 @@ std::vector<ForcePoint> ConvergedForce::solve(const std::function<void(const Lev
   std::vector<ForcePoint> points(indenting_.depths.size());
   for (std::size_t i = 0; i < points.size(); ++i) points[i].depth = indenting_.depths[i];
   Forces before(points.size());
-  for (int number = axisymmetric_ ? 0 : kCoarsestInSpace; number <= config_.finest; ++number) {
+  const int first = axisymmetric_ ? 0 : kCoarsestInSpace;
+  for (int number = first; number <= config_.finest; ++number) {
     const Level level = axisymmetric_ ? solveLevel<2>(number) : solveLevel<3>(number);
     takeOver(level, before, points);
     if (report) report(level.report);
     const double next = level.report.wall_time * kCostOfLevel[axisymmetric_ ? 0 : 1];
-    if (!goOn(points, level) || secondsSince(start) + next > config_.time) break;
+    const bool out_of_time = number > first && secondsSince(start) + next > config_.time;
+    if (!goOn(points, level) || out_of_time) break;
   }
   for (ForcePoint& point : points) {
     if (!point.converged && point.reason.empty()) point.reason = "one mesh only has a solution";

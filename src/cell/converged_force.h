@@ -12,6 +12,9 @@
 
 namespace microinjection {
 
+template <int Dim>
+class CellProblem;
+
 /// A needle pushed to one depth after the other.
 struct Indenting {
   std::vector<double> depths;                             ///< m, each >= 0, in any order
@@ -30,7 +33,7 @@ struct ConvergedForceConfig {
   ElementKind element = ElementKind::kP2P0;
   double tolerance = 0.005;  ///< wanted relative error of the force
   int finest = 6;            ///< last level of refinement that may be tried, see scene_mesh.h
-  double time = 600;         ///< s of wall time after which no finer level is begun
+  double time = 600;         ///< s of wall time after which no third or finer level is begun
 };
 
 /// Force at one depth.
@@ -63,7 +66,7 @@ class ConvergedForce {
   /// Throws ConfigError when the model does not fit the scene.
   ConvergedForce(const Scene& scene, const Indenting& indenting, const ConvergedForceConfig& config);
 
-  /// `report` is called after each mesh.
+  /// `report` is called after each mesh. Throws ConfigError when the needle is too far out to be meshed in space.
   std::vector<ForcePoint> solve(const std::function<void(const LevelReport&)>& report = {});
 
   bool axisymmetric() const { return axisymmetric_; }
@@ -71,6 +74,8 @@ class ConvergedForce {
  private:
   struct Level;
   using Forces = std::vector<std::optional<Eigen::Vector3d>>;  ///< of each depth; empty where there is no equilibrium
+  template <int Dim>
+  CellProblem<Dim> makeProblem(int level) const;
   template <int Dim>
   Level solveLevel(int level) const;
   void takeOver(const Level& level, Forces& before, std::vector<ForcePoint>& points) const;

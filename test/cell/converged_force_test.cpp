@@ -181,6 +181,17 @@ TEST(ConvergedForce, RelaxesAndDependsOnSpeed) {
   EXPECT_NEAR(held / relaxed, stiffening(1 + 0.8 * std::exp(-1)), 0.01);
 }
 
+TEST(ConvergedForce, RefusesANeedleThatIsTooFarOut) {
+  Scene off = scene();
+  off.needle.offset = {0.84 * off.radius(), 0};
+  try {
+    ConvergedForce(off, {{1e-6}}, {}).solve();
+    FAIL();
+  } catch (const ConfigError& error) {
+    EXPECT_NE(std::string(error.what()).find("needle/offset"), std::string::npos) << error.what();
+  }
+}
+
 TEST(ConvergedForce, RefusesASectionThatIsNone) {
   ConvergedForceConfig config;
   config.model = ConvergedForceConfig::Model::kAxisymmetric;

@@ -83,7 +83,7 @@ class ChainTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             out = os.path.join(folder, "indent.csv")
             scene = PACKAGE + "/test/chain/coarse_oocyte.yaml"
-            subprocess.run([str(NODES / "indent"), "--scene", scene, "--depths", repr(depth),
+            subprocess.run([str(NODES / "indent"), "--model", "live", "--scene", scene, "--depths", repr(depth),
                             "--csv", out], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
             with open(out, encoding="utf-8") as file:
                 return float(next(csv.DictReader(file))["force_z_N"])
