@@ -76,8 +76,8 @@ CellProblem<Dim>::CellProblem(const Scene& scene, QuadraticMesh<Dim> mesh, Eleme
     const Scene::Layer& layer = scene.cell.layers[i];
     if (layer.surface_tension == 0) continue;
     linear = false;
-    terms.push_back(std::make_shared<SurfaceTension<Dim>>(*body_, static_cast<int>(i), layer.outer_radius,
-                                                          layer.surface_tension));
+    terms.push_back(
+        std::make_shared<SurfaceTension<Dim>>(*body_, static_cast<int>(i), layer.outer_radius, layer.surface_tension));
   }
   std::vector<ViscoelasticityConfig> viscoelasticity;
   for (const Scene::Layer& layer : scene.cell.layers) viscoelasticity.push_back(layer.material.viscoelasticity);

@@ -39,9 +39,9 @@ std::string micrometres(double metres) {
 struct ConvergedForce::Level {
   LevelReport report;
   Forces forces;
-  std::vector<double> wall_times;                      ///< s
-  double reached = 0;                                  ///< m, deepest equilibrium
-  std::string reason;                                  ///< why no deeper
+  std::vector<double> wall_times;  ///< s
+  double reached = 0;              ///< m, deepest equilibrium
+  std::string reason;              ///< why no deeper
 };
 
 ConvergedForce::ConvergedForce(const Scene& scene, const Indenting& indenting, const ConvergedForceConfig& config)

@@ -17,10 +17,10 @@ class CellProblem;
 
 /// A needle pushed to one depth after the other.
 struct Indenting {
-  std::vector<double> depths;                             ///< m, each >= 0, in any order
+  std::vector<double> depths;                         ///< m, each >= 0, in any order
   Eigen::Vector2d lateral = Eigen::Vector2d::Zero();  ///< m, of the tip at every depth, reached along a straight line
-  std::optional<double> speed;  ///< m/s, of the tip; none: so slowly that nothing viscous resists
-  double hold = 0;              ///< s at each depth before the force is taken
+  std::optional<double> speed;                        ///< m/s, of the tip; none: so slowly that nothing viscous resists
+  double hold = 0;                                    ///< s at each depth before the force is taken
 };
 
 struct ConvergedForceConfig {
@@ -41,10 +41,10 @@ struct ForcePoint {
   double depth = 0;  ///< m
   bool converged = false;
   std::string reason;  ///< why not, or, when converged, why no finer mesh has a solution; else empty
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< N, of the cell on the needle
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();                   ///< N, of the cell on the needle
   double error_estimate = std::numeric_limits<double>::quiet_NaN();  ///< relative, from the last two levels
-  int level = -1;                                    ///< of the mesh that the force was found on
-  double wall_time = 0;                              ///< s, of all levels
+  int level = -1;                                                    ///< of the mesh that the force was found on
+  double wall_time = 0;                                              ///< s, of all levels
 };
 
 /// What was done on one mesh.
@@ -52,8 +52,8 @@ struct LevelReport {
   int level = 0;
   std::size_t nodes = 0, elements = 0;
   int unknowns = 0;
-  double wall_time = 0;         ///< s
-  std::vector<double> forces;   ///< N, size of the force at each depth (order of Indenting::depths), nan where none
+  double wall_time = 0;        ///< s
+  std::vector<double> forces;  ///< N, size of the force at each depth (order of Indenting::depths), nan where none
 };
 
 /// Solves a scene on finer and finer meshes until two of them agree to the tolerance at every depth. Elements at the

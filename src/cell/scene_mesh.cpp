@@ -16,9 +16,7 @@ constexpr int kSegments = 8;      ///< around the needle, level 0
 constexpr int kFewestSegments = 6;
 
 /// m, of the elements far from the needle: they matter less, and shrink more slowly.
-double farSize(const Scene& scene, int level) {
-  return scene.radius() / 6 * std::pow(2, -0.5 * level);
-}
+double farSize(const Scene& scene, int level) { return scene.radius() / 6 * std::pow(2, -0.5 * level); }
 
 /// m, at the edge of the holding pipette, where the stress is singular, too, but far from the needle.
 double holdingSize(const Scene& scene, int level) {

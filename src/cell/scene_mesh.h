@@ -6,8 +6,8 @@
 namespace microinjection {
 
 /// Meshes of a scene for converged solutions, graded towards where its needle and its holding pipette make the stress
-/// singular or move the contact. `level` counts from 0, in space from -1, the coarsest; each halves the elements at the needle.
-/// Size of the elements at the needle's edge (disc) or under its end (rounded), m.
+/// singular or move the contact. `level` counts from 0, in space from -1, the coarsest; each halves the elements at the
+/// needle. Size of the elements at the needle's edge (disc) or under its end (rounded), m.
 double edgeSize(const Scene& scene, int level);
 
 /// Of the section (Dim 2; the needle's offset does not count), or in space (Dim 3): see sweepSection.

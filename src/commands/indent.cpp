@@ -54,9 +54,8 @@ std::vector<ForcePoint> live(const Scene& scene, const Indenting& indenting) {
 
 std::vector<ForcePoint> converged(const Scene& scene, const IndentArguments& arguments) {
   ConvergedForce solver(scene, arguments.indenting, arguments.converged);
-  std::fprintf(stderr, "indent: %s, %s elements, tolerance %.3g\n",
-               solver.axisymmetric() ? "axisymmetric" : "spatial", elementName(arguments.converged.element).c_str(),
-               arguments.converged.tolerance);
+  std::fprintf(stderr, "indent: %s, %s elements, tolerance %.3g\n", solver.axisymmetric() ? "axisymmetric" : "spatial",
+               elementName(arguments.converged.element).c_str(), arguments.converged.tolerance);
   return solver.solve([&](const LevelReport& report) {
     std::fprintf(stderr, "indent: mesh %d, %zu elements, %d unknowns, %.1f s:", report.level, report.elements,
                  report.unknowns, report.wall_time);
@@ -101,8 +100,8 @@ int run(int argc, char** argv) {
   for (const ForcePoint& point : points) {
     tell(point, arguments.converged.tolerance);
     table += csvRow(point);
-    const bool missed = arguments.tolerance_given && !arguments.live &&
-                        point.error_estimate > arguments.converged.tolerance;
+    const bool missed =
+        arguments.tolerance_given && !arguments.live && point.error_estimate > arguments.converged.tolerance;
     if (!point.converged) {
       status = kNotConverged;
     } else if (missed && status == kConverged) {

@@ -134,7 +134,8 @@ std::optional<IndentArguments> parseIndentArguments(int argc, char** argv) {
       "relative error of the force that is asked for; default 0.005 on the axis, 0.03 in space")(
       "element", po::value(&texts.element)->default_value("p2_p0"), "p1, mini, p1_p1, p2, p2_p0 or p2_p1")(
       "speed", po::value(&texts.speed), "of the tip, m/s, for viscoelastic cells; default: so slow that they relax")(
-      "hold", po::value(&texts.hold)->default_value("0"), "s that the tip rests at each depth before the force is taken")(
+      "hold", po::value(&texts.hold)->default_value("0"),
+      "s that the tip rests at each depth before the force is taken")(
       "time", po::value(&texts.time)->default_value("600"), "s after which no third or finer mesh is begun")(
       "csv", po::value(&arguments.csv)->default_value("-"), "file to write; - is the standard output");
   // No short options, so that -1e-6 is a value.

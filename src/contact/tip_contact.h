@@ -13,9 +13,9 @@ namespace microinjection {
 struct TipContactConfig {
   enum class Mode { kSticking, kSliding };
   Mode mode = Mode::kSticking;
-  double friction = 0;                             ///< Coulomb's coefficient, >= 0, of kSliding
+  double friction = 0;                               ///< Coulomb's coefficient, >= 0, of kSliding
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< m, lowest point of the tip's axis where it touches the cell
-  double penalty = 0;                              ///< Pa/m, traction per penetration, > 0
+  double penalty = 0;                                ///< Pa/m, traction per penetration, > 0
 };
 
 /// Unilateral contact of a body's outer surface with a rounded tip and its shaft, by penalty at the surface's
@@ -41,15 +41,16 @@ class TipContact : public EnergyTerm {
   using Vector = Eigen::Matrix<double, Dim, 1>;
   using Matrix = Eigen::Matrix<double, Dim, Dim>;
   struct Point {
-    Vector undeformed = Vector::Zero();   ///< m, relative to the tip's origin
-    double weight = 0;  ///< m^2
-    Eigen::VectorXd shape;  ///< of the facet's nodes
+    Vector undeformed = Vector::Zero();  ///< m, relative to the tip's origin
+    double weight = 0;                   ///< m^2
+    Eigen::VectorXd shape;               ///< of the facet's nodes
     // memory
-    Vector last = Vector::Zero();         ///< m, relative to the tip, at the end of the last step
-    bool touching = false;  ///< then `anchor` holds
-    Vector anchor = Vector::Zero();        ///< m, relative to the tip: where the tangential (sticking: the whole) spring is at rest
-    Vector normal = Vector::Zero();        ///< out of the tip, at the end of the last step
-    double traction = 0;    ///< Pa, normal, at the end of the last step
+    Vector last = Vector::Zero();  ///< m, relative to the tip, at the end of the last step
+    bool touching = false;         ///< then `anchor` holds
+    Vector anchor =
+        Vector::Zero();  ///< m, relative to the tip: where the tangential (sticking: the whole) spring is at rest
+    Vector normal = Vector::Zero();  ///< out of the tip, at the end of the last step
+    double traction = 0;             ///< Pa, normal, at the end of the last step
   };
   struct Facet {
     std::vector<int> entries;  ///< node by node, then the tip's

@@ -9,18 +9,18 @@
 namespace microinjection {
 
 struct LoadPathConfig {
-  double length = 56e-6;              ///< m, size of the body
-  double first_step = 56e-6 / 16;     ///< m, of the tip
-  double largest_step = 56e-6 / 16;   ///< m
+  double length = 56e-6;                ///< m, size of the body
+  double first_step = 56e-6 / 16;       ///< m, of the tip
+  double largest_step = 56e-6 / 16;     ///< m
   double smallest_step = 56e-6 * 1e-5;  ///< m: a path that needs less has ended
-  bool linear = false;                ///< one step at any length; nothing to check
+  bool linear = false;                  ///< one step at any length; nothing to check
   bool smooth = true;  ///< the force is a smooth function of the tip's place on a branch: no contact comes or goes
 };
 
 /// Follows the stable equilibria of a system while the tip is translated: predictor from the tangent, Newton's method
 /// with line search, adaptive load steps. A step counts only when it ends in a state whose tangent is positive definite
-/// and, on a smooth branch, whose energy is what the tip's work made it; else a branch was lost or jumped, and the step is cut. Keeps its
-/// state and continues from it. One thread at a time.
+/// and, on a smooth branch, whose energy is what the tip's work made it; else a branch was lost or jumped, and the step
+/// is cut. Keeps its state and continues from it. One thread at a time.
 class LoadPath {
  public:
   struct Result {

@@ -16,27 +16,28 @@ enum class ElementKind {
   kP2P1   ///< Taylor-Hood: quadratic displacement, continuous linear pressure
 };
 
-const std::vector<std::string>& elementNames();           ///< p1, mini, p1_p1, p2, p2_p0, p2_p1
-ElementKind elementKind(const std::string& name);         ///< @pre one of elementNames()
+const std::vector<std::string>& elementNames();    ///< p1, mini, p1_p1, p2, p2_p0, p2_p1
+ElementKind elementKind(const std::string& name);  ///< @pre one of elementNames()
 const std::string& elementName(ElementKind kind);
-bool hasContinuousPressure(ElementKind kind);             ///< one unknown a vertex; the equations are indefinite
+bool hasContinuousPressure(ElementKind kind);  ///< one unknown a vertex; the equations are indefinite
 bool isQuadratic(ElementKind kind);
 
 /// Shape functions at the points of a quadrature rule on the reference simplex.
 struct ReferenceElement {
   struct Point {
-    double weight;                ///< of the reference simplex' volume; they sum up to 1/2 (Dim 2) or 1/6 (Dim 3)
-    Eigen::VectorXd barycentric;  ///< linear shape functions: of pressure, and of geometry when not quadratic
-    Eigen::VectorXd shape;        ///< of displacement
-    Eigen::MatrixXd gradient;     ///< of displacement's shape functions, by reference coordinates (nodes x Dim)
-    Eigen::VectorXd map;          ///< shape functions of the geometry: linear or quadratic
-    Eigen::MatrixXd map_gradient; ///< (geometry nodes x Dim)
+    double weight;                 ///< of the reference simplex' volume; they sum up to 1/2 (Dim 2) or 1/6 (Dim 3)
+    Eigen::VectorXd barycentric;   ///< linear shape functions: of pressure, and of geometry when not quadratic
+    Eigen::VectorXd shape;         ///< of displacement
+    Eigen::MatrixXd gradient;      ///< of displacement's shape functions, by reference coordinates (nodes x Dim)
+    Eigen::VectorXd map;           ///< shape functions of the geometry: linear or quadratic
+    Eigen::MatrixXd map_gradient;  ///< (geometry nodes x Dim)
   };
   int nodes;  ///< of displacement: corners and midpoints, or corners and the bubble
   std::vector<Point> points;
 };
 
-/// Dim 2: triangle, six points, degree 4. Dim 3: tetrahedron, four points, degree 2 (14 points, degree 5, with a bubble).
+/// Dim 2: triangle, six points, degree 4. Dim 3: tetrahedron, four points, degree 2 (14 points, degree 5, with a
+/// bubble).
 template <int Dim>
 const ReferenceElement& referenceElement(ElementKind kind);
 

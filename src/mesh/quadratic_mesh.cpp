@@ -102,7 +102,8 @@ QuadraticMesh<Dim> make(const std::vector<Eigen::Matrix<double, Dim, 1>>& vertic
     int next = Dim;
     for (const auto& [a, b] : facetEdges<Dim>()) {
       const int middle = midpoints.of(corners[a], corners[b]);
-      if (!radii.empty()) mesh.nodes[middle] = radii[layer] * (mesh.nodes[corners[a]] + mesh.nodes[corners[b]]).normalized();
+      if (!radii.empty())
+        mesh.nodes[middle] = radii[layer] * (mesh.nodes[corners[a]] + mesh.nodes[corners[b]]).normalized();
       facet.nodes[next++] = middle;
     }
     mesh.facets.push_back(facet);

@@ -27,8 +27,8 @@ struct QuadraticMesh {
     int layer;
   };
 
-  std::vector<Point> nodes;  ///< m
-  int vertex_count = 0;      ///< nodes below are vertices
+  std::vector<Point> nodes;                       ///< m
+  int vertex_count = 0;                           ///< nodes below are vertices
   std::vector<std::array<int, kNodes>> elements;  ///< corners, then midpoints of elementEdges(), positively oriented
   std::vector<int> layers;                        ///< of each element, 0 outermost
   std::vector<Facet> facets;

@@ -9,8 +9,8 @@ struct SweepConfig {
   int segments = 8;         ///< around the needle, >= 3
   double pole_offset = 0;   ///< m, distance of the needle's place on the upper surface from the z axis
   double pole_azimuth = 0;  ///< rad, its direction from the x axis
-  double disc_radius = 0;   ///< m: the section's vertex at this distance from the axis comes to lie on the curve at this
-                            ///< distance from the vertical line through the pole; 0: no disc
+  double disc_radius = 0;  ///< m: the section's vertex at this distance from the axis comes to lie on the curve at this
+                           ///< distance from the vertical line through the pole; 0: no disc
   double holding_radius = 10e-6;  ///< m: below, what lies within this distance from the z axis stays there
 };
 

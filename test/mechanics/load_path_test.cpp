@@ -171,6 +171,44 @@ TEST(LoadPath, StVenantKirchhoffEndsWhereTheStableBranchDoes) {
   EXPECT_NEAR(cube.path.reaction().z(), 0.8 * (0.64 - 1), 1e-7);
 }
 
+/// One entry in a double well, pulled by the tip through a soft spring: ((u - 1)^2 - 1)^2 / 4 + c/2 (u - t)^2.
+class SnappingSpring : public EnergyTerm {
+ public:
+  static constexpr double kSpring = 0.3;
+  int elementCount() const override { return 1; }
+  const std::vector<int>& entries(int) const override { return entries_; }
+  bool evaluate(int, const Eigen::VectorXd& state, Order, LocalEnergy& result) const override {
+    const double x = state[0] - 1, stretch = state[0] - state[1];
+    result.energy = 0.25 * (x * x - 1) * (x * x - 1) + 0.5 * kSpring * stretch * stretch;
+    result.gradient = Eigen::Vector2d(x * (x * x - 1) + kSpring * stretch, -kSpring * stretch);
+    result.hessian = Eigen::Matrix2d::Constant(-kSpring);
+    result.hessian.diagonal() = Eigen::Vector2d(3 * x * x - 1 + kSpring, kSpring);
+    return true;
+  }
+
+ private:
+  std::vector<int> entries_ = {0, 1};
+};
+
+TEST(LoadPath, DoesNotJumpToAnotherBranch) {
+  // The first branch ends in a fold, 3 x^2 = 1 - c; past it there is the other one, stable as well.
+  const double c = SnappingSpring::kSpring, x = -std::sqrt((1 - c) / 3), fold = 1 + x + x * (x * x - 1) / c;
+  Constraints constraints;
+  constraints.entries = {Constraints::kFree, Constraints::tip(0), Constraints::tip(1), Constraints::tip(2)};
+  for (const double step : {1.0 / 16, 0.25, 1.0, 3.0}) {
+    EquilibriumSystem system({std::make_shared<SnappingSpring>()}, constraints, SymmetricSolver::Method::kSimplicial);
+    LoadPathConfig config = pathConfig(1, false);
+    config.first_step = config.largest_step = step;
+    LoadPath path(system, config);
+    const LoadPath::Result result = path.advance({3, 0, 0});
+    EXPECT_FALSE(result.converged) << step;
+    EXPECT_NE(result.reason, "") << step;
+    EXPECT_LT(path.translation().x(), fold + 1e-9) << step;
+    EXPECT_GT(path.translation().x(), fold - 0.05) << step;
+    EXPECT_LT(path.state()[0], 1 + x + 1e-9) << step;
+  }
+}
+
 TEST(LoadPath, NothingToDoIsUndeformed) {
   PressedBlock<3> cube(ElementKind::kP1, "neo_hookean", 0.3);
   const LoadPath::Result result = cube.path.advance(Eigen::Vector3d::Zero());

@@ -1,0 +1,117 @@
+#include "contact/tip_contact.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <random>
+
+#include "base/finite_difference.h"
+#include "mesh/section_mesher.h"
+#include "mesh/swept_mesh.h"
+
+namespace microinjection {
+namespace {
+
+constexpr double kRadius = 28e-6, kTip = 3e-6;  // m
+
+QuadraticMesh<2> section() {
+  SectionMeshConfig config;
+  config.radii = {kRadius};
+  config.size = 6e-6;
+  config.refinements = {{0, +1, kTip, 1e-6}};
+  return makeQuadratic(makeSectionMesh(config), config.radii);
+}
+
+template <int Dim>
+struct Fixture {
+  explicit Fixture(const TipContactConfig& wanted) : body(mesh(), ElementKind::kP2, {makeMaterial({})}) {
+    TipContactConfig config = wanted;
+    config.origin = {0, 0, kRadius};
+    config.penalty = 1e12;
+    contact = std::make_unique<TipContact<Dim>>(body, RoundedTip(kTip, kTip), config);
+  }
+
+  static QuadraticMesh<Dim> mesh() {
+    if constexpr (Dim == 2) {
+      return section();
+    } else {
+      return sweepSection(section(), {});
+    }
+  }
+
+  /// The tip some way in, less than a hundredth of its radius (deeper, the Hessian is not the true one on purpose), the
+  /// body a little and irregularly deformed.
+  Eigen::VectorXd pushed(double depth, unsigned seed) const {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> noise(-2e-9, 2e-9);
+    Eigen::VectorXd state = Eigen::VectorXd::NullaryExpr(body.stateSize(), [&] { return noise(random); });
+    state.tail<3>() = Eigen::Vector3d(0, 0, -depth);
+    return state;
+  }
+
+  /// Derivatives of each facet's energy by finite differences; the number of facets that touch.
+  int expectDerivatives(const Eigen::VectorXd& state) const {
+    int touching = 0;
+    for (int facet = 0; facet < contact->elementCount(); ++facet) {
+      LocalEnergy at;
+      EXPECT_TRUE(contact->evaluate(facet, state, Order::kHessian, at));
+      if (at.zero) continue;
+      ++touching;
+      const std::vector<int>& entries = contact->entries(facet);
+      Eigen::VectorXd local(entries.size());
+      for (std::size_t i = 0; i < entries.size(); ++i) local[i] = state[entries[i]] / kTip;
+      const auto evaluate = [&](const Eigen::VectorXd& x) {
+        Eigen::VectorXd moved = state;
+        for (std::size_t i = 0; i < entries.size(); ++i) moved[entries[i]] = kTip * x[i];
+        LocalEnergy result;
+        contact->evaluate(facet, moved, Order::kGradient, result);
+        return result;
+      };
+      const auto energy = [&](const Eigen::VectorXd& x) {
+        return Eigen::VectorXd(Eigen::VectorXd::Constant(1, evaluate(x).energy));
+      };
+      const auto gradient = [&](const Eigen::VectorXd& x) { return Eigen::VectorXd(evaluate(x).gradient); };
+      EXPECT_LT(derivativeError(energy, local, kTip * at.gradient.transpose(), 1e-6), 1e-5);
+      EXPECT_LT(derivativeError(gradient, local, kTip * at.hessian, 1e-6), 1e-4);
+    }
+    return touching;
+  }
+
+  LayeredBody<Dim> body;
+  std::unique_ptr<TipContact<Dim>> contact;
+};
+
+template <int Dim>
+void expectDerivativesOf(const TipContactConfig& config) {
+  Fixture<Dim> fixture(config);
+  EXPECT_EQ(fixture.expectDerivatives(fixture.pushed(-1e-6, 1)), 0);  // away from the cell
+  const Eigen::VectorXd touching = fixture.pushed(0.02e-6, 2);
+  EXPECT_GT(fixture.expectDerivatives(touching), 0);
+  EXPECT_TRUE(fixture.contact->accept(touching) || config.mode == TipContactConfig::Mode::kSliding);
+  fixture.contact->accept(touching);
+  EXPECT_GT(fixture.expectDerivatives(fixture.pushed(0.022e-6, 3)), 0);  // with a memory
+}
+
+TEST(TipContact, DerivativesInTheSection) {
+  expectDerivativesOf<2>({});
+  TipContactConfig sliding;
+  sliding.mode = TipContactConfig::Mode::kSliding;
+  expectDerivativesOf<2>(sliding);
+  sliding.friction = 0.3;
+  expectDerivativesOf<2>(sliding);
+}
+
+TEST(TipContact, DerivativesInSpace) { expectDerivativesOf<3>({}); }
+
+TEST(TipContact, TheNeedleCanLoseIt) {
+  Fixture<2> fixture({});
+  fixture.contact->accept(fixture.pushed(0.3e-6, 4));
+  EXPECT_GT(fixture.contact->touchingPoints(), 0);
+  const Eigen::VectorXd away = fixture.pushed(-2e-6, 5);
+  EXPECT_TRUE(fixture.contact->accept(away));
+  EXPECT_EQ(fixture.contact->touchingPoints(), 0);
+  EXPECT_EQ(fixture.expectDerivatives(away), 0);
+}
+
+}  // namespace
+}  // namespace microinjection
