@@ -73,8 +73,8 @@ TEST_P(RelaxationTest, ScrambledInsideComesBack) {
   const Constraints constraints = ball_.withSurfaceHeld();
   EquilibriumSystem system = ball_.system(constraints);
   Relaxation relaxation(system, config());
-  const bool slow = GetParam() == std::make_tuple(std::string("stable_neo_hookean"), 0.499, ElementKind::kP2P0);
-  for (int seed = 1; seed <= (slow ? 1 : 3); ++seed) {
+  const bool quick = std::get<2>(GetParam()) == ElementKind::kP1;
+  for (int seed = 1; seed <= (quick ? 4 : 1); ++seed) {
     Eigen::VectorXd state = Eigen::VectorXd::Zero(ball_.body->stateSize());
     ball_.scramble(constraints, seed, state);
     ASSERT_LT(ball_.body->smallestJacobian(state), -1);
