@@ -42,7 +42,7 @@ std::string row(const ReferenceScene& scene, const Case& made, const ReferenceSc
 }
 
 template <int Dim>
-std::string converging(const ReferenceScene& scene, const std::string& element, int level) {
+std::string converging(const ReferenceScene& scene, const std::string& element, double level) {
   Case made{Dim == 2 ? "axisymmetric" : "spatial", element};
   QuadraticMesh<Dim> mesh = makeSceneMesh<Dim>(scene.scene, level);
   made.vertices = mesh.vertex_count;
@@ -106,7 +106,7 @@ std::string table() {
         table.add(scene.name + " axisymmetric " + element, [&] { return converging<2>(scene, element, level); });
       }
       // Space takes minutes; what the elements are worth there shows on two scenes.
-      for (int level = -1; !rounded && scene.scene.cell.layers.size() == 1 && level <= 0; ++level) {
+      for (double level = -0.5; !rounded && scene.scene.cell.layers.size() == 1 && level <= 0.5; level += 0.5) {
         table.add(scene.name + " spatial " + element, [&] { return converging<3>(scene, element, level); });
       }
     }

@@ -21,9 +21,19 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kEver = std::numeric_limits<double>::infinity();  ///< s
-constexpr int kCoarsestInSpace = -1;
-/// A finer mesh takes about this many times longer: in the section, in space.
-constexpr double kCostOfLevel[2] = {3, 7};
+
+/// Meshes to try.
+struct Refinement {
+  double first;  ///< level
+  double step;   ///< from one level to the next
+  double cost;   ///< the next one takes about this many times longer
+};
+constexpr Refinement kInSection = {0, 1, 3};
+constexpr Refinement kDiscInSpace = {-0.5, 0.5, 3}, kRoundedInSpace = {-1, 0.5, 3};  // a sharp edge asks for more
+
+Refinement refinementOf(bool axisymmetric, const Scene::Tip& tip) {
+  return axisymmetric ? kInSection : tip.rounded() ? kRoundedInSpace : kDiscInSpace;
+}
 
 double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
@@ -56,7 +66,7 @@ ConvergedForce::ConvergedForce(const Scene& scene, const Indenting& indenting, c
 
 /// The swept mesh is bent towards the needle's place, and not without end.
 template <int Dim>
-CellProblem<Dim> ConvergedForce::makeProblem(int level) const {
+CellProblem<Dim> ConvergedForce::makeProblem(double level) const {
   try {
     return CellProblem<Dim>(scene_, makeSceneMesh<Dim>(scene_, level), config_.element);
   } catch (const std::invalid_argument& error) {
@@ -70,7 +80,7 @@ CellProblem<Dim> ConvergedForce::makeProblem(int level) const {
 }
 
 template <int Dim>
-ConvergedForce::Level ConvergedForce::solveLevel(int number) const {
+ConvergedForce::Level ConvergedForce::solveLevel(double number) const {
   const Clock::time_point start = Clock::now();
   Level level;
   CellProblem<Dim> problem = makeProblem<Dim>(number);
@@ -109,6 +119,7 @@ ConvergedForce::Level ConvergedForce::solveLevel(int number) const {
 
 /// Takes what a level tells. `before`: force at each depth on the finest mesh so far that had one.
 void ConvergedForce::takeOver(const Level& level, Forces& before, std::vector<ForcePoint>& points) const {
+  const double step = refinementOf(axisymmetric_, scene_.needle.tip).step;
   for (std::size_t i = 0; i < points.size(); ++i) {
     ForcePoint& point = points[i];
     const std::optional<Eigen::Vector3d> coarser = before[i];
@@ -128,7 +139,7 @@ void ConvergedForce::takeOver(const Level& level, Forces& before, std::vector<Fo
     point.converged = true;
     point.reason.clear();
     point.force = *level.forces[i];
-    point.error_estimate = size > 0 ? change / size : 0;
+    point.error_estimate = size > 0 ? change / size / (std::pow(2, step) - 1) : 0;
     point.level = level.report.level;
   }
 }
@@ -148,13 +159,13 @@ std::vector<ForcePoint> ConvergedForce::solve(const std::function<void(const Lev
   std::vector<ForcePoint> points(indenting_.depths.size());
   for (std::size_t i = 0; i < points.size(); ++i) points[i].depth = indenting_.depths[i];
   Forces before(points.size());
-  const int first = axisymmetric_ ? 0 : kCoarsestInSpace;
-  for (int number = first; number <= config_.finest; ++number) {
+  const Refinement refinement = refinementOf(axisymmetric_, scene_.needle.tip);
+  for (double number = refinement.first; number <= config_.finest; number += refinement.step) {
     const Level level = axisymmetric_ ? solveLevel<2>(number) : solveLevel<3>(number);
     takeOver(level, before, points);
     if (report) report(level.report);
-    const double next = level.report.wall_time * kCostOfLevel[axisymmetric_ ? 0 : 1];
-    const bool out_of_time = number > first && secondsSince(start) + next > config_.time;
+    const double next = level.report.wall_time * refinement.cost;
+    const bool out_of_time = number > refinement.first && secondsSince(start) + next > config_.time;
     if (!goOn(points, level) || out_of_time) break;
   }
   for (ForcePoint& point : points) {

@@ -32,7 +32,7 @@ struct ConvergedForceConfig {
   Model model = Model::kAuto;
   ElementKind element = ElementKind::kP2P0;
   double tolerance = 0.005;  ///< wanted relative error of the force
-  int finest = 6;            ///< last level of refinement that may be tried, see scene_mesh.h
+  double finest = 6;         ///< last level of refinement that may be tried, see scene_mesh.h
   double time = 600;         ///< s of wall time after which no third or finer level is begun
 };
 
@@ -43,13 +43,13 @@ struct ForcePoint {
   std::string reason;  ///< why not, or, when converged, why no finer mesh has a solution; else empty
   Eigen::Vector3d force = Eigen::Vector3d::Zero();                   ///< N, of the cell on the needle
   double error_estimate = std::numeric_limits<double>::quiet_NaN();  ///< relative, from the last two levels
-  int level = -1;                                                    ///< of the mesh that the force was found on
+  double level = -1;                                                 ///< of the mesh that the force was found on
   double wall_time = 0;                                              ///< s, of all levels
 };
 
 /// What was done on one mesh.
 struct LevelReport {
-  int level = 0;
+  double level = 0;  ///< see scene_mesh.h
   std::size_t nodes = 0, elements = 0;
   int unknowns = 0;
   double wall_time = 0;        ///< s
@@ -57,10 +57,11 @@ struct LevelReport {
 };
 
 /// Solves a scene on finer and finer meshes until two of them agree to the tolerance at every depth. Elements at the
-/// needle's edge are halved from mesh to mesh and the error is of first order in their size, or better, so that the
-/// difference of two meshes bounds the error of the finer one. A depth is converged when there is an equilibrium on two
-/// meshes at least, the second the finest that was needed; where finer meshes lose the solution before a depth that a
-/// single coarse one reaches, there is none to be trusted, and the point says so.
+/// needle's edge are refined from mesh to mesh by a factor (2 in the section, sqrt 2 in space) and the error is of
+/// first order in their size, or better, so that the finer mesh's error is at most the change over (factor - 1). A
+/// depth is converged when there is an equilibrium on two meshes at least, the second the finest that was needed; where
+/// finer meshes lose the solution before a depth that a single coarse one reaches, there is none to be trusted, and the
+/// point says so.
 class ConvergedForce {
  public:
   /// Throws ConfigError when the model does not fit the scene.
@@ -75,9 +76,9 @@ class ConvergedForce {
   struct Level;
   using Forces = std::vector<std::optional<Eigen::Vector3d>>;  ///< of each depth; empty where there is no equilibrium
   template <int Dim>
-  CellProblem<Dim> makeProblem(int level) const;
+  CellProblem<Dim> makeProblem(double level) const;
   template <int Dim>
-  Level solveLevel(int level) const;
+  Level solveLevel(double level) const;
   void takeOver(const Level& level, Forces& before, std::vector<ForcePoint>& points) const;
   bool goOn(const std::vector<ForcePoint>& points, const Level& level) const;
 

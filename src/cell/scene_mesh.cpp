@@ -16,10 +16,10 @@ constexpr int kSegments = 8;      ///< around the needle, level 0
 constexpr int kFewestSegments = 6;
 
 /// m, of the elements far from the needle: they matter less, and shrink more slowly.
-double farSize(const Scene& scene, int level) { return scene.radius() / 6 * std::pow(2, -0.5 * level); }
+double farSize(const Scene& scene, double level) { return scene.radius() / 6 * std::pow(2, -0.5 * level); }
 
 /// m, at the edge of the holding pipette, where the stress is singular, too, but far from the needle.
-double holdingSize(const Scene& scene, int level) {
+double holdingSize(const Scene& scene, double level) {
   return 0.25 * scene.holding_pipette.contact_radius * std::pow(2, -level);
 }
 
@@ -32,7 +32,7 @@ std::vector<double> radii(const Scene& scene) {
 /// Radius about the point of touch within which the surface may come to lie on the tip's end or on its shaft, m.
 double contactReach(const Scene& scene) { return 1.4 * scene.needle.tip.radius; }
 
-SectionMeshConfig sectionConfig(const Scene& scene, int level) {
+SectionMeshConfig sectionConfig(const Scene& scene, double level) {
   SectionMeshConfig config;
   config.radii = radii(scene);
   config.size = farSize(scene, level);
@@ -59,7 +59,7 @@ Eigen::Vector2d pole(const Scene& scene) {
 
 }  // namespace
 
-double edgeSize(const Scene& scene, int level) {
+double edgeSize(const Scene& scene, double level) {
   const Scene::Tip& tip = scene.needle.tip;
   const double coarsest = tip.rounded() ? std::min(tip.radius / 4, tip.edgeRadius() / 2) : tip.radius / 2;
   return coarsest * std::pow(2, -level);
@@ -68,16 +68,16 @@ double edgeSize(const Scene& scene, int level) {
 bool isAxisymmetric(const Scene& scene) { return scene.needle.offset.isZero(0); }
 
 template <>
-QuadraticMesh<2> makeSceneMesh<2>(const Scene& scene, int level) {
+QuadraticMesh<2> makeSceneMesh<2>(const Scene& scene, double level) {
   const SectionMeshConfig config = sectionConfig(scene, level);
   return makeQuadratic(makeSectionMesh(config), config.radii);
 }
 
 template <>
-QuadraticMesh<3> makeSceneMesh<3>(const Scene& scene, int level) {
+QuadraticMesh<3> makeSceneMesh<3>(const Scene& scene, double level) {
   const Eigen::Vector2d place = pole(scene);
   SweepConfig config;
-  config.segments = level < 0 ? kFewestSegments : kSegments + 4 * level;
+  config.segments = std::max(kFewestSegments, static_cast<int>(std::lround(kSegments + 4 * level)));
   config.pole_offset = place.norm();
   config.pole_azimuth = place.isZero(0) ? 0 : std::atan2(place.y(), place.x());
   config.disc_radius = scene.needle.tip.rounded() ? 0 : scene.needle.tip.radius;

@@ -6,13 +6,13 @@
 namespace microinjection {
 
 /// Meshes of a scene for converged solutions, graded towards where its needle and its holding pipette make the stress
-/// singular or move the contact. `level` counts from 0, in space from -1, the coarsest; each halves the elements at the
-/// needle. Size of the elements at the needle's edge (disc) or under its end (rounded), m.
-double edgeSize(const Scene& scene, int level);
+/// singular or move the contact. `level` counts how often the elements at the needle are halved; it may be a fraction,
+/// and -1 is the coarsest. Size of the elements at the needle's edge (disc) or under its end (rounded), m.
+double edgeSize(const Scene& scene, double level);
 
 /// Of the section (Dim 2; the needle's offset does not count), or in space (Dim 3): see sweepSection.
 template <int Dim>
-QuadraticMesh<Dim> makeSceneMesh(const Scene& scene, int level);
+QuadraticMesh<Dim> makeSceneMesh(const Scene& scene, double level);
 
 /// Offset and lateral motion leave the scene one of revolution.
 bool isAxisymmetric(const Scene& scene);

@@ -57,7 +57,7 @@ std::vector<ForcePoint> converged(const Scene& scene, const IndentArguments& arg
   std::fprintf(stderr, "indent: %s, %s elements, tolerance %.3g\n", solver.axisymmetric() ? "axisymmetric" : "spatial",
                elementName(arguments.converged.element).c_str(), arguments.converged.tolerance);
   return solver.solve([&](const LevelReport& report) {
-    std::fprintf(stderr, "indent: mesh %d, %zu elements, %d unknowns, %.1f s:", report.level, report.elements,
+    std::fprintf(stderr, "indent: mesh %g, %zu elements, %d unknowns, %.1f s:", report.level, report.elements,
                  report.unknowns, report.wall_time);
     for (double force : report.forces) std::fprintf(stderr, " %.5g", 1e6 * force);
     std::fprintf(stderr, " uN\n");

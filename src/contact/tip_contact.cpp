@@ -9,8 +9,9 @@
 namespace microinjection {
 namespace {
 
-/// Of the tip's radius: deeper than any penetration at equilibrium.
-constexpr double kDeepest = 0.01;
+/// Penetration that the next equilibrium may have: times the present one, and of the tip's radius.
+constexpr double kDeeper = 1.5;
+constexpr double kDeepestFirst = 1e-4;
 
 /// A section's (r, z) lies at (r, 0, z).
 Eigen::Vector3d inSpace(const Eigen::Vector2d& v) { return {v[0], 0, v[1]}; }
@@ -117,7 +118,7 @@ bool TipContact<Dim>::contribution(const Point& point, const Vector& at, Local& 
     local.energy = 0.5 * stiffness * distance * distance;
     local.gradient = stiffness * distance * normal;
     // On the way to equilibrium a point may lie far inside, where the true second derivative is that of a maximum.
-    const double bending = std::max(distance, -kDeepest * tip_.radius());
+    const double bending = std::max(distance, -kDeeper * deepest_ - kDeepestFirst * tip_.radius());
     local.hessian = stiffness * (normal * normal.transpose() + bending * curvature);
   }
   if (rubbing) addFriction(point, at, local);
@@ -211,14 +212,20 @@ bool TipContact<Dim>::remember(Point& point, const Vector& at) const {
 template <int Dim>
 bool TipContact<Dim>::accept(const Eigen::VectorXd& state) {
   bool changed = false;
+  deepest_ = 0;
   for (Facet& facet : facets_) {
-    for (Point& point : facet.points) changed = remember(point, relative(facet, point, state)) || changed;
+    for (Point& point : facet.points) {
+      const Vector at = relative(facet, point, state);
+      deepest_ = std::max(deepest_, -tip_.distance(inSpace(at)));
+      changed = remember(point, at) || changed;
+    }
   }
   return changed;
 }
 
 template <int Dim>
 void TipContact<Dim>::reset() {
+  deepest_ = 0;
   for (Facet& facet : facets_) {
     for (Point& point : facet.points) {
       point.last = point.undeformed;

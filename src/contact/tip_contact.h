@@ -73,6 +73,7 @@ class TipContact : public EnergyTerm {
   RoundedTip tip_;
   TipContactConfig config_;
   std::vector<Facet> facets_;
+  double deepest_ = 0;  ///< m, penetration at the end of the last step
 };
 
 }  // namespace microinjection

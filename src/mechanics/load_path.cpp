@@ -12,6 +12,7 @@ constexpr double kTolerance = 1e-8;     ///< of the residual, relative to the re
 constexpr double kRounding = 1e-13;     ///< of the residual, relative to stiffness times length
 constexpr double kWorkMismatch = 1e-3;  ///< of the energy, relative to the work of the step
 constexpr double kSlow = 0.2;           ///< contraction that is too slow to keep an old factorisation
+constexpr double kFar = 0.05;           ///< residual, relative to the reaction, at which an old one is not tried
 constexpr int kMaximumIterations = 15;  ///< a step that needs more is too long
 constexpr int kEasy = 5;                ///< iterations of a step after which a longer one is tried
 constexpr int kMaximumHalvings = 8;     ///< of a line search
@@ -123,7 +124,8 @@ bool LoadPath::balance(State& trial, int& iterations, std::string& reason) {
   for (int i = 0; i < kMaximumIterations; ++i) {
     const double norm = residual_.norm();
     if (norm <= std::max(kTolerance * trial.reaction.norm(), force_floor_)) return true;
-    if ((!factorised_ || norm > kSlow * last) && !refactorise(trial)) {
+    const bool far = i == 0 && norm > kFar * trial.reaction.norm();  // contact came on the way, which it does not know
+    if ((!factorised_ || far || norm > kSlow * last) && !refactorise(trial)) {
       reason = "no stable equilibrium: the tangent on the way is not positive definite";
       return false;
     }
@@ -140,15 +142,19 @@ bool LoadPath::balance(State& trial, int& iterations, std::string& reason) {
   return false;
 }
 
+/// The residual may grow where points come into contact, as long as the energy falls.
 bool LoadPath::correct(State& trial) {
   const Eigen::VectorXd direction = -system_.solve(residual_);
   const double norm = residual_.norm();
+  double before = 0, after = 0;
+  system_.energy(trial.x, before);
   double scale = 1;
   for (int i = 0; i < kMaximumHalvings; ++i, scale /= 2) {
     candidate_ = trial.x;
     system_.addTo(candidate_, scale * direction, Eigen::Vector3d::Zero());
     if (!system_.residual(candidate_, candidate_residual_, trial.reaction)) continue;
-    if (candidate_residual_.norm() >= norm) continue;
+    const bool nearer = candidate_residual_.norm() < norm;
+    if (!nearer && !(system_.energy(candidate_, after) && after < before)) continue;
     trial.x.swap(candidate_);
     residual_.swap(candidate_residual_);
     return true;

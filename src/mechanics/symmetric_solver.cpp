@@ -1,5 +1,7 @@
 #include "mechanics/symmetric_solver.h"
 
+#include <omp.h>
+
 #include <stdexcept>
 
 namespace microinjection {
@@ -22,6 +24,19 @@ cholmod_sparse view(const Eigen::SparseMatrix<double>& lower) {
   matrix.packed = 1;
   return matrix;
 }
+
+/// While it lives this thread's OpenMP regions have one thread. CHOLMOD asks for four whatever the machine has, for
+/// loops so short that to wake the threads takes longer than to factorise.
+class WithoutOpenMp {
+ public:
+  WithoutOpenMp() : before_(omp_get_max_active_levels()) { omp_set_max_active_levels(0); }
+  ~WithoutOpenMp() { omp_set_max_active_levels(before_); }
+  WithoutOpenMp(const WithoutOpenMp&) = delete;
+  WithoutOpenMp& operator=(const WithoutOpenMp&) = delete;
+
+ private:
+  int before_;
+};
 
 }  // namespace
 
@@ -48,6 +63,7 @@ void SymmetricSolver::analyse(const Eigen::SparseMatrix<double>& lower) {
 }
 
 bool SymmetricSolver::factorise(const Eigen::SparseMatrix<double>& lower, int negative) {
+  const WithoutOpenMp one_thread;
   cholmod_sparse matrix = view(lower);
   cholmod_factorize(&matrix, factor_, &common_);
   if (common_.status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
@@ -64,6 +80,7 @@ bool SymmetricSolver::inertiaIs(int negative) const {
 }
 
 Eigen::MatrixXd SymmetricSolver::solve(const Eigen::MatrixXd& right_hand_side) {
+  const WithoutOpenMp one_thread;
   cholmod_dense right{};
   right.nrow = right_hand_side.rows();
   right.ncol = right_hand_side.cols();

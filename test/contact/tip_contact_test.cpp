@@ -39,8 +39,7 @@ struct Fixture {
     }
   }
 
-  /// The tip some way in, less than a hundredth of its radius (deeper, the Hessian is not the true one on purpose), the
-  /// body a little and irregularly deformed.
+  /// The tip some way in, the body a little and irregularly deformed.
   Eigen::VectorXd pushed(double depth, unsigned seed) const {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> noise(-2e-9, 2e-9);
@@ -49,8 +48,9 @@ struct Fixture {
     return state;
   }
 
-  /// Derivatives of each facet's energy by finite differences; the number of facets that touch.
-  int expectDerivatives(const Eigen::VectorXd& state) const {
+  /// Derivatives of each facet's energy by finite differences; the number of facets that touch. Much deeper than at the
+  /// last step the Hessian is not the true one, on purpose.
+  int expectDerivatives(const Eigen::VectorXd& state, bool second = true) const {
     int touching = 0;
     for (int facet = 0; facet < contact->elementCount(); ++facet) {
       LocalEnergy at;
@@ -72,7 +72,7 @@ struct Fixture {
       };
       const auto gradient = [&](const Eigen::VectorXd& x) { return Eigen::VectorXd(evaluate(x).gradient); };
       EXPECT_LT(derivativeError(energy, local, kTip * at.gradient.transpose(), 1e-6), 1e-5);
-      EXPECT_LT(derivativeError(gradient, local, kTip * at.hessian, 1e-6), 1e-4);
+      if (second) EXPECT_LT(derivativeError(gradient, local, kTip * at.hessian, 1e-6), 1e-4);
     }
     return touching;
   }
@@ -86,7 +86,7 @@ void expectDerivativesOf(const TipContactConfig& config) {
   Fixture<Dim> fixture(config);
   EXPECT_EQ(fixture.expectDerivatives(fixture.pushed(-1e-6, 1)), 0);  // away from the cell
   const Eigen::VectorXd touching = fixture.pushed(0.02e-6, 2);
-  EXPECT_GT(fixture.expectDerivatives(touching), 0);
+  EXPECT_GT(fixture.expectDerivatives(touching, false), 0);
   EXPECT_TRUE(fixture.contact->accept(touching) || config.mode == TipContactConfig::Mode::kSliding);
   fixture.contact->accept(touching);
   EXPECT_GT(fixture.expectDerivatives(fixture.pushed(0.022e-6, 3)), 0);  // with a memory
