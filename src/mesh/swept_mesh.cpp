@@ -13,11 +13,8 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// 1 below `from`, 0 above `to`, smooth between.
-double fade(double x, double from, double to) {
-  const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
-  return 1 - t * t * (3 - 2 * t);
-}
+/// 1 below `from`, 0 above `to`, linear between: as gentle as can be.
+double fade(double x, double from, double to) { return 1 - std::clamp((x - from) / (to - from), 0.0, 1.0); }
 
 /// Moves the pole of a ball turned about the z axis; points are given by their distance from the centre, their angle
 /// from the pole and their azimuth.
