@@ -13,9 +13,21 @@
 namespace microinjection {
 namespace {
 
-/// Contact's stiffness, times Young's modulus over the tip's radius. The tip then enters the surface by a thousandth of
-/// its radius where the pressure is that modulus.
+/// Contact's stiffness, times the stiffest layer's modulus over the tip's radius. The tip then enters the surface by a
+/// thousandth of its radius where the pressure is that modulus.
 constexpr double kPenalty = 1000;
+constexpr double kDeepest = 0.03;  ///< of the tip's radius, that it may enter the surface
+
+/// Pa, of the layer that resists most, before anything relaxes.
+double largestModulus(const Scene& scene) {
+  double result = 0;
+  for (const Scene::Layer& layer : scene.cell.layers) {
+    double ratio = 1;
+    for (const PronyTerm& term : layer.material.viscoelasticity.prony) ratio += term.modulus_ratio;
+    result = std::max(result, ratio * layer.material.young_modulus);
+  }
+  return result;
+}
 constexpr double kOnCircle = 1 + 1e-9;
 
 template <int Dim>
@@ -123,15 +135,17 @@ Constraints CellProblem<Dim>::constraints(const Scene& scene) const {
 }
 
 template <int Dim>
-void CellProblem<Dim>::addContact(const Scene& scene, EquilibriumSystem::Terms& terms) const {
+void CellProblem<Dim>::addContact(const Scene& scene, EquilibriumSystem::Terms& terms) {
   const Scene::Needle& needle = scene.needle;
   const RoundedTip tip = RoundedTip::make(needle.tip.shape, needle.tip.radius, needle.tip.edge_radius);
   TipContactConfig config;
   config.mode = needle.contact.mode == "sliding" ? TipContactConfig::Mode::kSliding : TipContactConfig::Mode::kSticking;
   config.friction = needle.contact.friction;
   config.origin << needle.offset, tip.touchHeight(scene.radius(), needle.offset);
-  config.penalty = kPenalty * scene.cell.material().young_modulus / needle.tip.radius;
-  terms.push_back(std::make_shared<TipContact<Dim>>(*body_, tip, config));
+  config.penalty = kPenalty * largestModulus(scene) / needle.tip.radius;
+  contact_ = std::make_shared<TipContact<Dim>>(*body_, tip, config);
+  deepest_ = kDeepest * needle.tip.radius;
+  terms.push_back(contact_);
 }
 
 template <int Dim>
@@ -158,6 +172,11 @@ IndentationSolution CellProblem<Dim>::solve(const Eigen::Vector3d& tip_displacem
   IndentationSolution solution;
   solution.converged = result.converged;
   solution.reason = result.reason;
+  if (solution.converged && contact_ && contact_->penetration() > deepest_) {
+    solution.converged = false;
+    solution.reason =
+        "the tip enters the surface by more than 3 % of its radius: the contact is too soft for this cell";
+  }
   solution.tip_displacement = path_->translation();
   solution.force = -path_->reaction();
   solution.stiffness = path_->stiffness();

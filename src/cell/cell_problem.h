@@ -11,6 +11,9 @@
 
 namespace microinjection {
 
+template <int Dim>
+class TipContact;
+
 /// A scene on a mesh: everything in it, in space (Dim 3) or, on the axis, in its section (Dim 2). Keeps its state and
 /// continues from it. One thread at a time.
 template <int Dim>
@@ -35,10 +38,12 @@ class CellProblem {
 
  private:
   Constraints constraints(const Scene& scene) const;
-  void addContact(const Scene& scene, EquilibriumSystem::Terms& terms) const;
+  void addContact(const Scene& scene, EquilibriumSystem::Terms& terms);
   static LoadPathConfig pathConfig(const Scene& scene, bool linear);
 
   std::shared_ptr<LayeredBody<Dim>> body_;
+  std::shared_ptr<TipContact<Dim>> contact_;  ///< of a rounded tip
+  double deepest_ = 0;                        ///< m, that it may enter the surface
   std::unique_ptr<EquilibriumSystem> system_;
   std::unique_ptr<LoadPath> path_;
 };

@@ -13,6 +13,7 @@
 #include "base/errors.h"
 #include "cell/cell_problem.h"
 #include "cell/scene_mesh.h"
+#include "contact/rounded_tip.h"
 
 namespace microinjection {
 namespace {
@@ -69,7 +70,7 @@ template <int Dim>
 CellProblem<Dim> ConvergedForce::makeProblem(double level) const {
   try {
     return CellProblem<Dim>(scene_, makeSceneMesh<Dim>(scene_, level), config_.element);
-  } catch (const std::invalid_argument& error) {
+  } catch (const InvertedElement& error) {
     if (Dim == 2) throw;
     std::ostringstream message;
     message << "needle/offset (its length) = " << scene_.needle.offset.norm()
@@ -97,24 +98,49 @@ ConvergedForce::Level ConvergedForce::solveLevel(double number) const {
   std::stable_sort(order.begin(), order.end(),
                    [&](auto a, auto b) { return indenting_.depths[a] < indenting_.depths[b]; });
   Clock::time_point mark = start;
+  const bool straight = indenting_.lateral.isZero(0);  // all depths lie on one line
+  std::optional<IndentationSolution> last;
   for (std::size_t i : order) {
     const Eigen::Vector3d target(indenting_.lateral.x(), indenting_.lateral.y(), -indenting_.depths[i]);
-    if (!indenting_.lateral.isZero(0)) problem.reset();  // each depth lies on a line of its own
+    if (!straight) problem.reset();
     const double way = (target - problem.tipDisplacement()).norm();
-    IndentationSolution solution = problem.solve(target, way > 0 && indenting_.speed ? way / *indenting_.speed : kEver);
-    if (solution.converged && indenting_.hold > 0) solution = problem.solve(target, indenting_.hold);
+    IndentationSolution solution;
+    if (straight && last && way == 0) {
+      solution = *last;  // the same depth once more
+    } else {
+      solution = problem.solve(target, way > 0 && indenting_.speed ? way / *indenting_.speed : kEver);
+      if (solution.converged && indenting_.hold > 0) solution = problem.solve(target, indenting_.hold);
+    }
+    last = solution;
+    if (solution.converged && solution.force.isZero(0) && !resolves(target)) {
+      solution.converged = false;
+      solution.reason = "so small a contact falls between the mesh's points";
+    }
     level.wall_times[i] = secondsSince(mark);
     mark = Clock::now();
     level.reached = std::max(level.reached, -solution.tip_displacement.z());
     if (!solution.converged) {
       level.reason = solution.reason;
-      break;
+      if (straight) break;
+      continue;
     }
     level.forces[i] = solution.force;
     level.report.forces[i] = solution.force.norm();
   }
   level.report.wall_time = secondsSince(start);
   return level;
+}
+
+/// Whether a force of zero there may be true: a disc's depth is 0, or a rounded tip is beside the undeformed cell.
+bool ConvergedForce::resolves(const Eigen::Vector3d& displacement) const {
+  const Scene::Needle& needle = scene_.needle;
+  if (!needle.tip.rounded()) return true;
+  const RoundedTip tip = RoundedTip::make(needle.tip.shape, needle.tip.radius, needle.tip.edge_radius);
+  Eigen::Vector3d at = displacement;
+  at.head<2>() += needle.offset;
+  at.z() += tip.touchHeight(scene_.radius(), needle.offset);
+  const double overlap = scene_.radius() - tip.distance(-at);
+  return overlap <= 1e-9 * scene_.radius();
 }
 
 /// Takes what a level tells. `before`: force at each depth on the finest mesh so far that had one.
@@ -144,6 +170,14 @@ void ConvergedForce::takeOver(const Level& level, Forces& before, std::vector<Fo
   }
 }
 
+/// No finer mesh; what was found stays.
+void ConvergedForce::giveUp(const std::string& why, std::vector<ForcePoint>& points) const {
+  for (ForcePoint& point : points) {
+    const bool done = point.converged && point.error_estimate <= config_.tolerance;
+    if (!done && point.reason.empty()) point.reason = "a finer mesh failed: " + why;
+  }
+}
+
 /// Whether a finer level may help some depth.
 bool ConvergedForce::goOn(const std::vector<ForcePoint>& points, const Level& level) const {
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -161,7 +195,14 @@ std::vector<ForcePoint> ConvergedForce::solve(const std::function<void(const Lev
   Forces before(points.size());
   const Refinement refinement = refinementOf(axisymmetric_, scene_.needle.tip);
   for (double number = refinement.first; number <= config_.finest; number += refinement.step) {
-    const Level level = axisymmetric_ ? solveLevel<2>(number) : solveLevel<3>(number);
+    Level level;
+    try {
+      level = axisymmetric_ ? solveLevel<2>(number) : solveLevel<3>(number);
+    } catch (const std::exception& error) {
+      if (number == refinement.first) throw;
+      giveUp(error.what(), points);
+      break;
+    }
     takeOver(level, before, points);
     if (report) report(level.report);
     const double next = level.report.wall_time * refinement.cost;

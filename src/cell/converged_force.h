@@ -80,6 +80,8 @@ class ConvergedForce {
   template <int Dim>
   Level solveLevel(double level) const;
   void takeOver(const Level& level, Forces& before, std::vector<ForcePoint>& points) const;
+  bool resolves(const Eigen::Vector3d& displacement) const;
+  void giveUp(const std::string& why, std::vector<ForcePoint>& points) const;
   bool goOn(const std::vector<ForcePoint>& points, const Level& level) const;
 
   Scene scene_;

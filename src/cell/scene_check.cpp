@@ -13,7 +13,8 @@ namespace {
 constexpr double kRounding = 1e-9;  // relative
 
 /// A circle nearer to the equator than this lies on so steep a surface that it cannot be meshed well.
-constexpr double kReach = 0.95;  // of the cell's radius
+constexpr double kSharpest = 0.05;  // rounded edge, of the tip's radius
+constexpr double kReach = 0.95;     // of the cell's radius
 
 constexpr double kThinnestLayer = 1.0 / 500;  // of the cell's radius
 
@@ -101,8 +102,8 @@ void checkTip(const Scene::Tip& tip, double cell_radius, Errors& errors) {
       positive(tip.radius) && tip.radius <= limit, "needle/tip/radius", tip.radius, " m",
       "above 0 and at most " + metres(limit) + (tip.rounded() ? ", the cell's radius" : ", 0.95 of the cell's radius"));
   if (tip.shape == "rounded_flat") {
-    errors.require(positive(tip.edge_radius) && tip.edge_radius <= tip.radius, "needle/tip/edge_radius",
-                   tip.edge_radius, " m", "above 0 and at most the tip's radius " + metres(tip.radius));
+    errors.require(tip.edge_radius >= kSharpest * tip.radius && tip.edge_radius <= tip.radius, "needle/tip/edge_radius",
+                   tip.edge_radius, " m", "from 1/20 of the tip's radius to all of it, " + metres(tip.radius));
   } else {
     errors.require(tip.edge_radius == 0, "needle/tip/edge_radius", tip.edge_radius, " m",
                    "left out: it belongs to rounded_flat only");

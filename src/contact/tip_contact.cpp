@@ -98,17 +98,17 @@ typename TipContact<Dim>::Vector TipContact<Dim>::relative(const Facet& facet, c
 
 template <int Dim>
 bool TipContact<Dim>::contribution(const Point& point, const Vector& at, Local& local) const {
-  const bool stuck = config_.mode == TipContactConfig::Mode::kSticking && point.touching;
+  const bool stuck = config_.mode == TipContactConfig::Mode::kSticking && point.memory.touching;
   const double stiffness = config_.penalty * point.weight;
   if (stuck) {
-    const Vector stretch = at - point.anchor;
+    const Vector stretch = at - point.memory.anchor;
     local.energy = 0.5 * stiffness * stretch.squaredNorm();
     local.gradient = stiffness * stretch;
     local.hessian = stiffness * Matrix::Identity();
     return true;
   }
   const double distance = tip_.distance(inSpace(at));
-  const bool rubbing = config_.friction > 0 && point.touching;
+  const bool rubbing = config_.friction > 0 && point.memory.touching;
   if (distance >= 0 && !rubbing) return false;
   local = Local();
   if (distance < 0) {
@@ -128,9 +128,10 @@ bool TipContact<Dim>::contribution(const Point& point, const Vector& at, Local& 
 /// Elastic up to the bound of Coulomb's law, then of constant force: Huber's function of the slip.
 template <int Dim>
 void TipContact<Dim>::addFriction(const Point& point, const Vector& at, Local& local) const {
-  const Matrix tangential = Matrix::Identity() - point.normal * point.normal.transpose();
-  const Vector slip = tangential * (at - point.anchor);
-  const double stiffness = config_.penalty * point.weight, bound = config_.friction * point.traction * point.weight;
+  const Matrix tangential = Matrix::Identity() - point.memory.normal * point.memory.normal.transpose();
+  const Vector slip = tangential * (at - point.memory.anchor);
+  const double stiffness = config_.penalty * point.weight,
+               bound = config_.friction * point.memory.traction * point.weight;
   const double length = slip.norm();
   if (stiffness * length <= bound) {
     local.energy += 0.5 * stiffness * length * length;
@@ -173,54 +174,69 @@ bool TipContact<Dim>::evaluate(int index, const Eigen::VectorXd& state, Order or
 }
 
 template <int Dim>
-bool TipContact<Dim>::remember(Point& point, const Vector& at) const {
+bool TipContact<Dim>::settle(Memory& memory, const Vector& at) const {
   Vector normal;
   Matrix curvature;
   const double distance = gap(at, normal, curvature);
-  const bool touched = point.touching;
-  bool changed = false;
+  const bool touched = memory.touching;
   if (config_.mode == TipContactConfig::Mode::kSticking) {
-    if (touched && (at - point.anchor).dot(normal) > 0) {  // the tip would pull
-      point.touching = false;
+    if (touched && (at - memory.anchor).dot(normal) > 0) {  // the tip would pull
+      memory.touching = false;
     } else if (!touched && distance < 0) {
-      const double before = tip_.distance(inSpace(point.last));
+      const double before = tip_.distance(inSpace(memory.last));
       const double share = before > 0 ? before / (before - distance) : 0;
-      const Vector met = point.last + share * (at - point.last);
+      const Vector met = memory.last + share * (at - memory.last);
       const double off = gap(met, normal, curvature);
-      point.anchor = met - off * normal;
-      point.touching = true;
+      memory.anchor = met - off * normal;
+      memory.touching = true;
     }
-    changed = touched != point.touching;
-  } else if (config_.friction > 0) {
-    const double stiffness = config_.penalty, bound = config_.friction * point.traction;
-    if (touched) {
-      const Vector slip = (at - point.anchor) - point.normal * point.normal.dot(at - point.anchor);
-      const double excess = stiffness * slip.norm() / bound;
-      point.anchor = at - (excess > 1 ? Vector(slip / excess) : slip);
-    } else {
-      point.anchor = at;
-    }
-    point.touching = distance < 0;
-    point.traction = stiffness * std::max(0.0, -distance);
-    point.normal = normal;
-    changed = touched || point.touching;
+    return touched != memory.touching;
   }
-  point.last = at;
-  return changed;
+  if (config_.friction == 0) return false;
+  const double stiffness = config_.penalty, bound = config_.friction * memory.traction;
+  if (touched) {
+    const Vector slip = (at - memory.anchor) - memory.normal * memory.normal.dot(at - memory.anchor);
+    const double excess = stiffness * slip.norm() / bound;
+    memory.anchor = at - (excess > 1 ? Vector(slip / excess) : slip);
+  } else {
+    memory.anchor = at;
+  }
+  memory.touching = distance < 0;
+  memory.traction = stiffness * std::max(0.0, -distance);
+  memory.normal = normal;
+  return touched || memory.touching;
 }
 
 template <int Dim>
-bool TipContact<Dim>::accept(const Eigen::VectorXd& state) {
+bool TipContact<Dim>::beginStep(double /*duration*/) {
+  for (Facet& facet : facets_) {
+    for (Point& point : facet.points) point.memory = point.accepted;
+  }
+  return false;
+}
+
+template <int Dim>
+bool TipContact<Dim>::settle(const Eigen::VectorXd& state) {
   bool changed = false;
   deepest_ = 0;
   for (Facet& facet : facets_) {
     for (Point& point : facet.points) {
       const Vector at = relative(facet, point, state);
       deepest_ = std::max(deepest_, -tip_.distance(inSpace(at)));
-      changed = remember(point, at) || changed;
+      changed = settle(point.memory, at) || changed;
     }
   }
   return changed;
+}
+
+template <int Dim>
+void TipContact<Dim>::accept(const Eigen::VectorXd& state) {
+  for (Facet& facet : facets_) {
+    for (Point& point : facet.points) {
+      point.memory.last = relative(facet, point, state);
+      point.accepted = point.memory;
+    }
+  }
 }
 
 template <int Dim>
@@ -228,9 +244,9 @@ void TipContact<Dim>::reset() {
   deepest_ = 0;
   for (Facet& facet : facets_) {
     for (Point& point : facet.points) {
-      point.last = point.undeformed;
-      point.touching = false;
-      point.traction = 0;
+      point.accepted = Memory();
+      point.accepted.last = point.undeformed;
+      point.memory = point.accepted;
     }
   }
 }
@@ -239,7 +255,8 @@ template <int Dim>
 int TipContact<Dim>::touchingPoints() const {
   int count = 0;
   for (const Facet& facet : facets_) {
-    for (const Point& point : facet.points) count += tip_.distance(inSpace(point.last)) < 0 || point.touching;
+    for (const Point& point : facet.points)
+      count += tip_.distance(inSpace(point.memory.last)) < 0 || point.memory.touching;
   }
   return count;
 }

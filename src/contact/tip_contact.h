@@ -32,25 +32,32 @@ class TipContact : public EnergyTerm {
   int elementCount() const override { return static_cast<int>(facets_.size()); }
   const std::vector<int>& entries(int facet) const override { return facets_[facet].entries; }
   bool evaluate(int facet, const Eigen::VectorXd& state, Order order, LocalEnergy& result) const override;
-  bool accept(const Eigen::VectorXd& state) override;
+  bool beginStep(double duration) override;
+  bool settle(const Eigen::VectorXd& state) override;
+  void accept(const Eigen::VectorXd& state) override;
   void reset() override;
 
   int touchingPoints() const;  ///< quadrature points in contact at the last accepted state
 
+  /// m, by how much the tip enters the surface at the last equilibrium: to be small against its radius.
+  double penetration() const { return deepest_; }
+
  private:
   using Vector = Eigen::Matrix<double, Dim, 1>;
   using Matrix = Eigen::Matrix<double, Dim, Dim>;
+  struct Memory {
+    Vector last = Vector::Zero();  ///< m, relative to the tip, at the end of the last step
+    bool touching = false;         ///< then `anchor` holds
+    Vector anchor =
+        Vector::Zero();  ///< m, relative to the tip: where the tangential (sticking: the whole) spring rests
+    Vector normal = Vector::Zero();  ///< out of the tip, where it settled last
+    double traction = 0;             ///< Pa, normal, where it settled last
+  };
   struct Point {
     Vector undeformed = Vector::Zero();  ///< m, relative to the tip's origin
     double weight = 0;                   ///< m^2
     Eigen::VectorXd shape;               ///< of the facet's nodes
-    // memory
-    Vector last = Vector::Zero();  ///< m, relative to the tip, at the end of the last step
-    bool touching = false;         ///< then `anchor` holds
-    Vector anchor =
-        Vector::Zero();  ///< m, relative to the tip: where the tangential (sticking: the whole) spring is at rest
-    Vector normal = Vector::Zero();  ///< out of the tip, at the end of the last step
-    double traction = 0;             ///< Pa, normal, at the end of the last step
+    Memory memory, accepted;             ///< in this step, and of the last one that was accepted
   };
   struct Facet {
     std::vector<int> entries;  ///< node by node, then the tip's
@@ -67,13 +74,13 @@ class TipContact : public EnergyTerm {
   Vector relative(const Facet& facet, const Point& point, const Eigen::VectorXd& state) const;
   bool contribution(const Point& point, const Vector& at, Local& local) const;
   void addFriction(const Point& point, const Vector& at, Local& local) const;
-  bool remember(Point& point, const Vector& at) const;
+  bool settle(Memory& memory, const Vector& at) const;
   double gap(const Vector& at, Vector& normal, Matrix& curvature) const;
 
   RoundedTip tip_;
   TipContactConfig config_;
   std::vector<Facet> facets_;
-  double deepest_ = 0;  ///< m, penetration at the end of the last step
+  double deepest_ = 0;  ///< m, penetration at the last equilibrium
 };
 
 }  // namespace microinjection

@@ -7,7 +7,14 @@
 
 namespace microinjection {
 
-Material::Material(double lambda, double mu) : kappa_(std::max(lambda, mu)), lambda_excess_(lambda - kappa_) {}
+namespace {
+
+/// What is left without it must stay stable, or a mixed element is not: its bulk modulus must not be negative.
+double mixedModulus(double lambda, double mu) { return std::max(lambda, std::min(mu, 0.5 * (lambda + 2 * mu / 3))); }
+
+}  // namespace
+
+Material::Material(double lambda, double mu) : kappa_(mixedModulus(lambda, mu)), lambda_excess_(lambda - kappa_) {}
 
 double Material::energyDensity(const Kinematics& kinematics, const Weights& weights) const {
   const double energy = modelEnergy(kinematics);

@@ -62,7 +62,8 @@ class Material {
   Eigen::Matrix3d dilatationGradient(const Eigen::Matrix3d& F) const { return kinematics(F).dilatation_gradient; }
   Matrix9d dilatationHessian(const Eigen::Matrix3d& F) const { return tangent(kinematics(F), mixed(0, 1)); }
 
-  /// kappa, Pa, > 0: the model's lambda, and mu where that is larger. Wd then takes (lambda - kappa)/2 g^2.
+  /// kappa, Pa, > 0: the model's lambda, or more where that is small or negative: at most its bulk modulus, so that Wd,
+  /// which takes (lambda - kappa)/2 g^2, stays stable.
   double dilatationalModulus() const { return kappa_; }
 
   /// The weighted sum of the parts, J/m^3, with its first and second derivative, Pa.

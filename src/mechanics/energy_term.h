@@ -32,12 +32,15 @@ class EnergyTerm {
   virtual bool evaluate(int element, const Eigen::VectorXd& state, Order order, LocalEnergy& result) const = 0;
 
   /// A load step that takes `duration` (s, > 0; infinite: so slowly that nothing viscous resists) begins, or is tried
-  /// once more.
-  virtual void beginStep(double /*duration*/) {}
+  /// once more; what settled in the try before is forgotten. True when the energy depends on the duration.
+  virtual bool beginStep(double /*duration*/) { return false; }
 
-  /// The equilibrium at the end of a load step: what remembers (contact, viscosity) remembers it. True when the energy
-  /// is another function from now on.
-  virtual bool accept(const Eigen::VectorXd& /*state*/) { return false; }
+  /// An equilibrium at the end of a load step: what has come into contact or left it does so for good. True when the
+  /// energy is another function from now on, so that the equilibrium must be found once more, in the same step.
+  virtual bool settle(const Eigen::VectorXd& /*state*/) { return false; }
+
+  /// The last equilibrium of a load step: what remembers remembers it.
+  virtual void accept(const Eigen::VectorXd& /*state*/) {}
 
   /// Forgets: back to the undeformed state.
   virtual void reset() {}

@@ -66,8 +66,8 @@ void LayeredBody<Dim>::addElement(int index, const std::vector<ReferenceElement:
   const auto& nodes = mesh_.elements[index];
   const int layer = mesh_.layers[index];
   if (layer < 0 || layer >= static_cast<int>(materials_.size())) {
-    throw std::invalid_argument("element " + std::to_string(index) + " is of layer " + std::to_string(layer) +
-                                ", which has no material");
+    throw InvertedElement("element " + std::to_string(index) + " is of layer " + std::to_string(layer) +
+                          ", which has no material");
   }
   std::vector<int> entries;
   for (int k = 0; k < Dim; ++k) {
@@ -88,7 +88,7 @@ void LayeredBody<Dim>::addElement(int index, const std::vector<ReferenceElement:
     }
     const double determinant = jacobian.determinant();
     if (!(determinant > 0)) {
-      throw std::invalid_argument("element " + std::to_string(index) + " is not positively oriented");
+      throw InvertedElement("element " + std::to_string(index) + " is not positively oriented");
     }
     constexpr double kTurn = 2 * 3.14159265358979323846;
     weights_.push_back(at.weight * determinant * (Dim == 2 ? kTurn * x[0] : 1));

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <stdexcept>
 #include <type_traits>
 #include <vector>
 
@@ -22,6 +23,12 @@ enum class Inversion {
   kAllowed   ///< its energy is what the material says
 };
 
+/// A mesh with an element that is not positively oriented.
+class InvertedElement : public std::invalid_argument {
+ public:
+  using std::invalid_argument::invalid_argument;
+};
+
 /// Strain energy of a body of layers on finite elements: in space (Dim = 3, displacements x, y, z) or, for a body of
 /// revolution deformed without twist, in its section (Dim = 2, displacements r, z; volumes are those of the whole
 /// body).
@@ -35,7 +42,8 @@ class LayeredBody : public EnergyTerm {
  public:
   using Materials = std::vector<std::shared_ptr<const Material>>;  ///< of each layer
 
-  /// Throws std::invalid_argument when an element is not positively oriented or a layer has no material.
+  /// Throws InvertedElement when an element is not positively oriented, std::invalid_argument when a layer has no
+  /// material.
   LayeredBody(QuadraticMesh<Dim> mesh, ElementKind kind, Materials materials,
               Inversion inversion = Inversion::kRefused);
 

@@ -73,8 +73,9 @@ LoadPath::Result LoadPath::advance(const Eigen::Vector3d& target, double duratio
 }
 
 bool LoadPath::step(const Eigen::Vector3d& increment, double duration, int& iterations, std::string& reason) {
-  for (const auto& term : system_.terms()) term->beginStep(duration);
-  const bool other = std::isfinite(duration) || viscous_;
+  bool viscous = false;
+  for (const auto& term : system_.terms()) viscous = term->beginStep(duration) || viscous;
+  const bool other = viscous || viscous_;
   if (other) {  // the energy is that of this step now
     factorised_ = false;
     system_.energy(state_.x, state_.energy);
@@ -98,20 +99,29 @@ bool LoadPath::step(const Eigen::Vector3d& increment, double duration, int& iter
     factorised_ = false;
     return false;
   }
+  if (!settle(iterations, reason)) {
+    factorised_ = false;
+    return false;
+  }
   std::swap(state_, trial_);
-  viscous_ = std::isfinite(duration);
-  return accept(iterations, reason);
+  viscous_ = viscous;
+  for (const auto& term : system_.terms()) term->accept(state_.x);
+  return true;
 }
 
-bool LoadPath::accept(int& iterations, std::string& reason) {
+bool LoadPath::settle(int& iterations, std::string& reason) {
   bool changed = false;
-  for (const auto& term : system_.terms()) changed = term->accept(state_.x) || changed;
+  for (const auto& term : system_.terms()) changed = term->settle(trial_.x) || changed;
   if (!changed) return true;
   factorised_ = false;
-  if (!balance(state_, iterations, reason) || !refactorise(state_)) return false;
-  system_.energy(state_.x, state_.energy);
-  state_.stiffness = system_.stiffness();
-  state_.sensitivity = system_.sensitivity();
+  if (!balance(trial_, iterations, reason)) return false;
+  if (!refactorise(trial_)) {
+    reason = "the equilibrium with what has come into contact is not stable";
+    return false;
+  }
+  system_.energy(trial_.x, trial_.energy);
+  trial_.stiffness = system_.stiffness();
+  trial_.sensitivity = system_.sensitivity();
   return true;
 }
 

@@ -62,7 +62,7 @@ class LoadPath {
   bool correct(State& trial);
   bool workMatches(const State& trial) const;
   bool refactorise(const State& state);
-  bool accept(int& iterations, std::string& reason);
+  bool settle(int& iterations, std::string& reason);
 
   EquilibriumSystem& system_;
   LoadPathConfig config_;

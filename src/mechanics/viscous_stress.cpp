@@ -39,15 +39,16 @@ void ViscousStress<Dim>::reset() {
 }
 
 template <int Dim>
-void ViscousStress<Dim>::beginStep(double duration) {
+bool ViscousStress<Dim>::beginStep(double duration) {
   std::vector<ViscoelasticStep> steps;
   for (std::size_t i = 0; i < layers_.size(); ++i) steps.emplace_back(*body_->materials()[i], layers_[i], duration);
   steps_.swap(steps);
   relaxed_ = std::isinf(duration);
+  return !relaxed_;
 }
 
 template <int Dim>
-bool ViscousStress<Dim>::accept(const Eigen::VectorXd& state) {
+void ViscousStress<Dim>::accept(const Eigen::VectorXd& state) {
   for (Element& element : elements_) {
     const Material& material = *body_->materials()[element.layer];
     for (int q = 0; q < body_->pointCount(); ++q) {
@@ -55,7 +56,6 @@ bool ViscousStress<Dim>::accept(const Eigen::VectorXd& state) {
       steps_[element.layer].accept(material.kinematics(F), element.memory[q]);
     }
   }
-  return false;
 }
 
 template <int Dim>

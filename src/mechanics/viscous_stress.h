@@ -31,11 +31,11 @@ class ViscousStress : public EnergyTerm {
   /// False where the material's energy is not defined.
   bool evaluate(int element, const Eigen::VectorXd& state, Order order, LocalEnergy& result) const override;
 
-  /// Throws std::invalid_argument when `duration` is not positive.
-  void beginStep(double duration) override;
+  /// True when `duration` is finite. Throws std::invalid_argument when it is not positive.
+  bool beginStep(double duration) override;
 
-  /// False always: the state stays at equilibrium until another step begins.
-  bool accept(const Eigen::VectorXd& state) override;
+  /// The state stays at equilibrium until another step begins.
+  void accept(const Eigen::VectorXd& state) override;
   void reset() override;
 
  private:

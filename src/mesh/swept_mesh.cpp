@@ -25,7 +25,7 @@ class PoleMap {
         tilt_(std::asin(config.pole_offset / radius)),
         disc_(config.disc_radius / radius),
         disc_angle_(std::asin(disc_)),
-        near_(std::max(0.3, std::min(4 * disc_angle_, 0.8))),
+        near_(std::max({0.3, std::min(4 * disc_angle_, 0.8), 1.4 * disc_angle_})),
         far_(kPi - std::asin(std::min(1.0, config.holding_radius / radius)) * 1.02) {}
 
   Eigen::Vector3d operator()(double distance, double angle, double turn) const {

@@ -48,12 +48,12 @@ double sectionStiffness(ElementKind element, int level) {
   return problem.solve(Eigen::Vector3d::Zero()).stiffness(2, 2);
 }
 
-/// Where linear elements do not lock, they converge. The reference has no nu = 0.3; what it should be: the compliance of
-/// a bonded flat punch on a half space, (1 - nu^2) / (2 a E) / b with b = (1 - nu) ln(3 - 4 nu) / (1 - 2 nu)
-/// (Mossakovskii 1954), plus that of the ball, C / (2 a E): linear.csv gives C = 0.1614 at nu = 0.45 and 0.1591 at 0.49,
-/// a straight line gives 0.1700 at 0.3, and so F / d = 2 a E / (0.91 / 1.0287 + 0.1700) = 0.1018 N/m; judged good to 2 %.
-/// The error falls with the size of the elements at the disc's sharp edge, so halving them should about halve it, and
-/// extrapolation should give what other elements give.
+/// Where linear elements do not lock, they converge. The reference has no nu = 0.3; what it should be: the compliance
+/// of a bonded flat punch on a half space, (1 - nu^2) / (2 a E) / b with b = (1 - nu) ln(3 - 4 nu) / (1 - 2 nu)
+/// (Mossakovskii 1954), plus that of the ball, C / (2 a E): linear.csv gives C = 0.1614 at nu = 0.45 and 0.1591 at
+/// 0.49, a straight line gives 0.1700 at 0.3, and so F / d = 2 a E / (0.91 / 1.0287 + 0.1700) = 0.1018 N/m; judged good
+/// to 2 %. The error falls with the size of the elements at the disc's sharp edge, so halving them should about halve
+/// it, and extrapolation should give what other elements give.
 TEST(Convergence, WithoutLockingTheForceConverges) {
   const double reference = sectionStiffness(ElementKind::kP2P0, 5);
   EXPECT_NEAR(reference, 0.1018, 0.01 * 0.1018);

@@ -90,7 +90,7 @@ TEST(SceneCheck, RefusesKeysThatBelongToSomethingElse) {
             "needle/contact/friction = 0: must be left out: it belongs to mode sliding only"});
   expectIn(with("{tip: {shape: rounded_flat, radius: 3e-6}}"), {"needle/tip/edge_radius is missing"});
   expectIn(with("{tip: {shape: rounded_flat, radius: 3e-6, edge_radius: 3.1e-6}}"),
-           {"needle/tip/edge_radius = 3.1e-06 m: must be above 0 and at most the tip's radius 3e-06 m"});
+           {"needle/tip/edge_radius = 3.1e-06 m: must be from 1/20 of the tip's radius to all of it, 3e-06 m"});
   EXPECT_EQ(
       with("{tip: {shape: rounded_flat, radius: 3e-6, edge_radius: 3e-6}}", "{model: mooney_rivlin, mooney_ratio: 1}"),
       "");
