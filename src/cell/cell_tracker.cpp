@@ -1,5 +1,6 @@
 #include "cell/cell_tracker.h"
 
+#include <algorithm>
 #include <exception>
 #include <sstream>
 
@@ -120,6 +121,42 @@ TipForce CellTracker::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& ax
     return {};
   }
   return result;
+}
+
+std::optional<CellUnderNeedle::Solution> CellTracker::solution(double time) const {
+  if (!solution_) return std::nullopt;
+  const IndentationSolution& solved = solution_->indentation;
+  return Solution{solved.stiffness, solved.newton_iterations, solved.cpu_time, time - solution_time_,
+                  solved.smallest_jacobian};
+}
+
+std::vector<std::array<int, 3>> CellTracker::triangles() const { return cell_->surface().triangles; }
+
+std::vector<std::uint32_t> CellTracker::onSurface(const std::vector<int>& mesh_vertices) const {
+  const SurfaceMesh& surface = cell_->surface();
+  std::vector<std::uint32_t> result;
+  for (const int vertex : mesh_vertices) {
+    const auto found = std::lower_bound(surface.mesh_vertices.begin(), surface.mesh_vertices.end(), vertex);
+    if (found != surface.mesh_vertices.end() && *found == vertex)
+      result.push_back(static_cast<std::uint32_t>(found - surface.mesh_vertices.begin()));
+  }
+  return result;
+}
+
+std::vector<std::uint32_t> CellTracker::held() const { return onSurface(cell_->heldVertices()); }
+
+CellUnderNeedle::Picture CellTracker::picture() const {
+  const SurfaceMesh& surface = cell_->surface();
+  const bool deformed = contact_ && solution_;
+  Picture picture;
+  for (std::size_t i = 0; i < surface.vertices.size(); ++i) {
+    Eigen::Vector3d moved = Eigen::Vector3d::Zero();
+    if (deformed) moved = solution_->displacement.segment<3>(3 * surface.mesh_vertices[i]);
+    picture.vertices.push_back(surface.vertices[i] + moved);
+    picture.displacement.push_back(moved.norm());
+  }
+  if (contact_) picture.touched = onSurface(patch_.vertices);
+  return picture;
 }
 
 }  // namespace microinjection

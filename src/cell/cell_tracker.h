@@ -7,6 +7,7 @@
 
 #include "base/config_reader.h"
 #include "cell/cell_model.h"
+#include "cell/cell_under_needle.h"
 #include "cell/solution_thread.h"
 
 namespace microinjection {
@@ -21,39 +22,28 @@ struct CellTrackerConfig {
   static CellTrackerConfig read(ConfigReader& reader);
 };
 
-/// What the cell does to the needle now.
-struct TipForce {
-  bool trusted = true;  ///< false: no converged solution near the tip pose; `force` is then zero
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< N, of the cell on the tip
-};
-
-/// The cell under a moving needle, at the needle's rate: contact, force and puncture.
+/// The live finite-element cell.
 ///
 /// A thread of its own solves the cell's equilibrium for the newest tip pose; between solutions step() extrapolates
 /// with the condensed contact stiffness, f = f_s - K (x - x_s). The surface vertices under the tip stick to it from
 /// touch until the pull would be adhesive; a force along the pipette of scene.cell.puncture_force punctures the cell
 /// for good.
-class CellTracker {
+class CellTracker : public CellUnderNeedle {
  public:
-  struct Contact {
-    Eigen::Vector3d touched_at = Eigen::Vector3d::Zero();    ///< m, where the tip met the surface
-    Eigen::Vector3d displacement = Eigen::Vector3d::Zero();  ///< m, of the tip since then
-    double indentation = 0;                                  ///< m, along the pipette into the cell
-  };
-
   CellTracker(std::shared_ptr<const CellModel> cell, const CellTrackerConfig& config);
 
-  /// Force for the tip at `tip` (m) with the pipette along `axis` (unit, out of the cell) at `time` (s, increasing).
-  TipForce step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time);
+  TipForce step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time) override;
+
+  const std::optional<Contact>& contact() const override { return contact_; }
+  bool punctured() const override { return punctured_; }
+  const std::string& distrust() const override { return distrust_; }
+  std::optional<Solution> solution(double time) const override;
+  std::vector<std::array<int, 3>> triangles() const override;
+  std::vector<std::uint32_t> held() const override;
+  Picture picture() const override;
 
   const CellModel& cell() const { return *cell_; }
-  const std::optional<Contact>& contact() const { return contact_; }
   const TipPatch& patch() const { return patch_; }  ///< that sticks to the tip, or will on touch
-  bool punctured() const { return punctured_; }
-  const std::string& distrust() const { return distrust_; }  ///< why the last force was not trusted; else empty
-  /// Newest solution for the present patch; null before the first one.
-  const std::shared_ptr<const CellSolution>& solution() const { return solution_; }
-  double solutionAge(double time) const { return time - solution_time_; }  ///< s
 
  private:
   void collect(double time);
@@ -61,6 +51,7 @@ class CellTracker {
   void prepare(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, const SurfaceHit& hit, double time);
   TipForce touchForce(double time);
   TipForce distrustBecause(const std::string& reason);
+  std::vector<std::uint32_t> onSurface(const std::vector<int>& mesh_vertices) const;
   void release();
 
   std::shared_ptr<const CellModel> cell_;

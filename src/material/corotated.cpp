@@ -37,7 +37,7 @@ Matrix3d nearestRotation(const Matrix3d& F) {
 
 }  // namespace
 
-Corotated::Corotated(const Lame& lame) : Material(lame.lambda, lame.mu), mu_(lame.mu) {}
+Corotated::Corotated(const Lame& lame) : Material(lame.lambda, lame), mu_(lame.mu) {}
 
 Material::Kinematics Corotated::kinematics(const Matrix3d& F) const {
   const Matrix3d R = nearestRotation(F);

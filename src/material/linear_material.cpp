@@ -9,7 +9,7 @@ Eigen::Matrix3d smallStrain(const Eigen::Matrix3d& F) {
 
 }  // namespace
 
-LinearMaterial::LinearMaterial(const Lame& lame) : Material(lame.lambda, lame.mu), mu_(lame.mu) {}
+LinearMaterial::LinearMaterial(const Lame& lame) : Material(lame.lambda, lame), mu_(lame.mu) {}
 
 Material::Kinematics LinearMaterial::kinematics(const Eigen::Matrix3d& F) const {
   return {F, F.trace() - 3, Eigen::Matrix3d::Identity()};

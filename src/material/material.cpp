@@ -10,11 +10,15 @@ namespace microinjection {
 namespace {
 
 /// What is left without it must stay stable, or a mixed element is not: its bulk modulus must not be negative.
-double mixedModulus(double lambda, double mu) { return std::max(lambda, std::min(mu, 0.5 * (lambda + 2 * mu / 3))); }
+double mixedModulus(double lambda, const Lame& lame) {
+  const double bulk = lame.lambda + 2 * lame.mu / 3;
+  return std::max(lambda, std::min(lame.mu, 0.5 * bulk));
+}
 
 }  // namespace
 
-Material::Material(double lambda, double mu) : kappa_(mixedModulus(lambda, mu)), lambda_excess_(lambda - kappa_) {}
+Material::Material(double lambda, const Lame& lame)
+    : kappa_(mixedModulus(lambda, lame)), lambda_excess_(lambda - kappa_) {}
 
 double Material::energyDensity(const Kinematics& kinematics, const Weights& weights) const {
   const double energy = modelEnergy(kinematics);

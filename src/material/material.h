@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "material/lame.h"
 #include "material/viscoelasticity.h"
 
 namespace microinjection {
@@ -86,8 +87,9 @@ class Material {
   virtual bool resistsInversion() const { return false; }
 
  protected:
-  /// A model's W is modelEnergy + lambda/2 g^2. @param lambda of the model, which need not be Hooke's @param mu Hooke's
-  Material(double lambda, double mu);
+  /// A model's W is modelEnergy + lambda/2 g^2. @param lambda of the model, which need not be
+  /// Hooke's, as `lame` is
+  Material(double lambda, const Lame& lame);
 
   virtual double modelEnergy(const Kinematics& kinematics) const = 0;
   virtual Eigen::Matrix3d modelStress(const Kinematics& kinematics) const = 0;

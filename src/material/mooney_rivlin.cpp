@@ -8,7 +8,7 @@ namespace microinjection {
 using Eigen::Matrix3d;
 
 MooneyRivlin::MooneyRivlin(const Lame& lame, double ratio)
-    : Material(lame.lambda - 2 * ratio * lame.mu, lame.mu),
+    : Material(lame.lambda - 2 * ratio * lame.mu, lame),
       c10_(0.5 * (1 - ratio) * lame.mu),
       c01_(0.5 * ratio * lame.mu) {}
 

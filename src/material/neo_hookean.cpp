@@ -5,7 +5,7 @@
 
 namespace microinjection {
 
-NeoHookean::NeoHookean(const Lame& lame) : Material(lame.lambda, lame.mu), mu_(lame.mu) {}
+NeoHookean::NeoHookean(const Lame& lame) : Material(lame.lambda, lame), mu_(lame.mu) {}
 
 Material::Kinematics NeoHookean::kinematics(const Eigen::Matrix3d& F) const { return logarithmicDilatation(F); }
 

@@ -11,7 +11,7 @@ Eigen::Matrix3d greenStrain(const Eigen::Matrix3d& F) {
 
 }  // namespace
 
-StVenantKirchhoff::StVenantKirchhoff(const Lame& lame) : Material(lame.lambda, lame.mu), mu_(lame.mu) {}
+StVenantKirchhoff::StVenantKirchhoff(const Lame& lame) : Material(lame.lambda, lame), mu_(lame.mu) {}
 
 Material::Kinematics StVenantKirchhoff::kinematics(const Eigen::Matrix3d& F) const {
   return {F, 0.5 * (F.squaredNorm() - 3), F};

@@ -8,7 +8,7 @@
 namespace microinjection {
 
 StableNeoHookean::StableNeoHookean(const Lame& lame)
-    : Material(lame.lambda + 5.0 / 6 * lame.mu, lame.mu), m_(4.0 / 3 * lame.mu) {}
+    : Material(lame.lambda + 5.0 / 6 * lame.mu, lame), m_(4.0 / 3 * lame.mu) {}
 
 Material::Kinematics StableNeoHookean::kinematics(const Eigen::Matrix3d& F) const {
   const Eigen::Matrix3d cofactor = cofactors(F);

@@ -1,27 +1,15 @@
 #include "mesh/mesh_cache.h"
 
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
 
-#include "base/atomic_file.h"
+#include "base/cache_file.h"
 
 namespace microinjection {
 namespace {
-
-/// FNV-1a, 64 bit: to name files and to notice damage, not against malice.
-std::string hash(const std::string& text) {
-  std::uint64_t value = 14695981039346656037ull;
-  for (const char c : text) value = (value ^ static_cast<unsigned char>(c)) * 1099511628211ull;
-  std::ostringstream out;
-  out << std::hex << value;
-  return out.str();
-}
 
 /// Everything that determines a mesh, exactly.
 std::string describe(const CellMeshConfig& config) {
@@ -71,36 +59,20 @@ TetMesh decodeBody(const std::string& body) {
   return mesh;
 }
 
-/// First line: what the mesh is of, and the checksum of the rest.
-std::string header(const std::string& description, const std::string& body) {
-  return description + " checksum " + hash(body) + '\n';
-}
-
 std::optional<TetMesh> readMesh(const std::string& path, const std::string& description) {
-  std::ifstream file(path, std::ios::binary);
-  std::string first;
-  if (!file || !std::getline(file, first)) return std::nullopt;
-  const std::string body((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  if (body.size() < 2 * sizeof(std::uint64_t) || first + '\n' != header(description, body)) return std::nullopt;
-  return decodeBody(body);
+  const std::optional<std::string> body = readCacheFile(path, description);
+  if (!body || body->size() < 2 * sizeof(std::uint64_t)) return std::nullopt;
+  return decodeBody(*body);
 }
 
 }  // namespace
 
 MeshCache::MeshCache(std::string directory) : directory_(std::move(directory)) {}
 
-std::string MeshCache::defaultDirectory() {
-  const char* cache = std::getenv("XDG_CACHE_HOME");
-  const char* home = std::getenv("HOME");
-  const std::string below = "cell_microinjection/meshes";
-  if (cache != nullptr && cache[0] == '/')
-    return std::string(cache) + "/" + below;  // the standard ignores relative ones
-  if (home != nullptr && home[0] != '\0') return std::string(home) + "/.cache/" + below;
-  return "";
-}
+std::string MeshCache::defaultDirectory() { return cacheDirectory("meshes"); }
 
 std::string MeshCache::path(const CellMeshConfig& config) const {
-  return directory_.empty() ? "" : directory_ + "/" + hash(describe(config)) + ".mesh";
+  return directory_.empty() ? "" : directory_ + "/" + contentHash(describe(config)) + ".mesh";
 }
 
 TetMesh MeshCache::get(const CellMeshConfig& config) const {
@@ -110,8 +82,7 @@ TetMesh MeshCache::get(const CellMeshConfig& config) const {
   }
   TetMesh mesh = makeCellMesh(config);
   try {
-    const std::string body = encodeBody(mesh);
-    if (!file.empty()) writeFileAtomically(file, header(description, body) + body);
+    if (!file.empty()) writeCacheFile(file, description, encodeBody(mesh));
   } catch (const std::runtime_error&) {
     // The cache saves time and nothing else.
   }

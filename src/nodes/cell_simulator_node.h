@@ -8,18 +8,21 @@
 #include <string>
 
 #include "cell/cell_tracker.h"
+#include "cell/cell_under_needle.h"
 #include "cell_microinjection/CellState.h"
 #include "nodes/cycle.h"
 
 namespace microinjection {
 
-/// The finite-element cell under the needle. Where it has no trustworthy force it says so: the wrench then has stamp 0.
+/// The cell under the needle: a prepared one (see PreparedCell) or the live finite-element one. Where it has no
+/// trustworthy force it says so: the wrench then has stamp 0.
 ///
 /// In:  /needle/measured_cp (PoseStamped, tip in `world`)
 /// Out: /cell/predicted_cf (WrenchStamped, of the cell on the tip, in `world`), /cell/state (CellState)
 ///
 /// Parameters (private): those of CellTrackerConfig and
 ///   scene           path of the scene file; required
+///   model           prepared, live, or auto (default): prepared where `prepare` has left data for the scene, else live
 ///   rate            Hz; default 1000, in [50, 5000]
 ///   state_rate      Hz of /cell/state; default 30, in (0, 100]
 ///   needle_timeout  s, a needle pose older than this is stale; default 0.05, in (0, inf)
@@ -33,6 +36,7 @@ class CellSimulatorNode {
  private:
   struct Parameters {
     std::string scene;
+    std::string model = "auto";
     double rate = 1000;
     double state_rate = 30;
     double needle_timeout = 0.05;
@@ -40,6 +44,7 @@ class CellSimulatorNode {
     static Parameters read(const ros::NodeHandle& private_node);
   };
 
+  std::unique_ptr<CellUnderNeedle> makeCell() const;
   void step(const Cycle::Tick& tick);
   void publishState(const ros::Time& now, const TipForce& force);
   void fillSurface(cell_microinjection::CellState& state) const;
@@ -47,8 +52,7 @@ class CellSimulatorNode {
 
   Parameters parameters_;
   Cycle cycle_;
-  std::shared_ptr<const CellModel> cell_;
-  std::unique_ptr<CellTracker> tracker_;
+  std::unique_ptr<CellUnderNeedle> cell_;
   Input<geometry_msgs::PoseStamped>& needle_;
   Output<geometry_msgs::WrenchStamped>& force_;
   Output<cell_microinjection::CellState>& state_;

@@ -90,7 +90,7 @@ TEST(CellTracker, ExtrapolatesBetweenSolutions) {
   drive.moveTo({0, 0, 26e-6}, 50e-6);
   drive.rest(100);
   const double before = drive.force.force.z();
-  const double stiffness = drive.tracker.solution()->indentation.stiffness(2, 2);
+  const double stiffness = drive.tracker.solution(0)->stiffness(2, 2);
   drive.moveTo({0, 0, 25.9e-6}, 1);  // one step, long before the next solution
   EXPECT_NEAR(drive.force.force.z() - before, stiffness * 0.1e-6, 1e-6 * stiffness * 0.1e-6);
   EXPECT_GT(stiffness, 0.1);

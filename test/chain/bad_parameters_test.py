@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """A node whose parameters are wrong ends with status 1, names key, value and range, and never comes alive."""
 
+import os
 import pathlib
 import subprocess
 import sys
@@ -15,6 +16,7 @@ import rostest
 NODES = pathlib.Path(sys.argv[0]).parent  # this program is found beside them
 SCENE = rospkg.RosPack().get_path("cell_microinjection") + "/test/chain/coarse_oocyte.yaml"
 MOTION = rospkg.RosPack().get_path("cell_microinjection") + "/config/hand_motions/indent_and_retract.csv"
+EMPTY = tempfile.mkdtemp()  # no mesh, nothing prepared
 GOOD = {  # what each node cannot do without
     "cell_simulator": {"scene": SCENE},
     "display": {},
@@ -27,6 +29,8 @@ GOOD = {  # what each node cannot do without
 }
 BAD = [  # node, wrong parameters, what the message must say
     ("cell_simulator", {"scene": "/nowhere.yaml"}, ["/nowhere.yaml"]),
+    ("cell_simulator", {"model": "prepared"}, ["model = prepared", "prepare --scene"]),
+    ("cell_simulator", {"model": "guessed"}, ["model = guessed", "auto, prepared, live"]),
     ("cell_simulator", {"rate": 1e6}, ["rate = 1e+06", "[50, 5000]"]),
     ("cell_simulator", {"extrapolation_limit": 0.0}, ["extrapolation_limit = 0", "(0, inf)"]),
     ("display", {"rate": -1}, ["rate = -1"]),
@@ -46,7 +50,8 @@ BAD = [  # node, wrong parameters, what the message must say
 def start(node, parameters):
     arguments = [f"_{key}:={value}" for key, value in parameters.items()]
     return subprocess.Popen([str(NODES / node), *arguments, f"__name:=tried_{node}"],
-                            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+                            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                            env={**os.environ, "XDG_CACHE_HOME": EMPTY})
 
 
 class BadParametersTest(unittest.TestCase):

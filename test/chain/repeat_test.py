@@ -25,7 +25,7 @@ def run_session(folder, *arguments):
     out = pathlib.Path(folder) / "out"
     subprocess.run(
         ["roslaunch", "-p", str(port), str(ROOT / "launch/session.launch"), "clock:=lockstep", "display:=false",
-         f"scene:={ROOT}/test/chain/coarse_oocyte.yaml", f"motion:={motion}", f"record:={out}", "bag:=false",
+         f"scene:={ROOT}/test/chain/coarse_oocyte.yaml", "model:=live", f"motion:={motion}", f"record:={out}", "bag:=false",
          "end_when_done:=true", *arguments],
         check=True, timeout=PATIENCE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
         env={**os.environ, "ROS_MASTER_URI": f"http://127.0.0.1:{port}", "ROS_IP": "127.0.0.1"})

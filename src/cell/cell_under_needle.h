@@ -1,0 +1,57 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace microinjection {
+
+/// What the cell does to the needle now.
+struct TipForce {
+  bool trusted = true;  ///< false: no trustworthy force at the tip's pose; `force` is then zero
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< N, of the cell on the tip
+};
+
+/// A cell model that serves a moving needle at the needle's rate: contact, force and puncture. Frame: the cell's centre
+/// at rest is the origin, the holding pipette below.
+class CellUnderNeedle {
+ public:
+  struct Contact {
+    Eigen::Vector3d touched_at = Eigen::Vector3d::Zero();    ///< m, where the tip met the surface
+    Eigen::Vector3d displacement = Eigen::Vector3d::Zero();  ///< m, of the tip since then
+    double indentation = 0;                                  ///< m, along the pipette into the cell
+  };
+  /// The surface, deformed. Vertices correspond from picture to picture.
+  struct Picture {
+    std::vector<Eigen::Vector3d> vertices;  ///< m
+    std::vector<double> displacement;       ///< m, magnitude
+    std::vector<std::uint32_t> touched;     ///< vertices that move with the tip
+  };
+  /// Of the last solution, or of the model's present state.
+  struct Solution {
+    Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();  ///< N/m, force changes by -stiffness dx
+    int newton_iterations = 0;
+    double cpu_time = 0;  ///< s
+    double age = 0;       ///< s
+    double smallest_jacobian = 1;
+  };
+
+  virtual ~CellUnderNeedle() = default;
+
+  /// Force for the tip at `tip` (m) with the pipette along `axis` (unit, out of the cell) at `time` (s, increasing).
+  virtual TipForce step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time) = 0;
+
+  virtual const std::optional<Contact>& contact() const = 0;
+  virtual bool punctured() const = 0;
+  virtual const std::string& distrust() const = 0;  ///< why the last force was not trusted; else empty
+  virtual std::optional<Solution> solution(double time) const = 0;
+
+  virtual std::vector<std::array<int, 3>> triangles() const = 0;  ///< of the picture, seen from outside
+  virtual std::vector<std::uint32_t> held() const = 0;            ///< vertices of the picture in the holding pipette
+  virtual Picture picture() const = 0;
+};
+
+}  // namespace microinjection

@@ -1,0 +1,180 @@
+// Prepares a cell for the hand: trains the on-line model from the converging one; see --help.
+
+#include <boost/program_options.hpp>
+#include <chrono>
+#include <cstdio>
+#include <exception>
+#include <iostream>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "base/cache_file.h"
+#include "base/errors.h"
+#include "base/worker_processes.h"
+#include "cell/scene.h"
+#include "surrogate/prepared_cell.h"
+#include "surrogate/training_ray.h"
+
+namespace microinjection {
+namespace {
+
+namespace po = boost::program_options;
+
+constexpr int kDone = 0, kBadUsage = 2, kFailed = 3;
+
+constexpr char kHelp[] =
+    R"(prepare: the off-line stage. Solves a scene's cell under its tip at many places and displacements, and stores what
+a live session needs for a converged force in microseconds.
+
+Usage: prepare --scene FILE [--jobs N] [...]
+
+Takes minutes, shows its progress, and may be interrupted: what is done is kept and taken up by the next call. The data
+lie in $XDG_CACHE_HOME (else ~/.cache) under cell_microinjection/prepared, in a folder named after the cell, the tip and
+the program's version; another cell or tip is prepared anew, the needle's offset does not matter.
+
+Exit status: 0 prepared (or was already); 2 bad usage or scene; 3 some path could not be solved at all.
+
+Options)";
+
+struct Arguments {
+  std::string scene;
+  int jobs = 1;
+  int ray = -1;
+  bool again = false;
+  bool show_help = false;
+  std::string options;
+};
+
+Arguments parse(int argc, char** argv) {
+  Arguments arguments;
+  const int processors = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  po::options_description visible, all;
+  visible.add_options()("help", "this text")("scene", po::value(&arguments.scene), "scene file (YAML, SI units)")(
+      "jobs", po::value(&arguments.jobs)->default_value(processors), "paths solved at a time, each on one core")(
+      "again", po::bool_switch(&arguments.again), "also when it was prepared before");
+  po::options_description hidden;
+  hidden.add_options()("ray", po::value(&arguments.ray), "solves this path only: a worker");
+  all.add(visible).add(hidden);
+  po::variables_map values;
+  po::store(po::command_line_parser(argc, argv).options(all).positional({}).run(), values);
+  po::notify(values);
+  std::ostringstream options;
+  options << visible;
+  arguments.options = options.str();
+  arguments.show_help = values.count("help") != 0;
+  if (arguments.show_help) return arguments;
+  if (arguments.scene.empty()) throw ConfigError("--scene is missing");
+  if (arguments.jobs < 1) throw ConfigError("--jobs = " + std::to_string(arguments.jobs) + ": must be 1 or more");
+  return arguments;
+}
+
+class Preparing {
+ public:
+  explicit Preparing(const Arguments& arguments)
+      : arguments_(arguments),
+        scene_(loadScene(arguments.scene)),
+        plan_(Preparation::plan(scene_, PreparationRange::standard(scene_))),
+        folder_(preparedFolder(scene_, plan_)) {
+    if (folder_.empty()) throw ConfigError("neither XDG_CACHE_HOME nor HOME is set: nowhere to keep the data");
+  }
+
+  int work() {
+    const TrainingRay& ray = plan_.rays.at(arguments_.ray);
+    const TrainingResult result = solveRay(scene_, ray, kTrainingLevel);
+    writeCacheFile(file(arguments_.ray), description(arguments_.ray), encode(result));
+    return kDone;
+  }
+
+  int run() {
+    const std::string path = preparedFile(scene_, plan_);
+    if (!arguments_.again && PreparedCell::load(scene_, plan_.range, path)) {
+      std::printf("prepare: was prepared before: %s\n", path.c_str());
+      return kDone;
+    }
+    solveMissing();
+    std::vector<TrainingSample> samples;
+    for (std::size_t i = 0; i < plan_.rays.size(); ++i) {
+      TrainingResult result = decodeTraining(*readCacheFile(file(i), description(i)));
+      if (!result.reason.empty()) warn(plan_.rays[i], result);
+      samples.insert(samples.end(), result.samples.begin(), result.samples.end());
+    }
+    std::fprintf(stderr, "prepare: fitting %zu equilibria\n", samples.size());
+    const PreparedCell cell = PreparedCell::fit(scene_, plan_, samples);
+    cell.save(scene_, path);
+    std::printf(
+        "prepare: done: %s\nprepare: the fit's force error at the equilibria: median %.2g %%, largest %.2g %%\n",
+        path.c_str(), 100 * cell.median_error, 100 * cell.largest_error);
+    return kDone;
+  }
+
+ private:
+  std::string file(std::size_t ray) const { return folder_ + "/path_" + std::to_string(ray); }
+  std::string description(std::size_t ray) const { return plan_.description(scene_) + " path " + std::to_string(ray); }
+
+  void solveMissing() {
+    std::vector<std::size_t> missing;
+    std::vector<std::vector<std::string>> commands;
+    for (std::size_t i = 0; i < plan_.rays.size(); ++i) {
+      if (!arguments_.again && readCacheFile(file(i), description(i))) continue;
+      missing.push_back(i);
+      commands.push_back({thisProgram(), "--scene", arguments_.scene, "--ray", std::to_string(i)});
+    }
+    const auto start = std::chrono::steady_clock::now();
+    std::size_t done = 0;
+    show(done, missing.size(), 0);
+    runWorkers(commands, arguments_.jobs, [&](std::size_t index, int status) {
+      if (status != 0) throw std::runtime_error("path " + std::to_string(missing[index]) + " failed, see above");
+      const double spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      show(++done, missing.size(), spent);
+    });
+    if (!missing.empty()) std::fprintf(stderr, "\n");
+  }
+
+  static void show(std::size_t done, std::size_t all, double spent) {
+    if (all == 0) return;
+    constexpr std::size_t kWidth = 30;
+    const std::string bar(kWidth * done / all, '#');
+    std::fprintf(stderr, "\rprepare: [%-*s] %zu of %zu paths, %.0f s", static_cast<int>(kWidth), bar.c_str(), done, all,
+                 spent);
+    std::fflush(stderr);
+  }
+
+  static void warn(const TrainingRay& ray, const TrainingResult& result) {
+    const double reached = result.samples.empty() ? 0 : result.samples.back().displacement.norm();
+    std::fprintf(stderr, "prepare: a path at %.0f degrees ends at %.3g of %.3g um: %s\n", ray.angle * 57.2958,
+                 1e6 * reached, 1e6 * ray.target.norm(), result.reason.c_str());
+  }
+
+  Arguments arguments_;
+  Scene scene_;
+  Preparation plan_;
+  std::string folder_;
+};
+
+int run(int argc, char** argv) {
+  try {
+    const Arguments arguments = parse(argc, argv);
+    if (arguments.show_help) {
+      std::cout << kHelp << arguments.options;
+      return kDone;
+    }
+    Preparing preparing(arguments);
+    return arguments.ray >= 0 ? preparing.work() : preparing.run();
+  } catch (const po::error& error) {
+    std::cerr << "prepare: " << error.what() << "; see --help\n";
+    return kBadUsage;
+  } catch (const ConfigError& error) {
+    std::cerr << "prepare: " << error.what() << '\n';
+    return kBadUsage;
+  } catch (const std::exception& error) {
+    std::cerr << "prepare: " << error.what() << '\n';
+    return kFailed;
+  }
+}
+
+}  // namespace
+}  // namespace microinjection
+
+int main(int argc, char** argv) { return microinjection::run(argc, argv); }

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "cell/scene.h"
+#include "surrogate/energy_expansion.h"
+
+namespace microinjection {
+
+/// The range of a prepared cell.
+struct PreparationRange {
+  double angle = 0;    ///< rad, largest, of the place of contact from the pole
+  double depth = 0;    ///< m, of the tip below where it touched
+  double lateral = 0;  ///< m, of the tip, sideways
+
+  /// What a training room needs: 60 degrees, 0.36 and 0.09 of the cell's diameter.
+  static PreparationRange standard(const Scene& scene);
+};
+
+/// A straight path of the tip from where it touches the cell to the border of the range.
+struct TrainingRay {
+  double angle = 0;                                  ///< rad, of the place of contact
+  Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< m, displacement at its end, in the frame of the place
+  int points = 12;                                   ///< places along it, at the squares of equal steps
+};
+
+/// What is computed for a prepared cell.
+struct Preparation {
+  PreparationRange range;
+  std::vector<TrainingRay> rays;  ///< the longest first, so that workers end together
+  EnergyScales scales;
+  EnergyDegrees degrees;
+
+  static Preparation plan(const Scene& scene, const PreparationRange& range);
+
+  /// One line that says of what scene and range, by which version, the data are.
+  std::string description(const Scene& scene) const;
+};
+
+}  // namespace microinjection
