@@ -34,7 +34,8 @@ Takes minutes, shows its progress, and may be interrupted: what is done is kept 
 lie in $XDG_CACHE_HOME (else ~/.cache) under cell_microinjection/prepared, in a folder named after the cell, the tip and
 the program's version; another cell or tip is prepared anew, the needle's offset does not matter.
 
-Exit status: 0 prepared (or was already); 2 bad usage or scene; 3 some path could not be solved at all.
+Exit status: 0 prepared (or was already); 2 bad usage or scene (viscoelastic, or with friction); 3 the cell has no solution in all
+of the range, as under a sharp disc that folds: nothing is stored.
 
 Options)";
 
@@ -77,6 +78,7 @@ class Preparing {
         scene_(loadScene(arguments.scene)),
         plan_(Preparation::plan(scene_, PreparationRange::standard(scene_))),
         folder_(preparedFolder(scene_, plan_)) {
+    Preparation::check(scene_);
     if (folder_.empty()) throw ConfigError("neither XDG_CACHE_HOME nor HOME is set: nowhere to keep the data");
   }
 
@@ -95,11 +97,14 @@ class Preparing {
     }
     solveMissing();
     std::vector<TrainingSample> samples;
+    bool complete = true;
     for (std::size_t i = 0; i < plan_.rays.size(); ++i) {
       TrainingResult result = decodeTraining(*readCacheFile(file(i), description(i)));
-      if (!result.reason.empty()) warn(plan_.rays[i], result);
+      if (!result.reason.empty()) tell(plan_.rays[i], result);
+      complete = complete && result.reason.empty();
       samples.insert(samples.end(), result.samples.begin(), result.samples.end());
     }
+    if (!complete) throw std::runtime_error("the cell has no solution in all of the range (see above): not prepared");
     std::fprintf(stderr, "prepare: fitting %zu equilibria\n", samples.size());
     const PreparedCell cell = PreparedCell::fit(scene_, plan_, samples);
     cell.save(scene_, path);
@@ -141,7 +146,7 @@ class Preparing {
     std::fflush(stderr);
   }
 
-  static void warn(const TrainingRay& ray, const TrainingResult& result) {
+  static void tell(const TrainingRay& ray, const TrainingResult& result) {
     const double reached = result.samples.empty() ? 0 : result.samples.back().displacement.norm();
     std::fprintf(stderr, "prepare: a path at %.0f degrees ends at %.3g of %.3g um: %s\n", ray.angle * 57.2958,
                  1e6 * reached, 1e6 * ray.target.norm(), result.reason.c_str());

@@ -16,9 +16,9 @@ struct EnergyScales {
 };
 
 struct EnergyDegrees {
-  int place = 6;      ///< in the contact angle, even
-  int direction = 6;  ///< in the displacement's direction, even
-  int distance = 9;   ///< in the square root of its length
+  int place = 8;       ///< in the contact angle, even
+  int direction = 10;  ///< in the displacement's direction, even
+  int distance = 7;    ///< in the square root of its length
 };
 
 /// Stored energy of a cell of revolution as a function of where the tip touched it and of how it moved since.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "base/errors.h"
 #include "cell/scene_description.h"
 
 namespace microinjection {
@@ -40,6 +41,20 @@ std::vector<Eigen::Vector3d> targets(const PreparationRange& range, bool on_axis
 
 PreparationRange PreparationRange::standard(const Scene& scene) {
   return {60 * kDegree, 0.36 * scene.cell.diameter(), 0.09 * scene.cell.diameter()};
+}
+
+void Preparation::check(const Scene& scene) {
+  for (const Scene::Layer& layer : scene.cell.layers) {
+    if (layer.material.viscoelasticity.empty()) continue;
+    throw ConfigError("viscoelasticity of layer " + layer.name +
+                      ": must be left out: only elastic cells can be prepared");
+  }
+  if (scene.needle.contact.friction > 0) {
+    std::ostringstream message;
+    message << "needle/contact/friction = " << scene.needle.contact.friction
+            << ": must be 0, or the mode sticking: friction takes energy, and a prepared cell has none to give";
+    throw ConfigError(message.str());
+  }
 }
 
 Preparation Preparation::plan(const Scene& scene, const PreparationRange& range) {

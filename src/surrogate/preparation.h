@@ -35,6 +35,9 @@ struct Preparation {
 
   static Preparation plan(const Scene& scene, const PreparationRange& range);
 
+  /// Throws ConfigError for a scene whose force is no gradient of an energy: viscoelastic, or rubbing.
+  static void check(const Scene& scene);
+
   /// One line that says of what scene and range, by which version, the data are.
   std::string description(const Scene& scene) const;
 };

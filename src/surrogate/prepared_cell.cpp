@@ -11,7 +11,9 @@
 namespace microinjection {
 namespace {
 
-constexpr double kSmall = 0.01;  ///< of the largest force: smaller ones are not judged
+constexpr char kFit[] = " fit 2";     ///< to be changed with what is fitted, and how
+constexpr double kSmall = 0.01;       ///< of the largest force: smaller ones are not judged
+constexpr double kFinestSection = 1;  ///< level: half a percent where the tip is in by more than a micrometre
 
 /// Force of the section over that of the training's mesh at the depths of the straight ray on the axis.
 struct AxisCorrection {
@@ -39,7 +41,9 @@ AxisCorrection axisCorrection(const Scene& scene, const std::vector<TrainingSamp
   for (const TrainingSample* sample : on_axis) indenting.depths.push_back(-sample->displacement.z());
   Scene axial = scene;
   axial.needle.offset.setZero();
-  const std::vector<ForcePoint> points = ConvergedForce(axial, indenting, {}).solve();
+  ConvergedForceConfig config;
+  config.finest = kFinestSection;
+  const std::vector<ForcePoint> points = ConvergedForce(axial, indenting, config).solve();
   AxisCorrection result;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!points[i].converged) continue;
@@ -97,12 +101,12 @@ void PreparedCell::save(const Scene& scene, const std::string& path) const {
   for (int x : {degrees.place, degrees.direction, degrees.distance}) writer.number<std::int32_t>(x);
   writer.array(energy.coefficients());
   surface.write(writer);
-  writeCacheFile(path, Preparation::plan(scene, range).description(scene), writer.bytes());
+  writeCacheFile(path, Preparation::plan(scene, range).description(scene) + kFit, writer.bytes());
 }
 
 std::optional<PreparedCell> PreparedCell::load(const Scene& scene, const PreparationRange& range,
                                                const std::string& path) {
-  const auto bytes = readCacheFile(path, Preparation::plan(scene, range).description(scene));
+  const auto bytes = readCacheFile(path, Preparation::plan(scene, range).description(scene) + kFit);
   if (!bytes) return std::nullopt;
   ByteReader reader(*bytes);
   PreparedCell cell;

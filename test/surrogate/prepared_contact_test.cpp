@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "base/errors.h"
 #include "surrogate/prepared_tracker.h"
 
 namespace microinjection {
@@ -105,6 +106,16 @@ TEST(PreparedCell, IsKnownByItsScene) {
   PreparationRange less = range;
   less.depth /= 2;
   EXPECT_NE(line(scene), Preparation::plan(scene, less).description(scene));
+}
+
+TEST(Preparation, RefusesWhatHasNoEnergy) {
+  Scene scene = pipette();
+  EXPECT_NO_THROW(Preparation::check(scene));
+  Scene viscous = scene, rubbing = scene;
+  viscous.cell.material().viscoelasticity.viscosity = 1;
+  rubbing.needle.contact = {"sliding", 0.2};
+  EXPECT_THROW(Preparation::check(viscous), ConfigError);
+  EXPECT_THROW(Preparation::check(rubbing), ConfigError);
 }
 
 TEST(Preparation, RaysFillTheRange) {
