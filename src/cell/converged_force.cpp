@@ -28,12 +28,16 @@ struct Refinement {
   double first;  ///< level
   double step;   ///< from one level to the next
   double cost;   ///< the next one takes about this many times longer
+  double last;   ///< the first level that may be the last
 };
-constexpr Refinement kInSection = {0, 1, 3};
-constexpr Refinement kDiscInSpace = {-0.5, 0.5, 3}, kRoundedInSpace = {-1, 0.5, 3};  // a sharp edge asks for more
+// A sharp edge asks for more; and in the section, where it costs nothing, two meshes that agree by chance are not
+// believed.
+constexpr Refinement kDiscInSection = {0, 1, 3, 2}, kRoundedInSection = {0, 1, 3, 1};
+constexpr Refinement kDiscInSpace = {-0.5, 0.5, 3, 0}, kRoundedInSpace = {-1, 0.5, 3, -0.5};
 
 Refinement refinementOf(bool axisymmetric, const Scene::Tip& tip) {
-  return axisymmetric ? kInSection : tip.rounded() ? kRoundedInSpace : kDiscInSpace;
+  if (axisymmetric) return tip.rounded() ? kRoundedInSection : kDiscInSection;
+  return tip.rounded() ? kRoundedInSpace : kDiscInSpace;
 }
 
 double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
@@ -143,15 +147,21 @@ bool ConvergedForce::resolves(const Eigen::Vector3d& displacement) const {
   return overlap <= 1e-9 * scene_.radius();
 }
 
-/// Takes what a level tells. `before`: force at each depth on the finest mesh so far that had one.
-void ConvergedForce::takeOver(const Level& level, Forces& before, std::vector<ForcePoint>& points) const {
-  const double step = refinementOf(axisymmetric_, scene_.needle.tip).step;
+bool ConvergedForce::done(const ForcePoint& point) const {
+  const double last = refinementOf(axisymmetric_, scene_.needle.tip).last;
+  return point.converged && point.error_estimate <= config_.tolerance && point.level >= last;
+}
+
+/// Takes what a level tells.
+void ConvergedForce::takeOver(const Level& level, Before& before, std::vector<ForcePoint>& points) const {
+  const Refinement refinement = refinementOf(axisymmetric_, scene_.needle.tip);
+  const bool doubting = refinement.last > refinement.first + refinement.step;
   for (std::size_t i = 0; i < points.size(); ++i) {
     ForcePoint& point = points[i];
-    const std::optional<Eigen::Vector3d> coarser = before[i];
-    if (level.forces[i]) before[i] = level.forces[i];
+    const std::optional<Eigen::Vector3d> coarser = before.forces[i];
+    if (level.forces[i]) before.forces[i] = level.forces[i];
     point.wall_time += level.wall_times[i];
-    if (point.converged && point.error_estimate <= config_.tolerance) continue;
+    if (done(point)) continue;
     if (!level.forces[i]) {
       const bool lost = coarser.has_value();
       if (lost || point.reason.empty()) {
@@ -161,11 +171,14 @@ void ConvergedForce::takeOver(const Level& level, Forces& before, std::vector<Fo
       continue;
     }
     if (!coarser) continue;
-    const double change = (*level.forces[i] - *coarser).norm(), size = level.forces[i]->norm();
+    const double size = level.forces[i]->norm();
+    const double change = size > 0 ? (*level.forces[i] - *coarser).norm() / size : 0;
+    const double doubt = doubting ? std::max(change, before.changes[i]) : change;
+    before.changes[i] = change;
     point.converged = true;
     point.reason.clear();
     point.force = *level.forces[i];
-    point.error_estimate = size > 0 ? change / size / (std::pow(2, step) - 1) : 0;
+    point.error_estimate = doubt / (std::pow(2, refinement.step) - 1);
     point.level = level.report.level;
   }
 }
@@ -173,17 +186,15 @@ void ConvergedForce::takeOver(const Level& level, Forces& before, std::vector<Fo
 /// No finer mesh; what was found stays.
 void ConvergedForce::giveUp(const std::string& why, std::vector<ForcePoint>& points) const {
   for (ForcePoint& point : points) {
-    const bool done = point.converged && point.error_estimate <= config_.tolerance;
-    if (!done && point.reason.empty()) point.reason = "a finer mesh failed: " + why;
+    if (!done(point) && point.reason.empty()) point.reason = "a finer mesh failed: " + why;
   }
 }
 
 /// Whether a finer level may help some depth.
 bool ConvergedForce::goOn(const std::vector<ForcePoint>& points, const Level& level) const {
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const bool done = points[i].converged && points[i].error_estimate <= config_.tolerance;
     const bool may = level.forces[i] || level.report.level < 1;  // the coarsest meshes are not the last word
-    if (!done && may) return true;
+    if (!done(points[i]) && may) return true;
   }
   return false;
 }
@@ -192,7 +203,7 @@ std::vector<ForcePoint> ConvergedForce::solve(const std::function<void(const Lev
   const Clock::time_point start = Clock::now();
   std::vector<ForcePoint> points(indenting_.depths.size());
   for (std::size_t i = 0; i < points.size(); ++i) points[i].depth = indenting_.depths[i];
-  Forces before(points.size());
+  Before before{Forces(points.size()), std::vector<double>(points.size(), 0)};
   const Refinement refinement = refinementOf(axisymmetric_, scene_.needle.tip);
   for (double number = refinement.first; number <= config_.finest; number += refinement.step) {
     Level level;

@@ -75,11 +75,17 @@ class ConvergedForce {
  private:
   struct Level;
   using Forces = std::vector<std::optional<Eigen::Vector3d>>;  ///< of each depth; empty where there is no equilibrium
+  /// Of each depth: the force on the finest mesh so far that had one, and by how much it had changed there (relative).
+  struct Before {
+    Forces forces;
+    std::vector<double> changes;
+  };
   template <int Dim>
   CellProblem<Dim> makeProblem(double level) const;
   template <int Dim>
   Level solveLevel(double level) const;
-  void takeOver(const Level& level, Forces& before, std::vector<ForcePoint>& points) const;
+  void takeOver(const Level& level, Before& before, std::vector<ForcePoint>& points) const;
+  bool done(const ForcePoint& point) const;
   bool resolves(const Eigen::Vector3d& displacement) const;
   void giveUp(const std::string& why, std::vector<ForcePoint>& points) const;
   bool goOn(const std::vector<ForcePoint>& points, const Level& level) const;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr char kFit[] = " fit 2";     ///< to be changed with what is fitted, and how
 constexpr double kSmall = 0.01;       ///< of the largest force: smaller ones are not judged
-constexpr double kFinestSection = 1;  ///< level: half a percent where the tip is in by more than a micrometre
+constexpr double kFinestSection = 1;  ///< level
 
 /// Force of the section over that of the training's mesh at the depths of the straight ray on the axis.
 struct AxisCorrection {

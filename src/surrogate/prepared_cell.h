@@ -28,7 +28,7 @@ struct PreparedCell {
   static std::optional<PreparedCell> load(const Scene& scene, const PreparationRange& range, const std::string& path);
 };
 
-/// Mesh of the training, see scene_mesh.h: the coarsest. Its error, half a percent of the force where that is not tiny,
+/// Mesh of the training, see scene_mesh.h: the coarsest. Its error
 /// is measured on the axis, where the section is cheap, and taken off.
 constexpr double kTrainingLevel = -1;
 

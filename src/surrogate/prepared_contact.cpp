@@ -1,6 +1,7 @@
 #include "surrogate/prepared_contact.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace microinjection {
