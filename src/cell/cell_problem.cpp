@@ -161,6 +161,7 @@ LoadPathConfig CellProblem<Dim>::pathConfig(const Scene& scene, bool linear) {
     config.first_step = tip / (Dim == 2 ? 40 : 20);  // steps in space cost seconds
     config.largest_step = tip / (Dim == 2 ? 8 : 4);
     config.smallest_step = 1e-5 * tip;
+    if (Dim == 3) config.easy = 10;  // points that come into contact take iterations at any length
   }
   return config;
 }

@@ -1,8 +1,8 @@
 #include "cell/cell_tracker.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <exception>
-#include <sstream>
 
 namespace microinjection {
 
@@ -15,10 +15,14 @@ CellTrackerConfig CellTrackerConfig::read(ConfigReader& reader) {
 }
 
 CellTracker::CellTracker(std::shared_ptr<const CellModel> cell, const CellTrackerConfig& config)
-    : cell_(std::move(cell)), config_(config), thread_(cell_) {}
+    : cell_(std::move(cell)), config_(config), thread_(cell_) {
+  distrust_.reserve(200);
+}
 
 void CellTracker::ask(double time, const Eigen::Vector3d& displacement) {
-  thread_.ask(patch_, displacement);
+  bool asked = thread_.ask(patch_, displacement);
+  while (!asked && config_.fixed_period) asked = thread_.ask(patch_, displacement);
+  if (!asked) return;  // with the next step, then
   asked_ = true;
   asked_at_ = time;
   patch_asked_ = true;
@@ -42,7 +46,7 @@ void CellTracker::collect(double time) {
   if (!solution) return;
   failure_.clear();
   asked_ = false;
-  if (solution->patch.vertices != patch_.vertices) return;  // the needle has moved on to another place
+  if (solution->patch.vertices != patch_->vertices) return;  // the needle has moved on to another place
   solution_ = std::move(solution);
   solution_time_ = asked_at_;
 }
@@ -55,8 +59,8 @@ void CellTracker::prepare(const Eigen::Vector3d& tip, const Eigen::Vector3d& axi
   const double tremble = 0.1 * needle.tip.radius;
   Eigen::Vector3d point = hit.point;
   if ((point.head<2>() - needle.offset).norm() < tremble) point.head<2>() = needle.offset;
-  if (patch_.vertices.empty() || (point - patch_at_).norm() > tremble) {
-    patch_ = cell_->patchAt(point, axis);
+  if (patch_->vertices.empty() || (point - patch_at_).norm() > tremble) {
+    patch_ = std::make_shared<TipPatch>(cell_->patchAt(point, axis));
     patch_at_ = point;
     patch_asked_ = false;
     solution_.reset();
@@ -64,7 +68,7 @@ void CellTracker::prepare(const Eigen::Vector3d& tip, const Eigen::Vector3d& axi
   if (!patch_asked_ && !asked_) ask(time, Eigen::Vector3d::Zero());
 }
 
-TipForce CellTracker::distrustBecause(const std::string& reason) {
+TipForce CellTracker::distrustBecause(const char* reason) {
   distrust_ = reason;
   return {false, Eigen::Vector3d::Zero()};
 }
@@ -76,15 +80,16 @@ void CellTracker::release() {
 
 TipForce CellTracker::touchForce(double time) {
   if (!asked_) ask(time, contact_->displacement);
-  if (!failure_.empty()) return distrustBecause(failure_);
+  if (!failure_.empty()) return distrustBecause(failure_.c_str());
   if (!solution_) return distrustBecause("the contact is still being prepared");
   const IndentationSolution& solved = solution_->indentation;
-  if (!solved.converged) return distrustBecause(solved.reason);
+  if (!solved.converged) return distrustBecause(solved.reason.c_str());
   const Eigen::Vector3d ahead = contact_->displacement - solved.tip_displacement;
   if (ahead.norm() > config_.extrapolation_limit) {
-    std::ostringstream text;
-    text << "the tip is " << ahead.norm() << " m ahead of the last solution, allowed " << config_.extrapolation_limit;
-    return distrustBecause(text.str());
+    char text[120];
+    std::snprintf(text, sizeof(text), "the tip is %.6g m ahead of the last solution, allowed %.6g", ahead.norm(),
+                  config_.extrapolation_limit);
+    return distrustBecause(text);
   }
   TipForce result;
   result.force = solved.force - solved.stiffness * ahead;
@@ -92,6 +97,12 @@ TipForce CellTracker::touchForce(double time) {
 }
 
 TipForce CellTracker::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time) {
+  TipForce force = answer(tip, axis, time);
+  shape_.write(contact_ ? Shape{solution_, patch_} : Shape{});
+  return force;
+}
+
+TipForce CellTracker::answer(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time) {
   distrust_.clear();
   collect(time);
   if (punctured_) return {};
@@ -145,17 +156,18 @@ std::vector<std::uint32_t> CellTracker::onSurface(const std::vector<int>& mesh_v
 
 std::vector<std::uint32_t> CellTracker::held() const { return onSurface(cell_->heldVertices()); }
 
-CellUnderNeedle::Picture CellTracker::picture() const {
+CellUnderNeedle::Picture CellTracker::picture() {
   const SurfaceMesh& surface = cell_->surface();
-  const bool deformed = contact_ && solution_;
+  shape_.update();
+  const Shape& shape = shape_.value();
   Picture picture;
   for (std::size_t i = 0; i < surface.vertices.size(); ++i) {
     Eigen::Vector3d moved = Eigen::Vector3d::Zero();
-    if (deformed) moved = solution_->displacement.segment<3>(3 * surface.mesh_vertices[i]);
-    picture.vertices.push_back(surface.vertices[i] + moved);
+    if (shape.solution) moved = shape.solution->displacement.segment<3>(3 * surface.mesh_vertices[i]);
+    picture.vertices.emplace_back(surface.vertices[i] + moved);
     picture.displacement.push_back(moved.norm());
   }
-  if (contact_) picture.touched = onSurface(patch_.vertices);
+  if (shape.touched) picture.touched = onSurface(shape.touched->vertices);
   return picture;
 }
 

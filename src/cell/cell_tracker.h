@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/config_reader.h"
+#include "base/latest_value.h"
 #include "cell/cell_model.h"
 #include "cell/cell_under_needle.h"
 #include "cell/solution_thread.h"
@@ -40,17 +41,24 @@ class CellTracker : public CellUnderNeedle {
   std::optional<Solution> solution(double time) const override;
   std::vector<std::array<int, 3>> triangles() const override;
   std::vector<std::uint32_t> held() const override;
-  Picture picture() const override;
+  Picture picture() override;
 
   const CellModel& cell() const { return *cell_; }
-  const TipPatch& patch() const { return patch_; }  ///< that sticks to the tip, or will on touch
+  const TipPatch& patch() const { return *patch_; }  ///< that sticks to the tip, or will on touch
 
  private:
+  /// All that the picture depends on.
+  struct Shape {
+    std::shared_ptr<const CellSolution> solution;  ///< null where nothing is deformed
+    std::shared_ptr<const TipPatch> touched;       ///< null without contact
+  };
+
+  TipForce answer(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time);
   void collect(double time);
   void ask(double time, const Eigen::Vector3d& displacement);
   void prepare(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, const SurfaceHit& hit, double time);
   TipForce touchForce(double time);
-  TipForce distrustBecause(const std::string& reason);
+  TipForce distrustBecause(const char* reason);
   std::vector<std::uint32_t> onSurface(const std::vector<int>& mesh_vertices) const;
   void release();
 
@@ -58,7 +66,7 @@ class CellTracker : public CellUnderNeedle {
   CellTrackerConfig config_;
   SolutionThread thread_;
   int start_triangle_ = 0;
-  TipPatch patch_;
+  std::shared_ptr<const TipPatch> patch_ = std::make_shared<TipPatch>();
   Eigen::Vector3d patch_at_ = Eigen::Vector3d::Zero();  ///< m, what patch_ was made for
   bool asked_ = false;                                  ///< a solution is under way
   double asked_at_ = 0;                                 ///< s
@@ -68,7 +76,8 @@ class CellTracker : public CellUnderNeedle {
   std::optional<Contact> contact_;
   bool punctured_ = false;
   std::string distrust_;
-  std::string failure_;  ///< what the solver threw at the last question; else empty
+  std::string failure_;       ///< what the solver threw at the last question; else empty
+  LatestValue<Shape> shape_;  ///< from the thread that steps to the one that draws
 };
 
 }  // namespace microinjection

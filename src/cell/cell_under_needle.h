@@ -16,7 +16,7 @@ struct TipForce {
 };
 
 /// A cell model that serves a moving needle at the needle's rate: contact, force and puncture. Frame: the cell's centre
-/// at rest is the origin, the holding pipette below.
+/// at rest is the origin, the holding pipette below. All is asked in the thread that steps, but for what draws it.
 class CellUnderNeedle {
  public:
   struct Contact {
@@ -51,7 +51,8 @@ class CellUnderNeedle {
 
   virtual std::vector<std::array<int, 3>> triangles() const = 0;  ///< of the picture, seen from outside
   virtual std::vector<std::uint32_t> held() const = 0;            ///< vertices of the picture in the holding pipette
-  virtual Picture picture() const = 0;
+  /// As of the last step. One thread of any priority may ask for it while another one steps: neither waits.
+  virtual Picture picture() = 0;
 };
 
 }  // namespace microinjection

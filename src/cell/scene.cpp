@@ -135,6 +135,11 @@ void readMesh(ConfigReader mesh, Scene::Mesh& value) {
   quantity(refinement, "density", value.refinement.density, {1, 100, false, false}, "");
 }
 
+void readRequirements(ConfigReader requirements, Scene::Requirements& value) {
+  quantity(requirements, "force_error", value.force_error, Range::positive(), "relative");
+  quantity(requirements, "rate", value.rate, Range::positive(), "Hz");
+}
+
 }  // namespace
 
 double Scene::meshSize() const {
@@ -158,6 +163,7 @@ Scene parseScene(const YAML::Node& node, const std::string& origin) {
            scene.holding_pipette.contact_radius, Range::positive(), "m", ConfigReader::kRequired);
   readNeedle(reader.section("needle", ConfigReader::kRequired), scene.needle);
   readMesh(reader.section("mesh"), scene.mesh);
+  readRequirements(reader.section("requirements"), scene.requirements);
   reader.finish();
   try {
     scene.validate();

@@ -61,10 +61,17 @@ struct Scene {
     Refinement refinement;
   };
 
+  /// Of a model that serves a needle, for the choice among those that could.
+  struct Requirements {
+    double force_error = 0.02;  ///< relative, that is allowed
+    double rate = 1000;         ///< Hz, of forces
+  };
+
   Cell cell;
   HoldingPipette holding_pipette;
   Needle needle;
   Mesh mesh;
+  Requirements requirements;
 
   double radius() const { return cell.radius(); }  ///< m
 

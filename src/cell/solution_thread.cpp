@@ -3,6 +3,7 @@
 #include <sched.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace microinjection {
@@ -19,16 +20,21 @@ SolutionThread::~SolutionThread() {
   thread_.join();
 }
 
-void SolutionThread::ask(const TipPatch& patch, const Eigen::Vector3d& tip_displacement) {
+// The solving thread has the lock for the exchange of a pointer, but may lose the processor while it does.
+
+bool SolutionThread::ask(const std::shared_ptr<const TipPatch>& patch, const Eigen::Vector3d& tip_displacement) {
   {
-    const std::lock_guard<std::mutex> lock(mutex_);
+    const std::unique_lock<std::mutex> lock(mutex_, std::try_to_lock);
+    if (!lock) return false;
     question_ = Question{patch, tip_displacement};
   }
   changed_.notify_all();
+  return true;
 }
 
 std::shared_ptr<const CellSolution> SolutionThread::take() {
-  const std::lock_guard<std::mutex> lock(mutex_);
+  const std::unique_lock<std::mutex> lock(mutex_, std::try_to_lock);
+  if (!lock) return nullptr;
   if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
   return std::exchange(answer_, nullptr);
 }
@@ -52,7 +58,7 @@ void SolutionThread::run() {
   while (true) {
     changed_.wait(lock, [this] { return stop_ || question_; });
     if (stop_) return;
-    const Question question = *std::exchange(question_, std::nullopt);
+    const Question question = std::move(*std::exchange(question_, std::nullopt));
     lock.unlock();
     std::shared_ptr<const CellSolution> answer;
     std::exception_ptr failure;
@@ -69,14 +75,17 @@ void SolutionThread::run() {
 }
 
 std::shared_ptr<const CellSolution> SolutionThread::solve(const Question& question) {
-  if (!indentation_ || question.patch.vertices != patch_.vertices) {
-    indentation_ = std::make_unique<Indentation>(cell_, question.patch);
-    patch_ = question.patch;
+  if (!indentation_ || question.patch->vertices != patch_.vertices) {
+    indentation_ = std::make_unique<Indentation>(cell_, *question.patch);
+    patch_ = *question.patch;
   }
   auto solution = std::make_shared<CellSolution>();
-  solution->patch = question.patch;
+  solution->patch = *question.patch;
   solution->indentation = indentation_->solve(question.tip_displacement);
   solution->displacement = indentation_->displacement();
+  const auto unused = [](const auto& given) { return given.use_count() == 1; };
+  given_.erase(std::remove_if(given_.begin(), given_.end(), unused), given_.end());
+  given_.push_back(solution);
   return solution;
 }
 

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <optional>
 #include <thread>
+#include <vector>
 
 #include "cell/indentation.h"
 
@@ -19,8 +20,8 @@ struct CellSolution {
   Eigen::VectorXd displacement;  ///< m, xyz per vertex of the mesh
 };
 
-/// Solves indentations one after the other in a thread of its own. The asking thread never waits for more than the
-/// exchange of a pointer, unless it calls wait().
+/// Solves indentations one after the other in a thread of its own. The asking thread never waits, unless it calls
+/// wait(), and never has to free a solution.
 class SolutionThread {
  public:
   explicit SolutionThread(std::shared_ptr<const CellModel> cell);
@@ -28,16 +29,18 @@ class SolutionThread {
   SolutionThread(const SolutionThread&) = delete;
   SolutionThread& operator=(const SolutionThread&) = delete;
 
-  /// Asks for the equilibrium of `patch` at a tip displacement (m). @pre the answer before was taken.
-  void ask(const TipPatch& patch, const Eigen::Vector3d& tip_displacement);
-  /// The answer when it is there, else null. Rethrows what the solver threw.
+  /// Asks for the equilibrium of `patch` at a tip displacement (m). Returns false, and asks nothing, while the solving
+  /// thread is at the exchange. @pre the answer before was taken.
+  bool ask(const std::shared_ptr<const TipPatch>& patch, const Eigen::Vector3d& tip_displacement);
+  /// The answer when it is there, else, or while the solving thread is at the exchange, null. Rethrows what the solver
+  /// threw.
   std::shared_ptr<const CellSolution> take();
   /// As take(), but waits for the answer. @pre an answer is due.
   std::shared_ptr<const CellSolution> wait();
 
  private:
   struct Question {
-    TipPatch patch;
+    std::shared_ptr<const TipPatch> patch;
     Eigen::Vector3d tip_displacement;
   };
   void run();
@@ -46,6 +49,9 @@ class SolutionThread {
   std::shared_ptr<const CellModel> cell_;
   std::unique_ptr<Indentation> indentation_;  ///< of the solving thread only
   TipPatch patch_;                            ///< of the solving thread only
+  /// Of the solving thread only: all that others may still have. It drops them when nobody has, so that freeing their
+  /// memory is never left to the thread that asks.
+  std::vector<std::shared_ptr<const CellSolution>> given_;
 
   std::mutex mutex_;  ///< guards what follows
   std::condition_variable changed_;

@@ -1,7 +1,10 @@
 // Prepares a cell for the hand: trains the on-line model from the converging one; see --help.
 
+#include <sys/prctl.h>
+
 #include <boost/program_options.hpp>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <iostream>
@@ -14,6 +17,7 @@
 #include "base/errors.h"
 #include "base/worker_processes.h"
 #include "cell/scene.h"
+#include "surrogate/model_choice.h"
 #include "surrogate/prepared_cell.h"
 #include "surrogate/training_ray.h"
 
@@ -83,6 +87,7 @@ class Preparing {
   }
 
   int work() {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);  // whoever ends the preparation ends its workers
     const TrainingRay& ray = plan_.rays.at(arguments_.ray);
     const TrainingResult result = solveRay(scene_, ray, kTrainingLevel);
     writeCacheFile(file(arguments_.ray), description(arguments_.ray), encode(result));
@@ -109,14 +114,31 @@ class Preparing {
     const PreparedCell cell = PreparedCell::fit(scene_, plan_, samples);
     cell.save(scene_, path);
     std::printf(
-        "prepare: done: %s\nprepare: the fit's force error at the equilibria: median %.2g %%, largest %.2g %%\n",
-        path.c_str(), 100 * cell.median_error, 100 * cell.largest_error);
+        "prepare: done: %s\nprepare: the fit's force error at the equilibria: median %.2g %%, nine of ten below %.2g "
+        "%%, "
+        "largest %.2g %%\n",
+        path.c_str(), 100 * cell.median_error, 100 * cell.common_error, 100 * cell.largest_error);
+    std::printf("prepare: of an energy alone: median %.2g %%, nine of ten below %.2g %%\n",
+                100 * cell.energy_median_error, 100 * cell.energy_common_error);
+    measureOthers();
     return kDone;
   }
 
  private:
-  std::string file(std::size_t ray) const { return folder_ + "/path_" + std::to_string(ray); }
-  std::string description(std::size_t ray) const { return plan_.description(scene_) + " path " + std::to_string(ray); }
+  /// So that a choice among the models goes by figures.
+  void measureOthers() const {
+    try {
+      const ModelFigures live = measureLiveCell(scene_);
+      saveFigures(scene_, live);
+      std::printf("prepare: the live model: largest force error %.3g %%, %.3g ms a solution\n", 100 * live.force_error,
+                  1e3 * live.time);
+    } catch (const ConfigError& error) {
+      std::printf("prepare: no live model: %s\n", error.what());
+    }
+  }
+
+  std::string description(std::size_t ray) const { return plan_.description(scene_, plan_.rays[ray]); }
+  std::string file(std::size_t ray) const { return folder_ + "/path_" + contentHash(description(ray)); }
 
   void solveMissing() {
     std::vector<std::size_t> missing;

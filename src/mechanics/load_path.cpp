@@ -14,7 +14,6 @@ constexpr double kWorkMismatch = 1e-3;  ///< of the energy, relative to the work
 constexpr double kSlow = 0.2;           ///< contraction that is too slow to keep an old factorisation
 constexpr double kFar = 0.05;           ///< residual, relative to the reaction, at which an old one is not tried
 constexpr int kMaximumIterations = 15;  ///< a step that needs more is too long
-constexpr int kEasy = 5;                ///< iterations of a step after which a longer one is tried
 constexpr int kMaximumHalvings = 8;     ///< of a line search
 
 }  // namespace
@@ -57,7 +56,7 @@ LoadPath::Result LoadPath::advance(const Eigen::Vector3d& target, double duratio
       waiting = false;
       remaining_time -= std::isfinite(remaining_time) ? share * remaining_time : 0;
       if (whole) state_.translation = target;
-      const bool easy = result.newton_iterations - before <= kEasy;
+      const bool easy = result.newton_iterations - before <= config_.easy;
       if (easy && !whole) load_step_ = std::min(2 * load_step_, config_.largest_step);
       continue;
     }
@@ -83,7 +82,7 @@ bool LoadPath::step(const Eigen::Vector3d& increment, double duration, int& iter
   trial_ = state_;
   system_.addTo(trial_.x, state_.sensitivity * increment, increment);
   trial_.translation += increment;
-  if (!balance(trial_, iterations, reason)) return false;
+  if (!balance(trial_, iterations, reason) || !settle(iterations, reason)) return false;
   system_.energy(trial_.x, trial_.energy);
   if (!config_.linear) {
     if (!refactorise(trial_)) {
@@ -99,10 +98,6 @@ bool LoadPath::step(const Eigen::Vector3d& increment, double duration, int& iter
     factorised_ = false;
     return false;
   }
-  if (!settle(iterations, reason)) {
-    factorised_ = false;
-    return false;
-  }
   std::swap(state_, trial_);
   viscous_ = viscous;
   for (const auto& term : system_.terms()) term->accept(state_.x);
@@ -114,15 +109,7 @@ bool LoadPath::settle(int& iterations, std::string& reason) {
   for (const auto& term : system_.terms()) changed = term->settle(trial_.x) || changed;
   if (!changed) return true;
   factorised_ = false;
-  if (!balance(trial_, iterations, reason)) return false;
-  if (!refactorise(trial_)) {
-    reason = "the equilibrium with what has come into contact is not stable";
-    return false;
-  }
-  system_.energy(trial_.x, trial_.energy);
-  trial_.stiffness = system_.stiffness();
-  trial_.sensitivity = system_.sensitivity();
-  return true;
+  return balance(trial_, iterations, reason);
 }
 
 bool LoadPath::balance(State& trial, int& iterations, std::string& reason) {

@@ -13,6 +13,7 @@ struct LoadPathConfig {
   double first_step = 56e-6 / 16;       ///< m, of the tip
   double largest_step = 56e-6 / 16;     ///< m
   double smallest_step = 56e-6 * 1e-5;  ///< m: a path that needs less has ended
+  int easy = 5;                         ///< iterations of a step after which a longer one is tried
   bool linear = false;                  ///< one step at any length; nothing to check
   bool smooth = true;  ///< the force is a smooth function of the tip's place on a branch: no contact comes or goes
 };

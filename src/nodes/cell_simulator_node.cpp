@@ -6,22 +6,9 @@
 #include "base/errors.h"
 #include "nodes/conversions.h"
 #include "nodes/node_parameters.h"
-#include "surrogate/prepared_tracker.h"
+#include "surrogate/serve_needle.h"
 
 namespace microinjection {
-namespace {
-
-constexpr char kCellFrame[] = "cell";
-
-geometry_msgs::Vector3 toVector(const Eigen::Vector3d& vector) {
-  geometry_msgs::Vector3 message;
-  message.x = vector.x();
-  message.y = vector.y();
-  message.z = vector.z();
-  return message;
-}
-
-}  // namespace
 
 const char* const CellSimulatorNode::kHelp =
     "cell_simulator: the finite-element cell under the needle.\n"
@@ -52,35 +39,22 @@ CellSimulatorNode::CellSimulatorNode(ros::NodeHandle node, ros::NodeHandle priva
       state_(cycle_.output<cell_microinjection::CellState>("cell/state", true)) {
   parameters_.tracker.fixed_period = cycle_.lockstep();
   cell_ = makeCell();
-  undeformed_.header.frame_id = kCellFrame;
-  for (const auto& triangle : cell_->triangles()) {
-    undeformed_.triangles.insert(undeformed_.triangles.end(), triangle.begin(), triangle.end());
-  }
-  undeformed_.held_vertices = cell_->held();
+  untrusted_.reserve(200);  // no step has to find memory for it
+  using Thread = CellStatePublisher::Thread;
+  const auto thread = cycle_.lockstep() ? Thread::kOfTheStep : Thread::kOwn;
+  state_publisher_ = std::make_unique<CellStatePublisher>(*cell_, state_, parameters_.state_rate, thread);
   cycle_.diagnostics().add("solver", [this](auto& status) { report(status); });
 }
 
-/// Never another model than was asked for, and always said which.
 std::unique_ptr<CellUnderNeedle> CellSimulatorNode::makeCell() const {
   const Scene scene = loadScene(parameters_.scene);
-  if (parameters_.model != "live") {
-    const PreparationRange range = PreparationRange::standard(scene);
-    auto prepared = PreparedCell::load(scene, range, preparedFile(scene, Preparation::plan(scene, range)));
-    if (prepared) {
-      ROS_INFO("the cell is prepared: converged force, fitted to %.2g %% (median)", 100 * prepared->median_error);
-      return std::make_unique<PreparedTracker>(scene, std::make_shared<const PreparedCell>(std::move(*prepared)));
-    }
-    const std::string call = "rosrun cell_microinjection prepare --scene " + parameters_.scene;
-    if (parameters_.model == "prepared") {
-      throw ConfigError("model = prepared: this cell and tip were not prepared; run: " + call);
-    }
-    ROS_WARN_STREAM("the cell is not prepared, so it is live: P1 tetrahedra, whose force is too large; run: " << call);
+  ServedCell served = serveNeedle(scene, parameters_.model, parameters_.tracker, parameters_.scene);
+  if (served.as_required) {
+    ROS_INFO_STREAM(served.said);
+  } else {
+    ROS_WARN_STREAM(served.said);
   }
-  ROS_INFO_STREAM("meshing the cell of " << parameters_.scene);
-  const auto cell = std::make_shared<const CellModel>(scene);
-  ROS_INFO_STREAM("the cell has " << cell->mesh().vertices.size() << " vertices and " << cell->mesh().tetrahedra.size()
-                                  << " tetrahedra");
-  return std::make_unique<CellTracker>(cell, parameters_.tracker);
+  return std::move(served.cell);
 }
 
 void CellSimulatorNode::run() {
@@ -104,44 +78,18 @@ void CellSimulatorNode::step(const Cycle::Tick& tick) {
   } else {
     force_.publishInvalid(wrench);
   }
-  if ((tick.now - state_sent_).toSec() >= 1 / parameters_.state_rate) publishState(tick.now, force);
+  state_publisher_->step(moment(tick.now, force));
 }
 
-void CellSimulatorNode::fillSurface(cell_microinjection::CellState& state) const {
-  const CellUnderNeedle::Picture picture = cell_->picture();
-  state.vertices.resize(picture.vertices.size());
-  for (std::size_t i = 0; i < picture.vertices.size(); ++i) {
-    state.vertices[i].x = picture.vertices[i].x();
-    state.vertices[i].y = picture.vertices[i].y();
-    state.vertices[i].z = picture.vertices[i].z();
-  }
-  state.displacement.assign(picture.displacement.begin(), picture.displacement.end());
-  state.contact_vertices = picture.touched;
-}
-
-void CellSimulatorNode::publishState(const ros::Time& now, const TipForce& force) {
-  cell_microinjection::CellState state = undeformed_;
-  state.header.stamp = now;
-  fillSurface(state);
-  if (const auto& contact = cell_->contact()) {
-    state.in_contact = true;
-    state.indentation = contact->indentation;
-    state.tip_displacement = toVector(contact->displacement);
-  }
-  state.force = toVector(force.force);
-  state.punctured = cell_->punctured();
-  state.converged = untrusted_.empty();
-  state.reason = untrusted_;
-  state.smallest_jacobian = 1;
-  if (const auto solution = cell_->solution(now.toSec())) {
-    Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(state.contact_stiffness.data()) = solution->stiffness;
-    state.newton_iterations = solution->newton_iterations;
-    state.solve_time = solution->cpu_time;
-    state.solution_age = solution->age;
-    state.smallest_jacobian = solution->smallest_jacobian;
-  }
-  state_.publish(state);
-  state_sent_ = now;
+CellMoment CellSimulatorNode::moment(const ros::Time& now, const TipForce& force) const {
+  CellMoment moment;
+  moment.now = now;
+  moment.force = force;
+  moment.contact = cell_->contact();
+  moment.solution = cell_->solution(now.toSec());
+  moment.punctured = cell_->punctured();
+  moment.setReason(untrusted_);
+  return moment;
 }
 
 void CellSimulatorNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) {

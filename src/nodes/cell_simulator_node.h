@@ -10,6 +10,7 @@
 #include "cell/cell_tracker.h"
 #include "cell/cell_under_needle.h"
 #include "cell_microinjection/CellState.h"
+#include "nodes/cell_state_publisher.h"
 #include "nodes/cycle.h"
 
 namespace microinjection {
@@ -24,7 +25,7 @@ namespace microinjection {
 ///   scene           path of the scene file; required
 ///   model           prepared, live, or auto (default): prepared where `prepare` has left data for the scene, else live
 ///   rate            Hz; default 1000, in [50, 5000]
-///   state_rate      Hz of /cell/state; default 30, in (0, 100]
+///   state_rate      Hz of /cell/state; default 60, in (0, 100]
 ///   needle_timeout  s, a needle pose older than this is stale; default 0.05, in (0, inf)
 class CellSimulatorNode {
  public:
@@ -38,7 +39,7 @@ class CellSimulatorNode {
     std::string scene;
     std::string model = "auto";
     double rate = 1000;
-    double state_rate = 30;
+    double state_rate = 60;
     double needle_timeout = 0.05;
     CellTrackerConfig tracker;
     static Parameters read(const ros::NodeHandle& private_node);
@@ -46,8 +47,7 @@ class CellSimulatorNode {
 
   std::unique_ptr<CellUnderNeedle> makeCell() const;
   void step(const Cycle::Tick& tick);
-  void publishState(const ros::Time& now, const TipForce& force);
-  void fillSurface(cell_microinjection::CellState& state) const;
+  CellMoment moment(const ros::Time& now, const TipForce& force) const;
   void report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   Parameters parameters_;
@@ -56,9 +56,8 @@ class CellSimulatorNode {
   Input<geometry_msgs::PoseStamped>& needle_;
   Output<geometry_msgs::WrenchStamped>& force_;
   Output<cell_microinjection::CellState>& state_;
-  cell_microinjection::CellState undeformed_;  ///< what stays the same in every message
-  ros::Time state_sent_;
-  std::string untrusted_;  ///< why the last force was not to be trusted; else empty
+  std::string untrusted_;                                ///< why the last force was not to be trusted; else empty
+  std::unique_ptr<CellStatePublisher> state_publisher_;  ///< last: it uses cell and output in a thread of its own
 };
 
 }  // namespace microinjection

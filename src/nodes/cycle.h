@@ -14,9 +14,9 @@
 
 namespace microinjection {
 
-/// Messages that may wait for a node of ordinary priority while the machine is busy, half a second of them: the
-/// recorder must see each one.
-constexpr int kBacklog = 500;
+/// Messages that may wait for a node that does not get the processor, five seconds of them: the recorder must see each
+/// one.
+constexpr int kBacklog = 5000;
 
 /// When a node steps, and with which inputs. All callbacks and steps run in the one thread that calls run().
 ///
@@ -93,14 +93,13 @@ Input<Message>& Cycle::input(const std::string& topic, Phase phase, double timeo
         hints));
   } else {
     const bool trigger = phase == Phase::kSameTick;
-    subscribers_.push_back((trigger ? node_ : sampled_node_)
-                               .subscribe<Message>(
-                                   topic, kBacklog,
-                                   [this, &port, trigger](const boost::shared_ptr<const Message>& message) {
-                                     port.receive(message);
-                                     triggered_ = triggered_ || trigger;
-                                   },
-                                   {}, hints));
+    using Event = ros::MessageEvent<const Message>;
+    const auto receive = [this, &port, trigger](const Event& event) {
+      port.receive(event.getConstMessage(), event.getReceiptTime());
+      triggered_ = triggered_ || trigger;
+    };
+    subscribers_.push_back(
+        (trigger ? node_ : sampled_node_).subscribe<Message, const Event&>(topic, kBacklog, receive, {}, hints));
   }
   return port;
 }

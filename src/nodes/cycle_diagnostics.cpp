@@ -3,6 +3,8 @@
 #include <diagnostic_msgs/DiagnosticStatus.h>
 
 #include <algorithm>
+#include <cstdio>
+#include <string>
 
 namespace microinjection {
 
@@ -53,9 +55,22 @@ void CycleDiagnostics::reportCycle(DiagnosticStatusWrapper& status) {
   status.add("longest step time (s)", longest_step_);
   status.add("steps since the start", all_steps_);
   status.add("mean rate since the start (Hz)", (all_steps_ - 1) / std::max(1e-9, (now_ - began_).toSec()));
-  status.add("median interval since the start (s of wall time)", intervals_.quantile(0.5));
-  status.add("99 % interval since the start (s of wall time)", intervals_.quantile(0.99));
+  reportIntervals(intervals_, status);
   for (const OutputPort* output : outputs_) status.add("sent on " + output->topic, output->count);
+}
+
+void CycleDiagnostics::reportIntervals(const IntervalHistogram& intervals, DiagnosticStatusWrapper& status) {
+  status.add("median interval since the start (s of wall time)", intervals.quantile(0.5));
+  status.add("99 % interval since the start (s of wall time)", intervals.quantile(0.99));
+  status.add("intervals since the start", intervals.count());
+  status.add("intervals of more than two periods", intervals.countOverLimit());
+  std::string text;
+  for (const IntervalHistogram::Bin& bin : intervals.bins()) {
+    char entry[40];
+    std::snprintf(entry, sizeof(entry), "%.4g:%u ", bin.upper, bin.count);
+    text += entry;
+  }
+  status.add("intervals up to (s):count", text);
 }
 
 void CycleDiagnostics::reportInputs(DiagnosticStatusWrapper& status) {

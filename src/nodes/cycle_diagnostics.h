@@ -17,13 +17,16 @@ namespace microinjection {
 /// Updated once a second of ROS time.
 class CycleDiagnostics {
  public:
-  explicit CycleDiagnostics(double rate) : rate_(rate) {}
+  explicit CycleDiagnostics(double rate) : rate_(rate), intervals_(2 / rate) {}
 
   void watch(const InputPort& port) { inputs_.push_back(&port); }
   void watch(const OutputPort& port) { outputs_.push_back(&port); }
 
   /// The node's own state: fills in level, message and values.
   void add(const std::string& name, const std::function<void(diagnostic_updater::DiagnosticStatusWrapper&)>& report);
+
+  /// Says how long the intervals (s) of something periodic were.
+  static void reportIntervals(const IntervalHistogram& intervals, diagnostic_updater::DiagnosticStatusWrapper& status);
 
   void beginStep();
   void endStep(const ros::Time& now);

@@ -4,12 +4,14 @@
 #include <std_msgs/Header.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <deque>
 #include <functional>
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace microinjection {
 
@@ -71,15 +73,14 @@ class Input : public InputPort {
       if (silence_.front().frame_id == "invalid") newest_.reset();
     }
     for (; !waiting_.empty() && waiting_.front()->header.stamp <= stamp; waiting_.pop_front()) {
-      if (on_message) on_message(*waiting_.front(), now);
+      tell(*waiting_.front(), now);
       accept(waiting_.front(), now);
     }
   }
 
-  /// Live.
-  void receive(const Pointer& message) {
-    const ros::Time now = ros::Time::now();
-    if (on_message) on_message(*message, now);
+  /// Live, a message that came at `now`.
+  void receive(const Pointer& message, const ros::Time& now) {
+    tell(*message, now);
     accept(message->header.stamp.isZero() ? nullptr : message, now);
   }
   void invalidate() override { newest_.reset(); }
@@ -92,8 +93,9 @@ class Input : public InputPort {
     if (!header.stamp.isZero()) silence_.push_back(header);
   }
 
-  /// Sees every message, also those that a newer one replaces before the next step.
-  std::function<void(const Message&, const ros::Time& now)> on_message;
+  /// Sees every message and when it came, also those that a newer one replaces before the next step.
+  using Listener = std::function<void(const Message&, const ros::Time& now)>;
+  void listen(Listener listener) { listeners_.push_back(std::move(listener)); }
 
   bool valid() const override { return newest_ != nullptr; }
   /// The newest message if fresh(now), else null.
@@ -102,6 +104,9 @@ class Input : public InputPort {
   Pointer takeNews() { return std::exchange(news_, false) ? newest_ : nullptr; }
 
  private:
+  void tell(const Message& message, const ros::Time& now) const {
+    for (const Listener& listener : listeners_) listener(message, now);
+  }
   void accept(const Pointer& message, const ros::Time& now) {
     newest_ = message;
     // Whichever is older: a relay that repeats an old sample must not keep it fresh.
@@ -111,6 +116,7 @@ class Input : public InputPort {
 
   Pointer newest_;
   bool news_ = false;
+  std::vector<Listener> listeners_;
   std::deque<Pointer> waiting_;
   std::deque<std_msgs::Header> silence_;
 };
@@ -141,7 +147,7 @@ class OutputPort {
   const std::string topic;
   ros::Publisher publisher;
   ros::Publisher silent_publisher;  ///< null when live
-  unsigned count = 0;               ///< messages sent, for the diagnostics
+  std::atomic<unsigned> count{0};   ///< messages sent, for the diagnostics
 
  protected:
   ros::Time tick_;  ///< zero when live
@@ -154,7 +160,8 @@ class Output : public OutputPort {
  public:
   using OutputPort::OutputPort;
 
-  /// The header's stamp is that of the measurement that the message derives from; see beginTick for lock step.
+  /// The header's stamp is that of the measurement that the message derives from; see beginTick for lock step. Live, a
+  /// thread other than the node's may call it, always the same one.
   void publish(Message message) {
     if (!tick_.isZero()) message.header.stamp = tick_;
     publisher.publish(message);

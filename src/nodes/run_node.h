@@ -11,11 +11,9 @@
 
 namespace microinjection {
 
-enum class Priority { kOrdinary, kRealTime };
-
 /// The whole `main` of a node: starts ROS, constructs Node(node, private_node) and runs it until shutdown. A node whose
 /// parameters are wrong must not come alive: what its constructor throws is logged and the exit status is 1. Live,
-/// nodes of the 1 kHz chain run in real time where the system allows it.
+/// nodes of the 1 kHz chain run in real time where the system allows it, those that hear every message of it promptly.
 template <typename Node>
 int runNode(int argc, char** argv, const std::string& name, Priority priority = Priority::kRealTime) {
   for (int i = 1; i < argc; ++i) {
@@ -25,7 +23,7 @@ int runNode(int argc, char** argv, const std::string& name, Priority priority = 
     }
   }
   ros::init(argc, argv, name);
-  if (priority == Priority::kRealTime && !takesPartInLockstep()) preferRealTime();
+  if (!takesPartInLockstep()) prefer(priority);
   // These outlive the try block: the end of the last handle shuts ROS down, and its log with it.
   const ros::NodeHandle node_handle, private_node_handle("~");
   try {

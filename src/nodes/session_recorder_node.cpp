@@ -2,8 +2,10 @@
 
 #include <tf2_msgs/TFMessage.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <sstream>
 
 #include "base/atomic_file.h"
 #include "cell_microinjection/OperatingState.h"
@@ -14,6 +16,26 @@ namespace microinjection {
 namespace {
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
+constexpr double kRate = 100;                          // Hz, live
+constexpr Nanoseconds kPatience = 2000000000;          // for messages that are late
+constexpr Nanoseconds kPatienceInLockstep = 50000000;  // none is, but the cell tells of a touch at its own rate
+
+Nanoseconds stampOf(const ros::Time& time) { return static_cast<Nanoseconds>(time.toNSec()); }
+
+template <typename Message>
+Nanoseconds stampOf(const Message& message) {
+  return stampOf(message.header.stamp);
+}
+
+/// What has stamp 0 is invalid (CRTK).
+template <typename Message, typename Value>
+void putForce(const Message& message, const std::optional<Value>& value, Timeline<Value>& line) {
+  if (value && !message.header.stamp.isZero()) {
+    line.put(stampOf(message), value);
+  } else {
+    line.withdraw();
+  }
+}
 
 std::string value(const diagnostic_msgs::DiagnosticStatus& status, const std::string& key) {
   for (const auto& pair : status.values) {
@@ -47,8 +69,9 @@ SessionRecorderNode::Parameters SessionRecorderNode::Parameters::read(const ros:
 
 SessionRecorderNode::SessionRecorderNode(ros::NodeHandle node, ros::NodeHandle private_node)
     : parameters_(Parameters::read(private_node)),
-      cycle_(node, 1000),
-      predicted_(cycle_.input<geometry_msgs::WrenchStamped>("cell/predicted_cf", Phase::kSameTick, 0.05)),
+      cycle_(node, kRate),
+      table_(std::llround(1e9 * parameters_.row_period), cycle_.lockstep() ? kPatienceInLockstep : kPatience),
+      predicted_(cycle_.input<geometry_msgs::WrenchStamped>("cell/predicted_cf", Phase::kTickBefore, 0.05)),
       needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", Phase::kTickBefore, 0.05)),
       measured_(cycle_.input<geometry_msgs::WrenchStamped>("force_sensor/measured_cf", Phase::kTickBefore, 0.05)),
       cell_(cycle_.input<cell_microinjection::CellState>("cell/state", Phase::kTickBefore, kForever)) {
@@ -59,13 +82,47 @@ SessionRecorderNode::SessionRecorderNode(ros::NodeHandle node, ros::NodeHandle p
     phase_ = &cycle_.input<cell_microinjection::StringStamped>("operator/phase", Phase::kTickBefore, kForever);
   }
   diagnostics_ = cycle_.node().subscribe("/diagnostics", 100, &SessionRecorderNode::onDiagnostics, this);
-  rows_.precision(9);
-  rows_ << "time_s,phase,depth_m,predicted_axial_N,measured_axial_N,measured_lateral_N,hand_force_N,in_contact,"
-           "punctured\n";
+  fillTable();
   if (parameters_.bag) recordBag();
   if (cycle_.lockstep()) return;
   latency_ = std::make_unique<LatencyMeter>(cycle_.node());
   timer_loop_ = std::make_unique<BareTimerLoop>();
+  cycle_.diagnostics().add("bare timer loop", [this](auto& status) {
+    status.summary(diagnostic_msgs::DiagnosticStatus::OK, "what this machine allows a loop at 1 kHz");
+    CycleDiagnostics::reportIntervals(timer_loop_->intervals(), status);
+  });
+}
+
+void SessionRecorderNode::fillTable() {
+  needle_.listen([this](const geometry_msgs::PoseStamped& message, const ros::Time&) {
+    const auto pose = trustedPose(&message);
+    if (!pose) return table_.needle.withdraw();
+    tip_orientation_ = pose->linear();
+    table_.needle.put(stampOf(message), {{pose->translation(), pose->linear().col(2)}});
+  });
+  predicted_.listen([this](const geometry_msgs::WrenchStamped& message, const ros::Time&) {
+    putForce(message, trustedForce(&message, tip_orientation_), table_.predicted);
+  });
+  measured_.listen([this](const geometry_msgs::WrenchStamped& message, const ros::Time&) {
+    std::optional<SessionTable::Measured> measured;
+    if (const auto force = finiteForce(&message)) measured = {force->z(), force->x()};
+    putForce(message, measured, table_.measured);
+  });
+  cell_.listen([this](const cell_microinjection::CellState& message, const ros::Time&) {
+    SessionTable::Cell cell{std::nullopt, message.punctured != 0};
+    const auto& touched_at = message.touched_at;
+    if (message.in_contact) cell.touched_at = Eigen::Vector3d(touched_at.x, touched_at.y, touched_at.z);
+    table_.cell.put(stampOf(message), cell);
+  });
+  if (!parameters_.hand) return;
+  hand_force_->listen([this](const geometry_msgs::WrenchStamped& message, const ros::Time&) {
+    std::optional<double> size;
+    if (const auto force = finiteForce(&message)) size = force->norm();
+    putForce(message, size, table_.hand_force);
+  });
+  phase_->listen([this](const cell_microinjection::StringStamped& message, const ros::Time&) {
+    table_.phase.put(stampOf(message), message.string);
+  });
 }
 
 void SessionRecorderNode::recordBag() {
@@ -89,48 +146,23 @@ void SessionRecorderNode::recordBag() {
 void SessionRecorderNode::run() {
   cycle_.run([this](const Cycle::Tick& tick) { step(tick); });
   if (bag_) bag_->close();
-  writeFileAtomically(parameters_.output_dir + "/force_depth.csv", rows_.str());
+  table_.finish();
+  writeFileAtomically(parameters_.output_dir + "/force_depth.csv", table_.text());
   writeFileAtomically(parameters_.output_dir + "/summary.yaml", summary());
 }
 
 void SessionRecorderNode::step(const Cycle::Tick& tick) {
-  if (began_.isZero()) began_ = tick.now;
-  if (const auto* phase = phase_ ? phase_->get(tick.now) : nullptr; phase && phase->string == "done") {
-    if (parameters_.end_when_done) cycle_.stop();
-    return;  // the same rows however long the nodes live on
-  }
-  const auto needle = trustedPose(needle_.get(tick.now));
-  const auto force = trustedForce(predicted_.get(tick.now), Eigen::Matrix3d::Identity());
-  if (needle && force) followContact(needle->translation(), !force->isZero());
-  if ((tick.now - row_written_).toSec() >= parameters_.row_period - 1e-9) writeRow(tick.now);
+  withdrawInvalid();
+  table_.advance(stampOf(tick.now));
+  if (table_.done() && parameters_.end_when_done) cycle_.stop();
 }
 
-void SessionRecorderNode::followContact(const Eigen::Vector3d& tip, bool in_contact) {
-  if (in_contact && !in_contact_) {
-    touched_at_ = tip_before_;
-    touched_ = true;
-  }
-  in_contact_ = in_contact;
-  tip_before_ = tip;
-}
-
-void SessionRecorderNode::writeRow(const ros::Time& now) {
-  const auto needle = trustedPose(needle_.get(now));
-  const auto predicted = needle ? trustedForce(predicted_.get(now), needle->linear()) : std::nullopt;
-  const auto* measured = measured_.get(now);
-  const auto hand = finiteForce(hand_force_ ? hand_force_->get(now) : nullptr);
-  const auto* phase = phase_ ? phase_->get(now) : nullptr;
-  const auto* cell = cell_.get(now);
-  rows_ << (now - began_).toSec() << ',' << (phase ? phase->string : "") << ',';
-  if (needle && touched_) rows_ << (touched_at_ - needle->translation()).dot(needle->linear().col(2));
-  rows_ << ',';
-  if (predicted) rows_ << predicted->dot(needle->linear().col(2));
-  rows_ << ',';
-  if (measured) rows_ << measured->wrench.force.z << ',' << measured->wrench.force.x << ',';
-  if (!measured) rows_ << ",,";
-  if (hand) rows_ << hand->norm();
-  rows_ << ',' << in_contact_ << ',' << (cell && cell->punctured) << '\n';
-  row_written_ = now;
+/// In lock step an invalid message is none, but a silence that says so.
+void SessionRecorderNode::withdrawInvalid() {
+  if (!needle_.valid()) table_.needle.withdraw();
+  if (!predicted_.valid()) table_.predicted.withdraw();
+  if (!measured_.valid()) table_.measured.withdraw();
+  if (hand_force_ && !hand_force_->valid()) table_.hand_force.withdraw();
 }
 
 void SessionRecorderNode::onDiagnostics(const diagnostic_msgs::DiagnosticArrayConstPtr& message) {
@@ -151,7 +183,7 @@ void SessionRecorderNode::onDiagnostics(const diagnostic_msgs::DiagnosticArrayCo
 std::string SessionRecorderNode::summary() const {
   std::ostringstream out;
   out << "clock: " << (cycle_.lockstep() ? "lockstep" : "wall") << '\n';
-  out << "duration_s: " << (row_written_ - began_).toSec() << '\n';
+  out << "duration_s: " << table_.duration() << '\n';
   out << "nodes:\n";
   for (const auto& [node, figures] : figures_) {
     if (figures.topic.empty()) continue;
@@ -160,7 +192,7 @@ std::string SessionRecorderNode::summary() const {
         << ", interval_p99_ms: " << 1e3 * std::atof(figures.p99.c_str()) << "}\n";
   }
   if (latency_) writeIntervals(out, "hand_to_force_latency", latency_->latencies());
-  if (timer_loop_) writeIntervals(out, "bare_timer_loop", timer_loop_->stop());
+  if (timer_loop_) writeIntervals(out, "bare_timer_loop", timer_loop_->intervals());
   return out.str();
 }
 

@@ -9,7 +9,6 @@
 #include <Eigen/Core>
 #include <map>
 #include <memory>
-#include <sstream>
 #include <string>
 
 #include "base/interval_histogram.h"
@@ -19,6 +18,7 @@
 #include "nodes/cycle.h"
 #include "nodes/latency_meter.h"
 #include "nodes/session_bag.h"
+#include "record/session_table.h"
 
 namespace microinjection {
 
@@ -30,7 +30,8 @@ namespace microinjection {
 ///     /haptic/measured_cp, /haptic/servo_cf, /haptic/clutch, /operator/phase; /needle/setpoint_trace,
 ///     /haptic/force_trace; /diagnostics, /tf, /tf_static, /controller/operating_state
 ///
-/// Depth is the travel of the tip along the pipette since the predicted force last rose from zero; empty before.
+/// Live it looks at what has come a hundred times a second and writes rows two seconds late, by the stamps of the
+/// messages (see SessionTable): it needs the processor seldom, and waiting for it spoils nothing.
 ///
 /// Parameters (private):
 ///   output_dir  path, made when absent; required
@@ -58,15 +59,16 @@ class SessionRecorderNode {
     std::string topic, count, rate, median, p99;
   };
 
-  void step(const Cycle::Tick& tick);
-  void followContact(const Eigen::Vector3d& tip, bool in_contact);
+  void fillTable();
   void recordBag();
-  void writeRow(const ros::Time& now);
+  void step(const Cycle::Tick& tick);
+  void withdrawInvalid();
   void onDiagnostics(const diagnostic_msgs::DiagnosticArrayConstPtr& message);
   std::string summary() const;
 
   Parameters parameters_;
   Cycle cycle_;
+  SessionTable table_;
   Input<geometry_msgs::WrenchStamped>& predicted_;
   Input<geometry_msgs::PoseStamped>& needle_;
   Input<geometry_msgs::WrenchStamped>& measured_;
@@ -80,13 +82,8 @@ class SessionRecorderNode {
   std::unique_ptr<LatencyMeter> latency_;      ///< null in lock step, where wall time means nothing
   std::unique_ptr<BareTimerLoop> timer_loop_;  ///< null in lock step
 
-  std::ostringstream rows_;
-  ros::Time began_, row_written_;
-  bool in_contact_ = false;
-  bool touched_ = false;                                  ///< ever
-  Eigen::Vector3d tip_before_ = Eigen::Vector3d::Zero();  ///< m, of the step before
-  Eigen::Vector3d touched_at_ = Eigen::Vector3d::Zero();  ///< m
-  std::map<std::string, NodeFigures> figures_;            ///< by node
+  Eigen::Matrix3d tip_orientation_ = Eigen::Matrix3d::Identity();  ///< newest, in world
+  std::map<std::string, NodeFigures> figures_;                     ///< by node
 };
 
 }  // namespace microinjection

@@ -3,20 +3,24 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "contact/rounded_tip.h"
-
 namespace microinjection {
 
 std::optional<ContactPlace> ContactPlace::at(const Scene& scene, const Eigen::Vector2d& offset) {
-  const double radius = scene.radius(), distance = offset.norm();
+  const Scene::Tip& shape = scene.needle.tip;
+  std::optional<RoundedTip> tip;
+  if (shape.rounded()) tip = RoundedTip::make(shape.shape, shape.radius, shape.edge_radius);
+  return at(scene.radius(), tip, offset);
+}
+
+std::optional<ContactPlace> ContactPlace::at(double radius, const std::optional<RoundedTip>& tip,
+                                             const Eigen::Vector2d& offset) {
+  const double distance = offset.norm();
   ContactPlace place;
   Eigen::Vector3d touched;
-  if (scene.needle.tip.rounded()) {
-    const Scene::Tip& shape = scene.needle.tip;
-    const RoundedTip tip = RoundedTip::make(shape.shape, shape.radius, shape.edge_radius);
-    if (!(distance < radius + tip.radius())) return std::nullopt;
-    place.origin << offset, tip.touchHeight(radius, offset);
-    touched = tip.touchPoint(radius, offset);
+  if (tip) {
+    if (!(distance < radius + tip->radius())) return std::nullopt;
+    place.origin << offset, tip->touchHeight(radius, offset);
+    touched = tip->touchPoint(radius, offset);
   } else {
     if (!(distance < radius)) return std::nullopt;
     place.origin << offset, std::sqrt(radius * radius - distance * distance);

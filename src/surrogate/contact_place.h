@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "cell/scene.h"
+#include "contact/rounded_tip.h"
 
 namespace microinjection {
 
@@ -16,6 +17,9 @@ struct ContactPlace {
 
   /// Of the needle whose line is at `offset` (x, y; m). Nothing when it passes by.
   static std::optional<ContactPlace> at(const Scene& scene, const Eigen::Vector2d& offset);
+  /// The same for a cell of `radius` (m) and a rounded tip, or none: a disc. Allocates nothing.
+  static std::optional<ContactPlace> at(double radius, const std::optional<RoundedTip>& tip,
+                                        const Eigen::Vector2d& offset);
 
   /// Offset, m, at which a needle meets the cell at `angle` (rad) on the x axis.
   static Eigen::Vector2d offsetFor(const Scene& scene, double angle);

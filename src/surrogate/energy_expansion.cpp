@@ -10,9 +10,8 @@ namespace microinjection {
 namespace {
 
 constexpr int kMost = 16;              ///< terms of a polynomial in one variable, at most
-constexpr double kLargestRoot = 1.26;  ///< s at the corner of depth and lateral motion, with some room
+constexpr double kLargestRoot = 1.05;  ///< s of the longest displacement, with some room
 constexpr double kNothing = 1e-9;      ///< t of no displacement
-constexpr double kBackwards = 0.2;  ///< (t + v_z) / t, below which the tip moves out and there is nothing to evaluate
 
 using Series = std::array<double, kMost>;
 
@@ -46,53 +45,54 @@ void chebyshev(double s, int degree, Values& values) {
 
 /// The variables of the sum, as functions of the displacement.
 struct Variables {
-  Jet a, r, s;
+  Jet a, w, s;
   Jet factor;  ///< energy t^2
 };
 
-bool variables(const EnergyScales& scales, const Eigen::Vector3d& u, Variables& result) {
-  Jet x = (1 / scales.lateral) * Jet::coordinate(0, u.x()), y = (1 / scales.lateral) * Jet::coordinate(1, u.y());
-  Jet z = (-1 / scales.depth) * Jet::coordinate(2, u.z());
+bool variables(const EnergyScales& scales, int root, const Eigen::Vector3d& u, Variables& result) {
+  const double unit = 1 / scales.length;
+  const Jet x = unit * Jet::coordinate(0, u.x()), y = unit * Jet::coordinate(1, u.y());
+  const Jet z = unit * Jet::coordinate(2, u.z());
   const Jet squared = x * x + y * y + z * z;
   if (!(squared.value > kNothing * kNothing)) return false;
   const Jet t = sqrt(squared);
-  if (t.value + z.value < kBackwards * t.value) return false;
-  const Jet scale = inverse(t + z);
+  const Jet scale = inverse(t);
   result.a = x * scale;
-  result.r = (t - z) * scale;
+  result.w = z * scale;
+  result.w.value += 1;
   result.s = sqrt(t);
-  result.factor = scales.energy * squared;
+  result.factor = scales.energy * (root == 2 ? squared : t);
   return true;
 }
 
-/// Derivatives of a function of (a, r, s).
+/// Derivatives of a function of (a, w, s).
 struct Sum {
   double value = 0;
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
   Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();  ///< upper triangle
 };
 
-void add(Sum& sum, const Values& a, int j, const Values& r, int k, double q, double q1, double q2) {
-  const double af = a.f[j], a1 = a.f1[j], rf = r.f[k], r1 = r.f1[k];
-  sum.value += af * rf * q;
-  sum.gradient += Eigen::Vector3d(a1 * rf * q, af * r1 * q, af * rf * q1);
-  sum.hessian(0, 0) += a.f2[j] * rf * q;
-  sum.hessian(0, 1) += a1 * r1 * q;
-  sum.hessian(0, 2) += a1 * rf * q1;
-  sum.hessian(1, 1) += af * r.f2[k] * q;
-  sum.hessian(1, 2) += af * r1 * q1;
-  sum.hessian(2, 2) += af * rf * q2;
+void add(Sum& sum, const Values& a, int j, const Values& w, int k, double q, double q1, double q2) {
+  const double af = a.f[j], a1 = a.f1[j], wf = w.f[k], w1 = w.f1[k];
+  sum.value += af * wf * q;
+  sum.gradient += Eigen::Vector3d(a1 * wf * q, af * w1 * q, af * wf * q1);
+  sum.hessian(0, 0) += a.f2[j] * wf * q;
+  sum.hessian(0, 1) += a1 * w1 * q;
+  sum.hessian(0, 2) += a1 * wf * q1;
+  sum.hessian(1, 1) += af * w.f2[k] * q;
+  sum.hessian(1, 2) += af * w1 * q1;
+  sum.hessian(2, 2) += af * wf * q2;
 }
 
 Jet compose(const Sum& sum, const Variables& at) {
-  Eigen::Matrix3d jacobian;  // rows: a, r, s
-  jacobian << at.a.gradient.transpose(), at.r.gradient.transpose(), at.s.gradient.transpose();
+  Eigen::Matrix3d jacobian;  // rows: a, w, s
+  jacobian << at.a.gradient.transpose(), at.w.gradient.transpose(), at.s.gradient.transpose();
   const Eigen::Matrix3d inner = sum.hessian.selfadjointView<Eigen::Upper>();
   Jet polynomial;
   polynomial.value = sum.value;
   polynomial.gradient = jacobian.transpose() * sum.gradient;
   polynomial.hessian = jacobian.transpose() * inner * jacobian + sum.gradient[0] * at.a.hessian +
-                       sum.gradient[1] * at.r.hessian + sum.gradient[2] * at.s.hessian;
+                       sum.gradient[1] * at.w.hessian + sum.gradient[2] * at.s.hessian;
   return at.factor * polynomial;
 }
 
@@ -100,11 +100,12 @@ Jet compose(const Sum& sum, const Variables& at) {
 
 EnergyExpansion::EnergyExpansion(const EnergyScales& scales, const EnergyDegrees& degrees)
     : scales_(scales), degrees_(degrees) {
-  if (degrees.place >= kMost || degrees.direction >= kMost || degrees.distance < 1 || degrees.distance >= kMost) {
-    throw std::invalid_argument("EnergyExpansion: degrees must be in [1, 15]");
+  if (degrees.place >= kMost || degrees.direction >= kMost || degrees.distance < 1 || degrees.distance >= kMost ||
+      degrees.root < 1 || degrees.root > 2) {
+    throw std::invalid_argument("EnergyExpansion: degrees must be in [1, 15], root 1 or 2");
   }
   for (int j = 0; j <= std::min(degrees.place, degrees.direction); ++j) {
-    for (int k = 0; j + 2 * k <= degrees.direction; ++k) {
+    for (int k = 0; j + k <= degrees.direction; ++k) {
       for (int i = 0; 2 * i + j <= degrees.place; ++i) terms_.push_back({i, j, k, static_cast<int>(powers_.size())});
       powers_.push_back({j, k});
     }
@@ -122,18 +123,18 @@ void EnergyExpansion::basis(double angle, const Eigen::Vector3d& displacement, E
   energy.setZero(size());
   gradient.setZero(3, size());
   Variables at;
-  if (!variables(scales_, displacement, at)) return;
-  Values c, a, r, s;
+  if (!variables(scales_, degrees_.root, displacement, at)) return;
+  Values c, a, w, s;
   powers(angle / scales_.angle, degrees_.place, c);
   powers(at.a.value, degrees_.direction, a);
-  powers(at.r.value, degrees_.direction / 2, r);
+  powers(at.w.value, degrees_.direction, w);
   chebyshev(at.s.value, degrees_.distance, s);
   int index = 0;
   for (const Term& term : terms_) {
     const double place = c.f[2 * term.i + term.j];
     for (int n = 0; n <= degrees_.distance; ++n, ++index) {
       Sum sum;
-      add(sum, a, term.j, r, term.k, place * s.f[n], place * s.f1[n], place * s.f2[n]);
+      add(sum, a, term.j, w, term.k, place * s.f[n], place * s.f1[n], place * s.f2[n]);
       const Jet jet = compose(sum, at);
       energy[index] = jet.value;
       gradient.col(index) = jet.gradient;
@@ -146,6 +147,8 @@ void EnergyExpansion::makeLocal(double angle, Local& local) const {
   powers(angle / scales_.angle, degrees_.place, c);
   local.scales_ = scales_;
   local.powers_ = powers_;
+  local.highest_ = degrees_.direction;
+  local.root_ = degrees_.root;
   local.coefficients_.setZero(degrees_.distance + 1, powers_.size());
   int index = 0;
   for (const Term& term : terms_) {
@@ -158,11 +161,11 @@ void EnergyExpansion::makeLocal(double angle, Local& local) const {
 
 Jet EnergyExpansion::Local::evaluate(const Eigen::Vector3d& displacement) const {
   Variables at;
-  if (coefficients_.cols() == 0 || !variables(scales_, displacement, at)) return {};
+  if (coefficients_.cols() == 0 || !variables(scales_, root_, displacement, at)) return {};
   const int degree = static_cast<int>(coefficients_.rows()) - 1;
-  Values a, r, s;
-  powers(at.a.value, powers_.back().first + 1, a);
-  powers(at.r.value, kMost / 2, r);
+  Values a, w, s;
+  powers(at.a.value, highest_, a);
+  powers(at.w.value, highest_, w);
   chebyshev(at.s.value, degree, s);
   Sum sum;
   for (std::size_t column = 0; column < powers_.size(); ++column) {
@@ -173,7 +176,7 @@ Jet EnergyExpansion::Local::evaluate(const Eigen::Vector3d& displacement) const 
       q1 += coefficient * s.f1[n];
       q2 += coefficient * s.f2[n];
     }
-    add(sum, a, powers_[column].first, r, powers_[column].second, q, q1, q2);
+    add(sum, a, powers_[column].first, w, powers_[column].second, q, q1, q2);
   }
   return compose(sum, at);
 }

@@ -10,28 +10,28 @@ namespace microinjection {
 /// What a unit of the expansion's variables is.
 struct EnergyScales {
   double angle = 1.0471975511965976;  ///< rad, of the place of contact from the pole
-  double lateral = 5e-6;              ///< m, of the tip's displacement
-  double depth = 20e-6;               ///< m, of the tip's displacement
+  double length = 20e-6;              ///< m, longest displacement of the tip
   double energy = 1e-12;              ///< J
 };
 
 struct EnergyDegrees {
-  int place = 8;       ///< in the contact angle, even
-  int direction = 10;  ///< in the displacement's direction, even
-  int distance = 7;    ///< in the square root of its length
+  int place = 4;      ///< in the contact angle, even
+  int direction = 6;  ///< in the displacement's direction
+  int distance = 7;   ///< in the square root of its length
+  int root = 2;       ///< power of the length in every term: 2 for an energy, 1 for a force
 };
 
 /// Stored energy of a cell of revolution as a function of where the tip touched it and of how it moved since.
 ///
 /// The tip's displacement u is in the frame of the place: x away from the axis of the cell, z along the needle, out of
-/// the cell. With v = (u_x / lateral, u_y / lateral, -u_z / depth), t = |v|, a = v_x / (t + v_z), r = (t - v_z) / (t +
-/// v_z) (a and r are the stereographic picture's x and squared length), s = sqrt(t) and c = angle / scale:
+/// the cell. With t = |u| / length, s = sqrt(t), a = u_x / |u|, w = 1 + u_z / |u| and c = angle / scale:
 ///
-///     E = energy t^2 sum_(i, j, k, n) C_ijkn (c^2)^i (c a)^j r^k T_n(2 s / s_max - 1)
+///     E = energy t^2 sum_(i, j, k, n) C_ijkn (c^2)^i (c a)^j w^k T_n(2 s / s_max - 1)
 ///
 /// These are all smooth functions of two plane vectors, the place and the lateral displacement, that do not change when
-/// both are turned or mirrored together; t^2 and powers of s hold both a patch that sticks (E ~ t^2 at first) and a
-/// round tip (t^(5/2), Hertz).
+/// both are turned or mirrored together; polynomials in a and w are the spherical harmonics. t^2 and powers of s hold
+/// both a patch that sticks (E ~ t^2 at first) and a round tip (t^(5/2), Hertz). For a function that is a force, t
+/// instead of t^2 and N instead of J.
 class EnergyExpansion {
  public:
   EnergyExpansion() = default;
@@ -45,7 +45,7 @@ class EnergyExpansion {
   void basis(double angle, const Eigen::Vector3d& displacement, Eigen::VectorXd& energy,
              Eigen::Matrix3Xd& gradient) const;
 
-  /// The coefficients that fit `gradient` best; see basis().
+  /// See energy_fit.h.
   void setCoefficients(Eigen::VectorXd coefficients);
   const Eigen::VectorXd& coefficients() const { return coefficients_; }
 
@@ -58,7 +58,9 @@ class EnergyExpansion {
    private:
     friend class EnergyExpansion;
     EnergyScales scales_;
-    std::vector<std::pair<int, int>> powers_;  ///< of a and r, for each column
+    int root_ = 2;
+    int highest_ = 0;                          ///< of powers_
+    std::vector<std::pair<int, int>> powers_;  ///< of a and w, for each column
     Eigen::MatrixXd coefficients_;             ///< of T_n (row) in each column
   };
   void makeLocal(double angle, Local& local) const;

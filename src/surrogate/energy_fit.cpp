@@ -5,15 +5,12 @@
 #include <stdexcept>
 
 namespace microinjection {
-namespace {
 
 double largestForce(const std::vector<TrainingSample>& samples) {
   double result = 0;
   for (const TrainingSample& sample : samples) result = std::max(result, sample.force.norm());
   return result;
 }
-
-}  // namespace
 
 void fitEnergy(EnergyExpansion& expansion, const std::vector<TrainingSample>& samples, const EnergyFitConfig& config) {
   const int unknowns = expansion.size(), rows = 3 * static_cast<int>(samples.size());
@@ -32,20 +29,6 @@ void fitEnergy(EnergyExpansion& expansion, const std::vector<TrainingSample>& sa
   const Eigen::VectorXd sizes = matrix.colwise().norm();
   matrix.bottomRows(unknowns).diagonal() = config.regularisation * sizes;
   expansion.setCoefficients(matrix.colPivHouseholderQr().solve(right));
-}
-
-std::vector<double> forceErrors(const EnergyExpansion& expansion, const std::vector<TrainingSample>& samples,
-                                double floor) {
-  std::vector<double> errors;
-  const double largest = largestForce(samples);
-  EnergyExpansion::Local local;
-  for (const TrainingSample& sample : samples) {
-    if (!(sample.force.norm() > floor * largest)) continue;
-    expansion.makeLocal(sample.angle, local);
-    const Eigen::Vector3d force = -local.evaluate(sample.displacement).gradient;
-    errors.push_back((force - sample.force).norm() / sample.force.norm());
-  }
-  return errors;
 }
 
 }  // namespace microinjection

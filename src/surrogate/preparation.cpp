@@ -11,23 +11,29 @@ namespace microinjection {
 namespace {
 
 /// Of what the data mean and how they are computed: to be raised when that changes.
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kDegree = kPi / 180;
-constexpr int kAngles = 5;
+constexpr int kAngles = 4;
+constexpr int kPoints = 12;  ///< along a path as long as the range is deep
+constexpr int kFewest = 8;
+constexpr double kOverlap =
+    0.012;  ///< of the cell's radius, that a path's end overlaps with the cell: less only grazes
 
-/// Where a direction leaves the cylinder of the range. `tilt` from the needle's axis and `turn` about it, degrees, with
-/// depth and lateral motion as units.
+/// Where a direction leaves the cylinder of the range. `tilt` from the needle's axis and `turn` about it, degrees.
 Eigen::Vector3d border(const PreparationRange& range, double tilt, double turn) {
-  const double side = std::sin(tilt * kDegree), down = std::cos(tilt * kDegree), length = 1 / std::max(side, down);
-  return {length * side * std::cos(turn * kDegree) * range.lateral,
-          length * side * std::sin(turn * kDegree) * range.lateral, -length * down * range.depth};
+  const double side = std::sin(tilt * kDegree), down = std::cos(tilt * kDegree);
+  const double length = 1 / std::max(side / range.lateral, down / range.depth);
+  return length * Eigen::Vector3d(side * std::cos(turn * kDegree), side * std::sin(turn * kDegree), -down);
 }
 
 std::vector<Eigen::Vector3d> targets(const PreparationRange& range, bool on_axis) {
   std::vector<Eigen::Vector3d> result = {border(range, 0, 0)};
-  const std::vector<std::pair<double, std::vector<double>>> cones = {
-      {25, {0, 90, 180}}, {50, {45, 135}}, {72, {0, 90, 180}}, {85, {45, 135}}};
+  const std::vector<std::pair<double, std::vector<double>>> cones = {{12, {0, 90, 180}},
+                                                                     {24, {45, 135}},
+                                                                     {38, {0, 60, 120, 180}},
+                                                                     {55, {0, 60, 120, 180}},
+                                                                     {72, {0, 45, 90, 135, 180}}};
   for (const auto& [tilt, turns] : cones) {
     for (double turn : turns) {
       result.push_back(border(range, tilt, on_axis ? 0 : turn));
@@ -37,17 +43,36 @@ std::vector<Eigen::Vector3d> targets(const PreparationRange& range, bool on_axis
   return result;
 }
 
+/// A tip that moves out of the cell from where it touched loses it.
+bool keepsContact(const Scene& scene, double angle, const Eigen::Vector3d& target) {
+  const double reach = scene.radius() + (scene.needle.tip.rounded() ? scene.needle.tip.radius : 0);
+  const Eigen::Vector3d centre = reach * Eigen::Vector3d(std::sin(angle), 0, std::cos(angle)) + target;
+  return reach - centre.norm() > kOverlap * scene.radius() || centre.z() < 0;
+}
+
+bool relaxesAlike(const PronyTerm& a, const PronyTerm& b) {
+  return a.modulus_ratio == b.modulus_ratio && a.relaxation_time == b.relaxation_time;
+}
+
 }  // namespace
 
 PreparationRange PreparationRange::standard(const Scene& scene) {
-  return {60 * kDegree, 0.36 * scene.cell.diameter(), 0.09 * scene.cell.diameter()};
+  const double diameter = scene.cell.diameter();
+  return {60 * kDegree, 0.36 * diameter, 0.805 * diameter, 0.09 * diameter};
 }
 
 void Preparation::check(const Scene& scene) {
+  const std::vector<PronyTerm>& first = scene.cell.layers.front().material.viscoelasticity.prony;
   for (const Scene::Layer& layer : scene.cell.layers) {
-    if (layer.material.viscoelasticity.empty()) continue;
+    const ViscoelasticityConfig& own = layer.material.viscoelasticity;
+    if (own.viscosity > 0) {
+      throw ConfigError("viscoelasticity/viscosity of layer " + layer.name +
+                        ": must be left out: a prepared cell's memory is of Prony terms only");
+    }
+    const bool same = std::equal(own.prony.begin(), own.prony.end(), first.begin(), first.end(), relaxesAlike);
+    if (same) continue;
     throw ConfigError("viscoelasticity of layer " + layer.name +
-                      ": must be left out: only elastic cells can be prepared");
+                      ": must be that of the other layers: a prepared cell relaxes as a whole");
   }
   if (scene.needle.contact.friction > 0) {
     std::ostringstream message;
@@ -57,28 +82,43 @@ void Preparation::check(const Scene& scene) {
   }
 }
 
+Scene Preparation::elastic(const Scene& scene) {
+  Scene result = scene;
+  for (Scene::Layer& layer : result.cell.layers) layer.material.viscoelasticity = ViscoelasticityConfig();
+  return result;
+}
+
 Preparation Preparation::plan(const Scene& scene, const PreparationRange& range) {
   Preparation result;
   result.range = range;
   for (int i = 0; i < kAngles; ++i) {
     const double angle = range.angle * i / (kAngles - 1);
     for (const Eigen::Vector3d& target : targets(range, i == 0)) {
-      result.rays.push_back({angle, target, 2 * target.z() < -range.depth ? 14 : 12});
+      if (!keepsContact(scene, angle, target)) continue;
+      const int points = static_cast<int>(std::lround(kPoints * std::sqrt(target.norm() / range.depth)));
+      result.rays.push_back({angle, target, std::max(points, kFewest)});
     }
   }
   std::stable_sort(result.rays.begin(), result.rays.end(),
-                   [](const TrainingRay& a, const TrainingRay& b) { return a.target.z() < b.target.z(); });
+                   [](const TrainingRay& a, const TrainingRay& b) { return a.target.norm() > b.target.norm(); });
   result.scales.angle = range.angle;
-  result.scales.lateral = range.lateral;
-  result.scales.depth = range.depth;
+  result.scales.length = range.axis_depth;
   result.scales.energy = scene.cell.material().young_modulus * scene.needle.tip.radius * range.depth * range.depth;
   return result;
 }
 
+std::string Preparation::description(const Scene& scene, const TrainingRay& ray) const {
+  std::ostringstream out;
+  out << description(scene) << " path " << std::hexfloat << ray.angle;
+  for (double x : ray.target) out << ' ' << x;
+  out << ' ' << ray.points;
+  return out.str();
+}
+
 std::string Preparation::description(const Scene& scene) const {
   std::ostringstream out;
-  out << "prepared cell " << kVersion << ": " << describeCellAndTip(scene) << std::hexfloat << " to " << range.angle
-      << ' ' << range.depth << ' ' << range.lateral;
+  out << "prepared cell " << kVersion << ": " << describeCellAndTip(elastic(scene)) << std::hexfloat << " to "
+      << range.angle << ' ' << range.depth << ' ' << range.axis_depth << ' ' << range.lateral;
   return out.str();
 }
 

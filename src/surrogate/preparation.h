@@ -11,11 +11,12 @@ namespace microinjection {
 
 /// The range of a prepared cell.
 struct PreparationRange {
-  double angle = 0;    ///< rad, largest, of the place of contact from the pole
-  double depth = 0;    ///< m, of the tip below where it touched
-  double lateral = 0;  ///< m, of the tip, sideways
+  double angle = 0;       ///< rad, largest, of the place of contact from the pole
+  double depth = 0;       ///< m, of the tip below where it touched
+  double axis_depth = 0;  ///< m, same, where it touched on the cell's axis
+  double lateral = 0;     ///< m, of the tip, sideways
 
-  /// What a training room needs: 60 degrees, 0.36 and 0.09 of the cell's diameter.
+  /// What a training room needs: 60 degrees; 0.36, on the axis 0.8, and 0.09 of the cell's diameter.
   static PreparationRange standard(const Scene& scene);
 };
 
@@ -35,11 +36,17 @@ struct Preparation {
 
   static Preparation plan(const Scene& scene, const PreparationRange& range);
 
-  /// Throws ConfigError for a scene whose force is no gradient of an energy: viscoelastic, or rubbing.
+  /// Throws ConfigError for a scene whose force is not that of an elastic cell with ForceMemory: rubbing, of layers
+  /// that relax differently, or with a viscosity that does not relax.
   static void check(const Scene& scene);
+
+  /// The scene whose equilibria are prepared: without viscoelasticity.
+  static Scene elastic(const Scene& scene);
 
   /// One line that says of what scene and range, by which version, the data are.
   std::string description(const Scene& scene) const;
+  /// Same, of one path.
+  std::string description(const Scene& scene, const TrainingRay& ray) const;
 };
 
 }  // namespace microinjection

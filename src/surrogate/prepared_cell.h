@@ -6,19 +6,24 @@
 
 #include "cell/scene.h"
 #include "surrogate/energy_expansion.h"
+#include "surrogate/force_field.h"
 #include "surrogate/preparation.h"
 #include "surrogate/surface_shape.h"
 
 namespace microinjection {
 
-/// The off-line stage's result for a cell under a tip: stored energy and surface as functions of where the tip touched
-/// and how it moved since. Force is the energy's gradient, so that no closed path in a contact creates energy.
+/// The off-line stage's result for a cell under a tip: stored energy, force and surface as functions of where the tip
+/// touched and how it moved since. The energy's gradient is the force but for what depends on the tip's way.
 struct PreparedCell {
   PreparationRange range;
   EnergyExpansion energy;
+  ForceField field;
   SurfaceShape surface;
-  double median_error = 0;   ///< relative, of the force against the samples it was fitted to
-  double largest_error = 0;  ///< same, where the force is above a hundredth of the largest
+  double median_error = 0;         ///< relative, of the force against the samples it was fitted to
+  double common_error = 0;         ///< same, that nine of ten samples have less than
+  double largest_error = 0;        ///< same, where the force is above a four-hundredth of the largest
+  double energy_median_error = 0;  ///< of the energy alone; after a fit only, it is not stored
+  double energy_common_error = 0;
 
   /// Fits, after taking off what the training's mesh is wrong by on the axis (the section is solved for that).
   static PreparedCell fit(const Scene& scene, const Preparation& preparation, std::vector<TrainingSample> samples);

@@ -4,16 +4,25 @@
 #include <cmath>
 #include <utility>
 
+#include "surrogate/range_border.h"
+
 namespace microinjection {
 namespace {
 
-/// The nearest place in the range, m: depth and lateral motion are cut each.
-Eigen::Vector3d clamp(const PreparationRange& range, const Eigen::Vector3d& u) {
-  Eigen::Vector3d result = u;
-  const double lateral = u.head<2>().norm();
-  if (lateral > range.lateral) result.head<2>() *= range.lateral / lateral;
-  result.z() = std::max(u.z(), -range.depth);
-  return result;
+constexpr double kOnAxis = 0.035;  ///< rad, of the place of contact: there the range goes deeper
+/// Overlap of the tip with the cell at rest, over the tip's displacement, at which a contact ends: what sticks follows
+/// the tip a little beyond the cell's surface.
+constexpr double kEnd = -0.05;
+constexpr double kFading = 0.03;  ///< same, in which the energy falls to nothing, so that the force ends continuously
+
+/// 0 below 0, 1 above 1, smooth.
+Jet smoothStep(const Jet& x) {
+  const double q = x.value;
+  if (q <= 0) return {};
+  if (q < 1) return chain(x, q * q * (3 - 2 * q), 6 * q * (1 - q), 6 - 12 * q);
+  Jet one;
+  one.value = 1;
+  return one;
 }
 
 }  // namespace
@@ -22,45 +31,99 @@ PreparedContact::PreparedContact(const Scene& scene, std::shared_ptr<const Prepa
     : scene_(scene), cell_(std::move(cell)) {
   const Scene::Tip& tip = scene.needle.tip;
   if (tip.rounded()) shape_ = RoundedTip::make(tip.shape, tip.radius, tip.edge_radius);
-  cell_->energy.makeLocal(0, local_);
+  cell_->energy.makeLocal(0, local_energy_);
+  if (!cell_->field.empty()) cell_->field.makeLocal(0, local_field_);
 }
 
-bool PreparedContact::overlaps(const Eigen::Vector3d& tip) const {
-  if (shape_) return shape_->distance(-tip) < scene_.radius();
-  const double height =
-      tip.z() - std::sqrt(std::max(0.0, scene_.radius() * scene_.radius() - tip.head<2>().squaredNorm()));
-  return height < 0 && tip.z() > 0;
+Jet PreparedContact::overlap(const Eigen::Vector3d& tip) const {
+  if (shape_) {
+    const Gap gap = shape_->gap(-tip);
+    return {scene_.radius() - gap.distance, gap.normal, -gap.curvature};
+  }
+  const Jet x = Jet::coordinate(0, tip.x()), y = Jet::coordinate(1, tip.y());
+  Jet squared = -1.0 * (x * x + y * y);
+  squared.value += scene_.radius() * scene_.radius();
+  constexpr double kRim = 0.05;  // of the radius, from the cell's silhouette, where the needle passes by
+  if (!(squared.value > kRim * kRim * scene_.radius() * scene_.radius())) {
+    return {-scene_.radius(), Eigen::Vector3d::UnitZ(), {}};
+  }
+  return sqrt(squared) - Jet::coordinate(2, tip.z());
+}
+
+PreparedContact::Local PreparedContact::evaluate(const Jet& overlap) {
+  const CountedDisplacement counted(cell_->range, place_->angle < kOnAxis, displacement_);
+  prepared_ = counted.inside && place_->angle <= 1.001 * cell_->range.angle;
+  const Eigen::Vector3d u = counted.value();
+  Local local;
+  local.energy = counted.compose(local_energy_.evaluate(u));
+  local.force = -local.energy.gradient;
+  local.stiffness = local.energy.hessian;
+  if (!cell_->field.empty()) {
+    Eigen::Matrix3d jacobian;
+    const Eigen::Vector3d force = local_field_.evaluate(u, jacobian);
+    const Jet turned = counted.compose({0, force, jacobian});  // as a gradient is
+    local.force = turned.gradient;
+    local.stiffness = -0.5 * (turned.hessian + turned.hessian.transpose());
+  }
+  const double length = displacement_.norm();
+  if (overlap.value >= (kEnd + kFading) * length) return local;
+  const Eigen::Matrix3d& turn = place_->rotation;
+  const Jet there{overlap.value, turn.transpose() * overlap.gradient, turn.transpose() * overlap.hessian * turn};
+  Jet squared;
+  for (int k = 0; k < 3; ++k) {
+    const Jet x = Jet::coordinate(k, displacement_[k]);
+    squared = squared + x * x;
+  }
+  Jet left = there * inverse(sqrt(squared));
+  left.value -= kEnd;
+  const Jet fade = smoothStep((1 / kFading) * left);
+  local.energy = local.energy * fade;
+  local.force *= fade.value;
+  local.stiffness *= fade.value;
+  return local;
 }
 
 PreparedContact::Answer PreparedContact::step(const Eigen::Vector3d& tip) {
   Answer answer;
   energy_ = 0;
-  if (!overlaps(tip)) {
-    place_.reset();
-    return answer;
-  }
+  const Jet overlap = this->overlap(tip);
+  if (place_) displacement_ = place_->rotation.transpose() * (tip - place_->origin);
+  if (overlap.value < (place_ ? kEnd * displacement_.norm() : 0)) place_.reset();
   if (!place_) {
-    place_ = ContactPlace::at(scene_, tip.head<2>());
+    if (overlap.value < 0) return answer;
+    place_ = ContactPlace::at(scene_.radius(), shape_, tip.head<2>());
     if (!place_) return answer;
-    cell_->energy.makeLocal(std::min(place_->angle, cell_->range.angle), local_);
+    const double angle = std::min(place_->angle, cell_->range.angle);
+    cell_->energy.makeLocal(angle, local_energy_);
+    if (!cell_->field.empty()) cell_->field.makeLocal(angle, local_field_);
+    correction_.reset();
+    displacement_ = place_->rotation.transpose() * (tip - place_->origin);
   }
-  displacement_ = place_->rotation.transpose() * (tip - place_->origin);
-  const Eigen::Vector3d known = clamp(cell_->range, displacement_);
-  const Jet energy = local_.evaluate(known);
-  energy_ = energy.value;
-  answer.prepared = known == displacement_ && place_->angle <= 1.001 * cell_->range.angle;
-  answer.force = -(place_->rotation * energy.gradient);
-  answer.stiffness = place_->rotation * energy.hessian * place_->rotation.transpose();
+  const Local local = evaluate(overlap);
+  Eigen::Vector3d force = -local.energy.gradient;
+  energy_ = local.energy.value;
+  if (!cell_->field.empty()) {
+    force *= 1 - PassiveCorrection::kReserve;
+    force += correction_.step(displacement_, local.force - force, energy_);
+    energy_ = (1 - PassiveCorrection::kReserve) * energy_ + correction_.stored();
+  }
+  answer.prepared = prepared_;
+  answer.force = place_->rotation * force;
+  answer.stiffness = place_->rotation * local.stiffness * place_->rotation.transpose();
   return answer;
 }
 
-void PreparedContact::surface(Eigen::Matrix3Xd& at_rest, Eigen::Matrix3Xd& displaced) const {
+PreparedContact::Shape PreparedContact::shape() const {
+  if (!place_) return {};
+  return {std::min(place_->angle, cell_->range.angle), place_->rotation,
+          CountedDisplacement(cell_->range, place_->angle < kOnAxis, displacement_).value()};
+}
+
+void PreparedContact::surface(const Shape& shape, Eigen::Matrix3Xd& at_rest, Eigen::Matrix3Xd& displaced) const {
   Eigen::VectorXd rest, moved;
-  const ContactPlace place = place_.value_or(ContactPlace());
-  const Eigen::Vector3d u = place_ ? clamp(cell_->range, displacement_) : Eigen::Vector3d::Zero();
-  cell_->surface.evaluate(std::min(place.angle, cell_->range.angle), u, rest, moved);
-  at_rest = place.rotation * rest.reshaped(3, rest.size() / 3);
-  displaced = place.rotation * moved.reshaped(3, moved.size() / 3);
+  cell_->surface.evaluate(shape.angle, shape.displacement, rest, moved);
+  at_rest = shape.rotation * rest.reshaped(3, rest.size() / 3);
+  displaced = shape.rotation * moved.reshaped(3, moved.size() / 3);
 }
 
 }  // namespace microinjection

@@ -1,16 +1,22 @@
 #include "surrogate/prepared_tracker.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace microinjection {
 namespace {
 
+constexpr char kOutOfRange[] = "the tip is out of the range that the cell was prepared for: the force fades";
+constexpr char kTooFarOut[] = "the tip touched the cell further from its pole than what was prepared";
 constexpr double kUpright = 0.999;  ///< cosine: within 2.5 degrees of the prepared direction
 
 }  // namespace
 
 PreparedTracker::PreparedTracker(const Scene& scene, std::shared_ptr<const PreparedCell> cell)
-    : scene_(scene), cell_(std::move(cell)), needle_(scene, cell_) {
+    : scene_(scene),
+      cell_(std::move(cell)),
+      needle_(scene, cell_),
+      memory_(scene.cell.material().viscoelasticity.prony) {
   distrust_.reserve(200);
 }
 
@@ -19,28 +25,40 @@ TipForce PreparedTracker::distrustBecause(const char* reason) {
   return {false, Eigen::Vector3d::Zero()};
 }
 
-TipForce PreparedTracker::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double /*time*/) {
+TipForce PreparedTracker::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time) {
+  const TipForce force = answer(tip, axis, std::max(0.0, time - time_));
+  time_ = time;
+  shape_.write(needle_.shape());
+  return force;
+}
+
+TipForce PreparedTracker::answer(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double duration) {
   distrust_.clear();
   if (punctured_) return {};
-  const PreparedContact::Answer answer = needle_.step(tip);
-  stiffness_ = answer.stiffness;
+  const PreparedContact::Answer prepared = needle_.step(tip);
+  stiffness_ = prepared.stiffness;
   if (!needle_.place()) {
     contact_.reset();
+    memory_.reset();
     return {};
   }
+  const Eigen::Vector3d more = memory_.step(prepared.force, duration);
+  Eigen::Vector3d force = prepared.force + more;
+  if (!more.isZero(0)) force -= std::min(0.0, force.dot(axis)) * axis;  // relaxed so far that the cell hangs back
   if (!contact_) contact_ = Contact{};
   contact_->touched_at = needle_.place()->origin;
   contact_->displacement = tip - contact_->touched_at;
   contact_->indentation = -contact_->displacement.dot(axis);
   if (axis.z() < kUpright) return distrustBecause("the needle is not upright, and the cell was prepared for that only");
-  if (!answer.prepared) return distrustBecause("the tip is out of the range that the cell was prepared for");
-  if (answer.force.dot(axis) >= scene_.cell.puncture_force) {
+  if (needle_.place()->angle > 1.001 * cell_->range.angle) return distrustBecause(kTooFarOut);
+  if (!prepared.prepared) distrust_ = kOutOfRange;
+  if (force.dot(axis) >= scene_.cell.puncture_force) {
     punctured_ = true;
     contact_.reset();
     needle_.reset();
     return {};
   }
-  return {true, answer.force};
+  return {true, force};
 }
 
 std::optional<CellUnderNeedle::Solution> PreparedTracker::solution(double /*time*/) const {
@@ -58,7 +76,7 @@ std::vector<std::array<int, 3>> PreparedTracker::triangles() const {
 
 std::vector<std::uint32_t> PreparedTracker::held() const {
   Eigen::Matrix3Xd rest, displaced;
-  needle_.surface(rest, displaced);
+  needle_.surface({}, rest, displaced);
   std::vector<std::uint32_t> result;
   for (Eigen::Index i = 0; i < rest.cols(); ++i) {
     const bool inside = rest.col(i).head<2>().norm() <= 1.001 * scene_.holding_pipette.contact_radius;
@@ -67,9 +85,10 @@ std::vector<std::uint32_t> PreparedTracker::held() const {
   return result;
 }
 
-CellUnderNeedle::Picture PreparedTracker::picture() const {
+CellUnderNeedle::Picture PreparedTracker::picture() {
   Eigen::Matrix3Xd rest, displaced;
-  needle_.surface(rest, displaced);
+  shape_.update();
+  needle_.surface(shape_.value(), rest, displaced);
   Picture picture;
   for (Eigen::Index i = 0; i < rest.cols(); ++i) {
     picture.vertices.emplace_back(rest.col(i) + displaced.col(i));

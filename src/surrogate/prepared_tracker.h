@@ -3,14 +3,17 @@
 #include <memory>
 #include <string>
 
+#include "base/latest_value.h"
 #include "cell/cell_under_needle.h"
+#include "surrogate/force_memory.h"
 #include "surrogate/prepared_contact.h"
 
 namespace microinjection {
 
-/// The prepared cell under a moving needle: converged force at every step, in microseconds. Out of the prepared range,
-/// or with a needle that is not upright, it trusts nothing. A force along the pipette of scene.cell.puncture_force
-/// punctures the cell for good.
+/// The prepared cell under a moving needle: converged force at every step, in microseconds. Out of the prepared range
+/// it says so while the force fades; with a needle that is not upright, or that touches too far from the pole, it
+/// trusts nothing. A force along the pipette of scene.cell.puncture_force punctures the cell for good. A viscoelastic
+/// cell's force relaxes, and never pulls along the pipette. A step allocates nothing and takes no lock.
 class PreparedTracker : public CellUnderNeedle {
  public:
   PreparedTracker(const Scene& scene, std::shared_ptr<const PreparedCell> cell);
@@ -23,18 +26,22 @@ class PreparedTracker : public CellUnderNeedle {
   std::optional<Solution> solution(double time) const override;
   std::vector<std::array<int, 3>> triangles() const override;
   std::vector<std::uint32_t> held() const override;
-  Picture picture() const override;
+  Picture picture() override;
 
  private:
+  TipForce answer(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double duration);
   TipForce distrustBecause(const char* reason);
 
   Scene scene_;
   std::shared_ptr<const PreparedCell> cell_;
   PreparedContact needle_;
+  ForceMemory memory_;
+  double time_ = 0;  ///< s, of the last step
   std::optional<Contact> contact_;
   Eigen::Matrix3d stiffness_ = Eigen::Matrix3d::Zero();  ///< N/m
   bool punctured_ = false;
   std::string distrust_;
+  LatestValue<PreparedContact::Shape> shape_;  ///< from the thread that steps to the one that draws
 };
 
 }  // namespace microinjection

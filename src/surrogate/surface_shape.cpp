@@ -41,9 +41,9 @@ Eigen::MatrixXd readMatrix(ByteReader& reader) {
 
 }  // namespace
 
-SurfaceShape::SurfaceShape(const EnergyScales& scales, const std::vector<double>& angles,
+SurfaceShape::SurfaceShape(const PreparationRange& range, const std::vector<double>& angles,
                            const std::vector<TrainingSurface>& surfaces, const std::vector<TrainingSample>& samples)
-    : scales_(scales), node_count_(surfaces.front().nodes.size() / 3), triangles_(surfaces.front().triangles) {
+    : range_(range), node_count_(surfaces.front().nodes.size() / 3), triangles_(surfaces.front().triangles) {
   angles_ = Eigen::Map<const Eigen::VectorXd>(angles.data(), static_cast<Eigen::Index>(angles.size()));
   rest_.resize(3 * node_count_, angles_.size());
   for (std::size_t i = 0; i < surfaces.size(); ++i) rest_.col(static_cast<Eigen::Index>(i)) = surfaces[i].nodes;
@@ -82,8 +82,8 @@ SurfaceShape::SurfaceShape(const EnergyScales& scales, const std::vector<double>
 }
 
 Eigen::Vector4d SurfaceShape::variables(double angle, const Eigen::Vector3d& displacement) const {
-  return {angle / scales_.angle, displacement.x() / scales_.lateral, displacement.y() / scales_.lateral,
-          -displacement.z() / scales_.depth};
+  return {angle / range_.angle, displacement.x() / range_.lateral, displacement.y() / range_.lateral,
+          -displacement.z() / range_.depth};
 }
 
 Eigen::VectorXd SurfaceShape::amplitudes(const Eigen::Vector4d& at) const {
@@ -116,7 +116,7 @@ void SurfaceShape::evaluate(double angle, const Eigen::Vector3d& displacement, E
 }
 
 void SurfaceShape::write(ByteWriter& writer) const {
-  for (double x : {scales_.angle, scales_.lateral, scales_.depth, scales_.energy}) writer.number(x);
+  for (double x : {range_.angle, range_.depth, range_.axis_depth, range_.lateral}) writer.number(x);
   writer.number(node_count_);
   std::vector<int> corners;
   for (const Eigen::Vector3i& triangle : triangles_) corners.insert(corners.end(), triangle.begin(), triangle.end());
@@ -129,7 +129,8 @@ void SurfaceShape::write(ByteWriter& writer) const {
 
 SurfaceShape SurfaceShape::read(ByteReader& reader) {
   SurfaceShape shape;
-  for (double* x : {&shape.scales_.angle, &shape.scales_.lateral, &shape.scales_.depth, &shape.scales_.energy}) {
+  PreparationRange& range = shape.range_;
+  for (double* x : {&range.angle, &range.depth, &range.axis_depth, &range.lateral}) {
     *x = reader.number<double>();
   }
   shape.node_count_ = reader.number<std::int64_t>();

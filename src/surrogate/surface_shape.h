@@ -15,7 +15,7 @@ class SurfaceShape {
  public:
   SurfaceShape() = default;
   /// @param surfaces undeformed, of the angles (rad, ascending) in `angles`
-  SurfaceShape(const EnergyScales& scales, const std::vector<double>& angles,
+  SurfaceShape(const PreparationRange& range, const std::vector<double>& angles,
                const std::vector<TrainingSurface>& surfaces, const std::vector<TrainingSample>& samples);
 
   int nodeCount() const { return static_cast<int>(node_count_); }
@@ -32,7 +32,7 @@ class SurfaceShape {
   Eigen::Vector4d variables(double angle, const Eigen::Vector3d& displacement) const;
   Eigen::VectorXd amplitudes(const Eigen::Vector4d& at) const;
 
-  EnergyScales scales_;
+  PreparationRange range_;
   std::int64_t node_count_ = 0;  ///< number of nodes
   std::vector<Eigen::Vector3i> triangles_;
   std::vector<int> mirrored_;  ///< each node's image

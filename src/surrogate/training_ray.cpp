@@ -15,7 +15,7 @@ namespace {
 constexpr ElementKind kElement = ElementKind::kP2P0;
 
 Scene at(const Scene& scene, double angle) {
-  Scene result = scene;
+  Scene result = Preparation::elastic(scene);
   result.needle.offset = ContactPlace::offsetFor(scene, angle);
   return result;
 }

@@ -2,7 +2,8 @@
 """Runs a session: the virtual operator approaches, touches, indents and retracts.
 
 Leaves in the output folder: force_depth.csv and force_depth.png (force against depth), scene.png (rviz at the deepest
-point), session.bag, summary.yaml (rates and latency) and log/. Exit code 1 when one of them is missing or a node died.
+point), session.bag, summary.yaml (rates and latency), force_error.csv (against the full solution along the same way
+in) and log/. Exit code 1 when one of them is missing (but the last) or a node died.
 """
 import argparse
 import os
@@ -13,6 +14,7 @@ import time
 from pathlib import Path
 
 import demo_summary
+import full_solution
 import plot_force_depth
 from demo_session import DemoSession, SessionError
 from processes import wait_until
@@ -35,12 +37,18 @@ def parse_arguments():
     parser = argparse.ArgumentParser(prog='./dev demo --', description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('--out', type=Path, default=ROOT / 'out' / 'demo', help='folder of the results (%(default)s)')
-    parser.add_argument('--cell', default='mouse_oocyte', help='name in config/cells, or path of a scene file')
+    parser.add_argument('--cell', default='mouse_oocyte_pipette',
+                        help='name in config/cells, or path of a scene file (%(default)s)')
+    parser.add_argument('--model', choices=('auto', 'prepared', 'live'), default='auto',
+                        help='prepared: converged force, made ready first (minutes, once); live: P1 tetrahedra, at once; '
+                        'auto: prepared where the cell can be')
     parser.add_argument('--clock', choices=('wall', 'lockstep'), default='wall',
                         help='wall time, or a simulated clock that gives the same bits on any machine')
     parser.add_argument('--haptic', choices=('operator', 'external', 'none'), default='operator',
                         help='who moves the hand; a session without the operator ends with Ctrl-C')
     parser.add_argument('--no-rviz', action='store_true', help='no rviz and no scene.png')
+    parser.add_argument('--no-judge', action='store_true',
+                        help='do not compare with the full solution afterwards (a minute or two)')
     parser.add_argument('--close', action='store_true', help='close rviz when the session is over')
     return parser.parse_args()
 
@@ -63,16 +71,33 @@ class Demo:
         """Removes the results of the run before."""
         shutil.rmtree(self._logs, ignore_errors=True)
         self._logs.mkdir(parents=True)
-        for name in RESULTS:
+        for name in (*RESULTS, 'force_error.csv'):
             if (self._out / name).exists():
                 (self._out / name).unlink()
 
-    def start(self):
+        self._make_ready()
+
+    def _scene(self):
         cell = Path(self._arguments.cell)
-        scene = {'scene': cell.resolve()} if cell.is_file() else {'cell': self._arguments.cell}
+        return cell.resolve() if cell.is_file() else ROOT / 'config' / 'cells' / f'{self._arguments.cell}.yaml'
+
+    def _make_ready(self):
+        """The off-line stage; a cell that cannot be prepared is shown live."""
+        if not self._scene().is_file():
+            raise DemoError(f'--cell {self._arguments.cell}: there is no file {self._scene()}')
+        if self._arguments.model == 'live':
+            return
+        say('the off-line stage: takes minutes the first time')
+        if not full_solution.prepare(self._scene()):
+            if self._arguments.model == 'prepared':
+                raise DemoError('the cell cannot be prepared, see above')
+            say('the cell cannot be prepared (see above): it will be live')
+            self._arguments.model = 'live'
+
+    def start(self):
         say(f'starting the session; its log is in {self._logs}')
         self._session = DemoSession(ROOT / 'launch' / 'session.launch', self._logs, {
-            **scene, 'rig': 'sim', 'rviz': 'false', 'haptic': self._arguments.haptic, 'clock': self._arguments.clock,
+            'scene': self._scene(), 'model': self._arguments.model, 'rig': 'sim', 'rviz': 'false', 'haptic': self._arguments.haptic, 'clock': self._arguments.clock,
             'record': self._out})
         self._session.wait_ready()
         if not self._arguments.no_rviz:
@@ -139,11 +164,18 @@ class Demo:
             plot_force_depth.plot(csv, self._out / 'force_depth.png')
         if (self._out / 'summary.yaml').is_file():
             print(demo_summary.text(self._out / 'summary.yaml'), flush=True)
+        if csv.is_file() and not self._arguments.no_judge:
+            self._judge(csv)
         wanted = [name for name in RESULTS if not (name == 'scene.png' and self._arguments.no_rviz)]
         missing = [name for name in wanted if not (self._out / name).is_file() or not (self._out / name).stat().st_size]
         if missing:
             raise DemoError(f'missing or empty in {self._out}: {", ".join(missing)}; see {self._logs}')
         say(f'results are in {self._out}: {", ".join(wanted)}')
+
+    def _judge(self, csv):
+        say('comparing with the full solution along the way in')
+        verdict = full_solution.judge(self._scene(), csv, self._out / 'force_error.csv')
+        print(f'  {verdict or "the full solution was lost on the way, or there was none: no comparison"}', flush=True)
 
     def leave_rviz_open(self):
         if not self._view:
@@ -185,7 +217,7 @@ def main():
     demo = Demo(arguments)
     try:
         run(demo, arguments)
-    except (DemoError, SessionError, RvizError, OSError) as error:
+    except (DemoError, SessionError, RvizError, full_solution.FullSolutionError, OSError) as error:
         sys.exit(f'demo: {error}')
     except KeyboardInterrupt:
         sys.exit('demo: interrupted')

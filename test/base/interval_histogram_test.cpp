@@ -38,6 +38,24 @@ TEST(IntervalHistogram, KeepsWhatLiesOutsideOfItsBins) {
   EXPECT_DOUBLE_EQ(histogram.largest(), 1e6);
 }
 
+TEST(IntervalHistogram, ItsLimitIsExact) {
+  IntervalHistogram histogram(2e-3);
+  for (const double duration : {1e-3, 1.9999e-3, 2e-3, 2.0001e-3, 5.0}) histogram.add(duration);
+  EXPECT_EQ(histogram.countOverLimit(), 2u);
+}
+
+TEST(IntervalHistogram, ItsBinsHoldWhatWasAdded) {
+  IntervalHistogram histogram;
+  for (const double duration : {3e-3, 1e-3, 1e-3, 1e-3}) histogram.add(duration);
+  const auto bins = histogram.bins();
+  ASSERT_EQ(bins.size(), 2u);
+  EXPECT_EQ(bins[0].count, 3u);
+  EXPECT_EQ(bins[1].count, 1u);
+  EXPECT_GE(bins[0].upper, 1e-3);
+  EXPECT_LT(bins[0].upper, 1.021e-3);
+  EXPECT_GE(bins[1].upper, 3e-3);
+}
+
 TEST(IntervalHistogram, EmptyIsZero) {
   EXPECT_EQ(IntervalHistogram().quantile(0.5), 0);
   EXPECT_EQ(IntervalHistogram().largest(), 0);

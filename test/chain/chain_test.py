@@ -70,6 +70,7 @@ class ChainTest(unittest.TestCase):
         state = self.chain.seen["/cell/state"]
         self.assertTrue(state.in_contact)
         self.assertTrue(state.converged, state.reason)
+        self.assertAlmostEqual(state.touched_at.z - state.indentation, self.needle()[2], delta=1e-9)
         expected = self.indent(state.indentation)
         self.assertGreater(expected, 0.3e-6)
         felt = self.hand_force()

@@ -47,6 +47,8 @@ class RepeatTest(unittest.TestCase):
         self.assertLess(max(depths), 4.1e-6)
         self.assertGreater(max(forces), 0.3e-6)
         self.assertEqual(forces[-1], 0)
+        touched = next(row for row in rows if row["in_contact"] == "1")
+        self.assertLess(abs(float(touched["depth_m"])), 0.06e-6)  # of 10 um/s in the 5 ms of a row
         self.check_hand_yields(rows)
         self.assertEqual({row["phase"] for row in rows if row["phase"]},
                          {"approach", "touch", "indent", "hold", "retract"})

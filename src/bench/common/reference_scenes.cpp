@@ -64,4 +64,11 @@ std::vector<ReferenceScene> referenceScenes() {
           {"hemisphere_sliding", hemisphere("sliding"), points("hemisphere", 1, 5)}};
 }
 
+ReferenceScene stVenantKirchhoffScene() {
+  const std::vector<double> finest = readReference("st_venant_kirchhoff").back();
+  return {"st_venant_kirchhoff_disc",
+          cell("st_venant_kirchhoff"),
+          {{0.1e-6, 1e-6 * finest.at(1)}, {0.25e-6, 1e-6 * finest.at(2)}, {0.5e-6, 1e-6 * finest.at(3)}}};
+}
+
 }  // namespace microinjection

@@ -3,5 +3,5 @@
 
 int main(int argc, char** argv) {
   return microinjection::runNode<microinjection::ForceSensorNode>(argc, argv, "force_sensor",
-                                                                  microinjection::Priority::kOrdinary);
+                                                                  microinjection::Priority::kPrompt);
 }

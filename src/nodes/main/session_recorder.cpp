@@ -3,5 +3,5 @@
 
 int main(int argc, char** argv) {
   return microinjection::runNode<microinjection::SessionRecorderNode>(argc, argv, "session_recorder",
-                                                                      microinjection::Priority::kOrdinary);
+                                                                      microinjection::Priority::kPrompt);
 }

@@ -1,0 +1,100 @@
+#include "commands/trajectory.h"
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include "base/errors.h"
+
+namespace microinjection {
+namespace {
+
+std::vector<std::string> split(const std::string& line) {
+  std::vector<std::string> cells;
+  std::istringstream stream(line);
+  for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
+  if (!line.empty() && line.back() == ',') cells.emplace_back();
+  return cells;
+}
+
+/// The columns that are needed, by their place in the table.
+struct Columns {
+  std::size_t x, y, z, force, in_contact;
+
+  Columns(const std::vector<std::string>& header, const std::string& path) {
+    const auto find = [&](const std::string& name) {
+      const auto found = std::find(header.begin(), header.end(), name);
+      if (found == header.end()) throw ConfigError(path + ": has no column " + name);
+      return static_cast<std::size_t>(found - header.begin());
+    };
+    x = find("tip_x_m");
+    y = find("tip_y_m");
+    z = find("tip_z_m");
+    force = find("predicted_axial_N");
+    in_contact = find("in_contact");
+  }
+  std::size_t last() const { return std::max({x, y, z, force, in_contact}); }
+};
+
+double number(const std::string& cell, const std::string& path) {
+  std::istringstream stream(cell);
+  double value = 0;
+  if (!(stream >> value) || !stream.eof()) throw ConfigError(path + ": '" + cell + "' is no number");
+  return value;
+}
+
+/// From its start to its deepest place.
+void cutAtDeepest(std::vector<TouchedMoment>& contact) {
+  const auto deepest = std::min_element(contact.begin(), contact.end(),
+                                        [](const auto& a, const auto& b) { return a.tip.z() < b.tip.z(); });
+  if (deepest != contact.end()) contact.erase(deepest + 1, contact.end());
+}
+
+double depth(const std::vector<TouchedMoment>& way) {
+  return way.empty() ? 0 : way.front().tip.z() - way.back().tip.z();
+}
+
+}  // namespace
+
+std::vector<TouchedMoment> readWayIn(const std::string& path) {
+  std::ifstream file(path);
+  std::string line;
+  if (!std::getline(file, line)) throw ConfigError(path + ": cannot be read");
+  const Columns columns(split(line), path);
+  std::vector<TouchedMoment> longest, contact;
+  const auto end = [&] {
+    cutAtDeepest(contact);
+    if (depth(contact) > depth(longest)) longest = contact;
+    contact.clear();
+  };
+  while (std::getline(file, line)) {
+    const std::vector<std::string> cells = split(line);
+    const bool touching = cells.size() > columns.last() && cells[columns.in_contact] == "1";
+    if (!touching) {
+      end();
+      continue;
+    }
+    if (cells[columns.force].empty() || cells[columns.z].empty()) continue;
+    TouchedMoment moment;
+    moment.tip = {number(cells[columns.x], path), number(cells[columns.y], path), number(cells[columns.z], path)};
+    moment.axial_force = number(cells[columns.force], path);
+    contact.push_back(moment);
+  }
+  end();
+  if (longest.size() < 2) throw ConfigError(path + ": the tip never went into the cell");
+  return longest;
+}
+
+std::vector<TouchedMoment> thinOut(const std::vector<TouchedMoment>& way, int count) {
+  std::vector<TouchedMoment> result;
+  const double top = way.front().tip.z(), all = depth(way);
+  for (const TouchedMoment& moment : way) {
+    const double wanted = all * static_cast<double>(result.size() + 1) / count;
+    if (static_cast<int>(result.size()) < count && top - moment.tip.z() >= wanted * (1 - 1e-12)) {
+      result.push_back(moment);
+    }
+  }
+  return result;
+}
+
+}  // namespace microinjection

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+namespace microinjection {
+
+/// A moment of a recorded session in which the tip touched the cell.
+struct TouchedMoment {
+  Eigen::Vector3d tip = Eigen::Vector3d::Zero();  ///< m, in the world
+  double axial_force = 0;                         ///< N, predicted, along the pipette
+};
+
+/// The longest way in of a session's table (force_depth.csv of the session recorder): from the first touch to the
+/// deepest place before the contact ended. Throws ConfigError when the file cannot be read, lacks a column or has no
+/// contact.
+std::vector<TouchedMoment> readWayIn(const std::string& path);
+
+/// `count` moments of a way in, evenly in depth, the deepest the last.
+std::vector<TouchedMoment> thinOut(const std::vector<TouchedMoment>& way, int count);
+
+}  // namespace microinjection

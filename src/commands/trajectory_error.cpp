@@ -1,0 +1,119 @@
+// Force of a recorded session against the full solution along its own way into the cell; see --help.
+
+#include <algorithm>
+#include <boost/program_options.hpp>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "base/atomic_file.h"
+#include "base/errors.h"
+#include "cell/cell_problem.h"
+#include "cell/scene_mesh.h"
+#include "commands/trajectory.h"
+#include "surrogate/contact_place.h"
+
+namespace microinjection {
+namespace {
+
+namespace po = boost::program_options;
+
+constexpr int kBadUsage = 2, kFailed = 3;
+constexpr char kHelp[] =
+    R"(trajectory_error: how far a session's predicted force was from the full solution. Takes the way in of a recorded
+session (force_depth.csv), moves the tip of the converging model (P2-P0 tetrahedra in space) along it, and prints the
+force of both. Takes a minute.
+
+Usage: trajectory_error --scene FILE --session CSV [--points N] [--level L] [--csv FILE]
+
+Exit status: 0 done; 2 bad usage, scene or session; 3 the full solution was lost on the way.
+
+Options)";
+
+struct Arguments {
+  std::string scene, session, csv;
+  int points = 6;
+  double level = -0.5;
+};
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+int compare(const Arguments& arguments) {
+  Scene scene = loadScene(arguments.scene);
+  for (const Scene::Layer& layer : scene.cell.layers) {
+    if (layer.material.viscoelasticity.empty()) continue;
+    throw ConfigError("viscoelasticity of layer " + layer.name +
+                      ": must be left out: the session's times are not known here");
+  }
+  const std::vector<TouchedMoment> way = readWayIn(arguments.session);
+  scene.needle.offset = way.front().tip.head<2>();
+  const auto place = ContactPlace::at(scene, scene.needle.offset);
+  if (!place) throw ConfigError(arguments.session + ": the tip is beside the cell of " + arguments.scene);
+  CellProblem<3> problem(scene, makeSceneMesh<3>(scene, arguments.level), ElementKind::kP2P0);
+  std::string table = "depth_m,session_N,full_N,error\n";
+  std::cout << table << std::flush;
+  std::vector<double> errors;
+  for (const TouchedMoment& moment : thinOut(way, arguments.points)) {
+    const IndentationSolution full = problem.solve(moment.tip - place->origin);
+    if (!full.converged) throw std::runtime_error("the full solution is lost: " + full.reason);
+    if (!(full.force.z() > 0)) continue;  // still above the mesh's first point of contact
+    errors.push_back(std::abs(moment.axial_force / full.force.z() - 1));
+    char row[160];
+    std::snprintf(row, sizeof(row), "%.4g,%.5g,%.5g,%.4f\n", place->origin.z() - moment.tip.z(), moment.axial_force,
+                  full.force.z(), moment.axial_force / full.force.z() - 1);
+    std::cout << row << std::flush;
+    table += row;
+  }
+  if (errors.empty()) throw ConfigError(arguments.session + ": the tip hardly touched the cell");
+  if (!arguments.csv.empty()) writeFileAtomically(arguments.csv, table);
+  std::printf(
+      "force error along the session's way in, against the full solution with %zu tetrahedra: median %.2g %%, "
+      "largest %.2g %%\n",
+      problem.body().mesh().elements.size(), 100 * median(errors),
+      100 * *std::max_element(errors.begin(), errors.end()));
+  return 0;
+}
+
+int run(int argc, char** argv) {
+  try {
+    Arguments arguments;
+    po::options_description options;
+    options.add_options()("help", "this text")("scene", po::value(&arguments.scene),
+                                               "scene file of the session (YAML)")(
+        "session", po::value(&arguments.session), "force_depth.csv of the session")(
+        "points", po::value(&arguments.points)->default_value(arguments.points), "places compared, evenly in depth")(
+        "level", po::value(&arguments.level)->default_value(arguments.level),
+        "refinement of the full solution's mesh; -1 is that of `prepare`, finer ones are larger")(
+        "csv", po::value(&arguments.csv), "file to write the table to as well");
+    po::variables_map values;
+    po::store(po::command_line_parser(argc, argv).options(options).positional({}).run(), values);
+    po::notify(values);
+    if (values.count("help") != 0) {
+      std::cout << kHelp << options;
+      return 0;
+    }
+    if (arguments.scene.empty() || arguments.session.empty()) throw ConfigError("--scene and --session are required");
+    if (arguments.points < 1) throw ConfigError("--points: must be 1 or more");
+    return compare(arguments);
+  } catch (const po::error& error) {
+    std::cerr << "trajectory_error: " << error.what() << "; see --help\n";
+    return kBadUsage;
+  } catch (const ConfigError& error) {
+    std::cerr << "trajectory_error: " << error.what() << '\n';
+    return kBadUsage;
+  } catch (const std::exception& error) {
+    std::cerr << "trajectory_error: " << error.what() << '\n';
+    return kFailed;
+  }
+}
+
+}  // namespace
+}  // namespace microinjection
+
+int main(int argc, char** argv) { return microinjection::run(argc, argv); }

@@ -1,0 +1,123 @@
+#include "mechanics/explicit_step.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "base/errors.h"
+
+namespace microinjection {
+namespace {
+
+void checkVertices(const std::vector<int>& vertices, const std::string& name, std::vector<int>& uses,
+                   std::vector<std::string>& errors) {
+  for (int vertex : vertices) {
+    if (vertex < 0 || vertex >= static_cast<int>(uses.size())) {
+      errors.push_back(name + ": vertex " + std::to_string(vertex) + " must be in [0, " + std::to_string(uses.size()) +
+                       ")");
+    } else if (++uses[vertex] > 1) {
+      errors.push_back(name + ": vertex " + std::to_string(vertex) + " must be in held or tip, and once");
+    }
+  }
+}
+
+/// kg, of each vertex.
+std::vector<double> lumpedMasses(const TetMesh& mesh, double density) {
+  std::vector<double> masses(mesh.vertices.size(), 0);
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+    const double share = density * tetrahedronVolume(mesh, static_cast<int>(t)) / 4;
+    for (int vertex : mesh.tetrahedra[t]) masses[vertex] += share;
+  }
+  return masses;
+}
+
+double norm(const std::vector<double>& values) {
+  double sum = 0;
+  for (double value : values) sum += value * value;
+  return std::sqrt(sum);
+}
+
+}  // namespace
+
+void ExplicitStepConfig::validate(std::size_t vertices) const {
+  std::vector<std::string> errors;
+  if (!(density > 0)) errors.push_back("density = " + std::to_string(density) + " kg/m^3: must be > 0");
+  if (!(damping >= 0)) errors.push_back("damping = " + std::to_string(damping) + " 1/s: must be >= 0");
+  if (!(safety > 0 && safety <= 1)) errors.push_back("safety = " + std::to_string(safety) + ": must be in (0, 1]");
+  std::vector<int> uses(vertices, 0);
+  checkVertices(held, "held", uses, errors);
+  checkVertices(tip, "tip", uses, errors);
+  if (!errors.empty()) throw ConfigError(errors);
+}
+
+ExplicitStep::ExplicitStep(const TetMesh& mesh, const ExplicitStepConfig& config)
+    : internal_(mesh, config.lame), config_(config) {
+  config.validate(mesh.vertices.size());
+  for (const Eigen::Vector3d& vertex : mesh.vertices) rest_.insert(rest_.end(), vertex.data(), vertex.data() + 3);
+  positions_ = rest_;
+  velocities_.assign(rest_.size(), 0);
+  forces_.assign(rest_.size(), 0);
+  const std::vector<double> masses = lumpedMasses(mesh, config.density);
+  for (std::size_t v = 0; v < masses.size(); ++v) {
+    if (!(masses[v] > 0)) throw std::invalid_argument("vertex " + std::to_string(v) + " is of no tetrahedron");
+    inverse_masses_.insert(inverse_masses_.end(), 3, 1 / masses[v]);
+  }
+  for (const std::vector<int>* vertices : {&config_.held, &config_.tip}) {
+    for (int vertex : *vertices) std::fill_n(inverse_masses_.begin() + 3 * vertex, 3, 0.0);
+  }
+  highest_frequency_ = findHighestFrequency();
+  time_step_ = highest_frequency_ > 0 ? config.safety * 2 / highest_frequency_ : 0;
+}
+
+/// Power iteration with M^-1 K, K by central differences of the force. It comes from below, and `safety` covers what
+/// is missing after an iteration that changes little.
+double ExplicitStep::findHighestFrequency() {
+  constexpr int kIterations = 300;
+  constexpr double kSettled = 1e-6;  ///< relative change of the eigenvalue
+  constexpr double kAmplitude = 1e-6;
+  const double size = norm(rest_) / std::sqrt(static_cast<double>(rest_.size()));
+  std::vector<double> mode(rest_.size()), moved(rest_.size()), behind(rest_.size());
+  for (std::size_t i = 0; i < mode.size(); ++i) mode[i] = inverse_masses_[i] > 0 ? std::cos(7.0 * i * i + i) : 0;
+  double eigenvalue = 0;
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    const double length = norm(mode);
+    if (!(length > 0)) return 0;  // nothing is free
+    for (double& value : mode) value *= kAmplitude * size / length;
+    for (std::size_t i = 0; i < mode.size(); ++i) moved[i] = rest_[i] + mode[i];
+    internal_.evaluate(moved.data(), forces_.data());
+    for (std::size_t i = 0; i < mode.size(); ++i) moved[i] = rest_[i] - mode[i];
+    internal_.evaluate(moved.data(), behind.data());
+    for (std::size_t i = 0; i < mode.size(); ++i) mode[i] = inverse_masses_[i] * (behind[i] - forces_[i]) / 2;
+    const double before = eigenvalue;
+    eigenvalue = norm(mode) / (kAmplitude * size);
+    if (std::abs(eigenvalue - before) < kSettled * eigenvalue) break;
+  }
+  return std::sqrt(eigenvalue);
+}
+
+void ExplicitStep::step(const Eigen::Vector3d& tip_displacement) {
+  internal_.evaluate(positions_.data(), forces_.data());
+  const double drag = config_.damping * time_step_ / 2, keep = (1 - drag) / (1 + drag), gain = time_step_ / (1 + drag);
+  for (std::size_t i = 0; i < positions_.size(); ++i) {
+    velocities_[i] = keep * velocities_[i] + gain * inverse_masses_[i] * forces_[i];
+    positions_[i] += time_step_ * velocities_[i];
+  }
+  force_.setZero();
+  for (int vertex : config_.tip) {
+    for (int k = 0; k < 3; ++k) {
+      force_[k] += forces_[3 * vertex + k];
+      positions_[3 * vertex + k] = rest_[3 * vertex + k] + tip_displacement[k];
+    }
+  }
+}
+
+double ExplicitStep::kineticEnergy() const {
+  double sum = 0;
+  for (std::size_t i = 0; i < velocities_.size(); ++i) {
+    if (inverse_masses_[i] > 0) sum += velocities_[i] * velocities_[i] / inverse_masses_[i];
+  }
+  return sum / 2;
+}
+
+}  // namespace microinjection

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <optional>
+#include <sstream>
+#include <string>
+
+#include "record/timeline.h"
+
+namespace microinjection {
+
+/// The rows of force_depth.csv, one each period: every source is asked for what it said at that time, by the stamps of
+/// what it said. It therefore does not matter when a message arrived, as long as it did within `patience`: a recorder
+/// that the scheduler lets wait writes the same rows as one that is always prompt.
+///
+/// Depth is the tip's travel along the pipette from where the cell says that it was touched, for the needle's pose that
+/// the predicted force belongs to (they have the same stamp); empty before the first touch.
+class SessionTable {
+ public:
+  struct Pose {
+    Eigen::Vector3d tip = Eigen::Vector3d::Zero();    ///< m
+    Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< out of the cell
+  };
+  struct Measured {
+    double axial = 0, lateral = 0;  ///< N
+  };
+  struct Cell {
+    std::optional<Eigen::Vector3d> touched_at;  ///< m, where the tip met the surface; empty without contact
+    bool punctured = false;
+  };
+
+  /// @param period    ns between rows
+  /// @param patience  ns for which a row waits for messages that are late
+  SessionTable(Nanoseconds period, Nanoseconds patience);
+
+  // What the sources say, N and m. Force in the frame of the poses.
+  Timeline<Pose> needle;
+  Timeline<Eigen::Vector3d> predicted;
+  Timeline<Measured> measured;
+  Timeline<double> hand_force;
+  Timeline<std::string> phase;
+  Timeline<Cell> cell;
+
+  /// Writes the rows that are due `patience` before `now`; the first call is time 0 of the table. After the row in
+  /// which the phase is `done` there are no more.
+  void advance(Nanoseconds now);
+  /// Writes what is left, without patience.
+  void finish();
+
+  bool done() const { return done_; }
+  double duration() const;  ///< s, of the rows
+  std::string text() const { return rows_.str(); }
+
+ private:
+  void advanceTo(Nanoseconds end);
+  void writeRow(Nanoseconds time);
+  void writeDepth(Nanoseconds time, const Pose& pose, bool in_contact);
+  void forgetBefore(Nanoseconds time);
+
+  Nanoseconds period_, patience_;
+  std::optional<Nanoseconds> began_;
+  Nanoseconds next_ = 0;  ///< time of the row that is due next
+  Nanoseconds seen_ = 0;  ///< newest `now`
+  bool done_ = false;
+  bool in_contact_ = false;                    ///< of the last row
+  std::optional<Eigen::Vector3d> touched_at_;  ///< m, last; empty before the first touch
+  std::ostringstream rows_;
+};
+
+}  // namespace microinjection

@@ -1,0 +1,144 @@
+#include "surrogate/model_choice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <memory>
+
+#include "base/bytes.h"
+#include "base/cache_file.h"
+#include "cell/cell_model.h"
+#include "cell/converged_force.h"
+#include "cell/indentation.h"
+#include "surrogate/prepared_contact.h"
+
+namespace microinjection {
+namespace {
+
+constexpr double kDepths[] = {0.02, 0.05, 0.1, 0.15};  ///< of the diameter, where a live cell is judged
+constexpr double kFinestSection = 1;                   ///< level
+constexpr int kTimedSteps = 2000;
+constexpr double kSmallMove = 0.01;  ///< of the depth, whose solution is timed
+
+double threadTime() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+std::string describe(const ModelFigures& model) {
+  char text[160];
+  std::snprintf(text, sizeof(text), "%s: %.2g %% force error, %.3g us a force", model.name.c_str(),
+                100 * model.force_error, 1e6 * model.time);
+  return text;
+}
+
+std::string figuresFile(const Scene& scene, const std::string& name) {
+  const Preparation plan = Preparation::plan(scene, PreparationRange::standard(scene));
+  const std::string folder = preparedFolder(scene, plan);
+  return folder.empty() ? "" : folder + "/figures_" + name;
+}
+
+/// They depend on the live mesh too, which prepared data do not.
+std::string figuresDescription(const Scene& scene, const std::string& name) {
+  const Preparation plan = Preparation::plan(scene, PreparationRange::standard(scene));
+  return plan.description(scene) + " figures " + name + " on " + std::to_string(scene.meshSize()) + ' ' +
+         std::to_string(scene.mesh.refinement.zone) + ' ' + std::to_string(scene.mesh.refinement.density);
+}
+
+}  // namespace
+
+ModelChoice chooseModel(const Scene::Requirements& requirements, std::vector<ModelFigures> models) {
+  std::sort(models.begin(), models.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
+  const double allowed = 1 / requirements.rate;
+  const ModelFigures* chosen = nullptr;
+  ModelChoice choice;
+  for (const ModelFigures& model : models) {
+    if (model.time > allowed) continue;
+    choice.meets = model.force_error <= requirements.force_error;
+    if (choice.meets || chosen == nullptr || model.force_error < chosen->force_error) chosen = &model;
+    if (choice.meets) break;
+  }
+  if (chosen == nullptr) chosen = &models.front();
+  choice.name = chosen->name;
+  char needed[160];
+  std::snprintf(needed, sizeof(needed), "%s (allowed: %.2g %% and %.3g us)",
+                choice.meets ? "is the cheapest that meets both requirements" : "NO model meets both requirements",
+                100 * requirements.force_error, 1e6 * allowed);
+  choice.reason = choice.name + ' ' + needed;
+  for (const ModelFigures& model : models) choice.reason += "; " + describe(model);
+  return choice;
+}
+
+ModelFigures measureLiveCell(const Scene& scene) {
+  Scene axial = scene;
+  axial.needle.offset.setZero();
+  const auto model = std::make_shared<const CellModel>(axial);  // throws when it cannot serve the scene
+  Indenting indenting;
+  for (double depth : kDepths) indenting.depths.push_back(depth * scene.cell.diameter());
+  ConvergedForceConfig config;
+  config.finest = kFinestSection;
+  const std::vector<ForcePoint> truth = ConvergedForce(axial, indenting, config).solve();
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  Indentation live(model, model->patchAt(axial.radius() * up, up));
+  ModelFigures figures;
+  figures.name = "live";
+  figures.force_error = 0;
+  std::vector<double> times;
+  for (const ForcePoint& point : truth) {
+    if (!point.converged) continue;
+    live.solve(-(1 - kSmallMove) * point.depth * up);
+    const IndentationSolution solution = live.solve(-point.depth * up);
+    if (!solution.converged) {
+      figures.force_error = std::numeric_limits<double>::infinity();
+      break;
+    }
+    times.push_back(solution.cpu_time);
+    figures.force_error = std::max(figures.force_error, std::abs(solution.force.z() / point.force.z() - 1));
+  }
+  if (times.empty()) {
+    figures.force_error = std::numeric_limits<double>::infinity();
+  } else {
+    figures.time = *std::max_element(times.begin(), times.end());
+  }
+  return figures;
+}
+
+ModelFigures measurePreparedCell(const Scene& scene, const std::shared_ptr<const PreparedCell>& cell) {
+  PreparedContact contact(scene, cell);
+  std::vector<double> times(kTimedSteps);
+  const Eigen::Vector3d touch = ContactPlace::at(scene, ContactPlace::offsetFor(scene, 0.4))->origin;
+  for (int i = 0; i < kTimedSteps; ++i) {
+    const double way = 0.01 * i, depth = 0.5 * cell->range.depth * (1 - std::cos(way));
+    const double start = threadTime();
+    contact.step(touch + Eigen::Vector3d(0, 0.5 * cell->range.lateral * std::sin(3 * way), -depth));
+    times[i] = threadTime() - start;
+  }
+  std::sort(times.begin(), times.end());
+  return {"prepared", cell->common_error, times[times.size() * 99 / 100]};
+}
+
+void saveFigures(const Scene& scene, const ModelFigures& figures) {
+  const std::string path = figuresFile(scene, figures.name);
+  if (path.empty()) return;
+  ByteWriter writer;
+  writer.number(figures.force_error);
+  writer.number(figures.time);
+  writeCacheFile(path, figuresDescription(scene, figures.name), writer.bytes());
+}
+
+std::optional<ModelFigures> loadFigures(const Scene& scene, const std::string& name) {
+  const std::string path = figuresFile(scene, name);
+  if (path.empty()) return std::nullopt;
+  const auto bytes = readCacheFile(path, figuresDescription(scene, name));
+  if (!bytes) return std::nullopt;
+  ByteReader reader(*bytes);
+  ModelFigures figures;
+  figures.name = name;
+  figures.force_error = reader.number<double>();
+  figures.time = reader.number<double>();
+  return figures;
+}
+
+}  // namespace microinjection

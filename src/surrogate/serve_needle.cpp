@@ -1,0 +1,70 @@
+#include "surrogate/serve_needle.h"
+
+#include <optional>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+#include "base/errors.h"
+#include "cell/cell_model.h"
+#include "surrogate/model_choice.h"
+#include "surrogate/prepared_tracker.h"
+
+namespace microinjection {
+namespace {
+
+ServedCell live(const Scene& scene, const CellTrackerConfig& config, const std::string& said, bool as_required) {
+  const auto cell = std::make_shared<const CellModel>(scene);
+  ServedCell served{std::make_unique<CellTracker>(cell, config), said, as_required};
+  std::ostringstream size;
+  size << "; " << cell->mesh().vertices.size() << " vertices, " << cell->mesh().tetrahedra.size() << " tetrahedra";
+  served.said += size.str();
+  return served;
+}
+
+ServedCell unprepared(const Scene& scene, const CellTrackerConfig& config, const std::string& why) {
+  try {
+    return live(scene, config, why + "; so it is live: P1 tetrahedra, whose force is too large", false);
+  } catch (const ConfigError& error) {
+    throw ConfigError(why + "; and the live model cannot serve it: " + error.what());
+  }
+}
+
+/// Why a scene cannot be prepared; empty when it can.
+std::string cannotBePrepared(const Scene& scene) {
+  try {
+    Preparation::check(scene);
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+ServedCell serveNeedle(const Scene& scene, const std::string& model, const CellTrackerConfig& config,
+                       const std::string& path) {
+  if (model == "live") return live(scene, config, "the cell is live, as asked for", true);
+  const std::string refused = cannotBePrepared(scene);
+  if (!refused.empty()) {
+    if (model == "prepared") throw ConfigError("model = prepared: " + refused);
+    return unprepared(scene, config, "the cell cannot be prepared (" + refused + ")");
+  }
+  const PreparationRange range = PreparationRange::standard(scene);
+  const std::string call = "rosrun cell_microinjection prepare --scene " + path;
+  auto loaded = PreparedCell::load(scene, range, preparedFile(scene, Preparation::plan(scene, range)));
+  if (!loaded && model == "prepared") {
+    throw ConfigError("model = prepared: this cell and tip were not prepared; run: " + call);
+  }
+  if (!loaded) return unprepared(scene, config, "the cell is not prepared; run: " + call);
+  const auto cell = std::make_shared<const PreparedCell>(std::move(*loaded));
+  std::vector<ModelFigures> figures = {measurePreparedCell(scene, cell)};
+  if (const auto other = loadFigures(scene, "live")) figures.push_back(*other);
+  if (model == "prepared") figures.resize(1);
+  const ModelChoice choice = chooseModel(scene.requirements, figures);
+  const std::string said = "model " + model + ": " + choice.reason;
+  if (choice.name == "live") return live(scene, config, said, choice.meets);
+  return {std::make_unique<PreparedTracker>(scene, cell), said, choice.meets};
+}
+
+}  // namespace microinjection

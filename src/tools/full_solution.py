@@ -1,0 +1,32 @@
+"""The programs around a session that solve the scene in full: what makes it ready, and what judges it afterwards."""
+import os
+import subprocess
+from pathlib import Path
+
+
+class FullSolutionError(Exception):
+    """What went wrong, for the user."""
+
+
+def _program(name):
+    for prefix in os.environ.get('CMAKE_PREFIX_PATH', '').split(':'):
+        path = Path(prefix) / 'lib' / 'cell_microinjection' / name
+        if path.is_file():
+            return str(path)
+    raise FullSolutionError(f'there is no program {name} in the workspace: is it built and its environment set?')
+
+
+def prepare(scene):
+    """Trains the on-line model of a scene, with progress; at once when that was done before. @returns whether it is."""
+    return subprocess.run([_program('prepare'), '--scene', str(scene)], check=False).returncode == 0
+
+
+def judge(scene, session, table):
+    """Compares a session's forces with the full solution along its way in, and leaves the table.
+
+    @returns the closing line, or None when the full solution was lost on the way.
+    """
+    command = [_program('trajectory_error'), '--scene', str(scene), '--session', str(session), '--csv', str(table)]
+    result = subprocess.run(command, check=False, stdout=subprocess.PIPE, text=True)
+    lines = result.stdout.strip().splitlines()
+    return lines[-1] if result.returncode == 0 and lines else None

@@ -1,0 +1,31 @@
+#include "surrogate/model_choice.h"
+
+#include <gtest/gtest.h>
+
+namespace microinjection {
+namespace {
+
+TEST(ModelChoice, TakesTheCheapestThatMeetsBothRequirements) {
+  const ModelFigures coarse{"coarse", 0.5, 1e-6}, good{"good", 0.01, 1e-4}, best{"best", 0.001, 5e-4},
+      slow{"slow", 1e-4, 0.1};
+  const auto chosen = [&](double error, double rate) { return chooseModel({error, rate}, {slow, best, coarse, good}); };
+  EXPECT_EQ(chosen(0.02, 1000).name, "good");
+  EXPECT_EQ(chosen(0.6, 1000).name, "coarse");
+  EXPECT_EQ(chosen(0.002, 1000).name, "best");
+  EXPECT_EQ(chosen(0.0005, 5).name, "slow");
+  EXPECT_TRUE(chosen(0.02, 1000).meets);
+  EXPECT_NE(chosen(0.02, 1000).reason.find("slow"), std::string::npos);  // the figures of all are told
+}
+
+TEST(ModelChoice, SaysWhenNoneMeetsThem) {
+  const ModelFigures live{"live", 1.1, 0.05}, prepared{"prepared", 0.03, 2e-6};
+  const ModelChoice inexact = chooseModel({0.001, 1000}, {live, prepared});
+  EXPECT_EQ(inexact.name, "prepared");  // quick enough, and nearest
+  EXPECT_FALSE(inexact.meets);
+  EXPECT_NE(inexact.reason.find("NO model"), std::string::npos);
+  EXPECT_EQ(chooseModel({0.02, 1e7}, {live, prepared}).name, "prepared");  // none is quick enough: the quickest
+  EXPECT_FALSE(chooseModel({0.02, 1000}, {live}).meets);
+}
+
+}  // namespace
+}  // namespace microinjection
