@@ -20,7 +20,7 @@
 #include "bench/common/forked_case.h"
 #include "cell/cell_problem.h"
 #include "cell/scene_mesh.h"
-#include "surrogate/prepared_contact.h"
+#include "surrogate/prepared_tracker.h"
 #include "surrogate/training_ray.h"
 
 namespace microinjection {
@@ -170,6 +170,34 @@ std::string pathDependence(const Scene& scene, double angle_deg, const Eigen::Ve
   return text;
 }
 
+/// With Prony terms, at constant speed on the axis, against the section in which the material itself relaxes.
+std::string memoryError(Scene scene, const std::shared_ptr<const PreparedCell>& cell, double speed) {
+  scene.cell.material().viscoelasticity.prony = {{0.5, 0.2}, {0.3, 2}};
+  PreparedTracker tracker(scene, cell);
+  CellProblem<2> section(scene, makeSceneMesh<2>(scene, 0), ElementKind::kP2P0);
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  std::string text;
+  double depth = 0, time = 0;
+  for (const double target : {1e-6, 2e-6, 5e-6, 10e-6, 15e-6}) {
+    constexpr int kSteps = 1000;
+    const double duration = (target - depth) / speed;
+    TipForce force;
+    for (int i = 1; i <= kSteps; ++i) {
+      const double there = depth + (target - depth) * i / kSteps;
+      force = tracker.step((scene.radius() - there) * up, up, time + duration * i / kSteps);
+    }
+    time += duration;
+    depth = target;
+    const double full = section.solve(-depth * up, duration).force.z();
+    char part[80];
+    std::snprintf(part, sizeof(part), " %+.1f %% at %.0f um", 100 * (force.force.z() / full - 1), 1e6 * depth);
+    text += part;
+  }
+  char head[80];
+  std::snprintf(head, sizeof(head), "prepared: relaxing cell at %.0f um/s:", 1e6 * speed);
+  return head + text + '\n';
+}
+
 void summarise(const std::string& table) {
   std::vector<double> errors;
   std::istringstream lines(table);
@@ -196,6 +224,9 @@ std::string table() {
   reportTimes(scene, cell);
   std::fprintf(stderr, "prepared: energy created on closed paths: at most %.2g of what was exchanged\n",
                createdEnergy(scene, cell));
+  for (const double speed : {10e-6, 100e-6, 1e-3}) {
+    std::cerr << runForked([&] { return memoryError(scene, cell, speed); }, kTimeLimit).output;
+  }
   for (const auto& [angle, end] : {std::pair{0.0, Eigen::Vector3d(4e-6, 0, -10e-6)},
                                    {45.0, {0, 4e-6, -10e-6}},
                                    {30.0, {-4e-6, 0, -4e-6}},

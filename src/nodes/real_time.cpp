@@ -10,7 +10,7 @@
 namespace microinjection {
 namespace {
 
-constexpr int kPromptNiceness = -15;  ///< before the solving thread's -10, see cell/solution_thread.cpp
+constexpr int kPromptNiceness = -3;  ///< before what is ordinary, and not so far that nothing is left for rviz
 
 }  // namespace
 

@@ -18,6 +18,10 @@ def _for_one_picture(config, folder):
     return copy
 
 
+SHARE = -3  # niceness of rviz's session, beside the session recorder's
+PICTURE_SHARE = -12  # same while a picture is taken, for which the others can wait
+
+
 class RvizError(Exception):
     """What went wrong, for the user."""
 
@@ -36,11 +40,12 @@ class RvizView:
         # The whole virtual screen is rviz's; of the user's screen the picture takes nothing but rviz's window, whose
         # title has an asterisk once the view was changed.
         self._windows = ('root',) if self.virtual else (f'{config.name} - RViz', f'{config.name}* - RViz')
-        # Rendering in software takes a whole core; the nodes at 1 kHz come first.
+        # Rendering in software takes a whole core; the nodes at 1 kHz come first by their real-time priority.
         shown = _for_one_picture(config, logs) if self.virtual else config
-        command = ['chrt', '--idle', '0', 'rviz', '-d', str(shown)] + (['--fullscreen'] if self.virtual else [])
+        command = ['nice', '-n', '10', 'rviz', '-d', str(shown)] + (['--fullscreen'] if self.virtual else [])
         try:
             self._rviz = Child(command, logs / 'rviz.log', self._environment)
+            self._rviz.favour(SHARE)
         except OSError as error:
             self._screen.close()
             raise RvizError(f'rviz does not start: {error}') from error
@@ -59,7 +64,10 @@ class RvizView:
         def go_on():
             check()
             return self.running()
-        return screenshot.take_scene(path, self._windows, self._environment, timeout, go_on)
+        self._rviz.favour(PICTURE_SHARE)
+        taken = screenshot.take_scene(path, self._windows, self._environment, timeout, go_on)
+        self._rviz.favour(SHARE)
+        return taken
 
     def close(self):
         self._rviz.stop(5)

@@ -95,6 +95,17 @@ TEST(Scene, ReadsOptionalKeys) {
   EXPECT_EQ(scene.cell.puncture_force, 1e-6);
 }
 
+TEST(Scene, ReadsRequirements) {
+  YAML::Node node = YAML::Load(kGood);
+  EXPECT_EQ(parseScene(node, "scene.yaml").requirements.rate, 1000);
+  node["requirements"] = YAML::Load("{force_error: 0.05, rate: 500}");
+  const Scene::Requirements needed = parseScene(node, "scene.yaml").requirements;
+  EXPECT_EQ(needed.force_error, 0.05);
+  EXPECT_EQ(needed.rate, 500);
+  node["requirements"] = YAML::Load("{force_error: 0, speed: 1}");
+  expectIn(errorsOf(node), {"requirements/force_error = 0", "requirements/speed"});
+}
+
 TEST(Scene, ReadsLayers) {
   YAML::Node node = YAML::Load(kLayered);
   for (const char* diameter : {"", "56e-6", "56.00005e-6"}) {
