@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -15,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/cpu_time.h"
 #include "base/worker_processes.h"
 #include "bench/bench_main.h"
 #include "bench/common/forked_case.h"
@@ -31,12 +31,6 @@ constexpr int kPaths = 8;
 constexpr int kPoints = 4;  ///< along each
 constexpr unsigned kTimeLimit = 1200;
 constexpr char kScene[] = MICROINJECTION_SOURCE_DIR "/config/cells/mouse_oocyte_pipette.yaml";
-
-double cpuTime() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
 
 PreparedCell prepared(const Scene& scene) {
   const PreparationRange range = PreparationRange::standard(scene);
@@ -139,18 +133,18 @@ void reportTimes(const Scene& scene, std::shared_ptr<const PreparedCell> cell) {
     const double height = 28e-6 - 10e-6 * (1 + std::sin(0.01 * i)) + 0.5e-6;
     if (i % 1000 == 0) contact.reset();
     const Eigen::Vector3d tip(10e-6 * noise(random) * 0.05, 2e-6 * noise(random), height);
-    const double start = cpuTime();
+    const double start = threadCpuTime();
     sum += contact.step(tip).force.z();
-    times.push_back(1e6 * (cpuTime() - start));
+    times.push_back(1e6 * (threadCpuTime() - start));
   }
   std::sort(times.begin(), times.end());
   std::fprintf(stderr, "prepared: force and stiffness: median %.2f us, p99 %.2f us of CPU (mean force %.3g N)\n",
                times[times.size() / 2], times[times.size() * 99 / 100], sum / 200000);
   Eigen::Matrix3Xd rest, displaced;
-  const double start = cpuTime();
+  const double start = threadCpuTime();
   for (int i = 0; i < 100; ++i) contact.surface(rest, displaced);
   std::fprintf(stderr, "prepared: surface of %d nodes: %.3f ms of CPU\n", cell->surface.nodeCount(),
-               10 * (cpuTime() - start));
+               10 * (threadCpuTime() - start));
 }
 
 /// Where points stick as they touch, the force depends on the way: straight to a place against down and then aside, on

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <utility>
 #include <vector>
 
+#include "base/cpu_time.h"
 #include "contact/tip_contact.h"
 #include "mechanics/surface_tension.h"
 #include "mechanics/viscous_stress.h"
@@ -35,12 +35,6 @@ typename LayeredBody<Dim>::Materials materials(const Scene& scene) {
   typename LayeredBody<Dim>::Materials result;
   for (const Scene::Layer& layer : scene.cell.layers) result.push_back(makeMaterial(layer.material));
   return result;
-}
-
-double cpuTime() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
 SymmetricSolver::Method method(ElementKind element, int dimension) {
@@ -168,7 +162,7 @@ LoadPathConfig CellProblem<Dim>::pathConfig(const Scene& scene, bool linear) {
 
 template <int Dim>
 IndentationSolution CellProblem<Dim>::solve(const Eigen::Vector3d& tip_displacement, double duration) {
-  const double start = cpuTime();
+  const double start = threadCpuTime();
   const LoadPath::Result result = path_->advance(tip_displacement, duration);
   IndentationSolution solution;
   solution.converged = result.converged;
@@ -183,7 +177,7 @@ IndentationSolution CellProblem<Dim>::solve(const Eigen::Vector3d& tip_displacem
   solution.stiffness = path_->stiffness();
   solution.smallest_jacobian = body_->smallestJacobian(path_->state());
   solution.newton_iterations = result.newton_iterations;
-  solution.cpu_time = cpuTime() - start;
+  solution.cpu_time = threadCpuTime() - start;
   return solution;
 }
 

@@ -1,17 +1,12 @@
 #include "cell/indentation.h"
 
-#include <ctime>
 #include <stdexcept>
 #include <utility>
 
+#include "base/cpu_time.h"
+
 namespace microinjection {
 namespace {
-
-double threadTime() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
 
 Constraints makeConstraints(const CellModel& cell, const TipPatch& patch) {
   const LayeredBody<3>& body = *cell.body();
@@ -48,7 +43,7 @@ Indentation::Indentation(std::shared_ptr<const CellModel> cell, const TipPatch& 
       path_(system_, pathConfig(*cell_)) {}
 
 IndentationSolution Indentation::solve(const Eigen::Vector3d& tip_displacement) {
-  const double start = threadTime();
+  const double start = threadCpuTime();
   const LoadPath::Result result = path_.advance(tip_displacement);
   IndentationSolution solution;
   solution.converged = result.converged;
@@ -58,7 +53,7 @@ IndentationSolution Indentation::solve(const Eigen::Vector3d& tip_displacement) 
   solution.stiffness = path_.stiffness();
   solution.smallest_jacobian = cell_->body()->smallestJacobian(path_.state());
   solution.newton_iterations = result.newton_iterations;
-  solution.cpu_time = threadTime() - start;
+  solution.cpu_time = threadCpuTime() - start;
   return solution;
 }
 

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <memory>
 
 #include "base/bytes.h"
 #include "base/cache_file.h"
+#include "base/cpu_time.h"
 #include "cell/cell_model.h"
 #include "cell/converged_force.h"
 #include "cell/indentation.h"
@@ -20,12 +20,6 @@ constexpr double kDepths[] = {0.02, 0.05, 0.1, 0.15};  ///< of the diameter, whe
 constexpr double kFinestSection = 1;                   ///< level
 constexpr int kTimedSteps = 2000;
 constexpr double kSmallMove = 0.01;  ///< of the depth, whose solution is timed
-
-double threadTime() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
 
 std::string describe(const ModelFigures& model) {
   char text[160];
@@ -111,9 +105,9 @@ ModelFigures measurePreparedCell(const Scene& scene, const std::shared_ptr<const
   const Eigen::Vector3d touch = ContactPlace::at(scene, ContactPlace::offsetFor(scene, 0.4))->origin;
   for (int i = 0; i < kTimedSteps; ++i) {
     const double way = 0.01 * i, depth = 0.5 * cell->range.depth * (1 - std::cos(way));
-    const double start = threadTime();
+    const double start = threadCpuTime();
     contact.step(touch + Eigen::Vector3d(0, 0.5 * cell->range.lateral * std::sin(3 * way), -depth));
-    times[i] = threadTime() - start;
+    times[i] = threadCpuTime() - start;
   }
   std::sort(times.begin(), times.end());
   return {"prepared", cell->common_error, times[times.size() * 99 / 100]};
