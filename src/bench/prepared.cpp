@@ -112,7 +112,9 @@ Eigen::VectorXd surfaceError(const PreparedCell& cell, const TrainingSample& on_
 }
 
 std::string solvePath(const Scene& scene, const PreparedCell& cell, const TrainingRay& ray) {
-  const TrainingResult fine = solveRay(scene, ray, kLevel), coarse = solveRay(scene, ray, kTrainingLevel);
+  TrainingRay fine_ray = ray;
+  fine_ray.level = kLevel;
+  const TrainingResult fine = solveRay(scene, fine_ray), coarse = solveRay(scene, ray);
   std::string rows;
   for (std::size_t i = 0; i < fine.samples.size(); ++i) {
     Eigen::VectorXd difference;
@@ -152,8 +154,8 @@ void reportTimes(const Scene& scene, std::shared_ptr<const PreparedCell> cell) {
 std::string pathDependence(const Scene& scene, double angle_deg, const Eigen::Vector3d& end) {
   Scene there = scene;
   there.needle.offset = ContactPlace::offsetFor(scene, angle_deg * M_PI / 180);
-  CellProblem<3> straight(there, makeSceneMesh<3>(there, kTrainingLevel), ElementKind::kP2P0);
-  CellProblem<3> bent(there, makeSceneMesh<3>(there, kTrainingLevel), ElementKind::kP2P0);
+  CellProblem<3> straight(there, makeSceneMesh<3>(there, kCoarseLevel), ElementKind::kP2P0);
+  CellProblem<3> bent(there, makeSceneMesh<3>(there, kCoarseLevel), ElementKind::kP2P0);
   const Eigen::Vector3d force = straight.solve(end).force;
   bent.solve({0, 0, end.z()});
   char text[160];

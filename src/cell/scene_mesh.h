@@ -14,6 +14,10 @@ double edgeSize(const Scene& scene, double level);
 template <int Dim>
 QuadraticMesh<Dim> makeSceneMesh(const Scene& scene, double level);
 
+/// The half y >= 0 of the mesh in space of a scene whose needle's place is on the x axis: see CellProblem's Symmetry.
+/// Its nodes and their mirror images are those of the whole mesh.
+QuadraticMesh<3> makeHalfSceneMesh(const Scene& scene, double level);
+
 /// Offset and lateral motion leave the scene one of revolution.
 bool isAxisymmetric(const Scene& scene);
 

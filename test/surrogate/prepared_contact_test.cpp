@@ -46,7 +46,7 @@ std::shared_ptr<PreparedCell> fieldOfSprings(const Scene& scene, double more) {
           const Eigen::Vector3d u = 0.3e-6 * i * i * way;
           Eigen::Vector3d force = -local.evaluate(u).gradient;
           force.head<2>() *= 1 + more * way.z() * way.z();
-          samples.push_back({angle, u, force, Eigen::Matrix3d::Zero(), {}});
+          samples.push_back({angle, u, force, {}});
         }
       }
     }
