@@ -41,7 +41,7 @@ std::vector<Target> targets(const PreparationRange& range, bool on_axis) {
   };
   const std::vector<Cone> cones = {{12, {0, 180}, false},
                                    {24, {0, 90, 180}, true},
-                                   {38, {0, 60, 120, 180}, false},
+                                   {38, {0, 60, 120, 180}, true},
                                    {55, {0, 90, 180}, true},
                                    {72, {0, 60, 120, 180}, false}};
   std::vector<Target> result = {{border(range, 0, 0), !on_axis}};  // on the axis the section is finer
