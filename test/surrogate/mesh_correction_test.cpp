@@ -52,8 +52,8 @@ TEST(MeshCorrection, IsFoundFromPathsInThePlaneAndHoldsBesideIt) {
       uncorrected = std::max(uncorrected, std::abs(1 - truth(angle, u)));
     }
   }
-  EXPECT_LT(worst, 0.005);
-  EXPECT_GT(uncorrected, 0.015);
+  EXPECT_LT(worst, 0.01);  // near the touch the truth is of another form
+  EXPECT_GT(uncorrected, 0.03);
 }
 
 TEST(MeshCorrection, WithoutPairsThereIsNone) {
