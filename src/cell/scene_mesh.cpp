@@ -73,8 +73,7 @@ QuadraticMesh<2> makeSceneMesh<2>(const Scene& scene, double level) {
   return makeQuadratic(makeSectionMesh(config), config.radii);
 }
 
-template <>
-QuadraticMesh<3> makeSceneMesh<3>(const Scene& scene, double level) {
+QuadraticMesh<3> sweepScene(const Scene& scene, const QuadraticMesh<2>& section, double level) {
   const Eigen::Vector2d place = pole(scene);
   SweepConfig config;
   config.segments = std::max(kFewestSegments, static_cast<int>(std::lround(kSegments + 4 * level)));
@@ -82,7 +81,12 @@ QuadraticMesh<3> makeSceneMesh<3>(const Scene& scene, double level) {
   config.pole_azimuth = place.isZero(0) ? 0 : std::atan2(place.y(), place.x());
   config.disc_radius = scene.needle.tip.rounded() ? 0 : scene.needle.tip.radius;
   config.holding_radius = scene.holding_pipette.contact_radius;
-  return sweepSection(makeSceneMesh<2>(scene, level), config);
+  return sweepSection(section, config);
+}
+
+template <>
+QuadraticMesh<3> makeSceneMesh<3>(const Scene& scene, double level) {
+  return sweepScene(scene, makeSceneMesh<2>(scene, level), level);
 }
 
 }  // namespace microinjection

@@ -1,13 +1,12 @@
 #include "surrogate/training_ray.h"
 
-#include <algorithm>
 #include <cstdint>
-#include <map>
 
 #include "base/bytes.h"
 #include "cell/cell_problem.h"
+#include "cell/contact_place.h"
 #include "cell/scene_mesh.h"
-#include "surrogate/contact_place.h"
+#include "mesh/outer_surface.h"
 
 namespace microinjection {
 namespace {
@@ -20,23 +19,12 @@ Scene at(const Scene& scene, double angle) {
   return result;
 }
 
-/// Nodes of the outer surface, ascending.
-std::vector<int> surfaceNodes(const QuadraticMesh<3>& mesh) {
-  std::vector<int> nodes;
-  for (const auto& facet : mesh.facets) {
-    if (facet.layer == 0) nodes.insert(nodes.end(), facet.nodes.begin(), facet.nodes.end());
-  }
-  std::sort(nodes.begin(), nodes.end());
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  return nodes;
-}
-
 }  // namespace
 
 TrainingResult solveRay(const Scene& scene, const TrainingRay& ray, double level) {
   const Scene there = at(scene, ray.angle);
   CellProblem<3> problem(there, makeSceneMesh<3>(there, level), kElement);
-  const std::vector<int> nodes = surfaceNodes(problem.body().mesh());
+  const std::vector<int> nodes = outerNodes(problem.body().mesh());
   TrainingResult result;
   for (int i = 1; i <= ray.points; ++i) {
     const double share = static_cast<double>(i * i) / (ray.points * ray.points);
@@ -88,24 +76,11 @@ TrainingResult decodeTraining(const std::string& bytes) {
 
 TrainingSurface trainingSurface(const Scene& scene, double angle, double level) {
   const QuadraticMesh<3> mesh = makeSceneMesh<3>(at(scene, angle), level);
-  const std::vector<int> nodes = surfaceNodes(mesh);
-  std::map<int, int> index;
+  const std::vector<int> nodes = outerNodes(mesh);
   TrainingSurface surface;
   surface.nodes.resize(3 * static_cast<Eigen::Index>(nodes.size()));
-  for (std::size_t n = 0; n < nodes.size(); ++n) {
-    index[nodes[n]] = static_cast<int>(n);
-    surface.nodes.segment<3>(3 * n) = mesh.nodes[nodes[n]];
-  }
-  for (const auto& facet : mesh.facets) {
-    if (facet.layer != 0) continue;
-    std::array<int, 6> f;
-    std::transform(facet.nodes.begin(), facet.nodes.end(), f.begin(), [&](int node) { return index.at(node); });
-    const int m01 = f[3], m12 = f[4], m20 = f[5];  // see elementEdges
-    for (const Eigen::Vector3i& t : {Eigen::Vector3i(f[0], m01, m20), Eigen::Vector3i(m01, f[1], m12),
-                                     Eigen::Vector3i(m20, m12, f[2]), Eigen::Vector3i(m01, m12, m20)}) {
-      surface.triangles.push_back(t);
-    }
-  }
+  for (std::size_t n = 0; n < nodes.size(); ++n) surface.nodes.segment<3>(3 * n) = mesh.nodes[nodes[n]];
+  surface.triangles = outerTriangles(mesh);
   return surface;
 }
 
