@@ -7,7 +7,6 @@
 
 #include "base/config_reader.h"
 #include "base/latest_value.h"
-#include "cell/cell_model.h"
 #include "cell/cell_under_needle.h"
 #include "cell/live_cell.h"
 #include "cell/solution_thread.h"
