@@ -10,6 +10,7 @@
 #include "cell/cell_problem.h"
 #include "cell/contact_place.h"
 #include "cell/scene_mesh.h"
+#include "mechanics/symmetric_solver.h"
 #include "mesh/outer_surface.h"
 
 namespace microinjection {
@@ -86,6 +87,7 @@ class SweptPath : public TipPath {
 
 SweptCell::SweptCell(const Scene& scene) : scene_(scene) {
   scene.validate();
+  SymmetricSolver::useOneThread();
   const Scene::Tip& tip = scene.needle.tip;
   if (tip.rounded()) tip_ = RoundedTip::make(tip.shape, tip.radius, tip.edge_radius);
   section_ = makeSceneMesh<2>(scene, kLevel);

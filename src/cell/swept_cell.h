@@ -19,7 +19,8 @@ class SweptCell : public LiveCell {
  public:
   static constexpr double kLevel = -2;  ///< see makeSceneMesh
 
-  /// Throws ConfigError when the scene is not valid or its cell not stable at rest.
+  /// Sets BLAS to one thread, see SymmetricSolver::useOneThread. Throws ConfigError when the scene is not valid or its
+  /// cell not stable at rest.
   explicit SweptCell(const Scene& scene);
 
   const Scene& scene() const override { return scene_; }
