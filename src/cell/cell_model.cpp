@@ -1,36 +1,15 @@
 #include "cell/cell_model.h"
 
+#include <algorithm>
 #include <sstream>
-#include <string>
 
 #include "base/errors.h"
+#include "cell/indentation.h"
 #include "mesh/mesh_cache.h"
 #include "mesh/quadratic_mesh.h"
 
 namespace microinjection {
 namespace {
-
-/// Names what the scene has that the live cell does not.
-void refuseWhatIsNotLive(const Scene& scene) {
-  constexpr char kNotLive[] = " (indent can do it, the live cell not yet)";
-  std::vector<std::string> errors;
-  if (scene.needle.tip.shape != "disc") {
-    errors.push_back("needle/tip/shape = " + scene.needle.tip.shape + ": must be disc" + kNotLive);
-  }
-  const std::vector<Scene::Layer>& layers = scene.cell.layers;
-  for (std::size_t i = 0; i < layers.size(); ++i) {
-    const std::string path = layers.size() == 1 ? "cell/" : "cell/layers/" + std::to_string(i) + "/";
-    if (layers[i].surface_tension > 0) {
-      std::ostringstream message;
-      message << path << "surface_tension = " << layers[i].surface_tension << " N/m: must be 0" << kNotLive;
-      errors.push_back(message.str());
-    }
-    if (!layers[i].material.viscoelasticity.empty()) {
-      errors.push_back(path + "material/viscoelasticity: must be left out" + kNotLive);
-    }
-  }
-  if (!errors.empty()) throw ConfigError(errors);
-}
 
 std::vector<double> outerRadii(const Scene& scene) {
   std::vector<double> radii;
@@ -40,7 +19,8 @@ std::vector<double> outerRadii(const Scene& scene) {
 
 TetMesh makeMesh(const Scene& scene) {
   scene.validate();
-  refuseWhatIsNotLive(scene);
+  const std::vector<std::string> refusals = CellModel::refusals(scene);
+  if (!refusals.empty()) throw ConfigError(refusals);
   const double tip = scene.needle.tip.radius, size = scene.meshSize();
   CellMeshConfig config;
   config.radii = outerRadii(scene);
@@ -60,6 +40,27 @@ LayeredBody<3>::Materials makeMaterials(const Scene& scene) {
 
 }  // namespace
 
+std::vector<std::string> CellModel::refusals(const Scene& scene) {
+  constexpr char kNotLinear[] = " (linear tetrahedra do not do it)";
+  std::vector<std::string> errors;
+  if (scene.needle.tip.shape != "disc") {
+    errors.push_back("needle/tip/shape = " + scene.needle.tip.shape + ": must be disc" + kNotLinear);
+  }
+  const std::vector<Scene::Layer>& layers = scene.cell.layers;
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    const std::string path = layers.size() == 1 ? "cell/" : "cell/layers/" + std::to_string(i) + "/";
+    if (layers[i].surface_tension > 0) {
+      std::ostringstream message;
+      message << path << "surface_tension = " << layers[i].surface_tension << " N/m: must be 0" << kNotLinear;
+      errors.push_back(message.str());
+    }
+    if (!layers[i].material.viscoelasticity.empty()) {
+      errors.push_back(path + "material/viscoelasticity: must be left out" + kNotLinear);
+    }
+  }
+  return errors;
+}
+
 CellModel::CellModel(const Scene& scene)
     : scene_(scene),
       mesh_(makeMesh(scene)),
@@ -78,6 +79,50 @@ std::optional<SurfaceHit> CellModel::hit(const Eigen::Vector3d& origin, const Ei
 
 TipPatch CellModel::patchAt(const Eigen::Vector3d& point, const Eigen::Vector3d& axis) const {
   return findTipPatch(surface_, point, axis, scene_.needle.tip.radius);
+}
+
+std::string CellModel::description() const {
+  std::ostringstream text;
+  text << "P1 tetrahedra, whose force is too large; " << mesh_.vertices.size() << " vertices, "
+       << mesh_.tetrahedra.size() << " tetrahedra";
+  return text.str();
+}
+
+std::optional<Eigen::Vector3d> CellModel::touch(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis,
+                                                int& hint) const {
+  const double outside = 2 * scene_.cell.diameter();
+  const Eigen::Vector3d origin = tip + (outside + tip.norm()) * axis;  // from outside, wherever the tip is
+  const auto found = hit(origin, -axis, hint);
+  if (!found) return std::nullopt;
+  hint = found->triangle;
+  return found->point;
+}
+
+bool CellModel::isOff(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis,
+                      const Eigen::Vector3d& touched_at) const {
+  return (tip - touched_at).dot(axis) > 0;
+}
+
+TipPlace CellModel::placeAt(const Eigen::Vector3d& touched_at, const Eigen::Vector3d& axis) const {
+  return {touched_at, patchAt(touched_at, axis)};
+}
+
+std::unique_ptr<TipPath> CellModel::path(const TipPlace& place) const {
+  return std::make_unique<Indentation>(shared_from_this(), place.patch);
+}
+
+LiveCell::Surface CellModel::surfaceAtRest() const {
+  return {surface_.vertices, surface_.triangles, onSurface({held_vertices_})};
+}
+
+std::vector<std::uint32_t> CellModel::onSurface(const TipPatch& patch) const {
+  std::vector<std::uint32_t> result;
+  for (const int vertex : patch.vertices) {
+    const auto found = std::lower_bound(surface_.mesh_vertices.begin(), surface_.mesh_vertices.end(), vertex);
+    if (found != surface_.mesh_vertices.end() && *found == vertex)
+      result.push_back(static_cast<std::uint32_t>(found - surface_.mesh_vertices.begin()));
+  }
+  return result;
 }
 
 }  // namespace microinjection

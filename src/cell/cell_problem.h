@@ -4,8 +4,9 @@
 #include <limits>
 #include <memory>
 
-#include "cell/indentation.h"
+#include "cell/indentation_solution.h"
 #include "cell/scene.h"
+#include "mechanics/equilibrium_system.h"
 #include "mechanics/layered_body.h"
 #include "mechanics/load_path.h"
 

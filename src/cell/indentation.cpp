@@ -61,4 +61,11 @@ Eigen::VectorXd Indentation::displacement() const {
   return path_.state().head(3 * static_cast<Eigen::Index>(cell_->mesh().vertices.size()));
 }
 
+Eigen::VectorXd Indentation::surfaceDisplacement() const {
+  const std::vector<int>& nodes = cell_->surface().mesh_vertices;
+  Eigen::VectorXd result(3 * nodes.size());
+  for (std::size_t i = 0; i < nodes.size(); ++i) result.segment<3>(3 * i) = path_.state().segment<3>(3 * nodes[i]);
+  return result;
+}
+
 }  // namespace microinjection

@@ -2,30 +2,19 @@
 
 #include <Eigen/Core>
 #include <memory>
-#include <string>
+#include <vector>
 
 #include "cell/cell_model.h"
+#include "cell/indentation_solution.h"
 #include "contact/tip_patch.h"
 #include "mechanics/equilibrium_system.h"
 #include "mechanics/load_path.h"
 
 namespace microinjection {
 
-/// The cell at rest under a needle tip.
-struct IndentationSolution {
-  bool converged = false;
-  std::string reason;                                          ///< why not, for people; empty when converged
-  Eigen::Vector3d tip_displacement = Eigen::Vector3d::Zero();  ///< m, reached: the one asked for when converged
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();             ///< N, of the cell on the needle, at tip_displacement
-  Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();  ///< N/m, d(force)/d(tip_displacement) = -stiffness; symmetric
-  double smallest_jacobian = 1;                         ///< det F of the element that is compressed most
-  int newton_iterations = 0;
-  double cpu_time = 0;  ///< s, of the calling thread
-};
-
 /// Quasi-static deformation of a cell under one sticking patch: every vertex of the patch moves by the displacement of
 /// the tip. Keeps its state and continues from it, so a needle that moves little costs little. One thread at a time.
-class Indentation {
+class Indentation : public TipPath {
  public:
   /// Throws std::invalid_argument when the patch and the held vertices overlap or leave nothing free.
   Indentation(std::shared_ptr<const CellModel> cell, const TipPatch& patch);
@@ -38,6 +27,10 @@ class Indentation {
 
   /// Displacement of the mesh's vertices, m, xyz per vertex.
   Eigen::VectorXd displacement() const;
+
+  IndentationSolution follow(const TipMove& move) override { return solve(move.displacement); }
+  std::shared_ptr<const std::vector<Eigen::Vector3d>> rest() const override { return nullptr; }
+  Eigen::VectorXd surfaceDisplacement() const override;
 
   /// Displacement of the tip in the present state, m.
   const Eigen::Vector3d& tipDisplacement() const { return path_.translation(); }

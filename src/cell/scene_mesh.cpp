@@ -73,7 +73,9 @@ QuadraticMesh<2> makeSceneMesh<2>(const Scene& scene, double level) {
   return makeQuadratic(makeSectionMesh(config), config.radii);
 }
 
-QuadraticMesh<3> sweep(const Scene& scene, double level, bool half) {
+namespace {
+
+QuadraticMesh<3> sweep(const Scene& scene, const QuadraticMesh<2>& section, double level, bool half) {
   const Eigen::Vector2d place = pole(scene);
   SweepConfig config;
   config.half = half;
@@ -83,14 +85,22 @@ QuadraticMesh<3> sweep(const Scene& scene, double level, bool half) {
   config.disc_radius = scene.needle.tip.rounded() ? 0 : scene.needle.tip.radius;
   config.holding_radius = scene.holding_pipette.contact_radius;
   if (half) config.segments = (config.segments + 1) / 2;
-  return sweepSection(makeSceneMesh<2>(scene, level), config);
+  return sweepSection(section, config);
+}
+
+}  // namespace
+
+QuadraticMesh<3> sweepScene(const Scene& scene, const QuadraticMesh<2>& section, double level) {
+  return sweep(scene, section, level, false);
 }
 
 template <>
 QuadraticMesh<3> makeSceneMesh<3>(const Scene& scene, double level) {
-  return sweep(scene, level, false);
+  return sweepScene(scene, makeSceneMesh<2>(scene, level), level);
 }
 
-QuadraticMesh<3> makeHalfSceneMesh(const Scene& scene, double level) { return sweep(scene, level, true); }
+QuadraticMesh<3> makeHalfSceneMesh(const Scene& scene, double level) {
+  return sweep(scene, makeSceneMesh<2>(scene, level), level, true);
+}
 
 }  // namespace microinjection

@@ -8,7 +8,7 @@
 
 namespace microinjection {
 
-SolutionThread::SolutionThread(std::shared_ptr<const CellModel> cell)
+SolutionThread::SolutionThread(std::shared_ptr<const LiveCell> cell)
     : cell_(std::move(cell)), thread_([this] { run(); }) {}
 
 SolutionThread::~SolutionThread() {
@@ -22,11 +22,11 @@ SolutionThread::~SolutionThread() {
 
 // The solving thread has the lock for the exchange of a pointer, but may lose the processor while it does.
 
-bool SolutionThread::ask(const std::shared_ptr<const TipPatch>& patch, const Eigen::Vector3d& tip_displacement) {
+bool SolutionThread::ask(const std::shared_ptr<const TipPlace>& place, const TipMove& move) {
   {
     const std::unique_lock<std::mutex> lock(mutex_, std::try_to_lock);
     if (!lock) return false;
-    question_ = Question{patch, tip_displacement};
+    question_ = Question{place, move};
   }
   changed_.notify_all();
   return true;
@@ -75,14 +75,15 @@ void SolutionThread::run() {
 }
 
 std::shared_ptr<const CellSolution> SolutionThread::solve(const Question& question) {
-  if (!indentation_ || question.patch->vertices != patch_.vertices) {
-    indentation_ = std::make_unique<Indentation>(cell_, *question.patch);
-    patch_ = *question.patch;
+  if (!path_ || !question.place->sameAs(place_)) {
+    path_ = cell_->path(*question.place);
+    place_ = *question.place;
   }
   auto solution = std::make_shared<CellSolution>();
-  solution->patch = *question.patch;
-  solution->indentation = indentation_->solve(question.tip_displacement);
-  solution->displacement = indentation_->displacement();
+  solution->place = *question.place;
+  solution->indentation = path_->follow(question.move);
+  solution->rest = path_->rest();
+  solution->displacement = path_->surfaceDisplacement();
   const auto unused = [](const auto& given) { return given.use_count() == 1; };
   given_.erase(std::remove_if(given_.begin(), given_.end(), unused), given_.end());
   given_.push_back(solution);

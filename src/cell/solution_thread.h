@@ -9,29 +9,30 @@
 #include <thread>
 #include <vector>
 
-#include "cell/indentation.h"
+#include "cell/live_cell.h"
 
 namespace microinjection {
 
 /// An equilibrium and the deformation that goes with it.
 struct CellSolution {
-  TipPatch patch;
+  TipPlace place;
   IndentationSolution indentation;
-  Eigen::VectorXd displacement;  ///< m, xyz per vertex of the mesh
+  std::shared_ptr<const std::vector<Eigen::Vector3d>> rest;  ///< see TipPath
+  Eigen::VectorXd displacement;                              ///< m, xyz of each vertex of the picture
 };
 
-/// Solves indentations one after the other in a thread of its own. The asking thread never waits, unless it calls
-/// wait(), and never has to free a solution.
+/// Follows a tip in a thread of its own, which makes the equations for each place, too. The asking thread never waits,
+/// unless it calls wait(), and never has to free a solution.
 class SolutionThread {
  public:
-  explicit SolutionThread(std::shared_ptr<const CellModel> cell);
+  explicit SolutionThread(std::shared_ptr<const LiveCell> cell);
   ~SolutionThread();
   SolutionThread(const SolutionThread&) = delete;
   SolutionThread& operator=(const SolutionThread&) = delete;
 
-  /// Asks for the equilibrium of `patch` at a tip displacement (m). Returns false, and asks nothing, while the solving
+  /// Asks for the equilibrium of a tip that moved from `place`. Returns false, and asks nothing, while the solving
   /// thread is at the exchange. @pre the answer before was taken.
-  bool ask(const std::shared_ptr<const TipPatch>& patch, const Eigen::Vector3d& tip_displacement);
+  bool ask(const std::shared_ptr<const TipPlace>& place, const TipMove& move);
   /// The answer when it is there, else, or while the solving thread is at the exchange, null. Rethrows what the solver
   /// threw.
   std::shared_ptr<const CellSolution> take();
@@ -40,15 +41,15 @@ class SolutionThread {
 
  private:
   struct Question {
-    std::shared_ptr<const TipPatch> patch;
-    Eigen::Vector3d tip_displacement;
+    std::shared_ptr<const TipPlace> place;
+    TipMove move;
   };
   void run();
   std::shared_ptr<const CellSolution> solve(const Question& question);
 
-  std::shared_ptr<const CellModel> cell_;
-  std::unique_ptr<Indentation> indentation_;  ///< of the solving thread only
-  TipPatch patch_;                            ///< of the solving thread only
+  std::shared_ptr<const LiveCell> cell_;
+  std::unique_ptr<TipPath> path_;  ///< of the solving thread only
+  TipPlace place_;                 ///< of the solving thread only
   /// Of the solving thread only: all that others may still have. It drops them when nobody has, so that freeing their
   /// memory is never left to the thread that asks.
   std::vector<std::shared_ptr<const CellSolution>> given_;

@@ -112,7 +112,11 @@ class Preparing {
     if (!complete) throw std::runtime_error("the cell has no solution in all of the range (see above): not prepared");
     std::fprintf(stderr, "prepare: fitting\n");
     const PreparedCell cell = PreparedCell::fit(scene_, plan_, results);
-    cell.save(scene_, path);
+    cell.save(scene_, plan_.range, path);
+    if (cell.range.axis_depth < 0.999 * plan_.range.axis_depth) {
+      std::fprintf(stderr, "prepare: on the axis the cell has a solution to %.3g um only\n",
+                   1e6 * cell.range.axis_depth);
+    }
     std::printf(
         "prepare: done: %s\nprepare: the fit's force error at the equilibria: median %.2g %%, nine of ten below %.2g "
         "%%, "

@@ -12,7 +12,7 @@
 namespace microinjection {
 namespace {
 
-constexpr char kFit[] = " fit 7";  ///< to be changed with what is fitted, and how
+constexpr char kFit[] = " fit 8";  ///< to be changed with what is fitted, and how
 constexpr double kSmall = 0.0025;  ///< of the largest force: smaller ones are not judged
 constexpr int kDeepSamples = 14;   ///< on the axis, below the range of the rest
 
@@ -24,6 +24,7 @@ bool samePath(const TrainingRay& a, const TrainingRay& b) { return a.angle == b.
 /// section.
 struct Samples {
   std::vector<TrainingSample> forces, surfaces;
+  double axis_depth = 0;  ///< m, reached on the axis
 
   void add(const TrainingSample& sample) {
     forces.push_back(sample);
@@ -39,7 +40,10 @@ void addAxis(const Scene& scene, const PreparationRange& range, const std::vecto
   for (int i = 1; i <= kDeepSamples; ++i) {
     depths.push_back(range.depth + (range.axis_depth - range.depth) * i / kDeepSamples);
   }
-  for (const TrainingSample& sample : solveAxis(scene, depths, surface)) samples.add(sample);
+  for (const TrainingSample& sample : solveAxis(scene, depths, surface)) {
+    samples.add(sample);
+    samples.axis_depth = -sample.displacement.z();
+  }
 }
 
 Samples gather(const Scene& scene, const Preparation& preparation, const std::vector<TrainingResult>& results,
@@ -105,6 +109,7 @@ PreparedCell PreparedCell::fit(const Scene& scene, const Preparation& preparatio
   const std::vector<TrainingSample>& samples = all.forces;
   PreparedCell cell;
   cell.range = preparation.range;
+  cell.range.axis_depth = all.axis_depth;  // the section may end before
   cell.energy = EnergyExpansion(preparation.scales, preparation.degrees);
   fitEnergy(cell.energy, samples);
   cell.field = ForceField(preparation.scales);
@@ -125,7 +130,7 @@ PreparedCell PreparedCell::fit(const Scene& scene, const Preparation& preparatio
   });
   cell.energy_median_error = median(of_energy);
   cell.energy_common_error = common(of_energy);
-  cell.surface = SurfaceShape(preparation.range, angles, surfaces, all.surfaces);
+  cell.surface = SurfaceShape(cell.range, angles, surfaces, all.surfaces);
   return cell;
 }
 
@@ -139,18 +144,19 @@ std::string preparedFile(const Scene& scene, const Preparation& preparation) {
   return folder.empty() ? "" : folder + "/prepared.cell";
 }
 
-void PreparedCell::save(const Scene& scene, const std::string& path) const {
+void PreparedCell::save(const Scene& scene, const PreparationRange& asked, const std::string& path) const {
   ByteWriter writer;
   const EnergyScales& scales = energy.scales();
   const EnergyDegrees& degrees = energy.degrees();
-  for (double x : {scales.angle, scales.length, scales.energy, median_error, common_error, largest_error}) {
+  for (double x :
+       {range.axis_depth, scales.angle, scales.length, scales.energy, median_error, common_error, largest_error}) {
     writer.number(x);
   }
   for (int x : {degrees.place, degrees.direction, degrees.distance}) writer.number<std::int32_t>(x);
   writer.array(energy.coefficients());
   writer.array(field.coefficients());
   surface.write(writer);
-  writeCacheFile(path, Preparation::plan(scene, range).description(scene) + kFit, writer.bytes());
+  writeCacheFile(path, Preparation::plan(scene, asked).description(scene) + kFit, writer.bytes());
 }
 
 std::optional<PreparedCell> PreparedCell::load(const Scene& scene, const PreparationRange& range,
@@ -162,8 +168,8 @@ std::optional<PreparedCell> PreparedCell::load(const Scene& scene, const Prepara
   cell.range = range;
   EnergyScales scales;
   EnergyDegrees degrees;
-  for (double* x :
-       {&scales.angle, &scales.length, &scales.energy, &cell.median_error, &cell.common_error, &cell.largest_error}) {
+  for (double* x : {&cell.range.axis_depth, &scales.angle, &scales.length, &scales.energy, &cell.median_error,
+                    &cell.common_error, &cell.largest_error}) {
     *x = reader.number<double>();
   }
   for (int* x : {&degrees.place, &degrees.direction, &degrees.distance}) *x = reader.number<std::int32_t>();

@@ -30,8 +30,9 @@ struct PreparedCell {
   static PreparedCell fit(const Scene& scene, const Preparation& preparation,
                           const std::vector<TrainingResult>& results);
 
-  void save(const Scene& scene, const std::string& path) const;
-  /// Of this scene in `path`; nothing when there is none.
+  /// `asked`: the range of the preparation; `range` is what of it was reached.
+  void save(const Scene& scene, const PreparationRange& asked, const std::string& path) const;
+  /// Of this scene in `path`, prepared for a range; nothing when there is none.
   static std::optional<PreparedCell> load(const Scene& scene, const PreparationRange& range, const std::string& path);
 };
 

@@ -1,12 +1,11 @@
 #include "surrogate/serve_needle.h"
 
 #include <optional>
-#include <sstream>
 #include <utility>
 #include <vector>
 
 #include "base/errors.h"
-#include "cell/cell_model.h"
+#include "cell/live_cell.h"
 #include "surrogate/model_choice.h"
 #include "surrogate/prepared_tracker.h"
 
@@ -14,17 +13,13 @@ namespace microinjection {
 namespace {
 
 ServedCell live(const Scene& scene, const CellTrackerConfig& config, const std::string& said, bool as_required) {
-  const auto cell = std::make_shared<const CellModel>(scene);
-  ServedCell served{std::make_unique<CellTracker>(cell, config), said, as_required};
-  std::ostringstream size;
-  size << "; " << cell->mesh().vertices.size() << " vertices, " << cell->mesh().tetrahedra.size() << " tetrahedra";
-  served.said += size.str();
-  return served;
+  const auto cell = makeLiveCell(scene);
+  return {std::make_unique<CellTracker>(cell, config), said + ": " + cell->description(), as_required};
 }
 
 ServedCell unprepared(const Scene& scene, const CellTrackerConfig& config, const std::string& why) {
   try {
-    return live(scene, config, why + "; so it is live: P1 tetrahedra, whose force is too large", false);
+    return live(scene, config, why + "; so it is live", false);
   } catch (const ConfigError& error) {
     throw ConfigError(why + "; and the live model cannot serve it: " + error.what());
   }
@@ -63,7 +58,7 @@ ServedCell serveNeedle(const Scene& scene, const std::string& model, const CellT
   if (model == "prepared") figures.resize(1);
   const ModelChoice choice = chooseModel(scene.requirements, figures);
   const std::string said = "model " + model + ": " + choice.reason;
-  if (choice.name == "live") return live(scene, config, said, choice.meets);
+  if (choice.name == "live") return live(scene, config, said + "; it is", choice.meets);
   return {std::make_unique<PreparedTracker>(scene, cell), said, choice.meets};
 }
 

@@ -2,14 +2,14 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <vector>
 
 #include "base/bytes.h"
 #include "cell/cell_problem.h"
+#include "cell/contact_place.h"
 #include "cell/scene_mesh.h"
-#include "surrogate/contact_place.h"
+#include "mesh/outer_surface.h"
 
 namespace microinjection {
 namespace {
@@ -22,17 +22,6 @@ Scene at(const Scene& scene, double angle) {
   return result;
 }
 
-/// Nodes of the outer surface, ascending.
-std::vector<int> surfaceNodes(const QuadraticMesh<3>& mesh) {
-  std::vector<int> nodes;
-  for (const auto& facet : mesh.facets) {
-    if (facet.layer == 0) nodes.insert(nodes.end(), facet.nodes.begin(), facet.nodes.end());
-  }
-  std::sort(nodes.begin(), nodes.end());
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  return nodes;
-}
-
 /// A ray in the plane of the place and the cell's axis leaves the scene its mirror symmetry.
 bool inPlane(const TrainingRay& ray) { return ray.target.y() == 0; }
 
@@ -41,8 +30,8 @@ class SurfaceOfState {
  public:
   SurfaceOfState(const Scene& there, const QuadraticMesh<3>& mesh, bool half) {
     const QuadraticMesh<3> whole = makeSceneMesh<3>(there, kCoarseLevel);
-    const std::vector<int> candidates = surfaceNodes(mesh);
-    for (int node : surfaceNodes(whole)) {
+    const std::vector<int> candidates = outerNodes(mesh);
+    for (int node : outerNodes(whole)) {
       Eigen::Vector3d x = whole.nodes[node];
       const bool other_side = half && x.y() < 0;
       if (other_side) x.y() *= -1;
@@ -122,24 +111,11 @@ TrainingResult decodeTraining(const std::string& bytes) {
 
 TrainingSurface trainingSurface(const Scene& scene, double angle) {
   const QuadraticMesh<3> mesh = makeSceneMesh<3>(at(scene, angle), kCoarseLevel);
-  const std::vector<int> nodes = surfaceNodes(mesh);
-  std::map<int, int> index;
+  const std::vector<int> nodes = outerNodes(mesh);
   TrainingSurface surface;
   surface.nodes.resize(3 * static_cast<Eigen::Index>(nodes.size()));
-  for (std::size_t n = 0; n < nodes.size(); ++n) {
-    index[nodes[n]] = static_cast<int>(n);
-    surface.nodes.segment<3>(3 * n) = mesh.nodes[nodes[n]];
-  }
-  for (const auto& facet : mesh.facets) {
-    if (facet.layer != 0) continue;
-    std::array<int, 6> f;
-    std::transform(facet.nodes.begin(), facet.nodes.end(), f.begin(), [&](int node) { return index.at(node); });
-    const int m01 = f[3], m12 = f[4], m20 = f[5];  // see elementEdges
-    for (const Eigen::Vector3i& t : {Eigen::Vector3i(f[0], m01, m20), Eigen::Vector3i(m01, f[1], m12),
-                                     Eigen::Vector3i(m20, m12, f[2]), Eigen::Vector3i(m01, m12, m20)}) {
-      surface.triangles.push_back(t);
-    }
-  }
+  for (std::size_t n = 0; n < nodes.size(); ++n) surface.nodes.segment<3>(3 * n) = mesh.nodes[nodes[n]];
+  surface.triangles = outerTriangles(mesh);
   return surface;
 }
 

@@ -1,0 +1,13 @@
+#include "cell/live_cell.h"
+
+#include "cell/cell_model.h"
+#include "cell/swept_cell.h"
+
+namespace microinjection {
+
+std::shared_ptr<const LiveCell> makeLiveCell(const Scene& scene) {
+  if (CellModel::refusals(scene).empty()) return std::make_shared<const CellModel>(scene);
+  return std::make_shared<const SweptCell>(scene);
+}
+
+}  // namespace microinjection
