@@ -18,8 +18,8 @@
 namespace microinjection {
 namespace {
 
-constexpr unsigned kTimeLimit = 90;  ///< s, of one row
-constexpr double kDeepest = 1e-6;    ///< m
+constexpr unsigned kTimeLimit = 240;  ///< s, of one row, where the machine is shared
+constexpr double kDeepest = 1e-6;     ///< m
 constexpr int kDepths = 10;
 constexpr double kSpeed = 1e-4;  ///< m/s, of the needle; ten times faster is as bad as a hundredfold mass
 constexpr double kShare = 0.9;   ///< of the time step to the bound

@@ -16,9 +16,9 @@
 namespace microinjection {
 namespace {
 
-constexpr unsigned kTimeLimit = 60;  ///< s, of one mesh
-constexpr double kDepth = 1e-6;      ///< m, of the linear force
-constexpr double kSafety = 0.8;      ///< of the time step to the bound
+constexpr unsigned kTimeLimit = 240;  ///< s, of one mesh, where the machine is shared
+constexpr double kDepth = 1e-6;       ///< m, of the linear force
+constexpr double kSafety = 0.8;       ///< of the time step to the bound
 using Force = ExplicitStepConfig::Force;
 
 /// The paper's mesh for validation once more, but with an edge around the tip, which that within 5 % of its size has no

@@ -14,9 +14,9 @@
 namespace microinjection {
 namespace {
 
-constexpr unsigned kTimeLimit = 60;  ///< s, of one row
-constexpr double kStep = 0.25e-6;    ///< m
-constexpr double kDeepest = 20e-6;   ///< m
+constexpr unsigned kTimeLimit = 120;  ///< s, of one row
+constexpr double kStep = 0.25e-6;     ///< m
+constexpr double kDeepest = 20e-6;    ///< m
 
 /// The depth that a mesh reaches, how flat its flattest element is there and at 1 um, and the force at 1 um.
 std::string row(const PaperMesh& mesh, const std::string& model) {
