@@ -1,4 +1,6 @@
 """What the paper leaves to future work: friction, adhesion and viscosity, in the force on the way out."""
+import math
+
 from common import DIFFERENCE, figure, item, missing, read, save, table
 
 IN, OUT = (1, 2, 3, 4, 5), (4, 3, 2, 1, 0.5, 0, -0.25, -0.5, -0.75, -1, -1.5, -2, -3)  # um
@@ -19,6 +21,9 @@ RUNS = {
     'adhesion_sticking': ('adhesion, sticking', f'mode: sticking, adhesion: {ADHESION}', '', ()),
     'viscous': ('viscosity, 20 um/s', 'mode: sticking', PRONY, ('--speed', '20e-6')),
 }
+
+
+PULL_UNIT = 1e9 * math.pi * 2e-3 / (1 / 3e-6 + 1 / 28e-6)  # nN, pi w R: 1.5 times that in JKR's limit, 2 in DMT's
 
 
 def tasks(programs, root, data_dir):
@@ -93,6 +98,7 @@ def section(data_dir, out_dir):
         'what has touched over a gap (`contact/tip_contact.h`); one Prony term of half the modulus and 0.2 s. All assumed.',
         '![in and out](withdrawal.png)',
         table(('', 'work lost (fJ)', 'strongest pull (nN)', 'at (um)'), lines),
-        'Viscosity opens the loop while the cell is pushed, adhesion after the touch, where the needle has to be torn off; a '
+        f'Theories of adhesion to a soft body without range (JKR) and to a rigid one (DMT) have pull-offs of {1.5 * PULL_UNIT:.1f} '
+        f'and {2 * PULL_UNIT:.1f} nN for a smooth tip. Viscosity opens the loop while the cell is pushed, adhesion after the touch, where the needle has to be torn off; a '
         'sticking needle hangs on by the side of its tip a little. Friction loses little: under a hemisphere most of the '
         'surface sticks on the way in at such depths.'))
