@@ -47,7 +47,8 @@ def items(data_dir, out_dir):
         errors = errors_of(ramps, row['tetrahedra'])
         nearest = [f'{100 * error:.0f} % at {used:.0e}' for used, error in sorted(errors.items())]
         result.append(item('Equation 13', f'real time with {row["tetrahedra"]:.0f} tetrahedra', 'real time',
-                           f'mass times {scale:.1e} (its own step time), {scale_for(row["step_cost_s"], row["exact_step_s"]):.1e} (ours)',
+                           f'mass times {scale:.1e} (its own step time), '
+                           f'{scale_for(row["step_cost_s"], row["exact_step_s"]):.1e} (ours)',
                            '', NOT_REPRODUCIBLE,
                            'not with the cell\'s mass; largest error of the force to 1 um at 100 um/s by mass scaling: ' +
                            ', '.join(nearest)))

@@ -79,12 +79,12 @@ def nonlinear_items(data_dir):
     name, quantity = 'Figure 10', 'St-Venant-Kirchhoff agrees with the experiment to'
     rows = read(data_dir / 'st_venant_kirchhoff.csv')
     if not rows:
-        return [missing(name, quantity, '44', 'um', 'St-Venant-Kirchhoff')]
+        return [missing(name, quantity, '44', 'um of depth', 'St-Venant-Kirchhoff')]
     last = last_depth(data_dir / 'st_venant_kirchhoff.csv') or 0
-    return [item(name, quantity, '44', f'no converged solution below {1e6 * last:.2g} um', 'um', NOT_REPRODUCIBLE,
-                 'the material softens in compression: stable equilibria end, the earlier the finer the mesh (section on '
-                 'stretched elements; test/reference/st_venant_kirchhoff.csv). A curve to 44 um is its mesh\'s, not the '
-                 'material\'s. A neo-Hookean material of the same constants has one')]
+    return [item(name, quantity, '44', f'none beyond {1e6 * last:.2g} um', 'um of depth', NOT_REPRODUCIBLE,
+                 'no converged solution there: the material softens in compression, stable equilibria end, the earlier the '
+                 'finer the mesh (section on stretched elements; test/reference/st_venant_kirchhoff.csv). A curve to 44 um '
+                 'is its mesh\'s, not the material\'s. A neo-Hookean material of the same constants has one')]
 
 
 def plot(data_dir, path):
@@ -118,14 +118,14 @@ def plot(data_dir, path):
 def section(data_dir, out_dir):
     plot(data_dir, out_dir / 'figure_10.png')
     names = ('pipette', 'disc', 'st_venant_kirchhoff')
-    columns = {name: {round(1e7 * row['depth_m']): row for row in read(data_dir / f'{name}.csv')} for name in names}
+    columns = {name: {round(1e8 * row['depth_m']): row for row in read(data_dir / f'{name}.csv')} for name in names}
     slope, lines = linear_slope(data_dir), []
     for depth in sorted(set().union(*columns.values())):
         cells = []
         for name in names:
             row = columns[name].get(depth)
             cells.append('' if row is None else f'{1e6 * row["force_z_N"]:.4g}' if row['converged'] == 1 else 'none')
-        lines.append([f'{depth / 10:g}', f'{1e-1 * slope * depth:.4g}' if slope else '', *cells])
+        lines.append([f'{depth / 100:g}', f'{1e-2 * slope * depth:.4g}' if slope else '', *cells])
     return '\n\n'.join((
         '## Figures 8 and 10: force against depth',
         'Of the experiment the text gives one point: puncture at about 45 um and 7.5 uN, with prediction bounds of 5 %. Its '

@@ -4,7 +4,9 @@ import math
 from common import (DIFFERENCE, MEASURED_DEPTH, MEASURED_FORCE, at_depth, converged, figure, item, micro, missing, save,
                     table)
 
-THICKNESS, TIP, YOUNG, POISSON = 4e-6, 3e-6, 17.9e3, 0.49  # m, m, Pa: the zona's thickness is assumed
+THICKNESS, DIMPLE, TIP = 4e-6, 28e-6, 3e-6                 # m; assumed: a zona of 4 um, a dimple as wide as the cell
+YOUNG, POISSON = 17.9e3, 0.49                              # Pa
+SOFT, KEEPS_VOLUME = 1e2, 0.4999                           # Pa and Poisson ratio of an inside that is only pressure
 DEPTHS = (1, 2, 5, 10, 15, 20, 25, 30, 35, 40, 45)         # um
 LAYERED = (1, 2, 5, 10, 15, 20, 25, 30)                    # um
 
@@ -15,39 +17,16 @@ needle: {{tip: {{shape: hemisphere, radius: {tip}}}, contact: {{mode: sticking}}
 '''
 SHELL = '''  layers:
     - {{name: zona_pellucida, outer_radius: 28e-6, material: {{model: neo_hookean, young_modulus: {young}, poisson_ratio: {poisson}}}}}
-    - {{name: cytoplasm, outer_radius: {inner}, material: {{model: neo_hookean, young_modulus: {soft}, poisson_ratio: {poisson}}}}}
+    - {{name: cytoplasm, outer_radius: {inner}, material: {{model: neo_hookean, young_modulus: {soft}, poisson_ratio: {inside}}}}}
 '''
 HOMOGENEOUS = '''  diameter: 56e-6
   material: {{model: neo_hookean, young_modulus: {young}, poisson_ratio: {poisson}}}
   biomembrane: {{thickness: {thickness}, dimple_radius: {dimple}}}
 '''
-SOFT = 1e2  # Pa, of the inside: near to nothing but pressure
-
-
-def coefficient(dimple):
-    """N/m^3, only to find the dimple's radius that meets the measured force; the program computes the curve."""
-    square = (TIP / dimple)**2
-    logarithm = math.log(square)
-    shape = (3 - 4 * square + square**2 + 2 * logarithm) / ((1 - square) * (1 - square + logarithm)**3)
-    return 2 * math.pi * YOUNG * THICKNESS / (dimple**2 * (1 - POISSON)) * shape
-
-
-def fitted_dimple():
-    """m: the membrane's force at the measured depth is then the measured one."""
-    low, high = 1.5 * TIP, 100e-6
-    while high - low > 1e-9:
-        middle = (low + high) / 2
-        if coefficient(middle) * MEASURED_DEPTH**3 > MEASURED_FORCE:
-            low = middle
-        else:
-            high = middle
-    return high
-
 
 def tasks(programs, root, data_dir):
-    dimple = min(fitted_dimple(), 28e-6)
-    homogeneous = HOMOGENEOUS.format(young=YOUNG, poisson=POISSON, thickness=THICKNESS, dimple=dimple)
-    shell = SHELL.format(young=YOUNG, poisson=POISSON, inner=28e-6 - THICKNESS, soft=SOFT)
+    homogeneous = HOMOGENEOUS.format(young=YOUNG, poisson=POISSON, thickness=THICKNESS, dimple=DIMPLE)
+    shell = SHELL.format(young=YOUNG, poisson=POISSON, inner=28e-6 - THICKNESS, soft=SOFT, inside=KEEPS_VOLUME)
     for name, cell in (('membrane', homogeneous), ('shell', shell)):
         (data_dir / f'{name}.yaml').write_text(CELL.format(cell=cell, tip=TIP), encoding='utf-8')
 
@@ -74,8 +53,8 @@ def items(data_dir, out_dir):
     shell = '' if powers[2] is None else f', {powers[2]:.1f} (4 um shell over a soft inside)'
     return [item(name, quantity, paper, f'power of the depth, 10 to 30 um: {powers[0]:.1f} (membrane), {powers[1]:.1f} '
                  f'(homogeneous){shell}', '', DIFFERENCE,
-                 f'both bend upwards and can meet at one depth ({1e6 * forces[0]:.1f} and {1e6 * forces[1]:.1f} uN at 45 um), '
-                 'but the membrane has no stiffness at first. The paper\'s Young modulus, 17.9 kPa, is one that was found '
+                 f'both bend upwards and meet at one depth ({1e6 * forces[0]:.1f} and {1e6 * forces[1]:.1f} uN at 45 um), but '
+                 'the membrane has no stiffness at first. The paper\'s Young modulus, 17.9 kPa, is one that was found '
                  'with this membrane model, and is used there for a solid ball')]
 
 
@@ -93,6 +72,14 @@ def plot(data_dir, path):
     save(made, path)
 
 
+def fitting_thickness(data_dir):
+    force = at_depth(data_dir / 'membrane.csv', MEASURED_DEPTH)
+    if not force:
+        return ''
+    return (f' With {1e6 * THICKNESS * MEASURED_FORCE / force:.1f} um it would meet the measured puncture, where (depth/dimple '
+            f'radius)^2 = {(MEASURED_DEPTH / DIMPLE)**2:.1f} is far beyond its small slopes.')
+
+
 def section(data_dir, out_dir):
     plot(data_dir, out_dir / 'membrane.png')
     names = ('membrane', 'pipette', 'shell')
@@ -101,10 +88,12 @@ def section(data_dir, out_dir):
     return '\n\n'.join((
         '## The biomembrane point-load model',
         'Sun, Wan, Roberts and Nelson (2003): a membrane with pressure behind it, F = k depth^3 '
-        '(`cell/biomembrane.h` has the derivation; `indent --model membrane`). It takes nanoseconds. The radius of the dimple '
-        f'is an input of that model which the paper does not give: here {1e6 * min(fitted_dimple(), 28e-6):.1f} um, so that '
-        'the measured puncture is met as far as the cell is wide enough; a zona of 4 um is assumed.',
+        '(`cell/biomembrane.h` has the derivation; `indent --model membrane`). It takes nanoseconds. Thickness of the zona '
+        f'({1e6 * THICKNESS:.0f} um) and radius of the dimple ({1e6 * DIMPLE:.0f} um, the widest there can be) are its inputs, '
+        'and assumed: the paper gives neither.' + fitting_thickness(data_dir),
         '![membrane and finite elements](membrane.png)',
         table(('depth (um)', 'membrane (uN)', 'homogeneous, round pipette', 'shell over a soft inside'), lines),
-        'Valid where the inside is soft and the dimple known and well wider than deep; not at small depths, where a solid '
-        'answers in proportion and a slack membrane not at all; not for the paper\'s homogeneous cell.'))
+        'Valid where the inside is soft and the dimple known, and well wider than deep; not at small depths, where a solid '
+        'answers in proportion and a slack membrane not at all; not for the paper\'s homogeneous cell. A real shell of the '
+        'same thickness around an inside that keeps its volume is softer yet when deep: being round, it dents with little '
+        'stretching, which a flat membrane cannot.'))

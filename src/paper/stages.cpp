@@ -35,7 +35,7 @@ std::string stage(const CellProblem<2>& problem, double depth, double force) {
 
 std::string table() {
   const Scene scene = loadScene(kScene);
-  CellProblem<2> problem(scene, makeSceneMesh<2>(scene, 0), ElementKind::kP2P0);
+  CellProblem<2> problem(scene, makeSceneMesh<2>(scene, 1), ElementKind::kP2P0);
   std::string text = "depth_m,force_N,r1_m,z1_m,r2_m,z2_m,r3_m,z3_m,displacement_m\n";
   for (const double depth : kStages) {
     const IndentationSolution solution = problem.solve({0, 0, -depth});

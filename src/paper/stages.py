@@ -36,7 +36,7 @@ def draw(axis, rows, largest):
                                  edgecolor='face', linewidth=0.2)
         patches.set_clim(0, largest)
         axis.add_collection(patches)
-    depth, force = 1e6 * rows[0]['depth_m'], 1e6 * rows[0]['force_N']
+    depth, force = 1e6 * rows[0]['depth_m'], 1e6 * abs(rows[0]['force_N'])
     bottom = RADIUS - depth
     for patch in (Wedge((0, bottom + TIP), TIP, 180, 360), Rectangle((-TIP, bottom + TIP), 2 * TIP, 80)):
         patch.set(facecolor='#cfd8dc', edgecolor='#607d8b')

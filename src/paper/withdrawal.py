@@ -3,7 +3,7 @@ import math
 
 from common import DIFFERENCE, figure, item, missing, read, save, table
 
-IN, OUT = (1, 2, 3, 4, 5), (4, 3, 2, 1, 0.5, 0, -0.25, -0.5, -0.75, -1, -1.5, -2, -3)  # um
+IN, OUT = (0.5, 1, 2, 3, 4, 5), (4, 3, 2, 1, 0.5, 0, -0.25, -0.5, -0.75, -1, -1.5, -2, -3)  # um
 ADHESION = '{energy: 2e-3, range: 0.5e-6}'                                             # J/m^2 and m: assumed
 PRONY = ', viscoelasticity: {prony: [{modulus_ratio: 0.5, relaxation_time: 0.2}]}'     # assumed
 SCENE = '''cell:
@@ -93,7 +93,7 @@ def section(data_dir, out_dir):
         lines.append((label, *(f'{value:.3g}' for value in found)) if found else (label, 'no path', '', ''))
     return '\n\n'.join((
         '## Future work of the paper: friction, adhesion, viscosity',
-        '`indent --depths 1e-6,...,5e-6 --withdraw 4e-6,...,-3e-6`, neo-Hookean cell, hemisphere of 3 um. Coulomb\'s friction '
+        '`indent --depths 0.5e-6,...,5e-6 --withdraw 4e-6,...,-3e-6`, neo-Hookean cell, hemisphere of 3 um. Coulomb\'s friction '
         'and sticking; adhesion `needle/contact/adhesion: {energy: 2e-3, range: 0.5e-6}` (J/m^2 and m), a traction that pulls '
         'what has touched over a gap (`contact/tip_contact.h`); one Prony term of half the modulus and 0.2 s. All assumed.',
         '![in and out](withdrawal.png)',
@@ -101,4 +101,4 @@ def section(data_dir, out_dir):
         f'Theories of adhesion to a soft body without range (JKR) and to a rigid one (DMT) have pull-offs of {1.5 * PULL_UNIT:.1f} '
         f'and {2 * PULL_UNIT:.1f} nN for a smooth tip. Viscosity opens the loop while the cell is pushed, adhesion after the touch, where the needle has to be torn off; a '
         'sticking needle hangs on by the side of its tip a little. Friction loses little: under a hemisphere most of the '
-        'surface sticks on the way in at such depths.'))
+        'surface sticks on the way in at such depths. (The sums are over the points of the plot.)'))
