@@ -55,7 +55,8 @@ class ReportTest(unittest.TestCase):
             report.write_summary([{'item': 'x', 'verdict': 'perfect'}], self.out / 'summary.csv')
 
     def test_a_program_that_hangs_or_fails_ends_nothing_else(self):
-        ended = report.run_all([('slow', ['sleep', '60'], 1), ('bad', ['false'], 60), ('good', ['true'], 60)], self.data, 2)
+        tasks = [('slow', ['sleep', '600'], 1), ('bad', ['false'], 60), ('good', ['true'], 60)]
+        ended = report.run_all(tasks, self.data, 2)
         self.assertRegex(ended['slow'], 'stopped after its 1 s')
         self.assertRegex(ended['bad'], 'ended with status 1')
         self.assertRegex(ended['good'], 'done')

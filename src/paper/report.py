@@ -55,7 +55,8 @@ class Programs:
 
 def load_sections():
     """The modules that there are, by name."""
-    return {name: importlib.import_module(name) for name in SECTIONS if (Path(__file__).parent / f'{name}.py').is_file()}
+    folder = Path(__file__).parent
+    return {name: importlib.import_module(name) for name in SECTIONS if (folder / f'{name}.py').is_file()}
 
 
 def tasks_of(name, module, programs, data):
@@ -75,7 +76,8 @@ def run(task, data):
         log.write(' '.join(map(str, command)) + '\n')
         log.flush()
         try:
-            status = subprocess.run(command, stdout=log, stderr=log, timeout=limit, env=environment, check=False).returncode
+            status = subprocess.run(command, stdout=log, stderr=log, timeout=limit, env=environment,
+                                    check=False).returncode
             # 3 and 4 of `indent`: some depth has no converged solution, or not to the tolerance, as its table says.
             how = 'done' if status in (0, 3, 4) else f'ended with status {status}'
         except subprocess.TimeoutExpired:
@@ -119,9 +121,9 @@ def summary_of(items):
 
 def write_report(modules, items, ended, data, out):
     parts = ['# The paper, reproduced', __doc__.splitlines()[0],
-             'H. Ladjal, J.-L. Hanus and A. Ferreira, *Micro-to-Nano Biomechanical Modeling for Assisted Biological Cell '
-             'Injection*. Made by `./dev paper`; only values that the text of the paper gives are compared, none is read '
-             'off its plots.', '## Summary', summary_of(items)]
+             'H. Ladjal, J.-L. Hanus and A. Ferreira, *Micro-to-Nano Biomechanical Modeling for Assisted Biological '
+             'Cell Injection*. Made by `./dev paper`; only values that the text of the paper gives are compared, none '
+             'is read off its plots.', '## Summary', summary_of(items)]
     parts += [module.section(data, out) for module in modules.values()]
     parts += ['## What was run', table(('program', 'outcome'), sorted(ended.items()))]
     (out / 'report.md').write_text('\n\n'.join(parts) + '\n', encoding='utf-8')
