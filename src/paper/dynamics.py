@@ -50,7 +50,8 @@ def items(data_dir, out_dir):
                            f'mass times {scale:.1e} (its own step time), '
                            f'{scale_for(row["step_cost_s"], row["exact_step_s"]):.1e} (ours)',
                            '', NOT_REPRODUCIBLE,
-                           'not with the cell\'s mass; largest error of the force to 1 um at 100 um/s by mass scaling: ' +
+                           'not with the cell\'s mass; largest error of the force to 1 um at 100 um/s by mass '
+                           'scaling: ' +
                            ', '.join(nearest)))
     return result
 
@@ -63,7 +64,8 @@ def plot(ramps, path):
         scales = sorted({row['mass_scale'] for row in rows})
         for index, scale in enumerate(scales):
             line = [row for row in rows if row['mass_scale'] == scale]
-            axis.plot([1e6 * row['depth_m'] for row in line], [1e6 * row['force_N'] for row in line], 'o-', markersize=3,
+            axis.plot([1e6 * row['depth_m'] for row in line], [1e6 * row['force_N'] for row in line], 'o-',
+                      markersize=3,
                       color=f'C{index}', label=f'mass x {scale:.0e}')
         line = [row for row in rows if row['mass_scale'] == scales[0]]
         axis.plot([1e6 * row['depth_m'] for row in line], [1e6 * row['equilibrium_N'] for row in line], 'k--',
@@ -80,18 +82,25 @@ def section(data_dir, out_dir):
     if ramps:
         plot(ramps, out_dir / 'dynamics.png')
     lines = [(f'{row["vertices"]:.0f} / {row["tetrahedra"]:.0f}', f'{1e6 * row["stable_step_s"]:.3f}',
-              f'{1e6 * row["exact_step_s"]:.3f}', f'{1e6 * row["observed_limit_s"]:.3f}', f'{1e6 * row["step_cost_s"]:.1f}',
+              f'{1e6 * row["exact_step_s"]:.3f}', f'{1e6 * row["observed_limit_s"]:.3f}',
+              f'{1e6 * row["step_cost_s"]:.1f}',
               f'{row["step_cost_s"] / row["exact_step_s"]:.0f}',
-              f'{scale_for(row["step_cost_s"], row["exact_step_s"]):.1e}', f'{scale_for(HAPTIC, row["exact_step_s"]):.1e}')
+              f'{scale_for(row["step_cost_s"], row["exact_step_s"]):.1e}',
+              f'{scale_for(HAPTIC, row["exact_step_s"]):.1e}')
              for row in limits]
     return '\n\n'.join((
         '## Equation 13: the time step that the paper does not tell',
-        'Central differences are stable up to 2/w, w the highest angular frequency. *Bound*: from the most rigid element, in '
-        'closed form, certain (`mechanics/element_frequency.h`); *exact*: by power iteration; *observed*: beyond it a small '
+        'Central differences are stable up to 2/w, w the highest angular frequency. *Bound*: from the most rigid '
+        'element, in '
+        'closed form, certain (`mechanics/element_frequency.h`); *exact*: by power iteration; *observed*: beyond it '
+        'a small '
         'jump of the needle grows without end.',
         table(('vertices / tetrahedra', 'bound (us)', 'exact (us)', 'observed (us)', 'a step takes (us)',
-               'times slower than real time', 'mass scaling: real time', 'mass scaling: one step a millisecond'), lines),
+               'times slower than real '
+               'time', 'mass scaling: real time', 'mass scaling: one step a millisecond'), lines),
         '![forces with scaled mass](dynamics.png)',
-        'The needle goes in at 100 um/s; damped critically for a shear wave of two diameters. What scaling costs depends on '
-        'speed times the square root of the mass scaling: ten times faster is as bad as a hundredfold mass. Scaled a hundred '
+        'The needle goes in at 100 um/s; damped critically for a shear wave of two diameters. What scaling costs '
+        'depends on '
+        'speed times the square root of the mass scaling: ten times faster is as bad as a hundredfold mass. Scaled a '
+        'hundred '
         'million times, as a step each millisecond needs, the force is inertia, not elasticity.'))

@@ -52,8 +52,10 @@ def puncture_items(data_dir):
         return [missing(name, quantity, paper, 'uN', 'the round pipette')]
     off = force / MEASURED_FORCE - 1
     return [item(name, quantity, paper, f'{1e6 * force:.2f}', 'uN', REPRODUCED if abs(off) <= BAND else DIFFERENCE,
-                 f'{100 * off:+.1f} %: converged, neo-Hookean, Table I\'s constants, nothing fitted; the needle\'s shape and '
-                 'size (a hemisphere of 3 um, sticking) and the holding pipette\'s are assumed, the paper does not tell')]
+                 f'{100 * off:+.1f} %: converged, neo-Hookean, Table I\'s constants, nothing fitted; the needle\'s '
+                 'shape and '
+                 'size (a hemisphere of 3 um, sticking) and the holding pipette\'s are assumed, the paper does not '
+                 'tell')]
 
 
 def linear_items(data_dir):
@@ -82,8 +84,10 @@ def nonlinear_items(data_dir):
         return [missing(name, quantity, '44', 'um of depth', 'St-Venant-Kirchhoff')]
     last = last_depth(data_dir / 'st_venant_kirchhoff.csv') or 0
     return [item(name, quantity, '44', f'none beyond {1e6 * last:.2g} um', 'um of depth', NOT_REPRODUCIBLE,
-                 'no converged solution there: the material softens in compression, stable equilibria end, the earlier the '
-                 'finer the mesh (section on stretched elements; test/reference/st_venant_kirchhoff.csv). A curve to 44 um '
+                 'no converged solution there: the material softens in compression, stable equilibria end, the '
+                 'earlier the '
+                 'finer the mesh (section on stretched elements; test/reference/st_venant_kirchhoff.csv). A curve to '
+                 '44 um '
                  'is its mesh\'s, not the material\'s. A neo-Hookean material of the same constants has one')]
 
 
@@ -128,9 +132,11 @@ def section(data_dir, out_dir):
         lines.append([f'{depth / 100:g}', f'{1e-2 * slope * depth:.4g}' if slope else '', *cells])
     return '\n\n'.join((
         '## Figures 8 and 10: force against depth',
-        'Of the experiment the text gives one point: puncture at about 45 um and 7.5 uN, with prediction bounds of 5 %. Its '
+        'Of the experiment the text gives one point: puncture at about 45 um and 7.5 uN, with prediction bounds of 5 '
+        '%. Its '
         'other points are in plots only, and are not compared.', '![force against depth](figure_10.png)',
         table(('depth (um)', 'linear, disc (uN)', 'neo-Hookean, round pipette', 'neo-Hookean, disc',
                'St-Venant-Kirchhoff, disc'), lines),
-        '*none*: finer and finer meshes have no solution there. Each force is converged (`indent`, 0.5 %; for discs deeper '
+        '*none*: finer and finer meshes have no solution there. Each force is converged (`indent`, 0.5 %; for discs '
+        'deeper '
         'than 2 um about 1 %).'))

@@ -16,8 +16,10 @@ holding_pipette: {{contact_radius: 10e-6}}
 needle: {{tip: {{shape: hemisphere, radius: {tip}}}, contact: {{mode: sticking}}}}
 '''
 SHELL = '''  layers:
-    - {{name: zona_pellucida, outer_radius: 28e-6, material: {{model: neo_hookean, young_modulus: {young}, poisson_ratio: {poisson}}}}}
-    - {{name: cytoplasm, outer_radius: {inner}, material: {{model: neo_hookean, young_modulus: {soft}, poisson_ratio: {inside}}}}}
+    - {{name: zona_pellucida, outer_radius: 28e-6,
+       material: {{model: neo_hookean, young_modulus: {young}, poisson_ratio: {poisson}}}}}
+    - {{name: cytoplasm, outer_radius: {inner},
+       material: {{model: neo_hookean, young_modulus: {soft}, poisson_ratio: {inside}}}}}
 '''
 HOMOGENEOUS = '''  diameter: 56e-6
   material: {{model: neo_hookean, young_modulus: {young}, poisson_ratio: {poisson}}}
@@ -45,7 +47,8 @@ def steepness(path, first, last):
 
 
 def items(data_dir, out_dir):
-    name, quantity, paper = 'Section V.C', 'force-depth relation of membrane theory', 'similar to the homogeneous cell\'s'
+    name, quantity = 'Section V.C', 'force-depth relation of membrane theory'
+    paper = 'similar to the homogeneous cell\'s'
     forces = [at_depth(data_dir / f'{table_name}.csv', MEASURED_DEPTH) for table_name in ('membrane', 'pipette')]
     powers = [steepness(data_dir / f'{table_name}.csv', 10, 30) for table_name in ('membrane', 'pipette', 'shell')]
     if None in forces or None in powers[:2]:
@@ -53,7 +56,8 @@ def items(data_dir, out_dir):
     shell = '' if powers[2] is None else f', {powers[2]:.1f} (4 um shell over a soft inside)'
     return [item(name, quantity, paper, f'power of the depth, 10 to 30 um: {powers[0]:.1f} (membrane), {powers[1]:.1f} '
                  f'(homogeneous){shell}', '', DIFFERENCE,
-                 f'both bend upwards and meet at one depth ({1e6 * forces[0]:.1f} and {1e6 * forces[1]:.1f} uN at 45 um), but '
+                 f'both bend upwards and meet at one depth ({1e6 * forces[0]:.1f} and {1e6 * forces[1]:.1f} uN at 45 '
+                 'um), but '
                  'the membrane has no stiffness at first. The paper\'s Young modulus, 17.9 kPa, is one that was found '
                  'with this membrane model, and is used there for a solid ball')]
 
@@ -61,7 +65,8 @@ def items(data_dir, out_dir):
 def plot(data_dir, path):
     made, axes = figure(10, 4.2, 2)
     for axis in axes:
-        for name, label, style in (('membrane', 'membrane (analytic)', '-'), ('pipette', 'homogeneous, converged', 'o-'),
+        for name, label, style in (('membrane', 'membrane (analytic)', '-'),
+                                   ('pipette', 'homogeneous, converged', 'o-'),
                                    ('shell', f'shell of 4 um over {SOFT:.0f} Pa, converged', 's-')):
             depths, forces = converged(data_dir / f'{name}.csv')
             axis.plot(micro(depths), micro(forces), style, markersize=4, label=label)
@@ -76,7 +81,8 @@ def fitting_thickness(data_dir):
     force = at_depth(data_dir / 'membrane.csv', MEASURED_DEPTH)
     if not force:
         return ''
-    return (f' With {1e6 * THICKNESS * MEASURED_FORCE / force:.1f} um it would meet the measured puncture, where (depth/dimple '
+    fitting = 1e6 * THICKNESS * MEASURED_FORCE / force
+    return (f' With {fitting:.1f} um it would meet the measured puncture, where (depth/dimple '
             f'radius)^2 = {(MEASURED_DEPTH / DIMPLE)**2:.1f} is far beyond its small slopes.')
 
 
@@ -88,12 +94,17 @@ def section(data_dir, out_dir):
     return '\n\n'.join((
         '## The biomembrane point-load model',
         'Sun, Wan, Roberts and Nelson (2003): a membrane with pressure behind it, F = k depth^3 '
-        '(`cell/biomembrane.h` has the derivation; `indent --model membrane`). It takes nanoseconds. Thickness of the zona '
-        f'({1e6 * THICKNESS:.0f} um) and radius of the dimple ({1e6 * DIMPLE:.0f} um, the widest there can be) are its inputs, '
+        '(`cell/biomembrane.h` has the derivation; `indent --model membrane`). It takes nanoseconds. Thickness of '
+        'the zona '
+        f'({1e6 * THICKNESS:.0f} um) and radius of the dimple ({1e6 * DIMPLE:.0f} um, the widest there can be) are '
+        'its inputs, '
         'and assumed: the paper gives neither.' + fitting_thickness(data_dir),
         '![membrane and finite elements](membrane.png)',
         table(('depth (um)', 'membrane (uN)', 'homogeneous, round pipette', 'shell over a soft inside'), lines),
-        'Valid where the inside is soft and the dimple known, and well wider than deep; not at small depths, where a solid '
-        'answers in proportion and a slack membrane not at all; not for the paper\'s homogeneous cell. A real shell of the '
-        'same thickness around an inside that keeps its volume is softer yet when deep: being round, it dents with little '
+        'Valid where the inside is soft and the dimple known, and well wider than deep; not at small depths, where a '
+        'solid '
+        'answers in proportion and a slack membrane not at all; not for the paper\'s homogeneous cell. A real shell '
+        'of the '
+        'same thickness around an inside that keeps its volume is softer yet when deep: being round, it dents with '
+        'little '
         'stretching, which a flat membrane cannot.'))

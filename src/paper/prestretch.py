@@ -30,7 +30,8 @@ def items(data_dir, out_dir):
     helped = all(best > plain for plain, best in reached)
     ours = ', '.join(f'{1e6 * plain:.2f} to {1e6 * best:.2f} um' for plain, best in reached)
     return [item(name, quantity, 'yes', f'St-Venant-Kirchhoff reaches {ours}', '', REPRODUCED if helped else DIFFERENCE,
-                 'deeper before an equilibrium is lost, but those depths are the mesh\'s (no converged solution); the force '
+                 'deeper before an equilibrium is lost, but those depths are the mesh\'s (no converged solution); '
+                 'the force '
                  'changes by a few percent, a neo-Hookean cell needs none of it')]
 
 
@@ -47,11 +48,13 @@ def section(data_dir, out_dir):
         return '## Elements stretched beforehand\n\nNo result in this run.'
     return '\n\n'.join((
         '## Elements stretched beforehand',
-        'The paper\'s meshes have elements stretched against the needle\'s motion. `mesh: {stretch: S}` in a scene makes '
+        'The paper\'s meshes have elements stretched against the needle\'s motion. `mesh: {stretch: S}` in a scene '
+        'makes '
         'elements S times as high as wide, of the same volume. P1 tetrahedra, quasi-static, sticking disc, in steps of '
         '0.25 um, to 20 um at most; error against the converged force at 1 um.',
         table(('material', 'vertices / tetrahedra', 'stretch', 'worst radius ratio', 'force at 1 um (uN)', 'error',
                'smallest det F at 1 um', 'reached (um)', 'smallest det F there'), lines),
         'Stretched by 1.5 to 2, the flattest element at a given depth is less flat and St-Venant-Kirchhoff goes deeper '
-        'before it loses its equilibrium; stretched by 3, elements get so thin that the force grows again. A neo-Hookean '
+        'before it loses its equilibrium; stretched by 3, elements get so thin that the force grows again. A '
+        'neo-Hookean '
         'material resists flattening by itself and goes to the end without.'))

@@ -24,8 +24,10 @@ def items(data_dir, out_dir):
     stages = stages_of(data_dir)
     if not stages or max(stages) < MEASURED_DEPTH:
         return [missing(name, quantity, paper, '', 'the stages')]
-    return [item(name, quantity, paper, f'figure_9.png, {len(stages)} stages to {1e6 * max(stages):.0f} um', '', DIFFERENCE,
-                 'the converged neo-Hookean cell instead of St-Venant-Kirchhoff; the photographs are not published as data, '
+    return [item(name, quantity, paper, f'figure_9.png, {len(stages)} stages to {1e6 * max(stages):.0f} um', '',
+                 DIFFERENCE,
+                 'the converged neo-Hookean cell instead of St-Venant-Kirchhoff; the photographs are not published '
+                 'as data, '
                  'so that shapes can be compared by eye only')]
 
 
@@ -59,5 +61,6 @@ def section(data_dir, out_dir):
     made.colorbar(patches, ax=axes, label='displacement (um)', shrink=0.7)
     save(made, out_dir / 'figure_9.png')
     return ('## Figure 9: stages of deformation\n\n![sections](figure_9.png)\n\nThe section through the axis, '
-            '`config/cells/mouse_oocyte_pipette.yaml` (neo-Hookean, round pipette, sticking), held at the circle of the '
+            '`config/cells/mouse_oocyte_pipette.yaml` (neo-Hookean, round pipette, sticking), held at the circle of '
+            'the '
             'holding pipette below.')

@@ -32,5 +32,6 @@ def section(data_dir, out_dir):
             ('diameter', '56 um', 'taken over'), ('volume', '91952 um^3', f'{1e18 * volume:.1f} um^3'),
             ('mass', '9.1952e-5 mg', f'{1e6 * mass:.4e} mg'), ('mesh', '123 vertices, 379 tetrahedra', 'see Table III')]
     return ('## Table I: the homogeneous cell\n\n' + table(('', 'paper', 'ours'), rows) +
-            '\n\n(Section III.B of the paper names a mesh of "1115 vertices and 322 tetrahedra": no mesh can have so few '
+            '\n\n(Section III.B of the paper names a mesh of "1115 vertices and 322 tetrahedra": no mesh can have so '
+            'few '
             'tetrahedra for its vertices; it is Table III\'s first, 115 and 332, misprinted.)')

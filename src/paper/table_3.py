@@ -50,7 +50,8 @@ def items(data_dir, out_dir):
             continue
         size = f'{row["vertices"]:.0f}/{row["tetrahedra"]:.0f}'
         result.append(item(name, 'vertices/tetrahedra', f'{paper[0]}/{tetrahedra}', size, '',
-                           REPRODUCED if close(row) else DIFFERENCE, 'wanted to 5 %; the paper\'s meshes are not published'))
+                           REPRODUCED if close(row) else DIFFERENCE,
+                           'wanted to 5 %; the paper\'s meshes are not published'))
         for quantity, column, stage in STAGES:
             ours = row[f'kernel_{stage}_us'] / 1e3
             ratio = paper[column] / ours
@@ -71,8 +72,8 @@ def growth_items(twelve):
         theirs = exponent(list(PAPER), [row[column] for row in PAPER.values()])
         why = ('linear in both' if column == 2 else
                'nothing in it needs more than one visit of each tetrahedron: the paper\'s law is its implementation\'s')
-        result.append(item('Figure 14', f'{quantity}: power of the number of tetrahedra', f'{theirs:.2f}', f'{ours:.2f}',
-                           '', REPRODUCED if column == 2 else DIFFERENCE, why))
+        result.append(item('Figure 14', f'{quantity}: power of the number of tetrahedra', f'{theirs:.2f}',
+                           f'{ours:.2f}', '', REPRODUCED if column == 2 else DIFFERENCE, why))
     return result
 
 
@@ -85,7 +86,8 @@ def force_items(twelve, resolved):
     errors = [100 * (one['linear_force_1um_N'] / CONVERGED - 1) for one in (row, point)]
     return [item(name, quantity, paper, f'+{errors[0]:.0f}', '%', NOT_REPRODUCIBLE,
                  f'linear tetrahedra lock at a Poisson ratio of 0.49: the force is {errors[0] / 100 + 1:.1f} times the '
-                 f'converged one. Pushed at a single vertex, as the paper does, {errors[1]:+.0f} %: that force goes to 0 '
+                 f'converged one. Pushed at a single vertex, as the paper does, {errors[1]:+.0f} %: that force goes '
+                 'to 0 '
                  'as the mesh is refined, so that some mesh has the right one by chance')]
 
 
@@ -132,8 +134,11 @@ def section(data_dir, out_dir):
         'multiplied out (`mechanics/tetrahedron_kernel.h`).',
         table_of(twelve), '![times](figure_14.png)',
         f'A tetrahedron takes {min(per["on_line"]):.1f} to {max(per["on_line"]):.1f} ns on line and '
-        f'{min(per["off_line"]):.0f} to {max(per["off_line"]):.0f} ns off line at any size. Another computer (the paper: '
+        f'{min(per["off_line"]):.0f} to {max(per["off_line"]):.0f} ns off line at any size. Another computer (the '
+        'paper: '
         'Core Duo, 3.2 GHz, about 2008) is part of every ratio.',
-        'Meshes: refined in a ball of five needle diameters, five times denser, as the paper\'s. Force of the linear cell '
-        f'at 1 um against the converged one, by the number of tetrahedra: {errors}. The second and the third mesh push a '
+        'Meshes: refined in a ball of five needle diameters, five times denser, as the paper\'s. Force of the linear '
+        'cell '
+        f'at 1 um against the converged one, by the number of tetrahedra: {errors}. The second and the third mesh '
+        'push a '
         'single vertex; the last is the second one with an edge around the tip.'))

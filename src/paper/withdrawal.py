@@ -63,9 +63,10 @@ def items(data_dir, out_dir):
         if not found or not plain:
             result.append(missing('Section VI', title, paper, '', effect))
             continue
-        result.append(item('Section VI', title, paper, f'{found[0]:.3g} fJ lost in 5 um in and out, pull of {found[1]:.3g} nN',
-                           '', DIFFERENCE, f'modelled here (without it: {plain[0]:.2g} fJ, {plain[1]:.2g} nN); the constants '
-                           'are assumed, since the paper has none'))
+        ours = f'{found[0]:.3g} fJ lost in 5 um in and out, pull of {found[1]:.3g} nN'
+        result.append(item('Section VI', title, paper, ours, '', DIFFERENCE,
+                           f'modelled here (without it: {plain[0]:.2g} fJ, {plain[1]:.2g} nN); the constants are '
+                           'assumed, since the paper has none'))
     return result
 
 
@@ -93,12 +94,18 @@ def section(data_dir, out_dir):
         lines.append((label, *(f'{value:.3g}' for value in found)) if found else (label, 'no path', '', ''))
     return '\n\n'.join((
         '## Future work of the paper: friction, adhesion, viscosity',
-        '`indent --depths 0.5e-6,...,5e-6 --withdraw 4e-6,...,-3e-6`, neo-Hookean cell, hemisphere of 3 um. Coulomb\'s friction '
-        'and sticking; adhesion `needle/contact/adhesion: {energy: 2e-3, range: 0.5e-6}` (J/m^2 and m), a traction that pulls '
-        'what has touched over a gap (`contact/tip_contact.h`); one Prony term of half the modulus and 0.2 s. All assumed.',
+        '`indent --depths 0.5e-6,...,5e-6 --withdraw 4e-6,...,-3e-6`, neo-Hookean cell, hemisphere of 3 um. '
+        'Coulomb\'s friction '
+        'and sticking; adhesion `needle/contact/adhesion: {energy: 2e-3, range: 0.5e-6}` (J/m^2 and m), a traction '
+        'that pulls '
+        'what has touched over a gap (`contact/tip_contact.h`); one Prony term of half the modulus and 0.2 s. All '
+        'assumed.',
         '![in and out](withdrawal.png)',
         table(('', 'work lost (fJ)', 'strongest pull (nN)', 'at (um)'), lines),
-        f'Theories of adhesion to a soft body without range (JKR) and to a rigid one (DMT) have pull-offs of {1.5 * PULL_UNIT:.1f} '
-        f'and {2 * PULL_UNIT:.1f} nN for a smooth tip. Viscosity opens the loop while the cell is pushed, adhesion after the touch, where the needle has to be torn off; a '
-        'sticking needle hangs on by the side of its tip a little. Friction loses little: under a hemisphere most of the '
+        f'Theories of adhesion to a soft body without range (JKR) and to a rigid one (DMT) have pull-offs of '
+        f'{1.5 * PULL_UNIT:.1f} '
+        f'and {2 * PULL_UNIT:.1f} nN for a smooth tip. Viscosity opens the loop while the cell is pushed, adhesion '
+        'after the touch, where the needle has to be torn off; a '
+        'sticking needle hangs on by the side of its tip a little. Friction loses little: under a hemisphere most of '
+        'the '
         'surface sticks on the way in at such depths. (The sums are over the points of the plot.)'))
