@@ -56,10 +56,8 @@ def items(data_dir, out_dir):
     shell = '' if powers[2] is None else f', {powers[2]:.1f} (4 um shell over a soft inside)'
     return [item(name, quantity, paper, f'power of the depth, 10 to 30 um: {powers[0]:.1f} (membrane), {powers[1]:.1f} '
                  f'(homogeneous){shell}', '', DIFFERENCE,
-                 f'both bend upwards and meet at one depth ({1e6 * forces[0]:.1f} and {1e6 * forces[1]:.1f} uN at 45 '
-                 'um), but '
-                 'the membrane has no stiffness at first. The paper\'s Young modulus, 17.9 kPa, is one that was found '
-                 'with this membrane model, and is used there for a solid ball')]
+                 f'both bend upwards and cross once ({1e6 * forces[0]:.1f} and {1e6 * forces[1]:.1f} uN at 45 um), but the '
+                 'membrane has no stiffness at first, and its inside carries nothing but pressure')]
 
 
 def plot(data_dir, path):
