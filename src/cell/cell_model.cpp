@@ -25,6 +25,7 @@ TetMesh makeMesh(const Scene& scene) {
   CellMeshConfig config;
   config.radii = outerRadii(scene);
   config.size = size;
+  config.stretch = scene.mesh.stretch;
   config.refinements = {{CellMeshConfig::Shape::kBall, scene.needle.offset, scene.mesh.refinement.zone * tip, +1,
                          size / scene.mesh.refinement.density}};
   config.imprints = {{scene.needle.offset, tip, +1},

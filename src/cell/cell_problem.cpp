@@ -141,6 +141,8 @@ void CellProblem<Dim>::addContact(const Scene& scene, EquilibriumSystem::Terms& 
   TipContactConfig config;
   config.mode = needle.contact.mode == "sliding" ? TipContactConfig::Mode::kSliding : TipContactConfig::Mode::kSticking;
   config.friction = needle.contact.friction;
+  config.adhesion = needle.contact.adhesion_energy;
+  config.adhesion_range = needle.contact.adhesion_range;
   config.origin << needle.offset, tip.touchHeight(scene.radius(), needle.offset);
   config.penalty = kPenalty * largestModulus(scene) / needle.tip.radius;
   contact_ = std::make_shared<TipContact<Dim>>(*body_, tip, config);

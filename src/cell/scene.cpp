@@ -97,6 +97,19 @@ void readHomogeneousCell(ConfigReader cell, Scene::Cell& value) {
 void readCell(ConfigReader cell, Scene::Cell& value) {
   cell.has("layers") ? readLayeredCell(cell, value) : readHomogeneousCell(cell, value);
   quantity(cell.section("puncture"), "force", value.puncture_force, Range::positive(), "N");
+  if (!cell.has("biomembrane")) return;
+  ConfigReader biomembrane = cell.section("biomembrane");
+  value.biomembrane.emplace();
+  quantity(biomembrane, "thickness", value.biomembrane->thickness, Range::positive(), "m", ConfigReader::kRequired);
+  quantity(biomembrane, "dimple_radius", value.biomembrane->dimple_radius, Range::positive(), "m",
+           ConfigReader::kRequired);
+}
+
+void readAdhesion(ConfigReader contact, Scene::Contact& value) {
+  if (!contact.has("adhesion")) return;
+  ConfigReader adhesion = contact.section("adhesion");
+  quantity(adhesion, "energy", value.adhesion_energy, Range::positive(), "J/m^2", ConfigReader::kRequired);
+  quantity(adhesion, "range", value.adhesion_range, Range::positive(), "m", ConfigReader::kRequired);
 }
 
 void readNeedle(ConfigReader needle, Scene::Needle& value) {
@@ -120,6 +133,7 @@ void readNeedle(ConfigReader needle, Scene::Needle& value) {
   if (value.contact.mode == "sticking" && contact.has("friction")) {
     contact.error("friction", "must be left out: it belongs to mode sliding only");
   }
+  readAdhesion(contact, value.contact);
   Eigen::VectorXd offset = value.offset;
   needle.vector("offset", offset, Range::finite());
   value.offset = offset;
@@ -133,6 +147,7 @@ void readMesh(ConfigReader mesh, Scene::Mesh& value) {
   ConfigReader refinement = mesh.section("refinement");
   quantity(refinement, "zone", value.refinement.zone, Range::positive(), "needle diameters");
   quantity(refinement, "density", value.refinement.density, {1, 100, false, false}, "");
+  quantity(mesh, "stretch", value.stretch, Range::closed(1, 4), "");
 }
 
 void readRequirements(ConfigReader requirements, Scene::Requirements& value) {

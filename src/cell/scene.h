@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "cell/biomembrane.h"
 #include "material/material.h"
 
 namespace microinjection {
@@ -25,6 +26,7 @@ struct Scene {
   struct Cell {
     std::vector<Layer> layers = {Layer()};  ///< outermost first; a homogeneous cell is one layer named "cell"
     double puncture_force = std::numeric_limits<double>::infinity();  ///< N; infinity: is never punctured
+    std::optional<BiomembraneConfig> biomembrane;                     ///< of the membrane model only
 
     /// Of the outermost layer: of the whole cell when it is homogeneous.
     MaterialConfig& material() { return layers.front().material; }
@@ -46,6 +48,8 @@ struct Scene {
   struct Contact {
     std::string mode = "sticking";  ///< what touches sticks; or sliding, for rounded tips
     double friction = 0;            ///< Coulomb's coefficient, of sliding only, >= 0
+    double adhesion_energy = 0;     ///< J/m^2, to part what has touched, of rounded tips only, >= 0
+    double adhesion_range = 0;      ///< m, gap of the strongest pull, > 0 with adhesion; see contact/tip_contact.h
   };
   struct Needle {
     Tip tip;
@@ -59,6 +63,7 @@ struct Scene {
   struct Mesh {
     std::optional<double> size;  ///< m, of the elements outside of the puncture zone; see meshSize()
     Refinement refinement;
+    double stretch = 1;  ///< of the elements along z, see CellMeshConfig
   };
 
   /// Of a model that serves a needle, for the choice among those that could.

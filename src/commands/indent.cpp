@@ -11,6 +11,7 @@
 
 #include "base/atomic_file.h"
 #include "base/errors.h"
+#include "cell/biomembrane.h"
 #include "cell/cell_model.h"
 #include "cell/converged_force.h"
 #include "cell/indentation.h"
@@ -49,6 +50,38 @@ std::vector<ForcePoint> live(const Scene& scene, const Indenting& indenting) {
   Indentation indentation(cell, patch);
   std::vector<ForcePoint> points;
   for (double depth : indenting.depths) points.push_back(solveLive(indentation, depth, indenting.lateral));
+  return points;
+}
+
+void refuseWhatIsNoMembrane(const Scene& scene, const Indenting& indenting) {
+  std::vector<std::string> errors;
+  if (!scene.cell.biomembrane) errors.push_back("cell/biomembrane is missing: thickness and dimple_radius, m");
+  if (!scene.needle.offset.isZero(0)) errors.push_back("needle/offset: must be 0 with --model membrane");
+  if (!indenting.lateral.isZero(0)) errors.push_back("--lateral: must be 0 with --model membrane");
+  if (indenting.speed || indenting.hold > 0) {
+    errors.push_back("--speed, --hold: must be left out with --model membrane, which knows no time");
+  }
+  if (!errors.empty()) throw ConfigError(errors);
+}
+
+std::vector<ForcePoint> membrane(const Scene& scene, const Indenting& indenting) {
+  refuseWhatIsNoMembrane(scene, indenting);
+  const MaterialConfig& material = scene.cell.material();
+  const Biomembrane model(material.young_modulus, material.poisson_ratio, scene.needle.tip.radius,
+                          *scene.cell.biomembrane);
+  std::fprintf(stderr, "indent: membrane of %.4g um, dimple of %.4g um\n", 1e6 * scene.cell.biomembrane->thickness,
+               1e6 * scene.cell.biomembrane->dimple_radius);
+  std::vector<ForcePoint> points;
+  for (const double depth : indenting.depths) {
+    ForcePoint& point = points.emplace_back();
+    point.depth = depth;
+    point.converged = true;
+    point.force.z() = model.force(depth);
+    if (model.strain(depth) > 0.1) {
+      std::fprintf(stderr, "indent: depth %.4g um: the membrane's strain is %.2g, too large for this model\n",
+                   1e6 * depth, model.strain(depth));
+    }
+  }
   return points;
 }
 
@@ -93,15 +126,16 @@ int run(int argc, char** argv) {
   if (!parsed) return kConverged;
   const IndentArguments& arguments = *parsed;
   const Scene scene = loadScene(arguments.scene);
-  const std::vector<ForcePoint> points =
-      arguments.live ? live(scene, arguments.indenting) : converged(scene, arguments);
+  const std::vector<ForcePoint> points = arguments.live       ? live(scene, arguments.indenting)
+                                         : arguments.membrane ? membrane(scene, arguments.indenting)
+                                                              : converged(scene, arguments);
   std::string table = "depth_m,force_x_N,force_y_N,force_z_N,wall_s,converged,error_estimate\n";
   int status = kConverged;
   for (const ForcePoint& point : points) {
     tell(point, arguments.converged.tolerance);
     table += csvRow(point);
-    const bool missed =
-        arguments.tolerance_given && !arguments.live && point.error_estimate > arguments.converged.tolerance;
+    const bool missed = arguments.tolerance_given && std::isfinite(point.error_estimate) &&
+                        point.error_estimate > arguments.converged.tolerance;
     if (!point.converged) {
       status = kNotConverged;
     } else if (missed && status == kConverged) {

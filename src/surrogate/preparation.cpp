@@ -98,6 +98,9 @@ void Preparation::check(const Scene& scene) {
             << ": must be 0, or the mode sticking: friction takes energy, and a prepared cell has none to give";
     throw ConfigError(message.str());
   }
+  if (scene.needle.contact.adhesion_energy > 0) {
+    throw ConfigError("needle/contact/adhesion: must be left out: a prepared cell does not remember what has touched");
+  }
 }
 
 Scene Preparation::elastic(const Scene& scene) {
