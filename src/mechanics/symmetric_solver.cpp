@@ -3,6 +3,7 @@
 #include <dlfcn.h>
 #include <omp.h>
 
+#include <mutex>
 #include <stdexcept>
 
 namespace microinjection {
@@ -65,6 +66,9 @@ SymmetricSolver::~SymmetricSolver() {
 void SymmetricSolver::analyse(const Eigen::SparseMatrix<double>& lower) {
   cholmod_free_factor(&factor_, &common_);
   cholmod_sparse matrix = view(lower);
+  // METIS draws from the process's one random sequence, which it seeds anew: one thread at a time gets the same order.
+  static std::mutex metis;
+  const std::lock_guard<std::mutex> lock(metis);
   factor_ = cholmod_analyze(&matrix, &common_);
   if (factor_ == nullptr) throw std::runtime_error("CHOLMOD's analysis of the equations failed");
 }
