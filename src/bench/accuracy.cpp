@@ -16,6 +16,7 @@
 #include "bench/common/reference_scenes.h"
 #include "cell/cell_model.h"
 #include "cell/cell_problem.h"
+#include "cell/indentation.h"
 #include "cell/scene_mesh.h"
 
 namespace microinjection {
