@@ -4,6 +4,7 @@
 #include <string>
 
 #include "base/errors.h"
+#include "cell/indentation.h"
 #include "mesh/mesh_cache.h"
 #include "mesh/quadratic_mesh.h"
 
@@ -14,6 +15,8 @@ namespace {
 void refuseWhatIsNotLive(const Scene& scene) {
   constexpr char kNotLive[] = " (indent can do it, the live cell not yet)";
   std::vector<std::string> errors;
+  if (scene.cell.tensegrity)
+    errors.push_back("cell/model = tensegrity: must be continuum for a mesh of the cell's inside");
   if (scene.needle.tip.shape != "disc") {
     errors.push_back("needle/tip/shape = " + scene.needle.tip.shape + ": must be disc" + kNotLive);
   }
@@ -61,23 +64,18 @@ LayeredBody<3>::Materials makeMaterials(const Scene& scene) {
 }  // namespace
 
 CellModel::CellModel(const Scene& scene)
-    : scene_(scene),
+    : LiveCell(scene),
       mesh_(makeMesh(scene)),
-      surface_(extractSurface(mesh_)),
       body_(std::make_shared<LayeredBody<3>>(makeQuadratic(mesh_, outerRadii(scene)), ElementKind::kP1,
                                              makeMaterials(scene))) {
+  surface_ = extractSurface(mesh_);
   // The same rule as under the needle: the pipette's mouth is a disc below, along -z.
   const Eigen::Vector3d down = -Eigen::Vector3d::UnitZ();
   held_vertices_ = findTipPatch(surface_, scene.radius() * down, down, scene.holding_pipette.contact_radius).vertices;
 }
 
-std::optional<SurfaceHit> CellModel::hit(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
-                                         int start) const {
-  return castRayFrom(surface_, start, origin, direction);
-}
-
-TipPatch CellModel::patchAt(const Eigen::Vector3d& point, const Eigen::Vector3d& axis) const {
-  return findTipPatch(surface_, point, axis, scene_.needle.tip.radius);
+std::unique_ptr<LiveIndentation> CellModel::indentation(const TipPatch& patch) const {
+  return std::make_unique<Indentation>(shared_from_this(), patch);
 }
 
 }  // namespace microinjection

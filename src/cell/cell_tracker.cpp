@@ -14,14 +14,14 @@ CellTrackerConfig CellTrackerConfig::read(ConfigReader& reader) {
   return config;
 }
 
-CellTracker::CellTracker(std::shared_ptr<const CellModel> cell, const CellTrackerConfig& config)
-    : cell_(std::move(cell)), config_(config), thread_(cell_) {
+CellTracker::CellTracker(std::shared_ptr<const LiveCell> cell, const CellTrackerConfig& config)
+    : cell_(std::move(cell)), config_(config), thread_(cell_), members_at_rest_(cell_->membersAtRest()) {
   distrust_.reserve(200);
 }
 
 void CellTracker::ask(double time, const Eigen::Vector3d& displacement) {
-  bool asked = thread_.ask(patch_, displacement);
-  while (!asked && config_.fixed_period) asked = thread_.ask(patch_, displacement);
+  bool asked = thread_.ask(patch_, displacement, time);
+  while (!asked && config_.fixed_period) asked = thread_.ask(patch_, displacement, time);
   if (!asked) return;  // with the next step, then
   asked_ = true;
   asked_at_ = time;
@@ -167,6 +167,7 @@ CellUnderNeedle::Picture CellTracker::picture() {
     picture.vertices.emplace_back(surface.vertices[i] + moved);
     picture.displacement.push_back(moved.norm());
   }
+  picture.members = shape.solution ? shape.solution->members : members_at_rest_;
   if (shape.touched) picture.touched = onSurface(shape.touched->vertices);
   return picture;
 }

@@ -7,8 +7,8 @@
 
 #include "base/config_reader.h"
 #include "base/latest_value.h"
-#include "cell/cell_model.h"
 #include "cell/cell_under_needle.h"
+#include "cell/live_cell.h"
 #include "cell/solution_thread.h"
 
 namespace microinjection {
@@ -31,7 +31,7 @@ struct CellTrackerConfig {
 /// for good.
 class CellTracker : public CellUnderNeedle {
  public:
-  CellTracker(std::shared_ptr<const CellModel> cell, const CellTrackerConfig& config);
+  CellTracker(std::shared_ptr<const LiveCell> cell, const CellTrackerConfig& config);
 
   TipForce step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time) override;
 
@@ -43,7 +43,7 @@ class CellTracker : public CellUnderNeedle {
   std::vector<std::uint32_t> held() const override;
   Picture picture() override;
 
-  const CellModel& cell() const { return *cell_; }
+  const LiveCell& cell() const { return *cell_; }
   const TipPatch& patch() const { return *patch_; }  ///< that sticks to the tip, or will on touch
 
  private:
@@ -62,7 +62,7 @@ class CellTracker : public CellUnderNeedle {
   std::vector<std::uint32_t> onSurface(const std::vector<int>& mesh_vertices) const;
   void release();
 
-  std::shared_ptr<const CellModel> cell_;
+  std::shared_ptr<const LiveCell> cell_;
   CellTrackerConfig config_;
   SolutionThread thread_;
   int start_triangle_ = 0;
@@ -76,7 +76,8 @@ class CellTracker : public CellUnderNeedle {
   std::optional<Contact> contact_;
   bool punctured_ = false;
   std::string distrust_;
-  std::string failure_;       ///< what the solver threw at the last question; else empty
+  std::string failure_;  ///< what the solver threw at the last question; else empty
+  std::vector<Member> members_at_rest_;
   LatestValue<Shape> shape_;  ///< from the thread that steps to the one that draws
 };
 

@@ -62,6 +62,9 @@ struct ConvergedForce::Level {
 ConvergedForce::ConvergedForce(const Scene& scene, const Indenting& indenting, const ConvergedForceConfig& config)
     : scene_(scene), indenting_(indenting), config_(config) {
   scene_.validate();
+  if (scene.cell.tensegrity) {
+    throw ConfigError("cell/model = tensegrity: must be continuum for a solution on finer and finer meshes");
+  }
   const bool possible = isAxisymmetric(scene) && indenting.lateral.isZero(0);
   if (config.model == ConvergedForceConfig::Model::kAxisymmetric && !possible) {
     throw ConfigError("model = axisymmetric: needle/offset and lateral must be 0; use spatial or auto");

@@ -42,7 +42,7 @@ Indentation::Indentation(std::shared_ptr<const CellModel> cell, const TipPatch& 
       system_({cell_->body()}, makeConstraints(*cell_, patch), SymmetricSolver::Method::kSimplicial),
       path_(system_, pathConfig(*cell_)) {}
 
-IndentationSolution Indentation::solve(const Eigen::Vector3d& tip_displacement) {
+IndentationSolution Indentation::solve(const Eigen::Vector3d& tip_displacement, double /*duration*/) {
   const double start = threadCpuTime();
   const LoadPath::Result result = path_.advance(tip_displacement);
   IndentationSolution solution;

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <memory>
-#include <string>
 
 #include "cell/cell_model.h"
 #include "contact/tip_patch.h"
@@ -11,39 +11,22 @@
 
 namespace microinjection {
 
-/// The cell at rest under a needle tip.
-struct IndentationSolution {
-  bool converged = false;
-  std::string reason;                                          ///< why not, for people; empty when converged
-  Eigen::Vector3d tip_displacement = Eigen::Vector3d::Zero();  ///< m, reached: the one asked for when converged
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();             ///< N, of the cell on the needle, at tip_displacement
-  Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();  ///< N/m, d(force)/d(tip_displacement) = -stiffness; symmetric
-  double smallest_jacobian = 1;                         ///< det F of the element that is compressed most
-  int newton_iterations = 0;
-  double cpu_time = 0;  ///< s, of the calling thread
-};
-
 /// Quasi-static deformation of a cell under one sticking patch: every vertex of the patch moves by the displacement of
 /// the tip. Keeps its state and continues from it, so a needle that moves little costs little. One thread at a time.
-class Indentation {
+class Indentation : public LiveIndentation {
  public:
   /// Throws std::invalid_argument when the patch and the held vertices overlap or leave nothing free.
   Indentation(std::shared_ptr<const CellModel> cell, const TipPatch& patch);
   Indentation(const Indentation&) = delete;  // the path refers to the system
   Indentation& operator=(const Indentation&) = delete;
 
-  /// Equilibrium at `tip_displacement` (m), reached along the straight line from the present one in adaptive load
-  /// steps. On failure the state stays at the last equilibrium that was found.
-  IndentationSolution solve(const Eigen::Vector3d& tip_displacement);
+  /// The elastic cell: `duration` does not matter.
+  IndentationSolution solve(const Eigen::Vector3d& tip_displacement,
+                            double duration = std::numeric_limits<double>::infinity()) override;
 
-  /// Displacement of the mesh's vertices, m, xyz per vertex.
-  Eigen::VectorXd displacement() const;
-
-  /// Displacement of the tip in the present state, m.
-  const Eigen::Vector3d& tipDisplacement() const { return path_.translation(); }
-
-  /// Back to the undeformed state.
-  void reset() { path_.reset(); }
+  Eigen::VectorXd displacement() const override;
+  Eigen::Vector3d tipDisplacement() const override { return path_.translation(); }
+  void reset() override { path_.reset(); }
 
  private:
   std::shared_ptr<const CellModel> cell_;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "material/material.h"
+#include "tensegrity/tensegrity_config.h"
 
 namespace microinjection {
 
@@ -24,6 +25,8 @@ struct Scene {
   };
   struct Cell {
     std::vector<Layer> layers = {Layer()};  ///< outermost first; a homogeneous cell is one layer named "cell"
+    /// Of a cell of model tensegrity: it has nothing of the layer but its radius.
+    std::optional<TensegrityConfig> tensegrity;
     double puncture_force = std::numeric_limits<double>::infinity();  ///< N; infinity: is never punctured
 
     /// Of the outermost layer: of the whole cell when it is homogeneous.

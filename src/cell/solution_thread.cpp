@@ -4,11 +4,17 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace microinjection {
+namespace {
 
-SolutionThread::SolutionThread(std::shared_ptr<const CellModel> cell)
+constexpr double kShortest = 1e-4;  ///< s, between two questions: a clock may stand
+
+}  // namespace
+
+SolutionThread::SolutionThread(std::shared_ptr<const LiveCell> cell)
     : cell_(std::move(cell)), thread_([this] { run(); }) {}
 
 SolutionThread::~SolutionThread() {
@@ -22,11 +28,12 @@ SolutionThread::~SolutionThread() {
 
 // The solving thread has the lock for the exchange of a pointer, but may lose the processor while it does.
 
-bool SolutionThread::ask(const std::shared_ptr<const TipPatch>& patch, const Eigen::Vector3d& tip_displacement) {
+bool SolutionThread::ask(const std::shared_ptr<const TipPatch>& patch, const Eigen::Vector3d& tip_displacement,
+                         double time) {
   {
     const std::unique_lock<std::mutex> lock(mutex_, std::try_to_lock);
     if (!lock) return false;
-    question_ = Question{patch, tip_displacement};
+    question_ = Question{patch, tip_displacement, time};
   }
   changed_.notify_all();
   return true;
@@ -75,14 +82,18 @@ void SolutionThread::run() {
 }
 
 std::shared_ptr<const CellSolution> SolutionThread::solve(const Question& question) {
+  double since = std::max(question.time - solved_for_, kShortest);
   if (!indentation_ || question.patch->vertices != patch_.vertices) {
-    indentation_ = std::make_unique<Indentation>(cell_, *question.patch);
+    indentation_ = cell_->indentation(*question.patch);
     patch_ = *question.patch;
+    since = std::numeric_limits<double>::infinity();
   }
+  solved_for_ = question.time;
   auto solution = std::make_shared<CellSolution>();
   solution->patch = *question.patch;
-  solution->indentation = indentation_->solve(question.tip_displacement);
+  solution->indentation = indentation_->solve(question.tip_displacement, since);
   solution->displacement = indentation_->displacement();
+  solution->members = indentation_->members();
   const auto unused = [](const auto& given) { return given.use_count() == 1; };
   given_.erase(std::remove_if(given_.begin(), given_.end(), unused), given_.end());
   given_.push_back(solution);

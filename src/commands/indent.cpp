@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,8 +14,8 @@
 #include "base/errors.h"
 #include "cell/cell_model.h"
 #include "cell/converged_force.h"
-#include "cell/indentation.h"
 #include "cell/scene.h"
+#include "cell/tensegrity_cell.h"
 #include "commands/indent_arguments.h"
 
 namespace microinjection {
@@ -23,11 +24,16 @@ namespace {
 constexpr int kConverged = 0, kBadUsage = 2, kNotConverged = 3, kNotAccurate = 4;
 
 /// Pushed straight down, a deeper point continues from the last one, which lies on its way; any other starts afresh.
-ForcePoint solveLive(Indentation& indentation, double depth, const Eigen::Vector2d& lateral) {
+ForcePoint solveLive(LiveIndentation& indentation, double depth, const Indenting& indenting) {
+  constexpr double kEver = std::numeric_limits<double>::infinity();
   const auto start = std::chrono::steady_clock::now();
+  const Eigen::Vector2d& lateral = indenting.lateral;
   const bool on_the_way = lateral.isZero(0) && -indentation.tipDisplacement().z() <= depth;
   if (!on_the_way) indentation.reset();
-  const IndentationSolution solution = indentation.solve({lateral.x(), lateral.y(), -depth});
+  const Eigen::Vector3d target(lateral.x(), lateral.y(), -depth);
+  const double way = (target - indentation.tipDisplacement()).norm();
+  IndentationSolution solution = indentation.solve(target, way > 0 && indenting.speed ? way / *indenting.speed : kEver);
+  if (solution.converged && indenting.hold > 0) solution = indentation.solve(target, indenting.hold);
   ForcePoint point;
   point.depth = depth;
   point.converged = solution.converged;
@@ -40,15 +46,29 @@ ForcePoint solveLive(Indentation& indentation, double depth, const Eigen::Vector
   return point;
 }
 
+std::shared_ptr<const LiveCell> liveCell(const Scene& scene) {
+  if (!scene.cell.tensegrity) {
+    const auto cell = std::make_shared<const CellModel>(scene);
+    std::fprintf(stderr, "indent: live model, %zu vertices, %zu tetrahedra\n", cell->mesh().vertices.size(),
+                 cell->mesh().tetrahedra.size());
+    return cell;
+  }
+  const auto cell = std::make_shared<const TensegrityCell>(scene);
+  const TensegrityStructure& structure = cell->structure();
+  std::fprintf(stderr, "indent: tensegrity, %zu nodes, %d tetrahedra; prestress %.4g N, unbalanced %.2g N\n",
+               structure.nodePlaces().size(), structure.struts().elementCount(), structure.form().prestress,
+               structure.form().residual);
+  return cell;
+}
+
 std::vector<ForcePoint> live(const Scene& scene, const Indenting& indenting) {
-  const auto cell = std::make_shared<const CellModel>(scene);
+  const auto cell = liveCell(scene);
   const Eigen::Vector2d& offset = scene.needle.offset;
   const TipPatch patch = cell->patchAt({offset.x(), offset.y(), scene.radius()}, Eigen::Vector3d::UnitZ());
-  std::fprintf(stderr, "indent: live model, %zu vertices, %zu tetrahedra, %zu vertices under the tip\n",
-               cell->mesh().vertices.size(), cell->mesh().tetrahedra.size(), patch.vertices.size());
-  Indentation indentation(cell, patch);
+  std::fprintf(stderr, "indent: %zu vertices under the tip\n", patch.vertices.size());
+  const std::unique_ptr<LiveIndentation> indentation = cell->indentation(patch);
   std::vector<ForcePoint> points;
-  for (double depth : indenting.depths) points.push_back(solveLive(indentation, depth, indenting.lateral));
+  for (double depth : indenting.depths) points.push_back(solveLive(*indentation, depth, indenting));
   return points;
 }
 
@@ -94,7 +114,9 @@ int run(int argc, char** argv) {
   const IndentArguments& arguments = *parsed;
   const Scene scene = loadScene(arguments.scene);
   const std::vector<ForcePoint> points =
-      arguments.live ? live(scene, arguments.indenting) : converged(scene, arguments);
+      arguments.live || (scene.cell.tensegrity && arguments.converged.model == ConvergedForceConfig::Model::kAuto)
+          ? live(scene, arguments.indenting)
+          : converged(scene, arguments);
   std::string table = "depth_m,force_x_N,force_y_N,force_z_N,wall_s,converged,error_estimate\n";
   int status = kConverged;
   for (const ForcePoint& point : points) {

@@ -7,6 +7,7 @@
 
 #include "base/errors.h"
 #include "cell/cell_model.h"
+#include "cell/tensegrity_cell.h"
 #include "surrogate/model_choice.h"
 #include "surrogate/prepared_tracker.h"
 
@@ -20,6 +21,16 @@ ServedCell live(const Scene& scene, const CellTrackerConfig& config, const std::
   size << "; " << cell->mesh().vertices.size() << " vertices, " << cell->mesh().tetrahedra.size() << " tetrahedra";
   served.said += size.str();
   return served;
+}
+
+ServedCell tensegrity(const Scene& scene, const CellTrackerConfig& config) {
+  const auto cell = std::make_shared<const TensegrityCell>(scene);
+  const TensegrityStructure& structure = cell->structure();
+  std::ostringstream said;
+  said << "the cell is a tensegrity, solved live; " << structure.nodePlaces().size() << " nodes, "
+       << structure.struts().elementCount() << " tetrahedra, prestress " << structure.form().prestress
+       << " N, unbalanced " << structure.form().residual << " N";
+  return {std::make_unique<CellTracker>(cell, config), said.str(), true};
 }
 
 ServedCell unprepared(const Scene& scene, const CellTrackerConfig& config, const std::string& why) {
@@ -44,6 +55,7 @@ std::string cannotBePrepared(const Scene& scene) {
 
 ServedCell serveNeedle(const Scene& scene, const std::string& model, const CellTrackerConfig& config,
                        const std::string& path) {
+  if (scene.cell.tensegrity && model != "prepared") return tensegrity(scene, config);
   if (model == "live") return live(scene, config, "the cell is live, as asked for", true);
   const std::string refused = cannotBePrepared(scene);
   if (!refused.empty()) {

@@ -10,8 +10,9 @@ namespace microinjection {
 namespace {
 
 constexpr double kFirstStep = 1.0 / 128, kLargestStep = 1.0 / 32, kSmallestStep = 1e-4;  ///< of the diameter
-constexpr int kEasy = 8;            ///< iterations: cables that go slack take some at any length
-constexpr double kSnapStep = 2e-3;  ///< of the diameter
+constexpr int kEasy = 8;                  ///< iterations: cables that go slack take some at any length
+constexpr int kMostFactorisations = 300;  ///< of a snap
+constexpr double kSnapStep = 2e-3;        ///< of the diameter
 
 }  // namespace
 
@@ -50,6 +51,7 @@ LoadPath::Result TensegrityLoading::advance(const Eigen::Vector3d& target, doubl
 bool TensegrityLoading::snap(const Eigen::Vector3d& way) {
   RelaxationConfig config;
   config.length = 2 * structure_->config().radius;
+  config.maximum_iterations = kMostFactorisations;
   const double further = std::min(1.0, kSnapStep * config.length / way.norm());
   Eigen::VectorXd state = path_->state();
   system_.addTo(state, Eigen::VectorXd::Zero(system_.freeSize()), further * way);

@@ -65,13 +65,12 @@ Eigen::VectorXd TensegrityStructure::makeStruts() {
     const int first = static_cast<int>(all.vertices.size());
     ends_[a] = first + strut.firstApex();
     ends_[b] = first + strut.lastApex();
-    std::vector<int> line = {ends_[a]}, section;
-    for (int slice = 0; slice <= mesh_config.slices; ++slice) line.push_back(first + strut.vertex(slice, 0));
-    line.push_back(ends_[b]);
+    std::vector<int> firsts, section;
+    for (int slice = 0; slice <= mesh_config.slices; ++slice) firsts.push_back(first + strut.vertex(slice, 0));
     for (int corner = 0; corner < StrutMesh::kCorners; ++corner) {
       section.push_back(first + strut.vertex(mesh_config.slices / 2, corner));
     }
-    lines_.push_back(line);
+    sections_.push_back(firsts);
     middles_.push_back(section);
     all.vertices.insert(all.vertices.end(), strut.mesh.vertices.begin(), strut.mesh.vertices.end());
     for (std::array<int, 4> corners : strut.mesh.tetrahedra) {
@@ -150,6 +149,44 @@ std::vector<int> TensegrityStructure::heldNodes() const {
 }
 
 std::vector<int> TensegrityStructure::middleNodes(int strut) const { return middles_[strut]; }
+
+std::vector<Eigen::Vector3d> TensegrityStructure::strutLine(int strut, const Eigen::VectorXd& state) const {
+  const auto& [a, b] = geometry_.struts[strut];
+  std::vector<Eigen::Vector3d> line = {position(ends_[a], state)};
+  for (const int first : sections_[strut]) {
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    for (int corner = 0; corner < StrutMesh::kCorners; ++corner) middle += position(first + corner, state);
+    line.push_back(middle / StrutMesh::kCorners);
+  }
+  line.push_back(position(ends_[b], state));
+  return line;
+}
+
+double TensegrityStructure::strutForce(int strut, const Eigen::VectorXd& state) const {
+  const auto& [a, b] = geometry_.struts[strut];
+  const Eigen::Vector3d axis = (position(ends_[b], state) - position(ends_[a], state)).normalized();
+  const Eigen::Vector3d unloaded = (*places_)[ends_[b]] - (*places_)[ends_[a]];
+  const Material& material = *struts_->materials().front();
+  const int elements = struts_->elementCount() / 6;
+  double sum = 0;
+  for (int e = strut * elements; e < (strut + 1) * elements; ++e) {
+    for (int q = 0; q < struts_->pointCount(); ++q) {
+      const Eigen::Matrix3d stress = material.stress(struts_->deformationGradient(e, q, state));
+      sum += struts_->weight(e, q) * axis.dot(stress * unloaded.normalized());
+    }
+  }
+  return sum / unloaded.norm();
+}
+
+bool TensegrityStructure::isActin(int cable) const {
+  int number = -1;  // in the geometry
+  for (int left = cable; left >= 0; --left) {
+    do {
+      ++number;
+    } while (std::count(config_.cut.begin(), config_.cut.end(), number) > 0);
+  }
+  return geometry_.cables[number].kind == TensegrityGeometry::Kind::kActin;
+}
 
 Constraints TensegrityStructure::constraints(const std::vector<int>& following) const {
   Constraints result;

@@ -49,8 +49,13 @@ class TensegrityStructure {
   std::vector<int> heldNodes() const;  ///< three strut ends
   /// Corners of a strut's middle section.
   std::vector<int> middleNodes(int strut) const;
-  /// Nodes along a strut, end to end, for pictures: an end, a corner of each section, the other end.
-  const std::vector<int>& lineOf(int strut) const { return lines_[strut]; }
+  /// Middle of a strut's sections from one end to the other, m.
+  std::vector<Eigen::Vector3d> strutLine(int strut, const Eigen::VectorXd& state) const;
+  /// Mean axial force in a strut, N, compression negative: the integral of its stress along the line through its ends
+  /// over its length.
+  double strutForce(int strut, const Eigen::VectorXd& state) const;
+  /// Whether a cable of makeParts() is one of actin: of the numbers in TensegrityGeometry those cut are left out.
+  bool isActin(int cable) const;
 
   /// The membrane at rest; mesh_vertices are nodes.
   const SurfaceMesh& surface() const { return surface_; }
@@ -85,7 +90,8 @@ class TensegrityStructure {
   std::shared_ptr<LayeredBody<3>> struts_;
   std::shared_ptr<NodePlaces> places_;
   std::vector<int> ends_;  ///< node of each strut end
-  std::vector<std::vector<int>> lines_, middles_;
+  std::vector<std::vector<int>> sections_,
+      middles_;  ///< of each strut: first corner of each section; corners of its middle
   Membrane::Geometry membrane_;
   Eigen::VectorXd placed_, start_;  ///< states: as first placed, and at rest
   Form form_;
