@@ -11,7 +11,8 @@ from pathlib import Path
 SOURCE = Path(__file__).resolve().parent.parent / 'src'
 
 # Folders of src/ that are programs and not rooms: they may include every room, and no room may include them.
-PROGRAMS = {'nodes', 'commands', 'bench', 'tools'}
+PROGRAMS = {'nodes', 'commands', 'bench', 'paper', 'tools'}
+SHARES = {('paper', 'bench')}  # the first may include what the second's programs share
 KNOWS_ROS = {'nodes'}
 
 # First folders of the include paths of ROS, of its libraries and of generated messages (ours too).
@@ -45,7 +46,7 @@ def check_include(folder, target, allowed):
     if ROS_FOLDERS.match(target):
         return None if folder in KNOWS_ROS else 'only src/nodes may include ROS'
     if first in PROGRAMS and '/' in target:
-        return None if first == folder else f'nothing includes src/{first}'
+        return None if first == folder or (folder, first) in SHARES else f'nothing includes src/{first}'
     if first in allowed and folder in allowed and first not in allowed[folder]:
         return f'room {folder} may include only {", ".join(sorted(allowed[folder]))}'
     return None

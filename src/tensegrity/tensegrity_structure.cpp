@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -19,7 +20,7 @@ constexpr double kSpin = 1e-4;       ///< moment against spinning, of the strut'
 constexpr double kEnough = 1e-9;     ///< residual, of the prestress
 constexpr double kRounding = 2e-15;  ///< of a strut's stress, of Young's modulus
 constexpr int kFactorisations = 80;  ///< of a relaxation, before the cables are tightened in smaller steps
-constexpr int kMostIterations = 30;  ///< of Newton's method after it
+constexpr int kPatience = 6;         ///< steps of Newton's method after it that make nothing better
 constexpr double kSmallestStep = 1.0 / 64;  ///< of the prestress
 
 /// The same mesh with straight edges.
@@ -237,6 +238,29 @@ void TensegrityStructure::findForm() {
   }
 }
 
+/// Full steps of Newton's method, also where one makes it worse (cables that go slack and taut by turns), as long as
+/// some of the last ones made it better. False when the state that it ends in is not stable.
+bool TensegrityStructure::refine(EquilibriumSystem& system, Eigen::VectorXd& state) {
+  Eigen::VectorXd at = state, residual;
+  Eigen::Vector3d reaction;
+  form_.residual = std::numeric_limits<double>::infinity();
+  bool stable = false;
+  for (int i = 0, worse = 0; worse < kPatience; ++i, ++form_.iterations) {
+    if (!system.residual(at, residual, reaction)) break;
+    const double size = residual.lpNorm<Eigen::Infinity>();
+    const bool better = size < form_.residual;
+    if (!system.factorise(at)) break;
+    worse = better ? 0 : worse + 1;
+    if (better) {
+      stable = true;
+      state = at;
+      form_.residual = size;
+    }
+    system.addTo(at, -system.solve(residual), Eigen::Vector3d::Zero());
+  }
+  return stable;
+}
+
 /// Relaxation comes near whatever happens (struts that bend, a cable that is cut); Newton's method then goes to
 /// rounding.
 bool TensegrityStructure::balance(Eigen::VectorXd& state, double tightness) {
@@ -246,21 +270,7 @@ bool TensegrityStructure::balance(Eigen::VectorXd& state, double tightness) {
   relaxation.length = 2 * config_.radius;
   relaxation.maximum_iterations = kFactorisations;
   form_.iterations += Relaxation(system, relaxation).relax(state).iterations;
-  Eigen::VectorXd residual, candidate, candidate_residual;
-  Eigen::Vector3d reaction;
-  if (!system.residual(state, residual, reaction)) return false;
-  bool stable = true;
-  for (int i = 0; i < kMostIterations; ++i, ++form_.iterations) {
-    stable = system.factorise(state);
-    if (!stable) break;
-    candidate = state;
-    system.addTo(candidate, -system.solve(residual), Eigen::Vector3d::Zero());
-    if (!system.residual(candidate, candidate_residual, reaction)) break;
-    if (candidate_residual.norm() >= residual.norm()) break;  // nothing but rounding is left
-    state.swap(candidate);
-    residual.swap(candidate_residual);
-  }
-  form_.residual = residual.lpNorm<Eigen::Infinity>();
+  const bool stable = refine(system, state);
   form_.prestress = 0;
   for (int i = 0; i < parts.cables->elementCount(); ++i) {
     form_.prestress = std::max(form_.prestress, parts.cables->tension(i, state));

@@ -83,6 +83,7 @@ class TensegrityStructure {
   void settleStruts();
   void findForm();
   bool balance(Eigen::VectorXd& state, double tightness);
+  bool refine(EquilibriumSystem& system, Eigen::VectorXd& state);
   void makeSurface();
 
   TensegrityConfig config_;
