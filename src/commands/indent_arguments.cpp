@@ -29,6 +29,7 @@ Models:
   axisymmetric  the cell's section, in seconds
   spatial       in space
   live          the P1 tetrahedra of a live session (the scene's mesh keys), which lock; discs only
+A scene of cell/model tensegrity has one model, its own (auto), and no error estimate.
 
 Example:
   indent --scene config/cells/mouse_oocyte.yaml --depths 1e-6,2e-6,5e-6 --tolerance 0.01 --csv force.csv
