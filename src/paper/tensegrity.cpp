@@ -38,8 +38,11 @@ std::string line(const char* format, ...) {
 }
 
 /// What the needle meets.
-enum class Where { kEnd, kMiddle, kBetween };
-const char* name(Where where) { return where == Where::kEnd ? "end" : where == Where::kMiddle ? "middle" : "between"; }
+enum class Where { kEnd, kMiddle, kEndOfIt, kBetween };  ///< kEndOfIt: of the strut of kMiddle
+const char* name(Where where) {
+  constexpr const char* kNames[] = {"end", "middle", "end", "between"};
+  return kNames[static_cast<int>(where)];
+}
 
 int topEnd(const TensegrityGeometry& geometry) {
   int top = 0;
@@ -64,6 +67,7 @@ std::vector<int> following(const TensegrityStructure& structure, Where where, do
   const TensegrityGeometry& geometry = structure.geometry();
   if (where == Where::kEnd) return {structure.endNode(topEnd(geometry))};
   if (where == Where::kMiddle) return structure.middleNodes(topStrut(geometry));
+  if (where == Where::kEndOfIt) return {structure.endNode(geometry.struts[topStrut(geometry)][0])};
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   return findTipPatch(structure.surface(), structure.config().radius * up, up, tip_radius).vertices;
 }
@@ -175,7 +179,7 @@ class Tables {
       }
     };
     draw("rest", *structure->makeParts().cables, structure->start());
-    for (const Where where : {Where::kMiddle, Where::kEnd}) {
+    for (const Where where : {Where::kMiddle, Where::kEndOfIt}) {
       TensegrityLoading loading(structure, following(*structure, where, scene_.needle.tip.radius));
       for (int i = 1; i <= 16; ++i) {
         if (!loading.advance({0, 0, -0.5e-6 * i}).converged) break;

@@ -90,7 +90,9 @@ def items_of_loads(data_dir):
         result.append(item('Figure 11', f'case {case}, {name}: force, mean and largest displacement of strut ends',
                            'picture',
                            f'{1e6 * last["force_N"]:.3g} uN at {1e6 * last["depth_m"]:.0f} um; '
-                           f'{1e6 * last["mean_end_m"]:.2g}, {1e6 * last["largest_end_m"]:.2g} um', '', REPRODUCED))
+                           f'{1e6 * last["mean_end_m"]:.2g}, {1e6 * last["largest_end_m"]:.2g} um', '', DIFFERENCE,
+                           'the paper shows pictures without figures: that one load moves all of the structure is '
+                           'reproduced, by how much is that of the assumed counts'))
     return result
 
 
@@ -107,7 +109,7 @@ def items_of_prestress(data_dir):
             continue
         low, high = min(stiffness), max(stiffness)
         ratio = stiffness[high] / stiffness[low]
-        verdict = REPRODUCED if ratio > 1.01 else DIFFERENCE
+        verdict = REPRODUCED if ratio > 1.1 else DIFFERENCE
         result.append(item('Figure 12', f'force at 5 um {name}, prestrain {high:g} over {low:g}',
                            'more' if where == 'end' else 'more, less pronounced', f'{ratio:.3g}', '', verdict,
                            '' if verdict == REPRODUCED else
@@ -150,7 +152,7 @@ def draw_shape(axes, rows, title):
         colours = ['#bbbbbb' if loose else COLOUR[kind] for loose in slack]
         axes.add_collection3d(Line3DCollection(lines, colors=colours, linewidths=width))
     axes.set(xlim=(-28, 28), ylim=(-28, 28), zlim=(-28, 28), title=title)
-    axes.set_box_aspect((1, 1, 1))
+    axes.set_box_aspect((1, 1, 1), zoom=1.35)
     axes.view_init(elev=12, azim=-62)
     axes.set_axis_off()
 
@@ -167,7 +169,7 @@ def draw_shapes(data_dir, out_dir):
     made = plt.figure(figsize=(12, 4.4))
     for place, (case, title) in enumerate(titles.items(), 1):
         draw_shape(made.add_subplot(1, 3, place, projection='3d'), shapes[case], title)
-    made.tight_layout()
+    made.subplots_adjust(left=0, right=1, bottom=0, top=0.86, wspace=0)
     save(made, out_dir / 'figure_11.png')
 
 
@@ -260,7 +262,7 @@ step at the true mass must be below {1e9 * found['step_s']:.2g} ns for the bundl
 ![the structure at rest and under two loads](figure_11.png)
 
 Struts brown, actin blue, intermediate filaments green, slack cables grey; the membrane is solved with, but not drawn, as in the
-paper. Loads act from above, along the same direction.
+paper. Both loads act from above, on the strut below the cell's top.
 
 ### Figure 12: stiffening with prestress
 
@@ -271,4 +273,5 @@ paper. Loads act from above, along the same direction.
 ![force against depth](figure_13.png)
 
 On the right what the struts are made of changes: linear tetrahedra, the paper's, take a strut's rotation for a strain.
-Where a curve's stable equilibria end the structure snaps aside, and the curve goes on from where it comes to rest."""
+Where a curve's stable equilibria end the structure snaps aside, and the curve goes on from where it comes to rest; a curve that
+stops has no stable rest nearby that was found."""
