@@ -10,13 +10,16 @@
 namespace microinjection {
 
 /// The main of a benchmark program: `table` makes the CSV table, printing its rows as it goes; --csv FILE stores it.
+/// `more`: options of its own.
 template <typename Table>
-int benchMain(int argc, char** argv, const std::string& title, const Table& table) {
+int benchMain(int argc, char** argv, const std::string& title, const Table& table,
+              const boost::program_options::options_description& more = {}) {
   namespace po = boost::program_options;
   try {
     std::string csv;
     po::options_description options(title + "\nPrints the table. Options");
     options.add_options()("help", "this text")("csv", po::value(&csv), "file to write the table to as well");
+    options.add(more);
     po::variables_map values;
     po::store(po::parse_command_line(argc, argv, options), values);
     po::notify(values);

@@ -1,5 +1,7 @@
 // The prepared cell (off-line stage) against the converging model where it was not trained, and its time.
 
+#include <yaml-cpp/yaml.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -32,28 +34,41 @@ constexpr int kPoints = 4;  ///< along each
 constexpr unsigned kTimeLimit = 1200;
 constexpr char kScene[] = MICROINJECTION_SOURCE_DIR "/config/cells/mouse_oocyte_pipette.yaml";
 
-PreparedCell prepared(const Scene& scene) {
+/// The scene with another Poisson ratio, in a file of its own.
+std::string sceneFile(double poisson_ratio) {
+  YAML::Node scene = YAML::LoadFile(kScene);
+  if (scene["cell"]["material"]["poisson_ratio"].as<double>() == poisson_ratio) return kScene;
+  scene["cell"]["material"]["poisson_ratio"] = poisson_ratio;
+  const std::string path =
+      std::filesystem::temp_directory_path() / ("prepared_" + std::to_string(poisson_ratio) + ".yaml");
+  std::ostringstream text;
+  text << scene << '\n';
+  writeFileAtomically(path, text.str());
+  return path;
+}
+
+PreparedCell prepared(const Scene& scene, const std::string& scene_file) {
   const PreparationRange range = PreparationRange::standard(scene);
   const std::string path = preparedFile(scene, Preparation::plan(scene, range));
   const std::string program = std::filesystem::path(thisProgram()).parent_path().string() + "/prepare";
   if (auto cell = PreparedCell::load(scene, range, path)) return *cell;
-  runWorkers({{program, "--scene", kScene}}, 1, [](std::size_t, int status) {
+  runWorkers({{program, "--scene", scene_file}}, 1, [](std::size_t, int status) {
     if (status != 0) throw std::runtime_error("prepare failed");
   });
   if (auto cell = PreparedCell::load(scene, range, path)) return *cell;
   throw std::runtime_error("prepare left no data in " + path);
 }
 
-/// Paths to random places in the range; the needle's place lies between the trained angles as often as on them.
+/// Paths to random places in the range, between the trained angles; every second one in the plane of symmetry.
 std::vector<TrainingRay> unseenPaths(const PreparationRange& range) {
   std::mt19937 random(20);
   std::uniform_real_distribution<double> share(0, 1);
   std::vector<TrainingRay> paths;
   for (int i = 0; i < kPaths; ++i) {
-    const double side = range.lateral * std::sqrt(share(random)), turn = M_PI * share(random);
+    const double side = range.lateral * std::sqrt(share(random)), any = M_PI * share(random);
     const double depth = range.depth * (0.25 + 0.75 * share(random));
-    paths.push_back(
-        {range.angle * (i + 0.5) / kPaths, {side * std::cos(turn), side * std::sin(turn), -depth}, kPoints});
+    const double away = i % 2 == 0 ? std::cos(any) : any < M_PI / 2 ? 1 : -1, across = i % 2 == 0 ? std::sin(any) : 0;
+    paths.push_back({range.angle * (i + 0.5) / kPaths, {side * away, side * across, -depth}, kPoints});
   }
   return paths;
 }
@@ -112,7 +127,9 @@ Eigen::VectorXd surfaceError(const PreparedCell& cell, const TrainingSample& on_
 }
 
 std::string solvePath(const Scene& scene, const PreparedCell& cell, const TrainingRay& ray) {
-  const TrainingResult fine = solveRay(scene, ray, kLevel), coarse = solveRay(scene, ray, kTrainingLevel);
+  TrainingRay fine_ray = ray;
+  fine_ray.level = kLevel;
+  const TrainingResult fine = solveRay(scene, fine_ray), coarse = solveRay(scene, ray);
   std::string rows;
   for (std::size_t i = 0; i < fine.samples.size(); ++i) {
     Eigen::VectorXd difference;
@@ -152,8 +169,8 @@ void reportTimes(const Scene& scene, std::shared_ptr<const PreparedCell> cell) {
 std::string pathDependence(const Scene& scene, double angle_deg, const Eigen::Vector3d& end) {
   Scene there = scene;
   there.needle.offset = ContactPlace::offsetFor(scene, angle_deg * M_PI / 180);
-  CellProblem<3> straight(there, makeSceneMesh<3>(there, kTrainingLevel), ElementKind::kP2P0);
-  CellProblem<3> bent(there, makeSceneMesh<3>(there, kTrainingLevel), ElementKind::kP2P0);
+  CellProblem<3> straight(there, makeSceneMesh<3>(there, kCoarseLevel), ElementKind::kP2P0);
+  CellProblem<3> bent(there, makeSceneMesh<3>(there, kCoarseLevel), ElementKind::kP2P0);
   const Eigen::Vector3d force = straight.solve(end).force;
   bent.solve({0, 0, end.z()});
   char text[160];
@@ -212,9 +229,10 @@ void summarise(const std::string& table) {
                100 * errors.back());
 }
 
-std::string table() {
-  const Scene scene = loadScene(kScene);
-  const auto cell = std::make_shared<const PreparedCell>(prepared(scene));
+std::string table(double poisson_ratio) {
+  const std::string file = sceneFile(poisson_ratio);
+  const Scene scene = loadScene(file);
+  const auto cell = std::make_shared<const PreparedCell>(prepared(scene, file));
   reportTimes(scene, cell);
   std::fprintf(stderr, "prepared: energy created on closed paths: at most %.2g of what was exchanged\n",
                createdEnergy(scene, cell));
@@ -245,7 +263,12 @@ std::string table() {
 }  // namespace microinjection
 
 int main(int argc, char** argv) {
+  namespace po = boost::program_options;
+  double poisson_ratio = 0.49;
+  po::options_description options;
+  options.add_options()("poisson-ratio", po::value(&poisson_ratio)->default_value(0.49),
+                        "of the cell; another one is prepared first");
   return microinjection::benchMain(
       argc, argv, "prepared: the prepared cell's force and surface where it was not trained, and its time",
-      microinjection::table);
+      [&] { return microinjection::table(poisson_ratio); }, options);
 }

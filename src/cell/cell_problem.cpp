@@ -74,8 +74,8 @@ std::vector<int> nodesWithin(const LayeredBody<Dim>& body, const Eigen::Vector2d
 }  // namespace
 
 template <int Dim>
-CellProblem<Dim>::CellProblem(const Scene& scene, QuadraticMesh<Dim> mesh, ElementKind element)
-    : body_(std::make_shared<LayeredBody<Dim>>(std::move(mesh), element, materials<Dim>(scene))) {
+CellProblem<Dim>::CellProblem(const Scene& scene, QuadraticMesh<Dim> mesh, ElementKind element, Symmetry symmetry)
+    : symmetry_(symmetry), body_(std::make_shared<LayeredBody<Dim>>(std::move(mesh), element, materials<Dim>(scene))) {
   EquilibriumSystem::Terms terms = {body_};
   bool linear = body_->isLinear() && !scene.needle.tip.rounded();
   for (std::size_t i = 0; i < scene.cell.layers.size(); ++i) {
@@ -108,6 +108,11 @@ Constraints CellProblem<Dim>::constraints(const Scene& scene) const {
   for (int k = 0; k < 3; ++k) {  // a section's needle moves along the axis only
     result.entries[body_->tipEntry() + k] = Dim == 2 && k != 2 ? Constraints::kFixed : Constraints::tip(k);
   }
+  const bool mirror = symmetry_ == Symmetry::kMirror;
+  if (mirror) result.entries[body_->tipEntry() + 1] = Constraints::kFixed;
+  for (int node = 0; mirror && node < displacedNodes(*body_); ++node) {
+    if (body_->mesh().nodes[node][1] == 0) result.entries[Dim * node + 1] = Constraints::kFixed;
+  }
   for (int node = 0; Dim == 2 && node < displacedNodes(*body_); ++node) {
     if (body_->mesh().nodes[node][0] == 0) result.entries[Dim * node] = Constraints::kFixed;
   }
@@ -120,6 +125,7 @@ Constraints CellProblem<Dim>::constraints(const Scene& scene) const {
   for (int node : nodesWithin(*body_, scene.needle.offset, scene.needle.tip.radius, +1)) {
     if (held[node]) throw std::invalid_argument("the tip's patch and the held vertices overlap");
     for (int k = 0; k < Dim; ++k) result.entries[Dim * node + k] = Constraints::tip(k);
+    if (mirror) result.entries[Dim * node + 1] = Constraints::kFixed;
     if (Dim == 2) {  // along the axis only
       result.entries[Dim * node] = Constraints::kFixed;
       result.entries[Dim * node + 1] = Constraints::tip(2);
@@ -135,6 +141,8 @@ void CellProblem<Dim>::addContact(const Scene& scene, EquilibriumSystem::Terms& 
   TipContactConfig config;
   config.mode = needle.contact.mode == "sliding" ? TipContactConfig::Mode::kSliding : TipContactConfig::Mode::kSticking;
   config.friction = needle.contact.friction;
+  config.adhesion = needle.contact.adhesion_energy;
+  config.adhesion_range = needle.contact.adhesion_range;
   config.origin << needle.offset, tip.touchHeight(scene.radius(), needle.offset);
   config.penalty = kPenalty * largestModulus(scene) / needle.tip.radius;
   contact_ = std::make_shared<TipContact<Dim>>(*body_, tip, config);
@@ -175,6 +183,10 @@ IndentationSolution CellProblem<Dim>::solve(const Eigen::Vector3d& tip_displacem
   solution.tip_displacement = path_->translation();
   solution.force = -path_->reaction();
   solution.stiffness = path_->stiffness();
+  if (symmetry_ == Symmetry::kMirror) {  // the other half
+    solution.force *= 2;
+    solution.stiffness *= 2;
+  }
   solution.smallest_jacobian = body_->smallestJacobian(path_->state());
   solution.newton_iterations = result.newton_iterations;
   solution.cpu_time = threadCpuTime() - start;

@@ -4,8 +4,9 @@
 #include <limits>
 #include <memory>
 
-#include "cell/indentation.h"
+#include "cell/indentation_solution.h"
 #include "cell/scene.h"
+#include "mechanics/equilibrium_system.h"
 #include "mechanics/layered_body.h"
 #include "mechanics/load_path.h"
 
@@ -14,13 +15,18 @@ namespace microinjection {
 template <int Dim>
 class TipContact;
 
+/// Of a scene in space and its loads. kMirror: the mesh is the half y >= 0 (makeHalfSceneMesh), the tip moves in the
+/// plane y = 0; forces and stiffness are still those of the whole cell (zero across the
+/// plane). States that break the symmetry are not seen.
+enum class Symmetry { kNone, kMirror };
+
 /// A scene on a mesh: everything in it, in space (Dim 3) or, on the axis, in its section (Dim 2). Keeps its state and
 /// continues from it. One thread at a time.
 template <int Dim>
 class CellProblem {
  public:
   /// Throws std::invalid_argument when the needle's disc and the holding pipette overlap.
-  CellProblem(const Scene& scene, QuadraticMesh<Dim> mesh, ElementKind element);
+  CellProblem(const Scene& scene, QuadraticMesh<Dim> mesh, ElementKind element, Symmetry symmetry = Symmetry::kNone);
 
   /// Equilibrium with the tip displaced by this (m) from where it touches the undeformed cell, reached along the
   /// straight line from the present one at constant speed in `duration` (s; infinite: nothing viscous resists). On
@@ -41,6 +47,7 @@ class CellProblem {
   void addContact(const Scene& scene, EquilibriumSystem::Terms& terms);
   static LoadPathConfig pathConfig(const Scene& scene, bool linear);
 
+  Symmetry symmetry_;
   std::shared_ptr<LayeredBody<Dim>> body_;
   std::shared_ptr<TipContact<Dim>> contact_;  ///< of a rounded tip
   double deepest_ = 0;                        ///< m, that it may enter the surface

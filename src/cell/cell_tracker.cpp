@@ -15,17 +15,23 @@ CellTrackerConfig CellTrackerConfig::read(ConfigReader& reader) {
 }
 
 CellTracker::CellTracker(std::shared_ptr<const LiveCell> cell, const CellTrackerConfig& config)
-    : cell_(std::move(cell)), config_(config), thread_(cell_), members_at_rest_(cell_->membersAtRest()) {
+    : cell_(std::move(cell)),
+      rest_(cell_->surfaceAtRest()),
+      members_at_rest_(cell_->membersAtRest()),
+      config_(config),
+      thread_(cell_) {
   distrust_.reserve(200);
 }
 
 void CellTracker::ask(double time, const Eigen::Vector3d& displacement) {
-  bool asked = thread_.ask(patch_, displacement, time);
-  while (!asked && config_.fixed_period) asked = thread_.ask(patch_, displacement, time);
+  TipMove move{displacement, contacts_, std::nullopt, time};
+  if (contact_) move.touched = touched_;
+  bool asked = thread_.ask(place_, move);
+  while (!asked && config_.fixed_period) asked = thread_.ask(place_, move);
   if (!asked) return;  // with the next step, then
   asked_ = true;
   asked_at_ = time;
-  patch_asked_ = true;
+  place_asked_ = true;
 }
 
 void CellTracker::collect(double time) {
@@ -46,26 +52,27 @@ void CellTracker::collect(double time) {
   if (!solution) return;
   failure_.clear();
   asked_ = false;
-  if (solution->patch.vertices != patch_->vertices) return;  // the needle has moved on to another place
+  if (!solution->place.sameAs(*place_)) return;  // the needle has moved on to another place
   solution_ = std::move(solution);
   solution_time_ = asked_at_;
 }
 
-void CellTracker::prepare(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, const SurfaceHit& hit, double time) {
-  if ((tip - hit.point).dot(axis) > config_.prepare_distance) return;
+void CellTracker::prepare(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, const Eigen::Vector3d& touch,
+                          double time) {
+  if ((tip - touch).dot(axis) > config_.prepare_distance) return;
   // A hand trembles: a tenth of the tip's radius makes no other contact, and near the scene's line, where the mesh has
   // the tip's circle, that circle is meant.
   const Scene::Needle& needle = cell_->scene().needle;
   const double tremble = 0.1 * needle.tip.radius;
-  Eigen::Vector3d point = hit.point;
+  Eigen::Vector3d point = touch;
   if ((point.head<2>() - needle.offset).norm() < tremble) point.head<2>() = needle.offset;
-  if (patch_->vertices.empty() || (point - patch_at_).norm() > tremble) {
-    patch_ = std::make_shared<TipPatch>(cell_->patchAt(point, axis));
-    patch_at_ = point;
-    patch_asked_ = false;
+  if (!placed_at_ || (point - *placed_at_).norm() > tremble) {
+    place_ = std::make_shared<TipPlace>(cell_->placeAt(point, axis));
+    placed_at_ = point;
+    place_asked_ = false;
     solution_.reset();
   }
-  if (!patch_asked_ && !asked_) ask(time, Eigen::Vector3d::Zero());
+  if (!place_asked_ && !asked_) ask(time, cell_->preparedDisplacement());
 }
 
 TipForce CellTracker::distrustBecause(const char* reason) {
@@ -75,7 +82,8 @@ TipForce CellTracker::distrustBecause(const char* reason) {
 
 void CellTracker::release() {
   contact_.reset();
-  patch_asked_ = false;  // asks for the contact at zero displacement before the next touch
+  ++contacts_;
+  place_asked_ = false;  // prepares the contact before the next touch
 }
 
 TipForce CellTracker::touchForce(double time) {
@@ -98,7 +106,7 @@ TipForce CellTracker::touchForce(double time) {
 
 TipForce CellTracker::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time) {
   TipForce force = answer(tip, axis, time);
-  shape_.write(contact_ ? Shape{solution_, patch_} : Shape{});
+  shape_.write(contact_ ? Shape{solution_, place_} : Shape{});
   return force;
 }
 
@@ -107,21 +115,20 @@ TipForce CellTracker::answer(const Eigen::Vector3d& tip, const Eigen::Vector3d& 
   collect(time);
   if (punctured_) return {};
   if (!contact_) {
-    const double outside = 2 * cell_->scene().cell.diameter();
-    const Eigen::Vector3d origin = tip + (outside + tip.norm()) * axis;  // from outside, wherever the tip is
-    const auto hit = cell_->hit(origin, -axis, start_triangle_);
-    if (!hit) return {};
-    start_triangle_ = hit->triangle;
-    prepare(tip, axis, *hit, time);
-    if ((tip - hit->point).dot(axis) > 0) return {};
+    const auto touch = cell_->touch(tip, axis, hint_);
+    if (!touch) return {};
+    prepare(tip, axis, *touch, time);
+    if ((tip - *touch).dot(axis) > 0) return {};
     contact_ = Contact{};
-    contact_->touched_at = hit->point;
+    contact_->touched_at = *touch;
+    touched_ = time;
   }
   contact_->displacement = tip - contact_->touched_at;
   contact_->indentation = -contact_->displacement.dot(axis);
-  TipForce result = touchForce(time);
+  const char* refusal = cell_->refusal(axis);
+  TipForce result = refusal != nullptr ? distrustBecause(refusal) : touchForce(time);
   const double push = result.force.dot(axis);
-  if (contact_->indentation < 0 && (push <= 0 || !result.trusted)) {
+  if (cell_->isOff(tip, axis, contact_->touched_at) && (push <= 0 || !result.trusted)) {
     release();
     return {};
   }
@@ -141,34 +148,23 @@ std::optional<CellUnderNeedle::Solution> CellTracker::solution(double time) cons
                   solved.smallest_jacobian};
 }
 
-std::vector<std::array<int, 3>> CellTracker::triangles() const { return cell_->surface().triangles; }
+std::vector<std::array<int, 3>> CellTracker::triangles() const { return rest_.triangles; }
 
-std::vector<std::uint32_t> CellTracker::onSurface(const std::vector<int>& mesh_vertices) const {
-  const SurfaceMesh& surface = cell_->surface();
-  std::vector<std::uint32_t> result;
-  for (const int vertex : mesh_vertices) {
-    const auto found = std::lower_bound(surface.mesh_vertices.begin(), surface.mesh_vertices.end(), vertex);
-    if (found != surface.mesh_vertices.end() && *found == vertex)
-      result.push_back(static_cast<std::uint32_t>(found - surface.mesh_vertices.begin()));
-  }
-  return result;
-}
-
-std::vector<std::uint32_t> CellTracker::held() const { return onSurface(cell_->heldVertices()); }
+std::vector<std::uint32_t> CellTracker::held() const { return rest_.held; }
 
 CellUnderNeedle::Picture CellTracker::picture() {
-  const SurfaceMesh& surface = cell_->surface();
   shape_.update();
   const Shape& shape = shape_.value();
   Picture picture;
-  for (std::size_t i = 0; i < surface.vertices.size(); ++i) {
+  for (std::size_t i = 0; i < rest_.vertices.size(); ++i) {
     Eigen::Vector3d moved = Eigen::Vector3d::Zero();
-    if (shape.solution) moved = shape.solution->displacement.segment<3>(3 * surface.mesh_vertices[i]);
-    picture.vertices.emplace_back(surface.vertices[i] + moved);
+    if (shape.solution) moved = shape.solution->displacement.segment<3>(3 * i);
+    const bool own = shape.solution && shape.solution->rest;
+    picture.vertices.emplace_back((own ? (*shape.solution->rest)[i] : rest_.vertices[i]) + moved);
     picture.displacement.push_back(moved.norm());
   }
   picture.members = shape.solution ? shape.solution->members : members_at_rest_;
-  if (shape.touched) picture.touched = onSurface(shape.touched->vertices);
+  if (shape.touched) picture.touched = cell_->onSurface(shape.touched->patch);
   return picture;
 }
 

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/config_reader.h"
 #include "base/latest_value.h"
@@ -25,10 +26,10 @@ struct CellTrackerConfig {
 
 /// The live finite-element cell.
 ///
-/// A thread of its own solves the cell's equilibrium for the newest tip pose; between solutions step() extrapolates
-/// with the condensed contact stiffness, f = f_s - K (x - x_s). The surface vertices under the tip stick to it from
-/// touch until the pull would be adhesive; a force along the pipette of scene.cell.puncture_force punctures the cell
-/// for good.
+/// A thread of its own follows the newest tip pose with the cell's equilibrium; between solutions step() extrapolates
+/// with the condensed contact stiffness, f = f_s - K (x - x_s). A contact lasts from the touch until the tip is off the
+/// undeformed cell and the pull would be adhesive; a force along the pipette of scene.cell.puncture_force punctures the
+/// cell for good.
 class CellTracker : public CellUnderNeedle {
  public:
   CellTracker(std::shared_ptr<const LiveCell> cell, const CellTrackerConfig& config);
@@ -43,41 +44,42 @@ class CellTracker : public CellUnderNeedle {
   std::vector<std::uint32_t> held() const override;
   Picture picture() override;
 
-  const LiveCell& cell() const { return *cell_; }
-  const TipPatch& patch() const { return *patch_; }  ///< that sticks to the tip, or will on touch
+  const TipPatch& patch() const { return place_->patch; }  ///< that sticks to the tip, or will on touch
 
  private:
   /// All that the picture depends on.
   struct Shape {
     std::shared_ptr<const CellSolution> solution;  ///< null where nothing is deformed
-    std::shared_ptr<const TipPatch> touched;       ///< null without contact
+    std::shared_ptr<const TipPlace> touched;       ///< null without contact
   };
 
   TipForce answer(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time);
   void collect(double time);
   void ask(double time, const Eigen::Vector3d& displacement);
-  void prepare(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, const SurfaceHit& hit, double time);
+  void prepare(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, const Eigen::Vector3d& touch, double time);
   TipForce touchForce(double time);
   TipForce distrustBecause(const char* reason);
-  std::vector<std::uint32_t> onSurface(const std::vector<int>& mesh_vertices) const;
   void release();
 
   std::shared_ptr<const LiveCell> cell_;
+  LiveCell::Surface rest_;
+  std::vector<Member> members_at_rest_;
   CellTrackerConfig config_;
   SolutionThread thread_;
-  int start_triangle_ = 0;
-  std::shared_ptr<const TipPatch> patch_ = std::make_shared<TipPatch>();
-  Eigen::Vector3d patch_at_ = Eigen::Vector3d::Zero();  ///< m, what patch_ was made for
-  bool asked_ = false;                                  ///< a solution is under way
-  double asked_at_ = 0;                                 ///< s
-  double solution_time_ = 0;                            ///< s, when the solution at hand was asked for
-  bool patch_asked_ = false;                            ///< the thread works on patch_, not on an older one
+  int hint_ = 0;  ///< see LiveCell::touch
+  std::shared_ptr<const TipPlace> place_ = std::make_shared<TipPlace>();
+  std::optional<Eigen::Vector3d> placed_at_;  ///< m, what place_ was made for; none until a needle was near
+  unsigned contacts_ = 0;                     ///< that have ended
+  double touched_ = 0;                        ///< s, when the tip touched
+  bool asked_ = false;                        ///< a solution is under way
+  double asked_at_ = 0;                       ///< s
+  double solution_time_ = 0;                  ///< s, when the solution at hand was asked for
+  bool place_asked_ = false;                  ///< the thread works on place_, not on an older one
   std::shared_ptr<const CellSolution> solution_;
   std::optional<Contact> contact_;
   bool punctured_ = false;
   std::string distrust_;
-  std::string failure_;  ///< what the solver threw at the last question; else empty
-  std::vector<Member> members_at_rest_;
+  std::string failure_;       ///< what the solver threw at the last question; else empty
   LatestValue<Shape> shape_;  ///< from the thread that steps to the one that draws
 };
 

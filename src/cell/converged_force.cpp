@@ -50,6 +50,22 @@ std::string micrometres(double metres) {
 
 }  // namespace
 
+void Indenting::validate() const {
+  if (withdrawal.empty()) return;
+  if (depths.empty() || !lateral.isZero(0)) {
+    throw ConfigError("withdrawal: must be left out where lateral is not 0 or there are no depths");
+  }
+  double last = *std::max_element(depths.begin(), depths.end());
+  for (const double depth : withdrawal) {
+    if (!(depth < last)) {
+      std::ostringstream message;
+      message << "withdrawal: " << depth << " m must be below the depth before, " << last << " m";
+      throw ConfigError(message.str());
+    }
+    last = depth;
+  }
+}
+
 /// Equilibria on one mesh.
 struct ConvergedForce::Level {
   LevelReport report;
@@ -62,9 +78,8 @@ struct ConvergedForce::Level {
 ConvergedForce::ConvergedForce(const Scene& scene, const Indenting& indenting, const ConvergedForceConfig& config)
     : scene_(scene), indenting_(indenting), config_(config) {
   scene_.validate();
-  if (scene.cell.tensegrity) {
-    throw ConfigError("cell/model = tensegrity: must be continuum for a solution on finer and finer meshes");
-  }
+  scene_.requireContinuum("a solution on finer and finer meshes");
+  indenting_.validate();
   const bool possible = isAxisymmetric(scene) && indenting.lateral.isZero(0);
   if (config.model == ConvergedForceConfig::Model::kAxisymmetric && !possible) {
     throw ConfigError("model = axisymmetric: needle/offset and lateral must be 0; use spatial or auto");
@@ -87,6 +102,15 @@ CellProblem<Dim> ConvergedForce::makeProblem(double level) const {
   }
 }
 
+/// In which the forces are found: in, then out.
+std::vector<std::size_t> ConvergedForce::order() const {
+  std::vector<std::size_t> result(indenting_.count());
+  std::iota(result.begin(), result.end(), 0);
+  const auto turn = result.begin() + static_cast<std::ptrdiff_t>(indenting_.depths.size());
+  std::stable_sort(result.begin(), turn, [&](auto a, auto b) { return indenting_.depths[a] < indenting_.depths[b]; });
+  return result;
+}
+
 template <int Dim>
 ConvergedForce::Level ConvergedForce::solveLevel(double number) const {
   const Clock::time_point start = Clock::now();
@@ -96,19 +120,15 @@ ConvergedForce::Level ConvergedForce::solveLevel(double number) const {
   level.report.nodes = problem.body().nodeCount();
   level.report.elements = problem.body().elementCount();
   level.report.unknowns = problem.unknowns();
-  const std::size_t count = indenting_.depths.size();
+  const std::size_t count = indenting_.count();
   level.forces.resize(count);
   level.wall_times.assign(count, 0);
   level.report.forces.assign(count, kNan);
-  std::vector<std::size_t> order(count);
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](auto a, auto b) { return indenting_.depths[a] < indenting_.depths[b]; });
   Clock::time_point mark = start;
   const bool straight = indenting_.lateral.isZero(0);  // all depths lie on one line
   std::optional<IndentationSolution> last;
-  for (std::size_t i : order) {
-    const Eigen::Vector3d target(indenting_.lateral.x(), indenting_.lateral.y(), -indenting_.depths[i]);
+  for (std::size_t i : order()) {
+    const Eigen::Vector3d target(indenting_.lateral.x(), indenting_.lateral.y(), -indenting_.depth(i));
     if (!straight) problem.reset();
     const double way = (target - problem.tipDisplacement()).norm();
     IndentationSolution solution;
@@ -158,6 +178,8 @@ bool ConvergedForce::done(const ForcePoint& point) const {
 /// Takes what a level tells.
 void ConvergedForce::takeOver(const Level& level, Before& before, std::vector<ForcePoint>& points) const {
   const Refinement refinement = refinementOf(axisymmetric_, scene_.needle.tip);
+  double largest = 0;
+  for (const auto& force : level.forces) largest = force ? std::max(largest, force->norm()) : largest;
   const bool doubting = refinement.last > refinement.first + refinement.step;
   for (std::size_t i = 0; i < points.size(); ++i) {
     ForcePoint& point = points[i];
@@ -174,7 +196,8 @@ void ConvergedForce::takeOver(const Level& level, Before& before, std::vector<Fo
       continue;
     }
     if (!coarser) continue;
-    const double size = level.forces[i]->norm();
+    const bool in = i < indenting_.depths.size();
+    const double size = in ? level.forces[i]->norm() : largest;
     const double change = size > 0 ? (*level.forces[i] - *coarser).norm() / size : 0;
     const double doubt = doubting ? std::max(change, before.changes[i]) : change;
     before.changes[i] = change;
@@ -204,8 +227,8 @@ bool ConvergedForce::goOn(const std::vector<ForcePoint>& points, const Level& le
 
 std::vector<ForcePoint> ConvergedForce::solve(const std::function<void(const LevelReport&)>& report) {
   const Clock::time_point start = Clock::now();
-  std::vector<ForcePoint> points(indenting_.depths.size());
-  for (std::size_t i = 0; i < points.size(); ++i) points[i].depth = indenting_.depths[i];
+  std::vector<ForcePoint> points(indenting_.count());
+  for (std::size_t i = 0; i < points.size(); ++i) points[i].depth = indenting_.depth(i);
   Before before{Forces(points.size()), std::vector<double>(points.size(), 0)};
   const Refinement refinement = refinementOf(axisymmetric_, scene_.needle.tip);
   for (double number = refinement.first; number <= config_.finest; number += refinement.step) {

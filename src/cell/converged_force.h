@@ -21,6 +21,15 @@ struct Indenting {
   Eigen::Vector2d lateral = Eigen::Vector2d::Zero();  ///< m, of the tip at every depth, reached along a straight line
   std::optional<double> speed;                        ///< m/s, of the tip; none: so slowly that nothing viscous resists
   double hold = 0;                                    ///< s at each depth before the force is taken
+  /// m, ever smaller, from below the deepest of `depths` on: of the tip drawn back, straight, at the same speed. Below
+  /// 0 the tip is above where it touched, and adhesion pulls it.
+  std::vector<double> withdrawal;
+
+  std::size_t count() const { return depths.size() + withdrawal.size(); }
+  /// Of the i-th force: depths, then withdrawal.
+  double depth(std::size_t i) const { return i < depths.size() ? depths[i] : withdrawal[i - depths.size()]; }
+  /// Throws ConfigError when the withdrawal is none.
+  void validate() const;
 };
 
 struct ConvergedForceConfig {
@@ -41,10 +50,11 @@ struct ForcePoint {
   double depth = 0;  ///< m
   bool converged = false;
   std::string reason;  ///< why not, or, when converged, why no finer mesh has a solution; else empty
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();                   ///< N, of the cell on the needle
-  double error_estimate = std::numeric_limits<double>::quiet_NaN();  ///< relative, from the last two levels
-  double level = -1;                                                 ///< of the mesh that the force was found on
-  double wall_time = 0;                                              ///< s, of all levels
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< N, of the cell on the needle
+  /// Relative, from the last two levels; on withdrawal, where the force changes its sign, to the largest on the path.
+  double error_estimate = std::numeric_limits<double>::quiet_NaN();
+  double level = -1;     ///< of the mesh that the force was found on
+  double wall_time = 0;  ///< s, of all levels
 };
 
 /// What was done on one mesh.
@@ -53,7 +63,7 @@ struct LevelReport {
   std::size_t nodes = 0, elements = 0;
   int unknowns = 0;
   double wall_time = 0;        ///< s
-  std::vector<double> forces;  ///< N, size of the force at each depth (order of Indenting::depths), nan where none
+  std::vector<double> forces;  ///< N, size of the force at each depth (order of Indenting::depth), nan where none
 };
 
 /// Solves a scene on finer and finer meshes until two of them agree to the tolerance at every depth. Elements at the
@@ -86,6 +96,7 @@ class ConvergedForce {
   Level solveLevel(double level) const;
   void takeOver(const Level& level, Before& before, std::vector<ForcePoint>& points) const;
   bool done(const ForcePoint& point) const;
+  std::vector<std::size_t> order() const;
   bool resolves(const Eigen::Vector3d& displacement) const;
   void giveUp(const std::string& why, std::vector<ForcePoint>& points) const;
   bool goOn(const std::vector<ForcePoint>& points, const Level& level) const;

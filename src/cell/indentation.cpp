@@ -42,7 +42,7 @@ Indentation::Indentation(std::shared_ptr<const CellModel> cell, const TipPatch& 
       system_({cell_->body()}, makeConstraints(*cell_, patch), SymmetricSolver::Method::kSimplicial),
       path_(system_, pathConfig(*cell_)) {}
 
-IndentationSolution Indentation::solve(const Eigen::Vector3d& tip_displacement, double /*duration*/) {
+IndentationSolution Indentation::solve(const Eigen::Vector3d& tip_displacement) {
   const double start = threadCpuTime();
   const LoadPath::Result result = path_.advance(tip_displacement);
   IndentationSolution solution;
@@ -59,6 +59,13 @@ IndentationSolution Indentation::solve(const Eigen::Vector3d& tip_displacement, 
 
 Eigen::VectorXd Indentation::displacement() const {
   return path_.state().head(3 * static_cast<Eigen::Index>(cell_->mesh().vertices.size()));
+}
+
+Eigen::VectorXd Indentation::surfaceDisplacement() const {
+  const std::vector<int>& nodes = cell_->surface().mesh_vertices;
+  Eigen::VectorXd result(3 * nodes.size());
+  for (std::size_t i = 0; i < nodes.size(); ++i) result.segment<3>(3 * i) = path_.state().segment<3>(3 * nodes[i]);
+  return result;
 }
 
 }  // namespace microinjection

@@ -1,10 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <limits>
 #include <memory>
+#include <vector>
 
 #include "cell/cell_model.h"
+#include "cell/indentation_solution.h"
 #include "contact/tip_patch.h"
 #include "mechanics/equilibrium_system.h"
 #include "mechanics/load_path.h"
@@ -13,20 +14,29 @@ namespace microinjection {
 
 /// Quasi-static deformation of a cell under one sticking patch: every vertex of the patch moves by the displacement of
 /// the tip. Keeps its state and continues from it, so a needle that moves little costs little. One thread at a time.
-class Indentation : public LiveIndentation {
+class Indentation : public TipPath {
  public:
   /// Throws std::invalid_argument when the patch and the held vertices overlap or leave nothing free.
   Indentation(std::shared_ptr<const CellModel> cell, const TipPatch& patch);
   Indentation(const Indentation&) = delete;  // the path refers to the system
   Indentation& operator=(const Indentation&) = delete;
 
-  /// The elastic cell: `duration` does not matter.
-  IndentationSolution solve(const Eigen::Vector3d& tip_displacement,
-                            double duration = std::numeric_limits<double>::infinity()) override;
+  /// Equilibrium at `tip_displacement` (m), reached along the straight line from the present one in adaptive load
+  /// steps. On failure the state stays at the last equilibrium that was found.
+  IndentationSolution solve(const Eigen::Vector3d& tip_displacement);
 
-  Eigen::VectorXd displacement() const override;
-  Eigen::Vector3d tipDisplacement() const override { return path_.translation(); }
-  void reset() override { path_.reset(); }
+  /// Displacement of the mesh's vertices, m, xyz per vertex.
+  Eigen::VectorXd displacement() const;
+
+  IndentationSolution follow(const TipMove& move) override { return solve(move.displacement); }
+  std::shared_ptr<const std::vector<Eigen::Vector3d>> rest() const override { return nullptr; }
+  Eigen::VectorXd surfaceDisplacement() const override;
+
+  /// Displacement of the tip in the present state, m.
+  const Eigen::Vector3d& tipDisplacement() const { return path_.translation(); }
+
+  /// Back to the undeformed state.
+  void reset() { path_.reset(); }
 
  private:
   std::shared_ptr<const CellModel> cell_;

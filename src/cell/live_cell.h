@@ -1,92 +1,96 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <limits>
+#include <array>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "cell/cell_under_needle.h"
+#include "cell/indentation_solution.h"
 #include "cell/scene.h"
-#include "contact/ray_cast.h"
 #include "contact/tip_patch.h"
-#include "mesh/surface_mesh.h"
 
 namespace microinjection {
 
-/// The cell at rest under a needle tip.
-struct IndentationSolution {
-  bool converged = false;
-  std::string reason;                                          ///< why not, for people; empty when converged
-  Eigen::Vector3d tip_displacement = Eigen::Vector3d::Zero();  ///< m, reached: the one asked for when converged
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();             ///< N, of the cell on the needle, at tip_displacement
-  Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();  ///< N/m, d(force)/d(tip_displacement) = -stiffness; symmetric
-  double smallest_jacobian = 1;                         ///< det F of the element that is compressed most
-  int newton_iterations = 0;
-  double cpu_time = 0;  ///< s, of the calling thread
+/// Where a needle touches, as far as the equations depend on it.
+struct TipPlace {
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< m, of the tip when it touches
+  TipPatch patch;                                   ///< what sticks to the tip, where touching does not decide that
+
+  /// Whether the equations are the same.
+  bool sameAs(const TipPlace& other) const {
+    if (patch.vertices.empty() && other.patch.vertices.empty()) return point == other.point;
+    return patch.vertices == other.patch.vertices;
+  }
 };
 
-/// A cell under one sticking patch: every vertex of the patch moves by the displacement of the tip. Keeps its state and
-/// continues from it, so a needle that moves little costs little. One thread at a time.
-class LiveIndentation {
+/// Where the tip is in one contact.
+struct TipMove {
+  Eigen::Vector3d displacement = Eigen::Vector3d::Zero();  ///< m, since it touched
+  unsigned contact = 0;                                    ///< counts the contacts
+  std::optional<double> touched;                           ///< s, when it touched; none: it is about to
+  double time = 0;                                         ///< s, now
+};
+
+/// Equilibria of a cell under a tip that touched it at one place, one after the other. One thread at a time.
+class TipPath {
  public:
-  virtual ~LiveIndentation() = default;
-
-  /// Equilibrium at `tip_displacement` (m), reached along the straight line from the present one in adaptive load
-  /// steps, in `duration` (s; infinite: nothing viscous resists). On failure the state stays at the last equilibrium
-  /// that was found.
-  virtual IndentationSolution solve(const Eigen::Vector3d& tip_displacement,
-                                    double duration = std::numeric_limits<double>::infinity()) = 0;
-
-  /// Displacement, m, xyz per vertex of the mesh that SurfaceMesh::mesh_vertices and TipPatch::vertices number.
-  virtual Eigen::VectorXd displacement() const = 0;
-
-  /// Struts and cables, where the cell has some.
+  virtual ~TipPath() = default;
+  /// At the tip's displacement or, where the way there is long, on it: an answer is to come often. On failure the state
+  /// stays at the last equilibrium that was found.
+  virtual IndentationSolution follow(const TipMove& move) = 0;
+  /// m, of the vertices of the picture at rest, see LiveCell; null: they do not depend on the place.
+  virtual std::shared_ptr<const std::vector<Eigen::Vector3d>> rest() const = 0;
+  /// m, xyz of each of them, in the present state.
+  virtual Eigen::VectorXd surfaceDisplacement() const = 0;
+  /// Struts and cables in the present state, where the cell has some; in the order of LiveCell::membersAtRest().
   virtual std::vector<CellUnderNeedle::Member> members() const { return {}; }
-
-  /// Displacement of the tip in the present state, m.
-  virtual Eigen::Vector3d tipDisplacement() const = 0;
-
-  /// Back to the cell without the needle.
-  virtual void reset() = 0;
 };
 
-/// A cell that a moving needle meets on its surface and that is solved while it moves. Centre at the origin, metres.
-/// Immutable after construction and safe to share between threads.
+/// A cell whose equations are solved while the needle moves. Immutable, and safe to share between threads. Frame: the
+/// cell's centre is the origin, metres.
 class LiveCell {
  public:
+  /// The surface for people.
+  struct Surface {
+    std::vector<Eigen::Vector3d> vertices;      ///< m
+    std::vector<std::array<int, 3>> triangles;  ///< seen from outside
+    std::vector<std::uint32_t> held;            ///< vertices in the holding pipette
+  };
+
   virtual ~LiveCell() = default;
+  virtual const Scene& scene() const = 0;
+  /// What it is and how far to trust it, for people.
+  virtual std::string description() const = 0;
+  /// Why a needle along `axis` (unit, out of the cell) cannot be served; null when it can.
+  virtual const char* refusal(const Eigen::Vector3d& axis) const = 0;
 
-  const Scene& scene() const { return scene_; }
-  const SurfaceMesh& surface() const { return surface_; }
+  /// Where a tip on the line through `tip` along `axis` touches the undeformed cell, m; nothing where it passes by.
+  /// `hint` makes the next search of the same asker quicker.
+  virtual std::optional<Eigen::Vector3d> touch(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis,
+                                               int& hint) const = 0;
+  /// Whether a tip that has touched at `touched_at` is off the undeformed cell.
+  virtual bool isOff(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis,
+                     const Eigen::Vector3d& touched_at) const = 0;
+  virtual TipPlace placeAt(const Eigen::Vector3d& touched_at, const Eigen::Vector3d& axis) const = 0;
 
-  /// Vertices of the mesh that are held.
-  const std::vector<int>& heldVertices() const { return held_vertices_; }
+  /// m, displacement of the tip at which a contact is solved before it touches. A tangent there has to serve until the
+  /// first solution of the contact.
+  virtual Eigen::Vector3d preparedDisplacement() const = 0;
+  /// May take a while. Throws std::exception where there is no solving. The path may outlive this.
+  virtual std::unique_ptr<TipPath> path(const TipPlace& place) const = 0;
 
-  /// First intersection of a ray with the surface at rest. `start`, a triangle hit before, makes the search local.
-  std::optional<SurfaceHit> hit(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, int start = 0) const {
-    return castRayFrom(surface_, start, origin, direction);
-  }
-
-  /// What sticks to the tip of a needle whose line goes through `point` along `axis`, which points out of the cell;
-  /// see findTipPatch.
-  TipPatch patchAt(const Eigen::Vector3d& point, const Eigen::Vector3d& axis) const {
-    return findTipPatch(surface_, point, axis, scene_.needle.tip.radius);
-  }
-
-  /// Throws std::invalid_argument when the patch and the held vertices overlap or leave nothing free.
-  virtual std::unique_ptr<LiveIndentation> indentation(const TipPatch& patch) const = 0;
-
+  virtual Surface surfaceAtRest() const = 0;
+  virtual std::vector<std::uint32_t> onSurface(const TipPatch& patch) const = 0;  ///< vertices of the picture
   /// Struts and cables without the needle, where the cell has some.
   virtual std::vector<CellUnderNeedle::Member> membersAtRest() const { return {}; }
-
- protected:
-  explicit LiveCell(const Scene& scene) : scene_(scene) {}
-
-  Scene scene_;
-  SurfaceMesh surface_;
-  std::vector<int> held_vertices_;
 };
+
+/// The cell that serves a needle where nothing is prepared: TensegrityCell for a scene of that model, else CellModel
+/// where that can, which is quick, else SweptCell. Throws ConfigError for a bad scene, std::runtime_error as they do.
+std::shared_ptr<const LiveCell> makeLiveCell(const Scene& scene);
 
 }  // namespace microinjection

@@ -95,6 +95,19 @@ void readCell(ConfigReader cell, Scene::Cell& value) {
     cell.has("layers") ? readLayeredCell(cell, value) : readHomogeneousCell(cell, value);
   }
   readQuantity(cell.section("puncture"), "force", value.puncture_force, Range::positive(), "N");
+  if (!cell.has("biomembrane")) return;
+  ConfigReader biomembrane = cell.section("biomembrane");
+  value.biomembrane.emplace();
+  readQuantity(biomembrane, "thickness", value.biomembrane->thickness, Range::positive(), "m", ConfigReader::kRequired);
+  readQuantity(biomembrane, "dimple_radius", value.biomembrane->dimple_radius, Range::positive(), "m",
+               ConfigReader::kRequired);
+}
+
+void readAdhesion(ConfigReader contact, Scene::Contact& value) {
+  if (!contact.has("adhesion")) return;
+  ConfigReader adhesion = contact.section("adhesion");
+  readQuantity(adhesion, "energy", value.adhesion_energy, Range::positive(), "J/m^2", ConfigReader::kRequired);
+  readQuantity(adhesion, "range", value.adhesion_range, Range::positive(), "m", ConfigReader::kRequired);
 }
 
 void readNeedle(ConfigReader needle, Scene::Needle& value) {
@@ -118,6 +131,7 @@ void readNeedle(ConfigReader needle, Scene::Needle& value) {
   if (value.contact.mode == "sticking" && contact.has("friction")) {
     contact.error("friction", "must be left out: it belongs to mode sliding only");
   }
+  readAdhesion(contact, value.contact);
   Eigen::VectorXd offset = value.offset;
   needle.vector("offset", offset, Range::finite());
   value.offset = offset;
@@ -131,6 +145,7 @@ void readMesh(ConfigReader mesh, Scene::Mesh& value) {
   ConfigReader refinement = mesh.section("refinement");
   readQuantity(refinement, "zone", value.refinement.zone, Range::positive(), "needle diameters");
   readQuantity(refinement, "density", value.refinement.density, {1, 100, false, false}, "");
+  readQuantity(mesh, "stretch", value.stretch, Range::closed(1, 4), "");
 }
 
 void readRequirements(ConfigReader requirements, Scene::Requirements& value) {
@@ -152,6 +167,10 @@ const std::vector<std::string>& tipShapes() {
 }
 
 void Scene::validate() const { checkScene(*this); }
+
+void Scene::requireContinuum(const std::string& purpose) const {
+  if (cell.tensegrity) throw ConfigError("cell/model = tensegrity: must be continuum for " + purpose);
+}
 
 Scene parseScene(const YAML::Node& node, const std::string& origin) {
   Scene scene;

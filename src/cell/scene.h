@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "cell/biomembrane.h"
 #include "material/material.h"
 #include "tensegrity/tensegrity_config.h"
 
@@ -28,6 +29,7 @@ struct Scene {
     /// Of a cell of model tensegrity: it has nothing of the layer but its radius.
     std::optional<TensegrityConfig> tensegrity;
     double puncture_force = std::numeric_limits<double>::infinity();  ///< N; infinity: is never punctured
+    std::optional<BiomembraneConfig> biomembrane;                     ///< of the membrane model only
 
     /// Of the outermost layer: of the whole cell when it is homogeneous.
     MaterialConfig& material() { return layers.front().material; }
@@ -49,6 +51,8 @@ struct Scene {
   struct Contact {
     std::string mode = "sticking";  ///< what touches sticks; or sliding, for rounded tips
     double friction = 0;            ///< Coulomb's coefficient, of sliding only, >= 0
+    double adhesion_energy = 0;     ///< J/m^2, to part what has touched, of rounded tips only, >= 0
+    double adhesion_range = 0;      ///< m, gap of the strongest pull, > 0 with adhesion; see contact/tip_contact.h
   };
   struct Needle {
     Tip tip;
@@ -62,6 +66,7 @@ struct Scene {
   struct Mesh {
     std::optional<double> size;  ///< m, of the elements outside of the puncture zone; see meshSize()
     Refinement refinement;
+    double stretch = 1;  ///< of the elements along z, see CellMeshConfig
   };
 
   /// Of a model that serves a needle, for the choice among those that could.
@@ -84,6 +89,8 @@ struct Scene {
 
   /// Throws ConfigError with all errors at once.
   void validate() const;
+  /// Throws ConfigError, naming the purpose, for a tensegrity cell: what meshes the cell's inside has nothing of it.
+  void requireContinuum(const std::string& purpose) const;
 };
 
 /// disc (flat, with a sharp edge), hemisphere, rounded_flat.

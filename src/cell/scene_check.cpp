@@ -112,6 +112,26 @@ void checkTip(const Scene::Tip& tip, double cell_radius, Errors& errors) {
   }
 }
 
+void checkAdhesion(const Scene::Needle& needle, Errors& errors) {
+  const Scene::Contact& contact = needle.contact;
+  const bool there = contact.adhesion_energy > 0;
+  errors.require(notNegative(contact.adhesion_energy), "needle/contact/adhesion/energy", contact.adhesion_energy,
+                 " J/m^2", "0 or more");
+  errors.require(!there || needle.tip.rounded(), "needle/contact/adhesion/energy", contact.adhesion_energy, " J/m^2",
+                 "left out: a disc never parts from what it touches");
+  errors.require(!there || positive(contact.adhesion_range), "needle/contact/adhesion/range", contact.adhesion_range,
+                 " m", "above 0");
+}
+
+void checkBiomembrane(const Scene& scene, Errors& errors) {
+  if (!scene.cell.biomembrane) return;
+  const double dimple = scene.cell.biomembrane->dimple_radius, thickness = scene.cell.biomembrane->thickness;
+  errors.require(positive(thickness) && thickness < scene.radius(), "cell/biomembrane/thickness", thickness, " m",
+                 "above 0 and below the cell's radius, " + metres(scene.radius()));
+  errors.require(dimple > scene.needle.tip.radius && dimple <= scene.radius(), "cell/biomembrane/dimple_radius", dimple,
+                 " m", "above needle/tip/radius and at most the cell's radius, " + metres(scene.radius()));
+}
+
 void checkNeedle(const Scene::Needle& needle, double cell_radius, Errors& errors) {
   checkTip(needle.tip, cell_radius, errors);
   const std::string& mode = needle.contact.mode;
@@ -121,6 +141,7 @@ void checkNeedle(const Scene::Needle& needle, double cell_radius, Errors& errors
                  "0 or more");
   errors.require(mode == "sliding" || needle.contact.friction == 0, "needle/contact/friction", needle.contact.friction,
                  "", "left out: it belongs to mode sliding only");
+  checkAdhesion(needle, errors);
   const double reach = kReach * cell_radius, length = needle.offset.norm();
   if (needle.tip.rounded()) {
     errors.require(length < reach, "needle/offset (its length)", length, " m",
@@ -139,6 +160,8 @@ void checkMesh(const Scene& scene, Errors& errors) {
   errors.require(positive(refinement.zone), "mesh/refinement/zone", refinement.zone, "", "positive");
   errors.require(refinement.density >= 1 && refinement.density <= 100, "mesh/refinement/density", refinement.density,
                  "", "in [1, 100]");
+  errors.require(scene.mesh.stretch >= 1 && scene.mesh.stretch <= 4, "mesh/stretch", scene.mesh.stretch, "",
+                 "in [1, 4]");
 }
 
 }  // namespace
@@ -152,12 +175,16 @@ void checkScene(const Scene& scene) {
   if (scene.cell.tensegrity) {
     errors.require(!scene.needle.tip.rounded(), "needle/tip/shape", scene.needle.tip.shape, "",
                    "disc: a tensegrity cell's membrane sticks to a flat tip");
+    if (scene.cell.biomembrane) {
+      errors.add("cell/biomembrane: must be left out of a tensegrity cell, which has the membrane of its own");
+    }
     checkNeedle(scene.needle, scene.radius(), errors);
     return errors.throwAny();
   }
   errors.require(positive(contact_radius) && contact_radius < reach, "holding_pipette/contact_radius", contact_radius,
                  " m", "above 0 and below 0.95 of the cell's radius, " + metres(reach));
   checkNeedle(scene.needle, scene.radius(), errors);
+  checkBiomembrane(scene, errors);
   checkMesh(scene, errors);
   errors.throwAny();
 }

@@ -73,16 +73,34 @@ QuadraticMesh<2> makeSceneMesh<2>(const Scene& scene, double level) {
   return makeQuadratic(makeSectionMesh(config), config.radii);
 }
 
-template <>
-QuadraticMesh<3> makeSceneMesh<3>(const Scene& scene, double level) {
+namespace {
+
+QuadraticMesh<3> sweep(const Scene& scene, const QuadraticMesh<2>& section, double level, bool half) {
   const Eigen::Vector2d place = pole(scene);
   SweepConfig config;
+  config.half = half;
   config.segments = std::max(kFewestSegments, static_cast<int>(std::lround(kSegments + 4 * level)));
   config.pole_offset = place.norm();
   config.pole_azimuth = place.isZero(0) ? 0 : std::atan2(place.y(), place.x());
   config.disc_radius = scene.needle.tip.rounded() ? 0 : scene.needle.tip.radius;
   config.holding_radius = scene.holding_pipette.contact_radius;
-  return sweepSection(makeSceneMesh<2>(scene, level), config);
+  if (half) config.segments = (config.segments + 1) / 2;
+  return sweepSection(section, config);
+}
+
+}  // namespace
+
+QuadraticMesh<3> sweepScene(const Scene& scene, const QuadraticMesh<2>& section, double level) {
+  return sweep(scene, section, level, false);
+}
+
+template <>
+QuadraticMesh<3> makeSceneMesh<3>(const Scene& scene, double level) {
+  return sweepScene(scene, makeSceneMesh<2>(scene, level), level);
+}
+
+QuadraticMesh<3> makeHalfSceneMesh(const Scene& scene, double level) {
+  return sweep(scene, makeSceneMesh<2>(scene, level), level, true);
 }
 
 }  // namespace microinjection

@@ -4,15 +4,9 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 namespace microinjection {
-namespace {
-
-constexpr double kShortest = 1e-4;  ///< s, between two questions: a clock may stand
-
-}  // namespace
 
 SolutionThread::SolutionThread(std::shared_ptr<const LiveCell> cell)
     : cell_(std::move(cell)), thread_([this] { run(); }) {}
@@ -28,12 +22,11 @@ SolutionThread::~SolutionThread() {
 
 // The solving thread has the lock for the exchange of a pointer, but may lose the processor while it does.
 
-bool SolutionThread::ask(const std::shared_ptr<const TipPatch>& patch, const Eigen::Vector3d& tip_displacement,
-                         double time) {
+bool SolutionThread::ask(const std::shared_ptr<const TipPlace>& place, const TipMove& move) {
   {
     const std::unique_lock<std::mutex> lock(mutex_, std::try_to_lock);
     if (!lock) return false;
-    question_ = Question{patch, tip_displacement, time};
+    question_ = Question{place, move};
   }
   changed_.notify_all();
   return true;
@@ -82,18 +75,16 @@ void SolutionThread::run() {
 }
 
 std::shared_ptr<const CellSolution> SolutionThread::solve(const Question& question) {
-  double since = std::max(question.time - solved_for_, kShortest);
-  if (!indentation_ || question.patch->vertices != patch_.vertices) {
-    indentation_ = cell_->indentation(*question.patch);
-    patch_ = *question.patch;
-    since = std::numeric_limits<double>::infinity();
+  if (!path_ || !question.place->sameAs(place_)) {
+    path_ = cell_->path(*question.place);
+    place_ = *question.place;
   }
-  solved_for_ = question.time;
   auto solution = std::make_shared<CellSolution>();
-  solution->patch = *question.patch;
-  solution->indentation = indentation_->solve(question.tip_displacement, since);
-  solution->displacement = indentation_->displacement();
-  solution->members = indentation_->members();
+  solution->place = *question.place;
+  solution->indentation = path_->follow(question.move);
+  solution->rest = path_->rest();
+  solution->displacement = path_->surfaceDisplacement();
+  solution->members = path_->members();
   const auto unused = [](const auto& given) { return given.use_count() == 1; };
   given_.erase(std::remove_if(given_.begin(), given_.end(), unused), given_.end());
   given_.push_back(solution);

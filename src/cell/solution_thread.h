@@ -15,14 +15,15 @@ namespace microinjection {
 
 /// An equilibrium and the deformation that goes with it.
 struct CellSolution {
-  TipPatch patch;
+  TipPlace place;
   IndentationSolution indentation;
-  Eigen::VectorXd displacement;  ///< m, xyz per vertex of the mesh
+  std::shared_ptr<const std::vector<Eigen::Vector3d>> rest;  ///< see TipPath
+  Eigen::VectorXd displacement;                              ///< m, xyz of each vertex of the picture
   std::vector<CellUnderNeedle::Member> members;
 };
 
-/// Solves indentations one after the other in a thread of its own. The asking thread never waits, unless it calls
-/// wait(), and never has to free a solution.
+/// Follows a tip in a thread of its own, which makes the equations for each place, too. The asking thread never waits,
+/// unless it calls wait(), and never has to free a solution.
 class SolutionThread {
  public:
   explicit SolutionThread(std::shared_ptr<const LiveCell> cell);
@@ -30,10 +31,9 @@ class SolutionThread {
   SolutionThread(const SolutionThread&) = delete;
   SolutionThread& operator=(const SolutionThread&) = delete;
 
-  /// Asks for the equilibrium of `patch` at a tip displacement (m) at `time` (s; a viscous cell has had since the
-  /// question before, or for ever where that was of another patch). Returns false, and asks nothing, while the solving
+  /// Asks for the equilibrium of a tip that moved from `place`. Returns false, and asks nothing, while the solving
   /// thread is at the exchange. @pre the answer before was taken.
-  bool ask(const std::shared_ptr<const TipPatch>& patch, const Eigen::Vector3d& tip_displacement, double time);
+  bool ask(const std::shared_ptr<const TipPlace>& place, const TipMove& move);
   /// The answer when it is there, else, or while the solving thread is at the exchange, null. Rethrows what the solver
   /// threw.
   std::shared_ptr<const CellSolution> take();
@@ -42,17 +42,15 @@ class SolutionThread {
 
  private:
   struct Question {
-    std::shared_ptr<const TipPatch> patch;
-    Eigen::Vector3d tip_displacement;
-    double time;  ///< s
+    std::shared_ptr<const TipPlace> place;
+    TipMove move;
   };
   void run();
   std::shared_ptr<const CellSolution> solve(const Question& question);
 
   std::shared_ptr<const LiveCell> cell_;
-  std::unique_ptr<LiveIndentation> indentation_;  ///< of the solving thread only
-  double solved_for_ = 0;                         ///< s, of the solving thread only: time of its last question
-  TipPatch patch_;                                ///< of the solving thread only
+  std::unique_ptr<TipPath> path_;  ///< of the solving thread only
+  TipPlace place_;                 ///< of the solving thread only
   /// Of the solving thread only: all that others may still have. It drops them when nobody has, so that freeing their
   /// memory is never left to the thread that asks.
   std::vector<std::shared_ptr<const CellSolution>> given_;

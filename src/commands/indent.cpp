@@ -12,8 +12,10 @@
 
 #include "base/atomic_file.h"
 #include "base/errors.h"
+#include "cell/biomembrane.h"
 #include "cell/cell_model.h"
 #include "cell/converged_force.h"
+#include "cell/indentation.h"
 #include "cell/scene.h"
 #include "cell/tensegrity_cell.h"
 #include "commands/indent_arguments.h"
@@ -24,16 +26,13 @@ namespace {
 constexpr int kConverged = 0, kBadUsage = 2, kNotConverged = 3, kNotAccurate = 4;
 
 /// Pushed straight down, a deeper point continues from the last one, which lies on its way; any other starts afresh.
-ForcePoint solveLive(LiveIndentation& indentation, double depth, const Indenting& indenting) {
-  constexpr double kEver = std::numeric_limits<double>::infinity();
+/// `solve` takes a Path to the displacement (m).
+template <typename Path, typename Solve>
+ForcePoint solveLive(Path& path, double depth, const Eigen::Vector2d& lateral, const Solve& solve) {
   const auto start = std::chrono::steady_clock::now();
-  const Eigen::Vector2d& lateral = indenting.lateral;
-  const bool on_the_way = lateral.isZero(0) && -indentation.tipDisplacement().z() <= depth;
-  if (!on_the_way) indentation.reset();
-  const Eigen::Vector3d target(lateral.x(), lateral.y(), -depth);
-  const double way = (target - indentation.tipDisplacement()).norm();
-  IndentationSolution solution = indentation.solve(target, way > 0 && indenting.speed ? way / *indenting.speed : kEver);
-  if (solution.converged && indenting.hold > 0) solution = indentation.solve(target, indenting.hold);
+  const bool on_the_way = lateral.isZero(0) && -path.tipDisplacement().z() <= depth;
+  if (!on_the_way) path.reset();
+  const IndentationSolution solution = solve(Eigen::Vector3d(lateral.x(), lateral.y(), -depth));
   ForcePoint point;
   point.depth = depth;
   point.converged = solution.converged;
@@ -46,29 +45,69 @@ ForcePoint solveLive(LiveIndentation& indentation, double depth, const Indenting
   return point;
 }
 
-std::shared_ptr<const LiveCell> liveCell(const Scene& scene) {
-  if (!scene.cell.tensegrity) {
-    const auto cell = std::make_shared<const CellModel>(scene);
-    std::fprintf(stderr, "indent: live model, %zu vertices, %zu tetrahedra\n", cell->mesh().vertices.size(),
-                 cell->mesh().tetrahedra.size());
-    return cell;
-  }
-  const auto cell = std::make_shared<const TensegrityCell>(scene);
-  const TensegrityStructure& structure = cell->structure();
-  std::fprintf(stderr, "indent: tensegrity, %zu nodes, %d tetrahedra; prestress %.4g N, unbalanced %.2g N\n",
-               structure.nodePlaces().size(), structure.struts().elementCount(), structure.form().prestress,
-               structure.form().residual);
-  return cell;
+TipPatch tipPatch(const DiscCell& cell) {
+  const Eigen::Vector2d& offset = cell.scene().needle.offset;
+  const TipPatch patch = cell.patchAt({offset.x(), offset.y(), cell.scene().radius()}, Eigen::Vector3d::UnitZ());
+  std::fprintf(stderr, "indent: %s; %zu vertices under the tip\n", cell.description().c_str(), patch.vertices.size());
+  return patch;
 }
 
 std::vector<ForcePoint> live(const Scene& scene, const Indenting& indenting) {
-  const auto cell = liveCell(scene);
-  const Eigen::Vector2d& offset = scene.needle.offset;
-  const TipPatch patch = cell->patchAt({offset.x(), offset.y(), scene.radius()}, Eigen::Vector3d::UnitZ());
-  std::fprintf(stderr, "indent: %zu vertices under the tip\n", patch.vertices.size());
-  const std::unique_ptr<LiveIndentation> indentation = cell->indentation(patch);
+  const auto cell = std::make_shared<const CellModel>(scene);
+  Indentation indentation(cell, tipPatch(*cell));
   std::vector<ForcePoint> points;
-  for (double depth : indenting.depths) points.push_back(solveLive(*indentation, depth, indenting));
+  const auto solve = [&](const Eigen::Vector3d& target) { return indentation.solve(target); };
+  for (double depth : indenting.depths) points.push_back(solveLive(indentation, depth, indenting.lateral, solve));
+  return points;
+}
+
+std::vector<ForcePoint> tensegrity(const Scene& scene, const Indenting& indenting) {
+  if (!indenting.withdrawal.empty()) {
+    throw ConfigError("--withdraw: must be left out for a scene of cell/model = tensegrity");
+  }
+  const auto cell = std::make_shared<const TensegrityCell>(scene);
+  const std::unique_ptr<TensegrityIndentation> path = cell->indentation(tipPatch(*cell));
+  const auto solve = [&](const Eigen::Vector3d& target) {
+    constexpr double kEver = std::numeric_limits<double>::infinity();
+    const double way = (target - path->tipDisplacement()).norm();
+    const IndentationSolution moved = path->solve(target, way > 0 && indenting.speed ? way / *indenting.speed : kEver);
+    return moved.converged && indenting.hold > 0 ? path->solve(target, indenting.hold) : moved;
+  };
+  std::vector<ForcePoint> points;
+  for (double depth : indenting.depths) points.push_back(solveLive(*path, depth, indenting.lateral, solve));
+  return points;
+}
+
+void refuseWhatIsNoMembrane(const Scene& scene, const Indenting& indenting) {
+  scene.requireContinuum("--model membrane");
+  std::vector<std::string> errors;
+  if (!scene.cell.biomembrane) errors.push_back("cell/biomembrane is missing: thickness and dimple_radius, m");
+  if (!scene.needle.offset.isZero(0)) errors.push_back("needle/offset: must be 0 with --model membrane");
+  if (!indenting.lateral.isZero(0)) errors.push_back("--lateral: must be 0 with --model membrane");
+  if (indenting.speed || indenting.hold > 0) {
+    errors.push_back("--speed, --hold: must be left out with --model membrane, which knows no time");
+  }
+  if (!errors.empty()) throw ConfigError(errors);
+}
+
+std::vector<ForcePoint> membrane(const Scene& scene, const Indenting& indenting) {
+  refuseWhatIsNoMembrane(scene, indenting);
+  const MaterialConfig& material = scene.cell.material();
+  const Biomembrane model(material.young_modulus, material.poisson_ratio, scene.needle.tip.radius,
+                          *scene.cell.biomembrane);
+  std::fprintf(stderr, "indent: membrane of %.4g um, dimple of %.4g um\n", 1e6 * scene.cell.biomembrane->thickness,
+               1e6 * scene.cell.biomembrane->dimple_radius);
+  std::vector<ForcePoint> points;
+  for (const double depth : indenting.depths) {
+    ForcePoint& point = points.emplace_back();
+    point.depth = depth;
+    point.converged = true;
+    point.force.z() = model.force(depth);
+    if (model.strain(depth) > 0.1) {
+      std::fprintf(stderr, "indent: depth %.4g um: the membrane's strain is %.2g, too large for this model\n",
+                   1e6 * depth, model.strain(depth));
+    }
+  }
   return points;
 }
 
@@ -108,22 +147,26 @@ std::string csvRow(const ForcePoint& point) {
   return row;
 }
 
+std::vector<ForcePoint> solve(const Scene& scene, const IndentArguments& arguments) {
+  if (arguments.membrane) return membrane(scene, arguments.indenting);
+  const bool its_own = arguments.live || arguments.converged.model == ConvergedForceConfig::Model::kAuto;
+  if (scene.cell.tensegrity && its_own) return tensegrity(scene, arguments.indenting);
+  return arguments.live ? live(scene, arguments.indenting) : converged(scene, arguments);
+}
+
 int run(int argc, char** argv) {
   const std::optional<IndentArguments> parsed = parseIndentArguments(argc, argv);
   if (!parsed) return kConverged;
   const IndentArguments& arguments = *parsed;
   const Scene scene = loadScene(arguments.scene);
-  const std::vector<ForcePoint> points =
-      arguments.live || (scene.cell.tensegrity && arguments.converged.model == ConvergedForceConfig::Model::kAuto)
-          ? live(scene, arguments.indenting)
-          : converged(scene, arguments);
+  const std::vector<ForcePoint> points = solve(scene, arguments);
   std::string table = "depth_m,force_x_N,force_y_N,force_z_N,wall_s,converged,error_estimate\n";
   int status = kConverged;
   for (const ForcePoint& point : points) {
     tell(point, arguments.converged.tolerance);
     table += csvRow(point);
-    const bool missed =
-        arguments.tolerance_given && !arguments.live && point.error_estimate > arguments.converged.tolerance;
+    const bool missed = arguments.tolerance_given && std::isfinite(point.error_estimate) &&
+                        point.error_estimate > arguments.converged.tolerance;
     if (!point.converged) {
       status = kNotConverged;
     } else if (missed && status == kConverged) {

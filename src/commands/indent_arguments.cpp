@@ -17,18 +17,21 @@ constexpr char kHelp[] = R"(indent: quasi-static force on a needle tip pushed in
 Usage: indent --scene FILE --depths D1,D2,... [--tolerance T] [--lateral X,Y] [--csv FILE] [...]
 
 The tip goes down along -z from where it touches the undeformed cell at the scene's needle/offset (a disc: its centre).
+With --withdraw it is then drawn back: the table goes on with those depths, where friction, adhesion and viscosity show.
 The scene is solved on finer and finer meshes until two of them agree. One CSV row a depth, in the order given:
   depth_m,force_x_N,force_y_N,force_z_N,wall_s,converged,error_estimate
 force: of the cell on the needle, so force_z is positive when the cell is indented; nan where there is no solution.
 wall_s: time of that row's solutions. converged: 1, or 0 where finer meshes have no solution, for a reason that stderr tells.
 error_estimate: relative error of the force, from the last two meshes; nan for the live model, whose error is unknown
-(about 1 to 3, see the README).
+(about 1 to 3, see the README), and for the membrane.
 
 Models:
   auto          axisymmetric where offset and lateral are 0, else spatial
   axisymmetric  the cell's section, in seconds
   spatial       in space
   live          the P1 tetrahedra of a live session (the scene's mesh keys), which lock; discs only
+  membrane      an analytic point-load model of the zona pellucida (cell/biomembrane in the scene, with the modulus of the
+                outermost material): F = k depth^3; neither the inside's elasticity nor withdrawal are in it
 A scene of cell/model tensegrity has one model, its own (auto), and no error estimate.
 
 Example:
@@ -93,18 +96,25 @@ std::size_t parseChoice(const std::string& option, const std::string& name, cons
 }
 
 struct Texts {
-  std::string depths, lateral, model, element, tolerance, speed, hold, time;
+  std::string depths, withdraw, lateral, model, element, tolerance, speed, hold, time;
 };
 
 void interpret(const Texts& texts, IndentArguments& arguments) {
   using Model = ConvergedForceConfig::Model;
   arguments.indenting.depths = parseDepths(texts.depths);
+  if (!texts.withdraw.empty()) {
+    arguments.indenting.withdrawal = parseNumbers("withdraw", texts.withdraw, "numbers (m) separated by commas");
+  }
   arguments.indenting.lateral = parseLateral(texts.lateral);
   if (!texts.speed.empty()) arguments.indenting.speed = parsePositive("speed", texts.speed, " (m/s)");
   arguments.indenting.hold = parsePositive("hold", texts.hold, " (s)", true);
-  const std::size_t model = parseChoice("model", texts.model, {"auto", "axisymmetric", "spatial", "live"});
+  const std::size_t model = parseChoice("model", texts.model, {"auto", "axisymmetric", "spatial", "live", "membrane"});
   arguments.live = model == 3;
-  if (!arguments.live) arguments.converged.model = static_cast<Model>(model);
+  arguments.membrane = model == 4;
+  if (model < 3) arguments.converged.model = static_cast<Model>(model);
+  if (model >= 3 && !texts.withdraw.empty()) {
+    throw ConfigError("--withdraw = " + texts.withdraw + ": must be left out with --model " + texts.model);
+  }
   parseChoice("element", texts.element, elementNames());
   arguments.converged.element = elementKind(texts.element);
   arguments.tolerance_given = !texts.tolerance.empty();
@@ -128,9 +138,12 @@ std::optional<IndentArguments> parseIndentArguments(int argc, char** argv) {
   options.add_options()("help", "this text")("scene", po::value(&arguments.scene),
                                              "scene file (YAML, SI units), for example config/cells/mouse_oocyte.yaml")(
       "depths", po::value(&texts.depths), "depths of the tip, m, separated by commas; each >= 0")(
+      "withdraw", po::value(&texts.withdraw),
+      "ever smaller depths, m, to which the tip is drawn back after the deepest; below 0: above where it touched")(
       "lateral", po::value(&texts.lateral)->default_value("0,0"),
       "X,Y: at every depth the tip has also moved by (X, Y), m, along a straight line to (X, Y, -depth)")(
-      "model", po::value(&texts.model)->default_value("auto"), "auto, axisymmetric, spatial or live: see above")(
+      "model", po::value(&texts.model)->default_value("auto"),
+      "auto, axisymmetric, spatial, live or membrane: see above")(
       "tolerance", po::value(&texts.tolerance),
       "relative error of the force that is asked for; default 0.005 on the axis, 0.03 in space")(
       "element", po::value(&texts.element)->default_value("p2_p0"), "p1, mini, p1_p1, p2, p2_p0 or p2_p1")(

@@ -13,7 +13,8 @@ namespace microinjection {
 struct IndentArguments {
   std::string scene;  ///< file
   Indenting indenting;
-  bool live = false;  ///< the live session's mesh of P1 tetrahedra instead of a converged solution
+  bool live = false;      ///< the live session's mesh of P1 tetrahedra instead of a converged solution
+  bool membrane = false;  ///< the scene's biomembrane instead
   ConvergedForceConfig converged;
   bool tolerance_given = false;
   std::string csv = "-";  ///< file, or - for the standard output

@@ -89,7 +89,7 @@ class Preparing {
   int work() {
     prctl(PR_SET_PDEATHSIG, SIGKILL);  // whoever ends the preparation ends its workers
     const TrainingRay& ray = plan_.rays.at(arguments_.ray);
-    const TrainingResult result = solveRay(scene_, ray, kTrainingLevel);
+    const TrainingResult result = solveRay(scene_, ray);
     writeCacheFile(file(arguments_.ray), description(arguments_.ray), encode(result));
     return kDone;
   }
@@ -101,18 +101,22 @@ class Preparing {
       return kDone;
     }
     solveMissing();
-    std::vector<TrainingSample> samples;
+    std::vector<TrainingResult> results;
     bool complete = true;
     for (std::size_t i = 0; i < plan_.rays.size(); ++i) {
-      TrainingResult result = decodeTraining(*readCacheFile(file(i), description(i)));
-      if (!result.reason.empty()) tell(plan_.rays[i], result);
-      complete = complete && result.reason.empty();
-      samples.insert(samples.end(), result.samples.begin(), result.samples.end());
+      results.push_back(decodeTraining(*readCacheFile(file(i), description(i))));
+      if (results.back().reason.empty()) continue;
+      tell(plan_.rays[i], results.back());
+      complete = complete && plan_.rays[i].level != kCoarseLevel;  // where the fine mesh ends the coarse one goes on
     }
     if (!complete) throw std::runtime_error("the cell has no solution in all of the range (see above): not prepared");
-    std::fprintf(stderr, "prepare: fitting %zu equilibria\n", samples.size());
-    const PreparedCell cell = PreparedCell::fit(scene_, plan_, samples);
-    cell.save(scene_, path);
+    std::fprintf(stderr, "prepare: fitting\n");
+    const PreparedCell cell = PreparedCell::fit(scene_, plan_, results);
+    cell.save(scene_, plan_.range, path);
+    if (cell.range.axis_depth < 0.999 * plan_.range.axis_depth) {
+      std::fprintf(stderr, "prepare: on the axis the cell has a solution to %.3g um only\n",
+                   1e6 * cell.range.axis_depth);
+    }
     std::printf(
         "prepare: done: %s\nprepare: the fit's force error at the equilibria: median %.2g %%, nine of ten below %.2g "
         "%%, "

@@ -12,9 +12,9 @@
 #include "base/atomic_file.h"
 #include "base/errors.h"
 #include "cell/cell_problem.h"
+#include "cell/contact_place.h"
 #include "cell/scene_mesh.h"
 #include "commands/trajectory.h"
-#include "surrogate/contact_place.h"
 
 namespace microinjection {
 namespace {

@@ -13,6 +13,9 @@ namespace {
 constexpr double kDeeper = 1.5;
 constexpr double kDeepestFirst = 1e-4;
 
+/// Gap over adhesion's range at which a point is free: the traction is then 1e-7 of the largest.
+constexpr double kFree = 20;
+
 /// A section's (r, z) lies at (r, 0, z).
 Eigen::Vector3d inSpace(const Eigen::Vector2d& v) { return {v[0], 0, v[1]}; }
 Eigen::Vector3d inSpace(const Eigen::Vector3d& v) { return v; }
@@ -109,8 +112,10 @@ bool TipContact<Dim>::contribution(const Point& point, const Vector& at, Local& 
   }
   const double distance = tip_.distance(inSpace(at));
   const bool rubbing = config_.friction > 0 && point.memory.touching;
-  if (distance >= 0 && !rubbing) return false;
+  const bool held = distance > 0 && point.memory.bonded;
+  if (distance >= 0 && !rubbing && !held) return false;
   local = Local();
+  if (held) addAdhesion(point, at, local);
   if (distance < 0) {
     Vector normal;
     Matrix curvature;
@@ -143,6 +148,18 @@ void TipContact<Dim>::addFriction(const Point& point, const Vector& at, Local& l
   local.energy += bound * length - 0.5 * bound * bound / stiffness;
   local.gradient += bound * direction;
   local.hessian += bound / length * (tangential - direction * direction.transpose());
+}
+
+template <int Dim>
+void TipContact<Dim>::addAdhesion(const Point& point, const Vector& at, Local& local) const {
+  Vector normal;
+  Matrix curvature;
+  const double range = config_.adhesion_range, open = gap(at, normal, curvature) / range;
+  const double scale = config_.adhesion * point.weight, fading = std::exp(-open);
+  const double pull = scale / range * open * fading;
+  local.energy += scale * (1 - (1 + open) * fading);
+  local.gradient += pull * normal;
+  local.hessian += scale / (range * range) * (1 - open) * fading * normal * normal.transpose() + pull * curvature;
 }
 
 template <int Dim>
@@ -233,8 +250,13 @@ template <int Dim>
 void TipContact<Dim>::accept(const Eigen::VectorXd& state) {
   for (Facet& facet : facets_) {
     for (Point& point : facet.points) {
-      point.memory.last = relative(facet, point, state);
-      point.accepted = point.memory;
+      Memory& memory = point.memory;
+      memory.last = relative(facet, point, state);
+      if (config_.adhesion > 0) {
+        const double distance = tip_.distance(inSpace(memory.last));
+        memory.bonded = memory.touching || distance < 0 || (memory.bonded && distance < kFree * config_.adhesion_range);
+      }
+      point.accepted = memory;
     }
   }
 }

@@ -14,6 +14,8 @@ struct TipContactConfig {
   enum class Mode { kSticking, kSliding };
   Mode mode = Mode::kSticking;
   double friction = 0;                               ///< Coulomb's coefficient, >= 0, of kSliding
+  double adhesion = 0;                               ///< J/m^2, >= 0, to part what has touched
+  double adhesion_range = 0;                         ///< m, > 0 with adhesion: the gap at which it pulls most
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< m, lowest point of the tip's axis where it touches the cell
   double penalty = 0;                                ///< Pa/m, traction per penetration, > 0
 };
@@ -24,6 +26,11 @@ struct TipContactConfig {
 /// Sliding: energy penalty/2 gap^2 where the gap is negative. Coulomb's friction has an incremental potential too, with
 /// the normal traction of the step before as its bound. Sticking: a point sticks where it first touched, as long as the
 /// tip does not pull it; within the step of its touch it slides, and is then put back to where its path met the tip.
+///
+/// Adhesion: what has touched before is pulled back over a gap g > 0 by the traction G/d^2 g exp(-g/d) along the tip's
+/// normal, with the energy G = `adhesion` of parting and d = `adhesion_range` (Xu and Needleman, "Numerical simulations
+/// of fast crack growth in brittle solids", 1994, normal part); at most G/(e d). Where points stick, it takes over when
+/// they part. It is forgotten far out, where nothing of it is left.
 template <int Dim>
 class TipContact : public EnergyTerm {
  public:
@@ -52,6 +59,7 @@ class TipContact : public EnergyTerm {
         Vector::Zero();  ///< m, relative to the tip: where the tangential (sticking: the whole) spring rests
     Vector normal = Vector::Zero();  ///< out of the tip, where it settled last
     double traction = 0;             ///< Pa, normal, where it settled last
+    bool bonded = false;             ///< has touched and not gone far: adhesion holds it
   };
   struct Point {
     Vector undeformed = Vector::Zero();  ///< m, relative to the tip's origin
@@ -74,6 +82,7 @@ class TipContact : public EnergyTerm {
   Vector relative(const Facet& facet, const Point& point, const Eigen::VectorXd& state) const;
   bool contribution(const Point& point, const Vector& at, Local& local) const;
   void addFriction(const Point& point, const Vector& at, Local& local) const;
+  void addAdhesion(const Point& point, const Vector& at, Local& local) const;
   bool settle(Memory& memory, const Vector& at) const;
   double gap(const Vector& at, Vector& normal, Matrix& curvature) const;
 

@@ -44,6 +44,9 @@ void ExplicitStepConfig::validate(std::size_t vertices) const {
   std::vector<std::string> errors;
   if (!(density > 0)) errors.push_back("density = " + std::to_string(density) + " kg/m^3: must be > 0");
   if (!(damping >= 0)) errors.push_back("damping = " + std::to_string(damping) + " 1/s: must be >= 0");
+  if (time_step && !(*time_step > 0)) {
+    errors.push_back("time_step = " + std::to_string(*time_step) + " s: must be > 0");
+  }
   if (!(safety > 0 && safety <= 1)) errors.push_back("safety = " + std::to_string(safety) + ": must be in (0, 1]");
   std::vector<int> uses(vertices, 0);
   checkVertices(held, "held", uses, errors);
@@ -51,13 +54,20 @@ void ExplicitStepConfig::validate(std::size_t vertices) const {
   if (!errors.empty()) throw ConfigError(errors);
 }
 
-ExplicitStep::ExplicitStep(const TetMesh& mesh, const ExplicitStepConfig& config)
-    : internal_(mesh, config.lame), config_(config) {
+ExplicitStep::ExplicitStep(const TetMesh& mesh, const ExplicitStepConfig& config) : config_(config) {
+  using Force = ExplicitStepConfig::Force;
+  using Kind = TensorMassForce::Kind;
   config.validate(mesh.vertices.size());
+  if (config.force == Force::kKernel) {
+    kernel_.emplace(mesh, config.lame);
+  } else {
+    tensors_.emplace(mesh, config.lame, config.force == Force::kTensors ? Kind::kStVenantKirchhoff : Kind::kLinear);
+  }
   for (const Eigen::Vector3d& vertex : mesh.vertices) rest_.insert(rest_.end(), vertex.data(), vertex.data() + 3);
   positions_ = rest_;
   velocities_.assign(rest_.size(), 0);
   forces_.assign(rest_.size(), 0);
+  displacements_.assign(rest_.size(), 0);
   const std::vector<double> masses = lumpedMasses(mesh, config.density);
   for (std::size_t v = 0; v < masses.size(); ++v) {
     if (!(masses[v] > 0)) throw std::invalid_argument("vertex " + std::to_string(v) + " is of no tetrahedron");
@@ -65,6 +75,10 @@ ExplicitStep::ExplicitStep(const TetMesh& mesh, const ExplicitStepConfig& config
   }
   for (const std::vector<int>* vertices : {&config_.held, &config_.tip}) {
     for (int vertex : *vertices) std::fill_n(inverse_masses_.begin() + 3 * vertex, 3, 0.0);
+  }
+  if (config.time_step) {
+    time_step_ = *config.time_step;
+    return;
   }
   highest_frequency_ = findHighestFrequency();
   time_step_ = highest_frequency_ > 0 ? config.safety * 2 / highest_frequency_ : 0;
@@ -85,9 +99,9 @@ double ExplicitStep::findHighestFrequency() {
     if (!(length > 0)) return 0;  // nothing is free
     for (double& value : mode) value *= kAmplitude * size / length;
     for (std::size_t i = 0; i < mode.size(); ++i) moved[i] = rest_[i] + mode[i];
-    internal_.evaluate(moved.data(), forces_.data());
+    evaluate(moved, forces_);
     for (std::size_t i = 0; i < mode.size(); ++i) moved[i] = rest_[i] - mode[i];
-    internal_.evaluate(moved.data(), behind.data());
+    evaluate(moved, behind);
     for (std::size_t i = 0; i < mode.size(); ++i) mode[i] = inverse_masses_[i] * (behind[i] - forces_[i]) / 2;
     const double before = eigenvalue;
     eigenvalue = norm(mode) / (kAmplitude * size);
@@ -96,8 +110,14 @@ double ExplicitStep::findHighestFrequency() {
   return std::sqrt(eigenvalue);
 }
 
+void ExplicitStep::evaluate(const std::vector<double>& positions, std::vector<double>& forces) {
+  if (kernel_) return kernel_->evaluate(positions.data(), forces.data());
+  for (std::size_t i = 0; i < rest_.size(); ++i) displacements_[i] = positions[i] - rest_[i];
+  tensors_->evaluate(displacements_.data(), forces.data());
+}
+
 void ExplicitStep::step(const Eigen::Vector3d& tip_displacement) {
-  internal_.evaluate(positions_.data(), forces_.data());
+  evaluate(positions_, forces_);
   const double drag = config_.damping * time_step_ / 2, keep = (1 - drag) / (1 + drag), gain = time_step_ / (1 + drag);
   for (std::size_t i = 0; i < positions_.size(); ++i) {
     velocities_[i] = keep * velocities_[i] + gain * inverse_masses_[i] * forces_[i];

@@ -2,53 +2,17 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <numeric>
 #include <stdexcept>
 #include <string>
 
+#include "mechanics/p1_body.h"
+
 namespace microinjection {
 namespace {
 
 using Edges = Eigen::Matrix3d;
-
-/// Of a volume to the cube of the longest edge, below which a tetrahedron is flat: its force would be all rounding.
-constexpr double kFlat = 1e-12;
-
-Edges edges(const TetMesh& mesh, std::size_t tetrahedron) {
-  const auto& corner = mesh.tetrahedra[tetrahedron];
-  Edges result;
-  for (int a = 0; a < 3; ++a) result.col(a) = mesh.vertices[corner[a + 1]] - mesh.vertices[corner[0]];
-  return result;
-}
-
-void checkTetrahedron(const TetMesh& mesh, std::size_t tetrahedron) {
-  const std::string name = "tetrahedron " + std::to_string(tetrahedron);
-  const int count = static_cast<int>(mesh.vertices.size());
-  for (int vertex : mesh.tetrahedra[tetrahedron]) {
-    if (vertex < 0 || vertex >= count) {
-      throw std::invalid_argument(name + " names vertex " + std::to_string(vertex) + ", but there are " +
-                                  std::to_string(count));
-    }
-    if (!mesh.vertices[vertex].allFinite()) {
-      throw std::invalid_argument(name + ": vertex " + std::to_string(vertex) + " is not finite");
-    }
-  }
-  const Edges edge = edges(mesh, tetrahedron);
-  const double determinant = edge.col(0).cross(edge.col(1)).dot(edge.col(2));
-  if (!(determinant > kFlat * std::pow(edge.colwise().norm().maxCoeff(), 3))) {
-    throw std::invalid_argument(name + (determinant < 0 ? " is inverted" : " is flat"));
-  }
-}
-
-void check(const TetMesh& mesh, const Lame& lame) {
-  if (!(lame.mu > 0 && 3 * lame.lambda + 2 * lame.mu > 0 && std::isfinite(lame.mu + lame.lambda))) {
-    throw std::invalid_argument("lambda = " + std::to_string(lame.lambda) + " Pa, mu = " + std::to_string(lame.mu) +
-                                " Pa: must be mu > 0 and 3 lambda + 2 mu > 0");
-  }
-  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) checkTetrahedron(mesh, t);
-}
 
 /// Bits of 0..2^21 - 1, two zeros put between each and the next.
 std::uint64_t spread(std::uint64_t bits) {
@@ -114,7 +78,7 @@ StVenantKirchhoffForce::StVenantKirchhoffForce(const TetMesh& mesh, const Lame& 
 
 StVenantKirchhoffForce::StVenantKirchhoffForce(const TetMesh& mesh, const Lame& lame, InstructionSet set)
     : set_(set), kernel_(tetrahedronKernel(set)), ratio_(lame.lambda / (2 * lame.mu)) {
-  check(mesh, lame);
+  checkP1Body(mesh, lame);
   const std::vector<InstructionSet> supported = supportedInstructionSets();
   if (std::find(supported.begin(), supported.end(), set) == supported.end()) {
     throw std::invalid_argument("this machine has no " + instructionSetName(set));
@@ -128,7 +92,7 @@ StVenantKirchhoffForce::StVenantKirchhoffForce(const TetMesh& mesh, const Lame& 
   for (std::size_t i = 0; i < tetrahedra.size(); ++i) {
     TetrahedronBlock& block = blocks_[i / kSize];
     const int at = static_cast<int>(i % kSize);
-    fill(edges(mesh, tetrahedra[i]), lame.mu, block, at);
+    fill(tetrahedronEdges(mesh, tetrahedra[i]), lame.mu, block, at);
     for (int a = 0; a < 4; ++a) block.vertex[at][a] = 4 * number[mesh.tetrahedra[tetrahedra[i]][a]];
   }
   positions_.resize(order_.size());

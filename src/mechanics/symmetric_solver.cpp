@@ -1,5 +1,6 @@
 #include "mechanics/symmetric_solver.h"
 
+#include <dlfcn.h>
 #include <omp.h>
 
 #include <stdexcept>
@@ -39,6 +40,12 @@ class WithoutOpenMp {
 };
 
 }  // namespace
+
+void SymmetricSolver::useOneThread() {
+  // By its name, since which BLAS there is the system decides when the program is loaded.
+  const auto set = reinterpret_cast<void (*)(int)>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"));
+  if (set != nullptr) set(1);
+}
 
 SymmetricSolver::SymmetricSolver(Method method) : method_(method) {
   cholmod_start(&common_);

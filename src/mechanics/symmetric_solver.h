@@ -18,6 +18,11 @@ class SymmetricSolver {
   };
 
   explicit SymmetricSolver(Method method);
+
+  /// From now on BLAS uses one thread in all of this process, if it is OpenBLAS: the same bits in every run, and the
+  /// other processors left to other threads.
+  static void useOneThread();
+
   ~SymmetricSolver();
   SymmetricSolver(const SymmetricSolver&) = delete;
   SymmetricSolver& operator=(const SymmetricSolver&) = delete;

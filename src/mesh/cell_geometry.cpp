@@ -99,7 +99,8 @@ gmsh::vectorpair addImprintedSphere(double radius, const std::vector<CircleOnSph
 
 }  // namespace
 
-std::vector<int> buildCellGeometry(const std::vector<double>& radii, const std::vector<CircleOnSphere>& circles) {
+std::vector<int> buildCellGeometry(const std::vector<double>& radii, const std::vector<CircleOnSphere>& circles,
+                                   double flattening) {
   namespace occ = gmsh::model::occ;
   std::vector<gmsh::vectorpair> spheres = {addImprintedSphere(1, circles)};
   for (std::size_t i = 1; i < radii.size(); ++i) spheres.push_back(addImprintedSphere(radii[i], {}));
@@ -116,14 +117,20 @@ std::vector<int> buildCellGeometry(const std::vector<double>& radii, const std::
   }
   occ::synchronize();
   removeLooseSurfaces();
+  if (flattening != 1) {
+    gmsh::vectorpair solids;
+    for (int volume : volumes) solids.emplace_back(3, volume);
+    occ::dilate(solids, 0, 0, 0, 1, 1, 1 / flattening);
+    occ::synchronize();
+  }
   return volumes;
 }
 
-const CircleOnSphere* imprintedCircle(int curve, const std::vector<CircleOnSphere>& circles) {
+const CircleOnSphere* imprintedCircle(int curve, const std::vector<CircleOnSphere>& circles, double flattening) {
   std::vector<double> low, high, middle;
   gmsh::model::getParametrizationBounds(1, curve, low, high);
   gmsh::model::getValue(1, curve, {(low[0] + high[0]) / 2}, middle);
-  const Eigen::Vector3d point(middle[0], middle[1], middle[2]);
+  const Eigen::Vector3d point(middle[0], middle[1], flattening * middle[2]);
   const CircleOnSphere* nearest = nullptr;
   double distance = kOnCurve;
   for (const CircleOnSphere& circle : circles) {

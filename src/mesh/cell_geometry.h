@@ -8,10 +8,11 @@ namespace microinjection {
 
 /// Builds a ball of concentric layers in the current gmsh session, in units of its radius. `radii`: of the layers,
 /// outermost first, 1. `circles`: curves of the surface that become edges of the geometry, within 0.95 of the z axis.
-/// Returns gmsh's volumes, outermost first.
-std::vector<int> buildCellGeometry(const std::vector<double>& radii, const std::vector<CircleOnSphere>& circles);
+/// `flattening`: all heights (z) are divided by it. Returns gmsh's volumes, outermost first.
+std::vector<int> buildCellGeometry(const std::vector<double>& radii, const std::vector<CircleOnSphere>& circles,
+                                   double flattening);
 
 /// The circle that gmsh's curve was made for; null for the seams between the pieces of a sphere.
-const CircleOnSphere* imprintedCircle(int curve, const std::vector<CircleOnSphere>& circles);
+const CircleOnSphere* imprintedCircle(int curve, const std::vector<CircleOnSphere>& circles, double flattening);
 
 }  // namespace microinjection

@@ -15,6 +15,9 @@ constexpr double kThinnestLayer = 1.0 / 100;
 /// The smallest element over the radius of the cell: OpenCASCADE's tolerance is 1e-7.
 constexpr double kSmallestSize = 1e-5;
 
+/// Further stretched, the cell that gmsh meshes would be a pancake.
+constexpr double kMostStretched = 4;
+
 /// Circles end here, in radii of the cell: further out the surface is too steep.
 constexpr double kSteep = 0.95;
 
@@ -71,6 +74,7 @@ void CellMeshConfig::validate() const {
   ConfigCheck check("cell mesh");
   check.require(isPositive(size), "size", size, "positive");
   check.require(isPositive(growth) && growth <= 1, "growth", growth, "in (0, 1]");
+  check.require(stretch >= 1 && stretch <= kMostStretched, "stretch", stretch, "from 1 to 4");
   if (check.requireLayers(radii, kThinnestLayer)) {
     check.require(!(size < kSmallestSize * radii.front()), "size", size, "at least 1e-5 of the cell's radius");
     for (std::size_t i = 0; i < refinements.size(); ++i) checkRefinement(check, *this, i);

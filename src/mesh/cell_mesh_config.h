@@ -32,6 +32,7 @@ struct CellMeshConfig {
   std::vector<double> radii = {28e-6};  ///< m, outer radius of each layer, outermost first; the first is the cell's
   double size = 12e-6;                  ///< m, of the largest elements
   double growth = 1.0 / 3;              ///< the size grows by this times the distance from what is finer, in (0, 1]
+  double stretch = 1;                   ///< height of the elements (z) over their width, from 1 to 4, same volume
   std::vector<Refinement> refinements;
   std::vector<Circle> imprints;  ///< none may touch another
 

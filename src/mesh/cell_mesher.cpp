@@ -29,7 +29,8 @@ constexpr double kPoor = 0.25, kBad = 0.15;
 /// an interface, or gmsh finds no mesh at all; a slightly finer one then has other triangles.
 constexpr double kScales[] = {1, 0.98, 0.96, 0.94, 0.92};
 
-// Within gmsh, lengths are in units of the cell's radius.
+// Within gmsh, lengths are in units of the cell's radius, and heights are divided by the elements' stretch: there the
+// elements are as high as wide.
 
 struct Vertex {
   Eigen::Vector3d point;
@@ -37,21 +38,22 @@ struct Vertex {
 };
 using Vertices = std::map<std::size_t, Vertex>;  // by gmsh's tag
 
-/// Adds the vertices of the closed entities of a dimension; entity -1: of all of them.
-void addVertices(int dimension, int entity, Vertices& vertices) {
+/// Adds the vertices of the closed entities of a dimension, stretched; entity -1: of all of them.
+void addVertices(int dimension, int entity, double stretch, Vertices& vertices) {
   std::vector<std::size_t> tags;
   std::vector<double> coordinates, parameters;
   gmsh::model::mesh::getNodes(tags, coordinates, parameters, dimension, entity, true, false);
   for (std::size_t i = 0; i < tags.size(); ++i) {
-    vertices[tags[i]] = {Eigen::Vector3d::Map(&coordinates[3 * i]), {Mobility::Kind::kFree, 0}};
+    const double* at = &coordinates[3 * i];
+    vertices[tags[i]] = {Eigen::Vector3d(at[0], at[1], stretch * at[2]), {Mobility::Kind::kFree, 0}};
   }
 }
 
 /// All vertices; those of spheres and circles moved the last bit onto them.
-Vertices exactVertices(const std::vector<double>& radii, const std::vector<CircleOnSphere>& circles) {
+Vertices exactVertices(const std::vector<double>& radii, const std::vector<CircleOnSphere>& circles, double stretch) {
   Vertices vertices, on_sphere;
-  addVertices(3, -1, vertices);
-  addVertices(2, -1, on_sphere);
+  addVertices(3, -1, stretch, vertices);
+  addVertices(2, -1, stretch, on_sphere);
   for (const auto& [tag, vertex] : on_sphere) {
     const double from_centre = vertex.point.norm();
     const double radius = *std::min_element(radii.begin(), radii.end(), [&](double a, double b) {
@@ -62,10 +64,10 @@ Vertices exactVertices(const std::vector<double>& radii, const std::vector<Circl
   gmsh::vectorpair curves;
   gmsh::model::getEntities(curves, 1);
   for (const auto& curve : curves) {
-    const CircleOnSphere* circle = imprintedCircle(curve.second, circles);
+    const CircleOnSphere* circle = imprintedCircle(curve.second, circles, stretch);
     if (circle == nullptr) continue;
     Vertices on_circle;
-    addVertices(1, curve.second, on_circle);
+    addVertices(1, curve.second, stretch, on_circle);
     for (const auto& [tag, vertex] : on_circle) vertices[tag] = {circle->project(vertex.point), {}};
   }
   return vertices;
@@ -112,8 +114,9 @@ TetMesh collectMesh(const std::vector<int>& volumes, const Vertices& vertices) {
 struct UnitCell {
   std::vector<double> radii;
   std::vector<CircleOnSphere> circles;
+  double stretch;
 
-  explicit UnitCell(const CellMeshConfig& config) {
+  explicit UnitCell(const CellMeshConfig& config) : stretch(config.stretch) {
     const double unit = config.radii.front();
     for (double radius : config.radii) radii.push_back(radius / unit);
     for (const auto& [centre, radius, side] : config.imprints) {
@@ -122,16 +125,17 @@ struct UnitCell {
   }
 };
 
-/// `size`: wanted at a point.
+/// `size`: wanted at a point of the cell, of an element as high as wide; one that is stretched has the same volume.
 template <typename Size>
 TetMesh makeUnitMesh(const UnitCell& cell, const Size& size) {
   TetMesh mesh;
+  const double width = 1 / std::cbrt(cell.stretch);
   inGmshSession("cell", [&] {
-    const std::vector<int> volumes = buildCellGeometry(cell.radii, cell.circles);
+    const std::vector<int> volumes = buildCellGeometry(cell.radii, cell.circles, cell.stretch);
     gmsh::model::mesh::setSizeCallback(
-        [&](int, int, double x, double y, double z) { return size(Eigen::Vector3d(x, y, z)); });
+        [&](int, int, double x, double y, double z) { return width * size(Eigen::Vector3d(x, y, cell.stretch * z)); });
     gmsh::model::mesh::generate(3);
-    mesh = collectMesh(volumes, exactVertices(cell.radii, cell.circles));
+    mesh = collectMesh(volumes, exactVertices(cell.radii, cell.circles, cell.stretch));
   });
   return mesh;
 }

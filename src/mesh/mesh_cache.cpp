@@ -16,6 +16,7 @@ std::string describe(const CellMeshConfig& config) {
   std::ostringstream out;
   out << mesherVersion() << std::hexfloat << " size " << config.size << " growth " << config.growth << " radii";
   for (double radius : config.radii) out << ' ' << radius;
+  if (config.stretch != 1) out << " stretch " << config.stretch;
   for (const auto& [shape, centre, radius, side, size] : config.refinements) {
     out << (shape == CellMeshConfig::Shape::kBall ? " ball " : " circle ") << centre.x() << ' ' << centre.y() << ' '
         << radius << ' ' << side << ' ' << size;

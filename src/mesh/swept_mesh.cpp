@@ -62,7 +62,7 @@ class PoleMap {
 class Sweep {
  public:
   Sweep(const QuadraticMesh<2>& section, const SweepConfig& config)
-      : section_(section), segments_(config.segments), map_(cellRadius(section), config) {
+      : section_(section), segments_(config.segments), half_(config.half), map_(cellRadius(section), config) {
     for (std::size_t e = 0; e < section.elements.size(); ++e) {
       std::array<int, 3> corners;
       std::copy_n(section.elements[e].begin(), 3, corners.begin());
@@ -76,7 +76,9 @@ class Sweep {
   }
 
   QuadraticMesh<3> mesh() const {
-    return makeQuadratic(mesh_, [this](int a, int b) { return middle(a, b); });
+    QuadraticMesh<3> mesh = makeQuadratic(mesh_, [this](int a, int b) { return middle(a, b); });
+    if (half_) dropCut(mesh);
+    return mesh;
   }
 
  private:
@@ -91,11 +93,23 @@ class Sweep {
   /// A node of the section, turned by a number of segments.
   Eigen::Vector3d place(int node, double turn) const {
     const Eigen::Vector2d& rz = section_.nodes[node];
-    return map_(rz.norm(), rz.norm() == 0 ? 0 : std::atan2(rz[0], rz[1]), 2 * kPi * turn / segments_);
+    const double whole = half_ ? kPi : 2 * kPi;
+    Eigen::Vector3d x = map_(rz.norm(), rz.norm() == 0 ? 0 : std::atan2(rz[0], rz[1]), whole * turn / segments_);
+    if (half_ && (turn == 0 || turn == segments_)) x.y() = 0;  // not just nearly
+    return x;
+  }
+
+  /// Takes the faces in the plane of symmetry out of the facets: they are no surface.
+  static void dropCut(QuadraticMesh<3>& mesh) {
+    const auto cut = [&](const QuadraticMesh<3>::Facet& facet) {
+      return std::all_of(facet.nodes.begin(), facet.nodes.begin() + 3,
+                         [&](int node) { return mesh.nodes[node].y() == 0; });
+    };
+    mesh.facets.erase(std::remove_if(mesh.facets.begin(), mesh.facets.end(), cut), mesh.facets.end());
   }
 
   int vertex(int node, int turn) {
-    const std::pair<int, int> key(node, onAxis(node) ? 0 : turn % segments_);
+    const std::pair<int, int> key(node, onAxis(node) ? 0 : half_ ? turn : turn % segments_);
     const auto [entry, added] = index_.try_emplace(key, static_cast<int>(mesh_.vertices.size()));
     if (added) {
       mesh_.vertices.push_back(place(node, key.second));
@@ -124,12 +138,13 @@ class Sweep {
     const int node = node_a == node_b ? node_a : middles_.at(std::minmax(node_a, node_b));
     if (onAxis(node_a)) return place(node, turn_b);
     if (onAxis(node_b)) return place(node, turn_a);
-    const bool round = std::abs(turn_a - turn_b) > 1;  // across the seam
+    const bool round = !half_ && std::abs(turn_a - turn_b) > 1;  // across the seam
     return place(node, 0.5 * (turn_a + turn_b + (round ? segments_ : 0)));
   }
 
   const QuadraticMesh<2>& section_;
   int segments_;
+  bool half_;
   PoleMap map_;
   std::map<std::pair<int, int>, int> middles_;  ///< the section's node between two of its vertices
   TetMesh mesh_;
@@ -141,6 +156,7 @@ class Sweep {
 
 QuadraticMesh<3> sweepSection(const QuadraticMesh<2>& section, const SweepConfig& config) {
   if (config.segments < 3) throw std::invalid_argument("a sweep has three segments at the least");
+  if (config.half && config.pole_azimuth != 0) throw std::invalid_argument("half a sweep has its pole over the x axis");
   return Sweep(section, config).mesh();
 }
 

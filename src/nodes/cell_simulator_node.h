@@ -15,7 +15,7 @@
 
 namespace microinjection {
 
-/// The cell under the needle: a prepared one (see PreparedCell) or the live finite-element one. Where it has no
+/// The cell under the needle: a prepared one (see PreparedCell) or a live one (see makeLiveCell). Where it has no
 /// trustworthy force it says so: the wrench then has stamp 0.
 ///
 /// In:  /needle/measured_cp (PoseStamped, tip in `world`)

@@ -64,7 +64,6 @@ std::vector<TrainingSample> solveAxis(const Scene& scene, const std::vector<doub
       if (i == samples.size()) samples.emplace_back();
       samples[i].displacement = solution.tip_displacement;
       samples[i].force = solution.force;
-      samples[i].stiffness = solution.stiffness;
       samples[i].surface = turned(outline(problem), surface);
     }
   }

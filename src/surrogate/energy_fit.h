@@ -9,7 +9,7 @@ namespace microinjection {
 
 struct EnergyFitConfig {
   double floor = 0.0025;         ///< of the largest force: smaller ones count as if they were larger by it
-  double regularisation = 1e-3;  ///< of each coefficient, relative to what it does to the forces
+  double regularisation = 1e-4;  ///< of each coefficient, relative to what it does to the forces
 };
 
 /// N, size.

@@ -8,9 +8,9 @@
 #include "base/bytes.h"
 #include "base/cache_file.h"
 #include "base/cpu_time.h"
-#include "cell/cell_model.h"
+#include "cell/contact_place.h"
 #include "cell/converged_force.h"
-#include "cell/indentation.h"
+#include "cell/live_cell.h"
 #include "surrogate/prepared_contact.h"
 
 namespace microinjection {
@@ -68,22 +68,29 @@ ModelChoice chooseModel(const Scene::Requirements& requirements, std::vector<Mod
 ModelFigures measureLiveCell(const Scene& scene) {
   Scene axial = scene;
   axial.needle.offset.setZero();
-  const auto model = std::make_shared<const CellModel>(axial);  // throws when it cannot serve the scene
+  const auto cell = makeLiveCell(axial);  // throws when it cannot serve the scene
   Indenting indenting;
   for (double depth : kDepths) indenting.depths.push_back(depth * scene.cell.diameter());
   ConvergedForceConfig config;
   config.finest = kFinestSection;
   const std::vector<ForcePoint> truth = ConvergedForce(axial, indenting, config).solve();
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
-  Indentation live(model, model->patchAt(axial.radius() * up, up));
+  const auto live = cell->path(cell->placeAt(axial.radius() * up, up));
+  const auto solve = [&](double depth) {
+    IndentationSolution solution;
+    do {
+      solution = live->follow({-depth * up, 0, std::nullopt, 0});
+    } while (solution.converged && solution.tip_displacement.z() != -depth);
+    return solution;
+  };
   ModelFigures figures;
   figures.name = "live";
   figures.force_error = 0;
   std::vector<double> times;
   for (const ForcePoint& point : truth) {
     if (!point.converged) continue;
-    live.solve(-(1 - kSmallMove) * point.depth * up);
-    const IndentationSolution solution = live.solve(-point.depth * up);
+    solve((1 - kSmallMove) * point.depth);
+    const IndentationSolution solution = solve(point.depth);
     if (!solution.converged) {
       figures.force_error = std::numeric_limits<double>::infinity();
       break;

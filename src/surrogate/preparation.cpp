@@ -11,7 +11,7 @@ namespace microinjection {
 namespace {
 
 /// Of what the data mean and how they are computed: to be raised when that changes.
-constexpr int kVersion = 2;
+constexpr int kVersion = 3;
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kDegree = kPi / 180;
 constexpr int kAngles = 4;
@@ -24,19 +24,31 @@ constexpr double kOverlap =
 Eigen::Vector3d border(const PreparationRange& range, double tilt, double turn) {
   const double side = std::sin(tilt * kDegree), down = std::cos(tilt * kDegree);
   const double length = 1 / std::max(side / range.lateral, down / range.depth);
-  return length * Eigen::Vector3d(side * std::cos(turn * kDegree), side * std::sin(turn * kDegree), -down);
+  const double across = turn == 180 ? 0 : std::sin(turn * kDegree);  // exactly, for the sake of symmetry
+  return length * Eigen::Vector3d(side * std::cos(turn * kDegree), side * across, -down);
 }
 
-std::vector<Eigen::Vector3d> targets(const PreparationRange& range, bool on_axis) {
-  std::vector<Eigen::Vector3d> result = {border(range, 0, 0)};
-  const std::vector<std::pair<double, std::vector<double>>> cones = {{12, {0, 90, 180}},
-                                                                     {24, {45, 135}},
-                                                                     {38, {0, 60, 120, 180}},
-                                                                     {55, {0, 60, 120, 180}},
-                                                                     {72, {0, 45, 90, 135, 180}}};
-  for (const auto& [tilt, turns] : cones) {
-    for (double turn : turns) {
-      result.push_back(border(range, tilt, on_axis ? 0 : turn));
+struct Target {
+  Eigen::Vector3d end;  ///< m
+  bool fine;            ///< solved on the fine mesh as well, if in the plane of symmetry
+};
+
+std::vector<Target> targets(const PreparationRange& range, bool on_axis) {
+  struct Cone {
+    double tilt;                ///< degrees
+    std::vector<double> turns;  ///< degrees
+    bool fine;
+  };
+  const std::vector<Cone> cones = {{12, {0, 180}, false},
+                                   {24, {0, 90, 180}, true},
+                                   {38, {0, 60, 120, 180}, true},
+                                   {55, {0, 90, 180}, true},
+                                   {72, {0, 60, 120, 180}, false}};
+  std::vector<Target> result = {{border(range, 0, 0), !on_axis}};  // on the axis the section is finer
+  for (const Cone& cone : cones) {
+    for (double turn : cone.turns) {
+      const Eigen::Vector3d end = border(range, cone.tilt, on_axis ? 0 : turn);
+      result.push_back({end, cone.fine && end.y() == 0});
       if (on_axis) break;  // there all turns are the same
     }
   }
@@ -48,6 +60,12 @@ bool keepsContact(const Scene& scene, double angle, const Eigen::Vector3d& targe
   const double reach = scene.radius() + (scene.needle.tip.rounded() ? scene.needle.tip.radius : 0);
   const Eigen::Vector3d centre = reach * Eigen::Vector3d(std::sin(angle), 0, std::cos(angle)) + target;
   return reach - centre.norm() > kOverlap * scene.radius() || centre.z() < 0;
+}
+
+/// What a path costs, roughly: in time per length of the coarse mesh's half.
+double cost(const TrainingRay& ray) {
+  const double whole = ray.target.y() == 0 ? 1 : 4.5, fine = ray.level == kFineLevel ? 5 : 1;
+  return whole * fine * ray.points;
 }
 
 bool relaxesAlike(const PronyTerm& a, const PronyTerm& b) {
@@ -85,6 +103,9 @@ void Preparation::check(const Scene& scene) {
             << ": must be 0, or the mode sticking: friction takes energy, and a prepared cell has none to give";
     throw ConfigError(message.str());
   }
+  if (scene.needle.contact.adhesion_energy > 0) {
+    throw ConfigError("needle/contact/adhesion: must be left out: a prepared cell does not remember what has touched");
+  }
 }
 
 Scene Preparation::elastic(const Scene& scene) {
@@ -98,14 +119,17 @@ Preparation Preparation::plan(const Scene& scene, const PreparationRange& range)
   result.range = range;
   for (int i = 0; i < kAngles; ++i) {
     const double angle = range.angle * i / (kAngles - 1);
-    for (const Eigen::Vector3d& target : targets(range, i == 0)) {
+    for (const auto& [target, fine] : targets(range, i == 0)) {
       if (!keepsContact(scene, angle, target)) continue;
       const int points = static_cast<int>(std::lround(kPoints * std::sqrt(target.norm() / range.depth)));
-      result.rays.push_back({angle, target, std::max(points, kFewest)});
+      result.rays.push_back({angle, target, std::max(points, kFewest), kCoarseLevel});
+      if (!fine) continue;
+      result.rays.push_back(result.rays.back());
+      result.rays.back().level = kFineLevel;
     }
   }
   std::stable_sort(result.rays.begin(), result.rays.end(),
-                   [](const TrainingRay& a, const TrainingRay& b) { return a.target.norm() > b.target.norm(); });
+                   [](const TrainingRay& a, const TrainingRay& b) { return cost(a) > cost(b); });
   result.scales.angle = range.angle;
   result.scales.length = range.axis_depth;
   result.scales.energy = scene.cell.material().young_modulus * scene.needle.tip.radius * range.depth * range.depth;
@@ -116,7 +140,7 @@ std::string Preparation::description(const Scene& scene, const TrainingRay& ray)
   std::ostringstream out;
   out << description(scene) << " path " << std::hexfloat << ray.angle;
   for (double x : ray.target) out << ' ' << x;
-  out << ' ' << ray.points;
+  out << ' ' << ray.points << " level " << ray.level;
   return out.str();
 }
 

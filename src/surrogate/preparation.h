@@ -20,17 +20,22 @@ struct PreparationRange {
   static PreparationRange standard(const Scene& scene);
 };
 
+/// Meshes of the training, see scene_mesh.h. All paths are solved on the coarse one; those in a plane of symmetry,
+/// where half of the mesh is enough, on the fine one as well.
+constexpr double kCoarseLevel = -1, kFineLevel = 0;
+
 /// A straight path of the tip from where it touches the cell to the border of the range.
 struct TrainingRay {
   double angle = 0;                                  ///< rad, of the place of contact
   Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< m, displacement at its end, in the frame of the place
   int points = 12;                                   ///< places along it, at the squares of equal steps
+  double level = kCoarseLevel;                       ///< of the mesh
 };
 
 /// What is computed for a prepared cell.
 struct Preparation {
   PreparationRange range;
-  std::vector<TrainingRay> rays;  ///< the longest first, so that workers end together
+  std::vector<TrainingRay> rays;  ///< those that take longest first, so that workers end together
   EnergyScales scales;
   EnergyDegrees degrees;
 

@@ -1,63 +1,80 @@
 #include "surrogate/prepared_cell.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <stdexcept>
 
 #include "base/cache_file.h"
 #include "surrogate/axis_ray.h"
 #include "surrogate/energy_fit.h"
+#include "surrogate/mesh_correction.h"
 
 namespace microinjection {
 namespace {
 
-constexpr char kFit[] = " fit 5";  ///< to be changed with what is fitted, and how
+constexpr char kFit[] = " fit 8";  ///< to be changed with what is fitted, and how
 constexpr double kSmall = 0.0025;  ///< of the largest force: smaller ones are not judged
 constexpr int kDeepSamples = 14;   ///< on the axis, below the range of the rest
 
-/// Force of the section over that of the training's mesh at the depths of the straight ray on the axis.
-struct AxisCorrection {
-  std::vector<double> depths;  ///< m, ascending
-  std::vector<double> factors;
+bool straightOnAxis(const TrainingRay& ray) { return ray.angle == 0 && ray.target.head<2>().isZero(0); }
 
-  double at(double depth) const {
-    const auto next = std::upper_bound(depths.begin(), depths.end(), depth);
-    if (depths.empty()) return 1;
-    if (next == depths.begin()) return factors.front();
-    if (next == depths.end()) return factors.back();
-    const auto i = static_cast<std::size_t>(next - depths.begin());
-    const double share = (depth - depths[i - 1]) / (depths[i] - depths[i - 1]);
-    return (1 - share) * factors[i - 1] + share * factors[i];
+bool samePath(const TrainingRay& a, const TrainingRay& b) { return a.angle == b.angle && a.target == b.target; }
+
+/// Samples to fit: `forces` as converged as they are known, `surfaces` on the coarse mesh and, deep on the axis, of the
+/// section.
+struct Samples {
+  std::vector<TrainingSample> forces, surfaces;
+  double axis_depth = 0;  ///< m, reached on the axis
+
+  void add(const TrainingSample& sample) {
+    forces.push_back(sample);
+    surfaces.push_back(sample);
   }
 };
 
-bool onAxis(const TrainingSample& sample) {
-  return sample.angle == 0 && sample.displacement.head<2>().isZero(0) && sample.force.z() > 0;
-}
-
-/// Takes off what the training's mesh is wrong by on the axis, and adds what the section knows below.
-void correct(const Scene& scene, const PreparationRange& range, const Eigen::VectorXd& surface,
-             std::vector<TrainingSample>& samples) {
-  std::vector<double> depths, forces;
-  for (const TrainingSample& sample : samples) {
-    if (!onAxis(sample)) continue;
-    depths.push_back(-sample.displacement.z());
-    forces.push_back(sample.force.z());
-  }
+/// Straight down on the axis the section knows better, and further.
+void addAxis(const Scene& scene, const PreparationRange& range, const std::vector<TrainingSample>& coarse,
+             const Eigen::VectorXd& surface, Samples& samples) {
+  std::vector<double> depths;
+  for (const TrainingSample& sample : coarse) depths.push_back(-sample.displacement.z());
   for (int i = 1; i <= kDeepSamples; ++i) {
     depths.push_back(range.depth + (range.axis_depth - range.depth) * i / kDeepSamples);
   }
-  const std::vector<TrainingSample> axis = solveAxis(scene, depths, surface);
-  AxisCorrection correction;
-  for (std::size_t i = 0; i < std::min(axis.size(), forces.size()); ++i) {
-    correction.depths.push_back(depths[i]);
-    correction.factors.push_back(axis[i].force.z() / forces[i]);
+  for (const TrainingSample& sample : solveAxis(scene, depths, surface)) {
+    samples.add(sample);
+    samples.axis_depth = -sample.displacement.z();
   }
-  for (TrainingSample& sample : samples) {
-    sample.force *= correction.at(std::hypot(sample.displacement.z(), sample.displacement.head<2>().norm()));
+}
+
+Samples gather(const Scene& scene, const Preparation& preparation, const std::vector<TrainingResult>& results,
+               const Eigen::VectorXd& surface_on_axis) {
+  const std::vector<TrainingRay>& rays = preparation.rays;
+  std::vector<const std::vector<TrainingSample>*> fine(rays.size(), nullptr);  // of a coarse path
+  std::vector<MeshCorrection::Pair> pairs;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    for (std::size_t j = 0; rays[i].level == kCoarseLevel && j < rays.size(); ++j) {
+      if (rays[j].level != kFineLevel || !samePath(rays[i], rays[j])) continue;
+      fine[i] = &results[j].samples;
+      pairs.push_back({&results[i].samples, fine[i]});
+    }
   }
-  if (axis.size() > forces.size()) samples.insert(samples.end(), axis.begin() + forces.size(), axis.end());
+  const MeshCorrection correction(preparation.scales, pairs);
+  Samples samples;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (rays[i].level != kCoarseLevel) continue;
+    if (straightOnAxis(rays[i])) {
+      addAxis(scene, preparation.range, results[i].samples, surface_on_axis, samples);
+      continue;
+    }
+    for (std::size_t k = 0; k < results[i].samples.size(); ++k) {
+      samples.add(results[i].samples[k]);
+      TrainingSample& sample = samples.forces.back();
+      const bool finer = fine[i] && k < fine[i]->size();
+      sample.force = finer ? (*fine[i])[k].force
+                           : Eigen::Vector3d(sample.force * correction.factor(sample.angle, sample.displacement));
+    }
+  }
+  return samples;
 }
 
 /// Relative errors of a force (angle, displacement -> N), ascending, of the samples whose force is not small.
@@ -80,17 +97,19 @@ double common(const std::vector<double>& sorted) { return sorted[sorted.size() *
 }  // namespace
 
 PreparedCell PreparedCell::fit(const Scene& scene, const Preparation& preparation,
-                               std::vector<TrainingSample> samples) {
+                               const std::vector<TrainingResult>& results) {
   std::vector<double> angles;
   for (const TrainingRay& ray : preparation.rays) angles.push_back(ray.angle);
   std::sort(angles.begin(), angles.end());
   angles.erase(std::unique(angles.begin(), angles.end()), angles.end());
   std::vector<TrainingSurface> surfaces;
-  for (double angle : angles) surfaces.push_back(trainingSurface(scene, angle, kTrainingLevel));
+  for (double angle : angles) surfaces.push_back(trainingSurface(scene, angle));
 
-  correct(scene, preparation.range, surfaces.front().nodes, samples);
+  const Samples all = gather(scene, preparation, results, surfaces.front().nodes);
+  const std::vector<TrainingSample>& samples = all.forces;
   PreparedCell cell;
   cell.range = preparation.range;
+  cell.range.axis_depth = all.axis_depth;  // the section may end before
   cell.energy = EnergyExpansion(preparation.scales, preparation.degrees);
   fitEnergy(cell.energy, samples);
   cell.field = ForceField(preparation.scales);
@@ -111,7 +130,7 @@ PreparedCell PreparedCell::fit(const Scene& scene, const Preparation& preparatio
   });
   cell.energy_median_error = median(of_energy);
   cell.energy_common_error = common(of_energy);
-  cell.surface = SurfaceShape(preparation.range, angles, surfaces, samples);
+  cell.surface = SurfaceShape(cell.range, angles, surfaces, all.surfaces);
   return cell;
 }
 
@@ -125,18 +144,19 @@ std::string preparedFile(const Scene& scene, const Preparation& preparation) {
   return folder.empty() ? "" : folder + "/prepared.cell";
 }
 
-void PreparedCell::save(const Scene& scene, const std::string& path) const {
+void PreparedCell::save(const Scene& scene, const PreparationRange& asked, const std::string& path) const {
   ByteWriter writer;
   const EnergyScales& scales = energy.scales();
   const EnergyDegrees& degrees = energy.degrees();
-  for (double x : {scales.angle, scales.length, scales.energy, median_error, common_error, largest_error}) {
+  for (double x :
+       {range.axis_depth, scales.angle, scales.length, scales.energy, median_error, common_error, largest_error}) {
     writer.number(x);
   }
   for (int x : {degrees.place, degrees.direction, degrees.distance}) writer.number<std::int32_t>(x);
   writer.array(energy.coefficients());
   writer.array(field.coefficients());
   surface.write(writer);
-  writeCacheFile(path, Preparation::plan(scene, range).description(scene) + kFit, writer.bytes());
+  writeCacheFile(path, Preparation::plan(scene, asked).description(scene) + kFit, writer.bytes());
 }
 
 std::optional<PreparedCell> PreparedCell::load(const Scene& scene, const PreparationRange& range,
@@ -148,8 +168,8 @@ std::optional<PreparedCell> PreparedCell::load(const Scene& scene, const Prepara
   cell.range = range;
   EnergyScales scales;
   EnergyDegrees degrees;
-  for (double* x :
-       {&scales.angle, &scales.length, &scales.energy, &cell.median_error, &cell.common_error, &cell.largest_error}) {
+  for (double* x : {&cell.range.axis_depth, &scales.angle, &scales.length, &scales.energy, &cell.median_error,
+                    &cell.common_error, &cell.largest_error}) {
     *x = reader.number<double>();
   }
   for (int* x : {&degrees.place, &degrees.direction, &degrees.distance}) *x = reader.number<std::int32_t>();

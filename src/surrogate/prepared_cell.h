@@ -25,17 +25,16 @@ struct PreparedCell {
   double energy_median_error = 0;  ///< of the energy alone; after a fit only, it is not stored
   double energy_common_error = 0;
 
-  /// Fits, after taking off what the training's mesh is wrong by on the axis (the section is solved for that).
-  static PreparedCell fit(const Scene& scene, const Preparation& preparation, std::vector<TrainingSample> samples);
+  /// Fits the results of preparation.rays: forces of the section on the axis, of the fine mesh where there are some,
+  /// else of the coarse one, corrected.
+  static PreparedCell fit(const Scene& scene, const Preparation& preparation,
+                          const std::vector<TrainingResult>& results);
 
-  void save(const Scene& scene, const std::string& path) const;
-  /// Of this scene in `path`; nothing when there is none.
+  /// `asked`: the range of the preparation; `range` is what of it was reached.
+  void save(const Scene& scene, const PreparationRange& asked, const std::string& path) const;
+  /// Of this scene in `path`, prepared for a range; nothing when there is none.
   static std::optional<PreparedCell> load(const Scene& scene, const PreparationRange& range, const std::string& path);
 };
-
-/// Mesh of the training, see scene_mesh.h: the coarsest. Its error
-/// is measured on the axis, where the section is cheap, and taken off.
-constexpr double kTrainingLevel = -1;
 
 /// Folder of a scene's data, and the file of the result in it; empty when no cache is kept.
 std::string preparedFolder(const Scene& scene, const Preparation& preparation);

@@ -4,8 +4,8 @@
 #include <memory>
 #include <optional>
 
+#include "cell/contact_place.h"
 #include "contact/rounded_tip.h"
-#include "surrogate/contact_place.h"
 #include "surrogate/passive_correction.h"
 #include "surrogate/prepared_cell.h"
 

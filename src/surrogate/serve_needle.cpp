@@ -1,13 +1,11 @@
 #include "surrogate/serve_needle.h"
 
 #include <optional>
-#include <sstream>
 #include <utility>
 #include <vector>
 
 #include "base/errors.h"
-#include "cell/cell_model.h"
-#include "cell/tensegrity_cell.h"
+#include "cell/live_cell.h"
 #include "surrogate/model_choice.h"
 #include "surrogate/prepared_tracker.h"
 
@@ -15,27 +13,13 @@ namespace microinjection {
 namespace {
 
 ServedCell live(const Scene& scene, const CellTrackerConfig& config, const std::string& said, bool as_required) {
-  const auto cell = std::make_shared<const CellModel>(scene);
-  ServedCell served{std::make_unique<CellTracker>(cell, config), said, as_required};
-  std::ostringstream size;
-  size << "; " << cell->mesh().vertices.size() << " vertices, " << cell->mesh().tetrahedra.size() << " tetrahedra";
-  served.said += size.str();
-  return served;
-}
-
-ServedCell tensegrity(const Scene& scene, const CellTrackerConfig& config) {
-  const auto cell = std::make_shared<const TensegrityCell>(scene);
-  const TensegrityStructure& structure = cell->structure();
-  std::ostringstream said;
-  said << "the cell is a tensegrity, solved live; " << structure.nodePlaces().size() << " nodes, "
-       << structure.struts().elementCount() << " tetrahedra, prestress " << structure.form().prestress
-       << " N, unbalanced " << structure.form().residual << " N";
-  return {std::make_unique<CellTracker>(cell, config), said.str(), true};
+  const auto cell = makeLiveCell(scene);
+  return {std::make_unique<CellTracker>(cell, config), said + ": " + cell->description(), as_required};
 }
 
 ServedCell unprepared(const Scene& scene, const CellTrackerConfig& config, const std::string& why) {
   try {
-    return live(scene, config, why + "; so it is live: P1 tetrahedra, whose force is too large", false);
+    return live(scene, config, why + "; so it is live", false);
   } catch (const ConfigError& error) {
     throw ConfigError(why + "; and the live model cannot serve it: " + error.what());
   }
@@ -55,7 +39,9 @@ std::string cannotBePrepared(const Scene& scene) {
 
 ServedCell serveNeedle(const Scene& scene, const std::string& model, const CellTrackerConfig& config,
                        const std::string& path) {
-  if (scene.cell.tensegrity && model != "prepared") return tensegrity(scene, config);
+  if (scene.cell.tensegrity && model != "prepared") {
+    return live(scene, config, "the cell is a tensegrity, solved live", true);
+  }
   if (model == "live") return live(scene, config, "the cell is live, as asked for", true);
   const std::string refused = cannotBePrepared(scene);
   if (!refused.empty()) {
@@ -75,7 +61,7 @@ ServedCell serveNeedle(const Scene& scene, const std::string& model, const CellT
   if (model == "prepared") figures.resize(1);
   const ModelChoice choice = chooseModel(scene.requirements, figures);
   const std::string said = "model " + model + ": " + choice.reason;
-  if (choice.name == "live") return live(scene, config, said, choice.meets);
+  if (choice.name == "live") return live(scene, config, said + "; it is", choice.meets);
   return {std::make_unique<PreparedTracker>(scene, cell), said, choice.meets};
 }
 

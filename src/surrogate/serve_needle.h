@@ -14,8 +14,8 @@ struct ServedCell {
   bool as_required = true;  ///< else `said` is a warning
 };
 
-/// A scene's cell for a moving needle. `model`: prepared (what `prepare` left), live (P1 tetrahedra) or auto (chosen by
-/// the scene's requirements, see chooseModel; live where nothing is prepared). Never another than was asked for.
+/// A scene's cell for a moving needle. `model`: prepared (what `prepare` left), live (see makeLiveCell) or auto (chosen
+/// by the scene's requirements, see chooseModel; live where nothing is prepared). Never another than was asked for.
 /// `path` of the scene, for messages. Throws ConfigError when the model cannot serve the scene.
 ServedCell serveNeedle(const Scene& scene, const std::string& model, const CellTrackerConfig& config,
                        const std::string& path);

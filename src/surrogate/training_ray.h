@@ -13,8 +13,7 @@ struct TrainingSample {
   double angle = 0;                                        ///< rad, of the place
   Eigen::Vector3d displacement = Eigen::Vector3d::Zero();  ///< m, of the tip since it touched
   Eigen::Vector3d force = Eigen::Vector3d::Zero();         ///< N, of the cell on the needle
-  Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();     ///< N/m
-  Eigen::VectorXf surface;                                 ///< m, xyz of each node of the outer surface
+  Eigen::VectorXf surface;  ///< m, xyz of each node of the outer surface; coarse mesh only
 };
 
 struct TrainingResult {
@@ -22,18 +21,18 @@ struct TrainingResult {
   std::string reason;                   ///< why the ray ended before its target; else empty
 };
 
-/// Solves along a ray on one mesh in space of P2-P0 elements (level: see scene_mesh.h). Throws as CellProblem.
-TrainingResult solveRay(const Scene& scene, const TrainingRay& ray, double level);
+/// Solves along a ray, on P2-P0 elements in space. Throws as CellProblem.
+TrainingResult solveRay(const Scene& scene, const TrainingRay& ray);
 
 std::string encode(const TrainingResult& result);
 TrainingResult decodeTraining(const std::string& bytes);  ///< throws std::runtime_error when they are damaged
 
-/// The outer surface of the meshes of solveRay with the needle's place at `angle`: all nodes, and triangles, each facet
-/// cut into four, counter-clockwise seen from outside. Nodes of different angles correspond.
+/// The outer surface of the coarse meshes of solveRay with the needle's place at `angle`: all nodes, and triangles,
+/// each facet cut into four, counter-clockwise seen from outside. Nodes of different angles correspond.
 struct TrainingSurface {
   Eigen::VectorXd nodes;  ///< m, xyz of each
   std::vector<Eigen::Vector3i> triangles;
 };
-TrainingSurface trainingSurface(const Scene& scene, double angle, double level);
+TrainingSurface trainingSurface(const Scene& scene, double angle);
 
 }  // namespace microinjection

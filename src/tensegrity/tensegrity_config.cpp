@@ -87,6 +87,10 @@ TensegrityConfig::TensegrityConfig() {
   microtubules.filaments = {1.2e9, 2.6e-23, 1};
 }
 
+bool TensegrityConfig::viscous() const {
+  return actin.retardation_time > 0 || intermediate.retardation_time > 0 || membrane.retardation_time > 0;
+}
+
 std::vector<std::string> TensegrityConfig::errors() const {
   Errors errors;
   errors.require(positive(radius), "diameter", 2 * radius, " m", "positive (m)");

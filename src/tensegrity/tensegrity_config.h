@@ -65,6 +65,8 @@ struct TensegrityConfig {
 
   TensegrityConfig();  ///< Table II, middle of its ranges, one filament a member
 
+  /// Whether cables or membrane resist by how fast they stretch.
+  bool viscous() const;
   /// All that is wrong, each "KEY = VALUE UNIT: must be ALLOWED"; empty when nothing is.
   std::vector<std::string> errors() const;
   /// Throws ConfigError with all errors at once.

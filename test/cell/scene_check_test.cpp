@@ -37,6 +37,31 @@ TEST(SceneCheck, NamesEveryBadKeyAtOnce) {
                   "holding_pipette/contact_radius is missing", "mesh/size = -1: must be a number in (0, inf) m"});
 }
 
+TEST(SceneCheck, AdhesionMembraneAndStretchAreStrict) {
+  YAML::Node node = YAML::Load(kGood);
+  node["needle"]["contact"] = YAML::Load("{adhesion: {energy: 1e-3, range: 1e-7}}");
+  node["cell"]["biomembrane"] = YAML::Load("{thickness: 4e-6, dimple_radius: 1e-6}");
+  node["mesh"]["stretch"] = 2;
+  expectIn(errorsOf(node), {"needle/contact/adhesion/energy = 0.001 J/m^2: must be left out: a disc never parts",
+                            "cell/biomembrane/dimple_radius = 1e-06 m: must be above needle/tip/radius"});
+  node["needle"]["tip"] = YAML::Load("{shape: hemisphere, radius: 3e-6}");
+  node["cell"]["biomembrane"]["dimple_radius"] = 20e-6;
+  EXPECT_EQ(errorsOf(node), "");
+  const Scene scene = parseScene(node, "scene.yaml");
+  EXPECT_EQ(scene.needle.contact.adhesion_energy, 1e-3);
+  EXPECT_EQ(scene.needle.contact.adhesion_range, 1e-7);
+  EXPECT_EQ(scene.cell.biomembrane->thickness, 4e-6);
+  EXPECT_EQ(scene.mesh.stretch, 2);
+  node["needle"]["contact"] = YAML::Load("{adhesion: {energy: 0, reach: 1e-7}}");
+  node["cell"]["biomembrane"] = YAML::Load("{thickness: -1}");
+  node["mesh"]["stretch"] = 5;
+  expectIn(errorsOf(node),
+           {"needle/contact/adhesion/energy = 0: must be a number in (0, inf) J/m^2",
+            "needle/contact/adhesion/range is missing", "needle/contact/adhesion/reach: unknown key",
+            "cell/biomembrane/thickness = -1: must be a number in (0, inf) m",
+            "cell/biomembrane/dimple_radius is missing", "mesh/stretch = 5: must be a number in [1, 4]"});
+}
+
 TEST(SceneCheck, RefusesLayersThatDoNotFit) {
   const auto with = [](const char* change) {
     YAML::Node node = YAML::Load(kLayered);

@@ -11,6 +11,7 @@
 #include "cell/cell_tracker.h"
 #include "cell/converged_force.h"
 #include "cell/scene_texts.h"
+#include "cell/swept_cell.h"
 
 namespace microinjection {
 namespace {
@@ -58,6 +59,8 @@ TEST(TensegrityScene, ErrorsNameKeyAndWhatIsAllowed) {
   expectIn(errorsWith("intermediate_filaments", "prestrain", "3"), {"cell/intermediate_filaments/prestrain", "actin"});
   expectIn(errorsWith("", "holding_pipette", "{contact_radius: 1e-5}"), {"holding_pipette", "left out"});
   expectIn(errorsWith("", "mesh", "{size: 1e-5}"), {"mesh", "left out"});
+  expectIn(errorsWith("cell", "biomembrane", "{thickness: 4e-6, dimple_radius: 1e-5}"),
+           {"cell/biomembrane", "left out"});
   expectIn(errorsWith("", "needle", "{tip: {shape: hemisphere, radius: 3e-6}}"), {"needle/tip/shape", "disc"});
   YAML::Node missing = YAML::Load(kTensegrityScene);
   missing["cell"]["actin"].remove("count");
@@ -67,6 +70,7 @@ TEST(TensegrityScene, ErrorsNameKeyAndWhatIsAllowed) {
 
 TEST(TensegrityScene, IsRefusedByModelsOfTheContinuum) {
   EXPECT_THROW(CellModel cell(scene()), ConfigError);
+  EXPECT_THROW(SweptCell cell(scene()), ConfigError);
   EXPECT_THROW(ConvergedForce(scene(), {}, {}), ConfigError);
   EXPECT_THROW(TensegrityCell cell(parseScene(YAML::Load(kGood), "scene.yaml")), ConfigError);
 }
@@ -100,7 +104,8 @@ TEST(TensegrityCell, NeedleMeetsTheMembraneAnywhere) {
 
 /// In lock step: a needle on a strut's end, with the tracker that serves every live cell.
 TEST(TensegrityCell, ServesAMovingNeedle) {
-  const auto cell = std::make_shared<const TensegrityCell>(scene());
+  const auto cell = std::dynamic_pointer_cast<const TensegrityCell>(makeLiveCell(scene()));
+  ASSERT_TRUE(cell);
   CellTrackerConfig config;
   config.fixed_period = true;
   CellTracker tracker(cell, config);
@@ -123,6 +128,41 @@ TEST(TensegrityCell, ServesAMovingNeedle) {
     const bool strut = member.kind == CellUnderNeedle::Member::Kind::kStrut;
     EXPECT_EQ(member.force < 0, strut);
   }
+}
+
+/// Kelvin-Voigt cables: 1 um in a tenth of their time meets more than 1 um in ever so long, and rests to the same.
+TEST(TensegrityCell, ViscousCablesFeelTheTipsSpeed) {
+  Scene viscous = scene();
+  viscous.cell.tensegrity->actin.retardation_time = viscous.cell.tensegrity->intermediate.retardation_time = 1;
+  const TensegrityCell cell(viscous), elastic(scene());
+  const Eigen::Vector3d end = cell.structure().geometry().ends[3], way(0, 0, -1e-6), none = Eigen::Vector3d::Zero();
+  const TipPlace place = cell.placeAt(end, Eigen::Vector3d::UnitZ());
+  const double rested = elastic.path(place)->follow({way, 0, 0.0, 1.0}).force.z();
+  const auto path = cell.path(place);
+  ASSERT_TRUE(path->follow({none, 0, std::nullopt, 6.0}).converged);
+  const double quick = path->follow({way, 0, 7.0, 7.1}).force.z();
+  EXPECT_GT(quick, 3 * rested);
+  EXPECT_NEAR(path->follow({way, 0, 7.0, 1e4}).force.z() / rested, 1, 1e-3);
+  // A new contact has no memory of it, however it is asked; a slow tip feels nothing viscous.
+  EXPECT_NEAR(path->follow({way, 1, 2e4, 2e4 + 0.1}).force.z() / quick, 1, 1e-6);
+  EXPECT_NEAR(path->follow({way, 2, 3e4, 4e4}).force.z() / rested, 1, 1e-3);
+}
+
+/// The picture is the membrane's: the patch has moved with the tip, what is held has not.
+TEST(TensegrityCell, PictureMovesWithTheTip) {
+  const TensegrityCell cell(scene());
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ(), way(0, 0, -2e-6);
+  const TipPlace place = cell.placeAt({0, 0, 28e-6}, up);
+  const auto path = cell.path(place);
+  ASSERT_TRUE(path->follow({way, 0, 0.0, 1.0}).converged);
+  const LiveCell::Surface rest = cell.surfaceAtRest();
+  const Eigen::VectorXd moved = path->surfaceDisplacement();
+  ASSERT_EQ(moved.size(), 3 * static_cast<Eigen::Index>(rest.vertices.size()));
+  EXPECT_EQ(cell.onSurface(place.patch).size(), place.patch.vertices.size());
+  for (const auto i : cell.onSurface(place.patch)) EXPECT_LT((moved.segment<3>(3 * i) - way).norm(), 1e-15);
+  EXPECT_EQ(rest.held.size(), 3u);
+  for (const auto i : rest.held) EXPECT_EQ(moved.segment<3>(3 * i).norm(), 0);
+  EXPECT_EQ(path->members().size(), cell.membersAtRest().size());
 }
 
 }  // namespace

@@ -164,7 +164,7 @@ TEST_F(IndentCommand, RefusesBadUsageWithTheKeyAndWhatIsAllowed) {
       {"--scene scene.yaml --depths 1e-6 --depth 1e-6", "depth"},
       {"--scene scene.yaml --depths 1e-6 --tolerance 0", "--tolerance = 0: must be a number > 0"},
       {"--scene scene.yaml --depths 1e-6 --model 2d",
-       "--model = 2d: must be one of: auto, axisymmetric, spatial, live"},
+       "--model = 2d: must be one of: auto, axisymmetric, spatial, live, membrane"},
       {"--scene scene.yaml --depths 1e-6 --element q1", "--element = q1: must be one of: p1, mini"},
       {"--scene scene.yaml --depths 1e-6 --speed -1", "--speed = -1: must be a number > 0"},
       {"--scene scene.yaml --depths 1e-6 --model axisymmetric --lateral 1e-6,0", "lateral must be 0"},
@@ -176,6 +176,38 @@ TEST_F(IndentCommand, RefusesBadUsageWithTheKeyAndWhatIsAllowed) {
     EXPECT_NE(result.err.find(message), std::string::npos) << arguments << "\n" << result.err;
     EXPECT_EQ(result.out, "") << arguments;
   }
+}
+
+TEST_F(IndentCommand, TheMembraneIsCubic) {
+  write("membrane.yaml", "linear", "");
+  const std::string text = read(directory_ + "membrane.yaml");
+  std::ofstream(directory_ + "membrane.yaml")
+      << "cell: {biomembrane: {thickness: 4e-6, dimple_radius: 20e-6}," << text.substr(text.find('{') + 1);
+  const Outcome result = run("--scene membrane.yaml --depths 2e-6,4e-6 --model membrane");
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto rows = table(result.out);
+  EXPECT_GT(rows[0][3], 0);
+  EXPECT_NEAR(rows[1][3] / rows[0][3], 8, 1e-6);
+  EXPECT_TRUE(std::isnan(rows[0][6]));
+  const Outcome none = run("--scene scene.yaml --depths 2e-6 --model membrane --speed 1e-6");
+  EXPECT_EQ(none.status, 2);
+  EXPECT_NE(none.err.find("cell/biomembrane is missing"), std::string::npos);
+  EXPECT_NE(none.err.find("--speed, --hold"), std::string::npos);
+}
+
+TEST_F(IndentCommand, DrawsTheTipBack) {
+  const std::string depths = "--scene scene.yaml --depths 1e-6,2e-6 ";
+  const Outcome result = run(depths + "--withdraw 1e-6,0,-1e-6");
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto rows = table(result.out);
+  ASSERT_EQ(rows.size(), 5u);
+  EXPECT_NEAR(rows[2][3], rows[0][3], 1e-6 * rows[0][3]);  // elastic: as on the way in
+  EXPECT_NEAR(rows[3][3], 0, 1e-6 * rows[0][3]);
+  EXPECT_NEAR(rows[4][3], -rows[0][3], 1e-6 * rows[0][3]);  // a disc sticks
+  EXPECT_EQ(run(depths + "--withdraw 1e-6 --model live").status, 2);
+  const Outcome deeper = run(depths + "--withdraw 1e-6,1.5e-6");
+  EXPECT_EQ(deeper.status, 2);
+  EXPECT_NE(deeper.err.find("must be below the depth before"), std::string::npos) << deeper.err;
 }
 
 TEST_F(IndentCommand, ExplainsItself) {

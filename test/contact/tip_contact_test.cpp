@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <memory>
 #include <random>
 
@@ -109,6 +110,62 @@ TEST(TipContact, DerivativesInTheSection) {
 }
 
 TEST(TipContact, DerivativesInSpace) { expectDerivativesOf<3>({}); }
+
+TipContactConfig adhesive(TipContactConfig::Mode mode) {
+  TipContactConfig config;
+  config.mode = mode;
+  config.adhesion = 2e-3;
+  config.adhesion_range = 0.5e-6;
+  return config;
+}
+
+template <int Dim>
+void expectAdhesion(TipContactConfig::Mode mode) {
+  Fixture<Dim> fixture(adhesive(mode));
+  const Eigen::VectorXd above = fixture.pushed(-0.3e-6, 6);
+  EXPECT_EQ(fixture.expectDerivatives(above), 0);  // not before it has touched
+  fixture.endStep(fixture.pushed(0.3e-6, 7));
+  const Eigen::VectorXd gap = fixture.pushed(-0.2e-6, 8);
+  fixture.endStep(gap);  // what sticks parts
+  EXPECT_GT(fixture.expectDerivatives(gap), 0);
+  fixture.endStep(fixture.pushed(-15e-6, 9));
+  EXPECT_EQ(fixture.expectDerivatives(above), 0);  // it was torn off
+}
+
+TEST(TipContact, DerivativesOfAdhesion) {
+  expectAdhesion<2>(TipContactConfig::Mode::kSliding);
+  expectAdhesion<2>(TipContactConfig::Mode::kSticking);
+  expectAdhesion<3>(TipContactConfig::Mode::kSliding);
+}
+
+/// Of a tip that is drawn off a rigid surface: energy of parting times the area that has touched, and its most.
+TEST(TipContact, AdhesionDoesTheWorkThatItIsGiven) {
+  Fixture<2> fixture(adhesive(TipContactConfig::Mode::kSliding));
+  const auto rigid = [&](double depth) {
+    Eigen::VectorXd state = Eigen::VectorXd::Zero(fixture.body.stateSize());
+    state[state.size() - 1] = -depth;
+    return state;
+  };
+  constexpr double kDepth = 0.1e-6;
+  fixture.endStep(rigid(kDepth));
+  const auto pull = [&](double depth) {  // N, downwards on the tip
+    double sum = 0;
+    for (int facet = 0; facet < fixture.contact->elementCount(); ++facet) {
+      LocalEnergy local;
+      fixture.contact->evaluate(facet, rigid(depth), Order::kGradient, local);
+      if (!local.zero) sum += local.gradient[local.gradient.size() - 1];
+    }
+    return sum;
+  };
+  const double reduced = 1 / (1 / kTip + 1 / kRadius), area = 2 * 3.14159265358979 * reduced * kDepth;
+  double work = 0;
+  constexpr double kStep = 2e-9;
+  for (double depth = -kStep / 2; depth > -6e-6; depth -= kStep) work += pull(depth) * kStep;
+  // From the touch on; the rim of what touched is a little apart then. Quadrature sees the circle coarsely.
+  EXPECT_NEAR(work, 2e-3 * area, 0.25 * 2e-3 * area);
+  EXPECT_GT(pull(-0.5e-6), 0.9 * 2e-3 / (std::exp(1.0) * 0.5e-6) * area * 0.75);
+  EXPECT_LT(pull(-0.5e-6), 1.1 * 2e-3 / (std::exp(1.0) * 0.5e-6) * area * 1.25);
+}
 
 TEST(TipContact, TheNeedleCanLoseIt) {
   Fixture<2> fixture({});

@@ -122,6 +122,27 @@ TEST(ExplicitStep, StaysBoundedAtItsLimit) {
   EXPECT_GT(dynamics.kineticEnergy(), 0);
 }
 
+TEST(ExplicitStep, TensorsMoveItAsTheKernelDoes) {
+  const TetMesh mesh = linearMesh(irregularBlock<3>(3));
+  using Force = ExplicitStepConfig::Force;
+  std::vector<std::vector<double>> found;
+  for (const Force force : {Force::kKernel, Force::kTensors, Force::kLinearTensors}) {
+    ExplicitStepConfig config = pressedBlock(mesh);
+    config.force = force;
+    config.time_step = 0.01;
+    ExplicitStep dynamics(mesh, config);
+    EXPECT_EQ(dynamics.timeStep(), 0.01);
+    for (int i = 1; i <= 100; ++i) dynamics.step({0, 0, -0.001 * i});
+    found.push_back(dynamics.positions());
+  }
+  double nonlinear = 0;
+  for (std::size_t i = 0; i < found[0].size(); ++i) {
+    EXPECT_NEAR(found[1][i], found[0][i], 1e-12);
+    nonlinear = std::max(nonlinear, std::abs(found[2][i] - found[0][i]));
+  }
+  EXPECT_GT(nonlinear, 1e-4);
+}
+
 TEST(ExplicitStep, RefusesBadConfigurations) {
   const TetMesh mesh = linearMesh(irregularBlock<3>(2));
   ExplicitStepConfig config = pressedBlock(mesh);
@@ -130,12 +151,14 @@ TEST(ExplicitStep, RefusesBadConfigurations) {
   config.density = 0;
   config.damping = -1;
   config.safety = 1.5;
+  config.time_step = 0;
   try {
     ExplicitStep(mesh, config).timeStep();
     FAIL();
   } catch (const ConfigError& error) {
     const std::string text = error.what();
-    for (const char* part : {"density = 0", "damping = -1", "safety = 1.5", "held: vertex 99", "tip: vertex 0"}) {
+    for (const char* part :
+         {"density = 0", "damping = -1", "safety = 1.5", "time_step = 0", "held: vertex 99", "tip: vertex 0"}) {
       EXPECT_NE(text.find(part), std::string::npos) << text;
     }
   }

@@ -127,6 +127,34 @@ INSTANTIATE_TEST_SUITE_P(Cells, CellMesherExtremes,
                                          Extreme{56e-6, 12e-6, 3e-6, 20e-6}, Extreme{56e-6, 28e-6, 3e-6, -20e-6},
                                          Extreme{1.2e-3, 0.2e-3, 10e-6, 0.1e-3}));
 
+/// Mean of the elements' height over their width, from the second moments of their corners.
+double heightOverWidth(const TetMesh& mesh) {
+  double sum = 0;
+  for (const auto& corners : mesh.tetrahedra) {
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero(), squares = Eigen::Vector3d::Zero();
+    for (int v : corners) middle += mesh.vertices[v] / 4;
+    for (int v : corners) squares += (mesh.vertices[v] - middle).cwiseAbs2();
+    sum += std::log(squares.z() / squares.head<2>().mean()) / 2;
+  }
+  return std::exp(sum / static_cast<double>(mesh.tetrahedra.size()));
+}
+
+TEST(CellMesherStretch, ElementsAreAsMuchHigherAndStillMakeTheCell) {
+  CellMeshConfig config = needleCell({0, 0});
+  const TetMesh plain = makeCellMesh(config);
+  for (const double stretch : {1.5, 2.5}) {
+    config.stretch = stretch;
+    const TetMesh mesh = makeCellMesh(config);
+    EXPECT_NEAR(heightOverWidth(mesh) / heightOverWidth(plain), stretch, 0.2 * stretch);
+    EXPECT_NEAR(static_cast<double>(mesh.tetrahedra.size()) / static_cast<double>(plain.tetrahedra.size()), 1.2, 0.4);
+    EXPECT_GT(worstRadiusRatio(mesh), 0.1);
+    const SurfaceMesh surface = extractSurface(mesh);
+    for (const Eigen::Vector3d& vertex : surface.vertices) EXPECT_NEAR(vertex.norm() / config.radii[0], 1, 1e-12);
+    EXPECT_TRUE(isClosedPolygon(surface, onCircle(surface, {0, 0}, kTipRadius, +1)));
+    EXPECT_TRUE(isClosedPolygon(surface, onCircle(surface, {0, 0}, kContactRadius, -1)));
+  }
+}
+
 TEST(CellMesherPlain, NeedsNeitherRefinementsNorCircles) {
   CellMeshConfig config;
   config.radii = {28e-6};

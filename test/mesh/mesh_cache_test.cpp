@@ -84,6 +84,7 @@ TEST_F(MeshCacheTest, EveryInputChangesTheFile) {
   changed([](CellMeshConfig& c) { c.radii.push_back(3e-6); });
   changed([=](CellMeshConfig& c) { c.size *= little; });
   changed([=](CellMeshConfig& c) { c.growth *= little; });
+  changed([=](CellMeshConfig& c) { c.stretch *= little; });
   changed([](CellMeshConfig& c) { c.refinements[0].shape = CellMeshConfig::Shape::kCircle; });
   changed([](CellMeshConfig& c) { c.refinements[0].centre.x() = 1e-20; });
   changed([](CellMeshConfig& c) { c.refinements[0].centre.y() = 1e-20; });

@@ -33,6 +33,7 @@ TEST(CellMeshConfig, NamesAllErrorsAtOnce) {
   EXPECT_EQ(errorsOf(config), "");
   config.size = -1;
   config.growth = 1.5;
+  config.stretch = 0.5;
   config.refinements[0].size = 0;
   config.refinements[0].side = 0.5;
   config.refinements.push_back({CellMeshConfig::Shape::kCircle, {20e-6, 0}, 9e-6, +1, 1e-6});
@@ -40,7 +41,7 @@ TEST(CellMeshConfig, NamesAllErrorsAtOnce) {
   config.imprints[0].centre = {25e-6, 0};  // the disc would hang over the edge
   config.imprints.push_back({{0, 5e-6}, 10e-6, -1});
   expectAll(errorsOf(config),
-            {"size = -1", "growth = 1.5", "refinements[0].size = 0", "refinements[0].side = 0.5",
+            {"size = -1", "growth = 1.5", "stretch = 0.5", "refinements[0].size = 0", "refinements[0].side = 0.5",
              "refinements[1].radius = 9e-06", "refinements[2].centre = 2.9e-05", "refinements[2].radius = -1e-06",
              "imprints[0].radius = 3e-06", "imprints[2].radius = 1e-05: must be such that it keeps 0.05"});
   EXPECT_THROW(makeCellMesh(config), ConfigError);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -70,6 +71,25 @@ TEST(SweptMesh, WantsThreeSegments) {
   SweepConfig few;
   few.segments = 2;
   EXPECT_THROW(sweepSection(section(), few), std::invalid_argument);
+}
+
+TEST(SweptMesh, HalfAndItsImageAreTheWhole) {
+  SweepConfig whole_config = config(9e-6, 0), half_config = whole_config;
+  half_config.half = true;
+  half_config.segments = whole_config.segments / 2;
+  const QuadraticMesh<3> whole = sweepSection(section(), whole_config), half = sweepSection(section(), half_config);
+  EXPECT_EQ(2 * half.elements.size(), whole.elements.size());
+  EXPECT_EQ(2 * half.facets.size(), whole.facets.size());  // the cut is none
+  std::size_t in_plane = 0;
+  for (const Eigen::Vector3d& x : half.nodes) {
+    EXPECT_GE(x.y(), 0);
+    in_plane += x.y() == 0;
+    const auto same = [&](const Eigen::Vector3d& other) { return (other - x).norm() < 1e-9 * kRadius; };
+    EXPECT_EQ(std::count_if(whole.nodes.begin(), whole.nodes.end(), same), 1) << x.transpose();
+  }
+  EXPECT_EQ(2 * half.nodes.size(), whole.nodes.size() + in_plane);
+  half_config.pole_azimuth = 0.1;
+  EXPECT_THROW(sweepSection(section(), half_config), std::invalid_argument);
 }
 
 }  // namespace

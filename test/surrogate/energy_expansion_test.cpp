@@ -114,7 +114,7 @@ TEST(EnergyExpansion, NothingAtNoDisplacement) {
 /// A contact of Hertz on a curved cell, with a lateral spring that stiffens with depth: not of the expansion's form.
 TrainingSample hertz(double angle, const Eigen::Vector3d& u) {
   const double tilt = std::sin(angle), depth = -u.z() * std::cos(angle) - tilt * u.x();
-  TrainingSample sample{angle, u, Eigen::Vector3d::Zero(), Eigen::Matrix3d::Zero(), {}};
+  TrainingSample sample{angle, u, Eigen::Vector3d::Zero(), {}};
   if (depth <= 0) return sample;
   const double normal = 2.5 * std::pow(depth, 1.5);
   const Eigen::Vector2d side(u.x() * std::cos(angle) - u.z() * -tilt, u.y());

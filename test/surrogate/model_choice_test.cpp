@@ -27,5 +27,17 @@ TEST(ModelChoice, SaysWhenNoneMeetsThem) {
   EXPECT_FALSE(chooseModel({0.02, 1000}, {live}).meets);
 }
 
+/// Under a rounded tip the live cell does not lock: some per cent, but no force in a millisecond.
+TEST(ModelChoice, MeasuresTheLiveCellOfARoundedTip) {
+  Scene scene;
+  scene.needle.tip.shape = "hemisphere";
+  scene.cell.material() = {"neo_hookean", 17.9e3, 0.49};
+  const ModelFigures live = measureLiveCell(scene);
+  EXPECT_EQ(live.name, "live");
+  EXPECT_GT(live.force_error, 0.005);
+  EXPECT_LT(live.force_error, 0.1);
+  EXPECT_GT(live.time, 0.001);
+}
+
 }  // namespace
 }  // namespace microinjection

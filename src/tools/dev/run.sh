@@ -1,5 +1,5 @@
 # shellcheck shell=bash
-# ./dev demo, bench and shell: programs of the workspace in its environment.
+# ./dev demo, bench, paper and shell: programs of the workspace in its environment.
 
 command_demo() {
   [[ ${1:-} != -- ]] || shift
@@ -56,6 +56,14 @@ bench_program() {
   program=$(find "$WORKSPACE/devel/lib" "$WORKSPACE/build" -name "bench_$1" -type f -perm -u+x -print -quit)
   [[ -n $program ]] || fail "the build made no bench_$1; is it in src/bench/CMakeLists.txt?"
   echo "$program"
+}
+
+command_paper() {
+  [[ ${1:-} != -- ]] || shift
+  setup
+  build_workspace
+  say "paper: src/paper/report.py $*"
+  exec /usr/bin/python3 -B "$ROOT/src/paper/report.py" --programs "$WORKSPACE/devel/lib" --out "$ROOT/out/paper" "$@"
 }
 
 command_shell() {

@@ -1,4 +1,4 @@
-#include "surrogate/contact_place.h"
+#include "cell/contact_place.h"
 
 #include <Eigen/Geometry>
 #include <cmath>

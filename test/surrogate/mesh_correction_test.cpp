@@ -1,0 +1,64 @@
+#include "surrogate/mesh_correction.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace microinjection {
+namespace {
+
+constexpr double kDegree = 0.017453292519943295;
+
+EnergyScales scales() {
+  EnergyScales result;
+  result.angle = 60 * kDegree;
+  result.length = 45e-6;
+  return result;
+}
+
+/// What a coarse mesh could be wrong by.
+double truth(double angle, const Eigen::Vector3d& u) {
+  const double place = angle / scales().angle;
+  return 1 - 0.02 * place * place + 0.015 * place * u.x() / u.norm() - 0.03 * std::exp(-u.norm() / 0.6e-6);
+}
+
+std::vector<TrainingSample> path(double angle, const Eigen::Vector3d& end, bool fine) {
+  std::vector<TrainingSample> samples;
+  for (int i = 1; i <= 10; ++i) {
+    const Eigen::Vector3d u = 0.01 * i * i * end;
+    samples.push_back({angle, u, -1e-2 * (fine ? truth(angle, u) : 1) * u, {}});
+  }
+  return samples;
+}
+
+TEST(MeshCorrection, IsFoundFromPathsInThePlaneAndHoldsBesideIt) {
+  std::vector<std::vector<TrainingSample>> coarse, fine;
+  for (double angle : {20 * kDegree, 40 * kDegree, 60 * kDegree}) {
+    for (double side : {-5e-6, 0.0, 5e-6}) {
+      coarse.push_back(path(angle, {side, 0, -12e-6}, false));
+      fine.push_back(path(angle, {side, 0, -12e-6}, true));
+    }
+  }
+  fine[2].resize(6);  // it may end earlier
+  std::vector<MeshCorrection::Pair> pairs;
+  for (std::size_t i = 0; i < coarse.size(); ++i) pairs.push_back({&coarse[i], &fine[i]});
+  const MeshCorrection correction(scales(), pairs);
+  double worst = 0, uncorrected = 0;
+  for (double angle : {15 * kDegree, 50 * kDegree}) {
+    for (double length : {0.4e-6, 2e-6, 10e-6}) {
+      const Eigen::Vector3d u = length * Eigen::Vector3d(0.2, 0.3, -0.9).normalized();
+      worst = std::max(worst, std::abs(correction.factor(angle, u) - truth(angle, u)));
+      uncorrected = std::max(uncorrected, std::abs(1 - truth(angle, u)));
+    }
+  }
+  EXPECT_LT(worst, 0.01);  // near the touch the truth is of another form
+  EXPECT_GT(uncorrected, 0.025);
+}
+
+TEST(MeshCorrection, WithoutPairsThereIsNone) {
+  EXPECT_EQ(MeshCorrection(scales(), {}).factor(0.5, {1e-6, 0, -2e-6}), 1);
+}
+
+}  // namespace
+}  // namespace microinjection

@@ -1,0 +1,76 @@
+#include "surrogate/prepared_tracker.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "surrogate/allocation_count.h"
+#include "surrogate/spring_cells.h"
+
+namespace microinjection {
+namespace {
+
+TEST(PreparedTracker, TrustsOnlyWhatWasPreparedAndPunctures) {
+  Scene scene = pipette();
+  const auto cell = springs(scene);
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ(), deep(0, 0, 20e-6);
+  PreparedTracker tracker(scene, cell);
+  EXPECT_TRUE(tracker.step({0, 0, 30e-6}, up, 0).trusted);
+  EXPECT_FALSE(tracker.contact());
+  const TipForce force = tracker.step(deep, up, 1e-3);
+  EXPECT_TRUE(force.trusted);
+  EXPECT_NEAR(tracker.contact()->indentation, 8e-6, 1e-15);
+  EXPECT_NEAR(tracker.solution(0)->stiffness(2, 2) * 8e-6, force.force.z(), 1e-6 * force.force.z());  // a spring
+  EXPECT_FALSE(tracker.step(deep, Eigen::Vector3d(0.2, 0, 1).normalized(), 2e-3).trusted);
+  EXPECT_NE(tracker.distrust(), "");
+  EXPECT_TRUE(tracker.step({0, 0, -20e-6}, up, 3e-3).trusted);  // out of the range the force fades
+  EXPECT_NE(tracker.distrust(), "");
+  EXPECT_TRUE(tracker.step(deep, up, 4e-3).trusted);
+  EXPECT_EQ(tracker.distrust(), "");
+
+  PreparedTracker beside(scene, cell);  // touches at 75 degrees
+  const TipForce far_out = beside.step({ContactPlace::offsetFor(scene, 1.3).x(), 0, 0}, up, 0);
+  EXPECT_FALSE(far_out.trusted);
+  EXPECT_TRUE(far_out.force.isZero(0));
+  EXPECT_NE(beside.distrust(), "");
+
+  scene.cell.puncture_force = 0.5 * force.force.z();
+  PreparedTracker weak(scene, cell);
+  EXPECT_GT(weak.step({0, 0, 27e-6}, up, 0).force.z(), 0);
+  EXPECT_TRUE(weak.step(deep, up, 1e-3).force.isZero(0));
+  EXPECT_TRUE(weak.punctured());
+  EXPECT_FALSE(weak.contact());
+  EXPECT_TRUE(weak.step(deep, up, 2e-3).force.isZero(0));
+}
+
+/// In and out of the cell at places all over it, sideways, out of the range, tilted, and through puncture.
+TEST(PreparedTracker, AStepAllocatesNothing) {
+  for (const char* shape : {"disc", "hemisphere", "rounded_flat"}) {
+    Scene scene = pipette();
+    scene.needle.tip.shape = shape;
+    if (scene.needle.tip.shape == "rounded_flat") scene.needle.tip.edge_radius = 1e-6;
+    const auto cell = springs(scene);
+    scene.cell.puncture_force = 1;  // N, never
+    PreparedTracker tracker(scene, cell);
+    scene.cell.puncture_force = 1e-9;
+    PreparedTracker weak(scene, cell);
+    int touched = 0, untrusted = 0;
+    const std::size_t before = allocationCount();
+    for (int i = 0; i < 3000; ++i) {
+      const double way = 0.01 * i, side = 20e-6 * std::sin(0.05 * way);
+      const Eigen::Vector3d tip(side, 3e-6 * std::sin(7 * way), 20e-6 + 20e-6 * std::cos(way));
+      const Eigen::Vector3d axis = i % 10 == 0 ? Eigen::Vector3d(0.6, 0, 0.8) : Eigen::Vector3d::UnitZ();
+      if (!tracker.step(tip, axis, 1e-3 * i).trusted) ++untrusted;
+      if (tracker.contact()) ++touched;
+      weak.step(tip, axis, 1e-3 * i);
+    }
+    EXPECT_EQ(allocationCount(), before) << shape;
+    EXPECT_GT(touched, 300);
+    EXPECT_LT(touched, 2700);
+    EXPECT_GT(untrusted, 30);
+    EXPECT_TRUE(weak.punctured());
+  }
+}
+
+}  // namespace
+}  // namespace microinjection
