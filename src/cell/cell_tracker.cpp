@@ -15,7 +15,11 @@ CellTrackerConfig CellTrackerConfig::read(ConfigReader& reader) {
 }
 
 CellTracker::CellTracker(std::shared_ptr<const LiveCell> cell, const CellTrackerConfig& config)
-    : cell_(std::move(cell)), rest_(cell_->surfaceAtRest()), config_(config), thread_(cell_) {
+    : cell_(std::move(cell)),
+      rest_(cell_->surfaceAtRest()),
+      members_at_rest_(cell_->membersAtRest()),
+      config_(config),
+      thread_(cell_) {
   distrust_.reserve(200);
 }
 
@@ -159,6 +163,7 @@ CellUnderNeedle::Picture CellTracker::picture() {
     picture.vertices.emplace_back((own ? (*shape.solution->rest)[i] : rest_.vertices[i]) + moved);
     picture.displacement.push_back(moved.norm());
   }
+  picture.members = shape.solution ? shape.solution->members : members_at_rest_;
   if (shape.touched) picture.touched = cell_->onSurface(shape.touched->patch);
   return picture;
 }

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/config_reader.h"
 #include "base/latest_value.h"
@@ -62,6 +63,7 @@ class CellTracker : public CellUnderNeedle {
 
   std::shared_ptr<const LiveCell> cell_;
   LiveCell::Surface rest_;
+  std::vector<Member> members_at_rest_;
   CellTrackerConfig config_;
   SolutionThread thread_;
   int hint_ = 0;  ///< see LiveCell::touch

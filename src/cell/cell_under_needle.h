@@ -24,11 +24,19 @@ class CellUnderNeedle {
     Eigen::Vector3d displacement = Eigen::Vector3d::Zero();  ///< m, of the tip since then
     double indentation = 0;                                  ///< m, along the pipette into the cell
   };
+  /// Piece of a strut or cable of a cell that has some.
+  struct Member {
+    enum class Kind { kStrut, kActin, kIntermediate };
+    Kind kind = Kind::kStrut;
+    Eigen::Vector3d from = Eigen::Vector3d::Zero(), to = Eigen::Vector3d::Zero();  ///< m
+    double force = 0;                                                              ///< N, positive where it pulls
+  };
   /// The surface, deformed. Vertices correspond from picture to picture.
   struct Picture {
     std::vector<Eigen::Vector3d> vertices;  ///< m
     std::vector<double> displacement;       ///< m, magnitude
     std::vector<std::uint32_t> touched;     ///< vertices that move with the tip
+    std::vector<Member> members;            ///< correspond from picture to picture
   };
   /// Of the last solution, or of the model's present state.
   struct Solution {

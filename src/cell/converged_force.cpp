@@ -78,6 +78,7 @@ struct ConvergedForce::Level {
 ConvergedForce::ConvergedForce(const Scene& scene, const Indenting& indenting, const ConvergedForceConfig& config)
     : scene_(scene), indenting_(indenting), config_(config) {
   scene_.validate();
+  scene_.requireContinuum("a solution on finer and finer meshes");
   indenting_.validate();
   const bool possible = isAxisymmetric(scene) && indenting.lateral.isZero(0);
   if (config.model == ConvergedForceConfig::Model::kAxisymmetric && !possible) {

@@ -2,10 +2,12 @@
 
 #include "cell/cell_model.h"
 #include "cell/swept_cell.h"
+#include "cell/tensegrity_cell.h"
 
 namespace microinjection {
 
 std::shared_ptr<const LiveCell> makeLiveCell(const Scene& scene) {
+  if (scene.cell.tensegrity) return std::make_shared<const TensegrityCell>(scene);
   if (CellModel::refusals(scene).empty()) return std::make_shared<const CellModel>(scene);
   return std::make_shared<const SweptCell>(scene);
 }

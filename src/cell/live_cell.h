@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "cell/cell_under_needle.h"
 #include "cell/indentation_solution.h"
 #include "cell/scene.h"
 #include "contact/tip_patch.h"
@@ -45,6 +46,8 @@ class TipPath {
   virtual std::shared_ptr<const std::vector<Eigen::Vector3d>> rest() const = 0;
   /// m, xyz of each of them, in the present state.
   virtual Eigen::VectorXd surfaceDisplacement() const = 0;
+  /// Struts and cables in the present state, where the cell has some; in the order of LiveCell::membersAtRest().
+  virtual std::vector<CellUnderNeedle::Member> members() const { return {}; }
 };
 
 /// A cell whose equations are solved while the needle moves. Immutable, and safe to share between threads. Frame: the
@@ -82,10 +85,12 @@ class LiveCell {
 
   virtual Surface surfaceAtRest() const = 0;
   virtual std::vector<std::uint32_t> onSurface(const TipPatch& patch) const = 0;  ///< vertices of the picture
+  /// Struts and cables without the needle, where the cell has some.
+  virtual std::vector<CellUnderNeedle::Member> membersAtRest() const { return {}; }
 };
 
-/// The cell that serves a needle where nothing is prepared: CellModel where that can, which is quick, else SweptCell.
-/// Throws ConfigError for a bad scene.
+/// The cell that serves a needle where nothing is prepared: TensegrityCell for a scene of that model, else CellModel
+/// where that can, which is quick, else SweptCell. Throws ConfigError for a bad scene, std::runtime_error as they do.
 std::shared_ptr<const LiveCell> makeLiveCell(const Scene& scene);
 
 }  // namespace microinjection

@@ -6,40 +6,31 @@
 
 #include "base/config_reader.h"
 #include "base/errors.h"
+#include "cell/read_quantity.h"
 #include "cell/scene_check.h"
+#include "cell/tensegrity_scene.h"
 
 namespace microinjection {
 namespace {
 
+constexpr char kContinuum[] = "continuum", kTensegrity[] = "tensegrity";
 constexpr double kAgreement = 1e-6;  // of a diameter that is given twice, relative
-
-/// As ConfigReader::number, with the unit in the message.
-void quantity(ConfigReader reader, const std::string& key, double& value, const Range& range, const std::string& unit,
-              ConfigReader::Presence presence = ConfigReader::kOptional) {
-  double read = std::numeric_limits<double>::quiet_NaN();
-  reader.number(key, read, Range::finite(), presence);
-  if (std::isnan(read)) return;
-  if (!range.contains(read)) {
-    return reader.error(key, "must be a number in " + range.text() + (unit.empty() ? "" : " " + unit));
-  }
-  value = read;
-}
 
 void readViscoelasticity(ConfigReader reader, ViscoelasticityConfig& value) {
   for (ConfigReader& term_reader : reader.sections("prony")) {
     PronyTerm& term = value.prony.emplace_back();
-    quantity(term_reader, "modulus_ratio", term.modulus_ratio, Range::positive(), "", ConfigReader::kRequired);
-    quantity(term_reader, "relaxation_time", term.relaxation_time, Range::positive(), "s", ConfigReader::kRequired);
+    readQuantity(term_reader, "modulus_ratio", term.modulus_ratio, Range::positive(), "", ConfigReader::kRequired);
+    readQuantity(term_reader, "relaxation_time", term.relaxation_time, Range::positive(), "s", ConfigReader::kRequired);
   }
-  quantity(reader, "viscosity", value.viscosity, Range::nonNegative(), "Pa s");
+  readQuantity(reader, "viscosity", value.viscosity, Range::nonNegative(), "Pa s");
 }
 
 void readMaterial(ConfigReader reader, MaterialConfig& value) {
   value.model.clear();  // unless it is read
   reader.choice("model", value.model, materialModels(), ConfigReader::kRequired);
-  quantity(reader, "young_modulus", value.young_modulus, Range::positive(), "Pa", ConfigReader::kRequired);
-  quantity(reader, "poisson_ratio", value.poisson_ratio, Range::open(-1, 0.5), "", ConfigReader::kRequired);
-  quantity(reader, "mooney_ratio", value.mooney_ratio, Range::closed(0, 1), "");
+  readQuantity(reader, "young_modulus", value.young_modulus, Range::positive(), "Pa", ConfigReader::kRequired);
+  readQuantity(reader, "poisson_ratio", value.poisson_ratio, Range::open(-1, 0.5), "", ConfigReader::kRequired);
+  readQuantity(reader, "mooney_ratio", value.mooney_ratio, Range::closed(0, 1), "");
   if (reader.has("mooney_ratio") && !value.model.empty() && value.model != "mooney_rivlin") {
     reader.error("mooney_ratio", "must be left out: it belongs to model mooney_rivlin only");
   }
@@ -47,7 +38,7 @@ void readMaterial(ConfigReader reader, MaterialConfig& value) {
 }
 
 void readSurfaceTension(ConfigReader reader, Scene::Layer& value) {
-  quantity(reader, "surface_tension", value.surface_tension, Range::nonNegative(), "N/m");
+  readQuantity(reader, "surface_tension", value.surface_tension, Range::nonNegative(), "N/m");
 }
 
 void readLayers(ConfigReader cell, std::vector<Scene::Layer>& layers) {
@@ -56,7 +47,7 @@ void readLayers(ConfigReader cell, std::vector<Scene::Layer>& layers) {
     Scene::Layer& layer = layers.emplace_back();
     layer.outer_radius = std::numeric_limits<double>::quiet_NaN();  // unless it is read
     reader.text("name", layer.name, ConfigReader::kRequired);
-    quantity(reader, "outer_radius", layer.outer_radius, Range::positive(), "m", ConfigReader::kRequired);
+    readQuantity(reader, "outer_radius", layer.outer_radius, Range::positive(), "m", ConfigReader::kRequired);
     readMaterial(reader.section("material", ConfigReader::kRequired), layer.material);
     readSurfaceTension(reader, layer);
   }
@@ -75,7 +66,7 @@ void readLayeredCell(ConfigReader cell, Scene::Cell& value) {
     cell.error("surface_tension", "must be left out where there are layers: each has its own");
   }
   double diameter = std::numeric_limits<double>::quiet_NaN();
-  quantity(cell, "diameter", diameter, Range::positive(), "m");
+  readQuantity(cell, "diameter", diameter, Range::positive(), "m");
   const double outer_radius = value.layers.empty() ? diameter : value.layers.front().outer_radius;
   if (std::abs(diameter - 2 * outer_radius) > kAgreement * diameter) {
     std::ostringstream message;
@@ -87,7 +78,7 @@ void readLayeredCell(ConfigReader cell, Scene::Cell& value) {
 void readHomogeneousCell(ConfigReader cell, Scene::Cell& value) {
   Scene::Layer& layer = value.layers.front();
   double diameter = value.diameter();
-  quantity(cell, "diameter", diameter, Range::positive(), "m", ConfigReader::kRequired);
+  readQuantity(cell, "diameter", diameter, Range::positive(), "m", ConfigReader::kRequired);
   layer.outer_radius = diameter / 2;
   if (!cell.has("material")) cell.error("material", "is missing; or give layers");
   readMaterial(cell.section("material"), layer.material);
@@ -95,38 +86,45 @@ void readHomogeneousCell(ConfigReader cell, Scene::Cell& value) {
 }
 
 void readCell(ConfigReader cell, Scene::Cell& value) {
-  cell.has("layers") ? readLayeredCell(cell, value) : readHomogeneousCell(cell, value);
-  quantity(cell.section("puncture"), "force", value.puncture_force, Range::positive(), "N");
+  std::string model = kContinuum;
+  cell.choice("model", model, {kContinuum, kTensegrity});
+  if (model == kTensegrity) {
+    readTensegrity(cell, value.tensegrity.emplace());
+    value.layers.front().outer_radius = value.tensegrity->radius;
+  } else {
+    cell.has("layers") ? readLayeredCell(cell, value) : readHomogeneousCell(cell, value);
+  }
+  readQuantity(cell.section("puncture"), "force", value.puncture_force, Range::positive(), "N");
   if (!cell.has("biomembrane")) return;
   ConfigReader biomembrane = cell.section("biomembrane");
   value.biomembrane.emplace();
-  quantity(biomembrane, "thickness", value.biomembrane->thickness, Range::positive(), "m", ConfigReader::kRequired);
-  quantity(biomembrane, "dimple_radius", value.biomembrane->dimple_radius, Range::positive(), "m",
-           ConfigReader::kRequired);
+  readQuantity(biomembrane, "thickness", value.biomembrane->thickness, Range::positive(), "m", ConfigReader::kRequired);
+  readQuantity(biomembrane, "dimple_radius", value.biomembrane->dimple_radius, Range::positive(), "m",
+               ConfigReader::kRequired);
 }
 
 void readAdhesion(ConfigReader contact, Scene::Contact& value) {
   if (!contact.has("adhesion")) return;
   ConfigReader adhesion = contact.section("adhesion");
-  quantity(adhesion, "energy", value.adhesion_energy, Range::positive(), "J/m^2", ConfigReader::kRequired);
-  quantity(adhesion, "range", value.adhesion_range, Range::positive(), "m", ConfigReader::kRequired);
+  readQuantity(adhesion, "energy", value.adhesion_energy, Range::positive(), "J/m^2", ConfigReader::kRequired);
+  readQuantity(adhesion, "range", value.adhesion_range, Range::positive(), "m", ConfigReader::kRequired);
 }
 
 void readNeedle(ConfigReader needle, Scene::Needle& value) {
   ConfigReader tip = needle.section("tip", ConfigReader::kRequired);
   value.tip.shape.clear();  // unless it is read
   tip.choice("shape", value.tip.shape, tipShapes(), ConfigReader::kRequired);
-  quantity(tip, "radius", value.tip.radius, Range::positive(), "m", ConfigReader::kRequired);
+  readQuantity(tip, "radius", value.tip.radius, Range::positive(), "m", ConfigReader::kRequired);
   const bool has_edge = value.tip.shape == "rounded_flat";
-  quantity(tip, "edge_radius", value.tip.edge_radius, Range::positive(), "m",
-           has_edge ? ConfigReader::kRequired : ConfigReader::kOptional);
+  readQuantity(tip, "edge_radius", value.tip.edge_radius, Range::positive(), "m",
+               has_edge ? ConfigReader::kRequired : ConfigReader::kOptional);
   if (!has_edge && !value.tip.shape.empty() && tip.has("edge_radius")) {
     tip.error("edge_radius", "must be left out: it belongs to shape rounded_flat only");
   }
   ConfigReader contact = needle.section("contact");
   if (contact.has("mode")) value.contact.mode.clear();  // unless it is read
   contact.choice("mode", value.contact.mode, {"sticking", "sliding"});
-  quantity(contact, "friction", value.contact.friction, Range::nonNegative(), "");
+  readQuantity(contact, "friction", value.contact.friction, Range::nonNegative(), "");
   if (value.contact.mode == "sliding" && value.tip.shape == "disc") {
     contact.error("mode", std::string("must be ") + kDiscSticks);
   }
@@ -142,17 +140,17 @@ void readNeedle(ConfigReader needle, Scene::Needle& value) {
 void readMesh(ConfigReader mesh, Scene::Mesh& value) {
   if (mesh.has("size")) {
     value.size = 0;
-    quantity(mesh, "size", *value.size, Range::positive(), "m");
+    readQuantity(mesh, "size", *value.size, Range::positive(), "m");
   }
   ConfigReader refinement = mesh.section("refinement");
-  quantity(refinement, "zone", value.refinement.zone, Range::positive(), "needle diameters");
-  quantity(refinement, "density", value.refinement.density, {1, 100, false, false}, "");
-  quantity(mesh, "stretch", value.stretch, Range::closed(1, 4), "");
+  readQuantity(refinement, "zone", value.refinement.zone, Range::positive(), "needle diameters");
+  readQuantity(refinement, "density", value.refinement.density, {1, 100, false, false}, "");
+  readQuantity(mesh, "stretch", value.stretch, Range::closed(1, 4), "");
 }
 
 void readRequirements(ConfigReader requirements, Scene::Requirements& value) {
-  quantity(requirements, "force_error", value.force_error, Range::positive(), "relative");
-  quantity(requirements, "rate", value.rate, Range::positive(), "Hz");
+  readQuantity(requirements, "force_error", value.force_error, Range::positive(), "relative");
+  readQuantity(requirements, "rate", value.rate, Range::positive(), "Hz");
 }
 
 }  // namespace
@@ -170,12 +168,24 @@ const std::vector<std::string>& tipShapes() {
 
 void Scene::validate() const { checkScene(*this); }
 
+void Scene::requireContinuum(const std::string& purpose) const {
+  if (cell.tensegrity) throw ConfigError("cell/model = tensegrity: must be continuum for " + purpose);
+}
+
 Scene parseScene(const YAML::Node& node, const std::string& origin) {
   Scene scene;
   ConfigReader reader(node, origin);
   readCell(reader.section("cell", ConfigReader::kRequired), scene.cell);
-  quantity(reader.section("holding_pipette", ConfigReader::kRequired), "contact_radius",
-           scene.holding_pipette.contact_radius, Range::positive(), "m", ConfigReader::kRequired);
+  const bool continuum = !scene.cell.tensegrity;
+  if (!continuum && reader.has("holding_pipette")) {
+    reader.error("holding_pipette", "must be left out: of a tensegrity cell the three lowest strut ends are held");
+  }
+  if (!continuum && reader.has("mesh")) {
+    reader.error("mesh", "must be left out: a tensegrity cell has microtubules/slices and membrane/divisions");
+  }
+  readQuantity(reader.section("holding_pipette", continuum ? ConfigReader::kRequired : ConfigReader::kOptional),
+               "contact_radius", scene.holding_pipette.contact_radius, Range::positive(), "m",
+               continuum ? ConfigReader::kRequired : ConfigReader::kOptional);
   readNeedle(reader.section("needle", ConfigReader::kRequired), scene.needle);
   readMesh(reader.section("mesh"), scene.mesh);
   readRequirements(reader.section("requirements"), scene.requirements);

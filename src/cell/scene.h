@@ -10,6 +10,7 @@
 
 #include "cell/biomembrane.h"
 #include "material/material.h"
+#include "tensegrity/tensegrity_config.h"
 
 namespace microinjection {
 
@@ -25,6 +26,8 @@ struct Scene {
   };
   struct Cell {
     std::vector<Layer> layers = {Layer()};  ///< outermost first; a homogeneous cell is one layer named "cell"
+    /// Of a cell of model tensegrity: it has nothing of the layer but its radius.
+    std::optional<TensegrityConfig> tensegrity;
     double puncture_force = std::numeric_limits<double>::infinity();  ///< N; infinity: is never punctured
     std::optional<BiomembraneConfig> biomembrane;                     ///< of the membrane model only
 
@@ -86,6 +89,8 @@ struct Scene {
 
   /// Throws ConfigError with all errors at once.
   void validate() const;
+  /// Throws ConfigError, naming the purpose, for a tensegrity cell: what meshes the cell's inside has nothing of it.
+  void requireContinuum(const std::string& purpose) const;
 };
 
 /// disc (flat, with a sharp edge), hemisphere, rounded_flat.

@@ -84,7 +84,9 @@ void checkLayers(const std::vector<Scene::Layer>& layers, Errors& errors) {
 }
 
 void checkCell(const Scene::Cell& cell, Errors& errors) {
-  if (cell.layers.size() == 1) {
+  if (cell.tensegrity) {
+    for (const std::string& error : cell.tensegrity->errors()) errors.add("cell/" + error);
+  } else if (cell.layers.size() == 1) {
     checkLayer(cell.layers.front(), "cell/", errors);
     errors.require(positive(cell.diameter()), "cell/diameter", cell.diameter(), " m", "positive (m)");
   } else {
@@ -170,6 +172,15 @@ void checkScene(const Scene& scene) {
   checkCell(scene.cell, errors);
   const double contact_radius = scene.holding_pipette.contact_radius;
   const double reach = kReach * scene.radius();
+  if (scene.cell.tensegrity) {
+    errors.require(!scene.needle.tip.rounded(), "needle/tip/shape", scene.needle.tip.shape, "",
+                   "disc: a tensegrity cell's membrane sticks to a flat tip");
+    if (scene.cell.biomembrane) {
+      errors.add("cell/biomembrane: must be left out of a tensegrity cell, which has the membrane of its own");
+    }
+    checkNeedle(scene.needle, scene.radius(), errors);
+    return errors.throwAny();
+  }
   errors.require(positive(contact_radius) && contact_radius < reach, "holding_pipette/contact_radius", contact_radius,
                  " m", "above 0 and below 0.95 of the cell's radius, " + metres(reach));
   checkNeedle(scene.needle, scene.radius(), errors);

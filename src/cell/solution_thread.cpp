@@ -84,6 +84,7 @@ std::shared_ptr<const CellSolution> SolutionThread::solve(const Question& questi
   solution->indentation = path_->follow(question.move);
   solution->rest = path_->rest();
   solution->displacement = path_->surfaceDisplacement();
+  solution->members = path_->members();
   const auto unused = [](const auto& given) { return given.use_count() == 1; };
   given_.erase(std::remove_if(given_.begin(), given_.end(), unused), given_.end());
   given_.push_back(solution);

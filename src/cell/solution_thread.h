@@ -19,6 +19,7 @@ struct CellSolution {
   IndentationSolution indentation;
   std::shared_ptr<const std::vector<Eigen::Vector3d>> rest;  ///< see TipPath
   Eigen::VectorXd displacement;                              ///< m, xyz of each vertex of the picture
+  std::vector<CellUnderNeedle::Member> members;
 };
 
 /// Follows a tip in a thread of its own, which makes the equations for each place, too. The asking thread never waits,

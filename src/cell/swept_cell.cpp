@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <sstream>
 #include <stdexcept>
 
 #include "base/errors.h"
 #include "cell/cell_problem.h"
+#include "cell/contact_clock.h"
 #include "cell/contact_place.h"
 #include "cell/scene_mesh.h"
 #include "mechanics/symmetric_solver.h"
@@ -22,9 +22,7 @@ constexpr double kPiece = 0.25;
 constexpr double kPrepared = 0.1;
 constexpr double kUpright = 0.999;   ///< cosine: within 2.5 degrees
 constexpr double kTremble = 0.1;     ///< of the tip's radius: no other place
-constexpr double kShortest = 1e-3;   ///< s, that a step of a viscoelastic cell takes at the least
 constexpr double kOnCircle = 1.001;  ///< of the holding circle's radius
-constexpr double kEver = std::numeric_limits<double>::infinity();  ///< s
 
 bool isViscoelastic(const Scene& scene) {
   const auto& layers = scene.cell.layers;
@@ -36,7 +34,7 @@ class SweptPath : public TipPath {
  public:
   SweptPath(const Scene& scene, const QuadraticMesh<2>& section)
       : piece_(kPiece * scene.needle.tip.radius),
-        viscoelastic_(isViscoelastic(scene)),
+        clock_(isViscoelastic(scene)),
         problem_(scene, sweepScene(scene, section, SweptCell::kLevel), ElementKind::kP2P0),
         nodes_(outerNodes(problem_.body().mesh())) {
     auto rest = std::make_shared<std::vector<Eigen::Vector3d>>();
@@ -45,19 +43,12 @@ class SweptPath : public TipPath {
   }
 
   IndentationSolution follow(const TipMove& move) override {
-    if (move.contact != contact_ || (viscoelastic_ && move.touched != touched_)) {
-      problem_.reset();  // what stuck, and what relaxed, was of another contact
-      contact_ = move.contact;
-      touched_ = move.touched;
-      time_ = move.touched.value_or(move.time);
-    }
+    if (clock_.startsAgain(move)) problem_.reset();
     const Eigen::Vector3d way = move.displacement - problem_.tipDisplacement();
     const double share = std::min(1.0, piece_ / std::max(way.norm(), 1e-3 * piece_));
     const Eigen::Vector3d target =
         share < 1 ? Eigen::Vector3d(problem_.tipDisplacement() + share * way) : move.displacement;
-    const double duration = std::max(share * (move.time - time_), kShortest);
-    time_ += duration;
-    return problem_.solve(target, viscoelastic_ && move.touched ? duration : kEver);
+    return problem_.solve(target, clock_.pass(move, share));
   }
 
   std::shared_ptr<const std::vector<Eigen::Vector3d>> rest() const override { return rest_; }
@@ -74,19 +65,17 @@ class SweptPath : public TipPath {
 
  private:
   double piece_;  ///< m
-  bool viscoelastic_;
+  ContactClock clock_;
   CellProblem<3> problem_;
   std::vector<int> nodes_;  ///< of the outer surface
   std::shared_ptr<const std::vector<Eigen::Vector3d>> rest_;
-  unsigned contact_ = 0;
-  std::optional<double> touched_;  ///< s
-  double time_ = 0;                ///< s, that the state has come to
 };
 
 }  // namespace
 
 SweptCell::SweptCell(const Scene& scene) : scene_(scene) {
   scene.validate();
+  scene.requireContinuum("elements of the cell's inside");
   SymmetricSolver::useOneThread();
   const Scene::Tip& tip = scene.needle.tip;
   if (tip.rounded()) tip_ = RoundedTip::make(tip.shape, tip.radius, tip.edge_radius);

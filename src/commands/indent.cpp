@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,6 +17,7 @@
 #include "cell/converged_force.h"
 #include "cell/indentation.h"
 #include "cell/scene.h"
+#include "cell/tensegrity_cell.h"
 #include "commands/indent_arguments.h"
 
 namespace microinjection {
@@ -24,11 +26,13 @@ namespace {
 constexpr int kConverged = 0, kBadUsage = 2, kNotConverged = 3, kNotAccurate = 4;
 
 /// Pushed straight down, a deeper point continues from the last one, which lies on its way; any other starts afresh.
-ForcePoint solveLive(Indentation& indentation, double depth, const Eigen::Vector2d& lateral) {
+/// `solve` takes a Path to the displacement (m).
+template <typename Path, typename Solve>
+ForcePoint solveLive(Path& path, double depth, const Eigen::Vector2d& lateral, const Solve& solve) {
   const auto start = std::chrono::steady_clock::now();
-  const bool on_the_way = lateral.isZero(0) && -indentation.tipDisplacement().z() <= depth;
-  if (!on_the_way) indentation.reset();
-  const IndentationSolution solution = indentation.solve({lateral.x(), lateral.y(), -depth});
+  const bool on_the_way = lateral.isZero(0) && -path.tipDisplacement().z() <= depth;
+  if (!on_the_way) path.reset();
+  const IndentationSolution solution = solve(Eigen::Vector3d(lateral.x(), lateral.y(), -depth));
   ForcePoint point;
   point.depth = depth;
   point.converged = solution.converged;
@@ -41,19 +45,41 @@ ForcePoint solveLive(Indentation& indentation, double depth, const Eigen::Vector
   return point;
 }
 
+TipPatch tipPatch(const DiscCell& cell) {
+  const Eigen::Vector2d& offset = cell.scene().needle.offset;
+  const TipPatch patch = cell.patchAt({offset.x(), offset.y(), cell.scene().radius()}, Eigen::Vector3d::UnitZ());
+  std::fprintf(stderr, "indent: %s; %zu vertices under the tip\n", cell.description().c_str(), patch.vertices.size());
+  return patch;
+}
+
 std::vector<ForcePoint> live(const Scene& scene, const Indenting& indenting) {
   const auto cell = std::make_shared<const CellModel>(scene);
-  const Eigen::Vector2d& offset = scene.needle.offset;
-  const TipPatch patch = cell->patchAt({offset.x(), offset.y(), scene.radius()}, Eigen::Vector3d::UnitZ());
-  std::fprintf(stderr, "indent: live model, %zu vertices, %zu tetrahedra, %zu vertices under the tip\n",
-               cell->mesh().vertices.size(), cell->mesh().tetrahedra.size(), patch.vertices.size());
-  Indentation indentation(cell, patch);
+  Indentation indentation(cell, tipPatch(*cell));
   std::vector<ForcePoint> points;
-  for (double depth : indenting.depths) points.push_back(solveLive(indentation, depth, indenting.lateral));
+  const auto solve = [&](const Eigen::Vector3d& target) { return indentation.solve(target); };
+  for (double depth : indenting.depths) points.push_back(solveLive(indentation, depth, indenting.lateral, solve));
+  return points;
+}
+
+std::vector<ForcePoint> tensegrity(const Scene& scene, const Indenting& indenting) {
+  if (!indenting.withdrawal.empty()) {
+    throw ConfigError("--withdraw: must be left out for a scene of cell/model = tensegrity");
+  }
+  const auto cell = std::make_shared<const TensegrityCell>(scene);
+  const std::unique_ptr<TensegrityIndentation> path = cell->indentation(tipPatch(*cell));
+  const auto solve = [&](const Eigen::Vector3d& target) {
+    constexpr double kEver = std::numeric_limits<double>::infinity();
+    const double way = (target - path->tipDisplacement()).norm();
+    const IndentationSolution moved = path->solve(target, way > 0 && indenting.speed ? way / *indenting.speed : kEver);
+    return moved.converged && indenting.hold > 0 ? path->solve(target, indenting.hold) : moved;
+  };
+  std::vector<ForcePoint> points;
+  for (double depth : indenting.depths) points.push_back(solveLive(*path, depth, indenting.lateral, solve));
   return points;
 }
 
 void refuseWhatIsNoMembrane(const Scene& scene, const Indenting& indenting) {
+  scene.requireContinuum("--model membrane");
   std::vector<std::string> errors;
   if (!scene.cell.biomembrane) errors.push_back("cell/biomembrane is missing: thickness and dimple_radius, m");
   if (!scene.needle.offset.isZero(0)) errors.push_back("needle/offset: must be 0 with --model membrane");
@@ -121,14 +147,19 @@ std::string csvRow(const ForcePoint& point) {
   return row;
 }
 
+std::vector<ForcePoint> solve(const Scene& scene, const IndentArguments& arguments) {
+  if (arguments.membrane) return membrane(scene, arguments.indenting);
+  const bool its_own = arguments.live || arguments.converged.model == ConvergedForceConfig::Model::kAuto;
+  if (scene.cell.tensegrity && its_own) return tensegrity(scene, arguments.indenting);
+  return arguments.live ? live(scene, arguments.indenting) : converged(scene, arguments);
+}
+
 int run(int argc, char** argv) {
   const std::optional<IndentArguments> parsed = parseIndentArguments(argc, argv);
   if (!parsed) return kConverged;
   const IndentArguments& arguments = *parsed;
   const Scene scene = loadScene(arguments.scene);
-  const std::vector<ForcePoint> points = arguments.live       ? live(scene, arguments.indenting)
-                                         : arguments.membrane ? membrane(scene, arguments.indenting)
-                                                              : converged(scene, arguments);
+  const std::vector<ForcePoint> points = solve(scene, arguments);
   std::string table = "depth_m,force_x_N,force_y_N,force_z_N,wall_s,converged,error_estimate\n";
   int status = kConverged;
   for (const ForcePoint& point : points) {

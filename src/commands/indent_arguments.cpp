@@ -32,6 +32,7 @@ Models:
   live          the P1 tetrahedra of a live session (the scene's mesh keys), which lock; discs only
   membrane      an analytic point-load model of the zona pellucida (cell/biomembrane in the scene, with the modulus of the
                 outermost material): F = k depth^3; neither the inside's elasticity nor withdrawal are in it
+A scene of cell/model tensegrity has one model, its own (auto), and no error estimate.
 
 Example:
   indent --scene config/cells/mouse_oocyte.yaml --depths 1e-6,2e-6,5e-6 --tolerance 0.01 --csv force.csv

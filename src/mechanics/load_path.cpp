@@ -18,12 +18,17 @@ constexpr int kMaximumHalvings = 8;     ///< of a line search
 
 }  // namespace
 
-LoadPath::LoadPath(EquilibriumSystem& system, const LoadPathConfig& config)
+LoadPath::LoadPath(EquilibriumSystem& system, const LoadPathConfig& config, const Eigen::VectorXd& start)
     : system_(system), config_(config), load_step_(config.first_step) {
   undeformed_.x.setZero(system.stateSize());
+  if (start.size() > 0) {
+    undeformed_.x = start;
+    system_.residual(start, residual_, undeformed_.reaction);
+  }
   if (!refactorise(undeformed_)) throw std::invalid_argument("the undeformed state is not stable");
   undeformed_.stiffness = system_.stiffness();
   undeformed_.sensitivity = system_.sensitivity();
+  if (start.size() > 0) system_.energy(start, undeformed_.energy);
   force_floor_ = kRounding * config.length * system_.matrix().diagonal().maxCoeff();
   state_ = undeformed_;
 }

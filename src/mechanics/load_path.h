@@ -31,15 +31,16 @@ class LoadPath {
   };
 
   /// `system` must outlive this and be undeformed. Throws std::invalid_argument when it is not stable so: something is
-  /// not held, or a layer's tension is too much for its material.
-  LoadPath(EquilibriumSystem& system, const LoadPathConfig& config);
+  /// not held, or a layer's tension is too much for its material. `start`: the equilibrium to set out from, where it is
+  /// not the state of zeros (a prestressed structure); the tip's translation counts from there.
+  LoadPath(EquilibriumSystem& system, const LoadPathConfig& config, const Eigen::VectorXd& start = {});
 
   /// Straight and at constant speed from the present translation to `target`, m, in `duration`, s; infinite: nothing
   /// viscous resists. Already there, it waits for that long. On failure the state is the last equilibrium found on the
   /// way.
   Result advance(const Eigen::Vector3d& target, double duration = std::numeric_limits<double>::infinity());
 
-  /// Back to the undeformed state.
+  /// Back to the state that it set out from.
   void reset();
 
   const Eigen::VectorXd& state() const { return state_.x; }                  ///< see EnergyTerm

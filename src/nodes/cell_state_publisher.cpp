@@ -72,6 +72,12 @@ void CellStatePublisher::fillSurface(cell_microinjection::CellState& state) {
                  [](const Eigen::Vector3d& vertex) { return toMessage<geometry_msgs::Point32>(vertex); });
   state.displacement.assign(picture.displacement.begin(), picture.displacement.end());
   state.contact_vertices = picture.touched;
+  for (const CellUnderNeedle::Member& member : picture.members) {
+    state.member_points.push_back(toMessage<geometry_msgs::Point32>(member.from));
+    state.member_points.push_back(toMessage<geometry_msgs::Point32>(member.to));
+    state.member_force.push_back(static_cast<float>(member.force));
+    state.member_kind.push_back(static_cast<std::uint8_t>(member.kind));
+  }
 }
 
 void CellStatePublisher::publish(const CellMoment& moment) {

@@ -68,6 +68,12 @@ Marker lineMarker(const MarkerName& name, const LineList& lines, double width, c
   return listMarker(name, Marker::LINE_LIST, lines, width, colour);
 }
 
+Marker lineMarker(const MarkerName& name, const ColouredLines& lines, double width) {
+  Marker marker = lineMarker(name, lines.lines, width, {1, 1, 1, 1});
+  for (const Colour& colour : lines.colours) marker.colors.push_back(toColour(colour));
+  return marker;
+}
+
 Marker sphereMarker(const MarkerName& name, const std::vector<Eigen::Vector3d>& points, double diameter,
                     const Colour& colour) {
   return listMarker(name, Marker::SPHERE_LIST, points, diameter, colour);

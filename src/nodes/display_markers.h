@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "display/cell_members.h"
 #include "display/force_arrow.h"
 #include "display/triangle_soup.h"
 
@@ -22,6 +23,7 @@ struct MarkerName {
 visualization_msgs::Marker triangleMarker(const MarkerName& name, const TriangleSoup& soup, const Colour& colour);
 visualization_msgs::Marker lineMarker(const MarkerName& name, const LineList& lines, double width,
                                       const Colour& colour);
+visualization_msgs::Marker lineMarker(const MarkerName& name, const ColouredLines& lines, double width);
 visualization_msgs::Marker sphereMarker(const MarkerName& name, const std::vector<Eigen::Vector3d>& points,
                                         double diameter, const Colour& colour);
 visualization_msgs::Marker arrowMarker(const MarkerName& name, const Arrow& arrow, const Colour& colour);

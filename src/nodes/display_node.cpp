@@ -29,6 +29,14 @@ CellSurface toSurface(const cell_microinjection::CellState& message) {
   return surface;
 }
 
+CellMembers toMembers(const cell_microinjection::CellState& message) {
+  CellMembers members;
+  for (const auto& p : message.member_points) members.points.emplace_back(p.x, p.y, p.z);
+  members.forces.assign(message.member_force.begin(), message.member_force.end());
+  members.kinds.assign(message.member_kind.begin(), message.member_kind.end());
+  return members;
+}
+
 /// CRTK: a message with stamp 0 says that what was said before does not hold any more.
 template <typename Message>
 bool isValid(const Message& message) {
@@ -92,7 +100,8 @@ void DisplayNode::count(InputId input, bool drawn) {
 
 void DisplayNode::onState(const cell_microinjection::CellState& message) {
   CellSurface surface = toSurface(message);
-  const std::string defect = surface.defect();
+  CellMembers members = toMembers(message);
+  const std::string defect = surface.defect() + members.defect();
   count(kState, defect.empty());
   state_.readout.state = defect.empty() ? describe(message) : "not drawn: " + defect;
   state_.alarm = !defect.empty() || message.punctured || !message.converged;
@@ -105,6 +114,7 @@ void DisplayNode::onState(const cell_microinjection::CellState& message) {
   if (!defect.empty()) return;
   state_.cell_frame = message.header.frame_id.empty() ? "cell" : message.header.frame_id;
   state_.surface = std::move(surface);
+  state_.members = std::move(members);
   cell_changed_ = true;
 }
 

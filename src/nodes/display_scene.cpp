@@ -19,7 +19,9 @@ constexpr Colour kMeasured{0.95f, 0.40f, 0.80f, 1};
 constexpr Colour kText{0.92f, 0.94f, 0.97f, 1};
 constexpr Colour kAlarm{1.00f, 0.45f, 0.35f, 1};
 
-constexpr double kSmallestRange = 1e-6;  // m, of the colour scale: noise does not fill it
+constexpr double kSmallestRange = 1e-6;                     // m, of the colour scale: noise does not fill it
+constexpr float kMembrane = 0.25f;                          // opacity, of a cell with struts and cables inside
+constexpr double kStrutWidth = 0.016, kCableWidth = 0.006;  // display units; not to scale
 const std::string kWorld = "viz/world";
 
 }  // namespace
@@ -80,10 +82,23 @@ void DisplayScene::drawCell(const DisplayedState& state, visualization_msgs::Mar
     }
   }
   const std::string frame = "viz/" + state.cell_frame;
-  markers.markers.push_back(triangleMarker({frame, "cell"}, colouredSurface(surface, colour_range_), {1, 1, 1, 1}));
+  TriangleSoup skin = colouredSurface(surface, colour_range_);
+  if (!state.members.kinds.empty()) {
+    for (Colour& colour : skin.colours) colour.a = kMembrane;
+    drawMembers(state.members, frame, markers);
+  }
+  markers.markers.push_back(triangleMarker({frame, "cell"}, skin, {1, 1, 1, 1}));
   markers.markers.push_back(
       sphereMarker({frame, "contact"}, pointsAt(surface, surface.contact_vertices), 0.008, kContact));
   if (config_.edges) markers.markers.push_back(lineMarker({frame, "edges"}, edges(surface, 0.0015), 0.001, kEdge));
+}
+
+void DisplayScene::drawMembers(const CellMembers& members, const std::string& frame,
+                               visualization_msgs::MarkerArray& markers) {
+  tension_range_ = std::max(tension_range_, members.largestTension());
+  markers.markers.push_back(lineMarker({frame, "struts"}, strutLines(members), kStrutWidth));
+  const ColouredLines cables = cableLines(members, tension_range_ > 0 ? tension_range_ : 1);
+  markers.markers.push_back(lineMarker({frame, "cables"}, cables, kCableWidth));
 }
 
 void DisplayScene::drawLegend(visualization_msgs::MarkerArray& markers) const {

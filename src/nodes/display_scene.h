@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "display/cell_members.h"
 #include "display/cell_surface.h"
 #include "display/display_config.h"
 #include "display/readout.h"
@@ -15,6 +16,7 @@ namespace microinjection {
 /// What is known of the scene, SI units; absent is what is not known or cannot be trusted.
 struct DisplayedState {
   std::optional<CellSurface> surface;
+  CellMembers members;
   std::string cell_frame = "cell";                     ///< of the surface
   std::optional<Eigen::Isometry3d> holding_from_cell;  ///< pose of cell_frame in holding_pipette
   std::optional<Eigen::Isometry3d> tip;                ///< pose of needle_tip in world
@@ -31,7 +33,7 @@ class DisplayScene {
 
   /// What moves on its own, but for the cell: forces and readout.
   void drawMoving(const DisplayedState& state, visualization_msgs::MarkerArray& markers) const;
-  /// The cell's surface, edges and contact, and the legend when its range has grown.
+  /// The cell's surface, edges, members and contact, and the legend when its range has grown.
   void drawCell(const DisplayedState& state, visualization_msgs::MarkerArray& markers);
   /// What stays: pipettes and legend.
   void drawStill(const DisplayedState& state, visualization_msgs::MarkerArray& markers);
@@ -40,10 +42,12 @@ class DisplayScene {
   void drawForce(const std::string& name, const DisplayedState& state, const std::optional<Eigen::Vector3d>& force,
                  double beside, const Colour& colour, visualization_msgs::MarkerArray& markers) const;
   void drawReadout(const DisplayedState& state, visualization_msgs::MarkerArray& markers) const;
+  void drawMembers(const CellMembers& members, const std::string& frame, visualization_msgs::MarkerArray& markers);
   void drawLegend(visualization_msgs::MarkerArray& markers) const;
   void fitHoldingPipette(const DisplayedState& state);
 
   const DisplayConfig config_;
+  double tension_range_ = 0;   ///< N, largest tension seen
   double colour_range_;        ///< m, displacement at the end of the colour scale
   HoldingPipette holding_;     ///< as configured, with the mouth where the cell touches it
   double holding_height_ = 0;  ///< m, of the mouth along the z axis of holding_pipette

@@ -80,6 +80,11 @@ PreparationRange PreparationRange::standard(const Scene& scene) {
 }
 
 void Preparation::check(const Scene& scene) {
+  if (scene.cell.tensegrity) {
+    throw ConfigError(
+        "cell/model = tensegrity: must be continuum: a prepared cell is one of revolution about the holding "
+        "pipette's axis, and a tensegrity cell is not; it is solved live");
+  }
   const std::vector<PronyTerm>& first = scene.cell.layers.front().material.viscoelasticity.prony;
   for (const Scene::Layer& layer : scene.cell.layers) {
     const ViscoelasticityConfig& own = layer.material.viscoelasticity;
