@@ -12,7 +12,9 @@ namespace microinjection {
 class ContactClock {
  public:
   /// @param viscous whether the path takes time at all
-  explicit ContactClock(bool viscous) : viscous_(viscous) {}
+  /// @param lead s, before the touch from which the first way in a contact is counted. The tangent of a short way is
+  /// the stiffer the more viscous the cell is, and that of the first one has to serve until the next solution.
+  explicit ContactClock(bool viscous, double lead = 0) : viscous_(viscous), lead_(lead) {}
 
   /// Whether the path has to start again, from the cell without the needle, before it follows: what stuck, and what
   /// relaxed, was of another contact, or of the time before the touch.
@@ -20,7 +22,7 @@ class ContactClock {
     if (move.contact == contact_ && (!viscous_ || move.touched == touched_)) return false;
     contact_ = move.contact;
     touched_ = move.touched;
-    time_ = move.touched.value_or(move.time);
+    time_ = move.touched.value_or(move.time) - lead_;
     return true;
   }
 
@@ -35,6 +37,7 @@ class ContactClock {
   static constexpr double kShortest = 1e-3;  ///< s: a clock may stand
 
   bool viscous_;
+  double lead_;  ///< s
   unsigned contact_ = 0;
   std::optional<double> touched_;  ///< s
   double time_ = 0;                ///< s, that the state has come to

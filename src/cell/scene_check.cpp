@@ -1,10 +1,10 @@
 #include "cell/scene_check.h"
 
-#include <algorithm>
 #include <cmath>
 #include <set>
 #include <sstream>
 
+#include "base/config_errors.h"
 #include "base/errors.h"
 
 namespace microinjection {
@@ -21,32 +21,13 @@ constexpr double kThinnestLayer = 1.0 / 500;  // of the cell's radius
 bool positive(double value) { return std::isfinite(value) && value > 0; }
 bool notNegative(double value) { return std::isfinite(value) && value >= 0; }
 
-class Errors {
- public:
-  /// "KEY = VALUE UNIT: must be ALLOWED" unless `good`.
-  template <typename Value>
-  void require(bool good, const std::string& key, const Value& value, const std::string& unit,
-               const std::string& allowed) {
-    std::ostringstream message;
-    message << key << " = " << value << unit << ": must be " << allowed;
-    if (!good) add(message.str());
-  }
-  void add(const std::string& message) { messages_.push_back(message); }
-  void throwAny() const {
-    if (!messages_.empty()) throw ConfigError(messages_);
-  }
-
- private:
-  std::vector<std::string> messages_;
-};
-
 std::string metres(double value) {
   std::ostringstream text;
   text << value << " m";
   return text.str();
 }
 
-void checkLayer(const Scene::Layer& layer, const std::string& path, Errors& errors) {
+void checkLayer(const Scene::Layer& layer, const std::string& path, ConfigErrors& errors) {
   try {
     layer.material.validate();
   } catch (const ConfigError& error) {
@@ -60,7 +41,7 @@ void checkLayer(const Scene::Layer& layer, const std::string& path, Errors& erro
                  "0 or more N/m");
 }
 
-void checkLayers(const std::vector<Scene::Layer>& layers, Errors& errors) {
+void checkLayers(const std::vector<Scene::Layer>& layers, ConfigErrors& errors) {
   std::set<std::string> names;
   const double radius = layers.front().outer_radius;
   const double thinnest = kThinnestLayer * radius;
@@ -83,7 +64,7 @@ void checkLayers(const std::vector<Scene::Layer>& layers, Errors& errors) {
   }
 }
 
-void checkCell(const Scene::Cell& cell, Errors& errors) {
+void checkCell(const Scene::Cell& cell, ConfigErrors& errors) {
   if (cell.tensegrity) {
     for (const std::string& error : cell.tensegrity->errors()) errors.add("cell/" + error);
   } else if (cell.layers.size() == 1) {
@@ -95,10 +76,8 @@ void checkCell(const Scene::Cell& cell, Errors& errors) {
   errors.require(cell.puncture_force > 0, "cell/puncture/force", cell.puncture_force, " N", "positive (N)");
 }
 
-void checkTip(const Scene::Tip& tip, double cell_radius, Errors& errors) {
-  const std::vector<std::string>& shapes = tipShapes();
-  errors.require(std::find(shapes.begin(), shapes.end(), tip.shape) != shapes.end(), "needle/tip/shape", tip.shape, "",
-                 "one of: disc, hemisphere, rounded_flat");
+void checkTip(const Scene::Tip& tip, double cell_radius, ConfigErrors& errors) {
+  errors.requireOneOf(tipShapes(), "needle/tip/shape", tip.shape);
   const double limit = tip.rounded() ? cell_radius * (1 + kRounding) : kReach * cell_radius;
   errors.require(
       positive(tip.radius) && tip.radius <= limit, "needle/tip/radius", tip.radius, " m",
@@ -112,7 +91,7 @@ void checkTip(const Scene::Tip& tip, double cell_radius, Errors& errors) {
   }
 }
 
-void checkAdhesion(const Scene::Needle& needle, Errors& errors) {
+void checkAdhesion(const Scene::Needle& needle, ConfigErrors& errors) {
   const Scene::Contact& contact = needle.contact;
   const bool there = contact.adhesion_energy > 0;
   errors.require(notNegative(contact.adhesion_energy), "needle/contact/adhesion/energy", contact.adhesion_energy,
@@ -123,7 +102,7 @@ void checkAdhesion(const Scene::Needle& needle, Errors& errors) {
                  " m", "above 0");
 }
 
-void checkBiomembrane(const Scene& scene, Errors& errors) {
+void checkBiomembrane(const Scene& scene, ConfigErrors& errors) {
   if (!scene.cell.biomembrane) return;
   const double dimple = scene.cell.biomembrane->dimple_radius, thickness = scene.cell.biomembrane->thickness;
   errors.require(positive(thickness) && thickness < scene.radius(), "cell/biomembrane/thickness", thickness, " m",
@@ -132,7 +111,7 @@ void checkBiomembrane(const Scene& scene, Errors& errors) {
                  " m", "above needle/tip/radius and at most the cell's radius, " + metres(scene.radius()));
 }
 
-void checkNeedle(const Scene::Needle& needle, double cell_radius, Errors& errors) {
+void checkNeedle(const Scene::Needle& needle, double cell_radius, ConfigErrors& errors) {
   checkTip(needle.tip, cell_radius, errors);
   const std::string& mode = needle.contact.mode;
   errors.require(mode == "sticking" || mode == "sliding", "needle/contact/mode", mode, "", "one of: sticking, sliding");
@@ -152,7 +131,7 @@ void checkNeedle(const Scene::Needle& needle, double cell_radius, Errors& errors
   }
 }
 
-void checkMesh(const Scene& scene, Errors& errors) {
+void checkMesh(const Scene& scene, ConfigErrors& errors) {
   const double diameter = scene.cell.diameter();
   errors.require(scene.meshSize() >= diameter / 200 && scene.meshSize() <= diameter / 2, "mesh/size", scene.meshSize(),
                  " m", "from 1/200 to half of the cell's diameter, " + metres(diameter));
@@ -168,7 +147,7 @@ void checkMesh(const Scene& scene, Errors& errors) {
 
 void checkScene(const Scene& scene) {
   if (scene.cell.layers.empty()) throw ConfigError("cell/layers: must have at least one layer");
-  Errors errors;
+  ConfigErrors errors;
   checkCell(scene.cell, errors);
   const double contact_radius = scene.holding_pipette.contact_radius;
   const double reach = kReach * scene.radius();

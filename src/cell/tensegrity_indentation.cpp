@@ -6,6 +6,11 @@
 #include "base/cpu_time.h"
 
 namespace microinjection {
+namespace {
+
+constexpr double kLead = 0.03;  ///< s, about what a solution takes
+
+}  // namespace
 
 std::vector<CellUnderNeedle::Member> tensegrityMembers(const TensegrityStructure& structure, const Cables& cables,
                                                        const Eigen::VectorXd& state) {
@@ -32,7 +37,7 @@ std::vector<CellUnderNeedle::Member> tensegrityMembers(const TensegrityStructure
 
 TensegrityIndentation::TensegrityIndentation(std::shared_ptr<const TensegrityStructure> structure,
                                              const TipPatch& patch)
-    : loading_(std::move(structure), patch.vertices), clock_(loading_.structure().config().viscous()) {}
+    : loading_(std::move(structure), patch.vertices), clock_(loading_.structure().config().viscous(), kLead) {}
 
 IndentationSolution TensegrityIndentation::solve(const Eigen::Vector3d& tip_displacement, double duration) {
   const double start = threadCpuTime();

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/errors.h"
+#include "mechanics/largest_frequency.h"
 
 namespace microinjection {
 namespace {
@@ -30,12 +31,6 @@ std::vector<double> lumpedMasses(const TetMesh& mesh, double density) {
     for (int vertex : mesh.tetrahedra[t]) masses[vertex] += share;
   }
   return masses;
-}
-
-double norm(const std::vector<double>& values) {
-  double sum = 0;
-  for (double value : values) sum += value * value;
-  return std::sqrt(sum);
 }
 
 }  // namespace
@@ -84,30 +79,25 @@ ExplicitStep::ExplicitStep(const TetMesh& mesh, const ExplicitStepConfig& config
   time_step_ = highest_frequency_ > 0 ? config.safety * 2 / highest_frequency_ : 0;
 }
 
-/// Power iteration with M^-1 K, K by central differences of the force. It comes from below, and `safety` covers what
-/// is missing after an iteration that changes little.
+/// K by central differences of the force. `safety` covers what is missing after an iteration that changes little.
 double ExplicitStep::findHighestFrequency() {
-  constexpr int kIterations = 300;
-  constexpr double kSettled = 1e-6;  ///< relative change of the eigenvalue
-  constexpr double kAmplitude = 1e-6;
-  const double size = norm(rest_) / std::sqrt(static_cast<double>(rest_.size()));
-  std::vector<double> mode(rest_.size()), moved(rest_.size()), behind(rest_.size());
-  for (std::size_t i = 0; i < mode.size(); ++i) mode[i] = inverse_masses_[i] > 0 ? std::cos(7.0 * i * i + i) : 0;
-  double eigenvalue = 0;
-  for (int iteration = 0; iteration < kIterations; ++iteration) {
-    const double length = norm(mode);
-    if (!(length > 0)) return 0;  // nothing is free
-    for (double& value : mode) value *= kAmplitude * size / length;
-    for (std::size_t i = 0; i < mode.size(); ++i) moved[i] = rest_[i] + mode[i];
+  constexpr PowerIteration kIteration = {1e-6, 300};
+  constexpr double kAmplitude = 1e-6;  ///< of the body's size
+  const auto count = static_cast<Eigen::Index>(rest_.size());
+  const Eigen::Map<const Eigen::VectorXd> rest(rest_.data(), count), inverse_masses(inverse_masses_.data(), count);
+  const double amplitude = kAmplitude * rest.norm() / std::sqrt(static_cast<double>(count));
+  std::vector<double> moved(rest_.size()), behind(rest_.size());
+  Eigen::Map<Eigen::VectorXd> there(moved.data(), count), back(behind.data(), count), ahead(forces_.data(), count);
+  const auto map = [&](const Eigen::VectorXd& mode) -> Eigen::VectorXd {
+    there = rest + amplitude * mode;
     evaluate(moved, forces_);
-    for (std::size_t i = 0; i < mode.size(); ++i) moved[i] = rest_[i] - mode[i];
+    there = rest - amplitude * mode;
     evaluate(moved, behind);
-    for (std::size_t i = 0; i < mode.size(); ++i) mode[i] = inverse_masses_[i] * (behind[i] - forces_[i]) / 2;
-    const double before = eigenvalue;
-    eigenvalue = norm(mode) / (kAmplitude * size);
-    if (std::abs(eigenvalue - before) < kSettled * eigenvalue) break;
-  }
-  return std::sqrt(eigenvalue);
+    return inverse_masses.cwiseProduct(back - ahead) / (2 * amplitude);
+  };
+  Eigen::VectorXd start(count);
+  for (Eigen::Index i = 0; i < count; ++i) start[i] = inverse_masses[i] > 0 ? std::cos(7.0 * i * i + i) : 0;
+  return std::sqrt(largestEigenvalue(map, start, kIteration));
 }
 
 void ExplicitStep::evaluate(const std::vector<double>& positions, std::vector<double>& forces) {

@@ -1,9 +1,8 @@
 #include "tensegrity/tensegrity_config.h"
 
-#include <algorithm>
 #include <cmath>
-#include <sstream>
 
+#include "base/config_errors.h"
 #include "base/errors.h"
 
 namespace microinjection {
@@ -15,25 +14,7 @@ constexpr int kCables = 36;
 bool positive(double value) { return std::isfinite(value) && value > 0; }
 bool notNegative(double value) { return std::isfinite(value) && value >= 0; }
 
-class Errors {
- public:
-  template <typename Value>
-  void require(bool good, const std::string& key, const Value& value, const std::string& unit,
-               const std::string& allowed) {
-    if (good) return;
-    std::ostringstream message;
-    message << key << " = " << value << unit << ": must be " << allowed;
-    messages.push_back(message.str());
-  }
-  void oneOf(const std::vector<std::string>& names, const std::string& key, const std::string& value) {
-    std::string all;
-    for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
-    require(std::find(names.begin(), names.end(), value) != names.end(), key, value, "", "one of: " + all);
-  }
-  std::vector<std::string> messages;
-};
-
-void checkFilaments(const FilamentConfig& filaments, const std::string& path, Errors& errors) {
+void checkFilaments(const FilamentConfig& filaments, const std::string& path, ConfigErrors& errors) {
   errors.require(positive(filaments.young_modulus), path + "young_modulus", filaments.young_modulus, " Pa",
                  "positive (Pa)");
   errors.require(positive(filaments.bending_stiffness), path + "bending_stiffness", filaments.bending_stiffness,
@@ -41,25 +22,25 @@ void checkFilaments(const FilamentConfig& filaments, const std::string& path, Er
   errors.require(filaments.count >= 1, path + "count", filaments.count, "", "1 or more");
 }
 
-void checkCable(const CableConfig& cable, const std::string& path, Errors& errors) {
+void checkCable(const CableConfig& cable, const std::string& path, ConfigErrors& errors) {
   checkFilaments(cable.filaments, path, errors);
   errors.require(notNegative(cable.prestrain), path + "prestrain", cable.prestrain, "", "0 or more");
   errors.require(notNegative(cable.retardation_time), path + "retardation_time", cable.retardation_time, " s",
                  "0 or more s");
 }
 
-void checkStrut(const StrutConfig& strut, Errors& errors) {
+void checkStrut(const StrutConfig& strut, ConfigErrors& errors) {
   const std::string path = "microtubules/";
   checkFilaments(strut.filaments, path, errors);
   errors.require(strut.poisson_ratio > -1 && strut.poisson_ratio < 0.5, path + "poisson_ratio", strut.poisson_ratio, "",
                  "in (-1, 0.5)");
-  errors.oneOf(strutModels(), path + "model", strut.model);
-  errors.oneOf(strutElements(), path + "element", strut.element);
+  errors.requireOneOf(strutModels(), path + "model", strut.model);
+  errors.requireOneOf(strutElements(), path + "element", strut.element);
   errors.require(strut.slices >= 2 && strut.slices % 2 == 0, path + "slices", strut.slices, "", "even, 2 or more");
   errors.require(strut.bow >= 0 && strut.bow <= 0.1, path + "bow", strut.bow, "", "in [0, 0.1]");
 }
 
-void checkMembrane(const MembraneConfig& membrane, Errors& errors) {
+void checkMembrane(const MembraneConfig& membrane, ConfigErrors& errors) {
   const std::string path = "membrane/";
   errors.require(positive(membrane.young_modulus), path + "young_modulus", membrane.young_modulus, " Pa",
                  "positive (Pa)");
@@ -92,9 +73,9 @@ bool TensegrityConfig::viscous() const {
 }
 
 std::vector<std::string> TensegrityConfig::errors() const {
-  Errors errors;
+  ConfigErrors errors;
   errors.require(positive(radius), "diameter", 2 * radius, " m", "positive (m)");
-  errors.oneOf(tensegrityOrientations(), "orientation", orientation);
+  errors.requireOneOf(tensegrityOrientations(), "orientation", orientation);
   checkCable(actin, "actin/", errors);
   checkCable(intermediate, "intermediate_filaments/", errors);
   checkStrut(microtubules, errors);
@@ -107,7 +88,7 @@ std::vector<std::string> TensegrityConfig::errors() const {
   errors.require(balanced, "intermediate_filaments/prestrain", intermediate.prestrain, "",
                  "such that the tension is below 1.4 times that of the actin cables, which alone keep parallel struts "
                  "apart");
-  return errors.messages;
+  return errors.messages();
 }
 
 void TensegrityConfig::validate() const {

@@ -28,5 +28,15 @@ TEST(LargestFrequency, MassesCount) {
   EXPECT_NEAR(largestFrequency(lower, Eigen::Vector2d(1, 0.01)), 20, 1e-6);
 }
 
+/// Of any map; it may be asymmetric, and nothing comes of nothing.
+TEST(LargestEigenvalue, IsThatOfATriangle) {
+  Eigen::Matrix2d matrix;
+  matrix << 3, 1, 0, 2;
+  const auto map = [&](const Eigen::VectorXd& x) -> Eigen::VectorXd { return matrix * x; };
+  EXPECT_NEAR(largestEigenvalue(map, Eigen::Vector2d(1, 1)), 3, 1e-6);
+  EXPECT_EQ(largestEigenvalue(map, Eigen::Vector2d::Zero()), 0);
+  EXPECT_GT(std::abs(largestEigenvalue(map, Eigen::Vector2d(1, 1), {1e-9, 1}) - 3), 0.1);
+}
+
 }  // namespace
 }  // namespace microinjection

@@ -69,6 +69,15 @@ TEST_F(ServeNeedle, LiveIsServedAsAskedFor) {
   EXPECT_TRUE(has(served.said, "as asked for: P2-P0")) << served.said;
 }
 
+TEST_F(ServeNeedle, ATensegrityIsServedLiveWithoutAWarning) {
+  const Scene scene = loadScene(MICROINJECTION_SOURCE_DIR "/config/cells/mouse_oocyte_tensegrity.yaml");
+  const ServedCell served = serveNeedle(scene, "auto", {}, "a.yaml");
+  EXPECT_TRUE(served.as_required);
+  EXPECT_TRUE(has(served.said, "solved live: tensegrity of ")) << served.said;
+  EXPECT_FALSE(served.cell->picture().members.empty());
+  EXPECT_TRUE(has(refusal(scene, "prepared"), "cell/model = tensegrity")) << refusal(scene, "prepared");
+}
+
 /// What has a memory of its own, or rubs, is no prepared cell.
 TEST_F(ServeNeedle, WhatCannotBePreparedIsLive) {
   Scene viscous = pipette();
