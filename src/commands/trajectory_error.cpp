@@ -46,6 +46,7 @@ double median(std::vector<double> values) {
 
 int compare(const Arguments& arguments) {
   Scene scene = loadScene(arguments.scene);
+  scene.requireContinuum("a full solution in space");
   for (const Scene::Layer& layer : scene.cell.layers) {
     if (layer.material.viscoelasticity.empty()) continue;
     throw ConfigError("viscoelasticity of layer " + layer.name +
