@@ -76,6 +76,9 @@ class SweptPath : public TipPath {
 SweptCell::SweptCell(const Scene& scene) : scene_(scene) {
   scene.validate();
   scene.requireContinuum("elements of the cell's inside");
+  if (scene.needle.contact.adhesion_energy > 0) {  // what pulls would be taken for the extrapolation's
+    throw ConfigError("needle/contact/adhesion: must be left out: a live cell lets the tip go (indent can do it)");
+  }
   SymmetricSolver::useOneThread();
   const Scene::Tip& tip = scene.needle.tip;
   if (tip.rounded()) tip_ = RoundedTip::make(tip.shape, tip.radius, tip.edge_radius);

@@ -38,7 +38,8 @@ Takes minutes, shows its progress, and may be interrupted: what is done is kept 
 lie in $XDG_CACHE_HOME (else ~/.cache) under cell_microinjection/prepared, in a folder named after the cell, the tip and
 the program's version; another cell or tip is prepared anew, the needle's offset does not matter.
 
-Exit status: 0 prepared (or was already); 2 bad usage or scene (viscoelastic, or with friction); 3 the cell has no solution in all
+Exit status: 0 prepared (or was already); 2 bad usage, or a scene that cannot be prepared (friction, adhesion, a viscosity that does not
+relax, tensegrity: the message names it); 3 the cell has no solution in all
 of the range, as under a sharp disc that folds: nothing is stored.
 
 Options)";

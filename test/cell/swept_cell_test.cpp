@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <string>
 
 #include "base/errors.h"
 #include "cell/cell_problem.h"
@@ -228,6 +229,19 @@ TEST(SweptCell, RefusesACellThatIsNotStableAtRest) {
   Scene scene = pipette();
   scene.cell.layers.front().surface_tension = -1;
   EXPECT_THROW(SweptCell{scene}, ConfigError);
+}
+
+TEST(SweptCell, RefusesAdhesionWhichItWouldNotShow) {
+  Scene scene = pipette();
+  scene.needle.contact.adhesion_energy = 2e-3;
+  scene.needle.contact.adhesion_range = 0.5e-6;
+  scene.validate();  // it is a good scene
+  try {
+    makeLiveCell(scene);
+    FAIL() << "was served without adhesion";
+  } catch (const ConfigError& error) {
+    EXPECT_NE(std::string(error.what()).find("needle/contact/adhesion"), std::string::npos) << error.what();
+  }
 }
 
 TEST(LiveCell, IsOfLinearTetrahedraOnlyWhereThoseCan) {
