@@ -14,7 +14,7 @@
 
 namespace microinjection {
 
-/// The defaults are an ideal device with a servo lag; config/micromanipulator_real.yaml has figures of a real one.
+/// The defaults are an ideal device with a servo lag; src/rigs/sim/imperfect.yaml has figures of a real one.
 struct SimulatedManipulatorConfig {
   double servo_time_constant = 2e-3;                     ///< s, first-order lag of a motor behind its set-point
   double resolution = 1e-9;                              ///< m, of a set-point

@@ -12,16 +12,19 @@ namespace microinjection {
 
 const char* const CellSimulatorNode::kHelp =
     "cell_simulator: the finite-element cell under the needle.\n"
-    "In: /needle/measured_cp. Out: /cell/predicted_cf, /cell/state.\n"
-    "Parameters: ~scene (file, required), ~model (auto|prepared|live), ~rate (Hz), ~state_rate (Hz), ~needle_timeout "
-    "(s), ~prepare_distance (m),\n"
-    "~extrapolation_limit (m), ~solution_period (s, in lock step); see config/cell_simulator.yaml.\n";
+    "In: /needle/measured_cp or /needle/true_cp. Out: /cell/predicted_cf, /cell/state.\n"
+    "Parameters: ~scene (file, required), ~model (auto|prepared|live), ~needle (measured|true), ~rate (Hz), "
+    "~state_rate "
+    "(Hz),\n"
+    "~needle_timeout (s), ~prepare_distance (m), ~extrapolation_limit (m), ~solution_period (s, in lock step);\n"
+    "see config/cell_simulator.yaml.\n";
 
 CellSimulatorNode::Parameters CellSimulatorNode::Parameters::read(const ros::NodeHandle& private_node) {
   Parameters parameters;
   ConfigReader reader = parameterReader(private_node);
   reader.text("scene", parameters.scene, ConfigReader::kRequired);
   reader.choice("model", parameters.model, {"auto", "prepared", "live"});
+  reader.choice("needle", parameters.needle, {"measured", "true"});
   reader.number("rate", parameters.rate, Range::closed(50, 5000));
   reader.number("state_rate", parameters.state_rate, {0, 100, true, false});
   reader.number("needle_timeout", parameters.needle_timeout, Range::positive());
@@ -33,8 +36,8 @@ CellSimulatorNode::Parameters CellSimulatorNode::Parameters::read(const ros::Nod
 CellSimulatorNode::CellSimulatorNode(ros::NodeHandle node, ros::NodeHandle private_node)
     : parameters_(Parameters::read(private_node)),
       cycle_(node, parameters_.rate),
-      needle_(
-          cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", Phase::kSameTick, parameters_.needle_timeout)),
+      needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/" + parameters_.needle + "_cp", Phase::kSameTick,
+                                                       parameters_.needle_timeout)),
       force_(cycle_.output<geometry_msgs::WrenchStamped>("cell/predicted_cf")),
       state_(cycle_.output<cell_microinjection::CellState>("cell/state", true)) {
   parameters_.tracker.fixed_period = cycle_.lockstep();

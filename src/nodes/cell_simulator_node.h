@@ -18,12 +18,13 @@ namespace microinjection {
 /// The cell under the needle: a prepared one (see PreparedCell) or a live one (see makeLiveCell). Where it has no
 /// trustworthy force it says so: the wrench then has stamp 0.
 ///
-/// In:  /needle/measured_cp (PoseStamped, tip in `world`)
+/// In:  /needle/measured_cp or /needle/true_cp (PoseStamped, tip in `world`)
 /// Out: /cell/predicted_cf (WrenchStamped, of the cell on the tip, in `world`), /cell/state (CellState)
 ///
 /// Parameters (private): those of CellTrackerConfig and
 ///   scene           path of the scene file; required
 ///   model           prepared, live, or auto (default): prepared where `prepare` has left data for the scene, else live
+///   needle          measured (default): what the micromanipulator tells; true: where a simulated one's tip truly is
 ///   rate            Hz; default 1000, in [50, 5000]
 ///   state_rate      Hz of /cell/state; default 60, in (0, 100]
 ///   needle_timeout  s, a needle pose older than this is stale; default 0.05, in (0, inf)
@@ -38,6 +39,7 @@ class CellSimulatorNode {
   struct Parameters {
     std::string scene;
     std::string model = "auto";
+    std::string needle = "measured";
     double rate = 1000;
     double state_rate = 60;
     double needle_timeout = 0.05;

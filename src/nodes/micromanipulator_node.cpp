@@ -19,49 +19,76 @@ std::string urdfFromParameter() {
 }  // namespace
 
 const char* const MicromanipulatorNode::kHelp =
-    "micromanipulator: a simulated three-axis micromanipulator with CRTK topics below /needle.\n"
-    "In: /needle/servo_cp /needle/servo_cv /needle/move_cp. Out: /needle/measured_cp /needle/measured_cv "
-    "joint_states.\n"
-    "Parameters: /robot_description, ~rate (Hz), ~joint_states_rate (Hz), ~command_timeout (s), "
-    "~velocity_command_timeout (s),\n"
-    "~pipette_tilt (rad), ~collision_margin (m), ~simulated/...; see config/micromanipulator.yaml.\n";
+    "micromanipulator: a three-axis micromanipulator, simulated, emulated or real, with CRTK topics below /needle.\n"
+    "In: /needle/servo_cp /needle/servo_cv /needle/move_cp /needle/state_command (enable, disable, stop). Out:\n"
+    "/needle/measured_cp /needle/measured_cv /needle/abilities /needle/operating_state joint_states.\n"
+    "Parameters: /robot_description, ~rig (sim|mp285|zaber), ~emulated, ~device/... (src/rigs/NAME/NAME.yaml), ~rate "
+    "(Hz),\n"
+    "~joint_states_rate (Hz), ~command_timeout (s), ~velocity_command_timeout (s), ~pipette_tilt (rad),\n"
+    "~collision_margin (m); see config/micromanipulator.yaml. With a serial device:\n"
+    "  rosrun cell_microinjection micromanipulator _rig:=zaber _device/port/path:=/dev/ttyUSB0\n";
 
-MicromanipulatorNode::Parameters MicromanipulatorNode::Parameters::read(const ros::NodeHandle& private_node) {
+MicromanipulatorNode::Parameters MicromanipulatorNode::Parameters::read(ConfigReader& reader) {
   Parameters parameters;
-  ConfigReader reader = parameterReader(private_node);
   reader.number("rate", parameters.rate, Range::closed(50, 5000));
   reader.number("joint_states_rate", parameters.joint_states_rate, {0, 1000, true, false});
+  reader.text("rig", parameters.rig);
+  reader.boolean("emulated", parameters.emulated);
   parameters.model = MicromanipulatorConfig::read(reader);
-  ConfigReader simulated = reader.section("simulated");
-  parameters.device = SimulatedManipulatorConfig::read(simulated);
-  reader.finish();
   return parameters;
 }
 
 MicromanipulatorNode::MicromanipulatorNode(ros::NodeHandle node, ros::NodeHandle private_node)
-    : parameters_(Parameters::read(private_node)),
+    : MicromanipulatorNode(node, parameterReader(private_node)) {}
+
+MicromanipulatorNode::MicromanipulatorNode(const ros::NodeHandle& node, ConfigReader reader)
+    : parameters_(Parameters::read(reader)),
       geometry_(ManipulatorGeometry::fromUrdf(urdfFromParameter(), parameters_.model.pipette_tilt)),
-      device_(geometry_, parameters_.device),
+      rig_(makeRigDevice(parameters_.rig, parameters_.emulated, geometry_, reader)),
       model_(geometry_, CollisionGuard(urdfFromParameter(), geometry_, parameters_.model.collision_margin),
-             parameters_.model, device_),
+             parameters_.model, *rig_.device),
       cycle_(node, parameters_.rate),
       servo_(cycle_.input<geometry_msgs::PoseStamped>("needle/servo_cp", Phase::kSameTick,
                                                       parameters_.model.command_timeout)),
       measured_(cycle_.output<geometry_msgs::PoseStamped>("needle/measured_cp")),
       velocity_(cycle_.output<geometry_msgs::TwistStamped>("needle/measured_cv")),
       trace_(cycle_.output<cell_microinjection::LatencyTrace>("needle/setpoint_trace")) {
-  servo_velocity_ = cycle_.node().subscribe<geometry_msgs::TwistStamped>(
+  if (rig_.true_joints) true_ = &cycle_.output<geometry_msgs::PoseStamped>("needle/true_cp");
+  subscribe();
+  joint_states_ = cycle_.node().advertise<sensor_msgs::JointState>("joint_states", 10);
+  state_ = cycle_.node().advertise<cell_microinjection::OperatingState>("needle/operating_state", 10, true);
+  abilities_ = cycle_.node().advertise<cell_microinjection::ManipulatorAbilities>("needle/abilities", 10, true);
+  publishAbilities(ros::Time::now());
+  cycle_.diagnostics().add("commands", [this](auto& status) { report(status); });
+}
+
+void MicromanipulatorNode::subscribe() {
+  using cell_microinjection::StringStampedConstPtr;
+  ros::NodeHandle& node = cycle_.node();
+  subscribers_.push_back(node.subscribe<geometry_msgs::TwistStamped>(
       "needle/servo_cv", 10, [this](const geometry_msgs::TwistStampedConstPtr& message) {
         const auto velocity = trustedVelocity(message.get());
-        judge("servo_cv", velocity ? model_.servoVelocity(*velocity, now_.toSec()) : "not a valid velocity in world");
-      });
-  move_ = cycle_.node().subscribe<geometry_msgs::PoseStamped>(
+        if (!velocity) return judge("servo_cv", "not a valid velocity in world");
+        judge("servo_cv", disabled_ ? unable() : model_.servoVelocity(*velocity, now_.toSec()));
+      }));
+  subscribers_.push_back(node.subscribe<geometry_msgs::PoseStamped>(
       "needle/move_cp", 10, [this](const geometry_msgs::PoseStampedConstPtr& message) {
         const auto pose = trustedPose(message.get());
-        judge("move_cp", pose ? model_.movePosition(*pose) : "not a valid pose in world");
-      });
-  joint_states_ = node.advertise<sensor_msgs::JointState>("joint_states", 10);
-  cycle_.diagnostics().add("commands", [this](auto& status) { report(status); });
+        if (!pose) return judge("move_cp", "not a valid pose in world");
+        judge("move_cp", disabled_ ? unable() : model_.movePosition(*pose));
+      }));
+  subscribers_.push_back(node.subscribe<cell_microinjection::StringStamped>(
+      "needle/state_command", 10,
+      [this](const StringStampedConstPtr& message) { judge("state_command", obeyState(message->string)); }));
+  if (!rig_.inject) return;
+  subscribers_.push_back(node.subscribe<cell_microinjection::StringStamped>(
+      "needle/emulated_fault", 10, [this](const StringStampedConstPtr& message) {
+        try {
+          rig_.inject(message->string, now_.toSec());
+        } catch (const ConfigError& error) {
+          judge("emulated_fault", error.what());
+        }
+      }));
 }
 
 void MicromanipulatorNode::run() {
@@ -75,12 +102,28 @@ void MicromanipulatorNode::judge(const std::string& command, const std::string& 
   ROS_WARN_STREAM_THROTTLE(1, refusal_);
 }
 
+std::string MicromanipulatorNode::unable() const { return "DISABLED; allowed after enable"; }
+
+std::string MicromanipulatorNode::obeyState(const std::string& command) {
+  if (command == "stop" || command == "disable") {
+    model_.stop();
+    disabled_ = disabled_ || command == "disable";
+  } else if (command == "enable") {
+    disabled_ = false;
+    model_.clearFault();
+  } else {
+    return "\"" + command + "\" is no command here; allowed: enable, disable, stop";
+  }
+  return "";
+}
+
 void MicromanipulatorNode::obeyServo(const Cycle::Tick& tick) {
   const auto message = servo_.takeNews();
   if (!message) return;
   if (!servo_.fresh(tick.now)) return judge("servo_cp", "it is stale");
   const auto pose = trustedPose(message.get());
-  judge("servo_cp", pose ? model_.servoPosition(*pose) : "not a valid pose in world");
+  if (!pose) return judge("servo_cp", "not a valid pose in world");
+  judge("servo_cp", disabled_ ? unable() : model_.servoPosition(*pose));
   if (!isTraced(tick.now)) return;
   cell_microinjection::LatencyTrace trace;
   trace.header.stamp = tick.now;
@@ -91,14 +134,55 @@ void MicromanipulatorNode::obeyServo(const Cycle::Tick& tick) {
 void MicromanipulatorNode::step(const Cycle::Tick& tick) {
   now_ = tick.now;
   obeyServo(tick);
+  if (rig_.before_step) rig_.before_step(tick.now.toSec());
   model_.step(tick.now.toSec(), tick.dt);
   publish(tick);
+  publishState(tick.now);
+  publishAbilities(tick.now);
   if ((tick.now - joint_states_sent_).toSec() >= 1 / parameters_.joint_states_rate) publishJointStates(tick.now);
 }
 
 void MicromanipulatorNode::publish(const Cycle::Tick& tick) {
-  if (const auto pose = model_.tipPose()) measured_.publish(toPose(*pose, tick.now, kWorldFrame));
-  if (const auto velocity = model_.tipVelocity()) velocity_.publish(toTwist(*velocity, tick.now, kWorldFrame));
+  if (const auto pose = model_.tipPose()) {
+    measured_.publish(toPose(*pose, tick.now, kWorldFrame));
+    velocity_.publish(toTwist(*model_.tipVelocity(), tick.now, kWorldFrame));
+  } else {
+    measured_.publishInvalid(toPose(Eigen::Isometry3d::Identity(), tick.now, kWorldFrame));
+    velocity_.publishInvalid(toTwist(Eigen::Vector3d::Zero(), tick.now, kWorldFrame));
+  }
+  if (true_) true_->publish(toPose(geometry_.tipPose(rig_.true_joints()), tick.now, kWorldFrame));
+}
+
+void MicromanipulatorNode::publishState(const ros::Time& now) {
+  using State = ManipulatorDevice::State;
+  cell_microinjection::OperatingState state;
+  const bool there = model_.state() != State::kDisconnected && !disabled_;
+  state.state = model_.state() == State::kFault ? "FAULT" : there ? "ENABLED" : "DISABLED";
+  state.is_homed = model_.tipPose().has_value();  // axes are absolute
+  state.is_busy = model_.moving() || rig_.device->moving();
+  if (state.state == said_.state && state.is_homed == said_.is_homed && state.is_busy == said_.is_busy) return;
+  if (state.state != said_.state) ROS_INFO_STREAM(state.state << (model_.why().empty() ? "" : ": ") << model_.why());
+  state.header.stamp = now;
+  state_.publish(state);
+  said_ = state;
+}
+
+void MicromanipulatorNode::publishAbilities(const ros::Time& now) {
+  const ManipulatorAbilities abilities = rig_.device->abilities();
+  cell_microinjection::ManipulatorAbilities message;
+  message.header.stamp = told_.header.stamp;
+  message.device = abilities.device;
+  message.follows = abilities.follows;
+  message.command_interval = abilities.command_interval;
+  message.reading_interval = abilities.reading_interval;
+  message.resolution = abilities.resolution;
+  message.speed = abilities.speed;
+  message.latency = abilities.latency;
+  message.stop_time = abilities.stop_time;
+  if (message == told_) return;
+  message.header.stamp = now;
+  abilities_.publish(message);
+  told_ = message;
 }
 
 void MicromanipulatorNode::publishJointStates(const ros::Time& now) {
@@ -119,9 +203,14 @@ void MicromanipulatorNode::publishJointStates(const ros::Time& now) {
 }
 
 void MicromanipulatorNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
-  const bool good = refusal_.empty();
-  status.summary(good ? diagnostic_msgs::DiagnosticStatus::OK : diagnostic_msgs::DiagnosticStatus::WARN,
-                 good ? (model_.moving() ? "moves" : "holds") : refusal_);
+  using diagnostic_msgs::DiagnosticStatus;
+  std::string problem = refusal_;
+  if (problem.empty()) problem = model_.ended();
+  if (!model_.why().empty()) problem = model_.why() + (problem.empty() ? "" : "; ") + problem;
+  status.summary(
+      model_.why().empty() ? problem.empty() ? DiagnosticStatus::OK : DiagnosticStatus::WARN : DiagnosticStatus::ERROR,
+      problem.empty() ? (model_.moving() ? "moves" : "holds") : problem);
+  status.add("device", rig_.device->abilities().device);
   status.add("commands refused", refused_);
 }
 

@@ -6,25 +6,37 @@
 #include <sensor_msgs/JointState.h>
 
 #include <string>
+#include <vector>
 
 #include "cell_microinjection/LatencyTrace.h"
+#include "cell_microinjection/ManipulatorAbilities.h"
+#include "cell_microinjection/OperatingState.h"
+#include "cell_microinjection/StringStamped.h"
 #include "manipulator/micromanipulator.h"
-#include "manipulator/simulated_manipulator.h"
 #include "nodes/cycle.h"
+#include "nodes/rig_device.h"
 
 namespace microinjection {
 
-/// The simulated micromanipulator behind the topics of a real one. A refused command leaves the needle where it was;
-/// the reason is logged and shown on the diagnostics.
+/// A micromanipulator, simulated, emulated or real, behind the same topics. A refused command leaves the needle where
+/// it was; the reason is logged and shown on the diagnostics.
 ///
-/// In:  /needle/servo_cp (PoseStamped), /needle/servo_cv (TwistStamped), /needle/move_cp (PoseStamped), in `world`
-/// Out: /needle/measured_cp (PoseStamped), /needle/measured_cv (TwistStamped), both at the tip in `world`;
-///      /needle/setpoint_trace (LatencyTrace); joint_states (JointState) for robot_state_publisher
+/// In:  /needle/servo_cp (PoseStamped), /needle/servo_cv (TwistStamped), /needle/move_cp (PoseStamped), in `world`;
+///      /needle/state_command (StringStamped: enable, disable, stop);
+///      /needle/emulated_fault (StringStamped, see serial/fault.h), of a simulated or emulated device
+/// Out: /needle/measured_cp (PoseStamped), /needle/measured_cv (TwistStamped), both at the tip in `world`, stamp 0
+/// while
+///      the device does not know; /needle/true_cp (PoseStamped), where the tip truly is: of the simulated device only;
+///      /needle/abilities (ManipulatorAbilities), /needle/operating_state (OperatingState: DISABLED without connection,
+///      FAULT until enable); /needle/setpoint_trace (LatencyTrace); joint_states (JointState), for
+///      robot_state_publisher
 ///
 /// Parameters: /robot_description (URDF), and private those of MicromanipulatorConfig and
+///   rig                sim (default), or a name of rigs/rig_registry.h
+///   emulated           default false; true: the driver talks to an emulated device in this process
+///   device/            the rig's own, as in src/rigs/NAME/NAME.yaml
 ///   rate               Hz; default 1000, in [50, 5000]
 ///   joint_states_rate  Hz; default 50, in (0, 1000]
-///   simulated/         those of SimulatedManipulatorConfig
 class MicromanipulatorNode {
  public:
   static const char* const kHelp;
@@ -36,30 +48,42 @@ class MicromanipulatorNode {
   struct Parameters {
     double rate = 1000;
     double joint_states_rate = 50;
+    std::string rig = "sim";
+    bool emulated = false;
     MicromanipulatorConfig model;
-    SimulatedManipulatorConfig device;
-    static Parameters read(const ros::NodeHandle& private_node);
+    static Parameters read(ConfigReader& reader);
   };
 
+  explicit MicromanipulatorNode(const ros::NodeHandle& node, ConfigReader reader);
+  void subscribe();
   void step(const Cycle::Tick& tick);
   void obeyServo(const Cycle::Tick& tick);
+  std::string obeyState(const std::string& command);
+  std::string unable() const;  ///< why motion commands are refused here; else empty
   void judge(const std::string& command, const std::string& refusal);
   void publish(const Cycle::Tick& tick);
   void publishJointStates(const ros::Time& now);
+  void publishState(const ros::Time& now);
+  void publishAbilities(const ros::Time& now);
   void report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   Parameters parameters_;
   ManipulatorGeometry geometry_;
-  SimulatedManipulator device_;
+  RigDevice rig_;
   Micromanipulator model_;
   Cycle cycle_;
   Input<geometry_msgs::PoseStamped>& servo_;
   Output<geometry_msgs::PoseStamped>& measured_;
+  Output<geometry_msgs::PoseStamped>* true_ = nullptr;  ///< null where the truth is not known
   Output<geometry_msgs::TwistStamped>& velocity_;
   Output<cell_microinjection::LatencyTrace>& trace_;
-  ros::Subscriber servo_velocity_;
-  ros::Subscriber move_;
+  std::vector<ros::Subscriber> subscribers_;
   ros::Publisher joint_states_;
+  ros::Publisher state_;
+  ros::Publisher abilities_;
+  cell_microinjection::OperatingState said_;
+  cell_microinjection::ManipulatorAbilities told_;
+  bool disabled_ = false;  ///< by command
   ros::Time joint_states_sent_;
   ros::Time now_;
   unsigned refused_ = 0;
