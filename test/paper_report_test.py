@@ -19,9 +19,9 @@ MESHES = '''paper_vertices,paper_tetrahedra,vertices,tetrahedra,tip_vertices,lin
 123,379,130,357,11,2.9e-7,400,40,100,4
 '''
 
-TENSEGRITY = {'strut_vertices': 1002, 'strut_tetrahedra': 1764, 'residual_N': 1e-18, 'prestress_N': 2e-7, 'step_s': 7e-10,
-              'single_filament_step_s': 1e-11, 'force_median_s': 1e-6, 'force_99_s': 4e-6, 'solution_median_s': 0.1,
-              'untrusted_share': 0}
+TENSEGRITY = {'strut_vertices': 1002, 'strut_tetrahedra': 1764, 'residual_N': 1e-18, 'prestress_N': 2e-7,
+              'step_s': 7e-10, 'single_filament_step_s': 1e-11, 'force_median_s': 1e-6, 'force_99_s': 4e-6,
+              'solution_median_s': 0.1, 'untrusted_share': 0}
 
 
 class ReportTest(unittest.TestCase):
@@ -80,10 +80,12 @@ class ReportTest(unittest.TestCase):
     def test_stiffening_has_to_be_less_beside_the_struts(self):
         for between, verdict in ((1, DIFFERENCE), (1.5, REPRODUCED), (9, DIFFERENCE)):
             rows = [f'figure_12,{where},{prestrain},{depth}e-6,{force * depth}e-9' for where, ratio in
-                    (('end', 4), ('between', between)) for prestrain, force in ((0, 1), (0.2, ratio)) for depth in (1, 5)]
+                    (('end', 4), ('between', between)) for prestrain, force in ((0, 1), (0.2, ratio))
+                    for depth in (1, 5)]
             (self.data / 'tensegrity_curves.csv').write_text(
                 '\n'.join(['curve,where,prestrain,depth_m,force_z_N'] + rows), encoding='utf-8')
-            self.assertEqual([row['verdict'] for row in tensegrity.items_of_prestress(self.data)], [REPRODUCED, verdict])
+            self.assertEqual([row['verdict'] for row in tensegrity.items_of_prestress(self.data)],
+                             [REPRODUCED, verdict])
 
     def test_st_venant_kirchhoff_is_judged_by_what_it_reaches(self):
         for rows, verdict in (('1e-6,1.1e-7,1\n45e-6,nan,0', NOT_REPRODUCIBLE), ('45e-6,7.6e-6,1', REPRODUCED),

@@ -43,7 +43,8 @@ def items(data_dir, out_dir):
     for tetrahedra, paper in PAPER_ON_LINE.items():
         row = min(limits, key=lambda one: abs(one['tetrahedra'] - tetrahedra))
         if abs(row['tetrahedra'] / tetrahedra - 1) > NEAR:
-            result.append(missing('Equation 13', f'real time with {tetrahedra} tetrahedra', 'real time', '', 'this mesh'))
+            result.append(missing('Equation 13', f'real time with {tetrahedra} tetrahedra', 'real time', '',
+                                  'this mesh'))
             continue
         scale = scale_for(paper, row['exact_step_s'])
         errors = errors_of(ramps, row['tetrahedra'])
