@@ -6,9 +6,11 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / 'src' / 'paper'))
 
+import force_depth  # noqa: E402
 import report  # noqa: E402
 import table_3  # noqa: E402
-from common import NOT_REPRODUCIBLE, REPRODUCED, VERDICTS  # noqa: E402
+import tensegrity  # noqa: E402
+from common import DIFFERENCE, NOT_REPRODUCIBLE, REPRODUCED, VERDICTS  # noqa: E402
 
 MESHES = '''paper_vertices,paper_tetrahedra,vertices,tetrahedra,tip_vertices,linear_force_1um_N,''' \
     '''tensors_off_line_us,tensors_on_line_us,kernel_off_line_us,kernel_on_line_us
@@ -16,6 +18,10 @@ MESHES = '''paper_vertices,paper_tetrahedra,vertices,tetrahedra,tip_vertices,lin
 1093,4819,1053,4882,14,1.2e-7,4000,400,1000,40
 123,379,130,357,11,2.9e-7,400,40,100,4
 '''
+
+TENSEGRITY = {'strut_vertices': 1002, 'strut_tetrahedra': 1764, 'residual_N': 1e-18, 'prestress_N': 2e-7,
+              'step_s': 7e-10, 'single_filament_step_s': 1e-11, 'force_median_s': 1e-6, 'force_99_s': 4e-6,
+              'solution_median_s': 0.1, 'untrusted_share': 0}
 
 
 class ReportTest(unittest.TestCase):
@@ -49,6 +55,43 @@ class ReportTest(unittest.TestCase):
         self.assertEqual((error['ours'], error['verdict']), ('+148', NOT_REPRODUCIBLE))
         self.assertAlmostEqual(table_3.exponent([1, 2, 4], [3, 6, 12]), 1)
         self.assertTrue((table_3.section(self.data, self.out), (self.out / 'figure_14.png').is_file())[1])
+
+    def test_table_3_says_when_times_are_not_linear(self):
+        rows = [{'tetrahedra': n, 'kernel_off_line_us': n, 'kernel_on_line_us': n} for n in (300, 1000, 5000)]
+        for power, verdict in ((1, REPRODUCED), (1.4, DIFFERENCE)):
+            changed = [dict(row, kernel_on_line_us=row['tetrahedra']**power) for row in rows]
+            on_line = table_3.growth_items(changed)[1]
+            self.assertEqual((on_line['ours'], on_line['verdict']), (f'{power:.2f}', verdict))
+
+    def verdicts_of_tensegrity(self, **changed):
+        rows = ''.join(f'{key},{value}\n' for key, value in dict(TENSEGRITY, **changed).items())
+        (self.data / 'tensegrity_numbers.csv').write_text('quantity,value\n' + rows, encoding='utf-8')
+        return [row['verdict'] for row in tensegrity.items_of_mesh(self.data)]
+
+    def test_verdicts_on_the_tensegrity_cell_follow_the_numbers(self):
+        good = [REPRODUCED, REPRODUCED, DIFFERENCE, REPRODUCED]  # mesh, balance, explicit step, force update
+        self.assertEqual(self.verdicts_of_tensegrity(), good)
+        for place, changed in ((0, {'strut_vertices': 900}), (1, {'residual_N': 1e-15}), (3, {'force_99_s': 2e-3}),
+                               (3, {'untrusted_share': 0.1})):
+            with self.subTest(changed):
+                self.assertEqual(self.verdicts_of_tensegrity(**changed),
+                                 good[:place] + [DIFFERENCE] + good[place + 1:])
+
+    def test_stiffening_has_to_be_less_beside_the_struts(self):
+        for between, verdict in ((1, DIFFERENCE), (1.5, REPRODUCED), (9, DIFFERENCE)):
+            rows = [f'figure_12,{where},{prestrain},{depth}e-6,{force * depth}e-9' for where, ratio in
+                    (('end', 4), ('between', between)) for prestrain, force in ((0, 1), (0.2, ratio))
+                    for depth in (1, 5)]
+            (self.data / 'tensegrity_curves.csv').write_text(
+                '\n'.join(['curve,where,prestrain,depth_m,force_z_N'] + rows), encoding='utf-8')
+            self.assertEqual([row['verdict'] for row in tensegrity.items_of_prestress(self.data)],
+                             [REPRODUCED, verdict])
+
+    def test_st_venant_kirchhoff_is_judged_by_what_it_reaches(self):
+        for rows, verdict in (('1e-6,1.1e-7,1\n45e-6,nan,0', NOT_REPRODUCIBLE), ('45e-6,7.6e-6,1', REPRODUCED),
+                              ('45e-6,6e-6,1', DIFFERENCE)):
+            (self.data / 'st_venant_kirchhoff.csv').write_text('depth_m,force_z_N,converged\n' + rows, encoding='utf-8')
+            self.assertEqual(force_depth.nonlinear_items(self.data)[0]['verdict'], verdict)
 
     def test_a_verdict_that_is_none_is_refused(self):
         with self.assertRaisesRegex(ValueError, 'verdict = perfect'):

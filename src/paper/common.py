@@ -21,6 +21,11 @@ def item(name, quantity, paper, ours, unit, verdict, why=''):
             'verdict': verdict, 'why': why}
 
 
+def verdict(ours, paper, within):
+    """Reproduced where a number is the paper's to `within`, relative."""
+    return REPRODUCED if abs(ours / paper - 1) <= within else DIFFERENCE
+
+
 def missing(name, quantity, paper, unit, what):
     """The row of something that this run did not find out."""
     return item(name, quantity, paper, 'none', unit, NOT_REPRODUCIBLE, f'{what} left no result in this run')

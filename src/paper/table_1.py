@@ -1,9 +1,11 @@
 """Table I: volume and mass of the cell from its diameter; and what else it gives, which is taken over."""
 import math
 
-from common import DIAMETER, DIFFERENCE, REPRODUCED, at_depth, item, missing, table
+from common import DIAMETER, DIFFERENCE, at_depth, item, missing, table, verdict
 
-DENSITY = 1000  # kg/m^3, of water: the paper's mass over its volume
+VOLUME, MASS = '91952', '9.1952e-5'  # um^3, mg: the paper's
+ROUNDING = 1e-5                      # relative, of its five figures
+DENSITY = 1000                       # kg/m^3, of water: the paper's mass over its volume
 
 
 def values():
@@ -15,8 +17,9 @@ def items(data_dir, out_dir):
     volume, mass = values()
     deepest = at_depth(data_dir / 'pipette.csv', 45e-6)
     rows = [
-        item('Table I', 'cell volume', '91952', f'{1e18 * volume:.0f}', 'um^3', REPRODUCED),
-        item('Table I', 'cell mass', '9.1952e-5', f'{1e6 * mass:.4e}', 'mg', REPRODUCED,
+        item('Table I', 'cell volume', VOLUME, f'{1e18 * volume:.0f}', 'um^3',
+             verdict(1e18 * volume, float(VOLUME), ROUNDING)),
+        item('Table I', 'cell mass', MASS, f'{1e6 * mass:.4e}', 'mg', verdict(1e6 * mass, float(MASS), ROUNDING),
              'with the density of water, which the paper must have taken')]
     name, quantity, paper = 'Table I', 'maximum indentation depth', '40 to 44'
     if deepest is None:

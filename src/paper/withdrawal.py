@@ -1,7 +1,7 @@
 """What the paper leaves to future work: friction, adhesion and viscosity, in the force on the way out."""
 import math
 
-from common import DIFFERENCE, figure, item, missing, read, save, table
+from common import DIFFERENCE, NOT_REPRODUCIBLE, figure, item, missing, read, save, table
 
 IN, OUT = (0.5, 1, 2, 3, 4, 5), (4, 3, 2, 1, 0.5, 0, -0.25, -0.5, -0.75, -1, -1.5, -2, -3)  # um
 ADHESION = '{energy: 2e-3, range: 0.5e-6}'                                             # J/m^2 and m: assumed
@@ -22,7 +22,7 @@ RUNS = {
     'viscous': ('viscosity, 20 um/s', 'mode: sticking', PRONY, ('--speed', '20e-6')),
 }
 
-
+NOISE = 0.1  # fJ, of the work lost, which is some hundreds going in
 PULL_UNIT = 1e9 * math.pi * 2e-3 / (1 / 3e-6 + 1 / 28e-6)  # nN, pi w R: 1.5 times that in JKR's limit, 2 in DMT's
 
 
@@ -64,7 +64,8 @@ def items(data_dir, out_dir):
             result.append(missing('Section VI', title, paper, '', effect))
             continue
         ours = f'{found[0]:.3g} fJ lost in 5 um in and out, pull of {found[1]:.3g} nN'
-        result.append(item('Section VI', title, paper, ours, '', DIFFERENCE,
+        shown = found[0] > plain[0] + NOISE
+        result.append(item('Section VI', title, paper, ours, '', DIFFERENCE if shown else NOT_REPRODUCIBLE,
                            f'modelled here (without it: {plain[0]:.2g} fJ, {plain[1]:.2g} nN); the constants are '
                            'assumed, since the paper has none'))
     return result

@@ -214,6 +214,7 @@ void TensegrityStructure::settleStruts() {
   EquilibriumSystem system(parts.terms, held, SymmetricSolver::Method::kSimplicial);
   RelaxationConfig config;
   config.length = 2 * config_.radius;
+  config.maximum_iterations = kFactorisations;  // near is enough: under much prestress the last digits take for ever
   form_.iterations += Relaxation(system, config).relax(start_).iterations;
 }
 

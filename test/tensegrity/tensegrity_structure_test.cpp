@@ -88,6 +88,7 @@ TEST(TensegrityStructure, StrutsBearWhatTheAnalyticFormSays) {
   }
   length = (structure->nodePlaces()[structure->endNode(1)] - structure->nodePlaces()[structure->endNode(0)]).norm();
   EXPECT_NEAR(force_length / length / tension / std::sqrt(6.0), 1, 2e-3);  // virial: the integral of stress is P L
+  EXPECT_NEAR(-structure->strutForce(0, structure->start()) / tension / std::sqrt(6.0), 1, 2e-3);
 }
 
 TEST(TensegrityStructure, DerivativesAreThoseOfTheEnergy) {
@@ -210,6 +211,25 @@ TEST(TensegrityStructure, ACutCableIsMissedAndTheRestFindsItsForm) {
   ASSERT_TRUE(a.advance({0, 0, -2e-6}).converged);
   ASSERT_TRUE(b.advance({0, 0, -2e-6}).converged);
   EXPECT_LT(b.force().z(), 0.98 * a.force().z());
+}
+
+TEST(TensegrityStructure, KnowsActinWhereACableIsCut) {
+  TensegrityConfig config = bundles();
+  config.cut = {5};
+  const auto structure = make(config);
+  for (int i = 0; i < 35; ++i) EXPECT_EQ(structure->isActin(i), i < 23) << i;
+}
+
+/// The counts of config/cells/mouse_oocyte_tensegrity.yaml at ten times its prestress: struts at a third of their Euler
+/// load.
+TEST(TensegrityStructure, StandsUnderTenTimesThePrestress) {
+  TensegrityConfig config = bundles(0.5);
+  config.actin.filaments.count = config.intermediate.filaments.count = 100;
+  config.microtubules.filaments.count = 12500;
+  const auto structure = make(config);
+  EXPECT_LT(structure->form().residual, 1e-9 * structure->form().prestress);
+  EXPECT_NEAR(structure->form().prestress / config.actin.tension(), 1, 0.02);
+  EXPECT_LT(structure->form().iterations, 500);
 }
 
 /// Linear tetrahedra take a rotation for a strain, so that struts grow as they turn; the others do not.
