@@ -106,6 +106,7 @@ PreparedCell PreparedCell::fit(const Scene& scene, const Preparation& preparatio
   for (double angle : angles) surfaces.push_back(trainingSurface(scene, angle));
 
   const Samples all = gather(scene, preparation, results, surfaces.front().nodes);
+  if (!(all.axis_depth > 0)) throw std::runtime_error("on the axis the cell's section has no solution at any depth");
   const std::vector<TrainingSample>& samples = all.forces;
   PreparedCell cell;
   cell.range = preparation.range;
