@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -71,11 +72,21 @@ std::vector<int> nodesWithin(const LayeredBody<Dim>& body, const Eigen::Vector2d
   return nodes;
 }
 
+/// Throws std::invalid_argument when the mesh is not the half that is mirrored: its forces are doubled.
+template <int Dim>
+void checkMirror(const Scene& scene, const QuadraticMesh<Dim>& mesh) {
+  const auto beyond = [](const auto& x) { return x[1] < 0; };
+  if (Dim != 3 || scene.needle.offset.y() != 0 || std::any_of(mesh.nodes.begin(), mesh.nodes.end(), beyond)) {
+    throw std::invalid_argument("mirror symmetry needs the half y >= 0 of a mesh in space and the needle in y = 0");
+  }
+}
+
 }  // namespace
 
 template <int Dim>
 CellProblem<Dim>::CellProblem(const Scene& scene, QuadraticMesh<Dim> mesh, ElementKind element, Symmetry symmetry)
     : symmetry_(symmetry), body_(std::make_shared<LayeredBody<Dim>>(std::move(mesh), element, materials<Dim>(scene))) {
+  if (symmetry == Symmetry::kMirror) checkMirror(scene, body_->mesh());
   EquilibriumSystem::Terms terms = {body_};
   bool linear = body_->isLinear() && !scene.needle.tip.rounded();
   for (std::size_t i = 0; i < scene.cell.layers.size(); ++i) {
@@ -170,6 +181,9 @@ LoadPathConfig CellProblem<Dim>::pathConfig(const Scene& scene, bool linear) {
 
 template <int Dim>
 IndentationSolution CellProblem<Dim>::solve(const Eigen::Vector3d& tip_displacement, double duration) {
+  if (symmetry_ == Symmetry::kMirror && tip_displacement.y() != 0) {
+    throw std::invalid_argument("half a cell's tip must stay in the plane of symmetry, y = 0");
+  }
   const double start = threadCpuTime();
   const LoadPath::Result result = path_->advance(tip_displacement, duration);
   IndentationSolution solution;

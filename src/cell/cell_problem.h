@@ -25,7 +25,8 @@ enum class Symmetry { kNone, kMirror };
 template <int Dim>
 class CellProblem {
  public:
-  /// Throws std::invalid_argument when the needle's disc and the holding pipette overlap.
+  /// Throws std::invalid_argument when the needle's disc and the holding pipette overlap, or when what is to be
+  /// mirrored is not the half y >= 0 of a mesh in space with the needle's place in y = 0.
   CellProblem(const Scene& scene, QuadraticMesh<Dim> mesh, ElementKind element, Symmetry symmetry = Symmetry::kNone);
 
   /// Equilibrium with the tip displaced by this (m) from where it touches the undeformed cell, reached along the

@@ -99,6 +99,7 @@ class Preparing {
     const std::string path = preparedFile(scene_, plan_);
     if (!arguments_.again && PreparedCell::load(scene_, plan_.range, path)) {
       std::printf("prepare: was prepared before: %s\n", path.c_str());
+      if (!loadFigures(scene_, "live")) measureOthers();  // of another live mesh, or interrupted
       return kDone;
     }
     solveMissing();

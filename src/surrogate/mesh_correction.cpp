@@ -11,6 +11,8 @@ constexpr double kNear = 0.02;      ///< of the longest displacement, within whi
 constexpr double kScatter = 0.01;   ///< relative, of coarse forces
 constexpr double kExpected = 0.05;  ///< size of a coefficient: what the pairs do not tell stays small
 
+bool samePath(const TrainingRay& a, const TrainingRay& b) { return a.angle == b.angle && a.target == b.target; }
+
 }  // namespace
 
 MeshCorrection::MeshCorrection(const EnergyScales& scales, const std::vector<Pair>& pairs) : scales_(scales) {
@@ -43,6 +45,32 @@ MeshCorrection::Terms MeshCorrection::terms(double angle, const Eigen::Vector3d&
   Terms result;
   result << smooth, near * smooth;
   return result;
+}
+
+std::vector<std::vector<TrainingSample>> betterForces(const EnergyScales& scales, const std::vector<TrainingRay>& rays,
+                                                      const std::vector<TrainingResult>& results) {
+  std::vector<const std::vector<TrainingSample>*> fine(rays.size(), nullptr);  // of a coarse path
+  std::vector<MeshCorrection::Pair> pairs;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    for (std::size_t j = 0; rays[i].level == kCoarseLevel && j < rays.size(); ++j) {
+      if (rays[j].level != kFineLevel || !samePath(rays[i], rays[j])) continue;
+      fine[i] = &results[j].samples;
+      pairs.push_back({&results[i].samples, fine[i]});
+    }
+  }
+  const MeshCorrection correction(scales, pairs);
+  std::vector<std::vector<TrainingSample>> better(rays.size());
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (rays[i].level != kCoarseLevel) continue;
+    better[i] = results[i].samples;
+    for (std::size_t k = 0; k < better[i].size(); ++k) {
+      TrainingSample& sample = better[i][k];
+      const bool finer = fine[i] && k < fine[i]->size();
+      sample.force = finer ? (*fine[i])[k].force
+                           : Eigen::Vector3d(sample.force * correction.factor(sample.angle, sample.displacement));
+    }
+  }
+  return better;
 }
 
 }  // namespace microinjection

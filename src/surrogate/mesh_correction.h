@@ -31,4 +31,9 @@ class MeshCorrection {
   Terms coefficients_ = Terms::Zero();  ///< of the factor's logarithm
 };
 
+/// Of each coarse path its samples, with the force of the same path on the fine mesh as far as that was solved, else
+/// corrected; of each fine path nothing. `results` as `rays`.
+std::vector<std::vector<TrainingSample>> betterForces(const EnergyScales& scales, const std::vector<TrainingRay>& rays,
+                                                      const std::vector<TrainingResult>& results);
+
 }  // namespace microinjection

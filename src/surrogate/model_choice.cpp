@@ -4,10 +4,12 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <sstream>
 
 #include "base/bytes.h"
 #include "base/cache_file.h"
 #include "base/cpu_time.h"
+#include "cell/cell_model.h"
 #include "cell/contact_place.h"
 #include "cell/converged_force.h"
 #include "cell/live_cell.h"
@@ -18,6 +20,7 @@ namespace {
 
 constexpr double kDepths[] = {0.02, 0.05, 0.1, 0.15};  ///< of the diameter, where a live cell is judged
 constexpr double kFinestSection = 1;                   ///< level
+constexpr int kFigures = 2;  ///< to be raised when a live cell, or how it is measured, changes
 constexpr int kTimedSteps = 2000;
 constexpr double kSmallMove = 0.01;  ///< of the depth, whose solution is timed
 
@@ -28,17 +31,22 @@ std::string describe(const ModelFigures& model) {
   return text;
 }
 
+/// They depend on the live cell too, which prepared data do not: on its mesh, and on which it is, where the same
+/// elastic cell is solved on other elements because it relaxes (see makeLiveCell).
+std::string figuresDescription(const Scene& scene, const std::string& name) {
+  const Preparation plan = Preparation::plan(scene, PreparationRange::standard(scene));
+  std::ostringstream out;
+  out << plan.description(scene) << " figures " << kFigures << ' ' << name << " on " << std::hexfloat
+      << scene.meshSize() << ' ' << scene.mesh.refinement.zone << ' ' << scene.mesh.refinement.density << ' '
+      << scene.mesh.stretch << (CellModel::refusals(scene).empty() ? " linear" : " swept");
+  return out.str();
+}
+
+/// A file for each live cell of the same prepared one.
 std::string figuresFile(const Scene& scene, const std::string& name) {
   const Preparation plan = Preparation::plan(scene, PreparationRange::standard(scene));
   const std::string folder = preparedFolder(scene, plan);
-  return folder.empty() ? "" : folder + "/figures_" + name;
-}
-
-/// They depend on the live mesh too, which prepared data do not.
-std::string figuresDescription(const Scene& scene, const std::string& name) {
-  const Preparation plan = Preparation::plan(scene, PreparationRange::standard(scene));
-  return plan.description(scene) + " figures " + name + " on " + std::to_string(scene.meshSize()) + ' ' +
-         std::to_string(scene.mesh.refinement.zone) + ' ' + std::to_string(scene.mesh.refinement.density);
+  return folder.empty() ? "" : folder + "/figures_" + name + '_' + contentHash(figuresDescription(scene, name));
 }
 
 }  // namespace

@@ -18,8 +18,6 @@ constexpr int kDeepSamples = 14;   ///< on the axis, below the range of the rest
 
 bool straightOnAxis(const TrainingRay& ray) { return ray.angle == 0 && ray.target.head<2>().isZero(0); }
 
-bool samePath(const TrainingRay& a, const TrainingRay& b) { return a.angle == b.angle && a.target == b.target; }
-
 /// Samples to fit: `forces` as converged as they are known, `surfaces` on the coarse mesh and, deep on the axis, of the
 /// section.
 struct Samples {
@@ -49,16 +47,7 @@ void addAxis(const Scene& scene, const PreparationRange& range, const std::vecto
 Samples gather(const Scene& scene, const Preparation& preparation, const std::vector<TrainingResult>& results,
                const Eigen::VectorXd& surface_on_axis) {
   const std::vector<TrainingRay>& rays = preparation.rays;
-  std::vector<const std::vector<TrainingSample>*> fine(rays.size(), nullptr);  // of a coarse path
-  std::vector<MeshCorrection::Pair> pairs;
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    for (std::size_t j = 0; rays[i].level == kCoarseLevel && j < rays.size(); ++j) {
-      if (rays[j].level != kFineLevel || !samePath(rays[i], rays[j])) continue;
-      fine[i] = &results[j].samples;
-      pairs.push_back({&results[i].samples, fine[i]});
-    }
-  }
-  const MeshCorrection correction(preparation.scales, pairs);
+  const auto better = betterForces(preparation.scales, rays, results);
   Samples samples;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (rays[i].level != kCoarseLevel) continue;
@@ -66,13 +55,8 @@ Samples gather(const Scene& scene, const Preparation& preparation, const std::ve
       addAxis(scene, preparation.range, results[i].samples, surface_on_axis, samples);
       continue;
     }
-    for (std::size_t k = 0; k < results[i].samples.size(); ++k) {
-      samples.add(results[i].samples[k]);
-      TrainingSample& sample = samples.forces.back();
-      const bool finer = fine[i] && k < fine[i]->size();
-      sample.force = finer ? (*fine[i])[k].force
-                           : Eigen::Vector3d(sample.force * correction.factor(sample.angle, sample.displacement));
-    }
+    samples.forces.insert(samples.forces.end(), better[i].begin(), better[i].end());
+    samples.surfaces.insert(samples.surfaces.end(), results[i].samples.begin(), results[i].samples.end());
   }
   return samples;
 }
@@ -106,6 +90,7 @@ PreparedCell PreparedCell::fit(const Scene& scene, const Preparation& preparatio
   for (double angle : angles) surfaces.push_back(trainingSurface(scene, angle));
 
   const Samples all = gather(scene, preparation, results, surfaces.front().nodes);
+  if (!(all.axis_depth > 0)) throw std::runtime_error("on the axis the cell's section has no solution at any depth");
   const std::vector<TrainingSample>& samples = all.forces;
   PreparedCell cell;
   cell.range = preparation.range;

@@ -26,7 +26,7 @@ struct PreparedCell {
   double energy_common_error = 0;
 
   /// Fits the results of preparation.rays: forces of the section on the axis, of the fine mesh where there are some,
-  /// else of the coarse one, corrected.
+  /// else of the coarse one, corrected. Throws std::runtime_error when the section has no solution.
   static PreparedCell fit(const Scene& scene, const Preparation& preparation,
                           const std::vector<TrainingResult>& results);
 

@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "mechanics/bodies.h"
 #include "mechanics/explicit_step.h"
@@ -16,7 +17,7 @@ constexpr double kDensity = 3;
 
 TEST(ElementFrequency, IsTheLargestEigenvalueOfTheElement) {
   const TetMesh mesh = linearMesh(irregularBlock<3>(2));
-  for (const double poisson : {-0.3, 0.0, 0.3, 0.49}) {
+  for (const double poisson : {-0.9, -0.3, 0.0, 0.3, 0.49}) {
     const Lame lame = Lame::from(2, poisson);
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
       const TetrahedronTensors tensors(mesh, t, lame);
@@ -29,6 +30,19 @@ TEST(ElementFrequency, IsTheLargestEigenvalueOfTheElement) {
       EXPECT_NEAR(elementFrequency(mesh, t, lame, kDensity), expected, 1e-9 * expected);
     }
   }
+}
+
+TEST(FrequencyBound, IsThatOfTheMostRigidElementWhereverItIs) {
+  const TetMesh mesh = linearMesh(irregularBlock<3>(3));
+  const Lame lame = Lame::from(2, 0.45);
+  std::vector<double> frequencies;
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+    frequencies.push_back(elementFrequency(mesh, t, lame, kDensity));
+  }
+  const double highest = *std::max_element(frequencies.begin(), frequencies.end());
+  EXPECT_EQ(frequencyBound(mesh, lame, kDensity), highest);
+  EXPECT_GT(highest, frequencies.front());
+  EXPECT_GT(highest, frequencies.back());
 }
 
 /// The largest of |displacement| after many steps of this length, of the bound's 2 / w.

@@ -56,6 +56,40 @@ TEST(MeshCorrection, IsFoundFromPathsInThePlaneAndHoldsBesideIt) {
   EXPECT_GT(uncorrected, 0.025);
 }
 
+/// The fine mesh's where it went, else what the coarse one is wrong by is taken off.
+TEST(MeshCorrection, ForcesAreTheFineOnesOrCorrected) {
+  std::vector<TrainingRay> rays;
+  std::vector<TrainingResult> results;
+  const auto add = [&](double side, double across, bool fine) {
+    const Eigen::Vector3d end(side, across, -12e-6);
+    rays.push_back({0.5, end, 10, fine ? kFineLevel : kCoarseLevel});
+    results.push_back({path(0.5, end, fine), ""});
+    for (TrainingSample& sample : results.back().samples) sample.surface.setConstant(3, fine ? 2 : 1);
+  };
+  for (const double side : {-5e-6, 0.0, 5e-6}) {
+    add(side, 0, false);
+    add(side, 0, true);
+  }
+  add(1e-6, 4e-6, false);  // beside the plane
+  results[3].samples.resize(6);
+  const auto better = betterForces(scales(), rays, results);
+  ASSERT_EQ(better.size(), rays.size());
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (rays[i].level == kFineLevel) {
+      EXPECT_TRUE(better[i].empty());
+      continue;
+    }
+    ASSERT_EQ(better[i].size(), 10u);
+    for (std::size_t k = 2; k < 10; ++k) {
+      const TrainingSample& sample = better[i][k];
+      const bool solved = i != 6 && (i != 2 || k < 6);
+      const Eigen::Vector3d expected = -1e-2 * truth(0.5, sample.displacement) * sample.displacement;
+      EXPECT_LT((sample.force - expected).norm(), (solved ? 1e-12 : 0.006) * expected.norm()) << i << ' ' << k;
+      EXPECT_EQ(sample.surface[0], 1) << "of the coarse mesh";
+    }
+  }
+}
+
 TEST(MeshCorrection, WithoutPairsThereIsNone) {
   EXPECT_EQ(MeshCorrection(scales(), {}).factor(0.5, {1e-6, 0, -2e-6}), 1);
 }

@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <vector>
+
 namespace microinjection {
 namespace {
 
@@ -25,6 +30,34 @@ TEST(ModelChoice, SaysWhenNoneMeetsThem) {
   EXPECT_NE(inexact.reason.find("NO model"), std::string::npos);
   EXPECT_EQ(chooseModel({0.02, 1e7}, {live, prepared}).name, "prepared");  // none is quick enough: the quickest
   EXPECT_FALSE(chooseModel({0.02, 1000}, {live}).meets);
+}
+
+/// Figures belong to the live cell that they were measured of; the prepared data of all these scenes are the same.
+TEST(ModelChoice, FiguresAreThoseOfTheLiveCell) {
+  const std::string cache = testing::TempDir() + "model_choice_cache";
+  std::filesystem::remove_all(cache);
+  setenv("XDG_CACHE_HOME", cache.c_str(), 1);
+  Scene scene;
+  scene.mesh.size = 12.0e-6;
+  saveFigures(scene, {"live", 0.5, 0.02});
+  const auto loaded = loadFigures(scene, "live");
+  ASSERT_TRUE(loaded);
+  EXPECT_EQ(loaded->force_error, 0.5);
+  EXPECT_EQ(loaded->time, 0.02);
+  std::vector<Scene> others(5, scene);
+  others[0].mesh.size = 12.3e-6;
+  others[1].mesh.stretch = 2;
+  others[2].mesh.refinement.density *= 1.01;
+  others[3].mesh.refinement.zone *= 1.01;
+  others[4].cell.material().viscoelasticity.prony = {{0.5, 0.2}};  // of other elements
+  const PreparationRange range = PreparationRange::standard(scene);
+  for (const Scene& other : others) {
+    EXPECT_FALSE(loadFigures(other, "live"));
+    EXPECT_EQ(preparedFile(scene, Preparation::plan(scene, range)),
+              preparedFile(other, Preparation::plan(other, range)));
+  }
+  saveFigures(others[4], {"live", 0.02, 0.1});
+  EXPECT_EQ(loadFigures(scene, "live")->force_error, 0.5);
 }
 
 /// Under a rounded tip the live cell does not lock: some per cent, but no force in a millisecond.
