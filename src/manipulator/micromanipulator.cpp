@@ -167,7 +167,7 @@ void Micromanipulator::stepServo(double dt) {
     goal_is_new_ = false;
   }
   if (goal_age_ > config_.command_timeout) {
-    if (setpoint_->position != goal_ || device_->moving()) {
+    if ((setpoint_->position - goal_).norm() >= kArrived || device_->moving()) {
       stop();
       ended_ = "servo_cp is stale";
     } else {
