@@ -215,12 +215,22 @@ void Micromanipulator::stepVelocity(double time, double dt) {
 }
 
 void Micromanipulator::stepMode(double time, double dt) {
-  if (mode_ == Mode::kServo) stepServo(dt);
-  if (mode_ == Mode::kMove) stepMove(dt);
-  if (mode_ == Mode::kVelocity) stepVelocity(time, dt);
-  if (mode_ == Mode::kBrake) {
-    brake(geometry_, *setpoint_, dt);
-    if (setpoint_->velocity.isZero(0)) arrive();
+  switch (mode_) {
+    case Mode::kHold:
+      break;
+    case Mode::kBrake:
+      brake(geometry_, *setpoint_, dt);
+      if (setpoint_->velocity.isZero(0)) arrive();
+      break;
+    case Mode::kServo:
+      stepServo(dt);
+      break;
+    case Mode::kVelocity:
+      stepVelocity(time, dt);
+      break;
+    case Mode::kMove:
+      stepMove(dt);
+      break;
   }
 }
 
