@@ -8,7 +8,7 @@ namespace microinjection {
 /// v dt + v^2 / (2 a) = distance, with the deceleration a (m/s^2). Going on with it, step by step, brakes with a at the
 /// most, whatever dt is each time, and ends exactly there.
 inline double approachSpeed(double distance, double acceleration, double dt) {
-  return acceleration * (std::sqrt(dt * dt + 2 * distance / acceleration) - dt);
+  return 2 * distance / (std::sqrt(dt * dt + 2 * distance / acceleration) + dt);
 }
 
 }  // namespace microinjection

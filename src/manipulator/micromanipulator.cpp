@@ -102,9 +102,9 @@ std::string Micromanipulator::servoVelocity(const Eigen::Vector3d& velocity, dou
   if (const std::string why = unable(); !why.empty()) return why;
   const Eigen::Vector3d joint_velocity = geometry_.directions.inverse() * velocity;
   if (const std::string why = geometry_.tooFast(joint_velocity); !why.empty()) return why;
-  // Too near to an end of its travel or to an obstacle to go that way and come to rest before it?
+  // Too near to an end of its travel or to an obstacle to go that way for a step and come to rest before it?
   const AxesMotion from = start();
-  const Eigen::Vector3d rest = restAfter({from.position, joint_velocity});
+  const Eigen::Vector3d rest = restAfter({from.position + joint_velocity * last_dt_, joint_velocity});
   if (!joint_velocity.isZero()) {
     if (const std::string why = geometry_.outsideTravel(rest); !why.empty()) return why;
     if (const std::string why = guard_.blocksWay(from.position, rest); !why.empty()) return why;
@@ -167,7 +167,7 @@ void Micromanipulator::stepServo(double dt) {
     goal_is_new_ = false;
   }
   if (goal_age_ > config_.command_timeout) {
-    if (setpoint_->position != goal_ || device_->moving()) {
+    if ((setpoint_->position - goal_).norm() >= kArrived || device_->moving()) {
       stop();
       ended_ = "servo_cp is stale";
     } else {
@@ -215,18 +215,28 @@ void Micromanipulator::stepVelocity(double time, double dt) {
 }
 
 void Micromanipulator::stepMode(double time, double dt) {
-  if (mode_ == Mode::kServo) stepServo(dt);
-  if (mode_ == Mode::kMove) stepMove(dt);
-  if (mode_ == Mode::kVelocity) stepVelocity(time, dt);
-  if (mode_ == Mode::kBrake) {
-    brake(geometry_, *setpoint_, dt);
-    if (setpoint_->velocity.isZero(0)) arrive();
+  switch (mode_) {
+    case Mode::kHold:
+      break;
+    case Mode::kBrake:
+      brake(geometry_, *setpoint_, dt);
+      if (setpoint_->velocity.isZero(0)) arrive();
+      break;
+    case Mode::kServo:
+      stepServo(dt);
+      break;
+    case Mode::kVelocity:
+      stepVelocity(time, dt);
+      break;
+    case Mode::kMove:
+      stepMove(dt);
+      break;
   }
 }
 
 void Micromanipulator::step(double time, double dt) {
-  if (!clock_is_set_) device_->step(time - dt);
-  clock_is_set_ = true;
+  if (last_dt_ == 0) device_->step(time - dt);  // sets its clock
+  last_dt_ = dt;
   if (!unable().empty()) rest();
   if (mode_ != Mode::kHold) {
     stepMode(time, dt);

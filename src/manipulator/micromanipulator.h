@@ -89,7 +89,7 @@ class Micromanipulator {
   Eigen::Vector3d velocity_command_ = Eigen::Vector3d::Zero();  ///< m/s, joints
   double velocity_command_time_ = 0;                            ///< s
   std::string ended_;
-  bool clock_is_set_ = false;
+  double last_dt_ = 0;  ///< s, of the last step; 0 before the first
 };
 
 }  // namespace microinjection

@@ -121,5 +121,108 @@ TEST_F(MicromanipulatorTest, VelocityCommandStopsBeforeTheTravelAndSaysSo) {
   EXPECT_GT(y, 1e-3 - 2e-3 * kStep - 1e-3 * 1e-3 / (2 * 0.05));  // its braking distance and a step or two
 }
 
+TEST_F(MicromanipulatorTest, AnAdmissibleStreamIsFollowedExactly) {
+  // A ramp up, cruise, reversal and rest, all within 0.05 m/s^2 and 2 mm/s.
+  double z = 0, v = 0;
+  for (int i = 0; i < 400; ++i) {
+    const double wanted = i < 100 ? 0.4e-3 : i < 250 ? -0.5e-3 : 0;
+    v += std::clamp(wanted - v, -0.05 * kStep, 0.05 * kStep);
+    z += v * kStep;
+    ASSERT_EQ(rig_.servoPosition(at(z / 2, 0, z)), "");
+    run(kStep);
+    ASSERT_NEAR(rig_.setpoint()->position.z(), z, 1e-15);
+    ASSERT_NEAR(rig_.setpoint()->position.x(), z / 2, 1e-15);
+  }
+}
+
+TEST_F(MicromanipulatorTest, AJumpIsFollowedWithinSpeedAndAccelerationAndWithoutOvershoot) {
+  Eigen::Vector3d before = Eigen::Vector3d::Zero();
+  for (int i = 0; i < 1000; ++i) {
+    ASSERT_EQ(rig_.servoPosition(at(4e-4, -2e-4, 0)), "");
+    run(kStep);
+    const AxesMotion& now = *rig_.setpoint();
+    EXPECT_LE((now.velocity - before).cwiseAbs().maxCoeff(), 0.05 * kStep * 1.000001);
+    EXPECT_LE(now.velocity.cwiseAbs().maxCoeff(), 2e-3);
+    EXPECT_LE(now.position.x(), 4e-4 + 1e-12);
+    before = now.velocity;
+  }
+  EXPECT_LT((rig_.setpoint()->position - Eigen::Vector3d(4e-4, -2e-4, 0)).norm(), 1e-12);
+}
+
+TEST_F(MicromanipulatorTest, AStaleServoStreamStopsTheDevice) {
+  ASSERT_EQ(rig_.servoPosition(at(0, 0, 0.9e-3)), "");
+  run(0.09);
+  EXPECT_GT(rig_.tipVelocity()->norm(), 1.9e-3);
+  run(0.1);  // 0.1 s of time-out; braking takes 40 ms, the lag dies away
+  EXPECT_LT(rig_.tipVelocity()->norm(), 1e-5);
+  EXPECT_EQ(rig_.ended(), "servo_cp is stale");
+  EXPECT_FALSE(rig_.setpoint());
+  run(0.1);
+  const double held = rig_.tipPose()->translation().z();
+  EXPECT_LT(held, 0.3e-3);
+  run(1);
+  EXPECT_NEAR(rig_.tipPose()->translation().z(), held, 1e-12);
+}
+
+TEST_F(MicromanipulatorTest, AStreamThatRestsMayPause) {
+  for (int i = 0; i < 200; ++i) {
+    ASSERT_EQ(rig_.servoPosition(at(1e-5, 0, 0)), "");
+    run(kStep);
+  }
+  run(1);
+  EXPECT_EQ(rig_.ended(), "");
+  EXPECT_NEAR(rig_.tipPose()->translation().x(), 1e-5, 1e-12);
+}
+
+TEST_F(MicromanipulatorTest, AfterAStopItStartsFromWhereItIs) {
+  ASSERT_EQ(rig_.movePosition(at(0.8e-3, 0, 0)), "");
+  run(0.2);
+  rig_.stop();
+  EXPECT_FALSE(rig_.moving());
+  run(0.2);
+  const Eigen::Vector3d rested = rig_.tipPose()->translation();
+  EXPECT_LT(rested.x(), 0.5e-3);
+  ASSERT_EQ(rig_.servoVelocity({0, 0, 1e-4}, time_), "");
+  EXPECT_LT((rig_.setpoint()->position - rested).norm(), 1e-15);
+  run(0.05);
+  EXPECT_NEAR(rig_.tipPose()->translation().x(), rested.x(), 1e-9);
+  EXPECT_GT(rig_.tipPose()->translation().z(), 1e-6);
+}
+
+TEST_F(MicromanipulatorTest, ANewGoalIsReachedInAStraightLineAfterTheTurn) {
+  ASSERT_EQ(rig_.movePosition(at(0.8e-3, 0, 0)), "");
+  run(0.2);
+  ASSERT_EQ(rig_.movePosition(at(0, 0.5e-3, 0)), "");
+  run(0.05);  // 2 mm/s are braked in 40 ms
+  const Eigen::Vector3d turn = rig_.setpoint()->position;
+  const Eigen::Vector3d line = (Eigen::Vector3d(0, 0.5e-3, 0) - turn).normalized();
+  while (rig_.moving()) {
+    run(kStep);
+    EXPECT_LT((rig_.setpoint()->position - turn).cross(line).norm(), 1e-12);
+  }
+  EXPECT_EQ(rig_.setpoint()->position, Eigen::Vector3d(0, 0.5e-3, 0));
+}
+
+TEST_F(MicromanipulatorTest, AFaultStopsAndIsTheReasonOfRefusals) {
+  ASSERT_EQ(rig_.movePosition(at(0.8e-3, 0, 0)), "");
+  run(0.2);
+  device_.injectFault("motor is hot");
+  run(0.2);
+  EXPECT_EQ(rig_.state(), ManipulatorDevice::State::kFault);
+  EXPECT_FALSE(rig_.moving());
+  EXPECT_EQ(rig_.movePosition(at(0, 0, 0)), "motor is hot");
+  EXPECT_EQ(rig_.servoPosition(at(0, 0, 0)), "motor is hot");
+  EXPECT_EQ(rig_.servoVelocity({1e-4, 0, 0}, time_), "motor is hot");
+  const Eigen::Vector3d held = rig_.tipPose()->translation();
+  run(0.1);
+  rig_.clearFault();
+  EXPECT_EQ(rig_.state(), ManipulatorDevice::State::kReady);
+  run(0.5);
+  EXPECT_LT((rig_.tipPose()->translation() - held).norm(), 1e-12) << "rests until the next command";
+  ASSERT_EQ(rig_.movePosition(at(0, 0, 0)), "");
+  run(2);
+  EXPECT_LT(rig_.tipPose()->translation().norm(), 1e-12);
+}
+
 }  // namespace
 }  // namespace microinjection
