@@ -143,7 +143,7 @@ TEST_F(Mp285Test, ReadsTheMicrostepRatherThanAssumingIt) {
 TEST_F(Mp285Test, RecoversFromFaultsOfTheLineAndLosesNoMove) {
   for (const bool locks_up : {false, true}) {
     for (const char* fault :
-         {"drop:1", "drop:4", "deaf:1", "deaf:5", "deaf:20", "garble:1", "garble:14", "silence:0.1", "silence:0.7",
+         {"drop:1", "drop:4", "deaf:1", "deaf:4", "deaf:6", "garble:1", "garble:3", "silence:0.1", "silence:0.7",
           "error:0", "error:1", "error:2", "error:4", "error:8", "interrupt@0.9", "drop:1@0.9", "silence:1@0.9"}) {
       for (const bool ascii : {false, true}) {
         SCOPED_TRACE(fault);
