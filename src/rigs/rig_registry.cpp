@@ -1,6 +1,8 @@
 #include "rigs/rig_registry.h"
 
 #include "base/errors.h"
+#include "rigs/mp285/mp285_driver.h"
+#include "rigs/mp285/mp285_emulator.h"
 #include "rigs/zaber/zaber_driver.h"
 #include "rigs/zaber/zaber_emulator.h"
 
@@ -23,6 +25,7 @@ Rig rig(const std::string& name, int default_baud) {
 
 const std::vector<Rig>& rigs() {
   static const std::vector<Rig> all{
+      rig<Mp285Config, Mp285Driver, Mp285Emulator>("mp285", 9600),
       rig<ZaberConfig, ZaberDriver, ZaberEmulator>("zaber", 115200),
   };
   return all;

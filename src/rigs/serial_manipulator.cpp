@@ -61,6 +61,8 @@ void SerialManipulator::beginSession(double quiet) {
   quiet_ = quiet;
 }
 
+void SerialManipulator::stopFirst() { beginSession(link_.quiet_in_step); }
+
 void SerialManipulator::lineLost() {
   was_open_ = talking_ = ready_ = stop_wanted_ = false;
   next_open_ = time_ + kOpenInterval;
@@ -70,6 +72,7 @@ void SerialManipulator::lineLost() {
 
 void SerialManipulator::lostStep(const std::string& reason) {
   successes_ = 0;
+  lost_ = true;
   if (++failures_ >= kAttempts) {
     raiseFault(reason);
   } else {
@@ -81,6 +84,7 @@ void SerialManipulator::raiseFault(const std::string& reason) {
   const bool again = !fault_.empty() && !clearing_;
   fault_ = link_.device + ": " + reason;
   clearing_ = false;
+  lost_ = true;
   dropGoal();
   beginSession(again ? std::max(kPauseInFault, link_.quiet_after_loss) : link_.quiet_after_loss);
 }
@@ -103,7 +107,7 @@ void SerialManipulator::step(double time) {
     next_open_ = time + kOpenInterval;
     why_ = wire_->open();
     if (!why_.empty()) return;
-    was_open_ = true;
+    was_open_ = lost_ = true;
     why_ = link_.device + ": connected, no answer yet";
     beginSession(link_.quiet_after_loss);
   }
@@ -119,7 +123,8 @@ void SerialManipulator::step(double time) {
     if (time - last_byte_ < quiet_) return;
     bytes.clear();
     talking_ = true;
-    begin();
+    begin(lost_);
+    lost_ = false;
   }
   talk(bytes);
 }

@@ -45,8 +45,9 @@ class SerialManipulator : public ManipulatorDevice {
   SerialManipulator(std::unique_ptr<Wire> wire, const Link& link);
   ~SerialManipulator() override;  ///< sends a stop
 
-  /// Begins the conversation anew: whatever was asked is void, and the device has been told to stop.
-  virtual void begin() = 0;
+  /// Begins the conversation anew: whatever was asked is void, and the device has been told to stop. `lost`: something
+  /// went wrong or the line is new, so that nothing is known of the device; otherwise it was just stopped.
+  virtual void begin(bool lost) = 0;
   /// Goes on with the conversation: with what came, and with what is to be said.
   virtual void talk(const std::string& bytes) = 0;
   /// A new goal (goal() is set) came or the goal went.
@@ -63,6 +64,7 @@ class SerialManipulator : public ManipulatorDevice {
 
   void known();                                  ///< the driver knows where everything is, and everything is at rest
   void understood();                             ///< an exchange has succeeded
+  void stopFirst();                              ///< begins anew, and goes on to the goal
   void lostStep(const std::string& reason);      ///< an exchange has failed: stops and begins anew
   void raiseFault(const std::string& reason);    ///< stops and lets nothing move until clearFault()
 
@@ -78,6 +80,7 @@ class SerialManipulator : public ManipulatorDevice {
   double drain_since_ = 0; // s
   double quiet_ = 0;       // s, of silence to wait for
   bool was_open_ = false, talking_ = false, ready_ = false, clearing_ = false, stop_wanted_ = false;
+  bool lost_ = true;      // before this session
   bool stopped_ = false;  // told to stop, and to do nothing since
   int failures_ = 0, successes_ = 0;
   std::string why_;    // not connected

@@ -13,13 +13,14 @@
 
 namespace microinjection {
 
-/// A driver on an emulated wire, stepped at 1 kHz in virtual time.
+/// A driver on an emulated wire, stepped at 1 kHz (unless told otherwise) in virtual time.
 template <typename Driver, typename Config>
 class EmulatedRig {
  public:
   using State = ManipulatorDevice::State;
 
-  EmulatedRig(const Config& config, std::shared_ptr<ManipulatorEmulator> device) : device_(std::move(device)) {
+  EmulatedRig(const Config& config, std::shared_ptr<ManipulatorEmulator> device, double step = 1e-3)
+      : device_(std::move(device)), step_(step) {
     auto wire = std::make_unique<EmulatedWire>(device_, config.port.baud);
     wire_ = wire.get();
     driver_ = std::make_unique<Driver>(config, std::move(wire));
@@ -35,7 +36,7 @@ class EmulatedRig {
   /// Steps for `duration` (s); `each` before every step.
   void run(double duration, const std::function<void()>& each = nullptr) {
     for (double end = time_ + duration; time_ < end - 1e-9;) {
-      time_ += 1e-3;
+      time_ += step_;
       if (each) each();
       driver_->step(time_);
     }
@@ -43,7 +44,7 @@ class EmulatedRig {
   /// Steps until `done`, for `longest` (s) at the most; whether it was.
   bool runUntil(const std::function<bool()>& done, double longest) {
     for (const double end = time_ + longest; time_ < end;) {
-      run(1e-3);
+      run(step_);
       if (done()) return true;
     }
     return false;
@@ -52,7 +53,7 @@ class EmulatedRig {
     return runUntil([&] { return driver_->state() == State::kReady; }, longest);
   }
   bool runUntilArrived(double longest = 10) {
-    run(2e-3);
+    run(2 * step_);
     return runUntil([&] { return driver_->state() == State::kReady && !driver_->moving(); }, longest);
   }
 
@@ -64,6 +65,7 @@ class EmulatedRig {
   std::unique_ptr<Driver> driver_;
   EmulatedWire* wire_;
   decltype(Config::joints) joints_;
+  double step_;      // s
   double time_ = 0;  // s
 };
 

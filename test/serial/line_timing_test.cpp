@@ -5,7 +5,7 @@
 namespace microinjection {
 namespace {
 
-TEST(LineTiming, ABytesTakesTenBitTimes) {
+TEST(LineTiming, AByteTakesTenBitTimes) {
   // 13 bytes at 9600 baud: 13.54 ms.
   LineTiming line(9600);
   line.put(std::string(13, 'x'), 1);

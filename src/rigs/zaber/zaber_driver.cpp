@@ -30,7 +30,7 @@ ZaberDriver::ZaberDriver(const ZaberConfig& config, std::unique_ptr<Wire> wire)
     : SerialManipulator(std::move(wire), {"Zaber", stopAll(config), config.answer_time + 60 * byteTime(config) + 5e-3,
                                           config.reply_timeout + 2 * kMessageBytes * byteTime(config)}),
       config_(config),
-      parser_(config.checksum) {}
+      parser_(config.reply_checksum) {}
 
 double ZaberDriver::exchangeTime() const { return 2 * kMessageBytes * byteTime(config_) + config_.answer_time; }
 
@@ -82,7 +82,7 @@ bool ZaberDriver::moving() const {
   return false;
 }
 
-void ZaberDriver::begin() {
+void ZaberDriver::begin(bool /*lost*/) {
   exchange_.reset();
   parser_.forget();
   begun_ = time();
@@ -191,8 +191,12 @@ void ZaberDriver::handleReply(const ZaberMessage& reply) {
 }
 
 void ZaberDriver::handleRejection(const ZaberMessage& reply) {
+  takeFlag(reply, exchange_->axis);
+  if (!talking()) return;
+  // It is busy, or the command reached it damaged. A rejected command has done nothing and may be said again.
   const bool later = reply.data == "AGAIN" || reply.data == "STATUSBUSY" || reply.data == "FULL";
-  if (later && exchange_->tries < kTries) {
+  const bool damaged = reply.data == "BADCOMMAND";
+  if ((later || damaged) && exchange_->tries < kTries) {
     exchange_->sent = false;
     exchange_->due = time() + kRetryPause;
     return;
@@ -264,7 +268,7 @@ bool ZaberDriver::nextOfSession() {
   for (int i = 0; i < 3; ++i) {
     Axis& axis = axes_[i];
     if (!axis.cleared) return ask(Kind::kClear, i, "warnings clear"), true;
-    if (!axis.read_since_begin || axis.busy) {
+    if (!axis.read_since_begin || axis.busy || axis.filter.doubts()) {
       if (time() - begun_ > (axis.homed ? kLongestHoming : kLongestBraking)) {
         lostStep(axisName(i) + (axis.busy ? " does not come to rest" : " has no steady position"));
       } else {

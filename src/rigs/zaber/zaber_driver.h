@@ -29,7 +29,7 @@ class ZaberDriver : public SerialManipulator {
   int malformed() const { return parser_.malformed(); }           ///< messages that were none
 
  protected:
-  void begin() override;
+  void begin(bool lost) override;
   void talk(const std::string& bytes) override;
   void goalChanged() override;
 

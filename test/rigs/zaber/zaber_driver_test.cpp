@@ -130,7 +130,7 @@ TEST_F(ZaberTest, ThreeChainedDevicesWithChecksums) {
   device.devices = {1, 2, 3};
   device.axes = {1, 1, 1};
   ZaberConfig driver = config();
-  driver.checksum = true;
+  driver.reply_checksum = true;
   for (int i = 0; i < 3; ++i) driver.addresses[i] = {i + 1, 1};
   make(device, driver);
   start();
@@ -258,7 +258,7 @@ TEST_F(ZaberTest, StopsWhenItIsDestroyed) {
     driver.step(1);
     heard.clear();
   }
-  EXPECT_EQ(heard, "/1 1 stop\n/1 2 stop\n/1 3 stop\n");
+  EXPECT_EQ(heard, "/1 1 stop:98\n/1 2 stop:97\n/1 3 stop:96\n");
 }
 
 }  // namespace

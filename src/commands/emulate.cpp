@@ -1,0 +1,178 @@
+#include "commands/emulate.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <boost/program_options.hpp>
+#include <cctype>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <iostream>
+#include <vector>
+
+#include "base/errors.h"
+#include "rigs/rig_registry.h"
+#include "serial/emulator_host.h"
+
+namespace microinjection {
+namespace {
+
+constexpr char kHelp[] = R"(: an emulated micromanipulator on a pseudo-terminal, for its driver to be tried without a device.
+
+It is timed as the real one: the line's baud rate, the time to answer, speed and acceleration. It runs until it is interrupted
+(Ctrl-C); the driver may come and go. Lines on standard input are further faults, of the same form as --fault.
+
+Faults: KIND[:VALUE][@TIME]; TIME in s since the start, at once without it
+  silence:S    for S s it neither hears nor says anything (what moves goes on moving)
+  drop:N       the next N bytes that it says are lost
+  deaf:N       the next N bytes said to it are lost
+  garble:N     the next N bytes that it says arrive with all bits turned over
+  error:CODE   its next command is answered with this error: MP-285: 0, 1, 2, 4, 8;
+               Zaber: BADDATA, AGAIN, ... (rejection) or FS, WT, ... (a warning flag, until it is cleared)
+  interrupt    what moves is stopped as if by hand
+)";
+
+volatile std::sig_atomic_t interrupted = 0;
+
+struct Arguments {
+  std::string link;
+  int baud = 0;  // bit/s
+  std::vector<Fault> faults;
+  bool verbose = false;
+};
+
+/// Nothing when help was asked for and given.
+std::optional<Arguments> parse(const Rig& rig, int argc, char** argv) {
+  namespace po = boost::program_options;
+  Arguments arguments;
+  std::vector<std::string> faults;
+  po::options_description options("Options");
+  auto add = options.add_options();
+  add("help,h", "this text");
+  add("link", po::value(&arguments.link)->default_value("/tmp/emulated_" + rig.name)->value_name("PATH"),
+      "link to the terminal: the port of the driver's configuration");
+  add("baud", po::value(&arguments.baud)->default_value(rig.default_baud)->value_name("N"), "bit/s");
+  add("fault", po::value(&faults)->composing()->value_name("SPEC"), "a fault, as above; may be repeated");
+  add("verbose,v", po::bool_switch(&arguments.verbose), "prints what is heard (>) and said (<)");
+  po::variables_map given;
+  try {
+    po::store(po::command_line_parser(argc, argv).options(options).positional({}).run(), given);
+    po::notify(given);
+  } catch (const po::error& error) {
+    throw ConfigError(error.what());
+  }
+  if (given.count("help")) {
+    std::cout << "emulate_" << rig.name << kHelp << '\n' << options;
+    return std::nullopt;
+  }
+  if (arguments.baud <= 0) throw ConfigError("--baud = " + std::to_string(arguments.baud) + ": must be > 0 bit/s");
+  for (const std::string& fault : faults) arguments.faults.push_back(parseFault(fault));
+  return arguments;
+}
+
+/// Bytes as they are where they can be read, otherwise as \xNN.
+std::string visible(const std::string& bytes) {
+  std::string text;
+  for (const char each : bytes) {
+    char code[8];
+    std::snprintf(code, sizeof(code), std::isprint(static_cast<unsigned char>(each)) ? "%c" : "\\x%02x",
+                  static_cast<unsigned char>(each));
+    text += code;
+  }
+  return text;
+}
+
+/// Complete lines that have come on standard input; does not wait.
+class Lines {
+ public:
+  std::vector<std::string> read() {
+    std::vector<std::string> lines;
+    pollfd input{STDIN_FILENO, POLLIN, 0};
+    while (open_ && ::poll(&input, 1, 0) > 0) {
+      char each = 0;
+      open_ = ::read(STDIN_FILENO, &each, 1) == 1;
+      if (open_ && each != '\n') {
+        text_ += each;
+      } else if (!text_.empty()) {
+        lines.push_back(text_);
+        text_.clear();
+      }
+    }
+    return lines;
+  }
+
+ private:
+  bool open_ = true;
+  std::string text_;
+};
+
+/// What went over the line, a row a direction; bytes that follow each other closely are one row.
+class Transcript {
+ public:
+  void add(char direction, const std::string& bytes, double time) {
+    if (!text_.empty() && (direction != direction_ || time - last_ > 0.02)) flush();
+    if (bytes.empty()) return;
+    if (text_.empty()) begin_ = time;
+    direction_ = direction;
+    last_ = time;
+    text_ += visible(bytes);
+  }
+  void flush() {
+    if (!text_.empty()) std::printf("%9.3f %c %s\n", begin_, direction_, text_.c_str());
+    std::fflush(stdout);
+    text_.clear();
+  }
+
+ private:
+  char direction_ = ' ';
+  double begin_ = 0, last_ = 0;  // s
+  std::string text_;
+};
+
+void serve(const Rig& rig, const Arguments& arguments) {
+  const std::shared_ptr<ManipulatorEmulator> device = rig.makeEmulator();
+  for (const Fault& fault : arguments.faults) device->inject(fault);
+  EmulatorHost host(device, arguments.baud, arguments.link);
+  std::printf("emulate_%s: at %s, %d baud\n", rig.name.c_str(), arguments.link.c_str(), arguments.baud);
+  std::fflush(stdout);
+  Lines lines;
+  Transcript transcript;
+  const auto start = std::chrono::steady_clock::now();
+  while (!interrupted) {
+    const double time = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const EmulatorHost::Exchange exchange = host.step(time);
+    if (arguments.verbose) {
+      if (!exchange.heard.empty()) transcript.add('>', exchange.heard, time);
+      transcript.add('<', exchange.said, time);
+    }
+    for (const std::string& line : lines.read()) {
+      try {
+        device->inject(parseFault(line));
+      } catch (const ConfigError& error) {
+        std::fprintf(stderr, "emulate_%s: %s\n", rig.name.c_str(), error.what());
+      }
+    }
+    ::usleep(500);  // us: half a driver's step
+  }
+  transcript.flush();
+}
+
+}  // namespace
+
+int emulate(const std::string& name, int argc, char** argv) {
+  try {
+    const Rig& rig = findRig(name);
+    const std::optional<Arguments> arguments = parse(rig, argc, argv);
+    if (!arguments) return 0;
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, [](int) { interrupted = 1; });
+    serve(rig, *arguments);
+    return 0;
+  } catch (const std::exception& exception) {
+    std::cerr << "emulate_" << name << ": " << exception.what() << '\n';
+    return 2;
+  }
+}
+
+}  // namespace microinjection

@@ -1,0 +1,230 @@
+#include "rigs/mp285/mp285_driver.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace microinjection {
+namespace {
+
+constexpr double kFineLimit = 1310;      // um/s
+constexpr double kBytePause = 0.04;      // s, longest between two bytes of an answer (USB adapters collect for 16 ms)
+constexpr double kMoveAllowance = 0.5;   // s, that a move may take longer than its way at its speed, and a quarter
+constexpr double kWorthStopping = 0.15;  // s left of a move: for less, a new goal waits
+constexpr double kCoarseStep = 5;        // microsteps, of a coarse move's end
+constexpr int kSlowest = 20;             // um/s, of a short move
+constexpr int kTries = 2;                // of a move that ends elsewhere
+
+}  // namespace
+
+Mp285Driver::Mp285Driver(const Mp285Config& config, std::unique_ptr<Wire> wire)
+    : SerialManipulator(std::move(wire), {"MP-285", std::string(1, kMp285Stop),
+                                          config.answer_time + 6 * 10.0 / config.port.baud + 5e-3,
+                                          config.half_command_time + 14 * 10.0 / config.port.baud}),
+      config_(config) {}
+
+ManipulatorAbilities Mp285Driver::abilities() const {
+  ManipulatorAbilities abilities;
+  abilities.device = "Sutter MP-285";
+  abilities.follows = false;
+  // A turn: move (14 bytes) and its end (1), position asked (2) and told (13), now and then a speed (4 and 1).
+  const double turn = 35 * byteTime() + 3 * config_.answer_time + config_.segment_time;
+  abilities.command_interval = abilities.reading_interval = turn;
+  abilities.resolution = microstep_;
+  abilities.speed = config_.speed;
+  abilities.latency = turn + 19 * byteTime() + config_.answer_time;  // a set-point waits for the move under way
+  abilities.stop_time = byteTime() + config_.answer_time;
+  return abilities;
+}
+
+Eigen::Vector3d Mp285Driver::carriedOn(double at) const {
+  if (!move_) return *position_;
+  const Eigen::Vector3d way = move_->to - move_->from;
+  const double gone = move_->speed * std::max(0.0, at - move_->begin);
+  return gone < way.norm() ? Eigen::Vector3d(move_->from + way.normalized() * gone) : move_->to;
+}
+
+double Mp285Driver::timeLeft() const {
+  return move_ ? move_->begin + (move_->to - move_->from).norm() / move_->speed - time() : 0;
+}
+
+std::optional<ManipulatorDevice::Reading> Mp285Driver::reading() const {
+  if (!position_ || state() == State::kDisconnected) return std::nullopt;
+  const Eigen::Vector3d place = carriedOn(time()) * microstep_;
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+  if (timeLeft() > 0 && time() > move_->begin) {
+    velocity = (move_->to - move_->from).normalized() * move_->speed * microstep_;
+  }
+  return Reading{config_.joints.toJoints(config_.inJointOrder(place)),
+                 config_.joints.directions.cwiseProduct(config_.inJointOrder(velocity))};
+}
+
+Eigen::Vector3d Mp285Driver::goalPlace() const {
+  return (config_.inDeviceOrder(config_.joints.toDevice(goal()->joints)) / microstep_).array().round();
+}
+
+bool Mp285Driver::moving() const {
+  if (!goal()) return !settled_;
+  return move_ || !settled_ || !position_ || *position_ != goalPlace();
+}
+
+void Mp285Driver::begin(bool lost) {
+  exchange_.reset();
+  filter_.forget();
+  if (position_) position_ = carriedOn(time());
+  move_.reset();
+  settled_ = asked_stop_ = false;
+  reading_due_ = true;
+  if (lost) {
+    asked_status_ = absolute_ = false;
+    speed_.reset();
+  }
+}
+
+void Mp285Driver::talk(const std::string& bytes) {
+  if (!bytes.empty()) last_byte_ = time();
+  if (exchange_) {
+    const bool silent = parser_.begun() && time() - last_byte_ > kBytePause;
+    if (const auto answer = parser_.feed(bytes, silent)) {
+      handle(*answer);
+    } else if (time() > exchange_->due) {
+      lostStep("no answer, or half of one");
+    } else if (exchange_->kind == Kind::kMove && goal() && timeLeft() > kWorthStopping) {
+      // The newest wins: a long move is broken off when it is not the one that is wanted any more.
+      const bool still_wanted = !move_->follows && !goal()->follows && (move_->to - goalPlace()).isZero();
+      if (!still_wanted) stopFirst();
+    }
+  } else if (!bytes.empty()) {
+    ++malformed_;  // nobody asked: what is under way cannot be told from an answer any more
+    return lostStep("it talks without being asked");
+  }
+  if (talking() && !exchange_) next();
+}
+
+void Mp285Driver::ask(Kind kind, const std::string& bytes, double more_time) {
+  using Expected = Mp285Parser::Expected;
+  parser_.expect(kind == Kind::kPosition ? Expected::kPosition
+                 : kind == Kind::kStatus ? Expected::kStatus
+                                         : Expected::kDone);
+  const double answer_bytes = kind == Kind::kStatus ? 33 : 13;
+  exchange_ = Exchange{kind, time(), time() + (bytes.size() + answer_bytes) * byteTime() + config_.reply_timeout + more_time};
+  say(bytes);
+}
+
+void Mp285Driver::handle(const Mp285Answer& answer) {
+  using Answer = Mp285Answer::Kind;
+  const Kind kind = exchange_->kind;
+  exchange_.reset();
+  if (answer.kind == Answer::kError) return handleError(answer.error);
+  const bool fits = answer.kind == (kind == Kind::kPosition ? Answer::kPosition
+                                    : kind == Kind::kStatus ? Answer::kStatus
+                                                            : Answer::kDone) ||
+                    (answer.kind == Answer::kStopped && kind == Kind::kStop);
+  if (!fits) {
+    ++malformed_;
+    return lostStep("an answer that is none");
+  }
+  understood();
+  switch (kind) {
+    case Kind::kStop:
+      asked_stop_ = true;
+      break;
+    case Kind::kStatus:
+      // Garbled, it would make every position wrong: it counts when it is said twice.
+      asked_status_ = answer.status.microstep == told_microstep_;
+      told_microstep_ = answer.status.microstep;
+      if (!asked_status_) break;
+      if (position_ && told_microstep_ != microstep_) position_.reset();
+      microstep_ = told_microstep_;
+      break;
+    case Kind::kAbsolute:
+      absolute_ = true;
+      break;
+    case Kind::kPosition:
+      takePosition(answer.position);
+      break;
+    case Kind::kVelocity:
+      break;  // known since it was sent
+    case Kind::kMove:
+      reading_due_ = true;
+      break;
+  }
+}
+
+void Mp285Driver::handleError(int error) {
+  if (error == 8 && move_) {
+    position_ = carriedOn(time());
+    reading_due_ = true;  // how far did it come?
+    return;
+  }
+  lostStep(mp285ErrorName(error));
+}
+
+void Mp285Driver::takePosition(const Mp285Position& told) {
+  const Eigen::Vector3d place(told[0], told[1], told[2]);
+  const Eigen::Vector3d expected = position_ ? carriedOn(time()) : Eigen::Vector3d::Constant(std::nan(""));
+  const double tolerance = move_ && move_->coarse ? kCoarseStep + 1 : 2;
+  if (!filter_.accept(place, expected, tolerance)) return;  // asked again
+  if (position_ && settled_) {
+    largest_correction_ = std::max(largest_correction_, (place - expected).cwiseAbs().maxCoeff() * microstep_);
+  }
+  const bool missed = move_ && (place - move_->to).cwiseAbs().maxCoeff() > tolerance;
+  position_ = place;
+  move_.reset();
+  reading_due_ = false;
+  next_rest_reading_ = time() + config_.rest_reading_interval;
+  if (!settled_) {
+    settled_ = true;
+    known();
+  }
+  if (!missed) {
+    tries_ = 0;
+  } else if (++tries_ >= kTries) {
+    raiseFault("the move does not arrive: it was interrupted");
+  }
+}
+
+void Mp285Driver::next() {
+  if (!asked_stop_) return ask(Kind::kStop, std::string(1, kMp285Stop));
+  if (!asked_status_) return ask(Kind::kStatus, mp285AskStatus());
+  if (!absolute_) return ask(Kind::kAbsolute, mp285AbsoluteMode());
+  if (reading_due_) return ask(Kind::kPosition, mp285AskPosition());
+  if (goal() && mayMove() && *position_ != goalPlace()) return nextTowardsGoal();
+  if (config_.rest_reading_interval > 0 && time() >= next_rest_reading_) reading_due_ = true;
+}
+
+Mp285Driver::Speed Mp285Driver::speedFor(double way) const {
+  double speed = goal()->speed;
+  if (goal()->follows) speed = std::max(1.2 * goal()->velocity.norm(), way * microstep_ / config_.segment_time);
+  int um_per_s = static_cast<int>(std::lround(std::min(speed, config_.speed) * 1e6));
+  um_per_s = std::max(um_per_s, goal()->follows ? std::min(kSlowest, static_cast<int>(config_.speed * 1e6)) : 1);
+  const bool fine = um_per_s <= kFineLimit || way < 10 * kCoarseStep;  // the rest of a coarse move is a fine one
+  if (fine) um_per_s = std::min(um_per_s, static_cast<int>(kFineLimit));
+  // A speed that is about right is kept: to set it takes as long as a third of a move's exchange.
+  if (goal()->follows && speed_ && speed_->fine == fine && speed_->um_per_s >= 0.9 * um_per_s &&
+      speed_->um_per_s <= 1.5 * um_per_s) {
+    return *speed_;
+  }
+  return {um_per_s, fine};
+}
+
+void Mp285Driver::nextTowardsGoal() {
+  const Eigen::Vector3d way = goalPlace() - *position_;
+  const Speed speed = speedFor(way.norm());
+  if (!speed_ || !(*speed_ == speed)) {
+    speed_ = speed;  // if this fails, the session that follows forgets it
+    return ask(Kind::kVelocity, mp285SetVelocity(speed.um_per_s, speed.fine));
+  }
+  Move move{*position_, goalPlace(), 0, speed.um_per_s * 1e-6 / microstep_, goal()->follows, !speed.fine};
+  const double longest = move.speed * 2 * config_.segment_time;
+  if (move.follows && way.norm() > longest) move.to = (move.from + way.normalized() * longest).array().round();
+  Mp285Position place;
+  for (int i = 0; i < 3; ++i) {
+    if (std::abs(move.to[i]) > 2e9) return raiseFault("the goal is too far away to be said");
+    place[i] = static_cast<std::int32_t>(move.to[i]);
+  }
+  move.begin = time() + 14 * byteTime();
+  move_ = move;
+  ask(Kind::kMove, mp285Move(place), 1.25 * timeLeft() + kMoveAllowance);
+}
+
+}  // namespace microinjection
