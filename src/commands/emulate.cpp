@@ -1,5 +1,3 @@
-#include "commands/emulate.h"
-
 #include <fcntl.h>
 #include <poll.h>
 #include <unistd.h>
@@ -10,6 +8,8 @@
 #include <csignal>
 #include <cstdio>
 #include <iostream>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "base/errors.h"
@@ -19,7 +19,9 @@
 namespace microinjection {
 namespace {
 
-constexpr char kHelp[] = R"(: an emulated micromanipulator on a pseudo-terminal, for its driver to be tried without a device.
+constexpr char kHelp[] = R"(usage: emulate RIG [OPTION...]
+
+An emulated micromanipulator on a pseudo-terminal, for its driver to be tried without a device.
 
 It is timed as the real one: the line's baud rate, the time to answer, speed and acceleration. It runs until it is interrupted
 (Ctrl-C); the driver may come and go. Lines on standard input are further faults, of the same form as --fault.
@@ -37,36 +39,53 @@ Faults: KIND[:VALUE][@TIME]; TIME in s since the start, at once without it
 volatile std::sig_atomic_t interrupted = 0;
 
 struct Arguments {
+  const Rig* rig = nullptr;
   std::string link;
   int baud = 0;  // bit/s
   std::vector<Fault> faults;
   bool verbose = false;
 };
 
-/// Nothing when help was asked for and given.
-std::optional<Arguments> parse(const Rig& rig, int argc, char** argv) {
+std::string rigNames() {
+  std::string names;
+  for (const Rig& rig : rigs()) names += (names.empty() ? "" : " or ") + rig.name;
+  return names;
+}
+
+/// Nothing when help was asked for and given. What roslaunch adds (__name:=...) is left out.
+std::optional<Arguments> parse(int argc, char** argv) {
   namespace po = boost::program_options;
   Arguments arguments;
-  std::vector<std::string> faults;
+  std::string rig;
+  std::vector<std::string> words, faults;
+  for (int i = 1; i < argc; ++i) {
+    if (std::string(argv[i]).rfind("__", 0) != 0) words.emplace_back(argv[i]);
+  }
   po::options_description options("Options");
   auto add = options.add_options();
   add("help,h", "this text");
-  add("link", po::value(&arguments.link)->default_value("/tmp/emulated_" + rig.name)->value_name("PATH"),
-      "link to the terminal: the port of the driver's configuration");
-  add("baud", po::value(&arguments.baud)->default_value(rig.default_baud)->value_name("N"), "bit/s");
+  add("rig", po::value(&rig)->value_name("NAME"), (rigNames() + "; the option's name may be left out").c_str());
+  add("link", po::value(&arguments.link)->value_name("PATH"),
+      "link to the terminal: the port of the driver's configuration (/tmp/emulated_RIG)");
+  add("baud", po::value(&arguments.baud)->value_name("N"), "bit/s (as the device is delivered)");
   add("fault", po::value(&faults)->composing()->value_name("SPEC"), "a fault, as above; may be repeated");
   add("verbose,v", po::bool_switch(&arguments.verbose), "prints what is heard (>) and said (<)");
   po::variables_map given;
   try {
-    po::store(po::command_line_parser(argc, argv).options(options).positional({}).run(), given);
+    po::positional_options_description first;
+    po::store(po::command_line_parser(words).options(options).positional(first.add("rig", 1)).run(), given);
     po::notify(given);
   } catch (const po::error& error) {
     throw ConfigError(error.what());
   }
   if (given.count("help")) {
-    std::cout << "emulate_" << rig.name << kHelp << '\n' << options;
+    std::cout << kHelp << '\n' << options;
     return std::nullopt;
   }
+  if (rig.empty()) throw ConfigError("RIG is missing: must be " + rigNames());
+  arguments.rig = &findRig(rig);
+  if (!given.count("link")) arguments.link = "/tmp/emulated_" + rig;
+  if (!given.count("baud")) arguments.baud = arguments.rig->default_baud;
   if (arguments.baud <= 0) throw ConfigError("--baud = " + std::to_string(arguments.baud) + ": must be > 0 bit/s");
   for (const std::string& fault : faults) arguments.faults.push_back(parseFault(fault));
   return arguments;
@@ -131,11 +150,12 @@ class Transcript {
   std::string text_;
 };
 
-void serve(const Rig& rig, const Arguments& arguments) {
+void serve(const Arguments& arguments) {
+  const Rig& rig = *arguments.rig;
   const std::shared_ptr<ManipulatorEmulator> device = rig.makeEmulator();
   for (const Fault& fault : arguments.faults) device->inject(fault);
   EmulatorHost host(device, arguments.baud, arguments.link);
-  std::printf("emulate_%s: at %s, %d baud\n", rig.name.c_str(), arguments.link.c_str(), arguments.baud);
+  std::printf("emulate: %s at %s, %d baud\n", rig.name.c_str(), arguments.link.c_str(), arguments.baud);
   std::fflush(stdout);
   Lines lines;
   Transcript transcript;
@@ -151,7 +171,7 @@ void serve(const Rig& rig, const Arguments& arguments) {
       try {
         device->inject(parseFault(line));
       } catch (const ConfigError& error) {
-        std::fprintf(stderr, "emulate_%s: %s\n", rig.name.c_str(), error.what());
+        std::fprintf(stderr, "emulate: %s\n", error.what());
       }
     }
     ::usleep(500);  // us: half a driver's step
@@ -160,19 +180,18 @@ void serve(const Rig& rig, const Arguments& arguments) {
 }
 
 }  // namespace
+}  // namespace microinjection
 
-int emulate(const std::string& name, int argc, char** argv) {
+int main(int argc, char** argv) {
+  using namespace microinjection;
   try {
-    const Rig& rig = findRig(name);
-    const std::optional<Arguments> arguments = parse(rig, argc, argv);
+    const std::optional<Arguments> arguments = parse(argc, argv);
     if (!arguments) return 0;
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, [](int) { interrupted = 1; });
-    serve(rig, *arguments);
+    serve(*arguments);
     return 0;
   } catch (const std::exception& exception) {
-    std::cerr << "emulate_" << name << ": " << exception.what() << '\n';
+    std::cerr << "emulate: " << exception.what() << '\n';
     return 2;
   }
 }
-
-}  // namespace microinjection

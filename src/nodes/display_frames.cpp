@@ -4,6 +4,7 @@
 #include <ros/time.h>
 
 #include "display/display_scale.h"
+#include "nodes/frames.h"
 
 namespace microinjection {
 namespace {
@@ -31,17 +32,7 @@ geometry_msgs::TransformStamped enlarged(const std::string& frame, const Eigen::
 DisplayFrames::DisplayFrames(const std::vector<std::string>& fixed) : fixed_(fixed) {}
 
 std::optional<Eigen::Isometry3d> DisplayFrames::find(const std::string& parent, const std::string& frame) const {
-  try {
-    const auto transform = buffer_.lookupTransform(parent, frame, ros::Time(0)).transform;
-    const auto& t = transform.translation;
-    const auto& q = transform.rotation;
-    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-    pose.linear() = Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized().toRotationMatrix();
-    pose.translation() << t.x, t.y, t.z;
-    return pose;
-  } catch (const tf2::TransformException&) {
-    return std::nullopt;
-  }
+  return findFrame(buffer_, parent, frame);
 }
 
 void DisplayFrames::update() {

@@ -1,35 +1,119 @@
 #include "nodes/force_sensor_node.h"
 
 #include "nodes/conversions.h"
+#include "nodes/frames.h"
 #include "nodes/node_parameters.h"
 
 namespace microinjection {
 
 const char* const ForceSensorNode::kHelp =
-    "force_sensor: a virtual two-axis MEMS force sensor at the pipette.\n"
-    "In: /cell/predicted_cf, /needle/measured_cp. Out: /force_sensor/measured_cf (needle_tip: z along, x across).\n"
-    "Parameters: see config/force_sensor.yaml.\n";
+    "force_sensor: a virtual two-axis MEMS force sensor at the pipette, voltages on a serial line, or another's "
+    "wrench.\n"
+    "In: /cell/predicted_cf, /needle/measured_cp (source simulated) or /force_sensor/device_cf (source topic).\n"
+    "Out: /force_sensor/measured_cf (needle_tip: z along, x across) /force_sensor/raw_cf (the sensor's frame).\n"
+    "Services: ~tare ~reset ~calibrate. Parameters: see config/force_sensor.yaml.\n";
 
 ForceSensorNode::Parameters ForceSensorNode::Parameters::read(const ros::NodeHandle& private_node) {
   Parameters parameters;
   ConfigReader reader = parameterReader(private_node);
+  reader.choice("source", parameters.source, {"simulated", "serial", "topic"});
   reader.number("rate", parameters.rate, Range::closed(50, 5000));
   reader.number("input_timeout", parameters.input_timeout, Range::positive());
-  parameters.model = ForceSensorConfig::read(reader);
+  reader.number("averaging", parameters.averaging, Range::positive());
+  reader.text("frame", parameters.frame);
+  reader.number("frame_timeout", parameters.frame_timeout, Range::positive());
+  ConfigReader simulated = reader.section("simulated");
+  parameters.simulated = ForceSensorConfig::read(simulated);
+  // The other sources' sections may stay in a file that does not use them, and are read as strictly.
+  for (const std::string source : {"serial", "topic"}) {
+    if (parameters.source != source && !reader.has(source)) continue;
+    ConfigReader section = reader.section(source);
+    Eigen::Vector2d overload = parameters.overload;
+    section.number("axial_overload", overload[0], Range::positive());
+    section.number("lateral_overload", overload[1], Range::positive());
+    if (parameters.source == source) parameters.overload = overload;
+    if (source == "topic") continue;
+    parameters.port = SerialPortConfig::read(section, 115200);
+    parameters.voltages = VoltReadingConfig::read(section);
+  }
   reader.finish();
   return parameters;
 }
 
 ForceSensorNode::ForceSensorNode(ros::NodeHandle node, ros::NodeHandle private_node)
     : parameters_(Parameters::read(private_node)),
-      model_(parameters_.model),
       cycle_(node, parameters_.rate),
-      force_(
-          cycle_.input<geometry_msgs::WrenchStamped>("cell/predicted_cf", Phase::kSameTick, parameters_.input_timeout)),
-      needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", Phase::kTickBefore,
-                                                       parameters_.input_timeout)),
-      measured_(cycle_.output<geometry_msgs::WrenchStamped>("force_sensor/measured_cf")) {
+      source_(makeSource()),
+      readout_(source_->size(), parameters_.averaging),
+      measured_(cycle_.output<geometry_msgs::WrenchStamped>("force_sensor/measured_cf")),
+      raw_(cycle_.output<geometry_msgs::WrenchStamped>("force_sensor/raw_cf")) {
+  advertiseServices(private_node);
   cycle_.diagnostics().add("sensor", [this](auto& status) { report(status); });
+}
+
+std::unique_ptr<ForceSource> ForceSensorNode::makeSource() {
+  const Parameters& p = parameters_;
+  if (p.source == "topic") return std::make_unique<TopicForceSource>(cycle_, p.input_timeout, p.overload);
+  tip_from_sensor_ = waitForFrame(kTipFrame, p.frame, p.frame_timeout);
+  if (p.source == "serial") {
+    return std::make_unique<SerialForceSource>(p.port, p.voltages, p.overload, p.input_timeout, p.frame);
+  }
+  return std::make_unique<SimulatedForceSource>(cycle_, p.input_timeout, p.simulated, p.frame, tip_from_sensor_);
+}
+
+void ForceSensorNode::advertiseServices(ros::NodeHandle private_node) {
+  using Trigger = std_srvs::Trigger;
+  // Answered right before a step, in the node's own thread.
+  private_node.setCallbackQueue(cycle_.node().getCallbackQueue());
+  tare_ = private_node.advertiseService<Trigger::Request, Trigger::Response>(
+      "tare", [this](Trigger::Request&, Trigger::Response& response) {
+        const std::string refusal = unready().empty() ? readout_.beginTare() : unready();
+        response.success = refusal.empty();
+        response.message = refusal.empty() ? readout_.outcome() : refusal;
+        return true;
+      });
+  reset_ = private_node.advertiseService<Trigger::Request, Trigger::Response>(
+      "reset", [this](Trigger::Request&, Trigger::Response& response) {
+        response.success = true;
+        response.message = source_->overloaded() ? "was overloaded: check the sensor, then tare" : "there was no fault";
+        source_->reset();
+        return true;
+      });
+  calibrate_ = private_node.advertiseService("calibrate", &ForceSensorNode::calibrate, this);
+}
+
+bool ForceSensorNode::calibrate(cell_microinjection::CalibrateForce::Request& request,
+                                cell_microinjection::CalibrateForce::Response& response) {
+  const std::string refusal = source_->size() == 2 ? act(request) : "a wrench is calibrated where it is measured";
+  response.success = refusal.empty();
+  response.message = refusal.empty() ? readout_.outcome() : refusal;
+  const Eigen::MatrixXd by_columns = readout_.gain().transpose();
+  response.gain.assign(by_columns.data(), by_columns.data() + by_columns.size());
+  response.residual = readout_.residual();
+  return true;
+}
+
+std::string ForceSensorNode::act(const cell_microinjection::CalibrateForce::Request& request) {
+  switch (request.action) {
+    case cell_microinjection::CalibrateForce::Request::ADD: {
+      if (!unready().empty()) return unready();
+      const Eigen::Vector3d at_tip(request.force.x, request.force.y, request.force.z);
+      const Eigen::Vector3d known = tip_from_sensor_.linear().transpose() * at_tip;
+      return readout_.beginPoint(Eigen::Vector2d(known.z(), known.x()));
+    }
+    case cell_microinjection::CalibrateForce::Request::SOLVE:
+      return readout_.solve();
+    case cell_microinjection::CalibrateForce::Request::CLEAR:
+      readout_.clear();
+      return "";
+    default:
+      return "action must be ADD, SOLVE or CLEAR";
+  }
+}
+
+std::string ForceSensorNode::unready() const {
+  if (source_->overloaded()) return "the sensor is overloaded: reset it first";
+  return source_->untrusted();
 }
 
 void ForceSensorNode::run() {
@@ -37,26 +121,43 @@ void ForceSensorNode::run() {
 }
 
 void ForceSensorNode::step(const Cycle::Tick& tick) {
-  const auto pose = trustedPose(needle_.get(tick.now));
-  const auto* message = force_.get(tick.now);
-  const auto force = pose ? trustedForce(message, pose->linear()) : std::nullopt;
-  if (!force) {
-    untrusted_ = pose ? "no trusted force" : "no trusted needle pose";
-    measured_.publishInvalid(toWrench(Eigen::Vector3d::Zero(), tick.now, kTipFrame));
-    return;
-  }
-  untrusted_.clear();
-  const Eigen::Vector3d at_tip = pose->linear().transpose() * *force;
-  const Eigen::Vector2d reading = model_.sample({at_tip.z(), at_tip.x()}, tick.dt);
-  measured_.publish(toWrench({reading[1], 0, reading[0]}, message->header.stamp, kTipFrame));
+  const auto signal = source_->read(tick);
+  if (!source_->untrusted().empty() || source_->overloaded()) return publishInvalid(tick);
+  if (!signal) return;
+  raw_.publish(signal->raw);
+  measured_.publish(atTip(readout_.read(signal->values, tick.now.toSec()), signal->stamp));
+}
+
+void ForceSensorNode::publishInvalid(const Cycle::Tick& tick) {
+  readout_.interrupt();
+  measured_.publishInvalid(toWrench(Eigen::Vector3d::Zero(), tick.now, kTipFrame));
+  raw_.publishInvalid(toWrench(Eigen::Vector3d::Zero(), tick.now, parameters_.frame));
+}
+
+geometry_msgs::WrenchStamped ForceSensorNode::atTip(const Eigen::VectorXd& force, const ros::Time& stamp) const {
+  // What a two-axis sensor feels acts at the tip, hence without a torque about it.
+  if (force.size() == 2)
+    return toWrench(tip_from_sensor_.linear() * Eigen::Vector3d(force[1], 0, force[0]), stamp, kTipFrame);
+  geometry_msgs::WrenchStamped message = toWrench(force.head<3>(), stamp, kTipFrame);
+  message.wrench.torque.x = force[3];
+  message.wrench.torque.y = force[4];
+  message.wrench.torque.z = force[5];
+  return message;
 }
 
 void ForceSensorNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) const {
-  const bool good = untrusted_.empty() && !model_.saturated();
-  status.summary(good ? diagnostic_msgs::DiagnosticStatus::OK : diagnostic_msgs::DiagnosticStatus::WARN,
-                 good                 ? "measures"
-                 : untrusted_.empty() ? "saturated"
-                                      : untrusted_);
+  using diagnostic_msgs::DiagnosticStatus;
+  if (source_->overloaded()) {
+    status.summary(DiagnosticStatus::ERROR, "overloaded; wants the service ~reset");
+  } else if (!source_->untrusted().empty()) {
+    status.summary(DiagnosticStatus::WARN, source_->untrusted());
+  } else {
+    status.summary(source_->saturated() ? DiagnosticStatus::WARN : DiagnosticStatus::OK,
+                   source_->saturated() ? "saturated" : "measures");
+  }
+  status.add("tare and calibration", readout_.outcome());
+  status.add("calibration points", readout_.points());
+  source_->report(status);
 }
 
 }  // namespace microinjection

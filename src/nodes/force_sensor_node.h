@@ -1,49 +1,84 @@
 #pragma once
 
-#include <geometry_msgs/PoseStamped.h>
+#include <cell_microinjection/CalibrateForce.h>
 #include <geometry_msgs/WrenchStamped.h>
 #include <ros/ros.h>
+#include <std_srvs/Trigger.h>
 
+#include <memory>
 #include <string>
 
 #include "nodes/cycle.h"
-#include "sensor/force_sensor.h"
+#include "nodes/force_sources.h"
+#include "sensor/force_readout.h"
 
 namespace microinjection {
 
-/// A virtual two-axis MEMS force sensor at the pipette: along it (force.z) and across it (force.x), in `needle_tip`.
+/// The force sensor at the pipette: a virtual two-axis MEMS sensor, voltages on a serial line, or another node's
+/// wrench. A two-axis sensor measures along its z (axial) and x (lateral); where it sits, tf says, asked once at the
+/// start.
 ///
-/// In:  /cell/predicted_cf (WrenchStamped, `world`), /needle/measured_cp (PoseStamped, for the pipette's axes)
-/// Out: /force_sensor/measured_cf (WrenchStamped, `needle_tip`; stamp 0 when there is no trusted force to sense)
+/// In:  simulated: /cell/predicted_cf (WrenchStamped, `world`), /needle/measured_cp (PoseStamped, for the pipette's
+/// axes)
+///      topic:     /force_sensor/device_cf (WrenchStamped in any frame that tf joins to `needle_tip`)
+/// Out: /force_sensor/measured_cf (WrenchStamped at the tip in `needle_tip`, tared and calibrated)
+///      /force_sensor/raw_cf (WrenchStamped in the sensor's frame, as it is; a two-axis sensor measures no torque)
+///      both with stamp 0 when there is no trusted force to sense, and from an overload to a reset
+/// Services: ~tare, ~reset (std_srvs/Trigger), ~calibrate (CalibrateForce; two-axis sensors). Averages take their time:
+///      a service only begins one, and its outcome is on /diagnostics.
 ///
-/// Parameters (private): those of ForceSensorConfig and
+/// Parameters (private):
+///   source         simulated, serial or topic; default simulated
 ///   rate           Hz; default 1000, in [50, 5000]
 ///   input_timeout  s, past which an input is stale; default 0.05, in (0, inf)
+///   averaging      s, of a tare or a calibration point; default 0.5, in (0, inf)
+///   frame          of the sensor, in tf; default force_sensor
+///   frame_timeout  s of wall time to wait for tf at the start; default 10, in (0, inf)
+///   simulated/     those of ForceSensorConfig
+///   serial/        path, baud (SerialPortConfig; default 115200), those of VoltReadingConfig, axial_overload and
+///                  lateral_overload (N); needed with source serial
+///   topic/         axial_overload and lateral_overload (N)
 class ForceSensorNode {
  public:
   static const char* const kHelp;
-  /// @throws ConfigError
+  /// @throws ConfigError, also when tf does not know the sensor's frame in time
   ForceSensorNode(ros::NodeHandle node, ros::NodeHandle private_node);
   void run();
 
  private:
   struct Parameters {
+    std::string source = "simulated";
     double rate = 1000;
     double input_timeout = 0.05;
-    ForceSensorConfig model;
+    double averaging = 0.5;
+    std::string frame = "force_sensor";
+    double frame_timeout = 10;
+    ForceSensorConfig simulated;
+    SerialPortConfig port;
+    VoltReadingConfig voltages;
+    Eigen::Vector2d overload{2e-3, 4e-3};  ///< N, of a real sensor, (axial, lateral)
     static Parameters read(const ros::NodeHandle& private_node);
   };
 
+  std::unique_ptr<ForceSource> makeSource();
+  void advertiseServices(ros::NodeHandle private_node);
   void step(const Cycle::Tick& tick);
+  void publishInvalid(const Cycle::Tick& tick);
+  geometry_msgs::WrenchStamped atTip(const Eigen::VectorXd& force, const ros::Time& stamp) const;
+  bool calibrate(cell_microinjection::CalibrateForce::Request& request,
+                 cell_microinjection::CalibrateForce::Response& response);
+  std::string act(const cell_microinjection::CalibrateForce::Request& request);
+  std::string unready() const;
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
   Parameters parameters_;
-  ForceSensor model_;
+  Eigen::Isometry3d tip_from_sensor_ = Eigen::Isometry3d::Identity();
   Cycle cycle_;
-  Input<geometry_msgs::WrenchStamped>& force_;
-  Input<geometry_msgs::PoseStamped>& needle_;
+  std::unique_ptr<ForceSource> source_;
+  ForceReadout readout_;
   Output<geometry_msgs::WrenchStamped>& measured_;
-  std::string untrusted_;  ///< why there is no reading; else empty
+  Output<geometry_msgs::WrenchStamped>& raw_;
+  ros::ServiceServer tare_, calibrate_, reset_;
 };
 
 }  // namespace microinjection

@@ -1,6 +1,7 @@
 """A Python participant of the lock step: a test that plays the part of one or more nodes, tick by tick."""
 
 import queue
+import threading
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
@@ -62,6 +63,16 @@ class Participant:
     def run(self, ticks, messages=None):
         for _ in range(ticks):
             self.tick(messages() if callable(messages) else messages)
+
+    def call(self, service, kind, *arguments, messages=None):
+        """Calls a service of a node that answers in a tick, which have `messages`, and returns its answer."""
+        rospy.wait_for_service(service, timeout=PATIENCE)
+        answers = []
+        thread = threading.Thread(target=lambda: answers.append(rospy.ServiceProxy(service, kind)(*arguments)))
+        thread.start()
+        while thread.is_alive():
+            self.tick(messages)
+        return answers[0]
 
     def status(self, name):
         """(level, message) that the diagnostics say of e.g. 'haptic_bridge: loop'."""

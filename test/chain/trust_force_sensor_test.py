@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""The force sensor has no reading of a force that it cannot trust, and reads along and across the pipette otherwise."""
+"""The force sensor has no reading of a force that it cannot trust, nor after an overload, and reads along and across the
+pipette otherwise; it is tared and calibrated."""
 
 import math
 import unittest
@@ -7,8 +8,10 @@ import unittest
 import numpy as np
 import rospy
 import rostest
-from geometry_msgs.msg import PoseStamped, WrenchStamped
+from geometry_msgs.msg import PoseStamped, Vector3, WrenchStamped
+from std_srvs.srv import Trigger
 
+from cell_microinjection.srv import CalibrateForce, CalibrateForceRequest
 from messages import force, pose, wrench
 from participant import Participant
 
@@ -17,7 +20,16 @@ class TrustTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.world = Participant({"/needle/measured_cp": PoseStamped, "/cell/predicted_cf": WrenchStamped},
-                                {"/force_sensor/measured_cf": WrenchStamped})
+                                {"/force_sensor/measured_cf": WrenchStamped, "/force_sensor/raw_cf": WrenchStamped})
+
+    def setUp(self):
+        self.world.run(20, self.messages(wrench(0, 0, 0)))
+        self.call(wrench(0, 0, 0), "reset", Trigger)
+        self.world.run(20, self.messages(wrench(0, 0, 0)))
+
+    def call(self, predicted, service, kind, *arguments):
+        """Answer of one of its services, under a force."""
+        return self.world.call("/force_sensor/" + service, kind, *arguments, messages=self.messages(predicted))
 
     def messages(self, predicted, tilt=0.0):
         needle = pose(0, 0, 25e-6)
@@ -44,6 +56,55 @@ class TrustTest(unittest.TestCase):
             level, text = self.world.status("force_sensor: sensor")
             self.assertNotEqual(level, 0)
             self.assertIn("no trusted force", text)
+
+    def mean(self, predicted, topic="/force_sensor/measured_cf", ticks=200):
+        """(lateral, axial) under a force, averaged against the noise."""
+        self.world.run(20, self.messages(predicted))
+        total = np.zeros(3)
+        for _ in range(ticks):
+            self.world.tick(self.messages(predicted))
+            total += force(self.world.seen[topic])
+        return total[[0, 2]] / ticks
+
+    def calibrate(self, predicted, action, known=(0.0, 0.0)):
+        request = CalibrateForceRequest(action=action, force=Vector3(known[0], 0, known[1]))
+        return self.call(predicted, "calibrate", CalibrateForce, request)
+
+    def tare(self, predicted):
+        self.world.run(20, self.messages(predicted))
+        self.assertTrue(self.call(predicted, "tare", Trigger).success)
+        self.world.run(600, self.messages(predicted))  # it averages over 0.5 s
+
+    def test_tare_and_calibration(self):
+        offset = wrench(30e-6, 0, 50e-6)  # something hangs on the sensor
+        self.tare(offset)
+        np.testing.assert_allclose(self.mean(offset), [0, 0], atol=100e-9)
+        self.assertGreater(self.mean(offset, "/force_sensor/raw_cf")[1], 49e-6)  # raw stays raw
+        for lateral, axial in ((100e-6, 0), (0, 100e-6)):
+            loaded = wrench(30e-6 + lateral, 0, 50e-6 + axial)
+            self.world.run(20, self.messages(loaded))
+            self.assertTrue(self.calibrate(loaded, CalibrateForceRequest.ADD, (lateral, axial)).success)
+            self.world.run(600, self.messages(loaded))
+        answer = self.calibrate(offset, CalibrateForceRequest.SOLVE)
+        self.assertTrue(answer.success, answer.message)
+        np.testing.assert_allclose(np.reshape(answer.gain, (2, 2)), np.linalg.inv([[1, 0.02], [0.02, 1]]), atol=0.003)
+        np.testing.assert_allclose(self.mean(wrench(110e-6, 0, 10e-6)), [80e-6, -40e-6], atol=300e-9)
+        self.assertFalse(self.calibrate(offset, 7).success)
+        self.assertTrue(self.calibrate(offset, CalibrateForceRequest.CLEAR).success)
+        self.tare(wrench(0, 0, 0))
+
+    def test_an_overload_is_a_fault_until_reset(self):
+        self.world.run(20, self.messages(wrench(0, 0, 1e-3)))  # beyond the range, not yet the overload
+        self.assertFalse(self.reading().header.stamp.is_zero())
+        self.world.run(20, self.messages(wrench(0, 0, 3e-3)))
+        self.assertTrue(self.reading().header.stamp.is_zero())
+        self.world.run(1200, self.messages(wrench(0, 0, 0)))
+        self.assertTrue(self.reading().header.stamp.is_zero())
+        self.assertEqual(self.world.status("force_sensor: sensor"), (2, "overloaded; wants the service ~reset"))
+        self.assertFalse(self.call(wrench(0, 0, 0), "tare", Trigger).success)
+        self.assertTrue(self.call(wrench(0, 0, 0), "reset", Trigger).success)
+        self.world.run(20, self.messages(wrench(0, 0, 0)))
+        self.assertFalse(self.reading().header.stamp.is_zero())
 
 
 if __name__ == "__main__":

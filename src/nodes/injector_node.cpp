@@ -1,0 +1,139 @@
+#include "nodes/injector_node.h"
+
+#include "injector/serial_injector.h"
+#include "nodes/node_parameters.h"
+
+namespace microinjection {
+
+const char* const InjectorNode::kHelp =
+    "injector: a pressure injector behind the pipette, simulated or on a serial line.\n"
+    "In: /injector/pulse /injector/set_balance. Out: /injector/state. Services: ~reset ~clog (simulated).\n"
+    "Parameters: see config/injector.yaml.\n";
+
+InjectorNode::Parameters InjectorNode::Parameters::read(const ros::NodeHandle& private_node) {
+  Parameters parameters;
+  ConfigReader reader = parameterReader(private_node);
+  reader.choice("source", parameters.source, {"simulated", "serial"});
+  reader.number("rate", parameters.rate, Range::closed(20, 5000));
+  reader.number("command_timeout", parameters.command_timeout, Range::positive());
+  reader.number("clog_factor", parameters.clog_factor, {1, INFINITY, false, true});
+  parameters.model = InjectorModelConfig::read(reader);
+  if (parameters.source == "serial" || reader.has("serial")) {
+    ConfigReader serial = reader.section("serial");
+    parameters.port = SerialPortConfig::read(serial, 9600);
+    parameters.protocol = InjectorProtocol::read(serial);
+  }
+  reader.finish();
+  return parameters;
+}
+
+InjectorNode::InjectorNode(ros::NodeHandle node, ros::NodeHandle private_node)
+    : parameters_(Parameters::read(private_node)),
+      cycle_(node, parameters_.rate),
+      state_(cycle_.output<cell_microinjection::InjectorState>("injector/state")) {
+  private_node.setCallbackQueue(cycle_.node().getCallbackQueue());
+  makeDevice(private_node);
+  // No command that comes between two steps is lost.
+  pulse_ = cycle_.node().subscribe("injector/pulse", 100, &InjectorNode::onPulse, this);
+  balance_ = cycle_.node().subscribe("injector/set_balance", 100, &InjectorNode::onBalance, this);
+  reset_ = private_node.advertiseService<std_srvs::Trigger::Request, std_srvs::Trigger::Response>(
+      "reset", [this](std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+        device_->reset();
+        refusal_.clear();
+        response.success = device_->fault().empty();
+        response.message = device_->fault();
+        return true;
+      });
+  cycle_.diagnostics().add("injector", [this](auto& status) { report(status); });
+}
+
+void InjectorNode::makeDevice(ros::NodeHandle& private_node) {
+  if (parameters_.source == "serial") {
+    device_ = std::make_unique<SerialInjector>(std::make_unique<SerialPort>(parameters_.port), parameters_.protocol,
+                                               parameters_.model);
+    return;
+  }
+  auto model = std::make_unique<InjectorModel>(parameters_.model);
+  InjectorModel* const simulated = model.get();  // lives as long as the device, hence as the service
+  device_ = std::move(model);
+  clog_ = private_node.advertiseService<std_srvs::SetBool::Request, std_srvs::SetBool::Response>(
+      "clog", [this, simulated](std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response) {
+        clogged_ = request.data;
+        simulated->clog(clogged_ ? parameters_.clog_factor : 1);
+        response.success = true;
+        return true;
+      });
+}
+
+void InjectorNode::run() {
+  cycle_.run([this](const Cycle::Tick& tick) { step(tick); });
+}
+
+std::string InjectorNode::untimely(const std_msgs::Header& header) const {
+  if (header.stamp.isZero()) return "its stamp is 0";
+  const double age = (ros::Time::now() - header.stamp).toSec();
+  if (age > parameters_.command_timeout) return "it is stale";
+  return age < -parameters_.command_timeout ? "it is from the future" : "";
+}
+
+void InjectorNode::judge(const std::string& command, const std::string& refusal) {
+  refusal_ = refusal.empty() ? "" : command + " refused: " + refusal;
+  if (refusal_.empty()) return;
+  ++refused_;
+  ROS_WARN_STREAM(refusal_);
+}
+
+void InjectorNode::onPulse(const cell_microinjection::InjectionPulse& message) {
+  const std::string command = "pulse " + std::to_string(message.id);
+  if (message.id == 0) return judge(command, "its id is 0, which means none");
+  const std::string late = untimely(message.header);
+  if (!late.empty()) return judge(command, late);
+  // A refused id is known as well: the same message, heard again, must not inject unexpectedly later.
+  if (!ids_.isNew(message.id)) {
+    ++repeated_;
+    return;
+  }
+  judge(command, device_->pulse({message.id, message.pressure, message.duration}));
+}
+
+void InjectorNode::onBalance(const cell_microinjection::Float64Stamped& message) {
+  const std::string late = untimely(message.header);
+  judge("set_balance", late.empty() ? device_->setBalance(message.data) : late);
+}
+
+void InjectorNode::step(const Cycle::Tick& tick) {
+  device_->step(tick.now.toSec());
+  const InjectorReading& reading = device_->reading();
+  cell_microinjection::InjectorState state;
+  state.header.stamp = tick.now;
+  state.pressure = reading.pressure;
+  state.flow = reading.flow;
+  state.volume = reading.volume;
+  state.busy = reading.busy;
+  state.last_id = reading.last_id;
+  state.pulses = reading.pulses;
+  state.fault = device_->fault();
+  state.refusal = refusal_;
+  state_.publish(state);
+}
+
+void InjectorNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) const {
+  using diagnostic_msgs::DiagnosticStatus;
+  const InjectorReading& reading = device_->reading();
+  if (!device_->fault().empty()) {
+    status.summary(DiagnosticStatus::ERROR, device_->fault());
+  } else if (clogged_) {
+    status.summary(DiagnosticStatus::WARN, "the tip is clogged, as asked for");
+  } else if (!refusal_.empty()) {
+    status.summary(DiagnosticStatus::WARN, refusal_);
+  } else if (!reading.busy && reading.flow < 0) {
+    status.summary(DiagnosticStatus::WARN, "flows back: the balance pressure is too low");
+  } else {
+    status.summary(DiagnosticStatus::OK, reading.busy ? "injects" : "ready");
+  }
+  status.add("pulses done", reading.pulses);
+  status.add("commands refused", refused_);
+  status.add("pulses heard again and ignored", repeated_);
+}
+
+}  // namespace microinjection

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <ros/ros.h>
+#include <std_srvs/SetBool.h>
+#include <std_srvs/Trigger.h>
+
+#include <memory>
+#include <string>
+
+#include "cell_microinjection/Float64Stamped.h"
+#include "cell_microinjection/InjectionPulse.h"
+#include "cell_microinjection/InjectorState.h"
+#include "injector/injector_model.h"
+#include "injector/injector_protocol.h"
+#include "injector/pulse_ids.h"
+#include "nodes/cycle.h"
+#include "serial/serial_port.h"
+
+namespace microinjection {
+
+/// The injector: a pressure regulator behind the pipette, simulated or real, behind the same topics. Each pulse is done
+/// once, or refused with the reason in the state: a repeated id is ignored, an old message is refused.
+///
+/// In:  /injector/pulse (InjectionPulse), /injector/set_balance (Float64Stamped, Pa)
+/// Out: /injector/state (InjectorState)
+/// Services: ~reset (std_srvs/Trigger: clears fault and volume), with source simulated ~clog (std_srvs/SetBool)
+///
+/// Parameters (private):
+///   source           simulated or serial; default simulated
+///   rate             Hz; default 200, in [20, 5000]
+///   command_timeout  s, an older command is refused; default 0.5, in (0, inf)
+///   clog_factor      1, how much more the clogged tip resists; default 100, in [1, inf)
+///   those of InjectorModelConfig, which the estimates of a real one's flow and volume need, too
+///   serial/          path, baud (SerialPortConfig; default 9600) and those of InjectorProtocol; needed with source
+///   serial
+class InjectorNode {
+ public:
+  static const char* const kHelp;
+  /// @throws ConfigError
+  InjectorNode(ros::NodeHandle node, ros::NodeHandle private_node);
+  void run();
+
+ private:
+  struct Parameters {
+    std::string source = "simulated";
+    double rate = 200;
+    double command_timeout = 0.5;
+    double clog_factor = 100;
+    InjectorModelConfig model;
+    SerialPortConfig port;
+    InjectorProtocol protocol;
+    static Parameters read(const ros::NodeHandle& private_node);
+  };
+
+  void makeDevice(ros::NodeHandle& private_node);
+  void onPulse(const cell_microinjection::InjectionPulse& message);
+  void onBalance(const cell_microinjection::Float64Stamped& message);
+  std::string untimely(const std_msgs::Header& header) const;
+  void judge(const std::string& command, const std::string& refusal);
+  void step(const Cycle::Tick& tick);
+  void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
+
+  Parameters parameters_;
+  Cycle cycle_;
+  std::unique_ptr<InjectorDevice> device_;
+  Output<cell_microinjection::InjectorState>& state_;
+  PulseIds ids_;
+  ros::Subscriber pulse_, balance_;
+  ros::ServiceServer reset_, clog_;
+  unsigned refused_ = 0;
+  unsigned repeated_ = 0;
+  bool clogged_ = false;
+  std::string refusal_;  ///< of the last command; empty when it was obeyed
+};
+
+}  // namespace microinjection

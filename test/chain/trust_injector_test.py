@@ -1,0 +1,110 @@
+#!/usr/bin/python3
+"""The injector does a pulse once, refuses what is old, repeated or out of its range, and shows what flows back."""
+
+import math
+import unittest
+
+import rospy
+import rostest
+from std_srvs.srv import SetBool, Trigger
+
+from cell_microinjection.msg import Float64Stamped, InjectionPulse, InjectorState
+from participant import Participant
+
+PRESSURE = 20e3  # Pa
+
+
+class TrustTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.world = Participant({}, {"/injector/state": InjectorState})
+        cls.pulses = rospy.Publisher("/injector/pulse", InjectionPulse, queue_size=10)
+        cls.balance = rospy.Publisher("/injector/set_balance", Float64Stamped, queue_size=10)
+        while not (cls.pulses.get_num_connections() and cls.balance.get_num_connections()):
+            rospy.rostime.wallsleep(0.05)
+
+    def setUp(self):
+        self.world.call("/injector/clog", SetBool, False)
+        self.world.call("/injector/reset", Trigger)
+
+    def state(self):
+        return self.world.seen["/injector/state"]
+
+    def tick_until(self, condition):
+        for _ in range(20000):
+            self.world.tick()
+            if condition():
+                return
+        self.fail("did not happen within 20 s of ROS time")
+
+    def send(self, number, pressure=PRESSURE, duration=0.05, age=0.0):
+        message = InjectionPulse(id=number, pressure=pressure, duration=duration)
+        message.header.stamp = self.world.now - rospy.Duration(age)
+        self.pulses.publish(message)
+
+    def inject(self, number):
+        """Volume (m^3) of a pulse."""
+        before = self.state().volume
+        self.send(number)
+        self.tick_until(lambda: self.state().last_id == number)
+        self.world.run(100)
+        return self.state().volume - before
+
+    def test_a_pulse_is_done_once(self):
+        before = self.state().pulses
+        self.assertGreater(self.inject(11), 0)
+        for _ in range(3):
+            self.send(11)
+        self.send(12)
+        self.tick_until(lambda: self.state().last_id == 12)
+        self.world.run(500)
+        self.assertEqual(self.state().pulses, before + 2)
+
+    def check_refused(self, why, **pulse):
+        before = self.state().pulses
+        self.send(**pulse)
+        self.tick_until(lambda: why in self.state().refusal)
+        self.world.run(1200)
+        self.assertEqual(self.state().pulses, before)
+        level, text = self.world.status("injector: injector")
+        self.assertNotEqual(level, 0)
+        self.assertIn(why, text)
+
+    def test_refuses_with_the_reason(self):
+        self.check_refused("it is stale", number=21, age=1.0)
+        self.check_refused("allowed [-50000, 50000] Pa", number=22, pressure=1e6)
+        self.check_refused("allowed [-50000, 50000] Pa", number=23, pressure=math.nan)
+        self.check_refused("allowed [0.001, 60] s", number=24, duration=-1.0)
+        self.check_refused("id is 0", number=0)
+
+    def test_refuses_a_pulse_during_a_pulse(self):
+        self.send(31, duration=0.5)
+        self.tick_until(lambda: self.state().busy)
+        self.send(32)
+        self.tick_until(lambda: "a pulse is under way" in self.state().refusal)
+        self.tick_until(lambda: not self.state().busy)
+        self.world.run(500)
+        self.assertEqual(self.state().last_id, 31)
+
+    def test_a_wrong_balance_flows_back(self):
+        right = self.state().pressure
+        for pressure, sign in ((0.0, -1), (2 * right, 1)):
+            message = Float64Stamped(data=pressure)
+            message.header.stamp = self.world.now
+            self.balance.publish(message)
+            self.tick_until(lambda: abs(self.state().pressure - pressure) < 1)
+            self.assertGreater(sign * self.state().flow, 0)
+        message = Float64Stamped(data=right)
+        message.header.stamp = self.world.now
+        self.balance.publish(message)
+        self.tick_until(lambda: abs(self.state().pressure - right) < 1e-3)
+
+    def test_a_clogged_tip_lets_less_through(self):
+        clean = self.inject(41)
+        self.world.call("/injector/clog", SetBool, True)
+        self.assertAlmostEqual(self.inject(42) / clean, 0.01, delta=0.001)
+
+
+if __name__ == "__main__":
+    rospy.init_node("world")
+    rostest.rosrun("cell_microinjection", "trust_injector", TrustTest)
