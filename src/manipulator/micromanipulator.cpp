@@ -86,13 +86,13 @@ std::string Micromanipulator::movePosition(const Eigen::Isometry3d& tip_pose) {
   const Commanded commanded = checkPose(tip_pose);
   if (!commanded.refusal.empty()) return commanded.refusal;
   const AxesMotion from = start();
-  const Eigen::Vector3d turn = restAfter(from);
+  const Eigen::Vector3d turn = follows_ ? restAfter(from) : device_->reading()->joints;
   if (const std::string why = guard_.blocksWay(turn, commanded.joints); !why.empty()) return why;
   goal_ = commanded.joints;
   begin(Mode::kMove, from);
   if (follows_) return "";
   setpoint_.reset();
-  const Eigen::Vector3d way = goal_ - from.position;
+  const Eigen::Vector3d way = goal_ - turn;
   if (way.norm() > 0) device_->moveTo(goal_, straightSpeed(geometry_, way.normalized()));
   return "";
 }
@@ -169,7 +169,7 @@ void Micromanipulator::stepServo(double dt) {
     goal_is_new_ = false;
   }
   if (goal_age_ > config_.command_timeout) {
-    if ((setpoint_->position - goal_).norm() >= kArrived || device_->moving()) {
+    if (!atRest(geometry_, *setpoint_, goal_, dt) || device_->moving()) {
       stop();
       ended_ = "servo_cp is stale";
     } else {
@@ -198,7 +198,7 @@ void Micromanipulator::stepMove(double dt) {
   const double no_limit = std::numeric_limits<double>::infinity();
   const std::string why = advance(straightVelocity(geometry_, *setpoint_, goal_, no_limit, dt), dt);
   if (!why.empty()) return endEarly(why);
-  if ((goal_ - setpoint_->position).norm() >= kArrived) return;
+  if (!atRest(geometry_, *setpoint_, goal_, dt)) return;
   setpoint_->position = goal_;
   arrive();
 }
