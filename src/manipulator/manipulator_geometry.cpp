@@ -1,5 +1,6 @@
 #include "manipulator/manipulator_geometry.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -87,6 +88,16 @@ std::string ManipulatorGeometry::outsideTravel(const Eigen::Vector3d& joints) co
     addOutside(reason, axis.joint, joints[i], axis.lower, axis.upper, "m");
   }
   return reason.str();
+}
+
+std::string ManipulatorGeometry::leavesTravel(const Eigen::Vector3d& from, const Eigen::Vector3d& joints) const {
+  Eigen::Vector3d farther = joints;
+  for (int i = 0; i < 3; ++i) {
+    const Axis& axis = axes[i];
+    const double low = std::min(axis.lower, from[i]), high = std::max(axis.upper, from[i]);
+    if (joints[i] >= low && joints[i] <= high) farther[i] = std::clamp(joints[i], axis.lower, axis.upper);
+  }
+  return outsideTravel(farther);
 }
 
 std::string ManipulatorGeometry::tooFast(const Eigen::Vector3d& joint_velocity) const {

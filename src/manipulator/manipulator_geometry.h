@@ -41,6 +41,8 @@ struct ManipulatorGeometry {
   Eigen::Vector3d joints(const Eigen::Vector3d& tip) const;
   /// Empty when the joint positions (m) are within travel, otherwise which axis is outside and what it allows.
   std::string outsideTravel(const Eigen::Vector3d& joints) const;
+  /// The same of where a motion from `from` (m) leads: who is outside already may stay or come back, not go farther.
+  std::string leavesTravel(const Eigen::Vector3d& from, const Eigen::Vector3d& joints) const;
   /// Empty when no axis is faster than it may be (m/s), otherwise which is and what it allows.
   std::string tooFast(const Eigen::Vector3d& joint_velocity) const;
 };

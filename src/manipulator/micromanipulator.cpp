@@ -19,7 +19,7 @@ MicromanipulatorConfig MicromanipulatorConfig::read(ConfigReader& reader) {
 
 Micromanipulator::Micromanipulator(const ManipulatorGeometry& geometry, const CollisionGuard& guard,
                                    const MicromanipulatorConfig& config, ManipulatorDevice& device)
-    : geometry_(geometry), guard_(guard), config_(config), device_(&device) {}
+    : geometry_(geometry), guard_(guard), config_(config), device_(&device), follows_(device.abilities().follows) {}
 
 std::string Micromanipulator::unable() const {
   if (device_->state() != ManipulatorDevice::State::kReady) {
@@ -86,13 +86,13 @@ std::string Micromanipulator::movePosition(const Eigen::Isometry3d& tip_pose) {
   const Commanded commanded = checkPose(tip_pose);
   if (!commanded.refusal.empty()) return commanded.refusal;
   const AxesMotion from = start();
-  const Eigen::Vector3d turn = restAfter(from);
+  const Eigen::Vector3d turn = follows_ ? restAfter(from) : device_->reading()->joints;
   if (const std::string why = guard_.blocksWay(turn, commanded.joints); !why.empty()) return why;
   goal_ = commanded.joints;
   begin(Mode::kMove, from);
-  if (device_->abilities().follows) return "";
+  if (follows_) return "";
   setpoint_.reset();
-  const Eigen::Vector3d way = goal_ - from.position;
+  const Eigen::Vector3d way = goal_ - turn;
   if (way.norm() > 0) device_->moveTo(goal_, straightSpeed(geometry_, way.normalized()));
   return "";
 }
@@ -106,7 +106,7 @@ std::string Micromanipulator::servoVelocity(const Eigen::Vector3d& velocity, dou
   const AxesMotion from = start();
   const Eigen::Vector3d rest = restAfter({from.position + joint_velocity * last_dt_, joint_velocity});
   if (!joint_velocity.isZero()) {
-    if (const std::string why = geometry_.outsideTravel(rest); !why.empty()) return why;
+    if (const std::string why = geometry_.leavesTravel(from.position, rest); !why.empty()) return why;
     if (const std::string why = guard_.blocksWay(from.position, rest); !why.empty()) return why;
   }
   velocity_command_ = joint_velocity;
@@ -146,8 +146,10 @@ void Micromanipulator::arrive() {
 std::string Micromanipulator::advance(const Eigen::Vector3d& velocity, double dt) {
   AxesMotion next{setpoint_->position + velocity * dt, velocity};
   const Eigen::Vector3d rest = restAfter(next);
-  std::string why = geometry_.outsideTravel(rest);
+  std::string why = geometry_.leavesTravel(setpoint_->position, rest);
   if (why.empty()) why = guard_.blocksWay(setpoint_->position, rest);
+  // A device that goes from move to move takes the straight way from where it is.
+  if (why.empty() && !follows_) why = guard_.blocksWay(device_->reading()->joints, rest);
   if (!why.empty()) {
     next = *setpoint_;
     brake(geometry_, next, dt);
@@ -167,7 +169,7 @@ void Micromanipulator::stepServo(double dt) {
     goal_is_new_ = false;
   }
   if (goal_age_ > config_.command_timeout) {
-    if ((setpoint_->position - goal_).norm() >= kArrived || device_->moving()) {
+    if (!atRest(geometry_, *setpoint_, goal_, dt) || device_->moving()) {
       stop();
       ended_ = "servo_cp is stale";
     } else {
@@ -196,7 +198,7 @@ void Micromanipulator::stepMove(double dt) {
   const double no_limit = std::numeric_limits<double>::infinity();
   const std::string why = advance(straightVelocity(geometry_, *setpoint_, goal_, no_limit, dt), dt);
   if (!why.empty()) return endEarly(why);
-  if ((goal_ - setpoint_->position).norm() >= kArrived) return;
+  if (!atRest(geometry_, *setpoint_, goal_, dt)) return;
   setpoint_->position = goal_;
   arrive();
 }

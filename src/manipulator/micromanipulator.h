@@ -80,6 +80,7 @@ class Micromanipulator {
   CollisionGuard guard_;
   MicromanipulatorConfig config_;
   ManipulatorDevice* device_;
+  bool follows_;  ///< the device, set-points while it moves
   Mode mode_ = Mode::kHold;
   std::optional<AxesMotion> setpoint_;
   Eigen::Vector3d goal_ = Eigen::Vector3d::Zero();              ///< m, joints, of servo_cp and move_cp

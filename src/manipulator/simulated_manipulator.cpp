@@ -73,7 +73,7 @@ void SimulatedManipulator::stepSetpoint(double dt) {
   if (mode_ == Mode::kMove) {
     setpoint_.velocity = straightVelocity(geometry_, setpoint_, goal_, speed_, dt);
     setpoint_.position += setpoint_.velocity * dt;
-    if ((goal_ - setpoint_.position).norm() < kArrived) setpoint_ = {goal_, Eigen::Vector3d::Zero()};
+    if (atRest(geometry_, setpoint_, goal_, dt)) setpoint_ = {goal_, Eigen::Vector3d::Zero()};
   } else if (mode_ == Mode::kStop) {
     brake(geometry_, setpoint_, dt);
   }

@@ -35,6 +35,10 @@ void brake(const ManipulatorGeometry& geometry, AxesMotion& motion, double dt) {
   motion.position += motion.velocity * dt;
 }
 
+bool atRest(const ManipulatorGeometry& geometry, const AxesMotion& motion, const Eigen::Vector3d& goal, double dt) {
+  return (goal - motion.position).norm() < kArrived && brakingTime(geometry, motion.velocity) <= dt;
+}
+
 double straightSpeed(const ManipulatorGeometry& geometry, const Eigen::Vector3d& direction) {
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 3; ++i) {

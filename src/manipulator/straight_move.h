@@ -21,6 +21,9 @@ double brakingTime(const ManipulatorGeometry& geometry, const Eigen::Vector3d& v
 /// One step (s) of braking straight ahead. From velocity v it ends at the most v brakingTime / 2 farther.
 void brake(const ManipulatorGeometry& geometry, AxesMotion& motion, double dt);
 
+/// At its goal (m), and slow enough to rest there within a step (s).
+bool atRest(const ManipulatorGeometry& geometry, const AxesMotion& motion, const Eigen::Vector3d& goal, double dt);
+
 /// The largest speed (m/s) along a unit direction.
 double straightSpeed(const ManipulatorGeometry& geometry, const Eigen::Vector3d& direction);
 

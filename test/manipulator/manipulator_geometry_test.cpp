@@ -110,6 +110,15 @@ TEST(ManipulatorGeometry, NamesTheAxisThatIsTooFast) {
   EXPECT_NE(reason.find("jy velocity = -0.0015 m/s, allowed [-0.001, 0.001] m/s"), std::string::npos) << reason;
 }
 
+TEST(ManipulatorGeometry, WhoIsOutsideMayComeBackOnly) {
+  const ManipulatorGeometry rig = ManipulatorGeometry::fromUrdf(tiltedUrdf());
+  EXPECT_EQ(rig.leavesTravel({1.1e-3, 0, 0}, {1.05e-3, 0, 0}), "");
+  EXPECT_EQ(rig.leavesTravel({1.1e-3, 0, 0}, {1.1e-3, 5e-4, 0}), "");
+  EXPECT_NE(rig.leavesTravel({1.1e-3, 0, 0}, {1.11e-3, 0, 0}), "");
+  EXPECT_NE(rig.leavesTravel({1.1e-3, 0, 0}, {-1.01e-3, 0, 0}), "");
+  EXPECT_NE(rig.leavesTravel({1.1e-3, 0, 0}, {1e-3, 1.01e-3, 0}).find("jy"), std::string::npos);
+}
+
 TEST(ManipulatorGeometry, RefusesWhatIsNoThreeAxisRig) {
   EXPECT_THROW(ManipulatorGeometry::fromUrdf("not XML"), ConfigError);
   EXPECT_THROW(ManipulatorGeometry::fromUrdf(

@@ -18,6 +18,7 @@ constexpr double kMargin = 2e-6;  // m
 /// Says what it was told, and is where and how the test wants it to be.
 class NotedDevice : public ManipulatorDevice {
  public:
+  explicit NotedDevice(bool does_follow) : follows(does_follow) {}
   ManipulatorAbilities abilities() const override {
     ManipulatorAbilities result;
     result.follows = follows;
@@ -37,7 +38,7 @@ class NotedDevice : public ManipulatorDevice {
   std::optional<Reading> reading() const override { return position; }
   bool moving() const override { return is_moving; }
 
-  bool follows = false;
+  bool follows;
   bool is_moving = false;
   State now = State::kReady;
   std::optional<Reading> position = Reading();
@@ -142,7 +143,7 @@ TEST(MicromanipulatorRig, MeasuresTheMotorsWhileTheCellFeelsTheTip) {
 }
 
 TEST(MicromanipulatorRig, ADeviceThatDoesNotFollowMovesByItself) {
-  Rig<NotedDevice> rig(0);
+  Rig<NotedDevice> rig(0, false);
   ASSERT_EQ(rig.micromanipulator.movePosition(rig.at(30, 0, 100)), "");  // 30 and 40 um: 50 um
   ASSERT_TRUE(rig.device.goal);
   EXPECT_LT((*rig.device.goal - 1e-6 * Eigen::Vector3d(30, 0, 40)).norm(), 1e-15);
@@ -161,8 +162,40 @@ TEST(MicromanipulatorRig, ADeviceThatDoesNotFollowMovesByItself) {
   EXPECT_NEAR(rig.device.followed[0].z(), 40.1e-6, 1e-12);
 }
 
+TEST(MicromanipulatorRig, ASetPointWaitsForADeviceThatWouldCutThroughAnObstacle) {
+  Rig<NotedDevice> rig(0, false);
+  // Up, over the holding pipette and beyond it; the device stays where it began, below the mouth and beside it.
+  rig.device.position->joints = 1e-6 * Eigen::Vector3d(60, 0, -100);
+  const auto stream = [&](double x, double z, int steps) {
+    for (int i = 0; i < steps; ++i) {
+      rig.micromanipulator.servoPosition(rig.at(x, 0, z));
+      rig.run(kStep);
+    }
+  };
+  stream(60, -10, 300);
+  EXPECT_NEAR(rig.device.followed.back().z(), -70e-6, 1e-9);
+  stream(-200, -10, 500);
+  const Eigen::Vector3d waits = rig.device.followed.back();
+  const CollisionGuard guard(rigUrdf(), rig.geometry, kMargin);
+  EXPECT_EQ(guard.blocksWay(rig.device.position->joints, waits), "");
+  EXPECT_GT(waits.x(), -30e-6);
+  rig.device.position->joints = waits;  // it has come
+  stream(-200, -10, 500);
+  EXPECT_NEAR(rig.device.followed.back().x(), -200e-6, 1e-9);
+}
+
+TEST(MicromanipulatorRig, ADeviceOutsideOfItsTravelMayComeBack) {
+  Rig<NotedDevice> rig(0, true);
+  rig.device.position->joints << 12.501e-3, 0, 1e-3;
+  EXPECT_NE(rig.micromanipulator.servoVelocity({1e-4, 0, 0}, rig.time), "");
+  ASSERT_EQ(rig.micromanipulator.movePosition(rig.at(12400, 0, 1060)), "");
+  rig.run(1);
+  ASSERT_FALSE(rig.device.followed.empty());
+  EXPECT_NEAR(rig.device.followed.back().x(), 12.4e-3, 1e-12);
+}
+
 TEST(MicromanipulatorRig, AStaleStreamStopsADeviceThatIsStillUnderWay) {
-  Rig<NotedDevice> rig(0);
+  Rig<NotedDevice> rig(0, false);
   ASSERT_EQ(rig.micromanipulator.servoPosition(rig.at(0, 0, 60.1)), "");
   rig.run(0.05);
   rig.device.is_moving = true;
@@ -172,8 +205,7 @@ TEST(MicromanipulatorRig, AStaleStreamStopsADeviceThatIsStillUnderWay) {
 }
 
 TEST(MicromanipulatorRig, ADeviceThatIsGoneIsCommandedNothing) {
-  Rig<NotedDevice> rig(0);
-  rig.device.follows = true;
+  Rig<NotedDevice> rig(0, true);
   ASSERT_EQ(rig.micromanipulator.movePosition(rig.at(0, 0, 3000)), "");
   rig.run(0.1);
   rig.device.now = ManipulatorDevice::State::kDisconnected;
