@@ -19,7 +19,8 @@
 namespace microinjection {
 namespace {
 
-constexpr char kHelp[] = R"(: an emulated micromanipulator on a pseudo-terminal, for its driver to be tried without a device.
+constexpr char kHelp[] =
+    R"(: an emulated micromanipulator on a pseudo-terminal, for its driver to be tried without a device.
 
 It is timed as the real one: the line's baud rate, the time to answer, speed and acceleration. It runs until it is interrupted
 (Ctrl-C); the driver may come and go. Lines on standard input are further faults, of the same form as --fault.

@@ -6,15 +6,16 @@
 namespace microinjection {
 namespace {
 
-constexpr double kVelocityHolds = 0.1;    // s: a set-point's velocity is not followed for longer
-constexpr double kLongestBraking = 1.5;   // s, after a stop
-constexpr double kLongestHoming = 120;    // s
-constexpr double kRetryPause = 0.02;      // s, after AGAIN and its like
-constexpr int kTries = 3;                 // of a message
+constexpr double kVelocityHolds = 0.1;   // s: a set-point's velocity is not followed for longer
+constexpr double kLongestBraking = 1.5;  // s, after a stop
+constexpr double kLongestHoming = 120;   // s
+constexpr double kRetryPause = 0.02;     // s, after AGAIN and its like
+constexpr int kTries = 3;                // of a message
 constexpr int kMoveTries = 2;
-constexpr int kStalls = 10;               // readings of an axis at rest that was told to move
-constexpr int kMessageBytes = 24;         // of a longer message, either way
-constexpr double kSlowest = 10;           // microsteps/s, of an axis of a move
+constexpr double kLongestGuess = 0.2;  // s, that a position carried on says where an axis may be
+constexpr int kStalls = 10;            // readings of an axis at rest that was told to move
+constexpr int kMessageBytes = 28;      // of a longer message, either way
+constexpr double kSlowest = 10;        // microsteps/s, of an axis of a move
 
 std::string stopAll(const ZaberConfig& config) {
   std::string bytes;
@@ -127,7 +128,8 @@ std::string ZaberDriver::axisName(int axis) const {
 void ZaberDriver::handle(const ZaberMessage& message) {
   const int axis = axisOf(message.from);
   if (message.kind == ZaberMessage::Kind::kReply) {
-    const bool awaited = exchange_ && exchange_->sent && axis == exchange_->axis;
+    const bool awaited =
+        exchange_ && exchange_->sent && axis == exchange_->axis && (!config_.numbers || message.number == number_);
     if (awaited) handleReply(message);
   } else if (message.kind == ZaberMessage::Kind::kAlert && axis >= 0) {
     takeFlag(message, axis);
@@ -213,11 +215,12 @@ void ZaberDriver::takePosition(const ZaberMessage& reply) {
   const double then = time() - (kMessageBytes * byteTime(config_) + config_.answer_time / 2);  // when it was there
   const double guess = expected(i, then);
   const double step = 1 / config_.microsteps_per_metre[i];
-  const double since = std::max(0.0, time() - axis.position_time) + exchangeTime();
+  const double since = std::clamp(time() - axis.position_time, 0.0, kLongestGuess) + exchangeTime();
   const bool rests = !reply.busy && axis.velocity == 0;
   const double tolerance = rests ? 2.5 * step : config_.reading_margin + std::abs(axis.velocity) * since;
+  const double agreement = reply.busy ? config_.reading_margin / 2 + config_.speed * 6 * exchangeTime() : 2.5 * step;
   using Coordinate = Eigen::VectorXd;
-  if (!axis.filter.accept(Coordinate::Constant(1, place), Coordinate::Constant(1, guess), tolerance)) return;
+  if (!axis.filter.accept(Coordinate::Constant(1, place), Coordinate::Constant(1, guess), tolerance, agreement)) return;
   if (axis.read_since_begin) largest_correction_ = std::max(largest_correction_, std::abs(place - guess));
   const bool stands = axis.position && std::abs(place - *axis.position) < 0.5 * step;
   axis.position = place;
@@ -249,7 +252,9 @@ void ZaberDriver::ask(Kind kind, int axis, const std::string& command, long long
 }
 
 void ZaberDriver::sendExchange() {
-  const std::string bytes = zaberCommand(config_.addresses[exchange_->axis], exchange_->text, config_.checksum);
+  std::optional<int> number;
+  if (config_.numbers) number = number_ = (number_ + 1) % 100;
+  const std::string bytes = zaberCommand(config_.addresses[exchange_->axis], exchange_->text, config_.checksum, number);
   ++exchange_->tries;
   exchange_->sent = true;
   exchange_->due = time() + (bytes.size() + kMessageBytes) * byteTime(config_) + config_.reply_timeout;
