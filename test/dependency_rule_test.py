@@ -114,7 +114,7 @@ class TheRule(unittest.TestCase):
 
     def write(self, name, text):
         path = self.source / name
-        path.parent.mkdir(exist_ok=True)
+        path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text)
 
     def assert_reported(self, name, line, reason):
@@ -149,6 +149,12 @@ class TheRule(unittest.TestCase):
 
     def test_reports_a_room_in_angle_brackets_and_spaces(self):
         self.assert_reported('base/b.h', '  #  include <cell/a.h>', 'room base may include only base')
+
+    def test_holds_for_a_room_s_own_folders(self):
+        self.write('cell/round/a.h', '#include "cell/a.h"\n#include "cell/round/b.h"\n#include "base/a.h"\n')
+        self.write('cell/round/b.h', '#include <vector>\n')
+        self.assertEqual(check_source(self.source), [])
+        self.assert_reported('base/deep/er/b.cpp', '#include "cell/round/a.h"', 'room base may include only base')
 
     def test_reports_ros_in_a_room_and_in_a_command(self):
         for header in ('ros/ros.h', 'tf2_ros/buffer.h', 'geometry_msgs/PoseStamped.h', 'cell_microinjection/CellState.h',

@@ -1,30 +1,33 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
 
 namespace microinjection {
 
-/// Takes a position for true when it is where it may be, or when a second reading says the same: a byte that was
-/// garbled on the line moves nothing.
+/// Takes a position for true when it is where it may be, or when three readings in a row say the same: a reply that was
+/// damaged on the line moves nothing. Twice would not do: a digit that is lost twice makes the same wrong number.
 class ReadingFilter {
  public:
-  /// Whether `reading` is taken. `tolerance`: the largest difference from `expected`, or from the reading before that was
-  /// not taken, of any coordinate (all in one unit). No expectation: NaN.
-  bool accept(const Eigen::VectorXd& reading, const Eigen::VectorXd& expected, double tolerance) {
+  /// Whether `reading` is taken. `tolerance`: the largest difference of any coordinate from `expected`, `agreement`:
+  /// from the doubtful reading before (all in one unit). No expectation: NaN.
+  bool accept(const Eigen::VectorXd& reading, const Eigen::VectorXd& expected, double tolerance, double agreement) {
     if (!reading.allFinite()) return false;
-    const auto near = [&](const Eigen::VectorXd& place) {
-      return ((reading - place).array().abs() <= tolerance).all();
+    const auto near = [&](const Eigen::VectorXd& place, double distance) {
+      return ((reading - place).array().abs() <= distance).all();
     };
-    const bool taken = near(expected) || (doubtful_ && near(*doubtful_));
-    doubtful_ = taken ? std::nullopt : std::optional<Eigen::VectorXd>(reading);
-    return taken;
+    const bool agrees = doubtful_ > 0 && near(last_, agreement);
+    doubtful_ = near(expected, tolerance) ? 0 : agrees ? doubtful_ + 1 : 1;
+    if (doubtful_ == kAgreeing) doubtful_ = 0;
+    last_ = reading;
+    return doubtful_ == 0;
   }
-  bool doubts() const { return doubtful_.has_value(); }
-  void forget() { doubtful_.reset(); }
+  bool doubts() const { return doubtful_ > 0; }
+  void forget() { doubtful_ = 0; }
 
  private:
-  std::optional<Eigen::VectorXd> doubtful_;
+  static constexpr int kAgreeing = 3;
+  Eigen::VectorXd last_;
+  int doubtful_ = 0;  // readings in a row that agree with each other and not with what was expected
 };
 
 }  // namespace microinjection

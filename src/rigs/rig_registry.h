@@ -18,8 +18,8 @@ struct Rig {
   std::string name;
   int default_baud;  ///< bit/s, of the device as delivered
 
-  /// Reads the device's keys from `reader` (all of them, and calls finish(): ConfigError for what is wrong or unknown) and
-  /// puts the driver on `wire`; without one on the serial port that the configuration names.
+  /// Reads the device's keys from `reader` (all of them, and calls finish(): ConfigError for what is wrong or unknown)
+  /// and puts the driver on `wire`; without one on the serial port that the configuration names.
   std::function<std::unique_ptr<ManipulatorDevice>(ConfigReader& reader, std::unique_ptr<Wire> wire)> makeDriver;
   std::function<std::shared_ptr<ManipulatorEmulator>()> makeEmulator;
 };

@@ -5,11 +5,11 @@
 namespace microinjection {
 namespace {
 
-constexpr double kOpenInterval = 0.5;     // s, between attempts to open the line
-constexpr double kLongestDrain = 2;       // s: a line that is never silent is not the device's
-constexpr double kPauseInFault = 0.5;     // s, between attempts while nothing may move anyway
-constexpr int kAttempts = 3;              // failures in a row that make a fault
-constexpr int kSuccessesToForget = 12;    // exchanges after which a failure is no longer in a row with the next
+constexpr double kOpenInterval = 0.5;   // s, between attempts to open the line
+constexpr double kLongestDrain = 2;     // s: a line that is never silent is not the device's
+constexpr double kPauseInFault = 0.5;   // s, between attempts while nothing may move anyway
+constexpr int kAttempts = 3;            // failures in a row that make a fault
+constexpr int kSuccessesToForget = 12;  // exchanges after which a failure is no longer in a row with the next
 
 }  // namespace
 
@@ -47,7 +47,7 @@ void SerialManipulator::stop() {
 }
 
 void SerialManipulator::clearFault() {
-  if (fault_.empty()) return;
+  if (fault_.empty() || clearing_) return;
   clearing_ = true;
   failures_ = 0;
   stop_wanted_ = true;

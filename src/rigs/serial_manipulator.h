@@ -29,17 +29,17 @@ class SerialManipulator : public ManipulatorDevice {
 
  protected:
   struct Link {
-    std::string device;         ///< its name in messages
-    std::string stop;           ///< bytes that stop it, whatever it is doing
-    double quiet_in_step = 0;   ///< s of silence that end what follows a stop
+    std::string device;           ///< its name in messages
+    std::string stop;             ///< bytes that stop it, whatever it is doing
+    double quiet_in_step = 0;     ///< s of silence that end what follows a stop
     double quiet_after_loss = 0;  ///< s of silence after which nothing belated comes and no half command is left
   };
   struct Goal {
-    bool follows = false;                                  ///< a set-point, otherwise a move
+    bool follows = false;                                ///< a set-point, otherwise a move
     Eigen::Vector3d joints = Eigen::Vector3d::Zero();    ///< m
     Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< m/s, of a set-point
-    double speed = 0;                                      ///< m/s, of a move
-    double time = 0;                                       ///< s, when it came
+    double speed = 0;                                    ///< m/s, of a move
+    double time = 0;                                     ///< s, when it came
   };
 
   SerialManipulator(std::unique_ptr<Wire> wire, const Link& link);
@@ -62,11 +62,11 @@ class SerialManipulator : public ManipulatorDevice {
   void dropGoal();
   void movesByItself() { stopped_ = false; }  ///< without a goal, so that a stop has something to stop
 
-  void known();                                  ///< the driver knows where everything is, and everything is at rest
-  void understood();                             ///< an exchange has succeeded
-  void stopFirst();                              ///< begins anew, and goes on to the goal
-  void lostStep(const std::string& reason);      ///< an exchange has failed: stops and begins anew
-  void raiseFault(const std::string& reason);    ///< stops and lets nothing move until clearFault()
+  void known();                                ///< the driver knows where everything is, and everything is at rest
+  void understood();                           ///< an exchange has succeeded
+  void stopFirst();                            ///< begins anew, and goes on to the goal
+  void lostStep(const std::string& reason);    ///< an exchange has failed: stops and begins anew
+  void raiseFault(const std::string& reason);  ///< stops and lets nothing move until clearFault()
 
  private:
   void beginSession(double quiet);
@@ -74,11 +74,11 @@ class SerialManipulator : public ManipulatorDevice {
 
   std::unique_ptr<Wire> wire_;
   const Link link_;
-  double time_ = 0;        // s
-  double next_open_ = -1;  // s
-  double last_byte_ = 0;   // s, since the stop
-  double drain_since_ = 0; // s
-  double quiet_ = 0;       // s, of silence to wait for
+  double time_ = 0;         // s
+  double next_open_ = -1;   // s
+  double last_byte_ = 0;    // s, since the stop
+  double drain_since_ = 0;  // s
+  double quiet_ = 0;        // s, of silence to wait for
   bool was_open_ = false, talking_ = false, ready_ = false, clearing_ = false, stop_wanted_ = false;
   bool lost_ = true;      // before this session
   bool stopped_ = false;  // told to stop, and to do nothing since

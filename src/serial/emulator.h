@@ -33,7 +33,7 @@ class DeviceEmulator {
   void beginFaults(double time);
 
   std::vector<Fault> awaited_;
-  double silent_until_ = -1;                     // s
+  double silent_until_ = -1;                       // s
   int to_drop_ = 0, to_miss_ = 0, to_garble_ = 0;  // bytes
 };
 

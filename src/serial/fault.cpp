@@ -9,7 +9,8 @@ namespace microinjection {
 namespace {
 
 constexpr char kAllowed[] =
-    "KIND[:VALUE][@TIME] with silence:SECONDS, drop:BYTES, deaf:BYTES, garble:BYTES, error:CODE or interrupt; TIME in s";
+    "KIND[:VALUE][@TIME] with silence:SECONDS, drop:BYTES, deaf:BYTES, garble:BYTES, error:CODE or interrupt; TIME in "
+    "s";
 
 double number(const std::string& fault, const std::string& text, bool whole) {
   std::size_t used = 0;
@@ -18,7 +19,8 @@ double number(const std::string& fault, const std::string& text, bool whole) {
     value = std::stod(text, &used);
   } catch (const std::exception&) {
   }
-  if (used != text.size() || !std::isfinite(value) || value < 0 || (whole && (value != std::floor(value) || value < 1))) {
+  if (used != text.size() || !std::isfinite(value) || value < 0 ||
+      (whole && (value != std::floor(value) || value < 1))) {
     throw ConfigError("fault = " + fault + ": \"" + text + "\" must be " +
                       (whole ? "a whole number of at least 1" : "a number of at least 0, s"));
   }

@@ -4,8 +4,8 @@
 
 namespace microinjection {
 
-/// The emulator's side of a pseudo-terminal, with a link to the driver's side at a path of its own. The driver may close
-/// and open its side as often as it likes.
+/// The emulator's side of a pseudo-terminal, with a link to the driver's side at a path of its own. The driver may
+/// close and open its side as often as it likes.
 class PseudoTerminal {
  public:
   /// Plugs it in. @throws ConfigError when the link cannot be made, e.g. because there is a file that is no link.

@@ -9,7 +9,8 @@
 
 namespace microinjection {
 
-/// An emulator half of whose replies arrive cut off, garbled, with foreign bytes, twice, or forged; its motion is untouched.
+/// An emulator half of whose replies arrive cut off, garbled, with foreign bytes, twice, or forged; its motion is
+/// untouched.
 class DamagedReplies : public ManipulatorEmulator {
  public:
   /// `forge`: makes a reply that is well formed and false.
@@ -64,7 +65,8 @@ class DamagedReplies : public ManipulatorEmulator {
         for (char& each : reply) each = byte();
         break;
       case 6:  // noise before or behind
-        for (std::size_t i = 0, more = 1 + below(40); i < more; ++i) reply.insert(below(2) ? reply.size() : 0, 1, byte());
+        for (std::size_t i = 0, more = 1 + below(40); i < more; ++i)
+          reply.insert(below(2) ? reply.size() : 0, 1, byte());
         break;
       case 7:
         reply += reply;

@@ -58,7 +58,7 @@ class EmulatedRig {
   }
 
   Eigen::Vector3d place() const { return joints_.toJoints(device_->position()); }  ///< m, of the joints, in truth
-  Eigen::Vector3d read() const { return driver_->reading()->joints; }                ///< m, as the driver says
+  Eigen::Vector3d read() const { return driver_->reading()->joints; }              ///< m, as the driver says
 
  private:
   std::shared_ptr<ManipulatorEmulator> device_;

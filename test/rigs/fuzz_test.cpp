@@ -1,5 +1,5 @@
-// 100,000 damaged replies a protocol, to a driver at work: it must neither crash nor believe a position that is not so, and
-// be in step again as soon as the line is sound.
+// 100,000 damaged replies a protocol, to a driver at work: it must neither crash nor believe a position that is not so,
+// and be in step again as soon as the line is sound.
 
 #include <gtest/gtest.h>
 
@@ -17,22 +17,22 @@ using State = ManipulatorDevice::State;
 constexpr int kReplies = 100000;
 constexpr int kRepliesAtOnce = 2000;  // between two looks whether it is in step
 constexpr double kSpeed = 0.1e-3;     // m/s
-// A position that was carried on may be wrong by what the device moves while no reply gets through; a reading, by a little.
-constexpr double kCarriedOn = 15e-6 + kSpeed * 0.4;  // m
-constexpr double kStep = 2e-3;                       // s
+constexpr double kStep = 2e-3;        // s
 
 template <typename Driver, typename Config>
 class Fuzz {
  public:
   Fuzz(const Config& config, std::shared_ptr<ManipulatorEmulator> device,
-       std::function<std::string(const std::string&, std::mt19937&)> forge)
-      : device_(std::make_shared<DamagedReplies>(std::move(device), 7, std::move(forge))), rig_(config, device_, kStep) {}
+       std::function<std::string(const std::string&, std::mt19937&)> forge, double allowed)
+      : device_(std::make_shared<DamagedReplies>(std::move(device), 7, std::move(forge))),
+        rig_(config, device_, kStep),
+        allowed_(allowed) {}
 
   void run() {
     ASSERT_TRUE(rig_.runUntilReady());
     while (device_->damaged() < kReplies) {
       disturb();
-      ASSERT_LE(worst_, kCarriedOn) << "after " << device_->damaged() << " damaged replies, at " << rig_.time() << " s";
+      ASSERT_LE(worst_, allowed_) << "after " << device_->damaged() << " damaged replies, at " << rig_.time() << " s";
       ASSERT_NO_FATAL_FAILURE(checkInStep());
     }
     std::printf("%d damaged replies in %.0f s of virtual time; %d messages that were none; furthest off %.1f um\n",
@@ -89,6 +89,7 @@ class Fuzz {
   std::shared_ptr<DamagedReplies> device_;
   EmulatedRig<Driver, Config> rig_;
   std::mt19937 random_{11};
+  double allowed_;    // m
   double worst_ = 0;  // m, a reading from the truth
 };
 
@@ -111,7 +112,10 @@ void fuzzZaber(bool checksum) {
   config.joints.origin.setConstant(-12.5e-3);
   config.checksum = config.reply_checksum = checksum;
   config.speed = kSpeed;
-  Fuzz<ZaberDriver, ZaberConfig>(config, std::make_shared<ZaberEmulator>(), forgeZaber).run();
+  // Between readings: three times a missed answer to a velocity that turns an axis round. Under way a false reading may
+  // pass that lies where the axis might be: within the margin and what it moves in the longest guess, 0.2 s.
+  const double allowed = 2 * kSpeed * 3 * (config.reply_timeout + 5e-3) + config.reading_margin + kSpeed * 0.2;  // m
+  Fuzz<ZaberDriver, ZaberConfig>(config, std::make_shared<ZaberEmulator>(), forgeZaber, allowed).run();
 }
 
 TEST(Fuzz, ZaberWithChecksums) { fuzzZaber(true); }
@@ -124,12 +128,14 @@ TEST(Fuzz, Mp285) {
   config.reply_timeout = 0.05;      // s
   Mp285EmulatorConfig device;
   device.half_command_time = 0.025;
-  Fuzz<Mp285Driver, Mp285Config> fuzz(config, std::make_shared<Mp285Emulator>(device),
-                                      [](const std::string& reply, std::mt19937& random) {
-                                        std::string forged = reply;  // any number, and the right end
-                                        for (std::size_t i = 0; i + 1 < forged.size(); ++i) forged[i] = static_cast<char>(random());
-                                        return forged;
-                                      });
+  Fuzz<Mp285Driver, Mp285Config> fuzz(
+      config, std::make_shared<Mp285Emulator>(device),
+      [](const std::string& reply, std::mt19937& random) {
+        std::string forged = reply;  // any number, and the right end
+        for (std::size_t i = 0; i + 1 < forged.size(); ++i) forged[i] = static_cast<char>(random());
+        return forged;
+      },
+      kSpeed * 0.2);  // it tells of no move but by its end
   fuzz.run();
 }
 

@@ -17,9 +17,9 @@ constexpr int kTries = 2;                // of a move that ends elsewhere
 }  // namespace
 
 Mp285Driver::Mp285Driver(const Mp285Config& config, std::unique_ptr<Wire> wire)
-    : SerialManipulator(std::move(wire), {"MP-285", std::string(1, kMp285Stop),
-                                          config.answer_time + 6 * 10.0 / config.port.baud + 5e-3,
-                                          config.half_command_time + 14 * 10.0 / config.port.baud}),
+    : SerialManipulator(std::move(wire),
+                        {"MP-285", std::string(1, kMp285Stop), config.answer_time + 6 * 10.0 / config.port.baud + 5e-3,
+                         config.half_command_time + 14 * 10.0 / config.port.baud}),
       config_(config) {}
 
 ManipulatorAbilities Mp285Driver::abilities() const {
@@ -106,7 +106,8 @@ void Mp285Driver::ask(Kind kind, const std::string& bytes, double more_time) {
                  : kind == Kind::kStatus ? Expected::kStatus
                                          : Expected::kDone);
   const double answer_bytes = kind == Kind::kStatus ? 33 : 13;
-  exchange_ = Exchange{kind, time(), time() + (bytes.size() + answer_bytes) * byteTime() + config_.reply_timeout + more_time};
+  exchange_ =
+      Exchange{kind, time(), time() + (bytes.size() + answer_bytes) * byteTime() + config_.reply_timeout + more_time};
   say(bytes);
 }
 
@@ -163,7 +164,7 @@ void Mp285Driver::takePosition(const Mp285Position& told) {
   const Eigen::Vector3d place(told[0], told[1], told[2]);
   const Eigen::Vector3d expected = position_ ? carriedOn(time()) : Eigen::Vector3d::Constant(std::nan(""));
   const double tolerance = move_ && move_->coarse ? kCoarseStep + 1 : 2;
-  if (!filter_.accept(place, expected, tolerance)) return;  // asked again
+  if (!filter_.accept(place, expected, tolerance, 2)) return;  // asked again
   if (position_ && settled_) {
     largest_correction_ = std::max(largest_correction_, (place - expected).cwiseAbs().maxCoeff() * microstep_);
   }

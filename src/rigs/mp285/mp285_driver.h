@@ -11,11 +11,11 @@
 
 namespace microinjection {
 
-/// Sutter MP-285. Set-points become short moves, each to the newest set-point; after each the position is read. While it
-/// moves, the position is carried on along the straight line with the set speed, never past the move's end.
+/// Sutter MP-285. Set-points become short moves, each to the newest set-point; after each the position is read. While
+/// it moves, the position is carried on along the straight line with the set speed, never past the move's end.
 ///
-/// A move is never sent on suspicion: after anything that went wrong the position is read first, and what is left of the
-/// way, if anything, is a move of its own.
+/// A move is never sent on suspicion: after anything that went wrong the position is read first, and what is left of
+/// the way, if anything, is a move of its own.
 class Mp285Driver : public SerialManipulator {
  public:
   Mp285Driver(const Mp285Config& config, std::unique_ptr<Wire> wire);
@@ -72,13 +72,13 @@ class Mp285Driver : public SerialManipulator {
   double microstep_ = 0.04e-6;  // m, read from the status
   double told_microstep_ = 0;   // m, in the last status
   bool asked_stop_ = false, asked_status_ = false, absolute_ = false, settled_ = false;
-  bool reading_due_ = true;     // the position is to be read
-  double next_rest_reading_ = 0;  // s
+  bool reading_due_ = true;                  // the position is to be read
+  double next_rest_reading_ = 0;             // s
   std::optional<Eigen::Vector3d> position_;  // microsteps, the last true one or where it was stopped
-  std::optional<Move> move_;    // under way, or over and not yet read
-  std::optional<Speed> speed_;  // that the device is set to
-  int tries_ = 0;               // moves that ended elsewhere
-  double largest_correction_ = 0;  // m
+  std::optional<Move> move_;                 // under way, or over and not yet read
+  std::optional<Speed> speed_;               // that the device is set to
+  int tries_ = 0;                            // moves that ended elsewhere
+  double largest_correction_ = 0;            // m
   int malformed_ = 0;
 };
 

@@ -18,9 +18,9 @@ struct Mp285EmulatorConfig {
   bool ascii_errors = false;        ///< errors as '0' to '8', otherwise as values
 };
 
-/// A Sutter MP-285, written from the description of its protocol and not from the driver. While it moves it hears nothing
-/// but the stop. Errors that can be asked for: 0, 1, 2, 4 (of the next command, which is then not obeyed) and 8 (of the next
-/// move, half way).
+/// A Sutter MP-285, written from the description of its protocol and not from the driver. While it moves it hears
+/// nothing but the stop. Errors that can be asked for: 0, 1, 2, 4 (of the next command, which is then not obeyed) and 8
+/// (of the next move, half way).
 class Mp285Emulator : public ManipulatorEmulator {
  public:
   explicit Mp285Emulator(const Mp285EmulatorConfig& config = {}) : config_(config) {
@@ -56,7 +56,7 @@ class Mp285Emulator : public ManipulatorEmulator {
 
   Mp285EmulatorConfig config_;
   Eigen::Vector3d place_ = Eigen::Vector3d::Zero(), end_ = Eigen::Vector3d::Zero();  // microsteps
-  int speed_ = 0;  // um/s
+  int speed_ = 0;                                                                    // um/s
   bool fine_ = false, moving_ = false, absolute_ = true;
   double fails_at_ = -1;  // microsteps left of the move where it is interrupted; -1: nowhere
   int error_ = -1;        // of the next command; -1: none

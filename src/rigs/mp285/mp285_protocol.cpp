@@ -94,7 +94,9 @@ std::optional<Mp285Answer> Mp285Parser::shortAnswer() const {
 std::optional<Mp285Answer> Mp285Parser::feed(const std::string& bytes, bool silent) {
   bytes_ += bytes;
   std::optional<Mp285Answer> answer;
-  const std::size_t whole = expected_ == Expected::kDone ? 2 : expected_ == Expected::kPosition ? kPositionBytes : kStatusBytes;
+  const std::size_t whole = expected_ == Expected::kDone       ? 2
+                            : expected_ == Expected::kPosition ? kPositionBytes
+                                                               : kStatusBytes;
   if (expected_ == Expected::kDone) {
     answer = shortAnswer();
   } else if (bytes_.size() == whole && bytes_.back() == '\r') {

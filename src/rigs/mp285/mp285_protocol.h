@@ -8,14 +8,15 @@
 
 namespace microinjection {
 
-/// Sutter MP-285's protocol: a letter, little-endian numbers, a carriage return; answers end with a carriage return, too.
+/// Sutter MP-285's protocol: a letter, little-endian numbers, a carriage return; answers end with a carriage return,
+/// too.
 using Mp285Position = std::array<std::int32_t, 3>;  ///< microsteps
 
-constexpr char kMp285Stop = '\x03';                                     ///< alone, without a carriage return
+constexpr char kMp285Stop = '\x03';  ///< alone, without a carriage return
 inline std::string mp285AskPosition() { return "c\r"; }
 inline std::string mp285AskStatus() { return "s\r"; }
 inline std::string mp285AbsoluteMode() { return "a\r"; }
-std::string mp285Move(const Mp285Position& place);                      ///< answered when the move is over
+std::string mp285Move(const Mp285Position& place);  ///< answered when the move is over
 /// `speed` in um/s, 1..32767; fine: 50 microsteps a step, otherwise 10.
 std::string mp285SetVelocity(int speed, bool fine);
 
@@ -36,14 +37,15 @@ struct Mp285Answer {
 
 std::string mp285ErrorName(int error);
 
-/// Puts the answer to one command together. There are no marks in the bytes, so it must know what was asked, and an error in
-/// place of a longer answer shows by the silence after it.
+/// Puts the answer to one command together. There are no marks in the bytes, so it must know what was asked, and an
+/// error in place of a longer answer shows by the silence after it.
 class Mp285Parser {
  public:
   enum class Expected { kDone, kPosition, kStatus };
 
   void expect(Expected expected);
-  /// What has come; `silent`: nothing has followed for longer than there may be between two bytes. Empty: not all is there.
+  /// What has come; `silent`: nothing has followed for longer than there may be between two bytes. Empty: not all is
+  /// there.
   std::optional<Mp285Answer> feed(const std::string& bytes, bool silent);
   bool begun() const { return !bytes_.empty(); }
 

@@ -24,6 +24,7 @@ ZaberConfig ZaberConfig::read(ConfigReader& reader) {
   reader.number("gain", config.gain, Range::nonNegative());
   reader.boolean("checksum", config.checksum);
   reader.boolean("reply_checksum", config.reply_checksum);
+  reader.boolean("numbers", config.numbers);
   reader.boolean("home", config.home);
   reader.number("answer_time", config.answer_time, Range::nonNegative());
   reader.number("reply_timeout", config.reply_timeout, Range::positive());

@@ -17,15 +17,16 @@ struct ZaberConfig {
   std::array<ZaberAddress, 3> addresses{{{1, 1}, {1, 2}, {1, 3}}};  ///< of the joints' axes
   JointAxes joints;
   Eigen::Vector3d microsteps_per_metre = Eigen::Vector3d::Constant(1 / 0.047625e-6);
-  double speed = 2e-3;           ///< m/s, largest of an axis
-  double acceleration = 0.2;     ///< m/s^2, that the axes are set to: how long a stop takes
-  double gain = 0;               ///< 1/s, velocity for a distance from the set-point; 0: from the line's speed
-  bool checksum = true;          ///< on every command: a damaged one is then not obeyed
-  bool reply_checksum = false;   ///< answers without one are not believed
-  bool home = false;             ///< axes without a reference position home by themselves, which MOVES them
-  double answer_time = 2e-3;     ///< s, that the device takes to answer
-  double reply_timeout = 0.05;   ///< s, after which an answer is missed, besides the time on the wire
-  double reading_margin = 10e-6; ///< m, by which a reading under way may differ from what is expected, besides motion
+  double speed = 2e-3;            ///< m/s, largest of an axis
+  double acceleration = 0.2;      ///< m/s^2, that the axes are set to: how long a stop takes
+  double gain = 0;                ///< 1/s, velocity for a distance from the set-point; 0: from the line's speed
+  bool checksum = true;           ///< on every command: a damaged one is then not obeyed
+  bool reply_checksum = false;    ///< answers without one are not believed
+  bool numbers = true;            ///< on every command, and so on its answer: a belated one is not believed
+  bool home = false;              ///< axes without a reference position home by themselves, which MOVES them
+  double answer_time = 2e-3;      ///< s, that the device takes to answer
+  double reply_timeout = 0.05;    ///< s, after which an answer is missed, besides the time on the wire
+  double reading_margin = 10e-6;  ///< m, by which a reading under way may differ from what is expected, besides motion
 
   static ZaberConfig read(ConfigReader& reader);
 };

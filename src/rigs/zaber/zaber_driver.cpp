@@ -6,15 +6,11 @@
 namespace microinjection {
 namespace {
 
-constexpr double kVelocityHolds = 0.1;    // s: a set-point's velocity is not followed for longer
-constexpr double kLongestBraking = 1.5;   // s, after a stop
-constexpr double kLongestHoming = 120;    // s
-constexpr double kRetryPause = 0.02;      // s, after AGAIN and its like
-constexpr int kTries = 3;                 // of a message
-constexpr int kMoveTries = 2;
-constexpr int kStalls = 10;               // readings of an axis at rest that was told to move
-constexpr int kMessageBytes = 24;         // of a longer message, either way
-constexpr double kSlowest = 10;           // microsteps/s, of an axis of a move
+constexpr double kRetryPause = 0.02;   // s, after AGAIN and its like
+constexpr int kTries = 3;              // of a message
+constexpr double kLongestGuess = 0.2;  // s, that a position carried on says where an axis may be
+constexpr int kStalls = 10;            // readings of an axis at rest that was told to move
+constexpr int kMessageBytes = 28;      // of a longer message, either way
 
 std::string stopAll(const ZaberConfig& config) {
   std::string bytes;
@@ -127,7 +123,8 @@ std::string ZaberDriver::axisName(int axis) const {
 void ZaberDriver::handle(const ZaberMessage& message) {
   const int axis = axisOf(message.from);
   if (message.kind == ZaberMessage::Kind::kReply) {
-    const bool awaited = exchange_ && exchange_->sent && axis == exchange_->axis;
+    const bool awaited =
+        exchange_ && exchange_->sent && axis == exchange_->axis && (!config_.numbers || message.number == number_);
     if (awaited) handleReply(message);
   } else if (message.kind == ZaberMessage::Kind::kAlert && axis >= 0) {
     takeFlag(message, axis);
@@ -213,11 +210,12 @@ void ZaberDriver::takePosition(const ZaberMessage& reply) {
   const double then = time() - (kMessageBytes * byteTime(config_) + config_.answer_time / 2);  // when it was there
   const double guess = expected(i, then);
   const double step = 1 / config_.microsteps_per_metre[i];
-  const double since = std::max(0.0, time() - axis.position_time) + exchangeTime();
+  const double since = std::clamp(time() - axis.position_time, 0.0, kLongestGuess) + exchangeTime();
   const bool rests = !reply.busy && axis.velocity == 0;
   const double tolerance = rests ? 2.5 * step : config_.reading_margin + std::abs(axis.velocity) * since;
+  const double agreement = reply.busy ? config_.reading_margin / 2 + config_.speed * 6 * exchangeTime() : 2.5 * step;
   using Coordinate = Eigen::VectorXd;
-  if (!axis.filter.accept(Coordinate::Constant(1, place), Coordinate::Constant(1, guess), tolerance)) return;
+  if (!axis.filter.accept(Coordinate::Constant(1, place), Coordinate::Constant(1, guess), tolerance, agreement)) return;
   if (axis.read_since_begin) largest_correction_ = std::max(largest_correction_, std::abs(place - guess));
   const bool stands = axis.position && std::abs(place - *axis.position) < 0.5 * step;
   axis.position = place;
@@ -249,116 +247,13 @@ void ZaberDriver::ask(Kind kind, int axis, const std::string& command, long long
 }
 
 void ZaberDriver::sendExchange() {
-  const std::string bytes = zaberCommand(config_.addresses[exchange_->axis], exchange_->text, config_.checksum);
+  std::optional<int> number;
+  if (config_.numbers) number = number_ = (number_ + 1) % 100;
+  const std::string bytes = zaberCommand(config_.addresses[exchange_->axis], exchange_->text, config_.checksum, number);
   ++exchange_->tries;
   exchange_->sent = true;
   exchange_->due = time() + (bytes.size() + kMessageBytes) * byteTime(config_) + config_.reply_timeout;
   say(bytes);
-}
-
-void ZaberDriver::next() {
-  if (nextOfSession()) return;
-  if (goal() && !goal()->follows && nextOfMove()) return;
-  nextInTurn();
-}
-
-/// At the begin of a session: faults are cleared, and every axis must have been read and be at rest.
-bool ZaberDriver::nextOfSession() {
-  if (settled_) return false;
-  for (int i = 0; i < 3; ++i) {
-    Axis& axis = axes_[i];
-    if (!axis.cleared) return ask(Kind::kClear, i, "warnings clear"), true;
-    if (!axis.read_since_begin || axis.busy || axis.filter.doubts()) {
-      if (time() - begun_ > (axis.homed ? kLongestHoming : kLongestBraking)) {
-        lostStep(axisName(i) + (axis.busy ? " does not come to rest" : " has no steady position"));
-      } else {
-        ask(Kind::kPosition, i, "get pos");
-      }
-      return true;
-    }
-    if (!axis.has_reference && nextOfHoming(i)) return true;
-  }
-  settled_ = true;
-  known();
-  return false;
-}
-
-bool ZaberDriver::nextOfHoming(int i) {
-  if (state() == State::kFault && !clearing()) return false;
-  // A cleared fault is no leave to move.
-  if (!config_.home || axes_[i].homed || clearing()) {
-    raiseFault(axisName(i) + " has no reference position: home it, by its maker's tool or by home: true at the start");
-    return true;
-  }
-  movesByItself();
-  axes_[i].position.reset();  // its numbers begin anew
-  axes_[i].read_since_begin = false;
-  begun_ = time();
-  ask(Kind::kHome, i, "home");
-  return true;
-}
-
-long long ZaberDriver::velocityData(int i) const {
-  const double scale = config_.microsteps_per_metre[i];
-  const double wanted = config_.joints.toDevice(goal()->joints)[i];
-  const bool fresh = time() - goal()->time < kVelocityHolds;
-  const double ahead = fresh ? config_.joints.directions[i] * goal()->velocity[i] : 0;
-  const double away = wanted - expected(i, time());
-  if (ahead == 0 && std::abs(away) * scale < 0.75) return 0;
-  const double velocity = std::clamp(ahead + gain() * away, -config_.speed, config_.speed);
-  return std::llround(velocity * scale * kZaberSpeedUnit);
-}
-
-void ZaberDriver::nextInTurn() {
-  const int i = turn_ / 2;
-  if (turn_ % 2 == 0) {
-    turn_ = turn_ + 1;
-    if (goal() && goal()->follows && mayMove() && axes_[i].position) {
-      const long long data = velocityData(i);
-      if (axes_[i].told != data) return ask(Kind::kVelocity, i, "move vel " + std::to_string(data), data);
-    }
-  }
-  turn_ = (turn_ + 1) % 6;
-  ask(Kind::kPosition, i, "get pos");
-}
-
-/// A move's speeds and ends, one after the other; then it is watched.
-bool ZaberDriver::nextOfMove() {
-  if (move_done_ || !mayMove()) return false;
-  if (move_stage_ >= 6) {
-    checkMove();
-    return !talking();
-  }
-  const int i = move_stage_ % 3;
-  const double scale = config_.microsteps_per_metre[i];
-  const Eigen::Vector3d end = config_.joints.toDevice(goal()->joints);
-  if (move_stage_ >= 3) {
-    const long long data = std::llround(end[i] * scale);
-    ask(Kind::kMove, i, "move abs " + std::to_string(data), data);
-    return true;
-  }
-  Eigen::Vector3d way;
-  for (int k = 0; k < 3; ++k) way[k] = end[k] - expected(k, time());
-  const double share = way.norm() > 0 ? std::abs(way[i]) / way.norm() : 1;
-  const double speed = std::clamp(goal()->speed * share, kSlowest / scale, config_.speed);
-  const long long data = std::max(1LL, std::llround(speed * scale * kZaberSpeedUnit));
-  ask(Kind::kSpeed, i, "set maxspeed " + std::to_string(data), data);
-  return true;
-}
-
-void ZaberDriver::checkMove() {
-  for (const Axis& axis : axes_) {
-    if (axis.busy || !axis.read_since_move || axis.filter.doubts()) return;
-  }
-  const Eigen::Vector3d wanted = config_.joints.toDevice(goal()->joints);
-  for (int i = 0; i < 3; ++i) {
-    if (std::abs(wanted[i] - *axes_[i].position) * config_.microsteps_per_metre[i] < 1.5) continue;
-    if (++move_tries_ >= kMoveTries) return raiseFault(axisName(i) + " does not arrive: the move was interrupted");
-    move_stage_ = 0;  // to the same place: what has been done is not done twice
-    return;
-  }
-  move_done_ = true;
-  for (Axis& axis : axes_) axis.velocity = 0;
 }
 
 }  // namespace microinjection

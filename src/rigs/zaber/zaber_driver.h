@@ -24,9 +24,9 @@ class ZaberDriver : public SerialManipulator {
   std::optional<Reading> reading() const override;
   bool moving() const override;
 
-  const std::string& note() const { return note_; }               ///< the last warning that is no fault
+  const std::string& note() const { return note_; }                 ///< the last warning that is no fault
   double largestCorrection() const { return largest_correction_; }  ///< m, of a carried-on position by a reading
-  int malformed() const { return parser_.malformed(); }           ///< messages that were none
+  int malformed() const { return parser_.malformed(); }             ///< messages that were none
 
  protected:
   void begin(bool lost) override;
@@ -46,13 +46,13 @@ class ZaberDriver : public SerialManipulator {
   };
   struct Axis {
     ReadingFilter filter;
-    std::optional<double> position;      // m of the device, at `position_time`
-    double position_time = 0;            // s
-    double velocity = 0;                 // m/s, carries the position on
-    double end = 0;                      // m, where a move ends; NaN: no move
-    std::optional<long long> told;       // units of speed, of the velocity that the device follows
+    std::optional<double> position;  // m of the device, at `position_time`
+    double position_time = 0;        // s
+    double velocity = 0;             // m/s, carries the position on
+    double end = 0;                  // m, where a move ends; NaN: no move
+    std::optional<long long> told;   // units of speed, of the velocity that the device follows
     bool busy = true;
-    double move_speed = 0;               // m/s, set for the move
+    double move_speed = 0;  // m/s, set for the move
     bool read_since_begin = false, read_since_move = false;
     bool has_reference = true, cleared = true, homed = false;
     int stalls = 0;
@@ -84,10 +84,11 @@ class ZaberDriver : public SerialManipulator {
   ZaberParser parser_;
   std::array<Axis, 3> axes_;
   std::optional<Exchange> exchange_;
-  double begun_ = 0;     // s, of this session
-  bool settled_ = false; // in this session everything has been read and was at rest
-  int turn_ = 0;         // 0..5: velocity and position of each axis
-  int move_stage_ = 0;   // of a move: 0..2 speeds, 3..5 positions, then under way
+  double begun_ = 0;      // s, of this session
+  bool settled_ = false;  // in this session everything has been read and was at rest
+  int number_ = 0;        // of the last command
+  int turn_ = 0;          // 0..5: velocity and position of each axis
+  int move_stage_ = 0;    // of a move: 0..2 speeds, 3..5 positions, then under way
   int move_tries_ = 0;
   bool move_done_ = false;
   std::string note_;

@@ -11,12 +11,12 @@
 namespace microinjection {
 namespace {
 
-constexpr double kLongestStep = 0.5e-3;  // s, of the motion's integration
+constexpr double kLongestStep = 0.5e-3;   // s, of the motion's integration
 constexpr std::size_t kLongestLine = 80;  // characters
 
 const std::vector<std::string>& rejections() {
-  static const std::vector<std::string> names{"AGAIN", "BADAXIS", "BADCOMMAND", "BADDATA",
-                                              "DRIVERDISABLED", "FULL", "PARKED", "STATUSBUSY"};
+  static const std::vector<std::string> names{"AGAIN",          "BADAXIS", "BADCOMMAND", "BADDATA",
+                                              "DRIVERDISABLED", "FULL",    "PARKED",     "STATUSBUSY"};
   return names;
 }
 
@@ -119,8 +119,14 @@ void ZaberEmulator::obey(const std::string& line) {
   int device = 0, number = 0;
   words >> device >> number;
   if (!words && !text.empty()) return;
-  std::string command;
+  std::string command, id;
   std::getline(words >> std::ws, command);
+  if (!command.empty() && std::isdigit(static_cast<unsigned char>(command[0]))) {  // a number of its own
+    char digits[16];
+    std::snprintf(digits, sizeof(digits), "%02d ", static_cast<int>(std::strtol(command.c_str(), nullptr, 10) % 100));
+    id = digits;
+    command.erase(0, std::min(command.find(' '), command.size() - 1) + 1);
+  }
   for (Axis& axis : axes_) {
     if ((device != 0 && device != axis.device) || (number != 0 && number != axis.number)) continue;
     std::string said;
@@ -130,7 +136,7 @@ void ZaberEmulator::obey(const std::string& line) {
       said = "RJ " + rejection_;
       rejection_.clear();
     }
-    answer(axis, said, checksum);
+    answer(axis, id, said, checksum);
   }
 }
 
@@ -153,7 +159,8 @@ std::string ZaberEmulator::perform(Axis& axis, const std::string& command) {
   }
   if (verb == "get" && what == "pos") return "OK " + std::to_string(std::lround(axis.place));
   if (verb == "get" && what == "limit.min") return "OK 0";
-  if (verb == "get" && what == "limit.max") return "OK " + std::to_string(std::lround(config_.travel / config_.microstep));
+  if (verb == "get" && what == "limit.max")
+    return "OK " + std::to_string(std::lround(config_.travel / config_.microstep));
   if (verb == "set" && what == "maxspeed") {
     const long value = std::strtol(argument.c_str(), nullptr, 10);
     if (value < 1) return "RJ BADDATA";
@@ -194,11 +201,11 @@ std::string ZaberEmulator::beginMove(Axis& axis, const std::string& how, const s
   return "OK 0";
 }
 
-void ZaberEmulator::answer(const Axis& axis, const std::string& said, bool checksum) {
+void ZaberEmulator::answer(const Axis& axis, const std::string& id, const std::string& said, bool checksum) {
   const std::string flag = !axis.flag.empty() ? axis.flag : axis.referenced ? "--" : "WR";
   char head[32];
   std::snprintf(head, sizeof(head), "%02d %d ", axis.device, axis.number);
-  std::string text = head + said.substr(0, 3) + (axis.busy() ? "BUSY " : "IDLE ") + flag + said.substr(2);
+  std::string text = head + id + said.substr(0, 3) + (axis.busy() ? "BUSY " : "IDLE ") + flag + said.substr(2);
   if (checksum) {
     char digits[8];
     std::snprintf(digits, sizeof(digits), ":%02X", (256 - sumOf(text)) % 256);

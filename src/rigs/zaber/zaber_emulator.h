@@ -22,8 +22,8 @@ struct ZaberEmulatorConfig {
 
 /// Zaber axes with the ASCII protocol, written from the protocol's description and not from the driver.
 ///
-/// Errors that can be asked for: a reason of rejection (BADDATA, AGAIN, ...) of the next command, or a warning flag of two
-/// characters (FS: stalled), which stays on all axes until `warnings clear`; a fault stops them.
+/// Errors that can be asked for: a reason of rejection (BADDATA, AGAIN, ...) of the next command, or a warning flag of
+/// two characters (FS: stalled), which stays on all axes until `warnings clear`; a fault stops them.
 class ZaberEmulator : public ManipulatorEmulator {
  public:
   explicit ZaberEmulator(const ZaberEmulatorConfig& config = {});
@@ -42,14 +42,14 @@ class ZaberEmulator : public ManipulatorEmulator {
  private:
   struct Axis {
     int device, number;
-    double place;             // microsteps
-    double velocity = 0;      // microsteps/s
-    bool to_place = false;    // moves to `target`, otherwise at `target_velocity`
-    double target = 0;        // microsteps
+    double place;           // microsteps
+    double velocity = 0;    // microsteps/s
+    bool to_place = false;  // moves to `target`, otherwise at `target_velocity`
+    double target = 0;      // microsteps
     double target_velocity = 0;
-    double max_speed = 0;     // microsteps/s
+    double max_speed = 0;  // microsteps/s
     bool homing = false, referenced = true;
-    std::string flag;         // empty: none
+    std::string flag;  // empty: none
     bool busy() const { return velocity != 0 || to_place || target_velocity != 0; }
   };
   struct Answer {
@@ -62,7 +62,7 @@ class ZaberEmulator : public ManipulatorEmulator {
   void obey(const std::string& line);
   std::string perform(Axis& axis, const std::string& command);
   std::string beginMove(Axis& axis, const std::string& how, const std::string& argument);
-  void answer(const Axis& axis, const std::string& verdict_and_data, bool checksum);
+  void answer(const Axis& axis, const std::string& number, const std::string& verdict_and_data, bool checksum);
 
   ZaberEmulatorConfig config_;
   std::array<Axis, 3> axes_;

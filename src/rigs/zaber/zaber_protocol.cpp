@@ -12,8 +12,9 @@ namespace {
 constexpr std::size_t kLongestMessage = 256;  // characters
 
 std::string checksum(const std::string& text) {
-  const int sum = std::accumulate(text.begin(), text.end(), 0,
-                                  [](int total, char each) { return (total + static_cast<unsigned char>(each)) & 0xff; });
+  const int sum = std::accumulate(text.begin(), text.end(), 0, [](int total, char each) {
+    return (total + static_cast<unsigned char>(each)) & 0xff;
+  });
   char digits[8];
   std::snprintf(digits, sizeof(digits), "%02X", (0x100 - sum) & 0xff);
   return digits;
@@ -50,8 +51,10 @@ bool isFlag(const std::string& text) {
 
 }  // namespace
 
-std::string zaberCommand(const ZaberAddress& to, const std::string& command, bool with_checksum) {
-  const std::string text = std::to_string(to.device) + " " + std::to_string(to.axis) + " " + command;
+std::string zaberCommand(const ZaberAddress& to, const std::string& command, bool with_checksum,
+                         std::optional<int> id) {
+  const std::string text =
+      std::to_string(to.device) + " " + std::to_string(to.axis) + " " + (id ? std::to_string(*id) + " " : "") + command;
   return "/" + text + (with_checksum ? ":" + checksum(text) : "") + "\n";
 }
 
@@ -111,7 +114,9 @@ std::optional<ZaberMessage> ZaberParser::parse(std::string line) const {
   if (!device || !axis) return std::nullopt;
   message.from = {*device, *axis};
   if (message.kind == ZaberMessage::Kind::kReply) {
-    const std::string verdict = takeWord(line);
+    std::string verdict = takeWord(line);
+    message.number = number(verdict, 2);
+    if (message.number) verdict = takeWord(line);
     if (verdict != "OK" && verdict != "RJ") return std::nullopt;
     message.rejected = verdict == "RJ";
   }

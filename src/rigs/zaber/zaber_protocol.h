@@ -14,16 +14,20 @@ struct ZaberAddress {
   bool operator==(const ZaberAddress& other) const { return device == other.device && axis == other.axis; }
 };
 
-/// `checksum`: ":XX" is put at the end, the two's complement of the sum of the characters after the first.
-std::string zaberCommand(const ZaberAddress& to, const std::string& command, bool checksum);
+/// `checksum`: ":XX" is put at the end, the two's complement of the sum of the characters after the first. `number` (0
+/// to 99) stands before the command, and in the answer before OK or RJ (message ID of Zaber's manual): a belated answer
+/// shows.
+std::string zaberCommand(const ZaberAddress& to, const std::string& command, bool checksum,
+                         std::optional<int> number = std::nullopt);
 
 struct ZaberMessage {
   enum class Kind { kReply, kInfo, kAlert };  ///< begin with @, # and !
   Kind kind = Kind::kReply;
   ZaberAddress from;
-  bool rejected = false;     ///< of a reply: RJ; data has the reason
-  bool busy = false;         ///< of a reply or an alert
-  std::string flag = "--";   ///< the warning of the highest priority; F.: fault, W.: warning, N.: note
+  std::optional<int> number;  ///< of the command that it answers, when that had one
+  bool rejected = false;      ///< of a reply: RJ; data has the reason
+  bool busy = false;          ///< of a reply or an alert
+  std::string flag = "--";    ///< the warning of the highest priority; F.: fault, W.: warning, N.: note
   std::string data;
 
   /// The data as a position in microsteps: one whole number of less than 2^31 in size.

@@ -9,7 +9,7 @@ namespace microinjection {
 namespace {
 
 using State = ManipulatorDevice::State;
-constexpr double kStep = 0.04e-6;                      // m, a microstep
+constexpr double kStep = 0.04e-6;                     // m, a microstep
 const Eigen::Vector3d kPlace(100e-6, -50e-6, 30e-6);  // m
 
 Mp285Config config() {
@@ -50,10 +50,12 @@ TEST_F(Mp285Test, MovesToAPlaceAtItsSpeedInOneMove) {
   rig_->driver().moveTo(kPlace, 0.2e-3);
   const double way = (kPlace - rig_->place()).norm(), from = rig_->time();
   double carried = 0;
-  ASSERT_TRUE(rig_->runUntil([&] {
-    carried = std::max(carried, (rig_->read() - rig_->place()).norm());
-    return rig_->time() > from + 0.1 && !rig_->driver().moving();
-  }, 2));
+  ASSERT_TRUE(rig_->runUntil(
+      [&] {
+        carried = std::max(carried, (rig_->read() - rig_->place()).norm());
+        return rig_->time() > from + 0.1 && !rig_->driver().moving();
+      },
+      2));
   expectNear(rig_->place(), kPlace, kStep);
   EXPECT_EQ(rig_->device().movesBegun(), 1);
   EXPECT_GT(rig_->time() - from, way / 0.2e-3);

@@ -9,7 +9,7 @@ namespace microinjection {
 namespace {
 
 using State = ManipulatorDevice::State;
-constexpr double kStep = 0.047625e-6;  // m, a microstep
+constexpr double kStep = 0.047625e-6;                 // m, a microstep
 const Eigen::Vector3d kPlace(100e-6, -50e-6, 30e-6);  // m
 
 ZaberConfig config() {
@@ -169,7 +169,8 @@ TEST_F(ZaberTest, LongSilenceIsAFaultThatCanBeCleared) {
 }
 
 TEST_F(ZaberTest, RefusalsAndFaultFlagsStopItAndSayWhy) {
-  for (const auto& [fault, word] : {std::pair("error:BADDATA", "BADDATA"), {"error:PARKED", "PARKED"}, {"error:FS", "FS"}}) {
+  for (const auto& [fault, word] :
+       {std::pair("error:BADDATA", "BADDATA"), {"error:PARKED", "PARKED"}, {"error:FS", "FS"}}) {
     SCOPED_TRACE(fault);
     make();
     start();
