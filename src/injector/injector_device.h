@@ -5,7 +5,7 @@
 
 namespace microinjection {
 
-/// A pressure above the balance pressure's place for a time.
+/// A pressure on the pipette for a time, instead of the balance pressure.
 struct InjectionPulse {
   std::uint64_t id = 0;  ///< of this pulse alone
   double pressure = 0;   ///< Pa, gauge

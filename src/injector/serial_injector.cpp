@@ -29,6 +29,7 @@ std::string SerialInjector::pulse(const InjectionPulse& pulse) {
   const std::string sent = limits_.check(protocol_.asSent(pulse));
   if (!sent.empty()) return "in the digits of the device's line, " + sent;
   waiting_pulse_ = pulse;
+  waits_since_ = time_;
   report();
   return "";
 }
@@ -50,6 +51,7 @@ void SerialInjector::reset() {
 }
 
 void SerialInjector::step(double time) {
+  time_ = time;
   model_.step(time);
   if (keepOpen(time)) {
     listen(time);
@@ -61,8 +63,7 @@ void SerialInjector::step(double time) {
 bool SerialInjector::keepOpen(double time) {
   if (wire_->isOpen()) return true;
   if (exchange_ != Exchange::kNone) giveUp("the line broke");
-  if (waiting_pulse_) fault_ = "the line broke before a pulse was sent: it was not done";
-  waiting_pulse_.reset();
+  if (waiting_pulse_) fail("the line broke");
   pressure_.reset();
   if (trouble_.empty()) trouble_ = "the line broke";
   if (time - tried_ < kRetry) return false;
@@ -128,12 +129,12 @@ void SerialInjector::giveUp(const std::string& why) {
   ++tries_;
   const Exchange given_up = std::exchange(exchange_, Exchange::kNone);
   if (given_up == Exchange::kPulse) {
-    fault_ = "pulse " + std::to_string(sent_pulse_->id) + ": " + why +
-             (said_no ? "" : "; it may have been done, and is not sent again");
+    fail("pulse " + std::to_string(sent_pulse_->id) + ": " + why +
+         (said_no ? "" : "; it may have been done, and is not sent again"));
     sent_pulse_.reset();
   } else if (given_up == Exchange::kBalance) {
     if (said_no || tries_ >= kTries) {
-      fault_ = "balance pressure: " + why;
+      fail("balance pressure: " + why);
     } else if (!waiting_balance_) {
       waiting_balance_ = sent_balance_;
     }
@@ -143,7 +144,15 @@ void SerialInjector::giveUp(const std::string& why) {
   }
 }
 
+void SerialInjector::fail(const std::string& why) {
+  fault_ = why;
+  if (waiting_pulse_) fault_ += "; pulse " + std::to_string(waiting_pulse_->id) + " was not sent";
+  waiting_pulse_.reset();
+}
+
 void SerialInjector::talk(double time) {
+  const double patience = protocol_.balance.timeout + protocol_.pulse.timeout + protocol_.quiet;
+  if (waiting_pulse_ && time - waits_since_ > patience) fail("the line was not free in time");
   if (!in_step_ || exchange_ != Exchange::kNone) return;
   // The balance first: a pulse returns to it.
   if (waiting_balance_) {

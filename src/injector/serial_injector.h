@@ -42,6 +42,7 @@ class SerialInjector : public InjectorDevice {
   void talk(double time);
   void send(Exchange exchange, const std::string& line, double timeout, double time);
   void giveUp(const std::string& why);
+  void fail(const std::string& why);
   void report();
 
   std::unique_ptr<Wire> wire_;
@@ -49,6 +50,7 @@ class SerialInjector : public InjectorDevice {
   InjectorLimits limits_;
   InjectorModel model_;
   LineSplitter lines_;
+  double time_ = 0;      ///< s, of the last step
   double tried_ = -1e9;  ///< s, when the line was last tried
   Exchange exchange_ = Exchange::kNone;
   double deadline_ = 0;   ///< s, of the reply
@@ -56,6 +58,7 @@ class SerialInjector : public InjectorDevice {
   double heard_ = 0;      ///< s, when the last byte came while out of step
   double asked_ = -1e9;   ///< s, of the last query
   std::optional<InjectionPulse> waiting_pulse_;
+  double waits_since_ = 0;  ///< s
   std::optional<InjectionPulse> sent_pulse_;
   std::optional<double> waiting_balance_;  ///< Pa
   double sent_balance_ = 0;                ///< Pa

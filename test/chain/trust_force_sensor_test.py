@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""The force sensor has no reading of a force that it cannot trust, nor after an overload, and reads along and across the
-pipette otherwise; it is tared and calibrated."""
+"""The force sensor has no reading of a force that it cannot trust, nor after an overload, and reads along and across
+the pipette otherwise; it is tared and calibrated."""
 
 import math
 import unittest

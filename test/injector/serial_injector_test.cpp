@@ -32,7 +32,11 @@ InjectorProtocol protocol(const std::string& text = kProtocol) {
 
 class SerialInjectorTest : public ::testing::Test {
  protected:
-  void SetUp() override { model.balance = 1000; }
+  static InjectorModelConfig withBalance(double pressure) {
+    InjectorModelConfig config;
+    config.balance = pressure;
+    return config;
+  }
 
   /// Steps for a time (s) and answers each line but pulses as a device in order would.
   void run(double duration) {
@@ -47,7 +51,7 @@ class SerialInjectorTest : public ::testing::Test {
     }
   }
 
-  InjectorModelConfig model;
+  InjectorModelConfig model = withBalance(1000);
   WireScript script;
   SerialInjector injector{std::make_unique<ScriptedWire>(script), protocol(), model};
   double time = 0;
@@ -133,6 +137,21 @@ TEST_F(SerialInjectorTest, ABalanceIsTriedAgainAndTheNewestWins) {
   EXPECT_EQ(std::count(script.sent.begin(), script.sent.end(), "C20.0\r"), 0);
   run(5);
   EXPECT_NE(injector.fault().find("balance pressure: no good reply"), std::string::npos);
+}
+
+TEST_F(SerialInjectorTest, APulseThatCannotBeSentSoonIsNeverSent) {
+  run(1);
+  script.sent.clear();
+  for (int i = 0; i < 1000; ++i) {  // a device that does not stop talking
+    script.incoming += "noise\r";
+    injector.step(time += 0.01);
+    if (i == 5) EXPECT_EQ(injector.pulse({5, 10e3, 0.1}), "");
+  }
+  EXPECT_NE(injector.fault().find("pulse 5 was not sent"), std::string::npos) << injector.fault();
+  answered = script.sent.size();
+  injector.reset();
+  run(2);
+  EXPECT_EQ(pulses, 0);
 }
 
 TEST_F(SerialInjectorTest, ABrokenLineEndsTheExchangeAndIsOpenedAgain) {
