@@ -134,7 +134,7 @@ void InjectionController::goHome(const Eigen::Vector3d& axis, double dt) {
   const double out = way.dot(axis);
   // First out of the cell along the pipette, then across, for a needle that goes sideways tears; never deeper.
   const Eigen::Vector3d motion = out > 1e-9 ? Eigen::Vector3d(out * axis) : Eigen::Vector3d(way - out * axis);
-  const double largest = config_.speed_limit * dt;
+  const double largest = std::min(config_.speed_limit, rig_speed_) * dt;
   *setpoint_ += motion.norm() > largest ? Eigen::Vector3d(motion * (largest / motion.norm())) : motion;
   const Eigen::Vector3d left = home_ - *setpoint_;
   if (std::max(0.0, left.dot(axis)) + (left - left.dot(axis) * axis).norm() > 1e-9) return;
@@ -158,7 +158,7 @@ void InjectionController::follow(const Eigen::Vector3d& target, const Input& inp
     // What was refused is forgotten: when the force falls, as in a puncture, the needle must not catch up with it.
     if (target_offset_) *target_offset_ += *setpoint_ + motion - target;
   }
-  const double largest = config_.speed_limit * dt;
+  const double largest = std::min(config_.speed_limit, rig_speed_) * dt;
   if (motion.norm() > largest) motion *= largest / motion.norm();
   *setpoint_ += motion;
 }

@@ -1,5 +1,8 @@
 #include "nodes/injection_controller_node.h"
 
+#include <algorithm>
+#include <limits>
+
 #include "nodes/conversions.h"
 #include "nodes/force_topic.h"
 #include "nodes/node_parameters.h"
@@ -9,10 +12,10 @@ namespace microinjection {
 const char* const InjectionControllerNode::kHelp =
     "injection_controller: decides where the needle goes and holds it when an input cannot be trusted.\n"
     "In: /teleop/servo_cp /needle/measured_cp, /cell/predicted_cf or /force_sensor/measured_cf,\n"
-    "/controller/state_command (enable, disable, pause, resume, home). Out: /needle/servo_cp "
+    "/controller/state_command (enable, disable, pause, resume, home), /needle/abilities. Out: /needle/servo_cp "
     "/controller/operating_state.\n"
     "Parameters: ~source (teleop|approach), ~force_source (predicted|measured), ~speed_limit (m/s), ~jump_limit (m),\n"
-    "~force_limit (N), ~approach/..., ~auto_enable, ~rate (Hz), ~input_timeout (s); see\n"
+    "~lag_limit (m), ~force_limit (N), ~approach/..., ~auto_enable, ~rate (Hz), ~input_timeout (s); see\n"
     "config/injection_controller.yaml.\n";
 
 InjectionControllerNode::Parameters InjectionControllerNode::Parameters::read(const ros::NodeHandle& private_node) {
@@ -22,6 +25,7 @@ InjectionControllerNode::Parameters InjectionControllerNode::Parameters::read(co
   reader.number("input_timeout", parameters.input_timeout, Range::positive());
   reader.choice("force_source", parameters.force_source, {"predicted", "measured"});
   reader.boolean("auto_enable", parameters.auto_enable);
+  reader.number("lag_limit", parameters.lag_limit, Range::positive());
   parameters.model = InjectionControllerConfig::read(reader);
   reader.finish();
   return parameters;
@@ -43,6 +47,9 @@ InjectionControllerNode::InjectionControllerNode(ros::NodeHandle node, ros::Node
   commands_ = cycle_.node().subscribe<cell_microinjection::StringStamped>(
       "controller/state_command", 10,
       [this](const cell_microinjection::StringStampedConstPtr& message) { obey(message->string); });
+  abilities_ = cycle_.node().subscribe<cell_microinjection::ManipulatorAbilities>(
+      "needle/abilities", 1,
+      [this](const cell_microinjection::ManipulatorAbilitiesConstPtr& message) { adaptTo(*message); });
   cycle_.diagnostics().add("control", [this](auto& status) { report(status); });
   if (parameters_.auto_enable) obey("enable");
 }
@@ -58,6 +65,14 @@ void InjectionControllerNode::obey(const std::string& command) {
   } else {
     ROS_WARN_STREAM("state command " << command << " refused: " << refusal);
   }
+}
+
+void InjectionControllerNode::adaptTo(const cell_microinjection::ManipulatorAbilities& rig) {
+  const double lag = rig.latency + rig.command_interval;
+  rig_speed_ = lag > 0 ? parameters_.lag_limit / lag : std::numeric_limits<double>::infinity();
+  model_.limitSpeed(rig_speed_);
+  ROS_INFO_STREAM("rig: " << rig.device << ", driven at " << std::min(rig_speed_, parameters_.model.speed_limit)
+                          << " m/s at the most");
 }
 
 void InjectionControllerNode::step(const Cycle::Tick& tick) {
@@ -97,6 +112,7 @@ void InjectionControllerNode::report(diagnostic_updater::DiagnosticStatusWrapper
                         : diagnostic_msgs::DiagnosticStatus::WARN,
                  good ? "the needle follows" : "needle held: " + model_.heldBecause());
   status.add("state", toText(model_.state()));
+  status.add("speed limit (m/s)", std::min(rig_speed_, parameters_.model.speed_limit));
 }
 
 }  // namespace microinjection

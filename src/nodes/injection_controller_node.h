@@ -4,8 +4,10 @@
 #include <geometry_msgs/WrenchStamped.h>
 #include <ros/ros.h>
 
+#include <limits>
 #include <string>
 
+#include "cell_microinjection/ManipulatorAbilities.h"
 #include "cell_microinjection/OperatingState.h"
 #include "cell_microinjection/StringStamped.h"
 #include "control/injection_controller.h"
@@ -16,13 +18,15 @@ namespace microinjection {
 /// The one that moves the needle, simulated or real. Holds it when an input cannot be trusted.
 ///
 /// In:  /teleop/servo_cp (PoseStamped, `world`; with source teleop), /needle/measured_cp (PoseStamped),
-///      /cell/predicted_cf or /force_sensor/measured_cf (WrenchStamped), /controller/state_command (StringStamped)
+///      /cell/predicted_cf or /force_sensor/measured_cf (WrenchStamped), /controller/state_command (StringStamped),
+///      /needle/abilities (ManipulatorAbilities): a rig that follows late is driven slowly
 /// Out: /needle/servo_cp (PoseStamped, `world`), /controller/operating_state (OperatingState, latched, on change)
 ///
 /// Parameters (private): those of InjectionControllerConfig and
 ///   rate           Hz; default 1000, in [50, 5000]
 ///   input_timeout  s, past which an input is stale; default 0.05, in (0, inf)
 ///   force_source   predicted or measured; default predicted
+///   lag_limit      m, that the needle may be behind its set-point for the rig's lateness; default 10e-6, in (0, inf)
 ///   auto_enable    go to ENABLED at the start, for simulated rigs; default false
 class InjectionControllerNode {
  public:
@@ -37,11 +41,13 @@ class InjectionControllerNode {
     double input_timeout = 0.05;
     std::string force_source = "predicted";
     bool auto_enable = false;
+    double lag_limit = 10e-6;
     InjectionControllerConfig model;
     static Parameters read(const ros::NodeHandle& private_node);
   };
 
   void obey(const std::string& command);
+  void adaptTo(const cell_microinjection::ManipulatorAbilities& rig);
   void step(const Cycle::Tick& tick);
   void publishState(const ros::Time& now);
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
@@ -54,6 +60,8 @@ class InjectionControllerNode {
   Input<geometry_msgs::WrenchStamped>& force_;
   Output<geometry_msgs::PoseStamped>& setpoint_;
   ros::Subscriber commands_;
+  ros::Subscriber abilities_;
+  double rig_speed_ = std::numeric_limits<double>::infinity();  ///< m/s, that the rig can be driven at
   ros::Publisher state_;
   cell_microinjection::OperatingState said_;  ///< the last that was published
 };
