@@ -74,7 +74,17 @@ std::vector<ForcePoint> tensegrity(const Scene& scene, const Indenting& indentin
     return moved.converged && indenting.hold > 0 ? path->solve(target, indenting.hold) : moved;
   };
   std::vector<ForcePoint> points;
-  for (double depth : indenting.depths) points.push_back(solveLive(*path, depth, indenting.lateral, solve));
+  for (double depth : indenting.depths) {
+    // Where the way down has ended, a search for more takes seconds; it ends there for deeper points, too.
+    const bool straight = indenting.lateral.isZero(0) && !points.empty();
+    if (straight && !points.back().converged && depth >= points.back().depth) {
+      points.push_back(points.back());
+      points.back().depth = depth;
+      points.back().wall_time = 0;
+    } else {
+      points.push_back(solveLive(*path, depth, indenting.lateral, solve));
+    }
+  }
   return points;
 }
 

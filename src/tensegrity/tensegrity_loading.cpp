@@ -47,7 +47,11 @@ LoadPath::Result TensegrityLoading::advance(const Eigen::Vector3d& target, doubl
     if (result.converged) return result;
     const Eigen::Vector3d way = target - displacement();
     const double share = snaps < kMostSnaps ? snap(way, timeFor(way)) : 0;
-    if (share == 0) return result;
+    if (share == 0) {
+      result.reason += "; no stable equilibrium was found beyond it either";
+      if (structure_->config().membrane.tension == 0) result.reason += ": a membrane without tension crumples";
+      return result;
+    }
     if (share == 1 && displacement() == target) return {true, "", iterations};
     waiting *= 1 - share;
   }

@@ -295,5 +295,18 @@ TEST(TensegrityLoading, WhatIsViscousRemembersWhereASnapEnded) {
   }
 }
 
+/// No tension, no prestress: nothing keeps the membrane smooth, and its rest is not to be found.
+TEST(TensegrityLoading, AMembraneWithoutTensionCrumplesAndSaysSo) {
+  TensegrityConfig config = bundles(0);
+  config.membrane.tension = 0;
+  const auto structure = make(config);
+  TensegrityLoading loading(structure, {structure->endNode(topEnd(structure->geometry()))});
+  const LoadPath::Result result = loading.advance({0, 0, -5e-6});
+  EXPECT_FALSE(result.converged);
+  EXPECT_NE(result.reason.find("no stable equilibrium was found"), std::string::npos) << result.reason;
+  EXPECT_NE(result.reason.find("without tension"), std::string::npos) << result.reason;
+  EXPECT_GT(loading.displacement().z(), -5e-6);
+}
+
 }  // namespace
 }  // namespace microinjection
