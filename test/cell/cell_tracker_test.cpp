@@ -180,6 +180,25 @@ TEST(CellTracker, AContactThatTheSolverRefusesIsNotTrusted) {
   EXPECT_NE(drive.tracker.distrust().find("held"), std::string::npos) << drive.tracker.distrust();
 }
 
+/// Beside the cell, below the height where it touched, there is nothing to be in contact with.
+TEST(CellTracker, ATipThatLeapsAsideIsReleased) {
+  Driver drive(coarseScene("neo_hookean"));
+  drive.moveTo({0, 0, 27e-6}, 50e-6);
+  drive.rest(50);
+  ASSERT_TRUE(drive.tracker.contact());
+  for (const Eigen::Vector3d& aside : {Eigen::Vector3d(40e-6, 0, 20e-6), Eigen::Vector3d(0, 25e-6, 20e-6)}) {
+    drive.moveTo(aside, 1);
+    const TipForce force = drive.rest(50);
+    EXPECT_FALSE(drive.tracker.contact());
+    EXPECT_TRUE(force.trusted) << drive.tracker.distrust();
+    EXPECT_TRUE(force.force.isZero(0));
+    drive.moveTo({0, 0, 29e-6}, 1);
+    drive.rest(50);
+    drive.moveTo({0, 0, 27e-6}, 50e-6);
+    EXPECT_GT(drive.rest(50).force.z(), 0.05e-6) << "the cell must be there the next time";
+  }
+}
+
 TEST(CellTracker, TouchesWhereTheNeedlesLineMeetsTheCell) {
   Driver drive(coarseScene("neo_hookean"));
   drive.tip = {8e-6, 0, 40e-6};
