@@ -1,6 +1,7 @@
 #include "cell/cell_tracker.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <exception>
 
@@ -105,7 +106,8 @@ TipForce CellTracker::touchForce(double time) {
 }
 
 TipForce CellTracker::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time) {
-  TipForce force = answer(tip, axis, time);
+  const bool known = tip.allFinite() && axis.allFinite() && std::isfinite(time);
+  TipForce force = known ? answer(tip, axis, time) : distrustBecause("the needle's pose is not finite");
   shape_.write(contact_ ? Shape{solution_, place_} : Shape{});
   return force;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 
 #include "cell/indentation.h"
@@ -134,6 +135,25 @@ TEST(CellTracker, PuncturesForGoodAtTheStatedForce) {
   drive.moveTo({0, 0, 40e-6}, 1e-3);
   drive.moveTo({0, 0, 24e-6}, 1e-3);
   EXPECT_EQ(drive.force.force, Eigen::Vector3d::Zero().eval());
+}
+
+TEST(CellTracker, APoseThatIsNoNumberIsNotTrustedAndForgotten) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  Driver drive(coarseScene("linear"));
+  drive.moveTo({0, 0, 27e-6}, 50e-6);
+  const TipForce before = drive.rest(100);
+  ASSERT_TRUE(before.trusted && before.force.z() > 0);
+  for (const TipForce& force :
+       {drive.tracker.step({kNan, 0, 27e-6}, kAxis, 1), drive.tracker.step(drive.tip, {0, 0, kNan}, 1),
+        drive.tracker.step(drive.tip, kAxis, kNan)}) {
+    EXPECT_FALSE(force.trusted);
+    EXPECT_TRUE(force.force.isZero(0));
+    EXPECT_NE(drive.tracker.distrust(), "");
+  }
+  EXPECT_EQ(drive.rest(1).force, before.force);
+  EXPECT_TRUE(drive.force.trusted);
+  CellTracker away(drive.cell, Driver::config());
+  EXPECT_FALSE(away.step({0, 0, kNan}, kAxis, 0).trusted);
 }
 
 TEST(CellTracker, SaysSoWhereTheModelHasNoSolutionAndRecovers) {
