@@ -1,6 +1,7 @@
 #include "cell/cell_tracker.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <exception>
 
@@ -105,7 +106,8 @@ TipForce CellTracker::touchForce(double time) {
 }
 
 TipForce CellTracker::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time) {
-  TipForce force = answer(tip, axis, time);
+  const bool known = tip.allFinite() && axis.allFinite() && std::isfinite(time);
+  TipForce force = known ? answer(tip, axis, time) : distrustBecause("the needle's pose is not finite");
   shape_.write(contact_ ? Shape{solution_, place_} : Shape{});
   return force;
 }
@@ -118,7 +120,7 @@ TipForce CellTracker::answer(const Eigen::Vector3d& tip, const Eigen::Vector3d& 
     const auto touch = cell_->touch(tip, axis, hint_);
     if (!touch) return {};
     prepare(tip, axis, *touch, time);
-    if ((tip - *touch).dot(axis) > 0) return {};
+    if (cell_->isOff(tip, axis, *touch)) return {};
     contact_ = Contact{};
     contact_->touched_at = *touch;
     touched_ = time;
@@ -128,7 +130,7 @@ TipForce CellTracker::answer(const Eigen::Vector3d& tip, const Eigen::Vector3d& 
   const char* refusal = cell_->refusal(axis);
   TipForce result = refusal != nullptr ? distrustBecause(refusal) : touchForce(time);
   const double push = result.force.dot(axis);
-  if (cell_->isOff(tip, axis, contact_->touched_at) && (push <= 0 || !result.trusted)) {
+  if ((push <= 0 || !result.trusted) && cell_->isOff(tip, axis, contact_->touched_at)) {
     release();
     return {};
   }

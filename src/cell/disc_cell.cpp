@@ -24,7 +24,10 @@ std::optional<Eigen::Vector3d> DiscCell::touch(const Eigen::Vector3d& tip, const
 }
 
 bool DiscCell::isOff(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, const Eigen::Vector3d& touched_at) const {
-  return (tip - touched_at).dot(axis) > 0;
+  if ((tip - touched_at).dot(axis) > 0) return true;
+  int hint = 0;
+  const auto now = touch(tip, axis, hint);  // where its line is now: it may have gone sideways
+  return !now || (tip - *now).dot(axis) > 0;
 }
 
 TipPlace DiscCell::placeAt(const Eigen::Vector3d& touched_at, const Eigen::Vector3d& axis) const {

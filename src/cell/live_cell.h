@@ -72,7 +72,8 @@ class LiveCell {
   /// `hint` makes the next search of the same asker quicker.
   virtual std::optional<Eigen::Vector3d> touch(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis,
                                                int& hint) const = 0;
-  /// Whether a tip that has touched at `touched_at` is off the undeformed cell.
+  /// Whether a tip that has touched at `touched_at`, or would on its line, is off the undeformed cell: above where it
+  /// touched, or aside.
   virtual bool isOff(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis,
                      const Eigen::Vector3d& touched_at) const = 0;
   virtual TipPlace placeAt(const Eigen::Vector3d& touched_at, const Eigen::Vector3d& axis) const = 0;

@@ -183,6 +183,9 @@ Scene parseScene(const YAML::Node& node, const std::string& origin) {
   if (!continuum && reader.has("mesh")) {
     reader.error("mesh", "must be left out: a tensegrity cell has microtubules/slices and membrane/divisions");
   }
+  if (!continuum && reader.has("requirements")) {
+    reader.error("requirements", "must be left out: a tensegrity cell has one model, whose error is not known");
+  }
   readQuantity(reader.section("holding_pipette", continuum ? ConfigReader::kRequired : ConfigReader::kOptional),
                "contact_radius", scene.holding_pipette.contact_radius, Range::positive(), "m",
                continuum ? ConfigReader::kRequired : ConfigReader::kOptional);

@@ -69,7 +69,7 @@ struct Scene {
     double stretch = 1;  ///< of the elements along z, see CellMeshConfig
   };
 
-  /// Of a model that serves a needle, for the choice among those that could.
+  /// Of a model that serves a needle, for the choice among those that could. A tensegrity scene has none.
   struct Requirements {
     double force_error = 0.02;  ///< relative, that is allowed
     double rate = 1000;         ///< Hz, of forces

@@ -121,7 +121,9 @@ std::optional<Eigen::Vector3d> SweptCell::touch(const Eigen::Vector3d& tip, cons
 bool SweptCell::isOff(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis,
                       const Eigen::Vector3d& touched_at) const {
   if (tip_) return tip_->distance(-tip) > scene_.radius();
-  return (tip - touched_at).dot(axis) > 0;
+  if ((tip - touched_at).dot(axis) > 0) return true;
+  const auto now = ContactPlace::at(scene_.radius(), tip_, tip.head<2>());  // it may have gone sideways
+  return !now || tip.z() > now->origin.z();
 }
 
 TipPlace SweptCell::placeAt(const Eigen::Vector3d& touched_at, const Eigen::Vector3d& /*upright*/) const {

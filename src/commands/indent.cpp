@@ -61,10 +61,14 @@ std::vector<ForcePoint> live(const Scene& scene, const Indenting& indenting) {
   return points;
 }
 
-std::vector<ForcePoint> tensegrity(const Scene& scene, const Indenting& indenting) {
-  if (!indenting.withdrawal.empty()) {
-    throw ConfigError("--withdraw: must be left out for a scene of cell/model = tensegrity");
+std::vector<ForcePoint> tensegrity(const Scene& scene, const IndentArguments& arguments) {
+  const Indenting& indenting = arguments.indenting;
+  std::vector<std::string> options = arguments.converged_options, errors;
+  if (!indenting.withdrawal.empty()) options.push_back("--withdraw");
+  for (const std::string& option : options) {
+    errors.push_back(option + ": must be left out for a scene of cell/model = tensegrity");
   }
+  if (!errors.empty()) throw ConfigError(errors);
   const auto cell = std::make_shared<const TensegrityCell>(scene);
   const std::unique_ptr<TensegrityIndentation> path = cell->indentation(tipPatch(*cell));
   const auto solve = [&](const Eigen::Vector3d& target) {
@@ -74,7 +78,17 @@ std::vector<ForcePoint> tensegrity(const Scene& scene, const Indenting& indentin
     return moved.converged && indenting.hold > 0 ? path->solve(target, indenting.hold) : moved;
   };
   std::vector<ForcePoint> points;
-  for (double depth : indenting.depths) points.push_back(solveLive(*path, depth, indenting.lateral, solve));
+  for (double depth : indenting.depths) {
+    // Where the way down has ended, a search for more takes seconds; it ends there for deeper points, too.
+    const bool straight = indenting.lateral.isZero(0) && !points.empty();
+    if (straight && !points.back().converged && depth >= points.back().depth) {
+      points.push_back(points.back());
+      points.back().depth = depth;
+      points.back().wall_time = 0;
+    } else {
+      points.push_back(solveLive(*path, depth, indenting.lateral, solve));
+    }
+  }
   return points;
 }
 
@@ -150,7 +164,7 @@ std::string csvRow(const ForcePoint& point) {
 std::vector<ForcePoint> solve(const Scene& scene, const IndentArguments& arguments) {
   if (arguments.membrane) return membrane(scene, arguments.indenting);
   const bool its_own = arguments.live || arguments.converged.model == ConvergedForceConfig::Model::kAuto;
-  if (scene.cell.tensegrity && its_own) return tensegrity(scene, arguments.indenting);
+  if (scene.cell.tensegrity && its_own) return tensegrity(scene, arguments);
   return arguments.live ? live(scene, arguments.indenting) : converged(scene, arguments);
 }
 

@@ -32,7 +32,8 @@ Models:
   live          the P1 tetrahedra of a live session (the scene's mesh keys), which lock; discs only
   membrane      an analytic point-load model of the zona pellucida (cell/biomembrane in the scene, with the modulus of the
                 outermost material): F = k depth^3; neither the inside's elasticity nor withdrawal are in it
-A scene of cell/model tensegrity has one model, its own (auto), and no error estimate.
+A scene of cell/model tensegrity has one model, its own (auto), and no error estimate: --tolerance, --element and --time
+must be left out.
 
 Example:
   indent --scene config/cells/mouse_oocyte.yaml --depths 1e-6,2e-6,5e-6 --tolerance 0.01 --csv force.csv
@@ -164,6 +165,9 @@ std::optional<IndentArguments> parseIndentArguments(int argc, char** argv) {
   }
   if (values.count("scene") == 0) throw ConfigError("--scene is missing: a scene file, see --help");
   if (values.count("depths") == 0) throw ConfigError("--depths is missing: for example 1e-6,2e-6 (m), see --help");
+  for (const std::string option : {"tolerance", "element", "time"}) {
+    if (values.count(option) != 0 && !values[option].defaulted()) arguments.converged_options.push_back("--" + option);
+  }
   interpret(texts, arguments);
   return arguments;
 }

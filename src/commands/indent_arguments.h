@@ -17,7 +17,8 @@ struct IndentArguments {
   bool membrane = false;  ///< the scene's biomembrane instead
   ConvergedForceConfig converged;
   bool tolerance_given = false;
-  std::string csv = "-";  ///< file, or - for the standard output
+  std::vector<std::string> converged_options;  ///< that were given and mean something to a converged solution only
+  std::string csv = "-";                       ///< file, or - for the standard output
 };
 
 /// Empty when the help was asked for, and printed. Throws ConfigError, or what boost::program_options throws, on bad

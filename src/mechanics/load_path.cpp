@@ -18,8 +18,8 @@ constexpr int kMaximumHalvings = 8;     ///< of a line search
 
 }  // namespace
 
-LoadPath::LoadPath(EquilibriumSystem& system, const LoadPathConfig& config, const Eigen::VectorXd& start)
-    : system_(system), config_(config), load_step_(config.first_step) {
+LoadPath::LoadPath(EquilibriumSystem& system, const LoadPathConfig& config, const Eigen::VectorXd& start, bool viscous)
+    : system_(system), config_(config), load_step_(config.first_step), viscous_(viscous) {
   undeformed_.x.setZero(system.stateSize());
   if (start.size() > 0) {
     undeformed_.x = start;
@@ -31,6 +31,9 @@ LoadPath::LoadPath(EquilibriumSystem& system, const LoadPathConfig& config, cons
   if (start.size() > 0) system_.energy(start, undeformed_.energy);
   force_floor_ = kRounding * config.length * system_.matrix().diagonal().maxCoeff();
   state_ = undeformed_;
+  if (start.size() > 0) {
+    for (const auto& term : system_.terms()) term->accept(start);
+  }
 }
 
 void LoadPath::reset() {

@@ -32,8 +32,10 @@ class LoadPath {
 
   /// `system` must outlive this and be undeformed. Throws std::invalid_argument when it is not stable so: something is
   /// not held, or a layer's tension is too much for its material. `start`: the equilibrium to set out from, where it is
-  /// not the state of zeros (a prestressed structure); the tip's translation counts from there.
-  LoadPath(EquilibriumSystem& system, const LoadPathConfig& config, const Eigen::VectorXd& start = {});
+  /// not the state of zeros (a prestressed structure); the tip's translation counts from there, and the terms
+  /// accept it. `viscous`: it is one of the step that the terms were last told to begin, which took a finite time.
+  LoadPath(EquilibriumSystem& system, const LoadPathConfig& config, const Eigen::VectorXd& start = {},
+           bool viscous = false);
 
   /// Straight and at constant speed from the present translation to `target`, m, in `duration`, s; infinite: nothing
   /// viscous resists. Already there, it waits for that long. On failure the state is the last equilibrium found on the

@@ -1,6 +1,7 @@
 #include "surrogate/prepared_tracker.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace microinjection {
@@ -26,6 +27,9 @@ TipForce PreparedTracker::distrustBecause(const char* reason) {
 }
 
 TipForce PreparedTracker::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time) {
+  if (!tip.allFinite() || !axis.allFinite() || !std::isfinite(time)) {
+    return distrustBecause("the needle's pose is not finite");
+  }
   const TipForce force = answer(tip, axis, std::max(0.0, time - time_));
   time_ = time;
   shape_.write(needle_.shape());

@@ -40,7 +40,7 @@ std::string cannotBePrepared(const Scene& scene) {
 ServedCell serveNeedle(const Scene& scene, const std::string& model, const CellTrackerConfig& config,
                        const std::string& path) {
   if (scene.cell.tensegrity && model != "prepared") {
-    return live(scene, config, "the cell is a tensegrity, solved live", true);
+    return live(scene, config, "the cell is a tensegrity, solved live", true);  // its scene requires nothing
   }
   if (model == "live") return live(scene, config, "the cell is live, as asked for", true);
   const std::string refused = cannotBePrepared(scene);

@@ -13,6 +13,7 @@ constexpr double kFirstStep = 1.0 / 128, kLargestStep = 1.0 / 32, kSmallestStep 
 constexpr int kEasy = 8;                  ///< iterations: cables that go slack take some at any length
 constexpr int kMostFactorisations = 300;  ///< of a snap
 constexpr double kSnapStep = 2e-3;        ///< of the diameter
+constexpr int kMostSnaps = 8;             ///< of one way: more is no path
 
 }  // namespace
 
@@ -36,28 +37,51 @@ LoadPathConfig TensegrityLoading::pathConfig() const {
 
 LoadPath::Result TensegrityLoading::advance(const Eigen::Vector3d& target, double duration) {
   const double whole = (target - displacement()).norm();
+  double waiting = duration;  // where there is no way to go
+  const auto timeFor = [&](const Eigen::Vector3d& way) { return whole > 0 ? way.norm() / whole * duration : waiting; };
   int iterations = 0;
-  while (true) {
-    const double left = (target - displacement()).norm();
-    LoadPath::Result result = path_->advance(target - origin_, whole > 0 ? left / whole * duration : duration);
+  for (int snaps = 0;; ++snaps) {
+    LoadPath::Result result = path_->advance(target - origin_, timeFor(target - displacement()));
     iterations += result.newton_iterations;
     result.newton_iterations = iterations;
-    if (result.converged || !snap(target - displacement())) return result;
-    if (displacement() == target) return {true, "", iterations};
+    if (result.converged) return result;
+    const Eigen::Vector3d way = target - displacement();
+    const double share = snaps < kMostSnaps ? snap(way, timeFor(way)) : 0;
+    if (share == 0) {
+      result.reason += "; no stable equilibrium was found beyond it either";
+      if (structure_->config().membrane.tension == 0) result.reason += ": a membrane without tension crumples";
+      return result;
+    }
+    if (share == 1 && displacement() == target) return {true, "", iterations};
+    waiting *= 1 - share;
   }
 }
 
-/// A little further along `way` than stable equilibria go, and down in energy from there.
-bool TensegrityLoading::snap(const Eigen::Vector3d& way) {
+/// A little further along `way` (m, in `duration`, s) than stable equilibria go, and down in energy from there, in one
+/// implicit step of the time that this little takes; where that finds no rest, a shorter one, in which what is viscous
+/// gives way less. Share of the way and time that is gone, 0 on failure.
+double TensegrityLoading::snap(const Eigen::Vector3d& way, double duration) {
+  const double furthest = std::min(1.0, kSnapStep * 2 * structure_->config().radius / way.norm());
+  for (const double part : {1.0, 0.1, 0.01}) {
+    const double share = part * furthest;
+    bool viscous = false;
+    for (const auto& term : parts_.terms) viscous = term->beginStep(share * duration) || viscous;
+    if (fall(share * way, viscous)) return share;
+    if (!viscous) break;
+  }
+  return 0;
+}
+
+/// To rest with the following nodes moved by `way`, m, in the step that the terms have begun.
+bool TensegrityLoading::fall(const Eigen::Vector3d& way, bool viscous) {
   RelaxationConfig config;
   config.length = 2 * structure_->config().radius;
   config.maximum_iterations = kMostFactorisations;
-  const double further = std::min(1.0, kSnapStep * config.length / way.norm());
   Eigen::VectorXd state = path_->state();
-  system_.addTo(state, Eigen::VectorXd::Zero(system_.freeSize()), further * way);
+  system_.addTo(state, Eigen::VectorXd::Zero(system_.freeSize()), way);
   if (!Relaxation(system_, config).relax(state).converged) return false;
   try {
-    path_ = std::make_unique<LoadPath>(system_, pathConfig(), state);
+    path_ = std::make_unique<LoadPath>(system_, pathConfig(), state, viscous);
   } catch (const std::invalid_argument&) {  // at rest, but not stable
     return false;
   }

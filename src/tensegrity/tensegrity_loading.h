@@ -17,7 +17,8 @@ namespace microinjection {
 /// continues from it.
 ///
 /// Where stable equilibria end (a strut snaps aside, cables go slack) the displacement is kept and the structure falls
-/// to the rest that minimising its energy leads to, as a damped one would; snaps() counts it. One thread at a time.
+/// to the rest that minimising its energy leads to, as a damped one would (viscous parts: as far as they let it in the
+/// time of that step); snaps() counts it. One thread at a time.
 class TensegrityLoading {
  public:
   /// Throws std::invalid_argument when a following node is held.
@@ -41,7 +42,8 @@ class TensegrityLoading {
   int snaps() const { return snaps_; }
 
  private:
-  bool snap(const Eigen::Vector3d& way);
+  double snap(const Eigen::Vector3d& way, double duration);
+  bool fall(const Eigen::Vector3d& way, bool viscous);
   LoadPathConfig pathConfig() const;
 
   std::shared_ptr<const TensegrityStructure> structure_;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
 #include "base/errors.h"
 
@@ -91,6 +92,18 @@ TEST(Biomembrane, RefusesWhatItCannotDo) {
   EXPECT_THROW(Biomembrane(kYoung, kPoisson, kTip, {0, kDimple}), ConfigError);
   EXPECT_THROW(Biomembrane(0, kPoisson, kTip, {kThickness, kDimple}), ConfigError);
   EXPECT_THROW(Biomembrane(kYoung, 0.5, kTip, {kThickness, kDimple}), ConfigError);
+}
+
+/// Micrometres are lost in six decimals of a metre.
+TEST(Biomembrane, ErrorsTellTheValueThatIsWrong) {
+  try {
+    Biomembrane(kYoung, kPoisson, 25e-6, {-4e-9, kDimple});
+    FAIL() << "was accepted";
+  } catch (const ConfigError& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("thickness = -4e-09 m: must be > 0"), std::string::npos) << text;
+    EXPECT_NE(text.find("tip_radius = 2.5e-05 m: must be in (0, dimple_radius)"), std::string::npos) << text;
+  }
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 
 #include "cell/indentation.h"
@@ -136,6 +137,25 @@ TEST(CellTracker, PuncturesForGoodAtTheStatedForce) {
   EXPECT_EQ(drive.force.force, Eigen::Vector3d::Zero().eval());
 }
 
+TEST(CellTracker, APoseThatIsNoNumberIsNotTrustedAndForgotten) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  Driver drive(coarseScene("linear"));
+  drive.moveTo({0, 0, 27e-6}, 50e-6);
+  const TipForce before = drive.rest(100);
+  ASSERT_TRUE(before.trusted && before.force.z() > 0);
+  for (const TipForce& force :
+       {drive.tracker.step({kNan, 0, 27e-6}, kAxis, 1), drive.tracker.step(drive.tip, {0, 0, kNan}, 1),
+        drive.tracker.step(drive.tip, kAxis, kNan)}) {
+    EXPECT_FALSE(force.trusted);
+    EXPECT_TRUE(force.force.isZero(0));
+    EXPECT_NE(drive.tracker.distrust(), "");
+  }
+  EXPECT_EQ(drive.rest(1).force, before.force);
+  EXPECT_TRUE(drive.force.trusted);
+  CellTracker away(drive.cell, Driver::config());
+  EXPECT_FALSE(away.step({0, 0, kNan}, kAxis, 0).trusted);
+}
+
 TEST(CellTracker, SaysSoWhereTheModelHasNoSolutionAndRecovers) {
   Driver drive(coarseScene("st_venant_kirchhoff"));
   drive.moveTo({0, 0, 27.5e-6}, 20e-6);
@@ -178,6 +198,25 @@ TEST(CellTracker, AContactThatTheSolverRefusesIsNotTrusted) {
   }
   EXPECT_FALSE(force.trusted);
   EXPECT_NE(drive.tracker.distrust().find("held"), std::string::npos) << drive.tracker.distrust();
+}
+
+/// Beside the cell, below the height where it touched, there is nothing to be in contact with.
+TEST(CellTracker, ATipThatLeapsAsideIsReleased) {
+  Driver drive(coarseScene("neo_hookean"));
+  drive.moveTo({0, 0, 27e-6}, 50e-6);
+  drive.rest(50);
+  ASSERT_TRUE(drive.tracker.contact());
+  for (const Eigen::Vector3d& aside : {Eigen::Vector3d(40e-6, 0, 20e-6), Eigen::Vector3d(0, 25e-6, 20e-6)}) {
+    drive.moveTo(aside, 1);
+    const TipForce force = drive.rest(50);
+    EXPECT_FALSE(drive.tracker.contact());
+    EXPECT_TRUE(force.trusted) << drive.tracker.distrust();
+    EXPECT_TRUE(force.force.isZero(0));
+    drive.moveTo({0, 0, 29e-6}, 1);
+    drive.rest(50);
+    drive.moveTo({0, 0, 27e-6}, 50e-6);
+    EXPECT_GT(drive.rest(50).force.z(), 0.05e-6) << "the cell must be there the next time";
+  }
 }
 
 TEST(CellTracker, TouchesWhereTheNeedlesLineMeetsTheCell) {

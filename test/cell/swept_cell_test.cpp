@@ -165,6 +165,19 @@ TEST(SweptCell, ATipThatLeavesSidewaysIsReleased) {
   EXPECT_TRUE(drive.force.trusted);
 }
 
+/// A disc is off where it is above the cell, beside it, or above where it touched; not where it only went sideways.
+TEST(SweptCell, ADiscIsOffWhereTheCellIsNot) {
+  Scene scene = pipette();
+  scene.needle.tip.shape = "disc";
+  const SweptCell cell(scene);
+  const Eigen::Vector3d pole(0, 0, 28e-6);
+  EXPECT_TRUE(cell.isOff({40e-6, 0, 20e-6}, kUp, pole)) << "passes by";
+  EXPECT_TRUE(cell.isOff({10e-6, 0, 26.3e-6}, kUp, pole)) << "the surface is at 26.15 um";
+  EXPECT_TRUE(cell.isOff({0, 0, 28.1e-6}, kUp, pole));
+  EXPECT_FALSE(cell.isOff({10e-6, 0, 26e-6}, kUp, pole));
+  EXPECT_FALSE(cell.isOff({0, 0, 27e-6}, kUp, pole));
+}
+
 TEST(SweptCell, SamePathSameBits) {
   const Scene scene = pipette();
   Driver a(scene), b(scene);
@@ -179,6 +192,18 @@ TEST(SweptCell, ATiltedNeedleIsNotTrusted) {
   const Eigen::Vector3d tilted = Eigen::Vector3d(0.2, 0, 1).normalized();
   EXPECT_FALSE(drive.tracker.step({0, 0, 26e-6}, tilted, 1).trusted);
   EXPECT_NE(drive.tracker.distrust().find("upright"), std::string::npos);
+}
+
+/// Upside down it is refused where it is in the cell, and where it is not, it is no contact in any step.
+TEST(SweptCell, ANeedleFromBelowIsNotTrustedInTheCellAndFreeAboveIt) {
+  Driver drive(pipette());
+  EXPECT_FALSE(drive.tracker.step({0, 0, -20e-6}, -kUp, 1).trusted);
+  EXPECT_NE(drive.tracker.distrust().find("upright"), std::string::npos);
+  Driver above(pipette());
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_TRUE(above.tracker.step({0, 0, 40e-6}, -kUp, 1 + i * kStep).trusted);
+    EXPECT_EQ(above.tracker.distrust(), "") << "touched what it is not near";
+  }
 }
 
 TEST(SweptCell, PuncturesAtTheStatedForce) {

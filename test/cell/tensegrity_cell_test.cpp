@@ -59,6 +59,7 @@ TEST(TensegrityScene, ErrorsNameKeyAndWhatIsAllowed) {
   expectIn(errorsWith("intermediate_filaments", "prestrain", "3"), {"cell/intermediate_filaments/prestrain", "actin"});
   expectIn(errorsWith("", "holding_pipette", "{contact_radius: 1e-5}"), {"holding_pipette", "left out"});
   expectIn(errorsWith("", "mesh", "{size: 1e-5}"), {"mesh", "left out"});
+  expectIn(errorsWith("", "requirements", "{rate: 1000}"), {"requirements", "left out"});
   expectIn(errorsWith("cell", "biomembrane", "{thickness: 4e-6, dimple_radius: 1e-5}"),
            {"cell/biomembrane", "left out"});
   expectIn(errorsWith("", "needle", "{tip: {shape: hemisphere, radius: 3e-6}}"), {"needle/tip/shape", "disc"});

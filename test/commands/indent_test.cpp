@@ -210,6 +210,24 @@ TEST_F(IndentCommand, DrawsTheTipBack) {
   EXPECT_NE(deeper.err.find("must be below the depth before"), std::string::npos) << deeper.err;
 }
 
+/// It has one model and no finer meshes.
+TEST_F(IndentCommand, ATensegrityRefusesWhatItWouldIgnore) {
+  std::ofstream(directory_ + "tensegrity.yaml")
+      << "cell: {model: tensegrity, diameter: 56e-6, membrane: {divisions: 3},"
+      << " actin: {count: 10, prestrain: 0.05}, microtubules: {count: 4000},"
+      << " intermediate_filaments: {count: 10, prestrain: 0.05}}\n"
+      << "needle: {tip: {shape: disc, radius: 3e-6}}\n";
+  const std::string call = "--scene tensegrity.yaml --depths 1e-6";
+  const Outcome served = run(call);
+  ASSERT_EQ(served.status, 0) << served.err;
+  EXPECT_GT(table(served.out).at(0)[3], 0);
+  const Outcome refused = run(call + " --tolerance 0.01 --element p2_p0 --time 600 --withdraw 0");
+  EXPECT_EQ(refused.status, 2);
+  for (const char* option : {"--tolerance", "--element", "--time", "--withdraw"}) {
+    EXPECT_NE(refused.err.find(std::string(option) + ": must be left out"), std::string::npos) << refused.err;
+  }
+}
+
 TEST_F(IndentCommand, ExplainsItself) {
   const Outcome result = run("--help");
   EXPECT_EQ(result.status, 0);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "surrogate/allocation_count.h"
 #include "surrogate/spring_cells.h"
@@ -41,6 +42,24 @@ TEST(PreparedTracker, TrustsOnlyWhatWasPreparedAndPunctures) {
   EXPECT_TRUE(weak.punctured());
   EXPECT_FALSE(weak.contact());
   EXPECT_TRUE(weak.step(deep, up, 2e-3).force.isZero(0));
+}
+
+TEST(PreparedTracker, APoseThatIsNoNumberIsNotTrustedAndForgotten) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  const Scene scene = pipette();
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ(), deep(0, 0, 20e-6);
+  PreparedTracker tracker(scene, springs(scene));
+  EXPECT_FALSE(tracker.step({0, 0, kNan}, up, 0).trusted);
+  const TipForce before = tracker.step(deep, up, 1e-3);
+  ASSERT_TRUE(before.trusted && before.force.z() > 0);
+  for (const TipForce& force : {tracker.step({kNan, 0, 20e-6}, up, 2e-3), tracker.step(deep, {0, 0, kNan}, 2e-3),
+                                tracker.step(deep, up, kNan)}) {
+    EXPECT_FALSE(force.trusted);
+    EXPECT_TRUE(force.force.isZero(0));
+    EXPECT_NE(tracker.distrust(), "");
+  }
+  EXPECT_EQ(tracker.step(deep, up, 3e-3).force, before.force);
+  EXPECT_TRUE(tracker.contact());
 }
 
 /// In and out of the cell at places all over it, sideways, out of the range, tilted, and through puncture.

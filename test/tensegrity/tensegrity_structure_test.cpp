@@ -267,5 +267,46 @@ TEST(TensegrityLoading, KelvinVoigtResistsFastNeedles) {
   EXPECT_NEAR(fast.force().z() / reference.force().z(), 1, 1e-2);
 }
 
+/// Where stable equilibria end (Figure 13; a dent of the membrane turns over, by 1.9 um) it falls in the time of that
+/// step, and what is viscous remembers where it fell to: a short wait afterwards moves nothing.
+TEST(TensegrityLoading, WhatIsViscousRemembersWhereASnapEnded) {
+  constexpr double kRetardation = 0.5, kStep = 0.1e-6;  // s, m
+  TensegrityConfig config = bundles();
+  config.membrane.divisions = 8;
+  config.actin.retardation_time = config.intermediate.retardation_time = kRetardation;
+  config.membrane.retardation_time = kRetardation;
+  const auto structure = make(config);
+  for (const double slow : {2e3, 50.0}) {  // of the retardation time, that a step takes
+    TensegrityLoading loading(structure, {structure->endNode(topEnd(structure->geometry()))});
+    ASSERT_TRUE(loading.advance({0, 0, -26.25e-6}, 1e6).converged);
+    ASSERT_EQ(loading.snaps(), 0);
+    Eigen::VectorXd before;
+    for (double depth = 26.35e-6; loading.snaps() == 0 && depth < 28e-6; depth += kStep) {
+      before = loading.state();
+      ASSERT_TRUE(loading.advance({0, 0, -depth}, slow * kRetardation).converged);
+    }
+    ASSERT_GE(loading.snaps(), 1);
+    const Eigen::VectorXd fallen = loading.state();
+    const double fall = (fallen - before).lpNorm<Eigen::Infinity>();
+    EXPECT_GT(fall, 1e-6) << slow;
+    const Eigen::Vector3d place = loading.displacement();
+    ASSERT_TRUE(loading.advance(place, 1e-3 * kRetardation).converged);
+    EXPECT_LT((loading.state() - fallen).lpNorm<Eigen::Infinity>(), 1e-3 * fall) << slow;
+  }
+}
+
+/// No tension, no prestress: nothing keeps the membrane smooth, and its rest is not to be found.
+TEST(TensegrityLoading, AMembraneWithoutTensionCrumplesAndSaysSo) {
+  TensegrityConfig config = bundles(0);
+  config.membrane.tension = 0;
+  const auto structure = make(config);
+  TensegrityLoading loading(structure, {structure->endNode(topEnd(structure->geometry()))});
+  const LoadPath::Result result = loading.advance({0, 0, -5e-6});
+  EXPECT_FALSE(result.converged);
+  EXPECT_NE(result.reason.find("no stable equilibrium was found"), std::string::npos) << result.reason;
+  EXPECT_NE(result.reason.find("without tension"), std::string::npos) << result.reason;
+  EXPECT_GT(loading.displacement().z(), -5e-6);
+}
+
 }  // namespace
 }  // namespace microinjection
