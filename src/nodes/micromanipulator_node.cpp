@@ -44,7 +44,7 @@ MicromanipulatorNode::MicromanipulatorNode(ros::NodeHandle node, ros::NodeHandle
 MicromanipulatorNode::MicromanipulatorNode(const ros::NodeHandle& node, ConfigReader reader)
     : parameters_(Parameters::read(reader)),
       geometry_(ManipulatorGeometry::fromUrdf(urdfFromParameter(), parameters_.model.pipette_tilt)),
-      rig_(makeRigDevice(parameters_.rig, parameters_.emulated, geometry_, reader)),
+      rig_(makeRigDevice(parameters_.rig, parameters_.emulated, geometry_, reader.section("device"))),
       model_(geometry_, CollisionGuard(urdfFromParameter(), geometry_, parameters_.model.collision_margin),
              parameters_.model, *rig_.device),
       cycle_(node, parameters_.rate),
@@ -78,11 +78,14 @@ void MicromanipulatorNode::subscribe() {
         judge("move_cp", disabled_ ? unable() : model_.movePosition(*pose));
       }));
   subscribers_.push_back(node.subscribe<cell_microinjection::StringStamped>(
-      "needle/state_command", 10,
-      [this](const StringStampedConstPtr& message) { judge("state_command", obeyState(message->string)); }));
+      "needle/state_command", 10, [this](const StringStampedConstPtr& message) {
+        judge("state_command", obeyState(message->string));
+        answer_ = true;
+      }));
   if (!rig_.inject) return;
   subscribers_.push_back(node.subscribe<cell_microinjection::StringStamped>(
       "needle/emulated_fault", 10, [this](const StringStampedConstPtr& message) {
+        answer_ = true;
         try {
           rig_.inject(message->string, now_.toSec());
         } catch (const ConfigError& error) {
@@ -160,7 +163,9 @@ void MicromanipulatorNode::publishState(const ros::Time& now) {
   state.state = model_.state() == State::kFault ? "FAULT" : there ? "ENABLED" : "DISABLED";
   state.is_homed = model_.tipPose().has_value();  // axes are absolute
   state.is_busy = model_.moving() || rig_.device->moving();
-  if (state.state == said_.state && state.is_homed == said_.is_homed && state.is_busy == said_.is_busy) return;
+  const bool same = state.state == said_.state && state.is_homed == said_.is_homed && state.is_busy == said_.is_busy;
+  if (same && !answer_) return;
+  answer_ = false;
   if (state.state != said_.state) ROS_INFO_STREAM(state.state << (model_.why().empty() ? "" : ": ") << model_.why());
   state.header.stamp = now;
   state_.publish(state);

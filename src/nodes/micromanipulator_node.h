@@ -28,8 +28,8 @@ namespace microinjection {
 /// while
 ///      the device does not know; /needle/true_cp (PoseStamped), where the tip truly is: of the simulated device only;
 ///      /needle/abilities (ManipulatorAbilities), /needle/operating_state (OperatingState: DISABLED without connection,
-///      FAULT until enable); /needle/setpoint_trace (LatencyTrace); joint_states (JointState), for
-///      robot_state_publisher
+///      FAULT until enable; on change, and in answer to each state_command); /needle/setpoint_trace (LatencyTrace);
+///      joint_states (JointState), for robot_state_publisher
 ///
 /// Parameters: /robot_description (URDF), and private those of MicromanipulatorConfig and
 ///   rig                sim (default), or a name of rigs/rig_registry.h
@@ -84,6 +84,7 @@ class MicromanipulatorNode {
   cell_microinjection::OperatingState said_;
   cell_microinjection::ManipulatorAbilities told_;
   bool disabled_ = false;  ///< by command
+  bool answer_ = false;    ///< a state command was heard
   ros::Time joint_states_sent_;
   ros::Time now_;
   unsigned refused_ = 0;

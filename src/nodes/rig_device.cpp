@@ -78,7 +78,7 @@ RigDevice makeEmulated(const Rig& rig, ConfigReader& reader) {
 }  // namespace
 
 RigDevice makeRigDevice(const std::string& name, bool emulated, const ManipulatorGeometry& geometry,
-                        ConfigReader& reader) {
+                        ConfigReader reader) {
   if (name == "sim") {
     if (emulated) throw ConfigError("emulated = true: must be false with rig = sim, which has no driver");
     return makeSimulated(geometry, reader);

@@ -27,6 +27,6 @@ struct RigDevice {
 /// @param emulated  puts the driver on an emulated device in this process, in the node's own time
 /// @param reader    the device's own keys; finish() is called. @throws ConfigError
 RigDevice makeRigDevice(const std::string& name, bool emulated, const ManipulatorGeometry& geometry,
-                        ConfigReader& reader);
+                        ConfigReader reader);
 
 }  // namespace microinjection

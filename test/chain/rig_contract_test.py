@@ -68,7 +68,10 @@ class RigContract(unittest.TestCase):
         publisher.publish(message)
 
     def say(self, publisher, text):
+        """Until it was heard: from then on ticks count."""
+        sent = self.world.now
         self.send(publisher, StringStamped(string=text))
+        self.until(lambda: self.world.seen["/needle/operating_state"].header.stamp > sent, f"heard {text}")
 
     def is_at(self, target):
         return np.linalg.norm(self.needle() - target) <= self.near * np.sqrt(3)
@@ -78,10 +81,11 @@ class RigContract(unittest.TestCase):
         self.until(lambda: self.is_at(target) and not self.busy(), f"arrived at {target}")
 
     def check_stands(self, ticks=500):
+        """Two readings of a place may be off by a count each, in either direction."""
         held = self.needle()
         for _ in range(ticks):
             self.world.tick()
-            self.assertLessEqual(np.abs(self.needle() - held).max(), self.near)
+            self.assertLessEqual(np.abs(self.needle() - held).max(), 2 * self.near)
 
     # the contract
 
@@ -166,7 +170,6 @@ class RigContract(unittest.TestCase):
             with self.subTest(fault=fault):
                 self.go_to(START)
                 self.say(self.fault, fault)
-                self.world.run(5)
                 self.send(self.move, pose(30e-6, 0, 60e-6))
                 self.until(lambda: self.state() != "ENABLED" or self.is_at([30e-6, 0, 60e-6]), "noticed, or got over it")
                 if self.state() != "ENABLED":
