@@ -55,6 +55,7 @@ void SerialManipulator::clearFault() {
 
 void SerialManipulator::beginSession(double quiet) {
   wire_->write(link_.stop, time_);
+  stopSaid();
   stopped_ = !goal_;
   talking_ = false;
   drain_since_ = last_byte_ = time_;

@@ -48,6 +48,8 @@ class SerialManipulator : public ManipulatorDevice {
   /// Begins the conversation anew: whatever was asked is void, and the device has been told to stop. `lost`: something
   /// went wrong or the line is new, so that nothing is known of the device; otherwise it was just stopped.
   virtual void begin(bool lost) = 0;
+  /// The device has been told to stop and will stand in a moment; what it says is not heard until `begin`.
+  virtual void stopSaid() {}
   /// Goes on with the conversation: with what came, and with what is to be said.
   virtual void talk(const std::string& bytes) = 0;
   /// A new goal (goal() is set) came or the goal went.

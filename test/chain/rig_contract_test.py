@@ -52,7 +52,8 @@ class RigContract(unittest.TestCase):
         return self.world.seen["/needle/operating_state"].is_busy
 
     def refusal(self):
-        return self.world.status("micromanipulator: commands")[1]
+        status = self.world.diagnostics.get("micromanipulator: commands")
+        return status.message if status else ""
 
     # what it is told
 
@@ -69,9 +70,10 @@ class RigContract(unittest.TestCase):
 
     def say(self, publisher, text):
         """Until it was heard: from then on ticks count."""
-        sent = self.world.now
+        self.world.run(3)  # what it has to say of its own accord
+        before = self.world.seen["/needle/operating_state"]
         self.send(publisher, StringStamped(string=text))
-        self.until(lambda: self.world.seen["/needle/operating_state"].header.stamp > sent, f"heard {text}")
+        self.until(lambda: self.world.seen["/needle/operating_state"] is not before, f"heard {text}")
 
     def is_at(self, target):
         return np.linalg.norm(self.needle() - target) <= self.near * np.sqrt(3)
@@ -133,8 +135,8 @@ class RigContract(unittest.TestCase):
         np.testing.assert_allclose(self.needle(), held, atol=self.near)
 
     def test_stop(self):
-        """Stands after 50 ms and what the wire takes, wherever in its exchange the stop finds it."""
-        bound = int(round((0.05 + self.abilities.stop_time) / TICK)) + 1
+        """Within 50 ms and what the wire takes, wherever in its exchange the stop finds it."""
+        way = self.abilities.speed * (0.05 + self.abilities.stop_time)  # m, the farthest it may still go
         for ticks in (137, 211, 333):
             self.go_to(START)
             self.send(self.move, pose(2e-3, 0, 60e-6))
@@ -142,9 +144,10 @@ class RigContract(unittest.TestCase):
             self.world.run(ticks)
             self.assertLess(self.needle()[0], 1.9e-3)
             self.say(self.command, "stop")
-            self.world.run(bound)
-            self.check_stands()
+            told = self.needle()
             self.until(lambda: not self.busy(), "came to rest")
+            self.assertLessEqual(np.linalg.norm(self.needle() - told), way)
+            self.check_stands()
 
     def test_stale_commands_hold(self):
         z = START[2]
@@ -162,7 +165,11 @@ class RigContract(unittest.TestCase):
         self.check_holds_after_silence()
 
     def check_holds_after_silence(self):
-        self.world.run(int(round((STALE + 0.05 + self.abilities.stop_time) / TICK)) + 1)
+        """The end is a true reading: what was carried on until then may be a little beside it."""
+        told = self.needle()
+        self.world.run(int(round((STALE + 0.05 + self.abilities.stop_time + self.abilities.reading_interval) / TICK)) + 1)
+        farthest = 20e-6 * (STALE + 0.05 + self.abilities.stop_time + self.abilities.command_interval) + 2 * self.near
+        self.assertLessEqual(np.linalg.norm(self.needle() - told), farthest)
         self.check_stands()
 
     def test_fault_and_recovery(self):
@@ -171,10 +178,11 @@ class RigContract(unittest.TestCase):
                 self.go_to(START)
                 self.say(self.fault, fault)
                 self.send(self.move, pose(30e-6, 0, 60e-6))
-                self.until(lambda: self.state() != "ENABLED" or self.is_at([30e-6, 0, 60e-6]), "noticed, or got over it")
+                self.until(lambda: self.state() != "ENABLED" or (self.is_at([30e-6, 0, 60e-6]) and not self.busy()),
+                           "noticed, or got over it")
                 if self.state() != "ENABLED":
                     self.send(self.move, pose(60e-6, 0, 60e-6))
-                    self.until(lambda: "refused" in self.refusal(), "refused a move while it was at fault")
+                    self.until(lambda: "move_cp refused" in self.refusal(), "refused a move while it was at fault")
                     self.world.run(2000)
                     self.say(self.command, "enable")
                     self.until(lambda: self.state() == "ENABLED", "recovered")
@@ -182,6 +190,8 @@ class RigContract(unittest.TestCase):
                 self.go_to([10e-6, 0, 70e-6])
 
     def test_pulled_cable(self):
+        if self.abilities.device == "simulated":
+            self.skipTest("the simulated rig has no cable")
         self.send(self.move, pose(500e-6, 0, 60e-6))
         self.until(lambda: self.needle()[0] > 5e-6, "set off")
         self.say(self.fault, "pull:2.0")

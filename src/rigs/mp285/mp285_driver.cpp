@@ -70,14 +70,17 @@ bool Mp285Driver::moving() const {
 void Mp285Driver::begin(bool lost) {
   exchange_.reset();
   filter_.forget();
-  if (position_) position_ = carriedOn(time());
-  move_.reset();
   settled_ = asked_stop_ = false;
   reading_due_ = true;
   if (lost) {
     asked_status_ = absolute_ = false;
     speed_.reset();
   }
+}
+
+void Mp285Driver::stopSaid() {
+  if (position_) position_ = carriedOn(time() + byteTime());
+  move_.reset();
 }
 
 void Mp285Driver::talk(const std::string& bytes) {

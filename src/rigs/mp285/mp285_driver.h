@@ -29,6 +29,7 @@ class Mp285Driver : public SerialManipulator {
 
  protected:
   void begin(bool lost) override;
+  void stopSaid() override;
   void talk(const std::string& bytes) override;
   void goalChanged() override { tries_ = 0; }
 
