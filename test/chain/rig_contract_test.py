@@ -117,6 +117,7 @@ class RigContract(unittest.TestCase):
             self.assertGreaterEqual(self.needle()[2] - z, -2 * self.near - speed * 0.02)
         self.until(lambda: self.is_at([0, 0, z]), "arrived at the last set-point",
                    lambda: {"/needle/servo_cp": pose(0, 0, z)})
+        self.until(lambda: not self.busy(), "came to rest")
         self.check_stands()
         self.assertTrue(self.is_at([0, 0, z]))
 
