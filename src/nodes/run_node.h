@@ -2,6 +2,7 @@
 
 #include <ros/ros.h>
 
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <string>
@@ -23,6 +24,8 @@ int runNode(int argc, char** argv, const std::string& name, Priority priority = 
     }
   }
   ros::init(argc, argv, name);
+  // roscpp hears SIGINT only: at these, too, a device is told to stop before the end.
+  for (const int number : {SIGTERM, SIGHUP}) std::signal(number, [](int) { ros::requestShutdown(); });
   if (!takesPartInLockstep()) prefer(priority);
   // These outlive the try block: the end of the last handle shuts ROS down, and its log with it.
   const ros::NodeHandle node_handle, private_node_handle("~");

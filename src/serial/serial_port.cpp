@@ -9,6 +9,8 @@
 #include <boost/asio/write.hpp>
 #include <cstring>
 
+#include "serial/last_words.h"
+
 namespace microinjection {
 
 namespace asio = boost::asio;
@@ -33,6 +35,7 @@ struct SerialPort::Line {
   std::string unsent;   // handed over, and not yet given to the system
   std::string sending;  // must stay where it is while it is sent
   bool broken = false;
+  LastWords last_words;
 
   std::string open(const SerialPortConfig& config) {
     error_code error;
@@ -87,7 +90,9 @@ SerialPort::~SerialPort() = default;
 
 std::string SerialPort::open() {
   line_ = std::make_unique<Line>();
-  const std::string reason = line_->open(config_);
+  std::string reason = line_->open(config_);
+  if (reason.empty() && !last_words_.empty())
+    reason = line_->last_words.begin(line_->port.native_handle(), last_words_);
   if (!reason.empty()) line_.reset();
   return reason;
 }

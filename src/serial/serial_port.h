@@ -24,6 +24,7 @@ class SerialPort : public Wire {
   explicit SerialPort(const SerialPortConfig& config);
   ~SerialPort() override;
 
+  void setLastWords(const std::string& bytes) override { last_words_ = bytes; }
   std::string open() override;  ///< what came while nobody listened is thrown away
   bool isOpen() const override;
   std::string read(double time) override;
@@ -32,6 +33,7 @@ class SerialPort : public Wire {
  private:
   struct Line;  // Asio's headers are heavy
   SerialPortConfig config_;
+  std::string last_words_;
   std::unique_ptr<Line> line_;  // none: closed
 };
 

@@ -1,9 +1,11 @@
 #include "serial/serial_port.h"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -89,6 +91,42 @@ TEST_F(SerialPortTest, ADriverMayGoAndAnotherComes) {
   ASSERT_EQ(port_.open(), "");
   terminal.write("second");
   EXPECT_TRUE(portReads("second"));  // what came before it opened is not its own
+}
+
+/// A program of its own that says "go on" and ends: killed, or in good order.
+void runDriver(const SerialPortConfig& config, int signal) {
+  const pid_t driver = fork();
+  if (driver == 0) {
+    {
+      SerialPort port(config);
+      port.setLastWords("stop");
+      if (!port.open().empty()) _exit(1);
+      port.write("go on, ", 0);
+      if (signal != 0) raise(signal);
+    }
+    _exit(0);
+  }
+  int status = 0;
+  waitpid(driver, &status, 0);
+  ASSERT_EQ(signal != 0 ? WTERMSIG(status) : WEXITSTATUS(status), signal);
+}
+
+TEST_F(SerialPortTest, AKilledDriversLastWordsAreSaid) {
+  PseudoTerminal terminal(link_);
+  for (const int signal : {SIGKILL, SIGTERM, SIGSEGV}) {
+    runDriver({link_, 9600}, signal);
+    EXPECT_TRUE(terminalReads(terminal, "go on, stop")) << heard_;
+    SerialPort next({link_, 9600});
+    EXPECT_TRUE(eventually([&] { return next.open().empty(); }));  // and the line is free again
+  }
+}
+
+TEST_F(SerialPortTest, ADriverThatClosesItsLineHasNoLastWords) {
+  PseudoTerminal terminal(link_);
+  runDriver({link_, 9600}, 0);
+  ASSERT_EQ(port_.open(), "");
+  port_.write("next", 0);
+  EXPECT_TRUE(terminalReads(terminal, "go on, next")) << heard_;
 }
 
 TEST_F(SerialPortTest, TheTerminalTakesItsLinkAway) {

@@ -1,0 +1,73 @@
+#include "serial/last_words.h"
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+
+namespace microinjection {
+namespace {
+
+/// The guard: after fork in a program with threads only what is safe in a signal handler may be called.
+[[noreturn]] void guard(int line, int parent, const char* words, std::size_t size) {
+  setsid();  // what ends the program's whole group must not end this one
+  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) signal(number, SIG_IGN);
+  prctl(PR_SET_NAME, "last_words");  // nor what ends programs by their name
+  // Nothing else may be kept open: neither connections nor the pipe's other end.
+  dup2(line, 0);
+  dup2(parent, 1);
+  close_range(3, ~0U, 0);
+  close(2);
+  char farewell = 0;
+  ssize_t got = 0;
+  while ((got = read(1, &farewell, 1)) < 0 && errno == EINTR) {
+  }
+  if (got == 0) {
+    fcntl(0, F_SETFL, fcntl(0, F_GETFL) & ~O_NONBLOCK);
+    while (size > 0) {
+      const ssize_t written = write(0, words, size);
+      if (written <= 0) break;
+      words += written;
+      size -= static_cast<std::size_t>(written);
+    }
+  }
+  _exit(0);
+}
+
+}  // namespace
+
+std::string LastWords::begin(int line, const std::string& words) {
+  end();
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) return std::strerror(errno);
+  // 0 and 1 are where the guard puts its own.
+  const int parent = fcntl(ends[0], F_DUPFD_CLOEXEC, 3), tty = fcntl(line, F_DUPFD_CLOEXEC, 3);
+  guard_ = parent < 0 || tty < 0 ? -1 : fork();
+  if (guard_ == 0) guard(tty, parent, words.data(), words.size());
+  const std::string why = guard_ < 0 ? std::strerror(errno) : "";
+  for (const int each : {ends[0], parent, tty}) {
+    if (each >= 0) close(each);
+  }
+  parent_ = ends[1];
+  if (!why.empty()) end();
+  return why;
+}
+
+void LastWords::end() {
+  if (parent_ >= 0) {
+    const char farewell = 'x';
+    [[maybe_unused]] const ssize_t said = write(parent_, &farewell, 1);  // a guard that is gone says nothing either
+    close(parent_);
+  }
+  if (guard_ > 0) {
+    while (waitpid(guard_, nullptr, 0) < 0 && errno == EINTR) {
+    }
+  }
+  guard_ = parent_ = -1;
+}
+
+}  // namespace microinjection
