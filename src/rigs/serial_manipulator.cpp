@@ -14,7 +14,9 @@ constexpr int kSuccessesToForget = 12;  // exchanges after which a failure is no
 }  // namespace
 
 SerialManipulator::SerialManipulator(std::unique_ptr<Wire> wire, const Link& link)
-    : wire_(std::move(wire)), link_(link), why_(link.device + ": not connected yet") {}
+    : wire_(std::move(wire)), link_(link), why_(link.device + ": not connected yet") {
+  wire_->setLastWords(link_.stop);  // a node that is killed must not leave a device in motion
+}
 
 SerialManipulator::~SerialManipulator() {
   if (wire_->isOpen()) wire_->write(link_.stop, time_);
@@ -65,7 +67,7 @@ void SerialManipulator::beginSession(double quiet) {
 void SerialManipulator::stopFirst() { beginSession(link_.quiet_in_step); }
 
 void SerialManipulator::lineLost() {
-  was_open_ = talking_ = ready_ = stop_wanted_ = false;
+  was_open_ = talking_ = ready_ = sure_ = stop_wanted_ = false;
   next_open_ = time_ + kOpenInterval;
   why_ = link_.device + ": the line broke; trying again";
   dropGoal();
@@ -84,14 +86,14 @@ void SerialManipulator::lostStep(const std::string& reason) {
 void SerialManipulator::raiseFault(const std::string& reason) {
   const bool again = !fault_.empty() && !clearing_;
   fault_ = link_.device + ": " + reason;
-  clearing_ = false;
+  clearing_ = sure_ = false;
   lost_ = true;
   dropGoal();
   beginSession(again ? std::max(kPauseInFault, link_.quiet_after_loss) : link_.quiet_after_loss);
 }
 
 void SerialManipulator::known() {
-  ready_ = true;
+  ready_ = sure_ = true;
   if (clearing_) fault_.clear();
   clearing_ = false;
 }

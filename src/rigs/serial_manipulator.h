@@ -58,6 +58,8 @@ class SerialManipulator : public ManipulatorDevice {
   double time() const { return time_; }  ///< s, of this step
   const std::optional<Goal>& goal() const { return goal_; }
   bool talking() const { return talking_; }
+  /// Whether positions may be told: not before the first session has settled, and from a fault until one has again.
+  bool sure() const { return sure_ && state() != State::kDisconnected; }
   bool mayMove() const { return ready_ && fault_.empty(); }
   bool clearing() const { return clearing_; }  ///< clearFault() was called and this session tries
   void say(const std::string& bytes) { wire_->write(bytes, time_); }
@@ -82,6 +84,7 @@ class SerialManipulator : public ManipulatorDevice {
   double drain_since_ = 0;  // s
   double quiet_ = 0;        // s, of silence to wait for
   bool was_open_ = false, talking_ = false, ready_ = false, clearing_ = false, stop_wanted_ = false;
+  bool sure_ = false;     // where everything is
   bool lost_ = true;      // before this session
   bool stopped_ = false;  // told to stop, and to do nothing since
   int failures_ = 0, successes_ = 0;

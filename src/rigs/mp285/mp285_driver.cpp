@@ -48,7 +48,7 @@ double Mp285Driver::timeLeft() const {
 }
 
 std::optional<ManipulatorDevice::Reading> Mp285Driver::reading() const {
-  if (!position_ || state() == State::kDisconnected) return std::nullopt;
+  if (!position_ || !sure()) return std::nullopt;
   const Eigen::Vector3d place = carriedOn(time()) * microstep_;
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
   if (timeLeft() > 0 && time() > move_->begin) {

@@ -26,7 +26,8 @@ ZaberDriver::ZaberDriver(const ZaberConfig& config, std::unique_ptr<Wire> wire)
     : SerialManipulator(std::move(wire), {"Zaber", stopAll(config), config.answer_time + 60 * byteTime(config) + 5e-3,
                                           config.reply_timeout + 2 * kMessageBytes * byteTime(config)}),
       config_(config),
-      parser_(config.reply_checksum) {}
+      parser_(config.reply_checksum),
+      may_home_(config.home) {}
 
 double ZaberDriver::exchangeTime() const { return 2 * kMessageBytes * byteTime(config_) + config_.answer_time; }
 
@@ -60,7 +61,7 @@ double ZaberDriver::expected(int i, double at) const {
 std::optional<ManipulatorDevice::Reading> ZaberDriver::reading() const {
   Eigen::Vector3d device, velocity;
   for (int i = 0; i < 3; ++i) {
-    if (!axes_[i].position || state() == State::kDisconnected) return std::nullopt;
+    if (!axes_[i].position || !sure()) return std::nullopt;
     device[i] = expected(i, time());
     velocity[i] = !std::isnan(axes_[i].end) && device[i] == axes_[i].end ? 0 : axes_[i].velocity;
   }
@@ -89,7 +90,7 @@ void ZaberDriver::begin(bool /*lost*/) {
     axis.told.reset();
     axis.velocity = 0;
     axis.end = std::nan("");
-    axis.read_since_begin = axis.homed = false;
+    axis.read_since_begin = axis.homed = axis.still_moves = false;
     axis.busy = axis.has_reference = true;
     axis.cleared = !clearing();
     axis.stalls = 0;
@@ -156,6 +157,7 @@ void ZaberDriver::handleReply(const ZaberMessage& reply) {
   const double speed_unit = config_.microsteps_per_metre[done.axis] * kZaberSpeedUnit;  // for 1 m/s
   switch (done.kind) {
     case Kind::kPosition:
+      axis.still_moves = reply.busy;
       takePosition(reply);
       break;
     case Kind::kVelocity:
@@ -180,6 +182,9 @@ void ZaberDriver::handleReply(const ZaberMessage& reply) {
       break;
     case Kind::kClear:
       axis.cleared = true;
+      break;
+    case Kind::kStop:
+      axis.still_moves = false;  // until it says otherwise
       break;
     case Kind::kHome:
       axis.homed = axis.busy = true;

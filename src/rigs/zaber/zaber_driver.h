@@ -15,7 +15,8 @@ namespace microinjection {
 /// gain; moves are the device's own, with a speed for each axis that makes the line straight but for the ramps.
 ///
 /// One message is under way at a time, in turn: an axis' velocity when it has changed, the axis' position. An axis
-/// without a reference position is a fault: homing moves, so the user has it done (`home: true`, or the maker's tool).
+/// without a reference position is a fault: homing moves, so the user has it done (`home: true`, at the start only, or
+/// the maker's tool).
 class ZaberDriver : public SerialManipulator {
  public:
   ZaberDriver(const ZaberConfig& config, std::unique_ptr<Wire> wire);
@@ -34,7 +35,7 @@ class ZaberDriver : public SerialManipulator {
   void goalChanged() override;
 
  private:
-  enum class Kind { kPosition, kVelocity, kSpeed, kMove, kClear, kHome };
+  enum class Kind { kPosition, kVelocity, kSpeed, kMove, kClear, kHome, kStop };
   struct Exchange {
     Kind kind;
     int axis;
@@ -55,6 +56,7 @@ class ZaberDriver : public SerialManipulator {
     double move_speed = 0;  // m/s, set for the move
     bool read_since_begin = false, read_since_move = false;
     bool has_reference = true, cleared = true, homed = false;
+    bool still_moves = false;  // it said so after it was told to stop
     int stalls = 0;
   };
 
@@ -86,6 +88,7 @@ class ZaberDriver : public SerialManipulator {
   std::optional<Exchange> exchange_;
   double begun_ = 0;      // s, of this session
   bool settled_ = false;  // in this session everything has been read and was at rest
+  bool may_home_;         // until everything has been known once
   int number_ = 0;        // of the last command
   int turn_ = 0;          // 0..5: velocity and position of each axis
   int move_stage_ = 0;    // of a move: 0..2 speeds, 3..5 positions, then under way

@@ -28,6 +28,8 @@ bool ZaberDriver::nextOfSession() {
   for (int i = 0; i < 3; ++i) {
     Axis& axis = axes_[i];
     if (!axis.cleared) return ask(Kind::kClear, i, "warnings clear"), true;
+    // Braking, or the session's stop did not reach it.
+    if (axis.still_moves && !axis.homed) return ask(Kind::kStop, i, "stop"), true;
     if (!axis.read_since_begin || axis.busy || axis.filter.doubts()) {
       if (time() - begun_ > (axis.homed ? kLongestHoming : kLongestBraking)) {
         lostStep(axisName(i) + (axis.busy ? " does not come to rest" : " has no steady position"));
@@ -39,14 +41,15 @@ bool ZaberDriver::nextOfSession() {
     if (!axis.has_reference && nextOfHoming(i)) return true;
   }
   settled_ = true;
+  may_home_ = false;
   known();
   return false;
 }
 
 bool ZaberDriver::nextOfHoming(int i) {
   if (state() == State::kFault && !clearing()) return false;
-  // A cleared fault is no leave to move.
-  if (!config_.home || axes_[i].homed || clearing()) {
+  // Neither a cleared fault nor a device that was switched off and on is leave to move.
+  if (!may_home_ || axes_[i].homed || clearing()) {
     raiseFault(axisName(i) + " has no reference position: home it, by its maker's tool or by home: true at the start");
     return true;
   }

@@ -197,7 +197,9 @@ TEST_F(Mp285Test, LongSilenceIsAFaultThatCanBeCleared) {
   rig_->inject("silence:8");
   ASSERT_TRUE(rig_->runUntil([&] { return rig_->driver().state() == State::kFault; }, 7));
   EXPECT_NE(rig_->driver().why().find("no answer"), std::string::npos) << rig_->driver().why();
+  EXPECT_FALSE(rig_->driver().reading());
   rig_->run(8);
+  expectNear(rig_->read(), rig_->place(), 1e-9);
   EXPECT_EQ(rig_->driver().state(), State::kFault);  // latched
   rig_->driver().clearFault();
   ASSERT_TRUE(rig_->runUntilReady());

@@ -158,7 +158,9 @@ TEST_F(ZaberTest, LongSilenceIsAFaultThatCanBeCleared) {
   rig_->inject("silence:5");
   ASSERT_TRUE(rig_->runUntil([&] { return rig_->driver().state() == State::kFault; }, 4));
   EXPECT_NE(rig_->driver().why().find("no answer"), std::string::npos) << rig_->driver().why();
+  EXPECT_FALSE(rig_->driver().reading());  // nobody knows where a device is that does not answer
   rig_->run(5);
+  expectNear(rig_->read(), rig_->place(), 0.1 * kStep);
   EXPECT_EQ(rig_->driver().state(), State::kFault);  // latched
   EXPECT_FALSE(rig_->device().moves());              // the stop was said again until it was heard
   rig_->driver().clearFault();
@@ -211,6 +213,38 @@ TEST_F(ZaberTest, HomesWhenItsConfigurationSaysSo) {
   ASSERT_TRUE(rig_->runUntilReady(30)) << rig_->driver().why();
   expectNear(rig_->device().position(), Eigen::Vector3d::Zero(), kStep);
   expectNear(rig_->read(), rig_->place(), 0.1 * kStep);
+}
+
+TEST_F(ZaberTest, AStopThatTheLineLostIsSaidAgain) {
+  start();
+  const Eigen::Vector3d velocity(1e-3, 0, 0);
+  Eigen::Vector3d goal = rig_->place();
+  rig_->run(0.3, [&] { rig_->driver().follow(goal += velocity * 1e-3, velocity); });
+  rig_->inject("deaf:39");  // the three stops
+  const Eigen::Vector3d from = rig_->place();
+  const double told = rig_->time();
+  rig_->driver().stop();
+  ASSERT_TRUE(rig_->runUntil([&] { return !rig_->device().moves(); }, 5));
+  EXPECT_LT(rig_->time() - told, 0.15);
+  EXPECT_LT((rig_->place() - from).norm(), 0.15e-3);
+  ASSERT_TRUE(rig_->runUntilArrived());
+  expectNear(rig_->read(), rig_->place(), 0.1 * kStep);
+}
+
+TEST_F(ZaberTest, ADeviceThatWasSwitchedOffAndOnDoesNotHomeByItself) {
+  ZaberConfig driver = config();
+  driver.home = true;
+  make({}, driver);
+  start();
+  rig_->wire().pull();
+  rig_->run(0.1);
+  rig_->inject("error:WR");  // it has lost its reference position
+  rig_->wire().plug();
+  const Eigen::Vector3d there = rig_->place();
+  ASSERT_TRUE(rig_->runUntil([&] { return rig_->driver().state() == State::kFault; }, 3));
+  EXPECT_NE(rig_->driver().why().find("home"), std::string::npos) << rig_->driver().why();
+  rig_->run(1);
+  expectNear(rig_->place(), there, 0);
 }
 
 TEST_F(ZaberTest, ConnectsAgainByItselfAndRests) {
