@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "manipulator/approach_speed.h"
 
@@ -63,8 +64,18 @@ void Micromanipulator::begin(Mode mode, const AxesMotion& from) {
   ended_.clear();
 }
 
-std::string Micromanipulator::servoPosition(const Eigen::Isometry3d& tip_pose) {
+/// Why nothing may be moved by a stream, of which one command is here; else empty.
+std::string Micromanipulator::streamRefusal() {
+  const bool begins = std::exchange(stream_pause_, 0) > config_.command_timeout;
   if (const std::string why = unable(); !why.empty()) return why;
+  if (begins) held_off_ = false;
+  if (!held_off_) return "";
+  return "the needle was stopped; a stream moves it again after a pause of " + std::to_string(config_.command_timeout) +
+         " s or after enable";
+}
+
+std::string Micromanipulator::servoPosition(const Eigen::Isometry3d& tip_pose) {
+  if (const std::string why = streamRefusal(); !why.empty()) return why;
   const Commanded commanded = checkPose(tip_pose);
   if (!commanded.refusal.empty()) return commanded.refusal;
   const AxesMotion from = start();
@@ -99,7 +110,7 @@ std::string Micromanipulator::movePosition(const Eigen::Isometry3d& tip_pose) {
 
 std::string Micromanipulator::servoVelocity(const Eigen::Vector3d& velocity, double time) {
   if (!velocity.allFinite()) return "velocity is not finite";
-  if (const std::string why = unable(); !why.empty()) return why;
+  if (const std::string why = streamRefusal(); !why.empty()) return why;
   const Eigen::Vector3d joint_velocity = geometry_.directions.inverse() * velocity;
   if (const std::string why = geometry_.tooFast(joint_velocity); !why.empty()) return why;
   // Too near to an end of its travel or to an obstacle to go that way for a step and come to rest before it?
@@ -121,12 +132,18 @@ void Micromanipulator::rest() {
   setpoint_.reset();
 }
 
-void Micromanipulator::stop() {
+void Micromanipulator::halt() {
   device_->stop();
   rest();
 }
 
+void Micromanipulator::stop() {
+  halt();
+  held_off_ = true;
+}
+
 void Micromanipulator::clearFault() {
+  if (device_->state() == ManipulatorDevice::State::kReady) held_off_ = false;
   rest();
   device_->clearFault();
 }
@@ -170,7 +187,7 @@ void Micromanipulator::stepServo(double dt) {
   }
   if (goal_age_ > config_.command_timeout) {
     if (!atRest(geometry_, *setpoint_, goal_, dt) || device_->moving()) {
-      stop();
+      halt();
       ended_ = "servo_cp is stale";
     } else {
       arrive();
@@ -239,7 +256,11 @@ void Micromanipulator::stepMode(double time, double dt) {
 void Micromanipulator::step(double time, double dt) {
   if (last_dt_ == 0) device_->step(time - dt);  // sets its clock
   last_dt_ = dt;
-  if (!unable().empty()) rest();
+  stream_pause_ += dt;
+  if (!unable().empty()) {
+    rest();
+    held_off_ = true;
+  }
   if (mode_ != Mode::kHold) {
     stepMode(time, dt);
     if (setpoint_) device_->follow(setpoint_->position, setpoint_->velocity);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -27,7 +28,9 @@ struct MicromanipulatorConfig {
 /// A set-point follows the last accepted command within the URDF's travel, speed and acceleration and clear of
 /// obstacles: at any time it could brake without leaving them. A command that changes no faster than that is followed
 /// without lag. The device follows the set-point, or is sent where the set-point should go. A refused command leaves
-/// everything as it was. After a stop or a fault the set-point is where the device says it is.
+/// everything as it was. After a stop or a fault the set-point is where the device says it is, and a stream of commands
+/// that went on meanwhile moves nothing: it must pause for command_timeout first, or clearFault() be called when the
+/// device is ready.
 class Micromanipulator {
  public:
   /// @param device  outlives this
@@ -39,7 +42,7 @@ class Micromanipulator {
   std::string servoVelocity(const Eigen::Vector3d& velocity, double time);  ///< CRTK servo_cv; m/s, `world`
   std::string movePosition(const Eigen::Isometry3d& tip_pose);              ///< CRTK move_cp; m, `world`
   void stop();                                                              ///< stops the device at once
-  void clearFault();                                                        ///< of the device, whose cause is gone
+  void clearFault();  ///< of the device, whose cause is gone; when there is none, lets a stream go on after a stop
 
   /// Advances by dt (s, > 0) to `time` (s), and the device with it.
   void step(double time, double dt);
@@ -63,11 +66,13 @@ class Micromanipulator {
     std::string refusal;
   };
   std::string unable() const;
+  std::string streamRefusal();
   Commanded checkPose(const Eigen::Isometry3d& tip_pose) const;
   AxesMotion start() const;
   Eigen::Vector3d restAfter(const AxesMotion& motion) const;
   void begin(Mode mode, const AxesMotion& from);
   void rest();
+  void halt();
   std::string advance(const Eigen::Vector3d& velocity, double dt);
   void stepMode(double time, double dt);
   void stepServo(double dt);
@@ -83,12 +88,14 @@ class Micromanipulator {
   bool follows_;  ///< the device, set-points while it moves
   Mode mode_ = Mode::kHold;
   std::optional<AxesMotion> setpoint_;
-  Eigen::Vector3d goal_ = Eigen::Vector3d::Zero();              ///< m, joints, of servo_cp and move_cp
-  Eigen::Vector3d last_goal_ = Eigen::Vector3d::Zero();         ///< m, joints, of the servo_cp before
-  bool goal_is_new_ = false;                                    ///< servo_cp: came since the last step
-  double goal_age_ = 0;                                         ///< s, since the last servo_cp was taken up
-  Eigen::Vector3d velocity_command_ = Eigen::Vector3d::Zero();  ///< m/s, joints
-  double velocity_command_time_ = 0;                            ///< s
+  Eigen::Vector3d goal_ = Eigen::Vector3d::Zero();                 ///< m, joints, of servo_cp and move_cp
+  Eigen::Vector3d last_goal_ = Eigen::Vector3d::Zero();            ///< m, joints, of the servo_cp before
+  bool goal_is_new_ = false;                                       ///< servo_cp: came since the last step
+  double goal_age_ = 0;                                            ///< s, since the last servo_cp was taken up
+  Eigen::Vector3d velocity_command_ = Eigen::Vector3d::Zero();     ///< m/s, joints
+  double velocity_command_time_ = 0;                               ///< s
+  bool held_off_ = false;                                          ///< streams are
+  double stream_pause_ = std::numeric_limits<double>::infinity();  ///< s, since the last command of a stream
   std::string ended_;
   double last_dt_ = 0;  ///< s, of the last step; 0 before the first
 };

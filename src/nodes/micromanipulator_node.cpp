@@ -1,5 +1,7 @@
 #include "nodes/micromanipulator_node.h"
 
+#include <algorithm>
+
 #include "base/errors.h"
 #include "nodes/conversions.h"
 #include "nodes/latency_meter.h"
@@ -7,6 +9,9 @@
 
 namespace microinjection {
 namespace {
+
+// s: what a publisher latched, and a node that starts anew hears again, must not move the needle a second time.
+constexpr double kOldestMove = 3;
 
 std::string urdfFromParameter() {
   std::string urdf;
@@ -69,12 +74,15 @@ void MicromanipulatorNode::subscribe() {
       "needle/servo_cv", 10, [this](const geometry_msgs::TwistStampedConstPtr& message) {
         const auto velocity = trustedVelocity(message.get());
         if (!velocity) return judge("servo_cv", "not a valid velocity in world");
-        judge("servo_cv", disabled_ ? unable() : model_.servoVelocity(*velocity, now_.toSec()));
+        const double old = std::max(0.0, age(message->header));
+        if (old > parameters_.model.velocity_command_timeout) return judge("servo_cv", "it is stale");
+        judge("servo_cv", disabled_ ? unable() : model_.servoVelocity(*velocity, time() - old));
       }));
   subscribers_.push_back(node.subscribe<geometry_msgs::PoseStamped>(
       "needle/move_cp", 10, [this](const geometry_msgs::PoseStampedConstPtr& message) {
         const auto pose = trustedPose(message.get());
         if (!pose) return judge("move_cp", "not a valid pose in world");
+        if (age(message->header) > kOldestMove) return judge("move_cp", "it is stale");
         judge("move_cp", disabled_ ? unable() : model_.movePosition(*pose));
       }));
   subscribers_.push_back(node.subscribe<cell_microinjection::StringStamped>(
@@ -87,7 +95,7 @@ void MicromanipulatorNode::subscribe() {
       "needle/emulated_fault", 10, [this](const StringStampedConstPtr& message) {
         answer_ = true;
         try {
-          rig_.inject(message->string, now_.toSec());
+          rig_.inject(message->string, time());
         } catch (const ConfigError& error) {
           judge("emulated_fault", error.what());
         }
@@ -135,10 +143,11 @@ void MicromanipulatorNode::obeyServo(const Cycle::Tick& tick) {
 }
 
 void MicromanipulatorNode::step(const Cycle::Tick& tick) {
+  if (tick.now < now_) set_back_ += (now_ - tick.now).toSec();
   now_ = tick.now;
   obeyServo(tick);
-  if (rig_.before_step) rig_.before_step(tick.now.toSec());
-  model_.step(tick.now.toSec(), tick.dt);
+  if (rig_.before_step) rig_.before_step(time());
+  model_.step(time(), tick.dt);
   publish(tick);
   publishState(tick.now);
   publishAbilities(tick.now);

@@ -21,7 +21,8 @@ namespace microinjection {
 /// A micromanipulator, simulated, emulated or real, behind the same topics. A refused command leaves the needle where
 /// it was; the reason is logged and shown on the diagnostics.
 ///
-/// In:  /needle/servo_cp (PoseStamped), /needle/servo_cv (TwistStamped), /needle/move_cp (PoseStamped), in `world`;
+/// In:  /needle/servo_cp (PoseStamped), /needle/servo_cv (TwistStamped), /needle/move_cp (PoseStamped), in `world`; old
+/// ones are refused;
 ///      /needle/state_command (StringStamped: enable, disable, stop);
 ///      /needle/emulated_fault (StringStamped, see serial/fault.h), of a simulated or emulated device
 /// Out: /needle/measured_cp (PoseStamped), /needle/measured_cv (TwistStamped), both at the tip in `world`, stamp 0
@@ -59,6 +60,9 @@ class MicromanipulatorNode {
   void step(const Cycle::Tick& tick);
   void obeyServo(const Cycle::Tick& tick);
   std::string obeyState(const std::string& command);
+  /// As the device has it: a clock that is set back does not take it along.
+  double time() const { return now_.toSec() + set_back_; }
+  double age(const std_msgs::Header& header) const { return (now_ - header.stamp).toSec(); }  ///< s
   std::string unable() const;  ///< why motion commands are refused here; else empty
   void judge(const std::string& command, const std::string& refusal);
   void publish(const Cycle::Tick& tick);
@@ -87,6 +91,7 @@ class MicromanipulatorNode {
   bool answer_ = false;    ///< a state command was heard
   ros::Time joint_states_sent_;
   ros::Time now_;
+  double set_back_ = 0;  ///< s, that the clock was
   unsigned refused_ = 0;
   std::string refusal_;  ///< of the last command; empty when it was obeyed
 };

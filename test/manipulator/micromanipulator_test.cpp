@@ -189,6 +189,51 @@ TEST_F(MicromanipulatorTest, AfterAStopItStartsFromWhereItIs) {
   EXPECT_GT(rig_.tipPose()->translation().z(), 1e-6);
 }
 
+TEST_F(MicromanipulatorTest, AStreamThatGoesOnAfterAStopMovesNothingBeforeItHasPaused) {
+  double x = 0;
+  const auto stream = [&] { return rig_.servoPosition(at(x += 1e-7, 0, 0)); };
+  const auto goesOn = [&](double duration) {
+    for (const double end = time_ + duration; time_ < end; run(kStep)) stream();
+  };
+  goesOn(0.3);
+  for (const bool enabled : {false, true}) {
+    rig_.stop();
+    run(0.06);
+    const Eigen::Vector3d rested = rig_.tipPose()->translation();
+    EXPECT_NE(stream().find("stopped"), std::string::npos);
+    EXPECT_NE(rig_.servoVelocity({1e-4, 0, 0}, time_).find("stopped"), std::string::npos);
+    goesOn(0.3);
+    EXPECT_LT((rig_.tipPose()->translation() - rested).norm(), 1e-12);
+    if (enabled) {
+      rig_.clearFault();
+    } else {
+      run(0.15);
+    }
+    EXPECT_EQ(stream(), "");
+    goesOn(0.3);
+    EXPECT_NEAR(rig_.tipPose()->translation().x(), x, 1e-6);
+  }
+  rig_.stop();
+  EXPECT_EQ(rig_.movePosition(at(0, 0, 0)), "");  // a command of its own
+}
+
+TEST_F(MicromanipulatorTest, AStreamThatOutlivesAFaultMovesNothingBeforeItHasPaused) {
+  const auto stream = [&](double duration) {
+    for (const double end = time_ + duration; time_ < end; run(kStep)) rig_.servoPosition(at(1e-4, 0, 0));
+  };
+  stream(0.02);
+  device_.injectFault("motor is hot");
+  stream(0.2);
+  const Eigen::Vector3d held = rig_.tipPose()->translation();
+  EXPECT_LT(held.x(), 0.9e-4);
+  rig_.clearFault();
+  stream(0.3);
+  EXPECT_LT((rig_.tipPose()->translation() - held).norm(), 1e-12);
+  run(0.15);
+  stream(0.5);
+  EXPECT_NEAR(rig_.tipPose()->translation().x(), 1e-4, 1e-9);
+}
+
 TEST_F(MicromanipulatorTest, ANewGoalIsReachedInAStraightLineAfterTheTurn) {
   ASSERT_EQ(rig_.movePosition(at(0.8e-3, 0, 0)), "");
   run(0.2);

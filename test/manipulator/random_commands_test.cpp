@@ -63,10 +63,11 @@ class RandomCommands : public testing::TestWithParam<double> {
       refusal = manipulator_.movePosition(anyPose());
     } else if (kind < 0.97) {
       manipulator_.stop();
+      if (chance(0.9)) manipulator_.clearFault();  // lets the stream go on at once
     } else if (kind < 0.98) {
       device_.injectFault("test");
     } else {
-      manipulator_.clearFault();
+      for (int i = 0; i < 2; ++i) manipulator_.clearFault();  // the fault; then the stream may go on
     }
     if (!refusal.empty()) ++refused_;
   }
