@@ -69,7 +69,11 @@ void InjectionControllerNode::obey(const std::string& command) {
 
 void InjectionControllerNode::adaptTo(const cell_microinjection::ManipulatorAbilities& rig) {
   const double lag = rig.latency + rig.command_interval;
-  rig_speed_ = lag > 0 ? parameters_.lag_limit / lag : std::numeric_limits<double>::infinity();
+  if (!(lag >= 0 && rig.speed > 0)) {
+    ROS_ERROR_STREAM("rig: " << rig.device << " tells no true abilities: latency, interval or speed; not heard");
+    return;
+  }
+  rig_speed_ = std::min(rig.speed, lag > 0 ? parameters_.lag_limit / lag : std::numeric_limits<double>::infinity());
   model_.limitSpeed(rig_speed_);
   ROS_INFO_STREAM("rig: " << rig.device << ", driven at " << std::min(rig_speed_, parameters_.model.speed_limit)
                           << " m/s at the most");
