@@ -20,7 +20,12 @@ MicromanipulatorConfig MicromanipulatorConfig::read(ConfigReader& reader) {
 
 Micromanipulator::Micromanipulator(const ManipulatorGeometry& geometry, const CollisionGuard& guard,
                                    const MicromanipulatorConfig& config, ManipulatorDevice& device)
-    : geometry_(geometry), guard_(guard), config_(config), device_(&device), follows_(device.abilities().follows) {}
+    : geometry_(geometry),
+      guard_(guard),
+      config_(config),
+      device_(&device),
+      follows_(device.abilities().follows),
+      lag_(follows_ ? device.abilities().latency + device.abilities().command_interval : 0) {}
 
 std::string Micromanipulator::unable() const {
   if (device_->state() != ManipulatorDevice::State::kReady) {
@@ -56,6 +61,11 @@ AxesMotion Micromanipulator::start() const {
 
 Eigen::Vector3d Micromanipulator::restAfter(const AxesMotion& motion) const {
   return motion.position + motion.velocity * brakingTime(geometry_, motion.velocity) / 2;
+}
+
+/// Where the device may get to when it is told to rest now.
+Eigen::Vector3d Micromanipulator::reachOf(const AxesMotion& motion) const {
+  return restAfter(motion) + motion.velocity * lag_;
 }
 
 void Micromanipulator::begin(Mode mode, const AxesMotion& from) {
@@ -115,7 +125,7 @@ std::string Micromanipulator::servoVelocity(const Eigen::Vector3d& velocity, dou
   if (const std::string why = geometry_.tooFast(joint_velocity); !why.empty()) return why;
   // Too near to an end of its travel or to an obstacle to go that way for a step and come to rest before it?
   const AxesMotion from = start();
-  const Eigen::Vector3d rest = restAfter({from.position + joint_velocity * last_dt_, joint_velocity});
+  const Eigen::Vector3d rest = reachOf({from.position + joint_velocity * last_dt_, joint_velocity});
   if (!joint_velocity.isZero()) {
     if (const std::string why = geometry_.leavesTravel(from.position, rest); !why.empty()) return why;
     if (const std::string why = guard_.blocksWay(from.position, rest); !why.empty()) return why;
@@ -162,7 +172,7 @@ void Micromanipulator::arrive() {
 /// reason then.
 std::string Micromanipulator::advance(const Eigen::Vector3d& velocity, double dt) {
   AxesMotion next{setpoint_->position + velocity * dt, velocity};
-  const Eigen::Vector3d rest = restAfter(next);
+  const Eigen::Vector3d rest = reachOf(next);
   std::string why = geometry_.leavesTravel(setpoint_->position, rest);
   if (why.empty()) why = guard_.blocksWay(setpoint_->position, rest);
   // A device that goes from move to move takes the straight way from where it is.
@@ -212,8 +222,14 @@ void Micromanipulator::stepMove(double dt) {
     if (!device_->moving()) rest();
     return;
   }
-  const double no_limit = std::numeric_limits<double>::infinity();
-  const std::string why = advance(straightVelocity(geometry_, *setpoint_, goal_, no_limit, dt), dt);
+  double speed = std::numeric_limits<double>::infinity();
+  if (lag_ > 0) {  // so slowly towards the end that a device which hears of it late does not go past
+    double least = speed;
+    for (const auto& axis : geometry_.axes) least = std::min(least, axis.acceleration);
+    speed = std::max(approachSpeed((goal_ - setpoint_->position).norm(), least, 2 * lag_),
+                     device_->abilities().resolution / lag_);
+  }
+  const std::string why = advance(straightVelocity(geometry_, *setpoint_, goal_, speed, dt), dt);
   if (!why.empty()) return endEarly(why);
   if (!atRest(geometry_, *setpoint_, goal_, dt)) return;
   setpoint_->position = goal_;

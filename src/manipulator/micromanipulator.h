@@ -70,6 +70,7 @@ class Micromanipulator {
   Commanded checkPose(const Eigen::Isometry3d& tip_pose) const;
   AxesMotion start() const;
   Eigen::Vector3d restAfter(const AxesMotion& motion) const;
+  Eigen::Vector3d reachOf(const AxesMotion& motion) const;
   void begin(Mode mode, const AxesMotion& from);
   void rest();
   void halt();
@@ -86,6 +87,7 @@ class Micromanipulator {
   MicromanipulatorConfig config_;
   ManipulatorDevice* device_;
   bool follows_;  ///< the device, set-points while it moves
+  double lag_;    ///< s, that a device which follows may go on with a velocity that is no longer the set-point's
   Mode mode_ = Mode::kHold;
   std::optional<AxesMotion> setpoint_;
   Eigen::Vector3d goal_ = Eigen::Vector3d::Zero();                 ///< m, joints, of servo_cp and move_cp
