@@ -44,6 +44,8 @@ def parse_arguments():
                         'auto: prepared where the cell can be')
     parser.add_argument('--clock', choices=('wall', 'lockstep'), default='wall',
                         help='wall time, or a simulated clock that gives the same bits on any machine')
+    parser.add_argument('--rig', default='sim',
+                        help='sim, emulated_mp285, emulated_zaber, or a real one: mp285, zaber (%(default)s)')
     parser.add_argument('--haptic', choices=('operator', 'external', 'none'), default='operator',
                         help='who moves the hand; a session without the operator ends with Ctrl-C')
     parser.add_argument('--no-rviz', action='store_true', help='no rviz and no scene.png')
@@ -97,8 +99,8 @@ class Demo:
     def start(self):
         say(f'starting the session; its log is in {self._logs}')
         self._session = DemoSession(ROOT / 'launch' / 'session.launch', self._logs, {
-            'scene': self._scene(), 'model': self._arguments.model, 'rig': 'sim', 'rviz': 'false', 'haptic': self._arguments.haptic, 'clock': self._arguments.clock,
-            'record': self._out})
+            'scene': self._scene(), 'model': self._arguments.model, 'rig': self._arguments.rig, 'rviz': 'false',
+            'haptic': self._arguments.haptic, 'clock': self._arguments.clock, 'record': self._out})
         self._session.wait_ready()
         if not self._arguments.no_rviz:
             self._start_rviz()
