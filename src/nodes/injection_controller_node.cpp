@@ -9,10 +9,10 @@ namespace microinjection {
 const char* const InjectionControllerNode::kHelp =
     "injection_controller: decides where the needle goes and holds it when an input cannot be trusted.\n"
     "In: /teleop/servo_cp /needle/measured_cp, /cell/predicted_cf or /force_sensor/measured_cf,\n"
-    "/controller/state_command (enable, disable, pause, resume, home). Out: /needle/servo_cp "
-    "/controller/operating_state.\n"
-    "Parameters: ~source (teleop|approach), ~force_source (predicted|measured), ~speed_limit (m/s), ~jump_limit (m),\n"
-    "~force_limit (N), ~approach/..., ~auto_enable, ~rate (Hz), ~input_timeout (s); see\n"
+    "/controller/state_command (enable, disable, pause, resume, home, approach, indent, inject, withdraw).\n"
+    "Out: /needle/servo_cp /controller/operating_state.\n"
+    "Parameters: ~mode (manual|semi_automatic|automatic), ~force_source (predicted|measured), ~speed_limit (m/s),\n"
+    "~jump_limit (m), ~force_limit (N), ~detection/... ~motion/... ~goal/... ~auto_enable, ~rate (Hz), ~input_timeout (s); see\n"
     "config/injection_controller.yaml.\n";
 
 InjectionControllerNode::Parameters InjectionControllerNode::Parameters::read(const ros::NodeHandle& private_node) {
@@ -36,7 +36,7 @@ InjectionControllerNode::InjectionControllerNode(ros::NodeHandle node, ros::Node
       force_(cycle_.input<geometry_msgs::WrenchStamped>(forceTopic(parameters_.force_source), Phase::kTickBefore,
                                                         parameters_.input_timeout)),
       setpoint_(cycle_.output<geometry_msgs::PoseStamped>("needle/servo_cp")) {
-  if (parameters_.model.source == "teleop") {
+  if (parameters_.model.mode == "manual") {
     target_ = &cycle_.input<geometry_msgs::PoseStamped>("teleop/servo_cp", Phase::kSameTick, parameters_.input_timeout);
   }
   state_ = cycle_.node().advertise<cell_microinjection::OperatingState>("controller/operating_state", 10, true);

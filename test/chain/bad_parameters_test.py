@@ -39,7 +39,7 @@ BAD = [  # node, wrong parameters, what the message must say
     ("haptic_bridge", {"position_scale": 0}, ["position_scale = 0", "(0, inf)"]),
     ("haptic_bridge", {"force_source": "guessed"}, ["force_source = guessed", "predicted, measured"]),
     ("injection_controller", {"force_limit": -1e-6}, ["force_limit = -1", "(0, inf)"]),
-    ("injection_controller", {"source": "moon", "rate": 1}, ["source = moon", "teleop, approach", "rate = 1"]),
+    ("injection_controller", {"mode": "moon", "rate": 1}, ["mode = moon", "manual, semi_automatic, automatic", "rate = 1"]),
     ("micromanipulator", {"acceleration": 0}, ["acceleration = 0", "(0, inf)"]),
     ("operator", {"motion": "/nowhere.csv"}, ["/nowhere.csv"]),
     ("operator", {"mass": -0.1}, ["mass = -0.1", "(0, inf)"]),
