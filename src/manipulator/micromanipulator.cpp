@@ -2,118 +2,255 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "manipulator/approach_speed.h"
 
 namespace microinjection {
 
 MicromanipulatorConfig MicromanipulatorConfig::read(ConfigReader& reader) {
   MicromanipulatorConfig config;
-  reader.number("servo_time_constant", config.servo_time_constant, Range::nonNegative());
-  reader.number("acceleration", config.acceleration, Range::positive());
+  reader.number("pipette_tilt", config.pipette_tilt);
+  reader.number("collision_margin", config.collision_margin, Range::nonNegative());
+  reader.number("command_timeout", config.command_timeout, Range::positive());
   reader.number("velocity_command_timeout", config.velocity_command_timeout, Range::positive());
   return config;
 }
 
-Micromanipulator::Micromanipulator(const ManipulatorGeometry& geometry, const MicromanipulatorConfig& config)
-    : geometry_(geometry), config_(config) {}
+Micromanipulator::Micromanipulator(const ManipulatorGeometry& geometry, const CollisionGuard& guard,
+                                   const MicromanipulatorConfig& config, ManipulatorDevice& device)
+    : geometry_(geometry), guard_(guard), config_(config), device_(&device) {}
 
-std::string Micromanipulator::checkPose(const Eigen::Isometry3d& tip_pose, Eigen::Vector3d& joints) const {
-  if (!tip_pose.matrix().allFinite()) return "pose is not finite";
+std::string Micromanipulator::unable() const {
+  if (device_->state() != ManipulatorDevice::State::kReady) {
+    return device_->why().empty() ? "the device is not ready" : device_->why();
+  }
+  return device_->reading() ? "" : "the device does not know its position yet";
+}
+
+Micromanipulator::Commanded Micromanipulator::checkPose(const Eigen::Isometry3d& tip_pose) const {
+  if (!tip_pose.matrix().allFinite()) return {{}, "pose is not finite"};
   const double angle = Eigen::AngleAxisd(geometry_.tip_at_zero.linear().transpose() * tip_pose.linear()).angle();
-  if (angle > 1e-3) return "orientation differs from the pipette's by " + std::to_string(angle) + " rad, allowed 0.001";
-  joints = geometry_.joints(tip_pose.translation());
-  return geometry_.outsideTravel(joints);
+  if (angle > 1e-3)
+    return {{}, "orientation differs from the pipette's by " + std::to_string(angle) + " rad, allowed 0.001"};
+  const Eigen::Vector3d joints = geometry_.joints(tip_pose.translation());
+  const std::string outside = geometry_.outsideTravel(joints);
+  return {joints, outside.empty() ? guard_.blocks(joints) : outside};
+}
+
+/// From where and how fast the next command takes over: on from the set-point, or from what the device measures.
+AxesMotion Micromanipulator::start() const {
+  const bool resting = mode_ == Mode::kHold && !device_->moving();
+  if (setpoint_ && !resting) return *setpoint_;
+  const ManipulatorDevice::Reading reading = *device_->reading();
+  AxesMotion motion{reading.joints, Eigen::Vector3d::Zero()};
+  if (!resting) {
+    for (int i = 0; i < 3; ++i) {
+      const double largest = geometry_.axes[i].velocity;
+      motion.velocity[i] = std::clamp(reading.velocity[i], -largest, largest);
+    }
+  }
+  return motion;
+}
+
+Eigen::Vector3d Micromanipulator::restAfter(const AxesMotion& motion) const {
+  return motion.position + motion.velocity * brakingTime(geometry_, motion.velocity) / 2;
+}
+
+void Micromanipulator::begin(Mode mode, const AxesMotion& from) {
+  mode_ = mode;
+  setpoint_ = from;
+  ended_.clear();
 }
 
 std::string Micromanipulator::servoPosition(const Eigen::Isometry3d& tip_pose) {
-  Eigen::Vector3d joints;
-  const std::string refusal = checkPose(tip_pose, joints);
-  if (!refusal.empty()) return refusal;
-  goal_ = joints;
-  mode_ = Mode::kServo;
+  if (const std::string why = unable(); !why.empty()) return why;
+  const Commanded commanded = checkPose(tip_pose);
+  if (!commanded.refusal.empty()) return commanded.refusal;
+  const AxesMotion from = start();
+  if (const std::string why = guard_.blocksWay(from.position, commanded.joints); !why.empty()) return why;
+  if (mode_ != Mode::kServo) {
+    goal_ = from.position;
+    goal_age_ = 0;
+    goal_is_new_ = false;
+  }
+  if (!goal_is_new_) last_goal_ = goal_;
+  goal_ = commanded.joints;
+  goal_is_new_ = true;
+  begin(Mode::kServo, from);
   return "";
 }
 
 std::string Micromanipulator::movePosition(const Eigen::Isometry3d& tip_pose) {
-  Eigen::Vector3d joints;
-  const std::string refusal = checkPose(tip_pose, joints);
-  if (!refusal.empty()) return refusal;
-  goal_ = joints;
-  if (mode_ != Mode::kMove) profile_velocity_.setZero();
-  mode_ = Mode::kMove;
+  if (const std::string why = unable(); !why.empty()) return why;
+  const Commanded commanded = checkPose(tip_pose);
+  if (!commanded.refusal.empty()) return commanded.refusal;
+  const AxesMotion from = start();
+  const Eigen::Vector3d turn = restAfter(from);
+  if (const std::string why = guard_.blocksWay(turn, commanded.joints); !why.empty()) return why;
+  goal_ = commanded.joints;
+  begin(Mode::kMove, from);
+  if (device_->abilities().follows) return "";
+  setpoint_.reset();
+  const Eigen::Vector3d way = goal_ - from.position;
+  if (way.norm() > 0) device_->moveTo(goal_, straightSpeed(geometry_, way.normalized()));
   return "";
 }
 
 std::string Micromanipulator::servoVelocity(const Eigen::Vector3d& velocity, double time) {
   if (!velocity.allFinite()) return "velocity is not finite";
+  if (const std::string why = unable(); !why.empty()) return why;
   const Eigen::Vector3d joint_velocity = geometry_.directions.inverse() * velocity;
-  for (int i = 0; i < 3; ++i) {
-    if (std::abs(joint_velocity[i]) > geometry_.axes[i].velocity) {
-      return geometry_.axes[i].joint + " velocity = " + std::to_string(joint_velocity[i]) + " m/s, allowed +-" +
-             std::to_string(geometry_.axes[i].velocity) + " m/s";
-    }
+  if (const std::string why = geometry_.tooFast(joint_velocity); !why.empty()) return why;
+  // Too near to an end of its travel or to an obstacle to go that way and come to rest before it?
+  const AxesMotion from = start();
+  const Eigen::Vector3d rest = restAfter({from.position, joint_velocity});
+  if (!joint_velocity.isZero()) {
+    if (const std::string why = geometry_.outsideTravel(rest); !why.empty()) return why;
+    if (const std::string why = guard_.blocksWay(from.position, rest); !why.empty()) return why;
   }
   velocity_command_ = joint_velocity;
   velocity_command_time_ = time;
-  if (mode_ != Mode::kVelocity) profile_velocity_.setZero();
-  mode_ = Mode::kVelocity;
+  begin(Mode::kVelocity, from);
   return "";
 }
 
-void Micromanipulator::stop() {
+/// Forgets the set-point: the next command starts from what the device measures.
+void Micromanipulator::rest() {
   mode_ = Mode::kHold;
-  profile_velocity_.setZero();
+  setpoint_.reset();
 }
 
-void Micromanipulator::advanceSetpoint(const Eigen::Vector3d& joint_step, double dt) {
+void Micromanipulator::stop() {
+  device_->stop();
+  rest();
+}
+
+void Micromanipulator::clearFault() {
+  rest();
+  device_->clearFault();
+}
+
+void Micromanipulator::endEarly(const std::string& why) {
+  ended_ = why;
+  mode_ = Mode::kBrake;
+}
+
+void Micromanipulator::arrive() {
+  setpoint_->velocity.setZero();
+  mode_ = Mode::kHold;
+}
+
+/// One step of the set-point with this velocity (m/s), or of braking where it could not brake in time afterwards: the
+/// reason then.
+std::string Micromanipulator::advance(const Eigen::Vector3d& velocity, double dt) {
+  AxesMotion next{setpoint_->position + velocity * dt, velocity};
+  const Eigen::Vector3d rest = restAfter(next);
+  std::string why = geometry_.outsideTravel(rest);
+  if (why.empty()) why = guard_.blocksWay(setpoint_->position, rest);
+  if (!why.empty()) {
+    next = *setpoint_;
+    brake(geometry_, next, dt);
+  }
+  setpoint_ = next;
+  return why;
+}
+
+void Micromanipulator::stepServo(double dt) {
+  goal_age_ += dt;
+  Eigen::Vector3d goal_velocity = Eigen::Vector3d::Zero();
+  if (goal_is_new_) {
+    // Of a stream with a command or two a step; a lone command's goal stands still.
+    if (goal_age_ < 2.5 * dt) goal_velocity = (goal_ - last_goal_) / goal_age_;
+    if (!geometry_.tooFast(goal_velocity * (1 - 1e-9)).empty()) goal_velocity.setZero();
+    goal_age_ = 0;
+    goal_is_new_ = false;
+  }
+  if (goal_age_ > config_.command_timeout) {
+    if (setpoint_->position != goal_ || device_->moving()) {
+      stop();
+      ended_ = "servo_cp is stale";
+    } else {
+      arrive();
+    }
+    return;
+  }
+  Eigen::Vector3d velocity;
   for (int i = 0; i < 3; ++i) {
     const ManipulatorGeometry::Axis& axis = geometry_.axes[i];
-    const double largest = axis.velocity * dt;
-    setpoint_[i] = std::clamp(setpoint_[i] + std::clamp(joint_step[i], -largest, largest), axis.lower, axis.upper);
+    const double behind = goal_[i] - setpoint_->position[i] - goal_velocity[i] * dt;
+    const double catch_up = std::copysign(approachSpeed(std::abs(behind), axis.acceleration, dt), behind);
+    const double change = axis.acceleration * dt;
+    velocity[i] =
+        std::clamp(goal_velocity[i] + catch_up, setpoint_->velocity[i] - change, setpoint_->velocity[i] + change);
+    velocity[i] = std::clamp(velocity[i], -axis.velocity, axis.velocity);
   }
+  advance(velocity, dt);
 }
 
 void Micromanipulator::stepMove(double dt) {
-  const Eigen::Vector3d distance = goal_ - setpoint_;
-  if (distance.norm() < 1e-10) {
-    setpoint_ = goal_;
-    stop();
+  if (!setpoint_) {  // the device goes by itself
+    if (!device_->moving()) rest();
     return;
   }
-  // Along the straight line to the goal: accelerate, cruise at the slowest axis' limit, brake in time.
-  double cruise = geometry_.axes[0].velocity;
-  for (const auto& axis : geometry_.axes) cruise = std::min(cruise, axis.velocity);
-  const double braking = std::sqrt(2 * config_.acceleration * distance.norm());
-  const double speed = std::min({cruise, braking, profile_velocity_.norm() + config_.acceleration * dt});
-  profile_velocity_ = distance.normalized() * speed;
-  advanceSetpoint(distance.normalized() * std::min(speed * dt, distance.norm()), dt);
+  const double no_limit = std::numeric_limits<double>::infinity();
+  const std::string why = advance(straightVelocity(geometry_, *setpoint_, goal_, no_limit, dt), dt);
+  if (!why.empty()) return endEarly(why);
+  if ((goal_ - setpoint_->position).norm() >= kArrived) return;
+  setpoint_->position = goal_;
+  arrive();
 }
 
 void Micromanipulator::stepVelocity(double time, double dt) {
   const bool stale = time - velocity_command_time_ > config_.velocity_command_timeout;
   const Eigen::Vector3d wanted = stale ? Eigen::Vector3d::Zero() : velocity_command_;
-  const double largest = config_.acceleration * dt;
-  const Eigen::Vector3d change = wanted - profile_velocity_;
-  profile_velocity_ += change.norm() > largest ? Eigen::Vector3d(change.normalized() * largest) : change;
-  advanceSetpoint(profile_velocity_ * dt, dt);
-  if (stale && profile_velocity_.isZero()) mode_ = Mode::kHold;
+  // Along the straight change of velocity, so that the axes come to the new direction together.
+  const Eigen::Vector3d change = wanted - setpoint_->velocity;
+  const double time_needed = brakingTime(geometry_, change);
+  const Eigen::Vector3d velocity =
+      time_needed > dt ? Eigen::Vector3d(setpoint_->velocity + change * (dt / time_needed)) : wanted;
+  const std::string why = advance(velocity, dt);
+  if (!why.empty()) return endEarly(why);
+  if (stale && setpoint_->velocity.isZero(0)) arrive();
+}
+
+void Micromanipulator::stepMode(double time, double dt) {
+  if (mode_ == Mode::kServo) stepServo(dt);
+  if (mode_ == Mode::kMove) stepMove(dt);
+  if (mode_ == Mode::kVelocity) stepVelocity(time, dt);
+  if (mode_ == Mode::kBrake) {
+    brake(geometry_, *setpoint_, dt);
+    if (setpoint_->velocity.isZero(0)) arrive();
+  }
 }
 
 void Micromanipulator::step(double time, double dt) {
-  if (mode_ == Mode::kServo) advanceSetpoint(goal_ - setpoint_, dt);
-  if (mode_ == Mode::kMove) stepMove(dt);
-  if (mode_ == Mode::kVelocity) stepVelocity(time, dt);
-  const double share = config_.servo_time_constant > 0 ? 1 - std::exp(-dt / config_.servo_time_constant) : 1;
-  const Eigen::Vector3d moved = share * (setpoint_ - joints_);
-  joints_ += moved;
-  joint_velocity_ = moved / dt;
+  if (!clock_is_set_) device_->step(time - dt);
+  clock_is_set_ = true;
+  if (!unable().empty()) rest();
+  if (mode_ != Mode::kHold) {
+    stepMode(time, dt);
+    if (setpoint_) device_->follow(setpoint_->position, setpoint_->velocity);
+  }
+  device_->step(time);
 }
 
-Eigen::Isometry3d Micromanipulator::tipPose() const {
-  Eigen::Isometry3d pose = geometry_.tip_at_zero;
-  pose.translation() = geometry_.tip(joints_);
-  return pose;
+std::optional<Eigen::Isometry3d> Micromanipulator::tipPose() const {
+  const auto measured = joints();
+  if (!measured) return std::nullopt;
+  return geometry_.tipPose(*measured);
 }
 
-Eigen::Vector3d Micromanipulator::tipVelocity() const { return geometry_.directions * joint_velocity_; }
+std::optional<Eigen::Vector3d> Micromanipulator::tipVelocity() const {
+  const auto reading = device_->reading();
+  if (!reading) return std::nullopt;
+  return geometry_.directions * reading->velocity;
+}
+
+std::optional<Eigen::Vector3d> Micromanipulator::joints() const {
+  const auto reading = device_->reading();
+  if (!reading) return std::nullopt;
+  return reading->joints;
+}
 
 }  // namespace microinjection

@@ -1,60 +1,95 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <optional>
 #include <string>
 
 #include "base/config_reader.h"
+#include "manipulator/collision_guard.h"
+#include "manipulator/manipulator_device.h"
 #include "manipulator/manipulator_geometry.h"
+#include "manipulator/straight_move.h"
 
 namespace microinjection {
 
 struct MicromanipulatorConfig {
-  double servo_time_constant = 2e-3;      ///< s, first-order lag of the tip behind its set-point
-  double acceleration = 0.02;             ///< m/s^2, of move_cp and servo_cv
+  double pipette_tilt = 0;                ///< rad, of the URDF's revolute joint, for ManipulatorGeometry::fromUrdf
+  double collision_margin = 2e-6;         ///< m, for CollisionGuard
+  double command_timeout = 0.1;           ///< s, a servo_cp stream that pauses longer than this means stop
   double velocity_command_timeout = 0.1;  ///< s, a servo_cv older than this means stop
 
   static MicromanipulatorConfig read(ConfigReader& reader);
 };
 
-/// A simulated three-axis micromanipulator that carries the injection pipette; its orientation is fixed.
+/// Interprets the commands of a micromanipulator's topics for a device, simulated or real, that carries the injection
+/// pipette; the pipette's orientation is fixed.
 ///
-/// The set-point follows the last accepted command within the URDF's travel and velocity; the tip follows the
-/// set-point with a first-order lag. A refused command leaves everything as it was.
+/// A set-point follows the last accepted command within the URDF's travel, speed and acceleration and clear of
+/// obstacles: at any time it could brake without leaving them. A command that changes no faster than that is followed
+/// without lag. The device follows the set-point, or is sent where the set-point should go. A refused command leaves
+/// everything as it was. After a stop or a fault the set-point is where the device says it is.
 class Micromanipulator {
  public:
-  Micromanipulator(const ManipulatorGeometry& geometry, const MicromanipulatorConfig& config);
+  /// @param device  outlives this
+  Micromanipulator(const ManipulatorGeometry& geometry, const CollisionGuard& guard,
+                   const MicromanipulatorConfig& config, ManipulatorDevice& device);
 
   /// Each command returns an empty text when accepted, otherwise the reason for its refusal. `time` in s.
   std::string servoPosition(const Eigen::Isometry3d& tip_pose);             ///< CRTK servo_cp; m, `world`
   std::string servoVelocity(const Eigen::Vector3d& velocity, double time);  ///< CRTK servo_cv; m/s, `world`
   std::string movePosition(const Eigen::Isometry3d& tip_pose);              ///< CRTK move_cp; m, `world`
-  void stop();                                                              ///< holds where the set-point is
+  void stop();                                                              ///< stops the device at once
+  void clearFault();                                                        ///< of the device, whose cause is gone
 
-  /// Advances by dt (s, > 0) to `time` (s).
+  /// Advances by dt (s, > 0) to `time` (s), and the device with it.
   void step(double time, double dt);
 
-  Eigen::Isometry3d tipPose() const;                                                ///< `needle_tip` in `world`
-  Eigen::Vector3d tipVelocity() const;                                              ///< m/s, `world`
-  const Eigen::Vector3d& joints() const { return joints_; }                         ///< m
+  /// What the device measures, of its axes; empty while it does not know.
+  std::optional<Eigen::Isometry3d> tipPose() const;    ///< `needle_tip` in `world`
+  std::optional<Eigen::Vector3d> tipVelocity() const;  ///< m/s, `world`
+  std::optional<Eigen::Vector3d> joints() const;       ///< m
+
+  /// Where the device is sent; empty when it is not.
+  const std::optional<AxesMotion>& setpoint() const { return setpoint_; }
   bool moving() const { return mode_ == Mode::kMove || mode_ == Mode::kVelocity; }  ///< of such a command
+  ManipulatorDevice::State state() const { return device_->state(); }
+  std::string why() const { return device_->why(); }   ///< why it is not ready; empty when it is
+  const std::string& ended() const { return ended_; }  ///< why the last motion ended early; empty if it did not
 
  private:
-  enum class Mode { kHold, kServo, kVelocity, kMove };
-  std::string checkPose(const Eigen::Isometry3d& tip_pose, Eigen::Vector3d& joints) const;
+  enum class Mode { kHold, kBrake, kServo, kVelocity, kMove };
+  struct Commanded {
+    Eigen::Vector3d joints;  ///< m
+    std::string refusal;
+  };
+  std::string unable() const;
+  Commanded checkPose(const Eigen::Isometry3d& tip_pose) const;
+  AxesMotion start() const;
+  Eigen::Vector3d restAfter(const AxesMotion& motion) const;
+  void begin(Mode mode, const AxesMotion& from);
+  void rest();
+  std::string advance(const Eigen::Vector3d& velocity, double dt);
+  void stepMode(double time, double dt);
+  void stepServo(double dt);
   void stepMove(double dt);
   void stepVelocity(double time, double dt);
-  void advanceSetpoint(const Eigen::Vector3d& joint_step, double dt);
+  void endEarly(const std::string& why);
+  void arrive();
 
   ManipulatorGeometry geometry_;
+  CollisionGuard guard_;
   MicromanipulatorConfig config_;
+  ManipulatorDevice* device_;
   Mode mode_ = Mode::kHold;
-  Eigen::Vector3d goal_ = Eigen::Vector3d::Zero();              ///< m, joints
-  Eigen::Vector3d setpoint_ = Eigen::Vector3d::Zero();          ///< m, joints
-  Eigen::Vector3d joints_ = Eigen::Vector3d::Zero();            ///< m
-  Eigen::Vector3d joint_velocity_ = Eigen::Vector3d::Zero();    ///< m/s
+  std::optional<AxesMotion> setpoint_;
+  Eigen::Vector3d goal_ = Eigen::Vector3d::Zero();              ///< m, joints, of servo_cp and move_cp
+  Eigen::Vector3d last_goal_ = Eigen::Vector3d::Zero();         ///< m, joints, of the servo_cp before
+  bool goal_is_new_ = false;                                    ///< servo_cp: came since the last step
+  double goal_age_ = 0;                                         ///< s, since the last servo_cp was taken up
   Eigen::Vector3d velocity_command_ = Eigen::Vector3d::Zero();  ///< m/s, joints
-  Eigen::Vector3d profile_velocity_ = Eigen::Vector3d::Zero();  ///< m/s, joints, of the set-point in a move
   double velocity_command_time_ = 0;                            ///< s
+  std::string ended_;
+  bool clock_is_set_ = false;
 };
 
 }  // namespace microinjection

@@ -8,12 +8,12 @@
 namespace microinjection {
 namespace {
 
-ManipulatorGeometry geometryFromParameter() {
+std::string urdfFromParameter() {
   std::string urdf;
   if (!ros::param::get("/robot_description", urdf)) {
     throw ConfigError("/robot_description is missing: it must hold the rig's URDF (urdf/rig.urdf)");
   }
-  return ManipulatorGeometry::fromUrdf(urdf);
+  return urdf;
 }
 
 }  // namespace
@@ -22,28 +22,31 @@ const char* const MicromanipulatorNode::kHelp =
     "micromanipulator: a simulated three-axis micromanipulator with CRTK topics below /needle.\n"
     "In: /needle/servo_cp /needle/servo_cv /needle/move_cp. Out: /needle/measured_cp /needle/measured_cv "
     "joint_states.\n"
-    "Parameters: /robot_description, ~rate (Hz), ~joint_states_rate (Hz), ~command_timeout (s), ~servo_time_constant "
-    "(s),\n"
-    "~acceleration (m/s^2), ~velocity_command_timeout (s); see config/micromanipulator.yaml.\n";
+    "Parameters: /robot_description, ~rate (Hz), ~joint_states_rate (Hz), ~command_timeout (s), "
+    "~velocity_command_timeout (s),\n"
+    "~pipette_tilt (rad), ~collision_margin (m), ~simulated/...; see config/micromanipulator.yaml.\n";
 
 MicromanipulatorNode::Parameters MicromanipulatorNode::Parameters::read(const ros::NodeHandle& private_node) {
   Parameters parameters;
   ConfigReader reader = parameterReader(private_node);
   reader.number("rate", parameters.rate, Range::closed(50, 5000));
   reader.number("joint_states_rate", parameters.joint_states_rate, {0, 1000, true, false});
-  reader.number("command_timeout", parameters.command_timeout, Range::positive());
   parameters.model = MicromanipulatorConfig::read(reader);
+  ConfigReader simulated = reader.section("simulated");
+  parameters.device = SimulatedManipulatorConfig::read(simulated);
   reader.finish();
   return parameters;
 }
 
 MicromanipulatorNode::MicromanipulatorNode(ros::NodeHandle node, ros::NodeHandle private_node)
     : parameters_(Parameters::read(private_node)),
-      geometry_(geometryFromParameter()),
-      model_(geometry_, parameters_.model),
+      geometry_(ManipulatorGeometry::fromUrdf(urdfFromParameter(), parameters_.model.pipette_tilt)),
+      device_(geometry_, parameters_.device),
+      model_(geometry_, CollisionGuard(urdfFromParameter(), geometry_, parameters_.model.collision_margin),
+             parameters_.model, device_),
       cycle_(node, parameters_.rate),
-      servo_(
-          cycle_.input<geometry_msgs::PoseStamped>("needle/servo_cp", Phase::kSameTick, parameters_.command_timeout)),
+      servo_(cycle_.input<geometry_msgs::PoseStamped>("needle/servo_cp", Phase::kSameTick,
+                                                      parameters_.model.command_timeout)),
       measured_(cycle_.output<geometry_msgs::PoseStamped>("needle/measured_cp")),
       velocity_(cycle_.output<geometry_msgs::TwistStamped>("needle/measured_cv")),
       trace_(cycle_.output<cell_microinjection::LatencyTrace>("needle/setpoint_trace")) {
@@ -94,16 +97,22 @@ void MicromanipulatorNode::step(const Cycle::Tick& tick) {
 }
 
 void MicromanipulatorNode::publish(const Cycle::Tick& tick) {
-  measured_.publish(toPose(model_.tipPose(), tick.now, kWorldFrame));
-  velocity_.publish(toTwist(model_.tipVelocity(), tick.now, kWorldFrame));
+  if (const auto pose = model_.tipPose()) measured_.publish(toPose(*pose, tick.now, kWorldFrame));
+  if (const auto velocity = model_.tipVelocity()) velocity_.publish(toTwist(*velocity, tick.now, kWorldFrame));
 }
 
 void MicromanipulatorNode::publishJointStates(const ros::Time& now) {
+  const auto joints = model_.joints();
+  if (!joints) return;
   sensor_msgs::JointState message;
   message.header.stamp = now;
   for (int i = 0; i < 3; ++i) {
     message.name.push_back(geometry_.axes[i].joint);
-    message.position.push_back(model_.joints()[i]);
+    message.position.push_back((*joints)[i]);
+  }
+  if (!geometry_.tilt.joint.empty()) {
+    message.name.push_back(geometry_.tilt.joint);
+    message.position.push_back(geometry_.tilt.angle);
   }
   joint_states_.publish(message);
   joint_states_sent_ = now;

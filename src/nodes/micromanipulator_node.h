@@ -9,6 +9,7 @@
 
 #include "cell_microinjection/LatencyTrace.h"
 #include "manipulator/micromanipulator.h"
+#include "manipulator/simulated_manipulator.h"
 #include "nodes/cycle.h"
 
 namespace microinjection {
@@ -23,7 +24,7 @@ namespace microinjection {
 /// Parameters: /robot_description (URDF), and private those of MicromanipulatorConfig and
 ///   rate               Hz; default 1000, in [50, 5000]
 ///   joint_states_rate  Hz; default 50, in (0, 1000]
-///   command_timeout    s, a servo_cp older than this is refused; default 0.1, in (0, inf)
+///   simulated/         those of SimulatedManipulatorConfig
 class MicromanipulatorNode {
  public:
   static const char* const kHelp;
@@ -35,8 +36,8 @@ class MicromanipulatorNode {
   struct Parameters {
     double rate = 1000;
     double joint_states_rate = 50;
-    double command_timeout = 0.1;
     MicromanipulatorConfig model;
+    SimulatedManipulatorConfig device;
     static Parameters read(const ros::NodeHandle& private_node);
   };
 
@@ -49,6 +50,7 @@ class MicromanipulatorNode {
 
   Parameters parameters_;
   ManipulatorGeometry geometry_;
+  SimulatedManipulator device_;
   Micromanipulator model_;
   Cycle cycle_;
   Input<geometry_msgs::PoseStamped>& servo_;

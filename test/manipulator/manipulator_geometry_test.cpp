@@ -19,13 +19,13 @@ std::string rigUrdf() {
 }
 
 /// A rig whose x axis is tilted by 30 degrees about y and whose tip hangs 1 mm below the last stage.
-std::string tiltedUrdf(
-    const std::string& z_limit = R"(<limit lower="-1e-3" upper="2e-3" velocity="1e-3" effort="1"/>)") {
+std::string tiltedUrdf(const std::string& z_limit =
+                           R"(<limit lower="-1e-3" upper="2e-3" velocity="1e-3" acceleration="0.2" effort="1"/>)") {
   return R"(<robot name="r"><link name="world"/><link name="a"/><link name="b"/><link name="c"/><link name="needle_tip"/>
     <joint name="jx" type="prismatic"><parent link="world"/><child link="a"/><origin xyz="0.1 0 0" rpy="0 0.5235987755982988 0"/>
-      <axis xyz="1 0 0"/><limit lower="-1e-3" upper="1e-3" velocity="1e-3" effort="1"/></joint>
+      <axis xyz="1 0 0"/><limit lower="-1e-3" upper="1e-3" velocity="1e-3" acceleration="0.2" effort="1"/></joint>
     <joint name="jy" type="prismatic"><parent link="a"/><child link="b"/><axis xyz="0 1 0"/>
-      <limit lower="-1e-3" upper="1e-3" velocity="1e-3" effort="1"/></joint>
+      <limit lower="-1e-3" upper="1e-3" velocity="1e-3" acceleration="0.2" effort="1"/></joint>
     <joint name="jz" type="prismatic"><parent link="b"/><child link="c"/><axis xyz="0 0 1"/>)" +
          z_limit + R"(</joint>
     <joint name="tip" type="fixed"><parent link="c"/><child link="needle_tip"/><origin xyz="0 0 -1e-3"/></joint></robot>)";
@@ -65,9 +65,9 @@ TEST(ManipulatorGeometry, NamesTheAxisThatIsOutside) {
 
 TEST(ManipulatorGeometry, RefusesWhatIsNoThreeAxisRig) {
   EXPECT_THROW(ManipulatorGeometry::fromUrdf("not XML"), ConfigError);
-  EXPECT_THROW(
-      ManipulatorGeometry::fromUrdf(tiltedUrdf(R"(<limit lower="1e-3" upper="2e-3" velocity="1" effort="1"/>)")),
-      ConfigError);
+  EXPECT_THROW(ManipulatorGeometry::fromUrdf(
+                   tiltedUrdf(R"(<limit lower="1e-3" upper="2e-3" velocity="1" acceleration="0.2" effort="1"/>)")),
+               ConfigError);
   const std::string missing = std::regex_replace(tiltedUrdf(), std::regex("needle_tip"), "tool");
   EXPECT_THROW(ManipulatorGeometry::fromUrdf(missing), ConfigError);
   const std::string two_axes =
