@@ -55,7 +55,7 @@ InjectionFeedback InjectionController::feedback() const {
   return {injection_, monitor_.force(), monitor_.depth(), run_.result().duration};
 }
 
-std::optional<InjectionPulse> InjectionController::pulse() const {
+std::optional<PulseGoal> InjectionController::pulse() const {
   if (injection_ != InjectionState::kInject) return std::nullopt;
   if (run_.active()) return run_.goal().pulse;
   return pulse_by_hand_ ? std::optional(config_.goal.pulse) : std::nullopt;

@@ -84,7 +84,7 @@ class InjectionController {
   InjectionFeedback feedback() const;
   const InjectionResult& result() const { return run_.result(); }  ///< final when not running()
   /// The pulse that the injector is to deliver now; empty: none, and one that is under way is to be stopped.
-  std::optional<InjectionPulse> pulse() const;
+  std::optional<PulseGoal> pulse() const;
 
  private:
   bool byHand() const { return config_.mode == "manual"; }

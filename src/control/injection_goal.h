@@ -9,7 +9,7 @@
 namespace microinjection {
 
 /// What the injector is asked for in the state inject.
-struct InjectionPulse {
+struct PulseGoal {
   double pressure = 10e3;  ///< Pa, above the balance pressure
   double duration = 0.5;   ///< s; 0: nothing is injected
   double volume = 0;       ///< m^3 at which the pulse ends early; 0: by time only
@@ -29,7 +29,7 @@ struct InjectionGoal {
   double depth = 40e-6;    ///< m past the touch; a membrane that has not given way there ends it
   double margin = 3e-6;    ///< m past where the last membrane gave way, to inject at; never deeper than the depth limit
   double hold_time = 0.2;  ///< s at depth before the withdrawal (after the injection, where there is one)
-  InjectionPulse pulse;
+  PulseGoal pulse;
 
   static InjectionGoal read(ConfigReader& reader);
   std::string problems() const;  ///< of a goal that came over a topic; empty when it is sound

@@ -12,7 +12,7 @@ class InjectorWait {
   enum class Status { kWaiting, kOver, kTimeOut };
 
   /// `patience` (s): beyond the pulse's duration, before the injector is given up.
-  void start(const InjectionPulse& pulse, double patience) {
+  void start(const PulseGoal& pulse, double patience) {
     *this = {};
     pulse_ = pulse;
     patience_ = patience;
@@ -34,7 +34,7 @@ class InjectorWait {
   double volume() const { return volume_; }  ///< m^3, since the start
 
  private:
-  InjectionPulse pulse_;
+  PulseGoal pulse_;
   double patience_ = 0;           ///< s
   double waited_ = 0;             ///< s
   std::optional<double> before_;  ///< m^3, of the first report

@@ -11,7 +11,11 @@ constexpr double kStep = 1e-3;  // s
 
 ForceSensorConfig noiseless() {
   ForceSensorConfig config;
-  config.axial_noise = config.lateral_noise = config.cross_axis = 0;
+  config.density.setZero();
+  config.random_walk.setZero();
+  config.drift_rate.setZero();
+  config.sensitivity.setIdentity();
+  config.sample_rate = 1 / kStep;
   config.bits = 32;
   return config;
 }
@@ -30,21 +34,51 @@ TEST(ForceSensor, StepResponseIsThatOfTheSecondOrderSystem) {
   }
 }
 
-TEST(ForceSensor, NoiseHasTheStatedSizeAndNoBias) {
-  ForceSensorConfig config;
-  config.bits = 32;
+TEST(ForceSensor, ResponseDoesNotDependOnTheStepsOfItsCaller) {
+  ForceSensorConfig config = noiseless();
+  config.sample_rate = 7000;
+  config.natural_frequency = 300;
+  config.damping_ratio = 0.2;
+  ForceSensor once(config), often(config);
+  const Eigen::Vector2d at_once = once.sample({1e-6, -2e-6}, 0.01);
+  Eigen::Vector2d in_steps;
+  for (int i = 0; i < 37; ++i) in_steps = often.sample({1e-6, -2e-6}, 0.01 / 37);
+  EXPECT_NEAR((at_once - in_steps).norm(), 0, 1e-12);
+}
+
+TEST(ForceSensor, HoldsItsReadingBetweenSamples) {
+  ForceSensorConfig config = noiseless();
+  config.sample_rate = 100;
   ForceSensor sensor(config);
-  const int n = 20000;
-  Eigen::Vector2d sum = Eigen::Vector2d::Zero(), squares = Eigen::Vector2d::Zero();
-  for (int i = 0; i < n; ++i) {
-    const Eigen::Vector2d reading = sensor.sample({0, 0}, kStep);
-    sum += reading;
-    squares += reading.cwiseAbs2();
+  for (int i = 0; i < 9; ++i) EXPECT_EQ(sensor.sample({1e-6, 0}, kStep)[0], 0) << i;
+  for (int i = 9; i < 19; ++i) EXPECT_NEAR(sensor.sample({1e-6, 0}, kStep)[0], 1e-6, 1e-11) << i;
+}
+
+TEST(ForceSensor, OverloadStaysUntilReset) {
+  ForceSensorConfig config = noiseless();
+  ForceSensor sensor(config);
+  for (int i = 0; i < 10; ++i) sensor.sample({0.9 * config.overload[0], 0}, kStep);
+  EXPECT_FALSE(sensor.overloaded());  // saturated for long, but unharmed
+  sensor.sample({0, -1.5 * config.overload[1]}, kStep);
+  EXPECT_TRUE(sensor.overloaded());
+  for (int i = 0; i < 100; ++i) sensor.sample({0, 0}, kStep);
+  EXPECT_TRUE(sensor.overloaded());
+  sensor.reset();
+  EXPECT_FALSE(sensor.overloaded());
+  sensor.sample({0, 0}, kStep);
+  EXPECT_FALSE(sensor.overloaded());
+}
+
+TEST(ForceSensor, RefusesAnOverloadBelowTheRange) {
+  ConfigReader reader(YAML::Load("{axial_range: 1.0e-3, axial_overload: 0.5e-3}"), "test");
+  ForceSensorConfig::read(reader);
+  try {
+    reader.finish();
+    FAIL();
+  } catch (const std::exception& error) {
+    EXPECT_NE(std::string(error.what()).find("axial_overload = 0.5e-3: must not be below"), std::string::npos)
+        << error.what();
   }
-  // Standard errors: 1/sqrt(n) of the mean, 1/sqrt(2 n) of the deviation; five of them.
-  EXPECT_NEAR(sum[0] / n, 0, 5 * 10e-9 / std::sqrt(n));
-  EXPECT_NEAR(std::sqrt(squares[0] / n), 10e-9, 5 * 10e-9 / std::sqrt(2.0 * n));
-  EXPECT_NEAR(std::sqrt(squares[1] / n), 240e-9, 5 * 240e-9 / std::sqrt(2.0 * n));
 }
 
 TEST(ForceSensor, SameSeedSameReadings) {
@@ -63,12 +97,14 @@ TEST(ForceSensor, SameSeedSameReadings) {
 
 TEST(ForceSensor, EachAxisShowsItsShareOnTheOther) {
   ForceSensorConfig config = noiseless();
-  config.cross_axis = 0.02;
+  config.sensitivity << 1, 0.03, 0.02, 1;
   ForceSensor sensor(config);
   Eigen::Vector2d reading;
   for (int i = 0; i < 100; ++i) reading = sensor.sample({100e-6, 0}, kStep);
   EXPECT_NEAR(reading[0], 100e-6, 1e-9);
   EXPECT_NEAR(reading[1], 2e-6, 1e-9);
+  for (int i = 0; i < 100; ++i) reading = sensor.sample({0, 100e-6}, kStep);
+  EXPECT_NEAR(reading[0], 3e-6, 1e-9);
 }
 
 TEST(ForceSensor, SaturatesAtItsRangeAndSaysSo) {

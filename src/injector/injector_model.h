@@ -1,0 +1,51 @@
+#pragma once
+
+#include <optional>
+
+#include "injector/injector_device.h"
+#include "injector/injector_limits.h"
+#include "injector/pipette_flow.h"
+
+namespace microinjection {
+
+struct InjectorModelConfig {
+  double rise_time = 5e-3;  ///< s, time constant of the regulator's first-order response
+  double balance = 1000;    ///< Pa, gauge, at the start
+  PipetteConfig pipette;
+  InjectorLimits limits;
+
+  /// Keys of its own, the section `pipette`, and the limits.
+  static InjectorModelConfig read(ConfigReader& reader);
+};
+
+/// A pressure regulator behind a pipette: p' = (target - p) / rise_time, flow by PipetteFlow. Pressure and volume are
+/// integrated exactly, also where a pulse ends within a step, so that nothing depends on the steps.
+class InjectorModel : public InjectorDevice {
+ public:
+  explicit InjectorModel(const InjectorModelConfig& config);
+
+  std::string pulse(const InjectionPulse& pulse) override;
+  std::string setBalance(double pressure) override;
+  void reset() override;
+  void step(double time) override;
+  const InjectorReading& reading() const override { return reading_; }
+  std::string fault() const override { return ""; }
+
+  /// A fault on request: the tip resists `factor` times as much as when it is clean. @pre factor >= 1
+  void clog(double factor) { clogging_ = factor; }
+
+ private:
+  void advance(double target, double dt);
+
+  InjectorModelConfig config_;
+  PipetteFlow flow_;
+  double balance_;  ///< Pa
+  double clogging_ = 1;
+  std::optional<InjectionPulse> pulse_;
+  double left_ = 0;  ///< s, of the pulse
+  double time_ = 0;  ///< s
+  bool begun_ = false;
+  InjectorReading reading_;
+};
+
+}  // namespace microinjection

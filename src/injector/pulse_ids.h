@@ -1,0 +1,26 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+
+namespace microinjection {
+
+/// Which pulses have been heard of: a message that comes twice must not inject twice.
+class PulseIds {
+ public:
+  /// True when the id is new; it is known from then on, among the last thousand.
+  bool isNew(std::uint64_t id) {
+    if (std::find(seen_.begin(), seen_.end(), id) != seen_.end()) return false;
+    seen_.push_back(id);
+    if (seen_.size() > kRemembered) seen_.pop_front();
+    return true;
+  }
+
+ private:
+  static constexpr std::size_t kRemembered = 1000;
+  std::deque<std::uint64_t> seen_;
+};
+
+}  // namespace microinjection

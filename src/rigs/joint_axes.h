@@ -1,0 +1,21 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "base/config_reader.h"
+
+namespace microinjection {
+
+/// How a device's axes lie to the URDF's joints: joint i is at origin[i] (m) where its axis reads 0, and moves with it
+/// (direction 1) or against it (-1).
+struct JointAxes {
+  Eigen::Vector3d directions = Eigen::Vector3d::Ones();
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< m
+
+  static JointAxes read(ConfigReader& reader);
+
+  Eigen::Vector3d toJoints(const Eigen::Vector3d& device) const { return origin + directions.cwiseProduct(device); }
+  Eigen::Vector3d toDevice(const Eigen::Vector3d& joints) const { return directions.cwiseProduct(joints - origin); }
+};
+
+}  // namespace microinjection

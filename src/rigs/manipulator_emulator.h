@@ -1,0 +1,17 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "serial/emulator.h"
+
+namespace microinjection {
+
+/// An emulated micromanipulator: what a test may look at without asking over the line.
+class ManipulatorEmulator : public DeviceEmulator {
+ public:
+  virtual Eigen::Vector3d position() const = 0;  ///< m, of the device's axes, as they are
+  virtual int movesBegun() const = 0;            ///< moves to a place that it has begun
+  virtual bool moves() const = 0;
+};
+
+}  // namespace microinjection

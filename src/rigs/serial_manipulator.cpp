@@ -1,0 +1,144 @@
+#include "rigs/serial_manipulator.h"
+
+#include <algorithm>
+
+namespace microinjection {
+namespace {
+
+constexpr double kOpenInterval = 0.5;     // s, between attempts to open the line
+constexpr double kLongestDrain = 2;       // s: a line that is never silent is not the device's
+constexpr double kPauseInFault = 0.5;     // s, between attempts while nothing may move anyway
+constexpr int kAttempts = 3;              // failures in a row that make a fault
+constexpr int kSuccessesToForget = 12;    // exchanges after which a failure is no longer in a row with the next
+
+}  // namespace
+
+SerialManipulator::SerialManipulator(std::unique_ptr<Wire> wire, const Link& link)
+    : wire_(std::move(wire)), link_(link), why_(link.device + ": not connected yet") {}
+
+SerialManipulator::~SerialManipulator() {
+  if (wire_->isOpen()) wire_->write(link_.stop, time_);
+}
+
+void SerialManipulator::follow(const Eigen::Vector3d& joints, const Eigen::Vector3d& velocity) {
+  if (!mayMove() || !joints.allFinite() || !velocity.allFinite()) return;
+  const bool same = goal_ && goal_->follows && goal_->joints == joints && goal_->velocity == velocity;
+  goal_ = Goal{true, joints, velocity, 0, time_};
+  stopped_ = false;
+  if (!same) goalChanged();
+}
+
+void SerialManipulator::moveTo(const Eigen::Vector3d& joints, double speed) {
+  if (!mayMove() || !joints.allFinite() || !(speed > 0)) return;
+  const bool same = goal_ && !goal_->follows && goal_->joints == joints && goal_->speed == speed;
+  goal_ = Goal{false, joints, Eigen::Vector3d::Zero(), speed, time_};
+  stopped_ = false;
+  if (!same) goalChanged();
+}
+
+void SerialManipulator::dropGoal() {
+  goal_.reset();
+  goalChanged();
+}
+
+void SerialManipulator::stop() {
+  dropGoal();
+  if (!stopped_) stop_wanted_ = true;  // said again and again it must not keep the device from being asked
+}
+
+void SerialManipulator::clearFault() {
+  if (fault_.empty()) return;
+  clearing_ = true;
+  failures_ = 0;
+  stop_wanted_ = true;
+}
+
+void SerialManipulator::beginSession(double quiet) {
+  wire_->write(link_.stop, time_);
+  stopped_ = !goal_;
+  talking_ = false;
+  drain_since_ = last_byte_ = time_;
+  quiet_ = quiet;
+}
+
+void SerialManipulator::lineLost() {
+  was_open_ = talking_ = ready_ = stop_wanted_ = false;
+  next_open_ = time_ + kOpenInterval;
+  why_ = link_.device + ": the line broke; trying again";
+  dropGoal();
+}
+
+void SerialManipulator::lostStep(const std::string& reason) {
+  successes_ = 0;
+  if (++failures_ >= kAttempts) {
+    raiseFault(reason);
+  } else {
+    beginSession(link_.quiet_after_loss);
+  }
+}
+
+void SerialManipulator::raiseFault(const std::string& reason) {
+  const bool again = !fault_.empty() && !clearing_;
+  fault_ = link_.device + ": " + reason;
+  clearing_ = false;
+  dropGoal();
+  beginSession(again ? std::max(kPauseInFault, link_.quiet_after_loss) : link_.quiet_after_loss);
+}
+
+void SerialManipulator::known() {
+  ready_ = true;
+  if (clearing_) fault_.clear();
+  clearing_ = false;
+}
+
+void SerialManipulator::understood() {
+  if (++successes_ >= kSuccessesToForget) failures_ = 0;
+}
+
+void SerialManipulator::step(double time) {
+  time_ = time;
+  if (!wire_->isOpen()) {
+    if (was_open_) lineLost();
+    if (time < next_open_) return;
+    next_open_ = time + kOpenInterval;
+    why_ = wire_->open();
+    if (!why_.empty()) return;
+    was_open_ = true;
+    why_ = link_.device + ": connected, no answer yet";
+    beginSession(link_.quiet_after_loss);
+  }
+  std::string bytes = wire_->read(time);
+  if (!wire_->isOpen()) return lineLost();
+  if (stop_wanted_) {
+    stop_wanted_ = false;
+    beginSession(talking_ && !clearing_ ? link_.quiet_in_step : std::max(quiet_, link_.quiet_in_step));
+  }
+  if (!talking_) {
+    if (!bytes.empty()) last_byte_ = time;
+    if (time - drain_since_ > kLongestDrain) return lostStep("the line is never silent; is it the right port?");
+    if (time - last_byte_ < quiet_) return;
+    bytes.clear();
+    talking_ = true;
+    begin();
+  }
+  talk(bytes);
+}
+
+ManipulatorDevice::State SerialManipulator::state() const {
+  if (!wire_->isOpen()) return State::kDisconnected;
+  if (!fault_.empty()) return State::kFault;
+  return ready_ ? State::kReady : State::kDisconnected;
+}
+
+std::string SerialManipulator::why() const {
+  switch (state()) {
+    case State::kReady:
+      return "";
+    case State::kFault:
+      return fault_;
+    default:
+      return why_;
+  }
+}
+
+}  // namespace microinjection

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "manipulator/manipulator_device.h"
+#include "serial/wire.h"
+
+namespace microinjection {
+
+/// What all manipulators behind a serial line have in common: the line that may break, the stop that comes first, an
+/// exchange that went wrong, faults. A device's driver adds the conversation.
+///
+/// A session begins, after the line has been opened and after anything went wrong, with a stop; then what comes belated
+/// is thrown away until the line has been silent; then the driver asks where everything is. Only when it knows may
+/// anything move. When that fails a few times in a row, the reason becomes a fault, and motion waits for clearFault().
+/// Commands that come while the device is not kReady are not kept.
+class SerialManipulator : public ManipulatorDevice {
+ public:
+  void follow(const Eigen::Vector3d& joints, const Eigen::Vector3d& velocity) final;
+  void moveTo(const Eigen::Vector3d& joints, double speed) final;
+  void stop() final;
+  void clearFault() final;
+  void step(double time) final;
+  State state() const final;
+  std::string why() const final;
+
+ protected:
+  struct Link {
+    std::string device;         ///< its name in messages
+    std::string stop;           ///< bytes that stop it, whatever it is doing
+    double quiet_in_step = 0;   ///< s of silence that end what follows a stop
+    double quiet_after_loss = 0;  ///< s of silence after which nothing belated comes and no half command is left
+  };
+  struct Goal {
+    bool follows = false;                                  ///< a set-point, otherwise a move
+    Eigen::Vector3d joints = Eigen::Vector3d::Zero();    ///< m
+    Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< m/s, of a set-point
+    double speed = 0;                                      ///< m/s, of a move
+    double time = 0;                                       ///< s, when it came
+  };
+
+  SerialManipulator(std::unique_ptr<Wire> wire, const Link& link);
+  ~SerialManipulator() override;  ///< sends a stop
+
+  /// Begins the conversation anew: whatever was asked is void, and the device has been told to stop.
+  virtual void begin() = 0;
+  /// Goes on with the conversation: with what came, and with what is to be said.
+  virtual void talk(const std::string& bytes) = 0;
+  /// A new goal (goal() is set) came or the goal went.
+  virtual void goalChanged() = 0;
+
+  double time() const { return time_; }  ///< s, of this step
+  const std::optional<Goal>& goal() const { return goal_; }
+  bool talking() const { return talking_; }
+  bool mayMove() const { return ready_ && fault_.empty(); }
+  bool clearing() const { return clearing_; }  ///< clearFault() was called and this session tries
+  void say(const std::string& bytes) { wire_->write(bytes, time_); }
+  void dropGoal();
+  void movesByItself() { stopped_ = false; }  ///< without a goal, so that a stop has something to stop
+
+  void known();                                  ///< the driver knows where everything is, and everything is at rest
+  void understood();                             ///< an exchange has succeeded
+  void lostStep(const std::string& reason);      ///< an exchange has failed: stops and begins anew
+  void raiseFault(const std::string& reason);    ///< stops and lets nothing move until clearFault()
+
+ private:
+  void beginSession(double quiet);
+  void lineLost();
+
+  std::unique_ptr<Wire> wire_;
+  const Link link_;
+  double time_ = 0;        // s
+  double next_open_ = -1;  // s
+  double last_byte_ = 0;   // s, since the stop
+  double drain_since_ = 0; // s
+  double quiet_ = 0;       // s, of silence to wait for
+  bool was_open_ = false, talking_ = false, ready_ = false, clearing_ = false, stop_wanted_ = false;
+  bool stopped_ = false;  // told to stop, and to do nothing since
+  int failures_ = 0, successes_ = 0;
+  std::string why_;    // not connected
+  std::string fault_;  // empty: none
+  std::optional<Goal> goal_;
+};
+
+}  // namespace microinjection

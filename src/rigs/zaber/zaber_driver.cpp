@@ -1,0 +1,360 @@
+#include "rigs/zaber/zaber_driver.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace microinjection {
+namespace {
+
+constexpr double kVelocityHolds = 0.1;    // s: a set-point's velocity is not followed for longer
+constexpr double kLongestBraking = 1.5;   // s, after a stop
+constexpr double kLongestHoming = 120;    // s
+constexpr double kRetryPause = 0.02;      // s, after AGAIN and its like
+constexpr int kTries = 3;                 // of a message
+constexpr int kMoveTries = 2;
+constexpr int kStalls = 10;               // readings of an axis at rest that was told to move
+constexpr int kMessageBytes = 24;         // of a longer message, either way
+constexpr double kSlowest = 10;           // microsteps/s, of an axis of a move
+
+std::string stopAll(const ZaberConfig& config) {
+  std::string bytes;
+  for (const ZaberAddress& address : config.addresses) bytes += zaberCommand(address, "stop", config.checksum);
+  return bytes;
+}
+
+double byteTime(const ZaberConfig& config) { return 10.0 / config.port.baud; }
+
+}  // namespace
+
+ZaberDriver::ZaberDriver(const ZaberConfig& config, std::unique_ptr<Wire> wire)
+    : SerialManipulator(std::move(wire), {"Zaber", stopAll(config), config.answer_time + 60 * byteTime(config) + 5e-3,
+                                          config.reply_timeout + 2 * kMessageBytes * byteTime(config)}),
+      config_(config),
+      parser_(config.checksum) {}
+
+double ZaberDriver::exchangeTime() const { return 2 * kMessageBytes * byteTime(config_) + config_.answer_time; }
+
+double ZaberDriver::gain() const {
+  // A loop with a dead time T is well damped up to a gain of about 0.4 / T; a turn is six exchanges.
+  return config_.gain > 0 ? config_.gain : 0.3 / (7 * exchangeTime());
+}
+
+ManipulatorAbilities ZaberDriver::abilities() const {
+  ManipulatorAbilities abilities;
+  abilities.device = "Zaber (ASCII protocol)";
+  abilities.follows = true;
+  abilities.command_interval = abilities.reading_interval = 6 * exchangeTime();
+  abilities.resolution = 1 / config_.microsteps_per_metre.minCoeff();
+  abilities.speed = config_.speed;
+  abilities.latency = 4 * exchangeTime();  // half a turn to wait, and its own way
+  const double wire = stopAll(config_).size() * byteTime(config_);
+  abilities.stop_time = wire + config_.answer_time + config_.speed / config_.acceleration;
+  return abilities;
+}
+
+double ZaberDriver::expected(int i, double at) const {
+  const Axis& axis = axes_[i];
+  if (!axis.position) return std::nan("");
+  const double way = axis.velocity * std::max(0.0, at - axis.position_time);
+  if (std::isnan(axis.end)) return *axis.position + way;
+  const double left = axis.end - *axis.position;
+  return *axis.position + (std::abs(way) < std::abs(left) ? way : left);  // never past the end of the move
+}
+
+std::optional<ManipulatorDevice::Reading> ZaberDriver::reading() const {
+  Eigen::Vector3d device, velocity;
+  for (int i = 0; i < 3; ++i) {
+    if (!axes_[i].position || state() == State::kDisconnected) return std::nullopt;
+    device[i] = expected(i, time());
+    velocity[i] = !std::isnan(axes_[i].end) && device[i] == axes_[i].end ? 0 : axes_[i].velocity;
+  }
+  return Reading{config_.joints.toJoints(device), config_.joints.directions.cwiseProduct(velocity)};
+}
+
+bool ZaberDriver::moving() const {
+  if (!goal()) return std::any_of(axes_.begin(), axes_.end(), [](const Axis& axis) { return axis.busy; });
+  if (!goal()->follows) return !move_done_;
+  const Eigen::Vector3d wanted = config_.joints.toDevice(goal()->joints);
+  for (int i = 0; i < 3; ++i) {
+    const double away = std::abs(wanted[i] - axes_[i].position.value_or(wanted[i]));
+    if (axes_[i].told.value_or(1) != 0 || away > 1 / config_.microsteps_per_metre[i]) return true;
+  }
+  return false;
+}
+
+void ZaberDriver::begin() {
+  exchange_.reset();
+  parser_.forget();
+  begun_ = time();
+  settled_ = false;
+  turn_ = move_stage_ = 0;
+  for (Axis& axis : axes_) {
+    axis.filter.forget();
+    axis.told.reset();
+    axis.velocity = 0;
+    axis.end = std::nan("");
+    axis.read_since_begin = axis.homed = false;
+    axis.busy = axis.has_reference = true;
+    axis.cleared = !clearing();
+    axis.stalls = 0;
+  }
+}
+
+void ZaberDriver::goalChanged() {
+  move_stage_ = move_tries_ = 0;
+  move_done_ = false;
+}
+
+void ZaberDriver::talk(const std::string& bytes) {
+  for (const ZaberMessage& message : parser_.feed(bytes)) {
+    handle(message);
+    if (!talking()) return;
+  }
+  if (exchange_ && time() > exchange_->due) exchange_->sent ? missedReply() : sendExchange();
+  if (!exchange_ && talking()) next();
+}
+
+int ZaberDriver::axisOf(const ZaberAddress& address) const {
+  const auto found = std::find(config_.addresses.begin(), config_.addresses.end(), address);
+  return found == config_.addresses.end() ? -1 : static_cast<int>(found - config_.addresses.begin());
+}
+
+std::string ZaberDriver::axisName(int axis) const {
+  const ZaberAddress& address = config_.addresses[axis];
+  return "axis " + std::to_string(address.axis) + " of device " + std::to_string(address.device);
+}
+
+void ZaberDriver::handle(const ZaberMessage& message) {
+  const int axis = axisOf(message.from);
+  if (message.kind == ZaberMessage::Kind::kReply) {
+    const bool awaited = exchange_ && exchange_->sent && axis == exchange_->axis;
+    if (awaited) handleReply(message);
+  } else if (message.kind == ZaberMessage::Kind::kAlert && axis >= 0) {
+    takeFlag(message, axis);
+  }
+}
+
+void ZaberDriver::takeFlag(const ZaberMessage& message, int axis) {
+  const bool told_already = state() == State::kFault && !clearing();
+  if (isZaberFault(message.flag) && !told_already) {
+    return raiseFault(axisName(axis) + " reports fault " + message.flag);
+  }
+  axes_[axis].has_reference = message.flag != "WR";
+  if (message.flag[0] == 'W') note_ = axisName(axis) + " warns " + message.flag;
+}
+
+void ZaberDriver::handleReply(const ZaberMessage& reply) {
+  const Exchange done = *exchange_;
+  if (reply.rejected) return handleRejection(reply);
+  Axis& axis = axes_[done.axis];
+  if (done.kind == Kind::kPosition) {
+    if (!reply.position()) return;  // a belated answer to something else; its own is still to come
+  } else {
+    understood();
+    exchange_.reset();
+  }
+  if (done.kind != Kind::kClear) takeFlag(reply, done.axis);
+  if (!talking()) return;
+  axis.busy = reply.busy;
+  const double speed_unit = config_.microsteps_per_metre[done.axis] * kZaberSpeedUnit;  // for 1 m/s
+  switch (done.kind) {
+    case Kind::kPosition:
+      takePosition(reply);
+      break;
+    case Kind::kVelocity:
+      axis.position = expected(done.axis, time());
+      axis.position_time = time();
+      axis.velocity = done.value / speed_unit;
+      axis.end = std::nan("");
+      axis.told = done.value;
+      break;
+    case Kind::kMove:
+      axis.position = expected(done.axis, time());
+      axis.position_time = time();
+      axis.end = done.value / config_.microsteps_per_metre[done.axis];
+      axis.velocity = std::copysign(axis.move_speed, axis.end - *axis.position);
+      axis.told.reset();
+      axis.read_since_move = false;
+      ++move_stage_;
+      break;
+    case Kind::kSpeed:
+      axis.move_speed = done.value / speed_unit;
+      ++move_stage_;
+      break;
+    case Kind::kClear:
+      axis.cleared = true;
+      break;
+    case Kind::kHome:
+      axis.homed = axis.busy = true;
+      break;
+  }
+}
+
+void ZaberDriver::handleRejection(const ZaberMessage& reply) {
+  const bool later = reply.data == "AGAIN" || reply.data == "STATUSBUSY" || reply.data == "FULL";
+  if (later && exchange_->tries < kTries) {
+    exchange_->sent = false;
+    exchange_->due = time() + kRetryPause;
+    return;
+  }
+  raiseFault(axisName(exchange_->axis) + " refuses \"" + exchange_->text + "\": " + reply.data);
+}
+
+void ZaberDriver::takePosition(const ZaberMessage& reply) {
+  const int i = exchange_->axis;
+  Axis& axis = axes_[i];
+  understood();
+  exchange_.reset();
+  const double place = *reply.position() / config_.microsteps_per_metre[i];
+  const double then = time() - (kMessageBytes * byteTime(config_) + config_.answer_time / 2);  // when it was there
+  const double guess = expected(i, then);
+  const double step = 1 / config_.microsteps_per_metre[i];
+  const double since = std::max(0.0, time() - axis.position_time) + exchangeTime();
+  const bool rests = !reply.busy && axis.velocity == 0;
+  const double tolerance = rests ? 2.5 * step : config_.reading_margin + std::abs(axis.velocity) * since;
+  using Coordinate = Eigen::VectorXd;
+  if (!axis.filter.accept(Coordinate::Constant(1, place), Coordinate::Constant(1, guess), tolerance)) return;
+  if (axis.read_since_begin) largest_correction_ = std::max(largest_correction_, std::abs(place - guess));
+  const bool stands = axis.position && std::abs(place - *axis.position) < 0.5 * step;
+  axis.position = place;
+  axis.position_time = then;
+  axis.read_since_begin = axis.read_since_move = true;
+  if (!reply.busy && axis.told.value_or(0) != 0) return checkStall(i, stands);
+  axis.stalls = 0;
+}
+
+/// An axis at rest that was told a velocity has stopped by itself, or by hand: it is told again, a few times.
+void ZaberDriver::checkStall(int i, bool stands) {
+  Axis& axis = axes_[i];
+  axis.told.reset();
+  axis.velocity = 0;
+  axis.stalls = stands ? axis.stalls + 1 : 0;
+  if (axis.stalls >= kStalls) raiseFault(axisName(i) + " does not move although it is told to; is it at its end?");
+}
+
+void ZaberDriver::missedReply() {
+  // Positions, speeds and moves to a place may be said twice; what a belated answer could spoil is checked elsewhere.
+  if (exchange_->tries < kTries) return sendExchange();
+  const Exchange lost = *exchange_;
+  lostStep("no answer of " + axisName(lost.axis) + " to \"" + lost.text + "\"");
+}
+
+void ZaberDriver::ask(Kind kind, int axis, const std::string& command, long long value) {
+  exchange_ = Exchange{kind, axis, value, command, 0, 0, false};
+  sendExchange();
+}
+
+void ZaberDriver::sendExchange() {
+  const std::string bytes = zaberCommand(config_.addresses[exchange_->axis], exchange_->text, config_.checksum);
+  ++exchange_->tries;
+  exchange_->sent = true;
+  exchange_->due = time() + (bytes.size() + kMessageBytes) * byteTime(config_) + config_.reply_timeout;
+  say(bytes);
+}
+
+void ZaberDriver::next() {
+  if (nextOfSession()) return;
+  if (goal() && !goal()->follows && nextOfMove()) return;
+  nextInTurn();
+}
+
+/// At the begin of a session: faults are cleared, and every axis must have been read and be at rest.
+bool ZaberDriver::nextOfSession() {
+  if (settled_) return false;
+  for (int i = 0; i < 3; ++i) {
+    Axis& axis = axes_[i];
+    if (!axis.cleared) return ask(Kind::kClear, i, "warnings clear"), true;
+    if (!axis.read_since_begin || axis.busy) {
+      if (time() - begun_ > (axis.homed ? kLongestHoming : kLongestBraking)) {
+        lostStep(axisName(i) + (axis.busy ? " does not come to rest" : " has no steady position"));
+      } else {
+        ask(Kind::kPosition, i, "get pos");
+      }
+      return true;
+    }
+    if (!axis.has_reference && nextOfHoming(i)) return true;
+  }
+  settled_ = true;
+  known();
+  return false;
+}
+
+bool ZaberDriver::nextOfHoming(int i) {
+  if (state() == State::kFault && !clearing()) return false;
+  // A cleared fault is no leave to move.
+  if (!config_.home || axes_[i].homed || clearing()) {
+    raiseFault(axisName(i) + " has no reference position: home it, by its maker's tool or by home: true at the start");
+    return true;
+  }
+  movesByItself();
+  axes_[i].position.reset();  // its numbers begin anew
+  axes_[i].read_since_begin = false;
+  begun_ = time();
+  ask(Kind::kHome, i, "home");
+  return true;
+}
+
+long long ZaberDriver::velocityData(int i) const {
+  const double scale = config_.microsteps_per_metre[i];
+  const double wanted = config_.joints.toDevice(goal()->joints)[i];
+  const bool fresh = time() - goal()->time < kVelocityHolds;
+  const double ahead = fresh ? config_.joints.directions[i] * goal()->velocity[i] : 0;
+  const double away = wanted - expected(i, time());
+  if (ahead == 0 && std::abs(away) * scale < 0.75) return 0;
+  const double velocity = std::clamp(ahead + gain() * away, -config_.speed, config_.speed);
+  return std::llround(velocity * scale * kZaberSpeedUnit);
+}
+
+void ZaberDriver::nextInTurn() {
+  const int i = turn_ / 2;
+  if (turn_ % 2 == 0) {
+    turn_ = turn_ + 1;
+    if (goal() && goal()->follows && mayMove() && axes_[i].position) {
+      const long long data = velocityData(i);
+      if (axes_[i].told != data) return ask(Kind::kVelocity, i, "move vel " + std::to_string(data), data);
+    }
+  }
+  turn_ = (turn_ + 1) % 6;
+  ask(Kind::kPosition, i, "get pos");
+}
+
+/// A move's speeds and ends, one after the other; then it is watched.
+bool ZaberDriver::nextOfMove() {
+  if (move_done_ || !mayMove()) return false;
+  if (move_stage_ >= 6) {
+    checkMove();
+    return !talking();
+  }
+  const int i = move_stage_ % 3;
+  const double scale = config_.microsteps_per_metre[i];
+  const Eigen::Vector3d end = config_.joints.toDevice(goal()->joints);
+  if (move_stage_ >= 3) {
+    const long long data = std::llround(end[i] * scale);
+    ask(Kind::kMove, i, "move abs " + std::to_string(data), data);
+    return true;
+  }
+  Eigen::Vector3d way;
+  for (int k = 0; k < 3; ++k) way[k] = end[k] - expected(k, time());
+  const double share = way.norm() > 0 ? std::abs(way[i]) / way.norm() : 1;
+  const double speed = std::clamp(goal()->speed * share, kSlowest / scale, config_.speed);
+  const long long data = std::max(1LL, std::llround(speed * scale * kZaberSpeedUnit));
+  ask(Kind::kSpeed, i, "set maxspeed " + std::to_string(data), data);
+  return true;
+}
+
+void ZaberDriver::checkMove() {
+  for (const Axis& axis : axes_) {
+    if (axis.busy || !axis.read_since_move || axis.filter.doubts()) return;
+  }
+  const Eigen::Vector3d wanted = config_.joints.toDevice(goal()->joints);
+  for (int i = 0; i < 3; ++i) {
+    if (std::abs(wanted[i] - *axes_[i].position) * config_.microsteps_per_metre[i] < 1.5) continue;
+    if (++move_tries_ >= kMoveTries) return raiseFault(axisName(i) + " does not arrive: the move was interrupted");
+    move_stage_ = 0;  // to the same place: what has been done is not done twice
+    return;
+  }
+  move_done_ = true;
+  for (Axis& axis : axes_) axis.velocity = 0;
+}
+
+}  // namespace microinjection

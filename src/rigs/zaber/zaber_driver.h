@@ -1,0 +1,97 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "rigs/reading_filter.h"
+#include "rigs/serial_manipulator.h"
+#include "rigs/zaber/zaber_config.h"
+#include "rigs/zaber/zaber_protocol.h"
+
+namespace microinjection {
+
+/// Three Zaber axes. Follows set-points by a stream of velocities: the set-point's, and the distance from it times a
+/// gain; moves are the device's own, with a speed for each axis that makes the line straight but for the ramps.
+///
+/// One message is under way at a time, in turn: an axis' velocity when it has changed, the axis' position. An axis
+/// without a reference position is a fault: homing moves, so the user has it done (`home: true`, or the maker's tool).
+class ZaberDriver : public SerialManipulator {
+ public:
+  ZaberDriver(const ZaberConfig& config, std::unique_ptr<Wire> wire);
+
+  ManipulatorAbilities abilities() const override;
+  std::optional<Reading> reading() const override;
+  bool moving() const override;
+
+  const std::string& note() const { return note_; }               ///< the last warning that is no fault
+  double largestCorrection() const { return largest_correction_; }  ///< m, of a carried-on position by a reading
+  int malformed() const { return parser_.malformed(); }           ///< messages that were none
+
+ protected:
+  void begin() override;
+  void talk(const std::string& bytes) override;
+  void goalChanged() override;
+
+ private:
+  enum class Kind { kPosition, kVelocity, kSpeed, kMove, kClear, kHome };
+  struct Exchange {
+    Kind kind;
+    int axis;
+    long long value;   // microsteps, or units of speed
+    std::string text;  // of the command
+    int tries;
+    double due;  // s, to be sent (again), or to be answered
+    bool sent;
+  };
+  struct Axis {
+    ReadingFilter filter;
+    std::optional<double> position;      // m of the device, at `position_time`
+    double position_time = 0;            // s
+    double velocity = 0;                 // m/s, carries the position on
+    double end = 0;                      // m, where a move ends; NaN: no move
+    std::optional<long long> told;       // units of speed, of the velocity that the device follows
+    bool busy = true;
+    double move_speed = 0;               // m/s, set for the move
+    bool read_since_begin = false, read_since_move = false;
+    bool has_reference = true, cleared = true, homed = false;
+    int stalls = 0;
+  };
+
+  double exchangeTime() const;
+  double gain() const;
+  double expected(int axis, double time) const;
+  void handle(const ZaberMessage& message);
+  void handleReply(const ZaberMessage& reply);
+  void handleRejection(const ZaberMessage& reply);
+  void takeFlag(const ZaberMessage& message, int axis);
+  void takePosition(const ZaberMessage& reply);
+  void checkStall(int axis, bool stands);
+  void missedReply();
+  void next();
+  bool nextOfSession();
+  bool nextOfHoming(int axis);
+  bool nextOfMove();
+  void nextInTurn();
+  void checkMove();
+  void ask(Kind kind, int axis, const std::string& command, long long value = 0);
+  void sendExchange();
+  long long velocityData(int axis) const;
+  int axisOf(const ZaberAddress& address) const;
+  std::string axisName(int axis) const;
+
+  ZaberConfig config_;
+  ZaberParser parser_;
+  std::array<Axis, 3> axes_;
+  std::optional<Exchange> exchange_;
+  double begun_ = 0;     // s, of this session
+  bool settled_ = false; // in this session everything has been read and was at rest
+  int turn_ = 0;         // 0..5: velocity and position of each axis
+  int move_stage_ = 0;   // of a move: 0..2 speeds, 3..5 positions, then under way
+  int move_tries_ = 0;
+  bool move_done_ = false;
+  std::string note_;
+  double largest_correction_ = 0;  // m
+};
+
+}  // namespace microinjection

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace microinjection {
+
+/// Zaber's ASCII protocol: "/<device> <axis> <command>\n" is answered by "@<device> <axis> OK IDLE -- <data>\r\n".
+/// Device and axis 0 mean all of them.
+struct ZaberAddress {
+  int device = 0, axis = 0;
+  bool operator==(const ZaberAddress& other) const { return device == other.device && axis == other.axis; }
+};
+
+/// `checksum`: ":XX" is put at the end, the two's complement of the sum of the characters after the first.
+std::string zaberCommand(const ZaberAddress& to, const std::string& command, bool checksum);
+
+struct ZaberMessage {
+  enum class Kind { kReply, kInfo, kAlert };  ///< begin with @, # and !
+  Kind kind = Kind::kReply;
+  ZaberAddress from;
+  bool rejected = false;     ///< of a reply: RJ; data has the reason
+  bool busy = false;         ///< of a reply or an alert
+  std::string flag = "--";   ///< the warning of the highest priority; F.: fault, W.: warning, N.: note
+  std::string data;
+
+  /// The data as a position in microsteps: one whole number of less than 2^31 in size.
+  std::optional<std::int64_t> position() const;
+};
+
+/// Whether the device's flag is a fault: the device has stopped and needs attention.
+inline bool isZaberFault(const std::string& flag) { return !flag.empty() && flag[0] == 'F'; }
+
+/// Finds messages in a stream of bytes. What is none is passed over; it is in step again with the next message.
+class ZaberParser {
+ public:
+  /// `checksum`: a message without one is none. One that has a checksum must have the right one in any case.
+  explicit ZaberParser(bool checksum) : checksum_(checksum) {}
+
+  std::vector<ZaberMessage> feed(const std::string& bytes);
+  void forget() { line_.clear(); }  ///< a message that has begun
+  int malformed() const { return malformed_; }
+
+ private:
+  std::optional<ZaberMessage> parse(std::string line) const;
+
+  bool checksum_;
+  std::string line_;  // empty: outside a message
+  int malformed_ = 0;
+};
+
+}  // namespace microinjection

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace microinjection {
+
+/// Remembers that a load on a sensor was too large for it, until it is reset.
+class OverloadLatch {
+ public:
+  /// `limit` (N): of (axial, lateral).
+  explicit OverloadLatch(const Eigen::Vector2d& limit) : limit_(limit) {}
+
+  void check(const Eigen::Vector2d& load) { latched_ = latched_ || (load.cwiseAbs().array() > limit_.array()).any(); }
+  bool latched() const { return latched_; }
+  void reset() { latched_ = false; }
+
+ private:
+  Eigen::Vector2d limit_;
+  bool latched_ = false;
+};
+
+}  // namespace microinjection

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "serial/emulator.h"
+#include "serial/line_timing.h"
+
+namespace microinjection {
+
+/// An emulated device at the end of a line that takes its time, in virtual time (s) that never goes back.
+class EmulatedLine {
+ public:
+  EmulatedLine(std::shared_ptr<DeviceEmulator> device, double baud);
+
+  void send(const std::string& bytes, double time) { to_device_.put(bytes, time); }
+  /// Lets time pass and returns what has arrived from the device.
+  std::string receive(double time);
+  /// Everything on its way is lost, and what the device says from now until `time` of the next call, too.
+  void cut();
+
+ private:
+  std::shared_ptr<DeviceEmulator> device_;
+  LineTiming to_device_, from_device_;
+  bool was_cut_ = false;
+};
+
+}  // namespace microinjection

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <deque>
+#include <string>
+#include <vector>
+
+namespace microinjection {
+
+/// One direction of a serial line in virtual time: each byte takes 10 bit times (start bit, 8 data bits, stop bit).
+class LineTiming {
+ public:
+  struct Byte {
+    char value;
+    double time;  ///< s, at which it has arrived in full
+  };
+
+  /// `baud` in bit/s, > 0.
+  explicit LineTiming(double baud) : byte_time_(10 / baud) {}
+
+  double byteTime() const { return byte_time_; }  ///< s
+  /// Sends bytes from `time` (s) on, after those that are still being sent.
+  void put(const std::string& bytes, double time);
+  /// Bytes that have arrived by `time` (s), in order.
+  std::vector<Byte> take(double time);
+  void clear() { bytes_.clear(); }
+
+ private:
+  double byte_time_;  // s
+  double free_ = 0;   // s, when the last byte has gone
+  std::deque<Byte> bytes_;
+};
+
+}  // namespace microinjection

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "base/config_reader.h"
+#include "serial/wire.h"
+
+namespace microinjection {
+
+struct SerialPortConfig {
+  std::string path;  ///< of the serial device, or of a link to one, e.g. /dev/ttyUSB0
+  int baud = 9600;   ///< bit/s; 8 data bits, no parity, 1 stop bit
+
+  /// Requires `path`; `baud` is optional.
+  static SerialPortConfig read(ConfigReader& reader, int default_baud);
+};
+
+/// A serial device, or a pseudo-terminal, without waiting. A pulled cable (hang-up, input/output error) closes it.
+///
+/// Boost.Asio does the work: libserialport 0.1.1 looks ports up in /sys and so refuses pseudo-terminals and links.
+class SerialPort : public Wire {
+ public:
+  explicit SerialPort(const SerialPortConfig& config);
+  ~SerialPort() override;
+
+  std::string open() override;  ///< what came while nobody listened is thrown away
+  bool isOpen() const override;
+  std::string read(double time) override;
+  void write(const std::string& bytes, double time) override;
+
+ private:
+  struct Line;  // Asio's headers are heavy
+  SerialPortConfig config_;
+  std::unique_ptr<Line> line_;  // none: closed
+};
+
+}  // namespace microinjection

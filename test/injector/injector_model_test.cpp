@@ -1,0 +1,128 @@
+#include "injector/injector_model.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "injector/pulse_ids.h"
+
+namespace microinjection {
+namespace {
+
+InjectorModelConfig atRest() {
+  InjectorModelConfig config;
+  config.balance = PipetteFlow(config.pipette).restPressure();
+  return config;
+}
+
+double volumeOfPulse(double duration, double step, const InjectorModelConfig& config, double until = 0.5) {
+  InjectorModel model(config);
+  model.step(0);
+  EXPECT_EQ(model.pulse({1, 20e3, duration}), "");
+  const int steps = static_cast<int>(std::lround(until / step));
+  for (int i = 1; i <= steps; ++i) model.step(i * step);
+  EXPECT_FALSE(model.reading().busy);
+  return model.reading().volume;
+}
+
+TEST(InjectorModel, VolumeIsThatOfThePressuresIntegral) {
+  const InjectorModelConfig config = atRest();
+  // What the rise loses, the fall gives back: over a whole pulse the integral is pressure x duration.
+  const double exact = PipetteFlow(config.pipette).flow(20e3) * 0.1;
+  EXPECT_NEAR(volumeOfPulse(0.1, 1e-3, config) / exact, 1, 1e-9);
+}
+
+TEST(InjectorModel, NothingDependsOnTheSteps) {
+  const InjectorModelConfig config = atRest();
+  const double fine = volumeOfPulse(0.0123, 1e-4, config);
+  EXPECT_NEAR(volumeOfPulse(0.0123, 0.01, config) / fine, 1, 1e-9);
+  EXPECT_NEAR(volumeOfPulse(0.0123, 0.5, config) / fine, 1, 1e-9);
+}
+
+TEST(InjectorModel, VolumeIsTheSumOfTheFlow) {
+  InjectorModel model(atRest());
+  model.step(0);
+  model.pulse({1, 20e3, 0.02});
+  double sum = 0, before = model.reading().flow;
+  const double step = 1e-5;
+  for (int i = 1; i <= 5000; ++i) {
+    model.step(i * step);
+    sum += 0.5 * step * (before + model.reading().flow);
+    before = model.reading().flow;
+  }
+  EXPECT_NEAR(sum / model.reading().volume, 1, 1e-4);
+}
+
+TEST(InjectorModel, PressureRisesWithTheRegulatorsTime) {
+  InjectorModelConfig config = atRest();
+  config.balance = 0;
+  config.rise_time = 0.02;
+  InjectorModel model(config);
+  model.step(0);
+  model.pulse({1, 10e3, 1});
+  model.step(0.02);
+  EXPECT_NEAR(model.reading().pressure, 10e3 * (1 - std::exp(-1)), 1e-6);
+}
+
+TEST(InjectorModel, AWrongBalanceFlowsBackOrLeaks) {
+  for (const double sign : {-1.0, 1.0}) {
+    InjectorModel model(atRest());
+    model.step(0);
+    EXPECT_EQ(model.setBalance(model.reading().pressure + sign * 100), "");
+    model.step(10);
+    EXPECT_GT(sign * model.reading().flow, 0);
+    EXPECT_GT(sign * model.reading().volume, 0);
+    model.reset();
+    EXPECT_EQ(model.reading().volume, 0);
+  }
+}
+
+TEST(InjectorModel, AClogLetsLessThrough) {
+  InjectorModel clean(atRest()), clogged(atRest());
+  clogged.clog(100);
+  for (InjectorModel* model : {&clean, &clogged}) {
+    model->step(0);
+    model->pulse({1, 20e3, 0.1});
+    model->step(1);
+  }
+  EXPECT_NEAR(clogged.reading().volume / clean.reading().volume, 0.01, 1e-9);
+}
+
+TEST(InjectorModel, RefusesWithReasonAndChangesNothing) {
+  InjectorModel model(atRest());
+  model.step(0);
+  EXPECT_EQ(model.pulse({1, 60e3, 0.1}), "pulse pressure = 60000 Pa, allowed [-50000, 50000] Pa");
+  EXPECT_EQ(model.pulse({1, 1e3, 0}), "pulse duration = 0 s, allowed [0.001, 60] s");
+  EXPECT_NE(model.pulse({1, NAN, 0.1}), "");
+  EXPECT_NE(model.pulse({1, 1e3, INFINITY}), "");
+  EXPECT_NE(model.setBalance(-60e3), "");
+  EXPECT_FALSE(model.reading().busy);
+  EXPECT_EQ(model.pulse({7, 1e3, 0.1}), "");
+  EXPECT_EQ(model.pulse({8, 1e3, 0.1}), "a pulse is under way");
+  model.step(1);
+  EXPECT_EQ(model.reading().last_id, 7U);
+  EXPECT_EQ(model.reading().pulses, 1U);
+}
+
+TEST(InjectorModel, ReadsItsConfigurationStrictly) {
+  ConfigReader reader(YAML::Load("{balance: 1.0e6, pipette: {tip_radius: 1.0, viscosity: 0}}"), "test");
+  InjectorModelConfig::read(reader);
+  try {
+    reader.finish();
+    FAIL();
+  } catch (const std::exception& error) {
+    for (const char* part : {"balance = 1.0e6", "pipette/tip_radius = 1.0", "pipette/viscosity = 0"}) {
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << part << " in:\n" << error.what();
+    }
+  }
+}
+
+TEST(PulseIds, TellsARepeatedId) {
+  PulseIds ids;
+  EXPECT_TRUE(ids.isNew(3));
+  EXPECT_TRUE(ids.isNew(2));
+  EXPECT_FALSE(ids.isNew(3));
+}
+
+}  // namespace
+}  // namespace microinjection

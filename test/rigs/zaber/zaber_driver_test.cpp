@@ -1,0 +1,265 @@
+#include "rigs/zaber/zaber_driver.h"
+
+#include <gtest/gtest.h>
+
+#include "rigs/emulated_rig.h"
+#include "rigs/zaber/zaber_emulator.h"
+
+namespace microinjection {
+namespace {
+
+using State = ManipulatorDevice::State;
+constexpr double kStep = 0.047625e-6;  // m, a microstep
+const Eigen::Vector3d kPlace(100e-6, -50e-6, 30e-6);  // m
+
+ZaberConfig config() {
+  ZaberConfig config;
+  config.joints.origin.setConstant(-12.5e-3);
+  config.joints.directions << 1, 1, -1;
+  config.joints.origin.z() = 12.5e-3;
+  return config;
+}
+
+class ZaberTest : public testing::Test {
+ protected:
+  void make(const ZaberEmulatorConfig& device = {}, const ZaberConfig& driver = config()) {
+    rig_ = std::make_unique<EmulatedRig<ZaberDriver, ZaberConfig>>(driver, std::make_shared<ZaberEmulator>(device));
+  }
+  void start() {
+    if (!rig_) make();
+    ASSERT_TRUE(rig_->runUntilReady());
+    expectNear(rig_->read(), rig_->place(), 0.1 * kStep);
+  }
+  void moveAndCheck(const Eigen::Vector3d& place = kPlace) {
+    rig_->driver().moveTo(place, 1e-3);
+    ASSERT_TRUE(rig_->runUntilArrived()) << rig_->driver().why();
+    expectNear(rig_->place(), place, kStep);
+    expectNear(rig_->read(), rig_->place(), 0.1 * kStep);
+  }
+  std::unique_ptr<EmulatedRig<ZaberDriver, ZaberConfig>> rig_;
+};
+
+TEST_F(ZaberTest, MovesToAPlaceInAStraightLine) {
+  start();
+  rig_->driver().moveTo(kPlace, 0.2e-3);
+  const Eigen::Vector3d from = rig_->place(), way = (kPlace - from).normalized();
+  double aside = 0, fastest = 0;
+  Eigen::Vector3d last = from;
+  rig_->run(1.5, [&] {
+    const Eigen::Vector3d gone = rig_->place() - from;
+    aside = std::max(aside, (gone - way * way.dot(gone)).norm());
+    fastest = std::max(fastest, (rig_->place() - last).norm() / 1e-3);
+    last = rig_->place();
+  });
+  EXPECT_FALSE(rig_->driver().moving());
+  expectNear(rig_->place(), kPlace, kStep);
+  EXPECT_NEAR(fastest, 0.2e-3, 0.02e-3);
+  EXPECT_LT(aside, 4e-6);  // the axes begin one message (some 5 ms at 0.2 mm/s) after another
+  EXPECT_EQ(rig_->device().movesBegun(), 3);
+}
+
+TEST_F(ZaberTest, FollowsSetPointsAndArrivesAtTheLast) {
+  start();
+  const Eigen::Vector3d velocity(0.2e-3, -0.1e-3, 0.05e-3);
+  Eigen::Vector3d goal = rig_->place();
+  double lag = 0, carried = 0;
+  rig_->run(1.0, [&] {
+    goal += velocity * 1e-3;
+    rig_->driver().follow(goal, velocity);
+    if (rig_->time() > 0.8) {
+      lag = std::max(lag, (goal - rig_->place()).norm());
+      carried = std::max(carried, (rig_->read() - rig_->place()).norm());
+    }
+  });
+  EXPECT_LT(lag, velocity.norm() * rig_->driver().abilities().latency);
+  EXPECT_LT(carried, 1e-6);
+  rig_->driver().follow(goal, Eigen::Vector3d::Zero());
+  ASSERT_TRUE(rig_->runUntilArrived());
+  expectNear(rig_->place(), goal, kStep);
+  EXPECT_FALSE(rig_->device().moves());
+}
+
+TEST_F(ZaberTest, ASetPointThatIsNotRenewedIsReachedAndNotPassed) {
+  start();
+  const Eigen::Vector3d goal = rig_->place() + Eigen::Vector3d(20e-6, 0, 0);
+  rig_->driver().follow(goal, Eigen::Vector3d(0.2e-3, 0, 0));
+  rig_->run(3);
+  expectNear(rig_->place(), goal, kStep);
+}
+
+TEST_F(ZaberTest, TheNewestCommandWins) {
+  start();
+  rig_->driver().moveTo(kPlace + Eigen::Vector3d(5e-3, 0, 0), 1e-3);
+  rig_->run(0.3);
+  EXPECT_TRUE(rig_->device().moves());
+  moveAndCheck(kPlace);
+  rig_->driver().follow(kPlace + Eigen::Vector3d(2e-3, 0, 0), Eigen::Vector3d::Zero());
+  rig_->run(0.1);
+  rig_->driver().follow(kPlace, Eigen::Vector3d::Zero());
+  ASSERT_TRUE(rig_->runUntilArrived());
+  expectNear(rig_->place(), kPlace, kStep);
+}
+
+TEST_F(ZaberTest, StopsWithinFiftyMillisecondsAndTheWire) {
+  start();
+  const double wire = 3 * 10 * 10.0 / 115200;  // s
+  rig_->driver().moveTo(kPlace + Eigen::Vector3d(5e-3, 0, 0), 2e-3);
+  rig_->run(0.5);
+  const double from = rig_->time();
+  rig_->driver().stop();
+  ASSERT_TRUE(rig_->runUntil([&] { return !rig_->device().moves(); }, 1));
+  EXPECT_LT(rig_->time() - from, 0.05 + wire);
+  EXPECT_LT(rig_->time() - from, rig_->driver().abilities().stop_time + 2e-3);
+  rig_->run(0.3);
+  EXPECT_FALSE(rig_->driver().moving());
+  expectNear(rig_->read(), rig_->place(), 0.1 * kStep);
+}
+
+TEST_F(ZaberTest, AStopThatIsSaidAgainAndAgainLeavesItReadable) {
+  start();
+  rig_->driver().moveTo(kPlace, 1e-3);
+  rig_->run(0.05);
+  rig_->run(1, [&] { rig_->driver().stop(); });
+  EXPECT_FALSE(rig_->device().moves());
+  EXPECT_EQ(rig_->driver().state(), State::kReady);
+  expectNear(rig_->read(), rig_->place(), 0.1 * kStep);
+}
+
+TEST_F(ZaberTest, ThreeChainedDevicesWithChecksums) {
+  ZaberEmulatorConfig device;
+  device.devices = {1, 2, 3};
+  device.axes = {1, 1, 1};
+  ZaberConfig driver = config();
+  driver.checksum = true;
+  for (int i = 0; i < 3; ++i) driver.addresses[i] = {i + 1, 1};
+  make(device, driver);
+  start();
+  moveAndCheck();
+}
+
+TEST_F(ZaberTest, RecoversFromFaultsOfTheLineAndLosesNoMove) {
+  for (const char* fault : {"drop:1", "drop:30", "deaf:1", "deaf:40", "garble:1", "garble:60", "silence:0.1",
+                            "silence:0.3", "error:AGAIN", "error:STATUSBUSY", "interrupt"}) {
+    SCOPED_TRACE(fault);
+    make();
+    start();
+    rig_->driver().moveTo(kPlace, 0.2e-3);
+    rig_->run(0.05);
+    rig_->inject(fault);
+    ASSERT_TRUE(rig_->runUntilArrived()) << rig_->driver().why();
+    expectNear(rig_->place(), kPlace, kStep);
+    expectNear(rig_->read(), rig_->place(), 0.1 * kStep);
+  }
+}
+
+TEST_F(ZaberTest, LongSilenceIsAFaultThatCanBeCleared) {
+  start();
+  rig_->driver().moveTo(kPlace, 0.2e-3);
+  rig_->inject("silence:5");
+  ASSERT_TRUE(rig_->runUntil([&] { return rig_->driver().state() == State::kFault; }, 4));
+  EXPECT_NE(rig_->driver().why().find("no answer"), std::string::npos) << rig_->driver().why();
+  rig_->run(5);
+  EXPECT_EQ(rig_->driver().state(), State::kFault);  // latched
+  EXPECT_FALSE(rig_->device().moves());              // the stop was said again until it was heard
+  rig_->driver().clearFault();
+  ASSERT_TRUE(rig_->runUntilReady());
+  rig_->run(0.5);
+  EXPECT_FALSE(rig_->device().moves());  // rests until the next command
+  moveAndCheck();
+}
+
+TEST_F(ZaberTest, RefusalsAndFaultFlagsStopItAndSayWhy) {
+  for (const auto& [fault, word] : {std::pair("error:BADDATA", "BADDATA"), {"error:PARKED", "PARKED"}, {"error:FS", "FS"}}) {
+    SCOPED_TRACE(fault);
+    make();
+    start();
+    rig_->driver().follow(kPlace, Eigen::Vector3d::Zero());
+    rig_->run(0.02);
+    rig_->inject(fault);
+    ASSERT_TRUE(rig_->runUntil([&] { return rig_->driver().state() == State::kFault; }, 1));
+    EXPECT_NE(rig_->driver().why().find(word), std::string::npos) << rig_->driver().why();
+    rig_->run(0.3);
+    EXPECT_FALSE(rig_->device().moves());
+    rig_->driver().follow(kPlace, Eigen::Vector3d::Zero());  // not heard
+    rig_->run(0.3);
+    EXPECT_FALSE(rig_->device().moves());
+    rig_->driver().clearFault();
+    ASSERT_TRUE(rig_->runUntilReady());
+    moveAndCheck();
+  }
+}
+
+TEST_F(ZaberTest, MovesNothingWithoutAReferencePosition) {
+  ZaberEmulatorConfig device;
+  device.referenced = false;
+  make(device);
+  ASSERT_TRUE(rig_->runUntil([&] { return rig_->driver().state() == State::kFault; }, 2));
+  EXPECT_NE(rig_->driver().why().find("home"), std::string::npos) << rig_->driver().why();
+  rig_->driver().clearFault();
+  rig_->run(2);
+  EXPECT_EQ(rig_->driver().state(), State::kFault);
+  EXPECT_EQ(rig_->device().position(), ZaberEmulator(device).position());
+}
+
+TEST_F(ZaberTest, HomesWhenItsConfigurationSaysSo) {
+  ZaberEmulatorConfig device;
+  device.referenced = false;
+  ZaberConfig driver = config();
+  driver.home = true;
+  make(device, driver);
+  ASSERT_TRUE(rig_->runUntilReady(30)) << rig_->driver().why();
+  expectNear(rig_->device().position(), Eigen::Vector3d::Zero(), kStep);
+  expectNear(rig_->read(), rig_->place(), 0.1 * kStep);
+}
+
+TEST_F(ZaberTest, ConnectsAgainByItselfAndRests) {
+  start();
+  rig_->driver().moveTo(kPlace + Eigen::Vector3d(5e-3, 0, 0), 1e-3);
+  rig_->run(0.2);
+  rig_->wire().pull();
+  rig_->run(1);
+  EXPECT_EQ(rig_->driver().state(), State::kDisconnected);
+  EXPECT_FALSE(rig_->driver().reading());
+  EXPECT_NE(rig_->driver().why().find("pulled"), std::string::npos) << rig_->driver().why();
+  rig_->wire().plug();
+  ASSERT_TRUE(rig_->runUntilReady());
+  EXPECT_FALSE(rig_->device().moves());  // the first thing it heard was a stop
+  const Eigen::Vector3d there = rig_->place();
+  rig_->run(0.5);
+  expectNear(rig_->place(), there, 0);
+  moveAndCheck();
+}
+
+TEST_F(ZaberTest, ItsEndIsToldAndNotHiddenByTryingForEver) {
+  start();
+  const Eigen::Vector3d outside = rig_->place() + Eigen::Vector3d(0, 0, 13e-3);
+  rig_->driver().moveTo(outside, 2e-3);
+  ASSERT_TRUE(rig_->runUntil([&] { return rig_->driver().state() == State::kFault; }, 2));
+  EXPECT_NE(rig_->driver().why().find("BADDATA"), std::string::npos) << rig_->driver().why();
+  rig_->driver().clearFault();
+  ASSERT_TRUE(rig_->runUntilReady());
+  rig_->run(10, [&] { rig_->driver().follow(outside, Eigen::Vector3d::Zero()); });
+  EXPECT_NE(rig_->driver().why().find("end"), std::string::npos) << rig_->driver().why();
+}
+
+TEST_F(ZaberTest, StopsWhenItIsDestroyed) {
+  struct Ear : Wire {
+    explicit Ear(std::string* heard) : heard_(heard) {}
+    std::string open() override { return open_ = true, ""; }
+    bool isOpen() const override { return open_; }
+    std::string read(double) override { return ""; }
+    void write(const std::string& bytes, double) override { *heard_ = bytes; }
+    std::string* heard_;
+    bool open_ = false;
+  };
+  std::string heard;
+  {
+    ZaberDriver driver(config(), std::make_unique<Ear>(&heard));
+    driver.step(1);
+    heard.clear();
+  }
+  EXPECT_EQ(heard, "/1 1 stop\n/1 2 stop\n/1 3 stop\n");
+}
+
+}  // namespace
+}  // namespace microinjection

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "serial/wire.h"
+
+namespace microinjection {
+
+/// The test's end of a driver's line. The driver owns the wire; what it says and hears is here.
+struct WireScript {
+  std::string incoming;           ///< what the driver reads next
+  std::vector<std::string> sent;  ///< what it wrote
+  std::string refusal;            ///< why the line does not open; empty: it does
+  bool open = false;
+  int opened = 0;
+};
+
+class ScriptedWire : public Wire {
+ public:
+  explicit ScriptedWire(WireScript& script) : script_(script) {}
+  std::string open() override {
+    script_.open = script_.refusal.empty();
+    script_.opened += script_.open ? 1 : 0;
+    return script_.refusal;
+  }
+  bool isOpen() const override { return script_.open; }
+  std::string read(double) override {
+    std::string bytes;
+    bytes.swap(script_.incoming);
+    return bytes;
+  }
+  void write(const std::string& bytes, double) override { script_.sent.push_back(bytes); }
+
+ private:
+  WireScript& script_;
+};
+
+}  // namespace microinjection
