@@ -1,5 +1,6 @@
 #include "control/guards.h"
 
+#include <cmath>
 #include <sstream>
 
 namespace microinjection {
@@ -23,6 +24,7 @@ GuardConfig GuardConfig::read(ConfigReader& reader) {
   reader.number("tracking_limit", config.tracking_limit, Range::positive());
   reader.number("needle_speed_limit", config.needle_speed_limit, Range::positive());
   reader.number("force_limit", config.force_limit, Range::positive());
+  reader.number("lateral_force_limit", config.lateral_force_limit, Range::positive());
   reader.number("depth_limit", config.depth_limit, Range::positive());
   reader.number("time_limit", config.time_limit, Range::positive());
   return config;
@@ -48,8 +50,11 @@ std::string rigFault(const GuardConfig& config, const Eigen::Vector3d& needle, c
   return beyond("the needle moves at", speed, config.needle_speed_limit, "m/s");
 }
 
-std::string forceGuard(const GuardConfig& config, const Eigen::Vector3d& force) {
-  return beyond("force", force.norm(), config.force_limit, "N");
+std::string forceGuard(const GuardConfig& config, const Eigen::Vector3d& force, const Eigen::Vector3d& axis) {
+  const double along = force.dot(axis);
+  const std::string reason = beyond("force along the pipette", std::abs(along), config.force_limit, "N");
+  if (!reason.empty()) return reason;
+  return beyond("force across the pipette", (force - along * axis).norm(), config.lateral_force_limit, "N");
 }
 
 std::string depthGuard(const GuardConfig& config, double depth) {

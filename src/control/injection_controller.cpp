@@ -226,7 +226,7 @@ std::optional<Eigen::Vector3d> InjectionController::handTarget(const Input& inpu
 }
 
 std::string InjectionController::guard(const Input& input) const {
-  std::string reason = forceGuard(config_.guards, *input.force);
+  std::string reason = forceGuard(config_.guards, *input.force, input.axis);
   if (reason.empty()) reason = depthGuard(config_.guards, monitor_.depth());
   return reason;
 }

@@ -62,7 +62,7 @@ struct InjectionFeedback {
 struct InjectionResult {
   InjectionOutcome outcome = InjectionOutcome::kNone;
   std::string reason;                    ///< for people; empty where all went well
-  double peak_force = 0;                 ///< N, largest measured magnitude
+  double peak_force = 0;                 ///< N, largest measured along the pipette
   double max_depth = 0;                  ///< m past the touch
   int punctures = 0;                     ///< membranes
   std::optional<double> puncture_force;  ///< N, along the pipette, before the last membrane gave way

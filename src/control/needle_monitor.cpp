@@ -22,6 +22,7 @@ DetectionConfig DetectionConfig::read(ConfigReader& reader) {
   reader.integer("confirm_samples", config.confirm_samples, Range::closed(1, 10000));
   reader.number("puncture_drop", config.puncture_drop, Range::open(0, 1));
   reader.number("puncture_false_rate", config.puncture_false_rate, Range::open(0, 0.01));
+  reader.integer("puncture_pause", config.puncture_pause, Range::closed(0, 10000));
   return config;
 }
 
@@ -53,10 +54,10 @@ void NeedleMonitor::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis
     noise_.add(axial);
     if (!noise_.ready()) return;
     contact_.emplace(noise_, config_.contact_force, config_.contact_false_rate);
-    puncture_.emplace(noise_, config_.puncture_drop, config_.puncture_false_rate);
+    puncture_.emplace(noise_, config_.puncture_drop, config_.puncture_false_rate, config_.puncture_pause);
     return;
   }
-  peak_ = std::max(peak_, (force - noise_.offset() * axis).norm());
+  peak_ = std::max(peak_, std::abs(axial - noise_.offset()));
   crest_ = std::max(crest_, puncture_->meanForce(kBriefly));
   const double travel = -tip.dot(axis);
   const bool fell = puncture_->step(axial, travel);

@@ -17,6 +17,7 @@ struct DetectionConfig {
   int confirm_samples = 30;           ///< of the second look at a touch, while the needle rests
   double puncture_drop = 0.25;        ///< 1, smallest fall of the force that counts as puncture
   double puncture_false_rate = 1e-8;  ///< false alarms a sample
+  int puncture_pause = 30;            ///< samples after a puncture, while the cell springs back, in which none is felt
 
   static DetectionConfig read(ConfigReader& reader);
 };
@@ -38,7 +39,7 @@ class NeedleMonitor {
   bool ready() const { return noise_.ready(); }
   double noise() const { return noise_.deviation(); }  ///< N
   double force() const;                                ///< N, along the pipette above the offset, smoothed
-  double peakForce() const { return peak_; }           ///< N, largest magnitude
+  double peakForce() const { return peak_; }           ///< N, largest along the pipette, either way
   bool touched() const { return touched_at_.has_value(); }
   double depth() const { return depth_; }         ///< m past the touch; 0 without
   double maxDepth() const { return max_depth_; }  ///< m

@@ -13,14 +13,19 @@ constexpr double kMissed = 2.05;           ///< normal quantile of a miss in 50
 
 }  // namespace
 
-PunctureDetector::PunctureDetector(const ForceNoise& noise, double drop_share, double false_rate)
+PunctureDetector::PunctureDetector(const ForceNoise& noise, double drop_share, double false_rate, int pause)
     : offset_(noise.offset()),
       deviation_(noise.deviation()),
       drop_share_(drop_share),
       quantile_(normalQuantile(false_rate / kWindows)),
-      ring_(2 * kLongest + 1) {}
+      ring_(2 * kLongest + 1),
+      pause_(pause) {}
 
 bool PunctureDetector::step(double force, double travel) {
+  if (paused_ > 0) {
+    --paused_;
+    return false;
+  }
   if (count_ == 0) ring_[0] = {0, travel}, count_ = 1;
   const double sum = before(0).force_sum + force - offset_;
   ++count_;
@@ -28,6 +33,7 @@ bool PunctureDetector::step(double force, double travel) {
   for (int window = kShortest; window <= kLongest && 2 * window < count_; window *= 2) {
     if (!fell(window)) continue;
     reset();
+    paused_ = pause_;
     return true;
   }
   return false;

@@ -20,12 +20,13 @@ class PunctureDetector {
   /// @param drop_share  smallest fall, of the force before, in (0, 1)
   /// @param false_rate  false alarms a sample under a force that does not fall, in (0, 0.01): an upper bound (the
   ///                    windows' tests are taken as independent)
-  PunctureDetector(const ForceNoise& noise, double drop_share, double false_rate);
+  /// @param pause       samples after a puncture in which nothing is looked for: what is left of the force still falls
+  PunctureDetector(const ForceNoise& noise, double drop_share, double false_rate, int pause);
 
   /// One more sample: force (N, along the pipette) and travel (m, into the cell); true: punctured just now. Starts
-  /// afresh after that.
+  /// afresh after that and the pause.
   bool step(double force, double travel);
-  void reset() { count_ = 0; }
+  void reset() { count_ = 0; }  ///< afresh, without a pause
 
   /// Samples that it takes to find the smallest fall that counts from a force (N, above offset), with a miss in 50.
   double latency(double force) const;
@@ -46,6 +47,7 @@ class PunctureDetector {
   double quantile_;
   std::vector<Sample> ring_;
   long count_ = 0;
+  int pause_, paused_ = 0;  ///< samples
 };
 
 }  // namespace microinjection

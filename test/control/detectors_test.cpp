@@ -79,23 +79,23 @@ TEST_F(DetectorsTest, ContactIsFeltSoonAfterItIsLargeEnough) {
 constexpr double kRise = 10e-9, kAdvance = 100e-9;
 
 TEST_F(DetectorsTest, PunctureAlarmsFalselyNoMoreOftenThanDesigned) {
-  PunctureDetector detector(noise_, 1e-6, 1e-4);
+  PunctureDetector detector(noise_, 1e-6, 1e-4, 30);
   int alarms = 0;
   for (int i = 0; i < kMillion; ++i) alarms += detector.step(sample(), i * kAdvance);
   EXPECT_LE(alarms, 130);
   EXPECT_GT(alarms, 10) << "the bound is of no use";
-  PunctureDetector designed(noise_, 0.25, 1e-8);
+  PunctureDetector designed(noise_, 0.25, 1e-8, 30);
   for (int i = 0; i < kMillion; ++i) ASSERT_FALSE(designed.step(sample(1e-6), i * kAdvance));
 }
 
 TEST_F(DetectorsTest, PunctureIsFoundWithinItsLatency) {
   for (const double force : {0.1e-6, 0.3e-6, 1e-6, 5e-6}) {
-    PunctureDetector detector(noise_, 0.25, 1e-8);
+    PunctureDetector detector(noise_, 0.25, 1e-8, 30);
     int missed = 0;
     double total = 0;
     constexpr int kTrials = 200;
     for (int trial = 0; trial < kTrials; ++trial) {
-      detector.reset();
+      detector = PunctureDetector(noise_, 0.25, 1e-8, 30);
       double travel = 0;
       for (int i = 0; i < 600; ++i) ASSERT_FALSE(detector.step(sample(force), travel += kAdvance));
       const double expected = detector.latency(force);
@@ -104,7 +104,7 @@ TEST_F(DetectorsTest, PunctureIsFoundWithinItsLatency) {
       total += steps;
       missed += steps > expected;
     }
-    EXPECT_LT(total / kTrials, PunctureDetector(noise_, 0.25, 1e-8).latency(force)) << force;
+    EXPECT_LT(total / kTrials, PunctureDetector(noise_, 0.25, 1e-8, 30).latency(force)) << force;
     EXPECT_LE(missed, 0.05 * kTrials) << force;
   }
 }
@@ -127,7 +127,7 @@ bool findsPuncture(PunctureDetector& detector, std::initializer_list<std::pair<d
 TEST_F(DetectorsTest, StopRelaxationAndWithdrawalAreNoPuncture) {
   const auto noisy = [this](double force) { return sample(force); };
   for (const double relaxation : {0.05, 0.2, 1.0}) {
-    PunctureDetector detector(noise_, 0.25, 1e-8);
+    PunctureDetector detector(noise_, 0.25, 1e-8, 30);
     EXPECT_FALSE(findsPuncture(detector, {{200e-9, 60}, {0, 1000}}, relaxation, noisy)) << "stop";
     detector.reset();
     EXPECT_FALSE(findsPuncture(detector, {{200e-9, 60}, {0, 300}, {20e-9, 500}}, relaxation, noisy)) << "stop and go";
@@ -136,6 +136,19 @@ TEST_F(DetectorsTest, StopRelaxationAndWithdrawalAreNoPuncture) {
     detector.reset();
     EXPECT_FALSE(findsPuncture(detector, {{20e-9, 300}, {-20e-9, 250}, {20e-9, 250}}, relaxation, noisy))
         << "to and fro";
+  }
+}
+
+TEST_F(DetectorsTest, WhatFallsOnAfterAPunctureIsNotAnother) {
+  for (const int pause : {0, 30}) {
+    PunctureDetector detector(noise_, 0.25, 1e-8, pause);
+    int found = 0;
+    for (int i = 0; i < 1000; ++i) {
+      const double fallen = i < 500 ? 1 : std::exp(-(i - 500) / 8.0);
+      found += detector.step(sample(3e-6 * fallen), i * kAdvance);
+    }
+    if (pause == 30) EXPECT_EQ(found, 1);
+    if (pause == 0) EXPECT_GT(found, 1) << "the test would not notice";
   }
 }
 
