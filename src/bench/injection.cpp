@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "bench/bench_main.h"
+#include "bench/common/detection_figures.h"
 #include "bench/common/injection_rig.h"
 #include "bench/common/prepared_scene.h"
 
@@ -27,12 +28,18 @@ struct Bench {
   Scene scene = loadScene(kScene);
   std::shared_ptr<const PreparedCell> prepared = std::make_shared<const PreparedCell>(preparedScene(scene, kScene));
   ManipulatorGeometry geometry;
+  SimulatedManipulatorConfig manipulator;
 
-  Bench() {
+  /// @param manipulator_file  config file of the micromanipulator; empty: the ideal device with a lag
+  explicit Bench(const std::string& manipulator_file) {
     std::ifstream file(kRig);
     std::ostringstream text;
     text << file.rdbuf();
     geometry = ManipulatorGeometry::fromUrdf(text.str());
+    if (manipulator_file.empty()) return;
+    ConfigReader reader(loadYamlMap(manipulator_file)["simulated"], manipulator_file);
+    manipulator = SimulatedManipulatorConfig::read(reader);
+    reader.finish();
   }
 };
 
@@ -47,7 +54,7 @@ struct Case {
 
 /// Diameter 20 to 150 um, even; modulus 2 to 45 kPa, even in its logarithm, known to a third; zona failing at 0.03 to
 /// 0.13 E R^2 (0.09 to 0.31 diameters deep), in every second cell an oolemma behind it; two Prony terms; offset up to
-/// 0.3 R; friction of the shaft up to a tenth of the zona's strength.
+/// 0.3 R; what a failure leaves falls in 1 to 10 ms, to a friction of the shaft of up to 0.3 of the zona's strength.
 Case randomCase(int seed) {
   std::mt19937 random(static_cast<unsigned>(seed));
   const auto even = [&](double low, double high) { return low + (high - low) * (random() / 4294967296.0); };
@@ -69,7 +76,8 @@ Case randomCase(int seed) {
     oolemma.gap = even(0.005, 0.02) * result.cell.diameter;
     result.cell.puncture.layers.push_back(oolemma);
   }
-  result.cell.puncture.shaft.friction = even(0, 0.1) * strength;
+  result.cell.puncture.relaxation_time = evenLog(1e-3, 10e-3);
+  result.cell.puncture.shaft.friction = even(0, 0.3) * strength;
   result.cell.puncture.shaft.stiffness = scale / radius;
   const double angle = even(0, 2 * M_PI), far = 0.3 * radius * std::sqrt(even(0, 1));
   result.offset = far * Eigen::Vector2d(std::cos(angle), std::sin(angle));
@@ -109,6 +117,7 @@ Outcome inject(const Bench& bench, const Case& of) {
   InjectionRig::Config config;
   config.controller = settings(of);
   config.sensor.seed = of.seed;
+  config.manipulator = bench.manipulator;
   config.manipulator.seed = of.seed;
   const double radius = 0.5 * of.cell.diameter;
   const double top = std::sqrt(radius * radius - of.offset.squaredNorm());
@@ -119,7 +128,7 @@ Outcome inject(const Bench& bench, const Case& of) {
   outcome.held = rig.holds();
   outcome.truth = rig.truth();
   outcome.punctured = outcome.truth.punctures == config.controller.goal.layers;
-  outcome.withdrawn = (rig.tip() - config.start).norm() < 1e-6 && outcome.result.outcome == InjectionOutcome::kInjected;
+  outcome.withdrawn = outcome.truth.depth < -1e-6 && outcome.result.outcome == InjectionOutcome::kInjected;
   outcome.within = outcome.truth.peak_force <= config.controller.guards.force_limit &&
                    outcome.truth.max_depth <= config.controller.guards.depth_limit;
   return outcome;
@@ -204,6 +213,7 @@ void profiles(const Bench& bench) {
     } else {
       motion.stab_speed = 500e-6;
     }
+    config.manipulator = bench.manipulator;
     config.start = {0, 0, 0.5 * of.cell.diameter + of.gap};
     InjectionRig rig(config, bench.geometry, cell);
     rig.run(kLongest);
@@ -215,8 +225,8 @@ void profiles(const Bench& bench) {
   }
 }
 
-std::string table(int cells) {
-  const Bench bench;
+std::string table(int cells, const std::string& manipulator_file) {
+  const Bench bench(manipulator_file);
   std::string text =
       "seed,diameter_m,young_modulus_Pa,punctured,withdrawn,peak_force_N,max_depth_m,detection_latency_s,"
       "false_detections,outcome\n";
@@ -230,6 +240,7 @@ std::string table(int cells) {
   }
   if (!all.empty()) summarise(all);
   profiles(bench);
+  printDetectionFigures();
   return text;
 }
 
@@ -239,12 +250,16 @@ std::string table(int cells) {
 int main(int argc, char** argv) {
   namespace po = boost::program_options;
   int cells = 200;
+  std::string manipulator;
   po::options_description options;
-  options.add_options()("cells", po::value(&cells)->default_value(200), "how many");
+  options.add_options()("cells", po::value(&cells)->default_value(200), "how many")(
+      "manipulator", po::value(&manipulator),
+      "configuration file of the micromanipulator, e.g. config/micromanipulator_real.yaml; else an ideal one with a "
+      "lag");
   return microinjection::benchMain(
       argc, argv,
       "injection: automatic injection of random cells, scaled from the prepared "
       "config/cells/mouse_oocyte_pipette.yaml\n"
       "(which is prepared first where it is not: minutes, once)",
-      [&] { return microinjection::table(cells); }, options);
+      [&] { return microinjection::table(cells, manipulator); }, options);
 }

@@ -19,10 +19,12 @@ InjectionRig::InjectionRig(const Config& config, const ManipulatorGeometry& geom
   const std::string refusal = manipulator_.movePosition(pose);
   if (!refusal.empty()) throw std::runtime_error("the rig cannot go where it starts: " + refusal);
   // Out of the cell, before anything is watched.
-  do {
+  int rested = 0;
+  while (rested < 100) {
     time_ += kStep;
     manipulator_.step(time_, kStep);
-  } while (manipulator_.moving() || (tip() - config.start).norm() > 1e-8);
+    rested = manipulator_.moving() ? 0 : rested + 1;
+  }
   controller_.command("enable");
 }
 
