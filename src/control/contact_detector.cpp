@@ -9,6 +9,9 @@ namespace {
 /// Less than what the offset is uncertain by adds up without end.
 constexpr double kSmallestAllowance = 0.15;
 
+constexpr int kLate = 128;        ///< samples
+constexpr double kFollow = 1e-3;  ///< share of a sample in the offset
+
 double samplesBetweenFalseAlarms(double k, double h) {
   const double exponent = 2 * k * (h + 1.166);
   return (std::exp(exponent) - exponent - 1) / (2 * k * k);
@@ -31,9 +34,13 @@ ContactDetector::ContactDetector(const ForceNoise& noise, double force, double f
     : offset_(noise.offset()),
       deviation_(noise.deviation()),
       allowance_(std::max(kSmallestAllowance, 0.5 * force / noise.deviation())),
-      limit_(limitFor(allowance_, false_rate)) {}
+      limit_(limitFor(allowance_, false_rate)),
+      late_(kLate) {}
 
 bool ContactDetector::step(double force) {
+  double& oldest = late_[static_cast<std::size_t>(count_ % kLate)];
+  if (count_++ >= kLate) offset_ += kFollow * (oldest - offset_);
+  oldest = force;
   sum_ = std::max(0.0, sum_ + (force - offset_) / deviation_ - allowance_);
   return sum_ > limit_;
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "control/force_noise.h"
 
 namespace microinjection {
@@ -7,7 +9,8 @@ namespace microinjection {
 /// Feels the first touch in a noisy force along the pipette: Page's cumulative sum ("Continuous inspection schemes",
 /// Biometrika 1954), which of all tests with a given rate of false alarms finds a lasting change of the size that it is
 /// made for soonest. In units of the noise, S <- max(0, S + z - k), alarm at S > h, with k half of the change looked
-/// for.
+/// for. The offset follows a sensor's drift: an exponential mean over 1000 samples, 128 samples late, so that a touch
+/// is felt before it is taken for drift.
 class ContactDetector {
  public:
   /// @param noise       of the force at rest
@@ -20,6 +23,7 @@ class ContactDetector {
   bool step(double force);
   void reset() { sum_ = 0; }
 
+  double offset() const { return offset_; }        ///< N, followed up to the touch
   double allowance() const { return allowance_; }  ///< k
   double limit() const { return limit_; }          ///< h
 
@@ -27,6 +31,8 @@ class ContactDetector {
   double offset_ = 0, deviation_ = 1;  ///< N
   double allowance_, limit_;
   double sum_ = 0;
+  std::vector<double> late_;  ///< N, a ring of the last samples
+  long count_ = 0;
 };
 
 }  // namespace microinjection

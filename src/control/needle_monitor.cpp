@@ -57,10 +57,10 @@ void NeedleMonitor::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis
     puncture_.emplace(noise_, config_.puncture_drop, config_.puncture_false_rate, config_.puncture_pause);
     return;
   }
-  peak_ = std::max(peak_, std::abs(axial - noise_.offset()));
+  peak_ = std::max(peak_, std::abs(axial - offset()));
   crest_ = std::max(crest_, puncture_->meanForce(kBriefly));
   const double travel = -tip.dot(axis);
-  const bool fell = puncture_->step(axial, travel);
+  const bool fell = puncture_->step(axial - offset(), travel);
   if (!touched_at_) {
     if (!contact_->step(axial)) return;
     touched_at_ = tip;
@@ -75,7 +75,7 @@ void NeedleMonitor::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis
 }
 
 void NeedleMonitor::lookAgain(double axial) {
-  looked_sum_ += axial - noise_.offset();
+  looked_sum_ += axial - offset();
   if (++looked_ < config_.confirm_samples) return;
   const double uncertainty = noise_.deviation() * std::sqrt(1.0 / looked_ + 1.0 / config_.noise_samples);
   confirmed_ = looked_sum_ / looked_ > normalQuantile(kFalselyConfirmed) * uncertainty;

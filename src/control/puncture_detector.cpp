@@ -14,8 +14,7 @@ constexpr double kMissed = 2.05;           ///< normal quantile of a miss in 50
 }  // namespace
 
 PunctureDetector::PunctureDetector(const ForceNoise& noise, double drop_share, double false_rate, int pause)
-    : offset_(noise.offset()),
-      deviation_(noise.deviation()),
+    : deviation_(noise.deviation()),
       drop_share_(drop_share),
       quantile_(normalQuantile(false_rate / kWindows)),
       ring_(2 * kLongest + 1),
@@ -27,7 +26,7 @@ bool PunctureDetector::step(double force, double travel) {
     return false;
   }
   if (count_ == 0) ring_[0] = {0, travel}, count_ = 1;
-  const double sum = before(0).force_sum + force - offset_;
+  const double sum = before(0).force_sum + force;
   ++count_;
   ring_[static_cast<std::size_t>(count_ - 1) % ring_.size()] = {sum, travel};
   for (int window = kShortest; window <= kLongest && 2 * window < count_; window *= 2) {

@@ -23,8 +23,8 @@ class PunctureDetector {
   /// @param pause       samples after a puncture in which nothing is looked for: what is left of the force still falls
   PunctureDetector(const ForceNoise& noise, double drop_share, double false_rate, int pause);
 
-  /// One more sample: force (N, along the pipette) and travel (m, into the cell); true: punctured just now. Starts
-  /// afresh after that and the pause.
+  /// One more sample: force (N, along the pipette, above that at rest) and travel (m, into the cell); true: punctured
+  /// just now. Starts afresh after that and the pause.
   bool step(double force, double travel);
   void reset() { count_ = 0; }  ///< afresh, without a pause
 
@@ -42,7 +42,7 @@ class PunctureDetector {
   }
   bool fell(int window) const;
 
-  double offset_, deviation_;  ///< N
+  double deviation_;  ///< N
   double drop_share_;
   double quantile_;
   std::vector<Sample> ring_;

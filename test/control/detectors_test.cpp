@@ -24,6 +24,8 @@ class DetectorsTest : public testing::Test {
   }
   double sample(double force = 0) { return kOffset + force + kNoise * deviate_(random_); }
 
+  double above(double force = 0) { return sample(force) - kOffset; }
+
   std::mt19937 random_{7};
   std::normal_distribution<double> deviate_{0, 1};
   ForceNoise noise_;
@@ -59,6 +61,12 @@ TEST_F(DetectorsTest, ContactAlarmsFalselyAsOftenAsDesigned) {
   }
 }
 
+TEST_F(DetectorsTest, DriftOfTheSensorIsNoContact) {
+  ContactDetector detector(noise_, 10e-9, 1e-7);
+  for (int i = 0; i < 60000; ++i) ASSERT_FALSE(detector.step(sample(i * 0.5e-12))) << i;
+  EXPECT_NEAR(detector.offset(), kOffset + 30e-9, 2e-9);
+}
+
 TEST_F(DetectorsTest, ContactIsFeltSoonAfterItIsLargeEnough) {
   double total = 0;
   constexpr int kTrials = 500;
@@ -81,11 +89,11 @@ constexpr double kRise = 10e-9, kAdvance = 100e-9;
 TEST_F(DetectorsTest, PunctureAlarmsFalselyNoMoreOftenThanDesigned) {
   PunctureDetector detector(noise_, 1e-6, 1e-4, 30);
   int alarms = 0;
-  for (int i = 0; i < kMillion; ++i) alarms += detector.step(sample(), i * kAdvance);
+  for (int i = 0; i < kMillion; ++i) alarms += detector.step(above(), i * kAdvance);
   EXPECT_LE(alarms, 130);
   EXPECT_GT(alarms, 10) << "the bound is of no use";
   PunctureDetector designed(noise_, 0.25, 1e-8, 30);
-  for (int i = 0; i < kMillion; ++i) ASSERT_FALSE(designed.step(sample(1e-6), i * kAdvance));
+  for (int i = 0; i < kMillion; ++i) ASSERT_FALSE(designed.step(above(1e-6), i * kAdvance));
 }
 
 TEST_F(DetectorsTest, PunctureIsFoundWithinItsLatency) {
@@ -97,10 +105,10 @@ TEST_F(DetectorsTest, PunctureIsFoundWithinItsLatency) {
     for (int trial = 0; trial < kTrials; ++trial) {
       detector = PunctureDetector(noise_, 0.25, 1e-8, 30);
       double travel = 0;
-      for (int i = 0; i < 600; ++i) ASSERT_FALSE(detector.step(sample(force), travel += kAdvance));
+      for (int i = 0; i < 600; ++i) ASSERT_FALSE(detector.step(above(force), travel += kAdvance));
       const double expected = detector.latency(force);
       int steps = 1;
-      while (!detector.step(sample(0.5 * force), travel += kAdvance)) ASSERT_LT(++steps, 600);
+      while (!detector.step(above(0.5 * force), travel += kAdvance)) ASSERT_LT(++steps, 600);
       total += steps;
       missed += steps > expected;
     }
@@ -112,20 +120,20 @@ TEST_F(DetectorsTest, PunctureIsFoundWithinItsLatency) {
 /// Feeds the needle's way into a Maxwell cell (elastic 0.1 N/m and as much again that relaxes within `relaxation`, s)
 /// at speeds (m a sample) over samples; whether a puncture was found.
 bool findsPuncture(PunctureDetector& detector, std::initializer_list<std::pair<double, int>> way, double relaxation,
-                   const std::function<double(double)>& sample) {
+                   const std::function<double(double)>& force) {
   double travel = 0, branch = 0;
   for (const auto& [speed, samples] : way) {
     for (int i = 0; i < samples; ++i) {
       travel += speed;
       branch = std::exp(-1e-3 / relaxation) * (branch + 0.1 * speed);
-      if (detector.step(sample(0.1 * travel + branch), travel)) return true;
+      if (detector.step(force(0.1 * travel + branch), travel)) return true;
     }
   }
   return false;
 }
 
 TEST_F(DetectorsTest, StopRelaxationAndWithdrawalAreNoPuncture) {
-  const auto noisy = [this](double force) { return sample(force); };
+  const auto noisy = [this](double force) { return above(force); };
   for (const double relaxation : {0.05, 0.2, 1.0}) {
     PunctureDetector detector(noise_, 0.25, 1e-8, 30);
     EXPECT_FALSE(findsPuncture(detector, {{200e-9, 60}, {0, 1000}}, relaxation, noisy)) << "stop";
@@ -145,7 +153,7 @@ TEST_F(DetectorsTest, WhatFallsOnAfterAPunctureIsNotAnother) {
     int found = 0;
     for (int i = 0; i < 1000; ++i) {
       const double fallen = i < 500 ? 1 : std::exp(-(i - 500) / 8.0);
-      found += detector.step(sample(3e-6 * fallen), i * kAdvance);
+      found += detector.step(above(3e-6 * fallen), i * kAdvance);
     }
     if (pause == 30) EXPECT_EQ(found, 1);
     if (pause == 0) EXPECT_GT(found, 1) << "the test would not notice";
