@@ -144,7 +144,9 @@ void InjectionRun::contact(const NeedleMonitor& monitor, Step& step) {
 }
 
 double InjectionRun::stabSpeed(const NeedleMonitor& monitor, double dt) const {
-  const double fast = config_.overshoot / (monitor.latency() * dt + config_.stop_time);
+  // A membrane behind must not fail in the same fall, in which it would not be felt.
+  const double overshoot = (result_.punctures + 1 < goal_.layers ? 0.5 : 1) * config_.overshoot;
+  const double fast = overshoot / (monitor.latency() * dt + config_.stop_time);
   const double wanted = std::clamp(goal_.puncture ? fast : 0, config_.indent_speed, config_.stab_speed);
   const double faster = std::min(wanted, std::max(speed_, config_.indent_speed) + config_.stab_acceleration * dt);
   const double room = end_travel_ - travel_ - std::max(speed_, faster) * (config_.stop_time + dt);

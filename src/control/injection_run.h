@@ -26,7 +26,7 @@ struct InjectionMotionConfig {
   double indent_speed = 5e-6;       ///< m/s, the slowest in the cell
   double stab_speed = 200e-6;       ///< m/s, the fastest; equal to indent_speed: no stab
   double stab_acceleration = 5e-3;  ///< m/s^2
-  double overshoot = 3e-6;          ///< m that the needle may go on when it is through
+  double overshoot = 3e-6;          ///< m that the needle may go on when it is through; half with a membrane behind
   double stop_time = 10e-3;         ///< s, from a set-point that rests to a needle that rests (the rig's)
   double retract_speed = 20e-6;     ///< m/s, back to the start
   double injector_patience = 1;     ///< s beyond its pulse that the injector may take

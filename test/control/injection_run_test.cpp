@@ -86,6 +86,20 @@ TEST_F(InjectionRunTest, SamePlaceAndOutcomeWithoutNoise) {
   EXPECT_EQ(controller_.result().outcome, InjectionOutcome::kInjected) << controller_.result().reason;
 }
 
+TEST_F(InjectionRunTest, GoesThroughOneLayerAfterTheOther) {
+  rig_.second_force = 0.5e-6;
+  config_.goal.layers = 2;
+  enable();
+  ASSERT_TRUE(reach(InjectionState::kPunctured));
+  EXPECT_FALSE(rig_.second_punctured);
+  ASSERT_TRUE(reach(InjectionState::kInject));
+  EXPECT_TRUE(rig_.second_punctured);
+  rig_.run(controller_);
+  EXPECT_EQ(controller_.result().outcome, InjectionOutcome::kInjected) << controller_.result().reason;
+  EXPECT_EQ(controller_.result().punctures, 2);
+  EXPECT_NEAR(*controller_.result().puncture_force, 0.3e-6 + 0.5e-6, 0.1e-6);
+}
+
 TEST_F(InjectionRunTest, NoCellIsNoContact) {
   rig_.surface = -1;
   enable();

@@ -18,13 +18,16 @@ struct SpringRig {
   double surface = 28e-6;        ///< m, height of the cell's top
   double stiffness = 0.1;        ///< N/m
   double puncture_force = 1e-6;  ///< N
+  double second_force = 0;       ///< N, of a membrane behind that; 0: there is none
+  double second_gap = 1e-6;      ///< m, of it before the tip when the first fails
   double left = 0.3;             ///< share of the force that is left when it is through
   double noise = 10e-9;          ///< N rms, along the pipette
   double lag = 2e-3;             ///< s
   bool injector_works = true;
 
   Eigen::Vector3d tip = Eigen::Vector3d(0, 0, 40e-6);
-  bool punctured = false;
+  bool punctured = false, second_punctured = false;
+  double punctured_at = 0;   ///< m, depth
   double volume = 0;         ///< m^3
   double deepest = 0;        ///< m, of the tip below the surface
   double largest_force = 0;  ///< N, without noise
@@ -36,9 +39,15 @@ struct SpringRig {
 
   double force() {
     const double elastic = stiffness * depth();
-    if (elastic >= puncture_force) punctured = true;
-    if (depth() == 0) punctured = false;
-    return punctured ? left * std::min(elastic, puncture_force) : elastic;
+    if (elastic >= puncture_force && !punctured) {
+      punctured = true;
+      punctured_at = depth();
+    }
+    if (depth() == 0) punctured = second_punctured = false;
+    if (!punctured) return elastic;
+    const double second = second_force > 0 ? stiffness * std::max(0.0, depth() - punctured_at - second_gap) : 0;
+    second_punctured = second_punctured || (second_force > 0 && second >= second_force);
+    return left * std::min(elastic, puncture_force) + (second_punctured ? 0 : second);
   }
 
   void sense(const InjectionController& controller) {
