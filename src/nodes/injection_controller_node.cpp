@@ -12,7 +12,8 @@ const char* const InjectionControllerNode::kHelp =
     "/controller/state_command (enable, disable, pause, resume, home, approach, indent, inject, withdraw).\n"
     "Out: /needle/servo_cp /controller/operating_state.\n"
     "Parameters: ~mode (manual|semi_automatic|automatic), ~force_source (predicted|measured), ~speed_limit (m/s),\n"
-    "~jump_limit (m), ~force_limit (N), ~detection/... ~motion/... ~goal/... ~auto_enable, ~rate (Hz), ~input_timeout (s); see\n"
+    "~jump_limit (m), ~force_limit (N), ~detection/... ~motion/... ~goal/... ~auto_enable, ~rate (Hz), ~input_timeout "
+    "(s); see\n"
     "config/injection_controller.yaml.\n";
 
 InjectionControllerNode::Parameters InjectionControllerNode::Parameters::read(const ros::NodeHandle& private_node) {
