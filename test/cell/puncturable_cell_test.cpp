@@ -7,6 +7,8 @@
 #include <memory>
 #include <vector>
 
+#include "cell/cell_model.h"
+#include "cell/cell_tracker.h"
 #include "cell/spring_cell.h"
 
 namespace microinjection {
@@ -113,6 +115,40 @@ TEST(PuncturableCell, TheZonaFailsByForceDepthOrStrain) {
     ASSERT_EQ(drive.cell->picture().holes.size(), 1u);
     EXPECT_TRUE(drive.cell->picture().holes[0].isApprox(Eigen::Vector3d(0, 0, kTop)));
   }
+}
+
+/// A live cell in lock step: whole to the stated force, at rest after it, and touched again elsewhere.
+TEST(PuncturableCell, ServesALiveCell) {
+  Scene scene = sceneOf(PunctureConfig::atForce(0.5e-6));
+  scene.cell.material() = {"linear", 17.9e3, 0.45};
+  scene.mesh.size = 20e-6;
+  CellTrackerConfig config;
+  config.fixed_period = true;
+  PuncturableCell cell(scene, std::make_unique<CellTracker>(std::make_shared<const CellModel>(scene), config));
+  Eigen::Vector3d tip(0, 0, 32e-6);
+  double time = 0, largest = 0;
+  const auto to = [&](double height) {
+    for (const double step = 0.05e-6 * (height < tip.z() ? -1 : 1); (height - tip.z()) * step > 0; tip.z() += step) {
+      largest = std::max(largest, cell.step(tip, kAxis, time += 1e-3).force.z());
+    }
+  };
+  to(20e-6);
+  EXPECT_EQ(cell.insertion().layers_punctured, 1);
+  EXPECT_DOUBLE_EQ(largest, 0.5e-6);
+  EXPECT_TRUE(cell.step(tip, kAxis, time + 0.1).force.isZero(0));
+  const CellUnderNeedle::Picture picture = cell.picture();
+  EXPECT_EQ(picture.holes.size(), 1u);
+  EXPECT_EQ(*std::max_element(picture.displacement.begin(), picture.displacement.end()), 0);
+  to(32e-6);
+  largest = 0;
+  to(25e-6);
+  EXPECT_EQ(largest, 0);
+  to(32e-6);
+  tip.x() = 8e-6;
+  for (int i = 0; i < 100; ++i) cell.step(tip, kAxis, time += 1e-3);
+  to(25.5e-6);
+  EXPECT_GT(largest, 0.05e-6);
+  EXPECT_LT(largest, 0.5e-6);
 }
 
 TEST(PuncturableCell, AnUntrustedForcePuncturesNothing) {
