@@ -296,7 +296,7 @@ void InjectionController::follow(const Eigen::Vector3d& target, const Input& inp
 }
 
 void InjectionController::move(const Eigen::Vector3d& motion, double dt) {
-  const double largest = config_.guards.speed_limit * dt;
+  const double largest = std::min(config_.guards.speed_limit, rig_speed_) * dt;
   *setpoint_ += motion.norm() > largest ? Eigen::Vector3d(motion * (largest / motion.norm())) : motion;
 }
 

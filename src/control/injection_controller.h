@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -71,6 +72,12 @@ class InjectionController {
   /// One cycle of dt (s): the set-point for the needle (m, `world`); empty while DISABLED or in FAULT.
   std::optional<Eigen::Vector3d> step(const Input& input, double dt);
 
+  /// Never faster than this (m/s), nor than configured: for a rig that follows late.
+  void limitSpeed(double speed) {
+    rig_speed_ = speed;
+    run_.limitSpeed(speed);
+  }
+
   OperatingState state() const { return state_; }
   InjectionState injection() const { return injection_; }
   bool busy() const;                            ///< moves of its own accord
@@ -115,6 +122,7 @@ class InjectionController {
   std::optional<Eigen::Vector3d> setpoint_;         ///< m; taken from the needle when it is enabled
   std::optional<Eigen::Vector3d> target_offset_;    ///< m, added to targets; taken with the first one once enabled
   Eigen::Vector3d home_ = Eigen::Vector3d::Zero();  ///< m, where the needle was enabled
+  double rig_speed_ = std::numeric_limits<double>::infinity();  ///< m/s
   bool homing_ = false;
   bool needle_known_ = false;
   std::string held_because_ = "DISABLED";

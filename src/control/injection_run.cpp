@@ -30,7 +30,9 @@ InjectionRun::InjectionRun(const InjectionMotionConfig& config, const GuardConfi
     : config_(config), guards_(guards), automatic_(automatic) {}
 
 void InjectionRun::start(const InjectionGoal& goal, const Eigen::Vector3d& tip) {
+  const double fastest = fastest_;
   *this = InjectionRun(config_, guards_, automatic_);
+  fastest_ = fastest;
   goal_ = goal;
   start_ = tip;
   active_ = true;
@@ -129,7 +131,7 @@ void InjectionRun::approach(const NeedleMonitor& monitor, double dt, Step& step)
     step.event = InjectionEvent::kTouch;
     return;
   }
-  travel_ = std::min(config_.travel_limit, travel_ + config_.approach_speed * dt);
+  travel_ = std::min(config_.travel_limit, travel_ + std::min(config_.approach_speed, fastest_) * dt);
   if (travel_ >= config_.travel_limit) leave(InjectionOutcome::kNoContact, "no cell within the travel limit", step);
 }
 
@@ -160,7 +162,7 @@ void InjectionRun::indent(const NeedleMonitor& monitor, double dt, Step& step) {
     return;
   }
   speed_ = stabSpeed(monitor, dt);
-  travel_ = std::min(end_travel_, travel_ + speed_ * dt);
+  travel_ = std::min(end_travel_, travel_ + std::min(speed_, fastest_) * dt);
   if (travel_ < end_travel_) return;
   rested_ += dt;
   const bool there = monitor.depth() >= end_travel_ - touch_travel_ - kArrived || rested_ > kSettling;
@@ -186,7 +188,7 @@ void InjectionRun::through(const NeedleMonitor& monitor, double dt, Step& step) 
     step.event = InjectionEvent::kIndent;
     return;
   }
-  travel_ = std::min(end_travel_, travel_ + config_.indent_speed * dt);
+  travel_ = std::min(end_travel_, travel_ + std::min(config_.indent_speed, fastest_) * dt);
   const bool there = monitor.depth() >= end_travel_ - touch_travel_ - kArrived;
   if (travel_ < end_travel_ || !(there || in_state_ > kSettling)) return;
   const bool injects = goal_.pulse.duration > 0 && !injected_;
@@ -214,7 +216,7 @@ void InjectionRun::inject(const std::optional<InjectorReport>& injector, double 
 
 void InjectionRun::retract(double depth, double dt, Step& step) {
   // Never deeper than the needle is: `home` may have taken it part of the way.
-  travel_ = std::max(0.0, std::min(travel_, depth) - config_.retract_speed * dt);
+  travel_ = std::max(0.0, std::min(travel_, depth) - std::min(config_.retract_speed, fastest_) * dt);
   if (travel_ > 0) return;
   step.event = InjectionEvent::kOut;
   end(outcome_, reason_);

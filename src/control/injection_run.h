@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -52,6 +53,7 @@ class InjectionRun {
   void start(const InjectionGoal& goal, const Eigen::Vector3d& tip);
   /// The operator's word for the next step (indent, inject); empty when it is one now, otherwise why not.
   std::string confirm(InjectionEvent event, InjectionState state);
+  void limitSpeed(double speed) { fastest_ = speed; }  ///< m/s, never faster than that
   void withdraw();  ///< the way out is taken; the outcome is that of what was done until now
   void end(InjectionOutcome outcome, const std::string& reason);
 
@@ -87,13 +89,14 @@ class InjectionRun {
   InjectionResult result_;
   bool active_ = false, waits_ = false;
   InjectionState state_ = InjectionState::kIdle;
-  double in_state_ = 0;                              ///< s
-  Eigen::Vector3d start_ = Eigen::Vector3d::Zero();  ///< m
-  double travel_ = 0;                                ///< m, from start_ into the cell
-  double touch_travel_ = 0;                          ///< m
-  double end_travel_ = 0;                            ///< m, of the state
-  double speed_ = 0;                                 ///< m/s
-  double rested_ = 0;                                ///< s, at end_travel_
+  double in_state_ = 0;                                       ///< s
+  Eigen::Vector3d start_ = Eigen::Vector3d::Zero();           ///< m
+  double travel_ = 0;                                         ///< m, from start_ into the cell
+  double touch_travel_ = 0;                                   ///< m
+  double end_travel_ = 0;                                     ///< m, of the state
+  double speed_ = 0;                                          ///< m/s
+  double fastest_ = std::numeric_limits<double>::infinity();  ///< m/s, that the rig can be driven at
+  double rested_ = 0;                                         ///< s, at end_travel_
   std::optional<InjectionEvent> confirmed_;
   InjectionOutcome outcome_ = InjectionOutcome::kNone;  ///< of what was done; the result's when the needle is out
   std::string reason_;

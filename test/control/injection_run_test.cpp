@@ -100,6 +100,19 @@ TEST_F(InjectionRunTest, GoesThroughOneLayerAfterTheOther) {
   EXPECT_NEAR(*controller_.result().puncture_force, 0.3e-6 + 0.5e-6, 0.1e-6);
 }
 
+TEST_F(InjectionRunTest, NeverFasterThanTheRig) {
+  enable();
+  controller_.limitSpeed(8e-6);
+  double fastest = 0;
+  while (controller_.busy()) {
+    const Eigen::Vector3d before = *rig_.setpoint;
+    rig_.step(controller_);
+    fastest = std::max(fastest, (*rig_.setpoint - before).norm() / SpringRig::kStep);
+  }
+  EXPECT_NEAR(fastest, 8e-6, 1e-9);
+  EXPECT_EQ(controller_.result().outcome, InjectionOutcome::kInjected) << controller_.result().reason;
+}
+
 TEST_F(InjectionRunTest, NoCellIsNoContact) {
   rig_.surface = -1;
   enable();
