@@ -12,6 +12,7 @@ import numpy  # noqa: E402
 
 import demo_summary  # noqa: E402
 import plot_force_depth  # noqa: E402
+import plot_training  # noqa: E402
 import processes  # noqa: E402
 import screenshot  # noqa: E402
 
@@ -29,6 +30,31 @@ class InFolder(unittest.TestCase):
         path = self.folder / name
         path.write_text(text, encoding='utf-8')
         return path
+
+
+class TrainingPlotTest(InFolder):
+    COLUMNS = [column for column, *_ in plot_training.MEASURES + plot_training.SHARES]
+
+    def history(self, *operators):
+        rows = [','.join(['operator', 'session', 'score'] + self.COLUMNS)]
+        rows += [','.join([name, str(number), '50'] + ['1'] * len(self.COLUMNS)) for number, name in enumerate(operators)]
+        return self.write('history.csv', '\n'.join(rows) + '\n')
+
+    def test_sessions_are_those_of_one_operator(self):
+        path = self.history('ada', 'bob', 'ada')
+        name, rows = plot_training.read(path)
+        self.assertEqual((name, [row['session'] for row in rows]), ('ada', ['0', '2']))
+        self.assertEqual(plot_training.read(path, 'bob')[0], 'bob')
+        with self.assertRaisesRegex(ValueError, 'there are: ada, bob'):
+            plot_training.read(path, 'eve')
+        with self.assertRaisesRegex(ValueError, 'no sessions'):
+            plot_training.read(self.history())
+
+    def test_draws_one_session_and_many(self):
+        for operators in (['ada'], ['ada'] * 40):
+            picture = self.folder / 'picture.png'
+            plot_training.plot(self.history(*operators), picture)
+            self.assertGreater(matplotlib.image.imread(picture).std(), 0.05)
 
 
 class ScreenshotTest(InFolder):

@@ -12,10 +12,16 @@ namespace microinjection {
 const char* const InjectionControllerNode::kHelp =
     "injection_controller: decides where the needle goes and holds it when an input cannot be trusted.\n"
     "In: /teleop/servo_cp /needle/measured_cp, /cell/predicted_cf or /force_sensor/measured_cf,\n"
-    "/controller/state_command (enable, disable, pause, resume, home), /needle/abilities. Out: /needle/servo_cp "
-    "/controller/operating_state.\n"
-    "Parameters: ~source (teleop|approach), ~force_source (predicted|measured), ~speed_limit (m/s), ~jump_limit (m),\n"
-    "~lag_limit (m), ~force_limit (N), ~approach/..., ~auto_enable, ~rate (Hz), ~input_timeout (s); see\n"
+    "/controller/state_command (enable, disable, pause, resume, home, approach, indent, inject, withdraw),
+    "
+    "/needle/abilities. Out: /needle/servo_cp /controller/operating_state.
+    "
+    "Parameters: ~mode (manual|semi_automatic|automatic), ~force_source (predicted|measured), ~speed_limit (m/s),
+    "
+    "~jump_limit (m), ~lag_limit (m), ~force_limit (N), ~detection/... ~motion/... ~goal/... ~auto_enable, ~rate (Hz),
+    "
+    "~input_timeout (s); see
+    "
     "config/injection_controller.yaml.\n";
 
 InjectionControllerNode::Parameters InjectionControllerNode::Parameters::read(const ros::NodeHandle& private_node) {
@@ -40,7 +46,7 @@ InjectionControllerNode::InjectionControllerNode(ros::NodeHandle node, ros::Node
       force_(cycle_.input<geometry_msgs::WrenchStamped>(forceTopic(parameters_.force_source), Phase::kTickBefore,
                                                         parameters_.input_timeout)),
       setpoint_(cycle_.output<geometry_msgs::PoseStamped>("needle/servo_cp")) {
-  if (parameters_.model.source == "teleop") {
+  if (parameters_.model.mode == "manual") {
     target_ = &cycle_.input<geometry_msgs::PoseStamped>("teleop/servo_cp", Phase::kSameTick, parameters_.input_timeout);
   }
   state_ = cycle_.node().advertise<cell_microinjection::OperatingState>("controller/operating_state", 10, true);
@@ -71,7 +77,7 @@ void InjectionControllerNode::adaptTo(const cell_microinjection::ManipulatorAbil
   const double lag = rig.latency + rig.command_interval;
   rig_speed_ = lag > 0 ? parameters_.lag_limit / lag : std::numeric_limits<double>::infinity();
   model_.limitSpeed(rig_speed_);
-  ROS_INFO_STREAM("rig: " << rig.device << ", driven at " << std::min(rig_speed_, parameters_.model.speed_limit)
+  ROS_INFO_STREAM("rig: " << rig.device << ", driven at " << std::min(rig_speed_, parameters_.model.guards.speed_limit)
                           << " m/s at the most");
 }
 
@@ -112,7 +118,7 @@ void InjectionControllerNode::report(diagnostic_updater::DiagnosticStatusWrapper
                         : diagnostic_msgs::DiagnosticStatus::WARN,
                  good ? "the needle follows" : "needle held: " + model_.heldBecause());
   status.add("state", toText(model_.state()));
-  status.add("speed limit (m/s)", std::min(rig_speed_, parameters_.model.speed_limit));
+  status.add("speed limit (m/s)", std::min(rig_speed_, parameters_.model.guards.speed_limit));
 }
 
 }  // namespace microinjection

@@ -17,7 +17,7 @@ namespace microinjection {
 
 /// The one that moves the needle, simulated or real. Holds it when an input cannot be trusted.
 ///
-/// In:  /teleop/servo_cp (PoseStamped, `world`; with source teleop), /needle/measured_cp (PoseStamped),
+/// In:  /teleop/servo_cp (PoseStamped, `world`; with mode manual), /needle/measured_cp (PoseStamped),
 ///      /cell/predicted_cf or /force_sensor/measured_cf (WrenchStamped), /controller/state_command (StringStamped),
 ///      /needle/abilities (ManipulatorAbilities): a rig that follows late is driven slowly
 /// Out: /needle/servo_cp (PoseStamped, `world`), /controller/operating_state (OperatingState, latched, on change)
@@ -55,7 +55,7 @@ class InjectionControllerNode {
   Parameters parameters_;
   InjectionController model_;
   Cycle cycle_;
-  Input<geometry_msgs::PoseStamped>* target_ = nullptr;  ///< null with source approach
+  Input<geometry_msgs::PoseStamped>* target_ = nullptr;  ///< null when the controller moves by itself
   Input<geometry_msgs::PoseStamped>& needle_;
   Input<geometry_msgs::WrenchStamped>& force_;
   Output<geometry_msgs::PoseStamped>& setpoint_;
