@@ -170,6 +170,33 @@ TEST_F(HapticBridgeTest, ANeedleBehindTheWallFeelsTheWallAndStaysBeforeIt) {
   EXPECT_NEAR(output.hand_force.z(), config_.fixtures.limit_stiffness * 5e-3, 1e-6);
 }
 
+TEST_F(HapticBridgeTest, AClutchInContactDoesNotLoseTheCellsEnergy) {
+  // Pressed in on 60 N/m to 1.2 N, clutched while the hand goes 0.1 m back, and out again.
+  HapticBridge::Input input = trustedInput();
+  const auto at = [&](double depth) {  // m of the hand
+    input.hand->z() = kHand.z() - depth;
+    input.force.predicted = Eigen::Vector3d(0, 0, std::max(0.0, 60 * depth) / config_.force_gain);
+    return run(input, 1).hand_force.z();
+  };
+  for (int i = 0; i < 200; ++i) at(0);
+  for (int i = 0; i <= 1000; ++i) at(0.02 * i / 1000);
+  input.clutch = true;
+  for (int i = 0; i < 200; ++i) {
+    input.hand->z() += 0.5e-3;
+    run(input, 1);
+  }
+  input.clutch = false;
+  const double z = input.hand->z();
+  double given = 0;
+  for (int i = 0; i <= 2000; ++i) {
+    const double depth = 0.02 * (1 - std::max(0, i - 1000) / 1000.0);
+    input.hand->z() = z + 0.02 - depth;
+    input.force.predicted = Eigen::Vector3d(0, 0, 60 * depth / config_.force_gain);
+    given += run(input, 1).hand_force.z() * (i > 1000 ? 0.02 / 1000 : 0);
+  }
+  EXPECT_GT(given, 0.85 * 0.5 * 60 * 0.02 * 0.02);
+}
+
 TEST_F(HapticBridgeTest, PunctureDoesNotKick) {
   HapticBridge::Input input = trustedInput();
   input.force.predicted = Eigen::Vector3d(0, 0, 7.5e-6);  // 1.5 N at the hand
