@@ -37,7 +37,7 @@ struct Bench {
     text << file.rdbuf();
     geometry = ManipulatorGeometry::fromUrdf(text.str());
     if (manipulator_file.empty()) return;
-    ConfigReader reader(loadYamlMap(manipulator_file)["simulated"], manipulator_file);
+    ConfigReader reader(loadYamlMap(manipulator_file), manipulator_file);
     manipulator = SimulatedManipulatorConfig::read(reader);
     reader.finish();
   }
@@ -254,7 +254,7 @@ int main(int argc, char** argv) {
   po::options_description options;
   options.add_options()("cells", po::value(&cells)->default_value(200), "how many")(
       "manipulator", po::value(&manipulator),
-      "configuration file of the micromanipulator, e.g. config/micromanipulator_real.yaml; else an ideal one with a "
+      "configuration file of the micromanipulator, e.g. src/rigs/sim/imperfect.yaml; else an ideal one with a "
       "lag");
   return microinjection::benchMain(
       argc, argv,
