@@ -53,7 +53,7 @@ void DisplayScene::drawMoving(const DisplayedState& state, visualization_msgs::M
 
 void DisplayScene::drawReadout(const DisplayedState& state, visualization_msgs::MarkerArray& markers) const {
   using About = ReadoutLine::About;
-  constexpr int kMostLines = 9;
+  constexpr int kMostLines = 10;
   const std::vector<ReadoutLine> shown = lines(state.readout);
   for (int i = 0; i < kMostLines; ++i) {
     const MarkerName name{kWorld, "readout", i};

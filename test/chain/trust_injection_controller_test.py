@@ -8,6 +8,7 @@ import rospy
 import rostest
 from geometry_msgs.msg import PoseStamped, WrenchStamped
 
+from cell_microinjection.msg import InjectorState
 from messages import pose, position, wrench
 from participant import INVALID, Participant
 
@@ -18,7 +19,8 @@ class TrustTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.world = Participant({"/teleop/servo_cp": PoseStamped, "/needle/measured_cp": PoseStamped,
-                                 "/cell/predicted_cf": WrenchStamped}, {"/needle/servo_cp": PoseStamped})
+                                 "/cell/predicted_cf": WrenchStamped, "/injector/state": InjectorState},
+                                {"/needle/servo_cp": PoseStamped})
 
     def setUp(self):
         self.target = self.setpoint() if "/needle/servo_cp" in self.world.seen else START
