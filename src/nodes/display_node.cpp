@@ -44,7 +44,7 @@ bool isValid(const Message& message) {
 }
 
 std::string describe(const cell_microinjection::CellState& message) {
-  if (message.punctured) return "PUNCTURED";
+  if (message.punctured && message.converged) return message.inside ? "INSIDE" : "PUNCTURED";
   if (!message.converged) return "no solution: " + message.reason;
   return message.in_contact ? "in contact" : "no contact";
 }
@@ -120,6 +120,8 @@ void DisplayNode::onState(const cell_microinjection::CellState& message) {
   state_.cell_frame = message.header.frame_id.empty() ? "cell" : message.header.frame_id;
   state_.surface = std::move(surface);
   state_.members = std::move(members);
+  state_.holes.clear();
+  for (const auto& hole : message.holes) state_.holes.emplace_back(hole.x, hole.y, hole.z);
   cell_changed_ = true;
 }
 
