@@ -62,7 +62,8 @@ class InjectTest(unittest.TestCase):
         self.client.send_goal(InjectGoal(**{**GOAL, **changes}))
 
     def result(self):
-        self.tick_until(lambda: self.client.get_state() in ENDED, "the result")
+        # The status may come before the result.
+        self.tick_until(lambda: self.client.get_state() in ENDED and self.client.get_result(), "the result")
         return self.client.get_state(), self.client.get_result()
 
     def check_out(self, start):
