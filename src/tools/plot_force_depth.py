@@ -101,12 +101,14 @@ def plot_force(axes, table, marks):
                 axes.plot(depth[rows], 1e6 * table[f'{source}_axial_N'][rows], style, color=colour, linewidth=width,
                           label=f'{source}, {label}')
     top = numpy.nanmax(force) if numpy.isfinite(force).any() else 1.0
+    deepest = numpy.nanmax(depth) if numpy.isfinite(depth).any() else 1.0
     for number, (row, text) in enumerate(marks):
         if not (numpy.isfinite(depth[row]) and numpy.isfinite(force[row])):
             continue
         axes.plot(depth[row], force[row], 'o', color=MARK, markersize=4, zorder=5)
         axes.annotate(text, (depth[row], force[row]), xytext=(depth[row], top * (1.12 + 0.09 * (number % 3))),
-                      fontsize=8, color=MARK, ha='center', arrowprops={'arrowstyle': '-', 'color': '0.75', 'lw': 0.7})
+                      fontsize=8, color=MARK, ha='right' if depth[row] > 0.85 * deepest else 'center',
+                      arrowprops={'arrowstyle': '-', 'color': '0.75', 'lw': 0.7})
     axes.set_title('Force of the cell on the needle')
     axes.set_xlabel('depth past the touch (µm)')
     axes.set_ylabel('axial force (µN)')
@@ -156,7 +158,7 @@ def plot_course(axes, table, marks):
     beside = axes.twinx()
     start = volume[numpy.isfinite(volume)][0]
     beside.plot(time[rows], 1e15 * (volume[rows] - start), color=VOLUME, linewidth=1.2)
-    beside.set_ylabel('injected (pL)', color=VOLUME)
+    beside.set_ylabel('left the pipette (pL)', color=VOLUME)
     beside.spines['top'].set_visible(False)
 
 
