@@ -107,7 +107,7 @@ def plot_force(axes, table, marks):
             continue
         axes.plot(depth[row], force[row], 'o', color=MARK, markersize=4, zorder=5)
         axes.annotate(text, (depth[row], force[row]), xytext=(depth[row], top * (1.12 + 0.09 * (number % 3))),
-                      fontsize=8, color=MARK, ha='right' if depth[row] > 0.85 * deepest else 'center',
+                      fontsize=8, color=MARK, ha='right' if depth[row] > 0.93 * deepest else 'center',
                       arrowprops={'arrowstyle': '-', 'color': '0.75', 'lw': 0.7})
     axes.set_title('Force of the cell on the needle')
     axes.set_xlabel('depth past the touch (µm)')
