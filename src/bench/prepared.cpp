@@ -11,15 +11,14 @@
 #include <memory>
 #include <random>
 #include <sstream>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "base/cpu_time.h"
-#include "base/worker_processes.h"
 #include "bench/bench_main.h"
 #include "bench/common/forked_case.h"
+#include "bench/common/prepared_scene.h"
 #include "cell/cell_problem.h"
 #include "cell/scene_mesh.h"
 #include "surrogate/prepared_tracker.h"
@@ -45,18 +44,6 @@ std::string sceneFile(double poisson_ratio) {
   text << scene << '\n';
   writeFileAtomically(path, text.str());
   return path;
-}
-
-PreparedCell prepared(const Scene& scene, const std::string& scene_file) {
-  const PreparationRange range = PreparationRange::standard(scene);
-  const std::string path = preparedFile(scene, Preparation::plan(scene, range));
-  const std::string program = std::filesystem::path(thisProgram()).parent_path().string() + "/prepare";
-  if (auto cell = PreparedCell::load(scene, range, path)) return *cell;
-  runWorkers({{program, "--scene", scene_file}}, 1, [](std::size_t, int status) {
-    if (status != 0) throw std::runtime_error("prepare failed");
-  });
-  if (auto cell = PreparedCell::load(scene, range, path)) return *cell;
-  throw std::runtime_error("prepare left no data in " + path);
 }
 
 /// Paths to random places in the range, between the trained angles; every second one in the plane of symmetry.
@@ -232,7 +219,7 @@ void summarise(const std::string& table) {
 std::string table(double poisson_ratio) {
   const std::string file = sceneFile(poisson_ratio);
   const Scene scene = loadScene(file);
-  const auto cell = std::make_shared<const PreparedCell>(prepared(scene, file));
+  const auto cell = std::make_shared<const PreparedCell>(preparedScene(scene, file));
   reportTimes(scene, cell);
   std::fprintf(stderr, "prepared: energy created on closed paths: at most %.2g of what was exchanged\n",
                createdEnergy(scene, cell));

@@ -4,20 +4,18 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <functional>
 #include <iostream>
 #include <limits>
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "base/worker_processes.h"
 #include "bench/bench_main.h"
 #include "bench/common/call_times.h"
 #include "bench/common/forked_case.h"
 #include "bench/common/paper_mesh.h"
+#include "bench/common/prepared_scene.h"
 #include "bench/common/reference_scenes.h"
 #include "cell/cell_problem.h"
 #include "cell/scene_mesh.h"
@@ -155,21 +153,9 @@ std::string converging(const ReferenceScene& scene, const std::string& element, 
   return row.text();
 }
 
-PreparedCell preparedCell(const Scene& scene) {
-  const PreparationRange range = PreparationRange::standard(scene);
-  const std::string path = preparedFile(scene, Preparation::plan(scene, range));
-  if (auto cell = PreparedCell::load(scene, range, path)) return *cell;
-  const std::string program = std::filesystem::path(thisProgram()).parent_path().string() + "/prepare";
-  runWorkers({{program, "--scene", kPreparedScene}}, 1, [](std::size_t, int status) {
-    if (status != 0) throw std::runtime_error("prepare failed");
-  });
-  if (auto cell = PreparedCell::load(scene, range, path)) return *cell;
-  throw std::runtime_error("prepare left no data in " + path);
-}
-
 /// One force: with its stiffness, at the needle's next place.
 std::string prepared(const ReferenceScene& scene) {
-  const auto cell = std::make_shared<const PreparedCell>(preparedCell(loadScene(kPreparedScene)));
+  const auto cell = std::make_shared<const PreparedCell>(preparedScene(loadScene(kPreparedScene), kPreparedScene));
   Row row{scene.name + " prepared", "energy", static_cast<std::size_t>(cell->surface.nodeCount()), 0, {}, {}};
   PreparedContact contact(scene.scene, cell);
   const double top = scene.scene.radius();

@@ -85,6 +85,8 @@ void CellTracker::release() {
   contact_.reset();
   ++contacts_;
   place_asked_ = false;  // prepares the contact before the next touch
+  distrust_.clear();
+  shape_.write({});
 }
 
 TipForce CellTracker::touchForce(double time) {
@@ -115,7 +117,6 @@ TipForce CellTracker::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& ax
 TipForce CellTracker::answer(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time) {
   distrust_.clear();
   collect(time);
-  if (punctured_) return {};
   if (!contact_) {
     const auto touch = cell_->touch(tip, axis, hint_);
     if (!touch) return {};
@@ -135,11 +136,6 @@ TipForce CellTracker::answer(const Eigen::Vector3d& tip, const Eigen::Vector3d& 
     return {};
   }
   if (push < 0) return {};  // there is no adhesion; what pulls is the extrapolation
-  if (push >= cell_->scene().cell.puncture_force) {
-    punctured_ = true;
-    release();
-    return {};
-  }
   return result;
 }
 

@@ -28,16 +28,16 @@ struct CellTrackerConfig {
 ///
 /// A thread of its own follows the newest tip pose with the cell's equilibrium; between solutions step() extrapolates
 /// with the condensed contact stiffness, f = f_s - K (x - x_s). A contact lasts from the touch until the tip is off the
-/// undeformed cell and the pull would be adhesive; a force along the pipette of scene.cell.puncture_force punctures the
-/// cell for good.
+/// undeformed cell and the pull would be adhesive.
 class CellTracker : public CellUnderNeedle {
  public:
   CellTracker(std::shared_ptr<const LiveCell> cell, const CellTrackerConfig& config);
 
   TipForce step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time) override;
 
+  void release() override;
+
   const std::optional<Contact>& contact() const override { return contact_; }
-  bool punctured() const override { return punctured_; }
   const std::string& distrust() const override { return distrust_; }
   std::optional<Solution> solution(double time) const override;
   std::vector<std::array<int, 3>> triangles() const override;
@@ -59,7 +59,6 @@ class CellTracker : public CellUnderNeedle {
   void prepare(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, const Eigen::Vector3d& touch, double time);
   TipForce touchForce(double time);
   TipForce distrustBecause(const char* reason);
-  void release();
 
   std::shared_ptr<const LiveCell> cell_;
   LiveCell::Surface rest_;
@@ -77,7 +76,6 @@ class CellTracker : public CellUnderNeedle {
   bool place_asked_ = false;                  ///< the thread works on place_, not on an older one
   std::shared_ptr<const CellSolution> solution_;
   std::optional<Contact> contact_;
-  bool punctured_ = false;
   std::string distrust_;
   std::string failure_;       ///< what the solver threw at the last question; else empty
   LatestValue<Shape> shape_;  ///< from the thread that steps to the one that draws

@@ -15,8 +15,9 @@ struct TipForce {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< N, of the cell on the tip
 };
 
-/// A cell model that serves a moving needle at the needle's rate: contact, force and puncture. Frame: the cell's centre
-/// at rest is the origin, the holding pipette below. All is asked in the thread that steps, but for what draws it.
+/// A cell model that serves a moving needle at the needle's rate: contact and force, and what a PuncturableCell adds.
+/// Frame: the cell's centre at rest is the origin, the holding pipette below. All is asked in the thread that steps,
+/// but for what draws it.
 class CellUnderNeedle {
  public:
   struct Contact {
@@ -37,6 +38,14 @@ class CellUnderNeedle {
     std::vector<double> displacement;       ///< m, magnitude
     std::vector<std::uint32_t> touched;     ///< vertices that move with the tip
     std::vector<Member> members;            ///< correspond from picture to picture
+    std::vector<Eigen::Vector3d> holes;     ///< m, where the outermost layer was punctured, at rest
+  };
+  /// How far the needle has come into the cell.
+  struct Insertion {
+    bool punctured = false;    ///< some layer was, at some place, since the beginning
+    int layers_punctured = 0;  ///< outermost first, at the place where the needle is or, out of the cell, was last
+    bool inside = false;       ///< the tip is through the outermost layer
+    double depth = 0;          ///< m along the pipette, of the tip below the surface at rest where it is inside
   };
   /// Of the last solution, or of the model's present state.
   struct Solution {
@@ -52,9 +61,13 @@ class CellUnderNeedle {
   /// Force for the tip at `tip` (m) with the pipette along `axis` (unit, out of the cell) at `time` (s, increasing).
   virtual TipForce step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time) = 0;
 
+  /// Until the next step there is no contact: what was touched has failed.
+  virtual void release() = 0;
+
   virtual const std::optional<Contact>& contact() const = 0;
-  virtual bool punctured() const = 0;
-  virtual const std::string& distrust() const = 0;  ///< why the last force was not trusted; else empty
+  virtual Insertion insertion() const { return {}; }
+  virtual std::vector<std::string> layers() const { return {}; }  ///< that can be punctured, outermost first
+  virtual const std::string& distrust() const = 0;                ///< why the last force was not trusted; else empty
   virtual std::optional<Solution> solution(double time) const = 0;
 
   virtual std::vector<std::array<int, 3>> triangles() const = 0;  ///< of the picture, seen from outside

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "base/config_reader.h"
@@ -94,7 +95,7 @@ void readCell(ConfigReader cell, Scene::Cell& value) {
   } else {
     cell.has("layers") ? readLayeredCell(cell, value) : readHomogeneousCell(cell, value);
   }
-  readQuantity(cell.section("puncture"), "force", value.puncture_force, Range::positive(), "N");
+  value.puncture.read(cell.section("puncture"));
   if (!cell.has("biomembrane")) return;
   ConfigReader biomembrane = cell.section("biomembrane");
   value.biomembrane.emplace();

@@ -3,12 +3,12 @@
 #include <yaml-cpp/yaml.h>
 
 #include <Eigen/Core>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "cell/biomembrane.h"
+#include "cell/puncture_config.h"
 #include "material/material.h"
 #include "tensegrity/tensegrity_config.h"
 
@@ -28,8 +28,8 @@ struct Scene {
     std::vector<Layer> layers = {Layer()};  ///< outermost first; a homogeneous cell is one layer named "cell"
     /// Of a cell of model tensegrity: it has nothing of the layer but its radius.
     std::optional<TensegrityConfig> tensegrity;
-    double puncture_force = std::numeric_limits<double>::infinity();  ///< N; infinity: is never punctured
-    std::optional<BiomembraneConfig> biomembrane;                     ///< of the membrane model only
+    PunctureConfig puncture;
+    std::optional<BiomembraneConfig> biomembrane;  ///< of the membrane model only
 
     /// Of the outermost layer: of the whole cell when it is homogeneous.
     MaterialConfig& material() { return layers.front().material; }

@@ -73,7 +73,6 @@ void checkCell(const Scene::Cell& cell, ConfigErrors& errors) {
   } else {
     checkLayers(cell.layers, errors);
   }
-  errors.require(cell.puncture_force > 0, "cell/puncture/force", cell.puncture_force, " N", "positive (N)");
 }
 
 void checkTip(const Scene::Tip& tip, double cell_radius, ConfigErrors& errors) {
@@ -149,6 +148,7 @@ void checkScene(const Scene& scene) {
   if (scene.cell.layers.empty()) throw ConfigError("cell/layers: must have at least one layer");
   ConfigErrors errors;
   checkCell(scene.cell, errors);
+  scene.cell.puncture.check(scene.needle.tip.radius, errors);
   const double contact_radius = scene.holding_pipette.contact_radius;
   const double reach = kReach * scene.radius();
   if (scene.cell.tensegrity) {

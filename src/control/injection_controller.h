@@ -6,17 +6,24 @@
 #include <string>
 
 #include "base/config_reader.h"
-#include "control/approach.h"
+#include "control/guards.h"
+#include "control/hand_observer.h"
+#include "control/injection_goal.h"
+#include "control/injection_run.h"
+#include "control/injection_state.h"
+#include "control/needle_monitor.h"
 
 namespace microinjection {
 
 struct InjectionControllerConfig {
-  std::string source = "teleop";  ///< teleop: follow /teleop/servo_cp; approach: the controller's own
-  double speed_limit = 200e-6;    ///< m/s, of the set-point
-  double jump_limit = 100e-6;     ///< m, a target farther than this from the set-point is not followed
-  double tracking_limit = 50e-6;  ///< m between needle and set-point past which the rig is at fault
-  double force_limit = 15e-6;     ///< N, past it the needle may only be withdrawn
-  ApproachConfig approach;
+  /// manual: follows /teleop/servo_cp; semi_automatic: moves by itself, step by step at the operator's word;
+  /// automatic: the whole injection
+  std::string mode = "manual";
+  bool start_when_enabled = true;  ///< automatic: `goal` is begun as soon as it is enabled
+  GuardConfig guards;
+  DetectionConfig detection;
+  InjectionMotionConfig motion;
+  InjectionGoal goal;  ///< of injections that are started without one
 
   static InjectionControllerConfig read(ConfigReader& reader);
 };
@@ -25,18 +32,28 @@ struct InjectionControllerConfig {
 enum class OperatingState { kDisabled, kEnabled, kPaused, kFault };
 const char* toText(OperatingState state);
 
-/// Decides where the needle goes: takes the hand's target or its own approach, and lets through only what is safe.
+/// Decides where the needle goes: takes the hand's target or moves it by itself, and lets through only what is safe.
 ///
-/// Without a trusted target, force or needle pose it holds the needle where its set-point is. When the needle does not
-/// follow it goes to FAULT, which only `disable` leaves. It moves the needle in no state but ENABLED; targets count
-/// from where the needle was when it was enabled, resumed or held.
+/// Without a trusted target, force or needle pose it holds the needle where its set-point is. It moves the needle in
+/// no operating state but ENABLED; a hand's targets count from where the needle was when it was enabled, resumed or
+/// held. Where the injection is (injection()) is told in every mode. What guards do:
+///
+///     guard                by hand                            by itself
+///     force, depth         may only be withdrawn, as long     PAUSED, the injection ends (outcome guard); what is left
+///                          as it is beyond                    is withdraw, home and disable. Not while it withdraws
+///     time in a state      -                                  same, while it withdraws as well
+///     no trusted force     held while it lasts                same while it indents; else held while it lasts. It is
+///                                                             not needed to withdraw
+///     tracking, speed      FAULT: no set-point; only disable leaves it
+///     speed of set-point   never above the limit
 class InjectionController {
  public:
   /// What the controller can trust now; empty: absent, stale or not finite.
   struct Input {
-    std::optional<Eigen::Vector3d> target;            ///< m, `world`
-    std::optional<Eigen::Vector3d> needle;            ///< m, tip in `world`
-    std::optional<Eigen::Vector3d> force;             ///< N, of the cell on the tip, `world`
+    std::optional<Eigen::Vector3d> target;  ///< m, `world`
+    std::optional<Eigen::Vector3d> needle;  ///< m, tip in `world`
+    std::optional<Eigen::Vector3d> force;   ///< N, of the cell on the tip, `world`
+    std::optional<InjectorReport> injector;
     Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< of the pipette, out of the cell, `world`
   };
 
@@ -44,31 +61,67 @@ class InjectionController {
 
   /// enable, disable, pause, resume, home (CRTK state_command). home withdraws the needle along the pipette and takes
   /// it over where it was enabled, never deeper than it is, also without a trusted force; then pauses: the way out when
-  /// the needle is held. Empty when obeyed, otherwise the reason for the refusal; the state is then as before.
+  /// the needle is held. approach (starts the configured goal), indent, inject and withdraw are the operator's words
+  /// to an injection: withdraw gives up (preempts) what the controller does by itself, in any state of it, and takes
+  /// the needle back to where it set out; it leaves PAUSED, also after a guard. By hand there is only inject. Empty
+  /// when obeyed, otherwise the reason for the refusal; the state is then as before.
   std::string command(const std::string& command);
+  /// Starts an injection of the controller's own; empty when begun, otherwise why not.
+  std::string start(const InjectionGoal& goal);
 
   /// One cycle of dt (s): the set-point for the needle (m, `world`); empty while DISABLED or in FAULT.
   std::optional<Eigen::Vector3d> step(const Input& input, double dt);
 
   /// Never faster than this (m/s), nor than configured: for a rig that follows late.
-  void limitSpeed(double speed) { rig_speed_ = speed; }
+  void limitSpeed(double speed) {
+    rig_speed_ = speed;
+    run_.limitSpeed(speed);
+  }
 
   OperatingState state() const { return state_; }
-  bool busy() const;                            ///< moves of its own accord: homes or approaches
+  InjectionState injection() const { return injection_; }
+  bool busy() const;                            ///< moves of its own accord
+  bool waits() const { return run_.waits(); }   ///< for the operator's word
   bool homed() const { return needle_known_; }  ///< axes are absolute: homed as soon as the needle's pose is known
   const std::string& heldBecause() const { return held_because_; }  ///< empty while the needle follows
   bool followsTarget() const { return state_ == OperatingState::kEnabled && held_because_.empty(); }
+  const NeedleMonitor& monitor() const { return monitor_; }
+
+  bool running() const { return run_.active(); }  ///< an injection of the controller's own is not over yet
+  InjectionFeedback feedback() const;
+  int punctures() const { return punctures_; }  ///< membranes whose failure was felt since the needle set out
+  double injectedVolume() const { return byHand() ? hand_pulse_.volume() : run_.result().volume; }  ///< m^3, same
+  const InjectionResult& result() const { return run_.result(); }  ///< final when not running()
+  /// The pulse that the injector is to deliver now; empty: none, and one that is under way is to be stopped.
+  std::optional<PulseGoal> pulse() const;
 
  private:
-  std::optional<Eigen::Vector3d> wanted(const Input& input, double dt);
-  bool needleIsLost(const Eigen::Vector3d& needle);
-  std::optional<Eigen::Vector3d> approachTarget(const Input& input, double dt);
+  bool byHand() const { return config_.mode == "manual"; }
+  std::string obey(const std::string& command);
+  std::string takeWord(InjectionEvent event);
+  std::string withdraw();
+  void happen(InjectionEvent event);
+  void takeHold(const Eigen::Vector3d& needle);
+  bool rigIsAtFault(const Eigen::Vector3d& needle, double dt);
+  void observe(const Input& input, bool force_trusted, double dt);
+  std::optional<Eigen::Vector3d> handTarget(const Input& input);
+  std::optional<Eigen::Vector3d> ownTarget(const Input& input, double dt);
+  std::string guard(const Input& input) const;
+  void stop(InjectionOutcome outcome, const std::string& reason);
   void goHome(const Eigen::Vector3d& axis, double dt);
   void follow(const Eigen::Vector3d& target, const Input& input, double dt);
+  void move(const Eigen::Vector3d& motion, double dt);
 
   InjectionControllerConfig config_;
   OperatingState state_ = OperatingState::kDisabled;
-  Approach approach_;
+  InjectionState injection_ = InjectionState::kIdle;
+  NeedleMonitor monitor_;
+  HandObserver observer_;
+  InjectionRun run_;
+  InjectorWait hand_pulse_;
+  bool pulse_by_hand_ = false;
+  int punctures_ = 0;
+  NeedleSpeed needle_speed_;
   std::optional<Eigen::Vector3d> setpoint_;         ///< m; taken from the needle when it is enabled
   std::optional<Eigen::Vector3d> target_offset_;    ///< m, added to targets; taken with the first one once enabled
   Eigen::Vector3d home_ = Eigen::Vector3d::Zero();  ///< m, where the needle was enabled

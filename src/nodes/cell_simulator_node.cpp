@@ -90,7 +90,7 @@ CellMoment CellSimulatorNode::moment(const ros::Time& now, const TipForce& force
   moment.force = force;
   moment.contact = cell_->contact();
   moment.solution = cell_->solution(now.toSec());
-  moment.punctured = cell_->punctured();
+  moment.insertion = cell_->insertion();
   moment.setReason(untrusted_);
   return moment;
 }
@@ -98,9 +98,9 @@ CellMoment CellSimulatorNode::moment(const ros::Time& now, const TipForce& force
 void CellSimulatorNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   const bool good = untrusted_.empty();
   status.summary(good ? diagnostic_msgs::DiagnosticStatus::OK : diagnostic_msgs::DiagnosticStatus::WARN,
-                 good ? (cell_->punctured() ? "punctured"
-                         : cell_->contact() ? "in contact"
-                                            : "free")
+                 good ? (cell_->insertion().inside ? "punctured"
+                         : cell_->contact()        ? "in contact"
+                                                   : "free")
                       : untrusted_);
   if (const auto solution = cell_->solution(ros::Time::now().toSec())) {
     status.add("Newton iterations", solution->newton_iterations);

@@ -36,6 +36,7 @@ CellStatePublisher::CellStatePublisher(CellUnderNeedle& cell, Output<cell_microi
     undeformed_.triangles.insert(undeformed_.triangles.end(), triangle.begin(), triangle.end());
   }
   undeformed_.held_vertices = cell_.held();
+  undeformed_.layers = cell_.layers();
   if (thread == Thread::kOwn) thread_ = std::thread([this] { run(); });
 }
 
@@ -72,6 +73,7 @@ void CellStatePublisher::fillSurface(cell_microinjection::CellState& state) {
                  [](const Eigen::Vector3d& vertex) { return toMessage<geometry_msgs::Point32>(vertex); });
   state.displacement.assign(picture.displacement.begin(), picture.displacement.end());
   state.contact_vertices = picture.touched;
+  for (const Eigen::Vector3d& hole : picture.holes) state.holes.push_back(toMessage<geometry_msgs::Point>(hole));
   for (const CellUnderNeedle::Member& member : picture.members) {
     state.member_points.push_back(toMessage<geometry_msgs::Point32>(member.from));
     state.member_points.push_back(toMessage<geometry_msgs::Point32>(member.to));
@@ -91,7 +93,10 @@ void CellStatePublisher::publish(const CellMoment& moment) {
     state.tip_displacement = toMessage<geometry_msgs::Vector3>(moment.contact->displacement);
   }
   state.force = toMessage<geometry_msgs::Vector3>(moment.force.force);
-  state.punctured = moment.punctured;
+  state.punctured = moment.insertion.punctured;
+  state.layers_punctured = static_cast<std::uint32_t>(moment.insertion.layers_punctured);
+  state.inside = moment.insertion.inside;
+  state.insertion_depth = moment.insertion.depth;
   state.converged = moment.trusted;
   state.reason = moment.reason.data();
   state.smallest_jacobian = 1;

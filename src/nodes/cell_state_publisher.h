@@ -21,7 +21,7 @@ struct CellMoment {
   TipForce force;
   std::optional<CellUnderNeedle::Contact> contact;
   std::optional<CellUnderNeedle::Solution> solution;
-  bool punctured = false;
+  CellUnderNeedle::Insertion insertion;
   bool trusted = true;
   std::array<char, 200> reason{};  ///< why the force is not trusted, cut where it is too long
 

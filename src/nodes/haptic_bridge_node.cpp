@@ -11,17 +11,18 @@ namespace microinjection {
 
 const char* const HapticBridgeNode::kHelp =
     "haptic_bridge: couples a haptic device to the needle, position forward and force back.\n"
-    "In: /haptic/measured_cp /haptic/clutch /needle/measured_cp and /cell/predicted_cf or /force_sensor/measured_cf.\n"
+    "In: /haptic/measured_cp /haptic/clutch /needle/measured_cp and /cell/predicted_cf, /force_sensor/measured_cf or "
+    "both.\n"
     "Out: /haptic/servo_cf /teleop/servo_cp.\n"
-    "Parameters: ~position_scale, ~force_gain, ~force_limit (N), ~ramp_time (s), ~force_source (predicted|measured),\n"
-    "~rate (Hz), ~input_timeout (s); see config/haptic_bridge.yaml.\n";
+    "Parameters: ~rate (Hz), ~input_timeout (s), ~position_scale, ~force_gain, ~force_source "
+    "(predicted|measured|blend),\n"
+    "~mode (position|rate), ~device_axes and many more; see config/haptic_bridge.yaml.\n";
 
 HapticBridgeNode::Parameters HapticBridgeNode::Parameters::read(const ros::NodeHandle& private_node) {
   Parameters parameters;
   ConfigReader reader = parameterReader(private_node);
   reader.number("rate", parameters.rate, Range::closed(50, 5000));
   reader.number("input_timeout", parameters.input_timeout, Range::positive());
-  reader.choice("force_source", parameters.force_source, {"predicted", "measured"});
   parameters.model = HapticBridgeConfig::read(reader);
   reader.finish();
   return parameters;
@@ -37,12 +38,17 @@ HapticBridgeNode::HapticBridgeNode(ros::NodeHandle node, ros::NodeHandle private
           cycle_.input<sensor_msgs::Joy>("haptic/clutch", Phase::kTickBefore, std::numeric_limits<double>::infinity())),
       needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", Phase::kTickBefore,
                                                        parameters_.input_timeout)),
-      force_(cycle_.input<geometry_msgs::WrenchStamped>(forceTopic(parameters_.force_source), Phase::kTickBefore,
-                                                        parameters_.input_timeout)),
+      predicted_(forceInput(parameters_.model.force.usesPredicted(), "predicted")),
+      measured_(forceInput(parameters_.model.force.usesMeasured(), "measured")),
       hand_force_(cycle_.output<geometry_msgs::WrenchStamped>("haptic/servo_cf")),
       target_(cycle_.output<geometry_msgs::PoseStamped>("teleop/servo_cp")),
       trace_(cycle_.output<cell_microinjection::LatencyTrace>("haptic/force_trace")) {
   cycle_.diagnostics().add("loop", [this](auto& status) { report(status); });
+}
+
+Input<geometry_msgs::WrenchStamped>* HapticBridgeNode::forceInput(bool used, const std::string& source) {
+  if (!used) return nullptr;
+  return &cycle_.input<geometry_msgs::WrenchStamped>(forceTopic(source), Phase::kTickBefore, parameters_.input_timeout);
 }
 
 void HapticBridgeNode::run() {
@@ -57,24 +63,25 @@ bool HapticBridgeNode::clutchPressed(const ros::Time& now) const {
 
 void HapticBridgeNode::step(const Cycle::Tick& tick) {
   const auto* hand = hand_.get(tick.now);
-  const auto* force = force_.get(tick.now);
+  const auto* predicted = predicted_ ? predicted_->get(tick.now) : nullptr;
+  const auto* measured = measured_ ? measured_->get(tick.now) : nullptr;
   const auto needle = trustedPose(needle_.get(tick.now));
   HapticBridge::Input input;
   if (hand) input.hand = trustedPosition(hand, hand->header.frame_id);
   if (needle) {
     input.needle = needle->translation();
-    input.force = trustedForce(force, needle->linear());
+    input.force.predicted = trustedForce(predicted, needle->linear());
+    input.force.measured = trustedForce(measured, needle->linear());
   }
   input.clutch = clutchPressed(tick.now);
-  const HapticBridge::Output output = model_.step(input, tick.dt);
-  held_because_ = output.held_because;
-
+  const HapticBridge::Output& output = output_ = model_.step(input, tick.dt);
   hand_force_.publish(toWrench(output.hand_force, tick.now, hand ? hand->header.frame_id : ""));
   if (!output.needle) {
     target_.publishInvalid(toPose(Eigen::Vector3d::Zero(), tick.now, kWorldFrame));
     return;
   }
   target_.publish(toPose(*output.needle, hand->header.stamp, kWorldFrame));
+  const auto* force = predicted ? predicted : measured;
   if (!isTraced(force->header.stamp)) return;
   cell_microinjection::LatencyTrace trace;
   trace.header.stamp = tick.now;
@@ -83,10 +90,14 @@ void HapticBridgeNode::step(const Cycle::Tick& tick) {
 }
 
 void HapticBridgeNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) const {
-  const bool good = held_because_.empty();
+  const bool good = output_.held_because.empty();
   status.summary(good ? diagnostic_msgs::DiagnosticStatus::OK : diagnostic_msgs::DiagnosticStatus::WARN,
-                 good ? "the loop is closed" : "needle held, zero force: " + held_because_);
-  status.add("force source", parameters_.force_source);
+                 good ? "the loop is closed" : "needle held, zero force: " + output_.held_because);
+  status.add("state", Engagement::name(output_.state));
+  status.add("force source", parameters_.model.force.source);
+  status.add("tremor filter's delay (s)", model_.delay());
+  status.add("observed energy (J)", model_.observedEnergy());
+  status.add("passivity controller acts", model_.passivityActing() ? "yes" : "no");
 }
 
 }  // namespace microinjection

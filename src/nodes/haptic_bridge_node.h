@@ -16,15 +16,14 @@ namespace microinjection {
 /// Couples a haptic device to the needle. Without a trusted hand, needle or force it renders zero force and withdraws
 /// its target (stamp 0), so that the controller holds the needle.
 ///
-/// In:  /haptic/measured_cp (PoseStamped, axes as `world`), /haptic/clutch (Joy, buttons[0] is 1 while pressed),
-///      /needle/measured_cp (PoseStamped), /cell/predicted_cf or /force_sensor/measured_cf (WrenchStamped)
+/// In:  /haptic/measured_cp (PoseStamped, the device's axes), /haptic/clutch (Joy, buttons[0] is 1 while pressed),
+///      /needle/measured_cp (PoseStamped), /cell/predicted_cf, /force_sensor/measured_cf or both (WrenchStamped)
 /// Out: /haptic/servo_cf (WrenchStamped, N at the hand), /teleop/servo_cp (PoseStamped, tip in `world`),
 ///      /haptic/force_trace (LatencyTrace)
 ///
 /// Parameters (private): those of HapticBridgeConfig and
 ///   rate           Hz; default 1000, in [50, 5000]
 ///   input_timeout  s, past which an input is stale; default 0.05, in (0, inf)
-///   force_source   predicted or measured; default predicted
 class HapticBridgeNode {
  public:
   static const char* const kHelp;
@@ -36,12 +35,12 @@ class HapticBridgeNode {
   struct Parameters {
     double rate = 1000;
     double input_timeout = 0.05;
-    std::string force_source = "predicted";
     HapticBridgeConfig model;
     static Parameters read(const ros::NodeHandle& private_node);
   };
 
   void step(const Cycle::Tick& tick);
+  Input<geometry_msgs::WrenchStamped>* forceInput(bool used, const std::string& source);
   bool clutchPressed(const ros::Time& now) const;
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
@@ -51,11 +50,12 @@ class HapticBridgeNode {
   Input<geometry_msgs::PoseStamped>& hand_;
   Input<sensor_msgs::Joy>& clutch_;
   Input<geometry_msgs::PoseStamped>& needle_;
-  Input<geometry_msgs::WrenchStamped>& force_;
+  Input<geometry_msgs::WrenchStamped>* predicted_;  ///< null: not used
+  Input<geometry_msgs::WrenchStamped>* measured_;   ///< null: not used
   Output<geometry_msgs::WrenchStamped>& hand_force_;
   Output<geometry_msgs::PoseStamped>& target_;
   Output<cell_microinjection::LatencyTrace>& trace_;
-  std::string held_because_;
+  HapticBridge::Output output_;  ///< the last one, for the diagnostics
 };
 
 }  // namespace microinjection

@@ -26,6 +26,14 @@ TipForce PreparedTracker::distrustBecause(const char* reason) {
   return {false, Eigen::Vector3d::Zero()};
 }
 
+void PreparedTracker::release() {
+  contact_.reset();
+  needle_.reset();
+  memory_.reset();
+  distrust_.clear();
+  shape_.write(needle_.shape());
+}
+
 TipForce PreparedTracker::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time) {
   if (!tip.allFinite() || !axis.allFinite() || !std::isfinite(time)) {
     return distrustBecause("the needle's pose is not finite");
@@ -38,7 +46,6 @@ TipForce PreparedTracker::step(const Eigen::Vector3d& tip, const Eigen::Vector3d
 
 TipForce PreparedTracker::answer(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double duration) {
   distrust_.clear();
-  if (punctured_) return {};
   const PreparedContact::Answer prepared = needle_.step(tip);
   stiffness_ = prepared.stiffness;
   if (!needle_.place()) {
@@ -56,12 +63,6 @@ TipForce PreparedTracker::answer(const Eigen::Vector3d& tip, const Eigen::Vector
   if (axis.z() < kUpright) return distrustBecause("the needle is not upright, and the cell was prepared for that only");
   if (needle_.place()->angle > 1.001 * cell_->range.angle) return distrustBecause(kTooFarOut);
   if (!prepared.prepared) distrust_ = kOutOfRange;
-  if (force.dot(axis) >= scene_.cell.puncture_force) {
-    punctured_ = true;
-    contact_.reset();
-    needle_.reset();
-    return {};
-  }
   return {true, force};
 }
 

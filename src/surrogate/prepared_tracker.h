@@ -12,7 +12,7 @@ namespace microinjection {
 
 /// The prepared cell under a moving needle: converged force at every step, in microseconds. Out of the prepared range
 /// it says so while the force fades; with a needle that is not upright, or that touches too far from the pole, it
-/// trusts nothing. A force along the pipette of scene.cell.puncture_force punctures the cell for good. A viscoelastic
+/// trusts nothing. A viscoelastic
 /// cell's force relaxes, and never pulls along the pipette. A step allocates nothing and takes no lock.
 class PreparedTracker : public CellUnderNeedle {
  public:
@@ -20,8 +20,9 @@ class PreparedTracker : public CellUnderNeedle {
 
   TipForce step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time) override;
 
+  void release() override;
+
   const std::optional<Contact>& contact() const override { return contact_; }
-  bool punctured() const override { return punctured_; }
   const std::string& distrust() const override { return distrust_; }
   std::optional<Solution> solution(double time) const override;
   std::vector<std::array<int, 3>> triangles() const override;
@@ -39,7 +40,6 @@ class PreparedTracker : public CellUnderNeedle {
   double time_ = 0;  ///< s, of the last step
   std::optional<Contact> contact_;
   Eigen::Matrix3d stiffness_ = Eigen::Matrix3d::Zero();  ///< N/m
-  bool punctured_ = false;
   std::string distrust_;
   LatestValue<PreparedContact::Shape> shape_;  ///< from the thread that steps to the one that draws
 };

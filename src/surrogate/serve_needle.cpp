@@ -6,6 +6,7 @@
 
 #include "base/errors.h"
 #include "cell/live_cell.h"
+#include "cell/puncturable_cell.h"
 #include "surrogate/model_choice.h"
 #include "surrogate/prepared_tracker.h"
 
@@ -14,7 +15,8 @@ namespace {
 
 ServedCell live(const Scene& scene, const CellTrackerConfig& config, const std::string& said, bool as_required) {
   const auto cell = makeLiveCell(scene);
-  return {std::make_unique<CellTracker>(cell, config), said + ": " + cell->description(), as_required};
+  auto tracker = std::make_unique<CellTracker>(cell, config);
+  return {std::make_unique<PuncturableCell>(scene, std::move(tracker)), said + ": " + cell->description(), as_required};
 }
 
 ServedCell unprepared(const Scene& scene, const CellTrackerConfig& config, const std::string& why) {
@@ -62,7 +64,8 @@ ServedCell serveNeedle(const Scene& scene, const std::string& model, const CellT
   const ModelChoice choice = chooseModel(scene.requirements, figures);
   const std::string said = "model " + model + ": " + choice.reason;
   if (choice.name == "live") return live(scene, config, said + "; it is", choice.meets);
-  return {std::make_unique<PreparedTracker>(scene, cell), said, choice.meets};
+  auto tracker = std::make_unique<PreparedTracker>(scene, cell);
+  return {std::make_unique<PuncturableCell>(scene, std::move(tracker)), said, choice.meets};
 }
 
 }  // namespace microinjection

@@ -5,50 +5,89 @@
 #include <string>
 
 #include "base/config_reader.h"
+#include "teleoperation/engagement.h"
+#include "teleoperation/force_limiter.h"
+#include "teleoperation/force_source.h"
+#include "teleoperation/frame_mapping.h"
+#include "teleoperation/motion_mapping.h"
+#include "teleoperation/passivity_controller.h"
+#include "teleoperation/tremor_filter.h"
+#include "teleoperation/virtual_coupling.h"
+#include "teleoperation/virtual_fixtures.h"
 
 namespace microinjection {
 
 struct HapticBridgeConfig {
-  double position_scale = 1e-3;  ///< 1, metres of needle per metre of hand
-  double force_gain = 2e5;       ///< 1, newtons at the hand per newton at the tip
-  double force_limit = 3.0;      ///< N, the largest that the haptic device is asked for
-  double ramp_time = 0.1;        ///< s, over which force comes back after the loop was open
+  double force_gain = 2e5;        ///< 1, newtons at the hand per newton at the tip
+  double ramp_time = 0.1;         ///< s, over which force comes back after the loop was open
+  bool require_operator = false;  ///< hold unless the device says that the operator is there
+  FrameMappingConfig frame;
+  MotionMappingConfig motion;
+  EngagementConfig engagement;
+  TremorFilterConfig tremor;
+  VirtualFixturesConfig fixtures;
+  ForceSourceConfig force;
+  ForceLimits limits;
+  VirtualCouplingConfig coupling;
+  PassivityConfig passivity;
 
   static HapticBridgeConfig read(ConfigReader& reader);
 };
 
 /// Bilateral coupling of a haptic device and a needle: position forward, force back.
 ///
-/// Follower = initial + scale * (leader - leader_initial). While the clutch is pressed the leader floats and the
-/// follower holds; the initials are taken again on release, and whenever the loop was open for want of a trusted input.
+///     hand -> frame -> tremor filter -> coupling -> motion mapping -> fixtures -> needle's target
+///     hand <- frame <- passivity, limits <- gain, ramp <- force source <- tip forces
+///
+/// While the clutch is pressed the leader floats and the follower holds; hand and needle belong together anew on
+/// release, and (see EngagementConfig) whenever the loop was open for want of a trusted input. In a hold the force
+/// falls to zero: by the limiter's rate while the hand is known, so that it is not dropped, at once where it is not.
 class HapticBridge {
  public:
   /// What the bridge can trust now; empty: absent, stale or not finite.
   struct Input {
-    std::optional<Eigen::Vector3d> hand;    ///< m, haptic device, axes as `world`
+    std::optional<Eigen::Vector3d> hand;    ///< m, haptic device, its axes
     std::optional<Eigen::Vector3d> needle;  ///< m, tip in `world`
-    std::optional<Eigen::Vector3d> force;   ///< N, of the cell on the tip, `world`
+    TipForces force;                        ///< N, of the cell on the tip, `world`
     bool clutch = false;                    ///< pressed
+    bool operator_present = false;          ///< counts with require_operator
   };
   struct Output {
     std::optional<Eigen::Vector3d> needle;                 ///< m, where the tip shall go; empty: hold
-    Eigen::Vector3d hand_force = Eigen::Vector3d::Zero();  ///< N, at the hand
-    std::string held_because;                              ///< empty while the loop is closed
+    Eigen::Vector3d hand_force = Eigen::Vector3d::Zero();  ///< N, on the hand, the device's axes
+    Engagement::State state = Engagement::State::kHeld;
+    std::string held_because;  ///< empty while the loop is closed
   };
 
-  explicit HapticBridge(const HapticBridgeConfig& config) : config_(config) {}
+  /// @throws ConfigError on axes that are no rotation or fixtures without direction.
+  explicit HapticBridge(const HapticBridgeConfig& config);
 
   /// One cycle of dt (s).
   Output step(const Input& input, double dt);
 
+  double delay() const { return tremor_.delay(); }  ///< s, added to slow motion on the way to the needle
+  double observedEnergy() const {
+    return passivity_.energy();
+  }  ///< J, taken from the hand; not below -passivity.reserve
+  bool passivityActing() const { return passivity_.acting(); }  ///< the controller changed the last force
+
  private:
-  Eigen::Vector3d render(const Eigen::Vector3d& tip_force, double dt);
+  std::string whyHeld(const Input& input, const std::optional<Eigen::Vector3d>& force) const;
+  void begin(const Eigen::Vector3d& hand, const Eigen::Vector3d& needle, const Eigen::Vector3d& force);
+  /// Force (N, `world`, at the hand) for the next period.
+  Eigen::Vector3d render(const Eigen::Vector3d& wanted, double dt);
 
   HapticBridgeConfig config_;
-  bool engaged_ = false;
-  double ramp_ = 0;                                           ///< 0..1, share of the force that is rendered
-  Eigen::Vector3d hand_initial_ = Eigen::Vector3d::Zero();    ///< m
-  Eigen::Vector3d needle_initial_ = Eigen::Vector3d::Zero();  ///< m
+  FrameMapping frame_;
+  TremorFilter tremor_;
+  MotionMapping motion_;
+  Engagement engagement_;
+  VirtualFixtures fixtures_;
+  VirtualCoupling coupling_;
+  PassivityController passivity_;
+  ForceLimiter limiter_;
+  double ramp_ = 0;                                        ///< 0..1, share of the force that is rendered
+  Eigen::Vector3d yield_start_ = Eigen::Vector3d::Zero();  ///< m, of the coupling at the start
 };
 
 }  // namespace microinjection

@@ -37,6 +37,9 @@ class DemoSession:
         # In lock step nothing moves before the hand does, and nothing is lost by a node that comes late.
         if not self._lockstep:
             self._wait(lambda: self.monitor.state is not None, 'nothing came on /cell/state')
+            # It is started last, and must not miss the beginning.
+            self._wait(lambda: self.monitor.has_subscriber('/cell/predicted_cf', '/session_recorder'),
+                       'the recorder does not listen')
 
     def check(self):
         """@raises SessionError when a node or the launch has died."""

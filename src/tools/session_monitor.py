@@ -29,10 +29,10 @@ class SessionMonitor:
         """s of wall time since the phase began."""
         return time.monotonic() - self.phase_began
 
-    def has_subscriber(self, topic):
-        """Returns whether a node listens to the topic."""
+    def has_subscriber(self, topic, node=None):
+        """Returns whether a node, or the one of this name, listens to the topic."""
         subscriptions = self._rospy.get_master().getSystemState()[2][1]
-        return any(name == topic and nodes for name, nodes in subscriptions)
+        return any(name == topic and (node in nodes if node else nodes) for name, nodes in subscriptions)
 
     def go(self):
         """Lets the waiting operator begin."""

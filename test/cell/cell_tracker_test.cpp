@@ -119,24 +119,6 @@ TEST(CellTracker, SamePathSameBits) {
   EXPECT_LT(a.force.force.x(), 0) << "a tip dragged along x is pulled back";
 }
 
-TEST(CellTracker, PuncturesForGoodAtTheStatedForce) {
-  Scene scene = coarseScene("linear");
-  scene.cell.puncture_force = 0.5e-6;
-  Driver drive(scene);
-  double largest = 0;
-  while (!drive.tracker.punctured() && drive.tip.z() > 10e-6) {
-    drive.moveTo(drive.tip - Eigen::Vector3d(0, 0, 0.05e-6), 1);
-    largest = std::max(largest, drive.force.force.z());
-  }
-  EXPECT_TRUE(drive.tracker.punctured());
-  EXPECT_LT(largest, 0.5e-6);
-  EXPECT_GT(largest, 0.45e-6);
-  EXPECT_EQ(drive.rest(10).force, Eigen::Vector3d::Zero().eval());
-  drive.moveTo({0, 0, 40e-6}, 1e-3);
-  drive.moveTo({0, 0, 24e-6}, 1e-3);
-  EXPECT_EQ(drive.force.force, Eigen::Vector3d::Zero().eval());
-}
-
 TEST(CellTracker, APoseThatIsNoNumberIsNotTrustedAndForgotten) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   Driver drive(coarseScene("linear"));

@@ -24,7 +24,7 @@ TEST(Scene, ReadsTheMouseOocytes) {
     EXPECT_EQ(scene.cell.material().young_modulus, 17.9e3);
     EXPECT_EQ(scene.cell.material().poisson_ratio, 0.49);
     EXPECT_EQ(scene.cell.layers.size(), 1u);
-    EXPECT_EQ(scene.cell.puncture_force, 7.5e-6);
+    EXPECT_EQ(scene.cell.puncture.layers.at(0).force, 7.5e-6);
     EXPECT_EQ(scene.needle.tip.shape, "disc");
     EXPECT_EQ(scene.holding_pipette.contact_radius, 10e-6);
     EXPECT_EQ(scene.needle.tip.radius, 3e-6);
@@ -76,7 +76,7 @@ TEST(Scene, OptionalKeysHaveDefaults) {
   EXPECT_EQ(scene.needle.contact.mode, "sticking");
   EXPECT_EQ(scene.needle.contact.friction, 0);
   EXPECT_EQ(scene.needle.tip.edgeRadius(), 0);
-  EXPECT_TRUE(std::isinf(scene.cell.puncture_force));
+  EXPECT_TRUE(scene.cell.puncture.layers.empty());
   EXPECT_EQ(scene.mesh.refinement.zone, 5);
   EXPECT_EQ(scene.mesh.refinement.density, 5);
   EXPECT_DOUBLE_EQ(scene.meshSize(), 3e-6 * 5);
@@ -92,7 +92,9 @@ TEST(Scene, ReadsOptionalKeys) {
   EXPECT_EQ(scene.meshSize(), 9e-6);
   EXPECT_EQ(scene.mesh.refinement.zone, 4);
   EXPECT_EQ(scene.mesh.refinement.density, 3);
-  EXPECT_EQ(scene.cell.puncture_force, 1e-6);
+  ASSERT_EQ(scene.cell.puncture.layers.size(), 1u);
+  EXPECT_EQ(scene.cell.puncture.layers[0].name, "zona");
+  EXPECT_EQ(scene.cell.puncture.layers[0].force, 1e-6);
 }
 
 TEST(Scene, ReadsRequirements) {

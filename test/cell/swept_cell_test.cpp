@@ -206,16 +206,6 @@ TEST(SweptCell, ANeedleFromBelowIsNotTrustedInTheCellAndFreeAboveIt) {
   }
 }
 
-TEST(SweptCell, PuncturesAtTheStatedForce) {
-  Scene scene = pipette();
-  scene.cell.puncture_force = 0.05e-6;
-  Driver drive(scene);
-  drive.moveTo({0, 0, 25e-6}, 15e-6);
-  EXPECT_TRUE(drive.tracker.punctured());
-  EXPECT_FALSE(drive.tracker.contact());
-  EXPECT_TRUE(drive.force.force.isZero(0));
-}
-
 /// A Prony cell pushed fast resists more, and relaxes to the elastic force.
 TEST(SweptCell, AViscoelasticCellRelaxes) {
   Scene scene = pipette();

@@ -43,7 +43,7 @@ BAD = [  # node, wrong parameters, what the message must say
     ("haptic_bridge", {"position_scale": 0}, ["position_scale = 0", "(0, inf)"]),
     ("haptic_bridge", {"force_source": "guessed"}, ["force_source = guessed", "predicted, measured"]),
     ("injection_controller", {"force_limit": -1e-6}, ["force_limit = -1", "(0, inf)"]),
-    ("injection_controller", {"source": "moon", "rate": 1}, ["source = moon", "teleop, approach", "rate = 1"]),
+    ("injection_controller", {"mode": "moon", "rate": 1}, ["mode = moon", "manual, semi_automatic, automatic", "rate = 1"]),
     ("injector", {"pipette/tip_radius": -1e-6}, ["tip_radius = -1e-06", "(0, inf)"]),
     ("injector", {"source": "serial"}, ["serial/path is missing", "serial/pulse is missing"]),
     ("micromanipulator", {"collision_margin": -1}, ["collision_margin = -1", "[0, inf)"]),

@@ -44,7 +44,7 @@ TEST_F(InjectionControllerTest, FollowsTheTargetWithinTheSpeedLimit) {
   controller_.command("enable");
   run(1);
   input_.target = Eigen::Vector3d(0, 0, 30e-6);
-  EXPECT_NEAR(kStart.z() - run(1)->z(), config_.speed_limit * kStep, 1e-15);
+  EXPECT_NEAR(kStart.z() - run(1)->z(), config_.guards.speed_limit * kStep, 1e-15);
   EXPECT_LT((*run(1000) - *input_.target).norm(), 1e-15);
   EXPECT_TRUE(controller_.followsTarget());
 }
@@ -58,7 +58,7 @@ TEST_F(InjectionControllerTest, DrivesALateRigSlowlyAndNeverFasterThanConfigured
   EXPECT_NEAR(before - run(1)->z(), 44e-6 * kStep, 1e-15);
   controller_.limitSpeed(1);
   const double then = input_.needle->z();
-  EXPECT_NEAR(then - run(1)->z(), config_.speed_limit * kStep, 1e-15);
+  EXPECT_NEAR(then - run(1)->z(), config_.guards.speed_limit * kStep, 1e-15);
 }
 
 TEST_F(InjectionControllerTest, RefusesCommandsThatDoNotFitItsState) {
@@ -118,7 +118,7 @@ TEST_F(InjectionControllerTest, TargetsCountFromWhereTheNeedleWasEnabledOrResume
 TEST_F(InjectionControllerTest, DoesNotFollowATargetThatLeaps) {
   controller_.command("enable");
   run(1);
-  input_.target = kStart + Eigen::Vector3d(0, 0, 1.01 * config_.jump_limit);
+  input_.target = kStart + Eigen::Vector3d(0, 0, 1.01 * config_.guards.jump_limit);
   EXPECT_EQ(*run(10), kStart);
   EXPECT_NE(controller_.heldBecause().find("away, allowed"), std::string::npos);
 }
@@ -126,7 +126,7 @@ TEST_F(InjectionControllerTest, DoesNotFollowATargetThatLeaps) {
 TEST_F(InjectionControllerTest, PastTheForceLimitOnlyWithdraws) {
   controller_.command("enable");
   run(1);
-  input_.force = Eigen::Vector3d(0, 0, 1.01 * config_.force_limit);
+  input_.force = Eigen::Vector3d(0, 0, 1.01 * config_.guards.force_limit);
   input_.target = kStart + Eigen::Vector3d(5e-6, 0, -5e-6);
   EXPECT_EQ(*run(100), kStart);
   input_.target = kStart + Eigen::Vector3d(5e-6, 0, 5e-6);
@@ -137,7 +137,7 @@ TEST_F(InjectionControllerTest, PastTheForceLimitOnlyWithdraws) {
 TEST_F(InjectionControllerTest, NeedleThatDoesNotFollowIsAFaultThatOnlyDisableLeaves) {
   controller_.command("enable");
   run(1);
-  input_.needle = kStart + Eigen::Vector3d(1.01 * config_.tracking_limit, 0, 0);
+  input_.needle = kStart + Eigen::Vector3d(1.01 * config_.guards.tracking_limit, 0, 0);
   EXPECT_FALSE(controller_.step(input_, kStep));
   EXPECT_EQ(controller_.state(), OperatingState::kFault);
   EXPECT_NE(controller_.command("enable"), "");
@@ -175,48 +175,28 @@ TEST_F(InjectionControllerTest, HomeNeverGoesDeeper) {
   EXPECT_LT((*input_.needle - kStart - Eigen::Vector3d(0, 0, 20e-6)).norm(), 2e-9);
 }
 
+TEST_F(InjectionControllerTest, NeedleThatRunsAwayIsAFault) {
+  controller_.command("enable");
+  run(1);
+  int steps = 0;
+  while (controller_.state() == OperatingState::kEnabled && ++steps < 100) {
+    *input_.needle += Eigen::Vector3d(0, 0, -1.1 * config_.guards.needle_speed_limit * kStep);
+    controller_.step(input_, kStep);
+  }
+  EXPECT_EQ(controller_.state(), OperatingState::kFault);
+  EXPECT_EQ(controller_.injection(), InjectionState::kFault);
+  EXPECT_LE(steps, 25);
+  EXPECT_NE(controller_.heldBecause().find("m/s, allowed 0.001 m/s"), std::string::npos) << controller_.heldBecause();
+}
+
 TEST_F(InjectionControllerTest, DoesNotCatchUpWithWhatTheForceLimitRefused) {
   controller_.command("enable");
   run(1);
-  input_.force = Eigen::Vector3d(0, 0, 1.01 * config_.force_limit);
+  input_.force = Eigen::Vector3d(0, 0, 1.01 * config_.guards.force_limit);
   input_.target = kStart - Eigen::Vector3d(0, 0, 20e-6);
   run(100);
   input_.force = Eigen::Vector3d::Zero();  // a puncture
   EXPECT_LT((*run(1000) - kStart).norm(), 1e-12);
-}
-
-TEST_F(InjectionControllerTest, ApproachWithdrawsAtTheForceLimitAndEndsWithHome) {
-  config_.source = "approach";
-  controller_ = InjectionController(config_);
-  controller_.command("enable");
-  run(1500);
-  EXPECT_LT(input_.needle->z(), kStart.z() - 20e-6);
-  input_.force = Eigen::Vector3d(0, 0, 1.01 * config_.force_limit);
-  const double before = input_.needle->z();
-  EXPECT_GT(run(100)->z(), before);
-  controller_.command("home");
-  run(1000);
-  controller_.command("resume");
-  input_.force = Eigen::Vector3d::Zero();
-  const Eigen::Vector3d held = *input_.needle;
-  EXPECT_EQ(*run(1000), held);
-}
-
-TEST_F(InjectionControllerTest, ApproachesByItselfWithoutATarget) {
-  config_.source = "approach";
-  controller_ = InjectionController(config_);
-  controller_.command("enable");
-  input_.target.reset();
-  double deepest = kStart.z();
-  int steps = 0;
-  do {
-    input_.force = Eigen::Vector3d(0, 0, std::max(0.0, 28e-6 - input_.needle->z()) * 0.1);
-    run(1);
-    deepest = std::min(deepest, input_.needle->z());
-  } while (controller_.busy() && ++steps < 100000);
-  EXPECT_FALSE(controller_.busy());
-  EXPECT_LT(deepest, 28e-6 - config_.approach.depth);
-  EXPECT_EQ(*input_.needle, kStart);
 }
 
 }  // namespace

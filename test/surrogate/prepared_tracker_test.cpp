@@ -5,13 +5,14 @@
 #include <cmath>
 #include <limits>
 
+#include "cell/puncturable_cell.h"
 #include "surrogate/allocation_count.h"
 #include "surrogate/spring_cells.h"
 
 namespace microinjection {
 namespace {
 
-TEST(PreparedTracker, TrustsOnlyWhatWasPreparedAndPunctures) {
+TEST(PreparedTracker, TrustsOnlyWhatWasPrepared) {
   Scene scene = pipette();
   const auto cell = springs(scene);
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ(), deep(0, 0, 20e-6);
@@ -35,13 +36,9 @@ TEST(PreparedTracker, TrustsOnlyWhatWasPreparedAndPunctures) {
   EXPECT_TRUE(far_out.force.isZero(0));
   EXPECT_NE(beside.distrust(), "");
 
-  scene.cell.puncture_force = 0.5 * force.force.z();
-  PreparedTracker weak(scene, cell);
-  EXPECT_GT(weak.step({0, 0, 27e-6}, up, 0).force.z(), 0);
-  EXPECT_TRUE(weak.step(deep, up, 1e-3).force.isZero(0));
-  EXPECT_TRUE(weak.punctured());
-  EXPECT_FALSE(weak.contact());
-  EXPECT_TRUE(weak.step(deep, up, 2e-3).force.isZero(0));
+  tracker.release();
+  EXPECT_FALSE(tracker.contact());
+  EXPECT_EQ(tracker.step(deep, up, 5e-3).force, force.force);
 }
 
 TEST(PreparedTracker, APoseThatIsNoNumberIsNotTrustedAndForgotten) {
@@ -69,10 +66,12 @@ TEST(PreparedTracker, AStepAllocatesNothing) {
     scene.needle.tip.shape = shape;
     if (scene.needle.tip.shape == "rounded_flat") scene.needle.tip.edge_radius = 1e-6;
     const auto cell = springs(scene);
-    scene.cell.puncture_force = 1;  // N, never
     PreparedTracker tracker(scene, cell);
-    scene.cell.puncture_force = 1e-9;
-    PreparedTracker weak(scene, cell);
+    scene.cell.puncture = PunctureConfig::atForce(1e-9);
+    scene.cell.puncture.layers.push_back({"oolemma", 1e-8});
+    scene.cell.puncture.layers.back().stiffness = 0.01;
+    scene.cell.puncture.shaft = {1e-8, 1e-3, 0.3, 1, 0.01};
+    PuncturableCell weak(scene, std::make_unique<PreparedTracker>(scene, cell));
     int touched = 0, untrusted = 0;
     const std::size_t before = allocationCount();
     for (int i = 0; i < 3000; ++i) {
@@ -87,7 +86,8 @@ TEST(PreparedTracker, AStepAllocatesNothing) {
     EXPECT_GT(touched, 300);
     EXPECT_LT(touched, 2700);
     EXPECT_GT(untrusted, 30);
-    EXPECT_TRUE(weak.punctured());
+    EXPECT_TRUE(weak.insertion().punctured);
+    EXPECT_GT(weak.picture().holes.size(), 3u);
   }
 }
 

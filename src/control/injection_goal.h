@@ -1,0 +1,75 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "base/config_reader.h"
+#include "control/injection_state.h"
+
+namespace microinjection {
+
+/// What the injector is asked for in the state inject.
+struct PulseGoal {
+  double pressure = 10e3;  ///< Pa, gauge
+  double duration = 0.5;   ///< s; 0: nothing is injected
+  double volume = 0;       ///< m^3 at which the pulse ends early; 0: by time only
+};
+
+/// What the injector says of itself.
+struct InjectorReport {
+  bool busy = false;  ///< a pulse is under way
+  double volume = 0;  ///< m^3, delivered since it was reset
+};
+
+/// One injection of the controller's own: what for and how far. How fast is the rig's and the cell's, see
+/// InjectionMotionConfig.
+struct InjectionGoal {
+  bool puncture = true;    ///< false: indents to `depth` only, waits `hold_time` and withdraws
+  int layers = 1;          ///< membranes to go through, one after the other, before the injector works
+  double depth = 40e-6;    ///< m past the touch; a membrane that has not given way there ends it
+  double margin = 3e-6;    ///< m past where the last membrane gave way, to inject at; never deeper than the depth limit
+  double hold_time = 0.2;  ///< s at depth before the withdrawal (after the injection, where there is one)
+  PulseGoal pulse;
+
+  static InjectionGoal read(ConfigReader& reader);
+  std::string problems() const;  ///< of a goal that came over a topic; empty when it is sound
+};
+
+/// How an injection ended.
+enum class InjectionOutcome {
+  kNone,             ///< none yet
+  kInjected,         ///< punctured, injected, withdrawn
+  kPunctured,        ///< punctured and withdrawn; no injection was asked for
+  kIndented,         ///< indented and withdrawn; no puncture was asked for
+  kNoContact,        ///< no cell within the travel limit; withdrawn
+  kNotPunctured,     ///< at `depth` and not through: held
+  kInjectorTimeOut,  ///< the injector did not finish, or was not there; withdrawn
+  kPreempted,        ///< by command; withdrawn
+  kGuard,            ///< a guard stopped the needle: held, see `reason`
+  kFault,            ///< the rig is at fault
+  kDisabled          ///< by command
+};
+const char* toText(InjectionOutcome outcome);
+
+/// For whoever waits.
+struct InjectionFeedback {
+  InjectionState state = InjectionState::kIdle;
+  double force = 0;    ///< N, along the pipette, above the offset at rest, mean of 32 samples
+  double depth = 0;    ///< m past the touch; 0 before
+  double elapsed = 0;  ///< s, since the start
+};
+
+struct InjectionResult {
+  InjectionOutcome outcome = InjectionOutcome::kNone;
+  std::string reason;                    ///< for people; empty where all went well
+  double peak_force = 0;                 ///< N, largest measured along the pipette
+  double max_depth = 0;                  ///< m past the touch
+  int punctures = 0;                     ///< membranes
+  std::optional<double> puncture_force;  ///< N, along the pipette, before the last membrane gave way
+  std::optional<double> puncture_depth;  ///< m past the touch, where that was felt
+  double volume = 0;                     ///< m^3, injected
+  double duration = 0;                   ///< s
+  int false_touches = 0;                 ///< that the second look did not confirm
+};
+
+}  // namespace microinjection

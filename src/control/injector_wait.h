@@ -1,0 +1,45 @@
+#pragma once
+
+#include <optional>
+
+#include "control/injection_goal.h"
+
+namespace microinjection {
+
+/// Waits for the end of an injector's pulse: its time is over, or its volume reached.
+class InjectorWait {
+ public:
+  enum class Status { kWaiting, kOver, kTimeOut };
+
+  /// `patience` (s): beyond the pulse's duration, before the injector is given up.
+  void start(const PulseGoal& pulse, double patience) {
+    *this = {};
+    pulse_ = pulse;
+    patience_ = patience;
+  }
+
+  /// After another dt (s); `report` empty: nothing trusted is known of the injector.
+  Status step(const std::optional<InjectorReport>& report, double dt) {
+    waited_ += dt;
+    if (report) {
+      if (!before_) before_ = report->volume;
+      volume_ = report->volume - *before_;
+      if (pulse_.volume > 0 && volume_ >= pulse_.volume) return Status::kOver;
+      if (worked_ && !report->busy) return Status::kOver;
+      worked_ = worked_ || report->busy;
+    }
+    return waited_ > pulse_.duration + patience_ ? Status::kTimeOut : Status::kWaiting;
+  }
+
+  double volume() const { return volume_; }  ///< m^3, since the start
+
+ private:
+  PulseGoal pulse_;
+  double patience_ = 0;           ///< s
+  double waited_ = 0;             ///< s
+  std::optional<double> before_;  ///< m^3, of the first report
+  double volume_ = 0;
+  bool worked_ = false;
+};
+
+}  // namespace microinjection

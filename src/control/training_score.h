@@ -1,0 +1,77 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+
+#include "base/config_reader.h"
+#include "control/injection_state.h"
+
+namespace microinjection {
+
+/// What a session shall be like. A measure that meets its reference earns all its points; what exceeds it loses them
+/// in proportion, and at twice the reference there are none left.
+struct TrainingTask {
+  double peak_force = 8e-6;     ///< N
+  double deformation = 45e-6;   ///< m
+  double lateral_error = 3e-6;  ///< m
+  double time = 20;             ///< s
+  int punctures = 1;            ///< fewer or more by n of N cost the share n / N
+  double volume = 0;            ///< m^3; more or less costs its share as well; 0: nothing is to be injected
+
+  static TrainingTask read(ConfigReader& reader);
+};
+
+/// One moment of a session.
+struct TrainingSample {
+  double time = 0;                                  ///< s, not decreasing
+  Eigen::Vector3d tip = Eigen::Vector3d::Zero();    ///< m
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< of the pipette, out of the cell
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< N, of the cell on the tip
+  std::optional<double> depth;                      ///< m past the touch; empty without contact
+  InjectionState state = InjectionState::kIdle;
+  double volume = 0;  ///< m^3, delivered until now
+  int punctures = 0;  ///< of the session until now
+};
+
+/// A session in numbers. Largest points: see kTrainingPoints; `score` is their sum, 0 to 100.
+struct TrainingScore {
+  struct Points {
+    double force = 0, deformation = 0, lateral = 0, time = 0, punctures = 0, volume = 0;
+    double sum() const { return force + deformation + lateral + time + punctures + volume; }
+  };
+
+  double peak_force = 0;     ///< N, largest magnitude
+  double deformation = 0;    ///< m, deepest past the touch before the first puncture (of all where there is none)
+  double lateral_error = 0;  ///< m, farthest off the line along the pipette through the touch, in the cell
+  double time = 0;           ///< s, from the end of the first idle to the last moment that is not idle
+  int punctures = 0;
+  double volume = 0;  ///< m^3
+  Points points;
+  double score() const { return points.sum(); }
+};
+
+constexpr TrainingScore::Points kTrainingPoints = {25, 15, 20, 10, 20, 10};
+
+/// Scores a session from its stream of samples. What is not finite is left out.
+class TrainingSession {
+ public:
+  void add(const TrainingSample& sample);
+  TrainingScore score(const TrainingTask& task) const;
+
+ private:
+  TrainingScore measured_;
+  std::optional<Eigen::Vector3d> entry_;  ///< m, where the tip was at the touch
+  std::optional<double> began_;           ///< s
+  std::optional<double> volume_before_;   ///< m^3
+  std::optional<int> punctures_before_;
+};
+
+/// The operator's history: a CSV file, a row a session. `operator_name` and `session` (its date, say) must hold neither
+/// comma, quote nor line break. Appends and replaces the file at once (of two programs that append at the same
+/// moment one row is lost).
+/// @throws std::invalid_argument  for such a text; std::runtime_error: the file is another table or cannot be written
+void appendTrainingRow(const std::string& path, const std::string& operator_name, const std::string& session,
+                       const TrainingScore& score);
+
+}  // namespace microinjection

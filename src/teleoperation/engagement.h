@@ -1,0 +1,50 @@
+#pragma once
+
+#include <string>
+
+#include "base/config_reader.h"
+
+namespace microinjection {
+
+struct EngagementConfig {
+  std::string alignment = "index";  ///< after a hold: index (hand and needle belong together anew) or agree (as before)
+  double tolerance = 2e-3;          ///< m of the hand, within which hand and needle agree
+  double speed = 0.1;               ///< m/s of the hand, above which nothing is taken up
+
+  static EngagementConfig read(ConfigReader reader);
+};
+
+/// When the needle follows the hand: held -> align -> follow, as teleoperation does it (dVRK: ALIGNING, ENABLED;
+/// franka_ros: ALIGN, TRACK).
+///
+/// held: an input is not to be trusted, the operator is not there, or the clutch is pressed. align: all is well again,
+/// but the needle is still held until the hand is slow and, with `agree`, is back where it left the needle, or the
+/// operator has pressed and released the clutch, which is to say: from here.
+class Engagement {
+ public:
+  enum class State { kHeld, kAlign, kFollow };
+
+  struct Input {
+    bool held = false;        ///< for any reason
+    bool clutch = false;      ///< pressed
+    double speed = 0;         ///< m/s, of the hand
+    double disagreement = 0;  ///< m, of the hand (MotionMapping)
+  };
+
+  explicit Engagement(const EngagementConfig& config) : config_(config) {}
+
+  State step(const Input& input);
+  State state() const { return state_; }
+  /// "held", "align" or "follow".
+  static std::string name(State state);
+  /// What the operator has to do in align.
+  std::string why() const { return why_; }
+
+ private:
+  EngagementConfig config_;
+  State state_ = State::kHeld;
+  bool anchored_ = false;  ///< hand and needle belonged together before and must agree again
+  std::string why_;
+};
+
+}  // namespace microinjection

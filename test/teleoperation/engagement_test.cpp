@@ -1,0 +1,57 @@
+#include "teleoperation/engagement.h"
+
+#include <gtest/gtest.h>
+
+namespace microinjection {
+namespace {
+
+using State = Engagement::State;
+
+TEST(Engagement, FollowsAtOnceWhenTheHandIsSlow) {
+  Engagement engagement{{}};
+  EXPECT_EQ(engagement.state(), State::kHeld);
+  EXPECT_EQ(engagement.step({true, false, 0, 0}), State::kHeld);
+  EXPECT_EQ(engagement.step({false, false, 0, 0}), State::kFollow);
+  EXPECT_EQ(engagement.step({false, false, 10, 10}), State::kFollow) << "a fast hand is followed once it leads";
+  EXPECT_EQ(engagement.step({true, false, 0, 0}), State::kHeld);
+}
+
+TEST(Engagement, AFastHandIsNotTakenUp) {
+  EngagementConfig config;
+  Engagement engagement(config);
+  EXPECT_EQ(engagement.step({false, false, 1.01 * config.speed, 0}), State::kAlign);
+  EXPECT_EQ(engagement.why(), "the hand is fast");
+  EXPECT_EQ(engagement.step({false, false, 0.99 * config.speed, 0}), State::kFollow);
+  EXPECT_EQ(engagement.why(), "");
+}
+
+TEST(Engagement, IndexTakesUpTheHandWhereverItIs) {
+  Engagement engagement{{}};
+  engagement.step({false, false, 0, 0});
+  engagement.step({true, false, 0, 1});
+  EXPECT_EQ(engagement.step({false, false, 0, 1}), State::kFollow);
+}
+
+TEST(Engagement, AgreeWaitsForTheHandOrTheClutch) {
+  EngagementConfig config;
+  config.alignment = "agree";
+  Engagement engagement(config);
+  EXPECT_EQ(engagement.step({false, false, 0, 1}), State::kFollow) << "nothing to agree with yet";
+  engagement.step({true, false, 0, 1});
+  EXPECT_EQ(engagement.step({false, false, 0, 1.01 * config.tolerance}), State::kAlign);
+  EXPECT_NE(engagement.why().find("press and release the clutch"), std::string::npos);
+  EXPECT_EQ(engagement.step({false, false, 0, 0.99 * config.tolerance}), State::kFollow);
+  engagement.step({true, false, 0, 1});
+  EXPECT_EQ(engagement.step({false, false, 0, 1}), State::kAlign);
+  engagement.step({true, true, 0, 1});
+  EXPECT_EQ(engagement.step({false, false, 0, 1}), State::kFollow) << "gripped again";
+}
+
+TEST(Engagement, HasNamesForDiagnostics) {
+  EXPECT_EQ(Engagement::name(State::kHeld), "held");
+  EXPECT_EQ(Engagement::name(State::kAlign), "align");
+  EXPECT_EQ(Engagement::name(State::kFollow), "follow");
+}
+
+}  // namespace
+}  // namespace microinjection
