@@ -94,6 +94,30 @@ class PlotTest(InFolder):
         plot_force_depth.plot(path, self.folder / 'f.png')
         self.assertGreater((self.folder / 'f.png').stat().st_size, 0)
 
+    def injected(self):
+        """A session that goes in, through two membranes at 1 and 2 s, injects at 2.5 s and comes out from 3 s on. The
+        cell tells of a puncture 15 ms late."""
+        rows = []
+        for i in range(800):
+            time = 0.005 * i
+            layers = int(time >= 1.015) + int(time >= 2.015)
+            force = time if time <= 1 else 0.2 + 0.4 * (time - 1) if time <= 2 else 0.3
+            state = 'indent' if time < 1 else 'inject' if 2.5 <= time < 2.8 else 'punctured'
+            volume = 7e-15 + 1e-14 * min(max(time - 2.5, 0), 0.3)
+            rows.append(f'{time},{"retract" if time >= 3 else "indent"},{5e-6 * min(time, 3)},{force * 1e-6},'
+                        f'{force * 1e-6},0,0.1,1,{int(layers > 0)},{layers},{state},{volume}')
+        return self.write('f.csv', HEADER.strip() + ',layers_punctured,injection_state,injected_volume_m3\n' +
+                          '\n'.join(rows) + '\n')
+
+    def test_what_happened_is_found_where_it_happened(self):
+        table = plot_force_depth.read(self.injected())
+        found = [(table['time_s'][row], text) for row, text in plot_force_depth.events(table, ['zona'])]
+        self.assertEqual([text for _, text in found], ['contact', 'zona punctured', 'membrane 2 punctured',
+                                                       'injection: 3 pL', 'withdrawal'])
+        numpy.testing.assert_allclose([time for time, _ in found], [0, 1, 2, 2.5, 3], atol=1e-9)
+        plot_force_depth.plot(self.folder / 'f.csv', self.folder / 'f.png', ['zona'])
+        self.assertGreater(matplotlib.image.imread(self.folder / 'f.png').std(), 0.05)
+
     def test_a_file_without_rows_is_an_error(self):
         with self.assertRaisesRegex(ValueError, 'no rows'):
             plot_force_depth.plot(self.write('f.csv', HEADER), self.folder / 'f.png')
@@ -106,6 +130,11 @@ class PlotTest(InFolder):
 
 
 class SummaryTest(InFolder):
+    def test_it_knows_the_membranes(self):
+        self.assertEqual(demo_summary.layers(self.write('s.yaml', 'layers: [zona, oolemma]\n')), ['zona', 'oolemma'])
+        self.assertEqual(demo_summary.layers(self.write('s.yaml', 'layers: []\n')), [])
+        self.assertEqual(demo_summary.layers(self.folder / 'nowhere.yaml'), [])
+
     NODES = ('nodes:\n  - {node: cell_simulator, topic: /cell/predicted_cf, count: 1234, rate_hz: 999.8,'
              ' interval_median_ms: 1.0, interval_p99_ms: 1.5}\n')
 

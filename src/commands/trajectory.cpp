@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <optional>
 #include <sstream>
 
 #include "base/errors.h"
@@ -20,6 +21,7 @@ std::vector<std::string> split(const std::string& line) {
 /// The columns that are needed, by their place in the table.
 struct Columns {
   std::size_t x, y, z, force, in_contact;
+  std::optional<std::size_t> punctured;
 
   Columns(const std::vector<std::string>& header, const std::string& path) {
     const auto find = [&](const std::string& name) {
@@ -32,6 +34,7 @@ struct Columns {
     z = find("tip_z_m");
     force = find("predicted_axial_N");
     in_contact = find("in_contact");
+    if (std::find(header.begin(), header.end(), "punctured") != header.end()) punctured = find("punctured");
   }
   std::size_t last() const { return std::max({x, y, z, force, in_contact}); }
 };
@@ -48,6 +51,13 @@ void cutAtDeepest(std::vector<TouchedMoment>& contact) {
   const auto deepest = std::min_element(contact.begin(), contact.end(),
                                         [](const auto& a, const auto& b) { return a.tip.z() < b.tip.z(); });
   if (deepest != contact.end()) contact.erase(deepest + 1, contact.end());
+}
+
+/// From its start to its largest force.
+void cutAtPuncture(std::vector<TouchedMoment>& contact) {
+  const auto largest = std::max_element(contact.begin(), contact.end(),
+                                        [](const auto& a, const auto& b) { return a.axial_force < b.axial_force; });
+  if (largest != contact.end()) contact.erase(largest + 1, contact.end());
 }
 
 double depth(const std::vector<TouchedMoment>& way) {
@@ -69,6 +79,11 @@ std::vector<TouchedMoment> readWayIn(const std::string& path) {
   };
   while (std::getline(file, line)) {
     const std::vector<std::string> cells = split(line);
+    const std::size_t flag = columns.punctured.value_or(0);
+    if (columns.punctured && cells.size() > flag && cells[flag] == "1") {
+      cutAtPuncture(contact);
+      break;  // it stays punctured
+    }
     const bool touching = cells.size() > columns.last() && cells[columns.in_contact] == "1";
     if (!touching) {
       end();

@@ -13,7 +13,8 @@ struct TouchedMoment {
 };
 
 /// The longest way in of a session's table (force_depth.csv of the session recorder): from the first touch to the
-/// deepest place before the contact ended. Throws ConfigError when the file cannot be read, lacks a column or has no
+/// deepest place before the contact ended, or to where a layer gave way (column punctured, where there is one: the
+/// cell says so some milliseconds late, hence the largest force before). Throws ConfigError when the file cannot be read, lacks a column or has no
 /// contact.
 std::vector<TouchedMoment> readWayIn(const std::string& path);
 

@@ -150,6 +150,11 @@ void InjectionController::happen(InjectionEvent event) {
   const auto next = after(injection_, event);
   if (!next) return;
   injection_ = *next;
+  if (event == InjectionEvent::kPuncture) ++punctures_;
+  if (event == InjectionEvent::kStart) {
+    punctures_ = 0;
+    hand_pulse_ = {};
+  }
   if (injection_ != InjectionState::kInject) pulse_by_hand_ = false;
   if (event == InjectionEvent::kLost || event == InjectionEvent::kOut) monitor_.rearm();
   if (event == InjectionEvent::kReset) monitor_.reset();

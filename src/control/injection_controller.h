@@ -89,6 +89,8 @@ class InjectionController {
 
   bool running() const { return run_.active(); }  ///< an injection of the controller's own is not over yet
   InjectionFeedback feedback() const;
+  int punctures() const { return punctures_; }  ///< membranes whose failure was felt since the needle set out
+  double injectedVolume() const { return byHand() ? hand_pulse_.volume() : run_.result().volume; }  ///< m^3, same
   const InjectionResult& result() const { return run_.result(); }  ///< final when not running()
   /// The pulse that the injector is to deliver now; empty: none, and one that is under way is to be stopped.
   std::optional<PulseGoal> pulse() const;
@@ -118,6 +120,7 @@ class InjectionController {
   InjectionRun run_;
   InjectorWait hand_pulse_;
   bool pulse_by_hand_ = false;
+  int punctures_ = 0;
   NeedleSpeed needle_speed_;
   std::optional<Eigen::Vector3d> setpoint_;         ///< m; taken from the needle when it is enabled
   std::optional<Eigen::Vector3d> target_offset_;    ///< m, added to targets; taken with the first one once enabled

@@ -10,7 +10,7 @@ namespace microinjection {
 
 /// What the injector is asked for in the state inject.
 struct PulseGoal {
-  double pressure = 10e3;  ///< Pa, above the balance pressure
+  double pressure = 10e3;  ///< Pa, gauge
   double duration = 0.5;   ///< s; 0: nothing is injected
   double volume = 0;       ///< m^3 at which the pulse ends early; 0: by time only
 };

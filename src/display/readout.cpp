@@ -46,6 +46,7 @@ std::vector<ReadoutLine> lines(const Readout& readout) {
   std::vector<ReadoutLine> result;
   for (const std::string& part : wrapped(readout.state, kWidth, kMostStateLines))
     result.push_back({About::kState, part});
+  if (!readout.injection.empty()) result.push_back({About::kMotion, readout.injection});
   result.push_back({About::kMotion, "depth " + fixedFigure(readout.indentation, 1e-6, 2) + " um"});
   result.push_back({About::kPredicted, "predicted " + fixedFigure(readout.predicted, 1e-6, 3) + " uN"});
   result.push_back({About::kMeasured, "measured " + fixedFigure(readout.measured, 1e-6, 3) + " uN"});

@@ -14,6 +14,7 @@ struct Readout {
   std::optional<double> measured;       ///< N, magnitude
   std::optional<Eigen::Vector3d> hand;  ///< m, position of the haptic device
   std::string state;                    ///< for example "in contact"
+  std::string injection;                ///< for example "indent"; empty: not known
 };
 
 /// A figure in millionths, with this many significant digits at the most: micro(12.5e-6, 3) is "12.5".

@@ -31,6 +31,9 @@ class InjectorDevice {
   virtual std::string pulse(const InjectionPulse& pulse) = 0;
   /// The pressure between pulses (Pa, gauge). Empty, or why it is refused.
   virtual std::string setBalance(double pressure) = 0;
+  /// Ends the pulse that is on its way or under way: back to the balance pressure. Such a pulse does not count as done.
+  /// Without a pulse nothing happens. Empty, or why it is refused: the pulse then goes on.
+  virtual std::string stop() = 0;
   /// Clears a fault and the volume.
   virtual void reset() = 0;
 

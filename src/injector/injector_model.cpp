@@ -39,6 +39,13 @@ std::string InjectorModel::setBalance(double pressure) {
   return refusal;
 }
 
+std::string InjectorModel::stop() {
+  pulse_.reset();
+  left_ = 0;
+  reading_.busy = false;
+  return "";
+}
+
 void InjectorModel::reset() { reading_.volume = 0; }
 
 void InjectorModel::advance(double target, double dt) {

@@ -73,6 +73,7 @@ InjectorProtocol InjectorProtocol::read(ConfigReader& reader) {
   InjectorProtocol protocol;
   protocol.pulse = readExchange(reader.section("pulse", ConfigReader::kRequired), names(true));
   protocol.balance = readExchange(reader.section("balance", ConfigReader::kRequired), names(false));
+  if (reader.has("stop")) protocol.stop = readExchange(reader.section("stop"), {});
   if (reader.has("query")) {
     protocol.query = readExchange(reader.section("query"), {});
     if (protocol.query->expect.mark_count() < 1) reader.error("query", "expect must have a group for the pressure");

@@ -25,6 +25,7 @@ class InjectorProtocol {
   static InjectorProtocol read(ConfigReader& reader);
 
   Exchange pulse, balance;
+  std::optional<Exchange> stop;   ///< ends a pulse; none: the device cannot, and a pulse goes on to its end
   std::optional<Exchange> query;  ///< of the pressure, the first group of `expect`; none: the device is not asked
   double query_period = 0.2;      ///< s
   double pressure_unit = 1;       ///< Pa, of a queried pressure

@@ -43,6 +43,23 @@ std::string SerialInjector::setBalance(double pressure) {
   return "";
 }
 
+std::string SerialInjector::stop() {
+  waiting_pulse_.reset();
+  const bool stopping = waiting_stop_ || exchange_ == Exchange::kStop;
+  // One whose reply went wrong may be under way as well.
+  const bool may_flow = sent_pulse_ || model_.reading().busy || !fault_.empty();
+  if (!protocol_.stop) {
+    report();
+    return may_flow ? "the protocol has no line for it" : "";
+  }
+  if (may_flow && !stopping) {
+    waiting_stop_ = true;
+    tries_ = 0;
+  }
+  report();
+  return "";
+}
+
 void SerialInjector::reset() {
   fault_.clear();
   tries_ = 0;
@@ -112,6 +129,9 @@ void SerialInjector::complete(const std::string& reply) {
   } else if (exchange_ == Exchange::kBalance) {
     if (!std::regex_match(reply, protocol_.balance.expect)) return giveUp("a wrong reply");
     model_.setBalance(sent_balance_);
+  } else if (exchange_ == Exchange::kStop) {
+    if (!std::regex_match(reply, protocol_.stop->expect)) return giveUp("a wrong reply");
+    model_.stop();
   } else {
     const auto pressure = protocol_.queriedPressure(reply);
     if (!pressure || !limits_.checkPressure("", *pressure).empty()) return giveUp("a wrong reply");
@@ -138,6 +158,12 @@ void SerialInjector::giveUp(const std::string& why) {
     } else if (!waiting_balance_) {
       waiting_balance_ = sent_balance_;
     }
+  } else if (given_up == Exchange::kStop) {
+    if (said_no || tries_ >= kTries) {
+      fail("stop: " + why + "; the pulse may go on");
+    } else {
+      waiting_stop_ = true;
+    }
   } else if (given_up == Exchange::kQuery && tries_ >= kTries) {
     trouble_ = "query: " + why;
     pressure_.reset();
@@ -154,8 +180,10 @@ void SerialInjector::talk(double time) {
   const double patience = protocol_.balance.timeout + protocol_.pulse.timeout + protocol_.quiet;
   if (waiting_pulse_ && time - waits_since_ > patience) fail("the line was not free in time");
   if (!in_step_ || exchange_ != Exchange::kNone) return;
-  // The balance first: a pulse returns to it.
-  if (waiting_balance_) {
+  if (waiting_stop_) {
+    waiting_stop_ = false;
+    send(Exchange::kStop, protocol_.stop->send.fill({}), protocol_.stop->timeout, time);
+  } else if (waiting_balance_) {  // before the pulse, which returns to it
     sent_balance_ = *waiting_balance_;
     waiting_balance_.reset();
     send(Exchange::kBalance, protocol_.balanceLine(sent_balance_), protocol_.balance.timeout, time);
@@ -176,7 +204,7 @@ void SerialInjector::send(Exchange exchange, const std::string& line, double tim
 
 void SerialInjector::report() {
   reading_ = model_.reading();
-  reading_.busy = reading_.busy || waiting_pulse_ || sent_pulse_;
+  reading_.busy = reading_.busy || waiting_pulse_ || sent_pulse_ || waiting_stop_ || exchange_ == Exchange::kStop;
   if (pressure_) reading_.pressure = *pressure_;
 }
 

@@ -17,7 +17,9 @@ namespace microinjection {
 /// A pulse is sent once. When no good reply comes, nobody knows whether it was done: that is a fault until reset(), and
 /// it is not sent again. A balance pressure, which does no harm twice, is; of those that wait, the newest wins. After a
 /// reply that was late or wrong, nothing is sent before the line has been quiet for a while, so that a late reply is
-/// not taken for the next one. Flow and volume are estimates by the model of the pipette and the device's rise time.
+/// not taken for the next one. A stop takes back a pulse that was not sent yet; otherwise, where the protocol has a
+/// line for it, it goes before everything else, and is sent again as a balance pressure is. Flow and volume are
+/// estimates by the model of the pipette and the device's rise time.
 class SerialInjector : public InjectorDevice {
  public:
   /// `model`: pipette, limits and the device's rise time; its balance pressure is sent at the start.
@@ -25,6 +27,7 @@ class SerialInjector : public InjectorDevice {
 
   std::string pulse(const InjectionPulse& pulse) override;
   std::string setBalance(double pressure) override;
+  std::string stop() override;
   void reset() override;
   void step(double time) override;
   const InjectorReading& reading() const override { return reading_; }
@@ -33,7 +36,7 @@ class SerialInjector : public InjectorDevice {
   unsigned badReplies() const { return bad_replies_ + lines_.tooLong(); }
 
  private:
-  enum class Exchange { kNone, kPulse, kBalance, kQuery };
+  enum class Exchange { kNone, kPulse, kBalance, kStop, kQuery };
 
   bool keepOpen(double time);
   void listen(double time);
@@ -60,9 +63,10 @@ class SerialInjector : public InjectorDevice {
   std::optional<InjectionPulse> waiting_pulse_;
   double waits_since_ = 0;  ///< s
   std::optional<InjectionPulse> sent_pulse_;
+  bool waiting_stop_ = false;
   std::optional<double> waiting_balance_;  ///< Pa
   double sent_balance_ = 0;                ///< Pa
-  int tries_ = 0;                          ///< of the present balance or query without a good reply
+  int tries_ = 0;                          ///< of the present stop, balance or query without a good reply
   std::optional<double> pressure_;         ///< Pa, as queried
   unsigned bad_replies_ = 0;
   std::string fault_;                                 ///< until reset()

@@ -3,6 +3,7 @@
 #include <diagnostic_msgs/DiagnosticStatus.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <string>
 
@@ -77,6 +78,7 @@ void CycleDiagnostics::reportInputs(DiagnosticStatusWrapper& status) {
   status.summary(DiagnosticStatus::OK, "all inputs are fresh");
   for (const InputPort* input : inputs_) {
     status.add("age of " + input->topic + " (s)", input->age(now_));
+    if (input->received.isZero() && std::isinf(input->timeout)) continue;  // a command comes when it comes
     if (!input->fresh(now_)) {
       status.mergeSummary(DiagnosticStatus::WARN, input->topic + (input->valid() ? " is stale" : " has nothing valid"));
     }

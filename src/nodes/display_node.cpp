@@ -44,7 +44,7 @@ bool isValid(const Message& message) {
 }
 
 std::string describe(const cell_microinjection::CellState& message) {
-  if (message.punctured) return "PUNCTURED";
+  if (message.punctured && message.converged) return message.inside ? "INSIDE" : "PUNCTURED";
   if (!message.converged) return "no solution: " + message.reason;
   return message.in_contact ? "in contact" : "no contact";
 }
@@ -65,7 +65,8 @@ DisplayConfig readConfig(const ros::NodeHandle& private_node) {
 
 const char* const DisplayNode::kHelp =
     "display: shows the scene in rviz, ten thousand times enlarged.\n"
-    "In: /cell/state /force_sensor/measured_cf /haptic/measured_cp, tf of world, cell, needle_tip and the rig.\n"
+    "In: /cell/state /force_sensor/measured_cf /haptic/measured_cp /controller/injection_state, tf of world, cell, "
+    "needle_tip and the rig.\n"
     "Out: viz/markers (MarkerArray), tf below viz/world.\n"
     "Parameters: ~rate (Hz of wall time), ~edges, ~colour_range (m), ~force_scale (m/N), ~injection_pipette,\n"
     "~holding_pipette; see config/display.yaml.\n";
@@ -74,7 +75,10 @@ DisplayNode::DisplayNode(ros::NodeHandle node, ros::NodeHandle private_node)
     : config_(readConfig(private_node)),
       scene_(config_),
       frames_({"cell", "holding_pipette", "manipulator_base"}),
-      inputs_{{{"/cell/state", true}, {"/force_sensor/measured_cf", true}, {"/haptic/measured_cp", false}}},
+      inputs_{{{"/cell/state", true},
+               {"/force_sensor/measured_cf", true},
+               {"/haptic/measured_cp", false},
+               {"/controller/injection_state", false}}},
       reported_(ros::WallTime::now()),
       diagnostics_(node, private_node) {
   state_.readout.state = "waiting for the cell";
@@ -84,7 +88,8 @@ DisplayNode::DisplayNode(ros::NodeHandle node, ros::NodeHandle private_node)
   const auto topic = [this](InputId input) { return inputs_[input].topic; };
   subscribers_ = {node.subscribe(topic(kState), 1, &DisplayNode::onState, this, hints),
                   node.subscribe(topic(kMeasured), 1, &DisplayNode::onMeasuredForce, this, hints),
-                  node.subscribe(topic(kHand), 1, &DisplayNode::onHand, this, hints)};
+                  node.subscribe(topic(kHand), 1, &DisplayNode::onHand, this, hints),
+                  node.subscribe(topic(kInjection), 1, &DisplayNode::onInjection, this, hints)};
   diagnostics_.setHardwareID("none");
   diagnostics_.add("drawing", this, &DisplayNode::reportDrawing);
   diagnostics_.add("inputs", this, &DisplayNode::reportInputs);
@@ -115,6 +120,8 @@ void DisplayNode::onState(const cell_microinjection::CellState& message) {
   state_.cell_frame = message.header.frame_id.empty() ? "cell" : message.header.frame_id;
   state_.surface = std::move(surface);
   state_.members = std::move(members);
+  state_.holes.clear();
+  for (const auto& hole : message.holes) state_.holes.emplace_back(hole.x, hole.y, hole.z);
   cell_changed_ = true;
 }
 
@@ -127,6 +134,11 @@ void DisplayNode::lookForTip() {
 void DisplayNode::onHand(const geometry_msgs::PoseStamped& message) {
   state_.readout.hand = isValid(message) ? trustedPosition(&message, message.header.frame_id) : std::nullopt;
   count(kHand, state_.readout.hand.has_value());
+}
+
+void DisplayNode::onInjection(const cell_microinjection::InjectionStatus& message) {
+  state_.readout.injection = message.state + (message.waits ? ", waits" : "");
+  count(kInjection, true);
 }
 
 void DisplayNode::onMeasuredForce(const geometry_msgs::WrenchStamped& message) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cell_microinjection/CellState.h>
+#include <cell_microinjection/InjectionStatus.h>
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/WrenchStamped.h>
@@ -34,7 +35,7 @@ class DisplayNode {
   void run();
 
  private:
-  enum InputId { kState, kMeasured, kHand, kInputs };
+  enum InputId { kState, kMeasured, kHand, kInjection, kInputs };
   struct Input {
     Input(const std::string& input_topic, bool is_needed) : topic(input_topic), needed(is_needed) {}
     std::string topic;
@@ -44,6 +45,7 @@ class DisplayNode {
   };
 
   void onState(const cell_microinjection::CellState& message);
+  void onInjection(const cell_microinjection::InjectionStatus& message);
   void onHand(const geometry_msgs::PoseStamped& message);
   void onMeasuredForce(const geometry_msgs::WrenchStamped& message);
   void lookForTip();

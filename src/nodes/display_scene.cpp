@@ -21,6 +21,7 @@ constexpr Colour kAlarm{1.00f, 0.45f, 0.35f, 1};
 
 constexpr double kSmallestRange = 1e-6;                     // m, of the colour scale: noise does not fill it
 constexpr float kMembrane = 0.25f;                          // opacity, of a cell with struts and cables inside
+constexpr double kHole = 0.03;                              // display units; not to scale
 constexpr double kStrutWidth = 0.016, kCableWidth = 0.006;  // display units; not to scale
 const std::string kWorld = "viz/world";
 
@@ -53,7 +54,7 @@ void DisplayScene::drawMoving(const DisplayedState& state, visualization_msgs::M
 
 void DisplayScene::drawReadout(const DisplayedState& state, visualization_msgs::MarkerArray& markers) const {
   using About = ReadoutLine::About;
-  constexpr int kMostLines = 9;
+  constexpr int kMostLines = 10;
   const std::vector<ReadoutLine> shown = lines(state.readout);
   for (int i = 0; i < kMostLines; ++i) {
     const MarkerName name{kWorld, "readout", i};
@@ -90,6 +91,9 @@ void DisplayScene::drawCell(const DisplayedState& state, visualization_msgs::Mar
   markers.markers.push_back(triangleMarker({frame, "cell"}, skin, {1, 1, 1, 1}));
   markers.markers.push_back(
       sphereMarker({frame, "contact"}, pointsAt(surface, surface.contact_vertices), 0.008, kContact));
+  std::vector<Eigen::Vector3d> holes;
+  for (const Eigen::Vector3d& hole : state.holes) holes.push_back(toDisplay(hole));
+  markers.markers.push_back(sphereMarker({frame, "holes"}, holes, kHole, kAlarm));
   if (config_.edges) markers.markers.push_back(lineMarker({frame, "edges"}, edges(surface, 0.0015), 0.001, kEdge));
 }
 

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "display/cell_members.h"
 #include "display/cell_surface.h"
@@ -17,7 +18,8 @@ namespace microinjection {
 struct DisplayedState {
   std::optional<CellSurface> surface;
   CellMembers members;
-  std::string cell_frame = "cell";                     ///< of the surface
+  std::vector<Eigen::Vector3d> holes;                  ///< m, where the outermost layer was punctured
+  std::string cell_frame = "cell";                     ///< of surface, members and holes
   std::optional<Eigen::Isometry3d> holding_from_cell;  ///< pose of cell_frame in holding_pipette
   std::optional<Eigen::Isometry3d> tip;                ///< pose of needle_tip in world
   std::optional<Eigen::Vector3d> predicted;            ///< N, of the cell on the tip, in world

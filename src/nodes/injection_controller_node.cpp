@@ -11,18 +11,13 @@ namespace microinjection {
 
 const char* const InjectionControllerNode::kHelp =
     "injection_controller: decides where the needle goes and holds it when an input cannot be trusted.\n"
-    "In: /teleop/servo_cp /needle/measured_cp, /cell/predicted_cf or /force_sensor/measured_cf,\n"
-    "/controller/state_command (enable, disable, pause, resume, home, approach, indent, inject, withdraw),
-    "
-    "/needle/abilities. Out: /needle/servo_cp /controller/operating_state.
-    "
-    "Parameters: ~mode (manual|semi_automatic|automatic), ~force_source (predicted|measured), ~speed_limit (m/s),
-    "
-    "~jump_limit (m), ~lag_limit (m), ~force_limit (N), ~detection/... ~motion/... ~goal/... ~auto_enable, ~rate (Hz),
-    "
-    "~input_timeout (s); see
-    "
-    "config/injection_controller.yaml.\n";
+    "In: /teleop/servo_cp /needle/measured_cp, /cell/predicted_cf or /force_sensor/measured_cf, /injector/state,\n"
+    "/needle/abilities, /controller/state_command (enable, disable, pause, resume, home, approach, indent, inject,\n"
+    "withdraw). Action: /controller/inject. Out: /needle/servo_cp /controller/operating_state\n"
+    "/controller/injection_state /injector/pulse /injector/stop.\n"
+    "Parameters: ~mode (manual|semi_automatic|automatic), ~force_source (predicted|measured), ~speed_limit (m/s),\n"
+    "~jump_limit (m), ~lag_limit (m), ~force_limit (N), ~detection/... ~motion/... ~goal/... ~injector, ~auto_enable,\n"
+    "~rate (Hz), ~input_timeout (s) and more; see config/injection_controller.yaml.\n";
 
 InjectionControllerNode::Parameters InjectionControllerNode::Parameters::read(const ros::NodeHandle& private_node) {
   Parameters parameters;
@@ -31,6 +26,8 @@ InjectionControllerNode::Parameters InjectionControllerNode::Parameters::read(co
   reader.number("input_timeout", parameters.input_timeout, Range::positive());
   reader.choice("force_source", parameters.force_source, {"predicted", "measured"});
   reader.boolean("auto_enable", parameters.auto_enable);
+  reader.boolean("injector", parameters.injector);
+  reader.boolean("commands_in_lockstep", parameters.commands_in_lockstep);
   reader.number("lag_limit", parameters.lag_limit, Range::positive());
   parameters.model = InjectionControllerConfig::read(reader);
   reader.finish();
@@ -45,19 +42,32 @@ InjectionControllerNode::InjectionControllerNode(ros::NodeHandle node, ros::Node
                                                        parameters_.input_timeout)),
       force_(cycle_.input<geometry_msgs::WrenchStamped>(forceTopic(parameters_.force_source), Phase::kTickBefore,
                                                         parameters_.input_timeout)),
-      setpoint_(cycle_.output<geometry_msgs::PoseStamped>("needle/servo_cp")) {
+      setpoint_(cycle_.output<geometry_msgs::PoseStamped>("needle/servo_cp")),
+      injection_(cycle_.output<cell_microinjection::InjectionStatus>("controller/injection_state", true)),
+      action_(cycle_.node(), model_, parameters_.model.goal) {
   if (parameters_.model.mode == "manual") {
     target_ = &cycle_.input<geometry_msgs::PoseStamped>("teleop/servo_cp", Phase::kSameTick, parameters_.input_timeout);
   }
+  if (parameters_.injector) injector_ = std::make_unique<InjectorLink>(cycle_, parameters_.input_timeout);
   state_ = cycle_.node().advertise<cell_microinjection::OperatingState>("controller/operating_state", 10, true);
-  commands_ = cycle_.node().subscribe<cell_microinjection::StringStamped>(
-      "controller/state_command", 10,
-      [this](const cell_microinjection::StringStampedConstPtr& message) { obey(message->string); });
+  listenToCommands();
   abilities_ = cycle_.node().subscribe<cell_microinjection::ManipulatorAbilities>(
       "needle/abilities", 1,
       [this](const cell_microinjection::ManipulatorAbilitiesConstPtr& message) { adaptTo(*message); });
   cycle_.diagnostics().add("control", [this](auto& status) { report(status); });
   if (parameters_.auto_enable) obey("enable");
+}
+
+void InjectionControllerNode::listenToCommands() {
+  using cell_microinjection::StringStamped;
+  constexpr char kTopic[] = "controller/state_command";
+  if (cycle_.lockstep() && parameters_.commands_in_lockstep) {
+    cycle_.input<StringStamped>(kTopic, Phase::kTickBefore, std::numeric_limits<double>::infinity())
+        .listen([this](const StringStamped& message, const ros::Time&) { obey(message.string); });
+    return;
+  }
+  commands_ = cycle_.node().subscribe<StringStamped>(
+      kTopic, 10, [this](const cell_microinjection::StringStampedConstPtr& message) { obey(message->string); });
 }
 
 void InjectionControllerNode::run() {
@@ -86,6 +96,7 @@ void InjectionControllerNode::step(const Cycle::Tick& tick) {
   const auto needle = trustedPose(needle_.get(tick.now));
   InjectionController::Input input;
   input.target = trustedPosition(target, kWorldFrame);
+  if (injector_) input.injector = injector_->report(tick.now);
   if (needle) {
     input.needle = needle->translation();
     input.axis = needle->linear().col(2);
@@ -96,7 +107,10 @@ void InjectionControllerNode::step(const Cycle::Tick& tick) {
     pose.translation() = *setpoint;
     setpoint_.publish(toPose(pose, target && model_.followsTarget() ? target->header.stamp : tick.now, kWorldFrame));
   }
+  if (injector_) injector_->want(model_.pulse(), tick.now);
+  action_.step(tick.now);
   publishState(tick.now);
+  publishInjection(tick.now);
 }
 
 void InjectionControllerNode::publishState(const ros::Time& now) {
@@ -108,6 +122,27 @@ void InjectionControllerNode::publishState(const ros::Time& now) {
   state.header.stamp = now;
   state_.publish(state);
   said_ = state;
+}
+
+void InjectionControllerNode::publishInjection(const ros::Time& now) {
+  constexpr double kPeriod = 0.1;  // s, where nothing changes
+  const InjectionFeedback& known = model_.feedback();
+  cell_microinjection::InjectionStatus status;
+  status.header.stamp = now;
+  status.state = toText(known.state);
+  status.waits = model_.waits();
+  status.punctures = static_cast<std::uint32_t>(model_.punctures());
+  status.force = known.force;
+  status.depth = known.depth;
+  status.volume = model_.injectedVolume();
+  status.outcome = toText(model_.result().outcome);
+  status.reason = model_.result().reason;
+  const auto& said = said_of_injection_;
+  const bool same = status.state == said.state && status.waits == said.waits && status.punctures == said.punctures &&
+                    status.outcome == said.outcome;
+  if (same && (now - said.header.stamp).toSec() < kPeriod) return;
+  injection_.publish(status);
+  said_of_injection_ = status;
 }
 
 void InjectionControllerNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) const {

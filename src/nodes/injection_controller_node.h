@@ -5,13 +5,17 @@
 #include <ros/ros.h>
 
 #include <limits>
+#include <memory>
 #include <string>
 
+#include "cell_microinjection/InjectionStatus.h"
 #include "cell_microinjection/ManipulatorAbilities.h"
 #include "cell_microinjection/OperatingState.h"
 #include "cell_microinjection/StringStamped.h"
 #include "control/injection_controller.h"
 #include "nodes/cycle.h"
+#include "nodes/injection_action.h"
+#include "nodes/injector_link.h"
 
 namespace microinjection {
 
@@ -20,7 +24,10 @@ namespace microinjection {
 /// In:  /teleop/servo_cp (PoseStamped, `world`; with mode manual), /needle/measured_cp (PoseStamped),
 ///      /cell/predicted_cf or /force_sensor/measured_cf (WrenchStamped), /controller/state_command (StringStamped),
 ///      /needle/abilities (ManipulatorAbilities): a rig that follows late is driven slowly
-/// Out: /needle/servo_cp (PoseStamped, `world`), /controller/operating_state (OperatingState, latched, on change)
+///      /injector/state; the action Inject on /controller/inject
+/// Out: /needle/servo_cp (PoseStamped, `world`), /controller/operating_state (OperatingState, latched, on change),
+///      /controller/injection_state (InjectionStatus, latched, on change and ten times a second), /injector/pulse,
+///      /injector/stop
 ///
 /// Parameters (private): those of InjectionControllerConfig and
 ///   rate           Hz; default 1000, in [50, 5000]
@@ -28,6 +35,9 @@ namespace microinjection {
 ///   force_source   predicted or measured; default predicted
 ///   lag_limit      m, that the needle may be behind its set-point for the rig's lateness; default 10e-6, in (0, inf)
 ///   auto_enable    go to ENABLED at the start, for simulated rigs; default false
+///   injector       there is one; default true
+///   commands_in_lockstep  in lock step: who sends /controller/state_command takes part, and is waited for; default
+///                  false
 class InjectionControllerNode {
  public:
   static const char* const kHelp;
@@ -41,15 +51,19 @@ class InjectionControllerNode {
     double input_timeout = 0.05;
     std::string force_source = "predicted";
     bool auto_enable = false;
+    bool injector = true;
+    bool commands_in_lockstep = false;
     double lag_limit = 10e-6;
     InjectionControllerConfig model;
     static Parameters read(const ros::NodeHandle& private_node);
   };
 
+  void listenToCommands();
   void obey(const std::string& command);
   void adaptTo(const cell_microinjection::ManipulatorAbilities& rig);
   void step(const Cycle::Tick& tick);
   void publishState(const ros::Time& now);
+  void publishInjection(const ros::Time& now);
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
   Parameters parameters_;
@@ -59,11 +73,15 @@ class InjectionControllerNode {
   Input<geometry_msgs::PoseStamped>& needle_;
   Input<geometry_msgs::WrenchStamped>& force_;
   Output<geometry_msgs::PoseStamped>& setpoint_;
+  Output<cell_microinjection::InjectionStatus>& injection_;
+  std::unique_ptr<InjectorLink> injector_;  ///< null without an injector
+  InjectionAction action_;
   ros::Subscriber commands_;
   ros::Subscriber abilities_;
   double rig_speed_ = std::numeric_limits<double>::infinity();  ///< m/s, that the rig can be driven at
   ros::Publisher state_;
-  cell_microinjection::OperatingState said_;  ///< the last that was published
+  cell_microinjection::OperatingState said_;                ///< the last that was published
+  cell_microinjection::InjectionStatus said_of_injection_;  ///< the last that was published
 };
 
 }  // namespace microinjection

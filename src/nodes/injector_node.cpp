@@ -7,7 +7,8 @@ namespace microinjection {
 
 const char* const InjectorNode::kHelp =
     "injector: a pressure injector behind the pipette, simulated or on a serial line.\n"
-    "In: /injector/pulse /injector/set_balance. Out: /injector/state. Services: ~reset ~clog (simulated).\n"
+    "In: /injector/pulse /injector/stop /injector/set_balance. Out: /injector/state. Services: ~reset ~clog "
+    "(simulated).\n"
     "Parameters: see config/injector.yaml.\n";
 
 InjectorNode::Parameters InjectorNode::Parameters::read(const ros::NodeHandle& private_node) {
@@ -34,7 +35,10 @@ InjectorNode::InjectorNode(ros::NodeHandle node, ros::NodeHandle private_node)
   private_node.setCallbackQueue(cycle_.node().getCallbackQueue());
   makeDevice(private_node);
   // No command that comes between two steps is lost.
-  pulse_ = cycle_.node().subscribe("injector/pulse", 100, &InjectorNode::onPulse, this);
+  cycle_.input<cell_microinjection::InjectionPulse>("injector/pulse", Phase::kTickBefore, INFINITY)
+      .listen([this](const auto& message, const ros::Time&) { onPulse(message); });
+  cycle_.input<cell_microinjection::StringStamped>("injector/stop", Phase::kTickBefore, INFINITY)
+      .listen([this](const auto& message, const ros::Time&) { onStop(message); });
   balance_ = cycle_.node().subscribe("injector/set_balance", 100, &InjectorNode::onBalance, this);
   reset_ = private_node.advertiseService<std_srvs::Trigger::Request, std_srvs::Trigger::Response>(
       "reset", [this](std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
@@ -94,6 +98,11 @@ void InjectorNode::onPulse(const cell_microinjection::InjectionPulse& message) {
     return;
   }
   judge(command, device_->pulse({message.id, message.pressure, message.duration}));
+}
+
+void InjectorNode::onStop(const cell_microinjection::StringStamped& message) {
+  judge("stop", device_->stop());
+  ROS_INFO_STREAM("stopped: " << message.string);
 }
 
 void InjectorNode::onBalance(const cell_microinjection::Float64Stamped& message) {

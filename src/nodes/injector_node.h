@@ -10,6 +10,7 @@
 #include "cell_microinjection/Float64Stamped.h"
 #include "cell_microinjection/InjectionPulse.h"
 #include "cell_microinjection/InjectorState.h"
+#include "cell_microinjection/StringStamped.h"
 #include "injector/injector_model.h"
 #include "injector/injector_protocol.h"
 #include "injector/pulse_ids.h"
@@ -19,9 +20,11 @@
 namespace microinjection {
 
 /// The injector: a pressure regulator behind the pipette, simulated or real, behind the same topics. Each pulse is done
-/// once, or refused with the reason in the state: a repeated id is ignored, an old message is refused.
+/// once, or refused with the reason in the state: a repeated id is ignored, an old message is refused. In lock step who
+/// sends pulse and stop takes part.
 ///
-/// In:  /injector/pulse (InjectionPulse), /injector/set_balance (Float64Stamped, Pa)
+/// In:  /injector/pulse (InjectionPulse), /injector/stop (StringStamped, the reason; always obeyed, however old: the
+///      pulse ends), /injector/set_balance (Float64Stamped, Pa)
 /// Out: /injector/state (InjectorState)
 /// Services: ~reset (std_srvs/Trigger: clears fault and volume), with source simulated ~clog (std_srvs/SetBool)
 ///
@@ -54,6 +57,7 @@ class InjectorNode {
 
   void makeDevice(ros::NodeHandle& private_node);
   void onPulse(const cell_microinjection::InjectionPulse& message);
+  void onStop(const cell_microinjection::StringStamped& message);
   void onBalance(const cell_microinjection::Float64Stamped& message);
   std::string untimely(const std_msgs::Header& header) const;
   void judge(const std::string& command, const std::string& refusal);
@@ -65,7 +69,7 @@ class InjectorNode {
   std::unique_ptr<InjectorDevice> device_;
   Output<cell_microinjection::InjectorState>& state_;
   PulseIds ids_;
-  ros::Subscriber pulse_, balance_;
+  ros::Subscriber balance_;
   ros::ServiceServer reset_, clog_;
   unsigned refused_ = 0;
   unsigned repeated_ = 0;

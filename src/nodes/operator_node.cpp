@@ -9,12 +9,14 @@ namespace microinjection {
 namespace {
 
 constexpr char kHapticFrame[] = "haptic";
+constexpr char kWord[] = "inject";  ///< the phase that is a word to the controller, too
 
 }  // namespace
 
 const char* const OperatorNode::kHelp =
     "operator: a virtual haptic device in a virtual hand that follows a recorded motion.\n"
-    "In: /haptic/servo_cf. Out: /haptic/measured_cp /haptic/clutch /operator/phase.\n"
+    "In: /haptic/servo_cf. Out: /haptic/measured_cp /haptic/clutch /operator/phase\n"
+    "/controller/state_command (inject).\n"
     "Parameters: ~motion (file, required), ~start_delay (s), ~wait_for_go, ~mass (kg), ~damping (N s/m),\n"
     "~stiffness (N/m), ~rate (Hz), ~force_timeout (s); see config/operator.yaml.\n";
 
@@ -40,7 +42,8 @@ OperatorNode::OperatorNode(ros::NodeHandle node, ros::NodeHandle private_node)
           cycle_.input<geometry_msgs::WrenchStamped>("haptic/servo_cf", Phase::kTickBefore, parameters_.force_timeout)),
       position_(cycle_.output<geometry_msgs::PoseStamped>("haptic/measured_cp")),
       clutch_(cycle_.output<sensor_msgs::Joy>("haptic/clutch", true)),
-      phase_(cycle_.output<cell_microinjection::StringStamped>("operator/phase", true)) {}
+      phase_(cycle_.output<cell_microinjection::StringStamped>("operator/phase", true)),
+      word_(cycle_.output<cell_microinjection::StringStamped>("controller/state_command")) {}
 
 void OperatorNode::waitForGo() const {
   bool go = !parameters_.wait_for_go;
@@ -81,6 +84,7 @@ void OperatorNode::publishPhase(const ros::Time& now, const std::string& phase) 
   message.header.stamp = now;
   message.string = phase;
   phase_.publish(message);
+  if (phase == kWord) word_.publish(message);
   phase_said_ = phase;
 }
 

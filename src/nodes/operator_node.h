@@ -19,7 +19,8 @@ namespace microinjection {
 ///
 /// In:  /haptic/servo_cf (WrenchStamped, N; none while it is stale)
 /// Out: /haptic/measured_cp (PoseStamped, m, frame `haptic`), /haptic/clutch (Joy, on change),
-///      /operator/phase (StringStamped, latched, on change: the motion's phases, then done)
+///      /operator/phase (StringStamped, latched, on change: the motion's phases, then done),
+///      /controller/state_command (StringStamped: the word of a phase that is called inject, as it begins)
 ///
 /// Parameters (private): those of VirtualHandConfig and
 ///   motion         path of a hand motion (see teleoperation/hand_motion.h); required
@@ -58,6 +59,7 @@ class OperatorNode {
   Output<geometry_msgs::PoseStamped>& position_;
   Output<sensor_msgs::Joy>& clutch_;
   Output<cell_microinjection::StringStamped>& phase_;
+  Output<cell_microinjection::StringStamped>& word_;
   double elapsed_ = 0;  ///< s of steps; a stall of the machine pauses the hand
   std::optional<bool> clutch_said_;
   std::string phase_said_;

@@ -53,7 +53,7 @@ void writeIntervals(std::ostream& out, const std::string& name, const IntervalHi
 
 const char* const SessionRecorderNode::kHelp =
     "session_recorder: writes force_depth.csv, summary.yaml and session.bag of a session when it ends.\n"
-    "Parameters: ~output_dir (required), ~row_period (s), ~hand (record a hand), ~bag,\n~end_when_done.\n";
+    "Parameters: ~output_dir (required), ~row_period (s), ~hand, ~injector (record them), ~bag,\n~end_when_done.\n";
 
 SessionRecorderNode::Parameters SessionRecorderNode::Parameters::read(const ros::NodeHandle& private_node) {
   Parameters parameters;
@@ -61,6 +61,7 @@ SessionRecorderNode::Parameters SessionRecorderNode::Parameters::read(const ros:
   reader.text("output_dir", parameters.output_dir, ConfigReader::kRequired);
   reader.number("row_period", parameters.row_period, Range::positive());
   reader.boolean("hand", parameters.hand);
+  reader.boolean("injector", parameters.injector);
   reader.boolean("bag", parameters.bag);
   reader.boolean("end_when_done", parameters.end_when_done);
   reader.finish();
@@ -74,7 +75,12 @@ SessionRecorderNode::SessionRecorderNode(ros::NodeHandle node, ros::NodeHandle p
       predicted_(cycle_.input<geometry_msgs::WrenchStamped>("cell/predicted_cf", Phase::kTickBefore, 0.05)),
       needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", Phase::kTickBefore, 0.05)),
       measured_(cycle_.input<geometry_msgs::WrenchStamped>("force_sensor/measured_cf", Phase::kTickBefore, 0.05)),
-      cell_(cycle_.input<cell_microinjection::CellState>("cell/state", Phase::kTickBefore, kForever)) {
+      cell_(cycle_.input<cell_microinjection::CellState>("cell/state", Phase::kTickBefore, kForever)),
+      injection_(cycle_.input<cell_microinjection::InjectionStatus>("controller/injection_state", Phase::kTickBefore,
+                                                                    kForever)) {
+  if (parameters_.injector) {
+    injector_ = &cycle_.input<cell_microinjection::InjectorState>("injector/state", Phase::kTickBefore, 0.05);
+  }
   if (parameters_.hand) {
     hand_ = &cycle_.input<geometry_msgs::PoseStamped>("haptic/measured_cp", Phase::kTickBefore, kForever);
     clutch_ = &cycle_.input<sensor_msgs::Joy>("haptic/clutch", Phase::kTickBefore, kForever);
@@ -109,11 +115,20 @@ void SessionRecorderNode::fillTable() {
     putForce(message, measured, table_.measured);
   });
   cell_.listen([this](const cell_microinjection::CellState& message, const ros::Time&) {
-    SessionTable::Cell cell{std::nullopt, message.punctured != 0};
+    SessionTable::Cell cell{std::nullopt, message.punctured != 0, message.layers_punctured};
     const auto& touched_at = message.touched_at;
     if (message.in_contact) cell.touched_at = Eigen::Vector3d(touched_at.x, touched_at.y, touched_at.z);
     table_.cell.put(stampOf(message), cell);
+    layers_ = message.layers;
   });
+  injection_.listen([this](const cell_microinjection::InjectionStatus& message, const ros::Time&) {
+    table_.injection.put(stampOf(message), message.state);
+  });
+  if (injector_) {
+    injector_->listen([this](const cell_microinjection::InjectorState& message, const ros::Time&) {
+      table_.volume.put(stampOf(message), message.volume);
+    });
+  }
   if (!parameters_.hand) return;
   hand_force_->listen([this](const geometry_msgs::WrenchStamped& message, const ros::Time&) {
     std::optional<double> size;
@@ -131,6 +146,8 @@ void SessionRecorderNode::recordBag() {
   bag_->follow(predicted_);
   bag_->follow(measured_);
   bag_->follow(cell_);
+  bag_->follow(injection_);
+  if (injector_) bag_->follow(*injector_);
   if (parameters_.hand) {
     bag_->follow(*hand_);
     bag_->follow(*clutch_);
@@ -184,7 +201,9 @@ std::string SessionRecorderNode::summary() const {
   std::ostringstream out;
   out << "clock: " << (cycle_.lockstep() ? "lockstep" : "wall") << '\n';
   out << "duration_s: " << table_.duration() << '\n';
-  out << "nodes:\n";
+  out << "layers: [";
+  for (std::size_t i = 0; i < layers_.size(); ++i) out << (i > 0 ? ", " : "") << layers_[i];
+  out << "]\nnodes:\n";
   for (const auto& [node, figures] : figures_) {
     if (figures.topic.empty()) continue;
     out << "  - {node: " << node << ", topic: " << figures.topic << ", count: " << figures.count

@@ -10,9 +10,12 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "base/interval_histogram.h"
 #include "cell_microinjection/CellState.h"
+#include "cell_microinjection/InjectionStatus.h"
+#include "cell_microinjection/InjectorState.h"
 #include "cell_microinjection/StringStamped.h"
 #include "nodes/bare_timer_loop.h"
 #include "nodes/cycle.h"
@@ -26,7 +29,8 @@ namespace microinjection {
 /// the latency from hand to force beside a bare timer loop), session.bag. All are there, whole, at the end of the
 /// session.
 ///
-/// In: /needle/measured_cp, /cell/predicted_cf, /force_sensor/measured_cf, /cell/state, with a hand
+/// In: /needle/measured_cp, /cell/predicted_cf, /force_sensor/measured_cf, /cell/state,
+///     /controller/injection_state, with an injector /injector/state, with a hand
 ///     /haptic/measured_cp, /haptic/servo_cf, /haptic/clutch, /operator/phase; /needle/setpoint_trace,
 ///     /haptic/force_trace; /diagnostics, /tf, /tf_static, /controller/operating_state
 ///
@@ -37,6 +41,7 @@ namespace microinjection {
 ///   output_dir  path, made when absent; required
 ///   row_period  s; default 0.005, in (0, inf)
 ///   hand        whether there is a haptic bridge to record; default true
+///   injector    whether there is an injector to record; default true
 ///   bag         write session.bag too; default true
 ///   end_when_done  write the files and end this node when the operator's phase is done; default false
 class SessionRecorderNode {
@@ -51,6 +56,7 @@ class SessionRecorderNode {
     std::string output_dir;
     double row_period = 0.005;
     bool hand = true;
+    bool injector = true;
     bool bag = true;
     bool end_when_done = false;
     static Parameters read(const ros::NodeHandle& private_node);
@@ -73,16 +79,19 @@ class SessionRecorderNode {
   Input<geometry_msgs::PoseStamped>& needle_;
   Input<geometry_msgs::WrenchStamped>& measured_;
   Input<cell_microinjection::CellState>& cell_;
-  Input<geometry_msgs::PoseStamped>* hand_ = nullptr;           ///< null without a hand
-  Input<sensor_msgs::Joy>* clutch_ = nullptr;                   ///< null without a hand
-  Input<geometry_msgs::WrenchStamped>* hand_force_ = nullptr;   ///< null without a hand
-  Input<cell_microinjection::StringStamped>* phase_ = nullptr;  ///< null without a hand
+  Input<cell_microinjection::InjectionStatus>& injection_;
+  Input<cell_microinjection::InjectorState>* injector_ = nullptr;  ///< null without an injector
+  Input<geometry_msgs::PoseStamped>* hand_ = nullptr;              ///< null without a hand
+  Input<sensor_msgs::Joy>* clutch_ = nullptr;                      ///< null without a hand
+  Input<geometry_msgs::WrenchStamped>* hand_force_ = nullptr;      ///< null without a hand
+  Input<cell_microinjection::StringStamped>* phase_ = nullptr;     ///< null without a hand
   ros::Subscriber diagnostics_;
   std::unique_ptr<SessionBag> bag_;            ///< null without a bag
   std::unique_ptr<LatencyMeter> latency_;      ///< null in lock step, where wall time means nothing
   std::unique_ptr<BareTimerLoop> timer_loop_;  ///< null in lock step
 
   Eigen::Matrix3d tip_orientation_ = Eigen::Matrix3d::Identity();  ///< newest, in world
+  std::vector<std::string> layers_;                                ///< of the cell, outermost first
   std::map<std::string, NodeFigures> figures_;                     ///< by node
 };
 

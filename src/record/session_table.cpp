@@ -16,7 +16,7 @@ const Value* valueOf(const typename Timeline<Value>::Entry* entry) {
 SessionTable::SessionTable(Nanoseconds period, Nanoseconds patience) : period_(period), patience_(patience) {
   rows_.precision(9);
   rows_ << "time_s,phase,depth_m,predicted_axial_N,measured_axial_N,measured_lateral_N,hand_force_N,in_contact,"
-           "punctured,tip_x_m,tip_y_m,tip_z_m\n";
+           "punctured,tip_x_m,tip_y_m,tip_z_m,layers_punctured,injection_state,injected_volume_m3\n";
 }
 
 double SessionTable::duration() const {
@@ -64,7 +64,11 @@ void SessionTable::writeRow(Nanoseconds time) {
   if (felt) rows_ << *felt;
   rows_ << ',' << in_contact_ << ',' << (state && state->punctured) << ',';
   if (pose) rows_ << pose->tip.x() << ',' << pose->tip.y() << ',' << pose->tip.z();
-  rows_ << (pose ? "" : ",,") << '\n';
+  rows_ << (pose ? "" : ",,") << ',' << (state ? state->layers_punctured : 0) << ',';
+  if (const auto* injecting = valueOf<std::string>(injection.at(time, kForever))) rows_ << *injecting;
+  rows_ << ',';
+  if (const double* out = valueOf<double>(volume.at(time, kStale))) rows_ << *out;
+  rows_ << '\n';
 }
 
 void SessionTable::writeDepth(Nanoseconds time, const Pose& pose, bool in_contact) {
@@ -87,6 +91,8 @@ void SessionTable::forgetBefore(Nanoseconds time) {
   hand_force.forgetBefore(time);
   phase.forgetBefore(time);
   cell.forgetBefore(time);
+  injection.forgetBefore(time);
+  volume.forgetBefore(time);
 }
 
 }  // namespace microinjection

@@ -28,6 +28,7 @@ class SessionTable {
   struct Cell {
     std::optional<Eigen::Vector3d> touched_at;  ///< m, where the tip met the surface; empty without contact
     bool punctured = false;
+    unsigned layers_punctured = 0;  ///< where the needle is or was last
   };
 
   /// @param period    ns between rows
@@ -41,6 +42,8 @@ class SessionTable {
   Timeline<double> hand_force;
   Timeline<std::string> phase;
   Timeline<Cell> cell;
+  Timeline<std::string> injection;  ///< state of the injection, as the controller sees it
+  Timeline<double> volume;          ///< m^3, net, out of the pipette
 
   /// Writes the rows that are due `patience` before `now`; the first call is time 0 of the table. After the row in
   /// which the phase is `done` there are no more.

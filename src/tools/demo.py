@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Runs a session: the virtual operator approaches, touches, indents and retracts.
+"""Runs a session: the virtual operator approaches, touches, indents, punctures, injects and retracts.
 
-Leaves in the output folder: force_depth.csv and force_depth.png (force against depth), scene.png (rviz at the deepest
-point), session.bag, summary.yaml (rates and latency), force_error.csv (against the full solution along the same way
-in) and log/. Exit code 1 when one of them is missing (but the last) or a node died.
+Leaves in the output folder: force_depth.csv and force_depth.png (force against depth, and the course of the
+injection), scene.png (rviz while the needle rests in the dent), session.bag, summary.yaml (rates and latency),
+force_error.csv (against the full solution along the same way in, up to the puncture) and log/. Exit code 1 when one of them is missing (but the last) or a node died.
 """
 import argparse
 import os
@@ -37,7 +37,7 @@ def parse_arguments():
     parser = argparse.ArgumentParser(prog='./dev demo --', description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('--out', type=Path, default=ROOT / 'out' / 'demo', help='folder of the results (%(default)s)')
-    parser.add_argument('--cell', default='mouse_oocyte_pipette',
+    parser.add_argument('--cell', default='mouse_oocyte_injection',
                         help='name in config/cells, or path of a scene file (%(default)s)')
     parser.add_argument('--model', choices=('auto', 'prepared', 'live'), default='auto',
                         help='prepared: converged force, made ready first (minutes, once); live: P1 tetrahedra, at once; '
@@ -46,6 +46,8 @@ def parse_arguments():
                         help='wall time, or a simulated clock that gives the same bits on any machine')
     parser.add_argument('--haptic', choices=('operator', 'external', 'none'), default='operator',
                         help='who moves the hand; a session without the operator ends with Ctrl-C')
+    parser.add_argument('--motion', type=Path, default=ROOT / 'config' / 'hand_motions' / 'puncture_and_inject.csv',
+                        help="file of the operator's hand motion (%(default)s)")
     parser.add_argument('--no-rviz', action='store_true', help='no rviz and no scene.png')
     parser.add_argument('--no-judge', action='store_true',
                         help='do not compare with the full solution afterwards (a minute or two)')
@@ -97,7 +99,8 @@ class Demo:
     def start(self):
         say(f'starting the session; its log is in {self._logs}')
         self._session = DemoSession(ROOT / 'launch' / 'session.launch', self._logs, {
-            'scene': self._scene(), 'model': self._arguments.model, 'rig': 'sim', 'rviz': 'false', 'haptic': self._arguments.haptic, 'clock': self._arguments.clock,
+            'scene': self._scene(), 'model': self._arguments.model, 'rig': 'sim', 'rviz': 'false', 'haptic': self._arguments.haptic,
+            'motion': self._arguments.motion.resolve(), 'clock': self._arguments.clock,
             'record': self._out})
         self._session.wait_ready()
         if not self._arguments.no_rviz:
@@ -161,7 +164,7 @@ class Demo:
         """Plots, prints the summary. @raises DemoError when a result is missing."""
         csv = self._out / 'force_depth.csv'
         if csv.is_file() and csv.stat().st_size > 0:
-            plot_force_depth.plot(csv, self._out / 'force_depth.png')
+            plot_force_depth.plot(csv, self._out / 'force_depth.png', demo_summary.layers(self._out / 'summary.yaml'))
         if (self._out / 'summary.yaml').is_file():
             print(demo_summary.text(self._out / 'summary.yaml'), flush=True)
         if csv.is_file() and not self._arguments.no_judge:
@@ -173,7 +176,7 @@ class Demo:
         say(f'results are in {self._out}: {", ".join(wanted)}')
 
     def _judge(self, csv):
-        say('comparing with the full solution along the way in')
+        say('comparing with the full solution along the way in, up to the puncture')
         verdict = full_solution.judge(self._scene(), csv, self._out / 'force_error.csv')
         print(f'  {verdict or "the full solution was lost on the way, or there was none: no comparison"}', flush=True)
 

@@ -23,6 +23,14 @@ def _intervals(name, figures):
     return f'  {name}: {said} (of {figures.get("count", "?")})'
 
 
+def layers(path):
+    """Returns the names of the cell's membranes, outermost first; none where there is no summary."""
+    if not path.is_file():
+        return []
+    with open(path, encoding='utf-8') as file:
+        return yaml.safe_load(file).get('layers') or []
+
+
 def text(path):
     """Returns the summary as text for people."""
     with open(path, encoding='utf-8') as file:

@@ -16,17 +16,17 @@ from processes import free_port  # noqa: E402
 PATIENCE = 200  # s of wall time; only a session that hangs takes that long
 
 
-def run_session(folder, *arguments):
-    """A lock-step session on a master of its own; returns the bytes of its force_depth.csv."""
+def run_session(folder, scene="coarse_oocyte", more=()):
+    """A lock-step session on a master of its own; returns the bytes of its force_depth.csv. `more`: of the motion."""
     motion = pathlib.Path(folder) / "motion.csv"
     subprocess.run(["/usr/bin/python3", str(ROOT / "src/tools/make_hand_motion.py"), "--out", str(motion), "--depth",
-                    "4e-6", "--speed", "10e-6", "--hold", "0.2", "--tremor", "0"], check=True)
+                    "4e-6", "--speed", "10e-6", "--hold", "0.2", "--tremor", "0", *more], check=True)
     port = free_port()
     out = pathlib.Path(folder) / "out"
     subprocess.run(
         ["roslaunch", "-p", str(port), str(ROOT / "launch/session.launch"), "clock:=lockstep", "display:=false",
-         f"scene:={ROOT}/test/chain/coarse_oocyte.yaml", "model:=live", f"motion:={motion}", f"record:={out}", "bag:=false",
-         "end_when_done:=true", *arguments],
+         f"scene:={ROOT}/test/chain/{scene}.yaml", "model:=live", f"motion:={motion}", f"record:={out}", "bag:=false",
+         "end_when_done:=true"],
         check=True, timeout=PATIENCE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
         env={**os.environ, "ROS_MASTER_URI": f"http://127.0.0.1:{port}", "ROS_IP": "127.0.0.1"})
     return (out / "force_depth.csv").read_bytes()
@@ -38,6 +38,22 @@ class RepeatTest(unittest.TestCase):
             first, second = run_session(a), run_session(b)
         self.assertEqual(first, second)
         self.check_is_a_session(first)
+
+    def test_same_injection_same_bytes(self):
+        """Through the membrane, the operator's word, the pulse and its volume."""
+        motion = ("--puncture", "12e-6", "--inject", "0.6")
+        with tempfile.TemporaryDirectory() as a, tempfile.TemporaryDirectory() as b:
+            first, second = (run_session(folder, "injected_oocyte", motion) for folder in (a, b))
+        self.assertEqual(first, second)
+        rows = list(csv.DictReader(first.decode().splitlines()))
+        states = [row["injection_state"] for row in rows if row["injection_state"]]
+        passed = [state for state, before in zip(states, [""] + states) if state != before]
+        self.assertEqual(passed[passed.index("indent"):],
+                         ["indent", "punctured", "inject", "punctured", "withdraw", "idle", "approach"])
+        self.assertEqual(rows[-1]["layers_punctured"], "1")
+        volumes = [float(row["injected_volume_m3"]) for row in rows if row["injection_state"] == "inject"]
+        pipette = 2.46e3 / 1.546e17  # m^3/s: of the pulse's 3 kPa past the capillary pressure, over the resistance
+        self.assertAlmostEqual((volumes[-1] - volumes[0]) / (0.3 * pipette), 1, delta=0.05)
 
     def check_is_a_session(self, content):
         rows = list(csv.DictReader(content.decode().splitlines()))

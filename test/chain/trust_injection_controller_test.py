@@ -8,6 +8,7 @@ import rospy
 import rostest
 from geometry_msgs.msg import PoseStamped, WrenchStamped
 
+from cell_microinjection.msg import InjectionPulse, InjectionStatus, InjectorState, StringStamped
 from messages import pose, position, wrench
 from participant import INVALID, Participant
 
@@ -18,7 +19,10 @@ class TrustTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.world = Participant({"/teleop/servo_cp": PoseStamped, "/needle/measured_cp": PoseStamped,
-                                 "/cell/predicted_cf": WrenchStamped}, {"/needle/servo_cp": PoseStamped})
+                                 "/cell/predicted_cf": WrenchStamped, "/injector/state": InjectorState},
+                                {"/needle/servo_cp": PoseStamped, "/injector/pulse": InjectionPulse,
+                                 "/injector/stop": StringStamped, "/controller/injection_state": InjectionStatus})
+        cls.commands = rospy.Publisher("/controller/state_command", StringStamped, queue_size=10)
 
     def setUp(self):
         self.target = self.setpoint() if "/needle/servo_cp" in self.world.seen else START
@@ -68,6 +72,42 @@ class TrustTest(unittest.TestCase):
     def test_needle(self):
         self.check_held({"/needle/measured_cp": None}, "no trusted needle position")
         self.check_held({"/needle/measured_cp": pose(math.nan, 0, 0)}, "no trusted needle position")
+
+    def test_through_the_membrane_the_word_inject_is_one_pulse_and_disable_stops_it(self):
+        """A membrane of 0.2 N/m that fails 5 um deep."""
+        surface, self.through, self.busy = self.setpoint() - 3e-6, False, False
+
+        def world():
+            depth = max(0.0, surface - self.setpoint())
+            self.through = self.through or depth > 5e-6
+            return {**self.good(), "/injector/state": InjectorState(busy=self.busy),
+                    "/cell/predicted_cf": wrench(0, 0, 0.1e-6 if self.through else 0.2 * depth)}
+
+        def run_until(condition, what):
+            for _ in range(4000):
+                if condition():
+                    return
+                self.target -= 5e-9 if what == "the puncture" else 0  # 5 um/s
+                self.world.tick(world())
+            self.fail(f"{what}: did not happen within 4 s; {self.world.seen['/controller/injection_state']}")
+
+        seen = self.world.seen
+        run_until(lambda: seen["/controller/injection_state"].state == "punctured", "the puncture")
+        self.assertEqual(seen["/controller/injection_state"].punctures, 1)
+        self.assertNotIn("/injector/pulse", seen)
+        self.commands.publish(StringStamped(string="inject"))
+        run_until(lambda: "/injector/pulse" in seen, "the pulse")
+        pulse = seen["/injector/pulse"]
+        goal = rospy.get_param("/injection_controller/goal/pulse")
+        self.assertEqual((pulse.pressure, pulse.duration), (goal["pressure"], goal["duration"]))
+        self.busy = True
+        self.world.run(100, world)
+        self.assertEqual(seen["/injector/pulse"].id, pulse.id)
+        self.assertEqual(seen["/controller/injection_state"].state, "inject")
+        self.assertNotIn("/injector/stop", seen)
+        self.commands.publish(StringStamped(string="disable"))
+        run_until(lambda: "/injector/stop" in seen, "the stop")
+        self.assertEqual(seen["/controller/injection_state"].state, "idle")
 
     def test_target_that_leaps(self):
         held = self.setpoint()

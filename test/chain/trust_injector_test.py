@@ -8,7 +8,7 @@ import rospy
 import rostest
 from std_srvs.srv import SetBool, Trigger
 
-from cell_microinjection.msg import Float64Stamped, InjectionPulse, InjectorState
+from cell_microinjection.msg import Float64Stamped, InjectionPulse, InjectorState, StringStamped
 from participant import Participant
 
 PRESSURE = 20e3  # Pa
@@ -17,9 +17,11 @@ PRESSURE = 20e3  # Pa
 class TrustTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.world = Participant({}, {"/injector/state": InjectorState})
+        cls.world = Participant({"/injector/pulse": InjectionPulse, "/injector/stop": StringStamped},
+                                {"/injector/state": InjectorState})
         cls.pulses = rospy.Publisher("/injector/pulse", InjectionPulse, queue_size=10)
         cls.balance = rospy.Publisher("/injector/set_balance", Float64Stamped, queue_size=10)
+        cls.stops = rospy.Publisher("/injector/stop", StringStamped, queue_size=10)
         while not (cls.pulses.get_num_connections() and cls.balance.get_num_connections()):
             rospy.rostime.wallsleep(0.05)
 
@@ -85,6 +87,22 @@ class TrustTest(unittest.TestCase):
         self.tick_until(lambda: not self.state().busy)
         self.world.run(500)
         self.assertEqual(self.state().last_id, 31)
+
+    def test_a_stop_ends_the_pulse_however_old_it_is(self):
+        right, before = self.state().pressure, self.state().pulses
+        self.send(51, duration=30.0)
+        self.tick_until(lambda: self.state().busy)
+        self.world.run(50)
+        self.assertGreater(self.state().pressure, 0.9 * PRESSURE)
+        stop = StringStamped(string="the test says so")
+        stop.header.stamp = self.world.now - rospy.Duration(0.03)
+        self.stops.publish(stop)
+        self.tick_until(lambda: not self.state().busy)
+        self.world.run(100)  # twenty times the regulator's time constant
+        self.assertAlmostEqual(self.state().pressure, right, delta=1e-3)
+        self.assertEqual(self.state().pulses, before)
+        self.assertNotEqual(self.state().last_id, 51)
+        self.inject(52)
 
     def test_a_wrong_balance_flows_back(self):
         right = self.state().pressure

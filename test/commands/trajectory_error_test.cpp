@@ -67,6 +67,26 @@ TEST_F(TrajectoryErrorCommand, ComparesTheWayIn) {
   EXPECT_NE(out_.find("median"), std::string::npos);
 }
 
+/// The cell says some rows late that a layer gave way; what it gives force to from then on is not compared.
+TEST_F(TrajectoryErrorCommand, TheWayInEndsAtThePuncture) {
+  std::ostringstream session;
+  session << "time_s,predicted_axial_N,in_contact,punctured,tip_x_m,tip_y_m,tip_z_m\n";
+  for (int i = 0; i <= 10; ++i) {
+    session << i << ',' << 0.1169e-6 * 0.1 * i << ",1,0,0,0," << 28e-6 - 0.1e-6 * i << '\n';
+  }
+  session << "11,0.02e-6,1,0,0,0,26.9e-6\n12,0.02e-6,1,1,0,0,26.8e-6\n13,9,1,1,0,0,24e-6\n14,0,0,1,0,0,29e-6\n";
+  for (int i = 0; i <= 10; ++i) session << 15 + i << ",9,1,1,0,0," << 28e-6 - i * 1e-6 << '\n';
+  ASSERT_EQ(run(session.str(), "--points 1 --csv table.csv"), 0) << error_;
+  std::ifstream table(directory_ + "table.csv");
+  std::string line;
+  std::getline(table, line);
+  double found = 0, session_force = 0;
+  char comma;
+  ASSERT_TRUE(table >> found >> comma >> session_force);
+  EXPECT_NEAR(found, 1e-6, 1e-12);
+  EXPECT_NEAR(session_force, 0.1169e-6, 1e-12);
+}
+
 TEST_F(TrajectoryErrorCommand, RefusesWhatIsNoSession) {
   EXPECT_EQ(run("time_s,depth_m\n0,0\n"), 2);
   EXPECT_NE(error_.find("tip_x_m"), std::string::npos);

@@ -18,7 +18,9 @@ InjectionControllerConfig readConfig(const YAML::Node& map) {
 
 YAML::Node shipped() {
   YAML::Node map = loadYamlMap(MICROINJECTION_SOURCE_DIR "/config/injection_controller.yaml");
-  for (const char* of_the_node : {"rate", "input_timeout", "force_source"}) map.remove(of_the_node);
+  for (const char* of_the_node :
+       {"rate", "input_timeout", "force_source", "lag_limit", "injector", "commands_in_lockstep"})
+    map.remove(of_the_node);
   return map;
 }
 
@@ -35,8 +37,8 @@ TEST(InjectionControllerConfig, TheShippedFileIsReadKeyByKey) {
   YAML::Node map = shipped();
   const InjectionControllerConfig config = readConfig(map);
   EXPECT_EQ(config.mode, "manual");
-  EXPECT_FALSE(config.goal.puncture);
-  EXPECT_DOUBLE_EQ(config.goal.depth, 10e-6);
+  EXPECT_TRUE(config.goal.puncture);
+  EXPECT_DOUBLE_EQ(config.goal.depth, 40e-6);
   for (const char* section : {"detection", "motion", "goal"}) {
     for (const auto& entry : map[section]) {
       if (entry.second.IsMap()) continue;

@@ -63,6 +63,9 @@ TEST(Readout, ShowsMicrometresAndMicronewtons) {
   EXPECT_EQ(shown[4].text, "hand -44.0 mm");
   readout.hand.reset();
   EXPECT_EQ(lines(readout).size(), 4U);
+  readout.injection = "indent";
+  EXPECT_EQ(lines(readout).size(), 5U);
+  EXPECT_EQ(lines(readout)[1].text, "indent");
 }
 
 TEST(Readout, BreaksALongState) {

@@ -32,6 +32,25 @@ TEST(InjectorModel, VolumeIsThatOfThePressuresIntegral) {
   EXPECT_NEAR(volumeOfPulse(0.1, 1e-3, config) / exact, 1, 1e-9);
 }
 
+TEST(InjectorModel, AStopReturnsToTheBalanceAtOnceAndIsNoPulseDone) {
+  const InjectorModelConfig config = atRest();
+  InjectorModel model(config);
+  model.step(0);
+  EXPECT_EQ(model.stop(), "") << "nothing to stop is no trouble";
+  ASSERT_EQ(model.pulse({7, 20e3, 10}), "");
+  model.step(0.1);
+  EXPECT_EQ(model.stop(), "");
+  EXPECT_FALSE(model.reading().busy);
+  model.step(0.6);
+  // What the rise lost, the fall gives back: 20 kPa above the rest for 0.1 s.
+  const double exact = PipetteFlow(config.pipette).flow(20e3) * 0.1;
+  EXPECT_NEAR(model.reading().volume / exact, 1, 1e-9);
+  EXPECT_NEAR(model.reading().pressure, config.balance, 1e-6);
+  EXPECT_EQ(model.reading().last_id, 0U);
+  EXPECT_EQ(model.reading().pulses, 0U);
+  EXPECT_EQ(model.pulse({8, 20e3, 0.1}), "");
+}
+
 TEST(InjectorModel, NothingDependsOnTheSteps) {
   const InjectorModelConfig config = atRest();
   const double fine = volumeOfPulse(0.0123, 1e-4, config);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 #include "base/errors.h"
@@ -32,6 +33,9 @@ InjectorProtocol protocol(const std::string& text = kProtocol) {
 
 class SerialInjectorTest : public ::testing::Test {
  protected:
+  explicit SerialInjectorTest(const std::string& text = kProtocol)
+      : injector{std::make_unique<ScriptedWire>(script), protocol(text), model} {}
+
   static InjectorModelConfig withBalance(double pressure) {
     InjectorModelConfig config;
     config.balance = pressure;
@@ -47,17 +51,19 @@ class SerialInjectorTest : public ::testing::Test {
       answered = script.sent.size();
       pulses += line[0] == 'P' ? 1 : 0;
       if (deaf) continue;
+      if (line[0] == 'S' && stops_ignored-- > 0) continue;
       script.incoming = line[0] == '?' ? "=10.0\r" : line[0] == 'P' ? pulse_reply : "OK\r";
     }
   }
 
   InjectorModelConfig model = withBalance(1000);
   WireScript script;
-  SerialInjector injector{std::make_unique<ScriptedWire>(script), protocol(), model};
+  SerialInjector injector;
   double time = 0;
   std::size_t answered = 0;
   int pulses = 0;  // that the device has heard
   bool deaf = false;
+  int stops_ignored = 0;
   std::string pulse_reply = "OK\r";
 };
 
@@ -109,6 +115,72 @@ TEST_F(SerialInjectorTest, ARefusedOrWronglyAnsweredPulseIsAFault) {
   EXPECT_NE(injector.fault().find("a wrong reply"), std::string::npos);
   EXPECT_EQ(pulses, 2);
   EXPECT_EQ(injector.reading().pulses, 0U);
+}
+
+class StoppedSerialInjectorTest : public SerialInjectorTest {
+ protected:
+  StoppedSerialInjectorTest() : SerialInjectorTest(std::string(kProtocol) + "stop: {send: \"S\\r\", expect: OK}\n") {}
+  long stops() const { return std::count(script.sent.begin(), script.sent.end(), "S\r"); }
+};
+
+TEST_F(StoppedSerialInjectorTest, AStopEndsThePulseThatIsUnderWay) {
+  run(1);
+  injector.stop();
+  run(1);
+  EXPECT_EQ(stops(), 0) << "there was nothing to stop";
+  injector.pulse({5, 10e3, 30});
+  run(1);
+  ASSERT_TRUE(injector.reading().busy);
+  EXPECT_EQ(injector.stop(), "");
+  EXPECT_TRUE(injector.reading().busy) << "until the device says so";
+  run(0.1);
+  EXPECT_FALSE(injector.reading().busy);
+  EXPECT_EQ(stops(), 1);
+  EXPECT_EQ(injector.reading().pulses, 0U);
+  EXPECT_EQ(injector.pulse({6, 10e3, 0.1}), "");
+}
+
+TEST_F(StoppedSerialInjectorTest, AStopTakesBackWhatWasNotSentAndIsRepeatedUntilItIsHeard) {
+  run(1);
+  injector.pulse({5, 10e3, 30});
+  EXPECT_EQ(injector.stop(), "");
+  run(1);
+  EXPECT_EQ(pulses, 0);
+  EXPECT_EQ(stops(), 0);
+  injector.pulse({6, 10e3, 30});
+  run(1);
+  stops_ignored = 2;
+  injector.stop();
+  run(3);
+  EXPECT_EQ(stops(), 3);
+  EXPECT_EQ(injector.fault(), "");
+  EXPECT_FALSE(injector.reading().busy);
+  injector.pulse({7, 10e3, 30});
+  run(1);
+  stops_ignored = 3;
+  injector.stop();
+  run(3);
+  EXPECT_NE(injector.fault().find("stop: no good reply in time; the pulse may go on"), std::string::npos);
+}
+
+TEST_F(StoppedSerialInjectorTest, AStopIsSentForAPulseWithoutReply) {
+  run(1);
+  pulse_reply = "";
+  injector.pulse({5, 10e3, 30});
+  run(1);
+  ASSERT_NE(injector.fault(), "");
+  EXPECT_EQ(injector.stop(), "");
+  run(1);
+  EXPECT_EQ(stops(), 1);
+}
+
+TEST_F(SerialInjectorTest, ADeviceWithoutAStopSaysSo) {
+  run(1);
+  EXPECT_EQ(injector.stop(), "");
+  injector.pulse({5, 10e3, 0.5});
+  run(0.1);
+  EXPECT_NE(injector.stop(), "");
+  EXPECT_TRUE(injector.reading().busy);
 }
 
 TEST_F(SerialInjectorTest, ALateReplyIsNotTakenForTheNextOne) {

@@ -73,6 +73,25 @@ std::string recordPromptly(const std::vector<Message>& messages) {
   return table.text();
 }
 
+TEST(SessionTable, LayersStateAndVolumeStandAtTheEndOfARow) {
+  SessionTable table(kPeriod, 0);
+  SessionTable::Cell cell;
+  table.injection.put(kStart, std::string("approach"));
+  table.cell.put(kStart, cell);
+  table.advance(kStart);
+  cell.layers_punctured = 2;
+  table.cell.put(kStart + kPeriod, cell);
+  table.injection.put(kStart + kPeriod, std::string("inject"));
+  table.volume.put(kStart + kPeriod, 2.5e-15);
+  table.advance(kStart + kPeriod);
+  const auto all = rows(table.text());
+  ASSERT_EQ(all.size(), 2u);
+  const std::vector<std::string> first(all[0].end() - 2, all[0].end()), last(all[1].end() - 3, all[1].end());
+  EXPECT_EQ(first, (std::vector<std::string>{"0", "approach"})) << "an unknown volume is an empty field";
+  EXPECT_EQ(last, (std::vector<std::string>{"2", "inject", "2.5e-15"}));
+  EXPECT_NE(table.text().find(",layers_punctured,injection_state,injected_volume_m3\n"), std::string::npos);
+}
+
 TEST(SessionTable, DepthCountsFromWhereTheCellWasTouched) {
   const auto table = rows(recordPromptly(session()));
   ASSERT_GE(table.size(), 590u);
