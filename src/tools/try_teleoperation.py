@@ -11,6 +11,7 @@ import os
 import pty
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -73,27 +74,37 @@ class Keyboard:
 class Mouse:
     """What rviz says of the handle while a mouse drags it down, and of its menu."""
 
-    GOAL = 30e-6  # m, of the handle, 80 um above the tip: in the cell's centre and beyond
+    FIRST, THEN = 16e-6, -50e-6  # m, heights of the handle and thus of the tip: 12 um deep, and beyond the centre
 
     def __init__(self):
         self._publisher = rospy.Publisher('/hand_marker/feedback', InteractiveMarkerFeedback, queue_size=100)
+        self._goals = iter((self.FIRST, self.THEN))
+        self._goal = None
+        threading.Thread(target=self._drag, daemon=True).start()
         time.sleep(3)
 
     def _say(self, event, z=0.0, entry=0):
         message = InteractiveMarkerFeedback(client_id='mouse', marker_name='hand', event_type=event, menu_entry_id=entry)
         message.header.frame_id = 'viz/world'
         message.pose.orientation.w = 1
-        message.pose.position.z = DISPLAY_SCALE * z
+        message.pose.position.x, message.pose.position.z = DISPLAY_SCALE * 36e-6, DISPLAY_SCALE * z
         self._publisher.publish(message)
+
+    def _drag(self):
+        while True:
+            if self._goal is not None:
+                self._say(InteractiveMarkerFeedback.POSE_UPDATE, self._goal)
+            time.sleep(0.1)
 
     def press(self):
         self._say(InteractiveMarkerFeedback.MOUSE_DOWN)
-        self._say(InteractiveMarkerFeedback.POSE_UPDATE, self.GOAL)
+        self._goal = next(self._goals)
 
     def go_on(self):
-        self._say(InteractiveMarkerFeedback.POSE_UPDATE, self.GOAL)
+        pass
 
     def release(self):
+        self._goal = None
         self._say(InteractiveMarkerFeedback.MOUSE_UP)
 
     def inject(self):
@@ -132,11 +143,14 @@ def run(arguments, session):
     view = RvizView(ROOT / 'config/session.rviz', arguments.out)
     try:
         trial = Trial(session.check)
+        if not view.picture(arguments.out / 'before.png', PATIENCE, session.check):
+            raise SessionError('rviz does not show the cell')
+        time.sleep(5)  # until it shows the rest
         hand = {'keyboard': Keyboard, 'marker': Mouse}[arguments.hand]()
         hand.press()
         trial.until(lambda s: s.force > PICTURE_FORCE, 'pressed', hand.go_on)
-        if not view.picture(arguments.out / f'{arguments.hand}.png', 20):
-            raise SessionError('rviz does not show the cell')
+        time.sleep(2)  # rviz without a graphics card draws twice a second
+        view.picture(arguments.out / f'{arguments.hand}.png', PATIENCE, session.check)
         hand.press()
         trial.until(lambda s: s.punctures > 0, 'through', hand.go_on)
         hand.release()

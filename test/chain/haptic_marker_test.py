@@ -12,7 +12,7 @@ from messages import pose
 
 NEEDLE = "/needle/measured_cp"
 TIP = np.array([1e-6, 2e-6, 30e-6])
-HANDLE = 1e4 * (TIP + [0, 0, 80e-6])  # display units; config/haptic/marker.yaml
+HANDLE = 1e4 * (TIP + [36e-6, 0, 0])  # display units; config/haptic/marker.yaml
 
 
 class MarkerTest(HapticTest):

@@ -15,10 +15,10 @@ namespace microinjection {
 namespace {
 
 constexpr char kFrame[] = "viz/world";
-constexpr double kShowPeriod = 1.0 / 15;       // s
-constexpr double kLeastMotion = 0.05e-6;       // m of the needle that the handle is moved for
-constexpr double kTextHeight = 0.05;           // display units
-const Eigen::Vector3d kTextOffset{0, 0, 0.3};  // display units, of the words from the handle
+constexpr double kShowPeriod = 1.0 / 15;        // s
+constexpr double kLeastMotion = 0.05e-6;        // m of the needle that the handle is moved for
+constexpr double kTextHeight = 0.04;            // display units
+const Eigen::Vector3d kTextOffset{0, 0, 0.22};  // display units, of the words from the handle
 
 geometry_msgs::Pose toPoseInDisplay(const Eigen::Vector3d& position) {
   return toPose(toDisplay(position), ros::Time(), kFrame).pose;
@@ -105,7 +105,8 @@ void MarkerAdapter::render(const Eigen::Vector3d& force, const Cycle::Tick& tick
 }
 
 void MarkerAdapter::followNeedle() {
-  if (dragged_ || !tip_) return;
+  if (dragged_) return server_.applyChanges();  // the server has taken the place over from rviz: for the other rviz's
+  if (!tip_) return;
   const Eigen::Vector3d place = *tip_ + config_.handle_offset;
   if ((place - handle_).norm() < kLeastMotion) return;
   handle_ = place;
@@ -118,12 +119,11 @@ void MarkerAdapter::showForce(const Eigen::Vector3d& force) {
   const MarkerName arrow_name{kFrame, "force on the hand", 0}, text_name{kFrame, "words", 0};
   const Colour orange{1.0F, 0.45F, 0.1F, 1.0F}, white{1.0F, 1.0F, 1.0F, 1.0F};
   char felt[48];
-  std::snprintf(felt, sizeof felt, "%.2f N at the hand\n", force.norm());
+  std::snprintf(felt, sizeof felt, "%.2f N at the hand", force.norm());
   const std::string why = dragged_ && !news_.held().empty() ? "\n" + news_.held() : "";
   visualization_msgs::MarkerArray shown;
-  shown.markers = {
-      arrow ? arrowMarker(arrow_name, *arrow, orange) : noMarker(arrow_name),
-      textMarker(text_name, toDisplay(handle_) + kTextOffset, felt + news_.text() + why, kTextHeight, white)};
+  shown.markers = {arrow ? arrowMarker(arrow_name, *arrow, orange) : noMarker(arrow_name),
+                   textMarker(text_name, toDisplay(handle_) + kTextOffset, felt + why, kTextHeight, white)};
   force_.publish(shown);
 }
 
