@@ -10,5 +10,7 @@ constexpr double kDisplayScale = 1e4;
 
 /// From SI (m) to display units (m at x 1e4).
 inline Eigen::Vector3d toDisplay(const Eigen::Vector3d& point) { return kDisplayScale * point; }
+/// From display units to SI (m).
+inline Eigen::Vector3d fromDisplay(const Eigen::Vector3d& point) { return point / kDisplayScale; }
 
 }  // namespace microinjection

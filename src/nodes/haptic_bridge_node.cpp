@@ -11,18 +11,30 @@ namespace microinjection {
 
 const char* const HapticBridgeNode::kHelp =
     "haptic_bridge: couples a haptic device to the needle, position forward and force back.\n"
-    "In: /haptic/measured_cp /haptic/clutch /needle/measured_cp and /cell/predicted_cf, /force_sensor/measured_cf or "
+    "In: /haptic/measured_cp /haptic/clutch /haptic/operator_present /needle/measured_cp and /cell/predicted_cf, "
+    "/force_sensor/measured_cf or "
     "both.\n"
     "Out: /haptic/servo_cf /teleop/servo_cp.\n"
-    "Parameters: ~rate (Hz), ~input_timeout (s), ~position_scale, ~force_gain, ~force_source "
+    "Parameters: ~rate (Hz), ~timeouts/... (s), ~position_scale, ~force_gain, ~force_source "
     "(predicted|measured|blend),\n"
     "~mode (position|rate), ~device_axes and many more; see config/haptic_bridge.yaml.\n";
+
+HapticBridgeNode::Timeouts HapticBridgeNode::Timeouts::read(ConfigReader reader) {
+  Timeouts timeouts;
+  reader.number("hand", timeouts.hand, Range::positive());
+  reader.number("clutch", timeouts.clutch, Range::nonNegative());
+  reader.number("operator_present", timeouts.operator_present, Range::positive());
+  reader.number("needle", timeouts.needle, Range::positive());
+  reader.number("predicted", timeouts.predicted, Range::positive());
+  reader.number("measured", timeouts.measured, Range::positive());
+  return timeouts;
+}
 
 HapticBridgeNode::Parameters HapticBridgeNode::Parameters::read(const ros::NodeHandle& private_node) {
   Parameters parameters;
   ConfigReader reader = parameterReader(private_node);
   reader.number("rate", parameters.rate, Range::closed(50, 5000));
-  reader.number("input_timeout", parameters.input_timeout, Range::positive());
+  parameters.timeouts = Timeouts::read(reader.section("timeouts"));
   parameters.model = HapticBridgeConfig::read(reader);
   reader.finish();
   return parameters;
@@ -33,22 +45,28 @@ HapticBridgeNode::HapticBridgeNode(ros::NodeHandle node, ros::NodeHandle private
       model_(parameters_.model),
       cycle_(node, parameters_.rate),
       hand_(
-          cycle_.input<geometry_msgs::PoseStamped>("haptic/measured_cp", Phase::kSameTick, parameters_.input_timeout)),
-      clutch_(
-          cycle_.input<sensor_msgs::Joy>("haptic/clutch", Phase::kTickBefore, std::numeric_limits<double>::infinity())),
+          cycle_.input<geometry_msgs::PoseStamped>("haptic/measured_cp", Phase::kSameTick, parameters_.timeouts.hand)),
+      clutch_(cycle_.input<sensor_msgs::Joy>(
+          "haptic/clutch", Phase::kTickBefore,
+          parameters_.timeouts.clutch > 0 ? parameters_.timeouts.clutch : std::numeric_limits<double>::infinity())),
       needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", Phase::kTickBefore,
-                                                       parameters_.input_timeout)),
-      predicted_(forceInput(parameters_.model.force.usesPredicted(), "predicted")),
-      measured_(forceInput(parameters_.model.force.usesMeasured(), "measured")),
+                                                       parameters_.timeouts.needle)),
+      predicted_(forceInput(parameters_.model.force.usesPredicted(), "predicted", parameters_.timeouts.predicted)),
+      measured_(forceInput(parameters_.model.force.usesMeasured(), "measured", parameters_.timeouts.measured)),
       hand_force_(cycle_.output<geometry_msgs::WrenchStamped>("haptic/servo_cf")),
       target_(cycle_.output<geometry_msgs::PoseStamped>("teleop/servo_cp")),
       trace_(cycle_.output<cell_microinjection::LatencyTrace>("haptic/force_trace")) {
+  if (parameters_.model.require_operator) {
+    operator_present_ = &cycle_.input<sensor_msgs::Joy>("haptic/operator_present", Phase::kTickBefore,
+                                                        parameters_.timeouts.operator_present);
+  }
   cycle_.diagnostics().add("loop", [this](auto& status) { report(status); });
 }
 
-Input<geometry_msgs::WrenchStamped>* HapticBridgeNode::forceInput(bool used, const std::string& source) {
+Input<geometry_msgs::WrenchStamped>* HapticBridgeNode::forceInput(bool used, const std::string& source,
+                                                                  double timeout) {
   if (!used) return nullptr;
-  return &cycle_.input<geometry_msgs::WrenchStamped>(forceTopic(source), Phase::kTickBefore, parameters_.input_timeout);
+  return &cycle_.input<geometry_msgs::WrenchStamped>(forceTopic(source), Phase::kTickBefore, timeout);
 }
 
 void HapticBridgeNode::run() {
@@ -59,6 +77,11 @@ bool HapticBridgeNode::clutchPressed(const ros::Time& now) const {
   if (clutch_.received.isZero()) return false;  // a device without a clutch
   const sensor_msgs::Joy* joy = clutch_.get(now);
   return !joy || joy->buttons.empty() || joy->buttons[0] != 0;  // one that cannot be read counts as pressed
+}
+
+bool HapticBridgeNode::operatorPresent(const ros::Time& now) const {
+  const sensor_msgs::Joy* joy = operator_present_ ? operator_present_->get(now) : nullptr;
+  return joy && !joy->buttons.empty() && joy->buttons[0] != 0;
 }
 
 void HapticBridgeNode::step(const Cycle::Tick& tick) {
@@ -74,6 +97,7 @@ void HapticBridgeNode::step(const Cycle::Tick& tick) {
     input.force.measured = trustedForce(measured, needle->linear());
   }
   input.clutch = clutchPressed(tick.now);
+  input.operator_present = operatorPresent(tick.now);
   const HapticBridge::Output& output = output_ = model_.step(input, tick.dt);
   hand_force_.publish(toWrench(output.hand_force, tick.now, hand ? hand->header.frame_id : ""));
   if (!output.needle) {

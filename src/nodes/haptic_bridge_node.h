@@ -16,14 +16,17 @@ namespace microinjection {
 /// Couples a haptic device to the needle. Without a trusted hand, needle or force it renders zero force and withdraws
 /// its target (stamp 0), so that the controller holds the needle.
 ///
-/// In:  /haptic/measured_cp (PoseStamped, the device's axes), /haptic/clutch (Joy, buttons[0] is 1 while pressed),
-///      /needle/measured_cp (PoseStamped), /cell/predicted_cf, /force_sensor/measured_cf or both (WrenchStamped)
+/// In:  /haptic/measured_cp (PoseStamped, the device's axes), /haptic/clutch and /haptic/operator_present (Joy,
+///      buttons[0] is 1 while pressed or present; the latter counts with require_operator), /needle/measured_cp
+///      (PoseStamped), /cell/predicted_cf, /force_sensor/measured_cf or both (WrenchStamped)
 /// Out: /haptic/servo_cf (WrenchStamped, N at the hand), /teleop/servo_cp (PoseStamped, tip in `world`),
 ///      /haptic/force_trace (LatencyTrace)
 ///
 /// Parameters (private): those of HapticBridgeConfig and
 ///   rate           Hz; default 1000, in [50, 5000]
-///   input_timeout  s, past which an input is stale; default 0.05, in (0, inf)
+///   timeouts/...   s, past which an input is stale, each its own: hand, needle, predicted, measured (default 0.05),
+///                  operator_present (0.2), in (0, inf); clutch (0: what it said last holds, for devices that say it
+///                  on change only), in [0, inf)
 class HapticBridgeNode {
  public:
   static const char* const kHelp;
@@ -32,16 +35,26 @@ class HapticBridgeNode {
   void run();
 
  private:
+  struct Timeouts {  // s
+    double hand = 0.05;
+    double clutch = 0;
+    double operator_present = 0.2;
+    double needle = 0.05;
+    double predicted = 0.05;
+    double measured = 0.05;
+    static Timeouts read(ConfigReader reader);
+  };
   struct Parameters {
     double rate = 1000;
-    double input_timeout = 0.05;
+    Timeouts timeouts;
     HapticBridgeConfig model;
     static Parameters read(const ros::NodeHandle& private_node);
   };
 
   void step(const Cycle::Tick& tick);
-  Input<geometry_msgs::WrenchStamped>* forceInput(bool used, const std::string& source);
+  Input<geometry_msgs::WrenchStamped>* forceInput(bool used, const std::string& source, double timeout);
   bool clutchPressed(const ros::Time& now) const;
+  bool operatorPresent(const ros::Time& now) const;
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
   Parameters parameters_;
@@ -49,6 +62,7 @@ class HapticBridgeNode {
   Cycle cycle_;
   Input<geometry_msgs::PoseStamped>& hand_;
   Input<sensor_msgs::Joy>& clutch_;
+  Input<sensor_msgs::Joy>* operator_present_ = nullptr;  ///< null: not asked for
   Input<geometry_msgs::PoseStamped>& needle_;
   Input<geometry_msgs::WrenchStamped>* predicted_;  ///< null: not used
   Input<geometry_msgs::WrenchStamped>* measured_;   ///< null: not used

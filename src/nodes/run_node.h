@@ -7,6 +7,7 @@
 #include <exception>
 #include <string>
 
+#include "nodes/last_words.h"
 #include "nodes/lockstep.h"
 #include "nodes/real_time.h"
 
@@ -15,18 +16,25 @@ namespace microinjection {
 /// The whole `main` of a node: starts ROS, constructs Node(node, private_node) and runs it until shutdown. A node whose
 /// parameters are wrong must not come alive: what its constructor throws is logged and the exit status is 1. Live,
 /// nodes of the 1 kHz chain run in real time where the system allows it, those that hear every message of it promptly.
+/// With Ending::kLastWords it is asked to end (see last_words.h) instead of being ended.
+enum class Ending { kAtOnce, kLastWords };
 template <typename Node>
-int runNode(int argc, char** argv, const std::string& name, Priority priority = Priority::kRealTime) {
+int runNode(int argc, char** argv, const std::string& name, Priority priority = Priority::kRealTime,
+            Ending ending = Ending::kAtOnce) {
   for (int i = 1; i < argc; ++i) {
     if (std::string(argv[i]) == "--help" || std::string(argv[i]) == "-h") {
       std::printf("%s", Node::kHelp);
       return 0;
     }
   }
-  ros::init(argc, argv, name);
+  ros::init(argc, argv, name, ending == Ending::kLastWords ? ros::init_options::NoSigintHandler : 0);
   // roscpp hears SIGINT only: at these, too, a device is told to stop before the end.
   for (const int number : {SIGTERM, SIGHUP}) std::signal(number, [](int) { ros::requestShutdown(); });
-  if (!takesPartInLockstep()) prefer(priority);
+  if (!takesPartInLockstep()) {
+    prefer(priority);
+    // In lock step a node that waits for its tick could not speak any more.
+    if (ending == Ending::kLastWords) keepLastWords();
+  }
   // These outlive the try block: the end of the last handle shuts ROS down, and its log with it.
   const ros::NodeHandle node_handle, private_node_handle("~");
   try {

@@ -22,6 +22,7 @@ GOOD = {  # what each node cannot do without
     "display": {},
     "force_sensor": {},
     "haptic_bridge": {},
+    "haptic_device": {"kind": "joy"},
     "injection_controller": {},
     "injector": {},
     "micromanipulator": {},
@@ -42,6 +43,11 @@ BAD = [  # node, wrong parameters, what the message must say
     ("force_sensor", {"frame": "nowhere", "frame_timeout": 0.5}, ["frame 'nowhere'", "static_transform_publisher"]),
     ("haptic_bridge", {"position_scale": 0}, ["position_scale = 0", "(0, inf)"]),
     ("haptic_bridge", {"force_source": "guessed"}, ["force_source = guessed", "predicted, measured"]),
+    ("haptic_bridge", {"timeouts/clutch": -1}, ["timeouts/clutch = -1", "[0, inf)"]),
+    ("haptic_device", {"kind": "moon"}, ["kind = moon", "omni, geomagic, joy, keyboard, marker"]),
+    ("haptic_device", {"centre": 1}, ["centre = 1", "(0, 1)"]),
+    ("haptic_device", {"kind": "omni", "clutch_button": "red"}, ["clutch_button = red", "grey, white, none"]),
+    ("haptic_device", {"kind": "keyboard"}, ["needs a terminal"]),
     ("injection_controller", {"force_limit": -1e-6}, ["force_limit = -1", "(0, inf)"]),
     ("injection_controller", {"mode": "moon", "rate": 1}, ["mode = moon", "manual, semi_automatic, automatic", "rate = 1"]),
     ("injector", {"pipette/tip_radius": -1e-6}, ["tip_radius = -1e-06", "(0, inf)"]),
@@ -60,7 +66,7 @@ BAD = [  # node, wrong parameters, what the message must say
 def start(node, parameters):
     arguments = [f"_{key}:={value}" for key, value in parameters.items()]
     return subprocess.Popen([str(NODES / node), *arguments, f"__name:=tried_{node}"],
-                            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                             env={**os.environ, "XDG_CACHE_HOME": EMPTY})
 
 

@@ -234,9 +234,13 @@ TEST(HapticBridgeConfig, TheOneThatIsShippedHasTheDefaults) {
   const std::string path = std::string(MICROINJECTION_SOURCE_DIR) + "/config/haptic_bridge.yaml";
   YAML::Node map = loadYamlMap(path);
   ConfigReader reader(map, path);
-  double rate = 0, timeout = 0;
+  double rate = 0;
   reader.number("rate", rate, Range::positive(), ConfigReader::kRequired);
-  reader.number("input_timeout", timeout, Range::positive(), ConfigReader::kRequired);
+  ConfigReader timeouts = reader.section("timeouts", ConfigReader::kRequired);
+  for (const char* input : {"hand", "clutch", "operator_present", "needle", "predicted", "measured"}) {
+    double timeout = 0;
+    timeouts.number(input, timeout, Range::nonNegative(), ConfigReader::kRequired);
+  }
   const HapticBridgeConfig read = HapticBridgeConfig::read(reader);
   reader.finish();
   const HapticBridgeConfig defaults;

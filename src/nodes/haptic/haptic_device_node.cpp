@@ -1,0 +1,117 @@
+#include "nodes/haptic/haptic_device_node.h"
+
+#include "cell_microinjection/StringStamped.h"
+#include "nodes/conversions.h"
+#include "nodes/last_words.h"
+#include "nodes/node_parameters.h"
+
+namespace microinjection {
+namespace {
+
+constexpr char kHapticFrame[] = "haptic";
+constexpr double kButtonPeriod = 0.02;  // s
+constexpr int kLastForces = 5;          // since messages can be dropped
+
+sensor_msgs::Joy button(const ros::Time& now, bool pressed) {
+  sensor_msgs::Joy message;
+  message.header.stamp = now;
+  message.buttons = {pressed ? 1 : 0};
+  return message;
+}
+
+}  // namespace
+
+const char* const HapticDeviceNode::kHelp =
+    "haptic_device: a haptic device that does not speak CRTK, with the bridge's topics; keyboard_hand: the keyboard "
+    "of\n"
+    "the terminal that it is started in.\n"
+    "In: /haptic/servo_cf and the device's own topics. Out: /haptic/measured_cp /haptic/clutch "
+    "/haptic/operator_present\n"
+    "/controller/state_command, and the device's force.\n"
+    "Parameters: ~kind (omni|geomagic|joy|keyboard|marker, required but for keyboard_hand), ~rate (Hz),\n"
+    "~force_timeout (s) and those of the kind; see config/haptic/.\n";
+
+HapticDeviceNode::Parameters::Parameters(ConfigReader& reader, const std::string& default_kind) : kind(default_kind) {
+  reader.text("kind", kind, default_kind.empty() ? ConfigReader::kRequired : ConfigReader::kOptional);
+  reader.number("rate", rate, Range::closed(50, 5000));
+  reader.number("force_timeout", force_timeout, Range::positive());
+  if (kind.empty()) reader.finish();  // says that it is missing
+}
+
+HapticDeviceNode::HapticDeviceNode(ros::NodeHandle node, ros::NodeHandle private_node, const std::string& default_kind)
+    : reader_(parameterReader(private_node)),
+      parameters_(reader_, default_kind),
+      kind_(findHapticKind(parameters_.kind)),
+      cycle_(node, parameters_.rate),
+      // Handed on as soon as it comes, where that cannot set the bridge off again.
+      force_(cycle_.input<geometry_msgs::WrenchStamped>(
+          "haptic/servo_cf", kind_.paced && !cycle_.lockstep() ? Phase::kSameTick : Phase::kTickBefore,
+          parameters_.force_timeout)),
+      position_(cycle_.output<geometry_msgs::PoseStamped>("haptic/measured_cp")),
+      clutch_(cycle_.output<sensor_msgs::Joy>("haptic/clutch")),
+      operator_present_(cycle_.output<sensor_msgs::Joy>("haptic/operator_present")),
+      commands_(cycle_.node().advertise<cell_microinjection::StringStamped>("controller/state_command", 10)),
+      adapter_(kind_.make(cycle_, reader_)) {
+  cycle_.diagnostics().add("device", [this](auto& status) { report(status); });
+}
+
+void HapticDeviceNode::run() {
+  cycle_.run([this](const Cycle::Tick& tick) {
+    if (askedToEnd() || adapter_->wantsToEnd()) {
+      cycle_.stop();
+    } else {
+      step(tick);
+    }
+  });
+  sayZeroForce();
+}
+
+void HapticDeviceNode::step(const Cycle::Tick& tick) {
+  const std::optional<HandReading> hand = adapter_->read(tick);
+  const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
+  adapter_->render(hand ? finiteForce(force_.get(tick.now)).value_or(zero) : zero, tick);
+  if (!hand) {
+    position_.publishInvalid(toPose(zero, tick.now, kHapticFrame));
+  } else if (!last_ || hand->stamp != last_->stamp) {
+    position_.publish(toPose(hand->position, hand->stamp, kHapticFrame));
+  }
+  publishButtons(tick.now, hand && hand->clutch, hand && hand->operator_present);
+  publishCommands(tick.now);
+  last_ = hand;
+}
+
+void HapticDeviceNode::publishButtons(const ros::Time& now, bool clutch, bool operator_present) {
+  const bool changed = !last_ || last_->clutch != clutch || last_->operator_present != operator_present;
+  if (!changed && (now - told_buttons_).toSec() < kButtonPeriod) return;
+  told_buttons_ = now;
+  clutch_.publish(button(now, clutch));
+  operator_present_.publish(button(now, operator_present));
+}
+
+void HapticDeviceNode::publishCommands(const ros::Time& now) {
+  for (const std::string& command : adapter_->takeCommands()) {
+    cell_microinjection::StringStamped message;
+    message.header.stamp = now;
+    message.string = command;
+    commands_.publish(message);
+  }
+}
+
+void HapticDeviceNode::sayZeroForce() {
+  for (int i = 0; i < kLastForces && ros::ok(); ++i) {
+    const ros::Time now = ros::Time::now();
+    adapter_->render(Eigen::Vector3d::Zero(), {now, cycle_.period()});
+    position_.publishInvalid(toPose(Eigen::Vector3d::Zero(), now, kHapticFrame));
+    operator_present_.publish(button(now, false));
+    ros::WallDuration(0.01).sleep();
+  }
+}
+
+void HapticDeviceNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) const {
+  status.summary(last_ ? diagnostic_msgs::DiagnosticStatus::OK : diagnostic_msgs::DiagnosticStatus::WARN,
+                 last_ ? "the device tells where the hand is" : "the device is silent: zero force");
+  status.add("kind", kind_.name);
+  if (last_) status.add("operator", last_->operator_present ? "present" : "not present");
+}
+
+}  // namespace microinjection

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <geometry_msgs/PoseStamped.h>
+#include <geometry_msgs/WrenchStamped.h>
+#include <ros/ros.h>
+#include <sensor_msgs/Joy.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "nodes/cycle.h"
+#include "nodes/haptic/haptic_registry.h"
+
+namespace microinjection {
+
+/// A haptic device that does not speak CRTK, with the bridge's topics. When the device or the force is stale, and
+/// several times before it ends, it renders zero force.
+///
+/// In:  /haptic/servo_cf (WrenchStamped, N), and what the device's kind says (haptic/KIND_adapter.h)
+/// Out: /haptic/measured_cp (PoseStamped, m, frame `haptic`; stamp 0 while the device is silent), /haptic/clutch,
+///      /haptic/operator_present (Joy, on change and each 20 ms), /controller/state_command (StringStamped)
+///
+/// Parameters (private): those of the kind and
+///   kind           see haptic_registry.cpp; required
+///   rate           Hz; default 1000, in [50, 5000]
+///   force_timeout  s, past which a force is stale; default 0.05, in (0, inf)
+class HapticDeviceNode {
+ public:
+  static const char* const kHelp;
+  /// @throws ConfigError
+  HapticDeviceNode(ros::NodeHandle node, ros::NodeHandle private_node, const std::string& default_kind = "");
+  void run();
+
+ private:
+  struct Parameters {
+    std::string kind;
+    double rate = 1000;
+    double force_timeout = 0.05;
+    Parameters(ConfigReader& reader, const std::string& default_kind);
+  };
+
+  void step(const Cycle::Tick& tick);
+  void publishButtons(const ros::Time& now, bool clutch, bool operator_present);
+  void publishCommands(const ros::Time& now);
+  void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
+  void sayZeroForce();
+
+  ConfigReader reader_;
+  Parameters parameters_;
+  const HapticKind& kind_;
+  Cycle cycle_;
+  Input<geometry_msgs::WrenchStamped>& force_;
+  Output<geometry_msgs::PoseStamped>& position_;
+  Output<sensor_msgs::Joy>& clutch_;
+  Output<sensor_msgs::Joy>& operator_present_;
+  ros::Publisher commands_;
+  std::unique_ptr<HapticAdapter> adapter_;
+  std::optional<HandReading> last_;  ///< what was told last
+  ros::Time told_buttons_;
+};
+
+}  // namespace microinjection

@@ -1,0 +1,46 @@
+#include "nodes/haptic/joy_adapter.h"
+
+namespace microinjection {
+
+JoyConfig JoyConfig::read(ConfigReader& reader) {
+  JoyConfig config;
+  reader.text("topic", config.topic);
+  reader.number("timeout", config.timeout, Range::positive());
+  config.stick = StickHandConfig::read(reader);
+  ConfigReader commands = reader.section("commands");
+  for (const char* command : {"enable", "disable", "inject", "home"}) {
+    int button = -1;
+    commands.integer(command, button, Range::closed(-1, 63));
+    if (button >= 0) config.commands.emplace_back(command, button);
+  }
+  return config;
+}
+
+JoyAdapter::JoyAdapter(Cycle& cycle, const JoyConfig& config)
+    : config_(config),
+      stick_(config.stick),
+      joy_(cycle.input<sensor_msgs::Joy>(config.topic, Phase::kTickBefore, config.timeout)) {
+  joy_.listen([this](const sensor_msgs::Joy& joy, const ros::Time&) { listen(joy); });
+}
+
+void JoyAdapter::listen(const sensor_msgs::Joy& joy) {
+  for (const auto& [command, button] : config_.commands) {
+    const auto index = static_cast<std::size_t>(button);
+    const bool before = index >= last_buttons_.size() || last_buttons_[index] != 0;
+    if (index < joy.buttons.size() && joy.buttons[index] != 0 && !before) commands_.push_back(command);
+  }
+  last_buttons_ = joy.buttons;
+}
+
+std::optional<HandReading> JoyAdapter::read(const Cycle::Tick& tick) {
+  const sensor_msgs::Joy* joy = joy_.get(tick.now);
+  const auto stick = joy ? stick_.read(joy->axes, joy->buttons) : std::nullopt;
+  if (!stick) {
+    stick_.lose();
+    return std::nullopt;
+  }
+  // The joystick is where it was until it says otherwise: as of now, not of its last message.
+  return HandReading{stick->position, tick.now, false, stick->operator_present};
+}
+
+}  // namespace microinjection

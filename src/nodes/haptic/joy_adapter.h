@@ -1,0 +1,43 @@
+#pragma once
+
+#include <sensor_msgs/Joy.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "nodes/haptic/haptic_adapter.h"
+#include "teleoperation/stick_hand.h"
+
+namespace microinjection {
+
+struct JoyConfig {
+  std::string topic = "joy";
+  double timeout = 0.2;  ///< s, past which the joystick is silent: its driver must repeat what it told
+  StickHandConfig stick;
+  std::vector<std::pair<std::string, int>> commands;  ///< state command and the button that sends it
+
+  static JoyConfig read(ConfigReader& reader);
+};
+
+/// A joystick, gamepad or space mouse (sensor_msgs/Joy) for the bridge's rate mode. It renders no force.
+class JoyAdapter : public HapticAdapter {
+ public:
+  using Config = JoyConfig;
+  JoyAdapter(Cycle& cycle, const JoyConfig& config);
+
+  std::optional<HandReading> read(const Cycle::Tick& tick) override;
+  void render(const Eigen::Vector3d&, const Cycle::Tick&) override {}
+  std::vector<std::string> takeCommands() override { return std::exchange(commands_, {}); }
+
+ private:
+  void listen(const sensor_msgs::Joy& joy);
+
+  JoyConfig config_;
+  StickHand stick_;
+  Input<sensor_msgs::Joy>& joy_;
+  std::vector<int> last_buttons_;
+  std::vector<std::string> commands_;
+};
+
+}  // namespace microinjection

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "nodes/haptic/haptic_adapter.h"
+#include "nodes/haptic/raw_terminal.h"
+#include "nodes/haptic/session_news.h"
+#include "teleoperation/guided_hand.h"
+#include "teleoperation/terminal_keys.h"
+
+namespace microinjection {
+
+struct KeyboardConfig {
+  GuidedHandConfig hand;
+  double step = 1e-3;  ///< m of the hand per key
+
+  static KeyboardConfig read(ConfigReader& reader);
+};
+
+/// The keyboard of the terminal that the node was started in: arrows and page keys move the hand while they are held,
+/// letters are the operator's words. The line below tells what the operator cannot feel.
+class KeyboardAdapter : public HapticAdapter {
+ public:
+  using Config = KeyboardConfig;
+  KeyboardAdapter(Cycle& cycle, const KeyboardConfig& config);
+
+  std::optional<HandReading> read(const Cycle::Tick& tick) override;
+  void render(const Eigen::Vector3d& force, const Cycle::Tick& tick) override;
+  std::vector<std::string> takeCommands() override { return std::exchange(commands_, {}); }
+  bool wantsToEnd() const override { return ended_ || terminal_.closed(); }
+
+ private:
+  void obey(const std::string& key);
+
+  KeyboardConfig config_;
+  GuidedHand hand_;
+  TerminalKeys keys_;
+  SessionNews news_;
+  std::vector<std::string> commands_;
+  ros::Time shown_;
+  bool ended_ = false;
+  RawTerminal terminal_;
+};
+
+}  // namespace microinjection

@@ -1,0 +1,130 @@
+#include "nodes/haptic/marker_adapter.h"
+
+#include <ros/callback_queue.h>
+#include <visualization_msgs/MarkerArray.h>
+
+#include <cstdio>
+
+#include "display/display_scale.h"
+#include "display/force_arrow.h"
+#include "nodes/conversions.h"
+#include "nodes/display_markers.h"
+#include "nodes/haptic/hand_marker.h"
+
+namespace microinjection {
+namespace {
+
+constexpr char kFrame[] = "viz/world";
+constexpr double kShowPeriod = 1.0 / 15;        // s
+constexpr double kLeastMotion = 0.05e-6;        // m of the needle that the handle is moved for
+constexpr double kTextHeight = 0.04;            // display units
+const Eigen::Vector3d kTextOffset{0, 0, 0.22};  // display units, of the words from the handle
+
+geometry_msgs::Pose toPoseInDisplay(const Eigen::Vector3d& position) {
+  return toPose(toDisplay(position), ros::Time(), kFrame).pose;
+}
+
+}  // namespace
+
+MarkerConfig MarkerConfig::read(ConfigReader& reader) {
+  MarkerConfig config;
+  config.hand = GuidedHandConfig::read(reader);
+  reader.number("hand_scale", config.hand_scale, Range::positive());
+  reader.vector("handle_offset", config.handle_offset, Range::closed(-1e-3, 1e-3));
+  reader.number("arrow_scale", config.arrow_scale, Range::positive());
+  return config;
+}
+
+MarkerAdapter::MarkerAdapter(Cycle& cycle, const MarkerConfig& config)
+    : config_(config),
+      hand_(config.hand),
+      news_(cycle),
+      needle_(cycle.input<geometry_msgs::PoseStamped>("needle/measured_cp", Phase::kTickBefore, 0.2)),
+      force_(cycle.node().advertise<visualization_msgs::MarkerArray>("hand_marker/force", 1, true)) {
+  const std::vector<std::pair<std::string, std::string>> words{
+      {"Enable", "enable"}, {"Inject", "inject"}, {"Withdraw (home)", "home"}, {"Disable", "disable"}};
+  for (const auto& [title, word] : words) {
+    menu_.insert(title, [this, word = word](const Feedback&) { commands_.push_back(word); });
+  }
+  server_.insert(handMarker(kFrame), [this](const Feedback& feedback) { onFeedback(feedback); });
+  menu_.apply(server_, kHandMarker);
+  server_.applyChanges();
+}
+
+void MarkerAdapter::onFeedback(const Feedback& feedback) {
+  using Event = visualization_msgs::InteractiveMarkerFeedback;
+  if (feedback->event_type == Event::MOUSE_UP) return letGo();
+  if (feedback->event_type == Event::KEEP_ALIVE) {
+    if (dragged_) hand_.stay();
+    return;
+  }
+  if (feedback->event_type != Event::MOUSE_DOWN && feedback->event_type != Event::POSE_UPDATE) return;
+  const auto& p = feedback->pose.position;
+  const Eigen::Vector3d to = fromDisplay({p.x, p.y, p.z});
+  if (feedback->header.frame_id != kFrame || !to.allFinite()) {
+    ROS_WARN_THROTTLE(5, "the handle cannot be dragged in frame '%s': set rviz's fixed frame to %s",
+                      feedback->header.frame_id.c_str(), kFrame);
+    return letGo();
+  }
+  if (!tip_) return;
+  drag(feedback->event_type == Event::MOUSE_DOWN ? handle_ : to);
+}
+
+void MarkerAdapter::drag(const Eigen::Vector3d& to) {
+  if (!dragged_) {
+    drag_from_ = handle_;
+    hand_from_ = hand_.position();
+    dragged_ = true;
+  }
+  handle_ = to;
+  hand_.moveTo(hand_from_ + config_.hand_scale * (to - drag_from_));
+}
+
+void MarkerAdapter::letGo() {
+  dragged_ = false;
+  hand_.letGo();
+}
+
+std::optional<HandReading> MarkerAdapter::read(const Cycle::Tick& tick) {
+  const auto needle = trustedPose(needle_.get(tick.now));
+  tip_ = needle ? std::optional<Eigen::Vector3d>(needle->translation()) : std::nullopt;
+  ros::getGlobalCallbackQueue()->callAvailable();  // where the server hears rviz
+  HandReading reading;
+  reading.position = hand_.step(tick.dt);
+  reading.stamp = tick.now;
+  reading.operator_present = hand_.present();
+  if (!hand_.present()) dragged_ = false;
+  return reading;
+}
+
+void MarkerAdapter::render(const Eigen::Vector3d& force, const Cycle::Tick& tick) {
+  if ((tick.now - shown_).toSec() < kShowPeriod) return;
+  shown_ = tick.now;
+  followNeedle();
+  showForce(force);
+}
+
+void MarkerAdapter::followNeedle() {
+  if (dragged_) return server_.applyChanges();  // the server has taken the place over from rviz: for the other rviz's
+  if (!tip_) return;
+  const Eigen::Vector3d place = *tip_ + config_.handle_offset;
+  if ((place - handle_).norm() < kLeastMotion) return;
+  handle_ = place;
+  server_.setPose(kHandMarker, toPoseInDisplay(handle_));
+  server_.applyChanges();
+}
+
+void MarkerAdapter::showForce(const Eigen::Vector3d& force) {
+  const auto arrow = forceArrow(handle_, force, config_.arrow_scale);
+  const MarkerName arrow_name{kFrame, "force on the hand", 0}, text_name{kFrame, "words", 0};
+  const Colour orange{1.0F, 0.45F, 0.1F, 1.0F}, white{1.0F, 1.0F, 1.0F, 1.0F};
+  char felt[48];
+  std::snprintf(felt, sizeof felt, "%.2f N at the hand", force.norm());
+  const std::string why = dragged_ && !news_.held().empty() ? "\n" + news_.held() : "";
+  visualization_msgs::MarkerArray shown;
+  shown.markers = {arrow ? arrowMarker(arrow_name, *arrow, orange) : noMarker(arrow_name),
+                   textMarker(text_name, toDisplay(handle_) + kTextOffset, felt + why, kTextHeight, white)};
+  force_.publish(shown);
+}
+
+}  // namespace microinjection

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <geometry_msgs/PoseStamped.h>
+#include <interactive_markers/interactive_marker_server.h>
+#include <interactive_markers/menu_handler.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "nodes/haptic/haptic_adapter.h"
+#include "nodes/haptic/session_news.h"
+#include "teleoperation/guided_hand.h"
+
+namespace microinjection {
+
+struct MarkerConfig {
+  GuidedHandConfig hand;
+  double hand_scale = 1e3;                        ///< m of the hand per m that the marker is dragged in `world`
+  Eigen::Vector3d handle_offset = {36e-6, 0, 0};  ///< m, of the handle from the tip, `world`
+  double arrow_scale = 20e-6;                     ///< m/N, length of the force's arrow, before x 1e4
+
+  static MarkerConfig read(ConfigReader& reader);
+};
+
+/// A handle beside the needle in rviz that a person drags with the mouse, and a menu of the operator's words. While the
+/// mouse button is down the operator is present and the needle goes after the handle; otherwise the handle comes back
+/// to the needle.
+///
+/// The handle lies in viz/world, at x 1e4. Its topics are /hand_marker/... and not below viz/, which nothing that
+/// controls may read.
+class MarkerAdapter : public HapticAdapter {
+ public:
+  using Config = MarkerConfig;
+  MarkerAdapter(Cycle& cycle, const MarkerConfig& config);
+
+  std::optional<HandReading> read(const Cycle::Tick& tick) override;
+  void render(const Eigen::Vector3d& force, const Cycle::Tick& tick) override;
+  std::vector<std::string> takeCommands() override { return std::exchange(commands_, {}); }
+
+ private:
+  using Feedback = visualization_msgs::InteractiveMarkerFeedbackConstPtr;
+  void onFeedback(const Feedback& feedback);
+  void drag(const Eigen::Vector3d& to);
+  void letGo();
+  void followNeedle();
+  void showForce(const Eigen::Vector3d& force);
+
+  MarkerConfig config_;
+  GuidedHand hand_;
+  SessionNews news_;
+  Input<geometry_msgs::PoseStamped>& needle_;
+  interactive_markers::InteractiveMarkerServer server_{"hand_marker"};
+  interactive_markers::MenuHandler menu_;
+  ros::Publisher force_;
+  std::vector<std::string> commands_;
+  std::optional<Eigen::Vector3d> tip_;                   ///< m, `world`
+  Eigen::Vector3d handle_ = Eigen::Vector3d::Zero();     ///< m, `world`, where it is shown
+  Eigen::Vector3d drag_from_ = Eigen::Vector3d::Zero();  ///< m, `world`, of the handle
+  Eigen::Vector3d hand_from_ = Eigen::Vector3d::Zero();  ///< m, of the hand
+  bool dragged_ = false;
+  ros::Time shown_;
+};
+
+}  // namespace microinjection

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+
+#include "nodes/haptic/haptic_adapter.h"
+#include "nodes/haptic/omni_messages.h"
+
+namespace microinjection {
+
+struct OmniConfig {
+  std::string device = "phantom";      ///< namespace of the driver's topics
+  double length_unit = 1e-3;           ///< m, of the driver's positions
+  double timeout = 0.05;               ///< s, past which the device is silent
+  std::string clutch_button = "grey";  ///< grey, white or none
+
+  static OmniConfig read(ConfigReader& reader);
+};
+
+/// phantom_omni (Touch, Omni): DEVICE/state and DEVICE/button in, DEVICE/force_feedback out. Position and force have
+/// the axes (X, -Z, Y) of OpenHaptics: x right, y away, z up. While the driver holds the stylus itself (`locked`) the
+/// clutch counts as pressed. Buttons are told on change only and hold until they change.
+class OmniAdapter : public HapticAdapter {
+ public:
+  using Config = OmniConfig;
+  OmniAdapter(Cycle& cycle, const OmniConfig& config);
+
+  std::optional<HandReading> read(const Cycle::Tick& tick) override;
+  void render(const Eigen::Vector3d& force, const Cycle::Tick& tick) override;
+
+ private:
+  OmniConfig config_;
+  Input<OmniState>& state_;
+  ros::Subscriber buttons_;
+  ros::Publisher force_;
+  bool clutch_ = false;
+};
+
+}  // namespace microinjection

@@ -1,0 +1,43 @@
+#include "nodes/haptic/session_news.h"
+
+#include <cstdio>
+
+namespace microinjection {
+namespace {
+
+std::string describe(const cell_microinjection::InjectionStatus& status) {
+  char text[120];
+  std::snprintf(text, sizeof text, ", %s, %.2f uN, %.1f um deep", status.state.c_str(), 1e6 * status.force,
+                1e6 * status.depth);
+  std::string all = text;
+  if (status.punctures > 0) all += ", through " + std::to_string(status.punctures);
+  if (status.volume > 0) {
+    std::snprintf(text, sizeof text, ", %.1f pL injected", 1e15 * status.volume);
+    all += text;
+  }
+  return all;
+}
+
+}  // namespace
+
+SessionNews::SessionNews(Cycle& cycle) {
+  controller_ = cycle.node().subscribe<cell_microinjection::OperatingState>(
+      "controller/operating_state", 10,
+      [this](const cell_microinjection::OperatingStateConstPtr& message) { state_ = message->state; });
+  injection_ = cycle.node().subscribe<cell_microinjection::InjectionStatus>(
+      "controller/injection_state", 1,
+      [this](const cell_microinjection::InjectionStatusConstPtr& message) { injection_text_ = describe(*message); });
+  diagnostics_ = cycle.node().subscribe<diagnostic_msgs::DiagnosticArray>(
+      "/diagnostics", 10, [this](const diagnostic_msgs::DiagnosticArrayConstPtr& message) { hear(*message); });
+}
+
+std::string SessionNews::text() const { return state_ + injection_text_; }
+
+void SessionNews::hear(const diagnostic_msgs::DiagnosticArray& diagnostics) {
+  for (const auto& status : diagnostics.status) {
+    if (status.name == "haptic_bridge: loop") held_ = status.level == 0 ? "" : status.message;
+    if (status.name == "injection_controller: control" && status.level != 0 && held_.empty()) held_ = status.message;
+  }
+}
+
+}  // namespace microinjection

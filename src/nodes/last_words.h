@@ -1,0 +1,13 @@
+#pragma once
+
+namespace microinjection {
+
+/// For a node that has something to say before it ends, such as zero force to a driver that holds the last one: SIGINT,
+/// SIGTERM and rosnode's kill then only ask it to end, a second one ends it. Call it between ros::init with
+/// NoSigintHandler and the first node handle.
+void keepLastWords();
+
+/// Whether the node was asked to end.
+bool askedToEnd();
+
+}  // namespace microinjection

@@ -1,0 +1,186 @@
+#!/usr/bin/python3
+"""Does what README's "Teleoperate" tells a person with a keyboard or a mouse to do, with made-up keys or drags.
+
+    ./dev shell -- python3 src/tools/try_teleoperation.py OUT [--hand keyboard|marker] [--cell NAME]
+
+Starts a session and rviz (without a display: on a virtual one), goes into the cell until it gives way, injects,
+withdraws; leaves OUT/HAND.png of the pressed cell, prints when what was reached, and fails when it was not.
+"""
+import argparse
+import os
+import pty
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import rospy
+from visualization_msgs.msg import InteractiveMarkerFeedback
+
+from cell_microinjection.msg import InjectionStatus, OperatingState
+from demo_session import DemoSession, SessionError
+from rviz_view import RvizError, RvizView
+
+ROOT = Path(__file__).resolve().parents[2]
+PATIENCE = 120     # s for each stage
+DISPLAY_SCALE = 1e4
+PICTURE_FORCE = 2e-6  # N, of the pressed cell in the picture
+
+
+class Keyboard:
+    """keyboard_hand in a terminal, and who types there: a held key comes again after half a second, then 30 times a s."""
+
+    DOWN, INJECT, HOME = b'\x1b[B', b'i', b'w'
+
+    def __init__(self):
+        self._terminal, ours = pty.openpty()
+        self._program = subprocess.Popen(['rosrun', 'cell_microinjection', 'keyboard_hand'], stdin=ours, stdout=ours)
+        os.close(ours)
+        os.set_blocking(self._terminal, False)
+        time.sleep(3)
+        self._next = 0.0
+
+    def press(self):
+        os.write(self._terminal, self.DOWN)
+        self._next = time.monotonic() + 0.5
+
+    def go_on(self):
+        if time.monotonic() >= self._next:
+            os.write(self._terminal, self.DOWN)
+            self._next = time.monotonic() + 1 / 30
+        self.said()
+
+    def release(self):
+        pass
+
+    def inject(self):
+        os.write(self._terminal, self.INJECT)
+
+    def withdraw(self):
+        os.write(self._terminal, self.HOME)
+
+    def said(self):
+        try:
+            return os.read(self._terminal, 65536).decode(errors='replace')
+        except BlockingIOError:
+            return ''
+
+    def close(self):
+        os.write(self._terminal, b'q')
+        self._program.wait(20)
+
+
+class Mouse:
+    """What rviz says of the handle while a mouse drags it down, and of its menu."""
+
+    FIRST, THEN = 16e-6, -50e-6  # m, heights of the handle and thus of the tip: 12 um deep, and beyond the centre
+
+    def __init__(self):
+        self._publisher = rospy.Publisher('/hand_marker/feedback', InteractiveMarkerFeedback, queue_size=100)
+        self._goals = iter((self.FIRST, self.THEN))
+        self._goal = None
+        threading.Thread(target=self._drag, daemon=True).start()
+        time.sleep(3)
+
+    def _say(self, event, z=0.0, entry=0):
+        message = InteractiveMarkerFeedback(client_id='mouse', marker_name='hand', event_type=event, menu_entry_id=entry)
+        message.header.frame_id = 'viz/world'
+        message.pose.orientation.w = 1
+        message.pose.position.x, message.pose.position.z = DISPLAY_SCALE * 36e-6, DISPLAY_SCALE * z
+        self._publisher.publish(message)
+
+    def _drag(self):
+        while True:
+            if self._goal is not None:
+                self._say(InteractiveMarkerFeedback.POSE_UPDATE, self._goal)
+            time.sleep(0.1)
+
+    def press(self):
+        self._say(InteractiveMarkerFeedback.MOUSE_DOWN)
+        self._goal = next(self._goals)
+
+    def go_on(self):
+        pass
+
+    def release(self):
+        self._goal = None
+        self._say(InteractiveMarkerFeedback.MOUSE_UP)
+
+    def inject(self):
+        self._say(InteractiveMarkerFeedback.MENU_SELECT, entry=2)
+
+    def withdraw(self):
+        self._say(InteractiveMarkerFeedback.MENU_SELECT, entry=3)
+
+    def close(self):
+        pass
+
+
+class Trial:
+    def __init__(self, check):
+        self._check = check
+        self._start = time.monotonic()
+        self.status = InjectionStatus()
+        self.state = OperatingState()
+        rospy.Subscriber('/controller/injection_state', InjectionStatus, lambda m: setattr(self, 'status', m))
+        rospy.Subscriber('/controller/operating_state', OperatingState, lambda m: setattr(self, 'state', m))
+
+    def until(self, condition, what, meanwhile=lambda: None):
+        end = time.monotonic() + PATIENCE
+        while not condition(self.status):
+            if time.monotonic() > end:
+                raise SessionError(f'{what}: not within {PATIENCE} s; {self.state.state}, {self.status}')
+            self._check()
+            meanwhile()
+            time.sleep(0.02)
+        print(f'{time.monotonic() - self._start:6.1f} s  {what}: {self.status.state}, {1e6 * self.status.force:.2f} uN, '
+              f'{1e6 * self.status.depth:.1f} um deep, {1e15 * self.status.volume:.1f} pL', flush=True)
+
+
+def run(arguments, session):
+    session.wait_ready()
+    view = RvizView(ROOT / 'config/session.rviz', arguments.out)
+    try:
+        trial = Trial(session.check)
+        if not view.picture(arguments.out / 'before.png', PATIENCE, session.check):
+            raise SessionError('rviz does not show the cell')
+        time.sleep(5)  # until it shows the rest
+        hand = {'keyboard': Keyboard, 'marker': Mouse}[arguments.hand]()
+        hand.press()
+        trial.until(lambda s: s.force > PICTURE_FORCE, 'pressed', hand.go_on)
+        time.sleep(2)  # rviz without a graphics card draws twice a second
+        view.picture(arguments.out / f'{arguments.hand}.png', PATIENCE, session.check)
+        hand.press()
+        trial.until(lambda s: s.punctures > 0, 'through', hand.go_on)
+        hand.release()
+        trial.until(lambda s: s.state == 'punctured', 'at rest')
+        hand.inject()
+        trial.until(lambda s: s.volume > 0 and s.state == 'punctured', 'injected')
+        hand.withdraw()
+        trial.until(lambda s: trial.state.state == 'PAUSED' and s.depth == 0, 'withdrawn')
+        hand.close()
+    finally:
+        view.close()
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument('out', type=Path)
+    parser.add_argument('--hand', choices=('keyboard', 'marker'), default='keyboard')
+    parser.add_argument('--cell', default='mouse_oocyte')
+    arguments = parser.parse_args()
+    arguments.out = arguments.out.resolve()
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    session = DemoSession(ROOT / 'launch/session.launch', arguments.out,
+                          {'clock': 'wall', 'haptic': arguments.hand, 'cell': arguments.cell})
+    try:
+        run(arguments, session)
+    except (SessionError, RvizError) as error:
+        sys.exit(f'try_teleoperation: {error}')
+    finally:
+        session.stop()
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,63 @@
+#!/usr/bin/python3
+"""With require_operator the needle follows only while the device says that the operator is there; each input has its
+own time-out."""
+
+import unittest
+
+import rospy
+import rostest
+from geometry_msgs.msg import PoseStamped, WrenchStamped
+from sensor_msgs.msg import Joy
+
+from messages import force, pose, wrench
+from participant import INVALID, Participant
+
+HAND, CLUTCH, PRESENT = "/haptic/measured_cp", "/haptic/clutch", "/haptic/operator_present"
+NEEDLE, PREDICTED = "/needle/measured_cp", "/cell/predicted_cf"
+
+
+class OperatorPresentTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.world = Participant({HAND: PoseStamped, CLUTCH: Joy, PRESENT: Joy, NEEDLE: PoseStamped,
+                                 PREDICTED: WrenchStamped},
+                                {"/haptic/servo_cf": WrenchStamped, "/teleop/servo_cp": PoseStamped})
+
+    def good(self, present=1):
+        return {HAND: pose(0, 0, 0, "haptic"), CLUTCH: Joy(buttons=[0]), PRESENT: Joy(buttons=[present]),
+                NEEDLE: pose(0, 0, 25e-6), PREDICTED: wrench(0, 0, 1e-6)}
+
+    def follows(self):
+        return not self.world.seen["/teleop/servo_cp"].header.stamp.is_zero()
+
+    def run_without(self, ticks, *topics):
+        self.world.run(ticks, lambda: {key: value for key, value in self.good().items() if key not in topics})
+
+    def setUp(self):
+        self.world.run(200, self.good)
+        self.assertTrue(self.follows())
+
+    def test_absent(self):
+        self.world.run(200, lambda: self.good(present=0))
+        self.assertFalse(self.follows())
+        self.assertEqual(list(force(self.world.seen["/haptic/servo_cf"])), [0, 0, 0])
+
+    def test_what_cannot_be_read_is_no_operator(self):
+        for bad in (Joy(), INVALID):
+            self.world.run(200, self.good)
+            self.world.run(200, lambda: {**self.good(), PRESENT: bad})
+            self.assertFalse(self.follows())
+
+    def test_each_input_is_stale_after_its_own_time(self):
+        for topic, timeout in ((PRESENT, 100), (CLUTCH, 100), (HAND, 50), (NEEDLE, 50), (PREDICTED, 300)):
+            with self.subTest(topic):
+                self.world.run(200, self.good)
+                self.run_without(timeout - 5, topic)
+                self.assertTrue(self.follows())
+                self.run_without(15, topic)
+                self.assertFalse(self.follows())
+
+
+if __name__ == "__main__":
+    rospy.init_node("world")
+    rostest.rosrun("cell_microinjection", "operator_present", OperatorPresentTest)
