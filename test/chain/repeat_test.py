@@ -46,10 +46,11 @@ class RepeatTest(unittest.TestCase):
             first, second = (run_session(folder, "injected_oocyte", motion) for folder in (a, b))
         self.assertEqual(first, second)
         rows = list(csv.DictReader(first.decode().splitlines()))
-        states = [row["injection_state"] for row in rows if row["injection_state"]]
+        # By hand idle lasts one cycle, which a row each 5 ms may miss.
+        states = [row["injection_state"] for row in rows if row["injection_state"] not in ("", "idle")]
         passed = [state for state, before in zip(states, [""] + states) if state != before]
         self.assertEqual(passed[passed.index("indent"):],
-                         ["indent", "punctured", "inject", "punctured", "withdraw", "idle", "approach"])
+                         ["indent", "punctured", "inject", "punctured", "withdraw", "approach"])
         self.assertEqual(rows[-1]["layers_punctured"], "1")
         volumes = [float(row["injected_volume_m3"]) for row in rows if row["injection_state"] == "inject"]
         pipette = 2.46e3 / 1.546e17  # m^3/s: of the pulse's 3 kPa past the capillary pressure, over the resistance
@@ -70,11 +71,12 @@ class RepeatTest(unittest.TestCase):
                          {"approach", "touch", "indent", "hold", "retract"})
 
     def check_hand_yields(self, rows):
-        """At rest in the cell the hand's spring and the rendered force are in balance."""
+        """At rest in the cell the springs of hand and coupling, in series, are in balance with the rendered force."""
         held = [row for row in rows if row["phase"] == "hold"][-1]
         force, depth = float(held["hand_force_N"]), float(held["depth_m"])
         self.assertAlmostEqual(force, 2e5 * float(held["predicted_axial_N"]), delta=0.02 * force)
-        self.assertAlmostEqual(depth + 1e-3 * force / 400, 4e-6, delta=0.1e-6)  # 400 N/m
+        yielded = force / 400 + force / 2000  # m, of hand (N/m) and coupling
+        self.assertAlmostEqual(depth + 1e-3 * yielded, 4e-6, delta=0.03e-6)
 
 
 if __name__ == "__main__":
