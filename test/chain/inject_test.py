@@ -16,7 +16,7 @@ from geometry_msgs.msg import PoseStamped
 from messages import pose, position
 from participant import Participant
 
-PUNCTURE = 0.8e-6  # N, of the zona in injected_oocyte.yaml
+PUNCTURE = 1.2e-6  # N, of the zona in injected_oocyte.yaml
 GOAL = {"puncture": True, "layers": 1, "depth": 15e-6, "margin": 2e-6, "hold_time": 0.1, "pressure": 20e3, "duration": 0.3}
 ENDED = (GoalStatus.SUCCEEDED, GoalStatus.PREEMPTED, GoalStatus.ABORTED)
 

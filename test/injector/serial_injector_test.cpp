@@ -5,36 +5,16 @@
 #include <algorithm>
 #include <random>
 
-#include "base/errors.h"
+#include "injector/test_protocol.h"
 #include "serial/scripted_wire.h"
 
 namespace microinjection {
 namespace {
 
-constexpr char kProtocol[] = R"yaml(
-pulse: {send: "P{pressure_hPa:1} {duration_ms:0}\r", expect: "OK", timeout: 0.5}
-balance: {send: "C{pressure_hPa:1}\r", expect: "OK", timeout: 0.5}
-query: {send: "?\r", expect: "=([-+]?[0-9]+\\.[0-9])",
-               timeout : 0.5
-}
-query_period: 0.2
-pressure_unit: 100
-refuse: "ERR.*"
-terminator: "\r"
-quiet: 0.1
-)yaml";
-
-InjectorProtocol protocol(const std::string& text = kProtocol) {
-  ConfigReader reader(YAML::Load(text), "test");
-  InjectorProtocol read = InjectorProtocol::read(reader);
-  reader.finish();
-  return read;
-}
-
 class SerialInjectorTest : public ::testing::Test {
  protected:
-  explicit SerialInjectorTest(const std::string& text = kProtocol)
-      : injector{std::make_unique<ScriptedWire>(script), protocol(text), model} {}
+  explicit SerialInjectorTest(const std::string& text = kTestProtocol)
+      : injector{std::make_unique<ScriptedWire>(script), testProtocol(text), model} {}
 
   static InjectorModelConfig withBalance(double pressure) {
     InjectorModelConfig config;
@@ -119,7 +99,8 @@ TEST_F(SerialInjectorTest, ARefusedOrWronglyAnsweredPulseIsAFault) {
 
 class StoppedSerialInjectorTest : public SerialInjectorTest {
  protected:
-  StoppedSerialInjectorTest() : SerialInjectorTest(std::string(kProtocol) + "stop: {send: \"S\\r\", expect: OK}\n") {}
+  StoppedSerialInjectorTest()
+      : SerialInjectorTest(std::string(kTestProtocol) + "stop: {send: \"S\\r\", expect: OK}\n") {}
   long stops() const { return std::count(script.sent.begin(), script.sent.end(), "S\r"); }
 };
 
@@ -255,37 +236,9 @@ TEST_F(SerialInjectorTest, RefusesWhatTheDeviceCannotDo) {
   fine.limits.duration_range = {1e-4, 1};
   fine.limits.pressure_range = {-50e3, 50e3};
   WireScript other;
-  SerialInjector device(std::make_unique<ScriptedWire>(other), protocol(), fine);
+  SerialInjector device(std::make_unique<ScriptedWire>(other), testProtocol(), fine);
   device.step(0);
   EXPECT_EQ(device.pulse({1, 10e3, 0.4e-3}).rfind("in the digits of the device's line, pulse duration = 0 s", 0), 0U);
-}
-
-TEST(InjectorProtocol, ConfigurationIsStrict) {
-  for (const auto& [text, message] : std::map<std::string, std::string>{
-           {"{}", "pulse is missing"},
-           {"{pulse: {send: 'P{force}', expect: OK}}", "{force} is not one of {pressure_Pa}"},
-           {"{pulse: {send: 'P{pressure_Pa:x}', expect: OK}}", "one digit"},
-           {"{pulse: {send: 'P{pressure_Pa', expect: OK}}", "a { without its }"},
-           {"{balance: {send: '{duration_s}', expect: OK}}", "{duration_s} is not one of"},
-           {"{balance: {send: 'P', expect: '('}}", "is no regular expression"},
-           {"{query: {send: '?', expect: 'P=.*'}}", "must have a group"}}) {
-    try {
-      protocol(text);
-      ADD_FAILURE() << text;
-    } catch (const ConfigError& error) {
-      EXPECT_NE(std::string(error.what()).find(message), std::string::npos) << error.what();
-    }
-  }
-}
-
-TEST(InjectorProtocol, LinesHaveTheirUnitsAndDigits) {
-  std::string text(kProtocol);
-  text.replace(text.find("P{pressure_hPa:1} {duration_ms:0}"), 33,
-               "{pressure_psi:4},{pressure_kPa:2},{pressure_Pa},{duration_s:3}");
-  EXPECT_EQ(protocol(text).pulseLine({1, -6894.757293, 0.0125}), "-1.0000,-6.89,-6895,0.013\r");
-  EXPECT_EQ(protocol().balanceLine(-1), "C0.0\r");  // no minus before a zero
-  EXPECT_NEAR(protocol().asSent({1, 12344, 0.0126}).pressure, 12340, 1e-6);
-  EXPECT_NEAR(protocol().asSent({1, 12344, 0.0126}).duration, 0.013, 1e-12);
 }
 
 /// A hundred thousand random, cut and damaged replies, late, twice and among good ones: no crash, no pressure that was

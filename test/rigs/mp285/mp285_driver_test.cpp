@@ -1,49 +1,9 @@
-#include "rigs/mp285/mp285_driver.h"
-
-#include <gtest/gtest.h>
-
-#include "rigs/emulated_rig.h"
-#include "rigs/mp285/mp285_emulator.h"
+#include "rigs/driver_fixture.h"
 
 namespace microinjection {
 namespace {
 
-using State = ManipulatorDevice::State;
-constexpr double kStep = 0.04e-6;                     // m, a microstep
-const Eigen::Vector3d kPlace(100e-6, -50e-6, 30e-6);  // m
-
-Mp285Config config() {
-  Mp285Config config;
-  config.axes = {2, 0, 1};
-  config.joints.directions << 1, -1, 1;
-  config.joints.origin << 10e-6, 0, -20e-6;
-  return config;
-}
-
-class Mp285Test : public testing::Test {
- protected:
-  /// Truth in the joints' order.
-  struct Rig : EmulatedRig<Mp285Driver, Mp285Config> {
-    using EmulatedRig::EmulatedRig;
-    Eigen::Vector3d place() { return config().joints.toJoints(config().inJointOrder(device().position())); }
-  };
-
-  void make(const Mp285EmulatorConfig& device = {}) {
-    rig_ = std::make_unique<Rig>(config(), std::make_shared<Mp285Emulator>(device));
-  }
-  void start() {
-    if (!rig_) make();
-    ASSERT_TRUE(rig_->runUntilReady());
-    expectNear(rig_->read(), rig_->place(), 0.1 * kStep);
-  }
-  void moveAndCheck(const Eigen::Vector3d& place = kPlace) {
-    rig_->driver().moveTo(place, 1e-3);
-    ASSERT_TRUE(rig_->runUntilArrived()) << rig_->driver().why();
-    expectNear(rig_->place(), place, kStep);
-    expectNear(rig_->read(), rig_->place(), 0.1 * kStep);
-  }
-  std::unique_ptr<Rig> rig_;
-};
+using Mp285Test = DriverTest<TestedMp285>;
 
 TEST_F(Mp285Test, MovesToAPlaceAtItsSpeedInOneMove) {
   start();
@@ -97,24 +57,8 @@ TEST_F(Mp285Test, ANewCommandBreaksOffALongMove) {
   EXPECT_EQ(rig_->device().movesBegun(), 2);
 }
 
-TEST_F(Mp285Test, StopsWithinFiftyMillisecondsAndTheWire) {
-  start();
-  rig_->driver().moveTo(kPlace + Eigen::Vector3d(5e-3, 0, 0), 1e-3);
-  rig_->run(0.5);
-  ASSERT_TRUE(rig_->device().moves());
-  const double from = rig_->time();
-  rig_->driver().stop();
-  ASSERT_TRUE(rig_->runUntil([&] { return !rig_->device().moves(); }, 1));
-  EXPECT_LT(rig_->time() - from, 0.05 + 10.0 / 9600);
-  EXPECT_LT(rig_->time() - from, rig_->driver().abilities().stop_time + 1e-3);
-  rig_->run(0.3);
-  EXPECT_FALSE(rig_->driver().moving());
-  expectNear(rig_->read(), rig_->place(), 0.1 * kStep);
-  moveAndCheck();
-}
-
 TEST_F(Mp285Test, FastMovesAreCoarseAndEndFine) {
-  auto fast = config();
+  auto fast = TestedMp285::config();
   fast.speed = 3e-3;
   rig_ = std::make_unique<Rig>(fast, std::make_shared<Mp285Emulator>());
   start();
@@ -188,39 +132,6 @@ TEST_F(Mp285Test, AMoveThatIsInterruptedTwiceIsAFault) {
   EXPECT_NE(rig_->driver().why().find("interrupted"), std::string::npos) << rig_->driver().why();
   rig_->driver().clearFault();
   ASSERT_TRUE(rig_->runUntilReady());
-  moveAndCheck();
-}
-
-TEST_F(Mp285Test, LongSilenceIsAFaultThatCanBeCleared) {
-  start();
-  rig_->driver().moveTo(kPlace, 0.2e-3);
-  rig_->inject("silence:8");
-  ASSERT_TRUE(rig_->runUntil([&] { return rig_->driver().state() == State::kFault; }, 7));
-  EXPECT_NE(rig_->driver().why().find("no answer"), std::string::npos) << rig_->driver().why();
-  EXPECT_FALSE(rig_->driver().reading());
-  rig_->run(8);
-  expectNear(rig_->read(), rig_->place(), 1e-9);
-  EXPECT_EQ(rig_->driver().state(), State::kFault);  // latched
-  rig_->driver().clearFault();
-  ASSERT_TRUE(rig_->runUntilReady());
-  moveAndCheck();
-}
-
-TEST_F(Mp285Test, ConnectsAgainByItselfAndRests) {
-  start();
-  rig_->driver().moveTo(kPlace + Eigen::Vector3d(5e-3, 0, 0), 1e-3);
-  rig_->run(0.2);
-  rig_->wire().pull();
-  rig_->run(1);
-  EXPECT_EQ(rig_->driver().state(), State::kDisconnected);
-  EXPECT_FALSE(rig_->driver().reading());
-  rig_->wire().plug();
-  ASSERT_TRUE(rig_->runUntilReady());
-  EXPECT_FALSE(rig_->device().moves());  // the first thing it heard was a stop
-  EXPECT_LT(rig_->place().x(), 4e-3);
-  expectNear(rig_->read(), rig_->place(), 0.1 * kStep);
-  rig_->run(0.5);
-  EXPECT_FALSE(rig_->device().moves());
   moveAndCheck();
 }
 

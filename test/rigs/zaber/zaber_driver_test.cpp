@@ -1,43 +1,9 @@
-#include "rigs/zaber/zaber_driver.h"
-
-#include <gtest/gtest.h>
-
-#include "rigs/emulated_rig.h"
-#include "rigs/zaber/zaber_emulator.h"
+#include "rigs/driver_fixture.h"
 
 namespace microinjection {
 namespace {
 
-using State = ManipulatorDevice::State;
-constexpr double kStep = 0.047625e-6;                 // m, a microstep
-const Eigen::Vector3d kPlace(100e-6, -50e-6, 30e-6);  // m
-
-ZaberConfig config() {
-  ZaberConfig config;
-  config.joints.origin.setConstant(-12.5e-3);
-  config.joints.directions << 1, 1, -1;
-  config.joints.origin.z() = 12.5e-3;
-  return config;
-}
-
-class ZaberTest : public testing::Test {
- protected:
-  void make(const ZaberEmulatorConfig& device = {}, const ZaberConfig& driver = config()) {
-    rig_ = std::make_unique<EmulatedRig<ZaberDriver, ZaberConfig>>(driver, std::make_shared<ZaberEmulator>(device));
-  }
-  void start() {
-    if (!rig_) make();
-    ASSERT_TRUE(rig_->runUntilReady());
-    expectNear(rig_->read(), rig_->place(), 0.1 * kStep);
-  }
-  void moveAndCheck(const Eigen::Vector3d& place = kPlace) {
-    rig_->driver().moveTo(place, 1e-3);
-    ASSERT_TRUE(rig_->runUntilArrived()) << rig_->driver().why();
-    expectNear(rig_->place(), place, kStep);
-    expectNear(rig_->read(), rig_->place(), 0.1 * kStep);
-  }
-  std::unique_ptr<EmulatedRig<ZaberDriver, ZaberConfig>> rig_;
-};
+using ZaberTest = DriverTest<TestedZaber>;
 
 TEST_F(ZaberTest, MovesToAPlaceInAStraightLine) {
   start();
@@ -100,21 +66,6 @@ TEST_F(ZaberTest, TheNewestCommandWins) {
   expectNear(rig_->place(), kPlace, kStep);
 }
 
-TEST_F(ZaberTest, StopsWithinFiftyMillisecondsAndTheWire) {
-  start();
-  const double wire = 3 * 10 * 10.0 / 115200;  // s
-  rig_->driver().moveTo(kPlace + Eigen::Vector3d(5e-3, 0, 0), 2e-3);
-  rig_->run(0.5);
-  const double from = rig_->time();
-  rig_->driver().stop();
-  ASSERT_TRUE(rig_->runUntil([&] { return !rig_->device().moves(); }, 1));
-  EXPECT_LT(rig_->time() - from, 0.05 + wire);
-  EXPECT_LT(rig_->time() - from, rig_->driver().abilities().stop_time + 2e-3);
-  rig_->run(0.3);
-  EXPECT_FALSE(rig_->driver().moving());
-  expectNear(rig_->read(), rig_->place(), 0.1 * kStep);
-}
-
 TEST_F(ZaberTest, AStopThatIsSaidAgainAndAgainLeavesItReadable) {
   start();
   rig_->driver().moveTo(kPlace, 1e-3);
@@ -129,7 +80,7 @@ TEST_F(ZaberTest, ThreeChainedDevicesWithChecksums) {
   ZaberEmulatorConfig device;
   device.devices = {1, 2, 3};
   device.axes = {1, 1, 1};
-  ZaberConfig driver = config();
+  ZaberConfig driver = TestedZaber::config();
   driver.reply_checksum = true;
   for (int i = 0; i < 3; ++i) driver.addresses[i] = {i + 1, 1};
   make(device, driver);
@@ -150,24 +101,6 @@ TEST_F(ZaberTest, RecoversFromFaultsOfTheLineAndLosesNoMove) {
     expectNear(rig_->place(), kPlace, kStep);
     expectNear(rig_->read(), rig_->place(), 0.1 * kStep);
   }
-}
-
-TEST_F(ZaberTest, LongSilenceIsAFaultThatCanBeCleared) {
-  start();
-  rig_->driver().moveTo(kPlace, 0.2e-3);
-  rig_->inject("silence:5");
-  ASSERT_TRUE(rig_->runUntil([&] { return rig_->driver().state() == State::kFault; }, 4));
-  EXPECT_NE(rig_->driver().why().find("no answer"), std::string::npos) << rig_->driver().why();
-  EXPECT_FALSE(rig_->driver().reading());  // nobody knows where a device is that does not answer
-  rig_->run(5);
-  expectNear(rig_->read(), rig_->place(), 0.1 * kStep);
-  EXPECT_EQ(rig_->driver().state(), State::kFault);  // latched
-  EXPECT_FALSE(rig_->device().moves());              // the stop was said again until it was heard
-  rig_->driver().clearFault();
-  ASSERT_TRUE(rig_->runUntilReady());
-  rig_->run(0.5);
-  EXPECT_FALSE(rig_->device().moves());  // rests until the next command
-  moveAndCheck();
 }
 
 TEST_F(ZaberTest, RefusalsAndFaultFlagsStopItAndSayWhy) {
@@ -207,7 +140,7 @@ TEST_F(ZaberTest, MovesNothingWithoutAReferencePosition) {
 TEST_F(ZaberTest, HomesWhenItsConfigurationSaysSo) {
   ZaberEmulatorConfig device;
   device.referenced = false;
-  ZaberConfig driver = config();
+  ZaberConfig driver = TestedZaber::config();
   driver.home = true;
   make(device, driver);
   ASSERT_TRUE(rig_->runUntilReady(30)) << rig_->driver().why();
@@ -232,7 +165,7 @@ TEST_F(ZaberTest, AStopThatTheLineLostIsSaidAgain) {
 }
 
 TEST_F(ZaberTest, ADeviceThatWasSwitchedOffAndOnDoesNotHomeByItself) {
-  ZaberConfig driver = config();
+  ZaberConfig driver = TestedZaber::config();
   driver.home = true;
   make({}, driver);
   start();
@@ -245,24 +178,6 @@ TEST_F(ZaberTest, ADeviceThatWasSwitchedOffAndOnDoesNotHomeByItself) {
   EXPECT_NE(rig_->driver().why().find("home"), std::string::npos) << rig_->driver().why();
   rig_->run(1);
   expectNear(rig_->place(), there, 0);
-}
-
-TEST_F(ZaberTest, ConnectsAgainByItselfAndRests) {
-  start();
-  rig_->driver().moveTo(kPlace + Eigen::Vector3d(5e-3, 0, 0), 1e-3);
-  rig_->run(0.2);
-  rig_->wire().pull();
-  rig_->run(1);
-  EXPECT_EQ(rig_->driver().state(), State::kDisconnected);
-  EXPECT_FALSE(rig_->driver().reading());
-  EXPECT_NE(rig_->driver().why().find("pulled"), std::string::npos) << rig_->driver().why();
-  rig_->wire().plug();
-  ASSERT_TRUE(rig_->runUntilReady());
-  EXPECT_FALSE(rig_->device().moves());  // the first thing it heard was a stop
-  const Eigen::Vector3d there = rig_->place();
-  rig_->run(0.5);
-  expectNear(rig_->place(), there, 0);
-  moveAndCheck();
 }
 
 TEST_F(ZaberTest, ItsEndIsToldAndNotHiddenByTryingForEver) {
@@ -289,7 +204,7 @@ TEST_F(ZaberTest, StopsWhenItIsDestroyed) {
   };
   std::string heard;
   {
-    ZaberDriver driver(config(), std::make_unique<Ear>(&heard));
+    ZaberDriver driver(TestedZaber::config(), std::make_unique<Ear>(&heard));
     driver.step(1);
     heard.clear();
   }
