@@ -176,6 +176,7 @@ std::optional<Eigen::Vector3d> InjectionController::step(const Input& input, dou
     target_offset_.reset();
     monitor_.skip();
     needle_speed_.reset();
+    endPulse(held_because_);
     return setpoint_;  // before the first pose there is nothing to hold yet
   }
   if (!setpoint_) takeHold(*input.needle);
@@ -242,6 +243,13 @@ void InjectionController::stop(InjectionOutcome outcome, const std::string& reas
   held_because_ = reason;
 }
 
+/// Where it is not known what is injected into. By hand only the pulse is over.
+void InjectionController::endPulse(const std::string& why) {
+  if (!pulse()) return;
+  if (byHand()) return happen(InjectionEvent::kInjected);
+  stop(InjectionOutcome::kGuard, why + " while it injects");
+}
+
 std::optional<Eigen::Vector3d> InjectionController::ownTarget(const Input& input, double dt) {
   const bool out = injection_ == InjectionState::kWithdraw;
   held_because_.clear();
@@ -253,6 +261,7 @@ std::optional<Eigen::Vector3d> InjectionController::ownTarget(const Input& input
     held_because_ = "no trusted force";
     // What the membrane does meanwhile is not known.
     if (injection_ == InjectionState::kIndent) stop(InjectionOutcome::kGuard, "no trusted force while it indents");
+    endPulse(held_because_);
     return std::nullopt;
   }
   const std::string beyond = out ? "" : guard(input);

@@ -42,8 +42,10 @@ const char* toText(OperatingState state);
 ///     force, depth         may only be withdrawn, as long     PAUSED, the injection ends (outcome guard); what is left
 ///                          as it is beyond                    is withdraw, home and disable. Not while it withdraws
 ///     time in a state      -                                  same, while it withdraws as well
-///     no trusted force     held while it lasts                same while it indents; else held while it lasts. It is
-///                                                             not needed to withdraw
+///     no trusted force     held while it lasts                same while it indents or injects; else held while it
+///                                                             lasts. It is not needed to withdraw
+///     no trusted needle    held while it lasts, a pulse ends  same while it injects; else held while it lasts
+///     silent injector      its pulse counts as over           PAUSED, when the pulse and injector_patience are over
 ///     tracking, speed      FAULT: no set-point; only disable leaves it
 ///     speed of set-point   never above the limit
 class InjectionController {
@@ -108,6 +110,7 @@ class InjectionController {
   std::optional<Eigen::Vector3d> ownTarget(const Input& input, double dt);
   std::string guard(const Input& input) const;
   void stop(InjectionOutcome outcome, const std::string& reason);
+  void endPulse(const std::string& why);
   void goHome(const Eigen::Vector3d& axis, double dt);
   void follow(const Eigen::Vector3d& target, const Input& input, double dt);
   void move(const Eigen::Vector3d& motion, double dt);

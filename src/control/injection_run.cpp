@@ -208,10 +208,10 @@ void InjectionRun::inject(const std::optional<InjectorReport>& injector, double 
     injected_ = true;
     step.event = InjectionEvent::kInjected;
   }
-  if (status == InjectorWait::Status::kTimeOut) {
-    leave(InjectionOutcome::kInjectorTimeOut,
-          injector ? "the injector has not finished" : "no trusted word of the injector", step);
-  }
+  if (status != InjectorWait::Status::kTimeOut) return;
+  if (injector) return leave(InjectionOutcome::kInjectorTimeOut, "the injector has not finished", step);
+  step.stop = InjectionOutcome::kInjectorTimeOut;
+  step.reason = "no trusted word of the injector";
 }
 
 void InjectionRun::retract(double depth, double dt, Step& step) {

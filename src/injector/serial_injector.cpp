@@ -18,7 +18,16 @@ SerialInjector::SerialInjector(std::unique_ptr<Wire> wire, const InjectorProtoco
       limits_(model.limits),
       model_(model),
       lines_(protocol.terminator, kLongestLine),
-      waiting_balance_(model.balance) {}
+      waiting_balance_(model.balance) {
+  if (protocol_.stop) wire_->setStopWhenKilled(protocol_.stop->send.fill({}));  // a pulse must not outlive its node
+}
+
+SerialInjector::~SerialInjector() {
+  if (protocol_.stop && mayFlow() && wire_->isOpen()) wire_->write(protocol_.stop->send.fill({}), time_);
+}
+
+/// A pulse whose reply went wrong may be under way as well.
+bool SerialInjector::mayFlow() const { return sent_pulse_ || model_.reading().busy || !fault_.empty(); }
 
 std::string SerialInjector::pulse(const InjectionPulse& pulse) {
   if (!fault().empty()) return fault();
@@ -46,13 +55,11 @@ std::string SerialInjector::setBalance(double pressure) {
 std::string SerialInjector::stop() {
   waiting_pulse_.reset();
   const bool stopping = waiting_stop_ || exchange_ == Exchange::kStop;
-  // One whose reply went wrong may be under way as well.
-  const bool may_flow = sent_pulse_ || model_.reading().busy || !fault_.empty();
   if (!protocol_.stop) {
     report();
-    return may_flow ? "the protocol has no line for it" : "";
+    return mayFlow() ? "the protocol has no line for it" : "";
   }
-  if (may_flow && !stopping) {
+  if (mayFlow() && !stopping) {
     waiting_stop_ = true;
     tries_ = 0;
   }

@@ -24,6 +24,7 @@ class SerialInjector : public InjectorDevice {
  public:
   /// `model`: pipette, limits and the device's rise time; its balance pressure is sent at the start.
   SerialInjector(std::unique_ptr<Wire> wire, const InjectorProtocol& protocol, const InjectorModelConfig& model);
+  ~SerialInjector() override;  ///< ends a pulse that may be under way
 
   std::string pulse(const InjectionPulse& pulse) override;
   std::string setBalance(double pressure) override;
@@ -38,6 +39,7 @@ class SerialInjector : public InjectorDevice {
  private:
   enum class Exchange { kNone, kPulse, kBalance, kStop, kQuery };
 
+  bool mayFlow() const;
   bool keepOpen(double time);
   void listen(double time);
   void take(const std::string& reply);

@@ -15,7 +15,7 @@ constexpr int kSuccessesToForget = 12;  // exchanges after which a failure is no
 
 SerialManipulator::SerialManipulator(std::unique_ptr<Wire> wire, const Link& link)
     : wire_(std::move(wire)), link_(link), why_(link.device + ": not connected yet") {
-  wire_->setLastWords(link_.stop);  // a node that is killed must not leave a device in motion
+  wire_->setStopWhenKilled(link_.stop);  // a node that is killed must not leave a device in motion
 }
 
 SerialManipulator::~SerialManipulator() {

@@ -9,7 +9,7 @@
 #include <boost/asio/write.hpp>
 #include <cstring>
 
-#include "serial/last_words.h"
+#include "serial/stop_guard.h"
 
 namespace microinjection {
 
@@ -35,7 +35,7 @@ struct SerialPort::Line {
   std::string unsent;   // handed over, and not yet given to the system
   std::string sending;  // must stay where it is while it is sent
   bool broken = false;
-  LastWords last_words;
+  StopGuard stop_guard;
 
   std::string open(const SerialPortConfig& config) {
     error_code error;
@@ -91,8 +91,8 @@ SerialPort::~SerialPort() = default;
 std::string SerialPort::open() {
   line_ = std::make_unique<Line>();
   std::string reason = line_->open(config_);
-  if (reason.empty() && !last_words_.empty())
-    reason = line_->last_words.begin(line_->port.native_handle(), last_words_);
+  if (reason.empty() && !stop_when_killed_.empty())
+    reason = line_->stop_guard.begin(line_->port.native_handle(), stop_when_killed_);
   if (!reason.empty()) line_.reset();
   return reason;
 }

@@ -24,7 +24,7 @@ class SerialPort : public Wire {
   explicit SerialPort(const SerialPortConfig& config);
   ~SerialPort() override;
 
-  void setLastWords(const std::string& bytes) override { last_words_ = bytes; }
+  void setStopWhenKilled(const std::string& bytes) override { stop_when_killed_ = bytes; }
   std::string open() override;  ///< what came while nobody listened is thrown away
   bool isOpen() const override;
   std::string read(double time) override;
@@ -33,7 +33,7 @@ class SerialPort : public Wire {
  private:
   struct Line;  // Asio's headers are heavy
   SerialPortConfig config_;
-  std::string last_words_;
+  std::string stop_when_killed_;
   std::unique_ptr<Line> line_;  // none: closed
 };
 

@@ -10,7 +10,7 @@ class Wire {
   virtual ~Wire() = default;
 
   /// Bytes to be said when this program dies without having closed the line; from the next open() on.
-  virtual void setLastWords(const std::string& /*bytes*/) {}
+  virtual void setStopWhenKilled(const std::string& /*bytes*/) {}
 
   /// Opens the line, or tries again after it broke. Empty when it is open, otherwise the reason.
   virtual std::string open() = 0;

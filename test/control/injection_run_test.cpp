@@ -206,6 +206,34 @@ TEST_F(InjectionRunTest, InjectorThatIsDeadOrBrokenIsNotWaitedForLong) {
   EXPECT_EQ(rig_.depth(), 0);
 }
 
+TEST_F(InjectionRunTest, InjectorThatIsSilentLeavesTheNeedleWhereItIs) {
+  enable();
+  ASSERT_TRUE(reach(InjectionState::kInject));
+  rig_.injector_tells = false;
+  rig_.run(controller_, 1400);
+  EXPECT_EQ(controller_.result().outcome, InjectionOutcome::kInjectorTimeOut);
+  expectSafe("silent injector");
+  EXPECT_GT(rig_.depth(), 0);
+  EXPECT_EQ(controller_.command("withdraw"), "");
+}
+
+TEST_F(InjectionRunTest, NoPulseGoesOnWhereNeedleOrForceIsNotKnown) {
+  for (const bool needle : {true, false}) {
+    rig_ = SpringRig();
+    enable();
+    ASSERT_TRUE(reach(InjectionState::kInject));
+    steps(20);
+    ASSERT_TRUE(controller_.pulse());
+    (needle ? rig_.needle_tells : rig_.force_tells) = false;
+    rig_.step(controller_);
+    EXPECT_FALSE(controller_.pulse()) << needle;
+    EXPECT_EQ(controller_.result().outcome, InjectionOutcome::kGuard) << needle;
+    rig_.needle_tells = rig_.force_tells = true;
+    expectSafe("known again");
+    EXPECT_EQ(controller_.state(), OperatingState::kPaused);
+  }
+}
+
 TEST_F(InjectionRunTest, VolumeEndsThePulse) {
   config_.goal.pulse.volume = 0.05e-15;
   enable();

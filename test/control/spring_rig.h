@@ -24,6 +24,7 @@ struct SpringRig {
   double noise = 10e-9;          ///< N rms, along the pipette
   double lag = 2e-3;             ///< s
   bool injector_works = true;
+  bool needle_tells = true, force_tells = true, injector_tells = true;  ///< else nothing is known of it
 
   Eigen::Vector3d tip = Eigen::Vector3d(0, 0, 40e-6);
   bool punctured = false, second_punctured = false;
@@ -58,6 +59,9 @@ struct SpringRig {
     const bool asked = controller.pulse() && injector_works;
     if (asked) volume += 1e-15 * kStep;
     input.injector = InjectorReport{asked && volume < 0.2e-15, volume};
+    if (!needle_tells) input.needle.reset();
+    if (!force_tells) input.force.reset();
+    if (!injector_tells) input.injector.reset();
     deepest = std::max(deepest, depth());
     largest_force = std::max(largest_force, force);
   }

@@ -99,10 +99,28 @@ TEST_F(SerialInjectorTest, ARefusedOrWronglyAnsweredPulseIsAFault) {
 
 class StoppedSerialInjectorTest : public SerialInjectorTest {
  protected:
-  StoppedSerialInjectorTest()
-      : SerialInjectorTest(std::string(kTestProtocol) + "stop: {send: \"S\\r\", expect: OK}\n") {}
+  StoppedSerialInjectorTest() : SerialInjectorTest(std::string(kTestProtocol) + kStop) {}
   long stops() const { return std::count(script.sent.begin(), script.sent.end(), "S\r"); }
 };
+
+TEST_F(StoppedSerialInjectorTest, AKilledNodesPulseIsStopped) { EXPECT_EQ(script.stop_when_killed, "S\r"); }
+
+TEST_F(StoppedSerialInjectorTest, APulseEndsWithTheProgram) {
+  for (const bool pulse : {false, true}) {
+    WireScript line;
+    {
+      SerialInjector ends(std::make_unique<ScriptedWire>(line), testProtocol(std::string(kTestProtocol) + kStop), model);
+      for (int i = 0; i < 300; ++i) {
+        const std::size_t sent = line.sent.size();
+        if (i == 100 && pulse) ends.pulse({5, 10e3, 30});
+        ends.step(0.01 * i);
+        if (line.sent.size() > sent) line.incoming = line.sent.back()[0] == '?' ? "=10.0\r" : "OK\r";
+      }
+      ASSERT_EQ(ends.reading().busy, pulse);
+    }
+    EXPECT_EQ(line.sent.back() == "S\r", pulse);
+  }
+}
 
 TEST_F(StoppedSerialInjectorTest, AStopEndsThePulseThatIsUnderWay) {
   run(1);

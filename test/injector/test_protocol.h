@@ -18,6 +18,7 @@ refuse: "ERR.*"
 terminator: "\r"
 quiet: 0.1
 )yaml";
+constexpr char kStop[] = "stop: {send: \"S\\r\", expect: OK}\n";
 
 inline InjectorProtocol testProtocol(const std::string& text = kTestProtocol) {
   ConfigReader reader(YAML::Load(text), "test");

@@ -12,6 +12,7 @@ struct WireScript {
   std::string incoming;           ///< what the driver reads next
   std::vector<std::string> sent;  ///< what it wrote
   std::string refusal;            ///< why the line does not open; empty: it does
+  std::string stop_when_killed;
   bool open = false;
   int opened = 0;
 };
@@ -19,6 +20,7 @@ struct WireScript {
 class ScriptedWire : public Wire {
  public:
   explicit ScriptedWire(WireScript& script) : script_(script) {}
+  void setStopWhenKilled(const std::string& bytes) override { script_.stop_when_killed = bytes; }
   std::string open() override {
     script_.open = script_.refusal.empty();
     script_.opened += script_.open ? 1 : 0;

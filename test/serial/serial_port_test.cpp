@@ -99,7 +99,7 @@ void runDriver(const SerialPortConfig& config, int signal) {
   if (driver == 0) {
     {
       SerialPort port(config);
-      port.setLastWords("stop");
+      port.setStopWhenKilled("stop");
       if (!port.open().empty()) _exit(1);
       port.write("go on, ", 0);
       if (signal != 0) raise(signal);
@@ -111,7 +111,7 @@ void runDriver(const SerialPortConfig& config, int signal) {
   ASSERT_EQ(signal != 0 ? WTERMSIG(status) : WEXITSTATUS(status), signal);
 }
 
-TEST_F(SerialPortTest, AKilledDriversLastWordsAreSaid) {
+TEST_F(SerialPortTest, AKilledDriversStopIsSaid) {
   PseudoTerminal terminal(link_);
   for (const int signal : {SIGKILL, SIGTERM, SIGSEGV}) {
     runDriver({link_, 9600}, signal);
@@ -121,7 +121,7 @@ TEST_F(SerialPortTest, AKilledDriversLastWordsAreSaid) {
   }
 }
 
-TEST_F(SerialPortTest, ADriverThatClosesItsLineHasNoLastWords) {
+TEST_F(SerialPortTest, ADriverThatClosesItsLineIsNotSpokenFor) {
   PseudoTerminal terminal(link_);
   runDriver({link_, 9600}, 0);
   ASSERT_EQ(port_.open(), "");

@@ -1,4 +1,4 @@
-#include "serial/last_words.h"
+#include "serial/stop_guard.h"
 
 #include <fcntl.h>
 #include <sys/prctl.h>
@@ -16,7 +16,7 @@ namespace {
 [[noreturn]] void guard(int line, int parent, const char* words, std::size_t size) {
   setsid();  // what ends the program's whole group must not end this one
   for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) signal(number, SIG_IGN);
-  prctl(PR_SET_NAME, "last_words");  // nor what ends programs by their name
+  prctl(PR_SET_NAME, "stop_guard");  // nor what ends programs by their name
   // Nothing else may be kept open: neither connections nor the pipe's other end.
   dup2(line, 0);
   dup2(parent, 1);
@@ -40,7 +40,7 @@ namespace {
 
 }  // namespace
 
-std::string LastWords::begin(int line, const std::string& words) {
+std::string StopGuard::begin(int line, const std::string& words) {
   end();
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) return std::strerror(errno);
@@ -57,7 +57,7 @@ std::string LastWords::begin(int line, const std::string& words) {
   return why;
 }
 
-void LastWords::end() {
+void StopGuard::end() {
   if (parent_ >= 0) {
     const char farewell = 'x';
     [[maybe_unused]] const ssize_t said = write(parent_, &farewell, 1);  // a guard that is gone says nothing either
