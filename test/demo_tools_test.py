@@ -36,8 +36,9 @@ class TrainingPlotTest(InFolder):
     COLUMNS = [column for column, *_ in plot_training.MEASURES + plot_training.SHARES]
 
     def history(self, *operators):
-        rows = [','.join(['operator', 'session', 'score'] + self.COLUMNS)]
-        rows += [','.join([name, str(number), '50'] + ['1'] * len(self.COLUMNS)) for number, name in enumerate(operators)]
+        rows = [','.join(['operator', 'session', 'outcome', 'score'] + self.COLUMNS)]
+        rows += [','.join([name, str(number), 'aborted' if number % 3 == 2 else 'complete', '50'] +
+                          ['1'] * len(self.COLUMNS)) for number, name in enumerate(operators)]
         return self.write('history.csv', '\n'.join(rows) + '\n')
 
     def test_sessions_are_those_of_one_operator(self):
@@ -51,7 +52,7 @@ class TrainingPlotTest(InFolder):
             plot_training.read(self.history())
 
     def test_draws_one_session_and_many(self):
-        for operators in (['ada'], ['ada'] * 40):
+        for operators in (['ada'], ['bob', 'bob', 'ada'], ['ada'] * 40):
             picture = self.folder / 'picture.png'
             plot_training.plot(self.history(*operators), picture)
             self.assertGreater(matplotlib.image.imread(picture).std(), 0.05)

@@ -62,17 +62,18 @@ def write_motion(path, seconds):
 
 
 class Histograms:
-    """The newest histograms that the nodes tell on /diagnostics, since their start."""
+    """The newest histograms that the nodes tell on /diagnostics, since their start. `sources`: name -> status."""
 
-    def __init__(self):
+    def __init__(self, sources):
         import rospy  # late: it takes the master's address from the environment at once
         from diagnostic_msgs.msg import DiagnosticArray
         self.newest = {}
+        self._sources = sources
         self._subscriber = rospy.Subscriber('/diagnostics', DiagnosticArray, self._on_diagnostics, queue_size=100)
 
     def _on_diagnostics(self, message):
         for status in message.status:
-            for source, name in SOURCES.items():
+            for source, name in self._sources.items():
                 if status.name != name:
                     continue
                 values = {pair.key: pair.value for pair in status.values}
@@ -82,7 +83,7 @@ class Histograms:
                     {float(upper): int(count) for upper, count in bins})
 
     def complete(self):
-        return set(self.newest) == set(SOURCES)
+        return set(self.newest) == set(self._sources)
 
 
 def difference(before, after):
@@ -116,7 +117,7 @@ def start_rviz(session, logs):
 
 def measure(session, seconds):
     """Returns the histograms of `seconds` of a session that has begun, and the memory (bytes) at begin and end."""
-    histograms = Histograms()
+    histograms = Histograms(SOURCES)
     time.sleep(SETTLE)
     if not wait_until(histograms.complete, 20):
         raise SessionError(f'no histograms came but of {sorted(histograms.newest)}')

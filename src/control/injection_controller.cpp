@@ -52,7 +52,10 @@ bool InjectionController::busy() const {
 }
 
 InjectionFeedback InjectionController::feedback() const {
-  return {injection_, monitor_.force(), monitor_.depth(), run_.result().duration};
+  const InjectionGoal& goal = run_.goal();
+  const int layer = goal.puncture ? run_.result().punctures + 1 : 0;
+  const int layers = goal.puncture ? goal.layers : 0;
+  return {injection_, layer, layers, monitor_.force(), monitor_.depth(), run_.result().duration};
 }
 
 std::optional<PulseGoal> InjectionController::pulse() const {

@@ -54,6 +54,8 @@ const char* toText(InjectionOutcome outcome);
 /// For whoever waits.
 struct InjectionFeedback {
   InjectionState state = InjectionState::kIdle;
+  int layer = 0;       ///< membrane that comes next, 1 is the outermost; layers + 1 when all are behind the needle
+  int layers = 0;      ///< of the goal; both are 0 where none is to be punctured
   double force = 0;    ///< N, along the pipette, above the offset at rest, mean of 32 samples
   double depth = 0;    ///< m past the touch; 0 before
   double elapsed = 0;  ///< s, since the start

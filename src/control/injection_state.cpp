@@ -14,6 +14,13 @@ const char* toText(InjectionEvent event) {
   return kWords[static_cast<int>(event)];
 }
 
+std::optional<InjectionState> injectionStateOf(const std::string& word) {
+  for (const InjectionState state : kInjectionStates) {
+    if (word == toText(state)) return state;
+  }
+  return std::nullopt;
+}
+
 std::optional<InjectionState> after(InjectionState state, InjectionEvent event) {
   using State = InjectionState;
   using Event = InjectionEvent;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <optional>
+#include <string>
 
 namespace microinjection {
 
@@ -33,6 +34,8 @@ constexpr std::array<InjectionEvent, 11> kInjectionEvents = {
 /// Words for people and topics: "idle", "approach", ...; "start", "touch", ...
 const char* toText(InjectionState state);
 const char* toText(InjectionEvent event);
+/// The state of that word; empty where there is none.
+std::optional<InjectionState> injectionStateOf(const std::string& word);
 
 /// The state after an event; empty where the event means nothing, and the state stays.
 ///

@@ -10,7 +10,7 @@ namespace microinjection {
 
 struct InjectorModelConfig {
   double rise_time = 5e-3;  ///< s, time constant of the regulator's first-order response
-  double balance = 600;     ///< Pa, gauge, at the start
+  double balance = 545;     ///< Pa, gauge, at the start
   PipetteConfig pipette;
   InjectorLimits limits;
 

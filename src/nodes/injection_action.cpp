@@ -93,6 +93,8 @@ void InjectionAction::tell(const ros::Time& now) {
   cell_microinjection::InjectFeedback feedback;
   feedback.state = toText(known.state);
   feedback.waits = controller_.waits();
+  feedback.layer = known.layer;
+  feedback.layers = known.layers;
   feedback.force = known.force;
   feedback.depth = known.depth;
   feedback.elapsed = known.elapsed;

@@ -4,10 +4,14 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <ctime>
+#include <filesystem>
+#include <iomanip>
 #include <limits>
 #include <sstream>
 
 #include "base/atomic_file.h"
+#include "base/worker_processes.h"
 #include "cell_microinjection/OperatingState.h"
 #include "nodes/conversions.h"
 #include "nodes/node_parameters.h"
@@ -37,6 +41,13 @@ void putForce(const Message& message, const std::optional<Value>& value, Timelin
   }
 }
 
+std::string localTime() {
+  const std::time_t now = std::time(nullptr);
+  std::ostringstream text;
+  text << std::put_time(std::localtime(&now), "%FT%T");
+  return text.str();
+}
+
 std::string value(const diagnostic_msgs::DiagnosticStatus& status, const std::string& key) {
   for (const auto& pair : status.values) {
     if (pair.key == key) return pair.value;
@@ -53,7 +64,8 @@ void writeIntervals(std::ostream& out, const std::string& name, const IntervalHi
 
 const char* const SessionRecorderNode::kHelp =
     "session_recorder: writes force_depth.csv, summary.yaml and session.bag of a session when it ends.\n"
-    "Parameters: ~output_dir (required), ~row_period (s), ~hand, ~injector (record them), ~bag,\n~end_when_done.\n";
+    "Parameters: ~output_dir (required), ~row_period (s), ~hand, ~injector (record them), ~bag,\n"
+    "~training/... (see config/training.yaml), ~end_when_done.\n";
 
 SessionRecorderNode::Parameters SessionRecorderNode::Parameters::read(const ros::NodeHandle& private_node) {
   Parameters parameters;
@@ -64,6 +76,10 @@ SessionRecorderNode::Parameters SessionRecorderNode::Parameters::read(const ros:
   reader.boolean("injector", parameters.injector);
   reader.boolean("bag", parameters.bag);
   reader.boolean("end_when_done", parameters.end_when_done);
+  if (reader.has("training")) {
+    ConfigReader training = reader.section("training");
+    parameters.training = TrainingConfig::read(training);
+  }
   reader.finish();
   return parameters;
 }
@@ -87,6 +103,9 @@ SessionRecorderNode::SessionRecorderNode(ros::NodeHandle node, ros::NodeHandle p
     hand_force_ = &cycle_.input<geometry_msgs::WrenchStamped>("haptic/servo_cf", Phase::kTickBefore, 0.05);
     phase_ = &cycle_.input<cell_microinjection::StringStamped>("operator/phase", Phase::kTickBefore, kForever);
   }
+  began_ = localTime();
+  if (parameters_.training) training_ = std::make_unique<TrainingLog>(*parameters_.training);
+  if (training_) table_.onRow([this](const SessionTable::Row& row) { training_->add(row); });
   diagnostics_ = cycle_.node().subscribe("/diagnostics", 100, &SessionRecorderNode::onDiagnostics, this);
   fillTable();
   if (parameters_.bag) recordBag();
@@ -122,7 +141,7 @@ void SessionRecorderNode::fillTable() {
     layers_ = message.layers;
   });
   injection_.listen([this](const cell_microinjection::InjectionStatus& message, const ros::Time&) {
-    table_.injection.put(stampOf(message), message.state);
+    table_.injection.put(stampOf(message), {{message.state, static_cast<int>(message.punctures)}});
   });
   if (injector_) {
     injector_->listen([this](const cell_microinjection::InjectorState& message, const ros::Time&) {
@@ -166,6 +185,20 @@ void SessionRecorderNode::run() {
   table_.finish();
   writeFileAtomically(parameters_.output_dir + "/force_depth.csv", table_.text());
   writeFileAtomically(parameters_.output_dir + "/summary.yaml", summary());
+  if (training_) score();
+}
+
+void SessionRecorderNode::score() const {
+  const TrainingConfig& config = training_->config();
+  const TrainingLog::Result result = training_->finish(parameters_.output_dir, began_);
+  ROS_INFO_STREAM(result.text);
+  if (!result.in_history) return;
+  const std::string picture = parameters_.output_dir + "/training.png";
+  const std::string plot = std::filesystem::path(thisProgram()).parent_path() / "plot_training.py";
+  runWorkers({{plot, config.history, picture, "--operator", config.operator_name}}, 1, [&](std::size_t, int status) {
+    if (status == 0) ROS_INFO_STREAM("compared with earlier sessions in " << picture);
+    if (status != 0) ROS_WARN_STREAM("no picture: " << plot << " has failed; the history is " << config.history);
+  });
 }
 
 void SessionRecorderNode::step(const Cycle::Tick& tick) {

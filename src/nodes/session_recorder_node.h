@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,7 @@
 #include "nodes/latency_meter.h"
 #include "nodes/session_bag.h"
 #include "record/session_table.h"
+#include "record/training_log.h"
 
 namespace microinjection {
 
@@ -43,6 +45,9 @@ namespace microinjection {
 ///   hand        whether there is a haptic bridge to record; default true
 ///   injector    whether there is an injector to record; default true
 ///   bag         write session.bag too; default true
+///   training       none: not scored; else a map of operator (name), history (path of a CSV file), force and task, see
+///                  config/training.yaml. Then training.yaml is written too, the history gets a row and
+///                  training.png, beside training.yaml, compares it with the operator's earlier ones
 ///   end_when_done  write the files and end this node when the operator's phase is done; default false
 class SessionRecorderNode {
  public:
@@ -59,6 +64,7 @@ class SessionRecorderNode {
     bool injector = true;
     bool bag = true;
     bool end_when_done = false;
+    std::optional<TrainingConfig> training;
     static Parameters read(const ros::NodeHandle& private_node);
   };
   struct NodeFigures {
@@ -71,6 +77,7 @@ class SessionRecorderNode {
   void withdrawInvalid();
   void onDiagnostics(const diagnostic_msgs::DiagnosticArrayConstPtr& message);
   std::string summary() const;
+  void score() const;
 
   Parameters parameters_;
   Cycle cycle_;
@@ -86,6 +93,8 @@ class SessionRecorderNode {
   Input<geometry_msgs::WrenchStamped>* hand_force_ = nullptr;      ///< null without a hand
   Input<cell_microinjection::StringStamped>* phase_ = nullptr;     ///< null without a hand
   ros::Subscriber diagnostics_;
+  std::string began_;                          ///< local date and time, ISO 8601
+  std::unique_ptr<TrainingLog> training_;      ///< null where nobody trains
   std::unique_ptr<SessionBag> bag_;            ///< null without a bag
   std::unique_ptr<LatencyMeter> latency_;      ///< null in lock step, where wall time means nothing
   std::unique_ptr<BareTimerLoop> timer_loop_;  ///< null in lock step

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include "record/timeline.h"
 
@@ -31,6 +33,26 @@ class SessionTable {
     unsigned layers_punctured = 0;  ///< where the needle is or was last
   };
 
+  /// Of the injection, as the controller sees it.
+  struct Injection {
+    std::string state;
+    int punctures = 0;  ///< felt since the needle set out
+  };
+  /// A row; what was not trusted at its time is empty.
+  struct Row {
+    double time = 0;  ///< s, of the table
+    std::optional<Pose> needle;
+    std::optional<Eigen::Vector3d> predicted;  ///< N, of the cell on the tip; only with a needle
+    std::optional<Measured> measured;
+    std::optional<double> hand_force;  ///< N
+    std::optional<double> depth;       ///< m; empty before the first touch and without a needle
+    bool in_contact = false;
+    std::string phase, injection;  ///< empty: not told yet
+    Cell cell;
+    int punctures = 0;             ///< that the controller has felt since the needle set out
+    std::optional<double> volume;  ///< m^3
+  };
+
   /// @param period    ns between rows
   /// @param patience  ns for which a row waits for messages that are late
   SessionTable(Nanoseconds period, Nanoseconds patience);
@@ -42,8 +64,11 @@ class SessionTable {
   Timeline<double> hand_force;
   Timeline<std::string> phase;
   Timeline<Cell> cell;
-  Timeline<std::string> injection;  ///< state of the injection, as the controller sees it
-  Timeline<double> volume;          ///< m^3, net, out of the pipette
+  Timeline<Injection> injection;
+  Timeline<double> volume;  ///< m^3, net, out of the pipette
+
+  /// Sees every row when it is written.
+  void onRow(std::function<void(const Row&)> listener) { listener_ = std::move(listener); }
 
   /// Writes the rows that are due `patience` before `now`; the first call is time 0 of the table. After the row in
   /// which the phase is `done` there are no more.
@@ -57,8 +82,9 @@ class SessionTable {
 
  private:
   void advanceTo(Nanoseconds end);
-  void writeRow(Nanoseconds time);
-  void writeDepth(Nanoseconds time, const Pose& pose, bool in_contact);
+  Row row(Nanoseconds time);
+  std::optional<double> depth(Nanoseconds time, const Pose& pose, bool in_contact);
+  void write(const Row& row);
   void forgetBefore(Nanoseconds time);
 
   Nanoseconds period_, patience_;
@@ -68,6 +94,7 @@ class SessionTable {
   bool done_ = false;
   bool in_contact_ = false;                    ///< of the last row
   std::optional<Eigen::Vector3d> touched_at_;  ///< m, last; empty before the first touch
+  std::function<void(const Row&)> listener_;
   std::ostringstream rows_;
 };
 

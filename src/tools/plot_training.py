@@ -37,6 +37,11 @@ def read(path, name=None):
     return name, own[-MOST_SESSIONS:]
 
 
+def complete(rows):
+    """Which of the rows are sessions that count; of the others there are measures, but no points."""
+    return numpy.array([row['outcome'] == 'complete' for row in rows])
+
+
 def column(rows, name):
     return numpy.array([float(row[name]) for row in rows])
 
@@ -48,8 +53,10 @@ def plot_score(axes, rows):
         points = column(rows, name)
         axes.bar(places, points, 0.7, bottom=bottom, color=colour, label=label)
         bottom += points
-    for place, score in zip(places, column(rows, 'score')):
-        axes.annotate(f'{score:.0f}', (place, score), ha='center', va='bottom', fontsize=8)
+    for place, row in zip(places, rows):
+        counts = row['outcome'] == 'complete'
+        axes.annotate(f'{float(row["score"]):.0f}' if counts else row['outcome'], (place, float(row['score'])), ha='center',
+                      va='bottom', fontsize=8, rotation=0 if counts else 90, color='k' if counts else '0.5')
     axes.set(ylim=(0, 110), ylabel='score', xticks=places)
     axes.set_xticklabels([row['session'] for row in rows], rotation=30, ha='right', fontsize=7)
     axes.legend(loc='center left', bbox_to_anchor=(1, 0.5), frameon=False, fontsize=8)
@@ -59,10 +66,13 @@ def plot_measure(axes, rows, name, factor, label):
     values = factor * column(rows, name)
     places = numpy.arange(1, len(rows) + 1)
     axes.plot(places, values, '-', color='0.7', linewidth=1)
-    axes.plot(places[:-1], values[:-1], 'o', color='#4c78a8', markersize=4)
-    axes.plot(places[-1], values[-1], 'o', color='#e45756', markersize=6)
-    if len(rows) > 1:
-        axes.axhline(numpy.median(values[:-1]), color='0.5', linewidth=0.8, linestyle=':')
+    counts = complete(rows)
+    for chosen, face in ((counts, None), (~counts, 'w')):
+        before = chosen & (places < len(rows))
+        axes.plot(places[before], values[before], 'o', color='#4c78a8', markerfacecolor=face or '#4c78a8', markersize=4)
+    axes.plot(places[-1], values[-1], 'o', color='#e45756', markerfacecolor='#e45756' if counts[-1] else 'w', markersize=6)
+    if counts[:-1].any():
+        axes.axhline(numpy.median(values[:-1][counts[:-1]]), color='0.5', linewidth=0.8, linestyle=':')
     axes.set_title(label, fontsize=9)
     axes.set_ylim(0, 1.15 * max(values.max(), 1e-9))
     axes.xaxis.get_major_locator().set_params(integer=True)

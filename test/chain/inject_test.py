@@ -2,75 +2,47 @@
 """The action Inject: approach, puncture, injection, withdrawal; and from wherever it is cancelled the needle comes out."""
 
 import threading
-import unittest
 
 import actionlib
 import numpy as np
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
-from cell_microinjection.msg import (CellState, InjectAction, InjectGoal, InjectionStatus, InjectorState, OperatingState,
-                                     StringStamped)
-from geometry_msgs.msg import PoseStamped
+from cell_microinjection.msg import InjectAction, InjectGoal
 
-from messages import pose, position
-from participant import Participant
+from injection_chain import InjectionChainTest
 
 PUNCTURE = 1.2e-6  # N, of the zona in injected_oocyte.yaml
 GOAL = {"puncture": True, "layers": 1, "depth": 15e-6, "margin": 2e-6, "hold_time": 0.1, "pressure": 20e3, "duration": 0.3}
 ENDED = (GoalStatus.SUCCEEDED, GoalStatus.PREEMPTED, GoalStatus.ABORTED)
 
 
-class InjectTest(unittest.TestCase):
+class InjectTest(InjectionChainTest):
     @classmethod
     def setUpClass(cls):
-        cls.chain = Participant({}, {"/needle/measured_cp": PoseStamped, "/injector/state": InjectorState,
-                                     "/cell/state": CellState, "/controller/injection_state": InjectionStatus,
-                                     "/controller/operating_state": OperatingState})
-        cls.states = []
-        cls.listener = rospy.Subscriber("/controller/injection_state", InjectionStatus, cls.on_status)
-        cls.commands = rospy.Publisher("/controller/state_command", StringStamped, queue_size=10)
-        cls.moves = rospy.Publisher("/needle/move_cp", PoseStamped, queue_size=10)
+        super().setUpClass()
         cls.client = actionlib.SimpleActionClient("/controller/inject", InjectAction)
         # The server's status comes with ticks.
         waiting = threading.Thread(target=cls.client.wait_for_server)
         waiting.start()
-        while waiting.is_alive() or not (cls.commands.get_num_connections() and cls.moves.get_num_connections()):
+        while waiting.is_alive():
             cls.chain.tick()
-        cls.chain.run(50)
-
-    @classmethod
-    def on_status(cls, message):
-        if not cls.states or cls.states[-1] != message.state:
-            cls.states.append(message.state)
-
-    def needle(self):
-        return position(self.chain.seen["/needle/measured_cp"])
-
-    def status(self):
-        return self.chain.seen["/controller/injection_state"]
-
-    def tick_until(self, condition, what, ticks=30000):
-        for _ in range(ticks):
-            if condition():
-                return
-            self.chain.tick()
-        self.fail(f"{what}: not within {ticks} ticks; the injection is in {self.status()}")
 
     def send(self, **changes):
-        type(self).states = []
-        self.client.send_goal(InjectGoal(**{**GOAL, **changes}))
+        InjectionChainTest.states = []
+        type(self).told = []
+        self.client.send_goal(InjectGoal(**{**GOAL, **changes}), feedback_cb=self.on_feedback)
+
+    @classmethod
+    def on_feedback(cls, feedback):
+        now = feedback.state, feedback.layer, feedback.layers
+        if not cls.told or cls.told[-1] != now:
+            cls.told.append(now)
 
     def result(self):
         # The status may come before the result.
         self.tick_until(lambda: self.client.get_state() in ENDED and self.client.get_result(), "the result")
         return self.client.get_state(), self.client.get_result()
-
-    def check_out(self, start):
-        """The needle is where it set out, the controller ready for the next one."""
-        np.testing.assert_allclose(self.needle(), start, atol=0.1e-6)
-        self.tick_until(lambda: self.status().state == "idle", "idle", 200)  # its message may come after the result
-        self.assertEqual(self.chain.seen["/controller/operating_state"].state, "ENABLED")
 
     def test_1_a_goal_that_cannot_be_is_aborted_with_the_reason(self):
         start = self.needle()
@@ -121,16 +93,7 @@ class InjectTest(unittest.TestCase):
         self.assertGreater(result.volume, 0)
 
     def test_4_cancelled_while_it_injects_the_pulse_stops_and_it_withdraws(self):
-        for command in ("disable", "enable"):  # beside the hole
-            self.commands.publish(StringStamped(string=command))
-            wanted = "DISABLED" if command == "disable" else "ENABLED"
-            self.tick_until(lambda: self.chain.seen["/controller/operating_state"].state == wanted, wanted)
-            if command == "disable":
-                aside = self.needle() + [8e-6, 0, 0]
-                target = pose(*aside)
-                target.header.stamp = self.chain.now
-                self.moves.publish(target)
-                self.tick_until(lambda: np.allclose(self.needle(), aside, atol=1e-8), "the move aside")
+        self.move_aside(8e-6)  # of the hole
         start, pulses = self.needle(), self.chain.seen["/injector/state"].pulses
         self.send(duration=30.0)
         self.tick_until(lambda: self.chain.seen["/injector/state"].busy, "a pulse")
@@ -144,6 +107,28 @@ class InjectTest(unittest.TestCase):
         self.assertEqual((state, result.outcome, result.punctures), (GoalStatus.PREEMPTED, "preempted", 1))
         self.check_out(start)
         self.assertEqual(self.chain.seen["/injector/state"].pulses, pulses)
+
+    def test_5_through_two_membranes(self):
+        """States and feedback tell of each; the injector works behind the last."""
+        self.move_aside(-16e-6)  # where no hole is
+        start, pulses = self.needle(), self.chain.seen["/injector/state"].pulses
+        self.send(layers=2)
+        self.tick_until(lambda: self.status().state == "punctured", "the first puncture")
+        self.assertEqual((self.status().punctures, self.chain.seen["/cell/state"].layers_punctured), (1, 1))
+        self.tick_until(lambda: self.status().punctures == 2, "the second puncture")
+        self.assertEqual((self.status().state, self.chain.seen["/cell/state"].layers_punctured), ("punctured", 2))
+        self.assertEqual(self.chain.seen["/injector/state"].pulses, pulses)
+        state, result = self.result()
+        self.assertEqual((state, result.outcome, result.punctures), (GoalStatus.SUCCEEDED, "injected", 2))
+        self.check_out(start)
+        self.assertEqual([name for name in self.states if name != "idle"],
+                         ["approach", "contact", "indent", "punctured", "indent", "punctured", "inject", "punctured",
+                          "withdraw"])
+        # Feedback comes each 0.1 s: it may miss what is shorter.
+        self.assertIn(("indent", 1, 2), self.told)
+        self.assertIn(("indent", 2, 2), self.told)
+        self.assertIn(("inject", 3, 2), self.told)
+        self.assertEqual(self.told, sorted(self.told, key=lambda one: one[1]), "layers only go up")
 
 
 if __name__ == "__main__":

@@ -2,12 +2,15 @@
 """Two lock-step runs of one session give the same bytes, and the session does what a session is for."""
 
 import csv
+import math
 import os
 import pathlib
 import subprocess
 import sys
 import tempfile
 import unittest
+
+import yaml
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "src" / "tools"))
@@ -16,8 +19,9 @@ from processes import free_port  # noqa: E402
 PATIENCE = 200  # s of wall time; only a session that hangs takes that long
 
 
-def run_session(folder):
-    """A lock-step session on a master of its own; returns the bytes of its force_depth.csv."""
+def run_session(folder, training):
+    """A lock-step session on a master of its own; returns the bytes of its force_depth.csv. `training`: arguments of
+    session.launch."""
     motion = pathlib.Path(folder) / "motion.csv"
     subprocess.run(["/usr/bin/python3", str(ROOT / "src/tools/make_hand_motion.py"), "--out", str(motion), "--depth",
                     "4e-6", "--speed", "10e-6", "--hold", "0.2", "--tremor", "0", "--puncture", "12e-6", "--inject",
@@ -27,17 +31,63 @@ def run_session(folder):
     subprocess.run(
         ["roslaunch", "-p", str(port), str(ROOT / "launch/session.launch"), "clock:=lockstep", "display:=false",
          f"scene:={ROOT}/test/chain/injected_oocyte.yaml", "model:=live", f"motion:={motion}", f"record:={out}",
-         "bag:=false", "end_when_done:=true"],
+         "bag:=false", "end_when_done:=true", *training],
         check=True, timeout=PATIENCE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
         env={**os.environ, "ROS_MASTER_URI": f"http://127.0.0.1:{port}", "ROS_IP": "127.0.0.1"})
     return (out / "force_depth.csv").read_bytes()
+
+
+# Some of it is met, some is not.
+TASK = {"peak_force": 0.7e-6, "deformation": 5e-6, "lateral_error": 1e-6, "time": 4.0, "punctures": 3, "volume": 6e-15}
+TASK_KEYS = {"peak_force_N": "peak_force", "deformation_m": "deformation", "lateral_error_m": "lateral_error",
+             "time_s": "time", "punctures": "punctures", "volume_m3": "volume"}
+
+
+def training_measures(rows):
+    """What a session is scored by, from the rows of its table and nothing else."""
+    def number(row, name):
+        return float(row[name]) if row[name] else math.nan
+
+    def tip(row):
+        return [number(row, f"tip_{axis}_m") for axis in "xyz"]
+
+    rows = [row for row in rows if row["tip_x_m"] and row["measured_axial_N"]]
+    at_work = [row for row in rows if row["injection_state"] not in ("", "idle")]
+    first_move = next(i for i, row in enumerate(at_work) if math.dist(tip(row), tip(at_work[0])) > 1e-6)
+    working = [row for row in at_work if row["injection_state"] != "approach"]
+    felt = [int(row["punctures_felt"]) for row in rows]
+    gained = [max(now - before, 0) for before, now in zip([0] + felt, felt)]
+    through = [i for i, row in enumerate(rows) if i and row["injection_state"] in ("punctured", "inject")]
+    volumes = [number(row, "injected_volume_m3") for row in rows]
+    deepest, farthest, entry = 0, 0, None
+    for i, row in enumerate(rows):
+        depth = number(row, "depth_m")
+        if not depth >= 0:
+            entry = None
+            continue
+        entry = entry or tip(row)
+        if not any(gained[:i + 1]):
+            deepest = max(deepest, depth)
+        if row["injection_state"] in ("contact", "indent", "punctured", "inject"):
+            farthest = max(farthest, math.dist(tip(row)[:2], entry[:2]))
+    return {"peak_force_N": max(math.hypot(number(row, "measured_axial_N"), number(row, "measured_lateral_N"))
+                                for row in rows),
+            "deformation_m": deepest, "lateral_error_m": farthest,
+            "time_s": float(working[-1]["time_s"]) - float(at_work[first_move - 1]["time_s"]),
+            "punctures": sum(gained), "volume_m3": sum(volumes[i] - volumes[i - 1] for i in through)}
 
 
 class RepeatTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         with tempfile.TemporaryDirectory() as a, tempfile.TemporaryDirectory() as b:
-            cls.first, cls.second = run_session(a), run_session(b)
+            task = pathlib.Path(a) / "training.yaml"
+            task.write_text(yaml.safe_dump({"force": "measured", "task": TASK}), encoding="utf-8")
+            training = ("operator:=ada", f"history:={a}/history.csv", f"training:={task}")
+            cls.first, cls.second = (run_session(folder, training) for folder in (a, b))
+            cls.told = yaml.safe_load((pathlib.Path(b) / "out/training.yaml").read_text(encoding="utf-8"))
+            cls.history = (pathlib.Path(a) / "history.csv").read_text(encoding="utf-8")
+            cls.picture = (pathlib.Path(b) / "out/training.png").read_bytes()
         cls.rows = list(csv.DictReader(cls.first.decode().splitlines()))
 
     def numbers(self, column, phases):
@@ -72,10 +122,33 @@ class RepeatTest(unittest.TestCase):
         passed = [state for state, before in zip(states, [""] + states) if state != before]
         self.assertEqual(passed[passed.index("indent"):],
                          ["indent", "punctured", "inject", "punctured", "withdraw", "approach"])
-        self.assertEqual(self.rows[-1]["layers_punctured"], "1")
+        self.assertEqual((self.rows[-1]["layers_punctured"], self.rows[-1]["punctures_felt"]), ("2", "0"))
         volumes = [float(row["injected_volume_m3"]) for row in self.rows if row["injection_state"] == "inject"]
         pipette = 2.46e3 / 1.546e17  # m^3/s: of the pulse's 3 kPa past the capillary pressure, over the resistance
         self.assertAlmostEqual((volumes[-1] - volumes[0]) / (0.3 * pipette), 1, delta=0.05)
+
+    def test_training(self):
+        """Score, history and picture of the second of two sessions; its measures, once more from the table."""
+        self.assertEqual([self.told[key] for key in ("operator", "outcome", "reason", "moments_left_out")],
+                         ["ada", "complete", "", 0])
+        measures = training_measures(self.rows)
+        points = 0
+        for name, value in measures.items():
+            row = self.told["measures"][name]
+            self.assertAlmostEqual(row["value"] / value, 1, delta=1e-5, msg=name)
+            share = 1 - abs(value / TASK[TASK_KEYS[name]] - 1) if name in ("punctures", "volume_m3") else \
+                min(1, 2 - value / TASK[TASK_KEYS[name]])
+            self.assertGreater(share, 0, f"{name}: a task that tells something")
+            self.assertAlmostEqual(row["points"] / (share * row["of"]), 1, delta=1e-4, msg=name)
+            points += share * row["of"]
+        self.assertAlmostEqual(self.told["score"], points, delta=1e-3)
+        self.assertEqual(measures["punctures"], 2)
+        rows = list(csv.DictReader(self.history.splitlines()))
+        self.assertEqual([(row.pop("session")[:2], row["operator"]) for row in rows], [("20", "ada")] * 2)
+        self.assertEqual(rows[0], rows[1])
+        for name, value in measures.items():
+            self.assertAlmostEqual(float(rows[1][name]) / value, 1, delta=1e-5)
+        self.assertEqual(self.picture[:8], b"\x89PNG\r\n\x1a\n")
 
 
 if __name__ == "__main__":

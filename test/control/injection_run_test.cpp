@@ -3,6 +3,7 @@
 #include <limits>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "control/spring_rig.h"
@@ -98,6 +99,24 @@ TEST_F(InjectionRunTest, GoesThroughOneLayerAfterTheOther) {
   EXPECT_EQ(controller_.result().outcome, InjectionOutcome::kInjected) << controller_.result().reason;
   EXPECT_EQ(controller_.result().punctures, 2);
   EXPECT_NEAR(*controller_.result().puncture_force, 0.3e-6 + 0.5e-6, 0.1e-6);
+}
+
+TEST_F(InjectionRunTest, FeedbackTellsWhichLayerComesNext) {
+  rig_.second_force = 0.5e-6;
+  config_.goal.layers = 2;
+  enable();
+  std::vector<std::pair<std::string, int>> told;
+  while (controller_.busy()) {
+    rig_.step(controller_);
+    const InjectionFeedback feedback = controller_.feedback();
+    EXPECT_EQ(feedback.layers, 2);
+    const std::pair<std::string, int> now(toText(feedback.state), feedback.layer);
+    if (told.empty() || now != told.back()) told.push_back(now);
+  }
+  const std::vector<std::pair<std::string, int>> expected = {
+      {"approach", 1},  {"contact", 1}, {"indent", 1},    {"punctured", 2}, {"indent", 2},
+      {"punctured", 3}, {"inject", 3},  {"punctured", 3}, {"withdraw", 3},  {"idle", 3}};
+  EXPECT_EQ(told, expected);
 }
 
 TEST_F(InjectionRunTest, NeverFasterThanTheRig) {

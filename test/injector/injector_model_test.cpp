@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
 #include "injector/pulse_ids.h"
 
@@ -23,6 +24,16 @@ double volumeOfPulse(double duration, double step, const InjectorModelConfig& co
   for (int i = 1; i <= steps; ++i) model.step(i * step);
   EXPECT_FALSE(model.reading().busy);
   return model.reading().volume;
+}
+
+/// A tip that leaks fills the cell, one that draws in dilutes what is to be injected.
+TEST(InjectorModel, HardlyAnythingLeavesTheTipBetweenPulses) {
+  ConfigReader reader(loadYamlMap(std::string(MICROINJECTION_SOURCE_DIR) + "/config/injector.yaml"), "injector.yaml");
+  for (const InjectorModelConfig& config : {InjectorModelConfig(), InjectorModelConfig::read(reader)}) {
+    const double leak = PipetteFlow(config.pipette).flow(config.balance);
+    EXPECT_GT(leak, 0);
+    EXPECT_LT(leak, 0.03e-15) << "m^3/s: a third of a per mille of a mouse oocyte's 92 pL";
+  }
 }
 
 TEST(InjectorModel, VolumeIsThatOfThePressuresIntegral) {

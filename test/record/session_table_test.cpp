@@ -76,20 +76,27 @@ std::string recordPromptly(const std::vector<Message>& messages) {
 TEST(SessionTable, LayersStateAndVolumeStandAtTheEndOfARow) {
   SessionTable table(kPeriod, 0);
   SessionTable::Cell cell;
-  table.injection.put(kStart, std::string("approach"));
+  std::vector<SessionTable::Row> told;
+  table.onRow([&told](const SessionTable::Row& row) { told.push_back(row); });
+  table.injection.put(kStart, {{"approach", 0}});
   table.cell.put(kStart, cell);
   table.advance(kStart);
   cell.layers_punctured = 2;
   table.cell.put(kStart + kPeriod, cell);
-  table.injection.put(kStart + kPeriod, std::string("inject"));
+  table.injection.put(kStart + kPeriod, {{"inject", 2}});
   table.volume.put(kStart + kPeriod, 2.5e-15);
   table.advance(kStart + kPeriod);
   const auto all = rows(table.text());
   ASSERT_EQ(all.size(), 2u);
-  const std::vector<std::string> first(all[0].end() - 2, all[0].end()), last(all[1].end() - 3, all[1].end());
-  EXPECT_EQ(first, (std::vector<std::string>{"0", "approach"})) << "an unknown volume is an empty field";
-  EXPECT_EQ(last, (std::vector<std::string>{"2", "inject", "2.5e-15"}));
-  EXPECT_NE(table.text().find(",layers_punctured,injection_state,injected_volume_m3\n"), std::string::npos);
+  const std::vector<std::string> first(all[0].end() - 4, all[0].end()), last(all[1].end() - 4, all[1].end());
+  EXPECT_EQ(first, (std::vector<std::string>{"0", "approach", "", "0"})) << "an unknown volume is an empty field";
+  EXPECT_EQ(last, (std::vector<std::string>{"2", "inject", "2.5e-15", "2"}));
+  EXPECT_NE(table.text().find(",layers_punctured,injection_state,injected_volume_m3,punctures_felt\n"),
+            std::string::npos);
+  ASSERT_EQ(told.size(), 2u);
+  EXPECT_EQ(told[0].volume, std::nullopt);
+  EXPECT_EQ(told[1].volume, 2.5e-15);
+  EXPECT_EQ(std::pair(told[1].injection, told[1].punctures), std::pair(std::string("inject"), 2));
 }
 
 TEST(SessionTable, DepthCountsFromWhereTheCellWasTouched) {

@@ -1,0 +1,62 @@
+#include "nodes/round_trip_meter.h"
+
+namespace microinjection {
+namespace {
+
+const ros::Duration kPatience(0.5);  // until every message of a round trip has come
+const ros::Duration kMemory(2);
+constexpr double kSame = 1e-9;  // of a force: what units and axes may do to its last bits
+
+template <typename Value>
+void forgetBefore(std::map<ros::Time, Value>& entries, const ros::Time& time) {
+  entries.erase(entries.begin(), entries.lower_bound(time));
+}
+
+}  // namespace
+
+RoundTripMeter::RoundTripMeter(ros::NodeHandle& node) {
+  const auto hints = ros::TransportHints().tcpNoDelay();
+  using Trace = cell_microinjection::LatencyTrace;
+  setpoints_ = node.subscribe<Trace>(
+      "needle/setpoint_trace", 100,
+      [this](const Trace::ConstPtr& trace) { hand_of_needle_[trace->header.stamp] = trace->origin; }, {}, hints);
+  traces_ = node.subscribe<Trace>(
+      "haptic/force_trace", 100,
+      [this](const Trace::ConstPtr& trace) { needle_of_force_[trace->header.stamp] = trace->origin; }, {}, hints);
+  forces_ = node.subscribe<geometry_msgs::WrenchStamped>(
+      "haptic/servo_cf", 100,
+      [this](const geometry_msgs::WrenchStampedConstPtr& message) {
+        const auto& force = message->wrench.force;
+        rendered_[message->header.stamp] = {force.x, force.y, force.z};
+      },
+      {}, hints);
+}
+
+void RoundTripMeter::felt(const Eigen::Vector3d& force, const ros::Time& received) { felt_[received] = force; }
+
+void RoundTripMeter::step(const ros::Time& now) {
+  while (!needle_of_force_.empty() && needle_of_force_.begin()->first < now - kPatience) {
+    count(needle_of_force_.begin()->first, needle_of_force_.begin()->second);
+    needle_of_force_.erase(needle_of_force_.begin());
+  }
+  if (now.toSec() < kMemory.toSec()) return;
+  forgetBefore(hand_of_needle_, now - kMemory);
+  forgetBefore(rendered_, now - kMemory);
+  forgetBefore(felt_, now - kMemory);
+}
+
+void RoundTripMeter::count(const ros::Time& rendered, const ros::Time& needle) {
+  const auto hand = hand_of_needle_.find(needle);
+  const auto force = rendered_.find(rendered);
+  if (hand == hand_of_needle_.end() || hand->second <= last_hand_) return;  // moved of itself, or felt before
+  if (force == rendered_.end() || force->second.isZero(0)) return;
+  for (auto came = felt_.lower_bound(rendered); came != felt_.end(); ++came) {
+    if ((came->second - force->second).norm() > kSame * force->second.norm()) continue;
+    at_bridge_.add((rendered - hand->second).toSec());
+    at_device_.add((came->first - hand->second).toSec());
+    last_hand_ = hand->second;
+    return;
+  }
+}
+
+}  // namespace microinjection

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <string>
+
+#include "base/config_reader.h"
+#include "control/training_score.h"
+#include "record/session_table.h"
+
+namespace microinjection {
+
+struct TrainingConfig {
+  std::string operator_name;
+  std::string history;              ///< path of the CSV file of all sessions; made when absent
+  std::string force = "predicted";  ///< or measured: the force that counts
+  TrainingTask task;
+
+  /// Keys operator, history (both required), force, and the section task.
+  static TrainingConfig read(ConfigReader& reader);
+};
+
+/// A session as one of an operator's: scored from the rows of its table, written to training.yaml beside them and, when
+/// a cell was touched, as a row of the history.
+class TrainingLog {
+ public:
+  struct Result {
+    TrainingScore score;
+    bool in_history = false;
+    std::string text;  ///< for people, a few lines
+  };
+
+  explicit TrainingLog(const TrainingConfig& config) : config_(config) {}
+
+  const TrainingConfig& config() const { return config_; }
+  void add(const SessionTable::Row& row);
+  /// At the end; `session`: its date, say. @throws std::runtime_error where a file cannot be written
+  Result finish(const std::string& folder, const std::string& session) const;
+
+ private:
+  TrainingConfig config_;
+  TrainingSession session_;
+};
+
+}  // namespace microinjection

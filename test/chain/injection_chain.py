@@ -1,0 +1,68 @@
+"""What the tests of an injection by the controller itself share: the whole chain in lock step, see inject.test."""
+
+import unittest
+
+import numpy as np
+import rospy
+from cell_microinjection.msg import CellState, InjectionStatus, InjectorState, OperatingState, StringStamped
+from geometry_msgs.msg import PoseStamped
+
+from messages import pose, position
+from participant import Participant
+
+
+class InjectionChainTest(unittest.TestCase):
+    """Words and moves for the chain of inject.test, and what it does, tick by tick."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.chain = Participant({}, {"/needle/measured_cp": PoseStamped, "/injector/state": InjectorState,
+                                     "/cell/state": CellState, "/controller/injection_state": InjectionStatus,
+                                     "/controller/operating_state": OperatingState})
+        cls.states = []
+        cls.listener = rospy.Subscriber("/controller/injection_state", InjectionStatus, cls.on_status)
+        cls.commands = rospy.Publisher("/controller/state_command", StringStamped, queue_size=10)
+        cls.moves = rospy.Publisher("/needle/move_cp", PoseStamped, queue_size=10)
+        while not (cls.commands.get_num_connections() and cls.moves.get_num_connections()):
+            cls.chain.tick()
+        cls.chain.run(50)
+
+    @classmethod
+    def on_status(cls, message):
+        if not cls.states or cls.states[-1] != message.state:
+            cls.states.append(message.state)
+
+    def needle(self):
+        return position(self.chain.seen["/needle/measured_cp"])
+
+    def status(self):
+        return self.chain.seen["/controller/injection_state"]
+
+    def tick_until(self, condition, what, ticks=30000):
+        for _ in range(ticks):
+            if condition():
+                return
+            self.chain.tick()
+        self.fail(f"{what}: not within {ticks} ticks; the injection is in {self.status()}")
+
+    def say(self, word):
+        self.commands.publish(StringStamped(string=word))
+
+    def check_out(self, start):
+        """The needle is where it set out, the controller ready for the next one."""
+        np.testing.assert_allclose(self.needle(), start, atol=0.1e-6)
+        self.tick_until(lambda: self.status().state == "idle", "idle", 200)  # its message may come after the result
+        self.assertEqual(self.chain.seen["/controller/operating_state"].state, "ENABLED")
+
+    def move_aside(self, way):
+        """Moves the needle by `way` (m) along x with the controller disabled: to where there is no hole."""
+        for command in ("disable", "enable"):
+            self.say(command)
+            wanted = "DISABLED" if command == "disable" else "ENABLED"
+            self.tick_until(lambda: self.chain.seen["/controller/operating_state"].state == wanted, wanted)
+            if command == "disable":
+                aside = self.needle() + [way, 0, 0]
+                target = pose(*aside)
+                target.header.stamp = self.chain.now
+                self.moves.publish(target)
+                self.tick_until(lambda: np.allclose(self.needle(), aside, atol=1e-8), "the move aside")
