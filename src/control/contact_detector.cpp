@@ -9,8 +9,11 @@ namespace {
 /// Less than what the offset is uncertain by adds up without end.
 constexpr double kSmallestAllowance = 0.15;
 
-constexpr int kLate = 128;        ///< samples
-constexpr double kFollow = 1e-3;  ///< share of a sample in the offset
+constexpr int kLate = 128;         ///< samples
+constexpr double kFollow = 1e-3;   ///< share of a sample in the offset
+constexpr double kFarthest = 4;    ///< contact forces
+constexpr double kSoftest = 5e-3;  ///< N/m, of a cell
+constexpr double kRests = 1e-12;   ///< m a sample
 
 double samplesBetweenFalseAlarms(double k, double h) {
   const double exponent = 2 * k * (h + 1.166);
@@ -35,11 +38,21 @@ ContactDetector::ContactDetector(const ForceNoise& noise, double force, double f
       deviation_(noise.deviation()),
       allowance_(std::max(kSmallestAllowance, 0.5 * force / noise.deviation())),
       limit_(limitFor(allowance_, false_rate)),
-      late_(kLate) {}
+      late_(kLate) {
+  rest_ = offset_;
+  farthest_ = kFarthest * force;
+  // An offset that follows a steady ramp stays behind by 1 / kFollow + kLate samples of it.
+  creep_ = allowance_ * deviation_ / (1 / kFollow + kLate) / kSoftest;
+}
 
-bool ContactDetector::step(double force) {
+bool ContactDetector::creeps() const { return advance_ > kRests && advance_ < creep_; }
+
+bool ContactDetector::step(double force, double advance) {
+  advance_ += (advance - advance_) / kLate;
   double& oldest = late_[static_cast<std::size_t>(count_ % kLate)];
-  if (count_++ >= kLate) offset_ += kFollow * (oldest - offset_);
+  if (count_++ >= kLate && !creeps()) {
+    offset_ = std::clamp(offset_ + kFollow * (oldest - offset_), rest_ - farthest_, rest_ + farthest_);
+  }
   oldest = force;
   sum_ = std::max(0.0, sum_ + (force - offset_) / deviation_ - allowance_);
   return sum_ > limit_;

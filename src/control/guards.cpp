@@ -1,5 +1,6 @@
 #include "control/guards.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -7,11 +8,13 @@ namespace microinjection {
 namespace {
 
 constexpr double kSpeedWindow = 0.02;  ///< s
+constexpr double kSlack = 1e-6;        ///< m, of a leash: what encoders and a thermal drift do
 
-std::string beyond(const std::string& what, double value, double limit, const char* unit) {
+/// `of`: what `what` ends with.
+std::string beyond(const char* what, double value, double limit, const char* unit, const char* of = "") {
   if (value <= limit) return "";
   std::ostringstream text;
-  text << what << ' ' << value << ' ' << unit << ", allowed " << limit << ' ' << unit;
+  text << what << of << ' ' << value << ' ' << unit << ", allowed " << limit << ' ' << unit;
   return text.str();
 }
 
@@ -21,6 +24,7 @@ GuardConfig GuardConfig::read(ConfigReader& reader) {
   GuardConfig config;
   reader.number("speed_limit", config.speed_limit, Range::positive());
   reader.number("jump_limit", config.jump_limit, Range::positive());
+  reader.number("lag_limit", config.lag_limit, Range::positive());
   reader.number("tracking_limit", config.tracking_limit, Range::positive());
   reader.number("needle_speed_limit", config.needle_speed_limit, Range::positive());
   reader.number("force_limit", config.force_limit, Range::positive());
@@ -37,6 +41,10 @@ double NeedleSpeed::step(const Eigen::Vector3d& position, double dt) {
   const double speed = enough ? (position - past_.front().position).norm() / past_.front().age : 0;
   past_.push_back({position, 0});
   return speed;
+}
+
+double leash(const GuardConfig& config, double lag) {
+  return 2 * std::min(config.lag_limit, config.speed_limit * lag) + kSlack;
 }
 
 std::string rigFault(const GuardConfig& config, const Eigen::Vector3d& needle, const Eigen::Vector3d& setpoint,
@@ -62,7 +70,7 @@ std::string depthGuard(const GuardConfig& config, double depth) {
 }
 
 std::string timeGuard(const GuardConfig& config, const char* state, double time) {
-  return beyond(std::string("time in state ") + state, time, config.time_limit, "s");
+  return beyond("time in state ", time, config.time_limit, "s", state);
 }
 
 }  // namespace microinjection

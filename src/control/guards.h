@@ -1,7 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <deque>
+#include <boost/circular_buffer.hpp>
 #include <optional>
 #include <string>
 
@@ -13,6 +13,7 @@ namespace microinjection {
 struct GuardConfig {
   double speed_limit = 200e-6;         ///< m/s, of the set-point: kept, not waited for
   double jump_limit = 100e-6;          ///< m, a target farther than this from the set-point is not followed
+  double lag_limit = 10e-6;            ///< m, that a rig which follows late may be behind its set-point
   double tracking_limit = 50e-6;       ///< m between needle and set-point past which the rig is at fault
   double needle_speed_limit = 1e-3;    ///< m/s, of the needle, past which the rig is at fault
   double force_limit = 15e-6;          ///< N along the pipette, either way
@@ -35,8 +36,12 @@ class NeedleSpeed {
     Eigen::Vector3d position;  ///< m
     double age;                ///< s
   };
-  std::deque<Past> past_;
+  boost::circular_buffer<Past> past_{128};  ///< of the window at 5 kHz and less
 };
+
+/// How far (m) a set-point may go ahead of a needle that follows it with a lag (s): twice what the lag makes at the
+/// speed limit, so that a needle that stands still, for whatever reason, does not leap when it is let go.
+double leash(const GuardConfig& config, double lag);
 
 /// Why the rig is at fault, by its needle, set-point (m) and speed (m/s); empty when it is not.
 std::string rigFault(const GuardConfig& config, const Eigen::Vector3d& needle, const Eigen::Vector3d& setpoint,

@@ -1,34 +1,17 @@
 #include "control/injection_controller.h"
 
 #include <algorithm>
+#include <limits>
 #include <sstream>
 
 namespace microinjection {
 namespace {
 
+constexpr double kOut = 1e-6;  ///< m before the touch, where a needle is out of the cell
+
 bool trusted(const std::optional<Eigen::Vector3d>& value) { return value && value->allFinite(); }
 
 }  // namespace
-
-InjectionControllerConfig InjectionControllerConfig::read(ConfigReader& reader) {
-  InjectionControllerConfig config;
-  reader.choice("mode", config.mode, {"manual", "semi_automatic", "automatic"});
-  reader.boolean("start_when_enabled", config.start_when_enabled);
-  config.guards = GuardConfig::read(reader);
-  ConfigReader detection = reader.section("detection");
-  config.detection = DetectionConfig::read(detection);
-  ConfigReader motion = reader.section("motion");
-  config.motion = InjectionMotionConfig::read(motion);
-  for (const auto& [key, speed] : {std::pair("approach_speed", config.motion.approach_speed),
-                                   {"stab_speed", config.motion.stab_speed},
-                                   {"retract_speed", config.motion.retract_speed}}) {
-    if (speed > config.guards.speed_limit) motion.error(key, "must not be above speed_limit");
-  }
-  ConfigReader goal = reader.section("goal");
-  config.goal = InjectionGoal::read(goal);
-  if (config.goal.depth > config.guards.depth_limit) goal.error("depth", "must not be above depth_limit");
-  return config;
-}
 
 const char* toText(OperatingState state) {
   switch (state) {
@@ -44,7 +27,16 @@ const char* toText(OperatingState state) {
 }
 
 InjectionController::InjectionController(const InjectionControllerConfig& config)
-    : config_(config), monitor_(config.detection), run_(config.motion, config.guards, config.mode == "automatic") {}
+    : config_(config),
+      monitor_(config.detection),
+      run_(config.motion, config.guards, config.mode == "automatic"),
+      leash_(leash(config.guards, std::numeric_limits<double>::infinity())) {}
+
+void InjectionController::adaptTo(double speed, double lag) {
+  rig_speed_ = std::min(speed, lag > 0 ? config_.guards.lag_limit / lag : speed);
+  leash_ = leash(config_.guards, lag);
+  run_.limitSpeed(rig_speed_);
+}
 
 bool InjectionController::busy() const {
   return state_ == OperatingState::kEnabled &&
@@ -64,91 +56,6 @@ std::optional<PulseGoal> InjectionController::pulse() const {
   return pulse_by_hand_ ? std::optional(config_.goal.pulse) : std::nullopt;
 }
 
-std::string InjectionController::command(const std::string& command) {
-  if (command == "approach") return start(config_.goal);
-  if (command == "indent") return takeWord(InjectionEvent::kIndent);
-  if (command == "inject") return takeWord(InjectionEvent::kInject);
-  if (command == "withdraw") return withdraw();
-  return obey(command);
-}
-
-std::string InjectionController::obey(const std::string& command) {
-  const std::string refusal = std::string("state is ") + toText(state_) + ", ";
-  if (command == "disable") {
-    state_ = OperatingState::kDisabled;
-    held_because_ = "DISABLED";
-    setpoint_.reset();
-    run_.end(InjectionOutcome::kDisabled, "disabled");
-    happen(InjectionEvent::kReset);
-  } else if (command == "enable") {
-    if (state_ == OperatingState::kFault) return refusal + "enable is allowed after disable";
-    if (state_ == OperatingState::kDisabled) setpoint_.reset();
-    state_ = OperatingState::kEnabled;
-  } else if (command == "pause") {
-    if (state_ != OperatingState::kEnabled) return refusal + "pause is allowed in ENABLED";
-    state_ = OperatingState::kPaused;
-    held_because_ = "PAUSED";
-  } else if (command == "resume") {
-    if (state_ != OperatingState::kPaused) return refusal + "resume is allowed in PAUSED";
-    state_ = OperatingState::kEnabled;
-  } else if (command == "home") {
-    if (!setpoint_ || state_ == OperatingState::kFault) return refusal + "home is allowed in ENABLED and PAUSED";
-    state_ = OperatingState::kEnabled;
-    run_.end(InjectionOutcome::kPreempted, "home");
-    happen(InjectionEvent::kWithdraw);
-  } else {
-    return "\"" + command +
-           "\" is no command here; allowed: enable, disable, pause, resume, home, approach, indent, inject, withdraw";
-  }
-  homing_ = command == "home";
-  monitor_.skip();  // what comes next is no sequel of the motion until now
-  target_offset_.reset();
-  return "";
-}
-
-std::string InjectionController::start(const InjectionGoal& goal) {
-  if (byHand()) return "mode is manual: the hand moves the needle";
-  if (state_ != OperatingState::kEnabled || !setpoint_)
-    return std::string("state is ") + toText(state_) + ", an injection starts in ENABLED";
-  if (homing_ || injection_ != InjectionState::kIdle) {
-    return std::string("an injection starts in idle, the needle is in ") + (homing_ ? "homing" : toText(injection_));
-  }
-  const std::string problems = goal.problems();
-  if (!problems.empty()) return problems;
-  if (goal.depth > config_.guards.depth_limit) return "depth is above depth_limit";
-  run_.start(goal, *setpoint_);
-  monitor_.reset();
-  happen(InjectionEvent::kStart);
-  return "";
-}
-
-std::string InjectionController::takeWord(InjectionEvent event) {
-  if (state_ != OperatingState::kEnabled)
-    return std::string("state is ") + toText(state_) + ", it is allowed in ENABLED";
-  if (!byHand()) return run_.confirm(event, injection_);
-  if (event != InjectionEvent::kInject) return "mode is manual: the hand moves the needle";
-  if (injection_ != InjectionState::kPunctured) return std::string("it is no step from ") + toText(injection_);
-  if (config_.goal.pulse.duration <= 0) return "the goal has no pulse";
-  hand_pulse_.start(config_.goal.pulse, config_.motion.injector_patience);
-  pulse_by_hand_ = true;
-  happen(InjectionEvent::kInject);
-  return "";
-}
-
-std::string InjectionController::withdraw() {
-  if (byHand()) return "mode is manual: the hand withdraws the needle, or home";
-  const bool held = state_ == OperatingState::kEnabled || state_ == OperatingState::kPaused;
-  if (!held || !setpoint_)
-    return std::string("state is ") + toText(state_) + ", withdraw is allowed in ENABLED and PAUSED";
-  if (homing_ || !after(injection_, InjectionEvent::kWithdraw)) {
-    return std::string("there is nothing to withdraw from in ") + (homing_ ? "homing" : toText(injection_));
-  }
-  state_ = OperatingState::kEnabled;
-  run_.withdraw();
-  happen(InjectionEvent::kWithdraw);
-  return "";
-}
-
 void InjectionController::happen(InjectionEvent event) {
   const auto next = after(injection_, event);
   if (!next) return;
@@ -160,40 +67,61 @@ void InjectionController::happen(InjectionEvent event) {
   }
   if (injection_ != InjectionState::kInject) pulse_by_hand_ = false;
   if (event == InjectionEvent::kLost || event == InjectionEvent::kOut) monitor_.rearm();
-  if (event == InjectionEvent::kReset) monitor_.reset();
+  if (event == InjectionEvent::kOut && paused_) hold("PAUSED");
 }
 
-void InjectionController::takeHold(const Eigen::Vector3d& needle) {
+bool InjectionController::isInside(const Eigen::Vector3d& needle, const Eigen::Vector3d& axis) const {
+  return monitor_.touched() && monitor_.depthOf(needle, axis) > -kOut;
+}
+
+void InjectionController::takeHold(const Eigen::Vector3d& needle, const Eigen::Vector3d& axis) {
   setpoint_ = needle;
-  home_ = needle;
   needle_speed_.reset();
+  // In the cell the way out, the touch and the force at rest stay what they were when it set out.
+  if (isInside(needle, axis)) return;
+  monitor_.reset();
+  home_ = needle;
   if (config_.mode == "automatic" && config_.start_when_enabled && state_ == OperatingState::kEnabled)
     start(config_.goal);
 }
 
 std::optional<Eigen::Vector3d> InjectionController::step(const Input& input, double dt) {
-  needle_known_ = needle_known_ || trusted(input.needle);
-  if (state_ == OperatingState::kDisabled || state_ == OperatingState::kFault) return std::nullopt;
-  if (!trusted(input.needle)) {
-    held_because_ = "no trusted needle position";
-    target_offset_.reset();
-    monitor_.skip();
-    needle_speed_.reset();
-    endPulse(held_because_);
+  const bool known = trusted(input.needle);
+  needle_known_ = needle_known_ || known;
+  if (state_ == OperatingState::kDisabled || state_ == OperatingState::kFault) {
+    // Taken out by somebody else it is out.
+    if (known && monitor_.touched() && !isInside(*input.needle, input.axis)) monitor_.reset();
+    return std::nullopt;
+  }
+  if (!known) {
+    loseNeedle(dt);
     return setpoint_;  // before the first pose there is nothing to hold yet
   }
-  if (!setpoint_) takeHold(*input.needle);
+  if (!setpoint_) takeHold(*input.needle, input.axis);
   if (rigIsAtFault(*input.needle, dt)) return std::nullopt;
   observe(input, trusted(input.force), dt);
-  if (state_ == OperatingState::kPaused) return setpoint_;
-  if (homing_) {
-    goHome(input.axis, dt);
-    return setpoint_;
+  if (state_ == OperatingState::kPaused) {
+    watchPulse(input, dt);
+  } else if (homing_) {
+    goHome(input, dt);
+  } else if (byHand()) {
+    if (const auto target = handTarget(input)) follow(*target, input, dt);
+  } else if (const auto target = ownTarget(input, dt)) {
+    move(*target - *setpoint_, input, dt);
   }
-  const auto target = byHand() ? handTarget(input) : ownTarget(input, dt);
-  if (target && byHand()) follow(*target, input, dt);
-  if (target && !byHand()) move(*target - *setpoint_, dt);
   return setpoint_;
+}
+
+void InjectionController::loseNeedle(double dt) {
+  held_because_ = "no trusted needle position";
+  target_offset_.reset();
+  monitor_.skip();
+  needle_speed_.reset();
+  endPulse(held_because_);
+  if (byHand() || !run_.active() || state_ != OperatingState::kEnabled) return;
+  if (injection_ == InjectionState::kIndent) stop(InjectionOutcome::kGuard, held_because_ + " while it indents");
+  const std::string late = run_.wait(injection_, dt);
+  if (!late.empty()) stop(InjectionOutcome::kGuard, late);
 }
 
 bool InjectionController::rigIsAtFault(const Eigen::Vector3d& needle, double dt) {
@@ -221,12 +149,20 @@ void InjectionController::observe(const Input& input, bool force_trusted, double
   if (event) happen(*event);
 }
 
+/// A pulse goes on while the needle is PAUSED, but not past its volume.
+void InjectionController::watchPulse(const Input& input, double dt) {
+  if (!run_.active() || injection_ != InjectionState::kInject) return;
+  if (!trusted(input.force)) return endPulse("no trusted force");
+  take(run_.step(injection_, monitor_, input.injector, *setpoint_, input.axis, dt));
+}
+
 std::optional<Eigen::Vector3d> InjectionController::handTarget(const Input& input) {
   held_because_.clear();
   if (!trusted(input.target)) held_because_ = "no trusted target";
   if (!trusted(input.force)) held_because_ = "no trusted force";
   if (!held_because_.empty()) {
     target_offset_.reset();
+    if (!trusted(input.force)) endPulse(held_because_);
     return std::nullopt;
   }
   // The hand may have gone anywhere while the needle was held: the target counts from where it is now.
@@ -240,10 +176,20 @@ std::string InjectionController::guard(const Input& input) const {
   return reason;
 }
 
-void InjectionController::stop(InjectionOutcome outcome, const std::string& reason) {
-  run_.end(outcome, reason);
+void InjectionController::hold(const std::string& reason) {
   state_ = OperatingState::kPaused;
   held_because_ = reason;
+}
+
+void InjectionController::stop(InjectionOutcome outcome, const std::string& reason) {
+  run_.end(outcome, reason);
+  hold(reason);
+}
+
+/// A needle that is behind its set-point must not go on deeper to it.
+void InjectionController::stopNeedle(const Input& input) {
+  const double ahead = (*input.needle - *setpoint_).dot(input.axis);
+  *setpoint_ += std::max(0.0, ahead) * input.axis;
 }
 
 /// Where it is not known what is injected into. By hand only the pulse is over.
@@ -263,34 +209,46 @@ std::optional<Eigen::Vector3d> InjectionController::ownTarget(const Input& input
   if (!out && !trusted(input.force)) {
     held_because_ = "no trusted force";
     // What the membrane does meanwhile is not known.
-    if (injection_ == InjectionState::kIndent) stop(InjectionOutcome::kGuard, "no trusted force while it indents");
+    if (injection_ == InjectionState::kIndent) {
+      stop(InjectionOutcome::kGuard, "no trusted force while it indents");
+      stopNeedle(input);
+    }
     endPulse(held_because_);
     return std::nullopt;
   }
   const std::string beyond = out ? "" : guard(input);
   if (!beyond.empty()) {
     stop(InjectionOutcome::kGuard, beyond);
+    stopNeedle(input);
     return std::nullopt;
   }
   const InjectionRun::Step step = run_.step(injection_, monitor_, input.injector, *setpoint_, input.axis, dt);
-  if (step.event) happen(*step.event);
-  if (!step.stop) return step.target;
-  stop(*step.stop, step.reason);
+  if (take(step)) return step.target;
+  stopNeedle(input);
   return std::nullopt;
 }
 
-void InjectionController::goHome(const Eigen::Vector3d& axis, double dt) {
+/// What a step of the injection brings; whether it goes on.
+bool InjectionController::take(const InjectionRun::Step& step) {
+  if (step.event) happen(*step.event);
+  if (step.stop) stop(*step.stop, step.reason);
+  return !step.stop;
+}
+
+void InjectionController::goHome(const Input& input, double dt) {
+  const Eigen::Vector3d& axis = input.axis;
   held_because_ = "homing";
   const Eigen::Vector3d way = home_ - *setpoint_;
   const double out = way.dot(axis);
   // First out of the cell along the pipette, then across, for a needle that goes sideways tears; never deeper.
-  move(out > 1e-9 ? Eigen::Vector3d(out * axis) : Eigen::Vector3d(way - out * axis), dt);
+  move(out > 1e-9 ? Eigen::Vector3d(out * axis) : Eigen::Vector3d(way - out * axis), input, dt);
   const Eigen::Vector3d left = home_ - *setpoint_;
   if (std::max(0.0, left.dot(axis)) + (left - left.dot(axis) * axis).norm() > 1e-9) return;
   homing_ = false;
-  state_ = OperatingState::kPaused;
-  held_because_ = "PAUSED";
-  if (!byHand()) happen(InjectionEvent::kOut);
+  hold("PAUSED");
+  if (byHand()) return;
+  happen(InjectionEvent::kOut);
+  monitor_.rearm();
 }
 
 void InjectionController::follow(const Eigen::Vector3d& target, const Input& input, double dt) {
@@ -304,17 +262,31 @@ void InjectionController::follow(const Eigen::Vector3d& target, const Input& inp
   }
   const std::string beyond = guard(input);
   if (!beyond.empty()) {
+    if (!limited_) stopNeedle(input);
     held_because_ = beyond + ": the needle may only be withdrawn";
-    motion = input.axis * std::max(0.0, motion.dot(input.axis));
+    motion = input.axis * std::max(0.0, (target - *setpoint_).dot(input.axis));
     // What was refused is forgotten: when the force falls, as in a puncture, the needle must not catch up with it.
-    if (target_offset_) *target_offset_ += *setpoint_ + motion - target;
+    refuse(target - *setpoint_ - motion);
   }
-  move(motion, dt);
+  limited_ = !beyond.empty();
+  if (!move(motion, input, dt)) refuse(motion);
 }
 
-void InjectionController::move(const Eigen::Vector3d& motion, double dt) {
+void InjectionController::refuse(const Eigen::Vector3d& motion) {
+  if (target_offset_) *target_offset_ -= motion;
+}
+
+bool InjectionController::move(const Eigen::Vector3d& motion, const Input& input, double dt) {
   const double largest = std::min(config_.guards.speed_limit, rig_speed_) * dt;
-  *setpoint_ += motion.norm() > largest ? Eigen::Vector3d(motion * (largest / motion.norm())) : motion;
+  const Eigen::Vector3d next =
+      *setpoint_ + (motion.norm() > largest ? Eigen::Vector3d(motion * (largest / motion.norm())) : motion);
+  const double ahead = (next - *input.needle).norm();
+  if (ahead > leash_ && ahead > (*setpoint_ - *input.needle).norm()) {
+    held_because_ = "the needle does not follow its set-point";
+    return false;
+  }
+  *setpoint_ = next;
+  return true;
 }
 
 }  // namespace microinjection

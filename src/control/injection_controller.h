@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <string>
@@ -44,7 +45,9 @@ const char* toText(OperatingState state);
 ///     time in a state      -                                  same, while it withdraws as well
 ///     no trusted force     held while it lasts                same while it indents or injects; else held while it
 ///                                                             lasts. It is not needed to withdraw
-///     no trusted needle    held while it lasts, a pulse ends  same while it injects; else held while it lasts
+///     no trusted needle    held while it lasts, a pulse ends  same while it indents or injects; else held while it
+///                                                             lasts, for the time guard at the most
+///     needle stands still  the set-point waits for it (leash) same; what a hand did meanwhile is forgotten
 ///     silent injector      its pulse counts as over           PAUSED, when the pulse and injector_patience are over
 ///     tracking, speed      FAULT: no set-point; only disable leaves it
 ///     speed of set-point   never above the limit
@@ -65,8 +68,10 @@ class InjectionController {
   /// it over where it was enabled, never deeper than it is, also without a trusted force; then pauses: the way out when
   /// the needle is held. approach (starts the configured goal), indent, inject and withdraw are the operator's words
   /// to an injection: withdraw gives up (preempts) what the controller does by itself, in any state of it, and takes
-  /// the needle back to where it set out; it leaves PAUSED, also after a guard. By hand there is only inject. Empty
-  /// when obeyed, otherwise the reason for the refusal; the state is then as before.
+  /// the needle back to where it set out, also after a guard and where it was left in the cell by disable; what a
+  /// person has paused is PAUSED again when it is out. By hand there is only inject. Disabled in the cell and enabled
+  /// again, depth, offset and home stay: no injection starts there. Empty when obeyed, otherwise the reason for the
+  /// refusal; the state is then as before.
   std::string command(const std::string& command);
   /// Starts an injection of the controller's own; empty when begun, otherwise why not.
   std::string start(const InjectionGoal& goal);
@@ -74,11 +79,10 @@ class InjectionController {
   /// One cycle of dt (s): the set-point for the needle (m, `world`); empty while DISABLED or in FAULT.
   std::optional<Eigen::Vector3d> step(const Input& input, double dt);
 
-  /// Never faster than this (m/s), nor than configured: for a rig that follows late.
-  void limitSpeed(double speed) {
-    rig_speed_ = speed;
-    run_.limitSpeed(speed);
-  }
+  /// To a rig that is no faster than `speed` (m/s) and follows `lag` (s) late: never driven faster than lag_limit
+  /// allows, nor than configured.
+  void adaptTo(double speed, double lag);
+  double speedLimit() const { return std::min(rig_speed_, config_.guards.speed_limit); }  ///< m/s
 
   OperatingState state() const { return state_; }
   InjectionState injection() const { return injection_; }
@@ -103,17 +107,24 @@ class InjectionController {
   std::string takeWord(InjectionEvent event);
   std::string withdraw();
   void happen(InjectionEvent event);
-  void takeHold(const Eigen::Vector3d& needle);
+  bool isInside(const Eigen::Vector3d& needle, const Eigen::Vector3d& axis) const;
+  void takeHold(const Eigen::Vector3d& needle, const Eigen::Vector3d& axis);
+  void loseNeedle(double dt);
   bool rigIsAtFault(const Eigen::Vector3d& needle, double dt);
   void observe(const Input& input, bool force_trusted, double dt);
+  void watchPulse(const Input& input, double dt);
   std::optional<Eigen::Vector3d> handTarget(const Input& input);
   std::optional<Eigen::Vector3d> ownTarget(const Input& input, double dt);
+  bool take(const InjectionRun::Step& step);
   std::string guard(const Input& input) const;
+  void hold(const std::string& reason);
   void stop(InjectionOutcome outcome, const std::string& reason);
+  void stopNeedle(const Input& input);
   void endPulse(const std::string& why);
-  void goHome(const Eigen::Vector3d& axis, double dt);
+  void goHome(const Input& input, double dt);
   void follow(const Eigen::Vector3d& target, const Input& input, double dt);
-  void move(const Eigen::Vector3d& motion, double dt);
+  void refuse(const Eigen::Vector3d& motion);
+  bool move(const Eigen::Vector3d& motion, const Input& input, double dt);
 
   InjectionControllerConfig config_;
   OperatingState state_ = OperatingState::kDisabled;
@@ -127,8 +138,11 @@ class InjectionController {
   NeedleSpeed needle_speed_;
   std::optional<Eigen::Vector3d> setpoint_;         ///< m; taken from the needle when it is enabled
   std::optional<Eigen::Vector3d> target_offset_;    ///< m, added to targets; taken with the first one once enabled
-  Eigen::Vector3d home_ = Eigen::Vector3d::Zero();  ///< m, where the needle was enabled
+  Eigen::Vector3d home_ = Eigen::Vector3d::Zero();  ///< m, where the needle was enabled out of the cell
   double rig_speed_ = std::numeric_limits<double>::infinity();  ///< m/s
+  double leash_;                                                ///< m, that the set-point may be ahead of the needle
+  bool limited_ = false;  ///< by hand: a guard was past its limit in the last step
+  bool paused_ = false;   ///< by a person, not by a guard
   bool homing_ = false;
   bool needle_known_ = false;
   std::string held_because_ = "DISABLED";

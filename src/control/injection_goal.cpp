@@ -45,9 +45,9 @@ std::string InjectionGoal::problems() const {
 }
 
 const char* toText(InjectionOutcome outcome) {
-  constexpr const char* kWords[] = {"none",       "injected",      "punctured",         "indented",
-                                    "no_contact", "not_punctured", "injector_time_out", "preempted",
-                                    "guard",      "fault",         "disabled"};
+  constexpr const char* kWords[] = {"none",          "injected",          "punctured",    "indented",  "no_contact",
+                                    "not_punctured", "injector_time_out", "not_injected", "preempted", "guard",
+                                    "fault",         "disabled"};
   return kWords[static_cast<int>(outcome)];
 }
 

@@ -19,6 +19,7 @@ struct PulseGoal {
 struct InjectorReport {
   bool busy = false;  ///< a pulse is under way
   double volume = 0;  ///< m^3, delivered since it was reset
+  bool done = false;  ///< the last pulse that was asked for is over and was not broken off
 };
 
 /// One injection of the controller's own: what for and how far. How fast is the rig's and the cell's, see
@@ -44,6 +45,7 @@ enum class InjectionOutcome {
   kNoContact,        ///< no cell within the travel limit; withdrawn
   kNotPunctured,     ///< at `depth` and not through: held
   kInjectorTimeOut,  ///< the injector did not finish, or was not there; withdrawn
+  kNotInjected,      ///< the pulse was broken off, or gave less than its volume; withdrawn
   kPreempted,        ///< by command; withdrawn
   kGuard,            ///< a guard stopped the needle: held, see `reason`
   kFault,            ///< the rig is at fault

@@ -60,6 +60,7 @@ InjectionOutcome InjectionRun::done() const {
 }
 
 void InjectionRun::withdraw() {
+  in_state_ = 0;  // also after a time guard on the way out
   if (!active_ || outcome_ != InjectionOutcome::kNone) return;
   outcome_ = done();
 }
@@ -86,6 +87,11 @@ bool InjectionRun::goOn(InjectionEvent event) {
   return true;
 }
 
+std::string InjectionRun::wait(InjectionState state, double dt) {
+  in_state_ += dt;
+  return timeGuard(guards_, toText(state), in_state_);
+}
+
 InjectionRun::Step InjectionRun::step(InjectionState state, const NeedleMonitor& monitor,
                                       const std::optional<InjectorReport>& injector, const Eigen::Vector3d& setpoint,
                                       const Eigen::Vector3d& axis, double dt) {
@@ -96,6 +102,8 @@ InjectionRun::Step InjectionRun::step(InjectionState state, const NeedleMonitor&
     result_.peak_force = std::max(result_.peak_force, monitor.peakForce());
     result_.max_depth = std::max(result_.max_depth, monitor.maxDepth());
   }
+  // From where the set-point is: it may have waited for the needle, or been taken back to it.
+  travel_ = std::min(travel_, (start_ - setpoint).dot(axis));
   Step step;
   waits_ = false;
   if (state == InjectionState::kApproach) approach(monitor, dt, step);
@@ -103,7 +111,7 @@ InjectionRun::Step InjectionRun::step(InjectionState state, const NeedleMonitor&
   if (state == InjectionState::kIndent) indent(monitor, dt, step);
   if (state == InjectionState::kPunctured) through(monitor, dt, step);
   if (state == InjectionState::kInject) inject(injector, dt, step);
-  if (state == InjectionState::kWithdraw) retract((start_ - setpoint).dot(axis), dt, step);
+  if (state == InjectionState::kWithdraw) retract(dt, step);
   step.target = start_ - travel_ * axis;
   if (step.event || step.stop) return step;
   step.reason = timeGuard(guards_, toText(state), in_state_);
@@ -208,15 +216,17 @@ void InjectionRun::inject(const std::optional<InjectorReport>& injector, double 
     injected_ = true;
     step.event = InjectionEvent::kInjected;
   }
+  if (status == InjectorWait::Status::kBroken) {
+    return leave(InjectionOutcome::kNotInjected, "the pulse was broken off, or gave less than its volume", step);
+  }
   if (status != InjectorWait::Status::kTimeOut) return;
   if (injector) return leave(InjectionOutcome::kInjectorTimeOut, "the injector has not finished", step);
   step.stop = InjectionOutcome::kInjectorTimeOut;
   step.reason = "no trusted word of the injector";
 }
 
-void InjectionRun::retract(double depth, double dt, Step& step) {
-  // Never deeper than the needle is: `home` may have taken it part of the way.
-  travel_ = std::max(0.0, std::min(travel_, depth) - std::min(config_.retract_speed, fastest_) * dt);
+void InjectionRun::retract(double dt, Step& step) {
+  travel_ = std::max(0.0, travel_ - std::min(config_.retract_speed, fastest_) * dt);
   if (travel_ > 0) return;
   step.event = InjectionEvent::kOut;
   end(outcome_, reason_);

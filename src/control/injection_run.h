@@ -62,6 +62,9 @@ class InjectionRun {
   Step step(InjectionState state, const NeedleMonitor& monitor, const std::optional<InjectorReport>& injector,
             const Eigen::Vector3d& setpoint, const Eigen::Vector3d& axis, double dt);
 
+  /// dt (s) in which nothing could be done in `state`; empty, or why that is too long.
+  std::string wait(InjectionState state, double dt);
+
   bool active() const { return active_; }
   bool waits() const { return waits_; }  ///< for the operator
   const InjectionGoal& goal() const { return goal_; }
@@ -75,7 +78,7 @@ class InjectionRun {
   void goToDepth(const NeedleMonitor& monitor, double dt, Step& step);
   void through(const NeedleMonitor& monitor, double dt, Step& step);
   void inject(const std::optional<InjectorReport>& injector, double dt, Step& step);
-  void retract(double depth, double dt, Step& step);
+  void retract(double dt, Step& step);
   double stabSpeed(const NeedleMonitor& monitor, double dt) const;
   void countPuncture(const NeedleMonitor& monitor, Step& step);
   bool goOn(InjectionEvent event);

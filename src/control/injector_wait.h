@@ -6,10 +6,11 @@
 
 namespace microinjection {
 
-/// Waits for the end of an injector's pulse: its time is over, or its volume reached.
+/// Waits for the end of an injector's pulse: its time is over, or its volume reached. A pulse that was broken off, or
+/// whose time was over with less than its volume, is kBroken.
 class InjectorWait {
  public:
-  enum class Status { kWaiting, kOver, kTimeOut };
+  enum class Status { kWaiting, kOver, kBroken, kTimeOut };
 
   /// `patience` (s): beyond the pulse's duration, before the injector is given up.
   void start(const PulseGoal& pulse, double patience) {
@@ -25,7 +26,7 @@ class InjectorWait {
       if (!before_) before_ = report->volume;
       volume_ = report->volume - *before_;
       if (pulse_.volume > 0 && volume_ >= pulse_.volume) return Status::kOver;
-      if (worked_ && !report->busy) return Status::kOver;
+      if (worked_ && !report->busy) return complete(*report) ? Status::kOver : Status::kBroken;
       worked_ = worked_ || report->busy;
     }
     return waited_ > pulse_.duration + patience_ ? Status::kTimeOut : Status::kWaiting;
@@ -34,6 +35,11 @@ class InjectorWait {
   double volume() const { return volume_; }  ///< m^3, since the start
 
  private:
+  bool complete(const InjectorReport& report) const {
+    constexpr double kEnough = 0.95;  // of a volume, that is no cause for alarm
+    return pulse_.volume > 0 ? volume_ >= kEnough * pulse_.volume : report.done;
+  }
+
   PulseGoal pulse_;
   double patience_ = 0;           ///< s
   double waited_ = 0;             ///< s

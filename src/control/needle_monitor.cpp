@@ -42,6 +42,7 @@ void NeedleMonitor::rearm() {
 }
 
 void NeedleMonitor::skip() {
+  travel_.reset();
   if (puncture_) puncture_->reset();
 }
 
@@ -62,10 +63,12 @@ void NeedleMonitor::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis
   const double travel = -tip.dot(axis);
   const bool fell = puncture_->step(axial - offset(), travel);
   if (!touched_at_) {
-    if (!contact_->step(axial)) return;
+    const double advance = travel - travel_.value_or(travel);
+    travel_ = travel;
+    if (!contact_->step(axial, advance)) return;
     touched_at_ = tip;
   }
-  depth_ = touched_at_->dot(axis) + travel;
+  depth_ = depthOf(tip, axis);
   max_depth_ = std::max(max_depth_, depth_);
   if (!confirmed_) lookAgain(axial);
   punctured_ = fell;

@@ -42,7 +42,11 @@ class NeedleMonitor {
   double force() const;                       ///< N, along the pipette above the offset, smoothed
   double peakForce() const { return peak_; }  ///< N, largest along the pipette, either way
   bool touched() const { return touched_at_.has_value(); }
-  double depth() const { return depth_; }         ///< m past the touch; 0 without
+  double depth() const { return depth_; }  ///< m past the touch; 0 without
+  /// Of that tip (m), likewise.
+  double depthOf(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis) const {
+    return touched_at_ ? (*touched_at_ - tip).dot(axis) : 0;
+  }
   double maxDepth() const { return max_depth_; }  ///< m
 
   /// After a touch: empty while the second look goes on, then whether the touch is confirmed.
@@ -60,6 +64,7 @@ class NeedleMonitor {
   std::optional<ContactDetector> contact_;
   std::optional<PunctureDetector> puncture_;
   std::optional<Eigen::Vector3d> touched_at_;  ///< m
+  std::optional<double> travel_;               ///< m, of the tip into the cell, at the last sample
   std::optional<bool> confirmed_;
   int looked_ = 0;
   double looked_sum_ = 0;  ///< N

@@ -28,7 +28,6 @@ InjectionControllerNode::Parameters InjectionControllerNode::Parameters::read(co
   reader.boolean("auto_enable", parameters.auto_enable);
   reader.boolean("injector", parameters.injector);
   reader.boolean("commands_in_lockstep", parameters.commands_in_lockstep);
-  reader.number("lag_limit", parameters.lag_limit, Range::positive());
   parameters.model = InjectionControllerConfig::read(reader);
   reader.finish();
   return parameters;
@@ -89,10 +88,8 @@ void InjectionControllerNode::adaptTo(const cell_microinjection::ManipulatorAbil
     ROS_ERROR_STREAM("rig: " << rig.device << " tells no true abilities: latency, interval or speed; not heard");
     return;
   }
-  rig_speed_ = std::min(rig.speed, lag > 0 ? parameters_.lag_limit / lag : std::numeric_limits<double>::infinity());
-  model_.limitSpeed(rig_speed_);
-  ROS_INFO_STREAM("rig: " << rig.device << ", driven at " << std::min(rig_speed_, parameters_.model.guards.speed_limit)
-                          << " m/s at the most");
+  model_.adaptTo(rig.speed, lag);
+  ROS_INFO_STREAM("rig: " << rig.device << ", driven at " << model_.speedLimit() << " m/s at the most");
 }
 
 void InjectionControllerNode::step(const Cycle::Tick& tick) {
@@ -157,7 +154,7 @@ void InjectionControllerNode::report(diagnostic_updater::DiagnosticStatusWrapper
                         : diagnostic_msgs::DiagnosticStatus::WARN,
                  good ? "the needle follows" : "needle held: " + model_.heldBecause());
   status.add("state", toText(model_.state()));
-  status.add("speed limit (m/s)", std::min(rig_speed_, parameters_.model.guards.speed_limit));
+  status.add("speed limit (m/s)", model_.speedLimit());
 }
 
 }  // namespace microinjection

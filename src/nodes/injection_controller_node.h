@@ -33,7 +33,6 @@ namespace microinjection {
 ///   rate           Hz; default 1000, in [50, 5000]
 ///   input_timeout  s, past which an input is stale; default 0.05, in (0, inf)
 ///   force_source   predicted or measured; default predicted
-///   lag_limit      m, that the needle may be behind its set-point for the rig's lateness; default 10e-6, in (0, inf)
 ///   auto_enable    go to ENABLED at the start, for simulated rigs; default false
 ///   injector       there is one; default true
 ///   commands_in_lockstep  in lock step: who sends /controller/state_command takes part, and is waited for; default
@@ -53,7 +52,6 @@ class InjectionControllerNode {
     bool auto_enable = false;
     bool injector = true;
     bool commands_in_lockstep = false;
-    double lag_limit = 10e-6;
     InjectionControllerConfig model;
     static Parameters read(const ros::NodeHandle& private_node);
   };
@@ -78,7 +76,6 @@ class InjectionControllerNode {
   InjectionAction action_;
   ros::Subscriber commands_;
   ros::Subscriber abilities_;
-  double rig_speed_ = std::numeric_limits<double>::infinity();  ///< m/s, that the rig can be driven at
   ros::Publisher state_;
   cell_microinjection::OperatingState said_;                ///< the last that was published
   cell_microinjection::InjectionStatus said_of_injection_;  ///< the last that was published

@@ -17,14 +17,15 @@ std::optional<InjectorReport> InjectorLink::report(const ros::Time& now) {
     begun_ = begun_ || state->busy;
     if (over) pending_ = 0;
   }
-  return InjectorReport{state->busy || pending_ != 0, state->volume};
+  return InjectorReport{state->busy || pending_ != 0, state->volume, state->last_id == asked_};
 }
 
 void InjectorLink::want(const std::optional<PulseGoal>& pulse, const ros::Time& now) {
   if (pulse && !wanted_) {
     cell_microinjection::InjectionPulse message;
     message.header.stamp = now;
-    message.id = pending_ = now.toNSec();  // new, also for an injector that outlives this node; the same in lock step
+    message.id = asked_ = pending_ =
+        now.toNSec();  // new, also for an injector that outlives this node; the same in lock step
     message.pressure = pulse->pressure;
     message.duration = pulse->duration;
     pulse_.publish(message);

@@ -36,6 +36,7 @@ class InjectorLink {
   Output<cell_microinjection::StringStamped>& stop_;
   bool wanted_ = false;
   std::uint64_t pending_ = 0;  ///< id of the pulse that is not over yet as far as is known; 0: none
+  std::uint64_t asked_ = 0;    ///< id of the last pulse
   bool begun_ = false;         ///< the injector has said that it is busy since that was sent
 };
 

@@ -53,10 +53,10 @@ TEST_F(InjectionControllerTest, DrivesALateRigSlowlyAndNeverFasterThanConfigured
   controller_.command("enable");
   run(1);
   input_.target = Eigen::Vector3d(0, 0, 30e-6);
-  controller_.limitSpeed(44e-6);
+  controller_.adaptTo(44e-6, 0);
   const double before = input_.needle->z();
   EXPECT_NEAR(before - run(1)->z(), 44e-6 * kStep, 1e-15);
-  controller_.limitSpeed(1);
+  controller_.adaptTo(1, 1e-3);
   const double then = input_.needle->z();
   EXPECT_NEAR(then - run(1)->z(), config_.guards.speed_limit * kStep, 1e-15);
 }

@@ -121,7 +121,7 @@ TEST_F(InjectionRunTest, FeedbackTellsWhichLayerComesNext) {
 
 TEST_F(InjectionRunTest, NeverFasterThanTheRig) {
   enable();
-  controller_.limitSpeed(8e-6);
+  controller_.adaptTo(8e-6, 5e-3);
   double fastest = 0;
   while (controller_.busy()) {
     const Eigen::Vector3d before = *rig_.setpoint;

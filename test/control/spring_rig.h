@@ -24,6 +24,7 @@ struct SpringRig {
   double noise = 10e-9;          ///< N rms, along the pipette
   double lag = 2e-3;             ///< s
   bool injector_works = true;
+  double full = 0.2e-15;                                                ///< m^3, of a pulse
   bool needle_tells = true, force_tells = true, injector_tells = true;  ///< else nothing is known of it
 
   Eigen::Vector3d tip = Eigen::Vector3d(0, 0, 40e-6);
@@ -58,7 +59,7 @@ struct SpringRig {
     input.force = Eigen::Vector3d(0, 0, force + (noise > 0 ? deviate(random) : 0));
     const bool asked = controller.pulse() && injector_works;
     if (asked) volume += 1e-15 * kStep;
-    input.injector = InjectorReport{asked && volume < 0.2e-15, volume};
+    input.injector = InjectorReport{asked && volume < full, volume, volume >= full};
     if (!needle_tells) input.needle.reset();
     if (!force_tells) input.force.reset();
     if (!injector_tells) input.injector.reset();

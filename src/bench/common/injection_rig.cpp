@@ -49,7 +49,8 @@ void InjectionRig::step() {
   InjectionController::Input input;
   if (const auto pose = manipulator_.tipPose()) input.needle = pose->translation();
   input.force = Eigen::Vector3d(reading.y(), 0, reading.x());
-  input.injector = InjectorReport{injector_.reading().busy, injector_.reading().volume};
+  input.injector =
+      InjectorReport{injector_.reading().busy, injector_.reading().volume, injector_.reading().last_id == pulses_};
   const InjectionState before = controller_.injection();
   const int punctures_before = controller_.result().punctures;
   const auto setpoint = controller_.step(input, kStep);

@@ -1,0 +1,96 @@
+// What people and programs ask of the controller.
+
+#include "control/injection_controller.h"
+
+namespace microinjection {
+
+std::string InjectionController::command(const std::string& command) {
+  if (command == "approach") return start(config_.goal);
+  if (command == "indent") return takeWord(InjectionEvent::kIndent);
+  if (command == "inject") return takeWord(InjectionEvent::kInject);
+  if (command == "withdraw") return withdraw();
+  return obey(command);
+}
+
+std::string InjectionController::obey(const std::string& command) {
+  const std::string refusal = std::string("state is ") + toText(state_) + ", ";
+  if (command == "disable") {
+    state_ = OperatingState::kDisabled;
+    held_because_ = "DISABLED";
+    setpoint_.reset();
+    run_.end(InjectionOutcome::kDisabled, "disabled");
+    happen(InjectionEvent::kReset);
+  } else if (command == "enable") {
+    if (state_ == OperatingState::kFault) return refusal + "enable is allowed after disable";
+    if (state_ == OperatingState::kDisabled) setpoint_.reset();
+    state_ = OperatingState::kEnabled;
+  } else if (command == "pause") {
+    if (state_ != OperatingState::kEnabled) return refusal + "pause is allowed in ENABLED";
+    hold("PAUSED");
+  } else if (command == "resume") {
+    if (state_ != OperatingState::kPaused) return refusal + "resume is allowed in PAUSED";
+    state_ = OperatingState::kEnabled;
+  } else if (command == "home") {
+    if (!setpoint_ || state_ == OperatingState::kFault) return refusal + "home is allowed in ENABLED and PAUSED";
+    state_ = OperatingState::kEnabled;
+    run_.end(InjectionOutcome::kPreempted, "home");
+    happen(InjectionEvent::kWithdraw);
+  } else {
+    return "\"" + command +
+           "\" is no command here; allowed: enable, disable, pause, resume, home, approach, indent, inject, withdraw";
+  }
+  homing_ = command == "home";
+  paused_ = command == "pause";
+  monitor_.skip();  // what comes next is no sequel of the motion until now
+  target_offset_.reset();
+  return "";
+}
+
+std::string InjectionController::start(const InjectionGoal& goal) {
+  if (byHand()) return "mode is manual: the hand moves the needle";
+  if (state_ != OperatingState::kEnabled || !setpoint_)
+    return std::string("state is ") + toText(state_) + ", an injection starts in ENABLED";
+  if (homing_ || injection_ != InjectionState::kIdle) {
+    return std::string("an injection starts in idle, the needle is in ") + (homing_ ? "homing" : toText(injection_));
+  }
+  if (monitor_.touched()) return "the needle is in the cell; withdraw or home takes it out";
+  const std::string problems = goal.problems();
+  if (!problems.empty()) return problems;
+  if (goal.depth > config_.guards.depth_limit) return "depth is above depth_limit";
+  run_.start(goal, *setpoint_);
+  monitor_.reset();
+  happen(InjectionEvent::kStart);
+  return "";
+}
+
+std::string InjectionController::takeWord(InjectionEvent event) {
+  if (state_ != OperatingState::kEnabled)
+    return std::string("state is ") + toText(state_) + ", it is allowed in ENABLED";
+  if (!byHand()) return run_.confirm(event, injection_);
+  if (event != InjectionEvent::kInject) return "mode is manual: the hand moves the needle";
+  if (injection_ != InjectionState::kPunctured) return std::string("it is no step from ") + toText(injection_);
+  if (!held_because_.empty()) return "the needle is held: " + held_because_;
+  if (config_.goal.pulse.duration <= 0) return "the goal has no pulse";
+  hand_pulse_.start(config_.goal.pulse, config_.motion.injector_patience);
+  pulse_by_hand_ = true;
+  happen(InjectionEvent::kInject);
+  return "";
+}
+
+std::string InjectionController::withdraw() {
+  if (byHand()) return "mode is manual: the hand withdraws the needle, or home";
+  const bool held = state_ == OperatingState::kEnabled || state_ == OperatingState::kPaused;
+  if (!held || !setpoint_)
+    return std::string("state is ") + toText(state_) + ", withdraw is allowed in ENABLED and PAUSED";
+  // Left in the cell by an injection that was disabled: it is known where it came from.
+  if (injection_ == InjectionState::kIdle && monitor_.touched() && !homing_) return obey("home");
+  if (homing_ || !after(injection_, InjectionEvent::kWithdraw)) {
+    return std::string("there is nothing to withdraw from in ") + (homing_ ? "homing" : toText(injection_));
+  }
+  state_ = OperatingState::kEnabled;
+  run_.withdraw();
+  happen(InjectionEvent::kWithdraw);
+  return "";
+}
+
+}  // namespace microinjection
