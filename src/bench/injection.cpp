@@ -6,14 +6,16 @@
 #include <cstdio>
 #include <fstream>
 #include <iostream>
+#include <map>
 #include <memory>
-#include <random>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bench/bench_main.h"
 #include "bench/common/detection_figures.h"
+#include "bench/common/injection_case.h"
 #include "bench/common/injection_rig.h"
 #include "bench/common/prepared_scene.h"
 
@@ -43,79 +45,19 @@ struct Bench {
   }
 };
 
-/// What a random cell is, and what the operator believes of it.
-struct Case {
-  int seed = 0;
-  ScaledCell::Properties cell;
-  Eigen::Vector2d offset = Eigen::Vector2d::Zero();  ///< m, of the needle's line from the cell's axis
-  double gap = 0;                                    ///< m, of the tip above the cell at the start
-  double believed_modulus = 0;                       ///< Pa
-};
-
-/// Diameter 20 to 150 um, even; modulus 2 to 45 kPa, even in its logarithm, known to a third; zona failing at 0.03 to
-/// 0.13 E R^2 (0.09 to 0.31 diameters deep), in every second cell an oolemma behind it; two Prony terms; offset up to
-/// 0.3 R; what a failure leaves falls in 1 to 10 ms, to a friction of the shaft of up to 0.3 of the zona's strength.
-Case randomCase(int seed) {
-  std::mt19937 random(static_cast<unsigned>(seed));
-  const auto even = [&](double low, double high) { return low + (high - low) * (random() / 4294967296.0); };
-  const auto evenLog = [&](double low, double high) { return low * std::pow(high / low, even(0, 1)); };
-  Case result;
-  result.seed = seed;
-  result.cell.diameter = even(20e-6, 150e-6);
-  result.cell.young_modulus = evenLog(2e3, 45e3);
-  result.believed_modulus = result.cell.young_modulus * evenLog(0.75, 1.33);
-  const double radius = 0.5 * result.cell.diameter, scale = result.cell.young_modulus * radius * radius;
-  result.cell.prony = {{even(0.1, 0.6), evenLog(0.1, 0.5)}, {even(0.1, 0.4), evenLog(0.5, 3)}};
-  const double strength = scale * evenLog(0.03, 0.13);
-  result.cell.puncture = PunctureConfig::atForce(strength);
-  if (seed % 2 == 0) {
-    PunctureConfig::Layer oolemma;
-    oolemma.name = "oolemma";
-    oolemma.force = even(0.3, 0.8) * strength;
-    oolemma.stiffness = oolemma.force / (even(0.03, 0.08) * result.cell.diameter);
-    oolemma.gap = even(0.005, 0.02) * result.cell.diameter;
-    result.cell.puncture.layers.push_back(oolemma);
-  }
-  result.cell.puncture.relaxation_time = evenLog(1e-3, 10e-3);
-  result.cell.puncture.shaft.friction = even(0, 0.3) * strength;
-  result.cell.puncture.shaft.stiffness = scale / radius;
-  const double angle = even(0, 2 * M_PI), far = 0.3 * radius * std::sqrt(even(0, 1));
-  result.offset = far * Eigen::Vector2d(std::cos(angle), std::sin(angle));
-  result.gap = even(5e-6, 20e-6);
-  return result;
-}
-
-/// What an operator sets for a kind of cell: its diameter is seen, its modulus is believed, the layers are known.
-InjectionControllerConfig settings(const Case& of) {
-  const double diameter = of.cell.diameter, radius = 0.5 * diameter, scale = of.believed_modulus * radius * radius;
-  InjectionControllerConfig config;
-  config.mode = "automatic";
-  config.guards.force_limit = std::max(0.3 * scale, 100e-9);  // ten times the noise
-  config.guards.depth_limit = 0.5 * diameter;
-  config.detection.contact_force = std::clamp(0.003 * scale, 8e-9, 50e-9);
-  config.motion.approach_speed = std::min(20e-6, 0.25 * diameter);
-  config.motion.travel_limit = of.gap + 0.35 * diameter;
-  config.motion.indent_speed = 0.05 * diameter;
-  config.motion.stab_speed = std::min(200e-6, 4 * diameter);
-  config.motion.overshoot = 0.04 * diameter;
-  config.goal.layers = static_cast<int>(of.cell.puncture.layers.size());
-  config.goal.depth = 0.42 * diameter;
-  config.goal.margin = 0.03 * diameter;
-  return config;
-}
-
 struct Outcome {
-  Case of;
+  InjectionCase of;
   InjectionRig::Truth truth;
   InjectionResult result;
   bool punctured = false, withdrawn = false, within = false, held = false;
   bool good() const { return punctured && withdrawn && within; }
 };
 
-Outcome inject(const Bench& bench, const Case& of) {
+Outcome inject(const Bench& bench, const InjectionCase& of, const InjectionRig::Trouble& trouble = {}) {
   ScaledCell cell(bench.scene, bench.prepared, of.cell);
   InjectionRig::Config config;
-  config.controller = settings(of);
+  config.controller = injectionSettings(of);
+  config.trouble = trouble;
   config.sensor.seed = of.seed;
   config.manipulator = bench.manipulator;
   config.manipulator.seed = of.seed;
@@ -161,12 +103,15 @@ void summarise(const std::vector<Outcome>& all) {
                "injection: %ld of %zu cells (%.1f %%) punctured and withdrawn with peak force and depth within guards; "
                "of %ld others %ld end with the needle at rest and the injector off\n",
                good, all.size(), 100.0 * static_cast<double>(good) / static_cast<double>(all.size()), failed, held);
-  std::fprintf(stderr,
-               "injection: outside of guards: %ld; felt without cause: %ld; of a force that is not trusted: %ld\n",
-               count([](const Outcome& o) { return !o.within; }),
-               count([](const Outcome& o) { return o.truth.false_detections > 0; }),
-               count([](const Outcome& o) { return !o.truth.trusted; }));
-  const auto limits = [](const Outcome& o) { return settings(o.of).guards; };
+  std::fprintf(
+      stderr,
+      "injection: outside of guards: %ld; felt without cause: %ld; failures not felt: %ld; of a force that is not "
+      "trusted: %ld\n",
+      count([](const Outcome& o) { return !o.within; }),
+      count([](const Outcome& o) { return o.truth.false_detections > 0; }),
+      count([](const Outcome& o) { return o.truth.unfelt > 0; }),
+      count([](const Outcome& o) { return !o.truth.trusted; }));
+  const auto limits = [](const Outcome& o) { return injectionSettings(o.of).guards; };
   medianAndWorst(all, "peak force", "of the limit",
                  [&](const Outcome& o) { return o.truth.peak_force / limits(o).force_limit; });
   medianAndWorst(all, "depth", "of the limit",
@@ -183,8 +128,8 @@ void summarise(const std::vector<Outcome>& all) {
 }
 
 /// The cell of the profiles: the mouse oocyte with half of its force relaxing, zona at 1.2 uN.
-Case oocyte() {
-  Case of;
+InjectionCase oocyte() {
+  InjectionCase of;
   of.seed = 1;
   of.cell.prony = {{0.6, 0.1}, {0.4, 1}};
   of.cell.puncture = PunctureConfig::atForce(1.2e-6);
@@ -199,11 +144,11 @@ void profiles(const Bench& bench) {
   std::fprintf(stderr,
                "injection: a relaxing oocyte: depth where the zona fails, and where the needle comes to rest before "
                "the margin\n");
-  const Case of = oocyte();
+  const InjectionCase of = oocyte();
   for (const double fastest : {2e-6, 5e-6, 20e-6, 50e-6, 100e-6, 200e-6, 500e-6, 0.0}) {
     ScaledCell cell(bench.scene, bench.prepared, of.cell);
     InjectionRig::Config config;
-    config.controller = settings(of);
+    config.controller = injectionSettings(of);
     config.controller.goal.margin = 0;
     config.controller.guards.speed_limit = 1e-3;
     config.controller.guards.time_limit = 60;
@@ -225,20 +170,49 @@ void profiles(const Bench& bench) {
   }
 }
 
-std::string table(int cells, const std::string& manipulator_file) {
+/// Each trouble at a moment of its own in each of the cells: the needle within its guards, and at the end at rest or
+/// out, and the injector off.
+void troubles(const Bench& bench, int first_seed, int cells) {
+  using Kind = InjectionRig::Trouble::Kind;
+  const std::pair<Kind, const char*> kinds[] = {{Kind::kNone, "a zona that does not fail"},
+                                                {Kind::kForceLost, "the force is lost"},
+                                                {Kind::kNeedleLost, "the needle's place is lost"},
+                                                {Kind::kRigStands, "the rig stands still for 3 s"},
+                                                {Kind::kInjectorDead, "the injector is dead"}};
+  for (const auto& [kind, words] : kinds) {
+    std::map<std::string, int> outcomes;
+    int safe = 0, within = 0;
+    for (int seed = first_seed; seed < first_seed + cells; ++seed) {
+      InjectionCase of = randomInjectionCase(seed);
+      if (kind == Kind::kNone) of.cell.puncture.layers[0].force *= 20;
+      // Between setting out and the end of an injection, which takes 3 to 10 s.
+      const Outcome outcome = inject(bench, of, {kind, 0.5 + 0.137 * (seed * 29 % 50)});
+      ++outcomes[toText(outcome.result.outcome)];
+      safe += outcome.held;
+      within += outcome.within;
+    }
+    std::fprintf(stderr, "injection: trouble: %s: %d of %d end at rest with the injector off, %d within guards;", words,
+                 safe, cells, within);
+    for (const auto& [outcome, count] : outcomes) std::fprintf(stderr, " %s %d", outcome.c_str(), count);
+    std::fprintf(stderr, "\n");
+  }
+}
+
+std::string table(int first_seed, int cells, const std::string& manipulator_file) {
   const Bench bench(manipulator_file);
   std::string text =
       "seed,diameter_m,young_modulus_Pa,punctured,withdrawn,peak_force_N,max_depth_m,detection_latency_s,"
       "false_detections,outcome\n";
   std::cout << text;
   std::vector<Outcome> all;
-  for (int seed = 1; seed <= cells; ++seed) {
-    all.push_back(inject(bench, randomCase(seed)));
+  for (int seed = first_seed; seed < first_seed + cells; ++seed) {
+    all.push_back(inject(bench, randomInjectionCase(seed)));
     const std::string line = row(all.back());
     std::cout << line << std::flush;
     text += line;
   }
   if (!all.empty()) summarise(all);
+  troubles(bench, first_seed, cells / 5);
   profiles(bench);
   printDetectionFigures();
   return text;
@@ -249,10 +223,11 @@ std::string table(int cells, const std::string& manipulator_file) {
 
 int main(int argc, char** argv) {
   namespace po = boost::program_options;
-  int cells = 200;
+  int first_seed = 1, cells = 200;
   std::string manipulator;
   po::options_description options;
   options.add_options()("cells", po::value(&cells)->default_value(200), "how many")(
+      "first-seed", po::value(&first_seed)->default_value(1), "of the cells; settings were chosen with those from 1")(
       "manipulator", po::value(&manipulator),
       "configuration file of the micromanipulator, e.g. src/rigs/sim/imperfect.yaml; else an ideal one with a "
       "lag");
@@ -261,5 +236,5 @@ int main(int argc, char** argv) {
       "injection: automatic injection of random cells, scaled from the prepared "
       "config/cells/mouse_oocyte_pipette.yaml\n"
       "(which is prepared first where it is not: minutes, once)",
-      [&] { return microinjection::table(cells, manipulator); }, options);
+      [&] { return microinjection::table(first_seed, cells, manipulator); }, options);
 }

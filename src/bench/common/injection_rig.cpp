@@ -13,7 +13,8 @@ InjectionRig::InjectionRig(const Config& config, const ManipulatorGeometry& geom
       sensor_(config.sensor),
       injector_({}),
       controller_(config.controller),
-      cell_(&cell) {
+      cell_(&cell),
+      trouble_(config.trouble) {
   Eigen::Isometry3d pose = geometry.tip_at_zero;
   pose.translation() = config.start;
   const std::string refusal = manipulator_.movePosition(pose);
@@ -25,7 +26,16 @@ InjectionRig::InjectionRig(const Config& config, const ManipulatorGeometry& geom
     manipulator_.step(time_, kStep);
     rested = manipulator_.moving() ? 0 : rested + 1;
   }
+  began_ = time_;
+  const auto abilities = device_.abilities();
+  controller_.adaptTo(abilities.speed, abilities.latency + abilities.command_interval);
   controller_.command("enable");
+}
+
+bool InjectionRig::isIn(Trouble::Kind kind) const {
+  constexpr double kStands = 3;  // s
+  const double since = time_ - began_ - trouble_.begin;
+  return trouble_.kind == kind && since >= 0 && (kind != Trouble::Kind::kRigStands || since < kStands);
 }
 
 void InjectionRig::run(double limit) {
@@ -37,7 +47,7 @@ bool InjectionRig::holds() {
   for (int i = 0; i < 200; ++i) step();
   const Eigen::Vector3d before = tip();
   for (int i = 0; i < 500; ++i) step();
-  return (tip() - before).norm() < 1e-8 && !controller_.pulse();
+  return (tip() - before).norm() < 1e-8 && !controller_.pulse() && !injector_.reading().busy;
 }
 
 void InjectionRig::step() {
@@ -51,17 +61,21 @@ void InjectionRig::step() {
   input.force = Eigen::Vector3d(reading.y(), 0, reading.x());
   input.injector =
       InjectorReport{injector_.reading().busy, injector_.reading().volume, injector_.reading().last_id == pulses_};
+  if (isIn(Trouble::Kind::kForceLost)) input.force.reset();
+  if (isIn(Trouble::Kind::kNeedleLost)) input.needle.reset();
   const InjectionState before = controller_.injection();
   const int punctures_before = controller_.result().punctures;
   const auto setpoint = controller_.step(input, kStep);
   listen(before, punctures_before);
-  if (setpoint) {
+  if (setpoint && !isIn(Trouble::Kind::kRigStands)) {
     Eigen::Isometry3d pose = geometry_.tip_at_zero;
     pose.translation() = *setpoint;
     manipulator_.servoPosition(pose);
   }
   const auto pulse = controller_.pulse();
-  if (pulse && !pulsing_) injector_.pulse({++pulses_, pulse->pressure, pulse->duration});
+  if (pulse && !pulsing_ && !isIn(Trouble::Kind::kInjectorDead))
+    injector_.pulse({++pulses_, pulse->pressure, pulse->duration});
+  if (!pulse && pulsing_ && injector_.reading().busy) injector_.stop();
   pulsing_ = pulse.has_value();
   injector_.step(time_);
   manipulator_.step(time_, kStep);

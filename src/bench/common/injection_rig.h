@@ -16,7 +16,14 @@ namespace microinjection {
 /// and what the virtual force sensor reads of the cell's force, one step old, and moves the needle and the injector.
 class InjectionRig {
  public:
+  /// What goes wrong, `begin` (s) after the start.
+  struct Trouble {
+    enum class Kind { kNone, kForceLost, kNeedleLost, kRigStands, kInjectorDead };
+    Kind kind = Kind::kNone;
+    double begin = 0;
+  };
   struct Config {
+    Trouble trouble;
     InjectionControllerConfig controller;
     ForceSensorConfig sensor;
     SimulatedManipulatorConfig manipulator;
@@ -50,6 +57,7 @@ class InjectionRig {
   bool holds();
 
  private:
+  bool isIn(Trouble::Kind kind) const;
   void watch(const Eigen::Vector3d& force, const Eigen::Vector3d& tip);
   void listen(InjectionState before, int punctures_before);
 
@@ -60,7 +68,9 @@ class InjectionRig {
   InjectorModel injector_;
   InjectionController controller_;
   ScaledCell* cell_;
-  double time_ = 0;  ///< s
+  Trouble trouble_;
+  double began_ = 0;  ///< s
+  double time_ = 0;   ///< s
   std::uint64_t pulses_ = 0;
   bool pulsing_ = false;
   std::optional<double> touch_height_;  ///< m
