@@ -134,7 +134,7 @@ void SessionRecorderNode::fillTable() {
     putForce(message, measured, table_.measured);
   });
   cell_.listen([this](const cell_microinjection::CellState& message, const ros::Time&) {
-    SessionTable::Cell cell{std::nullopt, message.punctured != 0, message.layers_punctured};
+    SessionTable::Cell cell{std::nullopt, message.punctured != 0, message.layers_punctured, message.holes.size()};
     const auto& touched_at = message.touched_at;
     if (message.in_contact) cell.touched_at = Eigen::Vector3d(touched_at.x, touched_at.y, touched_at.z);
     table_.cell.put(stampOf(message), cell);
