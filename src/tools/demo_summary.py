@@ -35,7 +35,8 @@ def training(path):
     """Returns a training session's score as text for people."""
     with open(path, encoding='utf-8') as file:
         told = yaml.safe_load(file)
-    worth = f'{told["score"]:.0f} of 100 points' if told['outcome'] == 'complete' else f'{told["outcome"]}: {told["reason"]}'
+    complete = told['outcome'] == 'complete'
+    worth = f'{told["score"]:.0f} of 100 points' if complete else f'{told["outcome"]}: {told["reason"]}'
     rows = [('measure', '', 'value', 'reference', 'points', 'of')]
     rows += [(name, '', *(f'{row[key]:.3g}' for key in ('value', 'reference', 'points', 'of')))
              for name, row in told['measures'].items()]
