@@ -139,6 +139,15 @@ class SummaryTest(InFolder):
     NODES = ('nodes:\n  - {node: cell_simulator, topic: /cell/predicted_cf, count: 1234, rate_hz: 999.8,'
              ' interval_median_ms: 1.0, interval_p99_ms: 1.5}\n')
 
+    def test_training_says_points_or_why_there_are_none(self):
+        told = ('operator: "ada"\noutcome: complete\nreason: ""\nscore: 87.4\nmeasures:\n'
+                '  peak_force_N: {value: 1.5e-6, reference: 1.6e-6, points: 25, of: 25}\n')
+        text = demo_summary.training(self.write('t.yaml', told))
+        self.assertIn('Training of ada: 87 of 100 points', text)
+        self.assertIn('1.5e-06', text)
+        told = told.replace('complete', 'aborted').replace('reason: ""', 'reason: "it ended in indent"')
+        self.assertIn('aborted: it ended in indent', demo_summary.training(self.write('t.yaml', told)))
+
     def test_live_it_has_latency_beside_the_bare_loop(self):
         text = demo_summary.text(self.write('s.yaml', (
             'clock: wall\nduration_s: 12.5\n' + self.NODES +

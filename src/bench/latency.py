@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Hand to hand: time from a haptic device's pose to the force that comes back to it, for each kind of device.
 
-An emulated device tells its pose at 1 kHz through its driver's topics (CRTK, phantom_omni, ros_geomagic) while a virtual
-hand indents the cell again and again. Counted is the first force that depends on a pose: when the bridge's step began
+An emulated device tells its pose at 1 kHz through its driver's topics (CRTK, phantom_omni, ros_geomagic) while a
+virtual hand indents the cell again and again. Counted is the first force that depends on a pose: when the bridge's step began
 that renders it, and when it had come to the device, adapter and all messages between included. Beside it the intervals
 of a bare loop at 1 kHz of the same run, which show what the machine allows.
 """
@@ -25,7 +25,8 @@ from realtime import SETTLE, Histograms, difference, write_motion  # noqa: E402
 
 HAPTIC = {'crtk': 'external', 'omni': 'omni', 'geomagic': 'geomagic'}  # kind of device -> haptic:= of the session
 ALLOWED = 2e-3  # s, 99 % of the round trips
-SOURCES = {'device to bridge': 'emulated_haptic: device to bridge', 'device to device': 'emulated_haptic: device to device',
+SOURCES = {'device to bridge': 'emulated_haptic: device to bridge',
+           'device to device': 'emulated_haptic: device to device',
            'bare loop at 1 kHz': 'session_recorder: bare timer loop'}
 
 

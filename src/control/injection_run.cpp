@@ -84,6 +84,7 @@ bool InjectionRun::goOn(InjectionEvent event) {
   if (automatic_) return true;
   if (confirmed_ != event) return false;
   confirmed_.reset();
+  waits_ = false;
   return true;
 }
 

@@ -31,7 +31,7 @@ struct TrainingSample {
   std::optional<double> depth;                      ///< m past the touch, not negative; empty where the tip is not
   InjectionState state = InjectionState::kIdle;
   double volume = 0;  ///< m^3, delivered until now; not finite: not known
-  int punctures = 0;  ///< felt since the needle set out; a fall begins a new count
+  int punctures = 0;  ///< until now; a fall begins a new count
 };
 
 /// What a session is worth as one to be compared with others.
@@ -56,7 +56,7 @@ struct TrainingScore {
   double deformation = 0;    ///< m, deepest past the touch before the first puncture (of all where there is none)
   double lateral_error = 0;  ///< m, farthest off the line along the pipette through the touch, in the cell
   double time = 0;           ///< s, from when the needle set out until it was out of the cell for the last time
-  int punctures = 0;         ///< membranes whose failure was felt
+  int punctures = 0;         ///< of membranes
   double volume = 0;         ///< m^3, delivered through a punctured membrane; what leaks elsewhere is not counted
   Points points;
   double score() const { return points.sum(); }

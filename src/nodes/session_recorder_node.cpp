@@ -7,6 +7,7 @@
 #include <ctime>
 #include <filesystem>
 #include <iomanip>
+#include <iostream>
 #include <limits>
 #include <sstream>
 
@@ -134,7 +135,7 @@ void SessionRecorderNode::fillTable() {
     putForce(message, measured, table_.measured);
   });
   cell_.listen([this](const cell_microinjection::CellState& message, const ros::Time&) {
-    SessionTable::Cell cell{std::nullopt, message.punctured != 0, message.layers_punctured};
+    SessionTable::Cell cell{std::nullopt, message.punctured != 0, message.layers_punctured, message.holes.size()};
     const auto& touched_at = message.touched_at;
     if (message.in_contact) cell.touched_at = Eigen::Vector3d(touched_at.x, touched_at.y, touched_at.z);
     table_.cell.put(stampOf(message), cell);
@@ -191,13 +192,15 @@ void SessionRecorderNode::run() {
 void SessionRecorderNode::score() const {
   const TrainingConfig& config = training_->config();
   const TrainingLog::Result result = training_->finish(parameters_.output_dir, began_);
-  ROS_INFO_STREAM(result.text);
+  // Where the session was interrupted, ROS's own log is over.
+  std::cout << result.text << std::endl;
   if (!result.in_history) return;
   const std::string picture = parameters_.output_dir + "/training.png";
   const std::string plot = std::filesystem::path(thisProgram()).parent_path() / "plot_training.py";
   runWorkers({{plot, config.history, picture, "--operator", config.operator_name}}, 1, [&](std::size_t, int status) {
-    if (status == 0) ROS_INFO_STREAM("compared with earlier sessions in " << picture);
-    if (status != 0) ROS_WARN_STREAM("no picture: " << plot << " has failed; the history is " << config.history);
+    if (status == 0) std::cout << "compared with earlier sessions in " << picture << std::endl;
+    if (status != 0)
+      std::cerr << "no picture: " << plot << " has failed; the history is " << config.history << std::endl;
   });
 }
 

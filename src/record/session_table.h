@@ -31,6 +31,7 @@ class SessionTable {
     std::optional<Eigen::Vector3d> touched_at;  ///< m, where the tip met the surface; empty without contact
     bool punctured = false;
     unsigned layers_punctured = 0;  ///< where the needle is or was last
+    std::size_t holes = 0;          ///< in the outermost layer
   };
 
   /// Of the injection, as the controller sees it.

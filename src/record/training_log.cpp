@@ -83,6 +83,7 @@ TrainingConfig TrainingConfig::read(ConfigReader& reader) {
   reader.text("operator", config.operator_name, ConfigReader::kRequired);
   reader.text("history", config.history, ConfigReader::kRequired);
   reader.choice("force", config.force, {"predicted", "measured"});
+  reader.choice("punctures", config.punctures, {"cell", "felt"});
   ConfigReader task = reader.section("task");
   config.task = TrainingTask::read(task);
   try {
@@ -93,12 +94,24 @@ TrainingConfig TrainingConfig::read(ConfigReader& reader) {
   return config;
 }
 
+int TrainingLog::puncturesOf(const SessionTable::Row& row) {
+  if (config_.punctures == "felt") return row.punctures;
+  const SessionTable::Cell& now = row.cell;
+  // Back in a hole that was there already, the layers that failed there are told at once.
+  const bool old_hole = cell_ && cell_->layers_punctured == 0 && cell_->holes == now.holes;
+  if (cell_ && !old_hole && now.layers_punctured > cell_->layers_punctured)
+    cell_punctures_ += static_cast<int>(now.layers_punctured - cell_->layers_punctured);
+  cell_ = now;
+  return cell_punctures_;
+}
+
 void TrainingLog::add(const SessionTable::Row& row) {
   std::optional<Eigen::Vector3d> force = row.predicted;
   if (config_.force == "measured") {
     force.reset();
     if (row.measured) force = Eigen::Vector3d(row.measured->lateral, 0, row.measured->axial);
   }
+  const int punctures = puncturesOf(row);
   if (!row.needle || !force) return session_.addGap();
   TrainingSample sample;
   sample.time = row.time;
@@ -108,7 +121,7 @@ void TrainingLog::add(const SessionTable::Row& row) {
   if (row.depth && *row.depth >= 0) sample.depth = row.depth;
   sample.state = injectionStateOf(row.injection).value_or(InjectionState::kIdle);
   sample.volume = row.volume.value_or(kUnknown);
-  sample.punctures = row.punctures;
+  sample.punctures = punctures;
   session_.add(sample);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "base/config_reader.h"
@@ -12,9 +13,10 @@ struct TrainingConfig {
   std::string operator_name;
   std::string history;              ///< path of the CSV file of all sessions; made when absent
   std::string force = "predicted";  ///< or measured: the force that counts
+  std::string punctures = "cell";   ///< those of the cell model, or felt: those that the controller has felt
   TrainingTask task;
 
-  /// Keys operator, history (both required), force, and the section task.
+  /// Keys operator, history (both required), force, punctures, and the section task.
   static TrainingConfig read(ConfigReader& reader);
 };
 
@@ -36,7 +38,11 @@ class TrainingLog {
   Result finish(const std::string& folder, const std::string& session) const;
 
  private:
+  int puncturesOf(const SessionTable::Row& row);
+
   TrainingConfig config_;
+  std::optional<SessionTable::Cell> cell_;  ///< of the row before
+  int cell_punctures_ = 0;
   TrainingSession session_;
 };
 

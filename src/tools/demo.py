@@ -3,7 +3,8 @@
 
 Leaves in the output folder: force_depth.csv and force_depth.png (force against depth, and the course of the
 injection), scene.png (rviz while the needle rests in the dent), session.bag, summary.yaml (rates and latency),
-force_error.csv (against the full solution along the same way in, up to the puncture) and log/. Exit code 1 when one of them is missing (but the last) or a node died.
+force_error.csv (against the full solution along the same way in, up to the puncture), with --operator training.yaml
+and training.png, and log/. Exit code 1 when one of them is missing (but the last) or a node died.
 """
 import argparse
 import os
@@ -23,6 +24,8 @@ from session_monitor import Progress
 
 ROOT = Path(os.environ.get('MICROINJECTION_ROOT') or Path(__file__).resolve().parents[2])
 RESULTS = ('force_depth.csv', 'force_depth.png', 'scene.png', 'session.bag', 'summary.yaml')
+
+TRAINING = ('training.yaml', 'training.png')  # with --operator
 
 RVIZ_TIMEOUT = 90    # s of wall time, for rviz to come up
 PHASE_TIMEOUT = 300  # s, for a phase of the operator
@@ -50,6 +53,8 @@ def parse_arguments():
                         help='who moves the hand; a session without the operator ends with Ctrl-C')
     parser.add_argument('--motion', type=Path, default=ROOT / 'config' / 'hand_motions' / 'puncture_and_inject.csv',
                         help="file of the operator's hand motion (%(default)s)")
+    parser.add_argument('--operator', default='', help='who trains: the session is scored, and compared with the '
+                        'operator\'s earlier ones in training.png')
     parser.add_argument('--no-rviz', action='store_true', help='no rviz and no scene.png')
     parser.add_argument('--no-judge', action='store_true',
                         help='do not compare with the full solution afterwards (a minute or two)')
@@ -75,7 +80,7 @@ class Demo:
         """Removes the results of the run before."""
         shutil.rmtree(self._logs, ignore_errors=True)
         self._logs.mkdir(parents=True)
-        for name in (*RESULTS, 'force_error.csv'):
+        for name in (*RESULTS, *TRAINING, 'force_error.csv'):
             if (self._out / name).exists():
                 (self._out / name).unlink()
 
@@ -103,7 +108,7 @@ class Demo:
         self._session = DemoSession(ROOT / 'launch' / 'session.launch', self._logs, {
             'scene': self._scene(), 'model': self._arguments.model, 'rig': self._arguments.rig, 'rviz': 'false',
             'haptic': self._arguments.haptic, 'motion': self._arguments.motion.resolve(),
-            'clock': self._arguments.clock, 'record': self._out})
+            'clock': self._arguments.clock, 'record': self._out, 'operator': self._arguments.operator})
         self._session.wait_ready()
         if not self._arguments.no_rviz:
             self._start_rviz()
@@ -169,9 +174,12 @@ class Demo:
             plot_force_depth.plot(csv, self._out / 'force_depth.png', demo_summary.layers(self._out / 'summary.yaml'))
         if (self._out / 'summary.yaml').is_file():
             print(demo_summary.text(self._out / 'summary.yaml'), flush=True)
+        if (self._out / 'training.yaml').is_file():
+            print(demo_summary.training(self._out / 'training.yaml'), flush=True)
         if csv.is_file() and not self._arguments.no_judge:
             self._judge(csv)
         wanted = [name for name in RESULTS if not (name == 'scene.png' and self._arguments.no_rviz)]
+        wanted += TRAINING[:1] if self._arguments.operator else ()
         missing = [name for name in wanted if not (self._out / name).is_file() or not (self._out / name).stat().st_size]
         if missing:
             raise DemoError(f'missing or empty in {self._out}: {", ".join(missing)}; see {self._logs}')

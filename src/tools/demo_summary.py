@@ -31,6 +31,18 @@ def layers(path):
         return yaml.safe_load(file).get('layers') or []
 
 
+def training(path):
+    """Returns a training session's score as text for people."""
+    with open(path, encoding='utf-8') as file:
+        told = yaml.safe_load(file)
+    complete = told['outcome'] == 'complete'
+    worth = f'{told["score"]:.0f} of 100 points' if complete else f'{told["outcome"]}: {told["reason"]}'
+    rows = [('measure', '', 'value', 'reference', 'points', 'of')]
+    rows += [(name, '', *(f'{row[key]:.3g}' for key in ('value', 'reference', 'points', 'of')))
+             for name, row in told['measures'].items()]
+    return '\n'.join([f'Training of {told["operator"]}: {worth}'] + _table(rows)) + '\n'
+
+
 def text(path):
     """Returns the summary as text for people."""
     with open(path, encoding='utf-8') as file:

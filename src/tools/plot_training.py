@@ -21,6 +21,7 @@ MEASURES = (('peak_force_N', 1e6, 'peak force (µN)'), ('deformation_m', 1e6, 'd
             ('lateral_error_m', 1e6, 'lateral error (µm)'), ('time_s', 1, 'time (s)'), ('punctures', 1, 'punctures'),
             ('volume_m3', 1e15, 'volume (pL)'))
 MOST_SESSIONS = 30  # the newest
+FEWEST_SESSIONS = 4  # that the axes are wide enough for
 
 
 def read(path, name=None):
@@ -55,9 +56,9 @@ def plot_score(axes, rows):
         bottom += points
     for place, row in zip(places, rows):
         counts = row['outcome'] == 'complete'
-        axes.annotate(f'{float(row["score"]):.0f}' if counts else row['outcome'], (place, float(row['score'])), ha='center',
-                      va='bottom', fontsize=8, rotation=0 if counts else 90, color='k' if counts else '0.5')
-    axes.set(ylim=(0, 110), ylabel='score', xticks=places)
+        axes.annotate(f'{float(row["score"]):.0f}' if counts else row['outcome'], (place, float(row['score'])),
+                      ha='center', va='bottom', fontsize=8, rotation=0 if counts else 90, color='k' if counts else '0.5')
+    axes.set(xlim=(-0.6, max(len(rows), FEWEST_SESSIONS) - 0.4), ylim=(0, 110), ylabel='score', xticks=places)
     axes.set_xticklabels([row['session'] for row in rows], rotation=30, ha='right', fontsize=7)
     axes.legend(loc='center left', bbox_to_anchor=(1, 0.5), frameon=False, fontsize=8)
 
@@ -70,11 +71,12 @@ def plot_measure(axes, rows, name, factor, label):
     for chosen, face in ((counts, None), (~counts, 'w')):
         before = chosen & (places < len(rows))
         axes.plot(places[before], values[before], 'o', color='#4c78a8', markerfacecolor=face or '#4c78a8', markersize=4)
-    axes.plot(places[-1], values[-1], 'o', color='#e45756', markerfacecolor='#e45756' if counts[-1] else 'w', markersize=6)
+    axes.plot(places[-1], values[-1], 'o', color='#e45756', markerfacecolor='#e45756' if counts[-1] else 'w',
+              markersize=6)
     if counts[:-1].any():
         axes.axhline(numpy.median(values[:-1][counts[:-1]]), color='0.5', linewidth=0.8, linestyle=':')
     axes.set_title(label, fontsize=9)
-    axes.set_ylim(0, 1.15 * max(values.max(), 1e-9))
+    axes.set(xlim=(0.4, max(len(rows), FEWEST_SESSIONS) + 0.6), ylim=(0, 1.15 * max(values.max(), 0.01)))
     axes.xaxis.get_major_locator().set_params(integer=True)
     axes.tick_params(labelsize=8)
 

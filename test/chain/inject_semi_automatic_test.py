@@ -59,6 +59,7 @@ class InjectSemiAutomaticTest(InjectionChainTest):
         self.say("withdraw")
         self.tick_until(lambda: self.status().outcome == "injected", "the outcome")
         self.check_out(self.start)
+        self.assertEqual(self.waited, {"contact", "punctured"})
         passed = [name for name in self.states if name != "idle"]
         self.assertEqual(passed, ["approach", "contact", "indent", "punctured", "inject", "punctured", "withdraw"])
 

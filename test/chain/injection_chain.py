@@ -19,7 +19,7 @@ class InjectionChainTest(unittest.TestCase):
         cls.chain = Participant({}, {"/needle/measured_cp": PoseStamped, "/injector/state": InjectorState,
                                      "/cell/state": CellState, "/controller/injection_state": InjectionStatus,
                                      "/controller/operating_state": OperatingState})
-        cls.states = []
+        cls.states, cls.waited = [], set()
         cls.listener = rospy.Subscriber("/controller/injection_state", InjectionStatus, cls.on_status)
         cls.commands = rospy.Publisher("/controller/state_command", StringStamped, queue_size=10)
         cls.moves = rospy.Publisher("/needle/move_cp", PoseStamped, queue_size=10)
@@ -31,6 +31,8 @@ class InjectionChainTest(unittest.TestCase):
     def on_status(cls, message):
         if not cls.states or cls.states[-1] != message.state:
             cls.states.append(message.state)
+        if message.waits:
+            cls.waited.add(message.state)
 
     def needle(self):
         return position(self.chain.seen["/needle/measured_cp"])

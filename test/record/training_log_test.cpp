@@ -7,6 +7,8 @@
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "base/errors.h"
 
@@ -20,6 +22,7 @@ class TrainingLogTest : public testing::Test {
     config_.operator_name = "ada";
     config_.history = folder_ + "/all/history.csv";
     config_.task.volume = 5e-15;
+    config_.punctures = "felt";
   }
   ~TrainingLogTest() override { std::filesystem::remove_all(folder_); }
 
@@ -88,6 +91,23 @@ TEST_F(TrainingLogTest, TheMeasuredForceCountsWhereItIsAskedFor) {
   config_.force = "measured";
   TrainingLog log(config_);
   EXPECT_DOUBLE_EQ(indented(log).finish(folder_, "now").score.peak_force, 2e-6);
+}
+
+/// Two membranes, another place, and back in the first hole.
+TEST_F(TrainingLogTest, TheCellsPuncturesCountOnce) {
+  config_.punctures = "cell";
+  TrainingLog log(config_);
+  int time = 0;
+  const std::vector<std::pair<unsigned, std::size_t>> told = {{0, 0}, {1, 1}, {1, 1}, {2, 1}, {0, 1},
+                                                              {1, 2}, {0, 2}, {2, 2}, {2, 2}};
+  for (const auto& [layers, holes] : told) {
+    SessionTable::Row now = row(++time, "punctured", 5e-6, 0);
+    now.punctures = 7;
+    now.cell.layers_punctured = layers;
+    now.cell.holes = holes;
+    log.add(now);
+  }
+  EXPECT_EQ(log.finish(folder_, "now").score.punctures, 3);
 }
 
 TEST_F(TrainingLogTest, AnUntouchedCellIsSaidAndNotEntered) {
