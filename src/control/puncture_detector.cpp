@@ -25,10 +25,11 @@ bool PunctureDetector::step(double force, double travel) {
     --paused_;
     return false;
   }
-  if (count_ == 0) ring_[0] = {0, travel}, count_ = 1;
-  const double sum = before(0).force_sum + force;
+  if (count_ == 0) ring_[0] = {0, 0, travel}, count_ = 1;
+  const Sample sums = before(0);
   ++count_;
-  ring_[static_cast<std::size_t>(count_ - 1) % ring_.size()] = {sum, travel};
+  ring_[static_cast<std::size_t>(count_ - 1) % ring_.size()] = {sums.force_sum + force, sums.travel_sum + travel,
+                                                                travel};
   for (int window = kShortest; window <= kLongest && 2 * window < count_; window *= 2) {
     if (!fell(window)) continue;
     reset();
@@ -44,6 +45,8 @@ bool PunctureDetector::fell(int window) const {
   const double kept = window <= kRough ? 0.5 : 0.9;
   if (earlier < window * kSmallestAdvance || advance < window * kSmallestAdvance || advance < kept * earlier)
     return false;
+  // A trembling hand may end deeper and yet have been less deep meanwhile.
+  if (now.travel_sum - middle.travel_sum <= middle.travel_sum - old.travel_sum) return false;
   const double mean = (now.force_sum - middle.force_sum) / window,
                mean_before = (middle.force_sum - old.force_sum) / window;
   const double fall = mean_before - mean;

@@ -11,9 +11,9 @@ namespace microinjection {
 /// Means of the force over the last m samples and over the m before are compared, for m = 4, 8, ... 256 at once: a
 /// large fall is found within milliseconds, a small one as soon as the noise allows. It counts where it exceeds both
 /// what noise does once in 1 / false_rate samples and a share of the force, and where the needle went on through both
-/// windows: at a stop (relaxation), a withdrawal or a slowing hand nothing is found. Through the short windows (up to
-/// 64 samples) the speed may fall to half, through the longer ones to nine tenths: an elastic or relaxing cell's force
-/// does not fall while the speed does not.
+/// windows, and was deeper in the later one on the mean: at a stop (relaxation), a withdrawal, a slowing or trembling
+/// hand nothing is found. Through the short windows (up to 64 samples) the speed may fall to half, through the longer
+/// ones to nine tenths: an elastic or relaxing cell's force does not fall while the speed does not.
 class PunctureDetector {
  public:
   /// @param noise       of the force at rest
@@ -34,8 +34,9 @@ class PunctureDetector {
 
  private:
   struct Sample {
-    double force_sum = 0;  ///< N, of all until now
-    double travel = 0;     ///< m
+    double force_sum = 0;   ///< N, of all until now
+    double travel_sum = 0;  ///< m, same
+    double travel = 0;      ///< m
   };
   const Sample& before(int samples) const {
     return ring_[static_cast<std::size_t>(count_ - 1 - samples) % ring_.size()];

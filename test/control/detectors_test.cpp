@@ -147,6 +147,26 @@ TEST_F(DetectorsTest, StopRelaxationAndWithdrawalAreNoPuncture) {
   }
 }
 
+/// A hand that goes in at 5 to 20 um/s and trembles by 0.12 um rms, a soft and a stiff cell, a force that is 2 ms late.
+TEST_F(DetectorsTest, ATremblingHandIsNoPuncture) {
+  const ForceNoise silent = [] {
+    ForceNoise noise(100, 5e-9);
+    for (int i = 0; i < 100; ++i) noise.add(0);
+    return noise;
+  }();
+  for (const double speed : {5e-9, 10e-9, 20e-9}) {
+    for (const double frequency : {8.0, 9.5, 12.0}) {
+      PunctureDetector detector(silent, 0.25, 1e-8, 30);
+      int alarms = 0;
+      for (int i = 0; i < 2000; ++i) {
+        const auto travel = [&](int at) { return speed * at + 0.17e-6 * std::sin(2 * M_PI * frequency * 1e-3 * at); };
+        alarms += detector.step(0.1 * std::max(0.0, travel(i - 2)), travel(i));
+      }
+      EXPECT_EQ(alarms, 0) << speed << ' ' << frequency;
+    }
+  }
+}
+
 TEST_F(DetectorsTest, WhatFallsOnAfterAPunctureIsNotAnother) {
   for (const int pause : {0, 30}) {
     PunctureDetector detector(noise_, 0.25, 1e-8, pause);
