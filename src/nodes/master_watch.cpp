@@ -16,6 +16,11 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
+constexpr Seconds kPeriod(0.5);  ///< from an answer to the next question
+/// Without an answer. Long, since this thread and the master come last where nodes that run in real time need all of
+/// the processor; one that has died refuses at once.
+constexpr Seconds kPatience(5);
+
 bool masterKnowsUs() {
   XmlRpc::XmlRpcValue request, response, uri;
   request[0] = request[1] = ros::this_node::getName();
@@ -35,7 +40,7 @@ struct MasterWatch::Shared {
 
   void watch() {
     std::unique_lock<std::mutex> lock(mutex);
-    while (!changed.wait_for(lock, Seconds(kPeriod), [this] { return ending; })) {
+    while (!changed.wait_for(lock, kPeriod, [this] { return ending; })) {
       lock.unlock();
       const bool known = masterKnowsUs();
       refused = !known;
@@ -64,7 +69,7 @@ MasterWatch::~MasterWatch() {
 
 bool MasterWatch::lost() const {
   if (shared_->refused.load(std::memory_order_relaxed)) return true;
-  return timed_ && Seconds(Clock::now() - shared_->answered.load(std::memory_order_relaxed)).count() > kPatience;
+  return timed_ && Clock::now() - shared_->answered.load(std::memory_order_relaxed) > kPatience;
 }
 
 }  // namespace microinjection

@@ -6,16 +6,13 @@
 
 namespace microinjection {
 
-/// Whether the ROS master is there and knows this node, asked in a thread of its own. Topics that are connected outlive
-/// the master, but nobody new can be heard any more, such as who sends `disable`. A master that was started anew knows
-/// none of the nodes that run: to it they are lost until they are started again.
+/// Whether the ROS master is there and knows this node, asked each 0.5 s (of wall time) in a thread of its own. Topics
+/// that are connected outlive the master, but nobody new can be heard any more, such as who sends `disable`. A master
+/// that was started anew knows none of the nodes that run: to it they are lost until they are started again.
 class MasterWatch {
  public:
-  static constexpr double kPeriod = 0.5;    ///< s of wall time from an answer to the next question
-  static constexpr double kPatience = 2.0;  ///< s of wall time without an answer
-
-  /// Between ros::init and the end of ROS. `timed`: a master that does not answer within kPatience is lost; otherwise
-  /// only one that is not there or refuses, so that nothing depends on how fast this machine is.
+  /// Between ros::init and the end of ROS. A master that is not there, or refuses, is lost; where `timed`, one that has
+  /// not answered for 5 s, too: else nothing depends on how fast this machine is.
   explicit MasterWatch(bool timed);
   ~MasterWatch();
   MasterWatch(const MasterWatch&) = delete;
