@@ -142,8 +142,10 @@ class KillMasterTest(unittest.TestCase):
 
     @staticmethod
     def drive(driver, ended):
+        state = OmniState()
+        state.pose.orientation.w = 1
         while not ended.wait(0.005):
-            driver.publish(OmniState())
+            driver.publish(state)
 
     def begin_pulse(self, number):
         until(self.pulses.get_num_connections, "the injector")
@@ -158,7 +160,9 @@ class KillMasterTest(unittest.TestCase):
         until(lambda: np.ptp(self.needle.newest(RATE, position)[:, 2]) < STILL, "a needle that rests")
         until(lambda: not self.injector.messages[-1].busy, "the end of the pulse")
         self.assertFalse(self.felt.newest(RATE, force).any())
-        said = [status for message in self.diagnostics.newest(20, lambda message: message.status) for status in message
+        begin = len(self.diagnostics.messages)
+        until(lambda: len(self.diagnostics.messages) > begin + 20, "diagnostics")
+        said = [status for message in self.diagnostics.messages[begin + 5:] for status in message.status
                 if status.name.endswith(": inputs")]
         self.assertTrue(said)
         self.assertTrue(all(LOST in status.message for status in said), said)

@@ -321,8 +321,8 @@ TEST_F(InjectionRunTest, UntrustedInputsHoldInEachState) {
       }
       rig_.run(controller_);
       const auto outcome = controller_.result().outcome;
-      EXPECT_EQ(outcome, !needle && state == State::kIndent ? InjectionOutcome::kGuard : InjectionOutcome::kInjected)
-          << where;
+      const bool ends = state == State::kInject || (!needle && state == State::kIndent);
+      EXPECT_EQ(outcome, ends ? InjectionOutcome::kGuard : InjectionOutcome::kInjected) << where;
       expectSafe(where);
     }
   }
