@@ -21,6 +21,8 @@ Cycle::Cycle(const ros::NodeHandle& node, double rate)
 
 void Cycle::run(const std::function<void(const Tick&)>& step) {
   step_ = step;
+  // A node's first line asks the master for a parameter of rosout's, and waits: not when the master hangs.
+  ROS_INFO_STREAM("steps " << (lockstep_ ? "in lock step" : "live") << ", nominally each " << period_ << " s");
   if (lockstep_) {
     runLockstep();
   } else {

@@ -137,8 +137,10 @@ class KillTest(unittest.TestCase):
     def tearDown(self):
         if self.session:
             self.session.close()
+            self.session = None
 
     def open(self, nodes, seen):
+        self.tearDown()
         self.session = Session(nodes, ["/controller/operating_state", *seen])
         self.session.begin()
 
@@ -302,7 +304,7 @@ class KillTest(unittest.TestCase):
             with self.subTest(node):
                 self.by_itself()
                 self.in_state("inject", 100)
-                killed = self.kill(node)
+                killed = self.kill(node, 320)
                 self.check_no_pulse(killed, timeout + SLACK)
                 if node != "micromanipulator":
                     self.check_rests(killed)
