@@ -1,5 +1,7 @@
 #include "nodes/cycle.h"
 
+#include <std_msgs/String.h>
+
 #include <algorithm>
 
 #include "nodes/lockstep.h"
@@ -7,13 +9,20 @@
 namespace microinjection {
 
 Cycle::Cycle(const ros::NodeHandle& node, double rate)
-    : period_(1 / rate), lockstep_(takesPartInLockstep()), node_(node), sampled_node_(node), diagnostics_(rate) {
+    : period_(1 / rate),
+      lockstep_(takesPartInLockstep()),
+      node_(node),
+      sampled_node_(node),
+      diagnostics_(rate),
+      master_(!lockstep_) {
   node_.setCallbackQueue(&queue_);
   sampled_node_.setCallbackQueue(&sampled_queue_);
 }
 
 void Cycle::run(const std::function<void(const Tick&)>& step) {
   step_ = step;
+  // A node's first line asks the master for a parameter of rosout's, and waits: not when the master hangs.
+  ROS_INFO_STREAM("steps " << (lockstep_ ? "in lock step" : "live") << ", nominally each " << period_ << " s");
   if (lockstep_) {
     runLockstep();
   } else {
@@ -30,10 +39,23 @@ void Cycle::step(const ros::Time& now) {
   }
   const double dt = last_step_.isZero() ? period_ : (now - last_step_).toSec();
   if (dt <= 0) return;  // a simulated clock that stands still
+  lookForMaster();
   diagnostics_.beginStep();
   step_({now, std::min(dt, 10 * period_)});
   diagnostics_.endStep(now);
   last_step_ = now;
+}
+
+void Cycle::lookForMaster() {
+  const bool lost = master_.lost();
+  if (lost == master_lost_) return;
+  master_lost_ = lost;
+  for (auto& input : inputs_) input->cut_off = lost;
+  if (lost) {
+    ROS_ERROR("the ROS master is lost, or a new one that does not know this node: no input counts");
+  } else {
+    ROS_INFO("the ROS master is back");
+  }
 }
 
 void Cycle::runLive() {
@@ -57,17 +79,24 @@ void Cycle::runLive() {
 bool Cycle::allAnswered(const ros::Time& now) const {
   return std::all_of(inputs_.begin(), inputs_.end(), [&](const auto& input) {
     if (input->phase == Phase::kTickBefore && stepped_tick_.isZero()) return true;  // nothing was said before the start
+    if (hasLeft(input->feeder)) return true;
     return input->answered(input->phase == Phase::kSameTick ? now : stepped_tick_);
   });
+}
+
+bool Cycle::hasLeft(const std::string& participant) const {
+  return !left_.empty() && (' ' + left_).find(' ' + participant + ' ') != std::string::npos;
 }
 
 void Cycle::runLockstep() {
   const ros::Subscriber clock = node_.subscribe<rosgraph_msgs::Clock>(
       "/clock", 10, [this](const rosgraph_msgs::ClockConstPtr& message) { tick_ = message->clock; }, {},
       ros::TransportHints().tcpNoDelay());
+  const ros::Subscriber left = node_.subscribe<std_msgs::String>(
+      kLeftTopic, 10, [this](const std_msgs::StringConstPtr& message) { left_ = message->data; });
   acknowledgement_ = node_.advertise<std_msgs::Header>(kAcknowledgementTopic, 10, true);
   for (auto& output : outputs_) output->greet();
-  const auto connected = [](const auto& input) { return input->connected; };
+  const auto connected = [](const auto& input) { return !input->feeder.empty(); };
   while (goesOn() && !std::all_of(inputs_.begin(), inputs_.end(), connected)) {
     queue_.callAvailable(ros::WallDuration(0.1));
   }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "nodes/cycle_diagnostics.h"
+#include "nodes/master_watch.h"
 #include "nodes/ports.h"
 
 namespace microinjection {
@@ -23,7 +24,11 @@ constexpr int kBacklog = 5000;
 /// Live, a step follows the arrival of a kSameTick input, so that a hand's motion runs through the whole chain at once;
 /// without such an input, or when it fails to come, the node steps at its own rate. In lock step (the parameter
 /// /lockstep/participants names this node) it steps once for each tick of /clock, when each input has brought that
-/// tick's message or said that it has none, and tells the clock; see nodes/lockstep_clock_node.h.
+/// tick's message or said that it has none, and tells the clock; see nodes/lockstep_clock_node.h. An input whose feeder
+/// has left the lock step is not waited for: it is silent, and grows stale.
+///
+/// While the master is lost (nodes/master_watch.h) no input counts as fresh: a node then does what it does without
+/// input.
 class Cycle {
  public:
   struct Tick {
@@ -45,7 +50,8 @@ class Cycle {
   ros::NodeHandle& node() { return sampled_node_; }
   CycleDiagnostics& diagnostics() { return diagnostics_; }
   bool lockstep() const { return lockstep_; }
-  double period() const { return period_; }  ///< s
+  bool masterLost() const { return master_lost_; }  ///< in this step
+  double period() const { return period_; }         ///< s
 
   /// Steps until ROS shuts down or stop() is called.
   void run(const std::function<void(const Tick&)>& step);
@@ -56,6 +62,8 @@ class Cycle {
   void runLive();
   void runLockstep();
   bool allAnswered(const ros::Time& now) const;
+  bool hasLeft(const std::string& participant) const;
+  void lookForMaster();
   void step(const ros::Time& now);
   void acknowledge(const ros::Time& now);
 
@@ -75,6 +83,9 @@ class Cycle {
   bool triggered_ = false;  // live: a kSameTick input has come
   ros::Time tick_;          // lock step: the clock's newest
   ros::Time stepped_tick_;  // lock step: the last one answered
+  std::string left_;        // lock step: as on kLeftTopic
+  bool master_lost_ = false;
+  MasterWatch master_;
   ros::Publisher acknowledgement_;
 };
 
@@ -88,9 +99,11 @@ Input<Message>& Cycle::input(const std::string& topic, Phase phase, double timeo
   if (lockstep_) {
     subscribers_.push_back(node_.subscribe<Message>(
         topic, 10, [&port](const boost::shared_ptr<const Message>& message) { port.queue(message); }, {}, hints));
-    subscribers_.push_back(node_.subscribe<std_msgs::Header>(
-        topic + kSilentSuffix, 10, [&port](const std_msgs::HeaderConstPtr& header) { port.queueSilence(*header); }, {},
-        hints));
+    using Event = ros::MessageEvent<const std_msgs::Header>;
+    const auto hear = [&port](const Event& event) {
+      port.queueSilence(*event.getConstMessage(), event.getPublisherName());
+    };
+    subscribers_.push_back(node_.subscribe<std_msgs::Header, const Event&>(topic + kSilentSuffix, 10, hear, {}, hints));
   } else {
     const bool trigger = phase == Phase::kSameTick;
     using Event = ros::MessageEvent<const Message>;

@@ -76,6 +76,10 @@ void CycleDiagnostics::reportIntervals(const IntervalHistogram& intervals, Diagn
 
 void CycleDiagnostics::reportInputs(DiagnosticStatusWrapper& status) {
   status.summary(DiagnosticStatus::OK, "all inputs are fresh");
+  const auto cut_off = [](const InputPort* input) { return input->cut_off; };
+  if (std::any_of(inputs_.begin(), inputs_.end(), cut_off)) {
+    return status.summary(DiagnosticStatus::ERROR, "the ROS master is lost: no input counts");
+  }
   for (const InputPort* input : inputs_) {
     status.add("age of " + input->topic + " (s)", input->age(now_));
     if (input->received.isZero() && std::isinf(input->timeout)) continue;  // a command comes when it comes

@@ -3,11 +3,17 @@
 #include <limits>
 
 #include "nodes/conversions.h"
+#include "nodes/ending.h"
 #include "nodes/force_topic.h"
 #include "nodes/latency_meter.h"
 #include "nodes/node_parameters.h"
 
 namespace microinjection {
+namespace {
+
+constexpr int kLastForces = 5;  // since messages can be dropped
+
+}  // namespace
 
 const char* const HapticBridgeNode::kHelp =
     "haptic_bridge: couples a haptic device to the needle, position forward and force back.\n"
@@ -27,6 +33,7 @@ HapticBridgeNode::Timeouts HapticBridgeNode::Timeouts::read(ConfigReader reader)
   reader.number("needle", timeouts.needle, Range::positive());
   reader.number("predicted", timeouts.predicted, Range::positive());
   reader.number("measured", timeouts.measured, Range::positive());
+  reader.number("controller", timeouts.controller, Range::nonNegative());
   return timeouts;
 }
 
@@ -60,6 +67,10 @@ HapticBridgeNode::HapticBridgeNode(ros::NodeHandle node, ros::NodeHandle private
     operator_present_ = &cycle_.input<sensor_msgs::Joy>("haptic/operator_present", Phase::kTickBefore,
                                                         parameters_.timeouts.operator_present);
   }
+  if (parameters_.timeouts.controller > 0) {
+    controller_ = &cycle_.input<cell_microinjection::InjectionStatus>("controller/injection_state", Phase::kTickBefore,
+                                                                      parameters_.timeouts.controller);
+  }
   cycle_.diagnostics().add("loop", [this](auto& status) { report(status); });
 }
 
@@ -70,8 +81,27 @@ Input<geometry_msgs::WrenchStamped>* HapticBridgeNode::forceInput(bool used, con
 }
 
 void HapticBridgeNode::run() {
-  cycle_.run([this](const Cycle::Tick& tick) { step(tick); });
+  cycle_.run([this](const Cycle::Tick& tick) {
+    if (askedToEnd()) {
+      cycle_.stop();
+    } else {
+      step(tick);
+    }
+  });
+  sayZeroForce();
 }
+
+/// For a driver that holds the last force.
+void HapticBridgeNode::sayZeroForce() {
+  for (int i = 0; i < kLastForces && ros::ok(); ++i) {
+    const ros::Time now = ros::Time::now();
+    hand_force_.publish(toWrench(Eigen::Vector3d::Zero(), now, hand_frame_));
+    target_.publishInvalid(toPose(Eigen::Vector3d::Zero(), now, kWorldFrame));
+    ros::WallDuration(0.01).sleep();
+  }
+}
+
+bool HapticBridgeNode::controllerLives(const ros::Time& now) const { return !controller_ || controller_->get(now); }
 
 bool HapticBridgeNode::clutchPressed(const ros::Time& now) const {
   if (clutch_.received.isZero()) return false;  // a device without a clutch
@@ -89,9 +119,11 @@ void HapticBridgeNode::step(const Cycle::Tick& tick) {
   const auto* predicted = predicted_ ? predicted_->get(tick.now) : nullptr;
   const auto* measured = measured_ ? measured_->get(tick.now) : nullptr;
   const auto needle = trustedPose(needle_.get(tick.now));
+  without_controller_ = !controllerLives(tick.now);
+  if (hand) hand_frame_ = hand->header.frame_id;
   HapticBridge::Input input;
   if (hand) input.hand = trustedPosition(hand, hand->header.frame_id);
-  if (needle) {
+  if (needle && !without_controller_) {
     input.needle = needle->translation();
     input.force.predicted = trustedForce(predicted, needle->linear());
     input.force.measured = trustedForce(measured, needle->linear());
@@ -99,7 +131,7 @@ void HapticBridgeNode::step(const Cycle::Tick& tick) {
   input.clutch = clutchPressed(tick.now);
   input.operator_present = operatorPresent(tick.now);
   const HapticBridge::Output& output = output_ = model_.step(input, tick.dt);
-  hand_force_.publish(toWrench(output.hand_force, tick.now, hand ? hand->header.frame_id : ""));
+  hand_force_.publish(toWrench(output.hand_force, tick.now, hand_frame_));
   if (!output.needle) {
     target_.publishInvalid(toPose(Eigen::Vector3d::Zero(), tick.now, kWorldFrame));
     return;
@@ -116,7 +148,9 @@ void HapticBridgeNode::step(const Cycle::Tick& tick) {
 void HapticBridgeNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) const {
   const bool good = output_.held_because.empty();
   status.summary(good ? diagnostic_msgs::DiagnosticStatus::OK : diagnostic_msgs::DiagnosticStatus::WARN,
-                 good ? "the loop is closed" : "needle held, zero force: " + output_.held_because);
+                 good                  ? "the loop is closed"
+                 : without_controller_ ? "needle held, zero force: the controller is silent"
+                                       : "needle held, zero force: " + output_.held_because);
   status.add("state", Engagement::name(output_.state));
   status.add("force source", parameters_.model.force.source);
   status.add("tremor filter's delay (s)", model_.delay());

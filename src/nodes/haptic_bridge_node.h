@@ -7,6 +7,7 @@
 
 #include <string>
 
+#include "cell_microinjection/InjectionStatus.h"
 #include "cell_microinjection/LatencyTrace.h"
 #include "nodes/cycle.h"
 #include "teleoperation/haptic_bridge.h"
@@ -14,11 +15,13 @@
 namespace microinjection {
 
 /// Couples a haptic device to the needle. Without a trusted hand, needle or force it renders zero force and withdraws
-/// its target (stamp 0), so that the controller holds the needle.
+/// its target (stamp 0), so that the controller holds the needle. It does so without a controller, too: the needle then
+/// does not follow, and what it feels is no answer to the hand. Zero force is also the last that it says.
 ///
 /// In:  /haptic/measured_cp (PoseStamped, the device's axes), /haptic/clutch and /haptic/operator_present (Joy,
 ///      buttons[0] is 1 while pressed or present; the latter counts with require_operator), /needle/measured_cp
-///      (PoseStamped), /cell/predicted_cf, /force_sensor/measured_cf or both (WrenchStamped)
+///      (PoseStamped), /cell/predicted_cf, /force_sensor/measured_cf or both (WrenchStamped),
+///      /controller/injection_state (InjectionStatus; that there is a controller)
 /// Out: /haptic/servo_cf (WrenchStamped, N at the hand), /teleop/servo_cp (PoseStamped, tip in `world`),
 ///      /haptic/force_trace (LatencyTrace)
 ///
@@ -26,7 +29,7 @@ namespace microinjection {
 ///   rate           Hz; default 1000, in [50, 5000]
 ///   timeouts/...   s, past which an input is stale, each its own: hand, needle, predicted, measured (default 0.05),
 ///                  operator_present (0.2), in (0, inf); clutch (0: what it said last holds, for devices that say it
-///                  on change only), in [0, inf)
+///                  on change only) and controller (0.25; 0: not asked for, with another controller), in [0, inf)
 class HapticBridgeNode {
  public:
   static const char* const kHelp;
@@ -42,6 +45,7 @@ class HapticBridgeNode {
     double needle = 0.05;
     double predicted = 0.05;
     double measured = 0.05;
+    double controller = 0.25;
     static Timeouts read(ConfigReader reader);
   };
   struct Parameters {
@@ -55,6 +59,8 @@ class HapticBridgeNode {
   Input<geometry_msgs::WrenchStamped>* forceInput(bool used, const std::string& source, double timeout);
   bool clutchPressed(const ros::Time& now) const;
   bool operatorPresent(const ros::Time& now) const;
+  bool controllerLives(const ros::Time& now) const;
+  void sayZeroForce();
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
   Parameters parameters_;
@@ -64,12 +70,15 @@ class HapticBridgeNode {
   Input<sensor_msgs::Joy>& clutch_;
   Input<sensor_msgs::Joy>* operator_present_ = nullptr;  ///< null: not asked for
   Input<geometry_msgs::PoseStamped>& needle_;
-  Input<geometry_msgs::WrenchStamped>* predicted_;  ///< null: not used
-  Input<geometry_msgs::WrenchStamped>* measured_;   ///< null: not used
+  Input<geometry_msgs::WrenchStamped>* predicted_;                     ///< null: not used
+  Input<geometry_msgs::WrenchStamped>* measured_;                      ///< null: not used
+  Input<cell_microinjection::InjectionStatus>* controller_ = nullptr;  ///< null: not asked for
   Output<geometry_msgs::WrenchStamped>& hand_force_;
   Output<geometry_msgs::PoseStamped>& target_;
   Output<cell_microinjection::LatencyTrace>& trace_;
-  HapticBridge::Output output_;  ///< the last one, for the diagnostics
+  std::string hand_frame_;           ///< of the last hand
+  bool without_controller_ = false;  ///< in the last step
+  HapticBridge::Output output_;      ///< the last one, for the diagnostics
 };
 
 }  // namespace microinjection

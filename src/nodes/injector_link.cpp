@@ -3,6 +3,11 @@
 #include <cmath>
 
 namespace microinjection {
+namespace {
+
+constexpr double kRepetition = 0.05;  // s
+
+}  // namespace
 
 InjectorLink::InjectorLink(Cycle& cycle, double timeout)
     : state_(cycle.input<cell_microinjection::InjectorState>("injector/state", Phase::kTickBefore, timeout)),
@@ -17,19 +22,22 @@ std::optional<InjectorReport> InjectorLink::report(const ros::Time& now) {
     begun_ = begun_ || state->busy;
     if (over) pending_ = 0;
   }
-  return InjectorReport{state->busy || pending_ != 0, state->volume, state->last_id == asked_};
+  return InjectorReport{state->busy || pending_ != 0, state->volume, state->last_id == message_.id};
 }
 
 void InjectorLink::want(const std::optional<PulseGoal>& pulse, const ros::Time& now) {
   if (pulse && !wanted_) {
-    cell_microinjection::InjectionPulse message;
-    message.header.stamp = now;
-    message.id = asked_ = pending_ =
-        now.toNSec();  // new, also for an injector that outlives this node; the same in lock step
-    message.pressure = pulse->pressure;
-    message.duration = pulse->duration;
-    pulse_.publish(message);
+    message_.header.stamp = now;
+    message_.id = pending_ = now.toNSec();  // new, also for an injector that outlives this node; the same in lock step
+    message_.pressure = pulse->pressure;
+    message_.duration = pulse->duration;
+    message_.held = true;
+    pulse_.publish(message_);
     begun_ = false;
+  }
+  if (pulse && pending_ != 0 && (now - message_.header.stamp).toSec() >= kRepetition) {
+    message_.header.stamp = now;
+    pulse_.publish(message_);
   }
   if (!pulse && wanted_ && pending_ != 0) {
     cell_microinjection::StringStamped message;

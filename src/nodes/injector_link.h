@@ -13,8 +13,9 @@
 
 namespace microinjection {
 
-/// The controller's line to the injector: a pulse that is wanted becomes one message with an id of its own, and one
-/// that is not wanted any more before it is over a stop.
+/// The controller's line to the injector: a pulse that is wanted becomes a message with an id of its own, said again
+/// until it is over, so that it does not outlive the controller; one that is not wanted any more before it is over
+/// becomes a stop.
 ///
 /// In:  /injector/state (InjectorState)
 /// Out: /injector/pulse (InjectionPulse), /injector/stop (StringStamped, the reason)
@@ -35,9 +36,9 @@ class InjectorLink {
   Output<cell_microinjection::InjectionPulse>& pulse_;
   Output<cell_microinjection::StringStamped>& stop_;
   bool wanted_ = false;
-  std::uint64_t pending_ = 0;  ///< id of the pulse that is not over yet as far as is known; 0: none
-  std::uint64_t asked_ = 0;    ///< id of the last pulse
-  bool begun_ = false;         ///< the injector has said that it is busy since that was sent
+  cell_microinjection::InjectionPulse message_;  ///< the last one that was sent
+  std::uint64_t pending_ = 0;                    ///< id of the pulse that is not over yet as far as is known; 0: none
+  bool begun_ = false;                           ///< the injector has said that it is busy since that was sent
 };
 
 }  // namespace microinjection

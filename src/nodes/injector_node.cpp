@@ -1,5 +1,7 @@
 #include "nodes/injector_node.h"
 
+#include <utility>
+
 #include "injector/serial_injector.h"
 #include "nodes/node_parameters.h"
 
@@ -17,6 +19,7 @@ InjectorNode::Parameters InjectorNode::Parameters::read(const ros::NodeHandle& p
   reader.choice("source", parameters.source, {"simulated", "serial"});
   reader.number("rate", parameters.rate, Range::closed(20, 5000));
   reader.number("command_timeout", parameters.command_timeout, Range::positive());
+  reader.number("pulse_timeout", parameters.pulse_timeout, Range::positive());
   reader.number("clog_factor", parameters.clog_factor, {1, INFINITY, false, true});
   parameters.model = InjectorModelConfig::read(reader);
   if (parameters.source == "serial" || reader.has("serial")) {
@@ -94,10 +97,19 @@ void InjectorNode::onPulse(const cell_microinjection::InjectionPulse& message) {
   if (!late.empty()) return judge(command, late);
   // A refused id is known as well: the same message, heard again, must not inject unexpectedly later.
   if (!ids_.isNew(message.id)) {
-    ++repeated_;
+    if (message.id == held_) {
+      wanted_ = message.header.stamp;
+    } else if (!message.held) {
+      ++repeated_;
+    }
     return;
   }
-  judge(command, device_->pulse({message.id, message.pressure, message.duration}));
+  const std::string refusal =
+      cycle_.masterLost() ? "the ROS master is lost" : device_->pulse({message.id, message.pressure, message.duration});
+  judge(command, refusal);
+  if (!message.held || !refusal.empty()) return;
+  held_ = message.id;
+  wanted_ = message.header.stamp;
 }
 
 void InjectorNode::onStop(const cell_microinjection::StringStamped& message) {
@@ -110,7 +122,19 @@ void InjectorNode::onBalance(const cell_microinjection::Float64Stamped& message)
   judge("set_balance", late.empty() ? device_->setBalance(message.data) : late);
 }
 
+/// What may flow without anybody who could end it.
+void InjectorNode::endAbandonedPulse(const ros::Time& now) {
+  const bool lost = !std::exchange(master_lost_, cycle_.masterLost()) && master_lost_;
+  if (!device_->reading().busy) held_ = 0;
+  const bool silent = held_ != 0 && (now - wanted_).toSec() > parameters_.pulse_timeout;
+  if (!device_->reading().busy || !(lost || silent)) return;
+  held_ = 0;
+  ROS_WARN_STREAM("the pulse is ended: " << (lost ? "the ROS master is lost" : "who asked for it is silent"));
+  judge("stop", device_->stop());
+}
+
 void InjectorNode::step(const Cycle::Tick& tick) {
+  endAbandonedPulse(tick.now);
   device_->step(tick.now.toSec());
   const InjectorReading& reading = device_->reading();
   cell_microinjection::InjectorState state;

@@ -20,8 +20,9 @@
 namespace microinjection {
 
 /// The injector: a pressure regulator behind the pipette, simulated or real, behind the same topics. Each pulse is done
-/// once, or refused with the reason in the state: a repeated id is ignored, an old message is refused. In lock step who
-/// sends pulse and stop takes part.
+/// once, or refused with the reason in the state: a repeated id is ignored, an old message is refused. A held pulse
+/// ends when who asked for it falls silent, and any when the ROS master is lost. In lock step who sends pulse and stop
+/// takes part.
 ///
 /// In:  /injector/pulse (InjectionPulse), /injector/stop (StringStamped, the reason; always obeyed, however old: the
 ///      pulse ends), /injector/set_balance (Float64Stamped, Pa)
@@ -32,6 +33,8 @@ namespace microinjection {
 ///   source           simulated or serial; default simulated
 ///   rate             Hz; default 200, in [20, 5000]
 ///   command_timeout  s, an older command is refused; default 0.5, in (0, inf)
+///   pulse_timeout    s, past which a held pulse (see InjectionPulse) that is not said again ends; default 0.2, in
+///                    (0, inf)
 ///   clog_factor      1, how much more the clogged tip resists; default 100, in [1, inf)
 ///   those of InjectorModelConfig, which the estimates of a real one's flow and volume need, too
 ///   serial/          path, baud (SerialPortConfig; default 9600) and those of InjectorProtocol; needed with source
@@ -48,6 +51,7 @@ class InjectorNode {
     std::string source = "simulated";
     double rate = 200;
     double command_timeout = 0.5;
+    double pulse_timeout = 0.2;
     double clog_factor = 100;
     InjectorModelConfig model;
     SerialPortConfig port;
@@ -61,6 +65,7 @@ class InjectorNode {
   void onBalance(const cell_microinjection::Float64Stamped& message);
   std::string untimely(const std_msgs::Header& header) const;
   void judge(const std::string& command, const std::string& refusal);
+  void endAbandonedPulse(const ros::Time& now);
   void step(const Cycle::Tick& tick);
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
@@ -69,6 +74,9 @@ class InjectorNode {
   std::unique_ptr<InjectorDevice> device_;
   Output<cell_microinjection::InjectorState>& state_;
   PulseIds ids_;
+  std::uint64_t held_ = 0;  ///< id of the held pulse that is not known to be over; 0: none
+  ros::Time wanted_;        ///< stamp of its last message
+  bool master_lost_ = false;
   ros::Subscriber balance_;
   ros::ServiceServer reset_, clog_;
   unsigned refused_ = 0;

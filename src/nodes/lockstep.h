@@ -9,6 +9,10 @@ namespace microinjection {
 /// that it is ready for the first.
 constexpr char kAcknowledgementTopic[] = "/lockstep/acknowledgement";
 
+/// The clock tells on this latched topic (std_msgs/String) the names of the participants that are gone, all of them,
+/// each with a space behind it: nobody waits for their messages any more.
+constexpr char kLeftTopic[] = "/lockstep/left";
+
 /// Names of the nodes that step together, from the parameter /lockstep/participants; empty when the session is live.
 std::set<std::string> lockstepParticipants();
 

@@ -1,6 +1,7 @@
 #include "nodes/lockstep_clock_node.h"
 
 #include <rosgraph_msgs/Clock.h>
+#include <std_msgs/String.h>
 
 #include "base/errors.h"
 #include "nodes/lockstep.h"
@@ -22,13 +23,25 @@ LockstepClockNode::LockstepClockNode(ros::NodeHandle node, ros::NodeHandle priva
   if (participants_.empty()) throw ConfigError("/lockstep/participants must be a list of at least one node's name");
   missing_ = participants_;
   node.setCallbackQueue(&queue_);
-  clock_ = node.advertise<rosgraph_msgs::Clock>("/clock", 10, true);
+  left_ = node.advertise<std_msgs::String>(kLeftTopic, 10, true);
+  clock_ = node.advertise<rosgraph_msgs::Clock>(
+      "/clock", 10, {}, [this](const ros::SingleSubscriberPublisher& who) { onLeaving(who.getSubscriberName()); }, {},
+      true);
   acknowledgements_ = node.subscribe(kAcknowledgementTopic, 100, &LockstepClockNode::onAcknowledgement, this,
                                      ros::TransportHints().tcpNoDelay());
 }
 
 void LockstepClockNode::onAcknowledgement(const std_msgs::HeaderConstPtr& header) {
   if (header->stamp == tick_) missing_.erase(header->frame_id);
+}
+
+void LockstepClockNode::onLeaving(const std::string& name) {
+  if (participants_.erase(name) == 0) return;
+  missing_.erase(name);
+  ROS_WARN_STREAM(name << " has left the lock step at " << tick_ << " s; time goes on without it");
+  std_msgs::String message;
+  message.data = said_left_ += name + " ";
+  left_.publish(message);
 }
 
 void LockstepClockNode::waitForAll() {
@@ -53,7 +66,7 @@ void LockstepClockNode::pace(const ros::SteadyTime& began) const {
 void LockstepClockNode::run() {
   waitForAll();
   const ros::SteadyTime began = ros::SteadyTime::now();
-  while (ros::ok()) {
+  while (ros::ok() && !participants_.empty()) {
     tick_ += ros::Duration(step_);
     missing_ = participants_;
     rosgraph_msgs::Clock message;

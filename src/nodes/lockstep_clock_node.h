@@ -10,10 +10,11 @@
 namespace microinjection {
 
 /// Steps /clock when every participant of the lock step has done the tick before. The same session then gives the same
-/// bits on any machine, faster or slower than real time.
+/// bits on any machine, faster or slower than real time. A participant that hears /clock no more, since it has ended or
+/// was killed, has left for good: time goes on without it, and the others' time-outs run. When all have, so has this.
 ///
 /// In:  /lockstep/acknowledgement (std_msgs/Header of each participant)
-/// Out: /clock (rosgraph_msgs/Clock)
+/// Out: /clock (rosgraph_msgs/Clock), /lockstep/left (std_msgs/String, see lockstep.h)
 ///
 /// Parameters: /lockstep/participants (names of nodes), and private:
 ///   step              s, of one tick; default 0.001, in [1e-6, 1]
@@ -28,6 +29,7 @@ class LockstepClockNode {
 
  private:
   void onAcknowledgement(const std_msgs::HeaderConstPtr& header);
+  void onLeaving(const std::string& name);
   void waitForAll();
   void pace(const ros::SteadyTime& began) const;
 
@@ -39,6 +41,8 @@ class LockstepClockNode {
   ros::Time tick_;
   ros::CallbackQueue queue_;
   ros::Publisher clock_;
+  ros::Publisher left_;
+  std::string said_left_;
   ros::Subscriber acknowledgements_;
 };
 

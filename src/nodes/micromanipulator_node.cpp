@@ -58,6 +58,10 @@ MicromanipulatorNode::MicromanipulatorNode(const ros::NodeHandle& node, ConfigRe
       measured_(cycle_.output<geometry_msgs::PoseStamped>("needle/measured_cp")),
       velocity_(cycle_.output<geometry_msgs::TwistStamped>("needle/measured_cv")),
       trace_(cycle_.output<cell_microinjection::LatencyTrace>("needle/setpoint_trace")) {
+  if (cycle_.lockstep() && !rig_.inject) {
+    throw ConfigError("rig = " + parameters_.rig +
+                      ": a real one takes no part in lock step, it goes on while time stands");
+  }
   if (rig_.true_joints) true_ = &cycle_.output<geometry_msgs::PoseStamped>("needle/true_cp");
   subscribe();
   joint_states_ = cycle_.node().advertise<sensor_msgs::JointState>("joint_states", 10);
@@ -76,14 +80,16 @@ void MicromanipulatorNode::subscribe() {
         if (!velocity) return judge("servo_cv", "not a valid velocity in world");
         const double old = std::max(0.0, age(message->header));
         if (old > parameters_.model.velocity_command_timeout) return judge("servo_cv", "it is stale");
-        judge("servo_cv", disabled_ ? unable() : model_.servoVelocity(*velocity, time() - old));
+        const std::string why = unable();
+        judge("servo_cv", why.empty() ? model_.servoVelocity(*velocity, time() - old) : why);
       }));
   subscribers_.push_back(node.subscribe<geometry_msgs::PoseStamped>(
       "needle/move_cp", 10, [this](const geometry_msgs::PoseStampedConstPtr& message) {
         const auto pose = trustedPose(message.get());
         if (!pose) return judge("move_cp", "not a valid pose in world");
         if (age(message->header) > kOldestMove) return judge("move_cp", "it is stale");
-        judge("move_cp", disabled_ ? unable() : model_.movePosition(*pose));
+        const std::string why = unable();
+        judge("move_cp", why.empty() ? model_.movePosition(*pose) : why);
       }));
   subscribers_.push_back(node.subscribe<cell_microinjection::StringStamped>(
       "needle/state_command", 10, [this](const StringStampedConstPtr& message) {
@@ -113,7 +119,10 @@ void MicromanipulatorNode::judge(const std::string& command, const std::string& 
   ROS_WARN_STREAM_THROTTLE(1, refusal_);
 }
 
-std::string MicromanipulatorNode::unable() const { return "DISABLED; allowed after enable"; }
+std::string MicromanipulatorNode::unable() const {
+  if (master_lost_) return "the ROS master is lost";
+  return disabled_ ? "DISABLED; allowed after enable" : "";
+}
 
 std::string MicromanipulatorNode::obeyState(const std::string& command) {
   if (command == "stop" || command == "disable") {
@@ -131,10 +140,11 @@ std::string MicromanipulatorNode::obeyState(const std::string& command) {
 void MicromanipulatorNode::obeyServo(const Cycle::Tick& tick) {
   const auto message = servo_.takeNews();
   if (!message) return;
-  if (!servo_.fresh(tick.now)) return judge("servo_cp", "it is stale");
+  if (!servo_.fresh(tick.now)) return judge("servo_cp", master_lost_ ? unable() : "it is stale");
   const auto pose = trustedPose(message.get());
   if (!pose) return judge("servo_cp", "not a valid pose in world");
-  judge("servo_cp", disabled_ ? unable() : model_.servoPosition(*pose));
+  const std::string why = unable();
+  judge("servo_cp", why.empty() ? model_.servoPosition(*pose) : why);
   if (!isTraced(tick.now)) return;
   cell_microinjection::LatencyTrace trace;
   trace.header.stamp = tick.now;
@@ -145,6 +155,9 @@ void MicromanipulatorNode::obeyServo(const Cycle::Tick& tick) {
 void MicromanipulatorNode::step(const Cycle::Tick& tick) {
   if (tick.now < now_) set_back_ += (now_ - tick.now).toSec();
   now_ = tick.now;
+  // What goes on by itself, too: nobody new could stop it.
+  if (cycle_.masterLost() && !master_lost_) model_.stop();
+  master_lost_ = cycle_.masterLost();
   obeyServo(tick);
   if (rig_.before_step) rig_.before_step(time());
   model_.step(time(), tick.dt);

@@ -88,7 +88,8 @@ class MicromanipulatorNode {
   cell_microinjection::OperatingState said_;
   cell_microinjection::ManipulatorAbilities told_;
   bool disabled_ = false;  ///< by command
-  bool answer_ = false;    ///< a state command was heard
+  bool master_lost_ = false;
+  bool answer_ = false;  ///< a state command was heard
   ros::Time joint_states_sent_;
   ros::Time now_;
   double set_back_ = 0;  ///< s, that the clock was

@@ -43,13 +43,14 @@ class InputPort {
   /// first.
   double age(const ros::Time& now) const { return received.isZero() ? INFINITY : (now - received).toSec(); }
   /// The last message is there, valid and not older than `timeout`.
-  bool fresh(const ros::Time& now) const { return valid() && age(now) >= 0 && age(now) <= timeout; }
+  bool fresh(const ros::Time& now) const { return !cut_off && valid() && age(now) >= 0 && age(now) <= timeout; }
 
   const std::string topic;
   const Phase phase;
-  const double timeout;    ///< s of ROS time
-  ros::Time received;      ///< of the last message
-  bool connected = false;  ///< lock step: the publisher's greeting is here, silence with stamp 0
+  const double timeout;  ///< s of ROS time
+  ros::Time received;    ///< of the last message
+  std::string feeder;    ///< lock step: the node whose greeting is here, silence with stamp 0; empty: none yet
+  bool cut_off = false;  ///< nothing counts as fresh; see Cycle
 };
 
 /// The newest message of a topic, for one thread. A message with stamp 0 is invalid (CRTK) and withdraws the one
@@ -88,8 +89,8 @@ class Input : public InputPort {
   void queue(const Pointer& message) {
     if (!message->header.stamp.isZero()) waiting_.push_back(message);
   }
-  void queueSilence(const std_msgs::Header& header) {
-    connected = true;
+  void queueSilence(const std_msgs::Header& header, const std::string& publisher) {
+    feeder = publisher;
     if (!header.stamp.isZero()) silence_.push_back(header);
   }
 

@@ -7,7 +7,7 @@
 #include <exception>
 #include <string>
 
-#include "nodes/last_words.h"
+#include "nodes/ending.h"
 #include "nodes/lockstep.h"
 #include "nodes/real_time.h"
 
@@ -16,8 +16,8 @@ namespace microinjection {
 /// The whole `main` of a node: starts ROS, constructs Node(node, private_node) and runs it until shutdown. A node whose
 /// parameters are wrong must not come alive: what its constructor throws is logged and the exit status is 1. Live,
 /// nodes of the 1 kHz chain run in real time where the system allows it, those that hear every message of it promptly.
-/// With Ending::kLastWords it is asked to end (see last_words.h) instead of being ended.
-enum class Ending { kAtOnce, kLastWords };
+/// With Ending::kInGoodOrder it is asked to end (see ending.h) instead of being ended.
+enum class Ending { kAtOnce, kInGoodOrder };
 template <typename Node>
 int runNode(int argc, char** argv, const std::string& name, Priority priority = Priority::kRealTime,
             Ending ending = Ending::kAtOnce) {
@@ -27,13 +27,13 @@ int runNode(int argc, char** argv, const std::string& name, Priority priority = 
       return 0;
     }
   }
-  ros::init(argc, argv, name, ending == Ending::kLastWords ? ros::init_options::NoSigintHandler : 0);
-  // roscpp hears SIGINT only: at these, too, a device is told to stop before the end.
-  for (const int number : {SIGTERM, SIGHUP}) std::signal(number, [](int) { ros::requestShutdown(); });
+  ros::init(argc, argv, name, ending == Ending::kInGoodOrder ? ros::init_options::NoSigintHandler : 0);
+  // roscpp hears SIGINT only: at the others, too, a device is told to stop before the end.
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) std::signal(number, [](int) { ros::requestShutdown(); });
   if (!takesPartInLockstep()) {
     prefer(priority);
     // In lock step a node that waits for its tick could not speak any more.
-    if (ending == Ending::kLastWords) keepLastWords();
+    if (ending == Ending::kInGoodOrder) endInGoodOrder();
   }
   // These outlive the try block: the end of the last handle shuts ROS down, and its log with it.
   const ros::NodeHandle node_handle, private_node_handle("~");

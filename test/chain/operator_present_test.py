@@ -9,23 +9,24 @@ import rostest
 from geometry_msgs.msg import PoseStamped, WrenchStamped
 from sensor_msgs.msg import Joy
 
+from cell_microinjection.msg import InjectionStatus
 from messages import force, pose, wrench
 from participant import INVALID, Participant
 
 HAND, CLUTCH, PRESENT = "/haptic/measured_cp", "/haptic/clutch", "/haptic/operator_present"
-NEEDLE, PREDICTED = "/needle/measured_cp", "/cell/predicted_cf"
+NEEDLE, PREDICTED, CONTROLLER = "/needle/measured_cp", "/cell/predicted_cf", "/controller/injection_state"
 
 
 class OperatorPresentTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.world = Participant({HAND: PoseStamped, CLUTCH: Joy, PRESENT: Joy, NEEDLE: PoseStamped,
-                                 PREDICTED: WrenchStamped},
+                                 PREDICTED: WrenchStamped, CONTROLLER: InjectionStatus},
                                 {"/haptic/servo_cf": WrenchStamped, "/teleop/servo_cp": PoseStamped})
 
     def good(self, present=1):
         return {HAND: pose(0, 0, 0, "haptic"), CLUTCH: Joy(buttons=[0]), PRESENT: Joy(buttons=[present]),
-                NEEDLE: pose(0, 0, 25e-6), PREDICTED: wrench(0, 0, 1e-6)}
+                NEEDLE: pose(0, 0, 25e-6), PREDICTED: wrench(0, 0, 1e-6), CONTROLLER: InjectionStatus()}
 
     def follows(self):
         return not self.world.seen["/teleop/servo_cp"].header.stamp.is_zero()
@@ -49,7 +50,8 @@ class OperatorPresentTest(unittest.TestCase):
             self.assertFalse(self.follows())
 
     def test_each_input_is_stale_after_its_own_time(self):
-        for topic, timeout in ((PRESENT, 100), (CLUTCH, 100), (HAND, 50), (NEEDLE, 50), (PREDICTED, 300)):
+        for topic, timeout in ((PRESENT, 100), (CLUTCH, 100), (HAND, 50), (NEEDLE, 50), (PREDICTED, 300),
+                               (CONTROLLER, 250)):
             with self.subTest(topic):
                 self.world.run(200, self.good)
                 self.run_without(timeout - 5, topic)

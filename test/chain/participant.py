@@ -15,8 +15,9 @@ PATIENCE = 120  # s of wall time; only a chain that hangs takes that long
 class Participant:
     """Takes part in the lock step under the name of this node. Between two ticks time stands still."""
 
-    def __init__(self, outputs, inputs):
+    def __init__(self, outputs, inputs, patience=PATIENCE):
         """@param outputs, inputs  topic -> message class; inputs keep their newest message in `seen`."""
+        self._patience = patience
         self.seen = {}
         self.now = rospy.Time()
         self.diagnostics = {}
@@ -33,7 +34,7 @@ class Participant:
         for publisher in self._silences.values():
             publisher.publish(Header())  # the greeting that nodes wait for
         self._acknowledge(rospy.Time())
-        self.now = self._ticks.get(timeout=PATIENCE)
+        self.now = self._ticks.get(timeout=self._patience)
 
     def _advertise(self, topic, kind):
         return rospy.Publisher(topic, kind, queue_size=100, latch=True)
@@ -58,11 +59,16 @@ class Participant:
             else:
                 self._silences[topic].publish(Header(stamp=self.now))
         self._acknowledge(self.now)
-        self.now = self._ticks.get(timeout=PATIENCE)
+        self.now = self._ticks.get(timeout=self._patience)
 
     def run(self, ticks, messages=None):
         for _ in range(ticks):
             self.tick(messages() if callable(messages) else messages)
+
+    def close(self):
+        """Is gone for those that go on. Before another one is made in this process."""
+        for subscriber in self._subscribers:
+            subscriber.unregister()
 
     def call(self, service, kind, *arguments, messages=None):
         """Calls a service of a node that answers in a tick, which have `messages`, and returns its answer."""

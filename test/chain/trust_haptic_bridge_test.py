@@ -10,6 +10,7 @@ import rostest
 from geometry_msgs.msg import PoseStamped, WrenchStamped
 from sensor_msgs.msg import Joy
 
+from cell_microinjection.msg import InjectionStatus
 from messages import force, pose, wrench
 from participant import INVALID, Participant
 
@@ -19,11 +20,12 @@ class TrustTest(unittest.TestCase):
     def setUpClass(cls):
         cls.world = Participant(
             {"/haptic/measured_cp": PoseStamped, "/haptic/clutch": Joy, "/needle/measured_cp": PoseStamped,
-             "/cell/predicted_cf": WrenchStamped}, {"/haptic/servo_cf": WrenchStamped, "/teleop/servo_cp": PoseStamped})
+             "/cell/predicted_cf": WrenchStamped, "/controller/injection_state": InjectionStatus},
+            {"/haptic/servo_cf": WrenchStamped, "/teleop/servo_cp": PoseStamped})
 
     def good(self):
         return {"/haptic/measured_cp": pose(0, 0, 0, "haptic"), "/needle/measured_cp": pose(0, 0, 25e-6),
-                "/cell/predicted_cf": wrench(0, 0, 1e-6)}
+                "/cell/predicted_cf": wrench(0, 0, 1e-6), "/controller/injection_state": InjectionStatus()}
 
     def check_open(self, bad, why):
         """`bad` replaces messages; None: silence."""
@@ -45,6 +47,9 @@ class TrustTest(unittest.TestCase):
     def test_needle(self):
         self.check_open({"/needle/measured_cp": None}, "no trusted needle position")
         self.check_open({"/needle/measured_cp": pose(0, 0, math.inf)}, "no trusted needle position")
+
+    def test_controller(self):
+        self.check_open({"/controller/injection_state": None}, "the controller is silent")
 
     def test_clutch_that_cannot_be_read(self):
         self.world.tick({**self.good(), "/haptic/clutch": Joy(buttons=[0])})

@@ -39,8 +39,8 @@ class TrustTest(unittest.TestCase):
                 return
         self.fail("did not happen within 20 s of ROS time")
 
-    def send(self, number, pressure=PRESSURE, duration=0.05, age=0.0):
-        message = InjectionPulse(id=number, pressure=pressure, duration=duration)
+    def send(self, number, pressure=PRESSURE, duration=0.05, age=0.0, held=False):
+        message = InjectionPulse(id=number, pressure=pressure, duration=duration, held=held)
         message.header.stamp = self.world.now - rospy.Duration(age)
         self.pulses.publish(message)
 
@@ -103,6 +103,27 @@ class TrustTest(unittest.TestCase):
         self.assertEqual(self.state().pulses, before)
         self.assertNotEqual(self.state().last_id, 51)
         self.inject(52)
+
+    def test_a_held_pulse_lasts_while_it_is_said_again(self):
+        timeout = rospy.get_param("/injector/pulse_timeout")
+        ticks = round(1e3 * timeout)
+        before = self.state().pulses
+        held = {"/injector/pulse": InjectionPulse(id=61, pressure=PRESSURE, duration=10 * timeout, held=True)}
+        for _ in range(4):  # each with the stamp of its tick
+            self.world.tick(held)
+            said = self.world.now - rospy.Duration(0.001)
+            self.world.run(ticks - 20)
+            self.assertTrue(self.state().busy)
+        while self.state().busy:
+            self.world.tick()
+        # Silence ends it at the first tick past the time-out.
+        silent = (self.state().header.stamp - said).to_sec()
+        self.assertAlmostEqual(silent, timeout + 0.001, delta=0.0011)
+        self.world.run(100)
+        self.assertEqual((self.state().pulses, self.state().refusal), (before, ""))
+        # One that is not held is done whoever is silent.
+        self.send(62, duration=2 * timeout)
+        self.tick_until(lambda: self.state().last_id == 62)
 
     def test_a_wrong_balance_flows_back(self):
         right = self.state().pressure

@@ -2,7 +2,7 @@
 
 #include "cell_microinjection/StringStamped.h"
 #include "nodes/conversions.h"
-#include "nodes/last_words.h"
+#include "nodes/ending.h"
 #include "nodes/node_parameters.h"
 
 namespace microinjection {

@@ -2,5 +2,6 @@
 #include "nodes/run_node.h"
 
 int main(int argc, char** argv) {
-  return microinjection::runNode<microinjection::HapticBridgeNode>(argc, argv, "haptic_bridge");
+  using namespace microinjection;
+  return runNode<HapticBridgeNode>(argc, argv, "haptic_bridge", Priority::kRealTime, Ending::kInGoodOrder);
 }

@@ -1,4 +1,4 @@
-#include "nodes/last_words.h"
+#include "nodes/ending.h"
 
 #include <ros/init.h>
 #include <ros/xmlrpc_manager.h>
@@ -22,7 +22,7 @@ void onShutdownCall(XmlRpc::XmlRpcValue&, XmlRpc::XmlRpcValue& result) {
 
 }  // namespace
 
-void keepLastWords() {
+void endInGoodOrder() {
   std::signal(SIGINT, onSignal);
   std::signal(SIGTERM, onSignal);
   // Bound before ROS starts, which then leaves the name as it is.

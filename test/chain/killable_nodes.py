@@ -1,0 +1,68 @@
+"""The chain's programs with the parameters of config/, started by the test itself, so that it may kill them."""
+
+import pathlib
+import signal
+import subprocess
+import sys
+
+import rospkg
+import rospy
+import yaml
+
+PROGRAMS = pathlib.Path(sys.argv[0]).parent  # a test is found beside them
+PACKAGE = pathlib.Path(rospkg.RosPack().get_path("cell_microinjection"))
+PATIENCE = 30  # s of wall time; only what hangs takes that long
+
+
+def merged(base, more):
+    """As rosparam does it: a map's keys one by one."""
+    for key, value in more.items():
+        base[key] = merged(base.get(key, {}), value) if isinstance(value, dict) else value
+    return base
+
+
+def parameters(node, **changes):
+    """Those of config/NODE.yaml with these changes, {section: {key: value}} as well."""
+    return merged(yaml.safe_load((PACKAGE / f"config/{node}.yaml").read_text()), changes)
+
+
+def rig():
+    """Those of the micromanipulator with the simulated rig."""
+    device = yaml.safe_load((PACKAGE / "src/rigs/sim/sim.yaml").read_text())
+    return parameters("micromanipulator", rig="sim", device=device)
+
+
+class KillableNodes:
+    """{node: its parameters}. `participants` of the lock step; none: the session is live."""
+
+    def __init__(self, nodes, participants=()):
+        rospy.set_param("/robot_description", (PACKAGE / "urdf/rig.urdf").read_text())
+        rospy.set_param("/lockstep/participants", list(participants))
+        self._running = {}
+        for node, settings in nodes.items():
+            rospy.set_param(f"/{node}", settings)
+            self.start(node)
+
+    def start(self, node, *arguments):
+        self._running[node] = subprocess.Popen([PROGRAMS / node, *arguments], stdin=subprocess.DEVNULL,
+                                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+    def names(self):
+        return set(self._running)
+
+    def dead(self):
+        return [node for node, process in self._running.items() if process.poll() is not None]
+
+    def kill(self, node, number=signal.SIGKILL):
+        """@returns its exit status."""
+        process = self._running.pop(node)
+        process.send_signal(number)
+        return process.wait(PATIENCE)
+
+    def stop(self):
+        # All at once: what outlives another has nothing to do any more.
+        for process in self._running.values():
+            process.kill()
+        for process in self._running.values():
+            process.wait(PATIENCE)
+        self._running = {}
