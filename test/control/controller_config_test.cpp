@@ -37,7 +37,7 @@ TEST(InjectionControllerConfig, TheShippedFileIsReadKeyByKey) {
   const InjectionControllerConfig config = readConfig(map);
   EXPECT_EQ(config.mode, "manual");
   EXPECT_TRUE(config.goal.puncture);
-  EXPECT_DOUBLE_EQ(config.goal.depth, 40e-6);
+  EXPECT_DOUBLE_EQ(config.goal.depth, 48e-6);
   for (const char* section : {"detection", "motion", "goal"}) {
     for (const auto& entry : map[section]) {
       if (entry.second.IsMap()) continue;
