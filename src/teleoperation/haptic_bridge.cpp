@@ -26,6 +26,14 @@ HapticBridgeConfig HapticBridgeConfig::read(ConfigReader& reader) {
   return config;
 }
 
+HapticBridgeConfig HapticBridgeConfig::beforeLink() const {
+  HapticBridgeConfig config = *this;
+  config.coupling.enabled = false;
+  config.coupling.lateness = 0;
+  config.passivity.behind_channel = true;
+  return config;
+}
+
 HapticBridge::HapticBridge(const HapticBridgeConfig& config)
     : config_(config),
       frame_(config.frame),
