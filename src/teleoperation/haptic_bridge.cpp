@@ -83,8 +83,9 @@ HapticBridge::Output HapticBridge::step(const Input& input, double dt) {
   passivity_.observe(hand, dt);
 
   const bool held = !output.held_because.empty();
-  output.state = engagement_.step(
-      {held, input.clutch, passivity_.velocity().norm(), held ? 0 : motion_.disagreement(hand, *input.needle)});
+  const bool interrupted = held && !input.clutch && (!config_.require_operator || input.operator_present);
+  output.state = engagement_.step({held, input.clutch, passivity_.velocity().norm(),
+                                   held ? 0 : motion_.disagreement(hand, *input.needle), interrupted, dt});
   if (output.state != Engagement::State::kFollow) {
     if (!held) output.held_because = engagement_.why();
     output.hand_force = render(Eigen::Vector3d::Zero(), dt);

@@ -1,5 +1,6 @@
 #include "teleoperation/link_follower.h"
 
+#include <cmath>
 #include <limits>
 
 namespace microinjection {
@@ -16,7 +17,8 @@ LinkFollower::LinkFollower(const LinkConfig& config)
     : config_(config), wave_(config.wave), age_(std::numeric_limits<double>::infinity()) {}
 
 void LinkFollower::receive(const LinkPacket& packet) {
-  if (packet.epoch < heard_.epoch) return;
+  // A scale that is no number counts as not heard.
+  if (!(packet.position_scale > 0 && std::isfinite(packet.force_gain)) || packet.epoch < heard_.epoch) return;
   if (packet.epoch > heard_.epoch) {
     // What comes of the new epoch before the next step must not be lost.
     wave_.reset(Eigen::Vector3d::Zero());

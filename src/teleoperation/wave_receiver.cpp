@@ -7,7 +7,7 @@ namespace microinjection {
 
 void WavePlayout::receive(const TeleoperationPacket& packet) {
   const std::uint64_t sequence = packet.sequence;
-  if (sequence == 0 || !packet.value.allFinite()) return;
+  if (sequence == 0 || !packet.value.allFinite() || !std::isfinite(packet.energy)) return;
   if (newest_ == 0 && sequence >= kLength) return;  // too late to begin
   if (static_cast<double>(sequence) < played_ || sequence + kLength <= newest_) return;
   sent_[sequence % kLength] = {sequence, packet.value, packet.energy};
