@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 
 #include "base/config_reader.h"
@@ -10,6 +11,7 @@ struct EngagementConfig {
   std::string alignment = "index";  ///< after a hold: index (hand and needle belong together anew) or agree (as before)
   double tolerance = 2e-3;          ///< m of the hand, within which hand and needle agree
   double speed = 0.1;               ///< m/s of the hand, above which nothing is taken up
+  double interruption = 0.2;        ///< s, of a hold that is not the operator's, after which the hand may still be fast
 
   static EngagementConfig read(ConfigReader reader);
 };
@@ -20,15 +22,22 @@ struct EngagementConfig {
 /// held: an input is not to be trusted, the operator is not there, or the clutch is pressed. align: all is well again,
 /// but the needle is still held until the hand is slow and, with `agree`, is back where it left the needle, or the
 /// operator has pressed and released the clutch, which is to say: from here.
+///
+/// A hand that is taken up while it moves pushes a needle that its operator may take for held; so it must be slow
+/// first. But when needle or force were not to be trusted for a moment only, within one stroke of the hand, the
+/// operator cannot have noticed, and would lose the rest of the stroke: then it goes on, at whatever speed, from where
+/// the needle is. Not so after a clutch, a dead-man or a hand that was lost, however short.
 class Engagement {
  public:
   enum class State { kHeld, kAlign, kFollow };
 
   struct Input {
-    bool held = false;        ///< for any reason
-    bool clutch = false;      ///< pressed
-    double speed = 0;         ///< m/s, of the hand
-    double disagreement = 0;  ///< m, of the hand (MotionMapping)
+    bool held = false;         ///< for any reason
+    bool clutch = false;       ///< pressed
+    double speed = 0;          ///< m/s, of the hand
+    double disagreement = 0;   ///< m, of the hand (MotionMapping)
+    bool interrupted = false;  ///< held for want of needle or force alone
+    double dt = 0;             ///< s
   };
 
   explicit Engagement(const EngagementConfig& config) : config_(config) {}
@@ -43,6 +52,8 @@ class Engagement {
  private:
   EngagementConfig config_;
   State state_ = State::kHeld;
+  double held_time_ = std::numeric_limits<double>::infinity();  ///< s, that what followed has been interrupted;
+                                                                ///< infinite: it is no interruption
   bool anchored_ = false;  ///< hand and needle belonged together before and must agree again
   std::string why_;
 };

@@ -26,6 +26,14 @@ HapticBridgeConfig HapticBridgeConfig::read(ConfigReader& reader) {
   return config;
 }
 
+HapticBridgeConfig HapticBridgeConfig::beforeLink() const {
+  HapticBridgeConfig config = *this;
+  config.coupling.enabled = false;
+  config.coupling.lateness = 0;
+  config.passivity.behind_channel = true;
+  return config;
+}
+
 HapticBridge::HapticBridge(const HapticBridgeConfig& config)
     : config_(config),
       frame_(config.frame),
@@ -75,8 +83,9 @@ HapticBridge::Output HapticBridge::step(const Input& input, double dt) {
   passivity_.observe(hand, dt);
 
   const bool held = !output.held_because.empty();
-  output.state = engagement_.step(
-      {held, input.clutch, passivity_.velocity().norm(), held ? 0 : motion_.disagreement(hand, *input.needle)});
+  const bool interrupted = held && !input.clutch && (!config_.require_operator || input.operator_present);
+  output.state = engagement_.step({held, input.clutch, passivity_.velocity().norm(),
+                                   held ? 0 : motion_.disagreement(hand, *input.needle), interrupted, dt});
   if (output.state != Engagement::State::kFollow) {
     if (!held) output.held_because = engagement_.why();
     output.hand_force = render(Eigen::Vector3d::Zero(), dt);

@@ -47,6 +47,22 @@ TEST(Engagement, AgreeWaitsForTheHandOrTheClutch) {
   EXPECT_EQ(engagement.step({false, false, 0, 1}), State::kFollow) << "gripped again";
 }
 
+TEST(Engagement, AStrokeThatIsInterruptedForAMomentGoesOn) {
+  EngagementConfig config;
+  const auto after = [&](double time, bool interrupted) {
+    Engagement engagement(config);
+    engagement.step({false, false, 0, 0});
+    for (double held = 0; held < time - 1e-9; held += 0.01) engagement.step({true, false, 1, 0, interrupted, 0.01});
+    return engagement.step({false, false, 2 * config.speed, 0});
+  };
+  EXPECT_EQ(after(0.9 * config.interruption, true), State::kFollow);
+  EXPECT_EQ(after(1.1 * config.interruption, true), State::kAlign) << "the operator may take it for held";
+  EXPECT_EQ(after(0.01, false), State::kAlign) << "clutch, dead-man or lost hand";
+  Engagement engagement(config);
+  engagement.step({true, false, 1, 0, true, 0.01});
+  EXPECT_EQ(engagement.step({false, false, 2 * config.speed, 0}), State::kAlign) << "it did not follow before";
+}
+
 TEST(Engagement, HasNamesForDiagnostics) {
   EXPECT_EQ(Engagement::name(State::kHeld), "held");
   EXPECT_EQ(Engagement::name(State::kAlign), "align");
