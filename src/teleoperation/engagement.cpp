@@ -18,6 +18,8 @@ Engagement::State Engagement::step(const Input& input) {
   state_ = State::kAlign;
   if (input.speed > config_.speed) {
     why_ = "the hand is fast";
+  } else if (!input.let_go) {
+    why_ = "the hand would set a speed: let go of the device first";
   } else if (anchored_ && config_.alignment == "agree" && input.disagreement > config_.tolerance) {
     why_ = "the hand is not where it left the needle: go back there, or press and release the clutch";
   } else {

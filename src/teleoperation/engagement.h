@@ -19,7 +19,8 @@ struct EngagementConfig {
 ///
 /// held: an input is not to be trusted, the operator is not there, or the clutch is pressed. align: all is well again,
 /// but the needle is still held until the hand is slow and, with `agree`, is back where it left the needle, or the
-/// operator has pressed and released the clutch, which is to say: from here.
+/// operator has pressed and released the clutch, which is to say: from here. A device that sets a speed must be let go,
+/// clutch or not.
 class Engagement {
  public:
   enum class State { kHeld, kAlign, kFollow };
@@ -29,6 +30,7 @@ class Engagement {
     bool clutch = false;      ///< pressed
     double speed = 0;         ///< m/s, of the hand
     double disagreement = 0;  ///< m, of the hand (MotionMapping)
+    bool let_go = true;       ///< a hand taken up here leaves the needle at rest (MotionMapping)
   };
 
   explicit Engagement(const EngagementConfig& config) : config_(config) {}

@@ -64,7 +64,7 @@ HapticBridge::Output HapticBridge::step(const Input& input, double dt) {
   Output output;
   output.held_because = whyHeld(input, tip_force);
   if (!trusted(input.hand)) {
-    engagement_.step({true, input.clutch, 0, 0});
+    engagement_.step({true, input.clutch});
     limiter_.release();
     passivity_.reset();
     return output;
@@ -75,8 +75,8 @@ HapticBridge::Output HapticBridge::step(const Input& input, double dt) {
   passivity_.observe(hand, dt);
 
   const bool held = !output.held_because.empty();
-  output.state = engagement_.step(
-      {held, input.clutch, passivity_.velocity().norm(), held ? 0 : motion_.disagreement(hand, *input.needle)});
+  output.state = engagement_.step({held, input.clutch, passivity_.velocity().norm(),
+                                   held ? 0 : motion_.disagreement(hand, *input.needle), motion_.letGo(hand)});
   if (output.state != Engagement::State::kFollow) {
     if (!held) output.held_because = engagement_.why();
     output.hand_force = render(Eigen::Vector3d::Zero(), dt);

@@ -47,6 +47,23 @@ TEST(Engagement, AgreeWaitsForTheHandOrTheClutch) {
   EXPECT_EQ(engagement.step({false, false, 0, 1}), State::kFollow) << "gripped again";
 }
 
+TEST(Engagement, ADeviceThatSetsASpeedMustBeLetGoClutchOrNot) {
+  for (const char* alignment : {"index", "agree"}) {
+    EngagementConfig config;
+    config.alignment = alignment;
+    Engagement engagement(config);
+    EXPECT_EQ(engagement.step({false, false, 0, 0, false}), State::kAlign) << "found deflected";
+    EXPECT_NE(engagement.why().find("let go"), std::string::npos);
+    EXPECT_EQ(engagement.step({false, false, 0, 0, true}), State::kFollow);
+    EXPECT_EQ(engagement.step({false, false, 0, 0, false}), State::kFollow) << "deflected by who leads";
+    for (const bool clutch : {false, true}) {
+      engagement.step({true, clutch, 0, 0, false});
+      EXPECT_EQ(engagement.step({false, false, 0, 0, false}), State::kAlign) << alignment << clutch;
+      EXPECT_EQ(engagement.step({false, false, 0, 0, true}), State::kFollow) << alignment << clutch;
+    }
+  }
+}
+
 TEST(Engagement, HasNamesForDiagnostics) {
   EXPECT_EQ(Engagement::name(State::kHeld), "held");
   EXPECT_EQ(Engagement::name(State::kAlign), "align");
