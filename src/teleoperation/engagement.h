@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "base/config_reader.h"
@@ -10,6 +11,9 @@ struct EngagementConfig {
   std::string alignment = "index";  ///< after a hold: index (hand and needle belong together anew) or agree (as before)
   double tolerance = 2e-3;          ///< m of the hand, within which hand and needle agree
   double speed = 0.1;               ///< m/s of the hand, above which nothing is taken up
+  double speed_limit = 0.25;        ///< m/s, above which the hand is followed no longer: a stylus that falls
+  double speed_time = 5e-3;         ///< s, for which it has to be: one late sample reads as a leap
+  double rest_time = 0.2;           ///< s below `speed`, after which it is taken up again: one that bounces stays held
 
   static EngagementConfig read(ConfigReader reader);
 };
@@ -20,7 +24,8 @@ struct EngagementConfig {
 /// held: an input is not to be trusted, the operator is not there, or the clutch is pressed. align: all is well again,
 /// but the needle is still held until the hand is slow and, with `agree`, is back where it left the needle, or the
 /// operator has pressed and released the clutch, which is to say: from here. A device that sets a speed must be let go,
-/// clutch or not.
+/// clutch or not. A hand that is too fast in follow has let go of the device, or nearly: back to align, until it has
+/// rested.
 class Engagement {
  public:
   enum class State { kHeld, kAlign, kFollow };
@@ -28,9 +33,10 @@ class Engagement {
   struct Input {
     bool held = false;        ///< for any reason
     bool clutch = false;      ///< pressed
-    double speed = 0;         ///< m/s, of the hand
+    double speed = 0;         ///< m/s, of the hand; 0 where it says nothing (rate mode)
     double disagreement = 0;  ///< m, of the hand (MotionMapping)
     bool let_go = true;       ///< a hand taken up here leaves the needle at rest (MotionMapping)
+    double dt = 1e-3;         ///< s
   };
 
   explicit Engagement(const EngagementConfig& config) : config_(config) {}
@@ -43,9 +49,13 @@ class Engagement {
   std::string why() const { return why_; }
 
  private:
+  bool tooFast(const Input& input);
+
   EngagementConfig config_;
   State state_ = State::kHeld;
-  bool anchored_ = false;  ///< hand and needle belonged together before and must agree again
+  std::optional<double> fast_;  ///< s, for which the hand that is followed has been too fast
+  double rest_ = 0;             ///< s, for which it still has to rest
+  bool anchored_ = false;       ///< hand and needle belonged together before and must agree again
   std::string why_;
 };
 

@@ -75,8 +75,9 @@ HapticBridge::Output HapticBridge::step(const Input& input, double dt) {
   passivity_.observe(hand, dt);
 
   const bool held = !output.held_because.empty();
-  output.state = engagement_.step({held, input.clutch, passivity_.velocity().norm(),
-                                   held ? 0 : motion_.disagreement(hand, *input.needle), motion_.letGo(hand)});
+  const double speed = motion_.isRate() ? 0 : passivity_.velocity().norm();  // a stick may spring back
+  output.state = engagement_.step(
+      {held, input.clutch, speed, held ? 0 : motion_.disagreement(hand, *input.needle), motion_.letGo(hand), dt});
   if (output.state != Engagement::State::kFollow) {
     if (!held) output.held_because = engagement_.why();
     output.hand_force = render(Eigen::Vector3d::Zero(), dt);

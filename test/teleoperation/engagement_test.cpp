@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace microinjection {
 namespace {
 
@@ -12,7 +14,7 @@ TEST(Engagement, FollowsAtOnceWhenTheHandIsSlow) {
   EXPECT_EQ(engagement.state(), State::kHeld);
   EXPECT_EQ(engagement.step({true, false, 0, 0}), State::kHeld);
   EXPECT_EQ(engagement.step({false, false, 0, 0}), State::kFollow);
-  EXPECT_EQ(engagement.step({false, false, 10, 10}), State::kFollow) << "a fast hand is followed once it leads";
+  EXPECT_EQ(engagement.step({false, false, 0.24, 10}), State::kFollow) << "a faster one is followed once it leads";
   EXPECT_EQ(engagement.step({true, false, 0, 0}), State::kHeld);
 }
 
@@ -23,6 +25,35 @@ TEST(Engagement, AFastHandIsNotTakenUp) {
   EXPECT_EQ(engagement.why(), "the hand is fast");
   EXPECT_EQ(engagement.step({false, false, 0.99 * config.speed, 0}), State::kFollow);
   EXPECT_EQ(engagement.why(), "");
+}
+
+TEST(Engagement, AHandThatIsTooFastIsLostUntilItHasRested) {
+  EngagementConfig config;
+  Engagement engagement(config);
+  engagement.step({});
+  const double fast = 1.01 * config.speed_limit, slow = 0.99 * config.speed;
+  const auto stepFor = [&](double time, double speed, double dt = 1e-3) {
+    for (int i = 0; i < std::lround(time / dt); ++i) engagement.step({false, false, speed, 0, true, dt});
+    return engagement.state();
+  };
+  EXPECT_EQ(stepFor(1, 0.99 * config.speed_limit), State::kFollow);
+  EXPECT_EQ(stepFor(0.01, 100, 0.01), State::kFollow) << "one late sample";
+  EXPECT_EQ(stepFor(1e-3, 0), State::kFollow);
+  EXPECT_EQ(stepFor(config.speed_time, fast), State::kFollow);
+  EXPECT_EQ(stepFor(1e-3, fast), State::kAlign);
+  EXPECT_EQ(stepFor(config.rest_time - 2e-3, slow), State::kAlign);
+  EXPECT_NE(engagement.why().find("rest"), std::string::npos);
+  EXPECT_EQ(stepFor(1e-3, 1.01 * config.speed), State::kAlign) << "it bounces";
+  EXPECT_EQ(stepFor(config.rest_time - 2e-3, slow), State::kAlign);
+  EXPECT_EQ(stepFor(3e-3, slow), State::kFollow);
+}
+
+TEST(Engagement, AHandThatIsLostWhileHeldIsNotTakenUpAtOnceEither) {
+  Engagement engagement{{}};
+  engagement.step({});
+  for (int i = 0; i < 5; ++i) engagement.step({false, false, 1, 0});
+  engagement.step({true, false, 1, 0});
+  EXPECT_EQ(engagement.step({}), State::kAlign);
 }
 
 TEST(Engagement, IndexTakesUpTheHandWhereverItIs) {

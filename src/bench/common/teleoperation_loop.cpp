@@ -68,6 +68,7 @@ class Simulation {
     // With ports the proxy is where it does not wait for the network.
     config.coupling.enabled = loop.controller != TeleoperationLoop::Controller::kTwoPort;
     config.passivity.enabled = loop.controller != TeleoperationLoop::Controller::kOff;
+    config.engagement.speed_limit = 1e3;  // m/s: that a fast hand is let go of would hide what is not passive
     return config;
   }
   static TwoPortConfig ports(const TeleoperationLoop& loop) {
