@@ -8,6 +8,7 @@ import subprocess
 import sys
 import unittest
 
+import roslaunch.config
 import rosnode
 import rospkg
 import rospy
@@ -62,9 +63,9 @@ class HapticConfigTest(unittest.TestCase):
     def parameters(self, **arguments):
         """Of session.launch, as roslaunch would set them."""
         words = [f"{key}:={value}" for key, value in arguments.items()]
-        text = subprocess.run(["roslaunch", "--dump-params", PACKAGE / "launch/session.launch", *words], check=True,
-                              stdout=subprocess.PIPE, timeout=300).stdout
-        return yaml.safe_load(text)
+        session = roslaunch.config.load_config_default([(str(PACKAGE / "launch/session.launch"), words)], None,
+                                                       assign_machines=False)
+        return {name: parameter.value for name, parameter in session.params.items()}
 
     def test_the_hand_may_feel_another_force_than_the_controller(self):
         for arguments, hand, controller in (({}, "predicted", "predicted"),
