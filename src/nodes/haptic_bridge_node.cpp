@@ -5,6 +5,7 @@
 #include "nodes/conversions.h"
 #include "nodes/force_topic.h"
 #include "nodes/latency_meter.h"
+#include "nodes/link_messages.h"
 #include "nodes/node_parameters.h"
 
 namespace microinjection {
@@ -13,8 +14,8 @@ const char* const HapticBridgeNode::kHelp =
     "haptic_bridge: couples a haptic device to the needle, position forward and force back.\n"
     "In: /haptic/measured_cp /haptic/clutch /haptic/operator_present /needle/measured_cp and /cell/predicted_cf, "
     "/force_sensor/measured_cf or "
-    "both.\n"
-    "Out: /haptic/servo_cf /teleop/servo_cp.\n"
+    "both; with ~link/scheme wave instead of these three /link/hand/received.\n"
+    "Out: /haptic/servo_cf /teleop/servo_cp; with a link instead of the latter /link/hand/sent.\n"
     "Parameters: ~rate (Hz), ~timeouts/... (s), ~position_scale, ~force_gain, ~force_source "
     "(predicted|measured|blend),\n"
     "~mode (position|rate), ~device_axes and many more; see config/haptic_bridge.yaml.\n";
@@ -36,6 +37,8 @@ HapticBridgeNode::Parameters HapticBridgeNode::Parameters::read(const ros::NodeH
   reader.number("rate", parameters.rate, Range::closed(50, 5000));
   parameters.timeouts = Timeouts::read(reader.section("timeouts"));
   parameters.model = HapticBridgeConfig::read(reader);
+  parameters.link = LinkConfig::read(reader.section("link"));
+  if (parameters.link.used()) parameters.model = parameters.model.beforeLink();
   reader.finish();
   return parameters;
 }
@@ -49,18 +52,33 @@ HapticBridgeNode::HapticBridgeNode(ros::NodeHandle node, ros::NodeHandle private
       clutch_(cycle_.input<sensor_msgs::Joy>(
           "haptic/clutch", Phase::kTickBefore,
           parameters_.timeouts.clutch > 0 ? parameters_.timeouts.clutch : std::numeric_limits<double>::infinity())),
-      needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", Phase::kTickBefore,
-                                                       parameters_.timeouts.needle)),
-      predicted_(forceInput(parameters_.model.force.usesPredicted(), "predicted", parameters_.timeouts.predicted)),
-      measured_(forceInput(parameters_.model.force.usesMeasured(), "measured", parameters_.timeouts.measured)),
       hand_force_(cycle_.output<geometry_msgs::WrenchStamped>("haptic/servo_cf")),
-      target_(cycle_.output<geometry_msgs::PoseStamped>("teleop/servo_cp")),
       trace_(cycle_.output<cell_microinjection::LatencyTrace>("haptic/force_trace")) {
   if (parameters_.model.require_operator) {
     operator_present_ = &cycle_.input<sensor_msgs::Joy>("haptic/operator_present", Phase::kTickBefore,
                                                         parameters_.timeouts.operator_present);
   }
+  parameters_.link.used() ? connectLink() : connectRig();
   cycle_.diagnostics().add("loop", [this](auto& status) { report(status); });
+}
+
+void HapticBridgeNode::connectRig() {
+  needle_ =
+      &cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", Phase::kTickBefore, parameters_.timeouts.needle);
+  predicted_ = forceInput(parameters_.model.force.usesPredicted(), "predicted", parameters_.timeouts.predicted);
+  measured_ = forceInput(parameters_.model.force.usesMeasured(), "measured", parameters_.timeouts.measured);
+  target_ = &cycle_.output<geometry_msgs::PoseStamped>("teleop/servo_cp");
+}
+
+void HapticBridgeNode::connectLink() {
+  // A bridge that was started again must count on from where it was: wall time, also in lock step.
+  link_ = std::make_unique<LinkLeader>(parameters_.link, parameters_.model.motion.position_scale,
+                                       parameters_.model.force_gain, ros::WallTime::now().toNSec());
+  cycle_
+      .input<cell_microinjection::LinkPacket>("link/hand/received", Phase::kTickBefore,
+                                              std::numeric_limits<double>::infinity())
+      .listen([this](const auto& message, const ros::Time&) { link_->receive(toPacket(message)); });
+  link_sent_ = &cycle_.output<cell_microinjection::LinkPacket>("link/hand/sent");
 }
 
 Input<geometry_msgs::WrenchStamped>* HapticBridgeNode::forceInput(bool used, const std::string& source,
@@ -84,33 +102,54 @@ bool HapticBridgeNode::operatorPresent(const ros::Time& now) const {
   return joy && !joy->buttons.empty() && joy->buttons[0] != 0;
 }
 
-void HapticBridgeNode::step(const Cycle::Tick& tick) {
-  const auto* hand = hand_.get(tick.now);
-  const auto* predicted = predicted_ ? predicted_->get(tick.now) : nullptr;
-  const auto* measured = measured_ ? measured_->get(tick.now) : nullptr;
-  const auto needle = trustedPose(needle_.get(tick.now));
-  HapticBridge::Input input;
-  if (hand) input.hand = trustedPosition(hand, hand->header.frame_id);
-  if (needle) {
-    input.needle = needle->translation();
-    input.force.predicted = trustedForce(predicted, needle->linear());
-    input.force.measured = trustedForce(measured, needle->linear());
-  }
-  input.clutch = clutchPressed(tick.now);
-  input.operator_present = operatorPresent(tick.now);
-  const HapticBridge::Output& output = output_ = model_.step(input, tick.dt);
-  hand_force_.publish(toWrench(output.hand_force, tick.now, hand ? hand->header.frame_id : ""));
-  if (!output.needle) {
-    target_.publishInvalid(toPose(Eigen::Vector3d::Zero(), tick.now, kWorldFrame));
+void HapticBridgeNode::lookAtRig(HapticBridge::Input& input, const Cycle::Tick& tick) {
+  if (link_) {
+    // Whichever source the rig feels it from.
+    const auto force = link_->step(tick.dt);
+    input.needle = link_->needle();
+    if (force) input.force.predicted = input.force.measured = *force / parameters_.model.force_gain;
     return;
   }
-  target_.publish(toPose(*output.needle, hand->header.stamp, kWorldFrame));
-  const auto* force = predicted ? predicted : measured;
+  const auto needle = trustedPose(needle_->get(tick.now));
+  if (!needle) return;
+  input.needle = needle->translation();
+  input.force.predicted = trustedForce(predicted_ ? predicted_->get(tick.now) : nullptr, needle->linear());
+  input.force.measured = trustedForce(measured_ ? measured_->get(tick.now) : nullptr, needle->linear());
+}
+
+void HapticBridgeNode::sendToRig(const Cycle::Tick& tick) {
+  if (link_) {
+    link_->setTarget(output_.needle);
+    cell_microinjection::LinkPacket message = toMessage(link_->packet());
+    message.header.stamp = tick.now;
+    link_sent_->publish(message);
+  } else if (output_.needle) {
+    target_->publish(toPose(*output_.needle, hand_.get(tick.now)->header.stamp, kWorldFrame));
+    trace(tick);
+  } else {
+    target_->publishInvalid(toPose(Eigen::Vector3d::Zero(), tick.now, kWorldFrame));
+  }
+}
+
+void HapticBridgeNode::trace(const Cycle::Tick& tick) {
+  const auto* force = predicted_ ? predicted_->get(tick.now) : measured_->get(tick.now);
   if (!isTraced(force->header.stamp)) return;
   cell_microinjection::LatencyTrace trace;
   trace.header.stamp = tick.now;
   trace.origin = force->header.stamp;
   trace_.publish(trace);
+}
+
+void HapticBridgeNode::step(const Cycle::Tick& tick) {
+  const auto* hand = hand_.get(tick.now);
+  HapticBridge::Input input;
+  if (hand) input.hand = trustedPosition(hand, hand->header.frame_id);
+  lookAtRig(input, tick);
+  input.clutch = clutchPressed(tick.now);
+  input.operator_present = operatorPresent(tick.now);
+  output_ = model_.step(input, tick.dt);
+  hand_force_.publish(toWrench(output_.hand_force, tick.now, hand ? hand->header.frame_id : ""));
+  sendToRig(tick);
 }
 
 void HapticBridgeNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) const {
@@ -121,6 +160,10 @@ void HapticBridgeNode::report(diagnostic_updater::DiagnosticStatusWrapper& statu
   status.add("force source", parameters_.model.force.source);
   status.add("tremor filter's delay (s)", model_.delay());
   status.add("observed energy (J)", model_.observedEnergy());
+  if (link_) {
+    status.add("rig heard (s ago)", link_->age());
+    status.add("round trip (periods)", link_->roundTrip());
+  }
   status.add("passivity controller acts", model_.passivityActing() ? "yes" : "no");
 }
 

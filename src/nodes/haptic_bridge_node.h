@@ -5,11 +5,14 @@
 #include <ros/ros.h>
 #include <sensor_msgs/Joy.h>
 
+#include <memory>
 #include <string>
 
 #include "cell_microinjection/LatencyTrace.h"
+#include "cell_microinjection/LinkPacket.h"
 #include "nodes/cycle.h"
 #include "teleoperation/haptic_bridge.h"
+#include "teleoperation/link_leader.h"
 
 namespace microinjection {
 
@@ -22,7 +25,10 @@ namespace microinjection {
 /// Out: /haptic/servo_cf (WrenchStamped, N at the hand), /teleop/servo_cp (PoseStamped, tip in `world`),
 ///      /haptic/force_trace (LatencyTrace)
 ///
-/// Parameters (private): those of HapticBridgeConfig and
+/// With link/scheme wave the rig is behind a network: needle and force come and the target goes in packets,
+/// /link/hand/received and /link/hand/sent (LinkPacket), to teleoperation_follower.
+///
+/// Parameters (private): those of HapticBridgeConfig, link/... (LinkConfig) and
 ///   rate           Hz; default 1000, in [50, 5000]
 ///   timeouts/...   s, past which an input is stale, each its own: hand, needle, predicted, measured (default 0.05),
 ///                  operator_present (0.2), in (0, inf); clutch (0: what it said last holds, for devices that say it
@@ -48,10 +54,16 @@ class HapticBridgeNode {
     double rate = 1000;
     Timeouts timeouts;
     HapticBridgeConfig model;
+    LinkConfig link;
     static Parameters read(const ros::NodeHandle& private_node);
   };
 
   void step(const Cycle::Tick& tick);
+  void connectRig();
+  void connectLink();
+  void lookAtRig(HapticBridge::Input& input, const Cycle::Tick& tick);
+  void sendToRig(const Cycle::Tick& tick);
+  void trace(const Cycle::Tick& tick);
   Input<geometry_msgs::WrenchStamped>* forceInput(bool used, const std::string& source, double timeout);
   bool clutchPressed(const ros::Time& now) const;
   bool operatorPresent(const ros::Time& now) const;
@@ -62,12 +74,14 @@ class HapticBridgeNode {
   Cycle cycle_;
   Input<geometry_msgs::PoseStamped>& hand_;
   Input<sensor_msgs::Joy>& clutch_;
-  Input<sensor_msgs::Joy>* operator_present_ = nullptr;  ///< null: not asked for
-  Input<geometry_msgs::PoseStamped>& needle_;
-  Input<geometry_msgs::WrenchStamped>* predicted_;  ///< null: not used
-  Input<geometry_msgs::WrenchStamped>* measured_;   ///< null: not used
+  Input<sensor_msgs::Joy>* operator_present_ = nullptr;       ///< null: not asked for
+  Input<geometry_msgs::PoseStamped>* needle_ = nullptr;       ///< null: behind a network
+  Input<geometry_msgs::WrenchStamped>* predicted_ = nullptr;  ///< null: not used
+  Input<geometry_msgs::WrenchStamped>* measured_ = nullptr;   ///< null: not used
   Output<geometry_msgs::WrenchStamped>& hand_force_;
-  Output<geometry_msgs::PoseStamped>& target_;
+  Output<geometry_msgs::PoseStamped>* target_ = nullptr;  ///< null: behind a network
+  std::unique_ptr<LinkLeader> link_;                      ///< null: no network
+  Output<cell_microinjection::LinkPacket>* link_sent_ = nullptr;
   Output<cell_microinjection::LatencyTrace>& trace_;
   HapticBridge::Output output_;  ///< the last one, for the diagnostics
 };

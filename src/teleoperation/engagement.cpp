@@ -1,6 +1,7 @@
 #include "teleoperation/engagement.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace microinjection {
 
@@ -12,6 +13,7 @@ EngagementConfig EngagementConfig::read(ConfigReader reader) {
   reader.number("speed_limit", config.speed_limit, Range::positive());
   reader.number("speed_time", config.speed_time, Range::nonNegative());
   reader.number("rest_time", config.rest_time, Range::nonNegative());
+  reader.number("interruption", config.interruption, Range::nonNegative());
   return config;
 }
 
@@ -31,11 +33,17 @@ Engagement::State Engagement::step(const Input& input) {
   const bool followed = state_ == State::kFollow;
   const bool lost = followed && tooFast(input);
   if (lost) rest_ = config_.rest_time;
-  if (input.held) return state_ = State::kHeld;
+  if (input.held) {
+    if (followed) held_time_ = 0;
+    held_time_ += input.interrupted ? input.dt : std::numeric_limits<double>::infinity();
+    return state_ = State::kHeld;
+  }
   if (followed && !lost) return state_;
+  const bool goes_on = state_ == State::kHeld && held_time_ <= config_.interruption && rest_ == 0;
+  held_time_ = std::numeric_limits<double>::infinity();
   state_ = State::kAlign;
   fast_.reset();
-  const bool fast = input.speed > config_.speed;
+  const bool fast = input.speed > (goes_on ? config_.speed_limit : config_.speed);
   if (rest_ > 0) rest_ = fast ? config_.rest_time : std::max(0.0, rest_ - input.dt);
   if (fast) {
     why_ = "the hand is fast";

@@ -26,6 +26,14 @@ HapticBridgeConfig HapticBridgeConfig::read(ConfigReader& reader) {
   return config;
 }
 
+HapticBridgeConfig HapticBridgeConfig::beforeLink() const {
+  HapticBridgeConfig config = *this;
+  config.coupling.enabled = false;
+  config.coupling.lateness = 0;
+  config.passivity.behind_channel = true;
+  return config;
+}
+
 HapticBridge::HapticBridge(const HapticBridgeConfig& config)
     : config_(config),
       frame_(config.frame),
@@ -75,9 +83,10 @@ HapticBridge::Output HapticBridge::step(const Input& input, double dt) {
   passivity_.observe(hand, dt);
 
   const bool held = !output.held_because.empty();
+  const bool interrupted = held && !input.clutch && (!config_.require_operator || input.operator_present);
   const double speed = motion_.isRate() ? 0 : passivity_.velocity().norm();  // a stick may spring back
-  output.state = engagement_.step(
-      {held, input.clutch, speed, held ? 0 : motion_.disagreement(hand, *input.needle), motion_.letGo(hand), dt});
+  output.state = engagement_.step({held, input.clutch, speed, held ? 0 : motion_.disagreement(hand, *input.needle),
+                                   interrupted, dt, motion_.letGo(hand)});
   if (output.state != Engagement::State::kFollow) {
     if (!held) output.held_because = engagement_.why();
     output.hand_force = render(Eigen::Vector3d::Zero(), dt);

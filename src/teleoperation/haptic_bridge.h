@@ -32,6 +32,9 @@ struct HapticBridgeConfig {
   PassivityConfig passivity;
 
   static HapticBridgeConfig read(ConfigReader& reader);
+  /// The same in front of a LinkLeader: the proxy is at the rig, where it does not wait for the network, and so is the
+  /// damping of what answers late.
+  HapticBridgeConfig beforeLink() const;
 };
 
 /// Bilateral coupling of a haptic device and a needle: position forward, force back.

@@ -1,7 +1,6 @@
 #include "teleoperation/passivity_controller.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace microinjection {
 namespace {
@@ -29,8 +28,7 @@ void PassivityController::reset() {
   velocity_.reset();
   balance_ = kSpent * config_.reserve;
   total_ = 0;
-  touched_ = pressed_ = 0;
-  way_.setZero();
+  contact_.reset();
   rendered_.setZero();
   known_ = paused_ = false;
   gate_.reset();
@@ -50,36 +48,29 @@ void PassivityController::observe(const Eigen::Vector3d& position, double dt) {
   const double taken = -rendered_.dot(way);
   balance_ += taken;
   total_ += taken;
-  if (!paused_) way_ += way;
+  if (!paused_) contact_.move(way);
   paused_ = false;
 }
 
-double PassivityController::stiffness() const {
-  if (touched_ < config_.contact_force) return 0;
-  return pressed_ > 0 ? touched_ * touched_ / pressed_ : std::numeric_limits<double>::infinity();
-}
-
-double PassivityController::deficit() const { return std::max(0.0, config_.storage_floor * pressed_ - balance_); }
-
 void PassivityController::followContact(const Eigen::Vector3d& touched, double dt) {
-  touched_ = touched.norm();
-  if (touched_ < config_.contact_force) {
-    way_.setZero();
+  contact_.touch(touched);
+  if (!contact_.isTouching()) {
     ripple_.reset();
     free_ += dt;
     if (free_ > kFreeTime) gate_.trust();
   } else {
     free_ = 0;
   }
-  pressed_ = std::max(0.0, -touched.dot(way_));
-  balance_ = std::min(balance_, kSpent * config_.reserve + config_.storage_ceiling * pressed_);
+  if (config_.behind_channel) return;
+  balance_ = std::min(balance_, kSpent * config_.reserve + config_.storage_ceiling * contact_.pressed());
 }
 
 Eigen::Vector3d PassivityController::control(const Eigen::Vector3d& wanted, const Eigen::Vector3d& touched, double dt) {
   followContact(touched, dt);
   if (!config_.enabled) return wanted;
+  if (config_.behind_channel) return gate_.step(wanted, velocity_.value(), balance_, dt);
   return gate_.step(wanted - gate_.damping(ripple_.owed(), ripple_.velocity()) * ripple_.velocity(), velocity_.value(),
-                    balance_ - config_.storage_floor * pressed_, dt);
+                    balance_ - config_.storage_floor * contact_.pressed(), dt);
 }
 
 }  // namespace microinjection

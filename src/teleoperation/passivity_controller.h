@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 
 #include "base/config_reader.h"
+#include "teleoperation/contact_way.h"
 #include "teleoperation/energy_gate.h"
 #include "teleoperation/ripple_observer.h"
 #include "teleoperation/velocity_estimate.h"
@@ -22,6 +23,9 @@ struct PassivityConfig {
 
   EnergyGateConfig gate;
   RippleConfig ripple;
+  /// A channel with waves of its own lies between the hand and what is touched: what it stores is no share of force x
+  /// way, nor is its ripple a spring's. Only the whole balance counts then. Not a key: it follows from the link.
+  bool behind_channel = false;
 
   static PassivityConfig read(ConfigReader reader);
 };
@@ -38,11 +42,14 @@ struct PassivityConfig {
 ///     storage_floor f p <= U <= storage_ceiling f p
 /// (a linear spring has 0.5, Hertz' contact 0.4, a membrane's cubic law 0.25). Energy above the upper bound plus the
 /// reserve is forgotten; below the lower bound the controller acts.
-///
 class PassivityController {
  public:
   explicit PassivityController(const PassivityConfig& config)
-      : config_(config), gate_(config.gate), ripple_(config.ripple), velocity_(config.gate.resolution) {
+      : config_(config),
+        gate_(config.gate),
+        ripple_(config.ripple),
+        velocity_(config.gate.resolution),
+        contact_(config.contact_force) {
     reset();
   }
 
@@ -64,10 +71,9 @@ class PassivityController {
   void setRendered(const Eigen::Vector3d& force) { rendered_ = force; }
 
   double energy() const { return total_; }  ///< J, taken from the hand since the start; the observed energy
-  double deficit() const;                   ///< J, below the lower bound; 0: none
   const Eigen::Vector3d& velocity() const { return velocity_.value(); }  ///< m/s, of the hand
   /// N/m, force over way of what is touched; 0: nothing, infinite: touched where the hand stands.
-  double stiffness() const;
+  double stiffness() const { return contact_.stiffness(); }
   bool acting() const { return gate_.acting(); }  ///< the last force was not the one that was wanted
 
  private:
@@ -77,11 +83,9 @@ class PassivityController {
   EnergyGate gate_;
   RippleObserver ripple_;
   VelocityEstimate velocity_;
-  double balance_ = 0;                                  ///< J, reserve included, ceiling applied
-  double total_ = 0;                                    ///< J
-  double touched_ = 0;                                  ///< N, of what is touched
-  double pressed_ = 0;                                  ///< J, force times way since the touch: f p
-  Eigen::Vector3d way_ = Eigen::Vector3d::Zero();       ///< m, since the touch
+  double balance_ = 0;  ///< J, reserve included, ceiling applied
+  double total_ = 0;    ///< J
+  ContactWay contact_;
   Eigen::Vector3d last_ = Eigen::Vector3d::Zero();      ///< m
   Eigen::Vector3d rendered_ = Eigen::Vector3d::Zero();  ///< N
   double free_ = 0;                                     ///< s, without a touch

@@ -6,16 +6,10 @@
 
 #include "base/config_reader.h"
 #include "teleoperation/energy_gate.h"
+#include "teleoperation/teleoperation_packet.h"
 #include "teleoperation/velocity_estimate.h"
 
 namespace microinjection {
-
-/// What crosses the channel between the operator's machine and the rig's, either way.
-struct TeleoperationPacket {
-  std::uint64_t sequence = 0;                       ///< counts up from 1; late and repeated ones are dropped by it
-  Eigen::Vector3d value = Eigen::Vector3d::Zero();  ///< m of the leader, or N of the follower; both at the hand's scale
-  double energy = 0;  ///< J, all that has entered the channel at the sender's side since the start
-};
 
 struct TwoPortConfig {
   bool enabled = true;       ///< false: values only, nothing controlled (to compare)

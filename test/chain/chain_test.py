@@ -43,8 +43,8 @@ class ChainTest(unittest.TestCase):
         return {"/haptic/measured_cp": pose(x, 0, cls.z, "haptic")}
 
     @classmethod
-    def move(cls, goal, speed=0.05):
-        """Hand to z = goal (m) at a speed (m/s) at which the live cell keeps up, then a moment's rest."""
+    def move(cls, goal, speed=0.1):
+        """Hand to z = goal (m) at a speed (m/s), then a moment's rest."""
         start, ticks = cls.z, max(1, int(abs(goal - cls.z) / speed * 1000))
         for i in range(1, ticks + 1):
             cls.z = start + (goal - start) * i / ticks

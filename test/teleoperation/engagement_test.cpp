@@ -33,7 +33,7 @@ TEST(Engagement, AHandThatIsTooFastIsLostUntilItHasRested) {
   engagement.step({});
   const double fast = 1.01 * config.speed_limit, slow = 0.99 * config.speed;
   const auto stepFor = [&](double time, double speed, double dt = 1e-3) {
-    for (int i = 0; i < std::lround(time / dt); ++i) engagement.step({false, false, speed, 0, true, dt});
+    for (int i = 0; i < std::lround(time / dt); ++i) engagement.step({false, false, speed, 0, false, dt});
     return engagement.state();
   };
   EXPECT_EQ(stepFor(1, 0.99 * config.speed_limit), State::kFollow);
@@ -83,16 +83,36 @@ TEST(Engagement, ADeviceThatSetsASpeedMustBeLetGoClutchOrNot) {
     EngagementConfig config;
     config.alignment = alignment;
     Engagement engagement(config);
-    EXPECT_EQ(engagement.step({false, false, 0, 0, false}), State::kAlign) << "found deflected";
+    EXPECT_EQ(engagement.step({false, false, 0, 0, false, 1e-3, false}), State::kAlign) << "found deflected";
     EXPECT_NE(engagement.why().find("let go"), std::string::npos);
-    EXPECT_EQ(engagement.step({false, false, 0, 0, true}), State::kFollow);
-    EXPECT_EQ(engagement.step({false, false, 0, 0, false}), State::kFollow) << "deflected by who leads";
+    EXPECT_EQ(engagement.step({false, false, 0, 0, false, 1e-3, true}), State::kFollow);
+    EXPECT_EQ(engagement.step({false, false, 0, 0, false, 1e-3, false}), State::kFollow) << "deflected by who leads";
     for (const bool clutch : {false, true}) {
-      engagement.step({true, clutch, 0, 0, false});
-      EXPECT_EQ(engagement.step({false, false, 0, 0, false}), State::kAlign) << alignment << clutch;
-      EXPECT_EQ(engagement.step({false, false, 0, 0, true}), State::kFollow) << alignment << clutch;
+      engagement.step({true, clutch, 0, 0, false, 1e-3, false});
+      EXPECT_EQ(engagement.step({false, false, 0, 0, false, 1e-3, false}), State::kAlign) << alignment << clutch;
+      EXPECT_EQ(engagement.step({false, false, 0, 0, false, 1e-3, true}), State::kFollow) << alignment << clutch;
     }
   }
+}
+
+TEST(Engagement, AStrokeThatIsInterruptedForAMomentGoesOn) {
+  EngagementConfig config;
+  const auto after = [&](double time, bool interrupted) {
+    Engagement engagement(config);
+    engagement.step({false, false, 0, 0});
+    for (double held = 0; held < time - 1e-9; held += 0.01) engagement.step({true, false, 1, 0, interrupted, 0.01});
+    return engagement.step({false, false, 2 * config.speed, 0});
+  };
+  EXPECT_EQ(after(0.9 * config.interruption, true), State::kFollow);
+  EXPECT_EQ(after(1.1 * config.interruption, true), State::kAlign) << "the operator may take it for held";
+  EXPECT_EQ(after(0.01, false), State::kAlign) << "clutch, dead-man or lost hand";
+  Engagement falls(config);
+  falls.step({});
+  falls.step({true, false, 0, 0, true});
+  EXPECT_EQ(falls.step({false, false, 1.01 * config.speed_limit, 0}), State::kAlign) << "no stroke";
+  Engagement engagement(config);
+  engagement.step({true, false, 1, 0, true, 0.01});
+  EXPECT_EQ(engagement.step({false, false, 2 * config.speed, 0}), State::kAlign) << "it did not follow before";
 }
 
 TEST(Engagement, HasNamesForDiagnostics) {

@@ -13,7 +13,7 @@ namespace {
 constexpr double kStep = 1e-3;  // s
 
 TeleoperationPacket packet(std::uint64_t sequence, double z, double energy) {
-  return {sequence, Eigen::Vector3d(0, 0, z), energy};
+  return {sequence, 0, Eigen::Vector3d(0, 0, z), energy};
 }
 
 TEST(LinkEmulator, DelaysShufflesAndLosesAsToldAndRepeatably) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "teleoperation/haptic_bridge.h"
+#include "teleoperation/link_config.h"
 #include "teleoperation/link_emulator.h"
 #include "teleoperation/two_port.h"
 #include "teleoperation/virtual_hand.h"
@@ -14,7 +15,7 @@ namespace microinjection {
 /// A hand, a haptic device, the bridge, a network, a needle and an elastic thing with the needle's motion along one
 /// axis.
 struct TeleoperationLoop {
-  enum class Controller { kOff, kObserver, kTwoPort };
+  enum class Controller { kOff, kObserver, kTwoPort, kWave };
 
   VirtualHandConfig hand;
   double device_damping = 0.2;      ///< N s/m, of the device itself
@@ -25,6 +26,7 @@ struct TeleoperationLoop {
   Controller controller = Controller::kTwoPort;
   HapticBridgeConfig bridge;
   TwoPortConfig ports;
+  LinkConfig wave;
 
   struct Sample {
     double time;             ///< s
@@ -39,10 +41,12 @@ struct TeleoperationLoop {
     double margin_min = 0;           ///< J, of the channel's two directions
     double peak_force = 0;           ///< N, on the hand
     double peak_force_rate = 0;      ///< N/s
+    double overshoot = 0;            ///< m, of the needle below the deepest that the hand was, at the hand's scale
     double drift = 0;                ///< m of the needle, from where the bridge wants it, back in free motion
     double late_amplitude = 0;       ///< m, rms of the hand about a line in the last second of the worse hold
     double late_over_early = 0;      ///< 1, over the rms in the second before
-    double contact_force = 0;        ///< N, mean over the last second of the first hold
+    double contact_force = 0;        ///< N, mean over the last second of the first hold, on the hand
+    double needle_force = 0;         ///< N, of what is touched, in the same time, at the hand's scale
     std::vector<Sample> samples;
   };
 

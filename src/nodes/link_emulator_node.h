@@ -1,0 +1,37 @@
+#pragma once
+
+#include <ros/ros.h>
+#include <std_msgs/Bool.h>
+
+#include "cell_microinjection/LinkPacket.h"
+#include "nodes/cycle.h"
+#include "teleoperation/link_emulator.h"
+
+namespace microinjection {
+
+/// A network that delays, shuffles and loses what haptic bridge and teleoperation_follower send each other.
+///
+/// In:  /link/hand/sent, /link/rig/sent (LinkPacket), /link/plugged (Bool; false: a cable is out, nothing arrives)
+/// Out: /link/rig/received, /link/hand/received (LinkPacket)
+///
+/// Parameters (private): delay, jitter (s, one way), loss (1, a share), seed; see LinkConditions. Either direction has
+/// its own chances.
+class LinkEmulatorNode {
+ public:
+  static const char* const kHelp;
+  /// @throws ConfigError
+  LinkEmulatorNode(ros::NodeHandle node, ros::NodeHandle private_node);
+  void run();
+
+ private:
+  using Message = cell_microinjection::LinkPacket;
+
+  LinkConditions conditions_;
+  Cycle cycle_;
+  LinkEmulator<Message> to_rig_, to_hand_;
+  ros::Subscriber plug_;
+  bool plugged_ = true;
+  Output<Message>&rig_received_, &hand_received_;
+};
+
+}  // namespace microinjection

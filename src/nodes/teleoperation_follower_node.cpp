@@ -1,0 +1,88 @@
+#include "nodes/teleoperation_follower_node.h"
+
+#include <limits>
+
+#include "nodes/conversions.h"
+#include "nodes/force_topic.h"
+#include "nodes/link_messages.h"
+#include "nodes/node_parameters.h"
+
+namespace microinjection {
+
+const char* const TeleoperationFollowerNode::kHelp =
+    "teleoperation_follower: the rig's end of a network between haptic bridge and rig.\n"
+    "In: /link/rig/received /needle/measured_cp and /cell/predicted_cf, /force_sensor/measured_cf or both.\n"
+    "Out: /link/rig/sent /teleop/servo_cp.\n"
+    "Parameters: ~rate (Hz), ~timeouts/... (s), ~force_source, ~measured_share, ~link/...; see config/link.yaml.\n";
+
+TeleoperationFollowerNode::Parameters TeleoperationFollowerNode::Parameters::read(const ros::NodeHandle& private_node) {
+  Parameters parameters;
+  parameters.link.scheme = "wave";
+  ConfigReader reader = parameterReader(private_node);
+  reader.number("rate", parameters.rate, Range::closed(50, 5000));
+  ConfigReader timeouts = reader.section("timeouts");
+  timeouts.number("needle", parameters.needle_timeout, Range::positive());
+  timeouts.number("predicted", parameters.predicted_timeout, Range::positive());
+  timeouts.number("measured", parameters.measured_timeout, Range::positive());
+  parameters.force = ForceSourceConfig::read(reader);
+  parameters.link = LinkConfig::read(reader.section("link"));
+  reader.finish();
+  return parameters;
+}
+
+TeleoperationFollowerNode::TeleoperationFollowerNode(ros::NodeHandle node, ros::NodeHandle private_node)
+    : parameters_(Parameters::read(private_node)),
+      model_(parameters_.link),
+      cycle_(node, parameters_.rate),
+      needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", Phase::kTickBefore,
+                                                       parameters_.needle_timeout)),
+      predicted_(forceInput(parameters_.force.usesPredicted(), "predicted", parameters_.predicted_timeout)),
+      measured_(forceInput(parameters_.force.usesMeasured(), "measured", parameters_.measured_timeout)),
+      sent_(cycle_.output<cell_microinjection::LinkPacket>("link/rig/sent")),
+      target_(cycle_.output<geometry_msgs::PoseStamped>("teleop/servo_cp")) {
+  cycle_
+      .input<cell_microinjection::LinkPacket>("link/rig/received", Phase::kTickBefore,
+                                              std::numeric_limits<double>::infinity())
+      .listen([this](const auto& message, const ros::Time&) { model_.receive(toPacket(message)); });
+  cycle_.diagnostics().add("link", [this](auto& status) { report(status); });
+}
+
+Input<geometry_msgs::WrenchStamped>* TeleoperationFollowerNode::forceInput(bool used, const std::string& source,
+                                                                           double timeout) {
+  if (!used) return nullptr;
+  return &cycle_.input<geometry_msgs::WrenchStamped>(forceTopic(source), Phase::kTickBefore, timeout);
+}
+
+void TeleoperationFollowerNode::run() {
+  cycle_.run([this](const Cycle::Tick& tick) { step(tick); });
+}
+
+void TeleoperationFollowerNode::step(const Cycle::Tick& tick) {
+  LinkFollower::Input input;
+  if (const auto needle = trustedPose(needle_.get(tick.now))) {
+    input.needle = needle->translation();
+    TipForces forces;
+    forces.predicted = trustedForce(predicted_ ? predicted_->get(tick.now) : nullptr, needle->linear());
+    forces.measured = trustedForce(measured_ ? measured_->get(tick.now) : nullptr, needle->linear());
+    input.force = chooseForce(parameters_.force, forces);
+  }
+  const auto target = model_.step(input, tick.dt);
+  cell_microinjection::LinkPacket message = toMessage(model_.packet());
+  message.header.stamp = tick.now;
+  sent_.publish(message);
+  if (target) {
+    target_.publish(toPose(*target, tick.now, kWorldFrame));
+  } else {
+    target_.publishInvalid(toPose(Eigen::Vector3d::Zero(), tick.now, kWorldFrame));
+  }
+}
+
+void TeleoperationFollowerNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) const {
+  const bool good = model_.heldBecause().empty();
+  status.summary(good ? diagnostic_msgs::DiagnosticStatus::OK : diagnostic_msgs::DiagnosticStatus::WARN,
+                 good ? "the needle follows" : "needle held: " + model_.heldBecause());
+  status.add("hand's side heard (s ago)", model_.age());
+  status.add("energy left of what came (J)", model_.margin());
+}
+
+}  // namespace microinjection
