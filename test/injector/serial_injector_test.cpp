@@ -109,7 +109,8 @@ TEST_F(StoppedSerialInjectorTest, APulseEndsWithTheProgram) {
   for (const bool pulse : {false, true}) {
     WireScript line;
     {
-      SerialInjector ends(std::make_unique<ScriptedWire>(line), testProtocol(std::string(kTestProtocol) + kStop), model);
+      SerialInjector ends(std::make_unique<ScriptedWire>(line), testProtocol(std::string(kTestProtocol) + kStop),
+                          model);
       for (int i = 0; i < 300; ++i) {
         const std::size_t sent = line.sent.size();
         if (i == 100 && pulse) ends.pulse({5, 10e3, 30});

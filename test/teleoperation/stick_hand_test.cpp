@@ -54,7 +54,7 @@ TEST(StickHand, WhatIsMissingOrNoNumberIsNoReading) {
   EXPECT_FALSE(stick.read({0, 0, 0}, kHeld));
   EXPECT_FALSE(stick.read({0, 0, 0, 0}, {0}));
   EXPECT_FALSE(stick.read({0, std::nanf(""), 0, 0}, kHeld));
-  EXPECT_FALSE(stick.read({0, 0, 0, 350}, kHeld));  // a space mouse whose full scale is not set
+  EXPECT_FALSE(stick.read({0, 0, 0, 350}, kHeld));           // a space mouse whose full scale is not set
   EXPECT_TRUE(stick.read({0, 0, std::nanf(""), 0}, kHeld));  // an axis that nobody asked for
 }
 
