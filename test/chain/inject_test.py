@@ -29,7 +29,7 @@ class InjectTest(InjectionChainTest):
             cls.chain.tick()
 
     def send(self, **changes):
-        InjectionChainTest.states = []
+        type(self).states = []
         type(self).told = []
         self.client.send_goal(InjectGoal(**{**GOAL, **changes}), feedback_cb=self.on_feedback)
 

@@ -67,6 +67,13 @@ TEST_F(DetectorsTest, DriftOfTheSensorIsNoContact) {
   EXPECT_NEAR(detector.offset(), kOffset + 30e-9, 2e-9);
 }
 
+TEST_F(DetectorsTest, DriftIsNotFollowedWithoutEnd) {
+  ContactDetector detector(noise_, 10e-9, 1e-7);
+  int steps = 0;
+  while (!detector.step(sample(steps * 0.5e-12))) ASSERT_LT(++steps, 200000);
+  EXPECT_NEAR(detector.offset(), kOffset + 40e-9, 1e-9);
+}
+
 TEST_F(DetectorsTest, ContactIsFeltSoonAfterItIsLargeEnough) {
   double total = 0;
   constexpr int kTrials = 500;
