@@ -10,7 +10,7 @@ from injection_chain import InjectionChainTest
 
 class InjectSemiAutomaticTest(InjectionChainTest):
     def setUp(self):
-        type(self).states = []
+        type(self).states = ["idle"]
         self.start = self.needle()
 
     def await_word_in(self, state):
