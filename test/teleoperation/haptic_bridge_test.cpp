@@ -237,7 +237,7 @@ TEST(HapticBridgeConfig, TheOneThatIsShippedHasTheDefaults) {
   double rate = 0;
   reader.number("rate", rate, Range::positive(), ConfigReader::kRequired);
   ConfigReader timeouts = reader.section("timeouts", ConfigReader::kRequired);
-  for (const char* input : {"hand", "clutch", "operator_present", "needle", "predicted", "measured"}) {
+  for (const char* input : {"hand", "clutch", "operator_present", "needle", "predicted", "measured", "controller"}) {
     double timeout = 0;
     timeouts.number(input, timeout, Range::nonNegative(), ConfigReader::kRequired);
   }
