@@ -72,7 +72,7 @@ HapticBridge::Output HapticBridge::step(const Input& input, double dt) {
   Output output;
   output.held_because = whyHeld(input, tip_force);
   if (!trusted(input.hand)) {
-    engagement_.step({true, input.clutch, 0, 0});
+    engagement_.step({true, input.clutch});
     limiter_.release();
     passivity_.reset();
     return output;
@@ -84,8 +84,9 @@ HapticBridge::Output HapticBridge::step(const Input& input, double dt) {
 
   const bool held = !output.held_because.empty();
   const bool interrupted = held && !input.clutch && (!config_.require_operator || input.operator_present);
-  output.state = engagement_.step({held, input.clutch, passivity_.velocity().norm(),
-                                   held ? 0 : motion_.disagreement(hand, *input.needle), interrupted, dt});
+  const double speed = motion_.isRate() ? 0 : passivity_.velocity().norm();  // a stick may spring back
+  output.state = engagement_.step({held, input.clutch, speed, held ? 0 : motion_.disagreement(hand, *input.needle),
+                                   interrupted, dt, motion_.letGo(hand)});
   if (output.state != Engagement::State::kFollow) {
     if (!held) output.held_because = engagement_.why();
     output.hand_force = render(Eigen::Vector3d::Zero(), dt);

@@ -44,7 +44,8 @@ struct HapticBridgeConfig {
 ///
 /// While the clutch is pressed the leader floats and the follower holds; hand and needle belong together anew on
 /// release, and (see EngagementConfig) whenever the loop was open for want of a trusted input. In a hold the force
-/// falls to zero: by the limiter's rate while the hand is known, so that it is not dropped, at once where it is not.
+/// falls to zero, as it does when the hand that is followed gets too fast to be one that holds the device (position
+/// mode): by the limiter's rate while the hand is known, so that it is not dropped, at once where it is not.
 class HapticBridge {
  public:
   /// What the bridge can trust now; empty: absent, stale or not finite.

@@ -21,22 +21,21 @@ void MotionMapping::anchor(const Eigen::Vector3d& hand, const Eigen::Vector3d& n
 }
 
 const Eigen::Vector3d& MotionMapping::step(const Eigen::Vector3d& hand, double dt) {
-  const Eigen::Vector3d deflection = hand - hand_;
   if (!isRate()) {
-    target_ = needle_ + config_.position_scale * deflection;
+    target_ = needle_ + config_.position_scale * (hand - hand_);
     return target_;
   }
-  const double size = deflection.norm();
-  if (size <= config_.dead_zone) return target_;
+  if (letGo(hand)) return target_;
+  const double size = hand.norm();
   const double speed = std::min(config_.rate_limit, config_.rate_gain * (size - config_.dead_zone));
-  target_ += speed * dt / size * deflection;
+  target_ += speed * dt / size * hand;
   return target_;
 }
 
 double MotionMapping::disagreement(const Eigen::Vector3d& hand, const Eigen::Vector3d& needle) const {
-  const Eigen::Vector3d deflection = hand - hand_;
-  if (isRate()) return std::max(0.0, deflection.norm() - config_.dead_zone);
-  return (deflection - (needle - needle_) / config_.position_scale).norm();
+  return isRate() ? 0 : (hand - hand_ - (needle - needle_) / config_.position_scale).norm();
 }
+
+bool MotionMapping::letGo(const Eigen::Vector3d& hand) const { return !isRate() || hand.norm() <= config_.dead_zone; }
 
 }  // namespace microinjection

@@ -22,8 +22,8 @@ struct MotionMappingConfig {
 /// Where the needle shall be, from where the hand is.
 ///
 /// Position mode: target = needle at the start + position_scale (hand - hand at the start). Rate mode, for devices
-/// without a workspace worth the name (space mouse, joystick): the deflection from the start, less the dead zone, is a
-/// velocity; letting go stops.
+/// without a workspace worth the name (space mouse, joystick): the deflection from the device's own zero, less the dead
+/// zone, is a velocity; letting go stops. Never from anywhere else: a device let go would then drive the needle.
 class MotionMapping {
  public:
   explicit MotionMapping(const MotionMappingConfig& config) : config_(config) {}
@@ -34,14 +34,17 @@ class MotionMapping {
   const Eigen::Vector3d& step(const Eigen::Vector3d& hand, double dt);
   /// In rate mode goes on from here (m): the target has met a limit.
   void limitTo(const Eigen::Vector3d& target) { target_ = target; }
-  /// How far (m of the hand) the hand is from where it would leave the needle at `needle` (m). Rate mode: from the dead
-  /// zone.
+  /// How far (m of the hand) the hand is from where it would leave the needle at `needle` (m). Rate mode: 0, the hand's
+  /// place says nothing of the needle's.
   double disagreement(const Eigen::Vector3d& hand, const Eigen::Vector3d& needle) const;
+  /// Whether a hand here (m) leaves the needle at rest wherever that is: position mode always, rate mode in the dead
+  /// zone.
+  bool letGo(const Eigen::Vector3d& hand) const;
   bool isRate() const { return config_.mode == "rate"; }
 
  private:
   MotionMappingConfig config_;
-  Eigen::Vector3d hand_ = Eigen::Vector3d::Zero();    ///< m, at the start
+  Eigen::Vector3d hand_ = Eigen::Vector3d::Zero();    ///< m, at the start; counts in position mode
   Eigen::Vector3d needle_ = Eigen::Vector3d::Zero();  ///< m, at the start
   Eigen::Vector3d target_ = Eigen::Vector3d::Zero();  ///< m
 };

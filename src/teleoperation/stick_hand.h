@@ -21,8 +21,7 @@ struct StickHandConfig {
 /// A hand whose place is a joystick's deflection, for rate mode: let go, it is at 0.
 ///
 /// It has no clutch: letting go stops the needle. The operator is present while the dead-man's button is held, from
-/// when the stick was let go first: whoever takes it up deflected would have its rest taken for a deflection the other
-/// way.
+/// when the stick was let go first: the dead-man's button does not set a deflected stick off.
 class StickHand {
  public:
   explicit StickHand(const StickHandConfig& config) : config_(config) {}

@@ -1,12 +1,15 @@
 #include "teleoperation/terminal_keys.h"
 
 #include <map>
+#include <utility>
 
 namespace microinjection {
 namespace {
 
 constexpr char kEscape = '\x1b';
 constexpr std::size_t kLongest = 8;  // of a sequence; whatever is longer is none of ours
+constexpr double kPatience = 0.05;   // s, within which a terminal sends the whole sequence, also over a network
+const char* const kOther = "other";
 
 const std::map<std::string, std::string>& sequences() {
   static const std::map<std::string, std::string> all{
@@ -24,14 +27,12 @@ bool ends(const std::string& sequence) {
 }  // namespace
 
 std::optional<std::string> TerminalKeys::feed(char byte) {
+  waited_ = 0;
   if (byte == kEscape) {
-    pending_ = kEscape;
-    return std::nullopt;
+    const bool before = !std::exchange(pending_, kEscape).empty();
+    return before ? std::optional<std::string>(kOther) : std::nullopt;
   }
-  if (pending_.empty()) {
-    if (byte < ' ' || byte > '~') return std::nullopt;
-    return std::string(1, byte);
-  }
+  if (pending_.empty()) return byte < ' ' || byte > '~' ? kOther : std::string(1, byte);
   pending_ += byte;
   const std::string sequence = pending_.substr(1);
   if (sequence.size() == 1 && byte != '[' && byte != 'O') {  // escape alone, then a key
@@ -41,7 +42,13 @@ std::optional<std::string> TerminalKeys::feed(char byte) {
   if (!ends(sequence) && sequence.size() < kLongest) return std::nullopt;
   pending_.clear();
   const auto found = sequences().find(sequence);
-  return found == sequences().end() ? std::nullopt : std::optional(found->second);
+  return found == sequences().end() ? kOther : found->second;
+}
+
+std::optional<std::string> TerminalKeys::wait(double dt) {
+  if (pending_.empty() || (waited_ += dt) < kPatience) return std::nullopt;
+  pending_.clear();
+  return kOther;
 }
 
 }  // namespace microinjection

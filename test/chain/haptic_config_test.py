@@ -8,6 +8,7 @@ import subprocess
 import sys
 import unittest
 
+import roslaunch.config
 import rosnode
 import rospkg
 import rospy
@@ -53,11 +54,33 @@ class HapticConfigTest(unittest.TestCase):
             with self.subTest(file.name):
                 self.assertTrue((PACKAGE / "launch/haptic" / file.with_suffix(".launch").name).exists())
                 content = yaml.safe_load(file.read_text())
-                self.assertLessEqual(set(content), {"haptic_bridge", "haptic_device", "keyboard_hand"})
+                self.assertLessEqual(set(content), {"haptic_bridge", "haptic_device", "keyboard_hand", "force_watchdog"})
                 bridge = yaml.safe_load((PACKAGE / "config/haptic_bridge.yaml").read_text())
                 self.check_alive("haptic_bridge", merged(bridge, content.pop("haptic_bridge")))
                 for node, parameters in content.items():
                     self.assertEqual(self.check_alive(node, parameters), 0)  # it has had its last words
+
+    def parameters(self, **arguments):
+        """Of session.launch, as roslaunch would set them."""
+        words = [f"{key}:={value}" for key, value in arguments.items()]
+        session = roslaunch.config.load_config_default([(str(PACKAGE / "launch/session.launch"), words)], None,
+                                                       assign_machines=False)
+        return {name: parameter.value for name, parameter in session.params.items()}
+
+    def test_the_hand_may_feel_another_force_than_the_controller(self):
+        for arguments, hand, controller in (({}, "predicted", "predicted"),
+                                            ({"hand_force": "blend"}, "blend", "predicted"),
+                                            ({"force_source": "measured"}, "measured", "measured")):
+            with self.subTest(arguments):
+                set_ = self.parameters(**arguments)
+                self.assertEqual(set_["/haptic_bridge/force_source"], hand)
+                self.assertEqual(set_["/injection_controller/force_source"], controller)
+
+    def test_a_hand_that_may_fall_needs_its_operator(self):
+        for haptic in ("omni", "geomagic", "external", "joy", "spacenav", "keyboard", "marker"):
+            self.assertIs(self.parameters(haptic=haptic)["/haptic_bridge/require_operator"], True, haptic)
+        self.assertIs(self.parameters(haptic="external", require_operator="false")["/haptic_bridge/require_operator"],
+                      False)
 
 
 if __name__ == "__main__":

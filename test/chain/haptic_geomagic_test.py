@@ -8,7 +8,7 @@ from geometry_msgs.msg import PoseStamped
 from sensor_msgs.msg import Joy
 
 from foreign_messages import DeviceFeedback
-from haptic_driver import CLUTCH, FORCE, HapticTest, Received
+from haptic_driver import CLUTCH, FORCE, PRESENT, HapticTest, Received
 from messages import pose, wrench
 
 POSE, JOY = "/Geomagic/pose", "/Geomagic/joy"
@@ -22,8 +22,8 @@ class GeomagicTest(HapticTest):
         super().setUpClass()
         cls.feedback = Received("/Geomagic/force_feedback", DeviceFeedback)
 
-    def good(self, grey=0):
-        return {POSE: pose(10, 20, -30), JOY: Joy(buttons=[grey, 0]), FORCE: wrench(0.1, 0.2, -0.3, "haptic")}
+    def good(self, grey=0, white=0):
+        return {POSE: pose(10, 20, -30), JOY: Joy(buttons=[grey, white]), FORCE: wrench(0.1, 0.2, -0.3, "haptic")}
 
     def check_force(self, wanted, messages):
         self.until(lambda: len(self.feedback.messages) and np.array_equal(self.feedback.forces()[-1], wanted), messages,
@@ -38,13 +38,20 @@ class GeomagicTest(HapticTest):
         self.feedback.check_type(self, DeviceFeedback)
         self.assertEqual(list(self.feedback.messages[-1].lock), [False, False, False])
 
-    def test_clutch(self):
-        self.world.run(50, lambda: self.good(grey=1))
-        self.assertEqual(self.seen(CLUTCH).buttons[0], 1)
-        self.world.run(50, self.good)
-        self.assertEqual(self.seen(CLUTCH).buttons[0], 0)
-        self.world.run(200, lambda: {POSE: pose(0, 0, 0)})  # buttons that are silent count as pressed
-        self.assertEqual(self.seen(CLUTCH).buttons[0], 1)
+    def buttons(self):
+        return self.seen(CLUTCH).buttons[0], self.seen(PRESENT).buttons[0]
+
+    def test_clutch_and_operator(self):
+        for grey, white in ((1, 0), (0, 1), (1, 1), (0, 0), (0, 1)):
+            self.world.run(50, lambda: self.good(grey, white))
+            self.assertEqual(self.buttons(), (grey, white))
+        # Buttons that are silent or missing: the clutch counts as pressed, the dead-man as let go.
+        self.world.run(200, lambda: {POSE: pose(0, 0, 0)})
+        self.assertEqual(self.buttons(), (1, 0))
+        self.world.run(50, lambda: self.good(0, 1))
+        self.assertEqual(self.buttons(), (0, 1))
+        self.world.run(50, lambda: {**self.good(), JOY: Joy()})
+        self.assertEqual(self.buttons(), (1, 0))
 
     def test_without_device_or_force_none_is_rendered(self):
         for silent in (POSE, FORCE):

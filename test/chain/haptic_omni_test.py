@@ -51,19 +51,30 @@ class OmniTest(HapticTest):
     def test_millimetres_become_metres(self):
         self.world.run(5, self.good)
         np.testing.assert_allclose(self.hand(), [0.01, 0.02, -0.03], rtol=1e-12)
-        self.assertEqual(self.seen(PRESENT).buttons[0], 1)
+
+    def press(self, grey, white):
+        self.buttons.publish(OmniButtonEvent(grey_button=grey, white_button=white))
+        self.until(lambda: PRESENT in self.world.seen and self.seen(PRESENT).buttons[0] == white
+                   and self.seen(CLUTCH).buttons[0] == grey, self.good, f"not clutch {grey} and operator {white}")
 
     def test_the_force_is_the_drivers_own_message(self):
         self.check_force([0.1, 0.2, -0.3], self.good)
         self.feedback.check_type(self, OmniFeedback)
 
     def test_buttons_are_kept_until_they_change(self):
-        for pressed in (1, 0):
-            self.buttons.publish(OmniButtonEvent(grey_button=pressed, white_button=1 - pressed))
-            self.until(lambda: CLUTCH in self.world.seen and self.seen(CLUTCH).buttons[0] == pressed, self.good,
-                       f"clutch is not {pressed}")
+        for grey, white in ((1, 0), (0, 1), (1, 1), (0, 0)):
+            self.press(grey, white)
             self.world.run(1000, self.good)
-            self.assertEqual(self.seen(CLUTCH).buttons[0], pressed)
+            self.assertEqual((self.seen(CLUTCH).buttons[0], self.seen(PRESENT).buttons[0]), (grey, white))
+
+    def test_the_operator_of_a_device_that_was_silent_presses_again(self):
+        self.press(0, 1)
+        self.world.run(100, lambda: {FORCE: wrench(0, 0, 0)})
+        self.assertEqual(self.seen(PRESENT).buttons[0], 0)
+        self.world.run(100, self.good)
+        self.assertEqual(self.seen(PRESENT).buttons[0], 0)
+        self.press(0, 0)
+        self.press(0, 1)
 
     def test_a_stylus_that_the_driver_holds_counts_as_clutched(self):
         self.world.run(50, lambda: {**self.good(), STATE: state(0, 0, 0, locked=True)})

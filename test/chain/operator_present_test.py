@@ -49,6 +49,20 @@ class OperatorPresentTest(unittest.TestCase):
             self.world.run(200, lambda: {**self.good(), PRESENT: bad})
             self.assertFalse(self.follows())
 
+    def test_every_combination_of_clutch_and_operator(self):
+        silent = object()
+        for clutch in (0, 1, Joy(), INVALID, silent):
+            for present in (1, 0, Joy(), INVALID, silent):
+                with self.subTest(clutch=clutch, present=present):
+                    self.world.run(20, self.good)
+                    self.assertTrue(self.follows())
+                    told = {CLUTCH: clutch, PRESENT: present}
+                    for topic, what in told.items():
+                        told[topic] = Joy(buttons=[what]) if isinstance(what, int) else what
+                    merged = {**self.good(), **told}
+                    self.world.run(120, lambda: {topic: what for topic, what in merged.items() if what is not silent})
+                    self.assertEqual(self.follows(), clutch == 0 and present == 1)
+
     def test_each_input_is_stale_after_its_own_time(self):
         for topic, timeout in ((PRESENT, 100), (CLUTCH, 100), (HAND, 50), (NEEDLE, 50), (PREDICTED, 300),
                                (CONTROLLER, 250)):

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace microinjection {
 namespace {
 
@@ -12,7 +14,7 @@ TEST(Engagement, FollowsAtOnceWhenTheHandIsSlow) {
   EXPECT_EQ(engagement.state(), State::kHeld);
   EXPECT_EQ(engagement.step({true, false, 0, 0}), State::kHeld);
   EXPECT_EQ(engagement.step({false, false, 0, 0}), State::kFollow);
-  EXPECT_EQ(engagement.step({false, false, 10, 10}), State::kFollow) << "a fast hand is followed once it leads";
+  EXPECT_EQ(engagement.step({false, false, 0.24, 10}), State::kFollow) << "a faster one is followed once it leads";
   EXPECT_EQ(engagement.step({true, false, 0, 0}), State::kHeld);
 }
 
@@ -23,6 +25,35 @@ TEST(Engagement, AFastHandIsNotTakenUp) {
   EXPECT_EQ(engagement.why(), "the hand is fast");
   EXPECT_EQ(engagement.step({false, false, 0.99 * config.speed, 0}), State::kFollow);
   EXPECT_EQ(engagement.why(), "");
+}
+
+TEST(Engagement, AHandThatIsTooFastIsLostUntilItHasRested) {
+  EngagementConfig config;
+  Engagement engagement(config);
+  engagement.step({});
+  const double fast = 1.01 * config.speed_limit, slow = 0.99 * config.speed;
+  const auto stepFor = [&](double time, double speed, double dt = 1e-3) {
+    for (int i = 0; i < std::lround(time / dt); ++i) engagement.step({false, false, speed, 0, false, dt});
+    return engagement.state();
+  };
+  EXPECT_EQ(stepFor(1, 0.99 * config.speed_limit), State::kFollow);
+  EXPECT_EQ(stepFor(0.01, 100, 0.01), State::kFollow) << "one late sample";
+  EXPECT_EQ(stepFor(1e-3, 0), State::kFollow);
+  EXPECT_EQ(stepFor(config.speed_time, fast), State::kFollow);
+  EXPECT_EQ(stepFor(1e-3, fast), State::kAlign);
+  EXPECT_EQ(stepFor(config.rest_time - 2e-3, slow), State::kAlign);
+  EXPECT_NE(engagement.why().find("rest"), std::string::npos);
+  EXPECT_EQ(stepFor(1e-3, 1.01 * config.speed), State::kAlign) << "it bounces";
+  EXPECT_EQ(stepFor(config.rest_time - 2e-3, slow), State::kAlign);
+  EXPECT_EQ(stepFor(3e-3, slow), State::kFollow);
+}
+
+TEST(Engagement, AHandThatIsLostWhileHeldIsNotTakenUpAtOnceEither) {
+  Engagement engagement{{}};
+  engagement.step({});
+  for (int i = 0; i < 5; ++i) engagement.step({false, false, 1, 0});
+  engagement.step({true, false, 1, 0});
+  EXPECT_EQ(engagement.step({}), State::kAlign);
 }
 
 TEST(Engagement, IndexTakesUpTheHandWhereverItIs) {
@@ -47,6 +78,23 @@ TEST(Engagement, AgreeWaitsForTheHandOrTheClutch) {
   EXPECT_EQ(engagement.step({false, false, 0, 1}), State::kFollow) << "gripped again";
 }
 
+TEST(Engagement, ADeviceThatSetsASpeedMustBeLetGoClutchOrNot) {
+  for (const char* alignment : {"index", "agree"}) {
+    EngagementConfig config;
+    config.alignment = alignment;
+    Engagement engagement(config);
+    EXPECT_EQ(engagement.step({false, false, 0, 0, false, 1e-3, false}), State::kAlign) << "found deflected";
+    EXPECT_NE(engagement.why().find("let go"), std::string::npos);
+    EXPECT_EQ(engagement.step({false, false, 0, 0, false, 1e-3, true}), State::kFollow);
+    EXPECT_EQ(engagement.step({false, false, 0, 0, false, 1e-3, false}), State::kFollow) << "deflected by who leads";
+    for (const bool clutch : {false, true}) {
+      engagement.step({true, clutch, 0, 0, false, 1e-3, false});
+      EXPECT_EQ(engagement.step({false, false, 0, 0, false, 1e-3, false}), State::kAlign) << alignment << clutch;
+      EXPECT_EQ(engagement.step({false, false, 0, 0, false, 1e-3, true}), State::kFollow) << alignment << clutch;
+    }
+  }
+}
+
 TEST(Engagement, AStrokeThatIsInterruptedForAMomentGoesOn) {
   EngagementConfig config;
   const auto after = [&](double time, bool interrupted) {
@@ -58,6 +106,10 @@ TEST(Engagement, AStrokeThatIsInterruptedForAMomentGoesOn) {
   EXPECT_EQ(after(0.9 * config.interruption, true), State::kFollow);
   EXPECT_EQ(after(1.1 * config.interruption, true), State::kAlign) << "the operator may take it for held";
   EXPECT_EQ(after(0.01, false), State::kAlign) << "clutch, dead-man or lost hand";
+  Engagement falls(config);
+  falls.step({});
+  falls.step({true, false, 0, 0, true});
+  EXPECT_EQ(falls.step({false, false, 1.01 * config.speed_limit, 0}), State::kAlign) << "no stroke";
   Engagement engagement(config);
   engagement.step({true, false, 1, 0, true, 0.01});
   EXPECT_EQ(engagement.step({false, false, 2 * config.speed, 0}), State::kAlign) << "it did not follow before";

@@ -25,11 +25,11 @@ class RateMode : public testing::Test {
   RateMode() {
     config_.mode = "rate";
     mapping_ = std::make_unique<MotionMapping>(config_);
-    mapping_->anchor(kHand, kNeedle);
+    mapping_->anchor(kHand, kNeedle);  // a hand that was deflected is no other zero
   }
   Eigen::Vector3d after(const Eigen::Vector3d& deflection, int steps) {
     Eigen::Vector3d target;
-    for (int i = 0; i < steps; ++i) target = mapping_->step(kHand + deflection, 1e-3);
+    for (int i = 0; i < steps; ++i) target = mapping_->step(deflection, 1e-3);
     return target - kNeedle;
   }
   MotionMappingConfig config_;
@@ -38,6 +38,13 @@ class RateMode : public testing::Test {
 
 TEST_F(RateMode, MovesNothingWithinTheDeadZone) {
   EXPECT_EQ(after({0, 0, 0.99 * config_.dead_zone}, 1000), Eigen::Vector3d::Zero().eval());
+}
+
+TEST_F(RateMode, IsLetGoWithinTheDeadZoneOfTheDevicesZero) {
+  EXPECT_TRUE(mapping_->letGo({0, 0, 0.99 * config_.dead_zone}));
+  EXPECT_FALSE(mapping_->letGo({0, 0, -1.01 * config_.dead_zone}));
+  EXPECT_FALSE(mapping_->letGo(kHand));
+  EXPECT_EQ(mapping_->disagreement({0, 0, 1}, kNeedle + Eigen::Vector3d::UnitX()), 0);
 }
 
 TEST_F(RateMode, SpeedGrowsFromTheDeadZonesBorder) {

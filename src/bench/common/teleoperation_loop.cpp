@@ -86,6 +86,7 @@ class Simulation {
     if (loop.controller == TeleoperationLoop::Controller::kWave) config = config.beforeLink();
     if (loop.controller == TeleoperationLoop::Controller::kTwoPort) config.coupling.enabled = false;
     config.passivity.enabled = loop.controller != TeleoperationLoop::Controller::kOff;
+    config.engagement.speed_limit = 1e3;  // m/s: that a fast hand is let go of would hide what is not passive
     return config;
   }
   static TwoPortConfig ports(const TeleoperationLoop& loop) {

@@ -4,6 +4,16 @@
 #include "nodes/haptic/geomagic_messages.h"
 
 namespace microinjection {
+namespace {
+
+/// `none`: where there is no such button; `unknown`: where it cannot be read.
+bool pressed(const sensor_msgs::Joy* joy, int button, bool none, bool unknown) {
+  if (button < 0) return none;
+  const auto index = static_cast<std::size_t>(button);
+  return joy && index < joy->buttons.size() ? joy->buttons[index] != 0 : unknown;
+}
+
+}  // namespace
 
 GeomagicConfig GeomagicConfig::read(ConfigReader& reader) {
   GeomagicConfig config;
@@ -11,6 +21,10 @@ GeomagicConfig GeomagicConfig::read(ConfigReader& reader) {
   reader.number("length_unit", config.length_unit, Range::positive());
   reader.number("timeout", config.timeout, Range::positive());
   reader.integer("clutch_button", config.clutch_button, Range::closed(-1, 1));
+  reader.integer("operator_button", config.operator_button, Range::closed(-1, 1));
+  if (config.operator_button >= 0 && config.operator_button == config.clutch_button) {
+    reader.error("operator_button", "must be another than clutch_button");
+  }
   return config;
 }
 
@@ -28,11 +42,10 @@ std::optional<HandReading> GeomagicAdapter::read(const Cycle::Tick& tick) {
   HandReading reading;
   reading.position = config_.length_unit * *position;
   reading.stamp = pose->header.stamp;
-  if (config_.clutch_button < 0) return reading;
-  // Buttons that cannot be read count as pressed.
+  // A clutch that cannot be read counts as pressed, a dead-man as let go.
   const sensor_msgs::Joy* joy = buttons_.get(tick.now);
-  const auto index = static_cast<std::size_t>(config_.clutch_button);
-  reading.clutch = !joy || index >= joy->buttons.size() || joy->buttons[index] != 0;
+  reading.clutch = pressed(joy, config_.clutch_button, false, true);
+  reading.operator_present = pressed(joy, config_.operator_button, true, false);
   return reading;
 }
 

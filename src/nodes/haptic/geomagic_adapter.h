@@ -14,6 +14,7 @@ struct GeomagicConfig {
   double length_unit = 1e-3;        ///< m, of the driver's positions
   double timeout = 0.1;             ///< s, past which the device is silent; the driver tells 100 times a second
   int clutch_button = 0;            ///< of DEVICE/joy: 0 grey, 1 white; -1: none
+  int operator_button = 1;          ///< the same; held down: the operator is present
 
   static GeomagicConfig read(ConfigReader& reader);
 };

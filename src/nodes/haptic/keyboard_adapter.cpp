@@ -54,9 +54,11 @@ void KeyboardAdapter::obey(const std::string& key) {
 }
 
 std::optional<HandReading> KeyboardAdapter::read(const Cycle::Tick& tick) {
-  for (const char byte : terminal_.read()) {
+  const std::string typed = terminal_.read();
+  for (const char byte : typed) {
     if (const auto key = keys_.feed(byte)) obey(*key);
   }
+  if (typed.empty() && keys_.wait(tick.dt)) obey("other");
   HandReading reading;
   reading.position = hand_.step(tick.dt);
   reading.stamp = tick.now;

@@ -1,6 +1,13 @@
 #include "nodes/haptic/omni_adapter.h"
 
 namespace microinjection {
+namespace {
+
+bool pressed(const OmniButtonEvent& event, const std::string& button) {
+  return (button == "grey" && event.grey_button != 0) || (button == "white" && event.white_button != 0);
+}
+
+}  // namespace
 
 OmniConfig OmniConfig::read(ConfigReader& reader) {
   OmniConfig config;
@@ -8,6 +15,10 @@ OmniConfig OmniConfig::read(ConfigReader& reader) {
   reader.number("length_unit", config.length_unit, Range::positive());
   reader.number("timeout", config.timeout, Range::positive());
   reader.choice("clutch_button", config.clutch_button, {"grey", "white", "none"});
+  reader.choice("operator_button", config.operator_button, {"grey", "white", "none"});
+  if (config.operator_button != "none" && config.operator_button == config.clutch_button) {
+    reader.error("operator_button", "must be another than clutch_button");
+  }
   return config;
 }
 
@@ -15,22 +26,26 @@ OmniAdapter::OmniAdapter(Cycle& cycle, const OmniConfig& config)
     : config_(config),
       state_(cycle.input<OmniState>(config.device + "/state", Phase::kSameTick, config.timeout)),
       force_(cycle.node().advertise<OmniFeedback>(config.device + "/force_feedback", 10)) {
-  if (config.clutch_button == "none") return;
-  buttons_ = cycle.node().subscribe<OmniButtonEvent>(
-      config.device + "/button", 10, [this](const boost::shared_ptr<const OmniButtonEvent>& event) {
-        clutch_ = (config_.clutch_button == "grey" ? event->grey_button : event->white_button) != 0;
-      });
+  buttons_ = cycle.node().subscribe<OmniButtonEvent>(config.device + "/button", 10,
+                                                     [this](const boost::shared_ptr<const OmniButtonEvent>& event) {
+                                                       clutch_ = pressed(*event, config_.clutch_button);
+                                                       operator_present_ = pressed(*event, config_.operator_button);
+                                                     });
 }
 
 std::optional<HandReading> OmniAdapter::read(const Cycle::Tick& tick) {
   const OmniState* state = state_.get(tick.now);
-  if (!state) return std::nullopt;
+  if (!state) {
+    operator_present_ = false;
+    return std::nullopt;
+  }
   const auto& p = state->pose.position;
   HandReading reading;
   reading.position = config_.length_unit * Eigen::Vector3d(p.x, p.y, p.z);
   if (!reading.position.allFinite()) return std::nullopt;
   reading.stamp = state->header.stamp;
   reading.clutch = clutch_ || state->locked;
+  reading.operator_present = operator_present_ || config_.operator_button == "none";
   return reading;
 }
 

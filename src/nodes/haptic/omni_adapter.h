@@ -8,17 +8,19 @@
 namespace microinjection {
 
 struct OmniConfig {
-  std::string device = "phantom";      ///< namespace of the driver's topics
-  double length_unit = 1e-3;           ///< m, of the driver's positions
-  double timeout = 0.05;               ///< s, past which the device is silent
-  std::string clutch_button = "grey";  ///< grey, white or none
+  std::string device = "phantom";         ///< namespace of the driver's topics
+  double length_unit = 1e-3;              ///< m, of the driver's positions
+  double timeout = 0.05;                  ///< s, past which the device is silent
+  std::string clutch_button = "grey";     ///< grey, white or none
+  std::string operator_button = "white";  ///< grey, white or none; held down: the operator is present
 
   static OmniConfig read(ConfigReader& reader);
 };
 
 /// phantom_omni (Touch, Omni): DEVICE/state and DEVICE/button in, DEVICE/force_feedback out. Position and force have
 /// the axes (X, -Z, Y) of OpenHaptics: x right, y away, z up. While the driver holds the stylus itself (`locked`) the
-/// clutch counts as pressed. Buttons are told on change only and hold until they change.
+/// clutch counts as pressed. Buttons are told on change only and hold until they change; where the device falls silent
+/// the operator is gone until the button is pressed again.
 class OmniAdapter : public HapticAdapter {
  public:
   using Config = OmniConfig;
@@ -33,6 +35,7 @@ class OmniAdapter : public HapticAdapter {
   ros::Subscriber buttons_;
   ros::Publisher force_;
   bool clutch_ = false;
+  bool operator_present_ = false;
 };
 
 }  // namespace microinjection

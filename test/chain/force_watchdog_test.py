@@ -1,0 +1,73 @@
+#!/usr/bin/python3
+"""A CRTK device gets zero force, again and again, when its bridge is silent, and only then."""
+
+import time
+import unittest
+
+import numpy as np
+import rospy
+import rostest
+from geometry_msgs.msg import WrenchStamped
+from rosgraph_msgs.msg import Clock
+
+from messages import force, wrench
+from participant import PATIENCE
+
+FORCE = "/haptic/servo_cf"
+TIMEOUT = 0.05  # s, the node's default
+
+
+class ForceWatchdogTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.zeros = []  # what the watchdog said
+        cls.now = rospy.Time(100)
+        cls.clock = rospy.Publisher("/clock", Clock, queue_size=10, latch=True)
+        cls.bridge = rospy.Publisher(FORCE, WrenchStamped, queue_size=10)
+        rospy.Subscriber(FORCE, WrenchStamped, cls.hear)
+        cls.clock.publish(cls.now)
+
+    @classmethod
+    def hear(cls, message):
+        if message._connection_header["callerid"] == "/force_watchdog":
+            cls.zeros.append(message)
+
+    def until(self, condition, what):
+        end = time.monotonic() + PATIENCE
+        while not condition():
+            self.assertLess(time.monotonic(), end, what)
+            time.sleep(0.01)
+
+    def go_on(self, seconds):
+        type(self).now += rospy.Duration(seconds)
+        self.clock.publish(self.now)
+
+    def quiet(self, seconds):
+        """Nothing of the watchdog's within `seconds` (s) of the wall's time."""
+        before = len(self.zeros)
+        time.sleep(seconds)
+        return len(self.zeros) == before
+
+    def check_zero_again_and_again(self):
+        before = len(self.zeros)
+        self.until(lambda: len(self.zeros) > before + 20, "no zero force")
+        for message in self.zeros[before:]:
+            np.testing.assert_array_equal(force(message), 0)
+
+    def test_zero_only_while_the_bridge_is_silent(self):
+        self.check_zero_again_and_again()  # there is no bridge yet
+        self.until(lambda: self.bridge.get_num_connections() > 1, "nobody hears the bridge")
+        for _ in range(3):
+            self.bridge.publish(wrench(0, 0, 1.5, "haptic"))  # and time stands still
+            self.until(lambda: self.quiet(0.2), "it talks across the bridge")
+            self.go_on(0.9 * TIMEOUT)
+            self.assertTrue(self.quiet(0.2), "it is impatient")
+            self.go_on(0.2 * TIMEOUT)
+            self.check_zero_again_and_again()
+            self.assertEqual(self.zeros[-1].header.frame_id, "haptic")
+            self.assertEqual(self.zeros[-1].header.stamp, self.now)
+
+
+if __name__ == "__main__":
+    rospy.init_node("bridge")
+    rostest.rosrun("cell_microinjection", "force_watchdog", ForceWatchdogTest)
