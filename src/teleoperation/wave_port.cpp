@@ -21,6 +21,7 @@ WaveConfig WaveConfig::read(ConfigReader reader) {
   reader.number("stiffness", config.stiffness, Range::positive());
   reader.number("lateness", config.lateness, Range::nonNegative());
   reader.number("damping", config.damping, Range::nonNegative());
+  reader.number("matching", config.matching, Range::closed(0, 1));
   reader.number("contact_force", config.contact_force, Range::positive());
   config.receiver = WaveReceiverConfig::read(reader);
   return config;
@@ -67,7 +68,7 @@ const Eigen::Vector3d& WaveFollower::step(const Eigen::Vector3d& force, double d
   const double b = config_.impedance;
   const Eigen::Vector3d& incoming = receiver_.step(round_trip_.periods() * dt, dt);
   contact_.touch(force);
-  const double damping = std::min(config_.damping, config_.lateness * contact_.stiffness());
+  const double damping = config_.matching * b + std::min(config_.damping, config_.lateness * contact_.stiffness());
   const Eigen::Vector3d velocity = (std::sqrt(2 * b) * incoming + force) / (b + damping);
   position_ += dt * velocity;
   contact_.move(dt * velocity);

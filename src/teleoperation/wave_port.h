@@ -27,6 +27,7 @@ struct WaveConfig {
   double stiffness = 1000;  ///< N/m, between the hand and the leader's end of the channel
   double lateness = 6e-3;   ///< s, by which what is touched answers late at the rig: needle, sensor or model, periods
   double damping = 20;      ///< N s/m, the most that is rendered at the rig against that
+  double matching = 1;      ///< 1, damping at the needle's end over the impedance, so that waves do not go to and fro
   double contact_force = 0.01;  ///< N, below which nothing is touched
   WaveReceiverConfig receiver;
 
@@ -38,10 +39,17 @@ struct WaveConfig {
 ///     u = (b v + f) / sqrt(2 b)   towards the needle,   w = (b v - f) / sqrt(2 b)   towards the hand:
 ///     f v = u^2 / 2 - w^2 / 2,
 /// so that the channel is passive for any delay as long as no wave comes out with more energy than went in, which
-/// WaveReceiver keeps. At rest u and w are constant and f is the same on both sides: a force that is held passes.
+/// WaveReceiver keeps. At rest, once no wave goes to and fro any more, u and w are constant and f is the same on both
+/// sides.
 /// Sent are the integrals sqrt(2 b) int u = b x + int f, so that a lost packet moves nothing. With the delay T there
 /// and back each, a held force f leaves the needle f T / b behind the hand: the channel is a spring of b / T. All at
 /// the hand's scale (see passivity_controller.h).
+///
+/// A hand that stands sends every wave back (u = -w), and so does a needle that touches nothing (w = u) or something
+/// stiff (w = -u): between such ends waves go to and fro, and for seconds the needle is not where the hand is nor the
+/// force at the hand the needle's. Against a soft thing k a needle's end that is damped by d sends back, at the angular
+/// frequency o, w / u = (b - d - k / (i o)) / (b + d + k / (i o)): nothing in free motion with d = b, little where o is
+/// larger than k / 2 b (Niemeyer & Slotine's matching). The hand then feels d as long as it moves.
 ///
 /// Leader: between the hand and the port lies a spring, which keeps the encoder's steps out of the waves.
 class WaveLeader {
@@ -66,7 +74,7 @@ class WaveLeader {
 };
 
 /// Follower: force in, position out. A spring k that answers late by t is active by k t (N s/m); as much damping is put
-/// beside it.
+/// beside it, and the matching's.
 class WaveFollower {
  public:
   explicit WaveFollower(const WaveConfig& config)

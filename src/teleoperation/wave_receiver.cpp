@@ -4,6 +4,15 @@
 #include <cmath>
 
 namespace microinjection {
+namespace {
+
+// Share of the reserve that a wave is not held with while packets are late. A wave u that is held is taken back with
+// the correction time t as it goes on. What is too much of its integral after a time s is m = u t (1 - exp(-s / t)); it
+// has cost u^2 t (1 - exp(-2 s / t)) / 4, and giving it back when nothing more comes costs m^2 / (4 t), no more than
+// that.
+constexpr double kKept = 0.5;
+
+}  // namespace
 
 void WavePlayout::receive(const TeleoperationPacket& packet) {
   const std::uint64_t sequence = packet.sequence;
@@ -90,14 +99,15 @@ const Eigen::Vector3d& WaveReceiver::step(double round_trip, double dt) {
   const Eigen::Vector3d missing =
       wanted_ - let_out_ - config_.filter_time * filtered_ - config_.shelf * slowness * slow_;
   wave_ = filtered_ + missing / config_.correction_time;
-  const double energy = 0.5 * wave_.squaredNorm() * dt;
-  if (energy > credit_) wave_ *= std::sqrt(std::max(0.0, credit_) / energy);
-  const double spent = std::min(energy, std::max(0.0, credit_));
-  let_out_ += dt * wave_;
-  out_ += spent;
   // What the filters hold will come out of them; what they have taken out is gone.
   const double held =
       0.5 * (config_.filter_time * filtered_.squaredNorm() + config_.shelf * slowness * slow_.squaredNorm());
+  const double spare = std::max(0.0, credit_ - (advance->waits ? held + kKept * config_.reserve : 0));
+  const double energy = 0.5 * wave_.squaredNorm() * dt;
+  if (energy > spare) wave_ *= std::sqrt(spare / energy);
+  const double spent = std::min(energy, spare);
+  let_out_ += dt * wave_;
+  out_ += spent;
   credit_ = std::min(credit_ - spent, config_.reserve + held);
   return wave_;
 }

@@ -60,6 +60,31 @@ TEST(WavePlayout, DoesNotBeginInTheMidst) {
   EXPECT_FALSE(playout.advance());
 }
 
+/// Lets a wave (sqrt(W)) that stops, with packets that are late by `stall` periods just then, come out.
+void stopWhileLate(double wave, int stall) {
+  const WaveReceiverConfig config;
+  WaveReceiver receiver(config);
+  double sent = 0, energy = 0, let_out = 0, held = 0;
+  for (int i = 1; i <= 4000; ++i) {
+    const double now = i <= 1000 ? wave : 0;
+    sent += now * kStep;
+    energy += 0.5 * now * now * kStep;
+    if (i <= 1000 || i > 1000 + stall) receiver.receive(packet(i, sent, energy));
+    const double out = receiver.step(0.1, kStep).z() * kStep;
+    let_out += out;
+    if (i > 1000 && i <= 1000 + stall) held += out;
+  }
+  EXPECT_GT(held, 0) << wave << ' ' << stall;
+  EXPECT_NEAR(let_out, sent, 1e-3 * held) << wave << ' ' << stall;
+  EXPECT_GE(receiver.margin(), -config.reserve) << wave << ' ' << stall;
+}
+
+TEST(WaveReceiver, GivesBackWhatItHeldTooLongAlthoughNothingMoreComes) {
+  for (const int stall : {50, 100, 290}) {
+    for (const double wave : {0.05, 0.1, 0.2, 0.5, 2.0}) stopWhileLate(wave, stall);
+  }
+}
+
 /// A hand that is held at a depth over a bad link on a spring, without any bridge.
 struct Held {
   double force, needle_force, needle, margin;
@@ -113,6 +138,27 @@ TEST(WavePort, LossAndJitterTakeNothingOffAHeldForce) {
       EXPECT_GT(held.force, 0.6 * 1.2 / (1 + 60 * delay * 2 / 20)) << delay << ' ' << loss;
       EXPECT_GE(held.margin, -WaveReceiverConfig{}.reserve) << delay << ' ' << loss;
     }
+  }
+}
+
+TEST(WavePort, AMovingHandFeelsTheMatchingAndNoWaveComesBack) {
+  const WaveConfig config;
+  WaveLeader leader(config);
+  WaveFollower follower(config);
+  leader.reset(Eigen::Vector3d::Zero());
+  follower.reset(Eigen::Vector3d::Zero());
+  LinkEmulator<TeleoperationPacket> forward({0.1, 0, 0, 1}), back({0.1, 0, 0, 1});
+  const double speed = 0.02;  // m/s
+  for (int i = 0; i < 2000; ++i) {
+    const double now = i * kStep;
+    for (const auto& one : back.receive(now)) leader.receive(one);
+    const double force = leader.step({0, 0, -speed * now}, kStep).z();
+    forward.send(leader.packet(), now);
+    for (const auto& one : forward.receive(now)) follower.receive(one);
+    follower.step(Eigen::Vector3d::Zero(), kStep);
+    back.send(follower.packet(), now);
+    // The spring between hand and waves is there at once, their answer never.
+    if (i > 150) EXPECT_NEAR(force, config.matching * config.impedance * speed, 0.02 * config.impedance * speed) << i;
   }
 }
 
