@@ -1,5 +1,7 @@
 #include "nodes/round_trip_meter.h"
 
+#include <cmath>
+
 namespace microinjection {
 namespace {
 
@@ -51,7 +53,8 @@ void RoundTripMeter::count(const ros::Time& rendered, const ros::Time& needle) {
   if (hand == hand_of_needle_.end() || hand->second <= last_hand_) return;  // moved of itself, or felt before
   if (force == rendered_.end() || force->second.isZero(0)) return;
   for (auto came = felt_.lower_bound(rendered); came != felt_.end(); ++came) {
-    if ((came->second - force->second).norm() > kSame * force->second.norm()) continue;
+    // By its size: the device may have other axes than the bridge.
+    if (std::abs(came->second.norm() - force->second.norm()) > kSame * force->second.norm()) continue;
     at_bridge_.add((rendered - hand->second).toSec());
     at_device_.add((came->first - hand->second).toSec());
     last_hand_ = hand->second;

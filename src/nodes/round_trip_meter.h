@@ -12,14 +12,14 @@
 namespace microinjection {
 
 /// Time from a device's sample of the hand to the first force that depends on it and has come back to the device: what
-/// all nodes between add, adapter and messages included. Joined by stamps, and from bridge to device by the force
-/// itself, since drivers' messages have no stamp. Only the needle poses that isTraced() picks are counted (see
+/// all nodes between add, adapter and messages included. Joined by stamps, and from bridge to device by the size of the
+/// force, since drivers' messages have no stamp. Only the needle poses that isTraced() picks are counted (see
 /// latency_meter.h), and forces that are not zero.
 class RoundTripMeter {
  public:
   explicit RoundTripMeter(ros::NodeHandle& node);
 
-  /// A force (N, in the axes of /haptic/servo_cf) came to the device.
+  /// A force (N) came to the device.
   void felt(const Eigen::Vector3d& force, const ros::Time& received);
   /// Counts what is old enough for all of its messages to have come; call it in every step.
   void step(const ros::Time& now);

@@ -28,32 +28,39 @@ ros::Subscriber listen(ros::NodeHandle& node, const std::string& topic, const Em
   return node.subscribe<Message, const Event&>(topic, 100, hear, {}, ros::TransportHints().tcpNoDelay());
 }
 
-sensor_msgs::Joy toJoy(bool pressed, const ros::Time& now) {
+/// `second`: the button that says that the operator is there, which this hand always holds down.
+sensor_msgs::Joy toJoy(bool pressed, const ros::Time& now, bool second = false) {
   sensor_msgs::Joy joy;
   joy.header.stamp = now;
-  joy.buttons = {pressed ? 1 : 0, 0};
+  joy.buttons = {pressed ? 1 : 0, second ? 1 : 0};
   return joy;
 }
+
+/// Buttons that a driver tells on change only are told again: who was started later must know them.
+constexpr int kRepetition = 50;  // samples
 
 class EmulatedCrtk : public EmulatedDriver {
  public:
   EmulatedCrtk(ros::NodeHandle& node, const Listener& listener)
       : position_(node.advertise<geometry_msgs::PoseStamped>("haptic/measured_cp", 10)),
         clutch_(node.advertise<sensor_msgs::Joy>("haptic/clutch", 10, true)),
+        present_(node.advertise<sensor_msgs::Joy>("haptic/operator_present", 10)),
         force_(listen<geometry_msgs::WrenchStamped>(
             node, "haptic/servo_cf", listener,
             [](const geometry_msgs::WrenchStamped& message) { return toVector(message.wrench.force); })) {}
 
   void tell(const Eigen::Vector3d& position, bool clutch, const ros::Time& now) override {
     position_.publish(toPose(position, now, kFrame));
+    if (samples_++ % kRepetition == 0) present_.publish(toJoy(true, now));
     if (clutch != told_) clutch_.publish(toJoy(clutch, now));
     told_ = clutch;
   }
 
  private:
-  ros::Publisher position_, clutch_;
+  ros::Publisher position_, clutch_, present_;
   ros::Subscriber force_;
   std::optional<bool> told_;
+  int samples_ = 0;
 };
 
 class EmulatedOmni : public EmulatedDriver {
@@ -69,8 +76,9 @@ class EmulatedOmni : public EmulatedDriver {
     state.header.stamp = now;
     state.pose = toPose(Eigen::Vector3d(position / kMillimetre), now, kFrame).pose;
     state_.publish(state);
-    if (clutch == told_) return;
+    if (clutch == told_ && samples_++ % kRepetition != 0) return;
     OmniButtonEvent event;
+    event.white_button = 1;
     event.grey_button = clutch ? 1 : 0;
     button_.publish(event);
     told_ = clutch;
@@ -80,6 +88,7 @@ class EmulatedOmni : public EmulatedDriver {
   ros::Publisher state_, button_;
   ros::Subscriber force_;
   std::optional<bool> told_;
+  int samples_ = 0;
 };
 
 /// With OpenHaptics' axes: x right, y up, z to the operator.
@@ -96,7 +105,7 @@ class EmulatedGeomagic : public EmulatedDriver {
   void tell(const Eigen::Vector3d& position, bool clutch, const ros::Time& now) override {
     const Eigen::Vector3d turned(position.x(), position.z(), -position.y());
     pose_.publish(toPose(Eigen::Vector3d(turned / kMillimetre), now, kFrame));
-    joy_.publish(toJoy(clutch, now));
+    joy_.publish(toJoy(clutch, now, true));
   }
 
  private:
