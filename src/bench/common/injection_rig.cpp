@@ -61,7 +61,7 @@ void InjectionRig::step() {
   input.force = Eigen::Vector3d(reading.y(), 0, reading.x());
   input.injector =
       InjectorReport{injector_.reading().busy, injector_.reading().volume, injector_.reading().last_id == pulses_};
-  if (isIn(Trouble::Kind::kForceLost)) input.force.reset();
+  if (isIn(Trouble::Kind::kForceLost) || !cell_->trusted()) input.force.reset();  // as cell_simulator says it
   if (isIn(Trouble::Kind::kNeedleLost)) input.needle.reset();
   const InjectionState before = controller_.injection();
   const int punctures_before = controller_.result().punctures;
