@@ -13,6 +13,8 @@ import rospkg
 import rospy
 import rostest
 
+from case import case
+
 NODES = pathlib.Path(sys.argv[0]).parent  # this program is found beside them
 SCENE = rospkg.RosPack().get_path("cell_microinjection") + "/test/chain/coarse_oocyte.yaml"
 MOTION = rospkg.RosPack().get_path("cell_microinjection") + "/config/hand_motions/indent_and_retract.csv"
@@ -90,18 +92,18 @@ class BadParametersTest(unittest.TestCase):
 
     def test_out_of_range(self):
         for node, parameters, words in BAD:
-            with self.subTest(node=node, parameters=parameters):
+            with case(node, parameters):
                 self.check_refused(node, parameters, words)
 
     def test_unknown_key(self):
         for node in GOOD:
-            with self.subTest(node=node):
+            with case(node):
                 self.check_refused(node, {"forse_limit": 3}, ["forse_limit", "unknown key"])
 
     def test_missing_key(self):
         for node, needed in GOOD.items():
             for key in needed:
-                with self.subTest(node=node, key=key):
+                with case(node, key):
                     parameters = dict(needed)
                     del parameters[key]
                     saved, GOOD[node] = GOOD[node], parameters
@@ -113,7 +115,7 @@ class BadParametersTest(unittest.TestCase):
     def test_good_ones_do_come_alive(self):
         """Without this the tests above would pass for a node that never starts."""
         for node, parameters in GOOD.items():
-            with self.subTest(node=node):
+            with case(node):
                 for key in rospy.get_param(f"/tried_{node}", {}):
                     rospy.delete_param(f"/tried_{node}/{key}")
                 process = start(node, parameters)

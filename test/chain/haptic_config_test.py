@@ -15,6 +15,8 @@ import rospy
 import rostest
 import yaml
 
+from case import case
+
 NODES = pathlib.Path(sys.argv[0]).parent  # this program is found beside them
 PACKAGE = pathlib.Path(rospkg.RosPack().get_path("cell_microinjection"))
 
@@ -51,7 +53,7 @@ class HapticConfigTest(unittest.TestCase):
         files = sorted((PACKAGE / "config/haptic").glob("*.yaml"))
         self.assertGreaterEqual(len(files), 7)
         for file in files:
-            with self.subTest(file.name):
+            with case(file.name):
                 self.assertTrue((PACKAGE / "launch/haptic" / file.with_suffix(".launch").name).exists())
                 content = yaml.safe_load(file.read_text())
                 self.assertLessEqual(set(content), {"haptic_bridge", "haptic_device", "keyboard_hand", "force_watchdog"})
@@ -71,7 +73,7 @@ class HapticConfigTest(unittest.TestCase):
         for arguments, hand, controller in (({}, "predicted", "predicted"),
                                             ({"hand_force": "blend"}, "blend", "predicted"),
                                             ({"force_source": "measured"}, "measured", "measured")):
-            with self.subTest(arguments):
+            with case(arguments):
                 set_ = self.parameters(**arguments)
                 self.assertEqual(set_["/haptic_bridge/force_source"], hand)
                 self.assertEqual(set_["/injection_controller/force_source"], controller)

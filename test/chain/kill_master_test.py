@@ -7,24 +7,20 @@ import os
 import pathlib
 import signal
 import subprocess
-import sys
 import tempfile
 import unittest
 
 import numpy as np
 import rosgraph
-import rospkg
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseStamped, WrenchStamped
 
 from cell_microinjection.msg import InjectionPulse, InjectorState
-
-sys.path.insert(0, rospkg.RosPack().get_path("cell_microinjection") + "/src/tools")
-from killable_nodes import PACKAGE, PATIENCE, KillableNodes, parameters, rig  # noqa: E402
-from messages import force, position  # noqa: E402
-from processes import free_port  # noqa: E402
+from killable_nodes import PACKAGE, PATIENCE, KillableNodes, parameters, rig
+from messages import force, position
+from processes import free_port
 
 LOST = "the ROS master is lost"
 STILL = 2e-9  # m

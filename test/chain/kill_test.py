@@ -14,6 +14,7 @@ from geometry_msgs.msg import PoseStamped, WrenchStamped
 from std_msgs.msg import Header
 
 from cell_microinjection.msg import InjectionStatus, InjectorState, OperatingState, StringStamped
+from case import case
 from killable_nodes import PACKAGE, PATIENCE, KillableNodes, parameters, rig
 from messages import force, pose, position
 from participant import Participant
@@ -61,8 +62,9 @@ class Session:
         try:
             self.chain = Participant({}, {topic: kinds[topic] for topic in seen}, PATIENCE)
         except Exception as error:
+            report = self.nodes.report()
             self.nodes.stop()
-            raise AssertionError(f"the session does not begin; ended: {self.nodes.dead()}") from error
+            raise AssertionError(f"the session does not begin; {report}") from error
 
     def _record(self, message, topic):
         self.records[topic][message.header.stamp.to_nsec()] = message
@@ -75,6 +77,7 @@ class Session:
             subscriber.unregister()
         self.chain.close()
         self.nodes.stop()
+        self.nodes.forget()
 
     def until(self, condition, what, say=None, ticks=3000):
         """`say` is called each twenty ticks."""
@@ -84,7 +87,7 @@ class Session:
             if say and i % 20 == 0:
                 say()
             self.chain.tick()
-        raise AssertionError(f"{what}: not within {ticks} ticks; seen {self.chain.seen}; ended: {self.nodes.dead()}")
+        raise AssertionError(f"{what}: not within {ticks} ticks; seen {self.chain.seen}; {self.nodes.report()}")
 
     def says(self, topic, field, *values):
         return topic in self.chain.seen and getattr(self.chain.seen[topic], field) in values
@@ -94,7 +97,7 @@ class Session:
             if condition():
                 return
             rospy.rostime.wallsleep(0.001)
-        raise AssertionError("the session hangs")
+        raise AssertionError(f"the session hangs; {self.nodes.report()}")
 
     def begin(self):
         """The needle is put near the cell, then the controller enabled. Said again: connections take their time."""
@@ -212,7 +215,7 @@ class KillTest(unittest.TestCase):
 
     def test_hand(self):
         for phase, ticks in (("approach", 60), ("indent", 200)):
-            with self.subTest(phase):
+            with case(phase):
                 self.by_hand()
                 self.in_phase(phase, ticks)
                 killed = self.kill("operator")
@@ -222,7 +225,7 @@ class KillTest(unittest.TestCase):
 
     def test_bridge(self):
         for phase, ticks in (("approach", 60), ("indent", 200), ("withdraw", 200)):
-            with self.subTest(phase):
+            with case(phase):
                 self.by_hand()
                 self.in_phase(phase, ticks)
                 killed = self.kill("haptic_bridge")
@@ -245,7 +248,7 @@ class KillTest(unittest.TestCase):
 
     def test_controller(self):
         for phase, ticks in (("approach", 60), ("indent", 200), ("withdraw", 200)):
-            with self.subTest(phase):
+            with case(phase):
                 self.by_hand()
                 self.in_phase(phase, ticks)
                 killed = self.kill("injection_controller", 400)
@@ -276,7 +279,7 @@ class KillTest(unittest.TestCase):
 
     def test_controller_that_moves_by_itself(self):
         for state, ticks in (("approach", 100), ("indent", 60)):
-            with self.subTest(state):
+            with case(state):
                 self.by_itself()
                 self.in_state(state, ticks)
                 killed = self.kill("injection_controller")
@@ -301,7 +304,7 @@ class KillTest(unittest.TestCase):
         """It ends with the one who asked for it, and where it is not known any more what is injected into."""
         for node, timeout in (("injection_controller", INJECT["pulse_timeout"]),
                               ("micromanipulator", CONTROLLER_TIMEOUT), ("cell_simulator", CONTROLLER_TIMEOUT)):
-            with self.subTest(node):
+            with case(node):
                 self.by_itself()
                 self.in_state("inject", 100)
                 killed = self.kill(node, 320)

@@ -1,10 +1,14 @@
 """The chain's programs with the parameters of config/, started by the test itself, so that it may kill them."""
 
+import contextlib
 import pathlib
 import signal
 import subprocess
 import sys
+import tempfile
 
+import rosgraph
+import rosnode
 import rospkg
 import rospy
 import yaml
@@ -38,20 +42,29 @@ class KillableNodes:
     def __init__(self, nodes, participants=()):
         rospy.set_param("/robot_description", (PACKAGE / "urdf/rig.urdf").read_text())
         rospy.set_param("/lockstep/participants", list(participants))
-        self._running = {}
+        self._running, self._outputs = {}, {}
         for node, settings in nodes.items():
             rospy.set_param(f"/{node}", settings)
             self.start(node)
 
     def start(self, node, *arguments):
+        self._outputs[node] = tempfile.TemporaryFile()
         self._running[node] = subprocess.Popen([PROGRAMS / node, *arguments], stdin=subprocess.DEVNULL,
-                                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                                               stdout=self._outputs[node], stderr=subprocess.STDOUT)
 
     def names(self):
         return set(self._running)
 
     def dead(self):
         return [node for node, process in self._running.items() if process.poll() is not None]
+
+    def report(self):
+        """Who has ended, and what the nodes have said, for the message of a test that fails."""
+        said = ""
+        for node, file in self._outputs.items():
+            file.seek(0)
+            said += "".join(f"\n{node}: {line}" for line in file.read().decode(errors="replace").splitlines())
+        return f"ended: {self.dead()}{said}"
 
     def kill(self, node, number=signal.SIGKILL):
         """@returns its exit status."""
@@ -66,3 +79,9 @@ class KillableNodes:
         for process in self._running.values():
             process.wait(PATIENCE)
         self._running = {}
+
+    def forget(self):
+        """Has the master forget all that were started and are dead. It would ask them to end when others of their names
+        come, at ports that may by then be those of others."""
+        with contextlib.redirect_stdout(None):
+            rosnode.cleanup_master_blacklist(rosgraph.Master("/killer"), [f"/{node}" for node in self._outputs])

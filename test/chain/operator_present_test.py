@@ -10,6 +10,7 @@ from geometry_msgs.msg import PoseStamped, WrenchStamped
 from sensor_msgs.msg import Joy
 
 from cell_microinjection.msg import InjectionStatus
+from case import case
 from messages import force, pose, wrench
 from participant import INVALID, Participant
 
@@ -53,7 +54,7 @@ class OperatorPresentTest(unittest.TestCase):
         silent = object()
         for clutch in (0, 1, Joy(), INVALID, silent):
             for present in (1, 0, Joy(), INVALID, silent):
-                with self.subTest(clutch=clutch, present=present):
+                with case(clutch, present):
                     self.world.run(20, self.good)
                     self.assertTrue(self.follows())
                     told = {CLUTCH: clutch, PRESENT: present}
@@ -66,7 +67,7 @@ class OperatorPresentTest(unittest.TestCase):
     def test_each_input_is_stale_after_its_own_time(self):
         for topic, timeout in ((PRESENT, 100), (CLUTCH, 100), (HAND, 50), (NEEDLE, 50), (PREDICTED, 300),
                                (CONTROLLER, 250)):
-            with self.subTest(topic):
+            with case(topic):
                 self.world.run(200, self.good)
                 self.run_without(timeout - 5, topic)
                 self.assertTrue(self.follows())

@@ -9,6 +9,7 @@ import rostest
 from cell_microinjection.msg import ManipulatorAbilities, OperatingState, StringStamped
 from geometry_msgs.msg import PoseStamped, TwistStamped
 
+from case import case
 from messages import pose, position
 from participant import Participant
 
@@ -207,7 +208,7 @@ class RigContract(unittest.TestCase):
 
     def test_fault_and_recovery(self):
         for fault, stays in self.faults().items():
-            with self.subTest(fault=fault):
+            with case(fault):
                 self.go_to(START)
                 self.say(self.fault, fault)
                 self.send(self.move, pose(30e-6, 0, 60e-6))

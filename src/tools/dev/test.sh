@@ -1,5 +1,5 @@
 # shellcheck shell=bash
-# ./dev test: builds the tests, runs them one after the other with ctest, and sums the results up.
+# ./dev test: builds the tests, runs them with ctest, and sums the results up.
 
 readonly RESULTS="$ROOT/out/test"
 
@@ -17,6 +17,7 @@ command_test() {
 test_ros() {
   build_workspace
   build_workspace tests
+  cmake --install "$WORKSPACE/build" --component tests >/dev/null || fail "the tests of the chain could not be installed"
   use_private_master
   run_tests ros "$WORKSPACE/build" "$WORKSPACE/build/test_results" "$@"
 }
@@ -37,7 +38,7 @@ run_tests() {
   # What an earlier run left must neither hide nor fake a failure.
   rm -rf "$junit" "$log"
   mkdir -p "$junit" "$RESULTS"
-  (cd "$build" && ctest --output-on-failure --no-tests=error --timeout 900 -R "$(name_pattern "$@")") || status=$?
+  (cd "$build" && ctest --parallel "$(jobs)" --output-on-failure --no-tests=error --timeout 900 -R "$(name_pattern "$@")") || status=$?
   cp "$build/Testing/Temporary/LastTest.log" "$log" || status=1
   say "test: summary of $kind"
   /usr/bin/python3 "$ROOT/src/tools/test_summary.py" "$junit" || status=1
