@@ -20,6 +20,7 @@ class DemoSession:
     def __init__(self, launch_file, logs, arguments):
         """@param arguments  of session.launch, name -> value."""
         self._lockstep = arguments['clock'] == 'lockstep'
+        self._recorded = 'record' in arguments
         port = free_port()
         # By address, so that it does not matter what this machine's name resolves to.
         os.environ.pop('ROS_HOSTNAME', None)
@@ -37,6 +38,7 @@ class DemoSession:
         # In lock step nothing moves before the hand does, and nothing is lost by a node that comes late.
         if not self._lockstep:
             self._wait(lambda: self.monitor.state is not None, 'nothing came on /cell/state')
+        if self._recorded and not self._lockstep:
             # It is started last, and must not miss the beginning.
             self._wait(lambda: self.monitor.has_subscriber('/cell/predicted_cf', '/session_recorder'),
                        'the recorder does not listen')
