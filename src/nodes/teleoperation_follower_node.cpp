@@ -11,7 +11,8 @@ namespace microinjection {
 
 const char* const TeleoperationFollowerNode::kHelp =
     "teleoperation_follower: the rig's end of a network between haptic bridge and rig.\n"
-    "In: /link/rig/received /needle/measured_cp and /cell/predicted_cf, /force_sensor/measured_cf or both.\n"
+    "In: /link/rig/received /needle/measured_cp /controller/injection_state and /cell/predicted_cf,\n"
+    "/force_sensor/measured_cf or both.\n"
     "Out: /link/rig/sent /teleop/servo_cp.\n"
     "Parameters: ~rate (Hz), ~timeouts/... (s), ~force_source, ~measured_share, ~link/...; see config/link.yaml.\n";
 
@@ -24,6 +25,7 @@ TeleoperationFollowerNode::Parameters TeleoperationFollowerNode::Parameters::rea
   timeouts.number("needle", parameters.needle_timeout, Range::positive());
   timeouts.number("predicted", parameters.predicted_timeout, Range::positive());
   timeouts.number("measured", parameters.measured_timeout, Range::positive());
+  timeouts.number("controller", parameters.controller_timeout, Range::nonNegative());
   parameters.force = ForceSourceConfig::read(reader);
   parameters.link = LinkConfig::read(reader.section("link"));
   reader.finish();
@@ -44,6 +46,10 @@ TeleoperationFollowerNode::TeleoperationFollowerNode(ros::NodeHandle node, ros::
       .input<cell_microinjection::LinkPacket>("link/rig/received", Phase::kTickBefore,
                                               std::numeric_limits<double>::infinity())
       .listen([this](const auto& message, const ros::Time&) { model_.receive(toPacket(message)); });
+  if (parameters_.controller_timeout > 0) {
+    controller_ = &cycle_.input<cell_microinjection::InjectionStatus>("controller/injection_state", Phase::kTickBefore,
+                                                                      parameters_.controller_timeout);
+  }
   cycle_.diagnostics().add("link", [this](auto& status) { report(status); });
 }
 
@@ -59,6 +65,7 @@ void TeleoperationFollowerNode::run() {
 
 void TeleoperationFollowerNode::step(const Cycle::Tick& tick) {
   LinkFollower::Input input;
+  input.controller = !controller_ || controller_->get(tick.now);
   if (const auto needle = trustedPose(needle_.get(tick.now))) {
     input.needle = needle->translation();
     TipForces forces;

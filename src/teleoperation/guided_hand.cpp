@@ -13,12 +13,10 @@ void GuidedHand::moveBy(const Eigen::Vector3d& step) {
   Eigen::Vector3d ahead = goal_ + step - position_;
   if (ahead.norm() > config_.lead) ahead *= config_.lead / ahead.norm();
   moveTo(position_ + ahead);
-}
-
-void GuidedHand::moveTo(const Eigen::Vector3d& goal) {
-  goal_ = goal;
   stay();
 }
+
+void GuidedHand::moveTo(const Eigen::Vector3d& goal) { goal_ = goal; }
 
 void GuidedHand::letGo() {
   silence_ = config_.present_timeout;

@@ -25,7 +25,7 @@ class GuidedHand {
 
   /// A step (m) from the goal; cut to `lead` ahead of the hand. A sign of the operator.
   void moveBy(const Eigen::Vector3d& step);
-  /// To a place (m). A sign of the operator.
+  /// To a place (m), of an operator who is present.
   void moveTo(const Eigen::Vector3d& goal);
   /// The operator is still there.
   void stay() { silence_ = 0; }

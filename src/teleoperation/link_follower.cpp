@@ -38,6 +38,7 @@ std::string LinkFollower::whyHeld(const Input& input) const {
   if (age_ > config_.timeout) return "the hand's side is not heard";
   if (!trusted(input.needle)) return "no trusted needle position";
   if (!trusted(input.force)) return "no trusted force";
+  if (!input.controller) return "the controller is silent";
   if (!heard_.follows) return "the hand's side holds";
   return heard_.epoch == over_ ? "the hand has to be taken up again" : "";
 }
@@ -45,7 +46,7 @@ std::string LinkFollower::whyHeld(const Input& input) const {
 std::optional<Eigen::Vector3d> LinkFollower::step(const Input& input, double dt) {
   age_ += dt;
   outgoing_.epoch = heard_.epoch;
-  outgoing_.trusted = trusted(input.needle) && trusted(input.force);
+  outgoing_.trusted = input.controller && trusted(input.needle) && trusted(input.force);
   if (outgoing_.trusted) outgoing_.needle = *input.needle;
   held_because_ = whyHeld(input);
   if (!held_because_.empty()) {

@@ -11,12 +11,13 @@ namespace microinjection {
 
 /// The rig's end of the link: where the needle shall go, from the hand's waves and the tip's force. It begins with each
 /// epoch where the needle is, and holds when the hand's side has not been heard for the time-out, wants it to hold, or
-/// needle or force are not to be trusted; an epoch that it has let go is over.
+/// needle, force or controller are not to be trusted; an epoch that it has let go is over.
 class LinkFollower {
  public:
   struct Input {
     std::optional<Eigen::Vector3d> needle;  ///< m, tip in `world`
     std::optional<Eigen::Vector3d> force;   ///< N, of the cell on the tip, `world`
+    bool controller = true;                 ///< what moves the needle there is alive
   };
 
   explicit LinkFollower(const LinkConfig& config);

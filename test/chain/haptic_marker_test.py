@@ -9,14 +9,15 @@ from visualization_msgs.msg import InteractiveMarkerFeedback, InteractiveMarkerI
 
 from haptic_driver import PRESENT, HapticTest
 from messages import pose
+from participant import INVALID
 
-NEEDLE = "/needle/measured_cp"
+NEEDLE, TARGET = "/needle/measured_cp", "/teleop/servo_cp"
 TIP = np.array([1e-6, 2e-6, 30e-6])
 HANDLE = 1e4 * (TIP + [36e-6, 0, 0])  # display units; config/haptic/marker.yaml
 
 
 class MarkerTest(HapticTest):
-    driver = {NEEDLE: PoseStamped}
+    driver = {NEEDLE: PoseStamped, TARGET: PoseStamped}
 
     @classmethod
     def setUpClass(cls):
@@ -38,8 +39,11 @@ class MarkerTest(HapticTest):
             p = update.pose.position
             cls.shown["place"] = np.array([p.x, p.y, p.z])
 
-    def good(self):
+    def held(self):
         return {NEEDLE: pose(*TIP)}
+
+    def good(self, led=TIP):
+        return {**self.held(), TARGET: pose(*led)}
 
     def say(self, event, place=HANDLE, frame="viz/world", entry=0):
         message = InteractiveMarkerFeedback(client_id="test", marker_name="hand", event_type=event, menu_entry_id=entry)
@@ -76,6 +80,22 @@ class MarkerTest(HapticTest):
         np.testing.assert_allclose(self.hand() - start, [0, 0, -4e-3], atol=1e-9)
         self.say(InteractiveMarkerFeedback.MOUSE_UP)
         self.until(lambda: not self.present(), self.good, "the operator stays")
+
+    def test_a_hold_on_the_way_does_not_part_needle_and_handle(self):
+        start, further = self.hand(), TIP - [0, 0, 1.5e-6]
+        self.say(InteractiveMarkerFeedback.MOUSE_DOWN)
+        self.say(InteractiveMarkerFeedback.POSE_UPDATE, HANDLE + 1e4 * np.array([0, 0, -4e-6]))
+        self.until(lambda: not np.array_equal(self.hand(), start), self.good, "the hand does not move")
+        self.world.run(100, self.good)
+        self.world.tick({**self.held(), TARGET: INVALID})
+        self.world.run(20, self.held)
+        there = self.hand()
+        self.world.run(300, self.held)
+        np.testing.assert_array_equal(self.hand(), there)
+        self.assertTrue(self.present())
+        self.say(InteractiveMarkerFeedback.KEEP_ALIVE)
+        self.world.run(400, lambda: self.good(further))
+        np.testing.assert_allclose(self.hand() - there, [0, 0, -2.5e-3], atol=1e-9)
 
     def test_a_mouse_that_is_silent_is_gone(self):
         self.say(InteractiveMarkerFeedback.MOUSE_DOWN)

@@ -2,217 +2,17 @@
 """Whichever node is killed (SIGKILL), in whatever state: within the time-outs of config/ the needle rests, the force on
 the hand is zero and no pulse flows. In lock step, so that these are times of the session and hold to a tick or two."""
 
-import csv
-import os
-import tempfile
-import unittest
-
 import numpy as np
 import rospy
 import rostest
-from geometry_msgs.msg import PoseStamped, WrenchStamped
-from std_msgs.msg import Header
 
-from cell_microinjection.msg import InjectionStatus, InjectorState, OperatingState, StringStamped
 from case import case
-from killable_nodes import PACKAGE, PATIENCE, KillableNodes, parameters, rig
-from messages import force, pose, position
-from participant import Participant
-
-TICK = 1e-3  # s
-SLACK = 2 * TICK  # what a message needs from node to node
-STILL = 2e-9  # m
-HAND, FELT, NEEDLE, SETPOINT = "/haptic/measured_cp", "/haptic/servo_cf", "/needle/measured_cp", "/needle/servo_cp"
-INJECTOR = "/injector/state"
-RECORDED = {HAND: PoseStamped, FELT: WrenchStamped, NEEDLE: PoseStamped, SETPOINT: PoseStamped, INJECTOR: InjectorState}
-
-BRIDGE, CONTROLLER = parameters("haptic_bridge"), parameters("injection_controller")
-RIG, INJECT, OPERATOR = rig(), parameters("injector"), parameters("operator")
-AFTER = CONTROLLER["motion"]["stop_time"]  # s, from a set-point that rests to a needle that rests
-HAND_TIMEOUT, CONTROLLER_TIMEOUT = BRIDGE["timeouts"]["hand"], CONTROLLER["input_timeout"]
-START = 32e-6  # m, 4 um above the cell
-
-# Seconds, where the hand has got to (m of the needle), phase.
-MOTION = [(0.02, 0, "rest"), (0.15, -3e-6, "approach"), (0.3, -8e-6, "indent"), (0.35, -8e-6, "hold"),
-          (0.6, -3e-6, "withdraw"), (0.3, -3e-6, "rest")]
+from killable_session import (BRIDGE, CONTROLLER_TIMEOUT, HAND, HAND_TIMEOUT, INJECT, INJECTOR, LINK, NEEDLE, OPERATOR,
+                              RIG, SETPOINT, SLACK, STILL, TICK, KillCase)
+from messages import position
 
 
-def write_motion(path):
-    rows, time, z = [], 0.0, 0.0
-    for duration, goal, phase in MOTION:
-        rows += [(time, 0, 0, 1e3 * z, 0, phase), (time + duration - 1e-6, 0, 0, 1e3 * goal, 0, phase)]
-        time, z = time + duration, goal
-    with open(path, "w", encoding="utf-8") as file:
-        csv.writer(file, lineterminator="\n").writerows([("time_s", "x_m", "y_m", "z_m", "clutch", "phase"), *rows])
-
-
-class Session:
-    """A lock-step session with the test among the participants, that a node is killed in."""
-
-    def __init__(self, nodes, seen):
-        self.nodes = KillableNodes({"lockstep_clock": {}, **nodes}, ["/killer", *(f"/{node}" for node in nodes)])
-        self.records = {topic: {} for topic in RECORDED}
-        self.answers = {}
-        kinds = {"/lockstep/acknowledgement": Header, "/controller/injection_state": InjectionStatus,
-                 "/controller/operating_state": OperatingState, "/operator/phase": StringStamped}
-        self._subscribers = [rospy.Subscriber(topic, kind, self._record, topic) for topic, kind in RECORDED.items()]
-        self._subscribers.append(rospy.Subscriber("/lockstep/acknowledgement", Header, self._on_answer))
-        self.moves = rospy.Publisher("/needle/move_cp", PoseStamped, queue_size=1)
-        self.commands = rospy.Publisher("/controller/state_command", StringStamped, queue_size=1)
-        try:
-            self.chain = Participant({}, {topic: kinds[topic] for topic in seen}, PATIENCE)
-        except Exception as error:
-            report = self.nodes.report()
-            self.nodes.stop()
-            raise AssertionError(f"the session does not begin; {report}") from error
-
-    def _record(self, message, topic):
-        self.records[topic][message.header.stamp.to_nsec()] = message
-
-    def _on_answer(self, header):
-        self.answers[header.frame_id] = header.stamp
-
-    def close(self):
-        for subscriber in self._subscribers:
-            subscriber.unregister()
-        self.chain.close()
-        self.nodes.stop()
-        self.nodes.forget()
-
-    def until(self, condition, what, say=None, ticks=3000):
-        """`say` is called each twenty ticks."""
-        for i in range(ticks):
-            if condition():
-                return
-            if say and i % 20 == 0:
-                say()
-            self.chain.tick()
-        raise AssertionError(f"{what}: not within {ticks} ticks; seen {self.chain.seen}; {self.nodes.report()}")
-
-    def says(self, topic, field, *values):
-        return topic in self.chain.seen and getattr(self.chain.seen[topic], field) in values
-
-    def wait_for(self, condition):
-        for _ in range(1000 * PATIENCE):
-            if condition():
-                return
-            rospy.rostime.wallsleep(0.001)
-        raise AssertionError(f"the session hangs; {self.nodes.report()}")
-
-    def begin(self):
-        """The needle is put near the cell, then the controller enabled. Said again: connections take their time."""
-        self.until(self.at_start, "the way to the start", lambda: self.moves.publish(self.start()))
-        enable = StringStamped(string="enable")
-        self.until(lambda: self.says("/controller/operating_state", "state", "ENABLED"), "ENABLED",
-                   lambda: self.commands.publish(enable))
-
-    def start(self):
-        goal = pose(0, 0, START)
-        goal.header.stamp = self.chain.now
-        return goal
-
-    def at_start(self):
-        records = self.records[NEEDLE]
-        return records and abs(position(records[max(records)])[2] - START) < STILL
-
-    def kill(self, node):
-        """Once all have done this tick. @returns its time (s): the last word of the node."""
-        others = {f"/{name}" for name in self.nodes.names()} - {"/lockstep_clock"}
-        self.wait_for(lambda: all(self.answers.get(name) == self.chain.now for name in others))
-        self.nodes.kill(node)
-        return self.chain.now.to_sec()
-
-    def series(self, topic, value):
-        """(times in s, values of all messages) so far."""
-        records = self.records[topic]
-        times = sorted(records)
-        return np.array(times) * 1e-9, np.array([value(records[time]) for time in times])
-
-    def catch_up(self, topic):
-        """Until what was said before the present tick is here."""
-        self.wait_for(lambda: max(self.records[topic]) >= self.chain.now.to_nsec() - 1.5e6)
-
-
-class KillTest(unittest.TestCase):
-    def setUp(self):
-        self.session = None
-
-    def tearDown(self):
-        if self.session:
-            self.session.close()
-            self.session = None
-
-    def open(self, nodes, seen):
-        self.tearDown()
-        self.session = Session(nodes, ["/controller/operating_state", *seen])
-        self.session.begin()
-
-    def by_hand(self, more=()):
-        """A session in which the virtual hand presses the needle into the cell."""
-        with tempfile.TemporaryDirectory() as folder:
-            motion = os.path.join(folder, "motion.csv")
-            write_motion(motion)
-            self.open({"operator": parameters("operator", motion=motion, start_delay=0.15), "haptic_bridge": BRIDGE,
-                       "injection_controller": parameters("injection_controller", injector="injector" in more),
-                       "micromanipulator": RIG, "cell_simulator": self.cell("coarse_oocyte"),
-                       **{node: parameters(node) for node in more}}, ["/operator/phase"])
-
-    def by_itself(self):
-        """A session in which the controller injects, with a pulse that would take half a minute."""
-        goal = {"depth": 15e-6, "margin": 0.5e-6, "pulse": {"pressure": 20e3, "duration": 30.0}}
-        controller = parameters("injection_controller", mode="automatic", goal=goal, detection={"noise_samples": 50},
-                                motion={"stab_speed": 20e-6, "indent_speed": 20e-6, "approach_speed": 40e-6})
-        self.open({"injection_controller": controller, "micromanipulator": RIG, "injector": INJECT,
-                   "cell_simulator": self.cell("injected_oocyte")}, ["/controller/injection_state"])
-
-    @staticmethod
-    def cell(name):
-        return parameters("cell_simulator", scene=str(PACKAGE / f"test/chain/{name}.yaml"), model="live", needle="true")
-
-    def in_phase(self, phase, ticks):
-        """Some ticks into a phase of the hand's motion."""
-        self.session.until(lambda: self.session.says("/operator/phase", "string", phase), phase)
-        self.session.chain.run(ticks)
-
-    def in_state(self, state, ticks):
-        """Some ticks into a state of the injection."""
-        self.session.until(lambda: self.session.says("/controller/injection_state", "state", state), state)
-        self.session.chain.run(ticks)
-
-    def kill(self, node, ticks=240):
-        time = self.session.kill(node)
-        self.session.chain.run(ticks)
-        return time
-
-    def check_needle(self, killed, timeout, topic=NEEDLE, after=AFTER):
-        """It moved until the kill, and rests for good within the time-out."""
-        self.session.catch_up(topic)
-        times, places = self.session.series(topic, position)
-        self.assertGreater(times[-1], killed + timeout + 0.1)
-        before = np.abs(times - killed) < 0.02
-        self.assertGreater(np.ptp(places[before & (times <= killed)][:, 2]), 50e-9, "it moved")
-        late = times[np.abs(places - places[-1]).max(axis=1) > STILL]
-        self.assertLessEqual(late.max() - killed, timeout + after + SLACK)
-
-    def check_force(self, killed, timeout, earlier=0.0, felt=True):
-        """It is zero for good as soon as the time-out has elapsed; `earlier` (s): that it may be before."""
-        self.session.catch_up(FELT)
-        times, forces = self.session.series(FELT, force)
-        self.assertGreater(times[-1], killed + timeout + 0.1)
-        some = times[np.abs(forces).max(axis=1) > 0]
-        if not felt:
-            return self.assertTrue(len(some) == 0)
-        self.assertGreater(len(some), 0)
-        self.assertLessEqual(some.max() - killed, timeout + SLACK)
-        self.assertGreaterEqual(some.max() - killed, timeout - earlier - SLACK)
-
-    def check_goes_on(self, killed):
-        """The needle follows the hand, and it feels the cell, as if nothing had been."""
-        times, places = self.session.series(NEEDLE, position)
-        self.assertGreater(np.ptp(places[times > killed + 0.06][:, 2]), 0.5e-6)
-        times, forces = self.session.series(FELT, force)
-        self.assertGreater(np.abs(forces[times > killed + 0.06]).max(axis=1).min(), 0)
-
+class KillTest(KillCase):
     def test_hand(self):
         for phase, ticks in (("approach", 60), ("indent", 200)):
             with case(phase):
@@ -269,6 +69,20 @@ class KillTest(unittest.TestCase):
         killed = self.kill("cell_simulator")
         self.check_needle(killed, CONTROLLER_TIMEOUT)
         self.check_force(killed, BRIDGE["timeouts"]["predicted"])
+
+    def test_hand_and_rig_apart(self):
+        far, link = LINK["timeouts"]["controller"], LINK["link"]["timeout"]
+        for node, rests, ends in (("injection_controller", RIG["command_timeout"], far),
+                                  ("teleoperation_follower", CONTROLLER_TIMEOUT, link), ("haptic_bridge", link, None),
+                                  ("operator", HAND_TIMEOUT, HAND_TIMEOUT)):
+            with case(node):
+                self.by_hand(linked=True)
+                self.in_phase("indent", 200)
+                killed = self.kill(node, 500)
+                self.check_needle(killed, rests)
+                if ends:
+                    self.check_force(killed, ends, earlier=0.1 if node == "injection_controller" else 0)
+                self.tearDown()
 
     def test_what_the_loop_does_not_need_leaves_it_as_it_is(self):
         self.by_hand(["force_sensor", "injector"])

@@ -37,15 +37,16 @@ def rig():
 
 
 class KillableNodes:
-    """{node: its parameters}. `participants` of the lock step; none: the session is live."""
+    """{node: its parameters}. `participants` of the lock step; none: the session is live. `remaps`: {node: its
+    arguments}."""
 
-    def __init__(self, nodes, participants=()):
+    def __init__(self, nodes, participants=(), remaps=None):
         rospy.set_param("/robot_description", (PACKAGE / "urdf/rig.urdf").read_text())
         rospy.set_param("/lockstep/participants", list(participants))
         self._running, self._outputs = {}, {}
         for node, settings in nodes.items():
             rospy.set_param(f"/{node}", settings)
-            self.start(node)
+            self.start(node, *(remaps or {}).get(node, ()))
 
     def start(self, node, *arguments):
         self._outputs[node] = tempfile.TemporaryFile()
@@ -84,4 +85,4 @@ class KillableNodes:
         """Has the master forget all that were started and are dead. It would ask them to end when others of their names
         come, at ports that may by then be those of others."""
         with contextlib.redirect_stdout(None):
-            rosnode.cleanup_master_blacklist(rosgraph.Master("/killer"), [f"/{node}" for node in self._outputs])
+            rosnode.cleanup_master_blacklist(rosgraph.Master(rospy.get_name()), [f"/{node}" for node in self._outputs])

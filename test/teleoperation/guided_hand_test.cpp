@@ -18,6 +18,7 @@ void rest(GuidedHand& hand, double time) {
 
 TEST(GuidedHand, GoesToItsGoalAtTheLimitedSpeedAndStays) {
   GuidedHand hand(config());
+  hand.stay();
   hand.moveTo({0.003, 0.004, 0});  // 5 mm: a quarter of a second
   Eigen::Vector3d before = hand.position();
   for (int i = 0; i < 400; ++i) {
@@ -44,6 +45,8 @@ TEST(GuidedHand, AnOperatorWhoIsSilentIsGoneAndTheHandRests) {
   GuidedHand hand(config());
   EXPECT_FALSE(hand.present());
   hand.moveTo({1, 0, 0});
+  EXPECT_FALSE(hand.present());
+  hand.stay();
   rest(hand, 0.499);
   EXPECT_TRUE(hand.present());
   hand.stay();
@@ -61,6 +64,7 @@ TEST(GuidedHand, AnOperatorWhoIsSilentIsGoneAndTheHandRests) {
 
 TEST(GuidedHand, LettingGoStopsAtOnce) {
   GuidedHand hand(config());
+  hand.stay();
   hand.moveTo({1, 0, 0});
   rest(hand, 0.1);
   const Eigen::Vector3d there = hand.position();

@@ -19,7 +19,7 @@ class LinkEnds : public testing::Test {
     leader_.setTarget(force_ ? target : std::nullopt);
     const LinkPacket to_rig = leader_.packet();
     if (plugged_) follower_.receive(to_rig);
-    goal_ = follower_.step({needle_, tip_force_}, kStep);
+    goal_ = follower_.step({needle_, tip_force_, controller_}, kStep);
     if (goal_) *needle_ = *goal_;
     const LinkPacket to_hand = follower_.packet();
     if (plugged_) leader_.receive(to_hand);
@@ -33,6 +33,7 @@ class LinkEnds : public testing::Test {
   LinkFollower follower_{config_};
   bool plugged_ = true;
   std::optional<Eigen::Vector3d> needle_ = kNeedle, tip_force_ = Eigen::Vector3d(Eigen::Vector3d::Zero());
+  bool controller_ = true;
   std::optional<Eigen::Vector3d> goal_, force_;
 };
 
@@ -103,6 +104,17 @@ TEST_F(LinkEnds, AnUntrustedNeedleEndsTheEpochForBothSides) {
   EXPECT_FALSE(goal_) << "the old epoch's waves are over";
   run(kNeedle, 5);
   EXPECT_TRUE(goal_);
+}
+
+TEST_F(LinkEnds, ADeadControllerEndsTheEpochForBothSides) {
+  run(std::nullopt, 10);
+  run(kNeedle, 500);
+  controller_ = false;
+  run(kNeedle, 3);
+  EXPECT_FALSE(goal_);
+  EXPECT_FALSE(force_);
+  EXPECT_FALSE(leader_.needle());
+  EXPECT_EQ(follower_.heldBecause(), "the controller is silent");
 }
 
 TEST_F(LinkEnds, ARigThatWasStartedAgainDoesNotJumpIntoAnEpoch) {

@@ -15,6 +15,7 @@ namespace microinjection {
 namespace {
 
 constexpr char kFrame[] = "viz/world";
+constexpr double kTimeout = 0.2;                // s, of needle and its target
 constexpr double kShowPeriod = 1.0 / 15;        // s
 constexpr double kLeastMotion = 0.05e-6;        // m of the needle that the handle is moved for
 constexpr double kTextHeight = 0.04;            // display units
@@ -39,8 +40,12 @@ MarkerAdapter::MarkerAdapter(Cycle& cycle, const MarkerConfig& config)
     : config_(config),
       hand_(config.hand),
       news_(cycle),
-      needle_(cycle.input<geometry_msgs::PoseStamped>("needle/measured_cp", Phase::kTickBefore, 0.2)),
+      needle_(cycle.input<geometry_msgs::PoseStamped>("needle/measured_cp", Phase::kTickBefore, kTimeout)),
+      target_(cycle.input<geometry_msgs::PoseStamped>("teleop/servo_cp", Phase::kTickBefore, kTimeout)),
       force_(cycle.node().advertise<visualization_msgs::MarkerArray>("hand_marker/force", 1, true)) {
+  target_.listen([this](const geometry_msgs::PoseStamped& message, const ros::Time&) {
+    if (message.header.stamp.isZero()) origin_.reset();  // also a hold that is over before the next step
+  });
   const std::vector<std::pair<std::string, std::string>> words{
       {"Enable", "enable"}, {"Inject", "inject"}, {"Withdraw (home)", "home"}, {"Disable", "disable"}};
   for (const auto& [title, word] : words) {
@@ -67,17 +72,9 @@ void MarkerAdapter::onFeedback(const Feedback& feedback) {
     return letGo();
   }
   if (!tip_) return;
-  drag(feedback->event_type == Event::MOUSE_DOWN ? handle_ : to);
-}
-
-void MarkerAdapter::drag(const Eigen::Vector3d& to) {
-  if (!dragged_) {
-    drag_from_ = handle_;
-    hand_from_ = hand_.position();
-    dragged_ = true;
-  }
-  handle_ = to;
-  hand_.moveTo(hand_from_ + config_.hand_scale * (to - drag_from_));
+  dragged_ = true;
+  if (feedback->event_type == Event::POSE_UPDATE) handle_ = to;
+  hand_.stay();
 }
 
 void MarkerAdapter::letGo() {
@@ -85,10 +82,21 @@ void MarkerAdapter::letGo() {
   hand_.letGo();
 }
 
+void MarkerAdapter::pull(const std::optional<Eigen::Vector3d>& target) {
+  if (!dragged_ || !target) {
+    origin_.reset();
+    hand_.moveTo(hand_.position());
+    return;
+  }
+  if (!origin_) origin_ = hand_.position() - config_.hand_scale * *target;
+  hand_.moveTo(*origin_ + config_.hand_scale * (handle_ - config_.handle_offset));
+}
+
 std::optional<HandReading> MarkerAdapter::read(const Cycle::Tick& tick) {
   const auto needle = trustedPose(needle_.get(tick.now));
   tip_ = needle ? std::optional<Eigen::Vector3d>(needle->translation()) : std::nullopt;
   ros::getGlobalCallbackQueue()->callAvailable();  // where the server hears rviz
+  pull(trustedPosition(target_.get(tick.now), kWorldFrame));
   HandReading reading;
   reading.position = hand_.step(tick.dt);
   reading.stamp = tick.now;

@@ -25,7 +25,8 @@ struct MarkerConfig {
 
 /// A handle beside the needle in rviz that a person drags with the mouse, and a menu of the operator's words. While the
 /// mouse button is down the operator is present and the needle goes after the handle; otherwise the handle comes back
-/// to the needle.
+/// to the needle. The hand moves only while it leads the needle (/teleop/servo_cp is there): else, after a hold, the
+/// needle would end elsewhere than the handle.
 ///
 /// The handle lies in viz/world, at x 1e4. Its topics are /hand_marker/... and not below viz/, which nothing that
 /// controls may read.
@@ -41,23 +42,22 @@ class MarkerAdapter : public HapticAdapter {
  private:
   using Feedback = visualization_msgs::InteractiveMarkerFeedbackConstPtr;
   void onFeedback(const Feedback& feedback);
-  void drag(const Eigen::Vector3d& to);
   void letGo();
+  void pull(const std::optional<Eigen::Vector3d>& target);
   void followNeedle();
   void showForce(const Eigen::Vector3d& force);
 
   MarkerConfig config_;
   GuidedHand hand_;
   SessionNews news_;
-  Input<geometry_msgs::PoseStamped>& needle_;
+  Input<geometry_msgs::PoseStamped>&needle_, &target_;
   interactive_markers::InteractiveMarkerServer server_{"hand_marker"};
   interactive_markers::MenuHandler menu_;
   ros::Publisher force_;
   std::vector<std::string> commands_;
-  std::optional<Eigen::Vector3d> tip_;                   ///< m, `world`
-  Eigen::Vector3d handle_ = Eigen::Vector3d::Zero();     ///< m, `world`, where it is shown
-  Eigen::Vector3d drag_from_ = Eigen::Vector3d::Zero();  ///< m, `world`, of the handle
-  Eigen::Vector3d hand_from_ = Eigen::Vector3d::Zero();  ///< m, of the hand
+  std::optional<Eigen::Vector3d> tip_;                ///< m, `world`
+  Eigen::Vector3d handle_ = Eigen::Vector3d::Zero();  ///< m, `world`, where it is shown
+  std::optional<Eigen::Vector3d> origin_;  ///< m, of the hand for a tip at 0 in `world`; empty: leads nothing
   bool dragged_ = false;
   ros::Time shown_;
 };

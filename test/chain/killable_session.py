@@ -1,0 +1,218 @@
+"""A lock-step session that a test is among the participants of, kills nodes in, and looks at what comes of it."""
+
+import csv
+import os
+import tempfile
+import unittest
+
+import numpy as np
+import rospy
+from geometry_msgs.msg import PoseStamped, WrenchStamped
+from std_msgs.msg import Header
+
+from cell_microinjection.msg import InjectionStatus, InjectorState, OperatingState, StringStamped
+from killable_nodes import PACKAGE, PATIENCE, KillableNodes, parameters, rig
+from messages import force, pose, position
+from participant import Participant
+
+TICK = 1e-3  # s
+SLACK = 2 * TICK  # what a message needs from node to node
+STILL = 2e-9  # m
+HAND, FELT, NEEDLE, SETPOINT = "/haptic/measured_cp", "/haptic/servo_cf", "/needle/measured_cp", "/needle/servo_cp"
+INJECTOR = "/injector/state"
+RECORDED = {HAND: PoseStamped, FELT: WrenchStamped, NEEDLE: PoseStamped, SETPOINT: PoseStamped, INJECTOR: InjectorState}
+
+BRIDGE, CONTROLLER, LINK = (parameters(file) for file in ("haptic_bridge", "injection_controller", "link"))
+RIG, INJECT, OPERATOR = rig(), parameters("injector"), parameters("operator")
+PACKETS = {"haptic_bridge": ["link/hand/received:=link/rig/sent"],
+           "teleoperation_follower": ["link/rig/received:=link/hand/sent"]}
+AFTER = CONTROLLER["motion"]["stop_time"]  # s, from a set-point that rests to a needle that rests
+HAND_TIMEOUT, CONTROLLER_TIMEOUT = BRIDGE["timeouts"]["hand"], CONTROLLER["input_timeout"]
+START = 32e-6  # m, 4 um above the cell
+
+# Seconds, where the hand has got to (m of the needle), phase.
+MOTION = [(0.02, 0, "rest"), (0.15, -3e-6, "approach"), (0.3, -8e-6, "indent"), (0.35, -8e-6, "hold"),
+          (0.6, -3e-6, "withdraw"), (0.3, -3e-6, "rest")]
+
+
+def write_motion(path):
+    rows, time, z = [], 0.0, 0.0
+    for duration, goal, phase in MOTION:
+        rows += [(time, 0, 0, 1e3 * z, 0, phase), (time + duration - 1e-6, 0, 0, 1e3 * goal, 0, phase)]
+        time, z = time + duration, goal
+    with open(path, "w", encoding="utf-8") as file:
+        csv.writer(file, lineterminator="\n").writerows([("time_s", "x_m", "y_m", "z_m", "clutch", "phase"), *rows])
+
+
+class Session:
+    """A lock-step session with the test among the participants, that a node is killed in."""
+
+    def __init__(self, nodes, seen, remaps):
+        participants = [rospy.get_name(), *(f"/{node}" for node in nodes)]
+        self.nodes = KillableNodes({"lockstep_clock": {}, **nodes}, participants, remaps)
+        self.records = {topic: {} for topic in RECORDED}
+        self.answers = {}
+        kinds = {"/lockstep/acknowledgement": Header, "/controller/injection_state": InjectionStatus,
+                 "/controller/operating_state": OperatingState, "/operator/phase": StringStamped}
+        self._subscribers = [rospy.Subscriber(topic, kind, self._record, topic) for topic, kind in RECORDED.items()]
+        self._subscribers.append(rospy.Subscriber("/lockstep/acknowledgement", Header, self._on_answer))
+        self.moves = rospy.Publisher("/needle/move_cp", PoseStamped, queue_size=1)
+        self.commands = rospy.Publisher("/controller/state_command", StringStamped, queue_size=1)
+        try:
+            self.chain = Participant({}, {topic: kinds[topic] for topic in seen}, PATIENCE)
+        except Exception as error:
+            report = self.nodes.report()
+            self.nodes.stop()
+            raise AssertionError(f"the session does not begin; {report}") from error
+
+    def _record(self, message, topic):
+        self.records[topic][message.header.stamp.to_nsec()] = message
+
+    def _on_answer(self, header):
+        self.answers[header.frame_id] = header.stamp
+
+    def close(self):
+        for subscriber in self._subscribers:
+            subscriber.unregister()
+        self.chain.close()
+        self.nodes.stop()
+        self.nodes.forget()
+
+    def until(self, condition, what, say=None, ticks=3000):
+        """`say` is called each twenty ticks."""
+        for i in range(ticks):
+            if condition():
+                return
+            if say and i % 20 == 0:
+                say()
+            self.chain.tick()
+        raise AssertionError(f"{what}: not within {ticks} ticks; seen {self.chain.seen}; {self.nodes.report()}")
+
+    def says(self, topic, field, *values):
+        return topic in self.chain.seen and getattr(self.chain.seen[topic], field) in values
+
+    def wait_for(self, condition):
+        for _ in range(1000 * PATIENCE):
+            if condition():
+                return
+            rospy.rostime.wallsleep(0.001)
+        raise AssertionError(f"the session hangs; {self.nodes.report()}")
+
+    def begin(self):
+        """The needle is put near the cell, then the controller enabled. Said again: connections take their time."""
+        self.until(self.at_start, "the way to the start", lambda: self.moves.publish(self.start()))
+        enable = StringStamped(string="enable")
+        self.until(lambda: self.says("/controller/operating_state", "state", "ENABLED"), "ENABLED",
+                   lambda: self.commands.publish(enable))
+
+    def start(self):
+        goal = pose(0, 0, START)
+        goal.header.stamp = self.chain.now
+        return goal
+
+    def at_start(self):
+        records = self.records[NEEDLE]
+        return records and abs(position(records[max(records)])[2] - START) < STILL
+
+    def kill(self, node):
+        """Once all have done this tick. @returns its time (s): the last word of the node."""
+        others = {f"/{name}" for name in self.nodes.names()} - {"/lockstep_clock"}
+        self.wait_for(lambda: all(self.answers.get(name) == self.chain.now for name in others))
+        self.nodes.kill(node)
+        return self.chain.now.to_sec()
+
+    def series(self, topic, value):
+        """(times in s, values of all messages) so far."""
+        records = self.records[topic]
+        times = sorted(records)
+        return np.array(times) * 1e-9, np.array([value(records[time]) for time in times])
+
+    def catch_up(self, topic):
+        """Until what was said before the present tick is here."""
+        self.wait_for(lambda: max(self.records[topic]) >= self.chain.now.to_nsec() - 1.5e6)
+
+
+class KillCase(unittest.TestCase):
+    """Opens sessions, and closes each when the next begins."""
+
+    def setUp(self):
+        self.session = None
+
+    def tearDown(self):
+        if self.session:
+            self.session.close()
+            self.session = None
+
+    def open(self, nodes, seen, remaps=None):
+        self.tearDown()
+        self.session = Session(nodes, ["/controller/operating_state", *seen], remaps)
+        self.session.begin()
+
+    def by_hand(self, more=(), linked=False):
+        """A session in which the virtual hand presses the needle into the cell; linked: over packets."""
+        far_end = {"teleoperation_follower": LINK} if linked else {}
+        with tempfile.TemporaryDirectory() as folder:
+            motion = os.path.join(folder, "motion.csv")
+            write_motion(motion)
+            self.open({"operator": parameters("operator", motion=motion, start_delay=0.15),
+                       "haptic_bridge": parameters("haptic_bridge", **LINK) if linked else BRIDGE, **far_end,
+                       "injection_controller": parameters("injection_controller", injector="injector" in more),
+                       "micromanipulator": RIG, "cell_simulator": self.cell("coarse_oocyte"),
+                       **{node: parameters(node) for node in more}}, ["/operator/phase"], PACKETS)
+
+    def by_itself(self):
+        """A session in which the controller injects, with a pulse that would take half a minute."""
+        goal = {"depth": 15e-6, "margin": 0.5e-6, "pulse": {"pressure": 20e3, "duration": 30.0}}
+        controller = parameters("injection_controller", mode="automatic", goal=goal, detection={"noise_samples": 50},
+                                motion={"stab_speed": 20e-6, "indent_speed": 20e-6, "approach_speed": 40e-6})
+        self.open({"injection_controller": controller, "micromanipulator": RIG, "injector": INJECT,
+                   "cell_simulator": self.cell("injected_oocyte")}, ["/controller/injection_state"])
+
+    @staticmethod
+    def cell(name):
+        return parameters("cell_simulator", scene=str(PACKAGE / f"test/chain/{name}.yaml"), model="live", needle="true")
+
+    def in_phase(self, phase, ticks):
+        """Some ticks into a phase of the hand's motion."""
+        self.session.until(lambda: self.session.says("/operator/phase", "string", phase), phase)
+        self.session.chain.run(ticks)
+
+    def in_state(self, state, ticks):
+        """Some ticks into a state of the injection."""
+        self.session.until(lambda: self.session.says("/controller/injection_state", "state", state), state)
+        self.session.chain.run(ticks)
+
+    def kill(self, node, ticks=240):
+        time = self.session.kill(node)
+        self.session.chain.run(ticks)
+        return time
+
+    def check_needle(self, killed, timeout, topic=NEEDLE, after=AFTER):
+        """It moved until the kill, and rests for good within the time-out."""
+        self.session.catch_up(topic)
+        times, places = self.session.series(topic, position)
+        self.assertGreater(times[-1], killed + timeout + 0.1)
+        before = np.abs(times - killed) < 0.02
+        self.assertGreater(np.ptp(places[before & (times <= killed)][:, 2]), 50e-9, "it moved")
+        late = times[np.abs(places - places[-1]).max(axis=1) > STILL]
+        self.assertLessEqual(late.max() - killed, timeout + after + SLACK)
+
+    def check_force(self, killed, timeout, earlier=0.0, felt=True):
+        """It is zero for good as soon as the time-out has elapsed; `earlier` (s): that it may be before."""
+        self.session.catch_up(FELT)
+        times, forces = self.session.series(FELT, force)
+        self.assertGreater(times[-1], killed + timeout + 0.1)
+        some = times[np.abs(forces).max(axis=1) > 0]
+        if not felt:
+            return self.assertTrue(len(some) == 0)
+        self.assertGreater(len(some), 0)
+        self.assertLessEqual(some.max() - killed, timeout + SLACK)
+        self.assertGreaterEqual(some.max() - killed, timeout - earlier - SLACK)
+
+    def check_goes_on(self, killed):
+        """The needle follows the hand, and it feels the cell, as if nothing had been."""
+        times, places = self.session.series(NEEDLE, position)
+        self.assertGreater(np.ptp(places[times > killed + 0.06][:, 2]), 0.5e-6)
+        times, forces = self.session.series(FELT, force)
+        self.assertGreater(np.abs(forces[times > killed + 0.06]).max(axis=1).min(), 0)
+
