@@ -5,6 +5,12 @@
 namespace microinjection {
 
 std::string InjectionController::command(const std::string& command) {
+  const std::string refusal = heed(command);
+  notice_ = refusal.empty() ? "" : command + " refused: " + refusal;
+  return refusal;
+}
+
+std::string InjectionController::heed(const std::string& command) {
   if (command == "approach") return start(config_.goal);
   if (command == "indent") return takeWord(InjectionEvent::kIndent);
   if (command == "inject") return takeWord(InjectionEvent::kInject);

@@ -134,6 +134,15 @@ bool InjectionController::rigIsAtFault(const Eigen::Vector3d& needle, double dt)
   return true;
 }
 
+void InjectionController::watchHandPulse(const Input& input, double dt) {
+  if (!pulse_by_hand_) return;
+  const InjectorWait::Status status = hand_pulse_.step(input.injector, dt);
+  if (status == InjectorWait::Status::kWaiting) return;
+  if (status == InjectorWait::Status::kBroken) notice_ = "the injector ended the pulse too early";
+  if (status == InjectorWait::Status::kTimeOut) notice_ = "the injector does not say that the pulse is over";
+  happen(InjectionEvent::kInjected);
+}
+
 void InjectionController::observe(const Input& input, bool force_trusted, double dt) {
   if (force_trusted) {
     monitor_.step(*input.needle, input.axis, *input.force);
@@ -141,9 +150,7 @@ void InjectionController::observe(const Input& input, bool force_trusted, double
     monitor_.skip();
   }
   if (!byHand()) return;
-  if (pulse_by_hand_ && hand_pulse_.step(input.injector, dt) != InjectorWait::Status::kWaiting) {
-    happen(InjectionEvent::kInjected);
-  }
+  watchHandPulse(input, dt);
   if (!force_trusted) return;
   const auto event = observer_.step(injection_, monitor_, pulse_by_hand_ ? std::nullopt : input.injector);
   if (event) happen(*event);
@@ -195,7 +202,10 @@ void InjectionController::stopNeedle(const Input& input) {
 /// Where it is not known what is injected into. By hand only the pulse is over.
 void InjectionController::endPulse(const std::string& why) {
   if (!pulse()) return;
-  if (byHand()) return happen(InjectionEvent::kInjected);
+  if (byHand()) {
+    notice_ = "the pulse was ended: " + why;
+    return happen(InjectionEvent::kInjected);
+  }
   stop(InjectionOutcome::kGuard, why + " while it injects");
 }
 

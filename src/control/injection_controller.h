@@ -91,6 +91,8 @@ class InjectionController {
   bool homed() const { return needle_known_; }  ///< axes are absolute: homed as soon as the needle's pose is known
   const std::string& heldBecause() const { return held_because_; }  ///< empty while the needle follows
   bool followsTarget() const { return state_ == OperatingState::kEnabled && held_because_.empty(); }
+  /// Why the last command was refused, or the pulse by hand that it asked for is over too early; else empty.
+  const std::string& notice() const { return notice_; }
   const NeedleMonitor& monitor() const { return monitor_; }
 
   bool running() const { return run_.active(); }  ///< an injection of the controller's own is not over yet
@@ -103,6 +105,7 @@ class InjectionController {
 
  private:
   bool byHand() const { return config_.mode == "manual"; }
+  std::string heed(const std::string& command);
   std::string obey(const std::string& command);
   std::string takeWord(InjectionEvent event);
   std::string withdraw();
@@ -111,6 +114,7 @@ class InjectionController {
   void takeHold(const Eigen::Vector3d& needle, const Eigen::Vector3d& axis);
   void loseNeedle(double dt);
   bool rigIsAtFault(const Eigen::Vector3d& needle, double dt);
+  void watchHandPulse(const Input& input, double dt);
   void observe(const Input& input, bool force_trusted, double dt);
   void watchPulse(const Input& input, double dt);
   std::optional<Eigen::Vector3d> handTarget(const Input& input);
@@ -146,6 +150,7 @@ class InjectionController {
   bool homing_ = false;
   bool needle_known_ = false;
   std::string held_because_ = "DISABLED";
+  std::string notice_;
 };
 
 }  // namespace microinjection

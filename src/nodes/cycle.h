@@ -63,6 +63,8 @@ class Cycle {
   void runLockstep();
   bool allAnswered(const ros::Time& now) const;
   bool hasLeft(const std::string& participant) const;
+  /// It goes where the topic is remapped to.
+  std::string silentTopic(const std::string& topic) const { return node_.resolveName(topic) + kSilentSuffix; }
   void lookForMaster();
   void step(const ros::Time& now);
   void acknowledge(const ros::Time& now);
@@ -103,7 +105,7 @@ Input<Message>& Cycle::input(const std::string& topic, Phase phase, double timeo
     const auto hear = [&port](const Event& event) {
       port.queueSilence(*event.getConstMessage(), event.getPublisherName());
     };
-    subscribers_.push_back(node_.subscribe<std_msgs::Header, const Event&>(topic + kSilentSuffix, 10, hear, {}, hints));
+    subscribers_.push_back(node_.subscribe<std_msgs::Header, const Event&>(silentTopic(topic), 10, hear, {}, hints));
   } else {
     const bool trigger = phase == Phase::kSameTick;
     using Event = ros::MessageEvent<const Message>;
@@ -125,7 +127,7 @@ Output<Message>& Cycle::output(const std::string& topic, bool latch) {
   diagnostics_.watch(port);
   // In lock step every topic is latched: whoever connects late still gets the message of the tick that waits for it.
   port.publisher = node_.advertise<Message>(topic, 10, latch || lockstep_);
-  if (lockstep_) port.silent_publisher = node_.advertise<std_msgs::Header>(topic + kSilentSuffix, 10, true);
+  if (lockstep_) port.silent_publisher = node_.advertise<std_msgs::Header>(silentTopic(topic), 10, true);
   return port;
 }
 

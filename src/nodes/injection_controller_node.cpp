@@ -74,12 +74,8 @@ void InjectionControllerNode::run() {
 }
 
 void InjectionControllerNode::obey(const std::string& command) {
-  const std::string refusal = model_.command(command);
-  if (refusal.empty()) {
-    ROS_INFO_STREAM("state command " << command << ": " << toText(model_.state()));
-  } else {
-    ROS_WARN_STREAM("state command " << command << " refused: " << refusal);
-  }
+  said_of_injection_.notice.clear();  // a refusal is told each time
+  if (model_.command(command).empty()) ROS_INFO_STREAM("state command " << command << ": " << toText(model_.state()));
 }
 
 void InjectionControllerNode::adaptTo(const cell_microinjection::ManipulatorAbilities& rig) {
@@ -138,10 +134,12 @@ void InjectionControllerNode::publishInjection(const ros::Time& now) {
   status.volume = model_.injectedVolume();
   status.outcome = toText(model_.result().outcome);
   status.reason = model_.result().reason;
+  status.notice = model_.notice();
   const auto& said = said_of_injection_;
   const bool same = status.state == said.state && status.waits == said.waits && status.punctures == said.punctures &&
-                    status.outcome == said.outcome;
+                    status.outcome == said.outcome && status.notice == said.notice;
   if (same && (now - said.header.stamp).toSec() < kPeriod) return;
+  if (!status.notice.empty() && status.notice != said.notice) ROS_WARN_STREAM(status.notice);
   injection_.publish(status);
   said_of_injection_ = status;
 }

@@ -126,6 +126,17 @@ class Trial:
         rospy.Subscriber('/controller/injection_state', InjectionStatus, lambda m: setattr(self, 'status', m))
         rospy.Subscriber('/controller/operating_state', OperatingState, lambda m: setattr(self, 'state', m))
 
+    def when_told(self, act):
+        """`act` again each time that the controller has told that it was not done."""
+        seen = [self.status.header.stamp]
+
+        def once():
+            if self.status.notice and self.status.header.stamp > seen[0] + rospy.Duration(1):
+                seen[0] = self.status.header.stamp
+                print(f'        told: {self.status.notice}', flush=True)
+                act()
+        return once
+
     def until(self, condition, what, meanwhile=lambda: None):
         end = time.monotonic() + PATIENCE
         while not condition(self.status):
@@ -156,7 +167,8 @@ def run(arguments, session):
         hand.release()
         trial.until(lambda s: s.state == 'punctured', 'at rest')
         hand.inject()
-        trial.until(lambda s: s.volume > 0 and s.state == 'punctured', 'injected')
+        # Where the force was not known for a moment the pulse is over, or not given; the operator is told, and says it again.
+        trial.until(lambda s: s.volume > 0 and s.state == 'punctured', 'injected', trial.when_told(hand.inject))
         hand.withdraw()
         trial.until(lambda s: trial.state.state == 'PAUSED' and s.depth == 0, 'withdrawn')
         hand.close()

@@ -93,6 +93,45 @@ TEST_F(InjectionModesTest, HandsInjectionIsNamedAndNotMoved) {
                                               "punctured", "withdraw", "idle", "approach"}));
 }
 
+TEST_F(InjectionModesTest, AWordThatWasNotDoneIsToldUntilTheNextOne) {
+  config_.mode = "manual";
+  rig_.input.target = rig_.tip;
+  enable();
+  EXPECT_EQ(controller_.notice(), "");
+  controller_.command("inject");
+  EXPECT_EQ(controller_.notice(), "inject refused: it is no step from idle");
+  steps(100);
+  EXPECT_NE(controller_.notice(), "");
+  controller_.command("pause");
+  EXPECT_EQ(controller_.notice(), "");
+}
+
+TEST_F(InjectionModesTest, APulseByHandThatEndsEarlyIsTold) {
+  config_.mode = "manual";
+  rig_.input.target = rig_.tip;
+  enable();
+  for (int i = 0; i < 3000; ++i) {
+    *rig_.input.target -= Eigen::Vector3d(0, 0, 20e-9);
+    rig_.step(controller_);
+    if (controller_.injection() == InjectionState::kPunctured) break;
+  }
+  steps(100);
+  ASSERT_EQ(controller_.command("inject"), "");
+  ASSERT_EQ(controller_.injection(), InjectionState::kInject);
+  EXPECT_EQ(controller_.notice(), "");
+  steps(20);
+  rig_.force_tells = false;
+  steps(2);
+  EXPECT_FALSE(controller_.pulse());
+  EXPECT_EQ(controller_.notice(), "the pulse was ended: no trusted force");
+  rig_.force_tells = true;
+  steps(100);
+  ASSERT_EQ(controller_.command("inject"), "");
+  EXPECT_EQ(controller_.notice(), "");
+  steps(1000);
+  EXPECT_EQ(controller_.notice(), "") << "it was done";
+}
+
 TEST_F(InjectionModesTest, HandIsStoppedAtTheDepthLimit) {
   config_.mode = "manual";
   config_.guards.depth_limit = 5e-6;

@@ -128,7 +128,8 @@ void MarkerAdapter::showForce(const Eigen::Vector3d& force) {
   const Colour orange{1.0F, 0.45F, 0.1F, 1.0F}, white{1.0F, 1.0F, 1.0F, 1.0F};
   char felt[48];
   std::snprintf(felt, sizeof felt, "%.2f N at the hand", force.norm());
-  const std::string why = dragged_ && !news_.held().empty() ? "\n" + news_.held() : "";
+  std::string why = dragged_ && !news_.held().empty() ? "\n" + news_.held() : "";
+  if (!news_.notice().empty()) why += "\n" + news_.notice();
   visualization_msgs::MarkerArray shown;
   shown.markers = {arrow ? arrowMarker(arrow_name, *arrow, orange) : noMarker(arrow_name),
                    textMarker(text_name, toDisplay(handle_) + kTextOffset, felt + why, kTextHeight, white)};

@@ -15,6 +15,7 @@ std::string describe(const cell_microinjection::InjectionStatus& status) {
     std::snprintf(text, sizeof text, ", %.1f pL injected", 1e15 * status.volume);
     all += text;
   }
+  if (!status.notice.empty()) all += "; " + status.notice;
   return all;
 }
 
@@ -25,8 +26,10 @@ SessionNews::SessionNews(Cycle& cycle) {
       "controller/operating_state", 10,
       [this](const cell_microinjection::OperatingStateConstPtr& message) { state_ = message->state; });
   injection_ = cycle.node().subscribe<cell_microinjection::InjectionStatus>(
-      "controller/injection_state", 1,
-      [this](const cell_microinjection::InjectionStatusConstPtr& message) { injection_text_ = describe(*message); });
+      "controller/injection_state", 1, [this](const cell_microinjection::InjectionStatusConstPtr& message) {
+        injection_text_ = describe(*message);
+        notice_ = message->notice;
+      });
   diagnostics_ = cycle.node().subscribe<diagnostic_msgs::DiagnosticArray>(
       "/diagnostics", 10, [this](const diagnostic_msgs::DiagnosticArrayConstPtr& message) { hear(*message); });
 }

@@ -21,6 +21,8 @@ class SessionNews {
   std::string text() const;
   /// What bridge and controller say of themselves, for example "needle held: clutch is pressed"; once a second.
   const std::string& held() const { return held_; }
+  /// What became of the operator's last word, where that was not done; else empty.
+  const std::string& notice() const { return notice_; }
 
  private:
   void hear(const diagnostic_msgs::DiagnosticArray& diagnostics);
@@ -28,7 +30,7 @@ class SessionNews {
   ros::Subscriber controller_, injection_, diagnostics_;
   std::string state_ = "no controller";
   std::string injection_text_;
-  std::string held_;
+  std::string held_, notice_;
 };
 
 }  // namespace microinjection
