@@ -75,7 +75,7 @@ std::string InjectionController::takeWord(InjectionEvent event) {
   if (!byHand()) return run_.confirm(event, injection_);
   if (event != InjectionEvent::kInject) return "mode is manual: the hand moves the needle";
   if (injection_ != InjectionState::kPunctured) return std::string("it is no step from ") + toText(injection_);
-  if (!held_because_.empty()) return "the needle is held: " + held_because_;
+  if (!held_because_.empty() && held_because_ != kNoTarget) return "the needle is held: " + held_because_;
   if (config_.goal.pulse.duration <= 0) return "the goal has no pulse";
   hand_pulse_.start(config_.goal.pulse, config_.motion.injector_patience);
   pulse_by_hand_ = true;

@@ -65,7 +65,11 @@ void InjectionController::happen(InjectionEvent event) {
     punctures_ = 0;
     hand_pulse_ = {};
   }
-  if (injection_ != InjectionState::kInject) pulse_by_hand_ = false;
+  if (injection_ != InjectionState::kInject) {
+    if (pulse_by_hand_ && event == InjectionEvent::kFail) notice_ = "the pulse was ended: " + held_because_;
+    if (pulse_by_hand_ && event == InjectionEvent::kWithdraw) notice_ = "the pulse was ended: the needle is withdrawn";
+    pulse_by_hand_ = false;
+  }
   if (event == InjectionEvent::kLost || event == InjectionEvent::kOut) monitor_.rearm();
   if (event == InjectionEvent::kOut && paused_) hold("PAUSED");
 }
@@ -165,7 +169,7 @@ void InjectionController::watchPulse(const Input& input, double dt) {
 
 std::optional<Eigen::Vector3d> InjectionController::handTarget(const Input& input) {
   held_because_.clear();
-  if (!trusted(input.target)) held_because_ = "no trusted target";
+  if (!trusted(input.target)) held_because_ = kNoTarget;
   if (!trusted(input.force)) held_because_ = "no trusted force";
   if (!held_because_.empty()) {
     target_offset_.reset();

@@ -73,6 +73,8 @@ class InjectionController {
   /// again, depth, offset and home stay: no injection starts there. Empty when obeyed, otherwise the reason for the
   /// refusal; the state is then as before.
   std::string command(const std::string& command);
+  /// As the word withdraw, but of a program, which looks at the refusal itself: no notice.
+  std::string withdraw();
   /// Starts an injection of the controller's own; empty when begun, otherwise why not.
   std::string start(const InjectionGoal& goal);
 
@@ -105,10 +107,12 @@ class InjectionController {
 
  private:
   bool byHand() const { return config_.mode == "manual"; }
+  /// By hand: nobody leads the needle. Its operator may have let go to say something.
+  static constexpr const char* kNoTarget = "no trusted target";
+
   std::string heed(const std::string& command);
   std::string obey(const std::string& command);
   std::string takeWord(InjectionEvent event);
-  std::string withdraw();
   void happen(InjectionEvent event);
   bool isInside(const Eigen::Vector3d& needle, const Eigen::Vector3d& axis) const;
   void takeHold(const Eigen::Vector3d& needle, const Eigen::Vector3d& axis);

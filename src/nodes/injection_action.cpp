@@ -47,7 +47,7 @@ InjectionAction::InjectionAction(const ros::NodeHandle& node, InjectionControlle
 void InjectionAction::step(const ros::Time& now) {
   if (serving_ && server_.isPreemptRequested() && !withdrawn_) {
     withdrawn_ = true;
-    controller_.command("withdraw");  // refused where there is nothing to withdraw from: then it is over already
+    controller_.withdraw();  // refused where there is nothing to withdraw from: then it is over already
   }
   if (serving_ && !controller_.running()) end();
   if (!serving_ && server_.isNewGoalAvailable()) begin();

@@ -74,8 +74,11 @@ void InjectionControllerNode::run() {
 }
 
 void InjectionControllerNode::obey(const std::string& command) {
-  said_of_injection_.notice.clear();  // a refusal is told each time
-  if (model_.command(command).empty()) ROS_INFO_STREAM("state command " << command << ": " << toText(model_.state()));
+  if (model_.command(command).empty()) {
+    ROS_INFO_STREAM("state command " << command << ": " << toText(model_.state()));
+  } else {
+    ROS_WARN_STREAM("state command " << model_.notice());
+  }
 }
 
 void InjectionControllerNode::adaptTo(const cell_microinjection::ManipulatorAbilities& rig) {
@@ -99,7 +102,10 @@ void InjectionControllerNode::step(const Cycle::Tick& tick) {
     input.axis = needle->linear().col(2);
     input.force = trustedForce(force_.get(tick.now), needle->linear());
   }
-  if (const auto setpoint = model_.step(input, tick.dt)) {
+  const std::string notice = model_.notice();
+  const auto setpoint = model_.step(input, tick.dt);
+  if (model_.notice() != notice) ROS_WARN_STREAM(model_.notice());
+  if (setpoint) {
     Eigen::Isometry3d pose = needle ? *needle : Eigen::Isometry3d::Identity();
     pose.translation() = *setpoint;
     setpoint_.publish(toPose(pose, target && model_.followsTarget() ? target->header.stamp : tick.now, kWorldFrame));
@@ -139,7 +145,6 @@ void InjectionControllerNode::publishInjection(const ros::Time& now) {
   const bool same = status.state == said.state && status.waits == said.waits && status.punctures == said.punctures &&
                     status.outcome == said.outcome && status.notice == said.notice;
   if (same && (now - said.header.stamp).toSec() < kPeriod) return;
-  if (!status.notice.empty() && status.notice != said.notice) ROS_WARN_STREAM(status.notice);
   injection_.publish(status);
   said_of_injection_ = status;
 }

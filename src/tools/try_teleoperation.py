@@ -16,6 +16,7 @@ import time
 from pathlib import Path
 
 import rospy
+from sensor_msgs.msg import Joy
 from visualization_msgs.msg import InteractiveMarkerFeedback
 
 from cell_microinjection.msg import InjectionStatus, OperatingState
@@ -80,6 +81,8 @@ class Mouse:
         self._publisher = rospy.Publisher('/hand_marker/feedback', InteractiveMarkerFeedback, queue_size=100)
         self._goals = iter((self.FIRST, self.THEN))
         self._goal = None
+        self._held = time.monotonic()  # since then the handle is held, as far as is known
+        rospy.Subscriber('/haptic/operator_present', Joy, self._hear)
         threading.Thread(target=self._drag, daemon=True).start()
         time.sleep(3)
 
@@ -96,12 +99,24 @@ class Mouse:
                 self._say(InteractiveMarkerFeedback.POSE_UPDATE, self._goal)
             time.sleep(0.1)
 
+    def _hear(self, message):
+        if message.buttons[0]:
+            self._held = time.monotonic()
+
     def press(self):
         self._say(InteractiveMarkerFeedback.MOUSE_DOWN)
+        self._held = time.monotonic()
         self._goal = next(self._goals)
 
     def go_on(self):
-        pass
+        """Takes hold again of a handle that was lost in a long hold."""
+        if time.monotonic() < self._held + 2:
+            return
+        print('        the handle was lost', flush=True)
+        self._say(InteractiveMarkerFeedback.MOUSE_UP)
+        time.sleep(0.3)
+        self._say(InteractiveMarkerFeedback.MOUSE_DOWN)
+        self._held = time.monotonic()
 
     def release(self):
         self._goal = None
@@ -165,10 +180,13 @@ def run(arguments, session):
         hand.press()
         trial.until(lambda s: s.punctures > 0, 'through', hand.go_on)
         hand.release()
+        time.sleep(2)  # a person's way to another key or the menu
         trial.until(lambda s: s.state == 'punctured', 'at rest')
         hand.inject()
-        # Where the force was not known for a moment the pulse is over, or not given; the operator is told, and says it again.
-        trial.until(lambda s: s.volume > 0 and s.state == 'punctured', 'injected', trial.when_told(hand.inject))
+        # Where the force was not known for a moment the pulse is over, or not given; the operator is told, and says it
+        # again.
+        trial.until(lambda s: s.volume > 0 and s.state == 'punctured' and not s.notice, 'injected',
+                    trial.when_told(hand.inject))
         hand.withdraw()
         trial.until(lambda s: trial.state.state == 'PAUSED' and s.depth == 0, 'withdrawn')
         hand.close()

@@ -7,6 +7,8 @@ import rostest
 from geometry_msgs.msg import PoseStamped
 from visualization_msgs.msg import InteractiveMarkerFeedback, InteractiveMarkerInit, InteractiveMarkerUpdate
 
+from case import case
+from cell_microinjection.msg import OperatingState
 from haptic_driver import PRESENT, HapticTest
 from messages import pose
 from participant import INVALID
@@ -25,6 +27,7 @@ class MarkerTest(HapticTest):
         cls.shown = {}
         rospy.Subscriber("/hand_marker/update_full", InteractiveMarkerInit, cls.on_init)
         rospy.Subscriber("/hand_marker/update", InteractiveMarkerUpdate, cls.on_update)
+        cls.controller = rospy.Publisher("/controller/operating_state", OperatingState, queue_size=1, latch=True)
         cls.rviz = rospy.Publisher("/hand_marker/feedback", InteractiveMarkerFeedback, queue_size=100)
         cls.world.run(1100)  # for a second after time 0 the server takes a mouse for the second one at once
 
@@ -42,8 +45,8 @@ class MarkerTest(HapticTest):
     def held(self):
         return {NEEDLE: pose(*TIP)}
 
-    def good(self, led=TIP):
-        return {**self.held(), TARGET: pose(*led)}
+    def good(self):
+        return {**self.held(), TARGET: pose(*TIP)}
 
     def say(self, event, place=HANDLE, frame="viz/world", entry=0):
         message = InteractiveMarkerFeedback(client_id="test", marker_name="hand", event_type=event, menu_entry_id=entry)
@@ -81,21 +84,54 @@ class MarkerTest(HapticTest):
         self.say(InteractiveMarkerFeedback.MOUSE_UP)
         self.until(lambda: not self.present(), self.good, "the operator stays")
 
-    def test_a_hold_on_the_way_does_not_part_needle_and_handle(self):
-        start, further = self.hand(), TIP - [0, 0, 1.5e-6]
+    def drag(self, way=-4e-6):
+        """The handle is taken hold of and dragged along z; the hand is on its way."""
+        start, self.place = self.hand(), HANDLE + 1e4 * np.array([0, 0, way])
         self.say(InteractiveMarkerFeedback.MOUSE_DOWN)
-        self.say(InteractiveMarkerFeedback.POSE_UPDATE, HANDLE + 1e4 * np.array([0, 0, -4e-6]))
+        self.say(InteractiveMarkerFeedback.POSE_UPDATE, self.place)
         self.until(lambda: not np.array_equal(self.hand(), start), self.good, "the hand does not move")
+        return start
+
+    def go_on(self, ticks, messages):
+        """With rviz that says that the mouse button is down."""
+        for _ in range(ticks // 100):
+            self.say(InteractiveMarkerFeedback.KEEP_ALIVE, self.place)
+            self.world.run(100, messages)
+
+    def test_a_hold_on_the_way_is_waited_for(self):
+        start = self.drag()
         self.world.run(100, self.good)
         self.world.tick({**self.held(), TARGET: INVALID})
         self.world.run(20, self.held)
         there = self.hand()
-        self.world.run(300, self.held)
+        self.go_on(300, self.held)
         np.testing.assert_array_equal(self.hand(), there)
         self.assertTrue(self.present())
-        self.say(InteractiveMarkerFeedback.KEEP_ALIVE)
-        self.world.run(400, lambda: self.good(further))
-        np.testing.assert_allclose(self.hand() - there, [0, 0, -2.5e-3], atol=1e-9)
+        self.go_on(400, self.good)
+        np.testing.assert_allclose(self.hand() - start, [0, 0, -4e-3], atol=1e-9)
+
+    def test_after_a_long_hold_the_handle_must_be_taken_hold_of_again(self):
+        self.drag()
+        self.go_on(700, self.held)
+        self.assertFalse(self.present())
+        there = self.hand()
+        self.say(InteractiveMarkerFeedback.POSE_UPDATE, self.place)
+        self.go_on(300, self.good)
+        self.assertFalse(self.present())
+        np.testing.assert_array_equal(self.hand(), there)
+        self.setUp()
+        self.drag()
+
+    def test_a_controller_that_does_not_follow_is_a_hold(self):
+        for state in (OperatingState(state="PAUSED"), OperatingState(state="ENABLED", is_busy=True)):
+            with case(state.state):
+                self.setUp()
+                self.drag()
+                self.controller.publish(state)
+                self.go_on(1000, self.good)
+                self.assertFalse(self.present())
+                self.controller.publish(OperatingState(state="ENABLED"))
+                self.world.run(100, self.good)
 
     def test_a_mouse_that_is_silent_is_gone(self):
         self.say(InteractiveMarkerFeedback.MOUSE_DOWN)
@@ -109,6 +145,7 @@ class MarkerTest(HapticTest):
 
     def test_another_frame_is_refused(self):
         start = self.hand()
+        self.say(InteractiveMarkerFeedback.MOUSE_DOWN)
         self.say(InteractiveMarkerFeedback.POSE_UPDATE, HANDLE + [0, 0, -1], frame="world")
         self.say(InteractiveMarkerFeedback.POSE_UPDATE, [np.nan, 0, 0])
         self.say(InteractiveMarkerFeedback.MENU_SELECT, entry=4)  # comes after them

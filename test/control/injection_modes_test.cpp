@@ -115,7 +115,9 @@ TEST_F(InjectionModesTest, APulseByHandThatEndsEarlyIsTold) {
     rig_.step(controller_);
     if (controller_.injection() == InjectionState::kPunctured) break;
   }
-  steps(100);
+  rig_.input.target.reset();  // whose operator has let go for a menu or another key
+  steps(1000);
+  EXPECT_EQ(controller_.heldBecause(), "no trusted target");
   ASSERT_EQ(controller_.command("inject"), "");
   ASSERT_EQ(controller_.injection(), InjectionState::kInject);
   EXPECT_EQ(controller_.notice(), "");
@@ -130,6 +132,21 @@ TEST_F(InjectionModesTest, APulseByHandThatEndsEarlyIsTold) {
   EXPECT_EQ(controller_.notice(), "");
   steps(1000);
   EXPECT_EQ(controller_.notice(), "") << "it was done";
+  EXPECT_EQ(controller_.injection(), InjectionState::kPunctured);
+  rig_.force_tells = false;
+  steps(2);
+  EXPECT_EQ(controller_.command("inject"), "the needle is held: no trusted force");
+  rig_.force_tells = true;
+  steps(100);
+  ASSERT_EQ(controller_.command("inject"), "");
+  steps(20);
+  rig_.input.target = rig_.tip;
+  for (int i = 0; i < 200; ++i) {
+    *rig_.input.target += Eigen::Vector3d(0, 0, 20e-9);
+    rig_.step(controller_);
+  }
+  EXPECT_FALSE(controller_.pulse());
+  EXPECT_EQ(controller_.notice(), "the pulse was ended: the needle is withdrawn");
 }
 
 TEST_F(InjectionModesTest, HandIsStoppedAtTheDepthLimit) {

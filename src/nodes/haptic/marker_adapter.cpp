@@ -16,6 +16,7 @@ namespace {
 
 constexpr char kFrame[] = "viz/world";
 constexpr double kTimeout = 0.2;                // s, of needle and its target
+constexpr double kLongHold = 0.5;               // s; a network's delay there and back is no hold
 constexpr double kShowPeriod = 1.0 / 15;        // s
 constexpr double kLeastMotion = 0.05e-6;        // m of the needle that the handle is moved for
 constexpr double kTextHeight = 0.04;            // display units
@@ -43,9 +44,10 @@ MarkerAdapter::MarkerAdapter(Cycle& cycle, const MarkerConfig& config)
       needle_(cycle.input<geometry_msgs::PoseStamped>("needle/measured_cp", Phase::kTickBefore, kTimeout)),
       target_(cycle.input<geometry_msgs::PoseStamped>("teleop/servo_cp", Phase::kTickBefore, kTimeout)),
       force_(cycle.node().advertise<visualization_msgs::MarkerArray>("hand_marker/force", 1, true)) {
-  target_.listen([this](const geometry_msgs::PoseStamped& message, const ros::Time&) {
-    if (message.header.stamp.isZero()) origin_.reset();  // also a hold that is over before the next step
-  });
+  controller_ = cycle.node().subscribe<cell_microinjection::OperatingState>(
+      "controller/operating_state", 10, [this](const cell_microinjection::OperatingStateConstPtr& message) {
+        controller_follows_ = message->state == "ENABLED" && !message->is_busy;
+      });
   const std::vector<std::pair<std::string, std::string>> words{
       {"Enable", "enable"}, {"Inject", "inject"}, {"Withdraw (home)", "home"}, {"Disable", "disable"}};
   for (const auto& [title, word] : words) {
@@ -58,12 +60,9 @@ MarkerAdapter::MarkerAdapter(Cycle& cycle, const MarkerConfig& config)
 
 void MarkerAdapter::onFeedback(const Feedback& feedback) {
   using Event = visualization_msgs::InteractiveMarkerFeedback;
-  if (feedback->event_type == Event::MOUSE_UP) return letGo();
-  if (feedback->event_type == Event::KEEP_ALIVE) {
-    if (dragged_) hand_.stay();
-    return;
-  }
-  if (feedback->event_type != Event::MOUSE_DOWN && feedback->event_type != Event::POSE_UPDATE) return;
+  const auto event = feedback->event_type;
+  if (event == Event::MOUSE_UP) return letGo();
+  if (event != Event::MOUSE_DOWN && event != Event::POSE_UPDATE && event != Event::KEEP_ALIVE) return;
   const auto& p = feedback->pose.position;
   const Eigen::Vector3d to = fromDisplay({p.x, p.y, p.z});
   if (feedback->header.frame_id != kFrame || !to.allFinite()) {
@@ -71,37 +70,48 @@ void MarkerAdapter::onFeedback(const Feedback& feedback) {
                       feedback->header.frame_id.c_str(), kFrame);
     return letGo();
   }
-  if (!tip_) return;
+  if (event == Event::MOUSE_DOWN) return takeHold();
+  if (!dragged_) return;
+  handle_ = to;
+  hand_.stay();
+}
+
+void MarkerAdapter::takeHold() {
+  lost_ = false;
+  if (dragged_ || !tip_) return;
   dragged_ = true;
-  if (feedback->event_type == Event::POSE_UPDATE) handle_ = to;
+  held_ = 0;
+  drag_from_ = handle_;
+  hand_from_ = hand_.position();
   hand_.stay();
 }
 
 void MarkerAdapter::letGo() {
-  dragged_ = false;
+  dragged_ = lost_ = false;
   hand_.letGo();
 }
 
-void MarkerAdapter::pull(const std::optional<Eigen::Vector3d>& target) {
-  if (!dragged_ || !target) {
-    origin_.reset();
-    hand_.moveTo(hand_.position());
+void MarkerAdapter::pull(const Cycle::Tick& tick) {
+  const bool leads = controller_follows_ && target_.get(tick.now);
+  held_ = leads ? 0 : held_ + tick.dt;
+  if (!dragged_) return;
+  if (held_ > kLongHold || !hand_.present()) {
+    letGo();
+    lost_ = true;
     return;
   }
-  if (!origin_) origin_ = hand_.position() - config_.hand_scale * *target;
-  hand_.moveTo(*origin_ + config_.hand_scale * (handle_ - config_.handle_offset));
+  hand_.moveTo(leads ? hand_from_ + config_.hand_scale * (handle_ - drag_from_) : hand_.position());
 }
 
 std::optional<HandReading> MarkerAdapter::read(const Cycle::Tick& tick) {
   const auto needle = trustedPose(needle_.get(tick.now));
   tip_ = needle ? std::optional<Eigen::Vector3d>(needle->translation()) : std::nullopt;
   ros::getGlobalCallbackQueue()->callAvailable();  // where the server hears rviz
-  pull(trustedPosition(target_.get(tick.now), kWorldFrame));
+  pull(tick);
   HandReading reading;
   reading.position = hand_.step(tick.dt);
   reading.stamp = tick.now;
   reading.operator_present = hand_.present();
-  if (!hand_.present()) dragged_ = false;
   return reading;
 }
 
@@ -122,17 +132,23 @@ void MarkerAdapter::followNeedle() {
   server_.applyChanges();
 }
 
+std::string MarkerAdapter::why() const {
+  std::string all;
+  if ((dragged_ || lost_) && !news_.held().empty()) all += "\n" + news_.held();
+  if (lost_) all += "\nlet go, and take hold again";
+  if (!news_.notice().empty()) all += "\n" + news_.notice();
+  return all;
+}
+
 void MarkerAdapter::showForce(const Eigen::Vector3d& force) {
   const auto arrow = forceArrow(handle_, force, config_.arrow_scale);
   const MarkerName arrow_name{kFrame, "force on the hand", 0}, text_name{kFrame, "words", 0};
   const Colour orange{1.0F, 0.45F, 0.1F, 1.0F}, white{1.0F, 1.0F, 1.0F, 1.0F};
   char felt[48];
   std::snprintf(felt, sizeof felt, "%.2f N at the hand", force.norm());
-  std::string why = dragged_ && !news_.held().empty() ? "\n" + news_.held() : "";
-  if (!news_.notice().empty()) why += "\n" + news_.notice();
   visualization_msgs::MarkerArray shown;
   shown.markers = {arrow ? arrowMarker(arrow_name, *arrow, orange) : noMarker(arrow_name),
-                   textMarker(text_name, toDisplay(handle_) + kTextOffset, felt + why, kTextHeight, white)};
+                   textMarker(text_name, toDisplay(handle_) + kTextOffset, felt + why(), kTextHeight, white)};
   force_.publish(shown);
 }
 

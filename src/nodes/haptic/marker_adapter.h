@@ -25,8 +25,9 @@ struct MarkerConfig {
 
 /// A handle beside the needle in rviz that a person drags with the mouse, and a menu of the operator's words. While the
 /// mouse button is down the operator is present and the needle goes after the handle; otherwise the handle comes back
-/// to the needle. The hand moves only while it leads the needle (/teleop/servo_cp is there): else, after a hold, the
-/// needle would end elsewhere than the handle.
+/// to the needle. While bridge or controller hold the needle the hand waits, so that needle and handle stay together;
+/// after a hold that was long (or when rviz was silent) the needle goes nowhere until the handle is taken hold of
+/// again.
 ///
 /// The handle lies in viz/world, at x 1e4. Its topics are /hand_marker/... and not below viz/, which nothing that
 /// controls may read.
@@ -42,8 +43,10 @@ class MarkerAdapter : public HapticAdapter {
  private:
   using Feedback = visualization_msgs::InteractiveMarkerFeedbackConstPtr;
   void onFeedback(const Feedback& feedback);
+  void takeHold();
   void letGo();
-  void pull(const std::optional<Eigen::Vector3d>& target);
+  void pull(const Cycle::Tick& tick);
+  std::string why() const;
   void followNeedle();
   void showForce(const Eigen::Vector3d& force);
 
@@ -53,12 +56,17 @@ class MarkerAdapter : public HapticAdapter {
   Input<geometry_msgs::PoseStamped>&needle_, &target_;
   interactive_markers::InteractiveMarkerServer server_{"hand_marker"};
   interactive_markers::MenuHandler menu_;
+  ros::Subscriber controller_;
   ros::Publisher force_;
   std::vector<std::string> commands_;
-  std::optional<Eigen::Vector3d> tip_;                ///< m, `world`
-  Eigen::Vector3d handle_ = Eigen::Vector3d::Zero();  ///< m, `world`, where it is shown
-  std::optional<Eigen::Vector3d> origin_;  ///< m, of the hand for a tip at 0 in `world`; empty: leads nothing
+  std::optional<Eigen::Vector3d> tip_;                   ///< m, `world`
+  Eigen::Vector3d handle_ = Eigen::Vector3d::Zero();     ///< m, `world`, where it is shown
+  Eigen::Vector3d drag_from_ = Eigen::Vector3d::Zero();  ///< m, `world`, of the handle
+  Eigen::Vector3d hand_from_ = Eigen::Vector3d::Zero();  ///< m, of the hand
   bool dragged_ = false;
+  bool lost_ = false;               ///< the drag was ended while the mouse button was down
+  bool controller_follows_ = true;  ///< as far as it has said
+  double held_ = 0;                 ///< s, since the hand led the needle
   ros::Time shown_;
 };
 

@@ -36,9 +36,15 @@ SessionNews::SessionNews(Cycle& cycle) {
 
 std::string SessionNews::text() const { return state_ + injection_text_; }
 
+std::string SessionNews::held() const {
+  // The bridge knows only that the far end holds, the far end why; unless that is for the bridge's sake.
+  return held_.empty() || far_.empty() || far_.find("the hand's side") != std::string::npos ? held_ : far_;
+}
+
 void SessionNews::hear(const diagnostic_msgs::DiagnosticArray& diagnostics) {
   for (const auto& status : diagnostics.status) {
     if (status.name == "haptic_bridge: loop") held_ = status.level == 0 ? "" : status.message;
+    if (status.name == "teleoperation_follower: link") far_ = status.level == 0 ? "" : status.message;
     if (status.name == "injection_controller: control" && status.level != 0 && held_.empty()) held_ = status.message;
   }
 }

@@ -20,7 +20,7 @@ class SessionNews {
   /// For example "ENABLED, indent, 0.52 uN, 12.3 um deep" or "no controller".
   std::string text() const;
   /// What bridge and controller say of themselves, for example "needle held: clutch is pressed"; once a second.
-  const std::string& held() const { return held_; }
+  std::string held() const;
   /// What became of the operator's last word, where that was not done; else empty.
   const std::string& notice() const { return notice_; }
 
@@ -30,7 +30,7 @@ class SessionNews {
   ros::Subscriber controller_, injection_, diagnostics_;
   std::string state_ = "no controller";
   std::string injection_text_;
-  std::string held_, notice_;
+  std::string held_, far_, notice_;
 };
 
 }  // namespace microinjection
