@@ -141,7 +141,7 @@ class SummaryTest(InFolder):
 
     def test_training_says_points_or_why_there_are_none(self):
         told = ('operator: "ada"\noutcome: complete\nreason: ""\nscore: 87.4\nmeasures:\n'
-                '  peak_force_N: {value: 1.5e-6, reference: 1.6e-6, points: 25, of: 25}\n')
+                '  peak_force_N: {value: 1.5e-6, reference: 1e-06, points: 25, of: 25}\n')
         text = demo_summary.training(self.write('t.yaml', told))
         self.assertIn('Training of ada: 87 of 100 points', text)
         self.assertIn('1.5e-06', text)

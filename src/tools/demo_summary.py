@@ -38,7 +38,8 @@ def training(path):
     complete = told['outcome'] == 'complete'
     worth = f'{told["score"]:.0f} of 100 points' if complete else f'{told["outcome"]}: {told["reason"]}'
     rows = [('measure', '', 'value', 'reference', 'points', 'of')]
-    rows += [(name, '', *(f'{row[key]:.3g}' for key in ('value', 'reference', 'points', 'of')))
+    # PyYAML takes 1e-06, without a point, for a word.
+    rows += [(name, '', *(f'{float(row[key]):.3g}' for key in ('value', 'reference', 'points', 'of')))
              for name, row in told['measures'].items()]
     return '\n'.join([f'Training of {told["operator"]}: {worth}'] + _table(rows)) + '\n'
 

@@ -44,7 +44,8 @@ void InjectionRig::run(double limit) {
 }
 
 bool InjectionRig::holds() {
-  for (int i = 0; i < 200; ++i) step();
+  while (isIn(Trouble::Kind::kRigStands)) step();  // it has yet to go where it was sent last
+  for (int i = 0; i < 1000; ++i) step();
   const Eigen::Vector3d before = tip();
   for (int i = 0; i < 500; ++i) step();
   return (tip() - before).norm() < 1e-8 && !controller_.pulse() && !injector_.reading().busy;

@@ -17,7 +17,7 @@ command_bench() {
   fi
   local name=$1 folder="$ROOT/out/bench"
   shift
-  bench_names | grep -qxF "$name" || misuse "no benchmark '$name'; there are: $(bench_names | xargs)"
+  [[ " $(bench_names | xargs) " == *" $name "* ]] || misuse "no benchmark '$name'; there are: $(bench_names | xargs)"
   setup
   build_workspace
   use_private_master
