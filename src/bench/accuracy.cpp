@@ -86,7 +86,7 @@ class Table {
     std::string rows;
     std::istringstream lines(outcome.output);
     char memory[40];
-    std::snprintf(memory, sizeof(memory), ",%.0f\n", outcome.memory_MB);
+    std::snprintf(memory, sizeof(memory), ",%.0f\n", outcome.memory_megabytes);
     for (std::string line; std::getline(lines, line);) rows += line + memory;
     std::cout << rows << std::flush;
     text_ += rows;

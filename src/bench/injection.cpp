@@ -182,6 +182,7 @@ void troubles(const Bench& bench, int first_seed, int cells) {
   for (const auto& [kind, words] : kinds) {
     std::map<std::string, int> outcomes;
     int safe = 0, within = 0;
+    double furthest = 0;  // 1, peak force or depth over its limit
     for (int seed = first_seed; seed < first_seed + cells; ++seed) {
       InjectionCase of = randomInjectionCase(seed);
       if (kind == Kind::kNone) {
@@ -194,9 +195,14 @@ void troubles(const Bench& bench, int first_seed, int cells) {
       ++outcomes[toText(outcome.result.outcome)];
       safe += outcome.held;
       within += outcome.within;
+      const GuardConfig limits = injectionSettings(of).guards;
+      furthest = std::max(
+          {furthest, outcome.truth.peak_force / limits.force_limit, outcome.truth.max_depth / limits.depth_limit});
     }
-    std::fprintf(stderr, "injection: trouble: %s: %d of %d end at rest with the injector off, %d within guards;", words,
-                 safe, cells, within);
+    std::fprintf(
+        stderr,
+        "injection: trouble: %s: %d of %d end at rest with the injector off, %d within guards (worst %.3f of a limit);",
+        words, safe, cells, within, furthest);
     for (const auto& [outcome, count] : outcomes) std::fprintf(stderr, " %s %d", outcome.c_str(), count);
     std::fprintf(stderr, "\n");
   }

@@ -64,7 +64,7 @@ std::optional<SurfaceHit> castRay(const SurfaceMesh& surface, const Eigen::Vecto
                                   const Eigen::Vector3d& direction) {
   std::optional<SurfaceHit> nearest;
   for (size_t t = 0; t < surface.triangles.size(); ++t) {
-    const std::optional<SurfaceHit> hit = intersectTriangle(surface, static_cast<int>(t), origin, direction);
+    std::optional<SurfaceHit> hit = intersectTriangle(surface, static_cast<int>(t), origin, direction);
     if (hit && (!nearest || hit->distance < nearest->distance)) nearest = hit;
   }
   return nearest;
@@ -74,7 +74,7 @@ std::optional<SurfaceHit> castRayFrom(const SurfaceMesh& surface, int start, con
                                       const Eigen::Vector3d& direction) {
   if (start >= 0 && start < static_cast<int>(surface.triangles.size())) {
     const int triangle = walk(surface, start, origin, direction);
-    const std::optional<SurfaceHit> hit =
+    std::optional<SurfaceHit> hit =
         triangle < 0 ? std::nullopt : intersectTriangle(surface, triangle, origin, direction);
     if (hit) return hit;
   }

@@ -77,7 +77,7 @@ void Micromanipulator::begin(Mode mode, const AxesMotion& from) {
 /// Why nothing may be moved by a stream, of which one command is here; else empty.
 std::string Micromanipulator::streamRefusal() {
   const bool begins = std::exchange(stream_pause_, 0) > config_.command_timeout;
-  if (const std::string why = unable(); !why.empty()) return why;
+  if (std::string why = unable(); !why.empty()) return why;
   if (begins) held_off_ = false;
   if (!held_off_) return "";
   return "the needle was stopped; a stream moves it again after a pause of " + std::to_string(config_.command_timeout) +
@@ -85,11 +85,11 @@ std::string Micromanipulator::streamRefusal() {
 }
 
 std::string Micromanipulator::servoPosition(const Eigen::Isometry3d& tip_pose) {
-  if (const std::string why = streamRefusal(); !why.empty()) return why;
+  if (std::string why = streamRefusal(); !why.empty()) return why;
   const Commanded commanded = checkPose(tip_pose);
   if (!commanded.refusal.empty()) return commanded.refusal;
   const AxesMotion from = start();
-  if (const std::string why = guard_.blocksWay(from.position, commanded.joints); !why.empty()) return why;
+  if (std::string why = guard_.blocksWay(from.position, commanded.joints); !why.empty()) return why;
   if (mode_ != Mode::kServo) {
     goal_ = from.position;
     goal_age_ = 0;
@@ -103,12 +103,12 @@ std::string Micromanipulator::servoPosition(const Eigen::Isometry3d& tip_pose) {
 }
 
 std::string Micromanipulator::movePosition(const Eigen::Isometry3d& tip_pose) {
-  if (const std::string why = unable(); !why.empty()) return why;
+  if (std::string why = unable(); !why.empty()) return why;
   const Commanded commanded = checkPose(tip_pose);
   if (!commanded.refusal.empty()) return commanded.refusal;
   const AxesMotion from = start();
   const Eigen::Vector3d turn = follows_ ? restAfter(from) : device_->reading()->joints;
-  if (const std::string why = guard_.blocksWay(turn, commanded.joints); !why.empty()) return why;
+  if (std::string why = guard_.blocksWay(turn, commanded.joints); !why.empty()) return why;
   goal_ = commanded.joints;
   begin(Mode::kMove, from);
   if (follows_) return "";
@@ -120,15 +120,15 @@ std::string Micromanipulator::movePosition(const Eigen::Isometry3d& tip_pose) {
 
 std::string Micromanipulator::servoVelocity(const Eigen::Vector3d& velocity, double time) {
   if (!velocity.allFinite()) return "velocity is not finite";
-  if (const std::string why = streamRefusal(); !why.empty()) return why;
+  if (std::string why = streamRefusal(); !why.empty()) return why;
   const Eigen::Vector3d joint_velocity = geometry_.directions.inverse() * velocity;
-  if (const std::string why = geometry_.tooFast(joint_velocity); !why.empty()) return why;
+  if (std::string why = geometry_.tooFast(joint_velocity); !why.empty()) return why;
   // Too near to an end of its travel or to an obstacle to go that way for a step and come to rest before it?
   const AxesMotion from = start();
   const Eigen::Vector3d rest = reachOf({from.position + joint_velocity * last_dt_, joint_velocity});
   if (!joint_velocity.isZero()) {
-    if (const std::string why = geometry_.leavesTravel(from.position, rest); !why.empty()) return why;
-    if (const std::string why = guard_.blocksWay(from.position, rest); !why.empty()) return why;
+    if (std::string why = geometry_.leavesTravel(from.position, rest); !why.empty()) return why;
+    if (std::string why = guard_.blocksWay(from.position, rest); !why.empty()) return why;
   }
   velocity_command_ = joint_velocity;
   velocity_command_time_ = time;

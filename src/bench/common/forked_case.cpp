@@ -46,7 +46,7 @@ ForkedCase runForked(const std::function<std::string()>& work, unsigned seconds)
   int status = 0;
   rusage usage{};
   wait4(child, &status, 0, &usage);
-  result.memory_MB = static_cast<double>(usage.ru_maxrss) / 1024;
+  result.memory_megabytes = static_cast<double>(usage.ru_maxrss) / 1024;
   if (WIFSIGNALED(status)) result.failure = WTERMSIG(status) == SIGALRM ? "out of time" : "crashed";
   if (WIFEXITED(status) && WEXITSTATUS(status) != 0) result.failure = "failed";
   return result;
