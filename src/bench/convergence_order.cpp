@@ -243,6 +243,7 @@ Measurement measure(const QuadraticMesh<Dim>& mesh, ElementKind kind, double poi
 template <int Dim>
 std::string rows(const std::vector<double>& sizes) {
   std::vector<QuadraticMesh<Dim>> meshes;
+  meshes.reserve(sizes.size());
   for (const double size : sizes) meshes.push_back(makeMesh<Dim>(size));
   std::string rows;
   for (const std::string& element : elementNames()) {

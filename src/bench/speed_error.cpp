@@ -178,7 +178,8 @@ TetMesh cube(int n) {
   TetMesh mesh;
   const auto vertex = [n](const std::array<int, 3>& at) { return at[0] + (n + 1) * (at[1] + (n + 1) * at[2]); };
   for (int v = 0; v < (n + 1) * (n + 1) * (n + 1); ++v) {
-    mesh.vertices.push_back(Eigen::Vector3d(v % (n + 1), v / (n + 1) % (n + 1), v / (n + 1) / (n + 1)) / n);
+    const Eigen::Vector3i at(v % (n + 1), v / (n + 1) % (n + 1), v / (n + 1) / (n + 1));
+    mesh.vertices.emplace_back(at.cast<double>() / n);
   }
   for (int c = 0; c < 6 * n * n * n; ++c) {
     std::array<int, 3> corner = {c / 6 % n, c / 6 / n % n, c / 6 / (n * n)};

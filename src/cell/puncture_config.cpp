@@ -32,7 +32,7 @@ void readLayer(ConfigReader reader, bool outermost, PunctureConfig::Layer& layer
   readQuantity(reader, "gap", layer.gap, Range::nonNegative(), "m");
 }
 
-void readShaft(ConfigReader reader, PunctureConfig::Shaft& shaft) {
+void readShaft(const ConfigReader& reader, PunctureConfig::Shaft& shaft) {
   readQuantity(reader, "friction", shaft.friction, Range::nonNegative(), "N");
   readQuantity(reader, "adhesion", shaft.adhesion, Range::nonNegative(), "N/m");
   readQuantity(reader, "stiffness", shaft.stiffness, Range::positive(), "N/m");

@@ -152,7 +152,7 @@ class Transcript {
 
 void serve(const Arguments& arguments) {
   const Rig& rig = *arguments.rig;
-  const std::shared_ptr<ManipulatorEmulator> device = rig.makeEmulator();
+  const std::shared_ptr<ManipulatorEmulator> device = rig.make_emulator();
   for (const Fault& fault : arguments.faults) device->inject(fault);
   EmulatorHost host(device, arguments.baud, arguments.link);
   std::printf("emulate: %s at %s, %d baud\n", rig.name.c_str(), arguments.link.c_str(), arguments.baud);

@@ -60,7 +60,7 @@ std::string rigFault(const GuardConfig& config, const Eigen::Vector3d& needle, c
 
 std::string forceGuard(const GuardConfig& config, const Eigen::Vector3d& force, const Eigen::Vector3d& axis) {
   const double along = force.dot(axis);
-  const std::string reason = beyond("force along the pipette", std::abs(along), config.force_limit, "N");
+  std::string reason = beyond("force along the pipette", std::abs(along), config.force_limit, "N");
   if (!reason.empty()) return reason;
   return beyond("force across the pipette", (force - along * axis).norm(), config.lateral_force_limit, "N");
 }

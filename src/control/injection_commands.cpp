@@ -5,7 +5,7 @@
 namespace microinjection {
 
 std::string InjectionController::command(const std::string& command) {
-  const std::string refusal = heed(command);
+  std::string refusal = heed(command);
   notice_ = refusal.empty() ? "" : command + " refused: " + refusal;
   return refusal;
 }
@@ -60,7 +60,7 @@ std::string InjectionController::start(const InjectionGoal& goal) {
     return std::string("an injection starts in idle, the needle is in ") + (homing_ ? "homing" : toText(injection_));
   }
   if (monitor_.touched()) return "the needle is in the cell; withdraw or home takes it out";
-  const std::string problems = goal.problems();
+  std::string problems = goal.problems();
   if (!problems.empty()) return problems;
   if (goal.depth > config_.guards.depth_limit) return "depth is above depth_limit";
   run_.start(goal, *setpoint_);

@@ -25,7 +25,7 @@ InjectorModel::InjectorModel(const InjectorModelConfig& config)
 
 std::string InjectorModel::pulse(const InjectionPulse& pulse) {
   if (pulse_) return "a pulse is under way";
-  const std::string refusal = config_.limits.check(pulse);
+  std::string refusal = config_.limits.check(pulse);
   if (!refusal.empty()) return refusal;
   pulse_ = pulse;
   left_ = pulse.duration;
@@ -34,7 +34,7 @@ std::string InjectorModel::pulse(const InjectionPulse& pulse) {
 }
 
 std::string InjectorModel::setBalance(double pressure) {
-  const std::string refusal = config_.limits.checkPressure("balance pressure", pressure);
+  std::string refusal = config_.limits.checkPressure("balance pressure", pressure);
   if (refusal.empty()) balance_ = pressure;
   return refusal;
 }

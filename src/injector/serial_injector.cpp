@@ -32,7 +32,7 @@ bool SerialInjector::mayFlow() const { return sent_pulse_ || model_.reading().bu
 std::string SerialInjector::pulse(const InjectionPulse& pulse) {
   if (!fault().empty()) return fault();
   if (waiting_pulse_ || sent_pulse_ || model_.reading().busy) return "a pulse is under way";
-  const std::string asked = limits_.check(pulse);
+  std::string asked = limits_.check(pulse);
   if (!asked.empty()) return asked;
   // What the device makes of it counts: a pulse of 0.4 ms is none at all where the line has whole milliseconds.
   const std::string sent = limits_.check(protocol_.asSent(pulse));
@@ -45,7 +45,7 @@ std::string SerialInjector::pulse(const InjectionPulse& pulse) {
 
 std::string SerialInjector::setBalance(double pressure) {
   if (!fault_.empty()) return fault_;
-  const std::string refusal = limits_.checkPressure("balance pressure", pressure);
+  std::string refusal = limits_.checkPressure("balance pressure", pressure);
   if (!refusal.empty()) return refusal;
   waiting_balance_ = pressure;
   tries_ = 0;

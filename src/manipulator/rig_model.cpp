@@ -13,7 +13,7 @@
 namespace microinjection {
 
 urdf::ModelInterfaceSharedPtr parseRig(const std::string& xml) {
-  const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(xml);
+  urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(xml);
   if (!model) throw ConfigError("robot_description: is not a URDF");
   return model;
 }

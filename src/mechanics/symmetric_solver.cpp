@@ -102,7 +102,7 @@ Eigen::MatrixXd SymmetricSolver::solve(const Eigen::MatrixXd& right_hand_side) {
   right.dtype = CHOLMOD_DOUBLE;
   cholmod_dense* solution = cholmod_solve(CHOLMOD_A, factor_, &right, &common_);
   if (solution == nullptr) throw std::runtime_error("CHOLMOD could not solve the equations");
-  const Eigen::MatrixXd result =
+  Eigen::MatrixXd result =
       Eigen::Map<const Eigen::MatrixXd>(static_cast<const double*>(solution->x), right.nrow, right.ncol);
   cholmod_free_dense(&solution, &common_);
   return result;

@@ -53,7 +53,7 @@ std::optional<Eigen::Vector3d> finiteForce(const geometry_msgs::WrenchStamped* m
 }
 
 std::optional<Eigen::Vector3d> trustedForce(const geometry_msgs::WrenchStamped* message, const Eigen::Matrix3d& tip) {
-  const auto force = finiteForce(message);
+  auto force = finiteForce(message);
   if (!force || isIn(message->header.frame_id, kWorldFrame)) return force;
   if (message->header.frame_id == kTipFrame) return Eigen::Vector3d(tip * *force);
   return std::nullopt;

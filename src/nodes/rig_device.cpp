@@ -62,11 +62,11 @@ double pullDuration(const std::string& text) {
 }
 
 RigDevice makeEmulated(const Rig& rig, ConfigReader& reader) {
-  const std::shared_ptr<ManipulatorEmulator> emulator = rig.makeEmulator();
+  const std::shared_ptr<ManipulatorEmulator> emulator = rig.make_emulator();
   auto wire = std::make_unique<EmulatedWire>(emulator, rig.default_baud);
   const auto cable = std::make_shared<Cable>(*wire);  // the driver owns the wire and lives as long as the cable
   RigDevice result;
-  result.device = rig.makeDriver(reader, std::move(wire));
+  result.device = rig.make_driver(reader, std::move(wire));
   result.before_step = [cable](double time) { cable->step(time); };
   result.inject = [cable, emulator](const std::string& text, double time) {
     if (text.rfind("pull:", 0) == 0) return cable->pull(time + pullDuration(text));
@@ -86,7 +86,7 @@ RigDevice makeRigDevice(const std::string& name, bool emulated, const Manipulato
   const Rig& rig = findRig(name);
   if (emulated) return makeEmulated(rig, reader);
   RigDevice result;
-  result.device = rig.makeDriver(reader, nullptr);
+  result.device = rig.make_driver(reader, nullptr);
   return result;
 }
 

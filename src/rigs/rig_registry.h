@@ -20,8 +20,8 @@ struct Rig {
 
   /// Reads the device's keys from `reader` (all of them, and calls finish(): ConfigError for what is wrong or unknown)
   /// and puts the driver on `wire`; without one on the serial port that the configuration names.
-  std::function<std::unique_ptr<ManipulatorDevice>(ConfigReader& reader, std::unique_ptr<Wire> wire)> makeDriver;
-  std::function<std::shared_ptr<ManipulatorEmulator>()> makeEmulator;
+  std::function<std::unique_ptr<ManipulatorDevice>(ConfigReader& reader, std::unique_ptr<Wire> wire)> make_driver;
+  std::function<std::shared_ptr<ManipulatorEmulator>()> make_emulator;
 };
 
 const std::vector<Rig>& rigs();

@@ -43,7 +43,7 @@ std::string ForceReadout::begin(Purpose purpose) {
 }
 
 std::string ForceReadout::beginTare() {
-  const std::string refusal = begin(Purpose::kTare);
+  std::string refusal = begin(Purpose::kTare);
   if (refusal.empty()) outcome_ = "taring";
   return refusal;
 }
@@ -51,7 +51,7 @@ std::string ForceReadout::beginTare() {
 std::string ForceReadout::beginPoint(const Eigen::VectorXd& force) {
   if (force.size() != tare_.size() || !force.allFinite()) return "the known force is not finite";
   if (force.isZero(0)) return "the known force is zero: that is what tare is for";
-  const std::string refusal = begin(Purpose::kPoint);
+  std::string refusal = begin(Purpose::kPoint);
   if (!refusal.empty()) return refusal;
   known_ = force;
   outcome_ = "averaging under the known force";
@@ -85,7 +85,7 @@ std::string ForceReadout::solve() {
     force.col(i) = points_[i].force;
   }
   const bool whole = rankOf(force) == tare_.size();
-  const std::string refusal = whole ? solveMatrix(raw, force) : solveAxes(raw, force);
+  std::string refusal = whole ? solveMatrix(raw, force) : solveAxes(raw, force);
   if (!refusal.empty()) return refusal;
   residual_ = std::sqrt((gain_ * raw - force).squaredNorm() / static_cast<double>(force.size()));
   outcome_ = whole ? "calibrated: whole matrix" : "calibrated: gain of each axis";

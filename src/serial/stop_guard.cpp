@@ -48,7 +48,7 @@ std::string StopGuard::begin(int line, const std::string& words) {
   const int parent = fcntl(ends[0], F_DUPFD_CLOEXEC, 3), tty = fcntl(line, F_DUPFD_CLOEXEC, 3);
   guard_ = parent < 0 || tty < 0 ? -1 : fork();
   if (guard_ == 0) guard(tty, parent, words.data(), words.size());
-  const std::string why = guard_ < 0 ? std::strerror(errno) : "";
+  std::string why = guard_ < 0 ? std::strerror(errno) : "";
   for (const int each : {ends[0], parent, tty}) {
     if (each >= 0) close(each);
   }

@@ -107,7 +107,7 @@ EnergyExpansion::EnergyExpansion(const EnergyScales& scales, const EnergyDegrees
   for (int j = 0; j <= std::min(degrees.place, degrees.direction); ++j) {
     for (int k = 0; j + k <= degrees.direction; ++k) {
       for (int i = 0; 2 * i + j <= degrees.place; ++i) terms_.push_back({i, j, k, static_cast<int>(powers_.size())});
-      powers_.push_back({j, k});
+      powers_.emplace_back(j, k);
     }
   }
   coefficients_.setZero(size());

@@ -38,7 +38,7 @@ TipForce PreparedTracker::step(const Eigen::Vector3d& tip, const Eigen::Vector3d
   if (!tip.allFinite() || !axis.allFinite() || !std::isfinite(time)) {
     return distrustBecause("the needle's pose is not finite");
   }
-  const TipForce force = answer(tip, axis, std::max(0.0, time - time_));
+  TipForce force = answer(tip, axis, std::max(0.0, time - time_));
   time_ = time;
   shape_.write(needle_.shape());
   return force;

@@ -22,7 +22,7 @@ GeodesicSphere::GeodesicSphere(const std::vector<Eigen::Vector3d>& corners,
     if (key.size() == 1) return key[0][0];
     for (const auto& [corner, share] : key) at += share * corners[corner];
     const auto [entry, added] = numbers.try_emplace(key, static_cast<int>(vertices.size()));
-    if (added) vertices.push_back(radius / at.norm() * at);
+    if (added) vertices.emplace_back(radius / at.norm() * at);
     return entry->second;
   };
   for (const std::array<int, 3>& face : faces) {

@@ -40,10 +40,10 @@ StrutMesh::StrutMesh(const StrutMeshConfig& config, const Eigen::Vector3d& from,
     const Eigen::Vector3d middle = line(cap + (config.length - 2 * cap) * section / config.slices);
     for (int corner = 0; corner < kCorners; ++corner) {
       const double angle = 2 * kPi * corner / kCorners;
-      mesh.vertices.push_back(middle + radius * (std::cos(angle) * u + std::sin(angle) * v));
+      mesh.vertices.emplace_back(middle + radius * (std::cos(angle) * u + std::sin(angle) * v));
     }
   }
-  mesh.vertices.push_back(from + config.length * along);
+  mesh.vertices.emplace_back(from + config.length * along);
   for (const auto& [a, b, c] : kTriangles) {
     addTetrahedron(mesh, {firstApex(), vertex(0, a), vertex(0, b), vertex(0, c)});
     for (int slice = 0; slice < config.slices; ++slice) {

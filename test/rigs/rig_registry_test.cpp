@@ -22,7 +22,7 @@ YAML::Node delivered(const Rig& rig) {
 
 std::unique_ptr<ManipulatorDevice> make(const Rig& rig, const YAML::Node& config) {
   ConfigReader reader(config, rig.name + ".yaml");
-  return rig.makeDriver(reader, nullptr);
+  return rig.make_driver(reader, nullptr);
 }
 
 TEST(RigRegistry, FindsRigsAndNamesThemAll) {
@@ -62,7 +62,7 @@ TEST(RigRegistry, EveryDeliveredConfigurationIsReadAndWrongOnesAreRefused) {
 class HostThread {
  public:
   HostThread(const Rig& rig, const std::string& link)
-      : device_(rig.makeEmulator()), host_(device_, rig.default_baud, link), thread_([this] { serve(); }) {}
+      : device_(rig.make_emulator()), host_(device_, rig.default_baud, link), thread_([this] { serve(); }) {}
   ~HostThread() {
     ends_ = true;
     thread_.join();

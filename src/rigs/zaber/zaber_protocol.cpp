@@ -23,7 +23,7 @@ std::string checksum(const std::string& text) {
 /// Takes "<word> " off the front of `text`.
 std::string takeWord(std::string& text) {
   const std::size_t space = text.find(' ');
-  const std::string word = text.substr(0, space);
+  std::string word = text.substr(0, space);
   text = space == std::string::npos ? "" : text.substr(space + 1);
   return word;
 }
