@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""A live session on a master of its own: who is asked to end says zero force last; without the master all rests. How
-long that takes is wall time (nodes/master_watch.h) and not looked at here."""
+"""A live session on a master of its own: who is asked to end says zero force last; without the master, or while it
+hangs, all rests. How long that takes is wall time (nodes/master_watch.h) and not looked at here."""
 
 import csv
 import os
@@ -135,8 +135,15 @@ class KillMasterTest(unittest.TestCase):
         self.assertTrue(said)
         self.assertTrue(all(LOST in status.message for status in said), said)
 
-    def test_2_without_a_master_and_with_one_that_does_not_know_the_nodes_all_rests(self):
+    def test_2_while_the_master_hangs_all_rests_and_then_goes_on(self):
         self.begin_pulse(1)
+        self.master.signal(signal.SIGSTOP)
+        self.check_all_rests()
+        self.master.signal(signal.SIGCONT)
+        until(self.pressed, "the force again")
+
+    def test_3_without_a_master_and_with_one_that_does_not_know_the_nodes_all_rests(self):
+        self.begin_pulse(2)
         self.master.kill()
         self.check_all_rests()
         type(self).master = Master(self.port)
