@@ -17,7 +17,7 @@ from pathlib import Path
 
 import rospy
 from sensor_msgs.msg import Joy
-from visualization_msgs.msg import InteractiveMarkerFeedback
+from visualization_msgs.msg import InteractiveMarkerFeedback, InteractiveMarkerInit
 
 from cell_microinjection.msg import InjectionStatus, OperatingState
 from demo_session import DemoSession, SessionError
@@ -81,16 +81,25 @@ class Mouse:
         self._publisher = rospy.Publisher('/hand_marker/feedback', InteractiveMarkerFeedback, queue_size=100)
         self._goals = iter((self.FIRST, self.THEN))
         self._goal = None
+        self._shown = None  # where the handle is, display units
+        rospy.Subscriber('/hand_marker/update_full', InteractiveMarkerInit, self._see)
         self._held = time.monotonic()  # since then the handle is held, as far as is known
         rospy.Subscriber('/haptic/operator_present', Joy, self._hear)
         threading.Thread(target=self._drag, daemon=True).start()
         time.sleep(3)
 
-    def _say(self, event, z=0.0, entry=0):
+    def _see(self, message):
+        place = message.markers[0].pose.position
+        self._shown = [place.x, place.y, place.z]
+
+    def _say(self, event, z=None, entry=0):
         message = InteractiveMarkerFeedback(client_id='mouse', marker_name='hand', event_type=event, menu_entry_id=entry)
         message.header.frame_id = 'viz/world'
         message.pose.orientation.w = 1
-        message.pose.position.x, message.pose.position.z = DISPLAY_SCALE * 36e-6, DISPLAY_SCALE * z
+        place = message.pose.position
+        place.x, place.y, place.z = self._shown
+        if z is not None:
+            place.x, place.y, place.z = DISPLAY_SCALE * 36e-6, 0.0, DISPLAY_SCALE * z
         self._publisher.publish(message)
 
     def _drag(self):

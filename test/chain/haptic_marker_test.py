@@ -110,9 +110,19 @@ class MarkerTest(HapticTest):
         self.go_on(400, self.good)
         np.testing.assert_allclose(self.hand() - start, [0, 0, -4e-3], atol=1e-9)
 
+    def test_a_handle_that_was_dragged_for_nothing_is_put_back_and_counts_from_where_it_is(self):
+        start, self.place = self.hand(), HANDLE + 1e4 * np.array([0, 0, -30e-6])
+        self.shown.pop("place", None)
+        self.say(InteractiveMarkerFeedback.POSE_UPDATE, self.place)  # of a drag that has not begun
+        self.until(lambda: np.allclose(self.shown.get("place", 0), HANDLE, atol=1e-3), self.good, "it stays away")
+        self.say(InteractiveMarkerFeedback.MOUSE_DOWN, self.place)
+        self.until(self.present, self.good, "the operator is not present")
+        self.go_on(400, self.good)
+        np.testing.assert_allclose(self.hand(), start, atol=1e-9)
+
     def test_after_a_long_hold_the_handle_must_be_taken_hold_of_again(self):
         self.drag()
-        self.go_on(700, self.held)
+        self.go_on(900, self.held)
         self.assertFalse(self.present())
         there = self.hand()
         self.say(InteractiveMarkerFeedback.POSE_UPDATE, self.place)
@@ -147,6 +157,7 @@ class MarkerTest(HapticTest):
         start = self.hand()
         self.say(InteractiveMarkerFeedback.MOUSE_DOWN)
         self.say(InteractiveMarkerFeedback.POSE_UPDATE, HANDLE + [0, 0, -1], frame="world")
+        self.say(InteractiveMarkerFeedback.MOUSE_DOWN)
         self.say(InteractiveMarkerFeedback.POSE_UPDATE, [np.nan, 0, 0])
         self.say(InteractiveMarkerFeedback.MENU_SELECT, entry=4)  # comes after them
         self.until(lambda: "disable" in self.commands, self.good, "no command")

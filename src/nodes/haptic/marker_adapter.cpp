@@ -16,7 +16,8 @@ namespace {
 
 constexpr char kFrame[] = "viz/world";
 constexpr double kTimeout = 0.2;                // s, of needle and its target
-constexpr double kLongHold = 0.5;               // s; a network's delay there and back is no hold
+constexpr double kLongStart = 1.5;              // s, from taking hold to leading; a network's delay there and back
+constexpr double kLongHold = 0.5;               // s
 constexpr double kShowPeriod = 1.0 / 15;        // s
 constexpr double kLeastMotion = 0.05e-6;        // m of the needle that the handle is moved for
 constexpr double kTextHeight = 0.04;            // display units
@@ -46,7 +47,8 @@ MarkerAdapter::MarkerAdapter(Cycle& cycle, const MarkerConfig& config)
       force_(cycle.node().advertise<visualization_msgs::MarkerArray>("hand_marker/force", 1, true)) {
   controller_ = cycle.node().subscribe<cell_microinjection::OperatingState>(
       "controller/operating_state", 10, [this](const cell_microinjection::OperatingStateConstPtr& message) {
-        controller_follows_ = message->state == "ENABLED" && !message->is_busy;
+        const bool homes = message->state == "ENABLED" && message->is_busy;
+        controller_state_ = homes ? "on its way home" : message->state == "ENABLED" ? "" : message->state;
       });
   const std::vector<std::pair<std::string, std::string>> words{
       {"Enable", "enable"}, {"Inject", "inject"}, {"Withdraw (home)", "home"}, {"Disable", "disable"}};
@@ -70,35 +72,39 @@ void MarkerAdapter::onFeedback(const Feedback& feedback) {
                       feedback->header.frame_id.c_str(), kFrame);
     return letGo();
   }
-  if (event == Event::MOUSE_DOWN) return takeHold();
-  if (!dragged_) return;
-  handle_ = to;
-  hand_.stay();
+  handle_ = to;  // also of a drag that is lost: then it is put back
+  if (event == Event::MOUSE_DOWN) takeHold();
+  if (dragged_) hand_.stay();
 }
 
 void MarkerAdapter::takeHold() {
-  lost_ = false;
-  if (dragged_ || !tip_) return;
+  if (dragged_) return;
+  lost_because_ = tip_ ? "" : "the needle's place is not known";
+  if (!tip_) return;
   dragged_ = true;
+  led_ = false;
   held_ = 0;
   drag_from_ = handle_;
   hand_from_ = hand_.position();
-  hand_.stay();
 }
 
 void MarkerAdapter::letGo() {
-  dragged_ = lost_ = false;
+  dragged_ = false;
   hand_.letGo();
 }
 
 void MarkerAdapter::pull(const Cycle::Tick& tick) {
-  const bool leads = controller_follows_ && target_.get(tick.now);
-  held_ = leads ? 0 : held_ + tick.dt;
   if (!dragged_) return;
-  if (held_ > kLongHold || !hand_.present()) {
-    letGo();
-    lost_ = true;
-    return;
+  const bool leads = controller_state_.empty() && target_.get(tick.now);
+  held_ = leads ? 0 : held_ + tick.dt;
+  led_ = led_ || leads;
+  const bool long_held = held_ > (led_ ? kLongHold : kLongStart);
+  if (long_held || !hand_.present()) {
+    lost_because_ = !hand_.present()             ? "rviz was silent"
+                    : !controller_state_.empty() ? "the controller is " + controller_state_
+                    : !news_.held().empty()      ? news_.held()
+                                                 : "the needle was held";
+    return letGo();
   }
   hand_.moveTo(leads ? hand_from_ + config_.hand_scale * (handle_ - drag_from_) : hand_.position());
 }
@@ -134,8 +140,9 @@ void MarkerAdapter::followNeedle() {
 
 std::string MarkerAdapter::why() const {
   std::string all;
-  if ((dragged_ || lost_) && !news_.held().empty()) all += "\n" + news_.held();
-  if (lost_) all += "\nlet go, and take hold again";
+  if (dragged_ && !news_.held().empty()) all += "\n" + news_.held();
+  if (!lost_because_.empty()) all += "\n" + lost_because_ + ": let go, and take hold again";
+  if (!controller_state_.empty()) all += "\n" + controller_state_ + " (right button: Enable)";
   if (!news_.notice().empty()) all += "\n" + news_.notice();
   return all;
 }

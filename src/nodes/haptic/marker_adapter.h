@@ -25,9 +25,9 @@ struct MarkerConfig {
 
 /// A handle beside the needle in rviz that a person drags with the mouse, and a menu of the operator's words. While the
 /// mouse button is down the operator is present and the needle goes after the handle; otherwise the handle comes back
-/// to the needle. While bridge or controller hold the needle the hand waits, so that needle and handle stay together;
-/// after a hold that was long (or when rviz was silent) the needle goes nowhere until the handle is taken hold of
-/// again.
+/// to the needle. While the bridge holds the needle or the controller is not ENABLED the hand waits, so that needle and
+/// handle stay together; after a hold that was long (or when rviz was silent) the needle goes nowhere until the handle
+/// is taken hold of again. What a guard of the controller refuses is forgotten, and handle and needle are apart by it.
 ///
 /// The handle lies in viz/world, at x 1e4. Its topics are /hand_marker/... and not below viz/, which nothing that
 /// controls may read.
@@ -64,9 +64,10 @@ class MarkerAdapter : public HapticAdapter {
   Eigen::Vector3d drag_from_ = Eigen::Vector3d::Zero();  ///< m, `world`, of the handle
   Eigen::Vector3d hand_from_ = Eigen::Vector3d::Zero();  ///< m, of the hand
   bool dragged_ = false;
-  bool lost_ = false;               ///< the drag was ended while the mouse button was down
-  bool controller_follows_ = true;  ///< as far as it has said
-  double held_ = 0;                 ///< s, since the hand led the needle
+  bool led_ = false;              ///< in this drag
+  double held_ = 0;               ///< s, since the hand led the needle or the drag began
+  std::string lost_because_;      ///< why a drag was ended while the mouse button was down; empty: it was not
+  std::string controller_state_;  ///< empty: it follows, as far as it has said
   ros::Time shown_;
 };
 
