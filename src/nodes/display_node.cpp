@@ -127,7 +127,7 @@ void DisplayNode::onState(const cell_microinjection::CellState& message) {
 
 void DisplayNode::lookForTip() {
   const bool was_known = state_.tip.has_value();
-  state_.tip = frames_.find("needle_tip", "world");
+  state_.tip = frames_.find("world", "needle_tip");
   if (state_.tip.has_value() != was_known) still_drawn_ = {};  // the pipette comes or goes at once
 }
 

@@ -10,10 +10,10 @@ from screen import Screen
 PICTURE_RATE = 2  # Hz; who looks at a virtual display wants one picture, and rendering in software costs a core
 
 
-def _for_one_picture(config, folder):
-    """Returns a copy of an rviz configuration that draws at PICTURE_RATE."""
+def _at_rate(rate, config, folder):
+    """Returns a copy of an rviz configuration that draws at `rate` (Hz)."""
     copy = folder / config.name
-    copy.write_text(re.sub(r'Frame Rate: \d+', f'Frame Rate: {PICTURE_RATE}', config.read_text(encoding='utf-8')),
+    copy.write_text(re.sub(r'Frame Rate: \d+', f'Frame Rate: {rate}', config.read_text(encoding='utf-8')),
                     encoding='utf-8')
     return copy
 
@@ -29,22 +29,23 @@ class RvizError(Exception):
 class RvizView:
     """rviz with a configuration; close it before the program ends."""
 
-    def __init__(self, config, logs):
-        """@raises RvizError when there is no display to be had."""
+    def __init__(self, config, logs, virtual_rate=PICTURE_RATE):
+        """@param virtual_rate  Hz, that a virtual display is drawn at
+        @raises RvizError when there is no display to be had."""
         try:
             self._screen = Screen(logs / 'xvfb.log')
         except (OSError, RuntimeError) as error:
             raise RvizError(f'there is no display, and no virtual one: {error}') from error
         self.virtual = self._screen.virtual
-        self._environment = {**os.environ, **self._screen.environment}
+        self.environment = {**os.environ, **self._screen.environment}
         # The whole virtual screen is rviz's; of the user's screen the picture takes nothing but rviz's window, whose
         # title has an asterisk once the view was changed.
         self._windows = ('root',) if self.virtual else (f'{config.name} - RViz', f'{config.name}* - RViz')
         # Rendering in software takes a whole core; the nodes at 1 kHz come first by their real-time priority.
-        shown = _for_one_picture(config, logs) if self.virtual else config
+        shown = _at_rate(virtual_rate, config, logs) if self.virtual else config
         command = ['nice', '-n', '10', 'rviz', '-d', str(shown)] + (['--fullscreen'] if self.virtual else [])
         try:
-            self._rviz = Child(command, logs / 'rviz.log', self._environment)
+            self._rviz = Child(command, logs / 'rviz.log', self.environment)
             self._rviz.favour(SHARE)
         except OSError as error:
             self._screen.close()
@@ -65,7 +66,7 @@ class RvizView:
             check()
             return self.running()
         self._rviz.favour(PICTURE_SHARE)
-        taken = screenshot.take_scene(path, self._windows, self._environment, timeout, go_on)
+        taken = screenshot.take_scene(path, self._windows, self.environment, timeout, go_on)
         self._rviz.favour(SHARE)
         return taken
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Does what README's "Teleoperate" tells a person with a keyboard or a mouse to do, with made-up keys or drags.
+"""Does what README's "Teleoperate" tells a person to do, with made-up keys in a terminal or a made-up mouse in rviz.
 
     ./dev shell -- python3 src/tools/try_teleoperation.py OUT [--hand keyboard|marker] [--cell NAME]
 
@@ -11,21 +11,20 @@ import os
 import pty
 import subprocess
 import sys
-import threading
 import time
 from pathlib import Path
 
 import rospy
 from sensor_msgs.msg import Joy
-from visualization_msgs.msg import InteractiveMarkerFeedback, InteractiveMarkerInit
 
 from cell_microinjection.msg import InjectionStatus, OperatingState
 from demo_session import DemoSession, SessionError
-from rviz_view import RvizError, RvizView
+from rviz_mouse import MouseError, RvizMouse
+from rviz_view import PICTURE_RATE, RvizError, RvizView
 
 ROOT = Path(__file__).resolve().parents[2]
 PATIENCE = 120     # s for each stage
-DISPLAY_SCALE = 1e4
+MOUSE_RATE = 8     # Hz, that rviz draws at for a mouse
 PICTURE_FORCE = 2e-6  # N, of the pressed cell in the picture
 
 
@@ -73,69 +72,37 @@ class Keyboard:
 
 
 class Mouse:
-    """What rviz says of the handle while a mouse drags it down, and of its menu."""
+    """The handle in rviz, dragged by the arrow below it, and its menu."""
 
-    FIRST, THEN = 16e-6, -50e-6  # m, heights of the handle and thus of the tip: 12 um deep, and beyond the centre
-
-    def __init__(self):
-        self._publisher = rospy.Publisher('/hand_marker/feedback', InteractiveMarkerFeedback, queue_size=100)
-        self._goals = iter((self.FIRST, self.THEN))
-        self._goal = None
-        self._shown = None  # where the handle is, display units
-        rospy.Subscriber('/hand_marker/update_full', InteractiveMarkerInit, self._see)
+    def __init__(self, view, folder):
+        self._mouse = RvizMouse(view, folder)
         self._held = time.monotonic()  # since then the handle is held, as far as is known
         rospy.Subscriber('/haptic/operator_present', Joy, self._hear)
-        threading.Thread(target=self._drag, daemon=True).start()
-        time.sleep(3)
-
-    def _see(self, message):
-        place = message.markers[0].pose.position
-        self._shown = [place.x, place.y, place.z]
-
-    def _say(self, event, z=None, entry=0):
-        message = InteractiveMarkerFeedback(client_id='mouse', marker_name='hand', event_type=event, menu_entry_id=entry)
-        message.header.frame_id = 'viz/world'
-        message.pose.orientation.w = 1
-        place = message.pose.position
-        place.x, place.y, place.z = self._shown
-        if z is not None:
-            place.x, place.y, place.z = DISPLAY_SCALE * 36e-6, 0.0, DISPLAY_SCALE * z
-        self._publisher.publish(message)
-
-    def _drag(self):
-        while True:
-            if self._goal is not None:
-                self._say(InteractiveMarkerFeedback.POSE_UPDATE, self._goal)
-            time.sleep(0.1)
 
     def _hear(self, message):
         if message.buttons[0]:
             self._held = time.monotonic()
 
     def press(self):
-        self._say(InteractiveMarkerFeedback.MOUSE_DOWN)
+        if not self._mouse.holds():
+            self._mouse.take_hold()
         self._held = time.monotonic()
-        self._goal = next(self._goals)
 
     def go_on(self):
-        """Takes hold again of a handle that was lost in a long hold."""
-        if time.monotonic() < self._held + 2:
-            return
-        print('        the handle was lost', flush=True)
-        self._say(InteractiveMarkerFeedback.MOUSE_UP)
-        time.sleep(0.3)
-        self._say(InteractiveMarkerFeedback.MOUSE_DOWN)
-        self._held = time.monotonic()
+        if time.monotonic() > self._held + 2:
+            print('        the handle was lost', flush=True)
+            self._mouse.release()
+            self.press()
+        self._mouse.drag_down()
 
     def release(self):
-        self._goal = None
-        self._say(InteractiveMarkerFeedback.MOUSE_UP)
+        self._mouse.release()
 
     def inject(self):
-        self._say(InteractiveMarkerFeedback.MENU_SELECT, entry=2)
+        self._mouse.choose('Inject')
 
     def withdraw(self):
-        self._say(InteractiveMarkerFeedback.MENU_SELECT, entry=3)
+        self._mouse.choose('Withdraw')
 
     def close(self):
         pass
@@ -175,13 +142,14 @@ class Trial:
 
 def run(arguments, session):
     session.wait_ready()
-    view = RvizView(ROOT / 'config/session.rviz', arguments.out)
+    by_mouse = arguments.hand == 'marker'
+    view = RvizView(ROOT / 'config/session.rviz', arguments.out, MOUSE_RATE if by_mouse else PICTURE_RATE)
     try:
         trial = Trial(session.check)
         if not view.picture(arguments.out / 'before.png', PATIENCE, session.check):
             raise SessionError('rviz does not show the cell')
         time.sleep(5)  # until it shows the rest
-        hand = {'keyboard': Keyboard, 'marker': Mouse}[arguments.hand]()
+        hand = Mouse(view, arguments.out) if by_mouse else Keyboard()
         hand.press()
         trial.until(lambda s: s.force > PICTURE_FORCE, 'pressed', hand.go_on)
         time.sleep(2)  # rviz without a graphics card draws twice a second
@@ -215,7 +183,7 @@ def main():
                           {'clock': 'wall', 'haptic': arguments.hand, 'cell': arguments.cell})
     try:
         run(arguments, session)
-    except (SessionError, RvizError) as error:
+    except (SessionError, RvizError, MouseError) as error:
         sys.exit(f'try_teleoperation: {error}')
     finally:
         session.stop()
