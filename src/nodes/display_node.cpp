@@ -67,7 +67,7 @@ const char* const DisplayNode::kHelp =
     "display: shows the scene in rviz, ten thousand times enlarged.\n"
     "In: /cell/state /force_sensor/measured_cf /haptic/measured_cp /controller/injection_state, tf of world, cell, "
     "needle_tip and the rig.\n"
-    "Out: viz/markers (MarkerArray), tf below viz/world.\n"
+    "Out: viz/markers viz/still (MarkerArray), tf below viz/world.\n"
     "Parameters: ~rate (Hz of wall time), ~edges, ~colour_range (m), ~force_scale (m/N), ~injection_pipette,\n"
     "~holding_pipette; see config/display.yaml.\n";
 
@@ -83,6 +83,7 @@ DisplayNode::DisplayNode(ros::NodeHandle node, ros::NodeHandle private_node)
       diagnostics_(node, private_node) {
   state_.readout.state = "waiting for the cell";
   markers_ = node.advertise<visualization_msgs::MarkerArray>("viz/markers", 5);
+  still_ = node.advertise<visualization_msgs::MarkerArray>("viz/still", 1, true);
   // Only the latest message is worth a picture.
   const auto hints = ros::TransportHints().tcpNoDelay();
   const auto topic = [this](InputId input) { return inputs_[input].topic; };
@@ -157,13 +158,16 @@ void DisplayNode::draw() {
     visualization_msgs::MarkerArray markers;
     if (cell_changed_) scene_.drawCell(state_, markers);
     cell_changed_ = false;
-    if (start - still_drawn_ > ros::WallDuration(kStillPeriod)) {
-      state_.holding_from_cell = frames_.find("holding_pipette", state_.cell_frame);
-      scene_.drawStill(state_, markers);
-      still_drawn_ = start;
-    }
     scene_.drawMoving(state_, markers);
     markers_.publish(markers);
+  }
+  if (still_.getNumSubscribers() > 0 &&
+      (scene_.stillChanged() || start - still_drawn_ > ros::WallDuration(kStillPeriod))) {
+    state_.holding_from_cell = frames_.find("holding_pipette", state_.cell_frame);
+    visualization_msgs::MarkerArray markers;
+    scene_.drawStill(state_, markers);
+    still_.publish(markers);
+    still_drawn_ = start;
   }
   ++drawings_;
   longest_drawing_ = std::max(longest_drawing_, (ros::WallTime::now() - start).toSec());

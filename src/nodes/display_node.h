@@ -20,7 +20,8 @@ namespace microinjection {
 /// In:  /cell/state (with the predicted force), /force_sensor/measured_cf, /haptic/measured_cp, and from tf the frames
 /// of the
 ///      rig, needle_tip among them: a picture needs no pose a thousand times a second
-/// Out: viz/markers (MarkerArray), tf of viz/{cell, holding_pipette, manipulator_base, needle_tip} below viz/world
+/// Out: viz/markers, viz/still (MarkerArray; the second, of what seldom changes, is latched: an rviz that draws slowly
+///      skips some of the first), tf of viz/{cell, holding_pipette, manipulator_base, needle_tip} below viz/world
 ///
 /// Parameters: private those of DisplayConfig; see config/display.yaml.
 ///
@@ -67,7 +68,7 @@ class DisplayNode {
   unsigned drawings_ = 0;       ///< since reported_
   double longest_drawing_ = 0;  ///< s of wall time, since reported_
 
-  ros::Publisher markers_;
+  ros::Publisher markers_, still_;
   std::array<ros::Subscriber, kInputs> subscribers_;
   diagnostic_updater::Updater diagnostics_;
   ros::WallTimer timer_;

@@ -21,6 +21,7 @@ constexpr Colour kAlarm{1.00f, 0.45f, 0.35f, 1};
 
 constexpr double kSmallestRange = 1e-6;                     // m, of the colour scale: noise does not fill it
 constexpr float kMembrane = 0.25f;                          // opacity, of a cell with struts and cables inside
+constexpr double kForceAbove = 20e-6;                       // m, of a force's arrow from the tip
 constexpr double kHole = 0.03;                              // display units; not to scale
 constexpr double kStrutWidth = 0.016, kCableWidth = 0.006;  // display units; not to scale
 const std::string kWorld = "viz/world";
@@ -37,8 +38,8 @@ void DisplayScene::drawForce(const std::string& name, const DisplayedState& stat
                              visualization_msgs::MarkerArray& markers) const {
   std::optional<Arrow> arrow;
   if (state.tip && force) {
-    // Beside the pipette, which would hide it.
-    const Eigen::Vector3d tail = *state.tip * Eigen::Vector3d(beside, 0, 0);
+    // Beside the pipette and above the dent, which would hide it.
+    const Eigen::Vector3d tail = *state.tip * Eigen::Vector3d(beside, 0, kForceAbove);
     arrow = forceArrow(tail, *force, config_.force_scale);
   }
   const MarkerName marker{kWorld, name};
@@ -79,7 +80,7 @@ void DisplayScene::drawCell(const DisplayedState& state, visualization_msgs::Mar
     const double range = niceCeiling(std::max(kSmallestRange, surface.largestDisplacement()));
     if (range > colour_range_) {
       colour_range_ = range;
-      drawLegend(markers);
+      still_changed_ = true;
     }
   }
   const std::string frame = "viz/" + state.cell_frame;
@@ -136,6 +137,7 @@ void DisplayScene::drawStill(const DisplayedState& state, visualization_msgs::Ma
   markers.markers.push_back(state.tip ? triangleMarker(injection, glass(config_.injection_pipette), {1, 1, 1, 1})
                                       : noMarker(injection));
   drawLegend(markers);
+  still_changed_ = false;
 }
 
 }  // namespace microinjection

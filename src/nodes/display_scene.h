@@ -35,10 +35,12 @@ class DisplayScene {
 
   /// What moves on its own, but for the cell: forces and readout.
   void drawMoving(const DisplayedState& state, visualization_msgs::MarkerArray& markers) const;
-  /// The cell's surface, edges, members and contact, and the legend when its range has grown.
+  /// The cell's surface, edges, members and contact.
   void drawCell(const DisplayedState& state, visualization_msgs::MarkerArray& markers);
   /// What stays: pipettes and legend.
   void drawStill(const DisplayedState& state, visualization_msgs::MarkerArray& markers);
+  /// Since drawStill the colours' scale has.
+  bool stillChanged() const { return still_changed_; }
 
  private:
   void drawForce(const std::string& name, const DisplayedState& state, const std::optional<Eigen::Vector3d>& force,
@@ -49,9 +51,10 @@ class DisplayScene {
   void fitHoldingPipette(const DisplayedState& state);
 
   const DisplayConfig config_;
-  double tension_range_ = 0;   ///< N, largest tension seen
-  double colour_range_;        ///< m, displacement at the end of the colour scale
-  HoldingPipette holding_;     ///< as configured, with the mouth where the cell touches it
+  double tension_range_ = 0;  ///< N, largest tension seen
+  double colour_range_;       ///< m, displacement at the end of the colour scale
+  HoldingPipette holding_;    ///< as configured, with the mouth where the cell touches it
+  bool still_changed_ = false;
   double holding_height_ = 0;  ///< m, of the mouth along the z axis of holding_pipette
 };
 

@@ -33,7 +33,8 @@ class DisplayTest(unittest.TestCase):
         cls.tf = rospy.Publisher("/tf", TFMessage, queue_size=10)
         cls.force = rospy.Publisher("/force_sensor/measured_cf", WrenchStamped, queue_size=1)
         rospy.Subscriber("/tf", TFMessage, cls.on_frames)
-        rospy.Subscriber("/viz/markers", MarkerArray, cls.on_markers)
+        for topic in ("/viz/markers", "/viz/still"):
+            rospy.Subscriber(topic, MarkerArray, cls.on_markers)
 
     @classmethod
     def on_frames(cls, message):
@@ -81,8 +82,9 @@ class DisplayTest(unittest.TestCase):
         self.assertEqual(arrow.header.frame_id, "viz/world")
         tail, head = (np.array([point.x, point.y, point.z]) for point in arrow.points)
         np.testing.assert_allclose((head - tail) / np.linalg.norm(head - tail), AXIS, atol=1e-6)
-        self.assertAlmostEqual((tail - SCALE * TIP) @ AXIS, 0, delta=1e-6)  # beside the tip
-        self.assertLess(np.linalg.norm(tail - SCALE * TIP), 0.5)
+        beside = tail - SCALE * TIP
+        self.assertAlmostEqual(beside @ AXIS, SCALE * 20e-6, delta=1e-6)
+        self.assertAlmostEqual(np.linalg.norm(beside - (beside @ AXIS) * AXIS), SCALE * 16e-6, delta=1e-6)
 
 
 if __name__ == "__main__":
