@@ -115,6 +115,17 @@ class Demo:
         self._session.monitor.go()
 
     def _start_rviz(self):
+        try:
+            self._wait_for_rviz()
+        except RvizError:
+            if not self._view or not self._view.virtual:
+                raise
+            # It has crashed in its own start, seldom, before it showed anything.
+            say('rviz has ended; once more')
+            self._view.close()
+            self._wait_for_rviz()
+
+    def _wait_for_rviz(self):
         self._view = RvizView(ROOT / 'config' / 'session.rviz', self._logs)
         say('starting rviz' + (' on a virtual display' if self._view.virtual else ''))
 
