@@ -50,12 +50,6 @@ InjectionFeedback InjectionController::feedback() const {
   return {injection_, layer, layers, monitor_.force(), monitor_.depth(), run_.result().duration};
 }
 
-std::optional<PulseGoal> InjectionController::pulse() const {
-  if (injection_ != InjectionState::kInject) return std::nullopt;
-  if (run_.active()) return run_.goal().pulse;
-  return pulse_by_hand_ ? std::optional(config_.goal.pulse) : std::nullopt;
-}
-
 void InjectionController::happen(InjectionEvent event) {
   const auto next = after(injection_, event);
   if (!next) return;
@@ -138,15 +132,6 @@ bool InjectionController::rigIsAtFault(const Eigen::Vector3d& needle, double dt)
   return true;
 }
 
-void InjectionController::watchHandPulse(const Input& input, double dt) {
-  if (!pulse_by_hand_) return;
-  const InjectorWait::Status status = hand_pulse_.step(input.injector, dt);
-  if (status == InjectorWait::Status::kWaiting) return;
-  if (status == InjectorWait::Status::kBroken) notice_ = "the injector ended the pulse too early";
-  if (status == InjectorWait::Status::kTimeOut) notice_ = "the injector does not say that the pulse is over";
-  happen(InjectionEvent::kInjected);
-}
-
 void InjectionController::observe(const Input& input, bool force_trusted, double dt) {
   if (force_trusted) {
     monitor_.step(*input.needle, input.axis, *input.force);
@@ -201,16 +186,6 @@ void InjectionController::stop(InjectionOutcome outcome, const std::string& reas
 void InjectionController::stopNeedle(const Input& input) {
   const double ahead = (*input.needle - *setpoint_).dot(input.axis);
   *setpoint_ += std::max(0.0, ahead) * input.axis;
-}
-
-/// Where it is not known what is injected into. By hand only the pulse is over.
-void InjectionController::endPulse(const std::string& why) {
-  if (!pulse()) return;
-  if (byHand()) {
-    notice_ = "the pulse was ended: " + why;
-    return happen(InjectionEvent::kInjected);
-  }
-  stop(InjectionOutcome::kGuard, why + " while it injects");
 }
 
 std::optional<Eigen::Vector3d> InjectionController::ownTarget(const Input& input, double dt) {

@@ -79,6 +79,7 @@ void InjectionControllerNode::obey(const std::string& command) {
   } else {
     ROS_WARN_STREAM("state command " << model_.notice());
   }
+  told_ = model_.notice();
 }
 
 void InjectionControllerNode::adaptTo(const cell_microinjection::ManipulatorAbilities& rig) {
@@ -102,18 +103,22 @@ void InjectionControllerNode::step(const Cycle::Tick& tick) {
     input.axis = needle->linear().col(2);
     input.force = trustedForce(force_.get(tick.now), needle->linear());
   }
-  const std::string notice = model_.notice();
-  const auto setpoint = model_.step(input, tick.dt);
-  if (model_.notice() != notice) ROS_WARN_STREAM(model_.notice());
-  if (setpoint) {
+  if (const auto setpoint = model_.step(input, tick.dt)) {
     Eigen::Isometry3d pose = needle ? *needle : Eigen::Isometry3d::Identity();
     pose.translation() = *setpoint;
     setpoint_.publish(toPose(pose, target && model_.followsTarget() ? target->header.stamp : tick.now, kWorldFrame));
   }
   if (injector_) injector_->want(model_.pulse(), tick.now);
   action_.step(tick.now);
+  tellNotice();
   publishState(tick.now);
   publishInjection(tick.now);
+}
+
+void InjectionControllerNode::tellNotice() {
+  if (model_.notice() == told_) return;
+  told_ = model_.notice();
+  if (!told_.empty()) ROS_WARN_STREAM(told_);
 }
 
 void InjectionControllerNode::publishState(const ros::Time& now) {

@@ -60,6 +60,7 @@ class InjectionControllerNode {
   void obey(const std::string& command);
   void adaptTo(const cell_microinjection::ManipulatorAbilities& rig);
   void step(const Cycle::Tick& tick);
+  void tellNotice();
   void publishState(const ros::Time& now);
   void publishInjection(const ros::Time& now);
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
@@ -79,6 +80,7 @@ class InjectionControllerNode {
   ros::Publisher state_;
   cell_microinjection::OperatingState said_;                ///< the last that was published
   cell_microinjection::InjectionStatus said_of_injection_;  ///< the last that was published
+  std::string told_;                                        ///< the last notice that is in the log
 };
 
 }  // namespace microinjection

@@ -44,8 +44,9 @@ void InjectionRig::run(double limit) {
 }
 
 bool InjectionRig::holds() {
-  while (isIn(Trouble::Kind::kRigStands)) step();  // it has yet to go where it was sent last
-  for (int i = 0; i < 1000; ++i) step();
+  const bool stood = isIn(Trouble::Kind::kRigStands);  // it has yet to go where it was sent last
+  while (isIn(Trouble::Kind::kRigStands)) step();
+  for (int i = 0; i < (stood ? 1000 : 200); ++i) step();
   const Eigen::Vector3d before = tip();
   for (int i = 0; i < 500; ++i) step();
   return (tip() - before).norm() < 1e-8 && !controller_.pulse() && !injector_.reading().busy;

@@ -53,7 +53,7 @@ class InjectionRig {
   const Truth& truth() const { return truth_; }
   const InjectionController& controller() const { return controller_; }
   Eigen::Vector3d tip() const { return geometry_.tip(device_.trueJoints()); }
-  /// Rests: a second later, and when a rig that stood still goes again, the tip stays where it is for half a second,
+  /// Rests: 0.2 s later (a second after a rig that stood still goes again) the tip stays where it is for half a second,
   /// and the injector is off.
   bool holds();
 

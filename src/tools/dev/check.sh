@@ -55,7 +55,7 @@ check_package() {
 
 run_clang_tidy() {
   local pattern="^$WORKSPACE/src/cell_microinjection/src/.*$1" database="$WORKSPACE/build"
-  say "lint: clang-tidy of the files below src/ that match '$1' (20 minutes for all)"
+  say "lint: clang-tidy of the files below src/ that match '$1' (takes long for all)"
   # Without this, a mistyped pattern would pass. Not grep -q, which ends before sed has written all.
   grep -E '"file":' "$database/compile_commands.json" | sed -e 's/.*: "//' | grep -E "$pattern" >/dev/null ||
     { echo "no file matches"; return 1; }
