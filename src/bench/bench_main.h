@@ -21,7 +21,9 @@ int benchMain(int argc, char** argv, const std::string& title, const Table& tabl
     options.add_options()("help", "this text")("csv", po::value(&csv), "file to write the table to as well");
     options.add(more);
     po::variables_map values;
-    po::store(po::parse_command_line(argc, argv, options), values);
+    // Without that boost takes what is no option for one and drops it.
+    const po::positional_options_description none;
+    po::store(po::command_line_parser(argc, argv).options(options).positional(none).run(), values);
     po::notify(values);
     if (values.count("help") != 0) {
       std::cout << options;

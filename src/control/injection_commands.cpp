@@ -36,6 +36,7 @@ std::string InjectionController::obey(const std::string& command) {
   } else if (command == "resume") {
     if (state_ != OperatingState::kPaused) return refusal + "resume is allowed in PAUSED";
     state_ = OperatingState::kEnabled;
+    run_.rested();
   } else if (command == "home") {
     if (!setpoint_ || state_ == OperatingState::kFault) return refusal + "home is allowed in ENABLED and PAUSED";
     state_ = OperatingState::kEnabled;

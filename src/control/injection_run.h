@@ -54,6 +54,7 @@ class InjectionRun {
   /// The operator's word for the next step (indent, inject); empty when it is one now, otherwise why not.
   std::string confirm(InjectionEvent event, InjectionState state);
   void limitSpeed(double speed) { fastest_ = speed; }  ///< m/s, never faster than that
+  void rested() { speed_ = 0; }                        ///< the needle has: a stab sets out slowly again
   void withdraw();  ///< the way out is taken; the outcome is that of what was done until now
   void end(InjectionOutcome outcome, const std::string& reason);
 

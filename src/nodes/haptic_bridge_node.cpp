@@ -14,6 +14,12 @@ namespace {
 
 constexpr int kLastForces = 5;  // since messages can be dropped
 
+/// s; 0 in the parameters: what was said last holds.
+double orForEver(double timeout) { return timeout > 0 ? timeout : std::numeric_limits<double>::infinity(); }
+
+/// A tap that is over counts as 2 or 3 with some drivers (cisst's CLICKED, DOUBLE_CLICKED): not held down.
+bool heldDown(const sensor_msgs::Joy& joy) { return joy.buttons[0] == 1; }
+
 }  // namespace
 
 const char* const HapticBridgeNode::kHelp =
@@ -30,7 +36,7 @@ HapticBridgeNode::Timeouts HapticBridgeNode::Timeouts::read(ConfigReader reader)
   Timeouts timeouts;
   reader.number("hand", timeouts.hand, Range::positive());
   reader.number("clutch", timeouts.clutch, Range::nonNegative());
-  reader.number("operator_present", timeouts.operator_present, Range::positive());
+  reader.number("operator_present", timeouts.operator_present, Range::nonNegative());
   reader.number("needle", timeouts.needle, Range::positive());
   reader.number("predicted", timeouts.predicted, Range::positive());
   reader.number("measured", timeouts.measured, Range::positive());
@@ -56,14 +62,13 @@ HapticBridgeNode::HapticBridgeNode(ros::NodeHandle node, ros::NodeHandle private
       cycle_(node, parameters_.rate),
       hand_(
           cycle_.input<geometry_msgs::PoseStamped>("haptic/measured_cp", Phase::kSameTick, parameters_.timeouts.hand)),
-      clutch_(cycle_.input<sensor_msgs::Joy>(
-          "haptic/clutch", Phase::kTickBefore,
-          parameters_.timeouts.clutch > 0 ? parameters_.timeouts.clutch : std::numeric_limits<double>::infinity())),
+      clutch_(
+          cycle_.input<sensor_msgs::Joy>("haptic/clutch", Phase::kTickBefore, orForEver(parameters_.timeouts.clutch))),
       hand_force_(cycle_.output<geometry_msgs::WrenchStamped>("haptic/servo_cf")),
       trace_(cycle_.output<cell_microinjection::LatencyTrace>("haptic/force_trace")) {
   if (parameters_.model.require_operator) {
     operator_present_ = &cycle_.input<sensor_msgs::Joy>("haptic/operator_present", Phase::kTickBefore,
-                                                        parameters_.timeouts.operator_present);
+                                                        orForEver(parameters_.timeouts.operator_present));
   }
   parameters_.link.used() ? connectLink() : connectRig();
   cycle_.diagnostics().add("loop", [this](auto& status) { report(status); });
@@ -123,12 +128,12 @@ bool HapticBridgeNode::controllerLives(const ros::Time& now) const { return !con
 bool HapticBridgeNode::clutchPressed(const ros::Time& now) const {
   if (clutch_.received.isZero()) return false;  // a device without a clutch
   const sensor_msgs::Joy* joy = clutch_.get(now);
-  return !joy || joy->buttons.empty() || joy->buttons[0] != 0;  // one that cannot be read counts as pressed
+  return !joy || joy->buttons.empty() || heldDown(*joy);  // one that cannot be read counts as pressed
 }
 
 bool HapticBridgeNode::operatorPresent(const ros::Time& now) const {
   const sensor_msgs::Joy* joy = operator_present_ ? operator_present_->get(now) : nullptr;
-  return joy && !joy->buttons.empty() && joy->buttons[0] != 0;
+  return joy && !joy->buttons.empty() && heldDown(*joy);
 }
 
 void HapticBridgeNode::lookAtRig(HapticBridge::Input& input, const Cycle::Tick& tick) {
@@ -174,6 +179,8 @@ void HapticBridgeNode::step(const Cycle::Tick& tick) {
   const auto* hand = hand_.get(tick.now);
   HapticBridge::Input input;
   if (hand) hand_frame_ = hand->header.frame_id;
+  // Of a device that tells changes only: when it fell silent it may have missed to tell the last one.
+  if (!hand && operator_present_ && parameters_.timeouts.operator_present <= 0) operator_present_->invalidate();
   if (hand) input.hand = trustedPosition(hand, hand->header.frame_id);
   lookAtRig(input, tick);
   input.clutch = clutchPressed(tick.now);

@@ -53,6 +53,7 @@ Jet PreparedContact::overlap(const Eigen::Vector3d& tip) const {
 PreparedContact::Local PreparedContact::evaluate(const Jet& overlap) {
   const CountedDisplacement counted(cell_->range, place_->angle < kOnAxis, displacement_);
   prepared_ = counted.inside && place_->angle <= 1.001 * cell_->range.angle;
+  too_deep_ = counted.too_deep;
   const Eigen::Vector3d u = counted.value();
   Local local;
   local.energy = counted.compose(local_energy_.evaluate(u));
@@ -108,6 +109,7 @@ PreparedContact::Answer PreparedContact::step(const Eigen::Vector3d& tip) {
     energy_ = (1 - PassiveCorrection::kReserve) * energy_ + correction_.stored();
   }
   answer.prepared = prepared_;
+  answer.too_deep = too_deep_;
   answer.force = place_->rotation * force;
   answer.stiffness = place_->rotation * local.stiffness * place_->rotation.transpose();
   return answer;

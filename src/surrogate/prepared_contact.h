@@ -19,6 +19,7 @@ class PreparedContact {
     Eigen::Vector3d force = Eigen::Vector3d::Zero();      ///< N, of the cell on the needle
     Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();  ///< N/m, d(force)/d(tip) = -stiffness
     bool prepared = true;                                 ///< false: out of the prepared range, where the force fades
+    bool too_deep = false;                                ///< deeper than the prepared range
   };
 
   /// All that the surface depends on.
@@ -64,7 +65,7 @@ class PreparedContact {
   std::optional<ContactPlace> place_;
   Eigen::Vector3d displacement_ = Eigen::Vector3d::Zero();
   double energy_ = 0;
-  bool prepared_ = true;
+  bool prepared_ = true, too_deep_ = false;
 };
 
 }  // namespace microinjection

@@ -7,7 +7,8 @@
 namespace microinjection {
 namespace {
 
-constexpr char kOutOfRange[] = "the tip is out of the range that the cell was prepared for: the force fades";
+constexpr char kBeside[] = "the tip is beside the range that the cell was prepared for: the force fades";
+constexpr char kTooDeep[] = "the tip is deeper than the cell was prepared for";
 constexpr char kTooFarOut[] = "the tip touched the cell further from its pole than what was prepared";
 constexpr double kUpright = 0.999;  ///< cosine: within 2.5 degrees of the prepared direction
 
@@ -62,7 +63,8 @@ TipForce PreparedTracker::answer(const Eigen::Vector3d& tip, const Eigen::Vector
   contact_->indentation = -contact_->displacement.dot(axis);
   if (axis.z() < kUpright) return distrustBecause("the needle is not upright, and the cell was prepared for that only");
   if (needle_.place()->angle > 1.001 * cell_->range.angle) return distrustBecause(kTooFarOut);
-  if (!prepared.prepared) distrust_ = kOutOfRange;
+  if (prepared.too_deep) return distrustBecause(kTooDeep);
+  if (!prepared.prepared) distrust_ = kBeside;
   return {true, force};
 }
 

@@ -10,10 +10,10 @@
 
 namespace microinjection {
 
-/// The prepared cell under a moving needle: converged force at every step, in microseconds. Out of the prepared range
-/// it says so while the force fades; with a needle that is not upright, or that touches too far from the pole, it
-/// trusts nothing. A viscoelastic
-/// cell's force relaxes, and never pulls along the pipette. A step allocates nothing and takes no lock.
+/// The prepared cell under a moving needle: converged force at every step, in microseconds. Beside the prepared
+/// range it says so while the force fades. It trusts nothing below it, where the fading force would be felt as a
+/// puncture, with a needle that is not upright, or that touches too far from the pole. A viscoelastic cell's force
+/// relaxes, and never pulls along the pipette. A step allocates nothing and takes no lock.
 class PreparedTracker : public CellUnderNeedle {
  public:
   PreparedTracker(const Scene& scene, std::shared_ptr<const PreparedCell> cell);

@@ -52,6 +52,7 @@ CountedDisplacement::CountedDisplacement(const PreparationRange& range, bool on_
   const double deepest = on_axis ? range.axis_depth : range.depth;
   if (-displacement.z() > deepest) {
     inside = false;
+    too_deep = true;
     coordinates[2] = -deepest * saturate((-1 / deepest) * coordinates[2]);
   }
   const Jet lateral = lateralRange(range, -1.0 * coordinates[2]);

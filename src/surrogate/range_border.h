@@ -14,6 +14,7 @@ namespace microinjection {
 struct CountedDisplacement {
   std::array<Jet, 3> coordinates;  ///< m, with derivatives by the displacement
   bool inside = true;              ///< in the range: nothing was changed
+  bool too_deep = false;           ///< deeper than the range
 
   /// `on_axis`: the tip touched on the cell's axis, where the range is deeper.
   CountedDisplacement(const PreparationRange& range, bool on_axis, const Eigen::Vector3d& displacement);

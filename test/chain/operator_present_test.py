@@ -18,7 +18,7 @@ HAND, CLUTCH, PRESENT = "/haptic/measured_cp", "/haptic/clutch", "/haptic/operat
 NEEDLE, PREDICTED, CONTROLLER = "/needle/measured_cp", "/cell/predicted_cf", "/controller/injection_state"
 
 
-class OperatorPresentTest(unittest.TestCase):
+class PresentCase(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.world = Participant({HAND: PoseStamped, CLUTCH: Joy, PRESENT: Joy, NEEDLE: PoseStamped,
@@ -32,12 +32,14 @@ class OperatorPresentTest(unittest.TestCase):
     def follows(self):
         return not self.world.seen["/teleop/servo_cp"].header.stamp.is_zero()
 
-    def run_without(self, ticks, *topics):
-        self.world.run(ticks, lambda: {key: value for key, value in self.good().items() if key not in topics})
-
     def setUp(self):
         self.world.run(200, self.good)
         self.assertTrue(self.follows())
+
+
+class OperatorPresentTest(PresentCase):
+    def run_without(self, ticks, *topics):
+        self.world.run(ticks, lambda: {key: value for key, value in self.good().items() if key not in topics})
 
     def test_absent(self):
         self.world.run(200, lambda: self.good(present=0))
@@ -75,6 +77,36 @@ class OperatorPresentTest(unittest.TestCase):
                 self.assertFalse(self.follows())
 
 
+class OnChangeTest(PresentCase):
+    """A CRTK driver of a device with pedals: config/haptic/external.yaml."""
+
+    def quiet(self, *topics):
+        return {key: value for key, value in self.good().items() if key not in (CLUTCH, PRESENT, *topics)}
+
+    def test_what_was_told_last_holds(self):
+        self.world.run(2000, self.quiet)
+        self.assertTrue(self.follows())
+        self.world.tick({**self.quiet(), PRESENT: Joy(buttons=[0])})
+        self.world.run(20, self.quiet)
+        self.assertFalse(self.follows())
+
+    def test_but_not_past_a_pose_that_was_stale(self):
+        self.world.run(200, lambda: self.quiet(HAND))
+        self.world.run(500, self.quiet)
+        self.assertFalse(self.follows())
+
+    def test_a_tap_leaves_no_button_held_down(self):
+        for tapped in (2, 3):
+            for topic, follows in ((CLUTCH, True), (PRESENT, False)):
+                with case(topic, tapped):
+                    self.world.run(200, self.good)
+                    self.world.tick({**self.quiet(), topic: Joy(buttons=[tapped])})
+                    self.world.run(20, self.quiet)
+                    self.assertEqual(self.follows(), follows)
+
+
 if __name__ == "__main__":
     rospy.init_node("world")
-    rostest.rosrun("cell_microinjection", "operator_present", OperatorPresentTest)
+    device = rospy.myargv()[1]
+    rostest.rosrun("cell_microinjection", f"operator_present_{device}",
+                   {"repeats": OperatorPresentTest, "changes": OnChangeTest}[device])

@@ -74,6 +74,7 @@ TEST_F(InjectionInterruptionTest, PreemptedAtAnyMomentEndsOut) {
 }
 
 TEST_F(InjectionInterruptionTest, PausedAtAnyMomentHoldsAndGoesOn) {
+  const InjectionMotionConfig& motion = config_.motion;
   enable();
   int total = 0;
   for (; controller_.busy(); ++total) rig_.step(controller_);
@@ -88,7 +89,14 @@ TEST_F(InjectionInterruptionTest, PausedAtAnyMomentHoldsAndGoesOn) {
     const Eigen::Vector3d held = rig_.tip;
     steps(100);
     EXPECT_LT((rig_.tip - held).norm(), 1e-9) << where;
+    const Eigen::Vector3d from = *rig_.setpoint;
     controller_.command("resume");
+    rig_.step(controller_);
+    const double advance = from.z() - rig_.setpoint->z();
+    if (controller_.injection() == InjectionState::kIndent) {
+      EXPECT_LE(advance, 1.001 * (motion.indent_speed + motion.stab_acceleration * SpringRig::kStep) * SpringRig::kStep)
+          << where << ": a stab sets out slowly";
+    }
     rig_.run(controller_);
     EXPECT_EQ(controller_.result().outcome, InjectionOutcome::kInjected) << where << controller_.result().reason;
   }

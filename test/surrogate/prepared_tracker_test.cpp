@@ -25,7 +25,11 @@ TEST(PreparedTracker, TrustsOnlyWhatWasPrepared) {
   EXPECT_NEAR(tracker.solution(0)->stiffness(2, 2) * 8e-6, force.force.z(), 1e-6 * force.force.z());  // a spring
   EXPECT_FALSE(tracker.step(deep, Eigen::Vector3d(0.2, 0, 1).normalized(), 2e-3).trusted);
   EXPECT_NE(tracker.distrust(), "");
-  EXPECT_TRUE(tracker.step({0, 0, -20e-6}, up, 3e-3).trusted);  // out of the range the force fades
+  const TipForce too_deep = tracker.step({0, 0, -20e-6}, up, 3e-3);  // a force that fades there is felt as a puncture
+  EXPECT_FALSE(too_deep.trusted);
+  EXPECT_TRUE(too_deep.force.isZero(0));
+  EXPECT_NE(tracker.distrust(), "");
+  EXPECT_TRUE(tracker.step(deep + Eigen::Vector3d(15e-6, 0, 0), up, 3.5e-3).trusted);  // beside the range it fades
   EXPECT_NE(tracker.distrust(), "");
   EXPECT_TRUE(tracker.step(deep, up, 4e-3).trusted);
   EXPECT_EQ(tracker.distrust(), "");

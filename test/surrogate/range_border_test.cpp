@@ -16,6 +16,8 @@ TEST(RangeBorder, ChangesNothingInside) {
   EXPECT_TRUE(CountedDisplacement(kRange, true, {0.5e-6, 0, -44e-6}).inside);
   EXPECT_FALSE(CountedDisplacement(kRange, true, {3e-6, 0, -44e-6}).inside);
   EXPECT_FALSE(CountedDisplacement(kRange, false, {0, 0, -21e-6}).inside);
+  EXPECT_TRUE(CountedDisplacement(kRange, false, {0, 0, -21e-6}).too_deep);
+  EXPECT_FALSE(CountedDisplacement(kRange, true, {3e-6, 0, -44e-6}).too_deep);
 }
 
 TEST(RangeBorder, SaturatesWithinATenth) {

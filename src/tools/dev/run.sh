@@ -17,6 +17,7 @@ command_bench() {
   fi
   local name=$1 folder="$ROOT/out/bench"
   shift
+  [[ ${1:-} != -- ]] || shift
   [[ " $(bench_names | xargs) " == *" $name "* ]] || misuse "no benchmark '$name'; there are: $(bench_names | xargs)"
   setup
   build_workspace
