@@ -9,6 +9,7 @@ RUNS = {'pipette': ('mouse_oocyte_pipette', '1,2.5,5,7.5,10,15,20,25,30,35,40,45
         'st_venant_kirchhoff': ('mouse_oocyte_st_venant_kirchhoff',
                                 '0.1,0.2,0.25,0.3,0.5,0.75,1,1.5,2,2.5,5,10,20,45', 300)}
 LEAVES = 0.05  # relative: the band of the paper
+TOLERANCE = 0.005  # relative, of `indent` when none is given
 # What the linear model is held against under the same disc: table, name, why
 NONLINEAR = (('st_venant_kirchhoff', 'St-Venant-Kirchhoff', 'the paper\'s law, which softens in compression'),
              ('disc', 'neo-Hookean', 'a law that has solutions at depth; not the paper\'s'))
@@ -29,15 +30,15 @@ def linear_slope(data_dir):
     return None if force is None else force / 1e-6
 
 
-def leaving_depth(data_dir, name):
-    """m, where the linear force is 5 % above another law's under the same disc, by interpolation, or None."""
+def leaving_depth(data_dir, name, leaves=LEAVES):
+    """m, where the linear force is so much above another law's under the same disc, by interpolation, or None."""
     slope, before = linear_slope(data_dir), None
     if slope is None:
         return None
     for depth, force in zip(*converged(data_dir / f'{name}.csv')):
         error = slope * depth / force - 1
-        if error > LEAVES and before:
-            share = (LEAVES - before[1]) / (error - before[1])
+        if error > leaves and before:
+            share = (leaves - before[1]) / (error - before[1])
             return before[0] + share * (depth - before[0])
         before = (depth, error)
     return None
@@ -88,8 +89,17 @@ def linear_items(data_dir):
             continue
         result.append(item('Figure 10', quantity, VALID_TO,
                            f'at {1e6 * depth:.2g} um, {100 * depth / DIAMETER:.1f} % of the diameter', '', DIFFERENCE,
-                           f'{why}; the paper tells neither the error that it allows nor a mesh size'))
+                           f'{why}{moved(data_dir, name)}; the paper tells neither the error that it allows nor a mesh '
+                           'size'))
     return result
+
+
+def moved(data_dir, name):
+    """How far the depth moves with what the forces may be off, as text."""
+    places = [leaving_depth(data_dir, name, LEAVES + off) for off in (-TOLERANCE, TOLERANCE)]
+    if None in places:
+        return ''
+    return f'; {1e6 * places[0]:.2g} to {1e6 * places[1]:.2g} um where forces are {100 * TOLERANCE:.1f} % off'
 
 
 def nonlinear_items(data_dir):
