@@ -13,6 +13,7 @@ VERDICTS = (REPRODUCED, DIFFERENCE, NOT_REPRODUCIBLE)
 
 MEASURED_DEPTH, MEASURED_FORCE, BAND = 45e-6, 7.5e-6, 0.05  # m, N, relative: section V.A of the paper
 DIAMETER = 56e-6                                            # m, Table I
+BOUND = 0.02  # relative: forces that `indent` itself thinks to be further off are shown, but not used
 
 
 def item(name, quantity, paper, ours, unit, verdict, why=''):
@@ -46,9 +47,14 @@ def number(text):
         return text
 
 
+def is_good(row):
+    """Whether a row of `indent` is converged, to BOUND by its own estimate."""
+    return row['converged'] == 1 and not row.get('error_estimate', 0) > BOUND  # nan, of a formula, is good
+
+
 def converged(path):
-    """(depths in m, forces in N) of the converged rows of a table of `indent`."""
-    rows = [row for row in read(path) if row['converged'] == 1]
+    """(depths in m, forces in N) of the good rows of a table of `indent`."""
+    rows = [row for row in read(path) if is_good(row)]
     return [row['depth_m'] for row in rows], [row['force_z_N'] for row in rows]
 
 

@@ -1,6 +1,8 @@
 """Table III and figure 14: times of the two stages at the paper's mesh sizes."""
 import math
 
+from matplotlib.ticker import NullLocator
+
 from common import DIFFERENCE, NOT_REPRODUCIBLE, REPRODUCED, figure, item, missing, read, save, table
 
 PAPER = {  # tetrahedra: vertices, pre-computation and on-line time in ms
@@ -10,6 +12,8 @@ PAPER = {  # tetrahedra: vertices, pre-computation and on-line time in ms
 CONVERGED = 0.11688e-6  # N, linear at 1 um: test/reference/linear.csv
 SIZE = 0.05  # relative, that a mesh may be off
 EXPONENT = 0.15  # that a power may be off
+AIM = 10  # times quicker than the paper with its largest mesh: what this project set out for
+TICKS = (120, 180, 270, 350, 520, 720, 1080)  # vertices
 STAGES = (('pre-computation time', 1, 'off_line'), ('on-line time', 2, 'on_line'))
 
 
@@ -60,7 +64,26 @@ def items(data_dir, out_dir):
                                REPRODUCED if ratio >= 1 else DIFFERENCE,
                                f'{ratio:.1f} times quicker; with the paper\'s tensors '
                                f'{paper[column] / (row[f"tensors_{stage}_us"] / 1e3):.1f} times'))
-    return result + growth_items(twelve) + force_items(twelve, resolved)
+    return result + aim_items(twelve) + growth_items(twelve) + force_items(twelve, resolved)
+
+
+def aim_items(twelve):
+    """What this project set itself, from the least of the repeated times, which other work on the machine changes
+    least."""
+    result, largest = [], max(PAPER)
+    row = next((row for row in twelve if row['paper_tetrahedra'] == largest), None)
+    for quantity, column, stage in STAGES if row else ():
+        ratio = PAPER[largest][column] / (row[f'kernel_{stage}_least_us'] / 1e3)
+        result.append(item(f'Aim at {PAPER[largest][0]}/{largest}', f'{quantity}: times shorter than the paper\'s',
+                           f'{AIM} wanted', f'{ratio:.1f}', '', REPRODUCED if ratio >= AIM else DIFFERENCE,
+                           'least of the repeats; by the median '
+                           f'{PAPER[largest][column] / (row[f"kernel_{stage}_us"] / 1e3):.1f}'))
+    for quantity, _, stage in STAGES if len(twelve) > 2 else ():
+        power = exponent([row['tetrahedra'] for row in twelve], [row[f'kernel_{stage}_least_us'] for row in twelve])
+        result.append(item('Aim, all meshes', f'{quantity}: power of the number of tetrahedra',
+                           f'{1 - EXPONENT:g} to {1 + EXPONENT:g} wanted', f'{power:.2f}', '',
+                           REPRODUCED if abs(power - 1) <= EXPONENT else DIFFERENCE, 'linear; least of the repeats'))
+    return result
 
 
 def growth_items(twelve):
@@ -75,23 +98,28 @@ def growth_items(twelve):
         why = ('not linear here, as it should be' if not linear else 'linear in both' if same else
                'nothing in it needs more than one visit of each tetrahedron: the paper\'s law is its implementation\'s')
         result.append(item('Figure 14', f'{quantity}: power of the number of tetrahedra', f'{theirs:.2f}',
-                           f'{ours:.2f}', '', REPRODUCED if same else DIFFERENCE, why))
+                           f'{ours:.2f}', '', REPRODUCED if same and linear else DIFFERENCE, why))
     return result
 
 
 def force_items(twelve, resolved):
-    name, quantity, paper = 'Section V.B', 'error of the 379-tetrahedra mesh (linear, 1 um)', 'at most 5'
-    row = resolved[0] if resolved else None
+    """The error of the mesh of validation: of that of the paper's size, and of that with an edge around the tip."""
+    name, quantity, paper = 'Section V.B', 'error of the mesh of 123/379 (linear, 1 um)', 'at most 5'
     point = next((row for row in twelve if row['paper_tetrahedra'] == 379), None)
-    if not row or not point:
-        return [missing(name, quantity, paper, '%', 'this mesh')]
-    errors = [100 * (one['linear_force_1um_N'] / CONVERGED - 1) for one in (row, point)]
-    return [item(name, quantity, paper, f'{errors[0]:+.0f}', '%',
-                 NOT_REPRODUCIBLE if abs(errors[0]) > 5 else REPRODUCED,
-                 f'linear tetrahedra lock at a Poisson ratio of 0.49: the force is {errors[0] / 100 + 1:.1f} times the '
-                 f'converged one. Pushed at a single vertex, as the paper does, {errors[1]:+.0f} %: that force goes '
-                 'to 0 '
-                 'as the mesh is refined, so that some mesh has the right one by chance')]
+    result = []
+    for row, how, why in (
+            (point, 'within 5 % of the size', 'pushed at a single vertex, as the paper does: that force goes to 0 as '
+             'the mesh is refined, so that some mesh has the right one by chance'),
+            (resolved[0] if resolved else None, 'edge around the tip', 'linear tetrahedra lock at a Poisson ratio of '
+             '0.49')):
+        if not row:
+            result.append(missing(name, f'{quantity}, {how}', paper, '%', 'this mesh'))
+            continue
+        error = 100 * (row['linear_force_1um_N'] / CONVERGED - 1)
+        result.append(item(name, f'{quantity}: ours of {row["vertices"]:.0f}/{row["tetrahedra"]:.0f}, {how}', paper,
+                           f'{error:+.0f}', '%', NOT_REPRODUCIBLE if abs(error) > 5 else REPRODUCED,
+                           f'the force is {error / 100 + 1:.1f} times the converged one; {why}'))
+    return result
 
 
 def plot(twelve, path):
@@ -103,6 +131,8 @@ def plot(twelve, path):
             axis.plot([row['vertices'] for row in twelve], [row[f'{form}_{stage}_us'] / 1e3 for row in twelve], 'o-',
                       color=colour, label=f'ours, {label}')
         axis.set(xscale='log', yscale='log', xlabel='vertices', ylabel='ms', title=quantity)
+        axis.xaxis.set_minor_locator(NullLocator())
+        axis.set_xticks(TICKS, labels=map(str, TICKS))
     axes[0].legend(frameon=False)
     save(made, path)
 

@@ -1,13 +1,13 @@
 """Table II and Figures 2, 3 and 11 to 13: the tensegrity cell."""
+import math
+
 import numpy
-from mpl_toolkits.mplot3d.art3d import Line3DCollection
 
-from common import (DIFFERENCE, MEASURED_DEPTH, MEASURED_FORCE, NOT_REPRODUCIBLE, REPRODUCED, figure, item, missing, plt,
-                    read, save, table, verdict)
+from common import DIFFERENCE, MEASURED_FORCE, NOT_REPRODUCIBLE, REPRODUCED, item, missing, table, verdict
+from tensegrity_data import curve, figure_13, members, numbers, rows_of, slack_cables, values
+from tensegrity_pictures import draw_depth, draw_prestress, draw_shapes
 
-MEMBERS = ('actin', 'microtubule', 'intermediate')
-COLOUR = {'strut': '#8c564b', 'actin': '#4c78a8', 'intermediate': '#54a24b'}
-TUBULE = 12.5e-9              # m, radius of a microtubule: not the paper's
+TUBULE = 5e-9                 # m, diameter of a microtubule in Table II
 MESH = {'vertices': 1014, 'tetrahedra': 1798}
 SIZE = 0.05                   # relative, that these may be off
 TENTH = 0.1 * MEASURED_FORCE  # N
@@ -15,29 +15,6 @@ TENTH = 0.1 * MEASURED_FORCE  # N
 
 def tasks(programs, root, data_dir):
     return [('tensegrity', [programs['paper_tensegrity'], '--out', str(data_dir)], 900)]
-
-
-def rows_of(data_dir, name):
-    return read(data_dir / f'tensegrity_{name}.csv')
-
-
-def members(data_dir):
-    return {row['kind']: row for row in rows_of(data_dir, 'members')}
-
-
-def numbers(data_dir):
-    return {row['quantity']: row['value'] for row in rows_of(data_dir, 'numbers')}
-
-
-def curve(data_dir, name, where='end', **chosen):
-    """(depths in um, forces in uN) of one curve."""
-    rows = [row for row in rows_of(data_dir, 'curves') if row['curve'] == name and row['where'] == where
-            and all(row[key] == value for key, value in chosen.items())]
-    return [1e6 * row['depth_m'] for row in rows], [1e6 * row['force_z_N'] for row in rows]
-
-
-def values(data_dir, name, key):
-    return sorted({row[key] for row in rows_of(data_dir, 'curves') if row['curve'] == name})
 
 
 def slope(depths, forces, depth):
@@ -52,9 +29,14 @@ def items_of_table(data_dir):
     if not found:
         return [missing('Table II', 'sections from the bending stiffness', 'I = BS / E', '', 'the tensegrity program')]
     tubule = found['microtubule']
+    diameter, printed = 2 * tubule['filament_radius_m'], tubule['bending_stiffness_Nm2']
+    rod = tubule['young_modulus_Pa'] * math.pi * TUBULE**4 / 64
     return [
-        item('Table II', 'radius of a microtubule from I = BS / E', 'not given (known: 12.5)',
-             f'{1e9 * tubule["filament_radius_m"]:.3g}', 'nm', verdict(tubule['filament_radius_m'], TUBULE, SIZE)),
+        item('Table II', 'diameter of a microtubule, from I = BS / E', f'D = {1e9 * TUBULE:.0f}',
+             f'{1e9 * diameter:.3g}', 'nm', verdict(diameter, TUBULE, SIZE),
+             f'the table contradicts itself: a solid rod of {1e9 * TUBULE:.0f} nm and the printed E has EI = '
+             f'{rod:.1e} N m2, {printed / rod:.0f} times below the printed BS of {printed:.1e}. BS is used; 25 nm is what is known of '
+             'microtubules from elsewhere'),
         item('Table II', 'Euler load of one microtubule, hinged, as long as a strut', 'not given',
              f'{1e12 * tubule["filament_euler_N"]:.3g}', 'pN', DIFFERENCE,
              'a strut of one filament buckles under a ten-millionth of the forces shown: struts must be bundles, of a number '
@@ -74,10 +56,11 @@ def items_of_mesh(data_dir):
              REPRODUCED if same_size else DIFFERENCE),
         item('Figure 2', 'unbalanced force at rest over prestress', 'not given', f'{relative:.1e}', '',
              REPRODUCED if relative < 1e-9 else DIFFERENCE),
-        item('section III.C', 'stable explicit step of the tensegrity cell', 'not given', f'{1e9 * found["step_s"]:.2g}', 'ns',
-             DIFFERENCE, f'true mass, bundles; {1e12 * found["single_filament_step_s"]:.2g} ps for elements as thin as one '
+        item('Section III.C', 'stable explicit step of the tensegrity cell', 'not given',
+             f'{1e9 * found["step_s"]:.2g}', 'ns', DIFFERENCE,
+             f'true mass, bundles; {1e12 * found["single_filament_step_s"]:.2g} ps for elements as thin as one '
              'microtubule: a thousandth of a second is a million steps and more. It is solved implicitly'),
-        item('section IV.B', 'force update of the tensegrity cell (median, 99 %)', '1 ms',
+        item('Section V.B', 'force update of the tensegrity cell (median, 99 %)', '1 to 3.3 (300 Hz to 1 kHz)',
              f'{1e3 * found["force_median_s"]:.2g}, {1e3 * found["force_99_s"]:.2g}', 'ms',
              REPRODUCED if served else DIFFERENCE,
              f'extrapolated from the last solution, which a thread of its own makes in {1e3 * found["solution_median_s"]:.0f} ms '
@@ -124,10 +107,28 @@ def items_of_prestress(data_dir):
     return result
 
 
-def figure_13(data_dir):
-    """[(count, depths, forces)] on a strut's end."""
-    return [(int(count), *curve(data_dir, 'figure_13', 'end', count=count))
-            for count in values(data_dir, 'figure_13', 'count')]
+def hardening(data_dir, where):
+    """{prestrain: slope at the end of a curve of figure 12 over that at the touch}"""
+    result = {}
+    for prestrain in values(data_dir, 'figure_12', 'prestrain'):
+        depths, forces = curve(data_dir, 'figure_12', where, prestrain=prestrain)
+        if len(depths) > 2:
+            slopes = numpy.diff(forces) / numpy.diff(depths)
+            result[prestrain] = float(slopes[-1] / slopes[0])
+    return result
+
+
+def items_of_hardening(data_dir):
+    ratios = hardening(data_dir, 'end')
+    quantity = "slope at the end of the curve over that at the touch, on a strut's end (prestrain)"
+    if not ratios:
+        return [missing('Figure 12', quantity, 'above 1: strain hardening', '', 'the tensegrity program')]
+    slack = ', '.join(f'{slack_cables(data_dir, "end", prestrain, 10)} ({100 * prestrain:g} %)' for prestrain in ratios)
+    return [item('Figure 12', quantity, 'above 1: strain hardening',
+                 ', '.join(f'{ratio:.2g} ({100 * prestrain:g} %)' for prestrain, ratio in ratios.items()), '',
+                 REPRODUCED if min(ratios.values()) > 1 else DIFFERENCE,
+                 'cables are slack at first where there is no prestress, and tighten; with prestress all bear from the '
+                 f'touch on, and some go slack as the end goes down, which softens: at 10 um {slack} of 36')]
 
 
 def items_of_depth(data_dir):
@@ -147,64 +148,7 @@ def items_of_depth(data_dir):
 
 def items(data_dir, out_dir):
     return (items_of_table(data_dir) + items_of_mesh(data_dir) + items_of_loads(data_dir) + items_of_prestress(data_dir)
-            + items_of_depth(data_dir))
-
-
-def draw_shape(axes, rows, title):
-    for kind, width in (('intermediate', 0.8), ('actin', 1.2), ('strut', 4)):
-        chosen = [row for row in rows if row['kind'] == kind]
-        lines = [[[1e6 * row[f'{axis}{end}_m'] for axis in 'xyz'] for end in (1, 2)] for row in chosen]
-        slack = [kind != 'strut' and row['force_N'] <= 0 for row in chosen]
-        colours = ['#bbbbbb' if loose else COLOUR[kind] for loose in slack]
-        axes.add_collection3d(Line3DCollection(lines, colors=colours, linewidths=width))
-    axes.set(xlim=(-28, 28), ylim=(-28, 28), zlim=(-28, 28), title=title)
-    axes.set_box_aspect((1, 1, 1), zoom=1.35)
-    axes.view_init(elev=12, azim=-62)
-    axes.set_axis_off()
-
-
-def draw_shapes(data_dir, out_dir):
-    shapes = {}
-    for row in rows_of(data_dir, 'shapes'):
-        shapes.setdefault(row['case'], []).append(row)
-    loads = {row['case']: row for row in rows_of(data_dir, 'loads')}  # the last of each
-    titles = {'rest': 'at rest under its prestress'}
-    for case, name in (('middle', 'case 1: middle of a strut'), ('end', 'case 2: end of a strut')):
-        if case in loads:
-            titles[case] = f'{name}\n{1e6 * loads[case]["force_N"]:.2g} uN, {1e6 * loads[case]["depth_m"]:.0f} um'
-    made = plt.figure(figsize=(12, 4.4))
-    for place, (case, title) in enumerate(titles.items(), 1):
-        draw_shape(made.add_subplot(1, 3, place, projection='3d'), shapes[case], title)
-    made.subplots_adjust(left=0, right=1, bottom=0, top=0.86, wspace=0)
-    save(made, out_dir / 'figure_11.png')
-
-
-def draw_prestress(data_dir, out_dir):
-    made, panels = figure(10.5, 4.4, 2)
-    for axes, where, title in zip(panels, ('end', 'between'), ("on a strut's end", 'on the membrane, between ends')):
-        for prestrain in values(data_dir, 'figure_12', 'prestrain'):
-            depths, forces = curve(data_dir, 'figure_12', where, prestrain=prestrain)
-            axes.plot(depths, forces, marker='.', label=f'prestrain {100 * prestrain:g} %')
-        axes.set(xlabel='depth (um)', ylabel='force (uN)', title=title)
-        axes.legend(frameon=False, fontsize=8)
-    save(made, out_dir / 'figure_12.png')
-
-
-def draw_depth(data_dir, out_dir):
-    made, panels = figure(10.5, 4.4, 2)
-    for count, depths, forces in figure_13(data_dir):
-        panels[0].plot(depths, forces, marker='.', label=f"on a strut's end, {count} filaments a cable")
-    panels[0].plot(*curve(data_dir, 'figure_13', 'between'), ':', label='on the membrane, between ends')
-    panels[0].plot([1e6 * MEASURED_DEPTH], [1e6 * TENTH], 'k*', label='a tenth of the measured puncture force')
-    panels[0].set(xlabel='depth (um)', ylabel='force (uN)', title='Figure 13')
-    depths, forces = curve(data_dir, 'figure_12', 'end', prestrain=0.05)
-    panels[1].plot(depths, forces, label='corotated')
-    for model in ('st_venant_kirchhoff', 'linear'):
-        panels[1].plot(*curve(data_dir, 'models', 'end', model=model), '--', label=model)
-    panels[1].set(xlabel='depth (um)', title='material of the struts')
-    for axes in panels:
-        axes.legend(frameon=False, fontsize=8)
-    save(made, out_dir / 'figure_13.png')
+            + items_of_hardening(data_dir) + items_of_depth(data_dir))
 
 
 def table_of_members(data_dir):
@@ -268,7 +212,7 @@ step at the true mass must be below {1e9 * found['step_s']:.2g} ns for the bundl
 ![the structure at rest and under two loads](figure_11.png)
 
 Struts brown, actin blue, intermediate filaments green, slack cables grey; the membrane is solved with, but not drawn, as in the
-paper. Both loads act from above, on the strut below the cell's top.
+paper. Both loads (arrows) act from above, on the strut below the cell's top.
 
 ### Figure 12: stiffening with prestress
 
@@ -278,6 +222,9 @@ paper. Both loads act from above, on the strut below the cell's top.
 
 ![force against depth](figure_13.png)
 
+On the left the three that the paper's figure compares: the measurement (the puncture, which its text tells), the
+homogeneous nonlinear cell (here converged neo-Hookean under the round pipette, since St-Venant-Kirchhoff ends early) and the
+tensegrity cell.
 On the right what the struts are made of changes: linear tetrahedra, the paper's, take a strut's rotation for a strain.
 Where a curve's stable equilibria end the structure snaps aside, and the curve goes on from where it comes to rest; a curve that
 stops has no stable rest nearby that was found."""

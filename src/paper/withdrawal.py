@@ -22,6 +22,9 @@ RUNS = {
     'viscous': ('viscosity, 20 um/s', 'mode: sticking', PRONY, ('--speed', '20e-6')),
 }
 
+# effect, run that has it, run that has all else
+EFFECTS = (('friction', 'friction', 'smooth'), ('adhesion', 'adhesion', 'smooth'), ('viscosity', 'viscous', 'sticking'))
+
 NOISE = 0.1  # fJ, of the work lost, which is some hundreds going in
 PULL_UNIT = 1e9 * math.pi * 2e-3 / (1 / 3e-6 + 1 / 28e-6)  # nN, pi w R: 1.5 times that in JKR's limit, 2 in DMT's
 
@@ -57,32 +60,45 @@ def measures(data_dir, name):
 
 def items(data_dir, out_dir):
     result = []
-    for effect, name in (('friction', 'friction'), ('adhesion', 'adhesion'), ('viscosity', 'viscous')):
+    for effect, name, without in EFFECTS:
         title, paper = f'{effect} in the force on the way out', 'future work'
-        found, plain = measures(data_dir, name), measures(data_dir, 'smooth')
+        found, plain = measures(data_dir, name), measures(data_dir, without)
         if not found or not plain:
             result.append(missing('Section VI', title, paper, '', effect))
             continue
         ours = f'{found[0]:.3g} fJ lost in 5 um in and out, pull of {found[1]:.3g} nN'
         shown = found[0] > plain[0] + NOISE
         result.append(item('Section VI', title, paper, ours, '', DIFFERENCE if shown else NOT_REPRODUCIBLE,
-                           f'modelled here (without it: {plain[0]:.2g} fJ, {plain[1]:.2g} nN); the constants are '
-                           'assumed, since the paper has none'))
+                           f'modelled here; without it ({RUNS[without][0]}) {plain[0]:.2g} fJ, {plain[1]:.2g} nN; '
+                           'the constants are assumed, since the paper has none'))
     return result
 
 
+def loops(data_dir, name):
+    """[(depth in um, force on the way in less that on the way out, nN)]; none where the path was not found."""
+    points = path_of(data_dir, name)
+    if len(points) < len(IN) + len(OUT):
+        return []
+    going_in, out = dict([(0, 0)] + points[:len(IN)]), dict(points[len(IN):])
+    return [(depth, 1e3 * (force - out[depth])) for depth, force in going_in.items() if depth in out]
+
+
 def plot(data_dir, path):
-    made, axes = figure(10, 4.4, 2)
+    made, axes = figure(14.5, 4.4, 3)
     for index, (name, (label, *_)) in enumerate(RUNS.items()):
         points = path_of(data_dir, name)
         if not points:
             continue
         going_in, out = points[:len(IN)], points[len(IN) - 1:]
-        for axis in axes:
+        axes[2].plot([depth for depth, _ in loops(data_dir, name)], [gap for _, gap in loops(data_dir, name)], 'o-',
+                     color=f'C{index}', markersize=3)
+        for axis in axes[:2]:
             axis.plot(*zip(*[(0, 0)] + going_in), '-', color=f'C{index}', linewidth=1)
             axis.plot(*zip(*out), '--', color=f'C{index}', marker='o', markersize=3, label=label)
     axes[0].set(title='in (solid) and out (dashed)', xlabel='depth (um)', ylabel='force (uN)')
     axes[1].set(title='about the touch', xlabel='depth (um)', xlim=(-3.2, 1.6), ylim=(-0.06, 0.1))
+    axes[2].set(title='force in less force out', xlabel='depth (um)', ylabel='nN')
+    axes[2].set_yscale('symlog', linthresh=0.1)
     axes[0].legend(frameon=False, fontsize=8)
     save(made, path)
 
@@ -109,4 +125,6 @@ def section(data_dir, out_dir):
         'after the touch, where the needle has to be torn off; a '
         'sticking needle hangs on by the side of its tip a little. Friction loses little: under a hemisphere most of '
         'the '
-        'surface sticks on the way in at such depths. (The sums are over the points of the plot.)'))
+        'surface sticks on the way in at such depths (on the right, at most '
+        f'{max((gap for _, gap in loops(data_dir, "friction")), default=0):.2g} nN). (The sums are over the points of '
+        'the plot.)'))
