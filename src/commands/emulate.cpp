@@ -52,14 +52,14 @@ std::string rigNames() {
   return names;
 }
 
-/// Nothing when help was asked for and given. What roslaunch adds (__name:=...) is left out.
+/// Nothing when help was asked for and given. What roslaunch adds (__name:=..., FROM:=TO) is left out.
 std::optional<Arguments> parse(int argc, char** argv) {
   namespace po = boost::program_options;
   Arguments arguments;
   std::string rig;
   std::vector<std::string> words, faults;
   for (int i = 1; i < argc; ++i) {
-    if (std::string(argv[i]).rfind("__", 0) != 0) words.emplace_back(argv[i]);
+    if (std::string(argv[i]).find(":=") == std::string::npos) words.emplace_back(argv[i]);
   }
   po::options_description options("Options");
   auto add = options.add_options();

@@ -4,7 +4,8 @@
 Leaves in the output folder: force_depth.csv and force_depth.png (force against depth, and the course of the
 injection), scene.png (rviz while the needle rests in the dent), session.bag, summary.yaml (rates and latency),
 force_error.csv (against the full solution along the same way in, up to the puncture), with --operator training.yaml
-and training.png, and log/. Exit code 1 when one of them is missing (but the last) or a node died.
+and training.png, and log/. Exit code 1 when one of them is missing (but the last) or a node died, or when the default
+motion in the default cell ended without puncture, injection or withdrawal.
 """
 import argparse
 import os
@@ -23,6 +24,9 @@ from rviz_view import RvizError, RvizView
 from session_monitor import Progress
 
 ROOT = Path(os.environ.get('MICROINJECTION_ROOT') or Path(__file__).resolve().parents[2])
+CELL = 'mouse_oocyte_injection'
+MOTION = ROOT / 'config' / 'hand_motions' / 'puncture_and_inject.csv'
+OUT = ('idle', 'approach')  # states of an injection whose needle is out of the cell
 RESULTS = ('force_depth.csv', 'force_depth.png', 'scene.png', 'session.bag', 'summary.yaml')
 
 TRAINING = ('training.yaml', 'training.png')  # with --operator
@@ -40,7 +44,7 @@ def parse_arguments():
     parser = argparse.ArgumentParser(prog='./dev demo --', description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('--out', type=Path, default=ROOT / 'out' / 'demo', help='folder of the results (%(default)s)')
-    parser.add_argument('--cell', default='mouse_oocyte_injection',
+    parser.add_argument('--cell', default=CELL,
                         help='name in config/cells, or path of a scene file (%(default)s)')
     parser.add_argument('--model', choices=('auto', 'prepared', 'live'), default='auto',
                         help='prepared: converged force, made ready first (minutes, once); live: P1 tetrahedra, at once; '
@@ -51,7 +55,7 @@ def parse_arguments():
                         help='sim, emulated_mp285, emulated_zaber, or a real one: mp285, zaber (%(default)s)')
     parser.add_argument('--haptic', choices=('operator', 'external', 'none'), default='operator',
                         help='who moves the hand; a session without the operator ends with Ctrl-C')
-    parser.add_argument('--motion', type=Path, default=ROOT / 'config' / 'hand_motions' / 'puncture_and_inject.csv',
+    parser.add_argument('--motion', type=Path, default=MOTION,
                         help="file of the operator's hand motion (%(default)s)")
     parser.add_argument('--operator', default='', help='who trains: the session is scored, and compared with the '
                         'operator\'s earlier ones in training.png')
@@ -75,6 +79,7 @@ class Demo:
         self._logs = self._out / 'log'
         self._session = None
         self._view = None
+        self._failed = ''
 
     def prepare(self):
         """Removes the results of the run before."""
@@ -153,6 +158,15 @@ class Demo:
             time.sleep(0.1)
         progress.show(monitor)
         progress.end()
+        self._check_injection(monitor)
+
+    def _check_injection(self, monitor):
+        told = (f'{monitor.punctures} membranes punctured, {1e15 * monitor.volume:.2f} pL injected, the needle is in '
+                f'"{monitor.injection}"')
+        say(told)
+        whole = monitor.punctures > 0 and monitor.volume > 0 and monitor.injection in OUT
+        if not whole and (self._arguments.cell, self._arguments.motion) == (CELL, MOTION):
+            self._failed = f'the injection is not complete: {told}'
 
     def follow_hand(self):
         """Until Ctrl-C, or until rviz is closed; keeps a picture of the deepest indentation."""
@@ -195,6 +209,8 @@ class Demo:
         if missing:
             raise DemoError(f'missing or empty in {self._out}: {", ".join(missing)}; see {self._logs}')
         say(f'results are in {self._out}: {", ".join(wanted)}')
+        if self._failed:
+            raise DemoError(self._failed)
 
     def _judge(self, csv):
         say('comparing with the full solution along the way in, up to the puncture')

@@ -45,7 +45,7 @@ class DemoSession:
 
     def check(self):
         """@raises SessionError when a node or the launch has died."""
-        dead = re.findall(r'\[(\S+)-\d+\] process has died', self._launch.output())
+        dead = re.findall(r'\[([^\[\s]+)-\d+\] process has died', self._launch.output())
         if dead:
             raise SessionError(f'died: {", ".join(dead)}; {self._launch.log} ends with\n{self._launch.tail(20)}')
         if not self._launch.running():

@@ -9,14 +9,17 @@ class SessionMonitor:
     def __init__(self):
         # Imported late, since rospy takes the master's address and the log's folder from the environment at once.
         import rospy
-        from cell_microinjection.msg import CellState, StringStamped
+        from cell_microinjection.msg import CellState, InjectionStatus, StringStamped
         self._rospy = rospy
         rospy.init_node('demo', anonymous=True, disable_signals=True)
         self.phase = None
         self.phase_began = time.monotonic()
-        self.state = None
+        self.state = self.injection = None
+        self.punctures, self.volume = 0, 0.0  # felt; m^3, given
         self._subscribers = [rospy.Subscriber('/operator/phase', StringStamped, self._on_phase, queue_size=10),
-                             rospy.Subscriber('/cell/state', CellState, self._on_state, queue_size=1)]
+                             rospy.Subscriber('/cell/state', CellState, self._on_state, queue_size=1),
+                             rospy.Subscriber('/controller/injection_state', InjectionStatus, self._on_injection,
+                                              queue_size=10)]
 
     def _on_phase(self, message):
         self.phase_began = time.monotonic()
@@ -24,6 +27,12 @@ class SessionMonitor:
 
     def _on_state(self, message):
         self.state = message
+
+    def _on_injection(self, message):
+        # A needle that sets out again counts from zero.
+        self.injection = message.state
+        self.punctures = max(self.punctures, message.punctures)
+        self.volume = max(self.volume, message.volume)
 
     def phase_age(self):
         """s of wall time since the phase began."""

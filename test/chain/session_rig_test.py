@@ -1,0 +1,64 @@
+#!/usr/bin/python3
+"""The needle of a session with an emulated rig gets where it is sent, by the clock on the wall, however long that takes."""
+
+import unittest
+
+import numpy as np
+import rospy
+import rostest
+from cell_microinjection.msg import OperatingState, StringStamped
+from geometry_msgs.msg import PoseStamped, WrenchStamped
+
+from messages import pose, position
+
+PATIENCE = 60  # s; only a session that hangs takes that long
+WAY = np.array([3e-6, -2e-6, 5e-6])  # m
+RESOLUTION = 0.1e-6  # m: two steps of the coarser rig
+
+
+class SessionRigTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.seen = {}
+        cls.subscribers = [rospy.Subscriber(topic, kind, lambda message, topic=topic: cls.seen.update({topic: message}))
+                           for topic, kind in (("/needle/measured_cp", PoseStamped),
+                                               ("/needle/operating_state", OperatingState),
+                                               ("/controller/operating_state", OperatingState),
+                                               ("/cell/predicted_cf", WrenchStamped))]
+        cls.words = rospy.Publisher("/controller/state_command", StringStamped, queue_size=1)
+        cls.moves = rospy.Publisher("/needle/move_cp", PoseStamped, queue_size=1)
+
+    def until(self, condition, what):
+        for _ in range(100 * PATIENCE):
+            if condition():
+                return
+            rospy.rostime.wallsleep(0.01)
+        self.fail(f"{what}: not within {PATIENCE} s; seen {self.seen}")
+
+    def says(self, topic, state):
+        return topic in self.seen and self.seen[topic].state == state
+
+    def needle(self):
+        message = self.seen.get("/needle/measured_cp")
+        return position(message) if message and not message.header.stamp.is_zero() else None
+
+    def test_it_gets_where_it_is_sent_and_the_cell_is_beside_it(self):
+        self.until(self.moves.get_num_connections, "the micromanipulator")
+        self.until(lambda: self.needle() is not None, "a place of the needle")
+        self.until(lambda: self.says("/needle/operating_state", "ENABLED"), "ENABLED")
+        # It holds the needle where it is.
+        self.until(lambda: self.says("/controller/operating_state", "ENABLED"), "the controller")
+        self.until(self.words.get_num_connections, "its ear for words")
+        self.words.publish(StringStamped(string="disable"))
+        self.until(lambda: self.says("/controller/operating_state", "DISABLED"), "a controller that lets go")
+        goal = self.needle() + WAY
+        message = pose(*goal)
+        message.header.stamp = rospy.Time.now()
+        self.moves.publish(message)
+        self.until(lambda: np.abs(self.needle() - goal).max() <= RESOLUTION, f"the needle at {goal}")
+        self.until(lambda: "/cell/predicted_cf" in self.seen, "the cell's predicted force")
+
+
+if __name__ == "__main__":
+    rospy.init_node("mover")
+    rostest.rosrun("cell_microinjection", "session_rig", SessionRigTest)
