@@ -19,6 +19,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / 'src' / 'tools'))
 sys.path.insert(0, str(ROOT / 'src' / 'bench'))
 
+import full_solution  # noqa: E402
 from demo_session import DemoSession, SessionError  # noqa: E402
 from processes import Child, wait_until  # noqa: E402
 from realtime import SETTLE, Histograms, difference, write_motion  # noqa: E402
@@ -131,6 +132,9 @@ def rows_of_each(arguments):
 
 def main():
     arguments = parse_arguments()
+    scene = ROOT / 'config' / 'cells' / f'{arguments.cell}.yaml'
+    if arguments.model == 'prepared' and not full_solution.prepare(scene):
+        sys.exit(f'latency: {scene} cannot be prepared, see above')
     arguments.out.mkdir(parents=True, exist_ok=True)
     try:
         rows = rows_of(arguments.devices[0], arguments) if len(arguments.devices) == 1 else rows_of_each(arguments)

@@ -19,6 +19,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / 'src' / 'tools'))
 
+import full_solution  # noqa: E402
 from demo_session import DemoSession, SessionError  # noqa: E402
 from processes import wait_until  # noqa: E402
 from rviz_view import RvizError, RvizView  # noqa: E402
@@ -179,6 +180,9 @@ def report(measured, memory, shares):
 
 def main():
     arguments = parse_arguments()
+    scene = ROOT / 'config' / 'cells' / f'{arguments.cell}.yaml'
+    if arguments.model == 'prepared' and not full_solution.prepare(scene):
+        sys.exit(f'realtime: {scene} cannot be prepared, see above')
     with tempfile.TemporaryDirectory() as folder:
         try:
             measured, memory = run(arguments, Path(folder))
