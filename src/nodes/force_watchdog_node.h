@@ -1,19 +1,22 @@
 #pragma once
 
-#include <geometry_msgs/WrenchStamped.h>
 #include <ros/ros.h>
 
+#include <memory>
 #include <string>
+
+#include "nodes/haptic/watched_force.h"
 
 namespace microinjection {
 
-/// Says zero force, again and again, on the topic of a haptic device that speaks CRTK while nobody else says any: such
-/// a driver may hold the last force for ever, and the bridge may have been killed. Devices with an adapter of ours need
-/// none (haptic_device_node.h).
+/// Says zero force, again and again, on a haptic device's topic while nobody else says any: drivers may hold the last
+/// force for ever, and the bridge, or the device's adapter, may have been killed.
 ///
-/// In and out: /haptic/servo_cf (WrenchStamped, N)
+/// In and out: /haptic/servo_cf (WrenchStamped, N), or DEVICE/force_feedback of the driver
 ///
 /// Parameters (private):
+///   kind     of the device: crtk, omni or geomagic; default crtk
+///   device   namespace of the driver's topics; default haptic
 ///   timeout  s without a force of another node's; default 0.05, in (0, inf)
 ///   rate     Hz, of looking and of zero force; default 200, in [50, 5000]
 class ForceWatchdogNode {
@@ -25,19 +28,15 @@ class ForceWatchdogNode {
 
  private:
   struct Parameters {
+    std::string kind = "crtk", device = "haptic";
     double timeout = 0.05;  // s
     double rate = 200;      // Hz
     static Parameters read(const ros::NodeHandle& private_node);
   };
-  using Event = ros::MessageEvent<const geometry_msgs::WrenchStamped>;
-
-  void hear(const Event& event);
 
   Parameters parameters_;
-  ros::Publisher force_;
-  ros::Subscriber subscriber_;
-  ros::Time heard_;    ///< when another node's force came last
-  std::string frame_;  ///< of that force
+  ros::Time heard_;  ///< when another node's force came last
+  std::unique_ptr<WatchedForce> force_;
 };
 
 }  // namespace microinjection

@@ -8,7 +8,7 @@ namespace microinjection {
 
 struct ForceLimits {
   double force = 3.0;   ///< N, the largest that the haptic device is asked for
-  double rate = 100.0;  ///< N/s, the fastest that the force changes
+  double rate = 100.0;  ///< N/s, the fastest that the force changes; one that would push the hand on is let go at once
 
   /// Keys force_limit and force_rate_limit.
   static ForceLimits read(ConfigReader& reader);

@@ -45,6 +45,7 @@ BAD = [  # node, wrong parameters, what the message must say
     ("force_sensor", {"source": "serial"}, ["serial/path is missing", "serial/matrix is missing"]),
     ("force_sensor", {"frame": "nowhere", "frame_timeout": 0.5}, ["frame 'nowhere'", "static_transform_publisher"]),
     ("force_watchdog", {"timeout": 0.0}, ["timeout = 0", "(0, inf)"]),
+    ("force_watchdog", {"kind": "moon"}, ["kind = moon", "crtk, omni, geomagic"]),
     ("haptic_bridge", {"position_scale": 0}, ["position_scale = 0", "(0, inf)"]),
     ("haptic_bridge", {"force_source": "guessed"}, ["force_source = guessed", "predicted, measured"]),
     ("haptic_bridge", {"timeouts/clutch": -1}, ["timeouts/clutch = -1", "[0, inf)"]),

@@ -1,0 +1,60 @@
+#include "nodes/haptic/watched_force.h"
+
+#include <geometry_msgs/WrenchStamped.h>
+
+#include <utility>
+
+#include "nodes/conversions.h"
+#include "nodes/haptic/geomagic_messages.h"
+#include "nodes/haptic/omni_messages.h"
+
+namespace microinjection {
+namespace {
+
+template <typename Message>
+Message zeroLike(const Message&, const ros::Time&) {
+  return {};
+}
+geometry_msgs::WrenchStamped zeroLike(const geometry_msgs::WrenchStamped& last, const ros::Time& now) {
+  return toWrench(Eigen::Vector3d::Zero(), now, last.header.frame_id);
+}
+
+template <typename Message>
+class TopicForce : public WatchedForce {
+ public:
+  TopicForce(const std::string& topic, ros::NodeHandle node, Heard heard)
+      : heard_(std::move(heard)),
+        publisher_(node.advertise<Message>(topic, 10)),
+        subscriber_(node.subscribe<Message, const Event&>(
+            topic, 100, [this](const Event& event) { hear(event); }, {}, ros::TransportHints().tcpNoDelay())) {}
+
+  void sayZero(const ros::Time& now) override { publisher_.publish(zeroLike(last_, now)); }
+
+ private:
+  using Event = ros::MessageEvent<const Message>;
+
+  void hear(const Event& event) {
+    if (event.getPublisherName() == ros::this_node::getName()) return;
+    last_ = *event.getConstMessage();
+    heard_();
+  }
+
+  Heard heard_;
+  Message last_;
+  ros::Publisher publisher_;
+  ros::Subscriber subscriber_;
+};
+
+}  // namespace
+
+std::unique_ptr<WatchedForce> WatchedForce::make(const std::string& kind, const std::string& device,
+                                                 ros::NodeHandle node, Heard heard) {
+  const auto on = [&](auto message, const char* topic) -> std::unique_ptr<WatchedForce> {
+    return std::make_unique<TopicForce<decltype(message)>>(device + topic, node, std::move(heard));
+  };
+  if (kind == "crtk") return on(geometry_msgs::WrenchStamped(), "/servo_cf");
+  if (kind == "omni") return on(OmniFeedback(), "/force_feedback");
+  return on(DeviceFeedback(), "/force_feedback");
+}
+
+}  // namespace microinjection

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <ros/ros.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+
+namespace microinjection {
+
+/// The topic on which a haptic device takes its force: tells when another node has spoken there, and says zero force.
+class WatchedForce {
+ public:
+  using Heard = std::function<void()>;
+
+  /// @param kind    crtk, omni or geomagic
+  /// @param device  namespace of the driver's topics; of crtk: /haptic, that sessions remap
+  static std::unique_ptr<WatchedForce> make(const std::string& kind, const std::string& device, ros::NodeHandle node,
+                                            Heard heard);
+  virtual ~WatchedForce() = default;
+  virtual void sayZero(const ros::Time& now) = 0;
+};
+
+}  // namespace microinjection
