@@ -148,15 +148,17 @@ class KillCase(unittest.TestCase):
         self.session = Session(nodes, ["/controller/operating_state", *seen], remaps)
         self.session.begin()
 
-    def by_hand(self, more=(), linked=False):
-        """A session in which the virtual hand presses the needle into the cell; linked: over packets."""
+    def by_hand(self, more=(), linked=False, source="predicted"):
+        """A session in which the virtual hand presses the needle into the cell; linked: over packets; source: of the
+        force."""
         far_end = {"teleoperation_follower": LINK} if linked else {}
         with tempfile.TemporaryDirectory() as folder:
             motion = os.path.join(folder, "motion.csv")
             write_motion(motion)
-            self.open({"operator": parameters("operator", motion=motion, start_delay=0.15),
-                       "haptic_bridge": parameters("haptic_bridge", **LINK) if linked else BRIDGE, **far_end,
-                       "injection_controller": parameters("injection_controller", injector="injector" in more),
+            self.open({"operator": parameters("operator", motion=motion, start_delay=0.15), **far_end,
+                       "haptic_bridge": parameters("haptic_bridge", force_source=source, **(LINK if linked else {})),
+                       "injection_controller": parameters("injection_controller", injector="injector" in more,
+                                                           force_source=source),
                        "micromanipulator": RIG, "cell_simulator": self.cell("coarse_oocyte"),
                        **{node: parameters(node) for node in more}}, ["/operator/phase"], PACKETS)
 
