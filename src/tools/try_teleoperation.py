@@ -23,7 +23,7 @@ from rviz_mouse import MouseError, RvizMouse
 from rviz_view import PICTURE_RATE, RvizError, RvizView
 
 ROOT = Path(__file__).resolve().parents[2]
-PATIENCE = 120     # s for each stage
+PATIENCE = 120     # s, for rviz to show the cell, and for the whole injection
 MOUSE_RATE = 8     # Hz, that rviz draws at for a mouse
 PICTURE_FORCE = 2e-6  # N, of the pressed cell in the picture
 
@@ -129,7 +129,7 @@ class Trial:
         return once
 
     def until(self, condition, what, meanwhile=lambda: None):
-        end = time.monotonic() + PATIENCE
+        end = self._start + PATIENCE
         while not condition(self.status):
             if time.monotonic() > end:
                 raise SessionError(f'{what}: not within {PATIENCE} s; {self.state.state}, {self.status}')

@@ -1,14 +1,14 @@
 #!/usr/bin/python3
-"""A hand leads the needle. Whichever node is killed (SIGKILL), in whatever state: within the time-outs of config/ the needle rests, the force on
-the hand is zero. In lock step, so that these are times of the session and hold to a tick or two."""
-
+"""A hand leads the needle. Whichever node is killed (SIGKILL), in whatever state: within the time-outs of config/ the
+needle rests and the force on the hand is zero. In lock step, so that these are times of the session and hold to a tick or
+two."""
 import numpy as np
 import rospy
 import rostest
 
 from case import case
-from killable_session import (BRIDGE, CONTROLLER_TIMEOUT, HAND, HAND_TIMEOUT, LINK, OPERATOR, RIG, SETPOINT, SLACK, TICK,
-                              KillCase)
+from killable_session import (BRIDGE, CONTROLLER_TIMEOUT, HAND, HAND_TIMEOUT, LINK, OPERATOR, RIG, SETPOINT, SLACK,
+                              TICK, KillCase)
 from messages import position
 
 
