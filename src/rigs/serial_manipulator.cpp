@@ -9,6 +9,7 @@ constexpr double kOpenInterval = 0.5;   // s, between attempts to open the line
 constexpr double kLongestDrain = 2;     // s: a line that is never silent is not the device's
 constexpr double kPauseInFault = 0.5;   // s, between attempts while nothing may move anyway
 constexpr int kAttempts = 3;            // failures in a row that make a fault
+constexpr double kStreamEnds = 0.1;     // s: set-points that pause for longer have ended
 constexpr int kSuccessesToForget = 12;  // exchanges after which a failure is no longer in a row with the next
 
 }  // namespace
@@ -102,6 +103,12 @@ void SerialManipulator::understood() {
   if (++successes_ >= kSuccessesToForget) failures_ = 0;
 }
 
+/// A goal that was reached is over: a person who turns the device's own hand wheel or knob must not be worked against.
+void SerialManipulator::letGoOfReachedGoal() {
+  const bool goes_on = goal_ && goal_->follows && time_ - goal_->time < kStreamEnds;
+  if (goal_ && !goes_on && mayMove() && !moving()) dropGoal();
+}
+
 void SerialManipulator::step(double time) {
   time_ = time;
   if (!wire_->isOpen()) {
@@ -130,6 +137,7 @@ void SerialManipulator::step(double time) {
     lost_ = false;
   }
   talk(bytes);
+  letGoOfReachedGoal();
 }
 
 ManipulatorDevice::State SerialManipulator::state() const {

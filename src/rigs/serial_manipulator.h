@@ -16,7 +16,7 @@ namespace microinjection {
 /// A session begins, after the line has been opened and after anything went wrong, with a stop; then what comes belated
 /// is thrown away until the line has been silent; then the driver asks where everything is. Only when it knows may
 /// anything move. When that fails a few times in a row, the reason becomes a fault, and motion waits for clearFault().
-/// Commands that come while the device is not kReady are not kept.
+/// Commands that come while the device is not kReady are not kept, and neither is one that has been carried out.
 class SerialManipulator : public ManipulatorDevice {
  public:
   void follow(const Eigen::Vector3d& joints, const Eigen::Vector3d& velocity) final;
@@ -75,6 +75,7 @@ class SerialManipulator : public ManipulatorDevice {
  private:
   void beginSession(double quiet);
   void lineLost();
+  void letGoOfReachedGoal();
 
   std::unique_ptr<Wire> wire_;
   const Link link_;

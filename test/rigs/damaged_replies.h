@@ -21,6 +21,7 @@ class DamagedReplies : public ManipulatorEmulator {
   Eigen::Vector3d position() const override { return device_->position(); }
   int movesBegun() const override { return device_->movesBegun(); }
   bool moves() const override { return device_->moves(); }
+  void shiftByHand(const Eigen::Vector3d& way) override { device_->shiftByHand(way); }
 
   void setDamaging(bool damaging) { damaging_ = damaging; }
   int damaged() const { return damaged_; }

@@ -55,6 +55,31 @@ TYPED_TEST(SerialDriverTest, LongSilenceIsAFaultThatCanBeCleared) {
   this->moveAndCheck();
 }
 
+TYPED_TEST(SerialDriverTest, AHandWheelIsNotWorkedAgainst) {
+  for (const bool follows : {false, true}) {
+    SCOPED_TRACE(follows ? "a stream that ended" : "a move");
+    this->make();
+    this->start();
+    auto& rig = *this->rig_;
+    if (follows) {
+      rig.run(0.3, [&] { rig.driver().follow(kPlace, Eigen::Vector3d::Zero()); });
+    } else {
+      rig.driver().moveTo(kPlace, 1e-3);
+    }
+    ASSERT_TRUE(rig.runUntilArrived());
+    rig.run(0.5);
+    expectNear(rig.place(), kPlace, TypeParam::kStep);
+    rig.device().shiftByHand({40e-6, -30e-6, 20e-6});
+    const Eigen::Vector3d there = rig.place();
+    bool moved = false;
+    rig.run(3, [&] { moved = moved || rig.device().moves(); });
+    EXPECT_FALSE(moved);
+    expectNear(rig.place(), there, 0);
+    expectNear(rig.read(), there, 0.1 * TypeParam::kStep);  // but it is seen
+    EXPECT_FALSE(rig.driver().moving());
+  }
+}
+
 TYPED_TEST(SerialDriverTest, ConnectsAgainByItselfAndRests) {
   this->start();
   auto& rig = *this->rig_;

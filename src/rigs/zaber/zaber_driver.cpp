@@ -75,6 +75,7 @@ bool ZaberDriver::moving() const {
   for (int i = 0; i < 3; ++i) {
     const double away = std::abs(wanted[i] - axes_[i].position.value_or(wanted[i]));
     if (axes_[i].told.value_or(1) != 0 || away > 1 / config_.microsteps_per_metre[i]) return true;
+    if (axes_[i].busy || !axes_[i].read_since_told || axes_[i].filter.doubts()) return true;
   }
   return false;
 }
@@ -166,6 +167,7 @@ void ZaberDriver::handleReply(const ZaberMessage& reply) {
       axis.velocity = done.value / speed_unit;
       axis.end = std::nan("");
       axis.told = done.value;
+      axis.read_since_told = false;
       break;
     case Kind::kMove:
       axis.position = expected(done.axis, time());
@@ -173,7 +175,7 @@ void ZaberDriver::handleReply(const ZaberMessage& reply) {
       axis.end = done.value / config_.microsteps_per_metre[done.axis];
       axis.velocity = std::copysign(axis.move_speed, axis.end - *axis.position);
       axis.told.reset();
-      axis.read_since_move = false;
+      axis.read_since_told = false;
       ++move_stage_;
       break;
     case Kind::kSpeed:
@@ -225,7 +227,7 @@ void ZaberDriver::takePosition(const ZaberMessage& reply) {
   const bool stands = axis.position && std::abs(place - *axis.position) < 0.5 * step;
   axis.position = place;
   axis.position_time = then;
-  axis.read_since_begin = axis.read_since_move = true;
+  axis.read_since_begin = axis.read_since_told = true;
   if (!reply.busy && axis.told.value_or(0) != 0) return checkStall(i, stands);
   axis.stalls = 0;
 }

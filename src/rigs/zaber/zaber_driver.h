@@ -53,8 +53,8 @@ class ZaberDriver : public SerialManipulator {
     double end = 0;                  // m, where a move ends; NaN: no move
     std::optional<long long> told;   // units of speed, of the velocity that the device follows
     bool busy = true;
-    double move_speed = 0;  // m/s, set for the move
-    bool read_since_begin = false, read_since_move = false;
+    double move_speed = 0;                                   // m/s, set for the move
+    bool read_since_begin = false, read_since_told = false;  // to move
     bool has_reference = true, cleared = true, homed = false;
     bool still_moves = false;  // it said so after it was told to stop
     int stalls = 0;

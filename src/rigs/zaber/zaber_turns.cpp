@@ -111,7 +111,7 @@ bool ZaberDriver::nextOfMove() {
 
 void ZaberDriver::checkMove() {
   for (const Axis& axis : axes_) {
-    if (axis.busy || !axis.read_since_move || axis.filter.doubts()) return;
+    if (axis.busy || !axis.read_since_told || axis.filter.doubts()) return;
   }
   const Eigen::Vector3d wanted = config_.joints.toDevice(goal()->joints);
   for (int i = 0; i < 3; ++i) {
