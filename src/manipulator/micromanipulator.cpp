@@ -25,7 +25,9 @@ Micromanipulator::Micromanipulator(const ManipulatorGeometry& geometry, const Co
       config_(config),
       device_(&device),
       follows_(device.abilities().follows),
-      lag_(follows_ ? device.abilities().latency + device.abilities().command_interval : 0) {}
+      lag_(follows_ ? device.abilities().latency + device.abilities().command_interval : 0) {
+  device.limitSpeed({geometry.axes[0].velocity, geometry.axes[1].velocity, geometry.axes[2].velocity});
+}
 
 std::string Micromanipulator::unable() const {
   if (device_->state() != ManipulatorDevice::State::kReady) {

@@ -33,7 +33,7 @@ struct MicromanipulatorConfig {
 /// device is ready.
 class Micromanipulator {
  public:
-  /// @param device  outlives this
+  /// @param device  outlives this; is limited to the axes' speeds
   Micromanipulator(const ManipulatorGeometry& geometry, const CollisionGuard& guard,
                    const MicromanipulatorConfig& config, ManipulatorDevice& device);
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -19,6 +20,7 @@ namespace microinjection {
 /// Commands that come while the device is not kReady are not kept, and neither is one that has been carried out.
 class SerialManipulator : public ManipulatorDevice {
  public:
+  void limitSpeed(const Eigen::Vector3d& axes) final { speed_limits_ = axes; }
   void follow(const Eigen::Vector3d& joints, const Eigen::Vector3d& velocity) final;
   void moveTo(const Eigen::Vector3d& joints, double speed) final;
   void stop() final;
@@ -57,6 +59,7 @@ class SerialManipulator : public ManipulatorDevice {
 
   double time() const { return time_; }  ///< s, of this step
   const std::optional<Goal>& goal() const { return goal_; }
+  const Eigen::Vector3d& speedLimits() const { return speed_limits_; }  ///< m/s, of the joints
   bool talking() const { return talking_; }
   /// Whether positions may be told: not before the first session has settled, and from a fault until one has again.
   bool sure() const { return sure_ && state() != State::kDisconnected; }
@@ -89,6 +92,7 @@ class SerialManipulator : public ManipulatorDevice {
   bool lost_ = true;      // before this session
   bool stopped_ = false;  // told to stop, and to do nothing since
   int failures_ = 0, successes_ = 0;
+  Eigen::Vector3d speed_limits_ = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
   std::string why_;    // not connected
   std::string fault_;  // empty: none
   std::optional<Goal> goal_;

@@ -24,6 +24,7 @@ class NotedDevice : public ManipulatorDevice {
     result.follows = follows;
     return result;
   }
+  void limitSpeed(const Eigen::Vector3d& axes) override { limits = axes; }
   void follow(const Eigen::Vector3d& joints, const Eigen::Vector3d&) override { followed.push_back(joints); }
   void moveTo(const Eigen::Vector3d& joints, double speed) override {
     goal = joints;
@@ -42,9 +43,10 @@ class NotedDevice : public ManipulatorDevice {
   bool is_moving = false;
   State now = State::kReady;
   std::optional<Reading> position = Reading();
-  std::vector<Eigen::Vector3d> followed;  // m
-  std::optional<Eigen::Vector3d> goal;    // m
-  double goal_speed = 0;                  // m/s
+  std::vector<Eigen::Vector3d> followed;             // m
+  std::optional<Eigen::Vector3d> goal;               // m
+  double goal_speed = 0;                             // m/s
+  Eigen::Vector3d limits = Eigen::Vector3d::Zero();  // m/s
   int stops = 0;
 };
 
@@ -160,6 +162,10 @@ TEST(MicromanipulatorRig, ADeviceThatDoesNotFollowMovesByItself) {
   rig.run(kStep);
   ASSERT_EQ(rig.device.followed.size(), 1u);
   EXPECT_NEAR(rig.device.followed[0].z(), 40.1e-6, 1e-12);
+}
+
+TEST(MicromanipulatorRig, ADeviceIsLimitedToTheAxesSpeeds) {
+  EXPECT_EQ(Rig<NotedDevice>(0, true).device.limits, Eigen::Vector3d::Constant(2e-3));
 }
 
 TEST(MicromanipulatorRig, ASetPointWaitsForADeviceThatWouldCutThroughAnObstacle) {

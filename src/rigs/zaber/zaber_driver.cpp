@@ -36,16 +36,25 @@ double ZaberDriver::gain() const {
   return config_.gain > 0 ? config_.gain : 0.3 / (7 * exchangeTime());
 }
 
+double ZaberDriver::fastest(int i) const { return std::min(config_.speed, speedLimits()[i]); }
+
+/// Of a speed (m/s), never rounded beyond the axis' fastest.
+long long ZaberDriver::speedData(int i, double speed) const {
+  const double unit = config_.microsteps_per_metre[i] * kZaberSpeedUnit;
+  const auto most = static_cast<long long>(fastest(i) * unit);
+  return std::clamp(std::llround(speed * unit), -most, most);
+}
+
 ManipulatorAbilities ZaberDriver::abilities() const {
   ManipulatorAbilities abilities;
   abilities.device = "Zaber (ASCII protocol)";
   abilities.follows = true;
   abilities.command_interval = abilities.reading_interval = 6 * exchangeTime();
   abilities.resolution = 1 / config_.microsteps_per_metre.minCoeff();
-  abilities.speed = config_.speed;
+  abilities.speed = std::min(config_.speed, speedLimits().maxCoeff());
   abilities.latency = 4 * exchangeTime();  // half a turn to wait, and its own way
   const double wire = stopAll(config_).size() * byteTime(config_);
-  abilities.stop_time = wire + config_.answer_time + config_.speed / config_.acceleration;
+  abilities.stop_time = wire + config_.answer_time + abilities.speed / config_.acceleration;
   return abilities;
 }
 

@@ -62,6 +62,8 @@ class ZaberDriver : public SerialManipulator {
 
   double exchangeTime() const;
   double gain() const;
+  double fastest(int axis) const;
+  long long speedData(int axis, double speed) const;
   double expected(int axis, double time) const;
   void handle(const ZaberMessage& message);
   void handleReply(const ZaberMessage& reply);
