@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace microinjection {
 namespace {
@@ -34,6 +35,12 @@ ManipulatorAbilities Mp285Driver::abilities() const {
   abilities.latency = turn + 19 * byteTime() + config_.answer_time;  // a set-point waits for the move under way
   abilities.stop_time = byteTime() + config_.answer_time;
   return abilities;
+}
+
+/// Silence after an exchange that went wrong, the questions of a new session, and as much as a turn to spare.
+double Mp285Driver::recoveryTime() const {
+  return config_.half_command_time + 14 * byteTime() + 56 * byteTime() + 4 * config_.answer_time +
+         abilities().reading_interval;
 }
 
 Eigen::Vector3d Mp285Driver::carriedOn(double at) const {
@@ -81,6 +88,7 @@ void Mp285Driver::begin(bool lost) {
 void Mp285Driver::stopSaid() {
   if (position_) position_ = carriedOn(time() + byteTime());
   move_.reset();
+  trustAtMost(config_.reply_timeout + 15 * byteTime() + recoveryTime());
 }
 
 void Mp285Driver::talk(const std::string& bytes) {
@@ -111,6 +119,9 @@ void Mp285Driver::ask(Kind kind, const std::string& bytes, double more_time) {
   const double answer_bytes = kind == Kind::kStatus ? 33 : 13;
   exchange_ =
       Exchange{kind, time(), time() + (bytes.size() + answer_bytes) * byteTime() + config_.reply_timeout + more_time};
+  // It says nothing while it moves, nor unasked at rest: what it was asked last must be answered, or else, once, what
+  // it is asked after that. Readings that are doubted are asked for again, but not trusted for longer.
+  if (settled_ && !filter_.doubts()) trustFor(exchange_->due - time() + recoveryTime());
   say(bytes);
 }
 
@@ -172,6 +183,7 @@ void Mp285Driver::takePosition(const Mp285Position& told) {
     largest_correction_ = std::max(largest_correction_, (place - expected).cwiseAbs().maxCoeff() * microstep_);
   }
   const bool missed = move_ && (place - move_->to).cwiseAbs().maxCoeff() > tolerance;
+  trustFor(std::numeric_limits<double>::infinity());  // it stands
   position_ = place;
   move_.reset();
   reading_due_ = false;

@@ -64,6 +64,7 @@ class Mp285Driver : public SerialManipulator {
   int fastestAlong(const Eigen::Vector3d& way) const;
   Speed speedFor(const Eigen::Vector3d& way) const;
   Eigen::Vector3d carriedOn(double time) const;
+  double recoveryTime() const;
   double timeLeft() const;
 
   Mp285Config config_;

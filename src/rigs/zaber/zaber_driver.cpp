@@ -36,6 +36,11 @@ double ZaberDriver::gain() const {
   return config_.gain > 0 ? config_.gain : 0.3 / (7 * exchangeTime());
 }
 
+/// How old (s) a position may be: two turns, one answer that is missed, and a stop, in which an axis is asked alone.
+double ZaberDriver::longestAge() const {
+  return 2 * abilities().reading_interval + config_.reply_timeout + config_.speed / config_.acceleration;
+}
+
 double ZaberDriver::fastest(int i) const { return std::min(config_.speed, speedLimits()[i]); }
 
 /// Of a speed (m/s), never rounded beyond the axis' fastest.
@@ -236,6 +241,8 @@ void ZaberDriver::takePosition(const ZaberMessage& reply) {
   const bool stands = axis.position && std::abs(place - *axis.position) < 0.5 * step;
   axis.position = place;
   axis.position_time = then;
+  axis.heard = listened();
+  trustFor(std::min({axes_[0].heard, axes_[1].heard, axes_[2].heard}) + longestAge() - listened());
   axis.read_since_begin = axis.read_since_told = true;
   if (!reply.busy && axis.told.value_or(0) != 0) return checkStall(i, stands);
   axis.stalls = 0;

@@ -49,6 +49,7 @@ class ZaberDriver : public SerialManipulator {
     ReadingFilter filter;
     std::optional<double> position;  // m of the device, at `position_time`
     double position_time = 0;        // s
+    double heard = 0;                // s of listened(), when it was last told truly
     double velocity = 0;             // m/s, carries the position on
     double end = 0;                  // m, where a move ends; NaN: no move
     std::optional<long long> told;   // units of speed, of the velocity that the device follows
@@ -62,6 +63,7 @@ class ZaberDriver : public SerialManipulator {
 
   double exchangeTime() const;
   double gain() const;
+  double longestAge() const;
   double fastest(int axis) const;
   long long speedData(int axis, double speed) const;
   double expected(int axis, double time) const;
