@@ -86,8 +86,8 @@ std::string encode(const TrainingResult& result) {
   writer.number<std::uint64_t>(result.samples.size());
   for (const TrainingSample& sample : result.samples) {
     writer.number(sample.angle);
-    for (double x : sample.displacement) writer.number(x);
-    for (double x : sample.force) writer.number(x);
+    for (int i = 0; i < sample.displacement.size(); ++i) writer.number(sample.displacement[i]);
+    for (int i = 0; i < sample.force.size(); ++i) writer.number(sample.force[i]);
     writer.array(sample.surface);
   }
   return writer.bytes();

@@ -1,5 +1,4 @@
-// A device that follows late among obstacles: it is not refused what it can do, and a lost exchange brings it nowhere
-// else.
+// A device that follows late goes round obstacles without being refused what it can do.
 
 #include <gtest/gtest.h>
 
@@ -46,7 +45,6 @@ class Needle {
       run(kStep);
     }
   }
-  void inject(const std::string& fault) { device_->inject(parseFault(fault)); }
   Eigen::Vector3d tip() const { return geometry_.tip(joints()); }
   double nearest() const { return nearest_; }
   int refused() const { return refused_; }
