@@ -101,8 +101,8 @@ TrainingResult decodeTraining(const std::string& bytes) {
   for (std::uint64_t i = 0; i < count; ++i) {
     TrainingSample sample;
     sample.angle = reader.number<double>();
-    for (double& x : sample.displacement) x = reader.number<double>();
-    for (double& x : sample.force) x = reader.number<double>();
+    for (int k = 0; k < sample.displacement.size(); ++k) sample.displacement[k] = reader.number<double>();
+    for (int k = 0; k < sample.force.size(); ++k) sample.force[k] = reader.number<double>();
     reader.array(sample.surface);
     result.samples.push_back(std::move(sample));
   }
