@@ -37,6 +37,8 @@ class ManipulatorDevice {
 
   virtual ManipulatorAbilities abilities() const = 0;
 
+  /// Keeps every axis within its speed (m/s, > 0, of each joint), however far it is behind where it was sent.
+  virtual void limitSpeed(const Eigen::Vector3d& axes) = 0;
   /// Follows a stream of set-points: joint positions (m) and their velocity (m/s).
   virtual void follow(const Eigen::Vector3d& joints, const Eigen::Vector3d& velocity) = 0;
   /// Goes there (m) in a straight line at `speed` (m/s, along the line), by the device's own profile where it has one.

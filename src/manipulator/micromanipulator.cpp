@@ -2,10 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
-
-#include "manipulator/approach_speed.h"
 
 namespace microinjection {
 
@@ -25,7 +22,9 @@ Micromanipulator::Micromanipulator(const ManipulatorGeometry& geometry, const Co
       config_(config),
       device_(&device),
       follows_(device.abilities().follows),
-      lag_(follows_ ? device.abilities().latency + device.abilities().command_interval : 0) {}
+      lag_(follows_ ? device.abilities().latency + device.abilities().command_interval : 0) {
+  device.limitSpeed({geometry.axes[0].velocity, geometry.axes[1].velocity, geometry.axes[2].velocity});
+}
 
 std::string Micromanipulator::unable() const {
   if (device_->state() != ManipulatorDevice::State::kReady) {
@@ -158,117 +157,6 @@ void Micromanipulator::clearFault() {
   device_->clearFault();
 }
 
-void Micromanipulator::endEarly(const std::string& why) {
-  ended_ = why;
-  mode_ = Mode::kBrake;
-}
-
-void Micromanipulator::arrive() {
-  setpoint_->velocity.setZero();
-  mode_ = Mode::kHold;
-}
-
-/// One step of the set-point with this velocity (m/s), or of braking where it could not brake in time afterwards: the
-/// reason then.
-std::string Micromanipulator::advance(const Eigen::Vector3d& velocity, double dt) {
-  AxesMotion next{setpoint_->position + velocity * dt, velocity};
-  const Eigen::Vector3d rest = reachOf(next);
-  std::string why = geometry_.leavesTravel(setpoint_->position, rest);
-  if (why.empty()) why = guard_.blocksWay(setpoint_->position, rest);
-  // A device that goes from move to move takes the straight way from where it is.
-  if (why.empty() && !follows_) why = guard_.blocksWay(device_->reading()->joints, rest);
-  if (!why.empty()) {
-    next = *setpoint_;
-    brake(geometry_, next, dt);
-  }
-  setpoint_ = next;
-  return why;
-}
-
-void Micromanipulator::stepServo(double dt) {
-  goal_age_ += dt;
-  Eigen::Vector3d goal_velocity = Eigen::Vector3d::Zero();
-  if (goal_is_new_) {
-    // Of a stream with a command or two a step; a lone command's goal stands still.
-    if (goal_age_ < 2.5 * dt) goal_velocity = (goal_ - last_goal_) / goal_age_;
-    if (!geometry_.tooFast(goal_velocity * (1 - 1e-9)).empty()) goal_velocity.setZero();
-    goal_age_ = 0;
-    goal_is_new_ = false;
-  }
-  if (goal_age_ > config_.command_timeout) {
-    if (!atRest(geometry_, *setpoint_, goal_, dt) || device_->moving()) {
-      halt();
-      ended_ = "servo_cp is stale";
-    } else {
-      arrive();
-    }
-    return;
-  }
-  Eigen::Vector3d velocity;
-  for (int i = 0; i < 3; ++i) {
-    const ManipulatorGeometry::Axis& axis = geometry_.axes[i];
-    const double behind = goal_[i] - setpoint_->position[i] - goal_velocity[i] * dt;
-    const double catch_up = std::copysign(approachSpeed(std::abs(behind), axis.acceleration, dt), behind);
-    const double change = axis.acceleration * dt;
-    velocity[i] =
-        std::clamp(goal_velocity[i] + catch_up, setpoint_->velocity[i] - change, setpoint_->velocity[i] + change);
-    velocity[i] = std::clamp(velocity[i], -axis.velocity, axis.velocity);
-  }
-  advance(velocity, dt);
-}
-
-void Micromanipulator::stepMove(double dt) {
-  if (!setpoint_) {  // the device goes by itself
-    if (!device_->moving()) rest();
-    return;
-  }
-  double speed = std::numeric_limits<double>::infinity();
-  if (lag_ > 0) {  // so slowly towards the end that a device which hears of it late does not go past
-    double least = speed;
-    for (const auto& axis : geometry_.axes) least = std::min(least, axis.acceleration);
-    speed = std::max(approachSpeed((goal_ - setpoint_->position).norm(), least, 2 * lag_),
-                     device_->abilities().resolution / lag_);
-  }
-  const std::string why = advance(straightVelocity(geometry_, *setpoint_, goal_, speed, dt), dt);
-  if (!why.empty()) return endEarly(why);
-  if (!atRest(geometry_, *setpoint_, goal_, dt)) return;
-  setpoint_->position = goal_;
-  arrive();
-}
-
-void Micromanipulator::stepVelocity(double time, double dt) {
-  const bool stale = time - velocity_command_time_ > config_.velocity_command_timeout;
-  const Eigen::Vector3d wanted = stale ? Eigen::Vector3d::Zero() : velocity_command_;
-  // Along the straight change of velocity, so that the axes come to the new direction together.
-  const Eigen::Vector3d change = wanted - setpoint_->velocity;
-  const double time_needed = brakingTime(geometry_, change);
-  const Eigen::Vector3d velocity =
-      time_needed > dt ? Eigen::Vector3d(setpoint_->velocity + change * (dt / time_needed)) : wanted;
-  const std::string why = advance(velocity, dt);
-  if (!why.empty()) return endEarly(why);
-  if (stale && setpoint_->velocity.isZero(0)) arrive();
-}
-
-void Micromanipulator::stepMode(double time, double dt) {
-  switch (mode_) {
-    case Mode::kHold:
-      break;
-    case Mode::kBrake:
-      brake(geometry_, *setpoint_, dt);
-      if (setpoint_->velocity.isZero(0)) arrive();
-      break;
-    case Mode::kServo:
-      stepServo(dt);
-      break;
-    case Mode::kVelocity:
-      stepVelocity(time, dt);
-      break;
-    case Mode::kMove:
-      stepMove(dt);
-      break;
-  }
-}
-
 void Micromanipulator::step(double time, double dt) {
   if (last_dt_ == 0) device_->step(time - dt);  // sets its clock
   last_dt_ = dt;
@@ -276,6 +164,8 @@ void Micromanipulator::step(double time, double dt) {
   if (!unable().empty()) {
     rest();
     held_off_ = true;
+  } else {
+    haltIfCutOff();
   }
   if (mode_ != Mode::kHold) {
     stepMode(time, dt);

@@ -26,14 +26,14 @@ struct MicromanipulatorConfig {
 /// pipette; the pipette's orientation is fixed.
 ///
 /// A set-point follows the last accepted command within the URDF's travel, speed and acceleration and clear of
-/// obstacles: at any time it could brake without leaving them. A command that changes no faster than that is followed
-/// without lag. The device follows the set-point, or is sent where the set-point should go. A refused command leaves
-/// everything as it was. After a stop or a fault the set-point is where the device says it is, and a stream of commands
-/// that went on meanwhile moves nothing: it must pause for command_timeout first, or clearFault() be called when the
-/// device is ready.
+/// obstacles: at any time it could brake without leaving them, and the device's straight way to it is clear, too. A
+/// command that changes no faster than that is followed without lag. The device follows the set-point, or is sent where
+/// the set-point should go. A refused command leaves everything as it was. After a stop or a fault the set-point is
+/// where the device says it is, and a stream of commands that went on meanwhile moves nothing: it must pause for
+/// command_timeout first, or clearFault() be called when the device is ready.
 class Micromanipulator {
  public:
-  /// @param device  outlives this
+  /// @param device  outlives this; is limited to the axes' speeds
   Micromanipulator(const ManipulatorGeometry& geometry, const CollisionGuard& guard,
                    const MicromanipulatorConfig& config, ManipulatorDevice& device);
 
@@ -74,6 +74,8 @@ class Micromanipulator {
   void begin(Mode mode, const AxesMotion& from);
   void rest();
   void halt();
+  std::string blocksDevice(const Eigen::Vector3d& target) const;
+  void haltIfCutOff();
   std::string advance(const Eigen::Vector3d& velocity, double dt);
   void stepMode(double time, double dt);
   void stepServo(double dt);

@@ -34,6 +34,7 @@ class SimulatedManipulator : public ManipulatorDevice {
   SimulatedManipulator(const ManipulatorGeometry& geometry, const SimulatedManipulatorConfig& config);
 
   ManipulatorAbilities abilities() const override;
+  void limitSpeed(const Eigen::Vector3d&) override {}  ///< its geometry has them
   void follow(const Eigen::Vector3d& joints, const Eigen::Vector3d& velocity) override;
   void moveTo(const Eigen::Vector3d& joints, double speed) override;
   void stop() override;  ///< brakes with the axes' acceleration

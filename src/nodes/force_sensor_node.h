@@ -35,8 +35,8 @@ namespace microinjection {
 ///   frame          of the sensor, in tf; default force_sensor
 ///   frame_timeout  s of wall time to wait for tf at the start; default 10, in (0, inf)
 ///   simulated/     those of ForceSensorConfig
-///   serial/        path, baud (SerialPortConfig; default 115200), those of VoltReadingConfig, axial_overload and
-///                  lateral_overload (N); needed with source serial
+///   serial/        path, baud, parity, stop_bits (SerialPortConfig; default 115200, 8N1), those of VoltReadingConfig,
+///                  axial_overload and lateral_overload (N); needed with source serial
 ///   topic/         axial_overload and lateral_overload (N)
 class ForceSensorNode {
  public:

@@ -37,8 +37,8 @@ namespace microinjection {
 ///                    (0, inf)
 ///   clog_factor      1, how much more the clogged tip resists; default 100, in [1, inf)
 ///   those of InjectorModelConfig, which the estimates of a real one's flow and volume need, too
-///   serial/          path, baud (SerialPortConfig; default 9600) and those of InjectorProtocol; needed with source
-///   serial
+///   serial/          path, baud, parity, stop_bits (SerialPortConfig; default 9600, 8N1) and those of
+///                    InjectorProtocol; needed with source serial
 class InjectorNode {
  public:
   static const char* const kHelp;

@@ -12,6 +12,8 @@ class ManipulatorEmulator : public DeviceEmulator {
   virtual Eigen::Vector3d position() const = 0;  ///< m, of the device's axes, as they are
   virtual int movesBegun() const = 0;            ///< moves to a place that it has begun
   virtual bool moves() const = 0;
+  /// Puts axes at rest elsewhere (m, of the device's axes), as its own hand wheel or knob does.
+  virtual void shiftByHand(const Eigen::Vector3d& way) = 0;
 };
 
 }  // namespace microinjection

@@ -4,8 +4,8 @@
 
 namespace microinjection {
 
-/// Takes a position for true when it is where it may be, or when three readings in a row say the same: a reply that was
-/// damaged on the line moves nothing. Twice would not do: a digit that is lost twice makes the same wrong number.
+/// Takes a position for true when it is where it may be, or when four readings in a row say the same: a reply that was
+/// damaged on the line moves nothing. Fewer would not do: a digit that is lost thrice makes the same wrong number.
 class ReadingFilter {
  public:
   /// Whether `reading` is taken. `tolerance`: the largest difference of any coordinate from `expected`, `agreement`:
@@ -25,7 +25,7 @@ class ReadingFilter {
   void forget() { doubtful_ = 0; }
 
  private:
-  static constexpr int kAgreeing = 3;
+  static constexpr int kAgreeing = 4;
   Eigen::VectorXd last_;
   int doubtful_ = 0;  // readings in a row that agree with each other and not with what was expected
 };

@@ -7,8 +7,11 @@ namespace {
 
 constexpr double kOpenInterval = 0.5;   // s, between attempts to open the line
 constexpr double kLongestDrain = 2;     // s: a line that is never silent is not the device's
+constexpr double kLongestGap = 0.02;    // s between two steps: what is heard in a longer one comes late for no fault
+                                        // of the device's
 constexpr double kPauseInFault = 0.5;   // s, between attempts while nothing may move anyway
 constexpr int kAttempts = 3;            // failures in a row that make a fault
+constexpr double kStreamEnds = 0.1;     // s: set-points that pause for longer have ended
 constexpr int kSuccessesToForget = 12;  // exchanges after which a failure is no longer in a row with the next
 
 }  // namespace
@@ -83,6 +86,14 @@ void SerialManipulator::lostStep(const std::string& reason) {
   }
 }
 
+/// Nobody knows where it is: it is as good as not connected. It is told to rest, and no command waits for it to answer.
+void SerialManipulator::loseTouch() {
+  sure_ = ready_ = false;
+  why_ = link_.device + ": it has told no position for too long; trying again";
+  dropGoal();
+  lostStep("no answer that tells its position");
+}
+
 void SerialManipulator::raiseFault(const std::string& reason) {
   const bool again = !fault_.empty() && !clearing_;
   fault_ = link_.device + ": " + reason;
@@ -102,7 +113,14 @@ void SerialManipulator::understood() {
   if (++successes_ >= kSuccessesToForget) failures_ = 0;
 }
 
+/// A goal that was reached is over: a person who turns the device's own hand wheel or knob must not be worked against.
+void SerialManipulator::letGoOfReachedGoal() {
+  const bool goes_on = goal_ && goal_->follows && time_ - goal_->time < kStreamEnds;
+  if (goal_ && !goes_on && mayMove() && !moving()) dropGoal();
+}
+
 void SerialManipulator::step(double time) {
+  listened_ += std::min(time - time_, kLongestGap);
   time_ = time;
   if (!wire_->isOpen()) {
     if (was_open_) lineLost();
@@ -116,6 +134,7 @@ void SerialManipulator::step(double time) {
   }
   std::string bytes = wire_->read(time);
   if (!wire_->isOpen()) return lineLost();
+  if (sure_ && listened_ > trusted_until_) return loseTouch();
   if (stop_wanted_) {
     stop_wanted_ = false;
     beginSession(talking_ && !clearing_ ? link_.quiet_in_step : std::max(quiet_, link_.quiet_in_step));
@@ -130,6 +149,7 @@ void SerialManipulator::step(double time) {
     lost_ = false;
   }
   talk(bytes);
+  letGoOfReachedGoal();
 }
 
 ManipulatorDevice::State SerialManipulator::state() const {

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,10 +17,13 @@ namespace microinjection {
 ///
 /// A session begins, after the line has been opened and after anything went wrong, with a stop; then what comes belated
 /// is thrown away until the line has been silent; then the driver asks where everything is. Only when it knows may
-/// anything move. When that fails a few times in a row, the reason becomes a fault, and motion waits for clearFault().
-/// Commands that come while the device is not kReady are not kept.
+/// anything move. A device that tells no true position for longer than an exchange that went wrong explains counts as
+/// not connected, and rests until the next command. When it fails a few times in a row, the reason becomes a fault, and
+/// motion waits for clearFault(). Commands that come while the device is not kReady are not kept, and neither is one
+/// that has been carried out.
 class SerialManipulator : public ManipulatorDevice {
  public:
+  void limitSpeed(const Eigen::Vector3d& axes) final { speed_limits_ = axes; }
   void follow(const Eigen::Vector3d& joints, const Eigen::Vector3d& velocity) final;
   void moveTo(const Eigen::Vector3d& joints, double speed) final;
   void stop() final;
@@ -57,6 +62,7 @@ class SerialManipulator : public ManipulatorDevice {
 
   double time() const { return time_; }  ///< s, of this step
   const std::optional<Goal>& goal() const { return goal_; }
+  const Eigen::Vector3d& speedLimits() const { return speed_limits_; }  ///< m/s, of the joints
   bool talking() const { return talking_; }
   /// Whether positions may be told: not before the first session has settled, and from a fault until one has again.
   bool sure() const { return sure_ && state() != State::kDisconnected; }
@@ -66,6 +72,11 @@ class SerialManipulator : public ManipulatorDevice {
   void dropGoal();
   void movesByItself() { stopped_ = false; }  ///< without a goal, so that a stop has something to stop
 
+  double listened() const { return listened_; }  ///< s, a clock that does not run while nobody steps
+  /// The last true position, carried on, may be told for so long (s); trustAtMost only shortens that. Then it is as
+  /// if the line were broken: no position, no goal, a stop, until the driver says known() again.
+  void trustFor(double duration) { trusted_until_ = listened_ + duration; }
+  void trustAtMost(double duration) { trusted_until_ = std::min(trusted_until_, listened_ + duration); }
   void known();                                ///< the driver knows where everything is, and everything is at rest
   void understood();                           ///< an exchange has succeeded
   void stopFirst();                            ///< begins anew, and goes on to the goal
@@ -75,19 +86,24 @@ class SerialManipulator : public ManipulatorDevice {
  private:
   void beginSession(double quiet);
   void lineLost();
+  void loseTouch();
+  void letGoOfReachedGoal();
 
   std::unique_ptr<Wire> wire_;
   const Link link_;
-  double time_ = 0;         // s
-  double next_open_ = -1;   // s
-  double last_byte_ = 0;    // s, since the stop
-  double drain_since_ = 0;  // s
-  double quiet_ = 0;        // s, of silence to wait for
+  double time_ = 0;           // s
+  double listened_ = 0;       // s
+  double trusted_until_ = 0;  // s of `listened_`
+  double next_open_ = -1;     // s
+  double last_byte_ = 0;      // s, since the stop
+  double drain_since_ = 0;    // s
+  double quiet_ = 0;          // s, of silence to wait for
   bool was_open_ = false, talking_ = false, ready_ = false, clearing_ = false, stop_wanted_ = false;
   bool sure_ = false;     // where everything is
   bool lost_ = true;      // before this session
   bool stopped_ = false;  // told to stop, and to do nothing since
   int failures_ = 0, successes_ = 0;
+  Eigen::Vector3d speed_limits_ = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
   std::string why_;    // not connected
   std::string fault_;  // empty: none
   std::optional<Goal> goal_;

@@ -40,7 +40,7 @@ double noiseDensity(const Eigen::VectorXd& stream, double sample_rate, int segme
 double roundingDensity(double step, double sample_rate) { return step / std::sqrt(6 * sample_rate); }
 
 double quantisationStep(const Eigen::VectorXd& stream) {
-  std::vector<double> sorted(stream.begin(), stream.end());
+  std::vector<double> sorted(stream.data(), stream.data() + stream.size());
   std::sort(sorted.begin(), sorted.end());
   const double rounding = 1e-12 * std::max(std::abs(sorted.front()), std::abs(sorted.back()));
   double step = 0;

@@ -21,7 +21,13 @@ SerialPortConfig SerialPortConfig::read(ConfigReader& reader, int default_baud) 
   config.baud = default_baud;
   reader.text("path", config.path, ConfigReader::kRequired);
   reader.integer("baud", config.baud, Range::positive());
+  reader.choice("parity", config.parity, {"none", "even", "odd"});
+  reader.integer("stop_bits", config.stop_bits, Range::closed(1, 2));
   return config;
+}
+
+std::string SerialPortConfig::frame() const {
+  return std::string("8") + (parity == "even" ? "E" : parity == "odd" ? "O" : "N") + std::to_string(stop_bits);
 }
 
 /// Its handlers run in `context.poll()` only, so that everything happens in the caller's thread.
@@ -49,10 +55,13 @@ struct SerialPort::Line {
     };
     set(Port::baud_rate(static_cast<unsigned>(config.baud)));
     set(Port::character_size(8));
-    set(Port::parity(Port::parity::none));
-    set(Port::stop_bits(Port::stop_bits::one));
+    set(Port::parity(config.parity == "even"  ? Port::parity::even
+                     : config.parity == "odd" ? Port::parity::odd
+                                              : Port::parity::none));
+    set(Port::stop_bits(config.stop_bits == 2 ? Port::stop_bits::two : Port::stop_bits::one));
     set(Port::flow_control(Port::flow_control::none));
-    if (error) return config.path + ": " + std::to_string(config.baud) + " baud, 8N1: " + error.message();
+    if (error)
+      return config.path + ": " + std::to_string(config.baud) + " baud, " + config.frame() + ": " + error.message();
     tcflush(port.native_handle(), TCIFLUSH);
     listen();
     return "";

@@ -9,10 +9,14 @@
 namespace microinjection {
 
 struct SerialPortConfig {
-  std::string path;  ///< of the serial device, or of a link to one, e.g. /dev/ttyUSB0
-  int baud = 9600;   ///< bit/s; 8 data bits, no parity, 1 stop bit
+  std::string path;             ///< of the serial device, or of a link to one, e.g. /dev/ttyUSB0
+  int baud = 9600;              ///< bit/s; 8 data bits
+  std::string parity = "none";  ///< none, even or odd
+  int stop_bits = 1;            ///< 1 or 2
 
-  /// Requires `path`; `baud` is optional.
+  std::string frame() const;  ///< as data sheets write it, e.g. 8N1
+
+  /// Requires `path`; the others are optional.
   static SerialPortConfig read(ConfigReader& reader, int default_baud);
 };
 

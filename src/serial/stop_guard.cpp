@@ -2,15 +2,50 @@
 
 #include <fcntl.h>
 #include <sys/prctl.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <csignal>
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
 
 namespace microinjection {
 namespace {
+
+/// Closes every descriptor from `first` on, without what may not be called here: close_range() is not in every libc.
+void closeAllFrom(int first) {
+  struct Entry {  // linux_dirent64
+    std::uint64_t inode;
+    std::int64_t offset;
+    unsigned short length;
+    unsigned char type;
+    char name[1];
+  };
+  alignas(Entry) char entries[2048];
+  const int list = open("/proc/self/fd", O_RDONLY | O_DIRECTORY);
+  bool found = list >= 0;
+  while (found) {  // from the start again, since what is closed leaves the list
+    found = false;
+    lseek(list, 0, SEEK_SET);
+    const long size = syscall(SYS_getdents64, list, entries, sizeof(entries));
+    for (long at = 0; at < size;) {
+      const auto* entry = reinterpret_cast<const Entry*>(entries + at);
+      int number = 0;
+      for (const char* digit = entries + at + offsetof(Entry, name); *digit >= '0' && *digit <= '9'; ++digit)
+        number = 10 * number + *digit - '0';
+      if (number >= first && number != list && close(number) == 0) found = true;
+      at += entry->length;
+    }
+  }
+  if (list >= 0) {
+    close(list);
+  } else {
+    for (int number = first; number < 1024; ++number) close(number);
+  }
+}
 
 /// The guard: after fork in a program with threads only what is safe in a signal handler may be called.
 [[noreturn]] void guard(int line, int parent, const char* words, std::size_t size) {
@@ -20,7 +55,7 @@ namespace {
   // Nothing else may be kept open: neither connections nor the pipe's other end.
   dup2(line, 0);
   dup2(parent, 1);
-  close_range(3, ~0U, 0);
+  closeAllFrom(3);
   close(2);
   char farewell = 0;
   ssize_t got = 0;

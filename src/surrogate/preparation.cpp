@@ -139,7 +139,7 @@ Preparation Preparation::plan(const Scene& scene, const PreparationRange& range)
 std::string Preparation::description(const Scene& scene, const TrainingRay& ray) const {
   std::ostringstream out;
   out << description(scene) << " path " << std::hexfloat << ray.angle;
-  for (double x : ray.target) out << ' ' << x;
+  for (int i = 0; i < ray.target.size(); ++i) out << ' ' << ray.target[i];
   out << ' ' << ray.points << " level " << ray.level;
   return out.str();
 }

@@ -124,8 +124,8 @@ PreparedContact::Shape PreparedContact::shape() const {
 void PreparedContact::surface(const Shape& shape, Eigen::Matrix3Xd& at_rest, Eigen::Matrix3Xd& displaced) const {
   Eigen::VectorXd rest, moved;
   cell_->surface.evaluate(shape.angle, shape.displacement, rest, moved);
-  at_rest = shape.rotation * rest.reshaped(3, rest.size() / 3);
-  displaced = shape.rotation * moved.reshaped(3, moved.size() / 3);
+  at_rest = shape.rotation * Eigen::Map<const Eigen::Matrix3Xd>(rest.data(), 3, rest.size() / 3);
+  displaced = shape.rotation * Eigen::Map<const Eigen::Matrix3Xd>(moved.data(), 3, moved.size() / 3);
 }
 
 }  // namespace microinjection

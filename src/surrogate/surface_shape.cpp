@@ -28,7 +28,7 @@ std::vector<int> mirror(const Eigen::VectorXd& nodes) {
 
 void writeMatrix(ByteWriter& writer, const Eigen::MatrixXd& matrix) {
   writer.number<std::int64_t>(matrix.rows());
-  writer.array(Eigen::VectorXd(matrix.reshaped()));
+  writer.array(Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(matrix.data(), matrix.size())));
 }
 
 Eigen::MatrixXd readMatrix(ByteReader& reader) {
@@ -36,7 +36,7 @@ Eigen::MatrixXd readMatrix(ByteReader& reader) {
   Eigen::VectorXd values;
   reader.array(values);
   if (rows <= 0 || values.size() % rows != 0) throw std::runtime_error("the data are damaged");
-  return values.reshaped(rows, values.size() / rows);
+  return Eigen::Map<const Eigen::MatrixXd>(values.data(), rows, values.size() / rows);
 }
 
 }  // namespace
@@ -119,7 +119,8 @@ void SurfaceShape::write(ByteWriter& writer) const {
   for (double x : {range_.angle, range_.depth, range_.axis_depth, range_.lateral}) writer.number(x);
   writer.number(node_count_);
   std::vector<int> corners;
-  for (const Eigen::Vector3i& triangle : triangles_) corners.insert(corners.end(), triangle.begin(), triangle.end());
+  for (const Eigen::Vector3i& triangle : triangles_)
+    corners.insert(corners.end(), triangle.data(), triangle.data() + 3);
   writer.array(corners);
   writer.array(mirrored_);
   writer.array(angles_);

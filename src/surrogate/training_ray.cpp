@@ -86,8 +86,8 @@ std::string encode(const TrainingResult& result) {
   writer.number<std::uint64_t>(result.samples.size());
   for (const TrainingSample& sample : result.samples) {
     writer.number(sample.angle);
-    for (double x : sample.displacement) writer.number(x);
-    for (double x : sample.force) writer.number(x);
+    for (int i = 0; i < sample.displacement.size(); ++i) writer.number(sample.displacement[i]);
+    for (int i = 0; i < sample.force.size(); ++i) writer.number(sample.force[i]);
     writer.array(sample.surface);
   }
   return writer.bytes();
@@ -101,8 +101,8 @@ TrainingResult decodeTraining(const std::string& bytes) {
   for (std::uint64_t i = 0; i < count; ++i) {
     TrainingSample sample;
     sample.angle = reader.number<double>();
-    for (double& x : sample.displacement) x = reader.number<double>();
-    for (double& x : sample.force) x = reader.number<double>();
+    for (int k = 0; k < sample.displacement.size(); ++k) sample.displacement[k] = reader.number<double>();
+    for (int k = 0; k < sample.force.size(); ++k) sample.force[k] = reader.number<double>();
     reader.array(sample.surface);
     result.samples.push_back(std::move(sample));
   }

@@ -24,6 +24,7 @@ class NotedDevice : public ManipulatorDevice {
     result.follows = follows;
     return result;
   }
+  void limitSpeed(const Eigen::Vector3d& axes) override { limits = axes; }
   void follow(const Eigen::Vector3d& joints, const Eigen::Vector3d&) override { followed.push_back(joints); }
   void moveTo(const Eigen::Vector3d& joints, double speed) override {
     goal = joints;
@@ -42,9 +43,10 @@ class NotedDevice : public ManipulatorDevice {
   bool is_moving = false;
   State now = State::kReady;
   std::optional<Reading> position = Reading();
-  std::vector<Eigen::Vector3d> followed;  // m
-  std::optional<Eigen::Vector3d> goal;    // m
-  double goal_speed = 0;                  // m/s
+  std::vector<Eigen::Vector3d> followed;             // m
+  std::optional<Eigen::Vector3d> goal;               // m
+  double goal_speed = 0;                             // m/s
+  Eigen::Vector3d limits = Eigen::Vector3d::Zero();  // m/s
   int stops = 0;
 };
 
@@ -162,8 +164,13 @@ TEST(MicromanipulatorRig, ADeviceThatDoesNotFollowMovesByItself) {
   EXPECT_NEAR(rig.device.followed[0].z(), 40.1e-6, 1e-12);
 }
 
-TEST(MicromanipulatorRig, ASetPointWaitsForADeviceThatWouldCutThroughAnObstacle) {
-  Rig<NotedDevice> rig(0, false);
+TEST(MicromanipulatorRig, ADeviceIsLimitedToTheAxesSpeeds) {
+  EXPECT_EQ(Rig<NotedDevice>(0, true).device.limits, Eigen::Vector3d::Constant(2e-3));
+}
+
+/// The device stays where it is: of one that follows, the line has lost what it was told.
+void checkASetPointWaits(bool follows) {
+  Rig<NotedDevice> rig(0, follows);
   // Up, over the holding pipette and beyond it; the device stays where it began, below the mouth and beside it.
   rig.device.position->joints = 1e-6 * Eigen::Vector3d(60, 0, -100);
   const auto stream = [&](double x, double z, int steps) {
@@ -182,6 +189,48 @@ TEST(MicromanipulatorRig, ASetPointWaitsForADeviceThatWouldCutThroughAnObstacle)
   rig.device.position->joints = waits;  // it has come
   stream(-200, -10, 500);
   EXPECT_NEAR(rig.device.followed.back().x(), -200e-6, 1e-9);
+  EXPECT_EQ(rig.device.stops, 0);
+}
+
+TEST(MicromanipulatorRig, ASetPointWaitsForADeviceThatWouldCutThroughAnObstacle) {
+  checkASetPointWaits(false);
+  checkASetPointWaits(true);
+}
+
+TEST(MicromanipulatorRig, ADeviceThatAnObstacleCutsOffFromItsSetPointIsStopped) {
+  const Eigen::Vector3d cut_off = 1e-6 * Eigen::Vector3d(-200, 0, -100);  // on the holding pipette's other side
+  for (const bool follows : {false, true}) {
+    for (const bool by_stream : {false, true}) {
+      SCOPED_TRACE(std::string(follows ? "follows" : "goes by moves") + (by_stream ? ", stream" : ", move"));
+      Rig<NotedDevice> rig(0, follows);
+      rig.device.position->joints = 1e-6 * Eigen::Vector3d(60, 0, -100);
+      const Eigen::Isometry3d goal = rig.at(200, 0, -40);
+      ASSERT_EQ(by_stream ? rig.micromanipulator.servoPosition(goal) : rig.micromanipulator.movePosition(goal), "");
+      rig.run(0.05);
+      EXPECT_EQ(rig.device.stops, 0);
+      rig.device.position->joints = cut_off;
+      const std::size_t told = rig.device.followed.size();
+      rig.run(0.05);
+      EXPECT_EQ(rig.device.stops, 1);
+      EXPECT_EQ(rig.device.followed.size(), told);
+      EXPECT_FALSE(rig.micromanipulator.moving());
+      EXPECT_NE(rig.micromanipulator.ended().find("holding_pipette"), std::string::npos);
+      EXPECT_NE(rig.micromanipulator.servoPosition(goal).find("holding_pipette"), std::string::npos);
+    }
+  }
+}
+
+TEST(MicromanipulatorRig, ADeviceThatIsOnItsWayToAHeldSetPointIsWatched) {
+  Rig<NotedDevice> rig(0, true);
+  rig.device.position->joints = 1e-6 * Eigen::Vector3d(60, 0, -100);
+  ASSERT_EQ(rig.micromanipulator.movePosition(rig.at(200, 0, -40)), "");
+  rig.device.is_moving = true;
+  rig.run(1);
+  ASSERT_FALSE(rig.micromanipulator.moving());  // the set-point has arrived, the device has not
+  EXPECT_EQ(rig.device.stops, 0);
+  rig.device.position->joints = 1e-6 * Eigen::Vector3d(-200, 0, -100);
+  rig.run(0.01);
+  EXPECT_EQ(rig.device.stops, 1);
 }
 
 TEST(MicromanipulatorRig, ADeviceOutsideOfItsTravelMayComeBack) {

@@ -13,7 +13,7 @@ namespace microinjection {
 /// untouched.
 class DamagedReplies : public ManipulatorEmulator {
  public:
-  /// `forge`: makes a reply that is well formed and false.
+  /// `forge`: makes a reply that is well formed and false; none: nothing is forged.
   DamagedReplies(std::shared_ptr<ManipulatorEmulator> device, unsigned seed,
                  std::function<std::string(const std::string& reply, std::mt19937& random)> forge)
       : device_(std::move(device)), random_(seed), forge_(std::move(forge)) {}
@@ -21,6 +21,7 @@ class DamagedReplies : public ManipulatorEmulator {
   Eigen::Vector3d position() const override { return device_->position(); }
   int movesBegun() const override { return device_->movesBegun(); }
   bool moves() const override { return device_->moves(); }
+  void shiftByHand(const Eigen::Vector3d& way) override { device_->shiftByHand(way); }
 
   void setDamaging(bool damaging) { damaging_ = damaging; }
   int damaged() const { return damaged_; }
@@ -45,7 +46,7 @@ class DamagedReplies : public ManipulatorEmulator {
 
   void damage(std::string& reply) {
     const std::size_t at = below(reply.size());
-    switch (below(9)) {
+    switch (below(forge_ ? 9 : 8)) {
       case 0:  // cut off
         reply.resize(at);
         break;

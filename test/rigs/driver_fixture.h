@@ -20,8 +20,10 @@ struct TestedZaber {
   using Config = ZaberConfig;
   using Emulator = ZaberEmulator;
   using EmulatorConfig = ZaberEmulatorConfig;
-  static constexpr double kStep = 0.047625e-6;                   // m, a microstep
-  static constexpr double kFastest = 2e-3;                       // m/s
+  static constexpr double kStep = 0.047625e-6;   // m, a microstep
+  static constexpr double kFastest = 2e-3;       // m/s
+  static constexpr double kLongestBlind = 0.16;  // s without an answer that position is still told
+  static constexpr char kLostReply[] = "drop:28", kSilence[] = "silence:0.3";
   static constexpr double kStopOnWire = 3 * 10 * 10.0 / 115200;  // s
 
   static Config config() {
@@ -39,8 +41,10 @@ struct TestedMp285 {
   using Config = Mp285Config;
   using Emulator = Mp285Emulator;
   using EmulatorConfig = Mp285EmulatorConfig;
-  static constexpr double kStep = 0.04e-6;            // m, a microstep
-  static constexpr double kFastest = 1e-3;            // m/s
+  static constexpr double kStep = 0.04e-6;      // m, a microstep
+  static constexpr double kFastest = 1e-3;      // m/s
+  static constexpr double kLongestBlind = 1.5;  // s, a short move and its failed exchange
+  static constexpr char kLostReply[] = "drop:1", kSilence[] = "silence:1.6";
   static constexpr double kStopOnWire = 10.0 / 9600;  // s
 
   static Config config() {

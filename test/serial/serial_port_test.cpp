@@ -1,15 +1,19 @@
 #include "serial/serial_port.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
+#include <termios.h>
 #include <unistd.h>
 
+#include <array>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <thread>
+#include <vector>
 
 #include "base/errors.h"
 #include "serial/pseudo_terminal.h"
@@ -119,6 +123,74 @@ TEST_F(SerialPortTest, AKilledDriversStopIsSaid) {
     SerialPort next({link_, 9600});
     EXPECT_TRUE(eventually([&] { return next.open().empty(); }));  // and the line is free again
   }
+}
+
+TEST_F(SerialPortTest, ReadsParityAndStopBits) {
+  const auto read = [](const std::string& text) {
+    ConfigReader reader(YAML::Load(text), "test.yaml");
+    const auto config = SerialPortConfig::read(reader, 9600);
+    reader.finish();
+    return config;
+  };
+  EXPECT_EQ(read("{path: /dev/ttyUSB0}").frame(), "8N1");
+  EXPECT_EQ(read("{path: /dev/ttyUSB0, stop_bits: 2}").frame(), "8N2");
+  EXPECT_EQ(read("{path: /dev/ttyUSB0, parity: even}").frame(), "8E1");
+  EXPECT_EQ(read("{path: /dev/ttyUSB0, parity: odd, stop_bits: 2}").frame(), "8O2");
+  for (const auto& [wrong, why] :
+       {std::pair("stop_bits: 3", "stop_bits"), {"stop_bits: 1.5", "stop_bits"}, {"parity: mark", "none, even, odd"}}) {
+    try {
+      read(std::string("{path: /dev/ttyUSB0, ") + wrong + "}");
+      ADD_FAILURE() << wrong;
+    } catch (const ConfigError& error) {
+      EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();
+    }
+  }
+}
+
+TEST_F(SerialPortTest, SetsStopBitsOnTheLine) {
+  PseudoTerminal terminal(link_);
+  for (const int stop_bits : {1, 2}) {
+    SerialPort port({link_, 9600, "none", stop_bits});
+    ASSERT_EQ(port.open(), "");
+    const int line = open(link_.c_str(), O_RDWR | O_NOCTTY);
+    termios settings{};
+    ASSERT_EQ(tcgetattr(line, &settings), 0);
+    close(line);
+    EXPECT_EQ((settings.c_cflag & CSTOPB) != 0, stop_bits == 2);
+  }
+}
+
+TEST_F(SerialPortTest, SetsParityOnTheLineOrSaysThatItCannot) {
+  PseudoTerminal terminal(link_);
+  SerialPort port({link_, 9600, "odd", 1});
+  const std::string why = port.open();  // a pseudo-terminal has no parity bit, and some C libraries tell
+  if (!why.empty()) {
+    EXPECT_NE(why.find("9600 baud, 8O1"), std::string::npos) << why;
+    return;
+  }
+  const int line = open(link_.c_str(), O_RDWR | O_NOCTTY);
+  termios settings{};
+  ASSERT_EQ(tcgetattr(line, &settings), 0);
+  close(line);
+  EXPECT_NE(settings.c_cflag & PARODD, 0u);
+}
+
+TEST_F(SerialPortTest, TheGuardKeepsNothingElseOpen) {
+  PseudoTerminal terminal(link_);
+  std::vector<std::array<int, 2>> pipes(150);  // more than are listed at a time
+  for (auto& ends : pipes) ASSERT_EQ(pipe(ends.data()), 0);
+  port_.setStopWhenKilled("stop");
+  ASSERT_EQ(port_.open(), "");
+  for (const auto& ends : pipes) {
+    close(ends[1]);
+    fcntl(ends[0], F_SETFL, O_NONBLOCK);
+  }
+  char byte = 0;
+  for (const auto& ends : pipes) {
+    ASSERT_TRUE(eventually([&] { return read(ends[0], &byte, 1) == 0; }));  // its end is seen: nobody holds it open
+    close(ends[0]);
+  }
+  EXPECT_TRUE(port_.isOpen());
 }
 
 TEST_F(SerialPortTest, ADriverThatClosesItsLineIsNotSpokenFor) {

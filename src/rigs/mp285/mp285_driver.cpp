@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace microinjection {
 namespace {
@@ -30,10 +31,16 @@ ManipulatorAbilities Mp285Driver::abilities() const {
   const double turn = 35 * byteTime() + 3 * config_.answer_time + config_.segment_time;
   abilities.command_interval = abilities.reading_interval = turn;
   abilities.resolution = microstep_;
-  abilities.speed = config_.speed;
+  abilities.speed = std::min(config_.speed, speedLimits().maxCoeff());
   abilities.latency = turn + 19 * byteTime() + config_.answer_time;  // a set-point waits for the move under way
   abilities.stop_time = byteTime() + config_.answer_time;
   return abilities;
+}
+
+/// Silence after an exchange that went wrong, the questions of a new session, and as much as a turn to spare.
+double Mp285Driver::recoveryTime() const {
+  return config_.half_command_time + 14 * byteTime() + 56 * byteTime() + 4 * config_.answer_time +
+         abilities().reading_interval;
 }
 
 Eigen::Vector3d Mp285Driver::carriedOn(double at) const {
@@ -81,6 +88,7 @@ void Mp285Driver::begin(bool lost) {
 void Mp285Driver::stopSaid() {
   if (position_) position_ = carriedOn(time() + byteTime());
   move_.reset();
+  trustAtMost(config_.reply_timeout + 15 * byteTime() + recoveryTime());
 }
 
 void Mp285Driver::talk(const std::string& bytes) {
@@ -111,6 +119,9 @@ void Mp285Driver::ask(Kind kind, const std::string& bytes, double more_time) {
   const double answer_bytes = kind == Kind::kStatus ? 33 : 13;
   exchange_ =
       Exchange{kind, time(), time() + (bytes.size() + answer_bytes) * byteTime() + config_.reply_timeout + more_time};
+  // It says nothing while it moves, nor unasked at rest: what it was asked last must be answered, or else, once, what
+  // it is asked after that. Readings that are doubted are asked for again, but not trusted for longer.
+  if (settled_ && !filter_.doubts()) trustFor(exchange_->due - time() + recoveryTime());
   say(bytes);
 }
 
@@ -172,6 +183,7 @@ void Mp285Driver::takePosition(const Mp285Position& told) {
     largest_correction_ = std::max(largest_correction_, (place - expected).cwiseAbs().maxCoeff() * microstep_);
   }
   const bool missed = move_ && (place - move_->to).cwiseAbs().maxCoeff() > tolerance;
+  trustFor(std::numeric_limits<double>::infinity());  // it stands
   position_ = place;
   move_.reset();
   reading_due_ = false;
@@ -196,16 +208,30 @@ void Mp285Driver::next() {
   if (config_.rest_reading_interval > 0 && time() >= next_rest_reading_) reading_due_ = true;
 }
 
-Mp285Driver::Speed Mp285Driver::speedFor(double way) const {
+/// The largest speed (um/s) along a way at which no axis is faster than it may be; the device's least is 1 um/s.
+int Mp285Driver::fastestAlong(const Eigen::Vector3d& way) const {
+  const Eigen::Vector3d direction = config_.inJointOrder(way.normalized()).cwiseAbs();
+  double speed = config_.speed;
+  for (int i = 0; i < 3; ++i) {
+    if (direction[i] > 0) speed = std::min(speed, speedLimits()[i] / direction[i]);
+  }
+  return std::max(1, static_cast<int>(speed * 1e6 + 1e-6));
+}
+
+Mp285Driver::Speed Mp285Driver::speedFor(const Eigen::Vector3d& whole_way) const {
+  const double way = whole_way.norm();
   double speed = goal()->speed;
   if (goal()->follows) speed = std::max(1.2 * goal()->velocity.norm(), way * microstep_ / config_.segment_time);
   int um_per_s = static_cast<int>(std::lround(std::min(speed, config_.speed) * 1e6));
-  um_per_s = std::max(um_per_s, goal()->follows ? std::min(kSlowest, static_cast<int>(config_.speed * 1e6)) : 1);
-  const bool fine = um_per_s <= kFineLimit || way < 10 * kCoarseStep;  // the rest of a coarse move is a fine one
-  if (fine) um_per_s = std::min(um_per_s, static_cast<int>(kFineLimit));
+  um_per_s = std::max(um_per_s, goal()->follows ? kSlowest : 1);
+  int fastest = fastestAlong(whole_way);
+  const bool fine =
+      std::min(um_per_s, fastest) <= kFineLimit || way < 10 * kCoarseStep;  // the rest of a coarse move is a fine one
+  if (fine) fastest = std::min(fastest, static_cast<int>(kFineLimit));
+  um_per_s = std::min(um_per_s, fastest);
   // A speed that is about right is kept: to set it takes as long as a third of a move's exchange.
   if (goal()->follows && speed_ && speed_->fine == fine && speed_->um_per_s >= 0.9 * um_per_s &&
-      speed_->um_per_s <= 1.5 * um_per_s) {
+      speed_->um_per_s <= std::min<double>(1.5 * um_per_s, fastest)) {
     return *speed_;
   }
   return {um_per_s, fine};
@@ -213,7 +239,7 @@ Mp285Driver::Speed Mp285Driver::speedFor(double way) const {
 
 void Mp285Driver::nextTowardsGoal() {
   const Eigen::Vector3d way = goalPlace() - *position_;
-  const Speed speed = speedFor(way.norm());
+  const Speed speed = speedFor(way);
   if (!speed_ || !(*speed_ == speed)) {
     speed_ = speed;  // if this fails, the session that follows forgets it
     return ask(Kind::kVelocity, mp285SetVelocity(speed.um_per_s, speed.fine));

@@ -61,8 +61,10 @@ class Mp285Driver : public SerialManipulator {
   void next();
   void nextTowardsGoal();
   Eigen::Vector3d goalPlace() const;
-  Speed speedFor(double way) const;
+  int fastestAlong(const Eigen::Vector3d& way) const;
+  Speed speedFor(const Eigen::Vector3d& way) const;
   Eigen::Vector3d carriedOn(double time) const;
+  double recoveryTime() const;
   double timeLeft() const;
 
   Mp285Config config_;

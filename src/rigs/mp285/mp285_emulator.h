@@ -31,6 +31,9 @@ class Mp285Emulator : public ManipulatorEmulator {
   Eigen::Vector3d position() const override { return place_ * (1e-6 / config_.step_div); }
   int movesBegun() const override { return moves_begun_; }
   bool moves() const override { return moving_; }
+  void shiftByHand(const Eigen::Vector3d& way) override {
+    place_ = (place_ + way * (1e6 * config_.step_div)).array().round();
+  }
 
  protected:
   void hear(const std::string& bytes, double time) override;

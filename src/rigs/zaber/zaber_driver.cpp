@@ -36,16 +36,30 @@ double ZaberDriver::gain() const {
   return config_.gain > 0 ? config_.gain : 0.3 / (7 * exchangeTime());
 }
 
+/// How old (s) a position may be: two turns, one answer that is missed, and a stop, in which an axis is asked alone.
+double ZaberDriver::longestAge() const {
+  return 2 * abilities().reading_interval + config_.reply_timeout + config_.speed / config_.acceleration;
+}
+
+double ZaberDriver::fastest(int i) const { return std::min(config_.speed, speedLimits()[i]); }
+
+/// Of a speed (m/s), never rounded beyond the axis' fastest.
+long long ZaberDriver::speedData(int i, double speed) const {
+  const double unit = config_.microsteps_per_metre[i] * kZaberSpeedUnit;
+  const auto most = static_cast<long long>(fastest(i) * unit);
+  return std::clamp(std::llround(speed * unit), -most, most);
+}
+
 ManipulatorAbilities ZaberDriver::abilities() const {
   ManipulatorAbilities abilities;
   abilities.device = "Zaber (ASCII protocol)";
   abilities.follows = true;
   abilities.command_interval = abilities.reading_interval = 6 * exchangeTime();
   abilities.resolution = 1 / config_.microsteps_per_metre.minCoeff();
-  abilities.speed = config_.speed;
+  abilities.speed = std::min(config_.speed, speedLimits().maxCoeff());
   abilities.latency = 4 * exchangeTime();  // half a turn to wait, and its own way
   const double wire = stopAll(config_).size() * byteTime(config_);
-  abilities.stop_time = wire + config_.answer_time + config_.speed / config_.acceleration;
+  abilities.stop_time = wire + config_.answer_time + abilities.speed / config_.acceleration;
   return abilities;
 }
 
@@ -75,6 +89,7 @@ bool ZaberDriver::moving() const {
   for (int i = 0; i < 3; ++i) {
     const double away = std::abs(wanted[i] - axes_[i].position.value_or(wanted[i]));
     if (axes_[i].told.value_or(1) != 0 || away > 1 / config_.microsteps_per_metre[i]) return true;
+    if (axes_[i].busy || !axes_[i].read_since_told || axes_[i].filter.doubts()) return true;
   }
   return false;
 }
@@ -166,6 +181,7 @@ void ZaberDriver::handleReply(const ZaberMessage& reply) {
       axis.velocity = done.value / speed_unit;
       axis.end = std::nan("");
       axis.told = done.value;
+      axis.read_since_told = false;
       break;
     case Kind::kMove:
       axis.position = expected(done.axis, time());
@@ -173,7 +189,7 @@ void ZaberDriver::handleReply(const ZaberMessage& reply) {
       axis.end = done.value / config_.microsteps_per_metre[done.axis];
       axis.velocity = std::copysign(axis.move_speed, axis.end - *axis.position);
       axis.told.reset();
-      axis.read_since_move = false;
+      axis.read_since_told = false;
       ++move_stage_;
       break;
     case Kind::kSpeed:
@@ -225,7 +241,9 @@ void ZaberDriver::takePosition(const ZaberMessage& reply) {
   const bool stands = axis.position && std::abs(place - *axis.position) < 0.5 * step;
   axis.position = place;
   axis.position_time = then;
-  axis.read_since_begin = axis.read_since_move = true;
+  axis.heard = listened();
+  trustFor(std::min({axes_[0].heard, axes_[1].heard, axes_[2].heard}) + longestAge() - listened());
+  axis.read_since_begin = axis.read_since_told = true;
   if (!reply.busy && axis.told.value_or(0) != 0) return checkStall(i, stands);
   axis.stalls = 0;
 }

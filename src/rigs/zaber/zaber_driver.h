@@ -49,12 +49,13 @@ class ZaberDriver : public SerialManipulator {
     ReadingFilter filter;
     std::optional<double> position;  // m of the device, at `position_time`
     double position_time = 0;        // s
+    double heard = 0;                // s of listened(), when it was last told truly
     double velocity = 0;             // m/s, carries the position on
     double end = 0;                  // m, where a move ends; NaN: no move
     std::optional<long long> told;   // units of speed, of the velocity that the device follows
     bool busy = true;
-    double move_speed = 0;  // m/s, set for the move
-    bool read_since_begin = false, read_since_move = false;
+    double move_speed = 0;                                   // m/s, set for the move
+    bool read_since_begin = false, read_since_told = false;  // to move
     bool has_reference = true, cleared = true, homed = false;
     bool still_moves = false;  // it said so after it was told to stop
     int stalls = 0;
@@ -62,6 +63,9 @@ class ZaberDriver : public SerialManipulator {
 
   double exchangeTime() const;
   double gain() const;
+  double longestAge() const;
+  double fastest(int axis) const;
+  long long speedData(int axis, double speed) const;
   double expected(int axis, double time) const;
   void handle(const ZaberMessage& message);
   void handleReply(const ZaberMessage& reply);

@@ -52,6 +52,10 @@ bool ZaberEmulator::moves() const {
   return std::any_of(axes_.begin(), axes_.end(), [](const Axis& axis) { return axis.busy(); });
 }
 
+void ZaberEmulator::shiftByHand(const Eigen::Vector3d& way) {
+  for (int i = 0; i < 3; ++i) axes_[i].place = std::round(axes_[i].place + way[i] / config_.microstep);
+}
+
 void ZaberEmulator::advanceAxis(Axis& axis, double dt) const {
   const double change = config_.acceleration / config_.microstep * dt;  // microsteps/s
   double wanted = axis.target_velocity;

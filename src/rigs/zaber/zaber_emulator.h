@@ -31,6 +31,7 @@ class ZaberEmulator : public ManipulatorEmulator {
   Eigen::Vector3d position() const override;
   int movesBegun() const override { return moves_begun_; }
   bool moves() const override;
+  void shiftByHand(const Eigen::Vector3d& way) override;
 
  protected:
   void hear(const std::string& bytes, double time) override;

@@ -62,14 +62,17 @@ bool ZaberDriver::nextOfHoming(int i) {
 }
 
 long long ZaberDriver::velocityData(int i) const {
-  const double scale = config_.microsteps_per_metre[i];
-  const double wanted = config_.joints.toDevice(goal()->joints)[i];
+  const Eigen::Vector3d wanted = config_.joints.toDevice(goal()->joints);
   const bool fresh = time() - goal()->time < kVelocityHolds;
-  const double ahead = fresh ? config_.joints.directions[i] * goal()->velocity[i] : 0;
-  const double away = wanted - expected(i, time());
-  if (ahead == 0 && std::abs(away) * scale < 0.75) return 0;
-  const double velocity = std::clamp(ahead + gain() * away, -config_.speed, config_.speed);
-  return std::llround(velocity * scale * kZaberSpeedUnit);
+  Eigen::Vector3d velocity = config_.joints.directions.cwiseProduct(goal()->velocity) * (fresh ? 1 : 0);
+  const double away = wanted[i] - expected(i, time());
+  if (velocity[i] == 0 && std::abs(away) * config_.microsteps_per_metre[i] < 0.75) return 0;
+  double share = 1;  // all axes are slowed down together, so that a long way stays straight
+  for (int k = 0; k < 3; ++k) {
+    velocity[k] += gain() * (wanted[k] - expected(k, time()));
+    if (std::abs(velocity[k]) > fastest(k)) share = std::min(share, fastest(k) / std::abs(velocity[k]));
+  }
+  return speedData(i, share * velocity[i]);
 }
 
 void ZaberDriver::nextInTurn() {
@@ -103,15 +106,14 @@ bool ZaberDriver::nextOfMove() {
   Eigen::Vector3d way;
   for (int k = 0; k < 3; ++k) way[k] = end[k] - expected(k, time());
   const double share = way.norm() > 0 ? std::abs(way[i]) / way.norm() : 1;
-  const double speed = std::clamp(goal()->speed * share, kSlowest / scale, config_.speed);
-  const long long data = std::max(1LL, std::llround(speed * scale * kZaberSpeedUnit));
+  const long long data = std::max(1LL, speedData(i, std::max(goal()->speed * share, kSlowest / scale)));
   ask(Kind::kSpeed, i, "set maxspeed " + std::to_string(data), data);
   return true;
 }
 
 void ZaberDriver::checkMove() {
   for (const Axis& axis : axes_) {
-    if (axis.busy || !axis.read_since_move || axis.filter.doubts()) return;
+    if (axis.busy || !axis.read_since_told || axis.filter.doubts()) return;
   }
   const Eigen::Vector3d wanted = config_.joints.toDevice(goal()->joints);
   for (int i = 0; i < 3; ++i) {

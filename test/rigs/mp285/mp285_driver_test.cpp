@@ -88,9 +88,8 @@ TEST_F(Mp285Test, ReadsTheMicrostepRatherThanAssumingIt) {
 
 TEST_F(Mp285Test, RecoversFromFaultsOfTheLineAndLosesNoMove) {
   for (const bool locks_up : {false, true}) {
-    for (const char* fault :
-         {"drop:1", "drop:4", "deaf:1", "deaf:4", "deaf:6", "garble:1", "garble:3", "silence:0.1", "silence:0.7",
-          "error:0", "error:1", "error:2", "error:4", "error:8", "interrupt@0.9", "drop:1@0.9", "silence:1@0.9"}) {
+    for (const char* fault : {"drop:1", "deaf:1", "deaf:4", "garble:1", "garble:3", "silence:0.1", "error:0", "error:1",
+                              "error:2", "error:4", "error:8", "interrupt@0.9", "drop:1@0.9", "silence:1@0.9"}) {
       for (const bool ascii : {false, true}) {
         SCOPED_TRACE(fault);
         Mp285EmulatorConfig device;
@@ -106,6 +105,29 @@ TEST_F(Mp285Test, RecoversFromFaultsOfTheLineAndLosesNoMove) {
         expectNear(rig_->read(), rig_->place(), 0.1 * kStep);
         EXPECT_LE(rig_->device().movesBegun(), 2);
       }
+    }
+  }
+}
+
+TEST_F(Mp285Test, AMoveEndsWhenSeveralExchangesInARowFail) {
+  for (const bool locks_up : {false, true}) {
+    for (const char* fault : {"drop:4", "deaf:6", "silence:0.7"}) {
+      SCOPED_TRACE(fault);
+      Mp285EmulatorConfig device;
+      device.locks_up = locks_up;
+      make(device);
+      start();
+      rig_->run(0.8 - rig_->time());
+      rig_->inject(fault);
+      rig_->driver().moveTo(kPlace, 0.2e-3);
+      ASSERT_TRUE(rig_->runUntil([&] { return rig_->driver().state() == State::kDisconnected; }, 3));
+      EXPECT_FALSE(rig_->driver().reading());
+      ASSERT_TRUE(rig_->runUntilReady());
+      const int moves = rig_->device().movesBegun();
+      rig_->run(2);
+      EXPECT_EQ(rig_->device().movesBegun(), moves);
+      expectNear(rig_->read(), rig_->place(), 0.1 * kStep);
+      moveAndCheck();
     }
   }
 }

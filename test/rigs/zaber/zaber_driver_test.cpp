@@ -89,17 +89,48 @@ TEST_F(ZaberTest, ThreeChainedDevicesWithChecksums) {
 }
 
 TEST_F(ZaberTest, RecoversFromFaultsOfTheLineAndLosesNoMove) {
-  for (const char* fault : {"drop:1", "drop:30", "deaf:1", "deaf:40", "garble:1", "garble:60", "silence:0.1",
-                            "silence:0.3", "error:AGAIN", "error:STATUSBUSY", "interrupt"}) {
-    SCOPED_TRACE(fault);
-    make();
-    start();
-    rig_->driver().moveTo(kPlace, 0.2e-3);
-    rig_->run(0.05);
-    rig_->inject(fault);
-    ASSERT_TRUE(rig_->runUntilArrived()) << rig_->driver().why();
-    expectNear(rig_->place(), kPlace, kStep);
-    expectNear(rig_->read(), rig_->place(), 0.1 * kStep);
+  for (const bool follows : {false, true}) {  // a rig's node follows set-points only
+    for (const char* fault :
+         {"drop:1", "drop:30", "deaf:1", "garble:1", "error:AGAIN", "error:STATUSBUSY", "interrupt"}) {
+      SCOPED_TRACE(std::string(fault) + (follows ? ", follows" : ", moves"));
+      make();
+      start();
+      const auto command = [&] {
+        if (follows) rig_->driver().follow(kPlace, Eigen::Vector3d::Zero());
+        ASSERT_EQ(rig_->driver().state(), State::kReady) << rig_->driver().why();
+      };
+      if (!follows) rig_->driver().moveTo(kPlace, 0.2e-3);
+      rig_->run(0.05, command);
+      rig_->inject(fault);
+      rig_->run(1.5, command);
+      ASSERT_TRUE(rig_->runUntilArrived()) << rig_->driver().why();
+      expectNear(rig_->place(), kPlace, kStep);
+      expectNear(rig_->read(), rig_->place(), 0.1 * kStep);
+    }
+  }
+}
+
+TEST_F(ZaberTest, WhatItWasToldEndsWhenSeveralExchangesInARowFail) {
+  for (const bool follows : {false, true}) {
+    for (const char* fault : {"deaf:60", "garble:90", "silence:0.12", "silence:0.3"}) {
+      SCOPED_TRACE(std::string(fault) + (follows ? ", follows" : ", moves"));
+      make();
+      start();
+      const Eigen::Vector3d far = kPlace + Eigen::Vector3d(1e-3, 0, 0);
+      if (!follows) rig_->driver().moveTo(far, 0.2e-3);
+      rig_->run(0.06, [&] {
+        if (follows) rig_->driver().follow(far, Eigen::Vector3d::Zero());
+      });
+      rig_->inject(fault);
+      ASSERT_TRUE(rig_->runUntil([&] { return rig_->driver().state() == State::kDisconnected; }, 0.3));
+      EXPECT_FALSE(rig_->driver().reading());
+      ASSERT_TRUE(rig_->runUntilReady());
+      rig_->run(0.5, [&] { EXPECT_FALSE(rig_->device().moves()); });
+      EXPECT_LT(rig_->place().x(), 0.9e-3);
+      expectNear(rig_->read(), rig_->place(), 0.1 * kStep);
+      rig_->run(3, [&] { rig_->driver().follow(kPlace, Eigen::Vector3d::Zero()); });
+      expectNear(rig_->place(), kPlace, kStep);
+    }
   }
 }
 
