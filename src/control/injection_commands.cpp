@@ -55,8 +55,9 @@ std::string InjectionController::obey(const std::string& command) {
 
 std::string InjectionController::start(const InjectionGoal& goal) {
   if (byHand()) return "mode is manual: the hand moves the needle";
-  if (state_ != OperatingState::kEnabled || !setpoint_)
+  if (state_ != OperatingState::kEnabled)
     return std::string("state is ") + toText(state_) + ", an injection starts in ENABLED";
+  if (!setpoint_) return "the needle's position is not known yet";
   if (homing_ || injection_ != InjectionState::kIdle) {
     return std::string("an injection starts in idle, the needle is in ") + (homing_ ? "homing" : toText(injection_));
   }

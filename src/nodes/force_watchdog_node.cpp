@@ -9,10 +9,12 @@ const char* const ForceWatchdogNode::kHelp =
     "In and out: /haptic/servo_cf, or /DEVICE/force_feedback of a driver.\n"
     "Parameters: ~kind (crtk|omni|geomagic), ~device (its namespace), ~timeout (s), ~rate (Hz).\n";
 
-ForceWatchdogNode::Parameters ForceWatchdogNode::Parameters::read(const ros::NodeHandle& private_node) {
+ForceWatchdogNode::Parameters ForceWatchdogNode::Parameters::read(const ros::NodeHandle& node,
+                                                                  const ros::NodeHandle& private_node) {
   Parameters parameters;
   ConfigReader reader = parameterReader(private_node);
   reader.choice("kind", parameters.kind, {"crtk", "omni", "geomagic"});
+  if (parameters.kind != "crtk") node.getParam("haptic_device/device", parameters.device);
   reader.text("device", parameters.device);
   reader.number("timeout", parameters.timeout, Range::positive());
   reader.number("rate", parameters.rate, Range::closed(50, 5000));
@@ -20,8 +22,8 @@ ForceWatchdogNode::Parameters ForceWatchdogNode::Parameters::read(const ros::Nod
   return parameters;
 }
 
-ForceWatchdogNode::ForceWatchdogNode(ros::NodeHandle node, const ros::NodeHandle& private_node)
-    : parameters_(Parameters::read(private_node)),
+ForceWatchdogNode::ForceWatchdogNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node)
+    : parameters_(Parameters::read(node, private_node)),
       force_(WatchedForce::make(parameters_.kind, parameters_.device, node, [this] { heard_ = ros::Time::now(); })) {}
 
 void ForceWatchdogNode::run() {

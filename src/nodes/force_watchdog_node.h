@@ -16,14 +16,14 @@ namespace microinjection {
 ///
 /// Parameters (private):
 ///   kind     of the device: crtk, omni or geomagic; default crtk
-///   device   namespace of the driver's topics; default haptic
+///   device   namespace of the driver's topics; default that of the adapter (/haptic_device/device); of crtk haptic
 ///   timeout  s without a force of another node's; default 0.05, in (0, inf)
 ///   rate     Hz, of looking and of zero force; default 200, in [50, 5000]
 class ForceWatchdogNode {
  public:
   static const char* const kHelp;
   /// @throws ConfigError
-  ForceWatchdogNode(ros::NodeHandle node, const ros::NodeHandle& private_node);
+  ForceWatchdogNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node);
   void run();
 
  private:
@@ -31,7 +31,7 @@ class ForceWatchdogNode {
     std::string kind = "crtk", device = "haptic";
     double timeout = 0.05;  // s
     double rate = 200;      // Hz
-    static Parameters read(const ros::NodeHandle& private_node);
+    static Parameters read(const ros::NodeHandle& node, const ros::NodeHandle& private_node);
   };
 
   Parameters parameters_;

@@ -34,8 +34,9 @@ namespace microinjection {
 /// Parameters (private): those of HapticBridgeConfig, link/... (LinkConfig) and
 ///   rate           Hz; default 1000, in [50, 5000]
 ///   timeouts/...   s, past which an input is stale, each its own: hand, needle, predicted, measured (default 0.05),
-///                  operator_present (0.2), in (0, inf); clutch (0: what it said last holds, for devices that say it
-///                  on change only) and controller (0.25; 0: not asked for, with another controller), in [0, inf)
+///                  in (0, inf); operator_present (0.2; 0: what it said last holds until the hand is stale), clutch
+///                  (0: what it said last holds, for devices that say it on change only) and controller (0.25; 0: not
+///                  asked for, with another controller), in [0, inf)
 class HapticBridgeNode {
  public:
   static const char* const kHelp;

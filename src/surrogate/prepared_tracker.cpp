@@ -8,9 +8,11 @@ namespace microinjection {
 namespace {
 
 constexpr char kBeside[] = "the tip is beside the range that the cell was prepared for: the force fades";
-constexpr char kTooDeep[] = "the tip is deeper than the cell was prepared for";
+constexpr char kTooDeep[] = "the tip is deeper than the cell was prepared for: withdraw it";
 constexpr char kTooFarOut[] = "the tip touched the cell further from its pole than what was prepared";
-constexpr double kUpright = 0.999;  ///< cosine: within 2.5 degrees of the prepared direction
+constexpr double kTrembling = 0.1e-6;  ///< m, that a needle at rest may be deeper
+constexpr double kRest = 0.1;          ///< s
+constexpr double kUpright = 0.999;     ///< cosine: within 2.5 degrees of the prepared direction
 
 }  // namespace
 
@@ -45,6 +47,19 @@ TipForce PreparedTracker::step(const Eigen::Vector3d& tip, const Eigen::Vector3d
   return force;
 }
 
+/// An untrusted force holds the needle; when it rests a hand may take it out again, but not push it on.
+bool PreparedTracker::goesOnBelow(bool too_deep, double duration) {
+  if (!too_deep) {
+    deepest_ = rested_ = 0;
+  } else if (contact_->indentation > deepest_ + kTrembling) {
+    deepest_ = contact_->indentation;
+    rested_ = 0;
+  } else {
+    rested_ += duration;
+  }
+  return too_deep && rested_ < kRest;
+}
+
 TipForce PreparedTracker::answer(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double duration) {
   distrust_.clear();
   const PreparedContact::Answer prepared = needle_.step(tip);
@@ -63,8 +78,9 @@ TipForce PreparedTracker::answer(const Eigen::Vector3d& tip, const Eigen::Vector
   contact_->indentation = -contact_->displacement.dot(axis);
   if (axis.z() < kUpright) return distrustBecause("the needle is not upright, and the cell was prepared for that only");
   if (needle_.place()->angle > 1.001 * cell_->range.angle) return distrustBecause(kTooFarOut);
-  if (prepared.too_deep) return distrustBecause(kTooDeep);
-  if (!prepared.prepared) distrust_ = kBeside;
+  if (goesOnBelow(prepared.too_deep, duration)) return distrustBecause(kTooDeep);
+  if (prepared.too_deep) distrust_ = kTooDeep;
+  if (!prepared.prepared && distrust_.empty()) distrust_ = kBeside;
   return {true, force};
 }
 

@@ -11,9 +11,10 @@
 namespace microinjection {
 
 /// The prepared cell under a moving needle: converged force at every step, in microseconds. Beside the prepared
-/// range it says so while the force fades. It trusts nothing below it, where the fading force would be felt as a
-/// puncture, with a needle that is not upright, or that touches too far from the pole. A viscoelastic cell's force
-/// relaxes, and never pulls along the pipette. A step allocates nothing and takes no lock.
+/// range it says so while the force fades. It trusts nothing with a needle that is not upright, or that touches
+/// too far from the pole, nor with one that goes on below the range, where the fading force would be felt as a
+/// puncture; one that has come to rest there may be withdrawn. A viscoelastic cell's force relaxes, and never pulls
+/// along the pipette. A step allocates nothing and takes no lock.
 class PreparedTracker : public CellUnderNeedle {
  public:
   PreparedTracker(const Scene& scene, std::shared_ptr<const PreparedCell> cell);
@@ -32,6 +33,7 @@ class PreparedTracker : public CellUnderNeedle {
  private:
   TipForce answer(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double duration);
   TipForce distrustBecause(const char* reason);
+  bool goesOnBelow(bool too_deep, double duration);
 
   Scene scene_;
   std::shared_ptr<const PreparedCell> cell_;
@@ -39,6 +41,8 @@ class PreparedTracker : public CellUnderNeedle {
   ForceMemory memory_;
   double time_ = 0;  ///< s, of the last step
   std::optional<Contact> contact_;
+  double deepest_ = 0;                                   ///< m, indentation, below the range
+  double rested_ = 0;                                    ///< s, without going deeper there
   Eigen::Matrix3d stiffness_ = Eigen::Matrix3d::Zero();  ///< N/m
   std::string distrust_;
   LatestValue<PreparedContact::Shape> shape_;  ///< from the thread that steps to the one that draws

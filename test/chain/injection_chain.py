@@ -25,6 +25,8 @@ class InjectionChainTest(unittest.TestCase):
         cls.moves = rospy.Publisher("/needle/move_cp", PoseStamped, queue_size=10)
         while not (cls.commands.get_num_connections() and cls.moves.get_num_connections()):
             cls.chain.tick()
+        while "/needle/measured_cp" not in cls.chain.seen or cls.chain.seen["/needle/measured_cp"].header.stamp.is_zero():
+            cls.chain.tick()  # a real rig is asked first
         cls.chain.run(50)
 
     @classmethod

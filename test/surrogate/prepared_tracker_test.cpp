@@ -45,6 +45,25 @@ TEST(PreparedTracker, TrustsOnlyWhatWasPrepared) {
   EXPECT_EQ(tracker.step(deep, up, 5e-3).force, force.force);
 }
 
+TEST(PreparedTracker, BelowTheRangeANeedleThatRestedMayBeWithdrawnButNotGoOn) {
+  const Scene scene = pipette();
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  PreparedTracker tracker(scene, springs(scene));
+  double time = 0;
+  const auto step = [&](double z) { return tracker.step({0, 0, z}, up, time += 1e-3).trusted; };
+  for (double z = 30e-6; z > 0; z -= 0.1e-6) step(z);
+  double z = -30e-6;
+  EXPECT_FALSE(step(z));
+  for (int i = 0; i < 90; ++i) EXPECT_FALSE(step(z)) << "it has hardly rested";
+  for (int i = 0; i < 100; ++i) step(z);
+  EXPECT_TRUE(step(z + 0.05e-6));
+  EXPECT_NE(tracker.distrust(), "") << "it says so nevertheless";
+  EXPECT_FALSE(step(z -= 0.2e-6)) << "deeper";
+  for (int i = 0; i < 200; ++i) step(z);
+  for (; z < 30e-6; z += 0.1e-6) ASSERT_TRUE(step(z)) << z;
+  EXPECT_EQ(tracker.distrust(), "");
+}
+
 TEST(PreparedTracker, APoseThatIsNoNumberIsNotTrustedAndForgotten) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const Scene scene = pipette();

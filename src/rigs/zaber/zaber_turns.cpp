@@ -40,6 +40,10 @@ bool ZaberDriver::nextOfSession() {
     }
     if (!axis.has_reference && nextOfHoming(i)) return true;
   }
+  // Another axis' homing takes long.
+  for (int i = 0; i < 3; ++i) {
+    if (listened() - axes_[i].heard > abilities().reading_interval) return ask(Kind::kPosition, i, "get pos"), true;
+  }
   settled_ = true;
   may_home_ = false;
   known();

@@ -177,6 +177,7 @@ TEST_F(ZaberTest, HomesWhenItsConfigurationSaysSo) {
   ASSERT_TRUE(rig_->runUntilReady(30)) << rig_->driver().why();
   expectNear(rig_->device().position(), Eigen::Vector3d::Zero(), kStep);
   expectNear(rig_->read(), rig_->place(), 0.1 * kStep);
+  rig_->run(1, [&] { ASSERT_EQ(rig_->driver().state(), ManipulatorDevice::State::kReady) << rig_->driver().why(); });
 }
 
 TEST_F(ZaberTest, AStopThatTheLineLostIsSaidAgain) {
