@@ -74,7 +74,9 @@ class Fuzz {
     device_->setDamaging(true);
     for (const int end = device_->damaged() + kRepliesAtOnce; device_->damaged() < end;) {
       rig_.run(kStep, [&] { command(); });
-      if (rig_.device().moves()) moved_ = rig_.time();
+      // It may have begun to move and stopped within the step.
+      if (rig_.device().moves() || rig_.place() != place_) moved_ = rig_.time();
+      place_ = rig_.place();
       const auto reading = rig_.driver().reading();
       if (!reading) continue;
       const double off = (reading->joints - rig_.place()).cwiseAbs().maxCoeff();
@@ -103,8 +105,9 @@ class Fuzz {
   std::mt19937 random_{11};
   double allowed_;  // m
   double allowed_at_rest_;
-  double worst_ = 0, worst_at_rest_ = 0;  // m, a reading from the truth
-  double moved_ = 0;                      // s, when the device did last
+  double worst_ = 0, worst_at_rest_ = 0;             // m, a reading from the truth
+  double moved_ = 0;                                 // s, when the device did last
+  Eigen::Vector3d place_ = Eigen::Vector3d::Zero();  // m, in the last step
   int judged_at_rest_ = 0;
 };
 
