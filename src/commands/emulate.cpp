@@ -1,5 +1,6 @@
 #include <fcntl.h>
 #include <poll.h>
+#include <sched.h>
 #include <unistd.h>
 
 #include <boost/program_options.hpp>
@@ -150,6 +151,14 @@ class Transcript {
   std::string text_;
 };
 
+/// A device does not wait for the processor, as its driver's node in real time would have it do. Where the system does
+/// not allow it nothing changes.
+void runInRealTime() {
+  sched_param parameters{};
+  parameters.sched_priority = sched_get_priority_min(SCHED_RR) + 1;
+  sched_setscheduler(0, SCHED_RR, &parameters);
+}
+
 void serve(const Arguments& arguments) {
   const Rig& rig = *arguments.rig;
   const std::shared_ptr<ManipulatorEmulator> device = rig.make_emulator();
@@ -188,6 +197,7 @@ int main(int argc, char** argv) {
     const std::optional<Arguments> arguments = parse(argc, argv);
     if (!arguments) return 0;
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, [](int) { interrupted = 1; });
+    runInRealTime();
     serve(*arguments);
     return 0;
   } catch (const std::exception& exception) {
