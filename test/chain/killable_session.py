@@ -44,6 +44,10 @@ def write_motion(path):
         csv.writer(file, lineterminator="\n").writerows([("time_s", "x_m", "y_m", "z_m", "clutch", "phase"), *rows])
 
 
+class NotBegun(AssertionError):
+    """A node never heard one of the others."""
+
+
 class Session:
     """A lock-step session with the test among the participants, that a node is killed in."""
 
@@ -62,8 +66,11 @@ class Session:
             self.chain = Participant({}, {topic: kinds[topic] for topic in seen}, PATIENCE)
         except Exception as error:
             report = self.nodes.report()
+            for subscriber in self._subscribers:
+                subscriber.unregister()
             self.nodes.stop()
-            raise AssertionError(f"the session does not begin; {report}") from error
+            self.nodes.forget()
+            raise NotBegun(f"the session does not begin; {report}") from error
 
     def _record(self, message, topic):
         self.records[topic][message.header.stamp.to_nsec()] = message
@@ -145,7 +152,13 @@ class KillCase(unittest.TestCase):
 
     def open(self, nodes, seen, remaps=None):
         self.tearDown()
-        self.session = Session(nodes, ["/controller/operating_state", *seen], remaps)
+        topics = ["/controller/operating_state", *seen]
+        try:
+            self.session = Session(nodes, topics, remaps)
+        except NotBegun as error:
+            # Seldom, among nodes that follow killed ones of the same names; why is not known. Said, and tried once more.
+            print(f"once more: {error}", flush=True)
+            self.session = Session(nodes, topics, remaps)
         self.session.begin()
 
     def by_hand(self, more=(), linked=False, source="predicted"):
