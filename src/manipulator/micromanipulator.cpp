@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <utility>
 
 namespace microinjection {
@@ -12,6 +13,7 @@ MicromanipulatorConfig MicromanipulatorConfig::read(ConfigReader& reader) {
   reader.number("collision_margin", config.collision_margin, Range::nonNegative());
   reader.number("command_timeout", config.command_timeout, Range::positive());
   reader.number("velocity_command_timeout", config.velocity_command_timeout, Range::positive());
+  reader.number("servo_speed_limit", config.servo_speed_limit, Range::positive());
   return config;
 }
 
@@ -122,6 +124,11 @@ std::string Micromanipulator::servoVelocity(const Eigen::Vector3d& velocity, dou
   if (std::string why = streamRefusal(); !why.empty()) return why;
   const Eigen::Vector3d joint_velocity = geometry_.directions.inverse() * velocity;
   if (std::string why = geometry_.tooFast(joint_velocity); !why.empty()) return why;
+  if (velocity.norm() > config_.servo_speed_limit * (1 + 1e-9)) {
+    std::ostringstream why;
+    why << "speed = " << velocity.norm() << " m/s, allowed at most servo_speed_limit = " << config_.servo_speed_limit;
+    return why.str();
+  }
   // Too near to an end of its travel or to an obstacle to go that way for a step and come to rest before it?
   const AxesMotion from = start();
   const Eigen::Vector3d rest = reachOf({from.position + joint_velocity * last_dt_, joint_velocity});

@@ -18,6 +18,7 @@ struct MicromanipulatorConfig {
   double collision_margin = 2e-6;         ///< m, for CollisionGuard
   double command_timeout = 0.1;           ///< s, a servo_cp stream that pauses longer than this means stop
   double velocity_command_timeout = 0.1;  ///< s, a servo_cv older than this means stop
+  double servo_speed_limit = std::numeric_limits<double>::infinity();  ///< m/s, of what servo_cp and servo_cv command
 
   static MicromanipulatorConfig read(ConfigReader& reader);
 };
@@ -27,10 +28,10 @@ struct MicromanipulatorConfig {
 ///
 /// A set-point follows the last accepted command within the URDF's travel, speed and acceleration and clear of
 /// obstacles: at any time it could brake without leaving them, and the device's straight way to it is clear, too. A
-/// command that changes no faster than that is followed without lag. The device follows the set-point, or is sent where
-/// the set-point should go. A refused command leaves everything as it was. After a stop or a fault the set-point is
-/// where the device says it is, and a stream of commands that went on meanwhile moves nothing: it must pause for
-/// command_timeout first, or clearFault() be called when the device is ready.
+/// command that changes no faster than that, and than servo_speed_limit, is followed without lag. The device follows
+/// the set-point, or is sent where the set-point should go. A refused command leaves everything as it was. After a stop
+/// or a fault the set-point is where the device says it is, and a stream of commands that went on meanwhile moves
+/// nothing: it must pause for command_timeout first, or clearFault() be called when the device is ready.
 class Micromanipulator {
  public:
   /// @param device  outlives this; is limited to the axes' speeds
@@ -78,6 +79,7 @@ class Micromanipulator {
   void haltIfCutOff();
   std::string advance(const Eigen::Vector3d& velocity, double dt);
   void stepMode(double time, double dt);
+  double brakedSpeed(double dt) const;
   void stepServo(double dt);
   void stepMove(double dt);
   void stepVelocity(double time, double dt);

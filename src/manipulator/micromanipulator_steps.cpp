@@ -51,6 +51,13 @@ std::string Micromanipulator::advance(const Eigen::Vector3d& velocity, double dt
   return why;
 }
 
+/// The set-point's speed (m/s) after one step in which it slows down as fast as it can.
+double Micromanipulator::brakedSpeed(double dt) const {
+  AxesMotion braked = *setpoint_;
+  brake(geometry_, braked, dt);
+  return (geometry_.directions * braked.velocity).norm();
+}
+
 void Micromanipulator::stepServo(double dt) {
   goal_age_ += dt;
   Eigen::Vector3d goal_velocity = Eigen::Vector3d::Zero();
@@ -80,6 +87,10 @@ void Micromanipulator::stepServo(double dt) {
         std::clamp(goal_velocity[i] + catch_up, setpoint_->velocity[i] - change, setpoint_->velocity[i] + change);
     velocity[i] = std::clamp(velocity[i], -axis.velocity, axis.velocity);
   }
+  // A set-point that is still faster, from a move before, may slow down as its axes can.
+  const double speed = (geometry_.directions * velocity).norm();
+  const double allowed = std::max(config_.servo_speed_limit, brakedSpeed(dt));
+  if (speed > allowed) velocity *= allowed / speed;
   advance(velocity, dt);
 }
 

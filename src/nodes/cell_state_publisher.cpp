@@ -48,7 +48,7 @@ CellStatePublisher::~CellStatePublisher() {
 void CellStatePublisher::step(const CellMoment& moment) {
   if (thread_.joinable()) {
     moment_.write(moment);
-  } else if ((moment.now - sent_).toSec() >= period_) {
+  } else if (secondsBetween(sent_, moment.now) >= period_) {
     publish(moment);
     sent_ = moment.now;
   }

@@ -17,10 +17,16 @@ void fill(geometry_msgs::Vector3& message, const Eigen::Vector3d& vector) {
 
 }  // namespace
 
-std::optional<Eigen::Vector3d> trustedPosition(const geometry_msgs::PoseStamped* message, const std::string& frame) {
+bool isWithin(const Eigen::Vector3d& vector, double largest) {
+  // Not by the norm, whose squares may overflow.
+  return vector.allFinite() && vector.cwiseAbs().maxCoeff() <= largest;
+}
+
+std::optional<Eigen::Vector3d> trustedPosition(const geometry_msgs::PoseStamped* message, const std::string& frame,
+                                               double largest) {
   if (!message || message->header.stamp.isZero() || !isIn(message->header.frame_id, frame)) return std::nullopt;
   const Eigen::Vector3d position = toEigen(message->pose.position);
-  if (!position.allFinite()) return std::nullopt;
+  if (!isWithin(position, largest)) return std::nullopt;
   return position;
 }
 
@@ -40,7 +46,7 @@ std::optional<Eigen::Vector3d> trustedVelocity(const geometry_msgs::TwistStamped
   if (message->header.stamp.isZero() || !isIn(message->header.frame_id, kWorldFrame)) return std::nullopt;
   const auto& v = message->twist.linear;
   const Eigen::Vector3d velocity(v.x, v.y, v.z);
-  if (!velocity.allFinite()) return std::nullopt;
+  if (!isWithin(velocity, kLargestSpeed)) return std::nullopt;
   return velocity;
 }
 
@@ -48,7 +54,7 @@ std::optional<Eigen::Vector3d> finiteForce(const geometry_msgs::WrenchStamped* m
   if (!message) return std::nullopt;
   const auto& f = message->wrench.force;
   const Eigen::Vector3d force(f.x, f.y, f.z);
-  if (!force.allFinite()) return std::nullopt;
+  if (!isWithin(force, kLargestForce)) return std::nullopt;
   return force;
 }
 

@@ -19,6 +19,14 @@ Cycle::Cycle(const ros::NodeHandle& node, double rate)
   sampled_node_.setCallbackQueue(&sampled_queue_);
 }
 
+bool Cycle::goesOn() {
+  if (!busy_ && master_.orphaned()) {
+    ROS_ERROR("the ROS master has been away for too long, and nothing moves: this node ends");
+    stopped_ = true;
+  }
+  return ros::ok() && !stopped_;
+}
+
 void Cycle::run(const std::function<void(const Tick&)>& step) {
   step_ = step;
   // A node's first line asks the master for a parameter of rosout's, and waits: not when the master hangs.
@@ -37,7 +45,7 @@ void Cycle::step(const ros::Time& now) {
     for (auto& input : inputs_) input->invalidate();
     last_step_ = now;
   }
-  const double dt = last_step_.isZero() ? period_ : (now - last_step_).toSec();
+  const double dt = last_step_.isZero() ? period_ : secondsBetween(last_step_, now);
   if (dt <= 0) return;  // a simulated clock that stands still
   lookForMaster();
   diagnostics_.beginStep();
@@ -63,14 +71,14 @@ void Cycle::runLive() {
       std::any_of(inputs_.begin(), inputs_.end(), [](const auto& input) { return input->phase == Phase::kSameTick; });
   ros::SteadyTime deadline = ros::SteadyTime::now();
   while (goesOn()) {
-    const ros::WallDuration wait((deadline - ros::SteadyTime::now()).toSec());
+    const ros::WallDuration wait(secondsBetween(ros::SteadyTime::now(), deadline));
     queue_.callAvailable(std::clamp(wait, ros::WallDuration(0), ros::WallDuration(0.1)));
     const ros::SteadyTime now = ros::SteadyTime::now();
     if (!triggered_ && now < deadline) continue;
     // An input that is late by half a period is not waited for.
     deadline =
         driven ? now + ros::WallDuration((triggered_ ? 1.5 : 1.0) * period_) : deadline + ros::WallDuration(period_);
-    if ((now - deadline).toSec() > 10 * period_) deadline = now;  // after a stall: do not catch up
+    if (secondsBetween(deadline, now) > 10 * period_) deadline = now;  // after a stall: do not catch up
     triggered_ = false;
     step(ros::Time::now());
   }
@@ -105,7 +113,9 @@ void Cycle::runLockstep() {
     queue_.callAvailable(ros::WallDuration(0.1));
     if (tick_ == stepped_tick_ || !allAnswered(tick_)) continue;
     const ros::Time now = tick_;
-    for (auto& input : inputs_) input->take(input->phase == Phase::kSameTick ? now : stepped_tick_, now);
+    for (auto& input : inputs_) {
+      runGuarded(input->topic, [&] { input->take(input->phase == Phase::kSameTick ? now : stepped_tick_, now); });
+    }
     for (auto& output : outputs_) output->beginTick(now);
     step(now);
     for (auto& output : outputs_) output->endTick();

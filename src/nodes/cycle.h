@@ -28,7 +28,7 @@ constexpr int kBacklog = 5000;
 /// has left the lock step is not waited for: it is silent, and grows stale.
 ///
 /// While the master is lost (nodes/master_watch.h) no input counts as fresh: a node then does what it does without
-/// input.
+/// input. When the master has been away for long (MasterWatch::orphaned) and the node is at rest, run() ends.
 class Cycle {
  public:
   struct Tick {
@@ -56,9 +56,11 @@ class Cycle {
   /// Steps until ROS shuts down or stop() is called.
   void run(const std::function<void(const Tick&)>& step);
   void stop() { stopped_ = true; }
+  /// Whether something moves or flows that this node must go on watching, even as an orphan; default false.
+  void setBusy(bool busy) { busy_ = busy; }
 
  private:
-  bool goesOn() const { return ros::ok() && !stopped_; }
+  bool goesOn();
   void runLive();
   void runLockstep();
   bool allAnswered(const ros::Time& now) const;
@@ -71,6 +73,7 @@ class Cycle {
 
   double period_;
   bool stopped_ = false;
+  bool busy_ = false;
   bool lockstep_ = false;
   ros::CallbackQueue queue_;          // what the node wakes up for
   ros::CallbackQueue sampled_queue_;  // what it looks at before a step: waking up for it would cost more than the step
@@ -98,19 +101,23 @@ Input<Message>& Cycle::input(const std::string& topic, Phase phase, double timeo
   inputs_.push_back(std::move(owned));
   diagnostics_.watch(port);
   const auto hints = ros::TransportHints().tcpNoDelay();
+  using Event = ros::MessageEvent<const Message>;
   if (lockstep_) {
-    subscribers_.push_back(node_.subscribe<Message>(
-        topic, 10, [&port](const boost::shared_ptr<const Message>& message) { port.queue(message); }, {}, hints));
-    using Event = ros::MessageEvent<const std_msgs::Header>;
-    const auto hear = [&port](const Event& event) {
+    const auto queue = [this, &port](const Event& event) {
+      port.queue(event.getConstMessage(), tick_, event.getPublisherName());
+    };
+    subscribers_.push_back(node_.subscribe<Message, const Event&>(topic, 10, queue, {}, hints));
+    using Silence = ros::MessageEvent<const std_msgs::Header>;
+    const auto hear = [&port](const Silence& event) {
       port.queueSilence(*event.getConstMessage(), event.getPublisherName());
     };
-    subscribers_.push_back(node_.subscribe<std_msgs::Header, const Event&>(silentTopic(topic), 10, hear, {}, hints));
+    subscribers_.push_back(node_.subscribe<std_msgs::Header, const Silence&>(silentTopic(topic), 10, hear, {}, hints));
   } else {
     const bool trigger = phase == Phase::kSameTick;
-    using Event = ros::MessageEvent<const Message>;
     const auto receive = [this, &port, trigger](const Event& event) {
-      port.receive(event.getConstMessage(), event.getReceiptTime());
+      // Listeners are the node's own code.
+      runGuarded(port.topic,
+                 [&] { port.receive(event.getConstMessage(), event.getReceiptTime(), event.getPublisherName()); });
       triggered_ = triggered_ || trigger;
     };
     subscribers_.push_back(

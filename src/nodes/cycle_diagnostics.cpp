@@ -20,26 +20,26 @@ void CycleDiagnostics::start() {
   updater_ = std::make_unique<diagnostic_updater::Updater>();
   updater_->setHardwareID("none");
   updater_->add("cycle", [this](DiagnosticStatusWrapper& status) { reportCycle(status); });
-  if (!inputs_.empty()) updater_->add("inputs", [this](DiagnosticStatusWrapper& status) { reportInputs(status); });
+  updater_->add("inputs", [this](DiagnosticStatusWrapper& status) { reportInputs(status); });
   for (const auto& task : extra_) updater_->add(task.first, task.second);
   began_ = reported_ = now_;
 }
 
 void CycleDiagnostics::beginStep() {
   const ros::SteadyTime now = ros::SteadyTime::now();
-  if (!step_began_.isZero()) intervals_.add((now - step_began_).toSec());
+  if (!step_began_.isZero()) intervals_.add(secondsBetween(step_began_, now));
   step_began_ = now;
 }
 
 void CycleDiagnostics::endStep(const ros::Time& now) {
-  const double took = (ros::SteadyTime::now() - step_began_).toSec();
+  const double took = secondsBetween(step_began_, ros::SteadyTime::now());
   ++steps_;
   ++all_steps_;
   step_time_ += took;
   longest_step_ = std::max(longest_step_, took);
   now_ = now;
   if (!updater_) start();
-  if ((now - reported_).toSec() < 1) return;
+  if (secondsBetween(reported_, now) < 1) return;
   updater_->force_update();
   reported_ = now;
   steps_ = 0;
@@ -47,7 +47,7 @@ void CycleDiagnostics::endStep(const ros::Time& now) {
 }
 
 void CycleDiagnostics::reportCycle(DiagnosticStatusWrapper& status) {
-  const double reached = steps_ / std::max(1e-9, (now_ - reported_).toSec());
+  const double reached = steps_ / std::max(1e-9, secondsBetween(reported_, now_));
   const bool slow = reached < 0.9 * rate_;
   status.summary(slow ? DiagnosticStatus::WARN : DiagnosticStatus::OK, slow ? "rate is too low" : "runs at its rate");
   status.add("rate (Hz)", reached);
@@ -55,9 +55,23 @@ void CycleDiagnostics::reportCycle(DiagnosticStatusWrapper& status) {
   status.add("mean step time (s)", step_time_ / std::max(1u, steps_));
   status.add("longest step time (s)", longest_step_);
   status.add("steps since the start", all_steps_);
-  status.add("mean rate since the start (Hz)", (all_steps_ - 1) / std::max(1e-9, (now_ - began_).toSec()));
+  status.add("mean rate since the start (Hz)", (all_steps_ - 1) / std::max(1e-9, secondsBetween(began_, now_)));
   reportIntervals(intervals_, status);
-  for (const OutputPort* output : outputs_) status.add("sent on " + output->topic, output->count);
+  reportOutputs(status);
+}
+
+void CycleDiagnostics::reportOutputs(DiagnosticStatusWrapper& status) {
+  unsigned all_withheld = 0;
+  for (const OutputPort* output : outputs_) {
+    status.add("sent on " + output->topic, output->count);
+    if (output->withheld == 0) continue;
+    all_withheld += output->withheld;
+    status.add("withheld on " + output->topic + ", not finite", output->withheld);
+  }
+  if (all_withheld > withheld_) {
+    status.mergeSummary(DiagnosticStatus::ERROR, "a value that is not finite was withheld");
+  }
+  withheld_ = all_withheld;
 }
 
 void CycleDiagnostics::reportIntervals(const IntervalHistogram& intervals, DiagnosticStatusWrapper& status) {
@@ -87,6 +101,7 @@ void CycleDiagnostics::reportInputs(DiagnosticStatusWrapper& status) {
       status.mergeSummary(DiagnosticStatus::WARN, input->topic + (input->valid() ? " is stale" : " has nothing valid"));
     }
   }
+  MessageRefusals::ofProcess().report(status);
 }
 
 }  // namespace microinjection

@@ -35,6 +35,7 @@ class CycleDiagnostics {
   void start();
   void reportCycle(diagnostic_updater::DiagnosticStatusWrapper& status);
   void reportInputs(diagnostic_updater::DiagnosticStatusWrapper& status);
+  void reportOutputs(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   double rate_;  ///< Hz, nominal
   std::vector<const InputPort*> inputs_;
@@ -48,6 +49,7 @@ class CycleDiagnostics {
   double step_time_ = 0;         ///< s of wall time, sum since reported_
   double longest_step_ = 0;      ///< s of wall time, since reported_
   std::uint64_t all_steps_ = 0;  ///< since the start
+  unsigned withheld_ = 0;        ///< messages, until the last report
   ros::Time began_;
   IntervalHistogram intervals_;  ///< of wall time between steps, since the start
 };

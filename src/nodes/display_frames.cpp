@@ -4,7 +4,6 @@
 #include <ros/time.h>
 
 #include "display/display_scale.h"
-#include "nodes/frames.h"
 
 namespace microinjection {
 namespace {
@@ -29,10 +28,11 @@ geometry_msgs::TransformStamped enlarged(const std::string& frame, const Eigen::
 
 }  // namespace
 
-DisplayFrames::DisplayFrames(const std::vector<std::string>& fixed) : fixed_(fixed) {}
+DisplayFrames::DisplayFrames(const ros::NodeHandle& node, const std::vector<std::string>& fixed)
+    : fixed_(fixed), listener_(node) {}
 
 std::optional<Eigen::Isometry3d> DisplayFrames::find(const std::string& parent, const std::string& frame) const {
-  return findFrame(buffer_, parent, frame);
+  return listener_.find(parent, frame);
 }
 
 void DisplayFrames::update() {

@@ -1,9 +1,8 @@
 #pragma once
 
-#include <tf2_ros/buffer.h>
+#include <ros/node_handle.h>
 #include <tf2_ros/static_transform_broadcaster.h>
 #include <tf2_ros/transform_broadcaster.h>
-#include <tf2_ros/transform_listener.h>
 
 #include <Eigen/Geometry>
 #include <map>
@@ -11,13 +10,15 @@
 #include <string>
 #include <vector>
 
+#include "nodes/frames.h"
+
 namespace microinjection {
 
 /// Republishes the rig's frames at x 1e4 below viz/world: viz/NAME is where NAME is, for rviz only.
 class DisplayFrames {
  public:
   /// @param fixed  frames that rarely move, taken from tf; they are republished as static transforms.
-  explicit DisplayFrames(const std::vector<std::string>& fixed);
+  DisplayFrames(const ros::NodeHandle& node, const std::vector<std::string>& fixed);
 
   /// Takes over from tf what has changed; call it regularly.
   void update();
@@ -33,8 +34,7 @@ class DisplayFrames {
 
  private:
   std::vector<std::string> fixed_;
-  tf2_ros::Buffer buffer_;
-  tf2_ros::TransformListener listener_{buffer_};
+  FrameListener listener_;
   tf2_ros::StaticTransformBroadcaster static_broadcaster_;
   tf2_ros::TransformBroadcaster broadcaster_;
   std::map<std::string, Eigen::Isometry3d> published_;  ///< fixed frames in world (m), as last sent

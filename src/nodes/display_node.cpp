@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "nodes/conversions.h"
+#include "nodes/message_guard.h"
 #include "nodes/node_parameters.h"
 
 namespace microinjection {
@@ -74,7 +75,7 @@ const char* const DisplayNode::kHelp =
 DisplayNode::DisplayNode(ros::NodeHandle node, ros::NodeHandle private_node)
     : config_(readConfig(private_node)),
       scene_(config_),
-      frames_({"cell", "holding_pipette", "manipulator_base"}),
+      frames_(node, {"cell", "holding_pipette", "manipulator_base"}),
       inputs_{{{"/cell/state", true},
                {"/force_sensor/measured_cf", true},
                {"/haptic/measured_cp", false},
@@ -84,17 +85,21 @@ DisplayNode::DisplayNode(ros::NodeHandle node, ros::NodeHandle private_node)
   state_.readout.state = "waiting for the cell";
   markers_ = node.advertise<visualization_msgs::MarkerArray>("viz/markers", 5);
   still_ = node.advertise<visualization_msgs::MarkerArray>("viz/still", 1, true);
-  // Only the latest message is worth a picture.
-  const auto hints = ros::TransportHints().tcpNoDelay();
-  const auto topic = [this](InputId input) { return inputs_[input].topic; };
-  subscribers_ = {node.subscribe(topic(kState), 1, &DisplayNode::onState, this, hints),
-                  node.subscribe(topic(kMeasured), 1, &DisplayNode::onMeasuredForce, this, hints),
-                  node.subscribe(topic(kHand), 1, &DisplayNode::onHand, this, hints),
-                  node.subscribe(topic(kInjection), 1, &DisplayNode::onInjection, this, hints)};
+  listen(node, kState, &DisplayNode::onState);
+  listen(node, kMeasured, &DisplayNode::onMeasuredForce);
+  listen(node, kHand, &DisplayNode::onHand);
+  listen(node, kInjection, &DisplayNode::onInjection);
   diagnostics_.setHardwareID("none");
   diagnostics_.add("drawing", this, &DisplayNode::reportDrawing);
   diagnostics_.add("inputs", this, &DisplayNode::reportInputs);
   timer_ = node.createWallTimer(ros::WallDuration(1 / config_.rate), [this](const ros::WallTimerEvent&) { draw(); });
+}
+
+template <typename Message>
+void DisplayNode::listen(const ros::NodeHandle& node, InputId input, void (DisplayNode::*handler)(const Message&)) {
+  constexpr int kQueue = 1;  // only the latest message is worth a picture
+  const auto take = [this, handler](const Message& message, const std::string&) { (this->*handler)(message); };
+  subscribers_.push_back(subscribeGuarded<Message>(node, inputs_[input].topic, kQueue, take));
 }
 
 void DisplayNode::run() { ros::spin(); }
@@ -115,7 +120,7 @@ void DisplayNode::onState(const cell_microinjection::CellState& message) {
   if (std::isfinite(message.indentation)) state_.readout.indentation = message.indentation;
   const Eigen::Vector3d force(message.force.x, message.force.y, message.force.z);
   state_.predicted = std::nullopt;
-  if (message.converged && force.allFinite()) state_.predicted = force;
+  if (message.converged && isWithin(force, kLargestForce)) state_.predicted = force;
   state_.readout.predicted = magnitude(state_.predicted);
   if (!defect.empty()) return;
   state_.cell_frame = message.header.frame_id.empty() ? "cell" : message.header.frame_id;
@@ -169,14 +174,18 @@ void DisplayNode::draw() {
     still_.publish(markers);
     still_drawn_ = start;
   }
+  if (master_.orphaned()) {
+    ROS_ERROR("the ROS master has been away for too long: this node ends");
+    ros::requestShutdown();
+  }
   ++drawings_;
-  longest_drawing_ = std::max(longest_drawing_, (ros::WallTime::now() - start).toSec());
+  longest_drawing_ = std::max(longest_drawing_, secondsBetween(start, ros::WallTime::now()));
   diagnostics_.update();
 }
 
 void DisplayNode::reportDrawing(diagnostic_updater::DiagnosticStatusWrapper& status) {
   const ros::WallTime now = ros::WallTime::now();
-  const double rate = drawings_ / std::max(1e-9, (now - reported_).toSec());
+  const double rate = drawings_ / std::max(1e-9, secondsBetween(reported_, now));
   const std::vector<std::string> missing = frames_.missing();
   status.summary(diagnostic_msgs::DiagnosticStatus::OK, "drawing");
   if (rate < 0.5 * config_.rate) status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "slow");
@@ -196,7 +205,7 @@ void DisplayNode::reportInputs(diagnostic_updater::DiagnosticStatusWrapper& stat
   status.summary(diagnostic_msgs::DiagnosticStatus::OK, "inputs are fresh");
   for (const Input& input : inputs_) {
     const bool silent = input.received.isZero();
-    const double age = silent ? 0 : (now - input.received).toSec();
+    const double age = silent ? 0 : secondsBetween(input.received, now);
     if (input.needed && (silent || age > kStaleAge)) {
       status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, input.topic + (silent ? " is silent" : " is stale"));
     }

@@ -9,9 +9,11 @@
 
 #include <array>
 #include <string>
+#include <vector>
 
 #include "nodes/display_frames.h"
 #include "nodes/display_scene.h"
+#include "nodes/master_watch.h"
 
 namespace microinjection {
 
@@ -49,6 +51,8 @@ class DisplayNode {
   void onInjection(const cell_microinjection::InjectionStatus& message);
   void onHand(const geometry_msgs::PoseStamped& message);
   void onMeasuredForce(const geometry_msgs::WrenchStamped& message);
+  template <typename Message>
+  void listen(const ros::NodeHandle& node, InputId input, void (DisplayNode::*handler)(const Message&));
   void lookForTip();
   void count(InputId input, bool drawn);
 
@@ -59,7 +63,8 @@ class DisplayNode {
   DisplayConfig config_;  // read-only after construction
   DisplayScene scene_;
   DisplayFrames frames_;
-  DisplayedState state_;       ///< the latest input
+  DisplayedState state_;  ///< the latest input
+  MasterWatch master_{true};
   bool cell_changed_ = false;  ///< since it was drawn
   std::array<Input, kInputs> inputs_;
 
@@ -69,7 +74,7 @@ class DisplayNode {
   double longest_drawing_ = 0;  ///< s of wall time, since reported_
 
   ros::Publisher markers_, still_;
-  std::array<ros::Subscriber, kInputs> subscribers_;
+  std::vector<ros::Subscriber> subscribers_;
   diagnostic_updater::Updater diagnostics_;
   ros::WallTimer timer_;
 };

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "nodes/conversions.h"
-#include "nodes/frames.h"
 
 namespace microinjection {
 namespace {
@@ -62,19 +61,19 @@ void SerialForceSource::report(diagnostic_updater::DiagnosticStatusWrapper& stat
 }
 
 TopicForceSource::TopicForceSource(Cycle& cycle, double timeout, const Eigen::Vector2d& overload)
-    : listener_(buffer_),
+    : frames_(cycle.node()),
       overload_(overload),
       wrench_(cycle.input<geometry_msgs::WrenchStamped>("force_sensor/device_cf", Phase::kSameTick, timeout)) {}
 
 std::optional<ForceSource::Signal> TopicForceSource::read(const Cycle::Tick& tick) {
   const auto news = wrench_.takeNews();
   const auto force = finiteForce(wrench_.get(tick.now));
-  if (!force || !torqueOf(*wrench_.get(tick.now)).allFinite()) {
+  if (!force || !isWithin(torqueOf(*wrench_.get(tick.now)), kLargestForce)) {
     untrusted_ = "no trusted wrench on force_sensor/device_cf";
     return std::nullopt;
   }
   if (!news) return std::nullopt;
-  const auto pose = findFrame(buffer_, kTipFrame, news->header.frame_id);
+  const auto pose = frames_.find(kTipFrame, news->header.frame_id);
   untrusted_ = pose ? "" : "tf has no way from frame '" + news->header.frame_id + "' to " + kTipFrame;
   if (!pose) return std::nullopt;
   // The same force about another point: the torque gains arm x force.

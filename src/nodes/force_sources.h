@@ -3,8 +3,6 @@
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/WrenchStamped.h>
-#include <tf2_ros/buffer.h>
-#include <tf2_ros/transform_listener.h>
 
 #include <Eigen/Geometry>
 #include <memory>
@@ -12,6 +10,7 @@
 #include <string>
 
 #include "nodes/cycle.h"
+#include "nodes/frames.h"
 #include "sensor/force_sensor.h"
 #include "sensor/overload_latch.h"
 #include "sensor/serial_force_sensor.h"
@@ -99,8 +98,7 @@ class TopicForceSource : public ForceSource {
   bool saturated() const override { return false; }
 
  private:
-  tf2_ros::Buffer buffer_;
-  tf2_ros::TransformListener listener_;
+  FrameListener frames_;
   OverloadLatch overload_;
   Input<geometry_msgs::WrenchStamped>& wrench_;
 };

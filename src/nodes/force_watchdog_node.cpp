@@ -1,6 +1,8 @@
 #include "nodes/force_watchdog_node.h"
 
+#include "nodes/master_watch.h"
 #include "nodes/node_parameters.h"
+#include "nodes/stamps.h"
 
 namespace microinjection {
 
@@ -28,10 +30,11 @@ ForceWatchdogNode::ForceWatchdogNode(const ros::NodeHandle& node, const ros::Nod
 
 void ForceWatchdogNode::run() {
   // Wakes up by the wall's time: it must also do so when nothing else does.
-  for (ros::WallRate rate(parameters_.rate); ros::ok(); rate.sleep()) {
+  const MasterWatch master(true);
+  for (ros::WallRate rate(parameters_.rate); ros::ok() && !master.orphaned(); rate.sleep()) {
     ros::spinOnce();
     const ros::Time now = ros::Time::now();
-    if ((now - heard_).toSec() >= parameters_.timeout) force_->sayZero(now);
+    if (secondsBetween(heard_, now) >= parameters_.timeout) force_->sayZero(now);
   }
 }
 

@@ -1,6 +1,9 @@
 #pragma once
 
-#include <tf2_ros/buffer.h>
+#include <ros/callback_queue.h>
+#include <ros/ros.h>
+#include <tf2/buffer_core.h>
+#include <tf2_msgs/TFMessage.h>
 
 #include <Eigen/Geometry>
 #include <optional>
@@ -8,9 +11,24 @@
 
 namespace microinjection {
 
-/// The newest pose of `frame` in `parent` that tf knows; empty when it knows none.
-std::optional<Eigen::Isometry3d> findFrame(const tf2_ros::Buffer& buffer, const std::string& parent,
-                                           const std::string& frame);
+/// What tf says, heard in the thread that serves `node`. A transform that is stamped ahead, not finite or longer than
+/// kLargestTranslation is left out; tf2_ros's own listener would end the program at a stamp near the end of time.
+class FrameListener {
+ public:
+  explicit FrameListener(ros::NodeHandle node);
+
+  /// The newest pose of `frame` in `parent`; empty when tf knows none.
+  std::optional<Eigen::Isometry3d> find(const std::string& parent, const std::string& frame) const;
+
+ private:
+  static constexpr double kLargestTranslation = 1e3;  // m
+
+  void take(const tf2_msgs::TFMessage& message, const std::string& sender, bool is_static);
+
+  tf2::BufferCore buffer_;
+  ros::Time newest_;  ///< time of this node at the last message
+  ros::Subscriber moving_, static_;
+};
 
 /// Waits up to `timeout` (s of wall time, since a simulated clock may not run yet) for a fixed pose.
 /// @throws ConfigError that says what is missing and who should say it

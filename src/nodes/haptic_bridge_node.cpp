@@ -92,7 +92,9 @@ void HapticBridgeNode::connectLink() {
   cycle_
       .input<cell_microinjection::LinkPacket>("link/hand/received", Phase::kTickBefore,
                                               std::numeric_limits<double>::infinity())
-      .listen([this](const auto& message, const ros::Time&) { link_->receive(toPacket(message)); });
+      .listen([this](const auto& message, const ros::Time&) {
+        if (isPlausible("link/hand/received", message)) link_->receive(toPacket(message));
+      });
   link_sent_ = &cycle_.output<cell_microinjection::LinkPacket>("link/hand/sent");
 }
 
@@ -181,7 +183,7 @@ void HapticBridgeNode::step(const Cycle::Tick& tick) {
   if (hand) hand_frame_ = hand->header.frame_id;
   // Of a device that tells changes only: when it fell silent it may have missed to tell the last one.
   if (!hand && operator_present_ && parameters_.timeouts.operator_present <= 0) operator_present_->invalidate();
-  if (hand) input.hand = trustedPosition(hand, hand->header.frame_id);
+  if (hand) input.hand = trustedPosition(hand, hand->header.frame_id, kLargestHandDistance);
   lookAtRig(input, tick);
   input.clutch = clutchPressed(tick.now);
   input.operator_present = operatorPresent(tick.now);

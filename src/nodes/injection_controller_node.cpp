@@ -8,6 +8,14 @@
 #include "nodes/node_parameters.h"
 
 namespace microinjection {
+namespace {
+
+/// Commands that stop or withdraw the needle are obeyed whatever their stamp.
+bool stops(const std::string& command) {
+  return command == "disable" || command == "pause" || command == "home" || command == "withdraw";
+}
+
+}  // namespace
 
 const char* const InjectionControllerNode::kHelp =
     "injection_controller: decides where the needle goes and holds it when an input cannot be trusted.\n"
@@ -59,14 +67,19 @@ InjectionControllerNode::InjectionControllerNode(ros::NodeHandle node, ros::Node
 
 void InjectionControllerNode::listenToCommands() {
   using cell_microinjection::StringStamped;
-  constexpr char kTopic[] = "controller/state_command";
+  static constexpr char kTopic[] = "controller/state_command";
+  const auto take = [this](const StringStamped& message) {
+    if (stops(message.string) || isTimely(kTopic, message, ros::Time::now())) obey(message.string);
+  };
   if (cycle_.lockstep() && parameters_.commands_in_lockstep) {
-    cycle_.input<StringStamped>(kTopic, Phase::kTickBefore, std::numeric_limits<double>::infinity())
-        .listen([this](const StringStamped& message, const ros::Time&) { obey(message.string); });
+    auto& input = cycle_.input<StringStamped>(kTopic, Phase::kTickBefore, std::numeric_limits<double>::infinity());
+    input.stamp_rule = StampRule::kAny;
+    input.listen([take](const StringStamped& message, const ros::Time&) { take(message); });
     return;
   }
-  commands_ = cycle_.node().subscribe<StringStamped>(
-      kTopic, 10, [this](const cell_microinjection::StringStampedConstPtr& message) { obey(message->string); });
+  commands_ = subscribeGuarded<StringStamped>(
+      cycle_.node(), kTopic, 10, [take](const StringStamped& message, const std::string&) { take(message); },
+      StampRule::kAny);
 }
 
 void InjectionControllerNode::run() {
@@ -149,7 +162,7 @@ void InjectionControllerNode::publishInjection(const ros::Time& now) {
   const auto& said = said_of_injection_;
   const bool same = status.state == said.state && status.waits == said.waits && status.punctures == said.punctures &&
                     status.outcome == said.outcome && status.notice == said.notice;
-  if (same && (now - said.header.stamp).toSec() < kPeriod) return;
+  if (same && secondsBetween(said.header.stamp, now) < kPeriod) return;
   injection_.publish(status);
   said_of_injection_ = status;
 }

@@ -35,7 +35,7 @@ void InjectorLink::want(const std::optional<PulseGoal>& pulse, const ros::Time& 
     pulse_.publish(message_);
     begun_ = false;
   }
-  if (pulse && pending_ != 0 && (now - message_.header.stamp).toSec() >= kRepetition) {
+  if (pulse && pending_ != 0 && secondsBetween(message_.header.stamp, now) >= kRepetition) {
     message_.header.stamp = now;
     pulse_.publish(message_);
   }

@@ -40,9 +40,12 @@ InjectorNode::InjectorNode(ros::NodeHandle node, ros::NodeHandle private_node)
   // No command that comes between two steps is lost.
   cycle_.input<cell_microinjection::InjectionPulse>("injector/pulse", Phase::kTickBefore, INFINITY)
       .listen([this](const auto& message, const ros::Time&) { onPulse(message); });
-  cycle_.input<cell_microinjection::StringStamped>("injector/stop", Phase::kTickBefore, INFINITY)
-      .listen([this](const auto& message, const ros::Time&) { onStop(message); });
-  balance_ = cycle_.node().subscribe("injector/set_balance", 100, &InjectorNode::onBalance, this);
+  auto& stop = cycle_.input<cell_microinjection::StringStamped>("injector/stop", Phase::kTickBefore, INFINITY);
+  stop.stamp_rule = StampRule::kAny;
+  stop.listen([this](const auto& message, const ros::Time&) { onStop(message); });
+  balance_ = subscribeGuarded<cell_microinjection::Float64Stamped>(
+      cycle_.node(), "injector/set_balance", 100,
+      [this](const cell_microinjection::Float64Stamped& message, const std::string&) { onBalance(message); });
   reset_ = private_node.advertiseService<std_srvs::Trigger::Request, std_srvs::Trigger::Response>(
       "reset", [this](std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
         device_->reset();
@@ -78,7 +81,7 @@ void InjectorNode::run() {
 
 std::string InjectorNode::untimely(const std_msgs::Header& header) const {
   if (header.stamp.isZero()) return "its stamp is 0";
-  const double age = (ros::Time::now() - header.stamp).toSec();
+  const double age = secondsBetween(header.stamp, ros::Time::now());
   if (age > parameters_.command_timeout) return "it is stale";
   return age < -parameters_.command_timeout ? "it is from the future" : "";
 }
@@ -126,7 +129,7 @@ void InjectorNode::onBalance(const cell_microinjection::Float64Stamped& message)
 void InjectorNode::endAbandonedPulse(const ros::Time& now) {
   const bool lost = !std::exchange(master_lost_, cycle_.masterLost()) && master_lost_;
   if (!device_->reading().busy) held_ = 0;
-  const bool silent = held_ != 0 && (now - wanted_).toSec() > parameters_.pulse_timeout;
+  const bool silent = held_ != 0 && secondsBetween(wanted_, now) > parameters_.pulse_timeout;
   if (!device_->reading().busy || !(lost || silent)) return;
   held_ = 0;
   ROS_WARN_STREAM("the pulse is ended: " << (lost ? "the ROS master is lost" : "who asked for it is silent"));
@@ -136,6 +139,7 @@ void InjectorNode::endAbandonedPulse(const ros::Time& now) {
 void InjectorNode::step(const Cycle::Tick& tick) {
   endAbandonedPulse(tick.now);
   device_->step(tick.now.toSec());
+  cycle_.setBusy(device_->reading().busy);
   const InjectorReading& reading = device_->reading();
   cell_microinjection::InjectorState state;
   state.header.stamp = tick.now;

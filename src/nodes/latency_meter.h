@@ -3,6 +3,7 @@
 #include <ros/ros.h>
 
 #include <map>
+#include <string>
 
 #include "base/interval_histogram.h"
 #include "cell_microinjection/LatencyTrace.h"
@@ -22,8 +23,10 @@ class LatencyMeter {
   const IntervalHistogram& latencies() const { return latencies_; }  ///< s
 
  private:
-  void onSetpoint(const cell_microinjection::LatencyTraceConstPtr& trace);
-  void onForce(const cell_microinjection::LatencyTraceConstPtr& trace);
+  using Trace = cell_microinjection::LatencyTrace;
+  ros::Subscriber listen(ros::NodeHandle& node, const std::string& topic, void (LatencyMeter::*handler)(const Trace&));
+  void onSetpoint(const Trace& trace);
+  void onForce(const Trace& trace);
 
   std::map<ros::Time, ros::Time> hand_of_needle_;  ///< stamp of the hand sample by stamp of the needle pose; recent
   std::map<ros::Time, ros::Time> force_waiting_;   ///< rendered at, by needle pose whose setpoint trace is to come

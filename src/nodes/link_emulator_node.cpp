@@ -41,8 +41,9 @@ LinkEmulatorNode::LinkEmulatorNode(ros::NodeHandle node, ros::NodeHandle private
     cycle_.input<Message>(topic, Phase::kTickBefore, std::numeric_limits<double>::infinity())
         .listen([&link](const Message& message, const ros::Time& now) { link.send(message, now.toSec()); });
   };
-  plug_ = cycle_.node().subscribe<std_msgs::Bool>(
-      "link/plugged", 10, [this](const std_msgs::BoolConstPtr& plugged) { plugged_ = plugged->data; });
+  plug_ = subscribeGuarded<std_msgs::Bool>(
+      cycle_.node(), "link/plugged", 10,
+      [this](const std_msgs::Bool& plugged, const std::string&) { plugged_ = plugged.data; });
   relay("link/hand/sent", to_rig_);
   relay("link/rig/sent", to_hand_);
 }

@@ -1,5 +1,13 @@
 #include "nodes/link_messages.h"
 
+#include <cmath>
+#include <cstdint>
+
+#include "nodes/conversions.h"
+#include "nodes/finite_message.h"
+#include "nodes/message_refusals.h"
+#include "nodes/stamps.h"
+
 namespace microinjection {
 namespace {
 
@@ -10,7 +18,26 @@ void assign(Message& message, const Eigen::Vector3d& vector) {
   message.z = vector.z();
 }
 
+/// Of a wave's integral (J^0.5 s^0.5), its energy (J) and the scales: far beyond any, and far from where squares
+/// overflow.
+constexpr double kLargestOfLink = 1e12;
+
+template <typename Vector>
+bool isWithin(const Vector& vector, double largest) {
+  return std::abs(vector.x) <= largest && std::abs(vector.y) <= largest && std::abs(vector.z) <= largest;
+}
+
 }  // namespace
+
+bool isPlausible(const std::string& topic, const cell_microinjection::LinkPacket& message) {
+  // Epochs count from the wall time (ns) at which the hand's side was started. A later one would lock all others out.
+  const std::uint64_t latest = ros::WallTime::now().toNSec() + static_cast<std::uint64_t>(1e9 * kLargestLead);
+  const bool good = message.epoch <= latest && isFinite(message) && isWithin(message.wave, kLargestOfLink) &&
+                    std::abs(message.energy) <= kLargestOfLink && std::abs(message.position_scale) <= kLargestOfLink &&
+                    std::abs(message.force_gain) <= kLargestOfLink && isWithin(message.needle, kLargestNeedleDistance);
+  if (!good) MessageRefusals::ofProcess().add(topic, "its numbers cannot be those of a hand and a rig");
+  return good;
+}
 
 cell_microinjection::LinkPacket toMessage(const LinkPacket& packet) {
   cell_microinjection::LinkPacket message;

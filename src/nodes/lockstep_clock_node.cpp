@@ -6,6 +6,7 @@
 #include "base/errors.h"
 #include "nodes/lockstep.h"
 #include "nodes/node_parameters.h"
+#include "nodes/stamps.h"
 
 namespace microinjection {
 
@@ -44,11 +45,13 @@ void LockstepClockNode::onLeaving(const std::string& name) {
   left_.publish(message);
 }
 
+bool LockstepClockNode::goesOn() const { return ros::ok() && !master_.orphaned(); }
+
 void LockstepClockNode::waitForAll() {
   ros::SteadyTime warned = ros::SteadyTime::now();
-  while (ros::ok() && !missing_.empty()) {
+  while (goesOn() && !missing_.empty()) {
     queue_.callAvailable(ros::WallDuration(0.1));
-    if ((ros::SteadyTime::now() - warned).toSec() < warn_after_) continue;
+    if (secondsBetween(warned, ros::SteadyTime::now()) < warn_after_) continue;
     warned = ros::SteadyTime::now();
     std::string names;
     for (const std::string& name : missing_) names += " " + name;
@@ -59,14 +62,14 @@ void LockstepClockNode::waitForAll() {
 void LockstepClockNode::pace(const ros::SteadyTime& began) const {
   if (real_time_factor_ <= 0) return;
   const double due = tick_.toSec() / real_time_factor_;
-  const double ahead = due - (ros::SteadyTime::now() - began).toSec();
+  const double ahead = due - secondsBetween(began, ros::SteadyTime::now());
   if (ahead > 0) ros::WallDuration(ahead).sleep();
 }
 
 void LockstepClockNode::run() {
   waitForAll();
   const ros::SteadyTime began = ros::SteadyTime::now();
-  while (ros::ok() && !participants_.empty()) {
+  while (goesOn() && !participants_.empty()) {
     tick_ += ros::Duration(step_);
     missing_ = participants_;
     rosgraph_msgs::Clock message;

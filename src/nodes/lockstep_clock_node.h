@@ -7,6 +7,8 @@
 #include <set>
 #include <string>
 
+#include "nodes/master_watch.h"
+
 namespace microinjection {
 
 /// Steps /clock when every participant of the lock step has done the tick before. The same session then gives the same
@@ -30,6 +32,7 @@ class LockstepClockNode {
  private:
   void onAcknowledgement(const std_msgs::HeaderConstPtr& header);
   void onLeaving(const std::string& name);
+  bool goesOn() const;
   void waitForAll();
   void pace(const ros::SteadyTime& began) const;
 
@@ -39,6 +42,7 @@ class LockstepClockNode {
   std::set<std::string> participants_;
   std::set<std::string> missing_;  ///< those that have not answered the present tick
   ros::Time tick_;
+  MasterWatch master_{false};
   ros::CallbackQueue queue_;
   ros::Publisher clock_;
   ros::Publisher left_;

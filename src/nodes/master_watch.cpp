@@ -1,13 +1,16 @@
 #include "nodes/master_watch.h"
 
 #include <ros/master.h>
+#include <ros/param.h>
 #include <ros/this_node.h>
 
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
+#include <string>
 #include <thread>
 
+#include "base/errors.h"
 #include "nodes/real_time.h"
 
 namespace microinjection {
@@ -53,6 +56,10 @@ struct MasterWatch::Shared {
 };
 
 MasterWatch::MasterWatch(bool timed) : timed_(timed), shared_(std::make_shared<Shared>()) {
+  ros::param::get("/orphan_timeout", orphan_timeout_);
+  if (!(orphan_timeout_ > 0)) {
+    throw ConfigError("/orphan_timeout = " + std::to_string(orphan_timeout_) + ": must be in (0, inf)");
+  }
   std::thread([shared = shared_] {
     preferForThread(Priority::kOrdinary);  // its questions are nothing that the hand's loop should wait for
     shared->watch();
@@ -70,6 +77,11 @@ MasterWatch::~MasterWatch() {
 bool MasterWatch::lost() const {
   if (shared_->refused.load(std::memory_order_relaxed)) return true;
   return timed_ && Clock::now() - shared_->answered.load(std::memory_order_relaxed) > kPatience;
+}
+
+bool MasterWatch::orphaned() const {
+  if (!lost()) return false;
+  return Seconds(Clock::now() - shared_->answered.load(std::memory_order_relaxed)).count() > orphan_timeout_;
 }
 
 }  // namespace microinjection

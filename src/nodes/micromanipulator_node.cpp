@@ -29,8 +29,9 @@ const char* const MicromanipulatorNode::kHelp =
     "/needle/measured_cp /needle/measured_cv /needle/abilities /needle/operating_state joint_states.\n"
     "Parameters: /robot_description, ~rig (sim|mp285|zaber), ~emulated, ~device/... (src/rigs/NAME/NAME.yaml), ~rate "
     "(Hz),\n"
-    "~joint_states_rate (Hz), ~command_timeout (s), ~velocity_command_timeout (s), ~pipette_tilt (rad),\n"
-    "~collision_margin (m); see config/micromanipulator.yaml. With a serial device:\n"
+    "~joint_states_rate (Hz), ~command_timeout (s), ~velocity_command_timeout (s), ~servo_speed_limit (m/s),\n"
+    "~pipette_tilt (rad), ~collision_margin (m), ~allow_network; see config/micromanipulator.yaml. With a serial "
+    "device:\n"
     "  rosrun cell_microinjection micromanipulator _rig:=zaber _device/port/path:=/dev/ttyUSB0\n";
 
 MicromanipulatorNode::Parameters MicromanipulatorNode::Parameters::read(ConfigReader& reader) {
@@ -39,6 +40,7 @@ MicromanipulatorNode::Parameters MicromanipulatorNode::Parameters::read(ConfigRe
   reader.number("joint_states_rate", parameters.joint_states_rate, {0, 1000, true, false});
   reader.text("rig", parameters.rig);
   reader.boolean("emulated", parameters.emulated);
+  reader.boolean("allow_network", parameters.allow_network);
   parameters.model = MicromanipulatorConfig::read(reader);
   return parameters;
 }
@@ -57,11 +59,13 @@ MicromanipulatorNode::MicromanipulatorNode(const ros::NodeHandle& node, ConfigRe
                                                       parameters_.model.command_timeout)),
       measured_(cycle_.output<geometry_msgs::PoseStamped>("needle/measured_cp")),
       velocity_(cycle_.output<geometry_msgs::TwistStamped>("needle/measured_cv")),
-      trace_(cycle_.output<cell_microinjection::LatencyTrace>("needle/setpoint_trace")) {
+      trace_(cycle_.output<cell_microinjection::LatencyTrace>("needle/setpoint_trace")),
+      authority_(parameters_.model.command_timeout) {
   if (cycle_.lockstep() && !rig_.inject) {
     throw ConfigError("rig = " + parameters_.rig +
                       ": a real one takes no part in lock step, it goes on while time stands");
   }
+  if (!rig_.inject && !parameters_.allow_network) network_ = std::make_unique<NetworkWatch>();
   if (rig_.true_joints) true_ = &cycle_.output<geometry_msgs::PoseStamped>("needle/true_cp");
   subscribe();
   joint_states_ = cycle_.node().advertise<sensor_msgs::JointState>("joint_states", 10);
@@ -72,40 +76,68 @@ MicromanipulatorNode::MicromanipulatorNode(const ros::NodeHandle& node, ConfigRe
 }
 
 void MicromanipulatorNode::subscribe() {
-  using cell_microinjection::StringStampedConstPtr;
+  using cell_microinjection::StringStamped;
   ros::NodeHandle& node = cycle_.node();
-  subscribers_.push_back(node.subscribe<geometry_msgs::TwistStamped>(
-      "needle/servo_cv", 10, [this](const geometry_msgs::TwistStampedConstPtr& message) {
-        const auto velocity = trustedVelocity(message.get());
-        if (!velocity) return judge("servo_cv", "not a valid velocity in world");
-        const double old = std::max(0.0, age(message->header));
-        if (old > parameters_.model.velocity_command_timeout) return judge("servo_cv", "it is stale");
-        const std::string why = unable();
-        judge("servo_cv", why.empty() ? model_.servoVelocity(*velocity, time() - old) : why);
-      }));
-  subscribers_.push_back(node.subscribe<geometry_msgs::PoseStamped>(
-      "needle/move_cp", 10, [this](const geometry_msgs::PoseStampedConstPtr& message) {
-        const auto pose = trustedPose(message.get());
-        if (!pose) return judge("move_cp", "not a valid pose in world");
-        if (age(message->header) > kOldestMove) return judge("move_cp", "it is stale");
-        const std::string why = unable();
-        judge("move_cp", why.empty() ? model_.movePosition(*pose) : why);
-      }));
-  subscribers_.push_back(node.subscribe<cell_microinjection::StringStamped>(
-      "needle/state_command", 10, [this](const StringStampedConstPtr& message) {
-        judge("state_command", obeyState(message->string));
+  // Of each message that comes between two steps, also of those that a newer one replaces.
+  servo_.listen([this](const geometry_msgs::PoseStamped& message, const ros::Time& now) {
+    if (secondsBetween(message.header.stamp, now) <= parameters_.model.command_timeout) authorize(servo_.sender);
+  });
+  subscribers_.push_back(subscribeGuarded<geometry_msgs::TwistStamped>(
+      node, "needle/servo_cv", 10,
+      [this](const geometry_msgs::TwistStamped& message, const std::string& sender) { onVelocity(message, sender); }));
+  subscribers_.push_back(subscribeGuarded<geometry_msgs::PoseStamped>(
+      node, "needle/move_cp", 10,
+      [this](const geometry_msgs::PoseStamped& message, const std::string& sender) { onMove(message, sender); }));
+  subscribers_.push_back(subscribeGuarded<StringStamped>(
+      node, "needle/state_command", 10,
+      [this](const StringStamped& message, const std::string&) {
+        judge("state_command", obeyState(message));
         answer_ = true;
-      }));
+      },
+      StampRule::kAny));
   if (!rig_.inject) return;
-  subscribers_.push_back(node.subscribe<cell_microinjection::StringStamped>(
-      "needle/emulated_fault", 10, [this](const StringStampedConstPtr& message) {
-        answer_ = true;
-        try {
-          rig_.inject(message->string, time());
-        } catch (const ConfigError& error) {
-          judge("emulated_fault", error.what());
-        }
-      }));
+  subscribers_.push_back(subscribeGuarded<StringStamped>(node, "needle/emulated_fault", 10,
+                                                         [this](const StringStamped& message, const std::string&) {
+                                                           answer_ = true;
+                                                           try {
+                                                             rig_.inject(message.string, time());
+                                                           } catch (const ConfigError& error) {
+                                                             judge("emulated_fault", error.what());
+                                                           }
+                                                         }));
+}
+
+void MicromanipulatorNode::onVelocity(const geometry_msgs::TwistStamped& message, const std::string& sender) {
+  const auto velocity = trustedVelocity(&message);
+  if (!velocity) return judge("servo_cv", "not a valid velocity in world");
+  const double old = std::max(0.0, age(message.header));
+  if (old > parameters_.model.velocity_command_timeout) return judge("servo_cv", "it is stale");
+  authorize(sender);
+  const std::string why = unable();
+  judge("servo_cv", why.empty() ? model_.servoVelocity(*velocity, time() - old) : why);
+}
+
+void MicromanipulatorNode::onMove(const geometry_msgs::PoseStamped& message, const std::string& sender) {
+  const auto pose = trustedPose(&message);
+  if (!pose) return judge("move_cp", "not a valid pose in world");
+  if (age(message.header) > kOldestMove) return judge("move_cp", "it is stale");
+  authorize(sender);
+  const std::string why = unable();
+  judge("move_cp", why.empty() ? model_.movePosition(*pose) : why);
+}
+
+void MicromanipulatorNode::authorize(const std::string& sender) {
+  if (!authority_.fault().empty() || disabled_) return;
+  const bool moving = model_.moving() || rig_.device->moving();
+  if (authority_.admit(sender, time(), moving)) return;
+  model_.stop();
+  ROS_ERROR_STREAM(authority_.fault());
+}
+
+void MicromanipulatorNode::lookAtNetwork() {
+  const bool exposed = network_ && network_->reachable();
+  if (exposed && !exposed_) model_.stop();
+  exposed_ = exposed;
 }
 
 void MicromanipulatorNode::run() {
@@ -121,15 +153,24 @@ void MicromanipulatorNode::judge(const std::string& command, const std::string& 
 
 std::string MicromanipulatorNode::unable() const {
   if (master_lost_) return "the ROS master is lost";
+  if (!authority_.fault().empty()) return authority_.fault() + "; allowed after enable";
+  if (exposed_) {
+    return "others can reach this machine's nodes through " + network_->interfaces() +
+           "; allowed without these interfaces (./dev shell --isolated), or with allow_network = true";
+  }
   return disabled_ ? "DISABLED; allowed after enable" : "";
 }
 
-std::string MicromanipulatorNode::obeyState(const std::string& command) {
+/// What stops is obeyed whatever its stamp.
+std::string MicromanipulatorNode::obeyState(const cell_microinjection::StringStamped& message) {
+  const std::string& command = message.string;
   if (command == "stop" || command == "disable") {
     model_.stop();
     disabled_ = disabled_ || command == "disable";
   } else if (command == "enable") {
+    if (!isTimely("needle/state_command", message, now_)) return "its stamp is ahead";
     disabled_ = false;
+    authority_.clear();
     model_.clearFault();
   } else {
     return "\"" + command + "\" is no command here; allowed: enable, disable, stop";
@@ -153,18 +194,20 @@ void MicromanipulatorNode::obeyServo(const Cycle::Tick& tick) {
 }
 
 void MicromanipulatorNode::step(const Cycle::Tick& tick) {
-  if (tick.now < now_) set_back_ += (now_ - tick.now).toSec();
+  if (tick.now < now_) set_back_ += secondsBetween(tick.now, now_);
   now_ = tick.now;
   // What goes on by itself, too: nobody new could stop it.
   if (cycle_.masterLost() && !master_lost_) model_.stop();
   master_lost_ = cycle_.masterLost();
+  lookAtNetwork();
   obeyServo(tick);
   if (rig_.before_step) rig_.before_step(time());
   model_.step(time(), tick.dt);
   publish(tick);
   publishState(tick.now);
   publishAbilities(tick.now);
-  if ((tick.now - joint_states_sent_).toSec() >= 1 / parameters_.joint_states_rate) publishJointStates(tick.now);
+  cycle_.setBusy(model_.moving() || rig_.device->moving());
+  if (secondsBetween(joint_states_sent_, tick.now) >= 1 / parameters_.joint_states_rate) publishJointStates(tick.now);
 }
 
 void MicromanipulatorNode::publish(const Cycle::Tick& tick) {
@@ -181,14 +224,18 @@ void MicromanipulatorNode::publish(const Cycle::Tick& tick) {
 void MicromanipulatorNode::publishState(const ros::Time& now) {
   using State = ManipulatorDevice::State;
   cell_microinjection::OperatingState state;
-  const bool there = model_.state() != State::kDisconnected && !disabled_;
-  state.state = model_.state() == State::kFault ? "FAULT" : there ? "ENABLED" : "DISABLED";
+  const bool there = model_.state() != State::kDisconnected && !disabled_ && !exposed_;
+  const bool fault = model_.state() == State::kFault || !authority_.fault().empty();
+  state.state = fault ? "FAULT" : there ? "ENABLED" : "DISABLED";
   state.is_homed = model_.tipPose().has_value();  // axes are absolute
   state.is_busy = model_.moving() || rig_.device->moving();
   const bool same = state.state == said_.state && state.is_homed == said_.is_homed && state.is_busy == said_.is_busy;
   if (same && !answer_) return;
   answer_ = false;
-  if (state.state != said_.state) ROS_INFO_STREAM(state.state << (model_.why().empty() ? "" : ": ") << model_.why());
+  if (state.state != said_.state) {
+    const std::string why = model_.why().empty() && state.state != "ENABLED" ? unable() : model_.why();
+    ROS_INFO_STREAM(state.state << (why.empty() ? "" : ": ") << why);
+  }
   state.header.stamp = now;
   state_.publish(state);
   said_ = state;
@@ -233,9 +280,10 @@ void MicromanipulatorNode::report(diagnostic_updater::DiagnosticStatusWrapper& s
   using diagnostic_msgs::DiagnosticStatus;
   std::string problem = refusal_;
   if (problem.empty()) problem = model_.ended();
-  if (!model_.why().empty()) problem = model_.why() + (problem.empty() ? "" : "; ") + problem;
+  const std::string why = model_.why().empty() && (exposed_ || !authority_.fault().empty()) ? unable() : model_.why();
+  if (!why.empty()) problem = why + (problem.empty() ? "" : "; ") + problem;
   status.summary(
-      model_.why().empty() ? problem.empty() ? DiagnosticStatus::OK : DiagnosticStatus::WARN : DiagnosticStatus::ERROR,
+      why.empty() ? problem.empty() ? DiagnosticStatus::OK : DiagnosticStatus::WARN : DiagnosticStatus::ERROR,
       problem.empty() ? (model_.moving() ? "moves" : "holds") : problem);
   status.add("device", rig_.device->abilities().device);
   status.add("commands refused", refused_);

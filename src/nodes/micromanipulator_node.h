@@ -5,6 +5,7 @@
 #include <ros/ros.h>
 #include <sensor_msgs/JointState.h>
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -12,14 +13,17 @@
 #include "cell_microinjection/ManipulatorAbilities.h"
 #include "cell_microinjection/OperatingState.h"
 #include "cell_microinjection/StringStamped.h"
+#include "manipulator/command_authority.h"
 #include "manipulator/micromanipulator.h"
 #include "nodes/cycle.h"
+#include "nodes/network_watch.h"
 #include "nodes/rig_device.h"
 
 namespace microinjection {
 
 /// A micromanipulator, simulated, emulated or real, behind the same topics. A refused command leaves the needle where
-/// it was; the reason is logged and shown on the diagnostics.
+/// it was; the reason is logged and shown on the diagnostics. A second node that commands the needle beside the first
+/// is a FAULT until `enable` (manipulator/command_authority.h).
 ///
 /// In:  /needle/servo_cp (PoseStamped), /needle/servo_cv (TwistStamped), /needle/move_cp (PoseStamped), in `world`; old
 /// ones are refused;
@@ -38,6 +42,7 @@ namespace microinjection {
 ///   device/            the rig's own, as in src/rigs/NAME/NAME.yaml
 ///   rate               Hz; default 1000, in [50, 5000]
 ///   joint_states_rate  Hz; default 50, in (0, 1000]
+///   allow_network      default false: a real rig is not enabled while others on a network can reach this machine
 class MicromanipulatorNode {
  public:
   static const char* const kHelp;
@@ -51,6 +56,7 @@ class MicromanipulatorNode {
     double joint_states_rate = 50;
     std::string rig = "sim";
     bool emulated = false;
+    bool allow_network = false;
     MicromanipulatorConfig model;
     static Parameters read(ConfigReader& reader);
   };
@@ -59,11 +65,16 @@ class MicromanipulatorNode {
   void subscribe();
   void step(const Cycle::Tick& tick);
   void obeyServo(const Cycle::Tick& tick);
-  std::string obeyState(const std::string& command);
+  void onVelocity(const geometry_msgs::TwistStamped& message, const std::string& sender);
+  void onMove(const geometry_msgs::PoseStamped& message, const std::string& sender);
+  std::string obeyState(const cell_microinjection::StringStamped& message);
   /// As the device has it: a clock that is set back does not take it along.
   double time() const { return now_.toSec() + set_back_; }
-  double age(const std_msgs::Header& header) const { return (now_ - header.stamp).toSec(); }  ///< s
+  double age(const std_msgs::Header& header) const { return secondsBetween(header.stamp, now_); }  ///< s
   std::string unable() const;  ///< why motion commands are refused here; else empty
+  /// Notes who commands; a second source stops the needle.
+  void authorize(const std::string& sender);
+  void lookAtNetwork();
   void judge(const std::string& command, const std::string& refusal);
   void publish(const Cycle::Tick& tick);
   void publishJointStates(const ros::Time& now);
@@ -87,7 +98,10 @@ class MicromanipulatorNode {
   ros::Publisher abilities_;
   cell_microinjection::OperatingState said_;
   cell_microinjection::ManipulatorAbilities told_;
-  bool disabled_ = false;  ///< by command
+  CommandAuthority authority_;
+  std::unique_ptr<NetworkWatch> network_;  ///< null where it does not matter who can reach this machine
+  bool exposed_ = false;                   ///< a real rig, and others can reach this machine
+  bool disabled_ = false;                  ///< by command
   bool master_lost_ = false;
   bool answer_ = false;  ///< a state command was heard
   ros::Time joint_states_sent_;

@@ -13,6 +13,9 @@
 #include <utility>
 #include <vector>
 
+#include "nodes/finite_message.h"
+#include "nodes/message_guard.h"
+
 namespace microinjection {
 
 /// Which message an input waits for in lock step: that of the same tick (from a node upstream) or that of the tick
@@ -41,7 +44,7 @@ class InputPort {
 
   /// Age of the last message in s of ROS time, from its stamp or its arrival, whichever is older; infinite before the
   /// first.
-  double age(const ros::Time& now) const { return received.isZero() ? INFINITY : (now - received).toSec(); }
+  double age(const ros::Time& now) const { return received.isZero() ? INFINITY : secondsBetween(received, now); }
   /// The last message is there, valid and not older than `timeout`.
   bool fresh(const ros::Time& now) const { return !cut_off && valid() && age(now) >= 0 && age(now) <= timeout; }
 
@@ -49,8 +52,10 @@ class InputPort {
   const Phase phase;
   const double timeout;  ///< s of ROS time
   ros::Time received;    ///< of the last message
+  std::string sender;    ///< node that the last message came from, whether it was taken or not
   std::string feeder;    ///< lock step: the node whose greeting is here, silence with stamp 0; empty: none yet
   bool cut_off = false;  ///< nothing counts as fresh; see Cycle
+  StampRule stamp_rule = StampRule::kTimely;  ///< kAny: listeners hear also what is stamped ahead; it is never fresh
 };
 
 /// The newest message of a topic, for one thread. A message with stamp 0 is invalid (CRTK) and withdraws the one
@@ -65,7 +70,7 @@ class Input : public InputPort {
     const auto is_it = [&](const ros::Time& other) { return other == stamp; };
     return std::any_of(silence_.begin(), silence_.end(), [&](const auto& header) { return is_it(header.stamp); }) ||
            std::any_of(waiting_.begin(), waiting_.end(),
-                       [&](const auto& message) { return is_it(message->header.stamp); });
+                       [&](const Waiting& waiting) { return is_it(waiting.message->header.stamp); });
   }
 
   void take(const ros::Time& stamp, const ros::Time& now) override {
@@ -73,21 +78,32 @@ class Input : public InputPort {
     for (; !silence_.empty() && silence_.front().stamp <= stamp; silence_.pop_front()) {
       if (silence_.front().frame_id == "invalid") newest_.reset();
     }
-    for (; !waiting_.empty() && waiting_.front()->header.stamp <= stamp; waiting_.pop_front()) {
-      tell(*waiting_.front(), now);
-      accept(waiting_.front(), now);
+    // A message that is not due yet must not hold those behind it back.
+    for (auto next = waiting_.begin(); next != waiting_.end();) {
+      if (next->message->header.stamp > stamp) {
+        ++next;
+        continue;
+      }
+      const Waiting due = std::move(*next);
+      next = waiting_.erase(next);
+      sender = due.sender;
+      notify(*due.message, now);
+      accept(due.message, now);
     }
   }
 
-  /// Live, a message that came at `now`.
-  void receive(const Pointer& message, const ros::Time& now) {
-    tell(*message, now);
+  /// Live, a message that came at `now`. One whose stamp is ahead is refused, and the last one stays.
+  void receive(const Pointer& message, const ros::Time& now, const std::string& from) {
+    sender = from;
+    if (refuses(*message, now)) return;
+    notify(*message, now);
     accept(message->header.stamp.isZero() ? nullptr : message, now);
   }
   void invalidate() override { newest_.reset(); }
   /// Lock step; see kSilentSuffix.
-  void queue(const Pointer& message) {
-    if (!message->header.stamp.isZero()) waiting_.push_back(message);
+  void queue(const Pointer& message, const ros::Time& tick, const std::string& from) {
+    if (message->header.stamp.isZero() || refuses(*message, tick)) return;
+    waiting_.push_back({message, from});
   }
   void queueSilence(const std_msgs::Header& header, const std::string& publisher) {
     feeder = publisher;
@@ -105,7 +121,18 @@ class Input : public InputPort {
   Pointer takeNews() { return std::exchange(news_, false) ? newest_ : nullptr; }
 
  private:
-  void tell(const Message& message, const ros::Time& now) const {
+  struct Waiting {
+    Pointer message;
+    std::string sender;
+  };
+
+  bool refuses(const Message& message, const ros::Time& now) const {
+    if (stamp_rule == StampRule::kTimely) return !isTimely(topic, message, now);
+    if (!isAhead(message.header.stamp, now)) return false;
+    notify(message, now);
+    return true;
+  }
+  void notify(const Message& message, const ros::Time& now) const {
     for (const Listener& listener : listeners_) listener(message, now);
   }
   void accept(const Pointer& message, const ros::Time& now) {
@@ -118,7 +145,7 @@ class Input : public InputPort {
   Pointer newest_;
   bool news_ = false;
   std::vector<Listener> listeners_;
-  std::deque<Pointer> waiting_;
+  std::deque<Waiting> waiting_;
   std::deque<std_msgs::Header> silence_;
 };
 
@@ -147,8 +174,9 @@ class OutputPort {
 
   const std::string topic;
   ros::Publisher publisher;
-  ros::Publisher silent_publisher;  ///< null when live
-  std::atomic<unsigned> count{0};   ///< messages sent, for the diagnostics
+  ros::Publisher silent_publisher;    ///< null when live
+  std::atomic<unsigned> count{0};     ///< messages sent, for the diagnostics
+  std::atomic<unsigned> withheld{0};  ///< messages whose numbers were not finite, for the diagnostics
 
  protected:
   ros::Time tick_;  ///< zero when live
@@ -161,9 +189,14 @@ class Output : public OutputPort {
  public:
   using OutputPort::OutputPort;
 
-  /// The header's stamp is that of the measurement that the message derives from; see beginTick for lock step. Live, a
-  /// thread other than the node's may call it, always the same one.
+  /// The header's stamp is that of the measurement that the message derives from; see beginTick for lock step. A
+  /// message with a number that is not finite is not sent: what goes out in its place is invalid. Live, a thread other
+  /// than the node's may call it, always the same one.
   void publish(Message message) {
+    if (!isFinite(message)) {
+      ++withheld;
+      return publishInvalid(std::move(message));
+    }
     if (!tick_.isZero()) message.header.stamp = tick_;
     publisher.publish(message);
     published_ = true;
@@ -172,6 +205,11 @@ class Output : public OutputPort {
 
   /// Sends the message with stamp 0: what was said before does not hold any more (CRTK).
   void publishInvalid(Message message) {
+    if (!isFinite(message)) {
+      Message empty;
+      empty.header.frame_id = message.header.frame_id;
+      message = std::move(empty);
+    }
     message.header.stamp = ros::Time();
     publisher.publish(message);
     invalid_ = true;

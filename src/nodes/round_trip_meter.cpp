@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "nodes/message_guard.h"
+
 namespace microinjection {
 namespace {
 
@@ -17,21 +19,19 @@ void forgetBefore(std::map<ros::Time, Value>& entries, const ros::Time& time) {
 }  // namespace
 
 RoundTripMeter::RoundTripMeter(ros::NodeHandle& node) {
-  const auto hints = ros::TransportHints().tcpNoDelay();
   using Trace = cell_microinjection::LatencyTrace;
-  setpoints_ = node.subscribe<Trace>(
-      "needle/setpoint_trace", 100,
-      [this](const Trace::ConstPtr& trace) { hand_of_needle_[trace->header.stamp] = trace->origin; }, {}, hints);
-  traces_ = node.subscribe<Trace>(
-      "haptic/force_trace", 100,
-      [this](const Trace::ConstPtr& trace) { needle_of_force_[trace->header.stamp] = trace->origin; }, {}, hints);
-  forces_ = node.subscribe<geometry_msgs::WrenchStamped>(
-      "haptic/servo_cf", 100,
-      [this](const geometry_msgs::WrenchStampedConstPtr& message) {
-        const auto& force = message->wrench.force;
-        rendered_[message->header.stamp] = {force.x, force.y, force.z};
-      },
-      {}, hints);
+  using geometry_msgs::WrenchStamped;
+  setpoints_ = subscribeGuarded<Trace>(
+      node, "needle/setpoint_trace", 100,
+      [this](const Trace& trace, const std::string&) { hand_of_needle_[trace.header.stamp] = trace.origin; });
+  traces_ = subscribeGuarded<Trace>(node, "haptic/force_trace", 100, [this](const Trace& trace, const std::string&) {
+    needle_of_force_[trace.header.stamp] = trace.origin;
+  });
+  forces_ = subscribeGuarded<WrenchStamped>(node, "haptic/servo_cf", 100,
+                                            [this](const WrenchStamped& message, const std::string&) {
+                                              const auto& force = message.wrench.force;
+                                              rendered_[message.header.stamp] = {force.x, force.y, force.z};
+                                            });
 }
 
 void RoundTripMeter::felt(const Eigen::Vector3d& force, const ros::Time& received) { felt_[received] = force; }
@@ -55,8 +55,8 @@ void RoundTripMeter::count(const ros::Time& rendered, const ros::Time& needle) {
   for (auto came = felt_.lower_bound(rendered); came != felt_.end(); ++came) {
     // By its size: the device may have other axes than the bridge.
     if (std::abs(came->second.norm() - force->second.norm()) > kSame * force->second.norm()) continue;
-    at_bridge_.add((rendered - hand->second).toSec());
-    at_device_.add((came->first - hand->second).toSec());
+    at_bridge_.add(secondsBetween(hand->second, rendered));
+    at_device_.add(secondsBetween(hand->second, came->first));
     last_hand_ = hand->second;
     return;
   }

@@ -7,6 +7,7 @@
 #include <exception>
 #include <string>
 
+#include "base/console_relay.h"
 #include "nodes/ending.h"
 #include "nodes/lockstep.h"
 #include "nodes/real_time.h"
@@ -27,6 +28,7 @@ int runNode(int argc, char** argv, const std::string& name, Priority priority = 
       return 0;
     }
   }
+  const ConsoleRelay console;  // before there are threads: a stopped terminal must not stop a loop
   ros::init(argc, argv, name, ending == Ending::kInGoodOrder ? ros::init_options::NoSigintHandler : 0);
   // roscpp hears SIGINT only: at the others, too, a device is told to stop before the end.
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) std::signal(number, [](int) { ros::requestShutdown(); });

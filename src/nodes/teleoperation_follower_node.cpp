@@ -45,7 +45,9 @@ TeleoperationFollowerNode::TeleoperationFollowerNode(ros::NodeHandle node, ros::
   cycle_
       .input<cell_microinjection::LinkPacket>("link/rig/received", Phase::kTickBefore,
                                               std::numeric_limits<double>::infinity())
-      .listen([this](const auto& message, const ros::Time&) { model_.receive(toPacket(message)); });
+      .listen([this](const auto& message, const ros::Time&) {
+        if (isPlausible("link/rig/received", message)) model_.receive(toPacket(message));
+      });
   if (parameters_.controller_timeout > 0) {
     controller_ = &cycle_.input<cell_microinjection::InjectionStatus>("controller/injection_state", Phase::kTickBefore,
                                                                       parameters_.controller_timeout);

@@ -38,26 +38,34 @@ def rig():
 
 class KillableNodes:
     """{node: its parameters}. `participants` of the lock step; none: the session is live. `remaps`: {node: its
-    arguments}."""
+    arguments}. `outputs`: {node: descriptor of its standard output and error} of those that do not write to a file."""
 
-    def __init__(self, nodes, participants=(), remaps=None):
+    def __init__(self, nodes, participants=(), remaps=None, outputs=None):
         rospy.set_param("/robot_description", (PACKAGE / "urdf/rig.urdf").read_text())
         rospy.set_param("/lockstep/participants", list(participants))
         self._running, self._outputs = {}, {}
+        self.begin(nodes, remaps, outputs)
+
+    def begin(self, nodes, remaps=None, outputs=None):
+        """Sets their parameters and starts them."""
         for node, settings in nodes.items():
             rospy.set_param(f"/{node}", settings)
-            self.start(node, *(remaps or {}).get(node, ()))
+            self.start(node, *(remaps or {}).get(node, ()), output=(outputs or {}).get(node))
 
-    def start(self, node, *arguments):
+    def start(self, node, *arguments, output=None):
         self._outputs[node] = tempfile.TemporaryFile()
         self._running[node] = subprocess.Popen([PROGRAMS / node, *arguments], stdin=subprocess.DEVNULL,
-                                               stdout=self._outputs[node], stderr=subprocess.STDOUT)
+                                               stdout=output or self._outputs[node], stderr=subprocess.STDOUT)
 
     def names(self):
         return set(self._running)
 
     def dead(self):
         return [node for node, process in self._running.items() if process.poll() is not None]
+
+    def status(self, node):
+        """Exit status; None while it runs."""
+        return self._running[node].poll()
 
     def report(self):
         """Who has ended, and what the nodes have said, for the message of a test that fails."""

@@ -2,11 +2,13 @@
 """The micromanipulator refuses what it cannot do, stays where it was, and stops when a velocity command grows old."""
 
 import math
+import subprocess
 import unittest
 
 import numpy as np
 import rospy
 import rostest
+from cell_microinjection.msg import OperatingState, StringStamped
 from geometry_msgs.msg import PoseStamped, TwistStamped
 
 from messages import pose, position
@@ -16,14 +18,16 @@ from participant import Participant
 class TrustTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.world = Participant({"/needle/servo_cp": PoseStamped}, {"/needle/measured_cp": PoseStamped})
+        cls.world = Participant({"/needle/servo_cp": PoseStamped},
+                                {"/needle/measured_cp": PoseStamped, "/needle/operating_state": OperatingState})
         cls.velocity = rospy.Publisher("/needle/servo_cv", TwistStamped, queue_size=10)
         cls.move = rospy.Publisher("/needle/move_cp", PoseStamped, queue_size=10)
-        while not (cls.velocity.get_num_connections() and cls.move.get_num_connections()):
+        cls.command = rospy.Publisher("/needle/state_command", StringStamped, queue_size=10)
+        while not all(each.get_num_connections() for each in (cls.velocity, cls.move, cls.command)):
             rospy.rostime.wallsleep(0.05)
 
     def setUp(self):
-        self.world.run(100, lambda: {"/needle/servo_cp": pose(0, 0, 50e-6)})
+        self.world.run(400, lambda: {"/needle/servo_cp": pose(0, 0, 50e-6)})
         self.world.run(3)
         np.testing.assert_allclose(self.needle(), [0, 0, 50e-6], atol=1e-9)
 
@@ -75,11 +79,74 @@ class TrustTest(unittest.TestCase):
         command.twist.linear.x = 50e-6
         self.velocity.publish(command)  # stamp 0
         self.tick_until_refused("servo_cv refused: not a valid velocity")
-        self.world.run(100, lambda: {"/needle/servo_cp": pose(0, 0, 50e-6)})
+        self.world.run(400, lambda: {"/needle/servo_cp": pose(0, 0, 50e-6)})
         command.header.stamp = self.world.now
         command.header.frame_id = "camera"
         self.velocity.publish(command)
         self.tick_until_refused("servo_cv refused: not a valid velocity")
+
+    def test_refuses_stamps_that_are_ahead(self):
+        """Of a second and more, up to the last one that there is; it used to end the node."""
+        self.world.run(200)
+        for seconds in (2, 3600, 2 ** 31 + 1, 2 ** 32 - 2):
+            stamp = rospy.Time(int(min(self.world.now.to_sec() + seconds, 2 ** 32 - 1)), 999999999)
+            move, velocity = pose(20e-6, -10e-6, 70e-6), TwistStamped()
+            velocity.twist.linear.x = 50e-6
+            for publisher, message in ((self.move, move), (self.velocity, velocity)):
+                message.header.stamp = stamp
+                publisher.publish(message)
+                topic = publisher.name[1:]
+                self.tick_until(lambda: f"{topic}: refused, its stamp is" in
+                                self.world.diagnostics["micromanipulator: inputs"].message)
+            np.testing.assert_allclose(self.needle(), [0, 0, 50e-6], atol=1e-9)
+
+    def test_servo_keeps_the_speed_limit(self):
+        """Of config/micromanipulator.yaml, whoever commands and however far the target leaps."""
+        places = []
+        for _ in range(300):
+            self.world.tick({"/needle/servo_cp": pose(0, 0, 150e-6)})
+            places.append(self.needle()[2])
+        fastest = np.abs(np.diff(places)).max() / 1e-3
+        self.assertLess(fastest, 200e-6 * 1.001)
+        self.assertGreater(fastest, 200e-6 * 0.9)
+        command = TwistStamped()
+        command.header.stamp = self.world.now
+        command.twist.linear.x = 250e-6
+        self.world.run(200)
+        command.header.stamp = self.world.now
+        self.velocity.publish(command)
+        self.tick_until(lambda: "allowed at most servo_speed_limit" in
+                        self.world.diagnostics["micromanipulator: commands"].message)
+
+    def test_second_publisher_is_a_fault_until_enable(self):
+        """It is another node, since this one may publish on as many topics as it likes."""
+        holding = {"/needle/servo_cp": pose(0, 0, 50e-6)}
+        stranger = subprocess.Popen(["rostopic", "pub", "-r", "20", "-s", "/needle/servo_cp", "geometry_msgs/PoseStamped",
+                                     "{header: {stamp: now}, pose: {position: {z: 100.0e-6}, orientation: {w: 1}}}"],
+                                    stdout=subprocess.DEVNULL)
+        try:
+            for _ in range(60000):
+                self.world.tick(holding)
+                if self.state() == "FAULT":
+                    break
+            self.assertEqual(self.state(), "FAULT")
+            moved = self.needle()[2] - 50e-6
+            self.assertLess(moved, 1e-6)
+            self.world.run(1200, holding)
+            status = self.world.diagnostics["micromanipulator: commands"]
+            self.assertEqual(status.level, 2)
+            self.assertRegex(status.message, "two nodes command the needle: (/world and /rostopic|/rostopic.* and /world)")
+            np.testing.assert_allclose(self.needle()[2], 50e-6 + moved, atol=1e-6)
+        finally:
+            stranger.kill()
+            stranger.wait()
+        self.world.run(200)
+        self.command.publish(StringStamped(string="enable"))
+        self.tick_until(lambda: self.state() == "ENABLED")
+
+    def state(self):
+        said = self.world.seen.get("/needle/operating_state")
+        return said.state if said else None
 
     def test_move_arrives(self):
         command = pose(20e-6, -10e-6, 70e-6)

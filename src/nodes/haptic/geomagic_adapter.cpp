@@ -37,7 +37,7 @@ GeomagicAdapter::GeomagicAdapter(Cycle& cycle, const GeomagicConfig& config)
 std::optional<HandReading> GeomagicAdapter::read(const Cycle::Tick& tick) {
   const auto* pose = pose_.get(tick.now);
   if (!pose) return std::nullopt;
-  const auto position = trustedPosition(pose, pose->header.frame_id);
+  const auto position = trustedPosition(pose, pose->header.frame_id, kLargestHandDistance / config_.length_unit);
   if (!position) return std::nullopt;
   HandReading reading;
   reading.position = config_.length_unit * *position;

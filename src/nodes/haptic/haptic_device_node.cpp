@@ -82,7 +82,7 @@ void HapticDeviceNode::step(const Cycle::Tick& tick) {
 
 void HapticDeviceNode::publishButtons(const ros::Time& now, bool clutch, bool operator_present) {
   const bool changed = !last_ || last_->clutch != clutch || last_->operator_present != operator_present;
-  if (!changed && (now - told_buttons_).toSec() < kButtonPeriod) return;
+  if (!changed && secondsBetween(told_buttons_, now) < kButtonPeriod) return;
   told_buttons_ = now;
   clutch_.publish(button(now, clutch));
   operator_present_.publish(button(now, operator_present));

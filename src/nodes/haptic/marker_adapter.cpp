@@ -45,10 +45,11 @@ MarkerAdapter::MarkerAdapter(Cycle& cycle, const MarkerConfig& config)
       needle_(cycle.input<geometry_msgs::PoseStamped>("needle/measured_cp", Phase::kTickBefore, kTimeout)),
       target_(cycle.input<geometry_msgs::PoseStamped>("teleop/servo_cp", Phase::kTickBefore, kTimeout)),
       force_(cycle.node().advertise<visualization_msgs::MarkerArray>("hand_marker/force", 1, true)) {
-  controller_ = cycle.node().subscribe<cell_microinjection::OperatingState>(
-      "controller/operating_state", 10, [this](const cell_microinjection::OperatingStateConstPtr& message) {
-        const bool homes = message->state == "ENABLED" && message->is_busy;
-        controller_state_ = homes ? "on its way home" : message->state == "ENABLED" ? "" : message->state;
+  controller_ = subscribeGuarded<cell_microinjection::OperatingState>(
+      cycle.node(), "controller/operating_state", 10,
+      [this](const cell_microinjection::OperatingState& message, const std::string&) {
+        const bool homes = message.state == "ENABLED" && message.is_busy;
+        controller_state_ = homes ? "on its way home" : message.state == "ENABLED" ? "" : message.state;
       });
   const std::vector<std::pair<std::string, std::string>> words{
       {"Enable", "enable"}, {"Inject", "inject"}, {"Withdraw (home)", "home"}, {"Disable", "disable"}};
@@ -67,7 +68,7 @@ void MarkerAdapter::onFeedback(const Feedback& feedback) {
   if (event != Event::MOUSE_DOWN && event != Event::POSE_UPDATE && event != Event::KEEP_ALIVE) return;
   const auto& p = feedback->pose.position;
   const Eigen::Vector3d to = fromDisplay({p.x, p.y, p.z});
-  if (feedback->header.frame_id != kFrame || !to.allFinite()) {
+  if (feedback->header.frame_id != kFrame || !to.allFinite() || to.norm() > kLargestNeedleDistance) {
     ROS_WARN_THROTTLE(5, "the handle cannot be dragged in frame '%s': set rviz's fixed frame to %s",
                       feedback->header.frame_id.c_str(), kFrame);
     return letGo();
@@ -122,7 +123,7 @@ std::optional<HandReading> MarkerAdapter::read(const Cycle::Tick& tick) {
 }
 
 void MarkerAdapter::render(const Eigen::Vector3d& force, const Cycle::Tick& tick) {
-  if ((tick.now - shown_).toSec() < kShowPeriod) return;
+  if (secondsBetween(shown_, tick.now) < kShowPeriod) return;
   shown_ = tick.now;
   followNeedle();
   showForce(force);

@@ -1,5 +1,7 @@
 #include "nodes/haptic/omni_adapter.h"
 
+#include "nodes/conversions.h"
+
 namespace microinjection {
 namespace {
 
@@ -26,11 +28,11 @@ OmniAdapter::OmniAdapter(Cycle& cycle, const OmniConfig& config)
     : config_(config),
       state_(cycle.input<OmniState>(config.device + "/state", Phase::kSameTick, config.timeout)),
       force_(cycle.node().advertise<OmniFeedback>(config.device + "/force_feedback", 10)) {
-  buttons_ = cycle.node().subscribe<OmniButtonEvent>(config.device + "/button", 10,
-                                                     [this](const boost::shared_ptr<const OmniButtonEvent>& event) {
-                                                       clutch_ = pressed(*event, config_.clutch_button);
-                                                       operator_present_ = pressed(*event, config_.operator_button);
-                                                     });
+  buttons_ = subscribeGuarded<OmniButtonEvent>(cycle.node(), config.device + "/button", 10,
+                                               [this](const OmniButtonEvent& event, const std::string&) {
+                                                 clutch_ = pressed(event, config_.clutch_button);
+                                                 operator_present_ = pressed(event, config_.operator_button);
+                                               });
 }
 
 std::optional<HandReading> OmniAdapter::read(const Cycle::Tick& tick) {
@@ -42,7 +44,7 @@ std::optional<HandReading> OmniAdapter::read(const Cycle::Tick& tick) {
   const auto& p = state->pose.position;
   HandReading reading;
   reading.position = config_.length_unit * Eigen::Vector3d(p.x, p.y, p.z);
-  if (!reading.position.allFinite()) return std::nullopt;
+  if (!isWithin(reading.position, kLargestHandDistance)) return std::nullopt;
   reading.stamp = state->header.stamp;
   reading.clutch = clutch_ || state->locked;
   reading.operator_present = operator_present_ || config_.operator_button == "none";

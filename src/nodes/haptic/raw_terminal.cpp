@@ -45,7 +45,8 @@ std::string RawTerminal::read() {
 
 void RawTerminal::show(const std::string& line) {
   winsize size{};
-  const bool known = ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
+  // Of standard input: standard output may be a pipe to the thread that writes to the terminal (base/console_relay.h).
+  const bool known = ioctl(STDIN_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
   const std::string cut = line.substr(0, known ? size.ws_col - 1 : 79);
   if (cut == shown_) return;
   shown_ = cut;

@@ -22,16 +22,19 @@ std::string describe(const cell_microinjection::InjectionStatus& status) {
 }  // namespace
 
 SessionNews::SessionNews(Cycle& cycle) {
-  controller_ = cycle.node().subscribe<cell_microinjection::OperatingState>(
-      "controller/operating_state", 10,
-      [this](const cell_microinjection::OperatingStateConstPtr& message) { state_ = message->state; });
-  injection_ = cycle.node().subscribe<cell_microinjection::InjectionStatus>(
-      "controller/injection_state", 1, [this](const cell_microinjection::InjectionStatusConstPtr& message) {
-        injection_text_ = describe(*message);
-        notice_ = message->notice;
-      });
-  diagnostics_ = cycle.node().subscribe<diagnostic_msgs::DiagnosticArray>(
-      "/diagnostics", 10, [this](const diagnostic_msgs::DiagnosticArrayConstPtr& message) { hear(*message); });
+  using cell_microinjection::InjectionStatus;
+  using cell_microinjection::OperatingState;
+  using diagnostic_msgs::DiagnosticArray;
+  controller_ = subscribeGuarded<OperatingState>(
+      cycle.node(), "controller/operating_state", 10,
+      [this](const OperatingState& message, const std::string&) { state_ = message.state; });
+  injection_ = subscribeGuarded<InjectionStatus>(cycle.node(), "controller/injection_state", 1,
+                                                 [this](const InjectionStatus& message, const std::string&) {
+                                                   injection_text_ = describe(message);
+                                                   notice_ = message.notice;
+                                                 });
+  diagnostics_ = subscribeGuarded<DiagnosticArray>(
+      cycle.node(), "/diagnostics", 10, [this](const DiagnosticArray& message, const std::string&) { hear(message); });
 }
 
 std::string SessionNews::text() const { return state_ + injection_text_; }

@@ -68,11 +68,20 @@ command_paper() {
 }
 
 command_shell() {
+  local isolated=
+  if [[ ${1:-} == --isolated ]]; then
+    isolated=yes
+    shift
+  fi
   [[ ${1:-} != -- ]] || shift
   # Standard output belongs to the command.
   { setup; build_workspace; } >&2
+  local command=(bash --rcfile "$ROOT/src/tools/dev/shell.rc" -i)
   if [[ $# -gt 0 ]]; then
-    exec "$@"
+    command=("$@")
+  else
+    export MICROINJECTION_ROOT=$ROOT
   fi
-  MICROINJECTION_ROOT=$ROOT exec bash --rcfile "$ROOT/src/tools/dev/shell.rc" -i
+  [[ -z $isolated ]] || run_isolated "${command[@]}"
+  exec "${command[@]}"
 }

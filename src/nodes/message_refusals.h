@@ -1,0 +1,33 @@
+#pragma once
+
+#include <diagnostic_updater/diagnostic_updater.h>
+
+#include <map>
+#include <mutex>
+#include <string>
+
+namespace microinjection {
+
+/// The messages that this process has refused, by topic and reason. Callbacks of any thread add to it; the log has one
+/// line a second of it at the most, and the diagnostics have all.
+class MessageRefusals {
+ public:
+  static MessageRefusals& ofProcess();
+
+  void add(const std::string& topic, const std::string& reason);
+
+  /// Merges a warning for each topic that had refusals since the last call, and adds all counts since the start.
+  void report(diagnostic_updater::DiagnosticStatusWrapper& status);
+
+ private:
+  struct Topic {
+    unsigned count = 0;     ///< since the start
+    unsigned reported = 0;  ///< of those, in the last report
+    std::string reason;     ///< of the last one
+  };
+
+  std::mutex mutex_;
+  std::map<std::string, Topic> topics_;
+};
+
+}  // namespace microinjection

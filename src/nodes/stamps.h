@@ -1,0 +1,23 @@
+#pragma once
+
+#include <ros/time.h>
+
+#include <cstdint>
+
+namespace microinjection {
+
+/// A message whose stamp is farther ahead of this node's time than this (s) is refused. Clocks that NTP keeps differ by
+/// milliseconds.
+constexpr double kLargestLead = 1;
+
+/// Seconds from one time to another, of ros::Time, ros::WallTime or ros::SteadyTime. The difference of two ros::Time
+/// throws beyond 2^31 s, so that one wild stamp would end a node. This function never throws.
+template <typename Time>
+double secondsBetween(const Time& from, const Time& to) {
+  return 1e-9 * static_cast<double>(static_cast<std::int64_t>(to.toNSec()) - static_cast<std::int64_t>(from.toNSec()));
+}
+
+/// Whether a stamp is too far in the future to be true.
+inline bool isAhead(const ros::Time& stamp, const ros::Time& now) { return secondsBetween(now, stamp) > kLargestLead; }
+
+}  // namespace microinjection

@@ -1,0 +1,148 @@
+#include "base/console_relay.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/wait.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <string>
+
+namespace microinjection {
+namespace {
+
+constexpr int kPatience = 60000;  // ms; only what hangs takes that long
+
+/// A program of its own with standard output and error on a pseudo-terminal, which tells on a pipe how far it is.
+class Program {
+ public:
+  explicit Program(const std::function<void(const Program&)>& run) {
+    master_ = posix_openpt(O_RDWR | O_NOCTTY);
+    grantpt(master_);
+    unlockpt(master_);
+    slave_ = open(ptsname(master_), O_RDWR | O_NOCTTY);
+    termios mode{};
+    tcgetattr(slave_, &mode);
+    cfmakeraw(&mode);
+    tcsetattr(slave_, TCSANOW, &mode);
+    EXPECT_EQ(pipe(progress_.data()), 0);
+    EXPECT_EQ(pipe(orders_.data()), 0);
+    child_ = fork();
+    if (child_ != 0) return;
+    dup2(slave_, STDOUT_FILENO);
+    dup2(slave_, STDERR_FILENO);
+    run(*this);
+    _exit(0);
+  }
+  ~Program() {
+    kill(child_, SIGKILL);
+    waitpid(child_, nullptr, 0);
+    for (const int each : {master_, slave_, progress_[0], progress_[1], orders_[0], orders_[1]}) close(each);
+  }
+
+  void stopTerminal() const { tcflow(slave_, TCOOFF); }
+  void resumeTerminal() const { tcflow(slave_, TCOON); }
+
+  // In the program.
+  void say(char step) const { EXPECT_EQ(write(progress_[1], &step, 1), 1); }
+  void awaitOrder() const {
+    char order;
+    EXPECT_EQ(read(orders_[0], &order, 1), 1);
+  }
+
+  // In the test.
+  void order() const { EXPECT_EQ(write(orders_[1], "x", 1), 1); }
+  /// The next step that the program says; 0 when it hangs.
+  char next() const {
+    pollfd input{progress_[0], POLLIN, 0};
+    char step = 0;
+    if (poll(&input, 1, kPatience) <= 0 || read(progress_[0], &step, 1) != 1) return 0;
+    return step;
+  }
+  /// All that is on the terminal up to and with `last`.
+  std::string outputUntil(const std::string& last) const {
+    std::string text;
+    std::array<char, 4096> buffer;
+    pollfd input{master_, POLLIN, 0};
+    while (text.find(last) == std::string::npos && poll(&input, 1, kPatience) > 0) {
+      const ssize_t size = read(master_, buffer.data(), buffer.size());
+      if (size <= 0) break;
+      text.append(buffer.data(), static_cast<std::size_t>(size));
+    }
+    return text;
+  }
+
+ private:
+  int master_ = -1, slave_ = -1;
+  pid_t child_ = -1;
+  std::array<int, 2> progress_{}, orders_{};
+};
+
+TEST(ConsoleRelay, PassesOnWhatIsWrittenInItsOrder) {
+  const Program program([](const Program& self) {
+    {
+      const ConsoleRelay relay;
+      for (int i = 0; i < 1000; ++i) {
+        std::printf("out %d\n", i);
+        std::fprintf(stderr, "err %d\n", i);
+      }
+    }
+    std::printf("end\n");
+    std::fflush(stdout);
+    self.awaitOrder();
+  });
+  std::string expected;
+  for (int i = 0; i < 1000; ++i) expected += "out " + std::to_string(i) + "\nerr " + std::to_string(i) + "\n";
+  EXPECT_EQ(program.outputUntil("end\n"), expected + "end\n");
+}
+
+TEST(ConsoleRelay, StoppedTerminalHoldsNobodyUpAndWhatIsMissingIsCounted) {
+  constexpr int kLines = 200000;
+  const Program program([](const Program& self) {
+    self.stopTerminal();
+    const ConsoleRelay relay;
+    for (int i = 0; i < kLines; ++i) std::printf("a line of the loop, number %d\n", i);
+    self.say('w');
+    self.awaitOrder();
+    std::printf("resumed\n");
+    self.say('r');
+    self.awaitOrder();
+  });
+  ASSERT_EQ(program.next(), 'w') << "the program waits for its terminal";
+  program.resumeTerminal();
+  program.outputUntil("number 100\n");
+  program.order();
+  ASSERT_EQ(program.next(), 'r');
+  const std::string rest = program.outputUntil("resumed\n");
+  EXPECT_NE(rest.find(" lines of output are missing here"), std::string::npos);
+  program.order();
+}
+
+TEST(ConsoleRelay, EndsAlthoughTheTerminalIsStopped) {
+  const Program program([](const Program& self) {
+    self.stopTerminal();
+    {
+      const ConsoleRelay relay;
+      std::printf("never seen\n");
+    }
+    self.say('e');
+    self.awaitOrder();
+  });
+  EXPECT_EQ(program.next(), 'e');
+}
+
+TEST(ConsoleRelay, WhatACrashSaysIsNotLost) {
+  const Program program([](const Program&) {
+    const ConsoleRelay relay;
+    std::terminate();
+  });
+  EXPECT_NE(program.outputUntil("terminate called").find("terminate called"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace microinjection

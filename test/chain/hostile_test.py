@@ -1,0 +1,197 @@
+#!/usr/bin/python3
+"""Strangers send each node of a live session what nobody should, on every topic that it listens to: at least 250 kinds a
+topic. No node ends, none publishes a number that is not finite, and the loop closes again, by itself or when it is
+enabled again after it has said what it waits for."""
+
+import math
+import tempfile
+import unittest
+
+import genpy
+import rosgraph
+import roslib.message
+import rospy
+import rostest
+import yaml
+from cell_microinjection.msg import StringStamped
+from geometry_msgs.msg import WrenchStamped
+
+import foreign_messages
+from hostile_messages import hostile_messages
+from killable_nodes import PACKAGE, parameters
+from live_chain import RATE, TIMEOUT, LiveChain, Master, until
+
+# NaN means none in these fields (Inject.action).
+MAY_BE_NAN = {"puncture_force", "puncture_depth"}
+PAUSE = 0.002  # s between two messages, so that none is lost in a queue
+
+
+def classes(kind):
+    """Of a type's name; "Header" is that of std_msgs, and a name may have [] behind it."""
+    name = kind.partition("[")[0]
+    return roslib.message.get_message_class(name) or getattr(foreign_messages, name.rpartition("/")[2])
+
+
+def not_finite(value, name=""):
+    """Path of a number in a message that is not finite; else empty."""
+    if isinstance(value, float):
+        return name if not math.isfinite(value) and name.rpartition(".")[2] not in MAY_BE_NAN else ""
+    if isinstance(value, genpy.Message):
+        parts = ((f"{name}.{slot}", getattr(value, slot)) for slot in value.__slots__)
+    elif isinstance(value, (list, tuple)):
+        parts = ((f"{name}[]", each) for each in value)
+    else:
+        return ""
+    return next((found for part, each in parts if (found := not_finite(each, part))), "")
+
+
+class Watch:
+    """Looks at all that some nodes publish."""
+
+    def __init__(self, nodes):
+        self.defects = []
+        self._subscribers = {}
+        self._nodes = {f"/{node}" for node in nodes}
+
+    def follow(self, topic, cls):
+        if topic not in self._subscribers:
+            self._subscribers[topic] = rospy.Subscriber(topic, cls, self._look, topic)
+
+    def _look(self, message, topic):
+        sender = message._connection_header["callerid"]
+        if sender not in self._nodes:
+            return
+        defect = not_finite(message)
+        if defect:
+            self.defects.append(f"{sender} on {topic}: {defect}")
+
+    def close(self):
+        for subscriber in self._subscribers.values():
+            subscriber.unregister()
+
+
+class HostileTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.master = Master()
+        rospy.init_node("stranger")
+        cls.folder = tempfile.TemporaryDirectory()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.master.kill()
+        cls.folder.cleanup()
+
+    def begin(self, changes):
+        self.chain = LiveChain(changes)
+        self.addCleanup(self.chain.close)
+        self.nodes = self.chain.nodes.names()
+        self.enable = {topic: rospy.Publisher(topic, StringStamped, queue_size=5)
+                       for topic in ("/needle/state_command", "/controller/state_command")}
+        self.chain.check_follows()
+        self.watch_nodes()
+
+    def watch_nodes(self):
+        self.watch = Watch(self.nodes)
+        self.addCleanup(self.watch.close)
+        for topic, cls in self.topics(publishers=True).items():
+            self.watch.follow(topic, cls)
+
+    def topics(self, publishers=False):
+        """{topic: class} of what the nodes listen to, or publish."""
+        master = rosgraph.Master(rospy.get_name())
+        state = master.getSystemState()[0 if publishers else 1]
+        kinds = dict(master.getTopicTypes())
+        ours = {f"/{node}" for node in self.nodes}
+        return {topic: classes(kinds[topic]) for topic, nodes in state if ours & set(nodes)}
+
+    def follows(self):
+        begin = self.chain.needle()[2]
+        for _ in range(200):
+            if abs(self.chain.needle()[2] - begin) > 0.5e-6:
+                return True
+            rospy.rostime.wallsleep(0.01)
+        return False
+
+    def waits_for(self):
+        return {name: status.message for name, status in self.chain.diagnostics.items() if status.level}
+
+    def say(self, topic, command):
+        self.enable[topic].publish(StringStamped(string=command))
+        rospy.rostime.wallsleep(0.1)
+
+    def check_closes_again(self, topic):
+        """By itself; or it says what it waits for, and closes when it was enabled again."""
+        self.assertEqual(self.chain.nodes.dead(), [], f"after {topic}: {self.chain.nodes.report()}")
+        if self.follows():
+            return
+
+        until(self.waits_for, f"after {topic} the needle does not follow, and nobody says why")
+        said = self.waits_for()
+        for _ in range(5):
+            self.say("/controller/state_command", "disable")
+            self.say("/needle/state_command", "enable")
+            self.say("/controller/state_command", "enable")
+            if self.follows():
+                return
+        self.fail(f"after {topic} the loop stays open: {said}; enabled again: {self.waits_for()}; "
+                  f"{self.chain.nodes.report()}")
+
+    def attack(self, topics, check):
+        for number, (topic, cls) in enumerate(sorted(topics.items())):
+            publisher = rospy.Publisher(topic, cls, queue_size=100)
+            until(publisher.get_num_connections, f"a listener of {topic}")
+            for message in hostile_messages(cls, classes, number):
+                publisher.publish(message)
+                rospy.rostime.wallsleep(PAUSE)
+            print(f"{topic}: sent", flush=True)
+            publisher.unregister()
+            check(topic)
+            self.assertEqual(self.watch.defects, [], f"after {topic}")
+
+    def test_chain(self):
+        recorder = {"output_dir": f"{self.folder.name}/record", "hand": True, "injector": True, "bag": True}
+        self.begin({"session_recorder": recorder, "display": parameters("display"), "force_watchdog": {}})
+        self.attack({topic: cls for topic, cls in self.topics().items() if topic != "/rosout"},
+                    self.check_closes_again)
+        force = self.chain.counts["/haptic/servo_cf"]
+        until(lambda: self.chain.counts["/haptic/servo_cf"] > force + 100, "the bridge")
+        self.check_predicted_force()
+        self.chain.nodes.kill("session_recorder", 2)
+        rows = [line.split(",") for line in open(f"{self.folder.name}/record/force_depth.csv", encoding="utf-8")]
+        self.assertGreater(sum(1 for row in rows[-1000:] if row[3]), 500, "the forces' column goes on")
+
+    def check_predicted_force(self):
+        self.chain.follow("/cell/predicted_cf", WrenchStamped)
+        until(lambda: "/cell/predicted_cf" in self.chain.newest and
+              not self.chain.newest["/cell/predicted_cf"].header.stamp.is_zero(), "a valid predicted force")
+
+    def test_link(self):
+        """Hand and rig apart: the bridge and the follower hear each other through the emulated network."""
+        link = parameters("link")
+        patient = {key: TIMEOUT for key in ("needle", "predicted", "measured", "controller")}
+        bridge = parameters("haptic_bridge", rate=RATE, timeouts={"hand": TIMEOUT, **patient}, link=link["link"])
+        follower = {"link": link["link"], "rate": RATE, "timeouts": patient}
+        self.begin({"haptic_bridge": bridge, "teleoperation_follower": follower, "link_emulator": {}})
+        self.attack({topic: cls for topic, cls in self.topics().items() if topic.startswith("/link")},
+                    self.check_closes_again)
+
+    def test_haptic_devices(self):
+        """Their adapters alone, each beside the drivers' topics."""
+        self.begin({})
+        for kind in ("omni", "geomagic", "joy", "marker"):
+            settings = yaml.safe_load((PACKAGE / f"config/haptic/{kind}.yaml").read_text())["haptic_device"]
+            self.chain.nodes.begin({"haptic_device": settings})
+            name = "/haptic_device"
+            until(lambda: any(name in nodes for _, nodes in rosgraph.Master("/x").getSystemState()[1]), name)
+            self.nodes = {"haptic_device"}
+            self.watch_nodes()
+            self.attack(self.topics(), self.check_lives)
+            self.chain.nodes.kill("haptic_device")
+
+    def check_lives(self, topic):
+        self.assertEqual(self.chain.nodes.dead(), [], f"after {topic}: {self.chain.nodes.report()}")
+
+
+if __name__ == "__main__":
+    rostest.rosrun("cell_microinjection", "hostile", HostileTest)

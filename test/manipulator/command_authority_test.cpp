@@ -1,0 +1,47 @@
+#include "manipulator/command_authority.h"
+
+#include <gtest/gtest.h>
+
+namespace microinjection {
+namespace {
+
+constexpr double kTimeout = 0.1;
+
+TEST(CommandAuthority, OneSourceCommandsAsOftenAsItLikes) {
+  CommandAuthority authority(kTimeout);
+  for (int i = 0; i < 100; ++i) EXPECT_TRUE(authority.admit("/controller", 0.03 * i, i % 2 == 0));
+  EXPECT_EQ(authority.fault(), "");
+}
+
+TEST(CommandAuthority, ASecondSourceWithinTheTimeOutIsAFaultThatNamesBoth) {
+  CommandAuthority authority(kTimeout);
+  EXPECT_TRUE(authority.admit("/controller", 1, false));
+  EXPECT_FALSE(authority.admit("/stranger", 1 + 0.9 * kTimeout, false));
+  EXPECT_EQ(authority.fault(), "two nodes command the needle: /controller and /stranger");
+}
+
+TEST(CommandAuthority, ASecondSourceIsAFaultAsLongAsTheNeedleMoves) {
+  CommandAuthority authority(kTimeout);
+  EXPECT_TRUE(authority.admit("/controller", 1, false));
+  EXPECT_FALSE(authority.admit("/stranger", 100, true));
+}
+
+TEST(CommandAuthority, AnotherMayCommandAfterTheFirstIsSilentAndTheNeedleRests) {
+  CommandAuthority authority(kTimeout);
+  EXPECT_TRUE(authority.admit("/rostopic_1", 1, false));
+  EXPECT_TRUE(authority.admit("/rostopic_2", 1 + 1.1 * kTimeout, false));
+  EXPECT_FALSE(authority.admit("/rostopic_1", 1 + 1.2 * kTimeout, false));
+}
+
+TEST(CommandAuthority, TheFaultLastsForAllUntilItIsCleared) {
+  CommandAuthority authority(kTimeout);
+  authority.admit("/controller", 1, false);
+  authority.admit("/stranger", 1, false);
+  EXPECT_FALSE(authority.admit("/controller", 100, false));
+  authority.clear();
+  EXPECT_EQ(authority.fault(), "");
+  EXPECT_TRUE(authority.admit("/stranger", 100, false));
+}
+
+}  // namespace
+}  // namespace microinjection
