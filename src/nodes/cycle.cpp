@@ -24,6 +24,10 @@ bool Cycle::goesOn() {
     ROS_ERROR("the ROS master has been away for too long, and nothing moves: this node ends");
     stopped_ = true;
   }
+  if (lockstep_ && hasLeft(ros::this_node::getName())) {
+    ROS_ERROR("the lock step goes on without this node, which was frozen: it ends");
+    stopped_ = true;
+  }
   return ros::ok() && !stopped_;
 }
 

@@ -13,6 +13,10 @@ constexpr char kAcknowledgementTopic[] = "/lockstep/acknowledgement";
 /// each with a space behind it: nobody waits for their messages any more.
 constexpr char kLeftTopic[] = "/lockstep/left";
 
+/// Whoever watches the participants (a supervisor, a test) tells the clock on this topic (std_msgs/String) the name of
+/// one that is frozen: it leaves at once, as if it had been killed.
+constexpr char kLeaveTopic[] = "/lockstep/leave";
+
 /// Names of the nodes that step together, from the parameter /lockstep/participants; empty when the session is live.
 std::set<std::string> lockstepParticipants();
 

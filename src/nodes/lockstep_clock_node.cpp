@@ -5,14 +5,14 @@
 
 #include "base/errors.h"
 #include "nodes/lockstep.h"
+#include "nodes/message_guard.h"
 #include "nodes/node_parameters.h"
-#include "nodes/stamps.h"
 
 namespace microinjection {
 
 const char* const LockstepClockNode::kHelp =
     "lockstep_clock: steps /clock when every node of /lockstep/participants has done the tick before.\n"
-    "Parameters: ~step (s), ~real_time_factor (0: as fast as it goes), ~warn_after (s).\n";
+    "Parameters: ~step (s), ~real_time_factor (0: as fast as it goes), ~warn_after (s), ~frozen_after (s).\n";
 
 LockstepClockNode::LockstepClockNode(ros::NodeHandle node, ros::NodeHandle private_node)
     : participants_(lockstepParticipants()) {
@@ -20,26 +20,31 @@ LockstepClockNode::LockstepClockNode(ros::NodeHandle node, ros::NodeHandle priva
   reader.number("step", step_, Range::closed(1e-6, 1));
   reader.number("real_time_factor", real_time_factor_, Range::nonNegative());
   reader.number("warn_after", warn_after_, Range::positive());
+  reader.number("frozen_after", frozen_after_, Range::positive());
   reader.finish();
   if (participants_.empty()) throw ConfigError("/lockstep/participants must be a list of at least one node's name");
   missing_ = participants_;
   node.setCallbackQueue(&queue_);
   left_ = node.advertise<std_msgs::String>(kLeftTopic, 10, true);
   clock_ = node.advertise<rosgraph_msgs::Clock>(
-      "/clock", 10, {}, [this](const ros::SingleSubscriberPublisher& who) { onLeaving(who.getSubscriberName()); }, {},
-      true);
+      "/clock", 10, {},
+      [this](const ros::SingleSubscriberPublisher& who) { leave(who.getSubscriberName(), "has ended"); }, {}, true);
   acknowledgements_ = node.subscribe(kAcknowledgementTopic, 100, &LockstepClockNode::onAcknowledgement, this,
                                      ros::TransportHints().tcpNoDelay());
+  leave_ = subscribeGuarded<std_msgs::String>(node, kLeaveTopic, 10,
+                                              [this](const std_msgs::String& name, const std::string& sender) {
+                                                leave(name.data, "is frozen, as " + sender + " says");
+                                              });
 }
 
 void LockstepClockNode::onAcknowledgement(const std_msgs::HeaderConstPtr& header) {
   if (header->stamp == tick_) missing_.erase(header->frame_id);
 }
 
-void LockstepClockNode::onLeaving(const std::string& name) {
+void LockstepClockNode::leave(const std::string& name, const std::string& why) {
   if (participants_.erase(name) == 0) return;
   missing_.erase(name);
-  ROS_WARN_STREAM(name << " has left the lock step at " << tick_ << " s; time goes on without it");
+  ROS_WARN_STREAM(name << " has left the lock step at " << tick_ << " s; it " << why << "; time goes on without it");
   std_msgs::String message;
   message.data = said_left_ += name + " ";
   left_.publish(message);
@@ -47,15 +52,24 @@ void LockstepClockNode::onLeaving(const std::string& name) {
 
 bool LockstepClockNode::goesOn() const { return ros::ok() && !master_.orphaned(); }
 
+std::string LockstepClockNode::missing() const {
+  std::string names;
+  for (const std::string& name : missing_) names += " " + name;
+  return names;
+}
+
 void LockstepClockNode::waitForAll() {
-  ros::SteadyTime warned = ros::SteadyTime::now();
+  const ros::SteadyTime began = ros::SteadyTime::now();
+  ros::SteadyTime warned = began;
   while (goesOn() && !missing_.empty()) {
     queue_.callAvailable(ros::WallDuration(0.1));
-    if (secondsBetween(warned, ros::SteadyTime::now()) < warn_after_) continue;
-    warned = ros::SteadyTime::now();
-    std::string names;
-    for (const std::string& name : missing_) names += " " + name;
-    ROS_WARN_STREAM("the clock stands at " << tick_ << " s and waits for:" << names);
+    const ros::SteadyTime now = ros::SteadyTime::now();
+    if (secondsBetween(warned, now) >= warn_after_) {
+      warned = now;
+      ROS_WARN_STREAM("the clock stands at " << tick_ << " s and waits for:" << missing());
+    }
+    if (tick_.isZero() || secondsBetween(began, now) < frozen_after_) continue;
+    for (const std::string& name : std::set<std::string>(missing_)) leave(name, "answers nothing");
   }
 }
 

@@ -13,9 +13,10 @@ namespace microinjection {
 
 /// Steps /clock when every participant of the lock step has done the tick before. The same session then gives the same
 /// bits on any machine, faster or slower than real time. A participant that hears /clock no more, since it has ended or
-/// was killed, has left for good: time goes on without it, and the others' time-outs run. When all have, so has this.
+/// was killed, has left for good: time goes on without it, and the others' time-outs run. So has one that is frozen: it
+/// has answered nothing for `frozen_after`, or /lockstep/leave names it. When all have left, so has this.
 ///
-/// In:  /lockstep/acknowledgement (std_msgs/Header of each participant)
+/// In:  /lockstep/acknowledgement (std_msgs/Header of each participant), /lockstep/leave (std_msgs/String)
 /// Out: /clock (rosgraph_msgs/Clock), /lockstep/left (std_msgs/String, see lockstep.h)
 ///
 /// Parameters: /lockstep/participants (names of nodes), and private:
@@ -31,7 +32,8 @@ class LockstepClockNode {
 
  private:
   void onAcknowledgement(const std_msgs::HeaderConstPtr& header);
-  void onLeaving(const std::string& name);
+  void leave(const std::string& name, const std::string& why);
+  std::string missing() const;  ///< their names
   bool goesOn() const;
   void waitForAll();
   void pace(const ros::SteadyTime& began) const;
@@ -39,6 +41,7 @@ class LockstepClockNode {
   double step_ = 1e-3;           ///< s
   double real_time_factor_ = 0;  ///< 0: as fast as it goes
   double warn_after_ = 5;        ///< s of wall time
+  double frozen_after_ = 60;     ///< s of wall time
   std::set<std::string> participants_;
   std::set<std::string> missing_;  ///< those that have not answered the present tick
   ros::Time tick_;
@@ -47,7 +50,7 @@ class LockstepClockNode {
   ros::Publisher clock_;
   ros::Publisher left_;
   std::string said_left_;
-  ros::Subscriber acknowledgements_;
+  ros::Subscriber acknowledgements_, leave_;
 };
 
 }  // namespace microinjection
