@@ -233,7 +233,9 @@ void MicromanipulatorNode::report(diagnostic_updater::DiagnosticStatusWrapper& s
   using diagnostic_msgs::DiagnosticStatus;
   std::string problem = refusal_;
   if (problem.empty()) problem = model_.ended();
-  if (!model_.why().empty()) problem = model_.why() + (problem.empty() ? "" : "; ") + problem;
+  if (!model_.why().empty() && problem != model_.why()) {
+    problem = model_.why() + (problem.empty() ? "" : "; ") + problem;
+  }
   status.summary(
       model_.why().empty() ? problem.empty() ? DiagnosticStatus::OK : DiagnosticStatus::WARN : DiagnosticStatus::ERROR,
       problem.empty() ? (model_.moving() ? "moves" : "holds") : problem);

@@ -33,6 +33,7 @@ class ZaberDriver : public SerialManipulator {
   void begin(bool lost) override;
   void talk(const std::string& bytes) override;
   void goalChanged() override;
+  void guardIntervened() override { may_home_ = false; }
 
  private:
   enum class Kind { kPosition, kVelocity, kSpeed, kMove, kClear, kHome, kStop };
@@ -92,7 +93,7 @@ class ZaberDriver : public SerialManipulator {
   std::optional<Exchange> exchange_;
   double begun_ = 0;      // s, of this session
   bool settled_ = false;  // in this session everything has been read and was at rest
-  bool may_home_;         // until everything has been known once
+  bool may_home_;         // until everything has been known once, and while the program has not stood still
   int number_ = 0;        // of the last command
   int turn_ = 0;          // 0..5: velocity and position of each axis
   int move_stage_ = 0;    // of a move: 0..2 speeds, 3..5 positions, then under way
