@@ -148,6 +148,7 @@ void SerialManipulator::step(double time) {
     if (!why_.empty()) return;
     was_open_ = lost_ = true;
     why_ = link_.device + ": connected, no answer yet";
+    connected();
     beginSession(link_.quiet_after_loss);
   }
   std::string bytes = wire_->read(time);

@@ -51,6 +51,8 @@ class SerialManipulator : public ManipulatorDevice {
   SerialManipulator(std::unique_ptr<Wire> wire, const Link& link);
   ~SerialManipulator() override;  ///< sends a stop
 
+  /// The line has been opened: there may be another device at its end.
+  virtual void connected() {}
   /// Begins the conversation anew: whatever was asked is void, and the device has been told to stop. `lost`: something
   /// went wrong or the line is new, so that nothing is known of the device; otherwise it was just stopped.
   virtual void begin(bool lost) = 0;

@@ -197,6 +197,13 @@ volatile std::sig_atomic_t pauses = 0;
   }
 }
 
+/// A velocity of its firmware goes on for ever.
+std::shared_ptr<ManipulatorEmulator> olderZaber() {
+  ZaberEmulatorConfig config;
+  config.firmware = "6.28";
+  return std::make_shared<ZaberEmulator>(config);
+}
+
 class FrozenProgramTest : public testing::Test {
  protected:
   void SetUp() override {
@@ -235,7 +242,7 @@ class FrozenProgramTest : public testing::Test {
   double place() { return bench_.device().position().x(); }  // m
 
   const std::string link_ = newLink();
-  Bench bench_{std::make_shared<ZaberEmulator>(), 115200, link_};
+  Bench bench_{olderZaber(), 115200, link_};
   pid_t program_ = -1;
   int reports_ = -1;
   std::string said_;
