@@ -6,8 +6,10 @@
 #include <boost/program_options.hpp>
 #include <cctype>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <fstream>
 #include <iostream>
 #include <optional>
 #include <string>
@@ -44,6 +46,8 @@ struct Arguments {
   std::string link;
   int baud = 0;  // bit/s
   std::vector<Fault> faults;
+  std::string positions;  // path; empty: not written
+  std::string firmware;   // empty: the emulator's own
   bool verbose = false;
 };
 
@@ -70,6 +74,10 @@ std::optional<Arguments> parse(int argc, char** argv) {
       "link to the terminal: the port of the driver's configuration (/tmp/emulated_RIG)");
   add("baud", po::value(&arguments.baud)->value_name("N"), "bit/s (as the device is delivered)");
   add("fault", po::value(&faults)->composing()->value_name("SPEC"), "a fault, as above; may be repeated");
+  add("positions", po::value(&arguments.positions)->value_name("FILE"),
+      "writes time_s,x_m,y_m,z_m there: where the axes truly are, whenever that changes; time since the start");
+  add("firmware", po::value(&arguments.firmware)->value_name("VERSION"),
+      "the version of its firmware, e.g. 6.28, where the device tells one");
   add("verbose,v", po::bool_switch(&arguments.verbose), "prints what is heard (>) and said (<)");
   po::variables_map given;
   try {
@@ -151,6 +159,30 @@ class Transcript {
   std::string text_;
 };
 
+/// Where the device truly is, a row each time that it has moved.
+class Positions {
+ public:
+  /// No `path`: writes nothing. @throws ConfigError when the file cannot be written.
+  explicit Positions(const std::string& path) {
+    if (path.empty()) return;
+    file_.open(path);
+    if (!(file_ << "time_s,x_m,y_m,z_m" << std::endl)) {
+      throw ConfigError("--positions = " + path + ": must be a file that can be written");
+    }
+  }
+  void add(const Eigen::Vector3d& place, double time) {
+    if (!file_.is_open() || place == last_) return;
+    last_ = place;
+    char row[128];
+    std::snprintf(row, sizeof(row), "%.4f,%.9f,%.9f,%.9f", time, place.x(), place.y(), place.z());
+    file_ << row << std::endl;  // at once, so that it may be read while the device moves
+  }
+
+ private:
+  std::ofstream file_;
+  Eigen::Vector3d last_ = Eigen::Vector3d::Constant(std::nan(""));  // m
+};
+
 /// A device does not wait for the processor, as its driver's node in real time would have it do. Where the system does
 /// not allow it nothing changes.
 void runInRealTime() {
@@ -163,6 +195,8 @@ void serve(const Arguments& arguments) {
   const Rig& rig = *arguments.rig;
   const std::shared_ptr<ManipulatorEmulator> device = rig.make_emulator();
   for (const Fault& fault : arguments.faults) device->inject(fault);
+  if (!arguments.firmware.empty()) device->setFirmware(arguments.firmware);
+  Positions positions(arguments.positions);
   EmulatorHost host(device, arguments.baud, arguments.link);
   std::printf("emulate: %s at %s, %d baud\n", rig.name.c_str(), arguments.link.c_str(), arguments.baud);
   std::fflush(stdout);
@@ -176,6 +210,7 @@ void serve(const Arguments& arguments) {
       if (!exchange.heard.empty()) transcript.add('>', exchange.heard, time);
       transcript.add('<', exchange.said, time);
     }
+    positions.add(device->position(), time);
     for (const std::string& line : lines.read()) {
       try {
         device->inject(parseFault(line));

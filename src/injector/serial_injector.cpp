@@ -19,7 +19,7 @@ SerialInjector::SerialInjector(std::unique_ptr<Wire> wire, const InjectorProtoco
       model_(model),
       lines_(protocol.terminator, kLongestLine),
       waiting_balance_(model.balance) {
-  if (protocol_.stop) wire_->setStopWhenKilled(protocol_.stop->send.fill({}));  // a pulse must not outlive its node
+  if (protocol_.stop) wire_->setGuardedStop(protocol_.stop->send.fill({}));  // a pulse must not outlive its node
 }
 
 SerialInjector::~SerialInjector() {
@@ -76,6 +76,7 @@ void SerialInjector::reset() {
 
 void SerialInjector::step(double time) {
   time_ = time;
+  checkGuard(time);  // before the model lets a pulse go on that the guard has ended
   model_.step(time);
   if (keepOpen(time)) {
     listen(time);
@@ -100,6 +101,23 @@ bool SerialInjector::keepOpen(double time) {
   in_step_ = false;
   heard_ = time;
   return true;
+}
+
+/// The guard's stop has ended a pulse, or a guard that was lost cannot: either way the device is told to stop. What it
+/// answered the guard is passed over as a late reply is.
+void SerialInjector::checkGuard(double time) {
+  const Wire::GuardReport guard = wire_->beat();
+  unguarded_ = guard.missing.empty() ? "" : "no stop guard: " + guard.missing;
+  if (guard.intervention.empty()) return;
+  const bool flows = mayFlow();
+  if (model_.reading().busy) fail("the pulse was broken off: " + guard.intervention);
+  model_.stop();
+  if (exchange_ != Exchange::kNone) giveUp(guard.intervention);
+  if (waiting_pulse_) fail(guard.intervention);
+  waiting_stop_ = waiting_stop_ || (flows && protocol_.stop);
+  in_step_ = false;
+  heard_ = time;
+  tries_ = 0;
 }
 
 void SerialInjector::listen(double time) {

@@ -18,8 +18,9 @@ namespace microinjection {
 /// it is not sent again. A balance pressure, which does no harm twice, is; of those that wait, the newest wins. After a
 /// reply that was late or wrong, nothing is sent before the line has been quiet for a while, so that a late reply is
 /// not taken for the next one. A stop takes back a pulse that was not sent yet; otherwise, where the protocol has a
-/// line for it, it goes before everything else, and is sent again as a balance pressure is. Flow and volume are
-/// estimates by the model of the pipette and the device's rise time.
+/// line for it, it goes before everything else, and is sent again as a balance pressure is. A pulse during which this
+/// program or its stop guard stood still is broken off, which is a fault; without a guard there is no pulse. Flow and
+/// volume are estimates by the model of the pipette and the device's rise time.
 class SerialInjector : public InjectorDevice {
  public:
   /// `model`: pipette, limits and the device's rise time; its balance pressure is sent at the start.
@@ -32,7 +33,7 @@ class SerialInjector : public InjectorDevice {
   void reset() override;
   void step(double time) override;
   const InjectorReading& reading() const override { return reading_; }
-  std::string fault() const override { return fault_.empty() ? trouble_ : fault_; }
+  std::string fault() const override { return !fault_.empty() ? fault_ : !unguarded_.empty() ? unguarded_ : trouble_; }
 
   unsigned badReplies() const { return bad_replies_ + lines_.tooLong(); }
 
@@ -41,6 +42,7 @@ class SerialInjector : public InjectorDevice {
 
   bool mayFlow() const;
   bool keepOpen(double time);
+  void checkGuard(double time);
   void listen(double time);
   void take(const std::string& reply);
   void complete(const std::string& reply);
@@ -73,6 +75,7 @@ class SerialInjector : public InjectorDevice {
   unsigned bad_replies_ = 0;
   std::string fault_;                                 ///< until reset()
   std::string trouble_ = "the line is not open yet";  ///< while it lasts
+  std::string unguarded_;                             ///< why there is no stop guard, while it lasts
   InjectorReading reading_;
 };
 

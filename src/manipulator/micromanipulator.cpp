@@ -168,7 +168,8 @@ void Micromanipulator::step(double time, double dt) {
   if (last_dt_ == 0) device_->step(time - dt);  // sets its clock
   last_dt_ = dt;
   stream_pause_ += dt;
-  if (!unable().empty()) {
+  if (const std::string why = unable(); !why.empty()) {
+    if (mode_ != Mode::kHold) ended_ = why;
     rest();
     held_off_ = true;
   } else {

@@ -281,7 +281,7 @@ void MicromanipulatorNode::report(diagnostic_updater::DiagnosticStatusWrapper& s
   std::string problem = refusal_;
   if (problem.empty()) problem = model_.ended();
   const std::string why = model_.why().empty() && (exposed_ || !authority_.fault().empty()) ? unable() : model_.why();
-  if (!why.empty()) problem = why + (problem.empty() ? "" : "; ") + problem;
+  if (!why.empty() && problem != why) problem = why + (problem.empty() ? "" : "; ") + problem;
   status.summary(
       why.empty() ? problem.empty() ? DiagnosticStatus::OK : DiagnosticStatus::WARN : DiagnosticStatus::ERROR,
       problem.empty() ? (model_.moving() ? "moves" : "holds") : problem);

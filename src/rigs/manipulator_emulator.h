@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
 
+#include "base/errors.h"
 #include "serial/emulator.h"
 
 namespace microinjection {
@@ -14,6 +16,11 @@ class ManipulatorEmulator : public DeviceEmulator {
   virtual bool moves() const = 0;
   /// Puts axes at rest elsewhere (m, of the device's axes), as its own hand wheel or knob does.
   virtual void shiftByHand(const Eigen::Vector3d& way) = 0;
+  /// The version that it tells, and what it can do with it.
+  /// @throws ConfigError when the device tells none, or when `version` is none of its versions.
+  virtual void setFirmware(const std::string& version) {
+    throw ConfigError("firmware = " + version + ": must be left out, this device tells no version");
+  }
 };
 
 }  // namespace microinjection

@@ -6,6 +6,7 @@ namespace microinjection {
 namespace {
 
 constexpr double kOpenInterval = 0.5;   // s, between attempts to open the line
+constexpr double kStopInterval = 0.5;   // s, between stops while nobody guards the line
 constexpr double kLongestDrain = 2;     // s: a line that is never silent is not the device's
 constexpr double kLongestGap = 0.02;    // s between two steps: what is heard in a longer one comes late for no fault
                                         // of the device's
@@ -18,7 +19,7 @@ constexpr int kSuccessesToForget = 12;  // exchanges after which a failure is no
 
 SerialManipulator::SerialManipulator(std::unique_ptr<Wire> wire, const Link& link)
     : wire_(std::move(wire)), link_(link), why_(link.device + ": not connected yet") {
-  wire_->setStopWhenKilled(link_.stop);  // a node that is killed must not leave a device in motion
+  wire_->setGuardedStop(link_.stop);  // a node that is killed or stands still must not leave a device in motion
 }
 
 SerialManipulator::~SerialManipulator() {
@@ -76,6 +77,23 @@ void SerialManipulator::lineLost() {
   dropGoal();
 }
 
+/// Whether the device may go on. After an intervention the session begins anew, and the stop is sent once more: the
+/// guard may have been lost before it sent one.
+bool SerialManipulator::guarded() {
+  const Wire::GuardReport guard = wire_->beat();
+  const bool missing = !guard.missing.empty();
+  if (!missing && guard.intervention.empty()) return true;
+  why_ = link_.device + ": " + (missing ? "no stop guard: " + guard.missing : guard.intervention);
+  if (guard.intervention.empty() && time_ < next_stop_) return false;
+  next_stop_ = time_ + kStopInterval;
+  ready_ = sure_ = stop_wanted_ = false;
+  lost_ = true;
+  dropGoal();
+  guardIntervened();
+  beginSession(link_.quiet_after_loss);
+  return false;
+}
+
 void SerialManipulator::lostStep(const std::string& reason) {
   successes_ = 0;
   lost_ = true;
@@ -130,10 +148,12 @@ void SerialManipulator::step(double time) {
     if (!why_.empty()) return;
     was_open_ = lost_ = true;
     why_ = link_.device + ": connected, no answer yet";
+    connected();
     beginSession(link_.quiet_after_loss);
   }
   std::string bytes = wire_->read(time);
   if (!wire_->isOpen()) return lineLost();
+  if (!guarded()) return;
   if (sure_ && listened_ > trusted_until_) return loseTouch();
   if (stop_wanted_) {
     stop_wanted_ = false;

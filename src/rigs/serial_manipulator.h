@@ -20,7 +20,8 @@ namespace microinjection {
 /// anything move. A device that tells no true position for longer than an exchange that went wrong explains counts as
 /// not connected, and rests until the next command. When it fails a few times in a row, the reason becomes a fault, and
 /// motion waits for clearFault(). Commands that come while the device is not kReady are not kept, and neither is one
-/// that has been carried out.
+/// that has been carried out. When the program stood still and its stop guard stopped the device, or the guard was
+/// lost, the session begins anew and the device rests until the next command; while there is no guard nothing moves.
 class SerialManipulator : public ManipulatorDevice {
  public:
   void limitSpeed(const Eigen::Vector3d& axes) final { speed_limits_ = axes; }
@@ -50,11 +51,15 @@ class SerialManipulator : public ManipulatorDevice {
   SerialManipulator(std::unique_ptr<Wire> wire, const Link& link);
   ~SerialManipulator() override;  ///< sends a stop
 
+  /// The line has been opened: there may be another device at its end.
+  virtual void connected() {}
   /// Begins the conversation anew: whatever was asked is void, and the device has been told to stop. `lost`: something
   /// went wrong or the line is new, so that nothing is known of the device; otherwise it was just stopped.
   virtual void begin(bool lost) = 0;
   /// The device has been told to stop and will stand in a moment; what it says is not heard until `begin`.
   virtual void stopSaid() {}
+  /// The program or its stop guard stood still: not even what moves without a goal may go on by itself.
+  virtual void guardIntervened() {}
   /// Goes on with the conversation: with what came, and with what is to be said.
   virtual void talk(const std::string& bytes) = 0;
   /// A new goal (goal() is set) came or the goal went.
@@ -86,6 +91,7 @@ class SerialManipulator : public ManipulatorDevice {
  private:
   void beginSession(double quiet);
   void lineLost();
+  bool guarded();
   void loseTouch();
   void letGoOfReachedGoal();
 
@@ -95,6 +101,7 @@ class SerialManipulator : public ManipulatorDevice {
   double listened_ = 0;       // s
   double trusted_until_ = 0;  // s of `listened_`
   double next_open_ = -1;     // s
+  double next_stop_ = 0;      // s, while there is no guard
   double last_byte_ = 0;      // s, since the stop
   double drain_since_ = 0;    // s
   double quiet_ = 0;          // s, of silence to wait for
@@ -104,7 +111,7 @@ class SerialManipulator : public ManipulatorDevice {
   bool stopped_ = false;  // told to stop, and to do nothing since
   int failures_ = 0, successes_ = 0;
   Eigen::Vector3d speed_limits_ = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
-  std::string why_;    // not connected
+  std::string why_;    // it is not ready
   std::string fault_;  // empty: none
   std::optional<Goal> goal_;
 };

@@ -100,13 +100,24 @@ SerialPort::~SerialPort() = default;
 std::string SerialPort::open() {
   line_ = std::make_unique<Line>();
   std::string reason = line_->open(config_);
-  if (reason.empty() && !stop_when_killed_.empty())
-    reason = line_->stop_guard.begin(line_->port.native_handle(), stop_when_killed_);
+  if (reason.empty() && !guarded_stop_.empty()) {
+    reason = line_->stop_guard.begin(line_->port.native_handle(), guarded_stop_);
+    if (!reason.empty()) reason = config_.path + ": no stop guard: " + reason;
+  }
   if (!reason.empty()) line_.reset();
   return reason;
 }
 
 bool SerialPort::isOpen() const { return line_ != nullptr; }
+
+pid_t SerialPort::guardProcess() const { return line_ ? line_->stop_guard.process() : -1; }
+
+Wire::GuardReport SerialPort::beat() {
+  if (!line_ || guarded_stop_.empty()) return {};
+  GuardReport report = line_->stop_guard.beat();
+  if (!report.intervention.empty()) line_->unsent.clear();  // what is half sent goes on, so that the stop is understood
+  return report;
+}
 
 std::string SerialPort::read(double /*time*/) {
   if (!line_) return "";
@@ -119,6 +130,8 @@ std::string SerialPort::read(double /*time*/) {
 
 void SerialPort::write(const std::string& bytes, double /*time*/) {
   if (!line_) return;
+  // A program that comes alive in the middle of a step must not set a device in motion that was stopped.
+  if (!guarded_stop_.empty() && bytes != guarded_stop_ && line_->stop_guard.intervened()) return;
   line_->unsent += bytes;
   line_->send();
   line_->poll();

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <sys/types.h>
+
 #include <memory>
 #include <string>
 
@@ -28,16 +30,19 @@ class SerialPort : public Wire {
   explicit SerialPort(const SerialPortConfig& config);
   ~SerialPort() override;
 
-  void setStopWhenKilled(const std::string& bytes) override { stop_when_killed_ = bytes; }
+  void setGuardedStop(const std::string& bytes) override { guarded_stop_ = bytes; }
+  GuardReport beat() override;
   std::string open() override;  ///< what came while nobody listened is thrown away
   bool isOpen() const override;
   std::string read(double time) override;
   void write(const std::string& bytes, double time) override;
 
+  pid_t guardProcess() const;  ///< of the stop guard; -1: there is none
+
  private:
   struct Line;  // Asio's headers are heavy
   SerialPortConfig config_;
-  std::string stop_when_killed_;
+  std::string guarded_stop_;
   std::unique_ptr<Line> line_;  // none: closed
 };
 

@@ -1,108 +1,107 @@
 #include "serial/stop_guard.h"
 
 #include <fcntl.h>
-#include <sys/prctl.h>
-#include <sys/syscall.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
+#include <utility>
+
+#include "serial/stop_guard_process.h"
 
 namespace microinjection {
 namespace {
 
-/// Closes every descriptor from `first` on, without what may not be called here: close_range() is not in every libc.
-void closeAllFrom(int first) {
-  struct Entry {  // linux_dirent64
-    std::uint64_t inode;
-    std::int64_t offset;
-    unsigned short length;
-    unsigned char type;
-    char name[1];
-  };
-  alignas(Entry) char entries[2048];
-  const int list = open("/proc/self/fd", O_RDONLY | O_DIRECTORY);
-  bool found = list >= 0;
-  while (found) {  // from the start again, since what is closed leaves the list
-    found = false;
-    lseek(list, 0, SEEK_SET);
-    const long size = syscall(SYS_getdents64, list, entries, sizeof(entries));
-    for (long at = 0; at < size;) {
-      const auto* entry = reinterpret_cast<const Entry*>(entries + at);
-      int number = 0;
-      for (const char* digit = entries + at + offsetof(Entry, name); *digit >= '0' && *digit <= '9'; ++digit)
-        number = 10 * number + *digit - '0';
-      if (number >= first && number != list && close(number) == 0) found = true;
-      at += entry->length;
-    }
-  }
-  if (list >= 0) {
-    close(list);
-  } else {
-    for (int number = first; number < 1024; ++number) close(number);
-  }
-}
+constexpr double kStartInterval = 0.5;  // s, between attempts to start a guard
+constexpr double kLongestStep = 0.05;   // s: in a longer one this program stood still, and not its guard
 
-/// The guard: after fork in a program with threads only what is safe in a signal handler may be called.
-[[noreturn]] void guard(int line, int parent, const char* words, std::size_t size) {
-  setsid();  // what ends the program's whole group must not end this one
-  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) signal(number, SIG_IGN);
-  prctl(PR_SET_NAME, "stop_guard");  // nor what ends programs by their name
-  // Nothing else may be kept open: neither connections nor the pipe's other end.
-  dup2(line, 0);
-  dup2(parent, 1);
-  closeAllFrom(3);
-  close(2);
-  char farewell = 0;
-  ssize_t got = 0;
-  while ((got = read(1, &farewell, 1)) < 0 && errno == EINTR) {
-  }
-  if (got == 0) {
-    fcntl(0, F_SETFL, fcntl(0, F_GETFL) & ~O_NONBLOCK);
-    while (size > 0) {
-      const ssize_t written = write(0, words, size);
-      if (written <= 0) break;
-      words += written;
-      size -= static_cast<std::size_t>(written);
-    }
-  }
-  _exit(0);
-}
+double seconds(std::chrono::steady_clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
 
 }  // namespace
 
-std::string StopGuard::begin(int line, const std::string& words) {
+std::string StopGuard::begin(int line, const std::string& stop) {
   end();
+  line_ = line;
+  stop_ = stop;
+  intervention_.clear();
+  return missing_ = start();
+}
+
+std::string StopGuard::start() {
+  last_start_ = last_beat_ = Clock::now();
+  silence_ = 0;
   int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) return std::strerror(errno);
+  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) return std::strerror(errno);
   // 0 and 1 are where the guard puts its own.
-  const int parent = fcntl(ends[0], F_DUPFD_CLOEXEC, 3), tty = fcntl(line, F_DUPFD_CLOEXEC, 3);
-  guard_ = parent < 0 || tty < 0 ? -1 : fork();
-  if (guard_ == 0) guard(tty, parent, words.data(), words.size());
-  std::string why = guard_ < 0 ? std::strerror(errno) : "";
-  for (const int each : {ends[0], parent, tty}) {
+  const int driver = fcntl(ends[1], F_DUPFD_CLOEXEC, 3), line = fcntl(line_, F_DUPFD_CLOEXEC, 3);
+  process_ = driver < 0 || line < 0 ? -1 : fork();
+  if (process_ == 0) runStopGuard(line, driver, stop_.data(), stop_.size());
+  std::string why = process_ < 0 ? std::strerror(errno) : "";
+  for (const int each : {ends[1], driver, line}) {
     if (each >= 0) close(each);
   }
-  parent_ = ends[1];
-  if (!why.empty()) end();
+  socket_ = ends[0];
+  if (!why.empty()) endProcess();
   return why;
 }
 
-void StopGuard::end() {
-  if (parent_ >= 0) {
-    const char farewell = 'x';
-    [[maybe_unused]] const ssize_t said = write(parent_, &farewell, 1);  // a guard that is gone says nothing either
-    close(parent_);
-  }
-  if (guard_ > 0) {
-    while (waitpid(guard_, nullptr, 0) < 0 && errno == EINTR) {
+void StopGuard::listen() {
+  char messages[64];
+  while (socket_ >= 0) {
+    const ssize_t size = recv(socket_, messages, sizeof(messages), MSG_DONTWAIT);
+    if (size < 0 && errno == EINTR) continue;
+    if (size < 0 && errno == EAGAIN) return;
+    if (size <= 0) return lose("ended");
+    silence_ = 0;
+    if (std::memchr(messages, kStopGuardStopped, static_cast<std::size_t>(size)) != nullptr) {
+      intervention_ = "the program stood still for more than 0.2 s; the stop guard stopped the device";
     }
   }
-  guard_ = parent_ = -1;
+}
+
+void StopGuard::lose(const std::string& what) {
+  endProcess();
+  intervention_ = missing_ = "the stop guard " + what;
+}
+
+bool StopGuard::intervened() {
+  listen();
+  return !intervention_.empty();
+}
+
+Wire::GuardReport StopGuard::beat() {
+  listen();
+  const Clock::time_point now = Clock::now();
+  if (socket_ >= 0) {
+    silence_ += std::min(seconds(now - last_beat_), kLongestStep);
+    // A socket that is full belongs to a guard that does not listen, and is found by its silence.
+    const bool gone = send(socket_, &kStopGuardBeat, 1, MSG_DONTWAIT | MSG_NOSIGNAL) < 0 && errno == EPIPE;
+    if (gone) lose("ended");
+    if (silence_ > kStopGuardSilence) lose("stood still for more than 0.2 s");
+  }
+  last_beat_ = now;
+  if (line_ >= 0 && socket_ < 0 && seconds(now - last_start_) > kStartInterval) missing_ = start();
+  return {std::exchange(intervention_, ""), missing_};
+}
+
+/// Killed it sends nothing, wherever it is in its work; a closed socket alone would have it send the stop.
+void StopGuard::endProcess() {
+  if (process_ > 0 && waitpid(process_, nullptr, WNOHANG) == 0) {
+    kill(process_, SIGKILL);
+    while (waitpid(process_, nullptr, 0) < 0 && errno == EINTR) {
+    }
+  }
+  if (socket_ >= 0) close(socket_);
+  process_ = socket_ = -1;
+}
+
+void StopGuard::end() {
+  endProcess();
+  line_ = -1;
 }
 
 }  // namespace microinjection

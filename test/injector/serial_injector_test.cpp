@@ -103,7 +103,7 @@ class StoppedSerialInjectorTest : public SerialInjectorTest {
   long stops() const { return std::count(script.sent.begin(), script.sent.end(), "S\r"); }
 };
 
-TEST_F(StoppedSerialInjectorTest, AKilledNodesPulseIsStopped) { EXPECT_EQ(script.stop_when_killed, "S\r"); }
+TEST_F(StoppedSerialInjectorTest, AKilledNodesPulseIsStopped) { EXPECT_EQ(script.guarded_stop, "S\r"); }
 
 TEST_F(StoppedSerialInjectorTest, APulseEndsWithTheProgram) {
   for (const bool pulse : {false, true}) {
@@ -121,6 +121,68 @@ TEST_F(StoppedSerialInjectorTest, APulseEndsWithTheProgram) {
     }
     EXPECT_EQ(line.sent.back() == "S\r", pulse);
   }
+}
+
+TEST_F(StoppedSerialInjectorTest, ItsGuardSeesEveryStep) {
+  for (int i = 0; i < 7; ++i) injector.step(0.01 * i);
+  EXPECT_EQ(script.beats, 7);
+}
+
+TEST_F(StoppedSerialInjectorTest, APulseInWhichTheProgramStoodStillIsBrokenOff) {
+  run(1);
+  injector.pulse({5, 10e3, 30});
+  run(1);
+  ASSERT_TRUE(injector.reading().busy);
+  script.guard.intervention = "the program stood still";
+  script.incoming = "OK\r";   // the device answers the guard's stop
+  injector.step(time += 60);  // longer than the pulse
+  EXPECT_EQ(injector.reading().pulses, 0U);
+  EXPECT_EQ(injector.fault(), "the pulse was broken off: the program stood still");
+  EXPECT_NE(injector.pulse({6, 10e3, 0.1}), "");
+  answered = script.sent.size();
+  run(1);
+  EXPECT_FALSE(injector.reading().busy);
+  EXPECT_EQ(stops(), 1) << "the guard's may have been lost";
+  injector.reset();
+  EXPECT_EQ(injector.fault(), "");
+  EXPECT_EQ(injector.pulse({6, 10e3, 0.1}), "");
+  run(1);
+  EXPECT_EQ(injector.reading().last_id, 6U);
+}
+
+TEST_F(StoppedSerialInjectorTest, TheReplyToTheGuardsStopIsNotTakenForAPulses) {
+  run(1);
+  pulse_reply = "";
+  injector.pulse({5, 10e3, 30});
+  run(0.1);
+  script.guard.intervention = "the program stood still";
+  script.incoming = "OK\r";
+  injector.step(time += 1);
+  run(0.1);
+  EXPECT_EQ(injector.fault().rfind("pulse 5: the program stood still; it may have been done", 0), 0U);
+  EXPECT_EQ(injector.reading().pulses, 0U);
+  run(1);
+  EXPECT_EQ(stops(), 1);
+  EXPECT_EQ(pulses, 1);
+}
+
+TEST_F(StoppedSerialInjectorTest, APulseThatWaitsIsNotSentAfterTheProgramStoodStill) {
+  run(1);
+  injector.pulse({5, 10e3, 30});
+  script.guard.intervention = "the program stood still";
+  run(1);
+  EXPECT_EQ(pulses, 0);
+  EXPECT_EQ(injector.fault(), "the program stood still; pulse 5 was not sent");
+}
+
+TEST_F(StoppedSerialInjectorTest, WithoutAGuardThereIsNoPulse) {
+  run(1);
+  script.guard.missing = "it ended";
+  run(1);
+  EXPECT_EQ(injector.pulse({5, 10e3, 30}), "no stop guard: it ended");
+  script.guard.missing.clear();
+  run(0.01);
+  EXPECT_EQ(injector.pulse({5, 10e3, 30}), "");
 }
 
 TEST_F(StoppedSerialInjectorTest, AStopEndsThePulseThatIsUnderWay) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "serial/wire.h"
@@ -12,7 +13,9 @@ struct WireScript {
   std::string incoming;           ///< what the driver reads next
   std::vector<std::string> sent;  ///< what it wrote
   std::string refusal;            ///< why the line does not open; empty: it does
-  std::string stop_when_killed;
+  std::string guarded_stop;
+  Wire::GuardReport guard;  ///< what the next beat reports
+  int beats = 0;
   bool open = false;
   int opened = 0;
 };
@@ -20,7 +23,11 @@ struct WireScript {
 class ScriptedWire : public Wire {
  public:
   explicit ScriptedWire(WireScript& script) : script_(script) {}
-  void setStopWhenKilled(const std::string& bytes) override { script_.stop_when_killed = bytes; }
+  void setGuardedStop(const std::string& bytes) override { script_.guarded_stop = bytes; }
+  GuardReport beat() override {
+    ++script_.beats;
+    return {std::exchange(script_.guard.intervention, ""), script_.guard.missing};
+  }
   std::string open() override {
     script_.open = script_.refusal.empty();
     script_.opened += script_.open ? 1 : 0;

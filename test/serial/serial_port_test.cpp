@@ -103,7 +103,7 @@ void runDriver(const SerialPortConfig& config, int signal) {
   if (driver == 0) {
     {
       SerialPort port(config);
-      port.setStopWhenKilled("stop");
+      port.setGuardedStop("stop");
       if (!port.open().empty()) _exit(1);
       port.write("go on, ", 0);
       if (signal != 0) raise(signal);
@@ -179,7 +179,7 @@ TEST_F(SerialPortTest, TheGuardKeepsNothingElseOpen) {
   PseudoTerminal terminal(link_);
   std::vector<std::array<int, 2>> pipes(150);  // more than are listed at a time
   for (auto& ends : pipes) ASSERT_EQ(pipe(ends.data()), 0);
-  port_.setStopWhenKilled("stop");
+  port_.setGuardedStop("stop");
   ASSERT_EQ(port_.open(), "");
   for (const auto& ends : pipes) {
     close(ends[1]);

@@ -2,6 +2,8 @@
 
 namespace microinjection {
 
+double ZaberConfig::exchangeTime() const { return (kZaberCommandBytes + kZaberReplyBytes) * byteTime() + answer_time; }
+
 ZaberConfig ZaberConfig::read(ConfigReader& reader) {
   ZaberConfig config;
   ConfigReader port = reader.section("port", ConfigReader::kRequired);
@@ -22,6 +24,7 @@ ZaberConfig ZaberConfig::read(ConfigReader& reader) {
   reader.number("speed", config.speed, Range::positive());
   reader.number("acceleration", config.acceleration, Range::positive());
   reader.number("gain", config.gain, Range::nonNegative());
+  reader.number("move_horizon", config.move_horizon, Range::positive());
   reader.boolean("checksum", config.checksum);
   reader.boolean("reply_checksum", config.reply_checksum);
   reader.boolean("numbers", config.numbers);
@@ -29,6 +32,12 @@ ZaberConfig ZaberConfig::read(ConfigReader& reader) {
   reader.number("answer_time", config.answer_time, Range::nonNegative());
   reader.number("reply_timeout", config.reply_timeout, Range::positive());
   reader.number("reading_margin", config.reading_margin, Range::positive());
+  // A motion that ended between two renewals would be one in jerks.
+  const double least = 2 * config.turnTime() + config.speed / config.acceleration;
+  if (config.move_horizon <= least) {
+    reader.error("move_horizon", "must be > " + std::to_string(least) +
+                                     " s: two turns of the line at its baud rate and answer_time, and the braking");
+  }
   return config;
 }
 

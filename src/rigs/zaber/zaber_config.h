@@ -11,6 +11,9 @@ namespace microinjection {
 
 /// Data of the device's speeds for 1 microstep/s (Zaber's ASCII protocol manual; Micro-Manager's Zaber adapter).
 constexpr double kZaberSpeedUnit = 1.6384;
+constexpr int kZaberCommandBytes =
+    36;                               ///< of a longer command: "/1 1 57 move abs 524934 68801:98\n" and larger numbers
+constexpr int kZaberReplyBytes = 28;  ///< of a longer answer
 
 struct ZaberConfig {
   SerialPortConfig port{"", 115200};
@@ -20,6 +23,7 @@ struct ZaberConfig {
   double speed = 2e-3;            ///< m/s, largest of an axis
   double acceleration = 0.2;      ///< m/s^2, that the axes are set to: how long a stop takes
   double gain = 0;                ///< 1/s, velocity for a distance from the set-point; 0: from the line's speed
+  double move_horizon = 0.25;     ///< s, after which a motion that follows set-points ends when it is not renewed
   bool checksum = true;           ///< on every command: a damaged one is then not obeyed
   bool reply_checksum = false;    ///< answers without one are not believed
   bool numbers = true;            ///< on every command, and so on its answer: a belated one is not believed
@@ -27,6 +31,10 @@ struct ZaberConfig {
   double answer_time = 2e-3;      ///< s, that the device takes to answer
   double reply_timeout = 0.05;    ///< s, after which an answer is missed, besides the time on the wire
   double reading_margin = 10e-6;  ///< m, by which a reading under way may differ from what is expected, besides motion
+
+  double byteTime() const { return 10.0 / port.baud; }    ///< s
+  double exchangeTime() const;                            ///< s, a longer message and its answer
+  double turnTime() const { return 6 * exchangeTime(); }  ///< s, in which each axis gets a velocity and tells its place
 
   static ZaberConfig read(ConfigReader& reader);
 };

@@ -10,7 +10,6 @@ constexpr double kRetryPause = 0.02;   // s, after AGAIN and its like
 constexpr int kTries = 3;              // of a message
 constexpr double kLongestGuess = 0.2;  // s, that a position carried on says where an axis may be
 constexpr int kStalls = 10;            // readings of an axis at rest that was told to move
-constexpr int kMessageBytes = 28;      // of a longer message, either way
 
 std::string stopAll(const ZaberConfig& config) {
   std::string bytes;
@@ -18,22 +17,19 @@ std::string stopAll(const ZaberConfig& config) {
   return bytes;
 }
 
-double byteTime(const ZaberConfig& config) { return 10.0 / config.port.baud; }
-
 }  // namespace
 
 ZaberDriver::ZaberDriver(const ZaberConfig& config, std::unique_ptr<Wire> wire)
-    : SerialManipulator(std::move(wire), {"Zaber", stopAll(config), config.answer_time + 60 * byteTime(config) + 5e-3,
-                                          config.reply_timeout + 2 * kMessageBytes * byteTime(config)}),
+    : SerialManipulator(std::move(wire),
+                        {"Zaber", stopAll(config), config.answer_time + 60 * config.byteTime() + 5e-3,
+                         config.reply_timeout + (kZaberCommandBytes + kZaberReplyBytes) * config.byteTime()}),
       config_(config),
       parser_(config.reply_checksum),
       may_home_(config.home) {}
 
-double ZaberDriver::exchangeTime() const { return 2 * kMessageBytes * byteTime(config_) + config_.answer_time; }
-
 double ZaberDriver::gain() const {
   // A loop with a dead time T is well damped up to a gain of about 0.4 / T; a turn is six exchanges.
-  return config_.gain > 0 ? config_.gain : 0.3 / (7 * exchangeTime());
+  return config_.gain > 0 ? config_.gain : 0.3 / (7 * config_.exchangeTime());
 }
 
 /// How old (s) a position may be: two turns, one answer that is missed, and a stop, in which an axis is asked alone.
@@ -52,13 +48,16 @@ long long ZaberDriver::speedData(int i, double speed) const {
 
 ManipulatorAbilities ZaberDriver::abilities() const {
   ManipulatorAbilities abilities;
-  abilities.device = "Zaber (ASCII protocol)";
+  const auto runs_on = [](const Axis& axis) { return !axis.moves_have_speeds.value_or(true); };
+  const bool old = std::any_of(axes_.begin(), axes_.end(), runs_on);
+  abilities.device = old ? "Zaber (ASCII protocol; firmware before 7.25, a velocity does not end by itself)"
+                         : "Zaber (ASCII protocol)";
   abilities.follows = true;
-  abilities.command_interval = abilities.reading_interval = 6 * exchangeTime();
+  abilities.command_interval = abilities.reading_interval = config_.turnTime();
   abilities.resolution = 1 / config_.microsteps_per_metre.minCoeff();
   abilities.speed = std::min(config_.speed, speedLimits().maxCoeff());
-  abilities.latency = 4 * exchangeTime();  // half a turn to wait, and its own way
-  const double wire = stopAll(config_).size() * byteTime(config_);
+  abilities.latency = 4 * config_.exchangeTime();  // half a turn to wait, and its own way
+  const double wire = stopAll(config_).size() * config_.byteTime();
   abilities.stop_time = wire + config_.answer_time + abilities.speed / config_.acceleration;
   return abilities;
 }
@@ -94,12 +93,21 @@ bool ZaberDriver::moving() const {
   return false;
 }
 
+void ZaberDriver::connected() {
+  for (Axis& axis : axes_) {
+    axis.moves_have_speeds.reset();
+    axis.lowest.reset();
+    axis.highest.reset();
+  }
+}
+
 void ZaberDriver::begin(bool /*lost*/) {
   exchange_.reset();
   parser_.forget();
   begun_ = time();
   settled_ = false;
-  turn_ = move_stage_ = 0;
+  setting_.clear();
+  turn_ = move_stage_ = setting_tries_ = 0;
   for (Axis& axis : axes_) {
     axis.filter.forget();
     axis.told.reset();
@@ -139,8 +147,8 @@ std::string ZaberDriver::axisName(int axis) const {
 void ZaberDriver::handle(const ZaberMessage& message) {
   const int axis = axisOf(message.from);
   if (message.kind == ZaberMessage::Kind::kReply) {
-    const bool awaited =
-        exchange_ && exchange_->sent && axis == exchange_->axis && (!config_.numbers || message.number == number_);
+    const bool awaited = exchange_ && exchange_->sent && message.from == exchange_->to &&
+                         (!config_.numbers || message.number == number_);
     if (awaited) handleReply(message);
   } else if (message.kind == ZaberMessage::Kind::kAlert && axis >= 0) {
     takeFlag(message, axis);
@@ -166,6 +174,7 @@ void ZaberDriver::handleReply(const ZaberMessage& reply) {
     understood();
     exchange_.reset();
   }
+  if (done.kind == Kind::kVersion) return takeSetting(done, reply);  // of the whole device, as its flag is
   if (done.kind != Kind::kClear) takeFlag(reply, done.axis);
   if (!talking()) return;
   axis.busy = reply.busy;
@@ -179,7 +188,7 @@ void ZaberDriver::handleReply(const ZaberMessage& reply) {
       axis.position = expected(done.axis, time());
       axis.position_time = time();
       axis.velocity = done.value / speed_unit;
-      axis.end = std::nan("");
+      axis.end = done.end;
       axis.told = done.value;
       axis.read_since_told = false;
       break;
@@ -205,6 +214,11 @@ void ZaberDriver::handleReply(const ZaberMessage& reply) {
     case Kind::kHome:
       axis.homed = axis.busy = true;
       break;
+    case Kind::kVersion:
+    case Kind::kLowest:
+    case Kind::kHighest:
+      takeSetting(done, reply);
+      break;
   }
 }
 
@@ -228,13 +242,13 @@ void ZaberDriver::takePosition(const ZaberMessage& reply) {
   understood();
   exchange_.reset();
   const double place = *reply.position() / config_.microsteps_per_metre[i];
-  const double then = time() - (kMessageBytes * byteTime(config_) + config_.answer_time / 2);  // when it was there
+  const double then = time() - (kZaberReplyBytes * config_.byteTime() + config_.answer_time / 2);  // when it was there
   const double guess = expected(i, then);
   const double step = 1 / config_.microsteps_per_metre[i];
-  const double since = std::clamp(time() - axis.position_time, 0.0, kLongestGuess) + exchangeTime();
+  const double since = std::clamp(time() - axis.position_time, 0.0, kLongestGuess) + config_.exchangeTime();
   const bool rests = !reply.busy && axis.velocity == 0;
   const double tolerance = rests ? 2.5 * step : config_.reading_margin + std::abs(axis.velocity) * since;
-  const double agreement = reply.busy ? config_.reading_margin / 2 + config_.speed * 6 * exchangeTime() : 2.5 * step;
+  const double agreement = reply.busy ? config_.reading_margin / 2 + config_.speed * config_.turnTime() : 2.5 * step;
   using Coordinate = Eigen::VectorXd;
   if (!axis.filter.accept(Coordinate::Constant(1, place), Coordinate::Constant(1, guess), tolerance, agreement)) return;
   if (axis.read_since_begin) largest_correction_ = std::max(largest_correction_, std::abs(place - guess));
@@ -264,18 +278,20 @@ void ZaberDriver::missedReply() {
   lostStep("no answer of " + axisName(lost.axis) + " to \"" + lost.text + "\"");
 }
 
-void ZaberDriver::ask(Kind kind, int axis, const std::string& command, long long value) {
-  exchange_ = Exchange{kind, axis, value, command, 0, 0, false};
+void ZaberDriver::ask(Kind kind, int axis, const std::string& command, long long value, double end) {
+  ZaberAddress to = config_.addresses[axis];
+  if (kind == Kind::kVersion) to.axis = 0;
+  exchange_ = Exchange{kind, axis, to, value, end, command, 0, 0, false};
   sendExchange();
 }
 
 void ZaberDriver::sendExchange() {
   std::optional<int> number;
   if (config_.numbers) number = number_ = (number_ + 1) % 100;
-  const std::string bytes = zaberCommand(config_.addresses[exchange_->axis], exchange_->text, config_.checksum, number);
+  const std::string bytes = zaberCommand(exchange_->to, exchange_->text, config_.checksum, number);
   ++exchange_->tries;
   exchange_->sent = true;
-  exchange_->due = time() + (bytes.size() + kMessageBytes) * byteTime(config_) + config_.reply_timeout;
+  exchange_->due = time() + (bytes.size() + kZaberReplyBytes) * config_.byteTime() + config_.reply_timeout;
   say(bytes);
 }
 

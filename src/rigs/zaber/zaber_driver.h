@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <optional>
 #include <string>
 
@@ -12,7 +13,10 @@
 namespace microinjection {
 
 /// Three Zaber axes. Follows set-points by a stream of velocities: the set-point's, and the distance from it times a
-/// gain; moves are the device's own, with a speed for each axis that makes the line straight but for the ramps.
+/// gain; moves are the device's own, with a speed for each axis that makes the line straight but for the ramps. From
+/// firmware 7.25 on a velocity is a move to where it leads in `move_horizon`, renewed in every turn: nothing runs away
+/// when the line or this computer is gone. Nearer than that to its travel's end, and with older firmware, it is a
+/// velocity that holds until the next one.
 ///
 /// One message is under way at a time, in turn: an axis' velocity when it has changed, the axis' position. An axis
 /// without a reference position is a fault: homing moves, so the user has it done (`home: true`, at the start only, or
@@ -30,16 +34,20 @@ class ZaberDriver : public SerialManipulator {
   int malformed() const { return parser_.malformed(); }             ///< messages that were none
 
  protected:
+  void connected() override;
   void begin(bool lost) override;
   void talk(const std::string& bytes) override;
   void goalChanged() override;
+  void guardIntervened() override { may_home_ = false; }
 
  private:
-  enum class Kind { kPosition, kVelocity, kSpeed, kMove, kClear, kHome, kStop };
+  enum class Kind { kPosition, kVelocity, kSpeed, kMove, kClear, kHome, kStop, kVersion, kLowest, kHighest };
   struct Exchange {
     Kind kind;
     int axis;
+    ZaberAddress to;
     long long value;   // microsteps, or units of speed
+    double end;        // m, where a velocity ends; NaN: it does not
     std::string text;  // of the command
     int tries;
     double due;  // s, to be sent (again), or to be answered
@@ -51,7 +59,7 @@ class ZaberDriver : public SerialManipulator {
     double position_time = 0;        // s
     double heard = 0;                // s of listened(), when it was last told truly
     double velocity = 0;             // m/s, carries the position on
-    double end = 0;                  // m, where a move ends; NaN: no move
+    double end = 0;                  // m, where a move ends; NaN: it does not
     std::optional<long long> told;   // units of speed, of the velocity that the device follows
     bool busy = true;
     double move_speed = 0;                                   // m/s, set for the move
@@ -59,9 +67,11 @@ class ZaberDriver : public SerialManipulator {
     bool has_reference = true, cleared = true, homed = false;
     bool still_moves = false;  // it said so after it was told to stop
     int stalls = 0;
+    // As the device tells them, for as long as the line is open; microsteps.
+    std::optional<bool> moves_have_speeds;
+    std::optional<long long> lowest, highest;
   };
 
-  double exchangeTime() const;
   double gain() const;
   double longestAge() const;
   double fastest(int axis) const;
@@ -77,12 +87,17 @@ class ZaberDriver : public SerialManipulator {
   void next();
   bool nextOfSession();
   bool nextOfHoming(int axis);
+  bool nextOfSettings();
+  void takeSetting(const Exchange& asked, const ZaberMessage& reply);
   bool nextOfMove();
   void nextInTurn();
   void checkMove();
-  void ask(Kind kind, int axis, const std::string& command, long long value = 0);
+  void ask(Kind kind, int axis, const std::string& command, long long value = 0, double end = std::nan(""));
   void sendExchange();
   long long velocityData(int axis) const;
+  bool nextVelocity(int axis);
+  std::optional<long long> endOfVelocity(int axis, long long data) const;
+  long long moveSpeedData(int axis) const;
   int axisOf(const ZaberAddress& address) const;
   std::string axisName(int axis) const;
 
@@ -92,10 +107,12 @@ class ZaberDriver : public SerialManipulator {
   std::optional<Exchange> exchange_;
   double begun_ = 0;      // s, of this session
   bool settled_ = false;  // in this session everything has been read and was at rest
-  bool may_home_;         // until everything has been known once
-  int number_ = 0;        // of the last command
-  int turn_ = 0;          // 0..5: velocity and position of each axis
-  int move_stage_ = 0;    // of a move: 0..2 speeds, 3..5 positions, then under way
+  bool may_home_;         // until everything has been known once, and while the program has not stood still
+  std::string setting_;   // that was told last, and has to be told again
+  int setting_tries_ = 0;
+  int number_ = 0;      // of the last command
+  int turn_ = 0;        // 0..5: velocity and position of each axis
+  int move_stage_ = 0;  // of a move: 0..2 speeds, 3..5 positions, then under way
   int move_tries_ = 0;
   bool move_done_ = false;
   std::string note_;

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <sstream>
 
 #include "base/errors.h"
@@ -13,6 +14,8 @@ namespace {
 
 constexpr double kLongestStep = 0.5e-3;   // s, of the motion's integration
 constexpr std::size_t kLongestLine = 80;  // characters
+constexpr double kSpeedData = 1.6384;     // for 1 microstep/s
+constexpr double kAccelData = 1.6384e-4;  // for 1 microstep/s^2
 
 const std::vector<std::string>& rejections() {
   static const std::vector<std::string> names{"AGAIN",          "BADAXIS", "BADCOMMAND", "BADDATA",
@@ -31,6 +34,13 @@ bool isFlagName(const std::string& code) {
   return code.size() == 2 && (code[0] == 'F' || code[0] == 'W') && std::isalnum(static_cast<unsigned char>(code[1]));
 }
 
+/// MAJOR.MINOR, whole numbers.
+bool parseVersion(const std::string& text, int& major, int& minor) {
+  int used = 0;
+  const int numbers = std::sscanf(text.c_str(), "%3d.%3d%n", &major, &minor, &used);
+  return numbers == 2 && used == static_cast<int>(text.size()) && text[0] != '-' && minor >= 0;
+}
+
 }  // namespace
 
 ZaberEmulator::ZaberEmulator(const ZaberEmulatorConfig& config) : config_(config) {
@@ -39,9 +49,20 @@ ZaberEmulator::ZaberEmulator(const ZaberEmulatorConfig& config) : config_(config
     axes_[i].device = config.devices[i];
     axes_[i].number = config.axes[i];
     axes_[i].place = std::round(config.start / config.microstep);
-    axes_[i].max_speed = config.speed / config.microstep;
+    axes_[i].max_speed = axes_[i].move_speed = config.speed / config.microstep;
+    axes_[i].acceleration = config.acceleration / config.microstep;
     axes_[i].referenced = config.referenced;
   }
+  setFirmware(config.firmware);
+}
+
+void ZaberEmulator::setFirmware(const std::string& version) {
+  int major = 0, minor = 0;
+  if (!parseVersion(version, major, minor) || (major != 6 && major != 7)) {
+    throw ConfigError("firmware = " + version + ": must be a version of the ASCII protocol, 6.MINOR or 7.MINOR");
+  }
+  config_.firmware = version;
+  moves_have_speeds_ = major == 7 && minor >= 25;
 }
 
 Eigen::Vector3d ZaberEmulator::position() const {
@@ -57,13 +78,13 @@ void ZaberEmulator::shiftByHand(const Eigen::Vector3d& way) {
 }
 
 void ZaberEmulator::advanceAxis(Axis& axis, double dt) const {
-  const double change = config_.acceleration / config_.microstep * dt;  // microsteps/s
+  const double change = axis.acceleration * dt;  // microsteps/s
   double wanted = axis.target_velocity;
   if (axis.to_place) {
     const double left = axis.target - axis.place;
     // The speed from which it can still brake in time, with the steps of the integration allowed for.
     const double braking = std::sqrt(2 * change / dt * std::abs(left) + change * change / 4) - change / 2;
-    wanted = std::copysign(std::min(axis.max_speed, braking), left);
+    wanted = std::copysign(std::min(axis.move_speed, braking), left);
     if (std::abs(left) < 0.5 && std::abs(axis.velocity) <= 2 * change) {
       axis.place = axis.target;
       axis.velocity = 0;
@@ -131,6 +152,7 @@ void ZaberEmulator::obey(const std::string& line) {
     id = digits;
     command.erase(0, std::min(command.find(' '), command.size() - 1) + 1);
   }
+  if (command == "get version" && number == 0) return tellVersion(device, id, checksum);
   for (Axis& axis : axes_) {
     if ((device != 0 && device != axis.device) || (number != 0 && number != axis.number)) continue;
     std::string said;
@@ -144,6 +166,18 @@ void ZaberEmulator::obey(const std::string& line) {
   }
 }
 
+/// It belongs to a device and not to an axis: each device answers once, for all its axes.
+void ZaberEmulator::tellVersion(int device, const std::string& id, bool checksum) {
+  std::vector<int> told;
+  for (const Axis& axis : axes_) {
+    if ((device != 0 && device != axis.device) || std::count(told.begin(), told.end(), axis.device) != 0) continue;
+    told.push_back(axis.device);
+    Axis all = axis;
+    all.number = 0;
+    answer(all, id, "OK " + config_.firmware, checksum);
+  }
+}
+
 /// Returns "OK <data>" or "RJ <reason>".
 std::string ZaberEmulator::perform(Axis& axis, const std::string& command) {
   std::istringstream words(command);
@@ -153,6 +187,7 @@ std::string ZaberEmulator::perform(Axis& axis, const std::string& command) {
   if (verb == "stop" || verb == "estop") {
     axis.to_place = axis.homing = false;
     axis.target_velocity = 0;
+    axis.acceleration = config_.acceleration / config_.microstep;
     if (verb == "estop") axis.velocity = 0;
     return "OK 0";
   }
@@ -168,40 +203,52 @@ std::string ZaberEmulator::perform(Axis& axis, const std::string& command) {
   if (verb == "set" && what == "maxspeed") {
     const long value = std::strtol(argument.c_str(), nullptr, 10);
     if (value < 1) return "RJ BADDATA";
-    axis.max_speed = value / 1.6384;
+    axis.max_speed = value / kSpeedData;
     return "OK 0";
   }
   if (verb == "home") {
     axis.homing = axis.to_place = true;
     axis.target = 0;
+    axis.move_speed = axis.max_speed;
     return "OK 0";
   }
-  if (verb == "move") return beginMove(axis, what, argument);
+  if (verb == "get" && what == "version") return "RJ BADAXIS";
+  if (verb == "move") return beginMove(axis, what, argument + std::string(std::istreambuf_iterator<char>(words), {}));
   return "RJ BADCOMMAND";
 }
 
-std::string ZaberEmulator::beginMove(Axis& axis, const std::string& how, const std::string& argument) {
+/// `data`: place or velocity, and from firmware 7.25 on speed (not of a velocity) and acceleration, where they are
+/// given.
+std::string ZaberEmulator::beginMove(Axis& axis, const std::string& how, const std::string& data) {
   if (!axis.flag.empty() && axis.flag[0] == 'F') return "RJ STATUSBUSY";
-  const double end = config_.travel / config_.microstep;
-  if (how == "min" || how == "max") {
-    axis.target = how == "min" ? 0 : std::floor(end);
-  } else {
+  if (how != "abs" && how != "rel" && how != "vel" && how != "min" && how != "max") return "RJ BADCOMMAND";
+  const bool to_end = how == "min" || how == "max", at_velocity = how == "vel";
+  std::vector<double> values;
+  std::istringstream words(data);
+  for (std::string word; words >> word;) {
     char* rest = nullptr;
-    const double value = static_cast<double>(std::strtoll(argument.c_str(), &rest, 10));
-    if (argument.empty() || *rest != '\0') return "RJ BADDATA";
-    if (how == "vel") {
-      axis.to_place = false;
-      axis.target_velocity = value / 1.6384;
-      return "OK 0";
-    }
-    if (how != "abs" && how != "rel") return "RJ BADCOMMAND";
-    const double target = how == "abs" ? value : std::round(axis.place) + value;
+    values.push_back(static_cast<double>(std::strtoll(word.c_str(), &rest, 10)));
+    if (*rest != '\0') return "RJ BADDATA";
+  }
+  const std::size_t needed = to_end ? 0 : 1, allowed = needed + (!moves_have_speeds_ ? 0 : at_velocity ? 1 : 2);
+  if (values.size() < needed || values.size() > allowed) return "RJ BADDATA";
+  const std::vector<double> options(values.begin() + static_cast<std::ptrdiff_t>(needed), values.end());
+  if (std::any_of(options.begin(), options.end(), [](double value) { return value < 1; })) return "RJ BADDATA";
+  const std::size_t acceleration_at = at_velocity ? 0 : 1;
+  const double end = config_.travel / config_.microstep;
+  if (!to_end && !at_velocity) {
+    const double target = how == "abs" ? values[0] : std::round(axis.place) + values[0];
     if (target < 0 || target > end || (!axis.referenced && how == "abs")) return "RJ BADDATA";
     axis.target = target;
+  } else {
+    axis.target = how == "min" ? 0 : std::floor(end);
   }
-  axis.to_place = true;
-  axis.target_velocity = 0;
-  ++moves_begun_;
+  axis.acceleration = options.size() > acceleration_at ? options[acceleration_at] / kAccelData
+                                                       : config_.acceleration / config_.microstep;
+  axis.move_speed = !at_velocity && !options.empty() ? options[0] / kSpeedData : axis.max_speed;
+  axis.to_place = !at_velocity;
+  axis.target_velocity = at_velocity ? values[0] / kSpeedData : 0;
+  if (axis.to_place) ++moves_begun_;
   return "OK 0";
 }
 

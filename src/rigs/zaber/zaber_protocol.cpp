@@ -68,6 +68,14 @@ std::optional<std::int64_t> ZaberMessage::position() const {
   return value;
 }
 
+std::optional<bool> zaberMovesHaveSpeeds(const std::string& version) {
+  const std::size_t point = version.find('.');
+  if (point == std::string::npos) return std::nullopt;
+  const std::optional<int> major = number(version.substr(0, point), 2), minor = number(version.substr(point + 1), 2);
+  if (!major || !minor) return std::nullopt;
+  return *major > 7 || (*major == 7 && *minor >= 25);
+}
+
 std::vector<ZaberMessage> ZaberParser::feed(const std::string& bytes) {
   std::vector<ZaberMessage> messages;
   for (const char each : bytes) {

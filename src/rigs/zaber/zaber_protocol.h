@@ -34,6 +34,10 @@ struct ZaberMessage {
   std::optional<std::int64_t> position() const;
 };
 
+/// Whether firmware of this version (MAJOR.MINOR, as `get version` tells it) takes moves to a place with a speed of
+/// their own: from 7.25 on. Empty: that is no version.
+std::optional<bool> zaberMovesHaveSpeeds(const std::string& version);
+
 /// Whether the device's flag is a fault: the device has stopped and needs attention.
 inline bool isZaberFault(const std::string& flag) { return !flag.empty() && flag[0] == 'F'; }
 

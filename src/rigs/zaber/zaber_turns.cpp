@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "rigs/zaber/zaber_driver.h"
 
@@ -12,7 +13,9 @@ constexpr double kVelocityHolds = 0.1;   // s: a set-point's velocity is not fol
 constexpr double kLongestBraking = 1.5;  // s, after a stop
 constexpr double kLongestHoming = 120;   // s
 constexpr int kMoveTries = 2;
-constexpr double kSlowest = 10;  // microsteps/s, of an axis of a move
+constexpr double kSlowest = 10;     // microsteps/s, of an axis of a move
+constexpr double kShortestWay = 3;  // microsteps, of a velocity: a shorter one may be none for an axis that is ahead
+constexpr int kSettingTries = 40;  // of nine settings that are told twice each
 
 }  // namespace
 
@@ -40,6 +43,7 @@ bool ZaberDriver::nextOfSession() {
     }
     if (!axis.has_reference && nextOfHoming(i)) return true;
   }
+  if (nextOfSettings()) return true;
   // Another axis' homing takes long.
   for (int i = 0; i < 3; ++i) {
     if (listened() - axes_[i].heard > abilities().reading_interval) return ask(Kind::kPosition, i, "get pos"), true;
@@ -48,6 +52,38 @@ bool ZaberDriver::nextOfSession() {
   may_home_ = false;
   known();
   return false;
+}
+
+/// What the device can do, asked once for a connection. It counts when it is told twice: a damaged answer would last.
+bool ZaberDriver::nextOfSettings() {
+  for (int i = 0; i < 3; ++i) {
+    const Axis& axis = axes_[i];
+    const bool has_speeds = axis.moves_have_speeds.value_or(false);
+    if (axis.moves_have_speeds && (!has_speeds || (axis.lowest && axis.highest))) continue;
+    if (++setting_tries_ > kSettingTries) {
+      lostStep(axisName(i) + " tells no firmware version or no travel");
+    } else if (!axis.moves_have_speeds) {
+      ask(Kind::kVersion, i, "get version");
+    } else if (!axis.lowest) {
+      ask(Kind::kLowest, i, "get limit.min");
+    } else {
+      ask(Kind::kHighest, i, "get limit.max");
+    }
+    return true;
+  }
+  return false;
+}
+
+void ZaberDriver::takeSetting(const Exchange& asked, const ZaberMessage& reply) {
+  const bool twice = std::exchange(setting_, reply.data) == reply.data;
+  if (!twice) return;
+  setting_.clear();
+  Axis& axis = axes_[asked.axis];
+  if (asked.kind == Kind::kLowest) axis.lowest = reply.position();
+  if (asked.kind == Kind::kHighest) axis.highest = reply.position();
+  for (int i = 0; i < 3 && asked.kind == Kind::kVersion; ++i) {
+    if (config_.addresses[i].device == asked.to.device) axes_[i].moves_have_speeds = zaberMovesHaveSpeeds(reply.data);
+  }
 }
 
 bool ZaberDriver::nextOfHoming(int i) {
@@ -79,39 +115,72 @@ long long ZaberDriver::velocityData(int i) const {
   return speedData(i, share * velocity[i]);
 }
 
+/// Where (microsteps) a velocity ends unless it is renewed. Empty: the axis is to stand, the device cannot, or the end
+/// of its travel is nearer.
+std::optional<long long> ZaberDriver::endOfVelocity(int i, long long data) const {
+  const Axis& axis = axes_[i];
+  if (data == 0 || !axis.moves_have_speeds.value_or(false)) return std::nullopt;
+  const double way = std::max(std::abs(data / kZaberSpeedUnit) * config_.move_horizon, kShortestWay);
+  const double from = expected(i, time()) * config_.microsteps_per_metre[i];
+  const long long end = std::llround(from + std::copysign(way, static_cast<double>(data)));
+  if (end < *axis.lowest || end > *axis.highest) return std::nullopt;
+  return end;
+}
+
+/// A velocity that is new, or that has to be renewed.
+bool ZaberDriver::nextVelocity(int i) {
+  if (!goal() || !goal()->follows || !mayMove() || !axes_[i].position) return false;
+  const long long data = velocityData(i);
+  if (const auto end = endOfVelocity(i, data)) {
+    ask(Kind::kVelocity, i, "move abs " + std::to_string(*end) + " " + std::to_string(std::abs(data)), data,
+        static_cast<double>(*end) / config_.microsteps_per_metre[i]);
+    return true;
+  }
+  if (axes_[i].told == data && std::isnan(axes_[i].end)) return false;
+  ask(Kind::kVelocity, i, "move vel " + std::to_string(data), data);
+  return true;
+}
+
 void ZaberDriver::nextInTurn() {
   const int i = turn_ / 2;
   if (turn_ % 2 == 0) {
     turn_ = turn_ + 1;
-    if (goal() && goal()->follows && mayMove() && axes_[i].position) {
-      const long long data = velocityData(i);
-      if (axes_[i].told != data) return ask(Kind::kVelocity, i, "move vel " + std::to_string(data), data);
-    }
+    if (nextVelocity(i)) return;
   }
   turn_ = (turn_ + 1) % 6;
   ask(Kind::kPosition, i, "get pos");
 }
 
-/// A move's speeds and ends, one after the other; then it is watched.
+long long ZaberDriver::moveSpeedData(int i) const {
+  const Eigen::Vector3d end = config_.joints.toDevice(goal()->joints);
+  Eigen::Vector3d way;
+  for (int k = 0; k < 3; ++k) way[k] = end[k] - expected(k, time());
+  const double share = way.norm() > 0 ? std::abs(way[i]) / way.norm() : 1;
+  return std::max(1LL, speedData(i, std::max(goal()->speed * share, kSlowest / config_.microsteps_per_metre[i])));
+}
+
+/// A move's speeds and ends, one after the other; then it is watched. A speed of the move's own is not written to the
+/// device's memory, as its setting is.
 bool ZaberDriver::nextOfMove() {
   if (move_done_ || !mayMove()) return false;
+  for (; move_stage_ < 3; ++move_stage_) {
+    const int i = move_stage_;
+    const long long data = moveSpeedData(i);
+    if (!*axes_[i].moves_have_speeds) return ask(Kind::kSpeed, i, "set maxspeed " + std::to_string(data), data), true;
+    axes_[i].move_speed = static_cast<double>(data) / (config_.microsteps_per_metre[i] * kZaberSpeedUnit);
+  }
   if (move_stage_ >= 6) {
     checkMove();
     return !talking();
   }
-  const int i = move_stage_ % 3;
+  const int i = move_stage_ - 3;
   const double scale = config_.microsteps_per_metre[i];
-  const Eigen::Vector3d end = config_.joints.toDevice(goal()->joints);
-  if (move_stage_ >= 3) {
-    const long long data = std::llround(end[i] * scale);
-    ask(Kind::kMove, i, "move abs " + std::to_string(data), data);
-    return true;
+  const long long end = std::llround(config_.joints.toDevice(goal()->joints)[i] * scale);
+  std::string command = "move abs " + std::to_string(end);
+  if (*axes_[i].moves_have_speeds) {
+    command += " " + std::to_string(std::llround(axes_[i].move_speed * scale * kZaberSpeedUnit));
   }
-  Eigen::Vector3d way;
-  for (int k = 0; k < 3; ++k) way[k] = end[k] - expected(k, time());
-  const double share = way.norm() > 0 ? std::abs(way[i]) / way.norm() : 1;
-  const long long data = std::max(1LL, speedData(i, std::max(goal()->speed * share, kSlowest / scale)));
-  ask(Kind::kSpeed, i, "set maxspeed " + std::to_string(data), data);
+  ask(Kind::kMove, i, command, end);
   return true;
 }
 

@@ -41,6 +41,16 @@ TEST(ZaberProtocol, ReadsInfoAndAlerts) {
   EXPECT_FALSE(isZaberFault("WR") || isZaberFault("--"));
 }
 
+TEST(ZaberProtocol, ComparesVersions) {
+  for (const char* version : {"7.25", "7.26", "7.45", "8.0"}) EXPECT_EQ(zaberMovesHaveSpeeds(version), true) << version;
+  for (const char* version : {"7.24", "7.05", "7.3", "6.28", "6.99"}) {
+    EXPECT_EQ(zaberMovesHaveSpeeds(version), false) << version;
+  }
+  for (const char* none : {"", "7", "7.", ".25", "725", "7.x", "-7.25", "7.25.1", "7,25", "7.125"}) {
+    EXPECT_EQ(zaberMovesHaveSpeeds(none), std::nullopt) << none;
+  }
+}
+
 TEST(ZaberProtocol, PutsPiecesTogether) {
   ZaberParser parser(false);
   const std::string text = "noise\r\n@01 1 OK IDLE -- -12345\r\n";

@@ -1,0 +1,200 @@
+// A velocity that is not renewed ends by itself, where the firmware has moves with speeds of their own.
+
+#include "rigs/driver_fixture.h"
+
+namespace microinjection {
+namespace {
+
+constexpr double kSpeed = 0.2e-3;  // m/s
+
+ZaberEmulatorConfig withFirmware(const std::string& version) {
+  ZaberEmulatorConfig config;
+  config.firmware = version;
+  return config;
+}
+
+class ZaberHorizonTest : public DriverTest<TestedZaber> {
+ protected:
+  void follow(double duration, const Eigen::Vector3d& velocity = {kSpeed, 0, 0}) {
+    rig_->run(duration, [&] {
+      goal_ += velocity * 1e-3;
+      rig_->driver().follow(goal_, velocity);
+    });
+  }
+  /// The device lives on, whether anybody hears it or not.
+  void letDeviceLive() { rig_->device().send(rig_->time()); }
+
+  Eigen::Vector3d goal_ = Eigen::Vector3d::Zero();  // m
+};
+
+TEST_F(ZaberHorizonTest, APulledCableEndsTheMotion) {
+  start();
+  follow(0.7);
+  rig_->wire().pull();
+  const Eigen::Vector3d from = rig_->place();
+  rig_->run(2);
+  letDeviceLive();
+  EXPECT_FALSE(rig_->device().moves());
+  const double way = (rig_->place() - from).norm();
+  EXPECT_GT(way, 0);
+  EXPECT_LT(way, kSpeed * TestedZaber::config().move_horizon);
+}
+
+TEST_F(ZaberHorizonTest, ADeviceThatHearsNothingStops) {
+  start();
+  follow(0.7);
+  rig_->inject("silence:3");
+  const Eigen::Vector3d from = rig_->place();
+  follow(2.9);
+  EXPECT_FALSE(rig_->device().moves());
+  EXPECT_LT((rig_->place() - from).norm(), kSpeed * TestedZaber::config().move_horizon);
+}
+
+TEST_F(ZaberHorizonTest, OlderFirmwareFollowsByVelocitiesAndSaysThatTheyDoNotEnd) {
+  for (const auto& [version, ends] : {std::pair("6.28", false), {"7.05", false}, {"7.24", false}, {"7.25", true}}) {
+    SCOPED_TRACE(version);
+    make(withFirmware(version));
+    start();
+    goal_ = rig_->place();
+    EXPECT_EQ(rig_->driver().abilities().device.find("7.25") == std::string::npos, ends);
+    follow(1);
+    EXPECT_LT((rig_->place() - goal_).norm(), kSpeed * rig_->driver().abilities().latency);
+    EXPECT_EQ(rig_->device().movesBegun() > 0, ends);
+    rig_->wire().pull();
+    rig_->run(1);
+    letDeviceLive();
+    EXPECT_EQ(rig_->device().moves(), !ends);
+  }
+}
+
+TEST_F(ZaberHorizonTest, ADeviceThatIsChangedForAnotherIsAskedAgain) {
+  start();
+  rig_->wire().pull();
+  dynamic_cast<ZaberEmulator&>(rig_->device()).setFirmware("6.28");
+  rig_->run(0.1);
+  rig_->wire().plug();
+  ASSERT_TRUE(rig_->runUntilReady());
+  goal_ = rig_->place();
+  follow(1);
+  EXPECT_EQ(rig_->device().movesBegun(), 0);
+  EXPECT_EQ(rig_->driver().state(), State::kReady) << rig_->driver().why();
+}
+
+TEST_F(ZaberHorizonTest, FollowsOneMicrostepASecondWithoutTakingItForAStall) {
+  start();
+  const Eigen::Vector3d slow(kStep, 0, 0);
+  follow(30, slow);
+  EXPECT_EQ(rig_->driver().state(), State::kReady) << rig_->driver().why();
+  expectNear(rig_->place(), goal_, 2 * kStep);
+}
+
+TEST_F(ZaberHorizonTest, FollowsToTheEndOfItsTravel) {
+  ZaberEmulatorConfig device;
+  device.start = device.travel - 50e-6;
+  make(device);
+  start();
+  goal_ = rig_->place();
+  follow(0.2);  // 40 um, less than its way in the horizon
+  rig_->driver().follow(goal_, Eigen::Vector3d::Zero());
+  ASSERT_TRUE(rig_->runUntilArrived()) << rig_->driver().why();
+  expectNear(rig_->place(), goal_, kStep);
+}
+
+TEST_F(ZaberHorizonTest, ThreeChainedDevicesTellTheirVersionsEach) {
+  ZaberEmulatorConfig device;
+  device.devices = {1, 2, 3};
+  device.axes = {1, 1, 1};
+  ZaberConfig driver = TestedZaber::config();
+  for (int i = 0; i < 3; ++i) driver.addresses[i] = {i + 1, 1};
+  make(device, driver);
+  start();
+  follow(0.5);
+  EXPECT_GT(rig_->device().movesBegun(), 0);
+}
+
+/// A line that remembers what was written.
+struct RecordingWire : EmulatedWire {
+  using EmulatedWire::EmulatedWire;
+  void write(const std::string& bytes, double time) override {
+    written += bytes;
+    EmulatedWire::write(bytes, time);
+  }
+  std::string written;
+};
+
+TEST(ZaberSettings, AreNotWrittenWhereAMoveHasASpeedOfItsOwn) {
+  for (const auto& [version, writes] : {std::pair("6.28", true), {"7.25", false}}) {
+    auto owned = std::make_unique<RecordingWire>(std::make_shared<ZaberEmulator>(withFirmware(version)), 115200);
+    const RecordingWire& wire = *owned;
+    ZaberDriver driver(TestedZaber::config(), std::move(owned));
+    for (int i = 1; i < 1000; ++i) {
+      if (i > 500) driver.moveTo(kPlace, 0.2e-3);
+      driver.step(i * 1e-3);
+    }
+    EXPECT_NE(wire.written.find("move abs"), std::string::npos) << version;
+    EXPECT_EQ(wire.written.find("set ") != std::string::npos, writes) << version;
+  }
+}
+
+TEST(ZaberConfig, RefusesAHorizonThatEndsBetweenTwoTurns) {
+  const auto read = [](const std::string& key, const YAML::Node& value) {
+    YAML::Node node = loadYamlMap(MICROINJECTION_SOURCE_DIR "/src/rigs/zaber/zaber.yaml");
+    (key == "baud" ? node["port"][key] : node[key]) = value;
+    ConfigReader reader(node, "zaber.yaml");
+    const ZaberConfig config = ZaberConfig::read(reader);
+    reader.finish();
+    return config;
+  };
+  EXPECT_EQ(read("move_horizon", YAML::Node(0.3)).move_horizon, 0.3);
+  for (const auto& [key, value] : {std::pair("move_horizon", 0.09), {"baud", 9600.0}}) {
+    try {
+      read(key, YAML::Node(value));
+      ADD_FAILURE() << key;
+    } catch (const ConfigError& error) {
+      EXPECT_NE(std::string(error.what()).find("move_horizon"), std::string::npos) << error.what();
+    }
+  }
+}
+
+/// What a device says to one command, 10 ms later.
+std::string answer(ZaberEmulator& device, const std::string& command, double& time) {
+  device.receive("/" + command + "\n", time);
+  return device.send(time += 0.01);
+}
+
+TEST(ZaberEmulator, TakesSpeedsOfMovesFromTheFirmwareOnThatHasThem) {
+  for (const char* command : {"move abs 1000 500", "move rel 10 500 7", "move vel 10 7"}) {
+    double time = 0;
+    ZaberEmulator old(withFirmware("7.24")), recent(withFirmware("7.25"));
+    EXPECT_EQ(answer(old, std::string("1 1 ") + command, time), "@01 1 RJ IDLE -- BADDATA\r\n");
+    EXPECT_EQ(answer(recent, std::string("1 1 ") + command, time), "@01 1 OK BUSY -- 0\r\n");
+    EXPECT_EQ(answer(recent, std::string("1 1 ") + command + " 9 9", time), "@01 1 RJ BUSY -- BADDATA\r\n");
+  }
+}
+
+TEST(ZaberEmulator, MovesAtTheSpeedThatItIsTold) {
+  ZaberEmulator device;
+  double time = 0;
+  answer(device, "1 1 move rel 100000 16384", time);  // 10,000 microsteps/s
+  answer(device, "1 1 get pos", time = 0.5);
+  const double from = device.position().x();
+  answer(device, "1 1 get pos", time = 1.5);
+  EXPECT_NEAR((device.position().x() - from) / 0.047625e-6, 1e4, 150);  // the 10 ms of two answers
+}
+
+TEST(ZaberEmulator, TellsItsVersionOnceForADevice) {
+  double time = 0;
+  ZaberEmulator one(withFirmware("6.28"));
+  EXPECT_EQ(answer(one, "1 0 get version", time), "@01 0 OK IDLE -- 6.28\r\n");
+  ZaberEmulatorConfig config;
+  config.devices = {1, 2, 3};
+  config.axes = {1, 1, 1};
+  ZaberEmulator three(config);
+  EXPECT_EQ(answer(three, "2 0 get version", time), "@02 0 OK IDLE -- 7.25\r\n");
+  for (const char* none : {"", "7", "7.x", "5.1", "8.0", "7.25 ", "-7.25"}) {
+    EXPECT_THROW(one.setFirmware(none), ConfigError) << none;
+  }
+}
+
+}  // namespace
+}  // namespace microinjection
