@@ -3,6 +3,9 @@
 #include <ros/ros.h>
 #include <rosbag/bag.h>
 
+#include <cerrno>
+#include <exception>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -12,7 +15,7 @@ namespace microinjection {
 
 /// The bag of a session, written by the recorder from the messages that it gets anyway: a second process that
 /// subscribes to everything would cost half a core. The file has its name only when it is whole; until then it ends in
-/// .active.
+/// .active. Where it cannot be written, the bag ends there, and trouble() says why.
 class SessionBag {
  public:
   /// Makes missing directories. @throws std::exception when the file cannot be written.
@@ -36,24 +39,29 @@ class SessionBag {
         [this, topic](const boost::shared_ptr<const Message>& message) { write(topic, ros::Time::now(), *message); }));
   }
 
-  /// Completes the file; what comes later is not written.
-  void close();
+  /// Completes the file; what comes later is not written. Empty, or why the bag is not whole.
+  std::string close();
+
+  /// Why the bag is not whole, with its path; empty where nothing is wrong.
+  const std::string& trouble() const { return trouble_; }
 
  private:
   template <typename Message>
   void write(const std::string& topic, const ros::Time& now, const Message& message) {
-    if (!open_ || now <= ros::TIME_MIN) return;
+    if (!bag_ || now <= ros::TIME_MIN) return;
+    errno = 0;
     try {
-      bag_.write(topic, now, message);
-    } catch (const rosbag::BagException& error) {  // a full disk must not take the session with it
-      ROS_ERROR_STREAM(path_ << ".active: " << error.what());
-      open_ = false;
+      bag_->write(topic, now, message);
+    } catch (const std::exception& error) {  // a full disk must not take the session with it
+      const int reason = errno;
+      giveUp(error.what(), reason);
     }
   }
+  void giveUp(const std::string& what, int reason);
 
   std::string path_;
-  rosbag::Bag bag_;
-  bool open_ = true;
+  std::unique_ptr<rosbag::Bag> bag_;  ///< null when it is closed
+  std::string trouble_;
   std::vector<ros::Subscriber> subscribers_;
 };
 

@@ -10,6 +10,7 @@
 #include <iostream>
 #include <limits>
 #include <sstream>
+#include <stdexcept>
 
 #include "base/atomic_file.h"
 #include "base/worker_processes.h"
@@ -64,7 +65,8 @@ void writeIntervals(std::ostream& out, const std::string& name, const IntervalHi
 }  // namespace
 
 const char* const SessionRecorderNode::kHelp =
-    "session_recorder: writes force_depth.csv, summary.yaml and session.bag of a session when it ends.\n"
+    "session_recorder: writes force_depth.csv, summary.yaml and session.bag of a session. While it runs, its rows and\n"
+    "messages are in force_depth.csv.active and session.bag.active.\n"
     "Parameters: ~output_dir (required), ~row_period (s), ~hand, ~injector (record them), ~bag,\n"
     "~training/... (see config/training.yaml), ~end_when_done.\n";
 
@@ -88,7 +90,9 @@ SessionRecorderNode::Parameters SessionRecorderNode::Parameters::read(const ros:
 SessionRecorderNode::SessionRecorderNode(ros::NodeHandle node, ros::NodeHandle private_node)
     : parameters_(Parameters::read(private_node)),
       cycle_(node, kRate),
-      table_(std::llround(1e9 * parameters_.row_period), cycle_.lockstep() ? kPatienceInLockstep : kPatience),
+      files_(parameters_.output_dir, SessionTable::kHeader, parameters_.bag),
+      table_(std::llround(1e9 * parameters_.row_period), cycle_.lockstep() ? kPatienceInLockstep : kPatience,
+             [this](const std::string& line) { files_.rows().append(line); }),
       predicted_(cycle_.input<geometry_msgs::WrenchStamped>("cell/predicted_cf", Phase::kTickBefore, 0.05)),
       needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", Phase::kTickBefore, 0.05)),
       measured_(cycle_.input<geometry_msgs::WrenchStamped>("force_sensor/measured_cf", Phase::kTickBefore, 0.05)),
@@ -109,7 +113,8 @@ SessionRecorderNode::SessionRecorderNode(ros::NodeHandle node, ros::NodeHandle p
   if (training_) table_.onRow([this](const SessionTable::Row& row) { training_->add(row); });
   diagnostics_ = cycle_.node().subscribe("/diagnostics", 100, &SessionRecorderNode::onDiagnostics, this);
   fillTable();
-  if (parameters_.bag) recordBag();
+  if (files_.bag()) recordBag(*files_.bag());
+  cycle_.diagnostics().add("files", [this](auto& status) { files_.report(status); });
   if (cycle_.lockstep()) return;
   latency_ = std::make_unique<LatencyMeter>(cycle_.node());
   timer_loop_ = std::make_unique<BareTimerLoop>();
@@ -160,40 +165,50 @@ void SessionRecorderNode::fillTable() {
   });
 }
 
-void SessionRecorderNode::recordBag() {
-  bag_ = std::make_unique<SessionBag>(parameters_.output_dir + "/session.bag");
-  bag_->follow(needle_);
-  bag_->follow(predicted_);
-  bag_->follow(measured_);
-  bag_->follow(cell_);
-  bag_->follow(injection_);
-  if (injector_) bag_->follow(*injector_);
+void SessionRecorderNode::recordBag(SessionBag& bag) {
+  bag.follow(needle_);
+  bag.follow(predicted_);
+  bag.follow(measured_);
+  bag.follow(cell_);
+  bag.follow(injection_);
+  if (injector_) bag.follow(*injector_);
   if (parameters_.hand) {
-    bag_->follow(*hand_);
-    bag_->follow(*clutch_);
-    bag_->follow(*hand_force_);
-    bag_->follow(*phase_);
+    bag.follow(*hand_);
+    bag.follow(*clutch_);
+    bag.follow(*hand_force_);
+    bag.follow(*phase_);
   }
-  bag_->follow<tf2_msgs::TFMessage>(cycle_.node(), "/tf");
-  bag_->follow<tf2_msgs::TFMessage>(cycle_.node(), "/tf_static");
-  bag_->follow<diagnostic_msgs::DiagnosticArray>(cycle_.node(), "/diagnostics");
-  bag_->follow<cell_microinjection::OperatingState>(cycle_.node(), "/controller/operating_state");
+  bag.follow<tf2_msgs::TFMessage>(cycle_.node(), "/tf");
+  bag.follow<tf2_msgs::TFMessage>(cycle_.node(), "/tf_static");
+  bag.follow<diagnostic_msgs::DiagnosticArray>(cycle_.node(), "/diagnostics");
+  bag.follow<cell_microinjection::OperatingState>(cycle_.node(), "/controller/operating_state");
 }
 
 void SessionRecorderNode::run() {
   cycle_.run([this](const Cycle::Tick& tick) { step(tick); });
-  if (bag_) bag_->close();
   table_.finish();
-  writeFileAtomically(parameters_.output_dir + "/force_depth.csv", table_.text());
-  writeFileAtomically(parameters_.output_dir + "/summary.yaml", summary());
-  if (training_) score();
+  std::vector<std::string> errors = files_.finish();
+  const auto attempt = [&errors](const auto& write) {
+    try {
+      write();
+    } catch (const std::exception& error) {
+      errors.push_back(error.what());
+    }
+  };
+  attempt([this] { writeFileAtomically(parameters_.output_dir + "/summary.yaml", summary()); });
+  if (training_) attempt([&] { score(errors); });
+  if (errors.empty()) return;
+  // Where the session was interrupted, ROS's own log is over.
+  for (const std::string& error : errors) std::cerr << error << std::endl;
+  throw std::runtime_error("the session's files are not whole: " + errors.front() +
+                           (errors.size() > 1 ? "; and " + std::to_string(errors.size() - 1) + " more" : ""));
 }
 
-void SessionRecorderNode::score() const {
+void SessionRecorderNode::score(std::vector<std::string>& errors) const {
   const TrainingConfig& config = training_->config();
   const TrainingLog::Result result = training_->finish(parameters_.output_dir, began_);
-  // Where the session was interrupted, ROS's own log is over.
   std::cout << result.text << std::endl;
+  errors.insert(errors.end(), result.errors.begin(), result.errors.end());
   if (!result.in_history) return;
   const std::string picture = parameters_.output_dir + "/training.png";
   const std::string plot = std::filesystem::path(thisProgram()).parent_path() / "plot_training.py";
@@ -207,6 +222,7 @@ void SessionRecorderNode::score() const {
 void SessionRecorderNode::step(const Cycle::Tick& tick) {
   withdrawInvalid();
   table_.advance(stampOf(tick.now));
+  files_.step(tick.now);
   if (table_.done() && parameters_.end_when_done) cycle_.stop();
 }
 

@@ -21,7 +21,7 @@
 #include "nodes/bare_timer_loop.h"
 #include "nodes/cycle.h"
 #include "nodes/latency_meter.h"
-#include "nodes/session_bag.h"
+#include "nodes/session_files.h"
 #include "record/session_table.h"
 #include "record/training_log.h"
 
@@ -29,7 +29,9 @@ namespace microinjection {
 
 /// Writes what a session did: force_depth.csv (one row a `row_period`), summary.yaml (rates of every node and, live,
 /// the latency from hand to force beside a bare timer loop), session.bag. All are there, whole, at the end of the
-/// session.
+/// session. Until then rows and messages are in force_depth.csv.active and session.bag.active, which a kill leaves. A
+/// file that cannot be written is an ERROR on /diagnostics ("files") and does not end the session; where one is not
+/// whole at the end, the exit status is 1.
 ///
 /// In: /needle/measured_cp, /cell/predicted_cf, /force_sensor/measured_cf, /cell/state,
 ///     /controller/injection_state, with an injector /injector/state, with a hand
@@ -72,15 +74,16 @@ class SessionRecorderNode {
   };
 
   void fillTable();
-  void recordBag();
+  void recordBag(SessionBag& bag);
   void step(const Cycle::Tick& tick);
   void withdrawInvalid();
   void onDiagnostics(const diagnostic_msgs::DiagnosticArrayConstPtr& message);
   std::string summary() const;
-  void score() const;
+  void score(std::vector<std::string>& errors) const;
 
   Parameters parameters_;
   Cycle cycle_;
+  SessionFiles files_;
   SessionTable table_;
   Input<geometry_msgs::WrenchStamped>& predicted_;
   Input<geometry_msgs::PoseStamped>& needle_;
@@ -95,7 +98,6 @@ class SessionRecorderNode {
   ros::Subscriber diagnostics_;
   std::string began_;                          ///< local date and time, ISO 8601
   std::unique_ptr<TrainingLog> training_;      ///< null where nobody trains
-  std::unique_ptr<SessionBag> bag_;            ///< null without a bag
   std::unique_ptr<LatencyMeter> latency_;      ///< null in lock step, where wall time means nothing
   std::unique_ptr<BareTimerLoop> timer_loop_;  ///< null in lock step
 

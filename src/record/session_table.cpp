@@ -1,10 +1,14 @@
 #include "record/session_table.h"
 
+#include <algorithm>
+#include <cstdlib>
+
 namespace microinjection {
 namespace {
 
 constexpr Nanoseconds kStale = 50000000;  ///< ns past which poses and forces are not believed
 constexpr Nanoseconds kForever = std::numeric_limits<Nanoseconds>::max();
+constexpr Nanoseconds kLongestStep = 60000000000;  ///< ns between two calls past which the clock was set
 
 template <typename Entry>
 auto valueOf(const Entry* entry) {
@@ -13,10 +17,13 @@ auto valueOf(const Entry* entry) {
 
 }  // namespace
 
-SessionTable::SessionTable(Nanoseconds period, Nanoseconds patience) : period_(period), patience_(patience) {
-  rows_.precision(9);
-  rows_ << "time_s,phase,depth_m,predicted_axial_N,measured_axial_N,measured_lateral_N,hand_force_N,in_contact,"
-           "punctured,tip_x_m,tip_y_m,tip_z_m,layers_punctured,injection_state,injected_volume_m3,punctures_felt\n";
+const char* const SessionTable::kHeader =
+    "time_s,phase,depth_m,predicted_axial_N,measured_axial_N,measured_lateral_N,hand_force_N,in_contact,punctured,"
+    "tip_x_m,tip_y_m,tip_z_m,layers_punctured,injection_state,injected_volume_m3,punctures_felt\n";
+
+SessionTable::SessionTable(Nanoseconds period, Nanoseconds patience, Sink sink)
+    : period_(period), patience_(patience), sink_(std::move(sink)) {
+  line_.precision(9);
 }
 
 double SessionTable::duration() const {
@@ -27,9 +34,23 @@ void SessionTable::advance(Nanoseconds now) {
   if (!began_) {
     began_ = now;
     next_ = now;
+    seen_ = now;
   }
+  if (std::abs(now - seen_) > kLongestStep) skipTo(now);
   seen_ = now;
   advanceTo(now - patience_);
+}
+
+/// The clock was set. There are no messages for the rows in between, which may be more than a disk can hold. Set back,
+/// what was received before does not hold.
+void SessionTable::skipTo(Nanoseconds now) {
+  if (now > seen_) {
+    advanceTo(seen_);
+  } else {
+    forgetAll();
+  }
+  const Nanoseconds due = std::max(*began_, now - patience_);
+  next_ = *began_ + (due - *began_ + period_ - 1) / period_ * period_;
 }
 
 void SessionTable::finish() {
@@ -37,7 +58,9 @@ void SessionTable::finish() {
 }
 
 void SessionTable::advanceTo(Nanoseconds end) {
-  for (; !done_ && next_ <= end; next_ += period_) {
+  // What comes after the end is not wanted, and must not pile up.
+  if (done_) return forgetBefore(end);
+  for (; next_ <= end; next_ += period_) {
     const auto* said = phase.at(next_, kForever);
     done_ = said && *said->value == "done";
     if (done_) return;
@@ -84,21 +107,23 @@ std::optional<double> SessionTable::depth(Nanoseconds time, const Pose& pose, bo
 }
 
 void SessionTable::write(const Row& row) {
+  line_.str("");
   const auto put = [this](const std::optional<double>& value) {
-    if (value) rows_ << *value;
-    rows_ << ',';
+    if (value) line_ << *value;
+    line_ << ',';
   };
-  rows_ << row.time << ',' << row.phase << ',';
+  line_ << row.time << ',' << row.phase << ',';
   put(row.depth);
   put(row.predicted ? std::optional(row.predicted->dot(row.needle->axis)) : std::nullopt);
   put(row.measured ? std::optional(row.measured->axial) : std::nullopt);
   put(row.measured ? std::optional(row.measured->lateral) : std::nullopt);
   put(row.hand_force);
-  rows_ << row.in_contact << ',' << row.cell.punctured << ',';
+  line_ << row.in_contact << ',' << row.cell.punctured << ',';
   for (int i = 0; i < 3; ++i) put(row.needle ? std::optional(row.needle->tip[i]) : std::nullopt);
-  rows_ << row.cell.layers_punctured << ',' << row.injection << ',';
+  line_ << row.cell.layers_punctured << ',' << row.injection << ',';
   put(row.volume);
-  rows_ << row.punctures << '\n';
+  line_ << row.punctures << '\n';
+  sink_(line_.str());
 }
 
 void SessionTable::forgetBefore(Nanoseconds time) {
@@ -111,6 +136,17 @@ void SessionTable::forgetBefore(Nanoseconds time) {
   cell.forgetBefore(time);
   injection.forgetBefore(time);
   volume.forgetBefore(time);
+}
+
+void SessionTable::forgetAll() {
+  needle = {};
+  predicted = {};
+  measured = {};
+  hand_force = {};
+  phase = {};
+  cell = {};
+  injection = {};
+  volume = {};
 }
 
 }  // namespace microinjection

@@ -14,7 +14,9 @@ namespace microinjection {
 
 /// The rows of force_depth.csv, one each period: every source is asked for what it said at that time, by the stamps of
 /// what it said. It therefore does not matter when a message arrived, as long as it did within `patience`: a recorder
-/// that the scheduler lets wait writes the same rows as one that is always prompt.
+/// that the scheduler lets wait writes the same rows as one that is always prompt. What comes later than that counts
+/// for the rows that are not written yet. A row is given away when it is due: the table keeps only what later ones
+/// need.
 ///
 /// Depth is the tip's travel along the pipette from where the cell says that it was touched, for the needle's pose that
 /// the predicted force belongs to (they have the same stamp); empty before the first touch.
@@ -54,9 +56,14 @@ class SessionTable {
     std::optional<double> volume;  ///< m^3
   };
 
+  /// Takes a row as it stands in the file, a line with its end.
+  using Sink = std::function<void(const std::string& line)>;
+  static const char* const kHeader;  ///< the file's first line, with its end
+
   /// @param period    ns between rows
   /// @param patience  ns for which a row waits for messages that are late
-  SessionTable(Nanoseconds period, Nanoseconds patience);
+  /// @param sink      gets every row that is due, in order
+  SessionTable(Nanoseconds period, Nanoseconds patience, Sink sink);
 
   // What the sources say, N and m. Force in the frame of the poses.
   Timeline<Pose> needle;
@@ -72,21 +79,23 @@ class SessionTable {
   void onRow(std::function<void(const Row&)> listener) { listener_ = std::move(listener); }
 
   /// Writes the rows that are due `patience` before `now`; the first call is time 0 of the table. After the row in
-  /// which the phase is `done` there are no more.
+  /// which the phase is `done` there are no more. Where `now` leaps by more than a minute, ahead or back,
+  /// there are no rows for the time in between.
   void advance(Nanoseconds now);
   /// Writes what is left, without patience.
   void finish();
 
   bool done() const { return done_; }
   double duration() const;  ///< s, of the rows
-  std::string text() const { return rows_.str(); }
 
  private:
   void advanceTo(Nanoseconds end);
+  void skipTo(Nanoseconds now);
   Row row(Nanoseconds time);
   std::optional<double> depth(Nanoseconds time, const Pose& pose, bool in_contact);
   void write(const Row& row);
   void forgetBefore(Nanoseconds time);
+  void forgetAll();
 
   Nanoseconds period_, patience_;
   std::optional<Nanoseconds> began_;
@@ -96,7 +105,8 @@ class SessionTable {
   bool in_contact_ = false;                    ///< of the last row
   std::optional<Eigen::Vector3d> touched_at_;  ///< m, last; empty before the first touch
   std::function<void(const Row&)> listener_;
-  std::ostringstream rows_;
+  Sink sink_;
+  std::ostringstream line_;  ///< the row that is written
 };
 
 }  // namespace microinjection

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -10,7 +13,7 @@ namespace microinjection {
 /// ns since the clock's zero: exact, so that messages that derive from one another can be joined by their stamps.
 using Nanoseconds = std::int64_t;
 
-/// What one source said, in the order of its stamps, whenever it came.
+/// What one source said, in the order of its stamps, whenever it came. A wrong stamp costs its own message only.
 template <typename Value>
 class Timeline {
  public:
@@ -19,44 +22,73 @@ class Timeline {
     std::optional<Value> value;  ///< empty: what was said before does not hold any more
   };
 
-  /// What is older than the newest is not believed; of two with the same stamp the later one holds.
+  /// Entries at the most, half a minute of a source at 1 kHz. Beyond that the newest stamps are dropped, so that a
+  /// source whose stamps are all ahead of the time cannot fill the memory.
+  static constexpr std::size_t kCapacity = 32768;
+
+  /// Inserts the value at its stamp. Of two with the same stamp the later one holds. A stamp before the oldest entry is
+  /// ignored once something was forgotten.
   void put(Nanoseconds stamp, std::optional<Value> value) {
-    if (!entries_.empty() && stamp < entries_.back().stamp) return;
-    if (!entries_.empty() && stamp == entries_.back().stamp) entries_.pop_back();
-    entries_.push_back({stamp, std::move(value)});
+    const bool holds = value.has_value();
+    if (insert(stamp, std::move(value))) withdrawable_ = holds ? std::optional(stamp) : std::nullopt;
   }
 
-  /// The source takes back what it said, as from right after its last stamp.
+  /// The source takes back what it said, as from right after the last stamp that arrived.
   void withdraw() {
-    if (!entries_.empty() && entries_.back().value) entries_.push_back({entries_.back().stamp + 1, std::nullopt});
+    if (withdrawable_ && *withdrawable_ < std::numeric_limits<Nanoseconds>::max())
+      insert(*withdrawable_ + 1, std::nullopt);
+    withdrawable_.reset();
   }
 
   /// The last entry that was said at `time` or before, when it has a value and is not older than `timeout`; else null.
   const Entry* at(Nanoseconds time, Nanoseconds timeout) const {
-    const Entry* found = nullptr;
-    for (const Entry& entry : entries_) {
-      if (entry.stamp > time) break;
-      found = &entry;
-    }
-    return found && found->value && time - found->stamp <= timeout ? found : nullptr;
+    const auto after = firstStampAfter(time);
+    if (after == entries_.begin()) return nullptr;
+    const Entry& found = *std::prev(after);
+    return found.value && time - found.stamp <= timeout ? &found : nullptr;
   }
 
   /// The first entry with a value for which `is(value)` after `time`; else null.
   template <typename Predicate>
   const Entry* firstAfter(Nanoseconds time, const Predicate& is) const {
-    for (const Entry& entry : entries_) {
-      if (entry.stamp > time && entry.value && is(*entry.value)) return &entry;
+    for (auto entry = firstStampAfter(time); entry != entries_.end(); ++entry) {
+      if (entry->value && is(*entry->value)) return &*entry;
     }
     return nullptr;
   }
 
   /// Forgets what at(time) and later ones do not need.
   void forgetBefore(Nanoseconds time) {
-    while (entries_.size() > 1 && entries_[1].stamp <= time) entries_.pop_front();
+    for (; entries_.size() > 1 && entries_[1].stamp <= time; entries_.pop_front()) forgot_ = true;
   }
 
+  std::size_t size() const { return entries_.size(); }
+
  private:
+  using Place = typename std::deque<Entry>::const_iterator;
+
+  Place firstStampAfter(Nanoseconds time) const {
+    return std::upper_bound(entries_.begin(), entries_.end(), time,
+                            [](Nanoseconds wanted, const Entry& entry) { return wanted < entry.stamp; });
+  }
+
+  /// False: it is older than what is known.
+  bool insert(Nanoseconds stamp, std::optional<Value> value) {
+    const Place after = firstStampAfter(stamp);
+    const auto index = after - entries_.cbegin();
+    if (index == 0 && forgot_) return false;
+    if (index > 0 && entries_[index - 1].stamp == stamp) {
+      entries_[index - 1].value = std::move(value);
+      return true;
+    }
+    entries_.insert(after, {stamp, std::move(value)});
+    if (entries_.size() > kCapacity) entries_.pop_back();
+    return true;
+  }
+
   std::deque<Entry> entries_;
+  bool forgot_ = false;                      ///< the oldest entry is not the first that there was
+  std::optional<Nanoseconds> withdrawable_;  ///< stamp that arrived last, where its value holds
 };
 
 }  // namespace microinjection

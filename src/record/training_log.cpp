@@ -129,9 +129,21 @@ TrainingLog::Result TrainingLog::finish(const std::string& folder, const std::st
   Result result;
   result.score = session_.score(config_.task);
   result.text = toText(config_, session, result.score);
-  writeFileAtomically(folder + "/training.yaml", toYaml(config_, session, result.score, session_.leftOut()));
-  result.in_history = result.score.outcome != TrainingOutcome::kUntouched;
-  if (result.in_history) appendTrainingRow(config_.history, config_.operator_name, session, result.score);
+  const auto attempt = [&result](const auto& write) {
+    try {
+      write();
+      return true;
+    } catch (const std::exception& error) {
+      result.errors.push_back(error.what());
+      return false;
+    }
+  };
+  attempt([&] {
+    writeFileAtomically(folder + "/training.yaml", toYaml(config_, session, result.score, session_.leftOut()));
+  });
+  result.in_history = result.score.outcome != TrainingOutcome::kUntouched && attempt([&] {
+                        appendTrainingRow(config_.history, config_.operator_name, session, result.score);
+                      });
   return result;
 }
 

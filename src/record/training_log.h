@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/config_reader.h"
 #include "control/training_score.h"
@@ -27,14 +28,15 @@ class TrainingLog {
   struct Result {
     TrainingScore score;
     bool in_history = false;
-    std::string text;  ///< for people, a few lines
+    std::string text;                 ///< for people, a few lines
+    std::vector<std::string> errors;  ///< a text for each file that could not be written
   };
 
   explicit TrainingLog(const TrainingConfig& config) : config_(config) {}
 
   const TrainingConfig& config() const { return config_; }
   void add(const SessionTable::Row& row);
-  /// At the end; `session`: its date, say. @throws std::runtime_error where a file cannot be written
+  /// At the end; `session`: its date, say. A file that cannot be written keeps no other from being written.
   Result finish(const std::string& folder, const std::string& session) const;
 
  private:

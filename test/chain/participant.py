@@ -69,6 +69,9 @@ class Participant:
         """Is gone for those that go on. Before another one is made in this process."""
         for subscriber in self._subscribers:
             subscriber.unregister()
+        # The next one's time begins anew: what is latched here would be ahead of it.
+        for publisher in (*self._outputs.values(), *self._silences.values()):
+            publisher.unregister()
 
     def call(self, service, kind, *arguments, messages=None):
         """Calls a service of a node that answers in a tick, which have `messages`, and returns its answer."""

@@ -60,9 +60,18 @@ std::vector<std::vector<std::string>> rows(const std::string& text) {
   return result;
 }
 
+/// A table whose rows stay here.
+struct Recorded {
+  explicit Recorded(Nanoseconds patience)
+      : table(kPeriod, patience, [this](const std::string& line) { text += line; }) {}
+  std::string text = SessionTable::kHeader;
+  SessionTable table;
+};
+
 /// A recorder that looks every 10 ms.
 std::string recordPromptly(const std::vector<Message>& messages) {
-  SessionTable table(kPeriod, kPatience);
+  Recorded recorded(kPatience);
+  SessionTable& table = recorded.table;
   table.advance(kStart);
   std::size_t next = 0;
   for (Nanoseconds now = kStart; now < kStart + kSteps * kMillisecond; now += 10 * kMillisecond) {
@@ -70,11 +79,12 @@ std::string recordPromptly(const std::vector<Message>& messages) {
     table.advance(now);
   }
   table.finish();
-  return table.text();
+  return recorded.text;
 }
 
 TEST(SessionTable, LayersStateAndVolumeStandAtTheEndOfARow) {
-  SessionTable table(kPeriod, 0);
+  Recorded recorded(0);
+  SessionTable& table = recorded.table;
   SessionTable::Cell cell;
   std::vector<SessionTable::Row> told;
   table.onRow([&told](const SessionTable::Row& row) { told.push_back(row); });
@@ -86,12 +96,12 @@ TEST(SessionTable, LayersStateAndVolumeStandAtTheEndOfARow) {
   table.injection.put(kStart + kPeriod, {{"inject", 2}});
   table.volume.put(kStart + kPeriod, 2.5e-15);
   table.advance(kStart + kPeriod);
-  const auto all = rows(table.text());
+  const auto all = rows(recorded.text);
   ASSERT_EQ(all.size(), 2u);
   const std::vector<std::string> first(all[0].end() - 4, all[0].end()), last(all[1].end() - 4, all[1].end());
   EXPECT_EQ(first, (std::vector<std::string>{"0", "approach", "", "0"})) << "an unknown volume is an empty field";
   EXPECT_EQ(last, (std::vector<std::string>{"2", "inject", "2.5e-15", "2"}));
-  EXPECT_NE(table.text().find(",layers_punctured,injection_state,injected_volume_m3,punctures_felt\n"),
+  EXPECT_NE(recorded.text.find(",layers_punctured,injection_state,injected_volume_m3,punctures_felt\n"),
             std::string::npos);
   ASSERT_EQ(told.size(), 2u);
   EXPECT_EQ(told[0].volume, std::nullopt);
@@ -125,7 +135,8 @@ TEST(SessionTable, ARecorderThatStarvesWritesTheSameRows) {
     arrivals.push_back({arrival, &messages[i]});
   }
   std::stable_sort(arrivals.begin(), arrivals.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  SessionTable table(kPeriod, kPatience);
+  Recorded recorded(kPatience);
+  SessionTable& table = recorded.table;
   table.advance(kStart);
   std::size_t next = 0;
   for (Nanoseconds now = kStart; now < kStart + kSteps * kMillisecond; now += (300 + random() % 900) * kMillisecond) {
@@ -135,11 +146,12 @@ TEST(SessionTable, ARecorderThatStarvesWritesTheSameRows) {
   for (; next < arrivals.size(); ++next) arrivals[next].second->put(table);
   table.advance(kStart + kSteps * kMillisecond - 10 * kMillisecond);
   table.finish();
-  EXPECT_EQ(table.text(), recordPromptly(messages));
+  EXPECT_EQ(recorded.text, recordPromptly(messages));
 }
 
 TEST(SessionTable, TheForceMeetsThePoseThatItBelongsTo) {
-  SessionTable table(kPeriod, 0);
+  Recorded recorded(0);
+  SessionTable& table = recorded.table;
   table.cell.put(kStart, {{Eigen::Vector3d(0, 0, kSurface), false}});
   table.predicted.put(kStart, Eigen::Vector3d(0, 0, 1e-6));
   for (int i = 0; i <= 5; ++i) {  // the pose goes on while the force is late
@@ -147,18 +159,19 @@ TEST(SessionTable, TheForceMeetsThePoseThatItBelongsTo) {
   }
   table.advance(kStart);
   table.advance(kStart + 5 * kMillisecond);
-  for (const auto& row : rows(table.text())) EXPECT_NEAR(std::stod(row[2]), 1e-6, 1e-14);
+  for (const auto& row : rows(recorded.text)) EXPECT_NEAR(std::stod(row[2]), 1e-6, 1e-14);
 }
 
 TEST(SessionTable, WhatIsStaleOrTakenBackIsLeftEmpty) {
-  SessionTable table(kPeriod, 0);
+  Recorded recorded(0);
+  SessionTable& table = recorded.table;
   table.needle.put(kStart, {{{0, 0, 30e-6}, Eigen::Vector3d::UnitZ()}});
   table.predicted.put(kStart, Eigen::Vector3d::Zero());
   table.measured.put(kStart, {{1e-6, 2e-6}});
   table.measured.withdraw();
   table.advance(kStart);
   table.advance(kStart + 60 * kMillisecond);
-  const auto written = rows(table.text());
+  const auto written = rows(recorded.text);
   ASSERT_EQ(written.size(), 13u);
   EXPECT_EQ(written[0][4], "1e-06");
   EXPECT_EQ(written[1][4], "");
@@ -167,15 +180,89 @@ TEST(SessionTable, WhatIsStaleOrTakenBackIsLeftEmpty) {
 }
 
 TEST(SessionTable, EndsWithTheOperator) {
-  SessionTable table(kPeriod, 0);
+  Recorded recorded(0);
+  SessionTable& table = recorded.table;
   table.advance(kStart);
   table.phase.put(kStart + 2 * kMillisecond, "indent");
   table.phase.put(kStart + 12 * kMillisecond, "done");
   for (int i = 1; i < 10; ++i) table.advance(kStart + i * 10 * kMillisecond);
   table.finish();
   EXPECT_TRUE(table.done());
-  EXPECT_EQ(rows(table.text()).size(), 3u);  // at 0, 5 and 10 ms
+  EXPECT_EQ(rows(recorded.text).size(), 3u);  // at 0, 5 and 10 ms
   EXPECT_NEAR(table.duration(), 0.010, 1e-12);
+}
+
+TEST(SessionTable, ARowIsGivenAwayWhenItIsDue) {
+  Recorded recorded(2 * kPeriod);
+  recorded.table.advance(kStart);
+  EXPECT_EQ(rows(recorded.text).size(), 0u);
+  recorded.table.advance(kStart + 2 * kPeriod);
+  EXPECT_EQ(rows(recorded.text).size(), 1u);
+  recorded.table.advance(kStart + 10 * kPeriod);
+  EXPECT_EQ(rows(recorded.text).size(), 9u);
+}
+
+/// A stamp that is ahead of the time by a second to a hundred years, in every column.
+TEST(SessionTable, AWildStampCostsItsOwnMessage) {
+  std::vector<Message> messages = session();
+  const std::string clean = recordPromptly(messages);
+  for (const Nanoseconds ahead : {1000 * kMillisecond, 3600 * 1000 * kMillisecond, Nanoseconds(3000000000000000000)}) {
+    messages = session();
+    for (int source = 0; source < 5; ++source) {
+      const auto bad = std::find_if(messages.begin(), messages.end(), [source](const Message& message) {
+        return message.source == source && message.stamp >= kStart + 500 * kMillisecond;
+      });
+      const Nanoseconds t = bad->stamp + ahead;
+      bad->put = [source, t](SessionTable& table) {
+        if (source == 0) table.needle.put(t, {{{0, 0, 1}, Eigen::Vector3d::UnitZ()}});
+        if (source == 1) table.predicted.put(t, Eigen::Vector3d(0, 0, 9));
+        if (source == 2) table.measured.put(t, {{9, 9}});
+        if (source == 3) table.hand_force.put(t, 9.0);
+        if (source == 4) table.cell.put(t, SessionTable::Cell{});
+      };
+    }
+    const auto expected = rows(clean), written = rows(recordPromptly(messages));
+    ASSERT_EQ(written.size(), expected.size());
+    int different = 0;
+    for (std::size_t i = 0; i < expected.size(); ++i) different += written[i] != expected[i];
+    // The row that the message was for, and the one at its stamp, where the session lasts until then.
+    EXPECT_LE(different, 2) << ahead;
+    EXPECT_GE(different, 1) << ahead << ": the row that lacks its message";
+  }
+}
+
+TEST(SessionTable, AfterTheEndNothingPilesUp) {
+  Recorded recorded(0);
+  SessionTable& table = recorded.table;
+  table.phase.put(kStart, "done");
+  for (int i = 0; i < 5000; ++i) {
+    table.needle.put(kStart + i * kMillisecond, {{Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ()}});
+    table.advance(kStart + i * kMillisecond);
+  }
+  EXPECT_TRUE(table.done());
+  EXPECT_LT(table.needle.size(), 200u);
+}
+
+/// A clock that leaps would ask for more rows than a disk can hold.
+TEST(SessionTable, AClockThatLeapsHasNoRowsInBetween) {
+  Recorded recorded(kPatience);
+  SessionTable& table = recorded.table;
+  for (int i = 0; i <= 1000; ++i) table.advance(kStart + i * 10 * kMillisecond);
+  const Nanoseconds later = kStart + 100000000 * kMillisecond;
+  for (int i = 0; i <= 1000; ++i) table.advance(later + i * 10 * kMillisecond);
+  const auto ahead = rows(recorded.text);
+  EXPECT_EQ(ahead.size(), 2001u + 2001u) << "the whole of the time before, and 10 s with those of the patience";
+  EXPECT_NEAR(std::stod(ahead[2000][0]), 10, 1e-9);
+  EXPECT_NEAR(std::stod(ahead[2001][0]), 1e5 - 2, 1e-3);
+  for (int i = 0; i <= 1000; ++i) {
+    const Nanoseconds now = kStart + (20000 + i * 10) * kMillisecond;
+    table.volume.put(now, 1e-15);
+    table.advance(now);
+  }
+  const auto back = rows(recorded.text);
+  EXPECT_EQ(back.size(), ahead.size() + 2001u);
+  EXPECT_NEAR(std::stod(back.back()[0]), 28, 1e-9);
+  EXPECT_EQ(back.back()[14], "1e-15");
 }
 
 }  // namespace

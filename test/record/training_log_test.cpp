@@ -87,6 +87,24 @@ TEST_F(TrainingLogTest, ASessionIsWrittenAndEntered) {
       << result.text;
 }
 
+TEST_F(TrainingLogTest, AFileThatCannotBeWrittenHidesNoOther) {
+  std::filesystem::create_directories(folder_ + "/training.yaml");
+  TrainingLog log(config_);
+  const auto result = indented(log).finish(folder_, "now");
+  ASSERT_EQ(result.errors.size(), 1u);
+  EXPECT_NE(result.errors[0].find("training.yaml: cannot be written"), std::string::npos) << result.errors[0];
+  EXPECT_TRUE(result.in_history);
+  EXPECT_NE(content(config_.history).find("\nada,now,complete,"), std::string::npos);
+
+  std::filesystem::remove(config_.history);
+  std::filesystem::create_directories(config_.history);
+  TrainingLog second(config_);
+  const auto none = indented(second).finish(folder_, "now");
+  EXPECT_EQ(none.errors.size(), 2u);
+  EXPECT_FALSE(none.in_history);
+  EXPECT_NE(none.text.find("100 of 100 points"), std::string::npos) << "the score is for people all the same";
+}
+
 TEST_F(TrainingLogTest, TheMeasuredForceCountsWhereItIsAskedFor) {
   config_.force = "measured";
   TrainingLog log(config_);
