@@ -8,15 +8,11 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <stdexcept>
+
+#include "base/errors.h"
 
 namespace microinjection {
 namespace {
-
-[[noreturn]] void fail(const std::string& path, const std::string& reason) {
-  throw std::runtime_error(path + ": cannot be written: " + reason);
-}
 
 bool writeAll(int file, const std::string& content) {
   size_t done = 0;
@@ -26,37 +22,66 @@ bool writeAll(int file, const std::string& content) {
     if (count < 0) return false;
     done += static_cast<size_t>(count);
   }
-  return ::fsync(file) == 0;
+  return true;
+}
+
+/// `good`: so far; else errno has the reason. Closes the file and throws WriteError when that or what was before
+/// failed.
+void finish(int file, bool good, const std::string& path) {
+  int reason = errno;
+  if (::close(file) != 0 && good) good = false, reason = errno;
+  if (!good) throw WriteError(path, std::strerror(reason));
+}
+
+void makeFolder(const std::filesystem::path& folder, const std::string& path) {
+  std::error_code error;
+  if (!folder.empty()) std::filesystem::create_directories(folder, error);
+  if (error) throw WriteError(path, error.message());
+}
+
+/// A complete new file beside `path`; its name. Nothing is left when it throws WriteError, which names `path`.
+std::string writeTemporary(const std::string& path, const std::string& content) {
+  std::string temporary = path + ".XXXXXX";
+  const int file = ::mkstemp(temporary.data());
+  if (file < 0) throw WriteError(path, std::strerror(errno));
+  // mkstemp keeps the file to its owner; a result is for everybody that the umask allows.
+  const mode_t mask = ::umask(0);
+  ::umask(mask);
+  try {
+    finish(file, ::fchmod(file, 0666 & ~mask) == 0 && writeAll(file, content) && ::fsync(file) == 0, path);
+  } catch (const WriteError&) {
+    ::unlink(temporary.c_str());
+    throw;
+  }
+  return temporary;
 }
 
 }  // namespace
 
 void writeFileAtomically(const std::string& path, const std::string& content) {
-  const std::filesystem::path directory = std::filesystem::path(path).parent_path();
   std::error_code error;
-  if (!directory.empty()) std::filesystem::create_directories(directory, error);
-  if (error) fail(path, error.message());
-
-  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)) {
-    // A device or a pipe is written to, not replaced.
-    std::ofstream out(path, std::ios::binary);
-    if (!out.write(content.data(), static_cast<std::streamsize>(content.size())).flush()) fail(path, "write failed");
+  if (!std::filesystem::exists(path, error) || std::filesystem::is_regular_file(path, error)) {
+    replaceFileAtomically(path, content);
     return;
   }
+  const int file = ::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY);
+  if (file < 0) throw WriteError(path, std::strerror(errno));
+  finish(file, writeAll(file, content), path);
+}
 
-  std::string temporary = path + ".XXXXXX";
-  const int file = ::mkstemp(temporary.data());
-  if (file < 0) fail(path, std::strerror(errno));
-  // mkstemp keeps the file to its owner; a result is for everybody that the umask allows.
-  const mode_t mask = ::umask(0);
-  ::umask(mask);
-  bool good = ::fchmod(file, 0666 & ~mask) == 0 && writeAll(file, content);
-  int reason = errno;
-  if (::close(file) != 0 && good) good = false, reason = errno;
-  if (good && std::rename(temporary.c_str(), path.c_str()) != 0) good = false, reason = errno;
-  if (good) return;
+void replaceFileAtomically(const std::string& path, const std::string& content) {
+  makeFolder(std::filesystem::path(path).parent_path(), path);
+  const std::string temporary = writeTemporary(path, content);
+  if (std::rename(temporary.c_str(), path.c_str()) == 0) return;
+  const int reason = errno;
   ::unlink(temporary.c_str());
-  fail(path, std::strerror(reason));
+  throw WriteError(path, std::strerror(reason));
+}
+
+void requireWritableFolder(const std::string& folder) {
+  constexpr std::size_t kBlock = 4096;  // of a file system: an empty file would fit on a full one
+  makeFolder(folder, folder);
+  ::unlink(writeTemporary(folder + "/writable", std::string(kBlock, ' ')).c_str());
 }
 
 }  // namespace microinjection

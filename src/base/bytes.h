@@ -44,7 +44,7 @@ class ByteReader {
   template <typename Array>
   void array(Array& values) {
     const auto size = number<std::uint64_t>();
-    if (size > bytes_.size()) throw std::runtime_error("the data are damaged");
+    if (size > bytes_.size()) throw std::runtime_error("there is less than was written");
     values.resize(size);
     const std::size_t length = size * sizeof(*values.data());
     std::memcpy(static_cast<void*>(values.data()), take(length), length);
@@ -53,7 +53,7 @@ class ByteReader {
 
  private:
   const char* take(std::size_t length) {
-    if (length > bytes_.size() - at_) throw std::runtime_error("the data are damaged");
+    if (length > bytes_.size() - at_) throw std::runtime_error("there is less than was written");
     const char* result = bytes_.data() + at_;
     at_ += length;
     return result;

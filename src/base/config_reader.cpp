@@ -1,6 +1,7 @@
 #include "base/config_reader.h"
 
 #include <cmath>
+#include <filesystem>
 #include <sstream>
 
 #include "base/errors.h"
@@ -171,6 +172,8 @@ void ConfigReader::finish() {
 }
 
 YAML::Node loadYamlMap(const std::string& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) throw ConfigError(path + ": is a directory; must be a YAML file");
   try {
     YAML::Node node = YAML::LoadFile(path);
     if (!node.IsMap()) throw ConfigError(path + ": must be a YAML map");

@@ -14,4 +14,11 @@ class ConfigError : public std::runtime_error {
   explicit ConfigError(const std::vector<std::string>& messages);
 };
 
+/// A result that could not be written. what() names the path, or the standard output, and the system's reason.
+class WriteError : public std::runtime_error {
+ public:
+  WriteError(const std::string& place, const std::string& reason)
+      : std::runtime_error(place + ": cannot be written: " + reason) {}
+};
+
 }  // namespace microinjection

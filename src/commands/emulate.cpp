@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "base/errors.h"
+#include "base/standard_output.h"
 #include "rigs/rig_registry.h"
 #include "serial/emulator_host.h"
 
@@ -37,6 +38,8 @@ Faults: KIND[:VALUE][@TIME]; TIME in s since the start, at once without it
   error:CODE   its next command is answered with this error: MP-285: 0, 1, 2, 4, 8;
                Zaber: BADDATA, AGAIN, ... (rejection) or FS, WT, ... (a warning flag, until it is cleared)
   interrupt    what moves is stopped as if by hand
+
+Exit status: 0 interrupted; 2 bad usage, a terminal or link that cannot be made, or output that cannot be written.
 )";
 
 volatile std::sig_atomic_t interrupted = 0;
@@ -89,6 +92,7 @@ std::optional<Arguments> parse(int argc, char** argv) {
   }
   if (given.count("help")) {
     std::cout << kHelp << '\n' << options;
+    flushStandardOutput();
     return std::nullopt;
   }
   if (rig.empty()) throw ConfigError("RIG is missing: must be " + rigNames());
@@ -149,7 +153,7 @@ class Transcript {
   }
   void flush() {
     if (!text_.empty()) std::printf("%9.3f %c %s\n", begin_, direction_, text_.c_str());
-    std::fflush(stdout);
+    flushStandardOutput();
     text_.clear();
   }
 
@@ -199,7 +203,7 @@ void serve(const Arguments& arguments) {
   Positions positions(arguments.positions);
   EmulatorHost host(device, arguments.baud, arguments.link);
   std::printf("emulate: %s at %s, %d baud\n", rig.name.c_str(), arguments.link.c_str(), arguments.baud);
-  std::fflush(stdout);
+  flushStandardOutput();
   Lines lines;
   Transcript transcript;
   const auto start = std::chrono::steady_clock::now();

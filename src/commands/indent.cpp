@@ -12,6 +12,7 @@
 
 #include "base/atomic_file.h"
 #include "base/errors.h"
+#include "base/standard_output.h"
 #include "cell/biomembrane.h"
 #include "cell/cell_model.h"
 #include "cell/converged_force.h"
@@ -170,7 +171,10 @@ std::vector<ForcePoint> solve(const Scene& scene, const IndentArguments& argumen
 
 int run(int argc, char** argv) {
   const std::optional<IndentArguments> parsed = parseIndentArguments(argc, argv);
-  if (!parsed) return kConverged;
+  if (!parsed) {
+    flushStandardOutput();  // the help
+    return kConverged;
+  }
   const IndentArguments& arguments = *parsed;
   const Scene scene = loadScene(arguments.scene);
   const std::vector<ForcePoint> points = solve(scene, arguments);
@@ -188,7 +192,8 @@ int run(int argc, char** argv) {
     }
   }
   if (arguments.csv == "-") {
-    std::cout << table << std::flush;
+    std::cout << table;
+    flushStandardOutput();
   } else {
     writeFileAtomically(arguments.csv, table);
   }

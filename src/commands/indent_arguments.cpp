@@ -38,8 +38,8 @@ must be left out.
 Example:
   indent --scene config/cells/mouse_oocyte.yaml --depths 1e-6,2e-6,5e-6 --tolerance 0.01 --csv force.csv
 
-Exit status: 0 all depths converged; 2 bad usage or scene; 3 some depth did not converge (its row is written);
-4 all converged, but some depth not to the --tolerance that was given.
+Exit status: 0 all depths converged; 2 bad usage or scene, or output that cannot be written (the message names it); 3 some
+depth did not converge (its row is written); 4 all converged, but some depth not to the --tolerance that was given.
 
 Options)";
 

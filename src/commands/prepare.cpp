@@ -7,14 +7,17 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <iostream>
-#include <optional>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "base/atomic_file.h"
 #include "base/cache_file.h"
 #include "base/errors.h"
+#include "base/standard_output.h"
 #include "base/worker_processes.h"
 #include "cell/scene.h"
 #include "surrogate/model_choice.h"
@@ -38,9 +41,12 @@ Takes minutes, shows its progress, and may be interrupted: what is done is kept 
 lie in $XDG_CACHE_HOME (else ~/.cache) under cell_microinjection/prepared, in a folder named after the cell, the tip and
 the program's version; another cell or tip is prepared anew, the needle's offset does not matter.
 
-Exit status: 0 prepared (or was already); 2 bad usage, or a scene that cannot be prepared (friction, adhesion, a viscosity that does not
-relax, tensegrity: the message names it); 3 the cell has no solution in all
-of the range, as under a sharp disc that folds: nothing is stored.
+Data that are damaged, or of another version, are named and made anew.
+
+Exit status: 0 prepared (or was already); 2 bad usage, a scene that cannot be prepared (friction, adhesion, a viscosity that
+does not relax, tensegrity: the message names it), or data or output that cannot be written (the message names the path and
+the reason; the folder is tried before anything is solved); 3 the cell has no solution in all of the range, as under a sharp
+disc that folds: nothing is stored.
 
 Options)";
 
@@ -90,28 +96,29 @@ class Preparing {
   int work() {
     prctl(PR_SET_PDEATHSIG, SIGKILL);  // whoever ends the preparation ends its workers
     const TrainingRay& ray = plan_.rays.at(arguments_.ray);
-    const TrainingResult result = solveRay(scene_, ray);
-    writeCacheFile(file(arguments_.ray), description(arguments_.ray), encode(result));
+    try {
+      writeCacheFile(file(arguments_.ray), description(arguments_.ray), encode(solveRay(scene_, ray)));
+    } catch (const std::exception&) {
+      std::fputc('\n', stderr);  // the preparation's progress is a line without an end
+      throw;
+    }
     return kDone;
   }
 
   int run() {
     const std::string path = preparedFile(scene_, plan_);
-    if (!arguments_.again && PreparedCell::load(scene_, plan_.range, path)) {
+    if (wasPrepared(path)) {
       std::printf("prepare: was prepared before: %s\n", path.c_str());
-      if (!loadFigures(scene_, "live")) measureOthers();  // of another live mesh, or interrupted
+      const auto figures = loadFigures(scene_, "live");
+      if (figures) return kDone;
+      tellDamage(figures.state, figures.reason);
+      requireWritable(path);
+      measureOthers();  // of another live mesh, or interrupted
       return kDone;
     }
+    requireWritable(path);
     solveMissing();
-    std::vector<TrainingResult> results;
-    bool complete = true;
-    for (std::size_t i = 0; i < plan_.rays.size(); ++i) {
-      results.push_back(decodeTraining(*readCacheFile(file(i), description(i))));
-      if (results.back().reason.empty()) continue;
-      tell(plan_.rays[i], results.back());
-      complete = complete && plan_.rays[i].level != kCoarseLevel;  // where the fine mesh ends the coarse one goes on
-    }
-    if (!complete) throw std::runtime_error("the cell has no solution in all of the range (see above): not prepared");
+    const std::vector<TrainingResult> results = loadAll();
     std::fprintf(stderr, "prepare: fitting\n");
     const PreparedCell cell = PreparedCell::fit(scene_, plan_, results);
     cell.save(scene_, plan_.range, path);
@@ -143,22 +150,80 @@ class Preparing {
     }
   }
 
+  bool wasPrepared(const std::string& path) const {
+    if (arguments_.again) return false;
+    const auto prepared = PreparedCell::load(scene_, plan_.range, path);
+    tellDamage(prepared.state, prepared.reason);
+    return static_cast<bool>(prepared);
+  }
+
+  /// What is there and cannot be used is not passed over in silence.
+  static void tellDamage(CacheState state, const std::string& reason) {
+    if (state == CacheState::kRead || state == CacheState::kMissing) return;
+    std::fprintf(stderr, "prepare: %s; it is made anew\n", reason.c_str());
+  }
+
+  /// Before minutes of work: that its results can be kept.
+  void requireWritable(const std::string& prepared) const {
+    requireWritableFolder(folder_);
+    std::vector<std::string> paths = {prepared};
+    for (std::size_t i = 0; i < plan_.rays.size(); ++i) paths.push_back(file(i));
+    std::error_code error;
+    for (const std::string& path : paths) {
+      if (std::filesystem::is_directory(path, error)) throw WriteError(path, "it is a directory; remove it");
+    }
+  }
+
+  CacheRead<TrainingResult> load(std::size_t ray) const {
+    return loadTraining(file(ray), description(ray), plan_.rays[ray], surface_size_);
+  }
+
+  /// Of all paths. Throws std::runtime_error when one that must go on to its end does not.
+  std::vector<TrainingResult> loadAll() const {
+    std::vector<TrainingResult> results;
+    bool complete = true;
+    for (std::size_t i = 0; i < plan_.rays.size(); ++i) {
+      const CacheRead<TrainingResult> read = load(i);
+      if (!read) throw std::runtime_error(read.reason);
+      results.push_back(*read.content);
+      if (results.back().reason.empty()) continue;
+      tell(plan_.rays[i], results.back());
+      complete = complete && plan_.rays[i].level != kCoarseLevel;  // where the fine mesh ends the coarse one goes on
+    }
+    if (!complete) throw std::runtime_error("the cell has no solution in all of the range (see above): not prepared");
+    return results;
+  }
+
   std::string description(std::size_t ray) const { return plan_.description(scene_, plan_.rays[ray]); }
   std::string file(std::size_t ray) const { return folder_ + "/path_" + contentHash(description(ray)); }
 
-  void solveMissing() {
+  std::vector<std::size_t> missingRays() const {
     std::vector<std::size_t> missing;
-    std::vector<std::vector<std::string>> commands;
     for (std::size_t i = 0; i < plan_.rays.size(); ++i) {
-      if (!arguments_.again && readCacheFile(file(i), description(i))) continue;
+      if (!arguments_.again) {
+        const CacheRead<TrainingResult> read = load(i);
+        if (read) continue;
+        tellDamage(read.state, read.reason);
+      }
       missing.push_back(i);
+    }
+    return missing;
+  }
+
+  void solveMissing() {
+    surface_size_ = trainingSurface(scene_, 0).nodes.size();
+    const std::vector<std::size_t> missing = missingRays();
+    std::vector<std::vector<std::string>> commands;
+    for (const std::size_t i : missing) {
       commands.push_back({thisProgram(), "--scene", arguments_.scene, "--ray", std::to_string(i)});
     }
     const auto start = std::chrono::steady_clock::now();
     std::size_t done = 0;
     show(done, missing.size(), 0);
     runWorkers(commands, arguments_.jobs, [&](std::size_t index, int status) {
-      if (status != 0) throw std::runtime_error("path " + std::to_string(missing[index]) + " failed, see above");
+      const std::string failed = "path " + std::to_string(missing[index]) + " failed, see above";
+      if (status == kBadUsage) throw ConfigError(failed);
+      if (status != 0) throw std::runtime_error(failed);
       const double spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       show(++done, missing.size(), spent);
     });
@@ -184,6 +249,7 @@ class Preparing {
   Scene scene_;
   Preparation plan_;
   std::string folder_;
+  Eigen::Index surface_size_ = 0;  ///< numbers of a path's surface; known when paths are solved
 };
 
 int run(int argc, char** argv) {
@@ -191,14 +257,20 @@ int run(int argc, char** argv) {
     const Arguments arguments = parse(argc, argv);
     if (arguments.show_help) {
       std::cout << kHelp << arguments.options;
+      flushStandardOutput();
       return kDone;
     }
     Preparing preparing(arguments);
-    return arguments.ray >= 0 ? preparing.work() : preparing.run();
+    const int status = arguments.ray >= 0 ? preparing.work() : preparing.run();
+    flushStandardOutput();
+    return status;
   } catch (const po::error& error) {
     std::cerr << "prepare: " << error.what() << "; see --help\n";
     return kBadUsage;
   } catch (const ConfigError& error) {
+    std::cerr << "prepare: " << error.what() << '\n';
+    return kBadUsage;
+  } catch (const WriteError& error) {
     std::cerr << "prepare: " << error.what() << '\n';
     return kBadUsage;
   } catch (const std::exception& error) {

@@ -11,6 +11,7 @@
 
 #include "base/atomic_file.h"
 #include "base/errors.h"
+#include "base/standard_output.h"
 #include "cell/cell_problem.h"
 #include "cell/contact_place.h"
 #include "cell/scene_mesh.h"
@@ -29,7 +30,8 @@ force of both. Takes a minute.
 
 Usage: trajectory_error --scene FILE --session CSV [--points N] [--level L] [--csv FILE]
 
-Exit status: 0 done; 2 bad usage, scene or session; 3 the full solution was lost on the way.
+Exit status: 0 done; 2 bad usage, scene or session, or output that cannot be written; 3 the full solution was lost on the
+way.
 
 Options)";
 
@@ -58,7 +60,8 @@ int compare(const Arguments& arguments) {
   if (!place) throw ConfigError(arguments.session + ": the tip is beside the cell of " + arguments.scene);
   CellProblem<3> problem(scene, makeSceneMesh<3>(scene, arguments.level), ElementKind::kP2P0);
   std::string table = "depth_m,session_N,full_N,error\n";
-  std::cout << table << std::flush;
+  std::cout << table;
+  flushStandardOutput();
   std::vector<double> errors;
   for (const TouchedMoment& moment : thinOut(way, arguments.points)) {
     const IndentationSolution full = problem.solve(moment.tip - place->origin);
@@ -68,7 +71,8 @@ int compare(const Arguments& arguments) {
     char row[160];
     std::snprintf(row, sizeof(row), "%.4g,%.5g,%.5g,%.4f\n", place->origin.z() - moment.tip.z(), moment.axial_force,
                   full.force.z(), moment.axial_force / full.force.z() - 1);
-    std::cout << row << std::flush;
+    std::cout << row;
+    flushStandardOutput();
     table += row;
   }
   if (errors.empty()) throw ConfigError(arguments.session + ": the tip hardly touched the cell");
@@ -78,6 +82,7 @@ int compare(const Arguments& arguments) {
       "largest %.2g %%\n",
       problem.body().mesh().elements.size(), 100 * median(errors),
       100 * *std::max_element(errors.begin(), errors.end()));
+  flushStandardOutput();
   return 0;
 }
 
@@ -97,6 +102,7 @@ int run(int argc, char** argv) {
     po::notify(values);
     if (values.count("help") != 0) {
       std::cout << kHelp << options;
+      flushStandardOutput();
       return 0;
     }
     if (arguments.scene.empty() || arguments.session.empty()) throw ConfigError("--scene and --session are required");
@@ -106,6 +112,9 @@ int run(int argc, char** argv) {
     std::cerr << "trajectory_error: " << error.what() << "; see --help\n";
     return kBadUsage;
   } catch (const ConfigError& error) {
+    std::cerr << "trajectory_error: " << error.what() << '\n';
+    return kBadUsage;
+  } catch (const WriteError& error) {
     std::cerr << "trajectory_error: " << error.what() << '\n';
     return kBadUsage;
   } catch (const std::exception& error) {

@@ -49,10 +49,16 @@ const char* take(const char* bytes, std::vector<T>& values, std::uint64_t count)
   return bytes + count * sizeof(T);
 }
 
-/// @pre the checksum was right, so the bytes are what encodeBody wrote.
-TetMesh decodeBody(const std::string& body) {
+/// Empty when the sizes do not fit the bytes.
+std::optional<TetMesh> decodeBody(const std::string& body) {
   std::uint64_t counts[2];
+  if (body.size() < sizeof(counts)) return std::nullopt;
   std::memcpy(counts, body.data(), sizeof(counts));
+  constexpr std::size_t kVertex = sizeof(Eigen::Vector3d), kTetrahedron = sizeof(std::array<int, 4>) + sizeof(int);
+  const std::size_t rest = body.size() - sizeof(counts);
+  // Divided, because a product of what a damaged file says may overflow.
+  if (counts[0] > rest / kVertex || counts[1] > rest / kTetrahedron) return std::nullopt;
+  if (counts[0] * kVertex + counts[1] * kTetrahedron != rest) return std::nullopt;
   TetMesh mesh;
   const char* bytes = take(body.data() + sizeof(counts), mesh.vertices, counts[0]);
   bytes = take(bytes, mesh.tetrahedra, counts[1]);
@@ -61,9 +67,8 @@ TetMesh decodeBody(const std::string& body) {
 }
 
 std::optional<TetMesh> readMesh(const std::string& path, const std::string& description) {
-  const std::optional<std::string> body = readCacheFile(path, description);
-  if (!body || body->size() < 2 * sizeof(std::uint64_t)) return std::nullopt;
-  return decodeBody(*body);
+  const CacheRead<std::string> read = readCacheFile(path, description);
+  return read ? decodeBody(*read.content) : std::nullopt;
 }
 
 }  // namespace

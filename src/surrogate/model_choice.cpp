@@ -137,17 +137,21 @@ void saveFigures(const Scene& scene, const ModelFigures& figures) {
   writeCacheFile(path, figuresDescription(scene, figures.name), writer.bytes());
 }
 
-std::optional<ModelFigures> loadFigures(const Scene& scene, const std::string& name) {
+CacheRead<ModelFigures> loadFigures(const Scene& scene, const std::string& name) {
   const std::string path = figuresFile(scene, name);
-  if (path.empty()) return std::nullopt;
-  const auto bytes = readCacheFile(path, figuresDescription(scene, name));
-  if (!bytes) return std::nullopt;
-  ByteReader reader(*bytes);
+  const CacheRead<std::string> read = readCacheFile(path, figuresDescription(scene, name));
+  if (!read) return read.failure<ModelFigures>();
+  if (read.content->size() != 2 * sizeof(double)) return damagedCache<ModelFigures>(path, "it is not of two numbers");
+  ByteReader reader(*read.content);
   ModelFigures figures;
   figures.name = name;
   figures.force_error = reader.number<double>();
   figures.time = reader.number<double>();
-  return figures;
+  // An infinite error is that of a model without a solution.
+  if (!(figures.force_error >= 0 && figures.time >= 0 && std::isfinite(figures.time))) {
+    return damagedCache<ModelFigures>(path, "a figure of the model cannot be");
+  }
+  return {figures, CacheState::kRead, ""};
 }
 
 }  // namespace microinjection

@@ -2,10 +2,10 @@
 
 #include <limits>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "base/cache_file.h"
 #include "cell/scene.h"
 #include "surrogate/prepared_cell.h"
 
@@ -37,6 +37,6 @@ ModelFigures measurePreparedCell(const Scene& scene, const std::shared_ptr<const
 
 /// Kept where the scene's prepared data lie, for a choice that must not take a minute.
 void saveFigures(const Scene& scene, const ModelFigures& figures);
-std::optional<ModelFigures> loadFigures(const Scene& scene, const std::string& name);
+CacheRead<ModelFigures> loadFigures(const Scene& scene, const std::string& name);
 
 }  // namespace microinjection

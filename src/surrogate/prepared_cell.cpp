@@ -1,8 +1,10 @@
 #include "surrogate/prepared_cell.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <stdexcept>
+#include <utility>
 
 #include "base/cache_file.h"
 #include "surrogate/axis_ray.h"
@@ -78,6 +80,42 @@ std::vector<double> forceErrors(const std::vector<TrainingSample>& samples, cons
 double median(const std::vector<double>& sorted) { return sorted[sorted.size() / 2]; }
 double common(const std::vector<double>& sorted) { return sorted[sorted.size() * 9 / 10]; }
 
+Eigen::VectorXd readCoefficients(ByteReader& reader) {
+  Eigen::VectorXd coefficients;
+  reader.array(coefficients);
+  if (!coefficients.allFinite()) throw std::runtime_error("a coefficient is not finite");
+  return coefficients;
+}
+
+/// Throws std::runtime_error or std::invalid_argument when what is read cannot be a cell of the plan.
+PreparedCell decode(const Preparation& plan, ByteReader& reader) {
+  PreparedCell cell;
+  cell.range = plan.range;
+  double& reached = cell.range.axis_depth;
+  EnergyScales scales;
+  EnergyDegrees degrees;
+  for (double* x : {&reached, &scales.angle, &scales.length, &scales.energy, &cell.median_error, &cell.common_error,
+                    &cell.largest_error}) {
+    *x = reader.number<double>();
+  }
+  for (int* x : {&degrees.place, &degrees.direction, &degrees.distance}) *x = reader.number<std::int32_t>();
+  if (!(reached > 0 && reached <= plan.range.axis_depth)) throw std::runtime_error("its range cannot be");
+  if (scales.angle != plan.scales.angle || scales.length != plan.scales.length || scales.energy != plan.scales.energy ||
+      degrees.place != plan.degrees.place || degrees.direction != plan.degrees.direction ||
+      degrees.distance != plan.degrees.distance) {
+    throw std::runtime_error("its scales or degrees are not those of this cell");
+  }
+  for (const double error : {cell.median_error, cell.common_error, cell.largest_error}) {
+    if (!(std::isfinite(error) && error >= 0)) throw std::runtime_error("an error of the fit cannot be");
+  }
+  cell.energy = EnergyExpansion(scales, degrees);
+  cell.energy.setCoefficients(readCoefficients(reader));
+  cell.field = ForceField(scales);
+  cell.field.setCoefficients(readCoefficients(reader));
+  cell.surface = SurfaceShape::read(reader);
+  return cell;
+}
+
 }  // namespace
 
 PreparedCell PreparedCell::fit(const Scene& scene, const Preparation& preparation,
@@ -144,29 +182,18 @@ void PreparedCell::save(const Scene& scene, const PreparationRange& asked, const
   writeCacheFile(path, Preparation::plan(scene, asked).description(scene) + kFit, writer.bytes());
 }
 
-std::optional<PreparedCell> PreparedCell::load(const Scene& scene, const PreparationRange& range,
-                                               const std::string& path) {
-  const auto bytes = readCacheFile(path, Preparation::plan(scene, range).description(scene) + kFit);
-  if (!bytes) return std::nullopt;
-  ByteReader reader(*bytes);
-  PreparedCell cell;
-  cell.range = range;
-  EnergyScales scales;
-  EnergyDegrees degrees;
-  for (double* x : {&cell.range.axis_depth, &scales.angle, &scales.length, &scales.energy, &cell.median_error,
-                    &cell.common_error, &cell.largest_error}) {
-    *x = reader.number<double>();
+CacheRead<PreparedCell> PreparedCell::load(const Scene& scene, const PreparationRange& range, const std::string& path) {
+  const Preparation plan = Preparation::plan(scene, range);
+  const CacheRead<std::string> read = readCacheFile(path, plan.description(scene) + kFit);
+  if (!read) return read.failure<PreparedCell>();
+  try {
+    ByteReader reader(*read.content);
+    PreparedCell cell = decode(plan, reader);
+    if (!reader.atEnd()) throw std::runtime_error("there is more than was written");
+    return {std::move(cell), CacheState::kRead, ""};
+  } catch (const std::exception& error) {  // std::invalid_argument of an expansion, too
+    return damagedCache<PreparedCell>(path, error.what());
   }
-  for (int* x : {&degrees.place, &degrees.direction, &degrees.distance}) *x = reader.number<std::int32_t>();
-  cell.energy = EnergyExpansion(scales, degrees);
-  Eigen::VectorXd coefficients;
-  reader.array(coefficients);
-  cell.energy.setCoefficients(coefficients);
-  reader.array(coefficients);
-  cell.field = ForceField(scales);
-  cell.field.setCoefficients(coefficients);
-  cell.surface = SurfaceShape::read(reader);
-  return cell;
 }
 
 }  // namespace microinjection

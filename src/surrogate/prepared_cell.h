@@ -1,9 +1,9 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "base/cache_file.h"
 #include "cell/scene.h"
 #include "surrogate/energy_expansion.h"
 #include "surrogate/force_field.h"
@@ -32,8 +32,8 @@ struct PreparedCell {
 
   /// `asked`: the range of the preparation; `range` is what of it was reached.
   void save(const Scene& scene, const PreparationRange& asked, const std::string& path) const;
-  /// Of this scene in `path`, prepared for a range; nothing when there is none.
-  static std::optional<PreparedCell> load(const Scene& scene, const PreparationRange& range, const std::string& path);
+  /// Of this scene in `path`, prepared for a range. Damaged as well when a size, an index or a value cannot be.
+  static CacheRead<PreparedCell> load(const Scene& scene, const PreparationRange& range, const std::string& path);
 };
 
 /// Folder of a scene's data, and the file of the result in it; empty when no cache is kept.

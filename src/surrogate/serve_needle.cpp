@@ -27,6 +27,22 @@ ServedCell unprepared(const Scene& scene, const CellTrackerConfig& config, const
   }
 }
 
+/// What is the matter with a scene's prepared data, and what to do; `call` makes them.
+std::string whyNotPrepared(const CacheRead<PreparedCell>& read, const std::string& call) {
+  switch (read.state) {
+    case CacheState::kDamaged:
+      return "the prepared data are damaged (" + read.reason + "); to make them anew, run: " + call;
+    case CacheState::kNotRegular:
+      return "the prepared data are not used (" + read.reason + "); to make them, remove it and run: " + call;
+    case CacheState::kUnreadable:
+      return "the prepared data cannot be used (" + read.reason + "); make it readable, or remove it and run: " + call;
+    case CacheState::kOther:
+      return "the prepared data are not of this program and cell (" + read.reason + "); run: " + call;
+    default:
+      return "the cell is not prepared; run: " + call;
+  }
+}
+
 /// Why a scene cannot be prepared; empty when it can.
 std::string cannotBePrepared(const Scene& scene) {
   try {
@@ -53,16 +69,20 @@ ServedCell serveNeedle(const Scene& scene, const std::string& model, const CellT
   const PreparationRange range = PreparationRange::standard(scene);
   const std::string call = "rosrun cell_microinjection prepare --scene " + path;
   auto loaded = PreparedCell::load(scene, range, preparedFile(scene, Preparation::plan(scene, range)));
-  if (!loaded && model == "prepared") {
-    throw ConfigError("model = prepared: this cell and tip were not prepared; run: " + call);
-  }
-  if (!loaded) return unprepared(scene, config, "the cell is not prepared; run: " + call);
-  const auto cell = std::make_shared<const PreparedCell>(std::move(*loaded));
+  const std::string why = loaded ? "" : whyNotPrepared(loaded, call);
+  if (!loaded && model == "prepared") throw ConfigError("model = prepared: " + why);
+  if (!loaded) return unprepared(scene, config, why);
+  const auto cell = std::make_shared<const PreparedCell>(std::move(*loaded.content));
   std::vector<ModelFigures> figures = {measurePreparedCell(scene, cell)};
-  if (const auto other = loadFigures(scene, "live")) figures.push_back(*other);
-  if (model == "prepared") figures.resize(1);
+  std::string note;
+  if (model != "prepared") {
+    const CacheRead<ModelFigures> other = loadFigures(scene, "live");
+    if (other) figures.push_back(*other.content);
+    if (!other && other.state != CacheState::kMissing)
+      note = "; figures of the live model: " + other.reason + "; run: " + call;
+  }
   const ModelChoice choice = chooseModel(scene.requirements, figures);
-  const std::string said = "model " + model + ": " + choice.reason;
+  const std::string said = "model " + model + ": " + choice.reason + note;
   if (choice.name == "live") return live(scene, config, said + "; it is", choice.meets);
   auto tracker = std::make_unique<PreparedTracker>(scene, cell);
   return {std::make_unique<PuncturableCell>(scene, std::move(tracker)), said, choice.meets};

@@ -4,7 +4,9 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <functional>
+#include <iterator>
+#include <stdexcept>
 
 namespace microinjection {
 namespace {
@@ -35,7 +37,7 @@ Eigen::MatrixXd readMatrix(ByteReader& reader) {
   const auto rows = reader.number<std::int64_t>();
   Eigen::VectorXd values;
   reader.array(values);
-  if (rows <= 0 || values.size() % rows != 0) throw std::runtime_error("the data are damaged");
+  if (rows <= 0 || values.size() % rows != 0) throw std::runtime_error("a matrix has no whole columns");
   return Eigen::Map<const Eigen::MatrixXd>(values.data(), rows, values.size() / rows);
 }
 
@@ -44,6 +46,9 @@ Eigen::MatrixXd readMatrix(ByteReader& reader) {
 SurfaceShape::SurfaceShape(const PreparationRange& range, const std::vector<double>& angles,
                            const std::vector<TrainingSurface>& surfaces, const std::vector<TrainingSample>& samples)
     : range_(range), node_count_(surfaces.front().nodes.size() / 3), triangles_(surfaces.front().triangles) {
+  for (const TrainingSample& sample : samples) {
+    if (sample.surface.size() != 3 * node_count_) throw std::invalid_argument("SurfaceShape: a sample of another mesh");
+  }
   angles_ = Eigen::Map<const Eigen::VectorXd>(angles.data(), static_cast<Eigen::Index>(angles.size()));
   rest_.resize(3 * node_count_, angles_.size());
   for (std::size_t i = 0; i < surfaces.size(); ++i) rest_.col(static_cast<Eigen::Index>(i)) = surfaces[i].nodes;
@@ -144,7 +149,32 @@ SurfaceShape SurfaceShape::read(ByteReader& reader) {
   reader.array(shape.angles_);
   for (Eigen::MatrixXd* matrix : {&shape.rest_, &shape.centres_, &shape.weights_}) *matrix = readMatrix(reader);
   shape.modes_ = readMatrix(reader).cast<float>();
+  if (corners.size() % 3 != 0 || !shape.consistent()) throw std::runtime_error("the surface's sizes do not fit");
+  if (!shape.finite()) throw std::runtime_error("a value of the surface is not finite");
   return shape;
+}
+
+bool SurfaceShape::consistent() const {
+  const auto isNode = [&](int node) { return node >= 0 && node < node_count_; };
+  const auto areNodes = [&](const Eigen::Vector3i& corners) {
+    return std::all_of(corners.data(), corners.data() + 3, isNode);
+  };
+  const Eigen::Index rows = 3 * static_cast<Eigen::Index>(mirrored_.size());
+  return node_count_ > 0 && static_cast<std::uint64_t>(node_count_) == mirrored_.size() &&
+         std::all_of(mirrored_.begin(), mirrored_.end(), isNode) &&
+         std::all_of(triangles_.begin(), triangles_.end(), areNodes) && angles_.size() > 0 &&
+         rest_.cols() == angles_.size() && rest_.rows() == rows && modes_.rows() == rows && centres_.rows() == 4 &&
+         weights_.rows() == centres_.cols() + 5 && weights_.cols() == modes_.cols();
+}
+
+bool SurfaceShape::finite() const {
+  const double sizes[] = {range_.angle, range_.depth, range_.axis_depth, range_.lateral};
+  const auto positive = [](double size) { return std::isfinite(size) && size > 0; };
+  // Two angles alike would divide by zero.
+  const double *first = angles_.data(), *last = first + angles_.size();
+  const bool ascending = std::adjacent_find(first, last, std::greater_equal<double>()) == last;
+  return std::all_of(std::begin(sizes), std::end(sizes), positive) && angles_.allFinite() && ascending &&
+         rest_.allFinite() && centres_.allFinite() && weights_.allFinite() && modes_.allFinite();
 }
 
 }  // namespace microinjection

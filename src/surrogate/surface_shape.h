@@ -26,11 +26,14 @@ class SurfaceShape {
                 Eigen::VectorXd& displaced) const;
 
   void write(ByteWriter& writer) const;
+  /// Throws std::runtime_error when what is read cannot be a shape: sizes, indices or values.
   static SurfaceShape read(ByteReader& reader);
 
  private:
   Eigen::Vector4d variables(double angle, const Eigen::Vector3d& displacement) const;
   Eigen::VectorXd amplitudes(const Eigen::Vector4d& at) const;
+  bool consistent() const;  ///< sizes and indices
+  bool finite() const;      ///< values
 
   PreparationRange range_;
   std::int64_t node_count_ = 0;  ///< number of nodes

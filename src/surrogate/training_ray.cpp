@@ -1,8 +1,10 @@
 #include "surrogate/training_ray.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <optional>
+#include <stdexcept>
 #include <vector>
 
 #include "base/bytes.h"
@@ -57,6 +59,25 @@ class SurfaceOfState {
   std::vector<float> sides_;  ///< -1 where that is its mirror image
 };
 
+/// Share of a ray's target at its place `index`, from 0.
+double share(const TrainingRay& ray, int index) {
+  return static_cast<double>((index + 1) * (index + 1)) / (ray.points * ray.points);
+}
+
+/// Empty when the result can be of the ray.
+std::string mismatch(const TrainingResult& result, const TrainingRay& ray, Eigen::Index surface_size) {
+  const int count = static_cast<int>(result.samples.size());
+  if (count > ray.points || (count < ray.points && result.reason.empty()))
+    return "not all places of its path are there";
+  const Eigen::Index expected = ray.level == kCoarseLevel ? surface_size : 0;
+  for (int i = 0; i < count; ++i) {
+    const TrainingSample& sample = result.samples[i];
+    if (sample.angle != ray.angle || sample.displacement != share(ray, i) * ray.target) return "it is of another path";
+    if (sample.surface.size() != expected) return "its surface is of another mesh";
+  }
+  return "";
+}
+
 }  // namespace
 
 TrainingResult solveRay(const Scene& scene, const TrainingRay& ray) {
@@ -67,14 +88,14 @@ TrainingResult solveRay(const Scene& scene, const TrainingRay& ray) {
   std::optional<SurfaceOfState> surface;
   if (ray.level == kCoarseLevel) surface.emplace(there, problem.body().mesh(), half);
   TrainingResult result;
-  for (int i = 1; i <= ray.points; ++i) {
-    const double share = static_cast<double>(i * i) / (ray.points * ray.points);
-    const IndentationSolution solution = problem.solve(share * ray.target);
+  for (int i = 0; i < ray.points; ++i) {
+    const Eigen::Vector3d displacement = share(ray, i) * ray.target;
+    const IndentationSolution solution = problem.solve(displacement);
     if (!solution.converged) {
       result.reason = solution.reason;
       break;
     }
-    result.samples.push_back({ray.angle, share * ray.target, solution.force, {}});
+    result.samples.push_back({ray.angle, displacement, solution.force, {}});
     if (surface) result.samples.back().surface = surface->displacement(problem.state());
   }
   return result;
@@ -104,9 +125,28 @@ TrainingResult decodeTraining(const std::string& bytes) {
     for (int k = 0; k < sample.displacement.size(); ++k) sample.displacement[k] = reader.number<double>();
     for (int k = 0; k < sample.force.size(); ++k) sample.force[k] = reader.number<double>();
     reader.array(sample.surface);
+    if (!std::isfinite(sample.angle) || !sample.displacement.allFinite() || !sample.force.allFinite() ||
+        !sample.surface.allFinite()) {
+      throw std::runtime_error("a value is not finite");
+    }
     result.samples.push_back(std::move(sample));
   }
+  if (!reader.atEnd()) throw std::runtime_error("there is more than was written");
   return result;
+}
+
+CacheRead<TrainingResult> loadTraining(const std::string& path, const std::string& description, const TrainingRay& ray,
+                                       Eigen::Index surface_size) {
+  const CacheRead<std::string> read = readCacheFile(path, description);
+  if (!read) return read.failure<TrainingResult>();
+  try {
+    TrainingResult result = decodeTraining(*read.content);
+    const std::string why = mismatch(result, ray, surface_size);
+    if (!why.empty()) return damagedCache<TrainingResult>(path, why);
+    return {std::move(result), CacheState::kRead, ""};
+  } catch (const std::runtime_error& error) {
+    return damagedCache<TrainingResult>(path, error.what());
+  }
 }
 
 TrainingSurface trainingSurface(const Scene& scene, double angle) {

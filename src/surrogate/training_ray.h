@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/cache_file.h"
 #include "surrogate/preparation.h"
 
 namespace microinjection {
@@ -25,7 +26,13 @@ struct TrainingResult {
 TrainingResult solveRay(const Scene& scene, const TrainingRay& ray);
 
 std::string encode(const TrainingResult& result);
-TrainingResult decodeTraining(const std::string& bytes);  ///< throws std::runtime_error when they are damaged
+/// Throws std::runtime_error when the bytes are not whole or hold a value that is not finite.
+TrainingResult decodeTraining(const std::string& bytes);
+
+/// The stored result of `ray`. Damaged as well when it is not of this ray, or when its surfaces are not of
+/// `surface_size` numbers (trainingSurface().nodes.size()), as those of another mesh.
+CacheRead<TrainingResult> loadTraining(const std::string& path, const std::string& description, const TrainingRay& ray,
+                                       Eigen::Index surface_size);
 
 /// The outer surface of the coarse meshes of solveRay with the needle's place at `angle`: all nodes, and triangles,
 /// each facet cut into four, counter-clockwise seen from outside. Nodes of different angles correspond.

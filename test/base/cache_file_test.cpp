@@ -1,8 +1,11 @@
 #include "base/cache_file.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 
@@ -24,20 +27,55 @@ class CacheFileTest : public testing::Test {
 
 TEST_F(CacheFileTest, GivesBackWhatWasStoredForTheSameThingOnly) {
   const std::string path = folder_ + "/below/file", body("a\nb\0c", 5);
-  EXPECT_FALSE(readCacheFile(path, "thing"));
+  EXPECT_EQ(readCacheFile(path, "thing").state, CacheState::kMissing);
   writeCacheFile(path, "thing", body);
-  EXPECT_EQ(readCacheFile(path, "thing"), body);
-  EXPECT_FALSE(readCacheFile(path, "other"));
+  const CacheRead<std::string> read = readCacheFile(path, "thing");
+  EXPECT_EQ(read.state, CacheState::kRead);
+  EXPECT_EQ(read.content, body);
+  const CacheRead<std::string> other = readCacheFile(path, "other");
+  EXPECT_FALSE(other);
+  EXPECT_EQ(other.state, CacheState::kOther);
+  EXPECT_EQ(other.reason.find(path + ": "), 0u) << other.reason;
 }
 
 TEST_F(CacheFileTest, NoticesDamage) {
   const std::string path = folder_ + "/file";
+  const auto expectDamage = [&](const std::string& what) {
+    const CacheRead<std::string> read = readCacheFile(path, "thing");
+    EXPECT_FALSE(read) << what;
+    EXPECT_EQ(read.state, CacheState::kDamaged) << what;
+    EXPECT_EQ(read.reason.find(path + ": is damaged: "), 0u) << read.reason;
+  };
   writeCacheFile(path, "thing", "0123456789");
-  std::filesystem::resize_file(path, std::filesystem::file_size(path) - 1);
-  EXPECT_FALSE(readCacheFile(path, "thing"));
+  const auto whole = std::filesystem::file_size(path);
+  std::filesystem::resize_file(path, whole - 1);
+  expectDamage("torn");
+  std::filesystem::resize_file(path, 8);
+  expectDamage("torn in its header");
+  std::filesystem::resize_file(path, 0);
+  expectDamage("empty");
   writeCacheFile(path, "thing", "0123456789");
   std::fstream(path).seekp(-2, std::ios::end).write("x", 1);
-  EXPECT_FALSE(readCacheFile(path, "thing"));
+  expectDamage("changed");
+  std::ofstream(path) << "not of this cache\n0123456789";
+  expectDamage("foreign");
+}
+
+/// A pipe that nobody writes to would be waited for.
+TEST_F(CacheFileTest, ReadsRegularFilesOnlyAndDoesNotWait) {
+  const std::string pipe = folder_ + "/pipe", loop = folder_ + "/loop";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  std::filesystem::create_symlink(loop, loop);
+  for (const std::string& path : {pipe, folder_, std::string("/dev/zero")}) {
+    const CacheRead<std::string> read = readCacheFile(path, "thing");
+    EXPECT_EQ(read.state, CacheState::kNotRegular) << path;
+    EXPECT_EQ(read.reason, path + ": is not a regular file");
+  }
+  const CacheRead<std::string> endless = readCacheFile(loop, "thing");
+  EXPECT_EQ(endless.state, CacheState::kUnreadable);
+  EXPECT_EQ(endless.reason, loop + ": cannot be read: " + std::strerror(ELOOP));
+  writeCacheFile(pipe, "thing", "body");
+  EXPECT_EQ(readCacheFile(pipe, "thing").content, "body") << "it was not replaced";
 }
 
 TEST(Bytes, AreReadAsWrittenAndNoFurther) {

@@ -152,6 +152,7 @@ TEST(LoadYamlMap, NamesTheFile) {
   EXPECT_NE(errorsOf([&] { loadYamlMap(path); }).find(path), std::string::npos);
   std::ofstream(path) << "- 1\n- 2\n";
   EXPECT_NE(errorsOf([&] { loadYamlMap(path); }).find("must be a YAML map"), std::string::npos);
+  EXPECT_EQ(errorsOf([] { loadYamlMap("/tmp"); }), "/tmp: is a directory; must be a YAML file");
 }
 
 }  // namespace

@@ -124,6 +124,20 @@ TEST_F(IndentCommand, WritesToTheStandardOutputByDefault) {
   EXPECT_FALSE(fs::exists(directory_ + "-"));
 }
 
+/// A disk that is full is a table that is not there.
+TEST_F(IndentCommand, OutputThatCannotBeWrittenIsAnError) {
+  const std::string indent = "cd " + directory_ + " && " MICROINJECTION_INDENT " ";
+  const std::string call = "--scene scene.yaml --depths 1e-6 --model live ";
+  for (const std::string& end : {call + ">/dev/full", call + ">&-", std::string("--help >/dev/full")}) {
+    EXPECT_EQ(WEXITSTATUS(std::system((indent + end + " 2>err.txt").c_str())), 2) << end;
+    EXPECT_NE(read(directory_ + "err.txt").find("indent: the standard output: cannot be written: "), std::string::npos)
+        << end;
+  }
+  const Outcome full = run(call + "--csv /dev/full");
+  EXPECT_EQ(full.status, 2);
+  EXPECT_NE(full.err.find("/dev/full: cannot be written: No space left"), std::string::npos) << full.err;
+}
+
 TEST_F(IndentCommand, MovesSidewaysBothWays) {
   const Outcome there = run("--scene scene.yaml --depths 1e-6 --lateral 1e-6,-2e-6");
   const Outcome back = run("--scene scene.yaml --depths 1e-6 --lateral -1e-6,2e-6");

@@ -87,6 +87,16 @@ TEST_F(TrajectoryErrorCommand, TheWayInEndsAtThePuncture) {
   EXPECT_NEAR(session_force, 0.1169e-6, 1e-12);
 }
 
+TEST_F(TrajectoryErrorCommand, OutputThatCannotBeWrittenIsAnError) {
+  std::ostringstream session;
+  session << kHeader;
+  for (int i = 0; i <= 10; ++i) session << i << ",1e-8,1,0,0," << 28e-6 - 0.1e-6 * i << '\n';
+  EXPECT_EQ(run(session.str(), "--points 1 --csv /dev/full"), 2);
+  EXPECT_NE(error_.find("/dev/full: cannot be written: No space left"), std::string::npos) << error_;
+  EXPECT_EQ(run(session.str(), ">/dev/full 2>err.txt #"), 2);
+  EXPECT_NE(error_.find("the standard output: cannot be written: No space left"), std::string::npos) << error_;
+}
+
 TEST_F(TrajectoryErrorCommand, RefusesWhatIsNoSession) {
   EXPECT_EQ(run("time_s,depth_m\n0,0\n"), 2);
   EXPECT_NE(error_.find("tip_x_m"), std::string::npos);

@@ -1,6 +1,7 @@
 #include "mesh/mesh_cache.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -9,6 +10,7 @@
 #include <set>
 
 #include "base/atomic_file.h"
+#include "base/cache_file.h"
 #include "mesh/needle_cell.h"
 
 namespace microinjection {
@@ -68,6 +70,26 @@ TEST_F(MeshCacheTest, DamagedFilesAreMadeAnew) {
     EXPECT_EQ(mesh.layers, made.layers);
     EXPECT_EQ(read(), good) << "the damaged file was left";
   }
+}
+
+/// A pipe that nobody writes to would be waited for; a wrong size with a right checksum would be read beyond.
+TEST_F(MeshCacheTest, WhatCannotBeAMeshIsMadeAnew) {
+  const TetMesh made = cache_.get(config_);
+  const std::string path = cache_.path(config_), good = read();
+  const std::size_t end = good.find('\n');
+  const std::string description = good.substr(0, good.rfind(" checksum ", end));
+  std::string counts = good.substr(end + 1);
+  counts[7] = '\x7f';  // of the vertices: more than memory
+  const std::string few = good.substr(end + 1, 8), less = good.substr(end + 1, good.size() - end - 2);
+  for (const std::string& body : {counts, few, less}) {
+    writeCacheFile(path, description, body);
+    EXPECT_EQ(cache_.get(config_).vertices, made.vertices);
+    EXPECT_EQ(read(), good) << "it was left";
+  }
+  fs::remove(path);
+  ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+  EXPECT_EQ(cache_.get(config_).tetrahedra, made.tetrahedra);
+  EXPECT_EQ(read(), good) << "it was left";
 }
 
 TEST_F(MeshCacheTest, EveryInputChangesTheFile) {

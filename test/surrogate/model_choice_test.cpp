@@ -42,8 +42,8 @@ TEST(ModelChoice, FiguresAreThoseOfTheLiveCell) {
   saveFigures(scene, {"live", 0.5, 0.02});
   const auto loaded = loadFigures(scene, "live");
   ASSERT_TRUE(loaded);
-  EXPECT_EQ(loaded->force_error, 0.5);
-  EXPECT_EQ(loaded->time, 0.02);
+  EXPECT_EQ(loaded.content->force_error, 0.5);
+  EXPECT_EQ(loaded.content->time, 0.02);
   std::vector<Scene> others(5, scene);
   others[0].mesh.size = 12.3e-6;
   others[1].mesh.stretch = 2;
@@ -57,7 +57,7 @@ TEST(ModelChoice, FiguresAreThoseOfTheLiveCell) {
               preparedFile(other, Preparation::plan(other, range)));
   }
   saveFigures(others[4], {"live", 0.02, 0.1});
-  EXPECT_EQ(loadFigures(scene, "live")->force_error, 0.5);
+  EXPECT_EQ(loadFigures(scene, "live").content->force_error, 0.5);
 }
 
 /// Under a rounded tip the live cell does not lock: some per cent, but no force in a millisecond.

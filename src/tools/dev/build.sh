@@ -3,6 +3,7 @@
 
 readonly WORKSPACE="$ROOT/catkin_ws"
 readonly CORE_BUILD="$ROOT/build/core"
+readonly SANITIZERS="address thread"
 
 command_build() {
   [[ $* == "" || $* == --core ]] || misuse "build takes nothing or --core, not '$*'"
@@ -38,13 +39,21 @@ build_workspace() {
   source_workspace
 }
 
+# build_core [SANITIZER [TARGET...]]: into build/core, or build/core-SANITIZER; all targets when none is given.
 build_core() {
-  forget_moved_build "$CORE_BUILD"
-  say "build: core without ROS in build/core ($(jobs) jobs)"
-  cmake -S "$ROOT" -B "$CORE_BUILD" -DMICROINJECTION_WITH_ROS=OFF -DCMAKE_BUILD_TYPE=RelWithDebInfo \
-    -DPYTHON_EXECUTABLE=/usr/bin/python3 || fail "configuring the core failed (messages above)"
-  cmake --build "$CORE_BUILD" --parallel "$(jobs)" "$@" || fail "the build of the core failed (messages above)"
+  local sanitizer=${1:-} folder
+  folder=$(core_folder "$sanitizer")
+  shift $(($# > 0))
+  forget_moved_build "$folder"
+  say "build: core without ROS in ${folder#"$ROOT/"} ($(jobs) jobs)"
+  cmake -S "$ROOT" -B "$folder" -DMICROINJECTION_WITH_ROS=OFF -DCMAKE_BUILD_TYPE=RelWithDebInfo \
+    -DMICROINJECTION_SANITIZE="$sanitizer" -DPYTHON_EXECUTABLE=/usr/bin/python3 ||
+    fail "configuring the core failed (messages above)"
+  cmake --build "$folder" --parallel "$(jobs)" ${1:+--target "$@"} ||
+    fail "the build of the core failed (messages above)"
 }
+
+core_folder() { echo "$CORE_BUILD${1:+-$1}"; }
 
 # CMake refuses a build folder that was made elsewhere (a copied or moved checkout).
 forget_moved_build() {

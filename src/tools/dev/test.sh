@@ -4,14 +4,28 @@
 readonly RESULTS="$ROOT/out/test"
 
 command_test() {
-  local kind=ros
-  if [[ ${1:-} == --core ]]; then
-    kind=core
+  local kind=ros sanitizer=""
+  while [[ ${1:-} == --* ]]; do
+    case $1 in
+      --core) kind=core ;;
+      --sanitize)
+        sanitizer=${2:-}
+        [[ -n $sanitizer && " $SANITIZERS " == *" $sanitizer "* ]] ||
+          misuse "--sanitize '$sanitizer': must be one of: $SANITIZERS"
+        shift
+        ;;
+      *) misuse "unknown option '$1' of test; the options are: --core, --sanitize" ;;
+    esac
     shift
-  fi
+  done
+  [[ $kind == core || -z $sanitizer ]] || misuse "--sanitize is for the core only: add --core"
   check_test_folders "$@"
-  setup
-  "test_$kind" "$@"
+  if [[ -n $sanitizer ]]; then
+    test_sanitized "$sanitizer" "$@"
+  else
+    setup
+    "test_$kind" "$@"
+  fi
 }
 
 test_ros() {
@@ -24,9 +38,40 @@ test_ros() {
 
 test_core() {
   build_core
+  run_core core "$CORE_BUILD" "$@"
+}
+
+# run_core KIND BUILD_FOLDER [TEST_FOLDER...]
+run_core() {
   # Makes each gtest program write a JUnit file there.
-  export GTEST_OUTPUT="xml:$RESULTS/core/"
-  run_tests core "$CORE_BUILD" "$RESULTS/core" "$@"
+  export GTEST_OUTPUT="xml:$RESULTS/$1/"
+  run_tests "$1" "$2" "$RESULTS/$1" "${@:3}"
+}
+
+# test_sanitized SANITIZER [TEST_FOLDER...]: builds only the tests that it runs, because that takes long.
+test_sanitized() {
+  local sanitizer=$1 folder targets=()
+  shift
+  for folder in "$@"; do
+    ! compgen -G "$ROOT/test/$folder/*_test.cpp" >/dev/null || targets+=("${folder}_test")
+  done
+  [[ $# -eq 0 || ${#targets[@]} -gt 0 ]] || misuse "no tests of the core in: $*"
+  setup
+  build_core "$sanitizer" "${targets[@]}"
+  "use_${sanitizer}_sanitizer"
+  # A sanitized program takes several times as long.
+  TEST_TIMEOUT=14400 run_core "core-$sanitizer" "$(core_folder "$sanitizer")" "$@"
+}
+
+use_address_sanitizer() {
+  export ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1
+}
+
+use_thread_sanitizer() {
+  export TSAN_OPTIONS=second_deadlock_stack=1
+  # libgomp is not instrumented: the sanitizer does not see how its threads wait for each other, and reports races that
+  # there are not. CHOLMOD and OpenBLAS then run in the caller's thread.
+  export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
 }
 
 # run_tests KIND BUILD_FOLDER JUNIT_FOLDER [TEST_FOLDER...]
@@ -38,7 +83,7 @@ run_tests() {
   # What an earlier run left must neither hide nor fake a failure.
   rm -rf "$junit" "$log"
   mkdir -p "$junit" "$RESULTS"
-  (cd "$build" && ctest --parallel "$(jobs)" --output-on-failure --no-tests=error --timeout 900 -R "$(name_pattern "$@")") || status=$?
+  (cd "$build" && ctest --parallel "$(jobs)" --output-on-failure --no-tests=error --timeout "${TEST_TIMEOUT:-900}" -R "$(name_pattern "$@")") || status=$?
   cp "$build/Testing/Temporary/LastTest.log" "$log" || status=1
   say "test: summary of $kind"
   /usr/bin/python3 "$ROOT/src/tools/test_summary.py" "$junit" || status=1

@@ -1,0 +1,22 @@
+#include "base/standard_output.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <iostream>
+
+#include "base/errors.h"
+
+namespace microinjection {
+
+void flushStandardOutput() {
+  errno = 0;
+  std::cout.flush();
+  const bool flushed = std::fflush(stdout) == 0;
+  const int reason = errno;
+  if (flushed && std::ferror(stdout) == 0 && std::cout) return;
+  // Without a reason it failed before, when there was more than a buffer holds.
+  throw WriteError("the standard output", reason != 0 ? std::strerror(reason) : "an earlier write failed");
+}
+
+}  // namespace microinjection
