@@ -63,6 +63,9 @@ class KillableNodes:
     def dead(self):
         return [node for node, process in self._running.items() if process.poll() is not None]
 
+    def process(self, node):
+        return self._running[node]
+
     def status(self, node):
         """Exit status; None while it runs."""
         return self._running[node].poll()

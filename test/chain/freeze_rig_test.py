@@ -1,0 +1,179 @@
+#!/usr/bin/python3
+"""The driver of a real rig is frozen (SIGSTOP) in each phase of an injection in which the needle moves: its stop guard
+stops the device. Live, with each emulated rig as a program of its own, which tells where the device truly is."""
+
+import os
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+import numpy as np
+import rospy
+import rostest
+import yaml
+from cell_microinjection.msg import InjectionStatus, OperatingState, StringStamped
+from geometry_msgs.msg import PoseStamped
+
+from case import case
+from killable_nodes import PACKAGE, PROGRAMS, KillableNodes, parameters
+from live_chain import Master, until
+
+SPEED = 20e-6  # m/s, of all motion
+SILENCE = 0.2 + 0.04  # s, until the guard says stop, and its tick
+STOP = 0.05  # s, from the stop to standstill, wire included; far more than either device needs
+AT_REST = 50  # readings in a row
+RIGS = (("zaber", "6.28"), ("zaber", "7.40"), ("mp285", None))  # an old Zaber has no moves that end by themselves
+
+
+class Emulator:
+    def __init__(self, rig, firmware, folder):
+        self.link, self._file = f"{folder}/{rig}", f"{folder}/positions.csv"
+        version = ["--firmware", firmware] if firmware else []
+        self._process = subprocess.Popen([PROGRAMS / "emulate", rig, "--link", self.link, "--positions", self._file,
+                                          *version])
+        until(lambda: os.path.exists(self.link), "a terminal")
+
+    def place(self):
+        """(time in s, place in m) of the last row."""
+        with open(self._file, "rb") as file:
+            file.seek(0, os.SEEK_END)
+            file.seek(max(0, file.tell() - 1000))
+            rows = file.read().decode().split("\n")
+        values = [float(value) for value in rows[-2].split(",")]
+        return values[0], np.array(values[1:])
+
+    def close(self):
+        self._process.kill()
+        self._process.wait()
+
+
+class Session:
+    """An automatic injection with this rig."""
+
+    def __init__(self, rig, emulator):
+        device = yaml.safe_load((PACKAGE / f"src/rigs/{rig}/{rig}.yaml").read_text())
+        device["port"]["path"] = emulator.link
+        goal = {"depth": 15e-6, "margin": 0.5e-6, "pulse": {"pressure": 20e3, "duration": 30.0}}
+        motion = {f"{name}_speed": SPEED for name in ("stab", "indent", "approach", "retract")}
+        controller = parameters("injection_controller", mode="automatic", goal=goal, detection={"noise_samples": 50},
+                                motion=motion, speed_limit=SPEED, auto_enable=False, input_timeout=1.0)
+        self.seen = {}
+        self._subscribers = [rospy.Subscriber(topic, kind, lambda message, topic=topic: self.seen.update({topic: message}))
+                             for topic, kind in (("/controller/injection_state", InjectionStatus),
+                                                 ("/needle/operating_state", OperatingState),
+                                                 ("/needle/measured_cp", PoseStamped))]
+        self.nodes = KillableNodes({
+            "micromanipulator": parameters("micromanipulator", rig=rig, device=device, allow_network=True,
+                                           command_timeout=1.0),
+            "injector": parameters("injector"), "injection_controller": controller,
+            "cell_simulator": parameters("cell_simulator", scene=str(PACKAGE / "test/chain/injected_oocyte.yaml"),
+                                         model="live", needle_timeout=1.0)})
+        self._move = rospy.Publisher("/needle/move_cp", PoseStamped, queue_size=1)
+        self.commands = rospy.Publisher("/controller/state_command", StringStamped, queue_size=1)
+        self.process = self.nodes.process("micromanipulator")
+
+    def begin(self):
+        """The needle goes to 4 um above the cell, and the injection begins."""
+        until(lambda: self.rig() == "ENABLED", "a rig that is ready")
+        until(lambda: self._move.get_num_connections() and self.commands.get_num_connections(), "connections")
+        message = PoseStamped()
+        message.header.stamp = rospy.Time.now()
+        message.pose.position.z, message.pose.orientation.w = 32e-6, 1
+        self._move.publish(message)
+        until(self.is_at_start, "a needle above the cell")
+        until(lambda: not self.seen["/needle/operating_state"].is_busy, "a needle that rests")
+        self.commands.publish(StringStamped(string="enable"))
+
+    def rig(self):
+        return self.seen["/needle/operating_state"].state if "/needle/operating_state" in self.seen else ""
+
+    def is_at_start(self):
+        message = self.seen.get("/needle/measured_cp")
+        return message and not message.header.stamp.is_zero() and abs(message.pose.position.z - 32e-6) < 0.2e-6
+
+    def state(self):
+        status = self.seen.get("/controller/injection_state")
+        return status.state if status else ""
+
+    def close(self):
+        self.process.send_signal(signal.SIGCONT)
+        self.nodes.stop()
+        self.nodes.forget()
+        for end in (*self._subscribers, self._move, self.commands):
+            end.unregister()
+
+
+class Stalls:
+    """A loop like the guard's, to know how long this machine kept such loops from the processor."""
+
+    def __init__(self):
+        self.total = 0.0  # s
+
+    def tick(self, duration=0.02):
+        before = time.monotonic()
+        time.sleep(duration)
+        self.total += max(0.0, time.monotonic() - before - 2 * duration)
+
+
+class FreezeRigTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.master = Master()
+        rospy.init_node("freezer")
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.master.kill()
+
+    def in_phase(self, session, emulator, phase):
+        until(lambda: session.state() == ("indent" if phase == "withdraw" else phase), phase)
+        if phase == "withdraw":
+            session.commands.publish(StringStamped(string="withdraw"))
+            until(lambda: session.state() == "withdraw", phase)
+        begun = emulator.place()[1]
+        until(lambda: np.abs(emulator.place()[1] - begun).max() > 0.5e-6, f"a needle that moves in {phase}")
+
+    def check_stops(self, session, emulator):
+        stalls, place, same = Stalls(), emulator.place(), 0
+        session.process.send_signal(signal.SIGSTOP)
+        frozen, last = place[1], place
+        while same < AT_REST:
+            stalls.tick()
+            now = emulator.place()
+            same = same + 1 if now[0] == last[0] else 0
+            last = now
+            self.assertLess(now[0] - place[0], 60, "it does not stop")
+        moved = np.abs(last[1] - frozen).max()
+        allowed = SPEED * (SILENCE + STOP + stalls.total)
+        self.assertLess(moved, allowed, f"the device moved {moved} m after its driver was frozen, allowed {allowed} m")
+        return last
+
+    def check_rests_when_it_wakes_up(self, session, emulator, stopped):
+        session.process.send_signal(signal.SIGCONT)
+        until(lambda: session.rig() == "ENABLED", "a rig that is ready again")
+        for _ in range(AT_REST):
+            time.sleep(0.02)
+        self.assertLess(np.abs(emulator.place()[1] - stopped[1]).max(), 0.1e-6, "it went on by itself")
+
+    def test_frozen_driver(self):
+        for rig, firmware in RIGS:
+            for phase in ("approach", "indent", "withdraw"):
+                with case(rig, firmware, phase), tempfile.TemporaryDirectory() as folder:
+                    emulator = Emulator(rig, firmware, folder)
+                    session = Session(rig, emulator)
+                    try:
+                        session.begin()
+                        self.in_phase(session, emulator, phase)
+                        stopped = self.check_stops(session, emulator)
+                        self.check_rests_when_it_wakes_up(session, emulator, stopped)
+                    except AssertionError as error:
+                        raise AssertionError(f"{error}; {session.nodes.report()}") from None
+                    finally:
+                        session.close()
+                        emulator.close()
+
+
+if __name__ == "__main__":
+    rostest.rosrun("cell_microinjection", "freeze_rig", FreezeRigTest)
