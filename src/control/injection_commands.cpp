@@ -1,5 +1,7 @@
 // What people and programs ask of the controller.
 
+#include <sstream>
+
 #include "control/injection_controller.h"
 
 namespace microinjection {
@@ -64,7 +66,11 @@ std::string InjectionController::start(const InjectionGoal& goal) {
   if (monitor_.touched()) return "the needle is in the cell; withdraw or home takes it out";
   std::string problems = goal.problems();
   if (!problems.empty()) return problems;
-  if (goal.depth > config_.guards.depth_limit) return "depth is above depth_limit";
+  if (goal.depth > config_.guards.depth_limit) {
+    std::ostringstream text;
+    text << "depth = " << goal.depth << " m, allowed up to depth_limit = " << config_.guards.depth_limit << " m";
+    return text.str();
+  }
   run_.start(goal, *setpoint_);
   monitor_.reset();
   happen(InjectionEvent::kStart);

@@ -9,6 +9,11 @@ namespace {
 
 constexpr double kOut = 1e-6;  ///< m before the touch, where a needle is out of the cell
 
+// Beyond these an announcement is a mistake: the fastest micromanipulators do some 0.02 m/s, and the slowest serial
+// line takes a fraction of a second for a command.
+constexpr double kFastestRig = 1;  ///< m/s
+constexpr double kLatestRig = 10;  ///< s
+
 bool trusted(const std::optional<Eigen::Vector3d>& value) { return value && value->allFinite(); }
 
 }  // namespace
@@ -32,10 +37,19 @@ InjectionController::InjectionController(const InjectionControllerConfig& config
       run_(config.motion, config.guards, config.mode == "automatic"),
       leash_(leash(config.guards, std::numeric_limits<double>::infinity())) {}
 
-void InjectionController::adaptTo(double speed, double lag) {
+std::string InjectionController::adaptTo(double speed, double lag) {
+  const Range speeds{0, kFastestRig, true, false}, lags = Range::closed(0, kLatestRig);
+  std::ostringstream refusal;
+  if (!speeds.contains(speed)) {
+    refusal << "speed = " << speed << " m/s, allowed " << speeds.text() << " m/s";
+  } else if (!lags.contains(lag)) {
+    refusal << "lag = " << lag << " s, allowed " << lags.text() << " s";
+  }
+  if (refusal.tellp() > 0) return refusal.str();
   rig_speed_ = std::min(speed, lag > 0 ? config_.guards.lag_limit / lag : speed);
   leash_ = leash(config_.guards, lag);
   run_.limitSpeed(rig_speed_);
+  return "";
 }
 
 bool InjectionController::busy() const {

@@ -82,8 +82,8 @@ class InjectionController {
   std::optional<Eigen::Vector3d> step(const Input& input, double dt);
 
   /// To a rig that is no faster than `speed` (m/s) and follows `lag` (s) late: never driven faster than lag_limit
-  /// allows, nor than configured.
-  void adaptTo(double speed, double lag);
+  /// allows, nor than configured. Empty, or why no rig is like that: then nothing changes.
+  std::string adaptTo(double speed, double lag);
   double speedLimit() const { return std::min(rig_speed_, config_.guards.speed_limit); }  ///< m/s
 
   OperatingState state() const { return state_; }

@@ -2,45 +2,60 @@
 
 #include <sstream>
 
-#include "base/errors.h"
-
 namespace microinjection {
 namespace {
 
-void readInto(InjectionGoal& goal, ConfigReader& reader) {
-  reader.boolean("puncture", goal.puncture);
-  reader.integer("layers", goal.layers, Range::closed(1, 10));
-  reader.number("depth", goal.depth, Range::positive());
-  reader.number("margin", goal.margin, Range::nonNegative());
-  reader.number("hold_time", goal.hold_time, Range::nonNegative());
-  ConfigReader pulse = reader.section("pulse");
-  pulse.number("pressure", goal.pulse.pressure, Range::finite());
-  pulse.number("duration", goal.pulse.duration, Range::nonNegative());
-  pulse.number("volume", goal.pulse.volume, Range::nonNegative());
-}
+using Limits = InjectionGoalLimits;
 
-void check(std::ostringstream& text, const char* name, double value, const Range& range) {
-  if (!range.contains(value))
-    text << (text.tellp() > 0 ? "; " : "") << name << " = " << value << ", allowed " << range.text();
-}
+const Range kLayers = Range::closed(1, Limits::kLayers);
+
+/// A number of a goal: its key, in the section pulse or outside of it, and what is allowed.
+struct Number {
+  bool of_pulse;
+  const char* key;
+  const char* unit;
+  Range allowed;
+  double& (*in)(InjectionGoal& goal);
+};
+
+const Number kNumbers[] = {
+    {false, "depth", "m", {0, Limits::kWay, true, false}, [](InjectionGoal& g) -> double& { return g.depth; }},
+    {false, "margin", "m", Range::closed(0, Limits::kWay), [](InjectionGoal& g) -> double& { return g.margin; }},
+    {false, "hold_time", "s", Range::closed(0, Limits::kHoldTime),
+     [](InjectionGoal& g) -> double& { return g.hold_time; }},
+    {true, "pressure", "Pa", Range::closed(0, Limits::kPressure),
+     [](InjectionGoal& g) -> double& { return g.pulse.pressure; }},
+    {true, "duration", "s", Range::closed(0, Limits::kDuration),
+     [](InjectionGoal& g) -> double& { return g.pulse.duration; }},
+    {true, "volume", "m^3", Range::closed(0, Limits::kVolume),
+     [](InjectionGoal& g) -> double& { return g.pulse.volume; }},
+};
 
 }  // namespace
 
 InjectionGoal InjectionGoal::read(ConfigReader& reader) {
   InjectionGoal goal;
-  readInto(goal, reader);
+  reader.boolean("puncture", goal.puncture);
+  reader.integer("layers", goal.layers, kLayers);
+  ConfigReader pulse = reader.section("pulse");
+  for (const Number& number : kNumbers) {
+    (number.of_pulse ? pulse : reader).number(number.key, number.in(goal), number.allowed);
+  }
   return goal;
 }
 
 std::string InjectionGoal::problems() const {
   std::ostringstream text;
-  check(text, "layers", layers, Range::closed(1, 10));
-  check(text, "depth", depth, Range::positive());
-  check(text, "margin", margin, Range::nonNegative());
-  check(text, "hold_time", hold_time, Range::nonNegative());
-  check(text, "pulse/pressure", pulse.pressure, Range::finite());
-  check(text, "pulse/duration", pulse.duration, Range::nonNegative());
-  check(text, "pulse/volume", pulse.volume, Range::nonNegative());
+  const auto check = [&text](const std::string& key, double value, const Range& allowed, const std::string& unit) {
+    if (allowed.contains(value)) return;
+    text << (text.tellp() > 0 ? "; " : "") << key << " = " << value << unit << ", allowed " << allowed.text() << unit;
+  };
+  check("layers", layers, kLayers, "");
+  InjectionGoal goal = *this;
+  for (const Number& number : kNumbers) {
+    check((number.of_pulse ? "pulse/" : "") + std::string(number.key), number.in(goal), number.allowed,
+          std::string(" ") + number.unit);
+  }
   return text.str();
 }
 

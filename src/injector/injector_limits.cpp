@@ -17,8 +17,8 @@ std::string outOf(const std::string& what, double value, const Eigen::Vector2d& 
 
 InjectorLimits InjectorLimits::read(ConfigReader& reader) {
   InjectorLimits limits;
-  reader.vector("pressure_range", limits.pressure_range);
-  reader.vector("duration_range", limits.duration_range, Range::positive());
+  reader.vector("pressure_range", limits.pressure_range, Range::closed(kVacuum, kHighestPressure));
+  reader.vector("duration_range", limits.duration_range, {0, kLongestPulse, true, false});
   if (limits.pressure_range[0] > limits.pressure_range[1]) reader.error("pressure_range", "must be [lowest, highest]");
   if (limits.duration_range[0] > limits.duration_range[1])
     reader.error("duration_range", "must be [shortest, longest]");

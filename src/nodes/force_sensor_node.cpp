@@ -44,7 +44,7 @@ ForceSensorNode::ForceSensorNode(ros::NodeHandle node, ros::NodeHandle private_n
     : parameters_(Parameters::read(private_node)),
       cycle_(node, parameters_.rate),
       source_(makeSource()),
-      readout_(source_->size(), parameters_.averaging),
+      readout_(source_->range(), parameters_.averaging),
       measured_(cycle_.output<geometry_msgs::WrenchStamped>("force_sensor/measured_cf")),
       raw_(cycle_.output<geometry_msgs::WrenchStamped>("force_sensor/raw_cf")) {
   advertiseServices(private_node);

@@ -22,6 +22,7 @@ Eigen::Vector3d torqueOf(const geometry_msgs::WrenchStamped& message) {
 SimulatedForceSource::SimulatedForceSource(Cycle& cycle, double timeout, const ForceSensorConfig& config,
                                            std::string frame, const Eigen::Isometry3d& tip_from_sensor)
     : model_(config),
+      range_(config.range),
       frame_(std::move(frame)),
       sensor_from_tip_(tip_from_sensor.linear().transpose()),
       force_(cycle.input<geometry_msgs::WrenchStamped>("cell/predicted_cf", Phase::kSameTick, timeout)),

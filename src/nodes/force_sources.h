@@ -30,6 +30,8 @@ class ForceSource {
   virtual ~ForceSource() = default;
 
   virtual int size() const = 0;  ///< of Signal::values
+  /// The largest of Signal::values that the sensor may be put under on purpose.
+  virtual Eigen::VectorXd range() const = 0;
   /// The reading that is new in this step. Empty: there is none, and untrusted() tells whether something is wrong.
   virtual std::optional<Signal> read(const Cycle::Tick& tick) = 0;
   virtual bool overloaded() const = 0;
@@ -52,6 +54,7 @@ class SimulatedForceSource : public ForceSource {
                        const Eigen::Isometry3d& tip_from_sensor);
 
   int size() const override { return 2; }
+  Eigen::VectorXd range() const override { return range_; }
   std::optional<Signal> read(const Cycle::Tick& tick) override;
   bool overloaded() const override { return model_.overloaded(); }
   void reset() override { model_.reset(); }
@@ -59,6 +62,7 @@ class SimulatedForceSource : public ForceSource {
 
  private:
   ForceSensor model_;
+  Eigen::Vector2d range_;  ///< N
   std::string frame_;
   Eigen::Matrix3d sensor_from_tip_;
   Input<geometry_msgs::WrenchStamped>& force_;
@@ -72,6 +76,7 @@ class SerialForceSource : public ForceSource {
                     double timeout, std::string frame);
 
   int size() const override { return 2; }
+  Eigen::VectorXd range() const override { return overload_.limit(); }
   std::optional<Signal> read(const Cycle::Tick& tick) override;
   bool overloaded() const override { return overload_.latched(); }
   void reset() override { overload_.reset(); }
@@ -92,6 +97,7 @@ class TopicForceSource : public ForceSource {
   TopicForceSource(Cycle& cycle, double timeout, const Eigen::Vector2d& overload);
 
   int size() const override { return 6; }
+  Eigen::VectorXd range() const override { return Eigen::VectorXd::Zero(size()); }  ///< it is calibrated where it is
   std::optional<Signal> read(const Cycle::Tick& tick) override;
   bool overloaded() const override { return overload_.latched(); }
   void reset() override { overload_.reset(); }

@@ -1,11 +1,15 @@
 #include "nodes/injection_action.h"
 
+#include <cstdlib>
 #include <limits>
+#include <utility>
 
 namespace microinjection {
 namespace {
 
-constexpr double kFeedback = 0.1;  ///< s between two
+constexpr std::int64_t kFeedback = 100000000;  ///< ns between two
+
+std::int64_t nanoseconds(const ros::Time& time) { return static_cast<std::int64_t>(time.toNSec()); }
 
 InjectionGoal toGoal(const cell_microinjection::InjectGoal& message) {
   InjectionGoal goal;
@@ -40,55 +44,89 @@ cell_microinjection::InjectResult toMessage(const InjectionResult& result) {
 
 InjectionAction::InjectionAction(const ros::NodeHandle& node, InjectionController& controller,
                                  const InjectionGoal& configured)
-    : controller_(controller), configured_(configured), server_(node, "controller/inject", false) {
-  server_.start();
+    : controller_(controller),
+      configured_(configured),
+      server_(
+          node, [this](GoalHandle goal, const std::string& refusal) { receive(goal, refusal); },
+          [this](GoalHandle goal) { cancel(goal); }) {}
+
+void InjectionAction::receive(GoalHandle goal, const std::string& refusal) {
+  const auto message = goal.getGoal();
+  const std::string problems = message->configured ? "" : toGoal(*message).problems();
+  if (!refusal.empty() || !problems.empty()) return refuse(goal, refusal.empty() ? problems : refusal);
+  recall("a newer goal came before it began");
+  next_ = goal;
+  leaves_ = true;
 }
 
-void InjectionAction::step(const ros::Time& now) {
-  if (serving_ && server_.isPreemptRequested() && !withdrawn_) {
-    withdrawn_ = true;
-    controller_.withdraw();  // refused where there is nothing to withdraw from: then it is over already
-  }
-  if (serving_ && !controller_.running()) end();
-  if (!serving_ && server_.isNewGoalAvailable()) begin();
-  if (serving_ && (now - told_).toSec() >= kFeedback) tell(now);
+void InjectionAction::cancel(GoalHandle goal) {
+  if (current_.isValid() && goal == current_) leaves_ = true;
+  if (next_.isValid() && goal == next_) recall("cancelled before it began");
 }
 
-void InjectionAction::begin() {
-  const auto goal = server_.acceptNewGoal();
-  const std::string refusal = controller_.start(goal->configured ? configured_ : toGoal(*goal));
-  if (refusal.empty()) {
-    serving_ = true;
-    withdrawn_ = false;
-    told_ = ros::Time();
-    return;
-  }
+/// The goal that waits, if there is one.
+void InjectionAction::recall(const std::string& reason) {
+  if (!next_.isValid()) return;
+  cell_microinjection::InjectResult result = toMessage({});
+  result.outcome = toText(InjectionOutcome::kPreempted);
+  result.reason = reason;
+  next_.setCanceled(result, reason);
+  next_ = GoalHandle();
+}
+
+void InjectionAction::refuse(GoalHandle goal, const std::string& refusal) {
   ROS_WARN_STREAM("injection refused: " << refusal);
   cell_microinjection::InjectResult result = toMessage({});
   result.outcome = "refused";
   result.reason = refusal;
-  server_.setAborted(result, refusal);
+  goal.setAccepted();
+  goal.setAborted(result, refusal);
+}
+
+void InjectionAction::step(const ros::Time& now) {
+  if (current_.isValid() && leaves_ && !withdrawn_) {
+    withdrawn_ = true;
+    controller_.withdraw();  // refused where there is nothing to withdraw from: then it is over already
+  }
+  if (current_.isValid() && !controller_.running()) end();
+  if (!current_.isValid() && next_.isValid()) begin();
+  if (current_.isValid() && std::abs(nanoseconds(now) - fed_back_ns_) >= kFeedback) {
+    publishFeedback();
+    fed_back_ns_ = nanoseconds(now);
+  }
+  server_.step(now);
+}
+
+void InjectionAction::begin() {
+  const GoalHandle goal = std::exchange(next_, GoalHandle());
+  const auto message = goal.getGoal();
+  const std::string refusal = controller_.start(message->configured ? configured_ : toGoal(*message));
+  if (!refusal.empty()) return refuse(goal, refusal);
+  current_ = goal;
+  current_.setAccepted();
+  leaves_ = withdrawn_ = false;
+  fed_back_ns_ = 0;
 }
 
 void InjectionAction::end() {
-  serving_ = false;
+  GoalHandle goal = std::exchange(current_, GoalHandle());
   const InjectionResult& result = controller_.result();
   const auto message = toMessage(result);
   switch (result.outcome) {
     case InjectionOutcome::kInjected:
     case InjectionOutcome::kPunctured:
     case InjectionOutcome::kIndented:
-      server_.setSucceeded(message, result.reason);
+      goal.setSucceeded(message, result.reason);
       break;
     case InjectionOutcome::kPreempted:
-      server_.setPreempted(message, result.reason);
+      goal.setCanceled(message, result.reason);
       break;
     default:
-      server_.setAborted(message, result.reason);
+      goal.setAborted(message, result.reason);
   }
 }
 
-void InjectionAction::tell(const ros::Time& now) {
+void InjectionAction::publishFeedback() {
   const InjectionFeedback& known = controller_.feedback();
   cell_microinjection::InjectFeedback feedback;
   feedback.state = toText(known.state);
@@ -98,8 +136,7 @@ void InjectionAction::tell(const ros::Time& now) {
   feedback.force = known.force;
   feedback.depth = known.depth;
   feedback.elapsed = known.elapsed;
-  server_.publishFeedback(feedback);
-  told_ = now;
+  current_.publishFeedback(feedback);
 }
 
 }  // namespace microinjection

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <sstream>
 
 #include "nodes/conversions.h"
 #include "nodes/force_topic.h"
@@ -96,12 +97,16 @@ void InjectionControllerNode::obey(const std::string& command) {
 }
 
 void InjectionControllerNode::adaptTo(const cell_microinjection::ManipulatorAbilities& rig) {
-  const double lag = rig.latency + rig.command_interval;
-  if (!(lag >= 0 && rig.speed > 0)) {
-    ROS_ERROR_STREAM("rig: " << rig.device << " tells no true abilities: latency, interval or speed; not heard");
+  std::ostringstream negative;
+  if (!(rig.latency >= 0 && rig.command_interval >= 0))
+    negative << "latency = " << rig.latency << " s, command_interval = " << rig.command_interval
+             << " s, allowed [0, inf)";
+  const std::string refusal =
+      negative.str().empty() ? model_.adaptTo(rig.speed, rig.latency + rig.command_interval) : negative.str();
+  if (!refusal.empty()) {
+    ROS_ERROR_STREAM("rig: the abilities of " << rig.device << " are ignored: " << refusal);
     return;
   }
-  model_.adaptTo(rig.speed, lag);
   ROS_INFO_STREAM("rig: " << rig.device << ", driven at " << model_.speedLimit() << " m/s at the most");
 }
 

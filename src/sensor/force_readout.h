@@ -10,22 +10,25 @@ namespace microinjection {
 /// over a time, the tare with nothing at the tip, the gain with known forces on it.
 class ForceReadout {
  public:
-  /// `size` of a reading, (axial, lateral) or more; the gain begins as 1 and the tare as 0. `averaging` in s.
-  ForceReadout(int size, double averaging);
+  /// `range`: the largest force (N) of each axis of a reading, (axial, lateral) or more, that may be known in a
+  /// calibration. The gain begins as 1 and the tare as 0. `averaging` in s.
+  ForceReadout(const Eigen::VectorXd& range, double averaging);
 
   /// Takes a raw reading (N) at `time` (s), for the average that is under way, and returns the force (N).
   Eigen::VectorXd read(const Eigen::VectorXd& raw, double time);
 
   /// Begins to average; empty, or why not. The tare in force stays until the new one is there.
   std::string beginTare();
-  /// Begins to average under a known force (N), of the reading's size.
+  /// Begins to average under a known force (N), of the reading's size: finite, not zero and within the range.
   std::string beginPoint(const Eigen::VectorXd& force);
   /// There is nothing trusted to average: gives up the average under way.
   void interrupt();
 
   /// The gain that fits force = gain (mean - tare) to the points in the least-squares sense. Points that span all axes
   /// give the whole matrix, with the coupling of the axes; otherwise each axis that has a force gets a gain of its own,
-  /// times its row of the present matrix. Empty, or why nothing changed.
+  /// times its row of the present matrix. Refused are points that do not determine that, a gain that changes the size
+  /// of a force more than a hundredfold, and a residual of more than half of the known forces (rms). Empty, or why
+  /// nothing changed.
   std::string solve();
   /// Forgets points and gain: 1 again. The tare stays.
   void clear();
@@ -46,10 +49,11 @@ class ForceReadout {
 
   std::string begin(Purpose purpose);
   void finishAverage();
-  std::string solveMatrix(const Eigen::MatrixXd& raw, const Eigen::MatrixXd& force);
-  std::string solveAxes(const Eigen::MatrixXd& raw, const Eigen::MatrixXd& force);
+  std::string solveMatrix(const Eigen::MatrixXd& raw, const Eigen::MatrixXd& force, Eigen::MatrixXd& gain) const;
+  std::string solveAxes(const Eigen::MatrixXd& raw, const Eigen::MatrixXd& force, Eigen::MatrixXd& gain) const;
 
-  double duration_;  ///< s
+  Eigen::VectorXd range_;  ///< N
+  double duration_;        ///< s
   Eigen::VectorXd tare_;
   Eigen::MatrixXd gain_;
   Purpose purpose_ = Purpose::kNone;

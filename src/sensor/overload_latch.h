@@ -12,6 +12,7 @@ class OverloadLatch {
 
   void check(const Eigen::Vector2d& load) { latched_ = latched_ || (load.cwiseAbs().array() > limit_.array()).any(); }
   bool latched() const { return latched_; }
+  const Eigen::Vector2d& limit() const { return limit_; }  ///< N
   void reset() { latched_ = false; }
 
  private:

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""The action Inject: approach, puncture, injection, withdrawal; and from wherever it is cancelled the needle comes out."""
+"""The action Inject: approach, puncture, injection, withdrawal; and from wherever it is cancelled the needle comes out.
+What cannot be meant is refused and costs no later goal."""
 
 import threading
 
@@ -7,13 +8,16 @@ import actionlib
 import numpy as np
 import rospy
 import rostest
-from actionlib_msgs.msg import GoalStatus
-from cell_microinjection.msg import InjectAction, InjectGoal
+from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
+from cell_microinjection.msg import InjectAction, InjectActionGoal, InjectActionResult, InjectGoal
 
 from injection_chain import InjectionChainTest
 
 PUNCTURE = 1.2e-6  # N, of the zona in injected_oocyte.yaml
-GOAL = {"puncture": True, "layers": 1, "depth": 15e-6, "margin": 2e-6, "hold_time": 0.1, "pressure": 20e3, "duration": 0.3}
+GOAL = {"puncture": True, "layers": 1, "depth": 15e-6, "margin": 2e-6, "hold_time": 0.1, "pressure": 20e3,
+        "duration": 0.3}
+INDENTATION = {**GOAL, "puncture": False, "depth": 2e-6, "hold_time": 0.0}
+LAST_TIME = rospy.Time(4294967295, 999999999)  # that a stamp can hold
 ENDED = (GoalStatus.SUCCEEDED, GoalStatus.PREEMPTED, GoalStatus.ABORTED)
 
 
@@ -46,13 +50,84 @@ class InjectTest(InjectionChainTest):
 
     def test_1_a_goal_that_cannot_be_is_aborted_with_the_reason(self):
         start = self.needle()
-        for changes, why in (({"layers": 0}, "layers = 0"), ({"depth": 1.0}, "depth is above depth_limit"),
-                             ({"depth": float("nan")}, "depth = nan")):
+        for changes, why in (({"layers": 0}, "layers = 0"), ({"depth": 200e-6}, "allowed up to depth_limit = "),
+                             ({"depth": float("nan")}, "depth = nan"),
+                             ({"depth": 1.0}, "depth = 1 m, allowed (0, 0.001] m"),
+                             ({"margin": 1e9}, "margin = 1e+09 m, allowed [0, 0.001] m"),
+                             ({"hold_time": 1e300}, "hold_time = 1e+300 s, allowed [0, 600] s"),
+                             ({"pressure": 1e300}, "pulse/pressure = 1e+300 Pa, allowed [0, 1e+06] Pa"),
+                             ({"pressure": -1.0}, "pulse/pressure = -1 Pa"),
+                             ({"duration": 61.0}, "pulse/duration = 61 s"),
+                             ({"volume": float("inf")}, "pulse/volume = inf m^3")):
             self.send(**changes)
             state, result = self.result()
             self.assertEqual((state, result.outcome), (GoalStatus.ABORTED, "refused"))
             self.assertIn(why, result.reason)
         np.testing.assert_array_equal(self.needle(), start)
+
+    def test_1_stamps_ahead_of_the_time_cost_their_own_message_only(self):
+        start, results, known = self.needle(), {}, set()
+        listeners = [rospy.Subscriber("/controller/inject/result", InjectActionResult,
+                                      lambda message: results.update({message.status.goal_id.id: message})),
+                     rospy.Subscriber("/controller/inject/status", GoalStatusArray,
+                                      lambda message: known.update(one.goal_id.id for one in message.status_list))]
+        goals = rospy.Publisher("/controller/inject/goal", InjectActionGoal, queue_size=10)
+        cancels = rospy.Publisher("/controller/inject/cancel", GoalID, queue_size=10)
+        self.tick_until(lambda: goals.get_num_connections() and cancels.get_num_connections() and
+                        all(listener.get_num_connections() for listener in listeners), "the connections")
+
+        def check_refused(name, stamp):
+            goals.publish(InjectActionGoal(goal_id=GoalID(stamp, name), goal=InjectGoal(**INDENTATION)))
+            self.tick_until(lambda: name in results, "the refusal")
+            status, result = results[name].status.status, results[name].result
+            self.assertEqual((status, result.outcome), (GoalStatus.ABORTED, "refused"))
+            self.assertIn("s ahead of the time, allowed 1 s", result.reason)
+
+        def check_served():
+            self.send(**INDENTATION)
+            state, result = self.result()
+            self.assertEqual((state, result.outcome), (GoalStatus.SUCCEEDED, "indented"))
+            self.check_out(start)
+
+        check_refused("last", LAST_TIME)
+        check_refused("later", self.chain.now + rospy.Duration(3600))
+        check_served()
+        # The goal that runs goes on beside one that is refused.
+        self.send(**INDENTATION)
+        self.tick_until(lambda: self.status().state == "approach", "the approach")
+        check_refused("beside", LAST_TIME)
+        self.assertEqual(self.status().state, "approach")
+        # A cancel of all is for all that are known.
+        cancels.publish(GoalID(LAST_TIME, ""))
+        state, result = self.result()
+        self.assertEqual((state, result.outcome), (GoalStatus.PREEMPTED, "preempted"))
+        self.check_out(start)
+        check_served()
+        # That of a goal that nobody knows is remembered for some seconds.
+        cancels.publish(GoalID(LAST_TIME, "nobody"))
+        cancels.publish(GoalID(rospy.Time(), "nobody else"))
+        self.tick_until(lambda: {"nobody", "nobody else"} <= known, "the cancels")
+        self.chain.run(5500)
+        known.clear()
+        self.chain.run(300)
+        self.assertFalse({"nobody", "nobody else"} & known)
+        check_served()
+
+    def test_2_a_newer_goal_replaces_the_one_that_runs(self):
+        start = self.needle()
+        self.send()
+        self.tick_until(lambda: self.status().state == "indent", "an indentation")
+        results = []
+        listener = rospy.Subscriber("/controller/inject/result", InjectActionResult, results.append)
+        self.tick_until(listener.get_num_connections, "the connection")
+        self.send(**INDENTATION)
+        self.tick_until(lambda: self.status().state == "withdraw", "the withdrawal")
+        self.assertEqual(results, [])
+        state, result = self.result()
+        self.assertEqual((state, result.outcome), (GoalStatus.SUCCEEDED, "indented"))
+        self.tick_until(lambda: len(results) == 2, "both results")
+        self.assertEqual([one.result.outcome for one in results], ["preempted", "indented"])
+        self.check_out(start)
 
     def test_2_cancelled_while_it_indents_it_withdraws(self):
         start = self.needle()

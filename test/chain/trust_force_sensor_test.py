@@ -93,6 +93,23 @@ class TrustTest(unittest.TestCase):
         self.assertTrue(self.calibrate(offset, CalibrateForceRequest.CLEAR).success)
         self.tare(wrench(0, 0, 0))
 
+    def test_calibrations_that_no_sensor_needs_are_refused(self):
+        nothing = wrench(0, 0, 0)
+        for known, why in (((0, 1e300), "the known axial force = 1e+300 N, allowed [-0.00049, 0.00049] N"),
+                           ((1e-3, 0), "the known lateral force = 0.001 N, allowed [-0.0009, 0.0009] N"),
+                           ((0, math.nan), "the known force is not finite"), ((0, 0), "the known force is zero")):
+            answer = self.calibrate(nothing, CalibrateForceRequest.ADD, known)
+            self.assertFalse(answer.success)
+            self.assertIn(why, answer.message)
+        # A force is announced that is not there.
+        self.assertTrue(self.calibrate(nothing, CalibrateForceRequest.ADD, (0, 400e-6)).success)
+        self.world.run(600, self.messages(nothing))
+        answer = self.calibrate(nothing, CalibrateForceRequest.SOLVE)
+        self.assertFalse(answer.success)
+        self.assertIn("the gain that fits the points changes forces by factors", answer.message)
+        self.assertEqual(list(answer.gain), [1, 0, 0, 1])
+        self.assertTrue(self.calibrate(nothing, CalibrateForceRequest.CLEAR).success)
+
     def test_an_overload_is_a_fault_until_reset(self):
         self.world.run(20, self.messages(wrench(0, 0, 1e-3)))  # beyond the range, not yet the overload
         self.assertFalse(self.reading().header.stamp.is_zero())

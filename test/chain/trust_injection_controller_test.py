@@ -8,7 +8,7 @@ import rospy
 import rostest
 from geometry_msgs.msg import PoseStamped, WrenchStamped
 
-from cell_microinjection.msg import InjectionPulse, InjectionStatus, InjectorState, StringStamped
+from cell_microinjection.msg import InjectionPulse, InjectionStatus, InjectorState, ManipulatorAbilities, StringStamped
 from messages import pose, position, wrench
 from participant import INVALID, Participant
 
@@ -108,6 +108,25 @@ class TrustTest(unittest.TestCase):
         self.commands.publish(StringStamped(string="disable"))
         run_until(lambda: "/injector/stop" in seen, "the stop")
         self.assertEqual(seen["/controller/injection_state"].state, "idle")
+
+    def test_abilities_that_no_rig_has_are_ignored(self):
+        abilities = rospy.Publisher("/needle/abilities", ManipulatorAbilities, queue_size=10)
+        while not abilities.get_num_connections():
+            self.world.tick(self.good())
+
+        def limit(speed, latency, interval=0.0):
+            """m/s that the needle may be moved at after this announcement."""
+            abilities.publish(ManipulatorAbilities(device="test", speed=speed, latency=latency,
+                                                   command_interval=interval))
+            self.world.run(1100, self.good)
+            values = self.world.diagnostics["injection_controller: control"].values
+            return next(float(pair.value) for pair in values if pair.key == "speed limit (m/s)")
+
+        self.assertAlmostEqual(limit(44e-6, 0.0), 44e-6)
+        for bad in ((math.inf, 0.0), (math.nan, 0.0), (1e300, 0.0), (100e-6, math.inf), (100e-6, math.nan),
+                    (100e-6, 1e300), (100e-6, -5.0, 5.0), (100e-6, 5.0, -5.0)):
+            self.assertAlmostEqual(limit(*bad), 44e-6, msg=str(bad))
+        self.assertAlmostEqual(limit(1.0, 0.001), rospy.get_param("/injection_controller/speed_limit"))
 
     def test_target_that_leaps(self):
         held = self.setpoint()

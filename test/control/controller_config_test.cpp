@@ -1,6 +1,9 @@
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
+#include <cmath>
+#include <functional>
+#include <limits>
 #include <string>
 
 #include "base/errors.h"
@@ -62,6 +65,51 @@ TEST(InjectionControllerConfig, WhatDoesNotFitTogetherIsRefused) {
   YAML::Node old = shipped();
   old["source"] = "teleop";
   EXPECT_NE(refusal(old).find("source"), std::string::npos);
+}
+
+/// A number of a goal is allowed or refused, by its key, in a file as on a topic.
+TEST(InjectionGoal, NumbersThatCannotBeMeantAreRefusedByName) {
+  struct Case {
+    std::string key;
+    double good, bad;
+    std::function<void(InjectionGoal&, double)> put;
+  };
+  const Case cases[] = {
+      {"layers", 10, 11, [](InjectionGoal& goal, double value) { goal.layers = static_cast<int>(value); }},
+      {"layers", 1, 0, [](InjectionGoal& goal, double value) { goal.layers = static_cast<int>(value); }},
+      {"depth", 1e-3, 1.1e-3, [](InjectionGoal& goal, double value) { goal.depth = value; }},
+      {"depth", 1e-9, 0, [](InjectionGoal& goal, double value) { goal.depth = value; }},
+      {"margin", 1e-3, 1e9, [](InjectionGoal& goal, double value) { goal.margin = value; }},
+      {"margin", 0, -1e-9, [](InjectionGoal& goal, double value) { goal.margin = value; }},
+      {"hold_time", 600, 1e300, [](InjectionGoal& goal, double value) { goal.hold_time = value; }},
+      {"hold_time", 0, -1, [](InjectionGoal& goal, double value) { goal.hold_time = value; }},
+      {"pulse/pressure", 1e6, 1e300, [](InjectionGoal& goal, double value) { goal.pulse.pressure = value; }},
+      {"pulse/pressure", 0, -1, [](InjectionGoal& goal, double value) { goal.pulse.pressure = value; }},
+      {"pulse/duration", 60, 61, [](InjectionGoal& goal, double value) { goal.pulse.duration = value; }},
+      {"pulse/volume", 1e-9, 1.1e-9, [](InjectionGoal& goal, double value) { goal.pulse.volume = value; }},
+      {"pulse/volume", 0, -1e-15, [](InjectionGoal& goal, double value) { goal.pulse.volume = value; }},
+  };
+  const auto inFile = [](const std::string& key, double value) {
+    YAML::Node map = shipped();
+    map["depth_limit"] = 1;
+    const std::size_t slash = key.find('/');
+    if (slash == std::string::npos) map["goal"][key] = value;
+    if (slash != std::string::npos) map["goal"][key.substr(0, slash)][key.substr(slash + 1)] = value;
+    return refusal(map);
+  };
+  for (const Case& one : cases) {
+    InjectionGoal goal;
+    one.put(goal, one.good);
+    EXPECT_EQ(goal.problems(), "") << one.key;
+    EXPECT_EQ(inFile(one.key, one.good), "") << one.key;
+    for (const double bad : {one.bad, std::numeric_limits<double>::quiet_NaN(), HUGE_VAL, -HUGE_VAL}) {
+      if (one.key == "layers" && !std::isfinite(bad)) continue;
+      one.put(goal, bad);
+      EXPECT_EQ(goal.problems().rfind(one.key + " = ", 0), 0u) << goal.problems();
+      EXPECT_NE(goal.problems().find(", allowed "), std::string::npos) << goal.problems();
+      EXPECT_NE(inFile(one.key, bad).find("goal/" + one.key), std::string::npos) << one.key << " = " << bad;
+    }
+  }
 }
 
 }  // namespace

@@ -61,6 +61,21 @@ TEST_F(InjectionControllerTest, DrivesALateRigSlowlyAndNeverFasterThanConfigured
   EXPECT_NEAR(then - run(1)->z(), config_.guards.speed_limit * kStep, 1e-15);
 }
 
+TEST_F(InjectionControllerTest, AbilitiesThatNoRigHasAreRefusedAndChangeNothing) {
+  controller_.command("enable");
+  run(1);
+  input_.target = Eigen::Vector3d(0, 0, 30e-6);
+  EXPECT_EQ(controller_.adaptTo(44e-6, 0), "");
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInfinite = std::numeric_limits<double>::infinity();
+  for (const double speed : {kNan, kInfinite, -kInfinite, 0.0, -1.0, 1.1, 1e300})
+    EXPECT_EQ(controller_.adaptTo(speed, 0).rfind("speed = ", 0), 0u) << speed;
+  for (const double lag : {kNan, kInfinite, -1e-9, 11.0, 1e300})
+    EXPECT_EQ(controller_.adaptTo(100e-6, lag).rfind("lag = ", 0), 0u) << lag;
+  EXPECT_EQ(controller_.speedLimit(), 44e-6);
+  const double before = input_.needle->z();
+  EXPECT_NEAR(before - run(1)->z(), 44e-6 * kStep, 1e-15);
+}
+
 TEST_F(InjectionControllerTest, RefusesCommandsThatDoNotFitItsState) {
   EXPECT_NE(controller_.command("pause"), "");
   EXPECT_NE(controller_.command("resume"), "");

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "base/errors.h"
 #include "injector/pulse_ids.h"
 
 namespace microinjection {
@@ -123,10 +124,16 @@ TEST(InjectorModel, RefusesWithReasonAndChangesNothing) {
   model.step(0);
   EXPECT_EQ(model.pulse({1, 60e3, 0.1}), "pulse pressure = 60000 Pa, allowed [-50000, 50000] Pa");
   EXPECT_EQ(model.pulse({1, 1e3, 0}), "pulse duration = 0 s, allowed [0.001, 60] s");
-  EXPECT_NE(model.pulse({1, NAN, 0.1}), "");
-  EXPECT_NE(model.pulse({1, 1e3, INFINITY}), "");
+  const InjectorReading before = model.reading();
+  for (const double bad : {double(NAN), double(INFINITY), -double(INFINITY), 1e300, -1e300}) {
+    EXPECT_EQ(model.pulse({1, bad, 0.1}).rfind("pulse pressure = ", 0), 0U) << bad;
+    EXPECT_EQ(model.pulse({1, 1e3, bad}).rfind("pulse duration = ", 0), 0U) << bad;
+    EXPECT_EQ(model.setBalance(bad).rfind("balance pressure = ", 0), 0U) << bad;
+  }
   EXPECT_NE(model.setBalance(-60e3), "");
   EXPECT_FALSE(model.reading().busy);
+  model.step(0.5);
+  EXPECT_EQ(model.reading().pressure, before.pressure);
   EXPECT_EQ(model.pulse({7, 1e3, 0.1}), "");
   EXPECT_EQ(model.pulse({8, 1e3, 0.1}), "a pulse is under way");
   model.step(1);
@@ -152,6 +159,22 @@ TEST(PulseIds, TellsARepeatedId) {
   EXPECT_TRUE(ids.isNew(3));
   EXPECT_TRUE(ids.isNew(2));
   EXPECT_FALSE(ids.isNew(3));
+}
+
+TEST(InjectorLimits, RangesThatNoInjectorHasAreRefused) {
+  for (const char* bad :
+       {"{pressure_range: [-1.0e300, 50.0e3]}", "{pressure_range: [0, 1.0e300]}", "{pressure_range: [0, .inf]}",
+        "{pressure_range: [.nan, 0]}", "{duration_range: [0, 60]}", "{duration_range: [1, 1.0e300]}"}) {
+    const YAML::Node map = YAML::Load(bad);
+    ConfigReader reader(map, "test");
+    InjectorLimits::read(reader);
+    try {
+      reader.finish();
+      FAIL() << bad;
+    } catch (const ConfigError& error) {
+      EXPECT_NE(std::string(error.what()).find(map.begin()->first.as<std::string>()), std::string::npos);
+    }
+  }
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 #include "injector/test_protocol.h"
@@ -313,6 +314,11 @@ TEST_F(SerialInjectorTest, RefusesWhatTheDeviceCannotDo) {
   run(1);
   EXPECT_NE(injector.pulse({1, 60e3, 0.1}), "");
   EXPECT_NE(injector.pulse({1, 10e3, 0}), "");
+  for (const double bad : {double(NAN), double(INFINITY), 1e300, -1e300}) {
+    EXPECT_EQ(injector.pulse({1, bad, 0.1}).rfind("pulse pressure = ", 0), 0U) << bad;
+    EXPECT_EQ(injector.pulse({1, 10e3, bad}).rfind("pulse duration = ", 0), 0U) << bad;
+    EXPECT_EQ(injector.setBalance(bad).rfind("balance pressure = ", 0), 0U) << bad;
+  }
   InjectorModelConfig fine = model;
   fine.limits.duration_range = {1e-4, 1};
   fine.limits.pressure_range = {-50e3, 50e3};
