@@ -97,7 +97,7 @@ bool ZaberDriver::moving() const {
 void ZaberDriver::begin(bool /*lost*/) {
   exchange_.reset();
   parser_.forget();
-  begun_ = time();
+  begun_ = listened();
   settled_ = false;
   turn_ = move_stage_ = 0;
   for (Axis& axis : axes_) {
@@ -122,7 +122,7 @@ void ZaberDriver::talk(const std::string& bytes) {
     handle(message);
     if (!talking()) return;
   }
-  if (exchange_ && time() > exchange_->due) exchange_->sent ? missedReply() : sendExchange();
+  if (exchange_ && listened() > exchange_->due) exchange_->sent ? missedReply() : sendExchange();
   if (!exchange_ && talking()) next();
 }
 
@@ -216,7 +216,7 @@ void ZaberDriver::handleRejection(const ZaberMessage& reply) {
   const bool damaged = reply.data == "BADCOMMAND";
   if ((later || damaged) && exchange_->tries < kTries) {
     exchange_->sent = false;
-    exchange_->due = time() + kRetryPause;
+    exchange_->due = listened() + kRetryPause;
     return;
   }
   raiseFault(axisName(exchange_->axis) + " refuses \"" + exchange_->text + "\": " + reply.data);
@@ -275,7 +275,7 @@ void ZaberDriver::sendExchange() {
   const std::string bytes = zaberCommand(config_.addresses[exchange_->axis], exchange_->text, config_.checksum, number);
   ++exchange_->tries;
   exchange_->sent = true;
-  exchange_->due = time() + (bytes.size() + kMessageBytes) * byteTime(config_) + config_.reply_timeout;
+  exchange_->due = listened() + (bytes.size() + kMessageBytes) * byteTime(config_) + config_.reply_timeout;
   say(bytes);
 }
 

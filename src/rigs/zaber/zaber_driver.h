@@ -42,7 +42,7 @@ class ZaberDriver : public SerialManipulator {
     long long value;   // microsteps, or units of speed
     std::string text;  // of the command
     int tries;
-    double due;  // s, to be sent (again), or to be answered
+    double due;  // s of listened(), to be sent (again), or to be answered
     bool sent;
   };
   struct Axis {
