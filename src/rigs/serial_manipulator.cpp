@@ -64,7 +64,7 @@ void SerialManipulator::beginSession(double quiet) {
   stopSaid();
   stopped_ = !goal_;
   talking_ = false;
-  drain_since_ = last_byte_ = time_;
+  drain_since_ = last_byte_ = listened_;
   quiet_ = quiet;
 }
 
@@ -160,9 +160,9 @@ void SerialManipulator::step(double time) {
     beginSession(talking_ && !clearing_ ? link_.quiet_in_step : std::max(quiet_, link_.quiet_in_step));
   }
   if (!talking_) {
-    if (!bytes.empty()) last_byte_ = time;
-    if (time - drain_since_ > kLongestDrain) return lostStep("the line is never silent; is it the right port?");
-    if (time - last_byte_ < quiet_) return;
+    if (!bytes.empty()) last_byte_ = listened_;
+    if (listened_ - drain_since_ > kLongestDrain) return lostStep("the line is never silent; is it the right port?");
+    if (listened_ - last_byte_ < quiet_) return;
     bytes.clear();
     talking_ = true;
     begin(lost_);

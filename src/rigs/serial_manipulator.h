@@ -102,8 +102,8 @@ class SerialManipulator : public ManipulatorDevice {
   double trusted_until_ = 0;  // s of `listened_`
   double next_open_ = -1;     // s
   double next_stop_ = 0;      // s, while there is no guard
-  double last_byte_ = 0;      // s, since the stop
-  double drain_since_ = 0;    // s
+  double last_byte_ = 0;      // s of listened_, since the stop
+  double drain_since_ = 0;    // s of listened_
   double quiet_ = 0;          // s, of silence to wait for
   bool was_open_ = false, talking_ = false, ready_ = false, clearing_ = false, stop_wanted_ = false;
   bool sure_ = false;     // where everything is

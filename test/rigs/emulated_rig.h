@@ -13,6 +13,18 @@
 
 namespace microinjection {
 
+/// A wire to a device that was stopped now and then, together with its driver, and goes on where it was.
+class StalledWire : public EmulatedWire {
+ public:
+  using EmulatedWire::EmulatedWire;
+  void stall(double duration) { stalled_ += duration; }
+  std::string read(double time) override { return EmulatedWire::read(time - stalled_); }
+  void write(const std::string& bytes, double time) override { EmulatedWire::write(bytes, time - stalled_); }
+
+ private:
+  double stalled_ = 0;  // s
+};
+
 /// A driver on an emulated wire, stepped at 1 kHz (unless told otherwise) in virtual time.
 template <typename Driver, typename Config>
 class EmulatedRig {
@@ -21,18 +33,23 @@ class EmulatedRig {
 
   EmulatedRig(const Config& config, std::shared_ptr<ManipulatorEmulator> device, double step = 1e-3)
       : device_(std::move(device)), step_(step) {
-    auto wire = std::make_unique<EmulatedWire>(device_, config.port.baud);
+    auto wire = std::make_unique<StalledWire>(device_, config.port.baud);
     wire_ = wire.get();
     driver_ = std::make_unique<Driver>(config, std::move(wire));
     joints_ = config.joints;
   }
 
   Driver& driver() { return *driver_; }
-  EmulatedWire& wire() { return *wire_; }
+  StalledWire& wire() { return *wire_; }
   ManipulatorEmulator& device() { return *device_; }
   double time() const { return time_; }
   void inject(const std::string& fault) { device_->inject(parseFault(fault)); }
 
+  /// The machine that driver and emulator share does nothing for `duration` (s).
+  void stall(double duration) {
+    time_ += duration;
+    wire_->stall(duration);
+  }
   /// Steps for `duration` (s); `each` before every step.
   void run(double duration, const std::function<void()>& each = nullptr) {
     for (double end = time_ + duration; time_ < end - 1e-9;) {
@@ -63,7 +80,7 @@ class EmulatedRig {
  private:
   std::shared_ptr<ManipulatorEmulator> device_;
   std::unique_ptr<Driver> driver_;
-  EmulatedWire* wire_;
+  StalledWire* wire_;
   decltype(Config::joints) joints_;
   double step_;      // s
   double time_ = 0;  // s

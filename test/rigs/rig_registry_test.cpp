@@ -3,13 +3,15 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <chrono>
 #include <functional>
+#include <stdexcept>
 #include <thread>
+#include <utility>
 
 #include "base/errors.h"
 #include "serial/emulator_host.h"
+#include "serial/serial_port.h"
 
 namespace microinjection {
 namespace {
@@ -20,9 +22,10 @@ YAML::Node delivered(const Rig& rig) {
   return loadYamlMap(MICROINJECTION_SOURCE_DIR "/src/rigs/" + rig.name + "/" + rig.name + ".yaml");
 }
 
-std::unique_ptr<ManipulatorDevice> make(const Rig& rig, const YAML::Node& config) {
+std::unique_ptr<ManipulatorDevice> make(const Rig& rig, const YAML::Node& config,
+                                        std::unique_ptr<Wire> wire = nullptr) {
   ConfigReader reader(config, rig.name + ".yaml");
-  return rig.make_driver(reader, nullptr);
+  return rig.make_driver(reader, std::move(wire));
 }
 
 TEST(RigRegistry, FindsRigsAndNamesThemAll) {
@@ -58,65 +61,78 @@ TEST(RigRegistry, EveryDeliveredConfigurationIsReadAndWrongOnesAreRefused) {
   }
 }
 
-/// The emulator on a real pseudo-terminal, in a thread of its own.
-class HostThread {
+/// A serial port to an emulator that is stepped with it. What one side has sent is waited for at the other, so that the
+/// time in which the kernel carries it is none of the driver's and the device's.
+class HostedPort : public Wire {
  public:
-  HostThread(const Rig& rig, const std::string& link)
-      : device_(rig.make_emulator()), host_(device_, rig.default_baud, link), thread_([this] { serve(); }) {}
-  ~HostThread() {
-    ends_ = true;
-    thread_.join();
+  HostedPort(const SerialPortConfig& config, EmulatorHost& host) : port_(config), host_(host) {}
+
+  std::string open() override { return port_.open(); }
+  bool isOpen() const override { return port_.isOpen(); }
+  void write(const std::string& bytes, double time) override {
+    port_.write(bytes, time);
+    to_device_ += bytes.size();
   }
-  void setPlugged(bool plugged) { wanted_ = plugged; }
+  std::string read(double time) override {
+    std::string said, read;
+    await([&] {
+      const EmulatorHost::Exchange exchange = host_.step(time);
+      to_device_ -= exchange.heard.size();
+      said += exchange.said;
+      return to_device_ == 0;
+    });
+    await([&] { return (read += port_.read(time)).size() >= said.size(); });
+    return read;
+  }
+  void pull() {
+    host_.pull();
+    await([&] { return port_.read(0).empty() && !port_.isOpen(); });
+    to_device_ = 0;
+  }
+  void plug() { host_.plug(); }
 
  private:
-  void serve() {
-    const auto start = std::chrono::steady_clock::now();
-    bool plugged = true;
-    while (!ends_) {
-      if (plugged != wanted_) (plugged = wanted_) ? host_.plug() : host_.pull();
-      host_.step(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-      std::this_thread::sleep_for(std::chrono::microseconds(300));
+  /// Only what hangs takes so long.
+  static void await(const std::function<bool()>& done) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    while (!done()) {
+      if (std::chrono::steady_clock::now() > end) throw std::runtime_error("bytes are lost on the pseudo-terminal");
+      std::this_thread::yield();
     }
   }
-  std::shared_ptr<ManipulatorEmulator> device_;
-  EmulatorHost host_;
-  std::atomic<bool> ends_{false}, wanted_{true};
-  std::thread thread_;
-};
 
-/// Steps in real time until `done`; patience decides nothing but when to give up.
-bool stepUntil(ManipulatorDevice& driver, const std::function<bool()>& done) {
-  const auto start = std::chrono::steady_clock::now();
-  for (double time = 0; time < 30;) {
-    time = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    driver.step(time);
-    if (done()) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  return false;
-}
+  SerialPort port_;
+  EmulatorHost& host_;
+  std::size_t to_device_ = 0;  // bytes on their way
+};
 
 TEST(RigRegistry, DriverAndEmulatorMeetOnAPseudoTerminal) {
   for (const Rig& rig : rigs()) {
     SCOPED_TRACE(rig.name);
-    const std::string link = testing::TempDir() + "rig_registry_test_" + std::to_string(getpid());
-    HostThread host(rig, link);
-    YAML::Node config = delivered(rig);
-    config["port"]["path"] = link;
-    const auto driver = make(rig, config);
+    SerialPortConfig port_config;
+    port_config.path = testing::TempDir() + "rig_registry_test_" + std::to_string(getpid());
+    port_config.baud = rig.default_baud;
+    EmulatorHost host(rig.make_emulator(), rig.default_baud, port_config.path);
+    auto wire = std::make_unique<HostedPort>(port_config, host);
+    HostedPort& port = *wire;
+    const auto driver = make(rig, delivered(rig), std::move(wire));
+    double time = 0;  // s
+    const auto step_until = [&](const std::function<bool()>& done) {
+      for (const double end = time + 10; time < end && !done(); time += 1e-3) driver->step(time);
+      return done();
+    };
     const Eigen::Vector3d goal(20e-6, -10e-6, 5e-6);
     const auto ready = [&] { return driver->state() == State::kReady; };
     const auto arrived = [&] {
       return ready() && (driver->reading()->joints - goal).norm() < 2 * driver->abilities().resolution;
     };
-    // A machine that stalls may make an exchange fail, or the guard stop the device: then it is sent again.
-    ASSERT_TRUE(stepUntil(*driver, ready)) << driver->why();
-    ASSERT_TRUE(stepUntil(*driver, [&] { return driver->moveTo(goal, 1e-3), arrived(); })) << driver->why();
-    host.setPlugged(false);
-    ASSERT_TRUE(stepUntil(*driver, [&] { return driver->state() == State::kDisconnected; }));
-    host.setPlugged(true);
-    ASSERT_TRUE(stepUntil(*driver, ready)) << driver->why();
+    ASSERT_TRUE(step_until(ready)) << driver->why();
+    driver->moveTo(goal, 1e-3);
+    ASSERT_TRUE(step_until(arrived)) << driver->why();
+    port.pull();
+    ASSERT_TRUE(step_until([&] { return driver->state() == State::kDisconnected; }));
+    port.plug();
+    ASSERT_TRUE(step_until(ready)) << driver->why();
     EXPECT_TRUE(arrived());
   }
 }

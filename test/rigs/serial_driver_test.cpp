@@ -129,5 +129,28 @@ TYPED_TEST(SerialDriverTest, ConnectsAgainByItselfAndRests) {
   this->moveAndCheck();
 }
 
+/// What the device has to say comes late by the time in which nobody listened: no fault of the device's.
+TYPED_TEST(SerialDriverTest, AMachineThatStallsMissesNoAnswer) {
+  for (const double stall : {1.0, 3.0}) {  // s: longer than an answer may take, and than a line may be noisy
+    SCOPED_TRACE(stall);
+    this->make();
+    auto& rig = *this->rig_;
+    const auto failed = [&] { return rig.driver().state() == ManipulatorDevice::State::kFault; };
+    const auto ready = [&] { return rig.driver().state() == ManipulatorDevice::State::kReady; };
+    const auto run_until = [&](const std::function<bool()>& done) {
+      for (int i = 0; i < 400 && !done() && !failed(); ++i) {
+        rig.run(0.03);
+        rig.stall(stall);
+      }
+      return done();
+    };
+    ASSERT_TRUE(run_until(ready)) << rig.driver().why();
+    rig.driver().moveTo(kPlace, 1e-3);
+    ASSERT_TRUE(run_until([&] { return ready() && !rig.driver().moving(); })) << rig.driver().why();
+    expectNear(rig.place(), kPlace, TypeParam::kStep);
+    expectNear(rig.read(), rig.place(), 0.1 * TypeParam::kStep);
+  }
+}
+
 }  // namespace
 }  // namespace microinjection

@@ -92,12 +92,12 @@ void Mp285Driver::stopSaid() {
 }
 
 void Mp285Driver::talk(const std::string& bytes) {
-  if (!bytes.empty()) last_byte_ = time();
+  if (!bytes.empty()) last_byte_ = listened();
   if (exchange_) {
-    const bool silent = parser_.begun() && time() - last_byte_ > kBytePause;
+    const bool silent = parser_.begun() && listened() - last_byte_ > kBytePause;
     if (const auto answer = parser_.feed(bytes, silent)) {
       handle(*answer);
-    } else if (time() > exchange_->due) {
+    } else if (listened() > exchange_->due) {
       lostStep("no answer, or half of one");
     } else if (exchange_->kind == Kind::kMove && goal() && timeLeft() > kWorthStopping) {
       // The newest wins: a long move is broken off when it is not the one that is wanted any more.
@@ -118,10 +118,10 @@ void Mp285Driver::ask(Kind kind, const std::string& bytes, double more_time) {
                                          : Expected::kDone);
   const double answer_bytes = kind == Kind::kStatus ? 33 : 13;
   exchange_ =
-      Exchange{kind, time(), time() + (bytes.size() + answer_bytes) * byteTime() + config_.reply_timeout + more_time};
+      Exchange{kind, listened() + (bytes.size() + answer_bytes) * byteTime() + config_.reply_timeout + more_time};
   // It says nothing while it moves, nor unasked at rest: what it was asked last must be answered, or else, once, what
   // it is asked after that. Readings that are doubted are asked for again, but not trusted for longer.
-  if (settled_ && !filter_.doubts()) trustFor(exchange_->due - time() + recoveryTime());
+  if (settled_ && !filter_.doubts()) trustFor(exchange_->due - listened() + recoveryTime());
   say(bytes);
 }
 

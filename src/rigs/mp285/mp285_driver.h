@@ -37,8 +37,7 @@ class Mp285Driver : public SerialManipulator {
   enum class Kind { kStop, kStatus, kAbsolute, kPosition, kVelocity, kMove };
   struct Exchange {
     Kind kind;
-    double sent;  // s
-    double due;   // s, to be answered
+    double due;  // s of listened(), to be answered
   };
   struct Move {
     Eigen::Vector3d from, to;  // microsteps, of the device
@@ -71,7 +70,7 @@ class Mp285Driver : public SerialManipulator {
   Mp285Parser parser_;
   ReadingFilter filter_;
   std::optional<Exchange> exchange_;
-  double last_byte_ = 0;        // s
+  double last_byte_ = 0;        // s of listened()
   double microstep_ = 0.04e-6;  // m, read from the status
   double told_microstep_ = 0;   // m, in the last status
   bool asked_stop_ = false, asked_status_ = false, absolute_ = false, settled_ = false;

@@ -104,7 +104,7 @@ void ZaberDriver::connected() {
 void ZaberDriver::begin(bool /*lost*/) {
   exchange_.reset();
   parser_.forget();
-  begun_ = time();
+  begun_ = listened();
   settled_ = false;
   setting_.clear();
   turn_ = move_stage_ = setting_tries_ = 0;
@@ -130,7 +130,7 @@ void ZaberDriver::talk(const std::string& bytes) {
     handle(message);
     if (!talking()) return;
   }
-  if (exchange_ && time() > exchange_->due) exchange_->sent ? missedReply() : sendExchange();
+  if (exchange_ && listened() > exchange_->due) exchange_->sent ? missedReply() : sendExchange();
   if (!exchange_ && talking()) next();
 }
 
@@ -230,7 +230,7 @@ void ZaberDriver::handleRejection(const ZaberMessage& reply) {
   const bool damaged = reply.data == "BADCOMMAND";
   if ((later || damaged) && exchange_->tries < kTries) {
     exchange_->sent = false;
-    exchange_->due = time() + kRetryPause;
+    exchange_->due = listened() + kRetryPause;
     return;
   }
   raiseFault(axisName(exchange_->axis) + " refuses \"" + exchange_->text + "\": " + reply.data);
@@ -291,7 +291,7 @@ void ZaberDriver::sendExchange() {
   const std::string bytes = zaberCommand(exchange_->to, exchange_->text, config_.checksum, number);
   ++exchange_->tries;
   exchange_->sent = true;
-  exchange_->due = time() + (bytes.size() + kZaberReplyBytes) * config_.byteTime() + config_.reply_timeout;
+  exchange_->due = listened() + (bytes.size() + kZaberReplyBytes) * config_.byteTime() + config_.reply_timeout;
   say(bytes);
 }
 

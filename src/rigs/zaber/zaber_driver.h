@@ -50,7 +50,7 @@ class ZaberDriver : public SerialManipulator {
     double end;        // m, where a velocity ends; NaN: it does not
     std::string text;  // of the command
     int tries;
-    double due;  // s, to be sent (again), or to be answered
+    double due;  // s of listened(), to be sent (again), or to be answered
     bool sent;
   };
   struct Axis {

@@ -34,7 +34,7 @@ bool ZaberDriver::nextOfSession() {
     // Braking, or the session's stop did not reach it.
     if (axis.still_moves && !axis.homed) return ask(Kind::kStop, i, "stop"), true;
     if (!axis.read_since_begin || axis.busy || axis.filter.doubts()) {
-      if (time() - begun_ > (axis.homed ? kLongestHoming : kLongestBraking)) {
+      if (listened() - begun_ > (axis.homed ? kLongestHoming : kLongestBraking)) {
         lostStep(axisName(i) + (axis.busy ? " does not come to rest" : " has no steady position"));
       } else {
         ask(Kind::kPosition, i, "get pos");
@@ -96,7 +96,7 @@ bool ZaberDriver::nextOfHoming(int i) {
   movesByItself();
   axes_[i].position.reset();  // its numbers begin anew
   axes_[i].read_since_begin = false;
-  begun_ = time();
+  begun_ = listened();
   ask(Kind::kHome, i, "home");
   return true;
 }

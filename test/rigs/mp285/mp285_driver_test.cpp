@@ -157,5 +157,16 @@ TEST_F(Mp285Test, AMoveThatIsInterruptedTwiceIsAFault) {
   moveAndCheck();
 }
 
+TEST_F(Mp285Test, ASlowMachineMovesIt) {
+  for (const double step : {0.03, 0.06, 0.12}) {
+    SCOPED_TRACE(step);
+    EmulatedRig<Mp285Driver, Mp285Config> rig(TestedMp285::config(), std::make_shared<Mp285Emulator>(), step);
+    ASSERT_TRUE(rig.runUntilReady(30)) << rig.driver().why();
+    rig.driver().moveTo(kPlace, 1e-3);
+    ASSERT_TRUE(rig.runUntilArrived(30)) << rig.driver().why();
+    expectNear(rig.read(), kPlace, kStep);
+  }
+}
+
 }  // namespace
 }  // namespace microinjection
