@@ -59,8 +59,7 @@ MicromanipulatorNode::MicromanipulatorNode(const ros::NodeHandle& node, ConfigRe
                                                       parameters_.model.command_timeout)),
       measured_(cycle_.output<geometry_msgs::PoseStamped>("needle/measured_cp")),
       velocity_(cycle_.output<geometry_msgs::TwistStamped>("needle/measured_cv")),
-      trace_(cycle_.output<cell_microinjection::LatencyTrace>("needle/setpoint_trace")),
-      authority_(parameters_.model.command_timeout) {
+      trace_(cycle_.output<cell_microinjection::LatencyTrace>("needle/setpoint_trace")) {
   if (cycle_.lockstep() && !rig_.inject) {
     throw ConfigError("rig = " + parameters_.rig +
                       ": a real one takes no part in lock step, it goes on while time stands");
@@ -80,7 +79,8 @@ void MicromanipulatorNode::subscribe() {
   ros::NodeHandle& node = cycle_.node();
   // Of each message that comes between two steps, also of those that a newer one replaces.
   servo_.listen([this](const geometry_msgs::PoseStamped& message, const ros::Time& now) {
-    if (secondsBetween(message.header.stamp, now) <= parameters_.model.command_timeout) authorize(servo_.sender);
+    const double timeout = parameters_.model.command_timeout;
+    if (secondsBetween(message.header.stamp, now) <= timeout) authorize(servo_.sender, timeout);
   });
   subscribers_.push_back(subscribeGuarded<geometry_msgs::TwistStamped>(
       node, "needle/servo_cv", 10,
@@ -112,7 +112,7 @@ void MicromanipulatorNode::onVelocity(const geometry_msgs::TwistStamped& message
   if (!velocity) return judge("servo_cv", "not a valid velocity in world");
   const double old = std::max(0.0, age(message.header));
   if (old > parameters_.model.velocity_command_timeout) return judge("servo_cv", "it is stale");
-  authorize(sender);
+  authorize(sender, parameters_.model.velocity_command_timeout);
   const std::string why = unable();
   judge("servo_cv", why.empty() ? model_.servoVelocity(*velocity, time() - old) : why);
 }
@@ -121,15 +121,15 @@ void MicromanipulatorNode::onMove(const geometry_msgs::PoseStamped& message, con
   const auto pose = trustedPose(&message);
   if (!pose) return judge("move_cp", "not a valid pose in world");
   if (age(message.header) > kOldestMove) return judge("move_cp", "it is stale");
-  authorize(sender);
+  authorize(sender, 0);
   const std::string why = unable();
   judge("move_cp", why.empty() ? model_.movePosition(*pose) : why);
 }
 
-void MicromanipulatorNode::authorize(const std::string& sender) {
+void MicromanipulatorNode::authorize(const std::string& sender, double lasts) {
   if (!authority_.fault().empty() || disabled_) return;
   const bool moving = model_.moving() || rig_.device->moving();
-  if (authority_.admit(sender, time(), moving)) return;
+  if (authority_.admit(sender, time(), lasts, moving)) return;
   model_.stop();
   ROS_ERROR_STREAM(authority_.fault());
 }

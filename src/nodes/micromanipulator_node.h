@@ -72,8 +72,8 @@ class MicromanipulatorNode {
   double time() const { return now_.toSec() + set_back_; }
   double age(const std_msgs::Header& header) const { return secondsBetween(header.stamp, now_); }  ///< s
   std::string unable() const;  ///< why motion commands are refused here; else empty
-  /// Notes who commands; a second source stops the needle.
-  void authorize(const std::string& sender);
+  /// Notes who commands, for how long (s); a second source stops the needle.
+  void authorize(const std::string& sender, double lasts);
   void lookAtNetwork();
   void judge(const std::string& command, const std::string& refusal);
   void publish(const Cycle::Tick& tick);
