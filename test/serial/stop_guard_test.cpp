@@ -160,6 +160,7 @@ TEST_F(StopGuardTest, GuardsThatCannotBeStartedAreReported) {
 
 TEST_F(StopGuardTest, AMachineThatStandsStillAsAWholeIsNotTakenForAFrozenProgram) {
   step();
+  sleepFor(60);  // it has heard that
   kill(guard_.process(), SIGSTOP);
   for (int i = 0; i < 30; ++i) sleepFor(20);  // neither the guard nor this program
   kill(guard_.process(), SIGCONT);
