@@ -135,8 +135,10 @@ TEST_F(StoppedSerialInjectorTest, APulseInWhichTheProgramStoodStillIsBrokenOff) 
   run(1);
   ASSERT_TRUE(injector.reading().busy);
   script.guard.intervention = "the program stood still";
-  script.incoming = "OK\r";   // the device answers the guard's stop
   injector.step(time += 60);  // longer than the pulse
+  EXPECT_EQ(stops(), 0) << "the device's answer to the guard's is still to come";
+  script.incoming = "OK\r";
+  injector.step(time += 0.01);
   EXPECT_EQ(injector.reading().pulses, 0U);
   EXPECT_EQ(injector.fault(), "the pulse was broken off: the program stood still");
   EXPECT_NE(injector.pulse({6, 10e3, 0.1}), "");

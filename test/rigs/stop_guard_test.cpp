@@ -2,6 +2,7 @@
 // itself. The device is emulated on a pseudo-terminal; its time never runs faster than the wall's.
 
 #include <fcntl.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -174,6 +175,7 @@ volatile std::sig_atomic_t pauses = 0;
 /// A program of its own that streams a velocity, with a pause when it gets SIGUSR1; it tells `reports` why it is not
 /// ready, and "ready" when it is.
 [[noreturn]] void streamVelocity(const std::string& link, int reports) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
   std::signal(SIGUSR1, [](int) { pauses = 1; });
   ZaberConfig config;
   config.joints.origin.setConstant(-12.5e-3);

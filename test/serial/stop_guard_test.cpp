@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -29,7 +30,15 @@ class StopGuardTest : public testing::Test {
     ASSERT_GE(line_, 0);
     ASSERT_EQ(guard_.begin(line_, kStop), "");
   }
-  void TearDown() override { close(line_); }
+  void TearDown() override {
+    close(line_);
+    endDriver();
+  }
+  void endDriver() {
+    if (driver_ > 0) kill(driver_, SIGKILL);
+    if (driver_ > 0) waitpid(driver_, nullptr, 0);
+    driver_ = -1;
+  }
 
   Wire::GuardReport step() {
     const auto last = std::chrono::steady_clock::now();
@@ -65,6 +74,7 @@ class StopGuardTest : public testing::Test {
   PseudoTerminal terminal_{link_};
   int line_ = open(link_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   StopGuard guard_;
+  pid_t driver_ = -1;  // a program of its own
   std::string heard_, interventions_;
   bool held_up_ = false;
 };
@@ -150,9 +160,9 @@ TEST_F(StopGuardTest, GuardsThatCannotBeStartedAreReported) {
 
 TEST_F(StopGuardTest, AMachineThatStandsStillAsAWholeIsNotTakenForAFrozenProgram) {
   step();
+  sleepFor(60);  // it has heard that
   kill(guard_.process(), SIGSTOP);
   for (int i = 0; i < 30; ++i) sleepFor(20);  // neither the guard nor this program
-  guard_.beat();
   kill(guard_.process(), SIGCONT);
   for (int i = 0; i < 300; ++i) step();
   expectUndisturbed();
@@ -162,6 +172,7 @@ TEST_F(StopGuardTest, AMachineThatStandsStillAsAWholeIsNotTakenForAFrozenProgram
 pid_t startDriver(const std::string& link) {
   const pid_t driver = fork();
   if (driver != 0) return driver;
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
   SerialPort port({link, 9600});
   port.setGuardedStop(kStop);
   if (!port.open().empty()) _exit(1);
@@ -177,19 +188,18 @@ pid_t startDriver(const std::string& link) {
 
 TEST_F(StopGuardTest, AFrozenProgramsDeviceIsStoppedAndHearsNothingElseWhenItIsAliveAgain) {
   guard_.end();
-  const pid_t driver = startDriver(link_);
+  driver_ = startDriver(link_);
   ASSERT_TRUE(restUntil([&] { return heard_.find("begun...") != std::string::npos; }));
-  kill(driver, SIGSTOP);
+  kill(driver_, SIGSTOP);
   ASSERT_TRUE(restUntil([&] { return hasStopped(); }));
-  kill(driver, SIGCONT);
+  kill(driver_, SIGCONT);
   ASSERT_TRUE(restUntil([&] { return heard_.find("the program stood still") != std::string::npos; })) << heard_;
   // From the stop to where it knows of it there is nothing but stops, and what it was just about to write.
   std::string between = heard_.substr(heard_.find(kStop), heard_.find("the program stood") - heard_.find(kStop));
   while (between.rfind(kStop, 0) == 0) between.erase(0, sizeof(kStop) - 1);
   EXPECT_LE(between.size(), 1U) << between;
-  kill(driver, SIGSTOP);  // killed while it stands still: the guard ends, and the line is free
-  kill(driver, SIGKILL);
-  waitpid(driver, nullptr, 0);
+  kill(driver_, SIGSTOP);
+  endDriver();  // killed while it stands still: the guard ends, and the line is free
   SerialPort next({link_, 9600});
   EXPECT_TRUE(restUntil([&] { return next.open().empty(); }));
 }
