@@ -19,8 +19,7 @@ class TrustTest(unittest.TestCase):
         cls.world = Participant({"/needle/servo_cp": PoseStamped}, {"/needle/measured_cp": PoseStamped})
         cls.velocity = rospy.Publisher("/needle/servo_cv", TwistStamped, queue_size=10)
         cls.move = rospy.Publisher("/needle/move_cp", PoseStamped, queue_size=10)
-        while not (cls.velocity.get_num_connections() and cls.move.get_num_connections()):
-            rospy.rostime.wallsleep(0.05)
+        cls.world.await_links()
 
     def setUp(self):
         self.world.run(100, lambda: {"/needle/servo_cp": pose(0, 0, 50e-6)})
