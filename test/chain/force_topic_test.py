@@ -10,8 +10,9 @@ import rostest
 from geometry_msgs.msg import WrenchStamped
 from std_srvs.srv import Trigger
 
+from links import await_publishers
 from messages import force, wrench
-from participant import Participant
+from participant import PATIENCE, Participant
 
 DEVICE = "/force_sensor/device_cf"
 
@@ -19,8 +20,9 @@ DEVICE = "/force_sensor/device_cf"
 class ForceTopicTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
+        await_publishers("/tf_static", ["/force_sensor_frame", "/transducer_frame"], PATIENCE)
         cls.world = Participant({DEVICE: WrenchStamped}, {"/force_sensor/measured_cf": WrenchStamped})
-        for _ in range(20000):  # until tf has reached the node
+        for _ in range(20000):  # until the node's tf has taken them up
             cls.world.tick({DEVICE: wrench(0, 0, 1e-6, "transducer")})
             seen = cls.world.seen.get("/force_sensor/measured_cf")
             if seen and not seen.header.stamp.is_zero():

@@ -26,6 +26,7 @@ class InjectTest(InjectionChainTest):
     def setUpClass(cls):
         super().setUpClass()
         cls.client = actionlib.SimpleActionClient("/controller/inject", InjectAction)
+        cls.chain.await_links()
         # The server's status comes with ticks.
         waiting = threading.Thread(target=cls.client.wait_for_server)
         waiting.start()

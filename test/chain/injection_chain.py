@@ -23,8 +23,7 @@ class InjectionChainTest(unittest.TestCase):
         cls.listener = rospy.Subscriber("/controller/injection_state", InjectionStatus, cls.on_status)
         cls.commands = rospy.Publisher("/controller/state_command", StringStamped, queue_size=10)
         cls.moves = rospy.Publisher("/needle/move_cp", PoseStamped, queue_size=10)
-        while not (cls.commands.get_num_connections() and cls.moves.get_num_connections()):
-            cls.chain.tick()
+        cls.chain.await_links()
         while "/needle/measured_cp" not in cls.chain.seen or cls.chain.seen["/needle/measured_cp"].header.stamp.is_zero():
             cls.chain.tick()  # a real rig is asked first
         cls.chain.run(50)

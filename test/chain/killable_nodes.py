@@ -1,6 +1,5 @@
 """The chain's programs with the parameters of config/, started by the test itself, so that it may kill them."""
 
-import contextlib
 import pathlib
 import signal
 import subprocess
@@ -8,13 +7,16 @@ import sys
 import tempfile
 
 import rosgraph
-import rosnode
 import rospkg
 import rospy
 import yaml
 
+from links import await_end_of_links
+
 PROGRAMS = pathlib.Path(sys.argv[0]).parent  # a test is found beside them
 PACKAGE = pathlib.Path(rospkg.RosPack().get_path("cell_microinjection"))
+# Of each node: what roscpp and diagnostic_updater watch. As long as the master would tell a node of one, it knows it.
+WATCHED_PARAMETERS = ("/rosout_disable_topics_generation", "~diagnostic_period")
 PATIENCE = 30  # s of wall time; only what hangs takes that long
 
 
@@ -93,7 +95,39 @@ class KillableNodes:
         self._running = {}
 
     def forget(self):
-        """Has the master forget all that were started and are dead. It would ask them to end when others of their names
-        come, at ports that may by then be those of others."""
-        with contextlib.redirect_stdout(None):
-            rosnode.cleanup_master_blacklist(rosgraph.Master(rospy.get_name()), [f"/{node}" for node in self._outputs])
+        """Has the master forget all that were started, which must be dead, and this node their connections. When others
+        of their names came, the master would ask the dead ones' addresses to end, which may by then be those of new
+        nodes.
+
+        rosnode.cleanup_master_blacklist does not do: it asks for a node's address once, and so unregisters nothing of a
+        second node of that name; and parameters it leaves out."""
+        names = [f"/{node}" for node in self._outputs]
+        addresses = dict(filter(None, map(address, names)))
+        publishers, subscribers, services = rosgraph.Master(rospy.get_name()).getSystemState()
+        # Subscribers first: the master tells those who are left of each publisher that goes.
+        for topic, name in pairs(subscribers, addresses):
+            rosgraph.Master(name).unregisterSubscriber(topic, addresses[name])
+        for service, name in pairs(services, addresses):
+            master = rosgraph.Master(name)
+            master.unregisterService(service, master.lookupService(service))
+        for topic, name in pairs(publishers, addresses):
+            rosgraph.Master(name).unregisterPublisher(topic, addresses[name])
+        for name in addresses:
+            for key in WATCHED_PARAMETERS:
+                rosgraph.Master(name).unsubscribeParam(addresses[name], key.replace("~", name + "/"))
+        left = [name for name in names if address(name)]
+        assert not left, f"the master still knows {left}"
+        await_end_of_links(set(addresses.values()), PATIENCE)
+
+
+def address(name):
+    """@returns (name, its XML-RPC address at the master), None where there is no such node."""
+    try:
+        return name, rosgraph.Master(rospy.get_name()).lookupNode(name)
+    except rosgraph.MasterError:
+        return None
+
+
+def pairs(state, names):
+    """(topic or service, name) of each registration of these."""
+    return [(what, name) for what, registered in state for name in registered if name in names]

@@ -44,10 +44,6 @@ def write_motion(path):
         csv.writer(file, lineterminator="\n").writerows([("time_s", "x_m", "y_m", "z_m", "clutch", "phase"), *rows])
 
 
-class NotBegun(AssertionError):
-    """A node never heard one of the others."""
-
-
 class Session:
     """A lock-step session with the test among the participants, that a node is killed in."""
 
@@ -56,21 +52,11 @@ class Session:
         self.nodes = KillableNodes({"lockstep_clock": {}, **nodes}, participants, remaps)
         self.records = {topic: {} for topic in RECORDED}
         self.answers = {}
-        kinds = {"/lockstep/acknowledgement": Header, "/controller/injection_state": InjectionStatus,
-                 "/controller/operating_state": OperatingState, "/operator/phase": StringStamped}
         self._subscribers = [rospy.Subscriber(topic, kind, self._record, topic) for topic, kind in RECORDED.items()]
         self._subscribers.append(rospy.Subscriber("/lockstep/acknowledgement", Header, self._on_answer))
-        self.moves = rospy.Publisher("/needle/move_cp", PoseStamped, queue_size=1)
+        self._moves = rospy.Publisher("/needle/move_cp", PoseStamped, queue_size=1)
         self.commands = rospy.Publisher("/controller/state_command", StringStamped, queue_size=1)
-        try:
-            self.chain = Participant({}, {topic: kinds[topic] for topic in seen}, PATIENCE)
-        except Exception as error:
-            report = self.nodes.report()
-            for subscriber in self._subscribers:
-                subscriber.unregister()
-            self.nodes.stop()
-            self.nodes.forget()
-            raise NotBegun(f"the session does not begin; {report}") from error
+        self._seen, self.chain = seen, None
 
     def _record(self, message, topic):
         self.records[topic][message.header.stamp.to_nsec()] = message
@@ -79,19 +65,23 @@ class Session:
         self.answers[header.frame_id] = header.stamp
 
     def close(self):
+        self.nodes.stop()
+        # The master tells subscribers of each publisher that goes: this node need not hear it, and at the addresses of
+        # the dead there may be others when it does. So they unsubscribe first, and only then does any publisher go.
         for subscriber in self._subscribers:
             subscriber.unregister()
-        self.chain.close()
-        self.nodes.stop()
+        if self.chain:
+            self.chain.unsubscribe()
         self.nodes.forget()
+        for publisher in (self._moves, self.commands):
+            publisher.unregister()
+        if self.chain:
+            self.chain.close()
 
-    def until(self, condition, what, say=None, ticks=3000):
-        """`say` is called each twenty ticks."""
-        for i in range(ticks):
+    def until(self, condition, what, ticks=3000):
+        for _ in range(ticks):
             if condition():
                 return
-            if say and i % 20 == 0:
-                say()
             self.chain.tick()
         raise AssertionError(f"{what}: not within {ticks} ticks; seen {self.chain.seen}; {self.nodes.report()}")
 
@@ -106,16 +96,19 @@ class Session:
         raise AssertionError(f"the session hangs; {self.nodes.report()}")
 
     def begin(self):
-        """The needle is put near the cell, then the controller enabled. Said again: connections take their time."""
-        self.until(self.at_start, "the way to the start", lambda: self.moves.publish(self.start()))
-        enable = StringStamped(string="enable")
-        self.until(lambda: self.says("/controller/operating_state", "state", "ENABLED"), "ENABLED",
-                   lambda: self.commands.publish(enable))
-
-    def start(self):
+        """The needle is put near the cell, then the controller enabled."""
+        kinds = {"/controller/injection_state": InjectionStatus, "/controller/operating_state": OperatingState,
+                 "/operator/phase": StringStamped}
+        try:
+            self.chain = Participant({}, {topic: kinds[topic] for topic in self._seen})
+        except Exception as error:
+            raise AssertionError(f"the session does not begin: {error!r}; {self.nodes.report()}") from error
         goal = pose(0, 0, START)
         goal.header.stamp = self.chain.now
-        return goal
+        self._moves.publish(goal)
+        self.until(self.at_start, "the way to the start")
+        self.commands.publish(StringStamped(string="enable"))
+        self.until(lambda: self.says("/controller/operating_state", "state", "ENABLED"), "ENABLED")
 
     def at_start(self):
         records = self.records[NEEDLE]
@@ -152,13 +145,7 @@ class KillCase(unittest.TestCase):
 
     def open(self, nodes, seen, remaps=None):
         self.tearDown()
-        topics = ["/controller/operating_state", *seen]
-        try:
-            self.session = Session(nodes, topics, remaps)
-        except NotBegun as error:
-            # Seldom, among nodes that follow killed ones of the same names; why is not known. Said, and tried once more.
-            print(f"once more: {error}", flush=True)
-            self.session = Session(nodes, topics, remaps)
+        self.session = Session(nodes, ["/controller/operating_state", *seen], remaps)
         self.session.begin()
 
     def by_hand(self, more=(), linked=False, source="predicted"):

@@ -33,6 +33,7 @@ class LinkTest(unittest.TestCase):
             {"/haptic/servo_cf": WrenchStamped, "/cell/predicted_cf": WrenchStamped, "/cell/state": CellState,
              "/needle/measured_cp": PoseStamped, "/link/hand/received": LinkPacket})
         cls.plug = rospy.Publisher("/link/plugged", Bool, queue_size=1, latch=True)
+        cls.chain.await_links()
         cls.z = 0.0  # m, of the hand
         cls.energy = cls.lowest = 0.0  # J, taken from the hand
         cls.run_hand(3 * DELAY)

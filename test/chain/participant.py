@@ -8,6 +8,8 @@ from diagnostic_msgs.msg import DiagnosticArray
 from rosgraph_msgs.msg import Clock
 from std_msgs.msg import Header
 
+from links import await_links
+
 INVALID = object()
 PATIENCE = 120  # s of wall time; only a chain that hangs takes that long
 
@@ -16,7 +18,8 @@ class Participant:
     """Takes part in the lock step under the name of this node. Between two ticks time stands still."""
 
     def __init__(self, outputs, inputs, patience=PATIENCE):
-        """@param outputs, inputs  topic -> message class; inputs keep their newest message in `seen`."""
+        """Returns in the first tick, with every connection in place.
+        @param outputs, inputs  topic -> message class; inputs keep their newest message in `seen`."""
         self._patience = patience
         self.seen = {}
         self.now = rospy.Time()
@@ -34,7 +37,17 @@ class Participant:
         for publisher in self._silences.values():
             publisher.publish(Header())  # the greeting that nodes wait for
         self._acknowledge(rospy.Time())
-        self.now = self._ticks.get(timeout=self._patience)
+        try:
+            self.now = self._ticks.get(timeout=self._patience)
+            self.await_links()
+        except BaseException:
+            self.close()
+            raise
+
+    def await_links(self):
+        """Returns when whoever has registered a topic is connected with all others of it. How many ticks pass in that
+        time would depend on the machine: none does. Call it when this process has registered more topics."""
+        await_links(self._patience)
 
     def _advertise(self, topic, kind):
         return rospy.Publisher(topic, kind, queue_size=100, latch=True)
@@ -65,12 +78,18 @@ class Participant:
         for _ in range(ticks):
             self.tick(messages() if callable(messages) else messages)
 
-    def close(self):
-        """Is gone for those that go on. Before another one is made in this process."""
+    def unsubscribe(self):
+        """Hears nothing any more."""
         for subscriber in self._subscribers:
             subscriber.unregister()
         # The next one's time begins anew: what is latched here would be ahead of it.
         for publisher in (*self._outputs.values(), *self._silences.values()):
+            publisher.unregister()
+
+    def close(self):
+        """Is gone for those that go on. Before another one is made in this process."""
+        self.unsubscribe()
+        for publisher in [*self._outputs.values(), *self._silences.values(), self._acknowledgement]:
             publisher.unregister()
 
     def call(self, service, kind, *arguments, messages=None):

@@ -29,9 +29,7 @@ class RigContract(unittest.TestCase):
         cls.velocity = rospy.Publisher("/needle/servo_cv", TwistStamped, queue_size=10)
         cls.command = rospy.Publisher("/needle/state_command", StringStamped, queue_size=10)
         cls.fault = rospy.Publisher("/needle/emulated_fault", StringStamped, queue_size=10)
-        for publisher in (cls.move, cls.velocity, cls.command, cls.fault):
-            while not publisher.get_num_connections():
-                rospy.rostime.wallsleep(0.05)
+        cls.world.await_links()
 
     def setUp(self):
         self.until(lambda: "/needle/abilities" in self.world.seen, "tells its abilities")

@@ -23,6 +23,7 @@ class TrustTest(unittest.TestCase):
                                 {"/needle/servo_cp": PoseStamped, "/injector/pulse": InjectionPulse,
                                  "/injector/stop": StringStamped, "/controller/injection_state": InjectionStatus})
         cls.commands = rospy.Publisher("/controller/state_command", StringStamped, queue_size=10)
+        cls.world.await_links()
 
     def setUp(self):
         self.target = self.setpoint() if "/needle/servo_cp" in self.world.seen else START

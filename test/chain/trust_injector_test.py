@@ -22,8 +22,7 @@ class TrustTest(unittest.TestCase):
         cls.pulses = rospy.Publisher("/injector/pulse", InjectionPulse, queue_size=10)
         cls.balance = rospy.Publisher("/injector/set_balance", Float64Stamped, queue_size=10)
         cls.stops = rospy.Publisher("/injector/stop", StringStamped, queue_size=10)
-        while not (cls.pulses.get_num_connections() and cls.balance.get_num_connections()):
-            rospy.rostime.wallsleep(0.05)
+        cls.world.await_links()
 
     def setUp(self):
         self.world.call("/injector/clog", SetBool, False)

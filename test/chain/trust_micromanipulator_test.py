@@ -25,8 +25,7 @@ class TrustTest(unittest.TestCase):
         cls.velocity = rospy.Publisher("/needle/servo_cv", TwistStamped, queue_size=10)
         cls.move = rospy.Publisher("/needle/move_cp", PoseStamped, queue_size=10)
         cls.command = rospy.Publisher("/needle/state_command", StringStamped, queue_size=10)
-        while not all(each.get_num_connections() for each in (cls.velocity, cls.move, cls.command)):
-            rospy.rostime.wallsleep(0.05)
+        cls.world.await_links()
 
     def setUp(self):
         self.world.run(700, lambda: {"/needle/servo_cp": pose(0, 0, 50e-6)})
