@@ -11,8 +11,9 @@ constexpr double kOut = 1e-6;  ///< m before the touch, where a needle is out of
 
 // Beyond these an announcement is a mistake: the fastest micromanipulators do some 0.02 m/s, and the slowest serial
 // line takes a fraction of a second for a command.
-constexpr double kFastestRig = 1;  ///< m/s
-constexpr double kLatestRig = 10;  ///< s
+constexpr double kSlowestRig = 1e-6;  ///< m/s: a slower one would hold the needle without saying so
+constexpr double kFastestRig = 1;     ///< m/s
+constexpr double kLatestRig = 10;     ///< s
 
 bool trusted(const std::optional<Eigen::Vector3d>& value) { return value && value->allFinite(); }
 
@@ -38,7 +39,7 @@ InjectionController::InjectionController(const InjectionControllerConfig& config
       leash_(leash(config.guards, std::numeric_limits<double>::infinity())) {}
 
 std::string InjectionController::adaptTo(double speed, double lag) {
-  const Range speeds{0, kFastestRig, true, false}, lags = Range::closed(0, kLatestRig);
+  const Range speeds = Range::closed(kSlowestRig, kFastestRig), lags = Range::closed(0, kLatestRig);
   std::ostringstream refusal;
   if (!speeds.contains(speed)) {
     refusal << "speed = " << speed << " m/s, allowed " << speeds.text() << " m/s";

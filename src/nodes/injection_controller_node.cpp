@@ -59,9 +59,10 @@ InjectionControllerNode::InjectionControllerNode(ros::NodeHandle node, ros::Node
   if (parameters_.injector) injector_ = std::make_unique<InjectorLink>(cycle_, parameters_.input_timeout);
   state_ = cycle_.node().advertise<cell_microinjection::OperatingState>("controller/operating_state", 10, true);
   listenToCommands();
-  abilities_ = cycle_.node().subscribe<cell_microinjection::ManipulatorAbilities>(
-      "needle/abilities", 1,
-      [this](const cell_microinjection::ManipulatorAbilitiesConstPtr& message) { adaptTo(*message); });
+  using cell_microinjection::ManipulatorAbilities;
+  abilities_ = subscribeGuarded<ManipulatorAbilities>(
+      cycle_.node(), "needle/abilities", 1,
+      [this](const ManipulatorAbilities& message, const std::string&) { adaptTo(message); });
   cycle_.diagnostics().add("control", [this](auto& status) { report(status); });
   if (parameters_.auto_enable) obey("enable");
 }
@@ -101,12 +102,15 @@ void InjectionControllerNode::adaptTo(const cell_microinjection::ManipulatorAbil
   if (!(rig.latency >= 0 && rig.command_interval >= 0))
     negative << "latency = " << rig.latency << " s, command_interval = " << rig.command_interval
              << " s, allowed [0, inf)";
+  const double before = model_.speedLimit();
   const std::string refusal =
       negative.str().empty() ? model_.adaptTo(rig.speed, rig.latency + rig.command_interval) : negative.str();
   if (!refusal.empty()) {
     ROS_ERROR_STREAM("rig: the abilities of " << rig.device << " are ignored: " << refusal);
     return;
   }
+  if (model_.speedLimit() == before && adapted_) return;  // it is told again and again
+  adapted_ = true;
   ROS_INFO_STREAM("rig: " << rig.device << ", driven at " << model_.speedLimit() << " m/s at the most");
 }
 

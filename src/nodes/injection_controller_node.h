@@ -77,6 +77,7 @@ class InjectionControllerNode {
   InjectionAction action_;
   ros::Subscriber commands_;
   ros::Subscriber abilities_;
+  bool adapted_ = false;  ///< to a rig's abilities
   ros::Publisher state_;
   cell_microinjection::OperatingState said_;                ///< the last that was published
   cell_microinjection::InjectionStatus said_of_injection_;  ///< the last that was published

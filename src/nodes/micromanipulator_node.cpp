@@ -13,6 +13,8 @@ namespace {
 // s: what a publisher latched, and a node that starts anew hears again, must not move the needle a second time.
 constexpr double kOldestMove = 3;
 
+constexpr double kAbilitiesPeriod = 1;  // s
+
 std::string urdfFromParameter() {
   std::string urdf;
   if (!ros::param::get("/robot_description", urdf)) {
@@ -253,7 +255,8 @@ void MicromanipulatorNode::publishAbilities(const ros::Time& now) {
   message.speed = abilities.speed;
   message.latency = abilities.latency;
   message.stop_time = abilities.stop_time;
-  if (message == told_) return;
+  // Said again for who heard something else meanwhile.
+  if (message == told_ && secondsBetween(told_.header.stamp, now) < kAbilitiesPeriod) return;
   message.header.stamp = now;
   abilities_.publish(message);
   told_ = message;

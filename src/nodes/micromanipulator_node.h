@@ -32,9 +32,9 @@ namespace microinjection {
 /// Out: /needle/measured_cp (PoseStamped), /needle/measured_cv (TwistStamped), both at the tip in `world`, stamp 0
 /// while
 ///      the device does not know; /needle/true_cp (PoseStamped), where the tip truly is: of the simulated device only;
-///      /needle/abilities (ManipulatorAbilities), /needle/operating_state (OperatingState: DISABLED without connection,
-///      FAULT until enable; on change, and in answer to each state_command); /needle/setpoint_trace (LatencyTrace);
-///      joint_states (JointState), for robot_state_publisher
+///      /needle/abilities (ManipulatorAbilities; on change and once a second), /needle/operating_state (OperatingState:
+///      DISABLED without connection, FAULT until enable; on change, and in answer to each state_command);
+///      /needle/setpoint_trace (LatencyTrace); joint_states (JointState), for robot_state_publisher
 ///
 /// Parameters: /robot_description (URDF), and private those of MicromanipulatorConfig and
 ///   rig                sim (default), or a name of rigs/rig_registry.h

@@ -29,7 +29,10 @@ PAUSE = 0.002  # s between two messages, so that none is lost in a queue
 def classes(kind):
     """Of a type's name; "Header" is that of std_msgs, and a name may have [] behind it."""
     name = kind.partition("[")[0]
-    return roslib.message.get_message_class(name) or getattr(foreign_messages, name.rpartition("/")[2])
+    package, _, message = name.rpartition("/")
+    if package in ("omni_msgs", "geomagic_control"):  # ROS would look for these packages everywhere
+        return getattr(foreign_messages, message)
+    return roslib.message.get_message_class(name)
 
 
 def not_finite(value, name=""):

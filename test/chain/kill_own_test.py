@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""The controller injects of its own. Whichever node is killed (SIGKILL), in whatever state: within the time-outs of
-config/ the needle rests and no pulse flows. In lock step."""
+"""The controller injects of its own. Whichever node is killed (SIGKILL), or with the argument freeze frozen (SIGSTOP),
+in whatever state: within the time-outs of config/ the needle rests and no pulse flows. In lock step."""
 
 import numpy as np
 import rospy

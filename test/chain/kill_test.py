@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""A hand leads the needle. Whichever node is killed (SIGKILL), in whatever state: within the time-outs of config/ the
-needle rests and the force on the hand is zero. In lock step, so that these are times of the session and hold to a tick or
-two."""
+"""A hand leads the needle. Whichever node is killed (SIGKILL), or with the argument freeze frozen (SIGSTOP), in whatever
+state: within the time-outs of config/ the needle rests and the force on the hand is zero. In lock step, so that these are
+times of the session and hold to a tick or two."""
 import numpy as np
 import rospy
 import rostest
@@ -99,6 +99,19 @@ class KillTest(KillCase):
         for node in ("force_sensor", "injector"):
             killed = self.kill(node, 110)
             self.check_goes_on(killed)
+
+    def test_who_wakes_up_ends(self):
+        """It would take part with what it knew when it was frozen."""
+        if not self.FREEZES:
+            return
+        for node in ("injection_controller", "micromanipulator", "haptic_bridge"):
+            with case(node):
+                self.by_hand()
+                self.in_phase("approach", 60)
+                self.kill(node)
+                self.assertEqual(self.session.nodes.wake_up(node), 0)
+                self.session.chain.run(100)
+                self.tearDown()
 
 
 if __name__ == "__main__":

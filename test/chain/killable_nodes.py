@@ -45,7 +45,7 @@ class KillableNodes:
     def __init__(self, nodes, participants=(), remaps=None, outputs=None):
         rospy.set_param("/robot_description", (PACKAGE / "urdf/rig.urdf").read_text())
         rospy.set_param("/lockstep/participants", list(participants))
-        self._running, self._outputs = {}, {}
+        self._running, self._frozen, self._outputs = {}, {}, {}
         self.begin(nodes, remaps, outputs)
 
     def begin(self, nodes, remaps=None, outputs=None):
@@ -86,13 +86,24 @@ class KillableNodes:
         process.send_signal(number)
         return process.wait(PATIENCE)
 
+    def freeze(self, node):
+        """It stays, and does nothing any more."""
+        self._frozen[node] = self._running.pop(node)
+        self._frozen[node].send_signal(signal.SIGSTOP)
+
+    def wake_up(self, node):
+        """@returns its exit status, as soon as it has ended."""
+        self._frozen[node].send_signal(signal.SIGCONT)
+        return self._frozen[node].wait(PATIENCE)
+
     def stop(self):
         # All at once: what outlives another has nothing to do any more.
-        for process in self._running.values():
+        processes = [*self._running.values(), *self._frozen.values()]
+        for process in processes:
             process.kill()
-        for process in self._running.values():
+        for process in processes:
             process.wait(PATIENCE)
-        self._running = {}
+        self._running, self._frozen = {}, {}
 
     def forget(self):
         """Has the master forget all that were started, which must be dead, and this node their connections. When others

@@ -2,13 +2,14 @@
 
 import csv
 import os
+import sys
 import tempfile
 import unittest
 
 import numpy as np
 import rospy
 from geometry_msgs.msg import PoseStamped, WrenchStamped
-from std_msgs.msg import Header
+from std_msgs.msg import Header, String
 
 from cell_microinjection.msg import InjectionStatus, InjectorState, OperatingState, StringStamped
 from killable_nodes import PACKAGE, PATIENCE, KillableNodes, parameters, rig
@@ -56,6 +57,10 @@ class Session:
         self._subscribers.append(rospy.Subscriber("/lockstep/acknowledgement", Header, self._on_answer))
         self._moves = rospy.Publisher("/needle/move_cp", PoseStamped, queue_size=1)
         self.commands = rospy.Publisher("/controller/state_command", StringStamped, queue_size=1)
+        self._leave, self._left = rospy.Publisher("/lockstep/leave", String, queue_size=1), ""
+        self._subscribers.append(rospy.Subscriber("/lockstep/left", String, self._on_left))
+        self._busy = []  # what the rig has said so far
+        self._subscribers.append(rospy.Subscriber("/needle/operating_state", OperatingState, self._on_rig))
         self._seen, self.chain = seen, None
 
     def _record(self, message, topic):
@@ -63,6 +68,12 @@ class Session:
 
     def _on_answer(self, header):
         self.answers[header.frame_id] = header.stamp
+
+    def _on_rig(self, message):
+        self._busy.append(message.is_busy)
+
+    def _on_left(self, message):
+        self._left = message.data
 
     def close(self):
         self.nodes.stop()
@@ -73,7 +84,7 @@ class Session:
         if self.chain:
             self.chain.unsubscribe()
         self.nodes.forget()
-        for publisher in (self._moves, self.commands):
+        for publisher in (self._moves, self.commands, self._leave):
             publisher.unregister()
         if self.chain:
             self.chain.close()
@@ -96,7 +107,7 @@ class Session:
         raise AssertionError(f"the session hangs; {self.nodes.report()}")
 
     def begin(self):
-        """The needle is put near the cell, then the controller enabled."""
+        """The needle is put near the cell, and when that is over the controller is enabled: two would be a fault."""
         kinds = {"/controller/injection_state": InjectionStatus, "/controller/operating_state": OperatingState,
                  "/operator/phase": StringStamped}
         try:
@@ -112,13 +123,20 @@ class Session:
 
     def at_start(self):
         records = self.records[NEEDLE]
-        return records and abs(position(records[max(records)])[2] - START) < STILL
+        over = True in self._busy and not self._busy[-1]
+        return records and over and abs(position(records[max(records)])[2] - START) < STILL
 
-    def kill(self, node):
-        """Once all have done this tick. @returns its time (s): the last word of the node."""
+    def kill(self, node, freezes):
+        """Once all have done this tick. @returns its time (s): the last word of the node. `freezes`: it is stopped
+        instead (SIGSTOP), and the clock hears of it."""
         others = {f"/{name}" for name in self.nodes.names()} - {"/lockstep_clock"}
         self.wait_for(lambda: all(self.answers.get(name) == self.chain.now for name in others))
-        self.nodes.kill(node)
+        if freezes:
+            self.nodes.freeze(node)
+            self._leave.publish(f"/{node}")
+            self.wait_for(lambda: f"/{node} " in self._left)
+        else:
+            self.nodes.kill(node)
         return self.chain.now.to_sec()
 
     def series(self, topic, value):
@@ -134,6 +152,8 @@ class Session:
 
 class KillCase(unittest.TestCase):
     """Opens sessions, and closes each when the next begins."""
+
+    FREEZES = "freeze" in sys.argv  # instead of being killed, nodes are stopped and stay
 
     def setUp(self):
         self.session = None
@@ -185,7 +205,7 @@ class KillCase(unittest.TestCase):
         self.session.chain.run(ticks)
 
     def kill(self, node, ticks=240):
-        time = self.session.kill(node)
+        time = self.session.kill(node, self.FREEZES)
         self.session.chain.run(ticks)
         return time
 
