@@ -15,7 +15,7 @@ constexpr double kLongestHoming = 120;   // s
 constexpr int kMoveTries = 2;
 constexpr double kSlowest = 10;     // microsteps/s, of an axis of a move
 constexpr double kShortestWay = 3;  // microsteps, of a velocity: a shorter one may be none for an axis that is ahead
-constexpr int kSettingTries = 40;  // of nine settings that are told twice each
+constexpr int kSettingTries = 40;   // of nine settings that are told twice each
 
 }  // namespace
 

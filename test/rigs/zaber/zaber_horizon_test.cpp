@@ -80,6 +80,35 @@ TEST_F(ZaberHorizonTest, ADeviceThatIsChangedForAnotherIsAskedAgain) {
   EXPECT_EQ(rig_->driver().state(), State::kReady) << rig_->driver().why();
 }
 
+/// As the rigs' contract has it (test/chain/rig_contract_test.py), for what is told and for the truth.
+TEST_F(ZaberHorizonTest, IsNeverAheadNorFartherBehindThanItsAbilitiesSay) {
+  for (const char* version : {"6.28", "7.25"}) {
+    for (const double speed : {2e-6, 20e-6, 200e-6}) {
+      SCOPED_TRACE(std::string(version) + ", m/s: " + std::to_string(speed));
+      make(withFirmware(version));
+      start();
+      goal_ = rig_->place();
+      const ManipulatorAbilities abilities = rig_->driver().abilities();
+      const double resolution = abilities.resolution, allowed_ahead = 3 * resolution + speed * 0.02;
+      const double allowed_behind =
+          speed * (2 * abilities.command_interval + abilities.reading_interval + abilities.latency) + 3 * resolution;
+      double ahead = 0, behind = 0;  // m
+      for (int i = 0; i < 1500; ++i) {
+        follow(1e-3, {speed, 0, 0});
+        for (const double place : {rig_->read().x(), rig_->place().x()}) {
+          ahead = std::max(ahead, place - goal_.x());
+          behind = std::max(behind, goal_.x() - place);
+        }
+      }
+      EXPECT_LE(ahead, allowed_ahead);
+      EXPECT_LE(behind, allowed_behind);
+      rig_->driver().follow(goal_, Eigen::Vector3d::Zero());
+      ASSERT_TRUE(rig_->runUntilArrived());
+      expectNear(rig_->place(), goal_, resolution);
+    }
+  }
+}
+
 TEST_F(ZaberHorizonTest, FollowsOneMicrostepASecondWithoutTakingItForAStall) {
   start();
   const Eigen::Vector3d slow(kStep, 0, 0);
