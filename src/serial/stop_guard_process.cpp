@@ -65,8 +65,8 @@ class Guard {
   void guardUntilDriverIsGone() {
     while (hear()) {
       countSilence();
+      report();  // before the stop is on the line: a driver that wakes up in between must not write behind it
       write();
-      report();
       wait(kTick);
     }
   }
@@ -120,7 +120,7 @@ class Guard {
   }
 
   void report() {
-    if (!stopping_ || written_ < size_) return;
+    if (!stopping_) return;
     if (!reported_) reported_ = send(kStopGuardStopped);
     stopping_ = !reported_;
   }
