@@ -9,8 +9,9 @@ namespace microinjection {
 namespace {
 
 constexpr char kHapticFrame[] = "haptic";
-constexpr double kButtonPeriod = 0.02;  // s
-constexpr int kLastForces = 5;          // since messages can be dropped
+constexpr double kButtonPeriod = 0.02;   // s
+constexpr double kSilencePeriod = 0.02;  // s
+constexpr int kLastForces = 5;           // since messages can be dropped
 
 sensor_msgs::Joy button(const ros::Time& now, bool pressed) {
   sensor_msgs::Joy message;
@@ -71,13 +72,20 @@ void HapticDeviceNode::step(const Cycle::Tick& tick) {
   const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
   adapter_->render(hand ? finiteForce(force_.get(tick.now)).value_or(zero) : zero, tick);
   if (!hand) {
-    position_.publishInvalid(toPose(zero, tick.now, kHapticFrame));
+    publishSilence(tick.now);
   } else if (!last_ || hand->stamp != last_->stamp) {
     position_.publish(toPose(hand->position, hand->stamp, kHapticFrame));
   }
   publishButtons(tick.now, hand && hand->clutch, hand && hand->operator_present);
   publishCommands(tick.now);
   last_ = hand;
+}
+
+/// Not in every step: it sets the bridge off, whose force sets off this node, and both would run as fast as they can.
+void HapticDeviceNode::publishSilence(const ros::Time& now) {
+  if (!last_ && secondsBetween(told_silence_, now) < kSilencePeriod) return;
+  told_silence_ = now;
+  position_.publishInvalid(toPose(Eigen::Vector3d::Zero(), now, kHapticFrame));
 }
 
 void HapticDeviceNode::publishButtons(const ros::Time& now, bool clutch, bool operator_present) {

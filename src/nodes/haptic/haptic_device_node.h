@@ -18,7 +18,8 @@ namespace microinjection {
 /// several times before it ends, it renders zero force.
 ///
 /// In:  /haptic/servo_cf (WrenchStamped, N), and what the device's kind says (haptic/KIND_adapter.h)
-/// Out: /haptic/measured_cp (PoseStamped, m, frame `haptic`; stamp 0 while the device is silent), /haptic/clutch,
+/// Out: /haptic/measured_cp (PoseStamped, m, frame `haptic`; stamp 0 each 20 ms while the device is silent),
+/// /haptic/clutch,
 ///      /haptic/operator_present (Joy, on change and each 20 ms), /controller/state_command (StringStamped)
 ///
 /// Parameters (private): those of the kind and
@@ -41,6 +42,7 @@ class HapticDeviceNode {
   };
 
   void step(const Cycle::Tick& tick);
+  void publishSilence(const ros::Time& now);
   void publishButtons(const ros::Time& now, bool clutch, bool operator_present);
   void publishCommands(const ros::Time& now);
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
@@ -57,7 +59,7 @@ class HapticDeviceNode {
   ros::Publisher commands_;
   std::unique_ptr<HapticAdapter> adapter_;
   std::optional<HandReading> last_;  ///< what was told last
-  ros::Time told_buttons_;
+  ros::Time told_buttons_, told_silence_;
 };
 
 }  // namespace microinjection
