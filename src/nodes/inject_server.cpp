@@ -1,5 +1,7 @@
 #include "nodes/inject_server.h"
 
+#include "nodes/message_guard.h"
+
 #include <cstdlib>
 #include <iterator>
 #include <sstream>
@@ -38,8 +40,14 @@ void InjectServer::initialize() {
   status_ = node_.advertise<actionlib_msgs::GoalStatusArray>("status", kQueue, true);
   result_ = node_.advertise<ActionResult>("result", kQueue);
   feedback_ = node_.advertise<ActionFeedback>("feedback", kQueue);
-  goals_ = node_.subscribe("goal", kQueue, &InjectServer::receiveGoal, this);
-  cancels_ = node_.subscribe("cancel", kQueue, &InjectServer::receiveCancel, this);
+  using Goal = boost::shared_ptr<const ActionGoal>;
+  using Cancel = boost::shared_ptr<const actionlib_msgs::GoalID>;
+  goals_ = node_.subscribe<ActionGoal>("goal", kQueue, [this](const Goal& goal) {
+    refusal_.clear();  // of a goal before whose callback has thrown
+    runGuarded("goal", [&] { receiveGoal(goal); });
+  });
+  cancels_ = node_.subscribe<actionlib_msgs::GoalID>(
+      "cancel", kQueue, [this](const Cancel& cancel) { runGuarded("cancel", [&] { receiveCancel(cancel); }); });
 }
 
 void InjectServer::receiveGoal(const boost::shared_ptr<const ActionGoal>& message) {

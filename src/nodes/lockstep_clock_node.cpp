@@ -3,12 +3,19 @@
 #include <rosgraph_msgs/Clock.h>
 #include <std_msgs/String.h>
 
+#include <algorithm>
+
 #include "base/errors.h"
 #include "nodes/lockstep.h"
 #include "nodes/message_guard.h"
 #include "nodes/node_parameters.h"
 
 namespace microinjection {
+namespace {
+
+constexpr double kLongestWait = 0.2;  // s, that counts of a wait
+
+}  // namespace
 
 const char* const LockstepClockNode::kHelp =
     "lockstep_clock: steps /clock when every node of /lockstep/participants has done the tick before.\n"
@@ -59,8 +66,8 @@ std::string LockstepClockNode::missing() const {
 }
 
 void LockstepClockNode::waitForAll() {
-  const ros::SteadyTime began = ros::SteadyTime::now();
-  ros::SteadyTime warned = began;
+  ros::SteadyTime before = ros::SteadyTime::now(), warned = before;
+  double waited = 0;  // s; a clock that stood still itself has waited for nobody
   while (goesOn() && !missing_.empty()) {
     queue_.callAvailable(ros::WallDuration(0.1));
     const ros::SteadyTime now = ros::SteadyTime::now();
@@ -68,7 +75,9 @@ void LockstepClockNode::waitForAll() {
       warned = now;
       ROS_WARN_STREAM("the clock stands at " << tick_ << " s and waits for:" << missing());
     }
-    if (tick_.isZero() || secondsBetween(began, now) < frozen_after_) continue;
+    waited += std::min(secondsBetween(before, now), kLongestWait);
+    before = now;
+    if (tick_.isZero() || waited < frozen_after_) continue;
     for (const std::string& name : std::set<std::string>(missing_)) leave(name, "answers nothing");
   }
 }

@@ -23,6 +23,7 @@ namespace microinjection {
 ///   step              s, of one tick; default 0.001, in [1e-6, 1]
 ///   real_time_factor  times real time at the most, 0: as fast as it goes; default 0, in [0, inf)
 ///   warn_after        s of wall time without an answer after which the silent nodes are named; default 5, in (0, inf)
+///   frozen_after       s of wall time without an answer after which a participant has left; default 60, in (0, inf)
 class LockstepClockNode {
  public:
   static const char* const kHelp;

@@ -36,7 +36,8 @@ bool masterKnowsUs() {
 struct MasterWatch::Shared {
   std::atomic<bool> refused{false};
   std::atomic<Clock::time_point> answered{Clock::now()};
-  std::mutex mutex;  // of what follows, which a step does not look at
+  std::atomic<double> away{0};  // s, counted by questions that were refused: not while this process stands still
+  std::mutex mutex;             // of what follows, which a step does not look at
   std::condition_variable changed;
   bool ending = false;
   bool ended = false;
@@ -48,6 +49,7 @@ struct MasterWatch::Shared {
       const bool known = masterKnowsUs();
       refused = !known;
       if (known) answered = Clock::now();
+      away = known ? 0 : away + kPeriod.count();
       lock.lock();
     }
     ended = true;
@@ -79,9 +81,6 @@ bool MasterWatch::lost() const {
   return timed_ && Clock::now() - shared_->answered.load(std::memory_order_relaxed) > kPatience;
 }
 
-bool MasterWatch::orphaned() const {
-  if (!lost()) return false;
-  return Seconds(Clock::now() - shared_->answered.load(std::memory_order_relaxed)).count() > orphan_timeout_;
-}
+bool MasterWatch::orphaned() const { return shared_->away.load(std::memory_order_relaxed) > orphan_timeout_; }
 
 }  // namespace microinjection

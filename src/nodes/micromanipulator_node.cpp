@@ -129,17 +129,25 @@ void MicromanipulatorNode::onMove(const geometry_msgs::PoseStamped& message, con
 }
 
 void MicromanipulatorNode::authorize(const std::string& sender, double lasts) {
-  if (!authority_.fault().empty() || disabled_) return;
-  const bool moving = model_.moving() || rig_.device->moving();
-  if (authority_.admit(sender, time(), lasts, moving)) return;
+  if (!unable().empty()) return;
+  if (authority_.admit(sender, time(), lasts, moves())) return;
   model_.stop();
   ROS_ERROR_STREAM(authority_.fault());
 }
 
+/// A device that is not there is not known to move.
+bool MicromanipulatorNode::moves() const {
+  const bool there = model_.state() != ManipulatorDevice::State::kDisconnected;
+  return there && (model_.moving() || rig_.device->moving());
+}
+
+/// Decides whether the rig may be enabled. A needle that may be in a cell keeps its way out when an interface comes up.
 void MicromanipulatorNode::lookAtNetwork() {
-  const bool exposed = network_ && network_->reachable();
-  if (exposed && !exposed_) model_.stop();
-  exposed_ = exposed;
+  if (!network_) return;
+  const bool reachable = network_->reachable();
+  if (disabled_) admitted_ = false;
+  admitted_ = admitted_ || (!reachable && !disabled_);
+  exposed_ = reachable && !admitted_;
 }
 
 void MicromanipulatorNode::run() {
@@ -208,7 +216,7 @@ void MicromanipulatorNode::step(const Cycle::Tick& tick) {
   publish(tick);
   publishState(tick.now);
   publishAbilities(tick.now);
-  cycle_.setBusy(model_.moving() || rig_.device->moving());
+  cycle_.setBusy(moves());
   if (secondsBetween(joint_states_sent_, tick.now) >= 1 / parameters_.joint_states_rate) publishJointStates(tick.now);
 }
 
@@ -230,7 +238,7 @@ void MicromanipulatorNode::publishState(const ros::Time& now) {
   const bool fault = model_.state() == State::kFault || !authority_.fault().empty();
   state.state = fault ? "FAULT" : there ? "ENABLED" : "DISABLED";
   state.is_homed = model_.tipPose().has_value();  // axes are absolute
-  state.is_busy = model_.moving() || rig_.device->moving();
+  state.is_busy = moves();
   const bool same = state.state == said_.state && state.is_homed == said_.is_homed && state.is_busy == said_.is_busy;
   if (same && !answer_) return;
   answer_ = false;
@@ -289,6 +297,10 @@ void MicromanipulatorNode::report(diagnostic_updater::DiagnosticStatusWrapper& s
       why.empty() ? problem.empty() ? DiagnosticStatus::OK : DiagnosticStatus::WARN : DiagnosticStatus::ERROR,
       problem.empty() ? (model_.moving() ? "moves" : "holds") : problem);
   status.add("device", rig_.device->abilities().device);
+  if (network_ && network_->reachable() && admitted_) {
+    status.mergeSummary(DiagnosticStatus::ERROR, "others can reach this machine now through " + network_->interfaces() +
+                                                     ": after disable it is not enabled again");
+  }
   status.add("commands refused", refused_);
 }
 

@@ -5,6 +5,7 @@
 #include <ros/ros.h>
 #include <sensor_msgs/JointState.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -70,11 +71,15 @@ class MicromanipulatorNode {
   std::string obeyState(const cell_microinjection::StringStamped& message);
   /// As the device has it: a clock that is set back does not take it along.
   double time() const { return now_.toSec() + set_back_; }
-  double age(const std_msgs::Header& header) const { return secondsBetween(header.stamp, now_); }  ///< s
+  double age(
+      const std_msgs::Header& header) const {  ///< s; as of now, not of the last step: this node may have been frozen
+    return secondsBetween(header.stamp, std::max(now_, ros::Time::now()));
+  }
   std::string unable() const;  ///< why motion commands are refused here; else empty
   /// Notes who commands, for how long (s); a second source stops the needle.
   void authorize(const std::string& sender, double lasts);
   void lookAtNetwork();
+  bool moves() const;
   void judge(const std::string& command, const std::string& refusal);
   void publish(const Cycle::Tick& tick);
   void publishJointStates(const ros::Time& now);
@@ -101,6 +106,7 @@ class MicromanipulatorNode {
   CommandAuthority authority_;
   std::unique_ptr<NetworkWatch> network_;  ///< null where it does not matter who can reach this machine
   bool exposed_ = false;                   ///< a real rig, and others can reach this machine
+  bool admitted_ = false;                  ///< enabled while nobody else could reach this machine
   bool disabled_ = false;                  ///< by command
   bool master_lost_ = false;
   bool answer_ = false;  ///< a state command was heard

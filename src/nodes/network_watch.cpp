@@ -30,7 +30,8 @@ std::string reachableInterfaces() {
   if (getifaddrs(&all) != 0) return "interfaces that cannot be listed";
   std::string names;
   for (const ifaddrs* each = all; each; each = each->ifa_next) {
-    const bool counts = (each->ifa_flags & IFF_UP) && !(each->ifa_flags & IFF_LOOPBACK);
+    const auto has = [each](unsigned flag) { return (each->ifa_flags & flag) != 0; };
+    const bool counts = has(IFF_UP) && has(IFF_RUNNING) && !has(IFF_LOOPBACK);  // running: its cable is in
     const std::string address = counts ? addressOf(*each) : "";
     if (!address.empty()) names += (names.empty() ? "" : ", ") + std::string(each->ifa_name) + " (" + address + ")";
   }

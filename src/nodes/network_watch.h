@@ -20,7 +20,8 @@ class NetworkWatch {
 
   /// Neither waits nor locks.
   bool reachable() const { return reachable_; }
-  /// The interfaces that are up and have an address, but the loopback, e.g. "eth0 (192.168.1.5)"; empty: none.
+  /// The interfaces that are up, connected and have an address, but the loopback, e.g. "eth0 (192.168.1.5)"; empty:
+  /// none.
   std::string interfaces() const;
 
  private:

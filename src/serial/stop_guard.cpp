@@ -17,6 +17,7 @@ namespace microinjection {
 namespace {
 
 constexpr double kStartInterval = 0.5;  // s, between attempts to start a guard
+constexpr int kMostWaits = 1000;        // ms, for the end of a guard that was killed: a debugger may hold on to it
 constexpr double kLongestStep = 0.05;   // s: in a longer one this program stood still, and not its guard
 
 double seconds(std::chrono::steady_clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
@@ -63,9 +64,21 @@ void StopGuard::listen() {
   }
 }
 
+/// Does not wait for its end: a guard that a debugger holds on to has none until the debugger lets go. What it may
+/// still send is the stop, which the driver sends as well.
 void StopGuard::lose(const std::string& what) {
-  endProcess();
+  if (process_ > 0) {
+    kill(process_, SIGKILL);
+    lost_.push_back(process_);
+  }
+  if (socket_ >= 0) close(socket_);
+  process_ = socket_ = -1;
   intervention_ = missing_ = "the stop guard " + what;
+}
+
+void StopGuard::reap() {
+  const auto ended = [](pid_t process) { return waitpid(process, nullptr, WNOHANG) != 0; };
+  lost_.erase(std::remove_if(lost_.begin(), lost_.end(), ended), lost_.end());
 }
 
 bool StopGuard::intervened() {
@@ -74,6 +87,7 @@ bool StopGuard::intervened() {
 }
 
 Wire::GuardReport StopGuard::beat() {
+  reap();
   listen();
   const Clock::time_point now = Clock::now();
   if (socket_ >= 0) {
@@ -92,8 +106,7 @@ Wire::GuardReport StopGuard::beat() {
 void StopGuard::endProcess() {
   if (process_ > 0 && waitpid(process_, nullptr, WNOHANG) == 0) {
     kill(process_, SIGKILL);
-    while (waitpid(process_, nullptr, 0) < 0 && errno == EINTR) {
-    }
+    for (int i = 0; i < kMostWaits && waitpid(process_, nullptr, WNOHANG) == 0; ++i) usleep(1000);
   }
   if (socket_ >= 0) close(socket_);
   process_ = socket_ = -1;

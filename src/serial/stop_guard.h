@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <string>
+#include <vector>
 
 #include "serial/wire.h"
 
@@ -36,11 +37,13 @@ class StopGuard {
   void listen();
   void lose(const std::string& what);
   void endProcess();
+  void reap();
 
   int line_ = -1;
   std::string stop_;
   pid_t process_ = -1;
-  int socket_ = -1;  // this end is closed when the program is gone
+  std::vector<pid_t> lost_;  // guards that were killed and have not ended yet
+  int socket_ = -1;          // this end is closed when the program is gone
   Clock::time_point last_beat_, last_start_;
   double silence_ = 0;  // s, of the guard
   std::string intervention_, missing_;

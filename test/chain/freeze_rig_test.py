@@ -24,6 +24,7 @@ SPEED = 20e-6  # m/s, of all motion
 SILENCE = 0.2 + 0.04  # s, until the guard says stop, and its tick
 STOP = 0.05  # s, from the stop to standstill, wire included; far more than either device needs
 AT_REST = 50  # readings in a row
+HELD_UP = 0.3  # s, that guard, device and this test may be kept from the processor beside what this test sees of it
 RIGS = (("zaber", "6.28"), ("zaber", "7.40"), ("mp285", None))  # an old Zaber has no moves that end by themselves
 
 
@@ -146,7 +147,7 @@ class FreezeRigTest(unittest.TestCase):
             last = now
             self.assertLess(now[0] - place[0], 60, "it does not stop")
         moved = np.abs(last[1] - frozen).max()
-        allowed = SPEED * (SILENCE + STOP + stalls.total)
+        allowed = SPEED * (SILENCE + STOP + HELD_UP + stalls.total)
         self.assertLess(moved, allowed, f"the device moved {moved} m after its driver was frozen, allowed {allowed} m")
         return last
 

@@ -48,7 +48,8 @@ class Neighbour:
         return subprocess.run([*self._enter, sys.executable, "-c", code], stderr=subprocess.DEVNULL).returncode == 0
 
     def unplug(self):
-        run("ip", "link", "delete", "cable")
+        """The interface stays up, and keeps its address."""
+        run(*self._enter, "ip", "link", "set", "end", "down")
 
     def close(self):
         self._process.kill()

@@ -22,7 +22,8 @@ class OrphanTest(unittest.TestCase):
         self.assertEqual(chain.nodes.dead(), [])
         master.kill()
         until(lambda: set(chain.nodes.dead()) == nodes, f"the end of {nodes}")
-        self.assertEqual({chain.nodes.status(node) for node in nodes}, {EXIT_STATUS})
+        statuses = {node: chain.nodes.status(node) for node in nodes}
+        self.assertEqual(statuses, {node: EXIT_STATUS for node in nodes}, chain.nodes.report())
         chain.hand.end()
 
 

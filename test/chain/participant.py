@@ -3,10 +3,11 @@
 import queue
 import threading
 
+import rosgraph
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
 from rosgraph_msgs.msg import Clock
-from std_msgs.msg import Header
+from std_msgs.msg import Header, String
 
 from links import await_links
 
@@ -28,10 +29,11 @@ class Participant:
         self._outputs = {topic: self._advertise(topic, kind) for topic, kind in outputs.items()}
         self._silences = {topic: self._advertise(topic + "/silent", Header) for topic in outputs}
         self._acknowledgement = self._advertise("/lockstep/acknowledgement", Header)
-        self._subscribers = [
-            rospy.Subscriber(topic, kind, lambda message, topic=topic: self.seen.update({topic: message}))
-            for topic, kind in inputs.items()
-        ]
+        self._heard, self._left, self._feeders = {}, "", {}
+        self._changed = threading.Condition()
+        self._subscribers = [rospy.Subscriber(topic, kind, self._see, topic) for topic, kind in inputs.items()]
+        self._subscribers += [rospy.Subscriber(topic + "/silent", Header, self._hear_silence, topic) for topic in inputs]
+        self._subscribers.append(rospy.Subscriber("/lockstep/left", String, self._on_left))
         self._subscribers.append(rospy.Subscriber("/diagnostics", DiagnosticArray, self._on_diagnostics))
         self._subscribers.append(rospy.Subscriber("/clock", Clock, lambda message: self._ticks.put(message.clock)))
         for publisher in self._silences.values():
@@ -40,6 +42,7 @@ class Participant:
         try:
             self.now = self._ticks.get(timeout=self._patience)
             self.await_links()
+            self._feeders = self._find_feeders(inputs)
         except BaseException:
             self.close()
             raise
@@ -51,6 +54,38 @@ class Participant:
 
     def _advertise(self, topic, kind):
         return rospy.Publisher(topic, kind, queue_size=100, latch=True)
+
+    def _see(self, message, topic):
+        self.seen[topic] = message
+        if hasattr(message, "header"):
+            self._hear(topic, message.header.stamp)
+
+    def _hear_silence(self, header, topic):
+        self._hear(topic, header.stamp)
+
+    def _hear(self, topic, stamp):
+        with self._changed:
+            self._heard[topic] = max(self._heard.get(topic, rospy.Time()), stamp)
+            self._changed.notify_all()
+
+    def _on_left(self, message):
+        with self._changed:
+            self._left = message.data
+            self._changed.notify_all()
+
+    def _find_feeders(self, topics):
+        """{topic: node} of the inputs that take part in the lock step: their publisher says each tick when it has none."""
+        publishers = dict(rosgraph.Master(rospy.get_name()).getSystemState()[0])
+        return {topic: publishers[topic + "/silent"][0] for topic in topics if publishers.get(topic + "/silent")}
+
+    def _await_inputs(self, tick):
+        """Until `seen` has what was said in this tick: this process may hear of the next one first."""
+        def complete():
+            return all(self._heard.get(topic, rospy.Time()) >= tick or f"{node} " in self._left
+                       for topic, node in self._feeders.items())
+        with self._changed:
+            if not self._changed.wait_for(complete, self._patience):
+                raise RuntimeError(f"of {tick} not all of {self._feeders} was heard: {self._heard}")
 
     def _on_diagnostics(self, message):
         for status in message.status:
@@ -71,8 +106,10 @@ class Participant:
                 publisher.publish(messages[topic])
             else:
                 self._silences[topic].publish(Header(stamp=self.now))
-        self._acknowledge(self.now)
+        done = self.now
+        self._acknowledge(done)
         self.now = self._ticks.get(timeout=self._patience)
+        self._await_inputs(done)
 
     def run(self, ticks, messages=None):
         for _ in range(ticks):
