@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/prctl.h>
+#include <sys/ptrace.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -138,9 +139,44 @@ TEST_F(StopGuardTest, AFrozenGuardIsKilledAndReplaced) {
   kill(first, SIGSTOP);
   ASSERT_TRUE(stepUntil([&] { return !interventions_.empty(); }));
   EXPECT_EQ(interventions_, "the stop guard stood still for more than 0.2 s.");
-  EXPECT_FALSE(lives(first));
+  ASSERT_TRUE(stepUntil([&] { return step(), !lives(first); }));
   ASSERT_TRUE(stepUntil([&] { return step().missing.empty(); }));
   ASSERT_TRUE(restUntil([&] { return hasStopped(); }));
+}
+
+/// A debugger that has stopped a process and waits at its prompt; empty where the system allows none.
+pid_t startDebugger(pid_t process) {
+  int attached[2];
+  if (pipe(attached) != 0) return -1;
+  const pid_t debugger = fork();
+  if (debugger == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    const bool done = ptrace(PTRACE_ATTACH, process, nullptr, nullptr) == 0 && waitpid(process, nullptr, 0) == process;
+    const char answer = done ? 'y' : 'n';
+    if (write(attached[1], &answer, 1) != 1) _exit(1);
+    for (;;) pause();
+  }
+  char answer = 'n';
+  const bool heard = read(attached[0], &answer, 1) == 1;
+  close(attached[0]);
+  close(attached[1]);
+  if (heard && answer == 'y') return debugger;
+  kill(debugger, SIGKILL);
+  waitpid(debugger, nullptr, 0);
+  return -1;
+}
+
+TEST_F(StopGuardTest, AGuardThatADebuggerHoldsOnToDoesNotHoldTheDriver) {
+  step();
+  const pid_t first = guard_.process(), debugger = startDebugger(first);
+  if (debugger < 0) GTEST_SKIP() << "no process may be debugged here";
+  EXPECT_TRUE(stepUntil([&] { return !interventions_.empty(); }));
+  EXPECT_TRUE(stepUntil([&] { return step().missing.empty(); }));
+  EXPECT_NE(guard_.process(), first);
+  EXPECT_TRUE(lives(first)) << "it has ended: the debugger held nothing";
+  kill(debugger, SIGKILL);
+  waitpid(debugger, nullptr, 0);
+  EXPECT_TRUE(stepUntil([&] { return step(), !lives(first); }));
 }
 
 TEST_F(StopGuardTest, GuardsThatCannotBeStartedAreReported) {
