@@ -2,15 +2,15 @@
 
 namespace microinjection {
 
-bool CommandAuthority::admit(const std::string& source, double time, double lasts, bool moving) {
+bool CommandAuthority::admit(const std::string& source, double time, bool moving) {
   if (!fault_.empty()) return false;
-  const bool free = holder_.empty() || (!moving && time > until_);
+  const bool free = holder_.empty() || (!moving && time > commanded_);
   if (source != holder_ && !free) {
     fault_ = "two nodes command the needle: " + holder_ + " and " + source;
     return false;
   }
   holder_ = source;
-  until_ = time + lasts;
+  commanded_ = time;
   return true;
 }
 

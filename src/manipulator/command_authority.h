@@ -5,23 +5,22 @@
 
 namespace microinjection {
 
-/// Lets one source command the needle at a time. The first that commands has the authority until its command is over
-/// and nothing moves any more. A command of another source meanwhile is a fault: two that drive one needle know nothing
-/// of each other's limits. The fault lasts until clear().
+/// Lets one source command the needle at a time. The first that commands has the authority until nothing moves any
+/// more. A command of another source meanwhile is a fault: two that drive one needle know nothing of each other's
+/// limits. The fault lasts until clear().
 class CommandAuthority {
  public:
-  /// A command of `source` at `time` (s). `lasts`: s, until which the next command of the same stream is due; 0 for a
-  /// command by itself, such as a move. `moving`: the needle still does what it was told before. Whether the command
-  /// may be obeyed: without a fault.
-  bool admit(const std::string& source, double time, double lasts, bool moving);
+  /// A command of `source` at `time` (s), the same for all commands of a step. `moving`: the needle still does what it
+  /// was told before. Whether the command may be obeyed: without a fault.
+  bool admit(const std::string& source, double time, bool moving);
 
   /// Who commands beside whom; empty without a fault.
   const std::string& fault() const { return fault_; }
   void clear();
 
  private:
-  std::string holder_;                                       ///< empty: none yet
-  double until_ = -std::numeric_limits<double>::infinity();  ///< s, the holder's last command
+  std::string holder_;                                           ///< empty: none yet
+  double commanded_ = -std::numeric_limits<double>::infinity();  ///< s, the holder's last command
   std::string fault_;
 };
 

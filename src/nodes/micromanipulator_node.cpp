@@ -81,8 +81,7 @@ void MicromanipulatorNode::subscribe() {
   ros::NodeHandle& node = cycle_.node();
   // Of each message that comes between two steps, also of those that a newer one replaces.
   servo_.listen([this](const geometry_msgs::PoseStamped& message, const ros::Time& now) {
-    const double timeout = parameters_.model.command_timeout;
-    if (secondsBetween(message.header.stamp, now) <= timeout) authorize(servo_.sender, timeout);
+    if (secondsBetween(message.header.stamp, now) <= parameters_.model.command_timeout) authorize(servo_.sender);
   });
   subscribers_.push_back(subscribeGuarded<geometry_msgs::TwistStamped>(
       node, "needle/servo_cv", 10,
@@ -114,7 +113,7 @@ void MicromanipulatorNode::onVelocity(const geometry_msgs::TwistStamped& message
   if (!velocity) return judge("servo_cv", "not a valid velocity in world");
   const double old = std::max(0.0, age(message.header));
   if (old > parameters_.model.velocity_command_timeout) return judge("servo_cv", "it is stale");
-  authorize(sender, parameters_.model.velocity_command_timeout);
+  authorize(sender);
   const std::string why = unable();
   judge("servo_cv", why.empty() ? model_.servoVelocity(*velocity, time() - old) : why);
 }
@@ -123,14 +122,14 @@ void MicromanipulatorNode::onMove(const geometry_msgs::PoseStamped& message, con
   const auto pose = trustedPose(&message);
   if (!pose) return judge("move_cp", "not a valid pose in world");
   if (age(message.header) > kOldestMove) return judge("move_cp", "it is stale");
-  authorize(sender, 0);
+  authorize(sender);
   const std::string why = unable();
   judge("move_cp", why.empty() ? model_.movePosition(*pose) : why);
 }
 
-void MicromanipulatorNode::authorize(const std::string& sender, double lasts) {
+void MicromanipulatorNode::authorize(const std::string& sender) {
   if (!unable().empty()) return;
-  if (authority_.admit(sender, time(), lasts, moves())) return;
+  if (authority_.admit(sender, time(), moves())) return;
   model_.stop();
   ROS_ERROR_STREAM(authority_.fault());
 }

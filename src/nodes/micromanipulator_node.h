@@ -76,8 +76,8 @@ class MicromanipulatorNode {
     return secondsBetween(header.stamp, std::max(now_, ros::Time::now()));
   }
   std::string unable() const;  ///< why motion commands are refused here; else empty
-  /// Notes who commands, for how long (s); a second source stops the needle.
-  void authorize(const std::string& sender, double lasts);
+  /// Notes who commands; a second source stops the needle.
+  void authorize(const std::string& sender);
   void lookAtNetwork();
   bool moves() const;
   void judge(const std::string& command, const std::string& refusal);

@@ -18,7 +18,8 @@ class InjectionChainTest(unittest.TestCase):
     def setUpClass(cls):
         cls.chain = Participant({}, {"/needle/measured_cp": PoseStamped, "/injector/state": InjectorState,
                                      "/cell/state": CellState, "/controller/injection_state": InjectionStatus,
-                                     "/controller/operating_state": OperatingState})
+                                     "/controller/operating_state": OperatingState,
+                                     "/needle/operating_state": OperatingState})
         cls.states, cls.waited = [], set()
         cls.listener = rospy.Subscriber("/controller/injection_state", InjectionStatus, cls.on_status)
         cls.commands = rospy.Publisher("/controller/state_command", StringStamped, queue_size=10)
@@ -69,3 +70,5 @@ class InjectionChainTest(unittest.TestCase):
                 target.header.stamp = self.chain.now
                 self.moves.publish(target)
                 self.tick_until(lambda: np.allclose(self.needle(), aside, atol=1e-8), "the move aside")
+                # Enabled while it still moves, the controller would be a second node that commands it.
+                self.tick_until(lambda: not self.chain.seen["/needle/operating_state"].is_busy, "the end of the move")
