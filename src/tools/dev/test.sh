@@ -65,6 +65,7 @@ test_sanitized() {
 
 use_address_sanitizer() {
   export ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1
+  export LSAN_OPTIONS="suppressions='$ROOT/src/tools/dev/leak_suppressions.txt':print_suppressions=0"
 }
 
 use_thread_sanitizer() {
