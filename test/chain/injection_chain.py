@@ -65,6 +65,7 @@ class InjectionChainTest(unittest.TestCase):
             wanted = "DISABLED" if command == "disable" else "ENABLED"
             self.tick_until(lambda: self.chain.seen["/controller/operating_state"].state == wanted, wanted)
             if command == "disable":
+                self.chain.run(200)  # its last set-point grows stale, and the needle rests: nobody commands it any more
                 aside = self.needle() + [way, 0, 0]
                 target = pose(*aside)
                 target.header.stamp = self.chain.now
