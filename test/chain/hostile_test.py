@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Strangers send each node of a live session what nobody should, on every topic that it listens to: at least 250 kinds a
-topic. No node ends, none publishes a number that is not finite, and the loop closes again, by itself or when it is
+"""Strangers send each node of a live session what nobody should, on every topic that it listens to: at least 250 kinds
+a topic. No node ends, none publishes a number that is not finite, and the loop closes again, by itself or when it is
 enabled again after it has said what it waits for."""
 
 import math
@@ -170,8 +170,8 @@ class HostileTest(unittest.TestCase):
               not self.chain.newest["/cell/predicted_cf"].header.stamp.is_zero(), "a valid predicted force")
 
     def test_link(self):
-        """Hand and rig apart: the bridge and the follower hear each other through the emulated network. Not yet on the way
-        to the rig, where a packet with the largest of all numbers has the follower hold the needle until it is started
+        """Hand and rig apart: the bridge and the follower hear each other through the emulated network. Not yet on the
+        way to the rig, where a packet with the largest of all numbers has the follower hold the needle until it is started
         anew (doc/time_outs.md)."""
         link = parameters("link")
         patient = {key: TIMEOUT for key in ("needle", "predicted", "measured", "controller")}
