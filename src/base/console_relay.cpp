@@ -100,6 +100,7 @@ bool ConsoleRelay::Shared::open() {
       if (pipe2(ends, O_CLOEXEC) != 0) return false;
       pipes[i] = ends[0];
       input = ends[1];
+      fcntl(input, F_SETPIPE_SZ, static_cast<int>(kMostWaiting));
       fcntl(input, F_SETFL, O_NONBLOCK);  // where even the reading thread gets no processor, a line is lost
     }
     if (dup2(input, stream) < 0) return false;

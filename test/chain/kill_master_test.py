@@ -3,49 +3,24 @@
 hangs, all rests. How long that takes is wall time (nodes/master_watch.h) and not looked at here."""
 
 import math
-import os
 import signal
-import subprocess
 import threading
 import unittest
 
 import numpy as np
-import rosgraph
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseStamped, WrenchStamped
 
 from cell_microinjection.msg import InjectionPulse, InjectorState
-from killable_nodes import PACKAGE, PATIENCE, KillableNodes, parameters, rig
+from killable_nodes import PACKAGE, KillableNodes, parameters, rig
+from live_chain import Master, until
 from messages import force, pose, position
-from processes import free_port
 
 LOST = "the ROS master is lost"
 STILL = 2e-9  # m
 RATE = 200  # Hz
-
-
-class Master:
-    def __init__(self, port):
-        self._process = subprocess.Popen(["rosmaster", "--core", "-p", str(port)], stdout=subprocess.DEVNULL,
-                                         stderr=subprocess.DEVNULL)
-        until(rosgraph.is_master_online, "a master")
-
-    def signal(self, number):
-        self._process.send_signal(number)
-
-    def kill(self):
-        self._process.kill()
-        self._process.wait()
-
-
-def until(condition, what):
-    for _ in range(100 * PATIENCE):
-        if condition():
-            return
-        rospy.rostime.wallsleep(0.01)
-    raise AssertionError(f"{what}: not within {PATIENCE} s")
 
 
 class Heard:
@@ -97,9 +72,7 @@ class Hand:
 class KillMasterTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.port = free_port()
-        os.environ["ROS_MASTER_URI"] = f"http://127.0.0.1:{cls.port}"
-        cls.master = Master(cls.port)
+        cls.master = Master()
         rospy.init_node("master_killer")
         # A machine that stalls must not hold the needle here, nor nodes in real time keep the test from the processor.
         patient = {key: 1.0 for key in ("hand", "needle", "predicted", "controller")}
@@ -178,7 +151,7 @@ class KillMasterTest(unittest.TestCase):
         self.begin_pulse(2)
         self.master.kill()
         self.check_all_rests()
-        type(self).master = Master(self.port)
+        type(self).master = Master(self.master.port)
         self.needle.newest(3 * RATE, position)  # a few questions to the new one
         self.check_all_rests()
 

@@ -91,6 +91,11 @@ class KillableNodes:
         self._frozen[node] = self._running.pop(node)
         self._frozen[node].send_signal(signal.SIGSTOP)
 
+    def thaw(self, node):
+        """It goes on where it was."""
+        self._running[node] = self._frozen.pop(node)
+        self._running[node].send_signal(signal.SIGCONT)
+
     def wake_up(self, node):
         """@returns its exit status, as soon as it has ended."""
         self._frozen[node].send_signal(signal.SIGCONT)

@@ -28,14 +28,17 @@ def until(condition, what):
 
 
 class Master:
-    """A ROS master of the test's own. Before rospy.init_node."""
+    """A ROS master of the test's own, before rospy.init_node. `port`: that of one before; none: a free one."""
 
-    def __init__(self):
-        os.environ["ROS_MASTER_URI"] = f"http://127.0.0.1:{free_port()}"
-        port = os.environ["ROS_MASTER_URI"].rpartition(":")[2]
-        self._process = subprocess.Popen(["rosmaster", "--core", "-p", port], stdout=subprocess.DEVNULL,
+    def __init__(self, port=None):
+        self.port = port or free_port()
+        os.environ["ROS_MASTER_URI"] = f"http://127.0.0.1:{self.port}"
+        self._process = subprocess.Popen(["rosmaster", "--core", "-p", str(self.port)], stdout=subprocess.DEVNULL,
                                          stderr=subprocess.DEVNULL)
         until(rosgraph.is_master_online, "a master")
+
+    def signal(self, number):
+        self._process.send_signal(number)
 
     def kill(self):
         self._process.kill()
