@@ -88,12 +88,15 @@ void Cycle::runLive() {
   }
 }
 
-bool Cycle::allAnswered(const ros::Time& now) const {
+bool Cycle::answered(Phase phase, const ros::Time& stamp) const {
   return std::all_of(inputs_.begin(), inputs_.end(), [&](const auto& input) {
-    if (input->phase == Phase::kTickBefore && stepped_tick_.isZero()) return true;  // nothing was said before the start
-    if (hasLeft(input->feeder)) return true;
-    return input->answered(input->phase == Phase::kSameTick ? now : stepped_tick_);
+    return input->phase != phase || hasLeft(input->feeder) || input->answered(stamp);
   });
+}
+
+bool Cycle::readyFor(const ros::Time& tick) const {
+  const bool first = stepped_tick_.isZero();  // nothing was published before it
+  return answered(Phase::kSameTick, tick) && (first || answered(Phase::kTickBefore, stepped_tick_));
 }
 
 bool Cycle::hasLeft(const std::string& participant) const {
@@ -115,8 +118,9 @@ void Cycle::runLockstep() {
   acknowledge(ros::Time());  // ready for the first tick
   while (goesOn()) {
     queue_.callAvailable(ros::WallDuration(0.1));
-    if (tick_ == stepped_tick_ || !allAnswered(tick_)) continue;
+    if (tick_ == stepped_tick_ || !readyFor(tick_)) continue;
     const ros::Time now = tick_;
+    const bool first = stepped_tick_.isZero();
     for (auto& input : inputs_) {
       runGuarded(input->topic, [&] { input->take(input->phase == Phase::kSameTick ? now : stepped_tick_, now); });
     }
@@ -124,6 +128,9 @@ void Cycle::runLockstep() {
     step(now);
     for (auto& output : outputs_) output->endTick();
     stepped_tick_ = now;
+    // A topic may connect later than its greeting did. Nobody goes on, and latches what comes next, before this node has
+    // the first answer of each.
+    while (first && goesOn() && !answered(Phase::kTickBefore, now)) queue_.callAvailable(ros::WallDuration(0.1));
     acknowledge(now);
   }
 }

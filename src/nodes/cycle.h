@@ -63,7 +63,9 @@ class Cycle {
   bool goesOn();
   void runLive();
   void runLockstep();
-  bool allAnswered(const ros::Time& now) const;
+  /// Lock step: has each input of that phase its answer for the tick `stamp`?
+  bool answered(Phase phase, const ros::Time& stamp) const;
+  bool readyFor(const ros::Time& tick) const;
   bool hasLeft(const std::string& participant) const;
   /// It goes where the topic is remapped to.
   std::string silentTopic(const std::string& topic) const { return node_.resolveName(topic) + kSilentSuffix; }

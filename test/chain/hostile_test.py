@@ -1,11 +1,12 @@
 #!/usr/bin/python3
 """Strangers send each node of a live session what nobody should, on every topic that it listens to: at least 250 kinds
-a topic. No node ends, none publishes a number that is not finite, and the loop closes again, by itself or when it is
-enabled again after it has said what it waits for."""
+a topic, on four topics at a time. No node ends, none publishes a number that is not finite, and the loop closes again,
+by itself or when it is enabled again after it has said what it waits for."""
 
 import math
 import tempfile
 import unittest
+from itertools import zip_longest
 
 import genpy
 import rosgraph
@@ -24,7 +25,8 @@ from live_chain import RATE, TIMEOUT, Hand, LiveChain, Master, until
 # NaN means none in these fields (Inject.action).
 MAY_BE_NAN = {"puncture_force", "puncture_depth"}
 FARTHER = 1.5 * TIMEOUT * Hand.SPEED * 1e-3  # m, of the needle, which is a thousandth of the hand
-PAUSE = 0.002  # s between two messages, so that none is lost in a queue
+PAUSE = 0.002  # s between two messages on a topic, so that none is lost in a queue
+GROUP = 4  # topics that are attacked together; the loop is looked at after each group
 
 
 def classes(kind):
@@ -127,13 +129,13 @@ class HostileTest(unittest.TestCase):
         self.enable[topic].publish(StringStamped(string=command))
         rospy.rostime.wallsleep(0.1)
 
-    def check_closes_again(self, topic):
+    def check_closes_again(self, topics):
         """By itself; or it says what it waits for, and closes when it was enabled again."""
-        self.assertEqual(self.chain.nodes.dead(), [], f"after {topic}: {self.chain.nodes.report()}")
+        self.check_lives(topics)
         if self.follows():
             return
 
-        until(self.waits_for, f"after {topic} the needle does not follow, and nobody says why")
+        until(self.waits_for, f"after {topics} the needle does not follow, and nobody says why")
         said = self.waits_for()
         for _ in range(5):
             self.say("/controller/state_command", "disable")
@@ -141,20 +143,25 @@ class HostileTest(unittest.TestCase):
             self.say("/controller/state_command", "enable")
             if self.follows():
                 return
-        self.fail(f"after {topic} the loop stays open: {said}; enabled again: {self.waits_for()}; "
+        self.fail(f"after {topics} the loop stays open: {said}; enabled again: {self.waits_for()}; "
                   f"{self.chain.nodes.report()}")
 
     def attack(self, topics, check):
-        for number, (topic, cls) in enumerate(sorted(topics.items())):
-            publisher = rospy.Publisher(topic, cls, queue_size=100)
-            until(publisher.get_num_connections, f"a listener of {topic}")
-            for message in hostile_messages(cls, classes, number):
-                publisher.publish(message)
+        names = sorted(topics)
+        for number in range(0, len(names), GROUP):
+            group = names[number:number + GROUP]
+            publishers = [rospy.Publisher(topic, topics[topic], queue_size=100) for topic in group]
+            until(lambda: all(publisher.get_num_connections() for publisher in publishers), f"listeners of {group}")
+            for messages in zip_longest(*(hostile_messages(topics[topic], classes, number) for topic in group)):
+                for publisher, message in zip(publishers, messages):
+                    if message is not None:
+                        publisher.publish(message)
                 rospy.rostime.wallsleep(PAUSE)
-            print(f"{topic}: sent", flush=True)
-            publisher.unregister()
-            check(topic)
-            self.assertEqual(self.watch.defects, [], f"after {topic}")
+            print(f"{group}: sent", flush=True)
+            for publisher in publishers:
+                publisher.unregister()
+            check(group)
+            self.assertEqual(self.watch.defects, [], f"after {group}")
 
     def test_chain(self):
         recorder = {"output_dir": f"{self.folder.name}/record", "hand": True, "injector": True, "bag": True}
@@ -198,8 +205,8 @@ class HostileTest(unittest.TestCase):
             self.attack(self.topics(), self.check_lives)
             self.chain.nodes.kill("haptic_device")
 
-    def check_lives(self, topic):
-        self.assertEqual(self.chain.nodes.dead(), [], f"after {topic}: {self.chain.nodes.report()}")
+    def check_lives(self, topics):
+        self.assertEqual(self.chain.nodes.dead(), [], f"after {topics}: {self.chain.nodes.report()}")
 
 
 if __name__ == "__main__":

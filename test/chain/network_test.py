@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
 """A real rig is not enabled while others can reach its nodes: the driver of a Zaber rig, with its device emulated, in
-network namespaces that the test makes. Needs to be root."""
+network namespaces that the test makes. And the namespace of isolated shells. Needs to be root."""
 
 import os
+import socket
 import subprocess
 import sys
 import tempfile
 import time
 import unittest
+from pathlib import Path
 
 PATIENCE = 60  # s of wall time; only what hangs takes that long
 ADDRESS, PEER = "10.77.0.1", "10.77.0.2"
@@ -149,6 +151,48 @@ class NetworkTest(unittest.TestCase):
 
     def test_enabled_where_a_parameter_allows_others(self):
         self.check("allowed")
+
+
+@unittest.skipUnless(may_make_namespaces(), "no network namespaces: needs root, and a system that allows them")
+class IsolatedShellTest(unittest.TestCase):
+    """What `./dev shell --isolated` runs a command with."""
+
+    NAMESPACE = "cell_microinjection"
+    TOOLS = Path(__file__).resolve().parents[2] / "src/tools/dev"
+
+    def run_isolated(self, code, **environment):
+        script = """
+            ROOT=$1; fail() { echo "$*" >&2; exit 1; }
+            for part in setup environment isolate; do source "$1/src/tools/dev/$part.sh"; done
+            run_isolated "$2" -c "$3"
+            """
+        command = ["bash", "-c", script, "dev", self.TOOLS.parents[2], sys.executable, code]
+        result = subprocess.run(command, env={**os.environ, **environment}, capture_output=True, text=True)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return result.stdout.strip()
+
+    def setUp(self):
+        there = subprocess.run(["ip", "netns", "list"], capture_output=True, text=True).stdout.split()
+        if self.NAMESPACE not in there:
+            self.addCleanup(subprocess.run, ["ip", "netns", "delete", self.NAMESPACE], check=True)
+
+    def test_has_the_loopback_interface_only(self):
+        names = "import socket; print(*(name for _, name in socket.if_nameindex()))"
+        self.assertEqual(self.run_isolated(names), "lo")
+
+    def test_shells_find_each_other(self):
+        """And not what listens outside of them."""
+        with socket.create_server(("127.0.0.1", 0)) as outside:
+            reach = f"import socket; print(socket.socket().connect_ex(('127.0.0.1', {outside.getsockname()[1]})) != 0)"
+            self.assertEqual(self.run_isolated(reach), "True")
+        place = "import os; print(os.readlink('/proc/self/ns/net'))"
+        self.assertEqual(self.run_isolated(place), self.run_isolated(place))
+
+    def test_keeps_the_environment_and_names_the_local_master(self):
+        names = ("MINE", "ROS_IP", "ROS_MASTER_URI")
+        show = f"import os; print(*(os.environ[name] for name in {names}))"
+        outside = {"MINE": "kept", "ROS_IP": "10.0.0.1", "ROS_MASTER_URI": "http://elsewhere:1"}
+        self.assertEqual(self.run_isolated(show, **outside), "kept 127.0.0.1 http://127.0.0.1:11311")
 
 
 if __name__ == "__main__":
