@@ -15,11 +15,13 @@ import rospy
 import rostest
 import yaml
 from cell_microinjection.msg import StringStamped
+from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import WrenchStamped
 
 import foreign_messages
+from case import case
 from hostile_messages import hostile_messages
-from killable_nodes import PACKAGE, parameters
+from killable_nodes import PACKAGE, PATIENCE, KillableNodes, parameters
 from live_chain import RATE, TIMEOUT, Hand, LiveChain, Master, until
 
 # NaN means none in these fields (Inject.action).
@@ -91,15 +93,15 @@ class HostileTest(unittest.TestCase):
     def begin(self, changes):
         self.chain = LiveChain(changes)
         self.addCleanup(self.chain.close)
-        self.nodes = self.chain.nodes.names()
+        self.nodes = self.chain.nodes
         self.enable = {topic: rospy.Publisher(topic, StringStamped, queue_size=5)
                        for topic in ("/needle/state_command", "/controller/state_command")}
         self.chain.check_follows()
         self.watch_nodes()
+        self.addCleanup(self.watch.close)
 
     def watch_nodes(self):
-        self.watch = Watch(self.nodes)
-        self.addCleanup(self.watch.close)
+        self.watch = Watch(self.nodes.names())
         for topic, cls in self.topics(publishers=True).items():
             self.watch.follow(topic, cls)
 
@@ -108,13 +110,15 @@ class HostileTest(unittest.TestCase):
         master = rosgraph.Master(rospy.get_name())
         state = master.getSystemState()[0 if publishers else 1]
         kinds = dict(master.getTopicTypes())
-        ours = {f"/{node}" for node in self.nodes}
+        ours = {f"/{node}" for node in self.nodes.names()}
         return {topic: classes(kinds[topic]) for topic, nodes in state if ours & set(nodes)}
 
     def follows(self):
-        """The needle goes farther than it could in the time-outs of a chain that has just been cut."""
+        """The needle goes farther than it could in the time-outs of a chain that has just been cut, while the hand goes
+        three times as far."""
+        hand, begin = self.chain.hand, self.chain.hand.way
         way, last = 0.0, self.chain.needle()[2]
-        for _ in range(400):
+        while hand.way - begin < 3e3 * FARTHER:
             now = self.chain.needle()[2]
             way, last = way + abs(now - last), now
             if way > FARTHER:
@@ -144,14 +148,16 @@ class HostileTest(unittest.TestCase):
             if self.follows():
                 return
         self.fail(f"after {topics} the loop stays open: {said}; enabled again: {self.waits_for()}; "
-                  f"{self.chain.nodes.report()}")
+                  f"{self.nodes.report()}")
 
     def attack(self, topics, check):
         names = sorted(topics)
         for number in range(0, len(names), GROUP):
             group = names[number:number + GROUP]
             publishers = [rospy.Publisher(topic, topics[topic], queue_size=100) for topic in group]
-            until(lambda: all(publisher.get_num_connections() for publisher in publishers), f"listeners of {group}")
+            until(lambda: self.nodes.dead() or all(publisher.get_num_connections() for publisher in publishers),
+                  f"listeners of {group}")
+            self.check_lives(group)
             for messages in zip_longest(*(hostile_messages(topics[topic], classes, number) for topic in group)):
                 for publisher, message in zip(publishers, messages):
                     if message is not None:
@@ -193,20 +199,22 @@ class HostileTest(unittest.TestCase):
                     self.check_closes_again)
 
     def test_haptic_devices(self):
-        """Their adapters alone, each beside the drivers' topics."""
-        self.begin({})
+        """Their adapters alone, each on the drivers' topics."""
         for kind in ("omni", "geomagic", "joy", "marker"):
-            settings = yaml.safe_load((PACKAGE / f"config/haptic/{kind}.yaml").read_text())["haptic_device"]
-            self.chain.nodes.begin({"haptic_device": settings})
-            name = "/haptic_device"
-            until(lambda: any(name in nodes for _, nodes in rosgraph.Master("/x").getSystemState()[1]), name)
-            self.nodes = {"haptic_device"}
-            self.watch_nodes()
-            self.attack(self.topics(), self.check_lives)
-            self.chain.nodes.kill("haptic_device")
+            with case(kind):
+                settings = yaml.safe_load((PACKAGE / f"config/haptic/{kind}.yaml").read_text())["haptic_device"]
+                self.nodes = KillableNodes({"haptic_device": settings})
+                try:
+                    rospy.wait_for_message("/diagnostics", DiagnosticArray, PATIENCE)  # it listens to all it ever will
+                    self.watch_nodes()
+                    self.attack(self.topics(), self.check_lives)
+                finally:
+                    self.nodes.stop()
+                    self.watch.close()
+                    self.nodes.forget()
 
     def check_lives(self, topics):
-        self.assertEqual(self.chain.nodes.dead(), [], f"after {topics}: {self.chain.nodes.report()}")
+        self.assertEqual(self.nodes.dead(), [], f"after {topics}: {self.nodes.report()}")
 
 
 if __name__ == "__main__":

@@ -65,6 +65,7 @@ class Hand:
     SPEED, STROKE = 5e-3, 2e-3  # m/s, m
 
     def __init__(self):
+        self.way = 0.0  # m, so far
         self._publisher = rospy.Publisher("/haptic/measured_cp", PoseStamped, queue_size=1)
         self._clutch = rospy.Publisher("/haptic/clutch", Joy, queue_size=1)
         self._ended = threading.Event()
@@ -79,6 +80,7 @@ class Hand:
         z, step = 0.0, -self.SPEED / RATE
         while not self._ended.is_set() and not rospy.is_shutdown():
             z += step
+            self.way += abs(step)
             step = math.copysign(step, -z) if abs(z) > self.STROKE else step
             message = pose(0, 0, z, "haptic")
             message.header.stamp = rospy.Time.now()
@@ -134,3 +136,4 @@ class LiveChain:
         self._frame.wait()
         for subscriber in self._subscribers:
             subscriber.unregister()
+        self.nodes.forget()
