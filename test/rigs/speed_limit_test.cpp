@@ -34,8 +34,7 @@ class SpeedLimitTest : public DriverTest<Tested> {
     return share;
   }
 };
-using AllTested = testing::Types<TestedZaber, TestedMp285>;
-TYPED_TEST_SUITE(SpeedLimitTest, AllTested);
+TYPED_TEST_SUITE(SpeedLimitTest, AllTested, Names);
 
 TYPED_TEST(SpeedLimitTest, HoldsForMoves) {
   EXPECT_LE(this->rig_->driver().abilities().speed, 60e-6);
