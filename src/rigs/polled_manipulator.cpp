@@ -13,7 +13,7 @@ constexpr double kLongestGuess = 0.1;    // s, of motion by which a position tha
 constexpr double kMoveAllowance = 0.5;   // s, that a move may take longer than its way at its speed, and a quarter
 constexpr double kSettleTime = 0.2;      // s, in which one that says it stands may still come to rest (acq4)
 constexpr double kWorthStopping = 0.15;  // s left of a move: for less, a new goal waits
-constexpr int kSteady = 2;               // readings in a row of one that stands
+constexpr int kSteady = 2;               // readings in a row of one that has arrived
 constexpr int kTries = 2;                // of a move that ends elsewhere
 constexpr int kSetupTries = 6;           // of a line at the begin, which must be answered twice alike
 constexpr std::size_t kLongestLine = 80;
@@ -69,10 +69,13 @@ ManipulatorAbilities PolledManipulator::abilities() const {
 
 /// Silence after an exchange that went wrong, what a new session says, and as much as a turn to spare.
 double PolledManipulator::recoveryTime() const {
-  int lines = 6;
+  constexpr int kLineAndAnswer = 20, kReadings = 4;  // bytes of a line at the begin; readings until it stands
+  int lines = 1;
   for (int i = 0; !setup(i).empty(); ++i) lines += 2;
-  return common_.reply_timeout + 2 * dialect_.longest_move * common_.byteTime() + dialect_.stop_duration +
-         lines * (dialect_.longest_reading * common_.byteTime() + common_.answer_time) + abilities().reading_interval;
+  return common_.reply_timeout + dialect_.longest_move * common_.byteTime() + dialect_.stop_duration +
+         lines * (kLineAndAnswer * common_.byteTime() + common_.answer_time) +
+         kReadings * (dialect_.longest_reading * common_.byteTime() + common_.answer_time) +
+         abilities().reading_interval;
 }
 
 Eigen::Vector3d PolledManipulator::carriedOn(double at) const {
@@ -109,7 +112,6 @@ void PolledManipulator::begin(bool lost) {
   filter_.forget();
   lines_.clear(false);
   asked_stop_ = settled_ = asked_motion_ = false;
-  steady_ = 0;
   lost_session_ = lost;
   begun_anew_ = begun_anew_ && !clearing();
   if (!lost) return;
@@ -121,6 +123,7 @@ void PolledManipulator::begin(bool lost) {
 void PolledManipulator::stopSaid() {
   if (position_) position_ = carriedOn(time() + dialect_.guarded_stop.size() * common_.byteTime());
   move_.reset();
+  settled_ = false;
   next_move_ = 0;
   trustAtMost(common_.reply_timeout + dialect_.longest_move * common_.byteTime() + recoveryTime());
 }
@@ -162,6 +165,7 @@ void PolledManipulator::handle(const std::string& answer) {
 void PolledManipulator::takeSetupAnswer(const std::string& answer) {
   const bool twice = setup_answer_ == answer;
   if (!twice && ++setup_tries_ > kSetupTries) return malformed(answer);
+  if (!twice && setup_answer_) ++malformed_;
   exchange_.reset();
   setup_answer_ = answer;
   if (!twice) return;
@@ -182,7 +186,7 @@ void PolledManipulator::takeMotion(const std::string& answer) {
   if (*moves) {
     move_->stood.reset();
   } else if (!move_->stood) {
-    move_->stood = time();
+    move_->stood = listened();
   }
 }
 
@@ -213,27 +217,29 @@ bool PolledManipulator::beginsAnew(const Eigen::Vector3d& place) {
 }
 
 void PolledManipulator::takePlace(const Eigen::Vector3d& place) {
-  const Eigen::Vector3d expected = position_ ? carriedOn(time()) : Eigen::Vector3d::Constant(std::nan(""));
+  const Eigen::Vector3d nowhere = Eigen::Vector3d::Constant(std::nan(""));
+  const Eigen::Vector3d expected = position_ && settled_ ? carriedOn(time()) : nowhere;
   const double speed = move_ ? (move_->to - move_->from).norm() / std::max(move_->duration, 1e-3) : 0;  // counts/s
   const double under_way = common_.reading_margin / count() + kLongestGuess * speed;
-  const double tolerance = settled_ && !move_ ? kSame : under_way;
-  if (!filter_.accept(place, expected, tolerance, move_ ? under_way : kSame)) return;  // asked again
+  // At rest, and until it is known to be, only what is told four times can be another place than before.
+  const double tolerance = move_ ? under_way : kSame;
+  if (!filter_.accept(place, expected, tolerance, tolerance)) return;  // asked again
   if (move_) return checkMove(place);
   if (beginsAnew(place)) return;
-  const bool same = position_ && (place - *position_).cwiseAbs().maxCoeff() < kSame;
-  if (position_ && settled_) {
+  if (settled_) {
     largest_correction_ = std::max(largest_correction_, (place - expected).cwiseAbs().maxCoeff() * count());
+    return rest(place);
   }
-  position_ = place;
-  next_rest_reading_ = time() + common_.rest_reading_interval;
-  if (settled_) rested_ = place;
-  if (settled_) return;
-  steady_ = same ? steady_ + 1 : 1;
-  if (steady_ < kSteady) return;
   settled_ = true;
-  rested_ = place;
-  trustFor(std::numeric_limits<double>::infinity());  // it stands, until it is asked again
+  rest(place);
   known();
+}
+
+/// It stands there, until it is asked again.
+void PolledManipulator::rest(const Eigen::Vector3d& place) {
+  position_ = rested_ = place;
+  next_rest_reading_ = time() + common_.rest_reading_interval;
+  trustFor(std::numeric_limits<double>::infinity());
 }
 
 /// A reading under way: the move goes on from there, has arrived, or has ended elsewhere.
@@ -242,16 +248,15 @@ void PolledManipulator::checkMove(const Eigen::Vector3d& place) {
   const bool told_to_stand = dialect_.motion.empty() || move_->stood;
   move_->at_goal = there && told_to_stand ? move_->at_goal + 1 : 0;
   if (move_->at_goal >= kSteady || (move_->at_goal > 0 && timeLeft() <= 0)) {
-    position_ = rested_ = place;
     next_move_ = move_->next;
-    next_rest_reading_ = time() + common_.rest_reading_interval;
     move_.reset();
     tries_ = 0;
-    return;
+    return rest(place);
   }
-  const bool stands_elsewhere = move_->stood && time() > *move_->stood + kSettleTime;
-  if (time() > move_->overdue || stands_elsewhere) {
+  const bool stands_elsewhere = move_->stood && listened() > *move_->stood + kSettleTime;
+  if (listened() > move_->overdue || stands_elsewhere) {
     position_ = place;
+    move_.reset();
     if (++tries_ >= kTries) {
       const std::string why = whyNotArrived();
       return raiseFault("the move does not arrive: " + (why.empty() ? "it was interrupted" : why));
@@ -294,7 +299,7 @@ void PolledManipulator::nextOfMove() {
     if (move_->unsaid.empty()) {
       rested_.reset();
       move_->begin = time() + static_cast<double>(line.size() + 1) * common_.byteTime();
-      move_->overdue = move_->begin + 1.25 * move_->duration + kMoveAllowance;
+      move_->overdue = listened() + 1.25 * move_->duration + kMoveAllowance;
     }
     return ask(Kind::kMove, line);
   }
@@ -320,6 +325,20 @@ double PolledManipulator::wantedSpeed(const Eigen::Vector3d& way) const {
   return speed;
 }
 
+/// A whole place near `share` of a way, and nearer to the line than others that are up to half as far.
+Eigen::Vector3d PolledManipulator::onTheWay(const Eigen::Vector3d& from, const Eigen::Vector3d& way, double share) {
+  Eigen::Vector3d best = from;
+  double least = std::numeric_limits<double>::infinity();
+  for (double part = share; part > 0.5 * share; part -= 0.1 * share) {
+    const Eigen::Vector3d place = (from + way * part).array().round(), gone = place - from;
+    const double aside = (gone - way * (gone.dot(way) / way.squaredNorm())).norm();
+    if (gone.isZero(kSame) || aside >= least) continue;
+    best = place;
+    least = aside;
+  }
+  return best;
+}
+
 void PolledManipulator::nextTowardsGoal() {
   Move move;
   move.from = *position_;
@@ -331,7 +350,7 @@ void PolledManipulator::nextTowardsGoal() {
   const double longest = in_steps       ? std::max(wanted * common_.segment_time, 2 * count())
                          : move.follows ? 2 * common_.segment_time * wanted
                                         : length;
-  if (length > longest) move.to = (move.from + way * (longest / length)).array().round();
+  if (length > longest) move.to = onTheWay(move.from, way, longest / length);
   if (isThere(move.from, move.to)) move.to = goalPlace();
   if (move.to.cwiseAbs().maxCoeff() > 2e9) return raiseFault("the goal is too far away to be said");
   const double speed = std::max(wanted, slowest());

@@ -22,7 +22,7 @@ struct PolledManipulatorConfig {
   double speed = 1e-3;               ///< m/s, largest along a move
   double segment_time = 0.05;        ///< s, that a short move towards a set-point should take
   double answer_time = 5e-3;         ///< s, that the device takes to answer
-  double reply_timeout = 0.2;        ///< s, after which an answer is missed, besides the time on the wire
+  double reply_timeout = 0.3;        ///< s, after which an answer is missed, besides the time on the wire
   double rest_reading_interval = 1;  ///< s, between readings at rest
   double reading_margin = 5e-6;      ///< m, by which a reading under way may be off, besides 0.1 s of motion
 
@@ -108,7 +108,7 @@ class PolledManipulator : public SerialManipulator {
     bool follows;              // a short one towards a set-point
     std::vector<std::string> unsaid;
     int at_goal = 0;              // readings in a row
-    std::optional<double> stood;  // s, since when the device says that it stands
+    std::optional<double> stood;  // s of listened(), since when the device says that it stands
   };
 
   void handle(const std::string& answer);
@@ -116,6 +116,8 @@ class PolledManipulator : public SerialManipulator {
   void takeMotion(const std::string& answer);
   void takePosition(const std::string& answer);
   void takePlace(const Eigen::Vector3d& place);
+  void rest(const Eigen::Vector3d& place);
+  static Eigen::Vector3d onTheWay(const Eigen::Vector3d& from, const Eigen::Vector3d& way, double share);
   void checkMove(const Eigen::Vector3d& place);
   bool beginsAnew(const Eigen::Vector3d& place);
   void malformed(const std::string& answer);
@@ -140,7 +142,6 @@ class PolledManipulator : public SerialManipulator {
   int setup_tries_ = 0;
   bool asked_stop_ = false, settled_ = false, asked_motion_ = false;
   bool lost_session_ = false, begun_anew_ = false;
-  int steady_ = 0;                                // equal readings in a row while it is not settled
   double next_rest_reading_ = 0, next_move_ = 0;  // s
   std::optional<Eigen::Vector3d> position_;       // counts, the last true one or where it was stopped
   std::optional<Eigen::Vector3d> rested_;         // counts, where it stood when it was last heard of

@@ -27,6 +27,7 @@ struct TestedZaber {
   using Emulator = ZaberEmulator;
   using EmulatorConfig = ZaberEmulatorConfig;
   static constexpr double kStep = 0.047625e-6;   // m, a microstep
+  static constexpr double kMotorStep = kStep;    // m
   static constexpr double kTold = 0.1 * kStep;   // m, by which a place that is told may be off
   static constexpr double kFastest = 2e-3;       // m/s
   static constexpr double kLongestBlind = 0.16;  // s without an answer that position is still told
@@ -50,6 +51,7 @@ struct TestedMp285 {
   using Emulator = Mp285Emulator;
   using EmulatorConfig = Mp285EmulatorConfig;
   static constexpr double kStep = 0.04e-6;      // m, a microstep
+  static constexpr double kMotorStep = kStep;   // m
   static constexpr double kTold = 0.1 * kStep;  // m, by which a place that is told may be off
   static constexpr double kFastest = 1e-3;      // m/s
   static constexpr double kLongestBlind = 1.5;  // s, a short move and its failed exchange
@@ -72,11 +74,12 @@ struct TestedEppendorf {
   using Config = EppendorfConfig;
   using Emulator = EppendorfEmulator;
   using EmulatorConfig = EppendorfEmulatorConfig;
-  static constexpr double kStep = 1e-6;         // m, a count
-  static constexpr double kTold = 0.5e-6;       // m: a place is told as whole counts
-  static constexpr double kFastest = 1e-3;      // m/s
-  static constexpr double kLongestBlind = 1.2;  // s
-  static constexpr char kLostReply[] = "drop:1", kSilence[] = "silence:0.9";
+  static constexpr double kStep = 1e-6;          // m, a count
+  static constexpr double kMotorStep = 0.04e-6;  // m
+  static constexpr double kTold = 0.5e-6;        // m: a place is told as whole counts
+  static constexpr double kFastest = 1e-3;       // m/s
+  static constexpr double kLongestBlind = 1.5;   // s
+  static constexpr char kLostReply[] = "drop:1", kSilence[] = "silence:1.1";
   static constexpr double kStopOnWire = 7 * 10.0 / 19200;  // s
   static constexpr bool kMovedByHand = false;
 
@@ -95,11 +98,12 @@ struct TestedScientifica {
   using Config = ScientificaConfig;
   using Emulator = ScientificaEmulator;
   using EmulatorConfig = ScientificaEmulatorConfig;
-  static constexpr double kStep = 0.02e-6;      // m: a microstep and a count
-  static constexpr double kTold = 0.006e-6;     // m: a place is told as whole counts
-  static constexpr double kFastest = 1e-3;      // m/s
-  static constexpr double kLongestBlind = 1.2;  // s
-  static constexpr char kLostReply[] = "drop:1", kSilence[] = "silence:0.9";
+  static constexpr double kStep = 0.02e-6;        // m: a microstep and a count
+  static constexpr double kMotorStep = 0.016e-6;  // m
+  static constexpr double kTold = 0.006e-6;       // m: a place is told as whole counts
+  static constexpr double kFastest = 1e-3;        // m/s
+  static constexpr double kLongestBlind = 1.5;    // s
+  static constexpr char kLostReply[] = "drop:1", kSilence[] = "silence:1.3";
   static constexpr double kStopOnWire = 6 * 10.0 / 38400;  // s
   static constexpr bool kMovedByHand = true;
 

@@ -1,10 +1,10 @@
 #include "rigs/eppendorf/eppendorf_emulator.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <optional>
+#include <regex>
 #include <vector>
 
 namespace microinjection {
@@ -14,23 +14,13 @@ constexpr int kUnknown = 1, kNotRemote = 2, kParameters = 3, kBusy = 4;  // assu
 
 /// Whole numbers, separated by spaces or by their signs; nothing else may be there.
 std::optional<std::vector<long>> numbersIn(const std::string& text) {
-  std::vector<std::string> parts;
-  for (const char each : text) {
-    if (each == ' ' || each == '+' || each == '-') {
-      if (each != ' ' || (!parts.empty() && parts.back() != "+" && parts.back() != "-")) parts.emplace_back();
-      if (each != ' ') parts.back() = each;
-    } else if (std::isdigit(static_cast<unsigned char>(each)) && !parts.empty()) {
-      parts.back() += each;
-    } else {
-      return std::nullopt;
-    }
-  }
+  static const std::regex form(R"(( *[ +-]\d+)* *)"), number(R"([+-]?\d+)");
+  if (!std::regex_match(text, form)) return std::nullopt;
   std::vector<long> numbers;
-  for (const std::string& part : parts) {
-    long number = 0;
-    if (part.empty()) continue;
-    if (!isWhole(part, number)) return std::nullopt;
-    numbers.push_back(number);
+  for (std::sregex_iterator each(text.begin(), text.end(), number), end; each != end; ++each) {
+    long value = 0;
+    if (!isWhole(each->str(), value)) return std::nullopt;
+    numbers.push_back(value);
   }
   return numbers;
 }
@@ -45,10 +35,9 @@ std::string EppendorfEmulator::error(int code) const {
 
 void EppendorfEmulator::obey(const std::string& command, double time) {
   const std::string name = command.substr(0, 4);
-  const auto numbers = numbersIn(" " + command.substr(std::min<std::size_t>(4, command.size())));
+  const auto numbers = numbersIn(command.substr(std::min<std::size_t>(4, command.size())));
   const bool goes = name == "C007" || name == "C012";
-  const bool apart = command.size() == 4 || std::string(" +-").find(command[4]) != std::string::npos;
-  if (!numbers || !apart || numbers->size() != (goes ? 6u : 0u)) return answer(error(kParameters), time);
+  if (!numbers || numbers->size() != (goes ? 6u : 0u)) return answer(error(kParameters), time);
   if ((goes || name == "C008") && !remote_) return answer(error(kNotRemote), time);
   if (name == "C001") return answer("A001 5181 V1.08", time);
   if (name == "C010") return answer(positionText(), time);

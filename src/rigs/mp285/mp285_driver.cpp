@@ -37,8 +37,8 @@ ManipulatorAbilities Mp285Driver::abilities() const {
   return abilities;
 }
 
-/// Silence after an exchange that went wrong, the questions of a new session, an answer that is cut off, and as much as a
-/// turn to spare.
+/// Silence after an exchange that went wrong, the questions of a new session, an answer that is cut off, and as much as
+/// a turn to spare.
 double Mp285Driver::recoveryTime() const {
   return config_.half_command_time + kBytePause + 14 * byteTime() + 56 * byteTime() +
          4 * (config_.answer_time + config_.command_pause) + abilities().reading_interval;
@@ -195,9 +195,9 @@ void Mp285Driver::handleError(int error) {
 void Mp285Driver::takePosition(const Mp285Position& told) {
   const Eigen::Vector3d place(told[0], told[1], told[2]);
   const Eigen::Vector3d expected = position_ ? carriedOn(time()) : Eigen::Vector3d::Constant(std::nan(""));
-  // What stands does not change by a microstep; where it is after a move or a stop is known to two.
-  const double tolerance = move_ && move_->coarse ? kCoarseStep + 1 : move_ || !settled_ ? 2 : 0.5;
-  if (!filter_.accept(place, expected, tolerance, 2)) return;  // asked again
+  // What stands does not change by a microstep, and a fine move ends where it was sent: else four must agree.
+  const double tolerance = move_ && move_->coarse ? kCoarseStep + 1 : 0.5;
+  if (!filter_.accept(place, expected, tolerance, 0.5)) return;  // asked again
   if (position_ && settled_) {
     largest_correction_ =
         std::max(largest_correction_, (place - expected).cwiseProduct(microsteps_).cwiseAbs().maxCoeff());

@@ -5,7 +5,10 @@
 namespace microinjection {
 
 struct ScientificaConfig : PolledManipulatorConfig {
-  ScientificaConfig() { port.baud = 38400; }
+  ScientificaConfig() {
+    port.baud = 38400;
+    reply_timeout = 0.35;
+  }
 
   int version = 3;             ///< of the motion card: 2 or 3; another one is refused
   double acceleration = 0.03;  ///< m/s^2, set in the device at the begin

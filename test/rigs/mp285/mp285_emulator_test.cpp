@@ -5,37 +5,16 @@
 #include <gtest/gtest.h>
 
 #include "base/errors.h"
-#include "serial/emulated_line.h"
+#include "rigs/line_client.h"
 
 namespace microinjection {
 namespace {
 
-/// A client at the end of the line, which leaves a pause before what it sends.
-class Client {
- public:
-  explicit Client(const Mp285EmulatorConfig& config = {})
-      : device_(std::make_shared<Mp285Emulator>(config)), line_(device_, 9600) {}
-
-  std::string answers(const std::string& command, double pause = 10e-3, double patience = 0.2) {
-    std::string said;
-    for (const double begin = time_ + pause; time_ < begin;) said += line_.receive(time_ += 1e-3);
-    line_.send(command, time_);
-    for (const double end = time_ + patience; time_ < end;) said += line_.receive(time_ += 0.1e-3);
-    return said;
-  }
-  /// Until the first byte that comes, and `pause` longer.
-  std::string firstByte(const std::string& command) {
-    line_.send(command, time_);
-    std::string said;
-    while (said.empty()) said = line_.receive(time_ += 0.1e-3);
-    return said;
-  }
-  Mp285Emulator& device() { return *device_; }
-
- private:
-  std::shared_ptr<Mp285Emulator> device_;
-  EmulatedLine line_;
-  double time_ = 0;  // s
+/// Leaves a pause before what it sends.
+struct Client : LineClient {
+  explicit Client(std::shared_ptr<Mp285Emulator> emulator = std::make_shared<Mp285Emulator>())
+      : LineClient(emulator, 9600), device(std::move(emulator)) {}
+  std::shared_ptr<Mp285Emulator> device;
 };
 
 std::string move(int x) {
@@ -60,7 +39,7 @@ TEST(Mp285Emulator, AnswersALineFeedByACarriageReturn) {
   EXPECT_EQ(client.answers("\n"), "\r");
   // Micro-Manager ends its commands with both, and expects two carriage returns; so does an error of it.
   EXPECT_EQ(client.answers("a\r\n"), "\r\r");
-  client.device().inject(parseFault("error:4"));
+  client.device->inject(parseFault("error:4"));
   EXPECT_EQ(client.answers("a\r\n"), "4\r\r");
 }
 
@@ -68,13 +47,13 @@ TEST(Mp285Emulator, TellsErrorsAndTheirSumsAsCharacters) {
   Client client;
   EXPECT_EQ(client.answers("x"), "4\r");
   for (int code = 0; code < 8; ++code) {
-    client.device().inject(parseFault("error:" + std::to_string(code)));
+    client.device->inject(parseFault("error:" + std::to_string(code)));
     EXPECT_EQ(client.answers("a\r"), std::string(1, static_cast<char>('0' + code)) + "\r");
   }
-  client.device().inject(parseFault("error:12"));
-  EXPECT_EQ(client.answers(move(250), 10e-3, 1), "<\r");
+  client.device->inject(parseFault("error:12"));
+  EXPECT_EQ(client.answers(move(250), 1), "<\r");
   for (const char* code : {"16", "-1", "x", "", "100"}) {
-    EXPECT_THROW(client.device().inject(parseFault(std::string("error:") + code)), ConfigError) << code;
+    EXPECT_THROW(client.device->inject(parseFault(std::string("error:") + code)), ConfigError) << code;
   }
 }
 
@@ -87,9 +66,9 @@ TEST(Mp285Emulator, AnswersAStopAsItStoodOrMoved) {
 
 TEST(Mp285Emulator, HearsNoCommandInThePauseAfterAnAnswer) {
   Client client;
-  EXPECT_EQ(client.firstByte("a\r"), "\r");
-  EXPECT_EQ(client.answers("c\r", 0), "");
-  EXPECT_EQ(client.answers("c\r", 3e-3).size(), 13u);
+  EXPECT_EQ(client.firstBytes("a\r"), "\r");
+  EXPECT_EQ(client.answers("c\r", 0.2, 0), "");
+  EXPECT_EQ(client.answers("c\r", 0.2, 3e-3).size(), 13u);
 }
 
 }  // namespace
