@@ -94,6 +94,8 @@ class PolledManipulator : public SerialManipulator {
   void goalChanged() final { tries_ = 0; }
 
  private:
+  static constexpr double kSame = 0.5;  // counts: what stands does not change by one
+
   enum class Kind { kSetup, kStop, kPosition, kMotion, kMove };
   struct Exchange {
     Kind kind;
@@ -102,6 +104,7 @@ class PolledManipulator : public SerialManipulator {
   };
   struct Move {
     Eigen::Vector3d from, to;  // counts
+    double end;                // s, of all of it
     double begin, duration;    // s, of what is left since `from` was read
     double overdue;            // s, by when it has arrived
     double next;               // s, before which no further one begins: it goes slower than the device can

@@ -48,7 +48,7 @@ class Fuzz {
         "%d damaged replies in %.0f s of virtual time; %d messages that were none; furthest off %.1f um, %.3f um at "
         "rest\n",
         device_->damaged(), rig_.time(), rig_.driver().malformed(), 1e6 * worst_, 1e6 * worst_at_rest_);
-    EXPECT_GT(judged_at_rest_, kReplies / 10);
+    EXPECT_GT(judged_at_rest_, kReplies / 20);
     EXPECT_GT(rig_.driver().malformed(), kReplies / 10);
   }
 
