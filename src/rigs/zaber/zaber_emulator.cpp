@@ -186,6 +186,8 @@ std::string ZaberEmulator::perform(int number, Device& device, const Command& co
   const std::vector<std::string>& words = command.words;
   if (words.empty()) return "OK 0";
   if (words[0] == "help") return "OK 0";
+  const auto& without = config_.without;
+  if (words.size() > 1 && std::count(without.begin(), without.end(), words[1]) > 0) return "RJ BADCOMMAND";
   if (words == std::vector<std::string>{"system", "reset"}) {
     if (command.axis != 0) return "RJ DEVICEONLY";
     for (auto& [axis_number, axis] : device.axes) axis->restart();

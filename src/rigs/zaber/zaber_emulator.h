@@ -23,6 +23,7 @@ struct ZaberEmulatorConfig {
   bool referenced = true;               ///< false: axes warn WR until they have been homed, and refuse moves to a place
   bool alerts = false;                  ///< its setting comm.alert: an axis that comes to rest says so
   bool checksum = false;                ///< its setting comm.checksum: what it says has one
+  std::vector<std::string> without;     ///< settings that its firmware does not know
   int info_every = 0;                   ///< an info line behind each so many answers; 0: behind that to `help` only
 };
 
