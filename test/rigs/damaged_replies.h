@@ -4,13 +4,14 @@
 #include <memory>
 #include <random>
 #include <string>
+#include <utility>
 
 #include "rigs/manipulator_emulator.h"
 
 namespace microinjection {
 
-/// An emulator half of whose replies arrive cut off, garbled, with foreign bytes, twice, or forged; its motion is
-/// untouched.
+/// An emulator half of whose replies arrive cut off, garbled, with foreign bytes, twice, behind the next one, or forged;
+/// its motion is untouched.
 class DamagedReplies : public ManipulatorEmulator {
  public:
   /// `forge`: makes a reply that is well formed and false; none: nothing is forged.
@@ -30,7 +31,9 @@ class DamagedReplies : public ManipulatorEmulator {
   void hear(const std::string& bytes, double time) override { device_->receive(bytes, time); }
   std::string say(double time) override {
     std::string reply = device_->send(time);
-    if (reply.empty() || !damaging_ || below(2) == 0) return reply;
+    if (reply.empty()) return reply;
+    reply += std::exchange(held_, "");
+    if (!damaging_ || below(2) == 0) return reply;
     const std::string whole = reply;
     damage(reply);
     if (reply != whole) ++damaged_;
@@ -46,7 +49,7 @@ class DamagedReplies : public ManipulatorEmulator {
 
   void damage(std::string& reply) {
     const std::size_t at = below(reply.size());
-    switch (below(forge_ ? 9 : 8)) {
+    switch (below(forge_ ? 10 : 9)) {
       case 0:  // cut off
         reply.resize(at);
         break;
@@ -72,6 +75,9 @@ class DamagedReplies : public ManipulatorEmulator {
       case 7:
         reply += reply;
         break;
+      case 8:  // the next one is heard before it
+        held_.swap(reply);
+        break;
       default:
         reply = forge_(reply, random_);
     }
@@ -80,6 +86,7 @@ class DamagedReplies : public ManipulatorEmulator {
   std::shared_ptr<ManipulatorEmulator> device_;
   std::mt19937 random_;
   std::function<std::string(const std::string&, std::mt19937&)> forge_;
+  std::string held_;
   bool damaging_ = false;
   int damaged_ = 0;
 };
