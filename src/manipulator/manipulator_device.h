@@ -53,6 +53,7 @@ class ManipulatorDevice {
 
   virtual State state() const = 0;
   virtual std::string why() const = 0;                 ///< why it is not kReady; empty when it is
+  virtual std::string note() const { return ""; }      ///< what an operator should know although it works
   virtual std::optional<Reading> reading() const = 0;  ///< empty while the position is not known
   virtual bool moving() const = 0;                     ///< has not arrived where it was sent
 };

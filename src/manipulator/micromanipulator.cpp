@@ -23,9 +23,15 @@ Micromanipulator::Micromanipulator(const ManipulatorGeometry& geometry, const Co
       guard_(guard),
       config_(config),
       device_(&device),
-      follows_(device.abilities().follows),
-      lag_(follows_ ? device.abilities().latency + device.abilities().command_interval : 0) {
+      follows_(device.abilities().follows) {
+  adapt();
   device.limitSpeed({geometry.axes[0].velocity, geometry.axes[1].velocity, geometry.axes[2].velocity});
+}
+
+/// A device behind a slow line turns out to be slower when it has been asked.
+void Micromanipulator::adapt() {
+  const ManipulatorAbilities abilities = device_->abilities();
+  lag_ = follows_ ? abilities.latency + abilities.command_interval : 0;
 }
 
 std::string Micromanipulator::unable() const {
@@ -179,7 +185,9 @@ void Micromanipulator::step(double time, double dt) {
     stepMode(time, dt);
     if (setpoint_) device_->follow(setpoint_->position, setpoint_->velocity);
   }
+  const bool was_ready = device_->state() == ManipulatorDevice::State::kReady;
   device_->step(time);
+  if (!was_ready) adapt();
 }
 
 std::optional<Eigen::Isometry3d> Micromanipulator::tipPose() const {

@@ -66,6 +66,7 @@ class Micromanipulator {
     Eigen::Vector3d joints;  ///< m
     std::string refusal;
   };
+  void adapt();
   std::string unable() const;
   std::string streamRefusal();
   Commanded checkPose(const Eigen::Isometry3d& tip_pose) const;
@@ -91,7 +92,7 @@ class Micromanipulator {
   MicromanipulatorConfig config_;
   ManipulatorDevice* device_;
   bool follows_;  ///< the device, set-points while it moves
-  double lag_;    ///< s, that a device which follows may go on with a velocity that is no longer the set-point's
+  double lag_ = 0;  ///< s, that a device which follows may go on with a velocity that is no longer the set-point's
   Mode mode_ = Mode::kHold;
   std::optional<AxesMotion> setpoint_;
   Eigen::Vector3d goal_ = Eigen::Vector3d::Zero();                 ///< m, joints, of servo_cp and move_cp

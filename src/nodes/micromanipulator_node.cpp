@@ -30,7 +30,7 @@ const char* const MicromanipulatorNode::kHelp =
     "In: /needle/servo_cp /needle/servo_cv /needle/move_cp /needle/state_command (enable, disable, stop). Out:\n"
     "/needle/measured_cp /needle/measured_cv /needle/abilities /needle/operating_state joint_states.\n"
     "Parameters: /robot_description, ~rig (sim|eppendorf|mp285|scientifica|zaber), ~emulated, ~device/...\n"
-    "(src/rigs/NAME/NAME.yaml), ~rate (Hz),\n"
+    "(src/rigs/NAME/NAME.yaml), ~emulator/... (what an emulated device is like), ~rate (Hz),\n"
     "~joint_states_rate (Hz), ~command_timeout (s), ~velocity_command_timeout (s), ~servo_speed_limit (m/s),\n"
     "~pipette_tilt (rad), ~collision_margin (m), ~allow_network; see config/micromanipulator.yaml. With a serial "
     "device:\n"
@@ -53,7 +53,8 @@ MicromanipulatorNode::MicromanipulatorNode(ros::NodeHandle node, ros::NodeHandle
 MicromanipulatorNode::MicromanipulatorNode(const ros::NodeHandle& node, ConfigReader reader)
     : parameters_(Parameters::read(reader)),
       geometry_(ManipulatorGeometry::fromUrdf(urdfFromParameter(), parameters_.model.pipette_tilt)),
-      rig_(makeRigDevice(parameters_.rig, parameters_.emulated, geometry_, reader.section("device"))),
+      rig_(makeRigDevice(parameters_.rig, parameters_.emulated, geometry_, reader.section("device"),
+                         reader.section("emulator"))),
       model_(geometry_, CollisionGuard(urdfFromParameter(), geometry_, parameters_.model.collision_margin),
              parameters_.model, *rig_.device),
       cycle_(node, parameters_.rate),
@@ -296,6 +297,7 @@ void MicromanipulatorNode::report(diagnostic_updater::DiagnosticStatusWrapper& s
       why.empty() ? problem.empty() ? DiagnosticStatus::OK : DiagnosticStatus::WARN : DiagnosticStatus::ERROR,
       problem.empty() ? (model_.moving() ? "moves" : "holds") : problem);
   status.add("device", rig_.device->abilities().device);
+  status.add("device's note", rig_.device->note());
   if (network_ && network_->reachable() && admitted_) {
     status.mergeSummary(DiagnosticStatus::ERROR, "others can reach this machine now through " + network_->interfaces() +
                                                      ": after disable it is not enabled again");

@@ -41,6 +41,7 @@ namespace microinjection {
 ///   rig                sim (default), or a name of rigs/rig_registry.h
 ///   emulated           default false; true: the driver talks to an emulated device in this process
 ///   device/            the rig's own, as in src/rigs/NAME/NAME.yaml
+///   emulator/          of an emulated one: latency (s, of its serial adapter), and what its emulator reads
 ///   rate               Hz; default 1000, in [50, 5000]
 ///   joint_states_rate  Hz; default 50, in (0, 1000]
 ///   allow_network      default false: a real rig is not enabled while others on a network can reach this machine

@@ -61,9 +61,12 @@ double pullDuration(const std::string& text) {
   return duration;
 }
 
-RigDevice makeEmulated(const Rig& rig, ConfigReader& reader) {
+RigDevice makeEmulated(const Rig& rig, ConfigReader& reader, ConfigReader& emulator_reader) {
   const std::shared_ptr<ManipulatorEmulator> emulator = rig.make_emulator();
-  auto wire = std::make_unique<EmulatedWire>(emulator, rig.default_baud);
+  double latency = 0;  // s
+  emulator_reader.number("latency", latency, Range::closed(0, 1));
+  emulator->configure(emulator_reader);
+  auto wire = std::make_unique<EmulatedWire>(emulator, rig.default_baud, latency);
   const auto cable = std::make_shared<Cable>(*wire);  // the driver owns the wire and lives as long as the cable
   RigDevice result;
   result.device = rig.make_driver(reader, std::move(wire));
@@ -78,13 +81,13 @@ RigDevice makeEmulated(const Rig& rig, ConfigReader& reader) {
 }  // namespace
 
 RigDevice makeRigDevice(const std::string& name, bool emulated, const ManipulatorGeometry& geometry,
-                        ConfigReader reader) {
+                        ConfigReader reader, ConfigReader emulator) {
   if (name == "sim") {
     if (emulated) throw ConfigError("emulated = true: must be false with rig = sim, which has no driver");
     return makeSimulated(geometry, reader);
   }
   const Rig& rig = findRig(name);
-  if (emulated) return makeEmulated(rig, reader);
+  if (emulated) return makeEmulated(rig, reader, emulator);
   RigDevice result;
   result.device = rig.make_driver(reader, nullptr);
   return result;

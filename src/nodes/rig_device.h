@@ -26,7 +26,9 @@ struct RigDevice {
 /// @param name      sim, or a name of rigs/rig_registry.h
 /// @param emulated  puts the driver on an emulated device in this process, in the node's own time
 /// @param reader    the device's own keys; finish() is called. @throws ConfigError
+/// @param emulator  of an emulated one: `latency` (s, of the serial adapter: all answers come later by that), and what
+///                  its emulator's configure() reads
 RigDevice makeRigDevice(const std::string& name, bool emulated, const ManipulatorGeometry& geometry,
-                        ConfigReader reader);
+                        ConfigReader reader, ConfigReader emulator);
 
 }  // namespace microinjection

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <string>
 
+#include "base/config_reader.h"
 #include "base/errors.h"
 #include "serial/emulator.h"
 
@@ -21,6 +22,8 @@ class ManipulatorEmulator : public DeviceEmulator {
   virtual void setFirmware(const std::string& version) {
     throw ConfigError("firmware = " + version + ": must be left out, this device tells no version");
   }
+  /// Reads what the device is like beside what it is as delivered; its keys are in the device's emulator.
+  virtual void configure(ConfigReader& /*reader*/) {}
 };
 
 }  // namespace microinjection

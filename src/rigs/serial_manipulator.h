@@ -82,6 +82,11 @@ class SerialManipulator : public ManipulatorDevice {
   /// if the line were broken: no position, no goal, a stop, until the driver says known() again.
   void trustFor(double duration) { trusted_until_ = listened_ + duration; }
   void trustAtMost(double duration) { trusted_until_ = std::min(trusted_until_, listened_ + duration); }
+  /// From the next session on: s of silence, as in Link, on a line that turned out to be slow.
+  void waitForSilence(double in_step, double after_loss) {
+    link_.quiet_in_step = in_step;
+    link_.quiet_after_loss = after_loss;
+  }
   void known();                                ///< the driver knows where everything is, and everything is at rest
   void understood();                           ///< an exchange has succeeded
   void stopFirst();                            ///< begins anew, and goes on to the goal
@@ -96,7 +101,7 @@ class SerialManipulator : public ManipulatorDevice {
   void letGoOfReachedGoal();
 
   std::unique_ptr<Wire> wire_;
-  const Link link_;
+  Link link_;
   double time_ = 0;           // s
   double listened_ = 0;       // s
   double trusted_until_ = 0;  // s of `listened_`

@@ -2,8 +2,8 @@
 
 namespace microinjection {
 
-EmulatedLine::EmulatedLine(std::shared_ptr<DeviceEmulator> device, double baud)
-    : device_(std::move(device)), to_device_(baud), from_device_(baud) {}
+EmulatedLine::EmulatedLine(std::shared_ptr<DeviceEmulator> device, double baud, double held)
+    : device_(std::move(device)), to_device_(baud), from_device_(baud), held_(held) {}
 
 std::string EmulatedLine::receive(double time) {
   if (was_cut_) device_->send(time);
@@ -14,7 +14,7 @@ std::string EmulatedLine::receive(double time) {
   }
   from_device_.put(device_->send(time), time);
   std::string arrived;
-  for (const LineTiming::Byte& byte : from_device_.take(time)) arrived += byte.value;
+  for (const LineTiming::Byte& byte : from_device_.take(time - held_)) arrived += byte.value;
   return arrived;
 }
 

@@ -11,7 +11,8 @@ namespace microinjection {
 /// An emulated device at the end of a line that takes its time, in virtual time (s) that never goes back.
 class EmulatedLine {
  public:
-  EmulatedLine(std::shared_ptr<DeviceEmulator> device, double baud);
+  /// `held` (s): what the device says arrives later by that, as through a USB adapter with a latency timer.
+  EmulatedLine(std::shared_ptr<DeviceEmulator> device, double baud, double held = 0);
 
   void send(const std::string& bytes, double time) { to_device_.put(bytes, time); }
   /// Lets time pass and returns what has arrived from the device.
@@ -22,6 +23,7 @@ class EmulatedLine {
  private:
   std::shared_ptr<DeviceEmulator> device_;
   LineTiming to_device_, from_device_;
+  double held_;  // s
   bool was_cut_ = false;
 };
 

@@ -12,8 +12,9 @@ namespace microinjection {
 /// run, however the machine is loaded.
 class EmulatedWire : public Wire {
  public:
-  /// `baud` in bit/s.
-  EmulatedWire(std::shared_ptr<DeviceEmulator> device, double baud) : line_(std::move(device), baud) {}
+  /// `baud` in bit/s; `held` (s) as EmulatedLine's.
+  EmulatedWire(std::shared_ptr<DeviceEmulator> device, double baud, double held = 0)
+      : line_(std::move(device), baud, held) {}
 
   std::string open() override;
   bool isOpen() const override { return open_; }

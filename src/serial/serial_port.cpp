@@ -9,6 +9,7 @@
 #include <boost/asio/write.hpp>
 #include <cstring>
 
+#include "serial/low_latency.h"
 #include "serial/stop_guard.h"
 
 namespace microinjection {
@@ -64,6 +65,7 @@ struct SerialPort::Line {
     set(Port::flow_control(hardware ? Port::flow_control::hardware : Port::flow_control::none));
     if (error)
       return config.path + ": " + std::to_string(config.baud) + " baud, " + config.frame() + ": " + error.message();
+    requestLowLatency(port.native_handle());
     tcflush(port.native_handle(), TCIFLUSH);
     listen();
     return "";

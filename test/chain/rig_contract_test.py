@@ -33,10 +33,10 @@ class RigContract(unittest.TestCase):
 
     def setUp(self):
         self.until(lambda: "/needle/abilities" in self.world.seen, "tells its abilities")
-        self.abilities = self.world.seen["/needle/abilities"]
+        self.until(lambda: self.state() == "ENABLED", "is ready")
+        self.abilities = self.world.seen["/needle/abilities"]  # a slow line has been measured now
         # A rig counts to its resolution; its axes meet at an angle at the worst, and half a count is rounding.
         self.near = 1.5 * max(self.abilities.resolution, 1e-9) + 1e-9
-        self.until(lambda: self.state() == "ENABLED", "is ready")
         self.go_to(START)
 
     # what the rig says

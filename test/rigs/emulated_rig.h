@@ -31,9 +31,10 @@ class EmulatedRig {
  public:
   using State = ManipulatorDevice::State;
 
-  EmulatedRig(const Config& config, std::shared_ptr<ManipulatorEmulator> device, double step = 1e-3)
+  /// `held` (s): by which all answers come later, as through a slow adapter.
+  EmulatedRig(const Config& config, std::shared_ptr<ManipulatorEmulator> device, double step = 1e-3, double held = 0)
       : device_(std::move(device)), step_(step) {
-    auto wire = std::make_unique<StalledWire>(device_, config.port.baud);
+    auto wire = std::make_unique<StalledWire>(device_, config.port.baud, held);
     wire_ = wire.get();
     driver_ = std::make_unique<Driver>(config, std::move(wire));
     joints_ = config.joints;

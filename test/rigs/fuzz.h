@@ -13,11 +13,10 @@
 
 namespace microinjection {
 
-/// 200,000 damaged or reordered replies to a driver at work: it must neither crash nor believe a position that is not
+/// Damaged or reordered replies to a driver at work: it must neither crash nor believe a position that is not
 /// so, and be in step again as soon as the line is sound.
 template <typename Driver, typename Config>
 class Fuzz {
-  static constexpr int kReplies = 200000;
   static constexpr int kRepliesAtOnce = 2000;  // between two looks whether it is in step
   static constexpr double kSpeed = 0.1e-3;     // m/s
   static constexpr double kStep = 2e-3;        // s
@@ -35,9 +34,12 @@ class Fuzz {
         near_(near),
         told_(told) {}
 
-  void run() {
+  /// Called in each step with the time (s) and whether the device may be troubled now, or must be left in order.
+  void troubleBy(std::function<void(double time, bool disturbs)> trouble) { trouble_ = std::move(trouble); }
+
+  void run(int replies = 200000) {
     ASSERT_TRUE(rig_.runUntilReady());
-    while (device_->damaged() < kReplies) {
+    while (device_->damaged() < replies) {
       disturb();
       ASSERT_LE(worst_, allowed_) << "after " << device_->damaged() << " damaged replies, at " << rig_.time() << " s";
       ASSERT_LE(worst_at_rest_, allowed_at_rest_)
@@ -48,8 +50,8 @@ class Fuzz {
         "%d damaged replies in %.0f s of virtual time; %d messages that were none; furthest off %.1f um, %.3f um at "
         "rest\n",
         device_->damaged(), rig_.time(), rig_.driver().malformed(), 1e6 * worst_, 1e6 * worst_at_rest_);
-    EXPECT_GT(judged_at_rest_, kReplies / 20);
-    EXPECT_GT(rig_.driver().malformed(), kReplies / 10);
+    EXPECT_GT(judged_at_rest_, replies / 20);
+    EXPECT_GT(rig_.driver().malformed(), replies / 10);
   }
 
  private:
@@ -74,6 +76,7 @@ class Fuzz {
         break;
     }
     if (rig_.driver().state() == State::kFault) rig_.driver().clearFault();
+    if (trouble_) trouble_(rig_.time(), true);
   }
 
   void disturb() {
@@ -92,6 +95,7 @@ class Fuzz {
       ++judged_at_rest_;
     }
     device_->setDamaging(false);
+    if (trouble_) trouble_(rig_.time(), false);
   }
 
   void checkInStep() {
@@ -108,6 +112,7 @@ class Fuzz {
 
   std::shared_ptr<DamagedReplies> device_;
   EmulatedRig<Driver, Config> rig_;
+  std::function<void(double, bool)> trouble_;
   std::mt19937 random_{11};
   double allowed_;  // m
   double allowed_at_rest_;

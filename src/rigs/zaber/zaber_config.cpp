@@ -2,7 +2,9 @@
 
 namespace microinjection {
 
-double ZaberConfig::exchangeTime() const { return (kZaberCommandBytes + kZaberReplyBytes) * byteTime() + answer_time; }
+double ZaberConfig::exchangeTime(double answer) const {
+  return (kZaberCommandBytes + kZaberReplyBytes) * byteTime() + answer;
+}
 
 ZaberConfig ZaberConfig::read(ConfigReader& reader) {
   ZaberConfig config;
@@ -23,6 +25,7 @@ ZaberConfig ZaberConfig::read(ConfigReader& reader) {
   reader.vector("microsteps_per_metre", config.microsteps_per_metre, Range::positive(), ConfigReader::kRequired);
   reader.number("speed", config.speed, Range::positive());
   reader.number("acceleration", config.acceleration, Range::positive());
+  reader.integer("resolution", config.resolution, Range::closed(0, 256));
   reader.number("gain", config.gain, Range::nonNegative());
   reader.number("move_horizon", config.move_horizon, Range::positive());
   reader.boolean("checksum", config.checksum);
@@ -32,8 +35,8 @@ ZaberConfig ZaberConfig::read(ConfigReader& reader) {
   reader.number("answer_time", config.answer_time, Range::nonNegative());
   reader.number("reply_timeout", config.reply_timeout, Range::positive());
   reader.number("reading_margin", config.reading_margin, Range::positive());
-  // A motion that ended between two renewals would be one in jerks.
-  const double least = 2 * config.turnTime() + config.speed / config.acceleration;
+  const double turn = kZaberTurn * config.exchangeTime(config.answer_time);
+  const double least = config.leastHorizon(turn, config.acceleration);
   if (config.move_horizon <= least) {
     reader.error("move_horizon", "must be > " + std::to_string(least) +
                                      " s: two turns of the line at its baud rate and answer_time, and the braking");

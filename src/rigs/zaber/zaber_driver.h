@@ -5,10 +5,12 @@
 #include <optional>
 #include <string>
 
+#include "rigs/answer_times.h"
 #include "rigs/reading_filter.h"
 #include "rigs/serial_manipulator.h"
 #include "rigs/zaber/zaber_config.h"
 #include "rigs/zaber/zaber_protocol.h"
+#include "rigs/zaber/zaber_settings.h"
 
 namespace microinjection {
 
@@ -18,9 +20,13 @@ namespace microinjection {
 /// when the line or this computer is gone. Nearer than that to its travel's end, and with older firmware, it is a
 /// velocity that holds until the next one.
 ///
-/// One message is under way at a time, in turn: an axis' velocity when it has changed, the axis' position. An axis
-/// without a reference position is a fault: homing moves, so the user has it done (`home: true`, at the start only, or
-/// the maker's tool).
+/// One message is under way at a time, in turn: an axis' velocity when it has changed, the axis' position. A session
+/// begins with all warnings of each axis, and a connection with the device's settings: its acceleration and microsteps
+/// must be those of the file. How long answers take is measured then, and the turn, the gain and the horizon follow.
+///
+/// An axis without a reference position is a fault, and no position is told: homing moves, so the user has it done
+/// (`home: true`, at the start only, or the maker's tool). A reply shows only its most important flag. Where that may
+/// hide a lost reference, the axis is asked for all of them, before its position is taken and then in turn.
 class ZaberDriver : public SerialManipulator {
  public:
   ZaberDriver(const ZaberConfig& config, std::unique_ptr<Wire> wire);
@@ -29,9 +35,10 @@ class ZaberDriver : public SerialManipulator {
   std::optional<Reading> reading() const override;
   bool moving() const override;
 
-  const std::string& note() const { return note_; }                 ///< the last warning that is no fault
+  std::string note() const override;
   double largestCorrection() const { return largest_correction_; }  ///< m, of a carried-on position by a reading
   int malformed() const { return parser_.malformed(); }             ///< messages that were none
+  double answerTime() const { return answer_time_; }                ///< s, that an answer takes
 
  protected:
   void connected() override;
@@ -41,17 +48,18 @@ class ZaberDriver : public SerialManipulator {
   void guardIntervened() override { may_home_ = false; }
 
  private:
-  enum class Kind { kPosition, kVelocity, kSpeed, kMove, kClear, kHome, kStop, kVersion, kLowest, kHighest };
+  enum class Kind { kPosition, kVelocity, kSpeed, kMove, kClear, kHome, kStop, kWarnings, kSetting };
   struct Exchange {
     Kind kind;
     int axis;
     ZaberAddress to;
-    long long value;   // microsteps, or units of speed
+    long long value;   // microsteps, units of speed, or the setting's name
     double end;        // m, where a velocity ends; NaN: it does not
     std::string text;  // of the command
     int tries;
     double due;  // s of listened(), to be sent (again), or to be answered
     bool sent;
+    double heard_at, heard_from;  // s of time() and of listened(), when the device has the whole command
   };
   struct Axis {
     ReadingFilter filter;
@@ -64,33 +72,58 @@ class ZaberDriver : public SerialManipulator {
     bool busy = true;
     double move_speed = 0;                                   // m/s, set for the move
     bool read_since_begin = false, read_since_told = false;  // to move
-    bool has_reference = true, cleared = true, homed = false;
+    bool cleared = true, homed = false;
     bool still_moves = false;  // it said so after it was told to stop
     int stalls = 0;
-    // As the device tells them, for as long as the line is open; microsteps.
-    std::optional<bool> moves_have_speeds;
-    std::optional<long long> lowest, highest;
+    bool has_reference = true;
+    std::string shown;   // the flag that may hide WR, when its warnings were listed last; empty: none
+    int lists_due = 0;   // lists of its warnings that have to be heard, before anything else of it is believed
+    std::string listed;  // the list that has to be told twice
+    ZaberSettings settings;
   };
 
   double gain() const;
+  double horizon() const;
+  double exchangeTime() const { return config_.exchangeTime(answer_time_); }
+  double turnTime() const;
   double longestAge() const;
+  double longestGuess() const;
   double fastest(int axis) const;
   long long speedData(int axis, double speed) const;
   double expected(int axis, double time) const;
+  int axisOf(const ZaberAddress& address) const;
+  std::string axisName(int axis) const;
+  std::string axesNote() const;
+
+  // Replies (zaber_replies.cpp).
+  bool isAwaited(const ZaberMessage& reply) const;
   void handle(const ZaberMessage& message);
   void handleReply(const ZaberMessage& reply);
+  void takeReply(const Exchange& done, const ZaberMessage& reply);
   void handleRejection(const ZaberMessage& reply);
-  void takeFlag(const ZaberMessage& message, int axis);
-  void takePosition(const ZaberMessage& reply);
+  void takeFlag(const std::string& flag, int axis);
+  void takeWarnings(const Exchange& asked, const ZaberMessage& reply);
+  void loseReference(int axis);
+  void takePosition(const Exchange& asked, const ZaberMessage& reply);
   void checkStall(int axis, bool stands);
   void missedReply();
-  void next();
+
+  // The begin of a session (zaber_session.cpp).
   bool nextOfSession();
+  bool nextOfAxis(int axis);
   bool nextOfHoming(int axis);
   bool nextOfSettings();
-  void takeSetting(const Exchange& asked, const ZaberMessage& reply);
+  void takeSetting(const Exchange& asked, const std::string& data);
+  std::string contradiction(int axis) const;
+  std::string checkSettings();
+  void adaptToAnswers();
+
+  // In turn (zaber_turns.cpp).
+  void next();
+  bool nextOfWarnings();
   bool nextOfMove();
   void nextInTurn();
+  void askAgain();
   void checkMove();
   void ask(Kind kind, int axis, const std::string& command, long long value = 0, double end = std::nan(""));
   void sendExchange();
@@ -98,24 +131,25 @@ class ZaberDriver : public SerialManipulator {
   bool nextVelocity(int axis);
   std::optional<long long> endOfVelocity(int axis, long long data) const;
   long long moveSpeedData(int axis) const;
-  int axisOf(const ZaberAddress& address) const;
-  std::string axisName(int axis) const;
 
   ZaberConfig config_;
   ZaberParser parser_;
   std::array<Axis, 3> axes_;
   std::optional<Exchange> exchange_;
+  AnswerTimes answers_;
+  double answer_time_;    // s
+  double acceleration_;   // m/s^2, of the slowest axis
   double begun_ = 0;      // s, of this session
+  bool lost_ = true;      // nothing was known at the begin of this session
   bool settled_ = false;  // in this session everything has been read and was at rest
   bool may_home_;         // until everything has been known once, and while the program has not stood still
-  std::string setting_;   // that was told last, and has to be told again
   int setting_tries_ = 0;
-  int number_ = 0;      // of the last command
-  int turn_ = 0;        // 0..5: velocity and position of each axis
-  int move_stage_ = 0;  // of a move: 0..2 speeds, 3..5 positions, then under way
+  int number_ = 0;       // of the last command
+  int turn_ = 0;         // 0..5: velocity and position of each axis
+  int asked_again_ = 0;  // the axis whose warnings were asked for last, because it shows one
+  int move_stage_ = 0;   // of a move: 0..2 speeds, 3..5 positions, then under way
   int move_tries_ = 0;
   bool move_done_ = false;
-  std::string note_;
   double largest_correction_ = 0;  // m
 };
 

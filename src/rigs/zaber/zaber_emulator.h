@@ -1,10 +1,12 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <string>
 #include <vector>
 
 #include "rigs/manipulator_emulator.h"
+#include "rigs/zaber/zaber_emulated_axis.h"
 
 namespace microinjection {
 
@@ -14,29 +16,38 @@ struct ZaberEmulatorConfig {
   double microstep = 0.047625e-6;       ///< m
   double travel = 25e-3;                ///< m, from 0
   double start = 12.5e-3;               ///< m, of every axis
-  double acceleration = 0.2;            ///< m/s^2
+  double acceleration = 0.2;            ///< m/s^2, its settings at the start, up and down
   double speed = 5e-3;                  ///< m/s, its setting maxspeed at the start
   double answer_time = 1e-3;            ///< s, from a command's end to its answer's begin
   std::string firmware = "7.25";        ///< MAJOR.MINOR, as `get version` says it
   bool referenced = true;               ///< false: axes warn WR until they have been homed, and refuse moves to a place
+  bool alerts = false;                  ///< its setting comm.alert: an axis that comes to rest says so
+  bool checksum = false;                ///< its setting comm.checksum: what it says has one
+  std::vector<std::string> without;     ///< settings that its firmware does not know
+  int info_every = 0;                   ///< an info line behind each so many answers; 0: behind that to `help` only
 };
 
-/// Zaber axes with the ASCII protocol, written from the protocol's description and not from the driver.
+/// Zaber devices with the ASCII protocol, written from the protocol's manuals and from public clients and not from the
+/// driver: which ones, and what is unverified, is in doc/devices.md.
 ///
-/// From firmware 7.25 on a move may have a speed and an acceleration of its own, in the data of maxspeed and accel;
-/// before, such a move is refused.
+/// Axis 0 is all axes of a device, which answers once, with the data of all of them; device 0 is all devices. A reply
+/// shows only its most important flag; `warnings` lists all. From firmware 7.25 on a move may have a speed and an
+/// acceleration of its own, in the data of maxspeed and accel; before, such a move is refused.
 ///
-/// Errors that can be asked for: a reason of rejection (BADDATA, AGAIN, ...) of the next command, or a warning flag of
-/// two characters (FS: stalled), which stays on all axes until `warnings clear`; a fault stops them.
+/// Errors that can be asked for: a reason of rejection (BADDATA, AGAIN, ...) of the next command; a flag of two
+/// characters (FS: stalled), which stays on all axes until `warnings clear`; RESET: it was switched off and on.
 class ZaberEmulator : public ManipulatorEmulator {
  public:
   explicit ZaberEmulator(const ZaberEmulatorConfig& config = {});
+  ZaberEmulator(const ZaberEmulator&) = delete;
+  ZaberEmulator& operator=(const ZaberEmulator&) = delete;
 
   Eigen::Vector3d position() const override;
-  int movesBegun() const override { return moves_begun_; }
+  int movesBegun() const override;
   bool moves() const override;
   void shiftByHand(const Eigen::Vector3d& way) override;
   void setFirmware(const std::string& version) override;
+  void configure(ConfigReader& reader) override;
 
  protected:
   void hear(const std::string& bytes, double time) override;
@@ -46,41 +57,40 @@ class ZaberEmulator : public ManipulatorEmulator {
   void interrupt(double time) override;
 
  private:
-  struct Axis {
-    int device, number;
-    double place;           // microsteps
-    double velocity = 0;    // microsteps/s
-    bool to_place = false;  // moves to `target`, otherwise at `target_velocity`
-    double target = 0;      // microsteps
-    double target_velocity = 0;
-    double max_speed = 0;     // microsteps/s, its setting
-    double move_speed = 0;    // microsteps/s, of the move under way
-    double acceleration = 0;  // microsteps/s^2, of the move under way
-    bool homing = false, referenced = true;
-    std::string flag;  // empty: none
-    bool busy() const { return velocity != 0 || to_place || target_velocity != 0; }
+  struct Device {
+    std::map<int, ZaberEmulatedAxis*> axes;  // by number
+    int access = 1;                          // its setting system.access
+    bool alerts = false, checksum = false;
   };
-  struct Answer {
+  struct Command {
+    int device = 0, axis = 0;
+    std::string id;  // a number of its own and a blank, or nothing
+    std::vector<std::string> words;
+  };
+  struct Line {
     double due;  // s
     std::string text;
   };
 
+  void build();
   void advance(double time);
-  void advanceAxis(Axis& axis, double dt) const;
   void obey(const std::string& line);
-  void tellVersion(int device, const std::string& id, bool checksum);
-  std::string perform(Axis& axis, const std::string& command);
-  std::string beginMove(Axis& axis, const std::string& how, const std::string& data);
-  void answer(const Axis& axis, const std::string& number, const std::string& verdict_and_data, bool checksum);
+  void obey(int number, Device& device, const Command& command);
+  std::string perform(int number, Device& device, const Command& command);
+  std::string performOnAxes(Device& device, const Command& command);
+  std::string get(int number, const Device& device, const std::string& name) const;
+  std::string set(Device& device, const std::string& name, const std::string& data);
+  static std::vector<std::string> flags(const Device& device, int axis);
+  void say(char kind, const Device& device, const std::string& text, double delay);
 
   ZaberEmulatorConfig config_;
-  std::array<Axis, 3> axes_;
-  std::vector<Answer> answers_;
+  std::vector<ZaberEmulatedAxis> axes_;
+  std::map<int, Device> devices_;  // by number
+  std::vector<Line> lines_;
   std::string line_;
   std::string rejection_;  // of the next command; empty: none
   double time_ = 0;        // s
-  int moves_begun_ = 0;
-  bool moves_have_speeds_ = true;  // of their own
+  int answers_ = 0;
 };
 
 }  // namespace microinjection

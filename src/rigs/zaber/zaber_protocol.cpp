@@ -1,5 +1,6 @@
 #include "rigs/zaber/zaber_protocol.h"
 
+#include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cstdio>
@@ -58,7 +59,20 @@ std::string zaberCommand(const ZaberAddress& to, const std::string& command, boo
   return "/" + text + (with_checksum ? ":" + checksum(text) : "") + "\n";
 }
 
-std::optional<std::int64_t> ZaberMessage::position() const {
+std::optional<std::int64_t> ZaberMessage::position() const { return zaberWholeNumber(data); }
+
+std::optional<std::vector<std::string>> ZaberMessage::flags() const {
+  std::string text = data;
+  const std::string count = takeWord(text);
+  std::vector<std::string> up;
+  while (!text.empty()) up.push_back(takeWord(text));
+  const bool all_flags = std::all_of(up.begin(), up.end(), [](const auto& each) { return isFlag(each) && each != "--"; });
+  const auto announced = zaberWholeNumber(count);
+  if (count.size() != 2 || announced != static_cast<std::int64_t>(up.size()) || !all_flags) return std::nullopt;
+  return up;
+}
+
+std::optional<std::int64_t> zaberWholeNumber(const std::string& data) {
   std::int64_t value = 0;
   const auto [end, error] = std::from_chars(data.data(), data.data() + data.size(), value);
   constexpr std::int64_t kLargest = std::numeric_limits<std::int32_t>::max();
@@ -85,7 +99,8 @@ std::vector<ZaberMessage> ZaberParser::feed(const std::string& bytes) {
     } else if (line_.empty()) {
       continue;
     } else if (each == '\n') {
-      if (const auto message = parse(line_)) {
+      if (auto message = parse(line_)) {
+        message->size = line_.size() + 1;
         messages.push_back(*message);
       } else {
         ++malformed_;
@@ -101,7 +116,7 @@ std::vector<ZaberMessage> ZaberParser::feed(const std::string& bytes) {
   return messages;
 }
 
-std::optional<ZaberMessage> ZaberParser::parse(std::string line) const {
+std::optional<ZaberMessage> ZaberParser::parse(std::string line) {
   if (line.back() != '\r') return std::nullopt;
   line.pop_back();
   ZaberMessage message;
@@ -116,6 +131,7 @@ std::optional<ZaberMessage> ZaberParser::parse(std::string line) const {
     line.erase(line.size() - 3);
     if (said != checksum(line)) return std::nullopt;
   } else if (checksum_) {
+    ++unchecked_;
     return std::nullopt;
   }
   const std::optional<int> device = number(takeWord(line), 2), axis = number(takeWord(line), 1);

@@ -29,10 +29,18 @@ struct ZaberMessage {
   bool busy = false;          ///< of a reply or an alert
   std::string flag = "--";    ///< the warning of the highest priority; F.: fault, W.: warning, N.: note
   std::string data;
+  std::size_t size = 0;  ///< characters on the line, with the first and the line's end
 
   /// The data as a position in microsteps: one whole number of less than 2^31 in size.
   std::optional<std::int64_t> position() const;
+  /// The data of an answer to `warnings`: the flags that are up. Empty: it is no such answer.
+  std::optional<std::vector<std::string>> flags() const;
 };
+
+constexpr char kZaberNoReference[] = "WR";  ///< the flag of an axis without reference position
+
+/// One whole number of less than 2^31 in size and nothing else.
+std::optional<std::int64_t> zaberWholeNumber(const std::string& data);
 
 /// Whether firmware of this version (MAJOR.MINOR, as `get version` tells it) takes moves to a place with a speed of
 /// their own: from 7.25 on. Empty: that is no version.
@@ -40,6 +48,11 @@ std::optional<bool> zaberMovesHaveSpeeds(const std::string& version);
 
 /// Whether the device's flag is a fault: the device has stopped and needs attention.
 inline bool isZaberFault(const std::string& flag) { return !flag.empty() && flag[0] == 'F'; }
+/// Whether the flag, shown in a reply, may stand before WR: a reply shows only the most important one. Notes (N.) are
+/// less important than WR.
+inline bool mayHideZaberReference(const std::string& flag) {
+  return flag != kZaberNoReference && flag != "--" && flag[0] != 'N';
+}
 
 /// Finds messages in a stream of bytes. What is none is passed over; it is in step again with the next message.
 class ZaberParser {
@@ -50,13 +63,14 @@ class ZaberParser {
   std::vector<ZaberMessage> feed(const std::string& bytes);
   void forget() { line_.clear(); }  ///< a message that has begun
   int malformed() const { return malformed_; }
+  int unchecked() const { return unchecked_; }  ///< of these, that had no checksum and would have needed one
 
  private:
-  std::optional<ZaberMessage> parse(std::string line) const;
+  std::optional<ZaberMessage> parse(std::string line);
 
   bool checksum_;
   std::string line_;  // empty: outside a message
-  int malformed_ = 0;
+  int malformed_ = 0, unchecked_ = 0;
 };
 
 }  // namespace microinjection

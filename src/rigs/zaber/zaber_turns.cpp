@@ -1,104 +1,32 @@
-// What ZaberDriver says next: at the begin of a session, for a move, and in turn.
+// What ZaberDriver says next, for a move and in turn.
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "rigs/zaber/zaber_driver.h"
 
 namespace microinjection {
 namespace {
 
-constexpr double kVelocityHolds = 0.1;   // s: a set-point's velocity is not followed for longer
-constexpr double kLongestBraking = 1.5;  // s, after a stop
-constexpr double kLongestHoming = 120;   // s
+constexpr double kVelocityHolds = 0.1;  // s: a set-point's velocity is not followed for longer
 constexpr int kMoveTries = 2;
 constexpr double kSlowest = 10;     // microsteps/s, of an axis of a move
 constexpr double kShortestWay = 3;  // microsteps, of a velocity: a shorter one may be none for an axis that is ahead
-constexpr int kSettingTries = 40;   // of nine settings that are told twice each
 
 }  // namespace
 
 void ZaberDriver::next() {
-  if (nextOfSession()) return;
+  if (nextOfWarnings() || nextOfSession()) return;
   if (goal() && !goal()->follows && nextOfMove()) return;
   nextInTurn();
 }
 
-/// At the begin of a session: faults are cleared, and every axis must have been read and be at rest.
-bool ZaberDriver::nextOfSession() {
-  if (settled_) return false;
+/// Of an axis that shows a flag which may hide that it has lost its reference position.
+bool ZaberDriver::nextOfWarnings() {
   for (int i = 0; i < 3; ++i) {
-    Axis& axis = axes_[i];
-    if (!axis.cleared) return ask(Kind::kClear, i, "warnings clear"), true;
-    // Braking, or the session's stop did not reach it.
-    if (axis.still_moves && !axis.homed) return ask(Kind::kStop, i, "stop"), true;
-    if (!axis.read_since_begin || axis.busy || axis.filter.doubts()) {
-      if (listened() - begun_ > (axis.homed ? kLongestHoming : kLongestBraking)) {
-        lostStep(axisName(i) + (axis.busy ? " does not come to rest" : " has no steady position"));
-      } else {
-        ask(Kind::kPosition, i, "get pos");
-      }
-      return true;
-    }
-    if (!axis.has_reference && nextOfHoming(i)) return true;
-  }
-  if (nextOfSettings()) return true;
-  // Another axis' homing takes long.
-  for (int i = 0; i < 3; ++i) {
-    if (listened() - axes_[i].heard > abilities().reading_interval) return ask(Kind::kPosition, i, "get pos"), true;
-  }
-  settled_ = true;
-  may_home_ = false;
-  known();
-  return false;
-}
-
-/// What the device can do, asked once for a connection. It counts when it is told twice: a damaged answer would last.
-bool ZaberDriver::nextOfSettings() {
-  for (int i = 0; i < 3; ++i) {
-    const Axis& axis = axes_[i];
-    const bool has_speeds = axis.moves_have_speeds.value_or(false);
-    if (axis.moves_have_speeds && (!has_speeds || (axis.lowest && axis.highest))) continue;
-    if (++setting_tries_ > kSettingTries) {
-      lostStep(axisName(i) + " tells no firmware version or no travel");
-    } else if (!axis.moves_have_speeds) {
-      ask(Kind::kVersion, i, "get version");
-    } else if (!axis.lowest) {
-      ask(Kind::kLowest, i, "get limit.min");
-    } else {
-      ask(Kind::kHighest, i, "get limit.max");
-    }
-    return true;
+    if (settled_ && axes_[i].lists_due > 0) return ask(Kind::kWarnings, i, "warnings"), true;
   }
   return false;
-}
-
-void ZaberDriver::takeSetting(const Exchange& asked, const ZaberMessage& reply) {
-  const bool twice = std::exchange(setting_, reply.data) == reply.data;
-  if (!twice) return;
-  setting_.clear();
-  Axis& axis = axes_[asked.axis];
-  if (asked.kind == Kind::kLowest) axis.lowest = reply.position();
-  if (asked.kind == Kind::kHighest) axis.highest = reply.position();
-  for (int i = 0; i < 3 && asked.kind == Kind::kVersion; ++i) {
-    if (config_.addresses[i].device == asked.to.device) axes_[i].moves_have_speeds = zaberMovesHaveSpeeds(reply.data);
-  }
-}
-
-bool ZaberDriver::nextOfHoming(int i) {
-  if (state() == State::kFault && !clearing()) return false;
-  // Neither a cleared fault nor a device that was switched off and on is leave to move.
-  if (!may_home_ || axes_[i].homed || clearing()) {
-    raiseFault(axisName(i) + " has no reference position: home it, by its maker's tool or by home: true at the start");
-    return true;
-  }
-  movesByItself();
-  axes_[i].position.reset();  // its numbers begin anew
-  axes_[i].read_since_begin = false;
-  begun_ = listened();
-  ask(Kind::kHome, i, "home");
-  return true;
 }
 
 long long ZaberDriver::velocityData(int i) const {
@@ -119,11 +47,13 @@ long long ZaberDriver::velocityData(int i) const {
 /// of its travel is nearer.
 std::optional<long long> ZaberDriver::endOfVelocity(int i, long long data) const {
   const Axis& axis = axes_[i];
-  if (data == 0 || !axis.moves_have_speeds.value_or(false)) return std::nullopt;
-  const double way = std::max(std::abs(data / kZaberSpeedUnit) * config_.move_horizon, kShortestWay);
+  if (data == 0 || !axis.settings.movesHaveSpeeds()) return std::nullopt;
+  const double way = std::max(std::abs(data / kZaberSpeedUnit) * horizon(), kShortestWay);
   const double from = expected(i, time()) * config_.microsteps_per_metre[i];
   const long long end = std::llround(from + std::copysign(way, static_cast<double>(data)));
-  if (end < *axis.lowest || end > *axis.highest) return std::nullopt;
+  const auto lowest = axis.settings.number(ZaberSettings::kLowest);
+  const auto highest = axis.settings.number(ZaberSettings::kHighest);
+  if (!lowest || !highest || end < *lowest || end > *highest) return std::nullopt;
   return end;
 }
 
@@ -148,7 +78,18 @@ void ZaberDriver::nextInTurn() {
     if (nextVelocity(i)) return;
   }
   turn_ = (turn_ + 1) % 6;
+  if (turn_ == 0) askAgain();
   ask(Kind::kPosition, i, "get pos");
+}
+
+/// A warning that stays may hide one that comes: once in a turn an axis that shows one is asked for all.
+void ZaberDriver::askAgain() {
+  for (int k = 0; k < 3; ++k) {
+    asked_again_ = (asked_again_ + 1) % 3;
+    if (axes_[asked_again_].shown.empty()) continue;
+    axes_[asked_again_].lists_due = 1;
+    return;
+  }
 }
 
 long long ZaberDriver::moveSpeedData(int i) const {
@@ -166,7 +107,7 @@ bool ZaberDriver::nextOfMove() {
   for (; move_stage_ < 3; ++move_stage_) {
     const int i = move_stage_;
     const long long data = moveSpeedData(i);
-    if (!*axes_[i].moves_have_speeds) return ask(Kind::kSpeed, i, "set maxspeed " + std::to_string(data), data), true;
+    if (!axes_[i].settings.movesHaveSpeeds()) return ask(Kind::kSpeed, i, "set maxspeed " + std::to_string(data), data), true;
     axes_[i].move_speed = static_cast<double>(data) / (config_.microsteps_per_metre[i] * kZaberSpeedUnit);
   }
   if (move_stage_ >= 6) {
@@ -177,7 +118,7 @@ bool ZaberDriver::nextOfMove() {
   const double scale = config_.microsteps_per_metre[i];
   const long long end = std::llround(config_.joints.toDevice(goal()->joints)[i] * scale);
   std::string command = "move abs " + std::to_string(end);
-  if (*axes_[i].moves_have_speeds) {
+  if (axes_[i].settings.movesHaveSpeeds()) {
     command += " " + std::to_string(std::llround(axes_[i].move_speed * scale * kZaberSpeedUnit));
   }
   ask(Kind::kMove, i, command, end);
@@ -197,6 +138,29 @@ void ZaberDriver::checkMove() {
   }
   move_done_ = true;
   for (Axis& axis : axes_) axis.velocity = 0;
+}
+
+void ZaberDriver::ask(Kind kind, int axis, const std::string& command, long long value, double end) {
+  ZaberAddress to = config_.addresses[axis];
+  if (kind == Kind::kSetting && ZaberSettings::ofDevice(static_cast<ZaberSettings::Name>(value))) to.axis = 0;
+  exchange_ = Exchange{kind, axis, to, value, end, command, 0, 0, false, 0, 0};
+  sendExchange();
+}
+
+/// A line whose answers take longer than was expected is waited for longer at each try, until that was measured.
+void ZaberDriver::sendExchange() {
+  std::optional<int> number;
+  if (config_.numbers) number = number_ = (number_ + 1) % 100;
+  const std::string bytes = zaberCommand(exchange_->to, exchange_->text, config_.checksum, number);
+  const double wire = static_cast<double>(bytes.size()) * config_.byteTime();
+  const double patience = std::max(config_.reply_timeout, 3 * answer_time_);
+  ++exchange_->tries;
+  exchange_->sent = true;
+  exchange_->heard_at = time() + wire;
+  exchange_->heard_from = listened() + wire;
+  exchange_->due = exchange_->heard_from + kZaberReplyBytes * config_.byteTime() +
+                   patience * (settled_ ? 1 : exchange_->tries);
+  say(bytes);
 }
 
 }  // namespace microinjection

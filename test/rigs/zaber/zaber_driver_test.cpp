@@ -80,6 +80,7 @@ TEST_F(ZaberTest, ThreeChainedDevicesWithChecksums) {
   ZaberEmulatorConfig device;
   device.devices = {1, 2, 3};
   device.axes = {1, 1, 1};
+  device.checksum = true;
   ZaberConfig driver = TestedZaber::config();
   driver.reply_checksum = true;
   for (int i = 0; i < 3; ++i) driver.addresses[i] = {i + 1, 1};

@@ -185,45 +185,5 @@ TEST(ZaberConfig, RefusesAHorizonThatEndsBetweenTwoTurns) {
   }
 }
 
-/// What a device says to one command, 10 ms later.
-std::string answer(ZaberEmulator& device, const std::string& command, double& time) {
-  device.receive("/" + command + "\n", time);
-  return device.send(time += 0.01);
-}
-
-TEST(ZaberEmulator, TakesSpeedsOfMovesFromTheFirmwareOnThatHasThem) {
-  for (const char* command : {"move abs 1000 500", "move rel 10 500 7", "move vel 10 7"}) {
-    double time = 0;
-    ZaberEmulator old(withFirmware("7.24")), recent(withFirmware("7.25"));
-    EXPECT_EQ(answer(old, std::string("1 1 ") + command, time), "@01 1 RJ IDLE -- BADDATA\r\n");
-    EXPECT_EQ(answer(recent, std::string("1 1 ") + command, time), "@01 1 OK BUSY -- 0\r\n");
-    EXPECT_EQ(answer(recent, std::string("1 1 ") + command + " 9 9", time), "@01 1 RJ BUSY -- BADDATA\r\n");
-  }
-}
-
-TEST(ZaberEmulator, MovesAtTheSpeedThatItIsTold) {
-  ZaberEmulator device;
-  double time = 0;
-  answer(device, "1 1 move rel 100000 16384", time);  // 10,000 microsteps/s
-  answer(device, "1 1 get pos", time = 0.5);
-  const double from = device.position().x();
-  answer(device, "1 1 get pos", time = 1.5);
-  EXPECT_NEAR((device.position().x() - from) / 0.047625e-6, 1e4, 150);  // the 10 ms of two answers
-}
-
-TEST(ZaberEmulator, TellsItsVersionOnceForADevice) {
-  double time = 0;
-  ZaberEmulator one(withFirmware("6.28"));
-  EXPECT_EQ(answer(one, "1 0 get version", time), "@01 0 OK IDLE -- 6.28\r\n");
-  ZaberEmulatorConfig config;
-  config.devices = {1, 2, 3};
-  config.axes = {1, 1, 1};
-  ZaberEmulator three(config);
-  EXPECT_EQ(answer(three, "2 0 get version", time), "@02 0 OK IDLE -- 7.25\r\n");
-  for (const char* none : {"", "7", "7.x", "5.1", "8.0", "7.25 ", "-7.25"}) {
-    EXPECT_THROW(one.setFirmware(none), ConfigError) << none;
-  }
-}
-
 }  // namespace
 }  // namespace microinjection

@@ -98,5 +98,16 @@ TEST(ZaberProtocol, BelievesNoImpossiblePosition) {
   }
 }
 
+TEST(ZaberProtocol, ReadsListsOfWarnings) {
+  const auto flags = [](const std::string& data) { return parse("@01 1 OK IDLE WT " + data + "\r\n").at(0).flags(); };
+  EXPECT_EQ(flags("00"), std::vector<std::string>());
+  EXPECT_EQ(flags("02 WT WR"), (std::vector<std::string>{"WT", "WR"}));
+  for (const char* none : {"0", "01", "02 WT", "01 WT WR", "2 WT WR", "02 WT W", "02 WT wr", "01 --", "WT", "262467"}) {
+    EXPECT_FALSE(flags(none)) << none;
+  }
+  EXPECT_TRUE(mayHideZaberReference("WT") && mayHideZaberReference("XY"));
+  EXPECT_FALSE(mayHideZaberReference("--") || mayHideZaberReference("NI") || mayHideZaberReference("WR"));
+}
+
 }  // namespace
 }  // namespace microinjection
