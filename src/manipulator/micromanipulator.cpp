@@ -26,6 +26,7 @@ Micromanipulator::Micromanipulator(const ManipulatorGeometry& geometry, const Co
       follows_(device.abilities().follows),
       lag_(follows_ ? device.abilities().latency + device.abilities().command_interval : 0) {
   device.limitSpeed({geometry.axes[0].velocity, geometry.axes[1].velocity, geometry.axes[2].velocity});
+  if (const auto ends = device.homingEnds()) device.planHoming(planHoming(geometry, guard, *ends));
 }
 
 std::string Micromanipulator::unable() const {
@@ -71,6 +72,7 @@ Eigen::Vector3d Micromanipulator::reachOf(const AxesMotion& motion) const {
 
 void Micromanipulator::begin(Mode mode, const AxesMotion& from) {
   mode_ = mode;
+  under_way_ = mode == Mode::kMove;
   setpoint_ = from;
   ended_.clear();
 }
@@ -171,6 +173,7 @@ void Micromanipulator::step(double time, double dt) {
   if (const std::string why = unable(); !why.empty()) {
     if (mode_ != Mode::kHold) ended_ = why;
     rest();
+    under_way_ = false;
     held_off_ = true;
   } else {
     haltIfCutOff();
@@ -180,6 +183,13 @@ void Micromanipulator::step(double time, double dt) {
     if (setpoint_) device_->follow(setpoint_->position, setpoint_->velocity);
   }
   device_->step(time);
+  if (mode_ == Mode::kHold && !device_->moving()) under_way_ = false;
+}
+
+std::optional<Eigen::Isometry3d> Micromanipulator::setpointPose() const {
+  if (!unable().empty() || mode_ == Mode::kVelocity) return std::nullopt;
+  const bool by_itself = mode_ == Mode::kMove && !setpoint_;
+  return geometry_.tipPose(by_itself ? goal_ : start().position);
 }
 
 std::optional<Eigen::Isometry3d> Micromanipulator::tipPose() const {

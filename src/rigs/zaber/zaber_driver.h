@@ -20,7 +20,7 @@ namespace microinjection {
 ///
 /// One message is under way at a time, in turn: an axis' velocity when it has changed, the axis' position. An axis
 /// without a reference position is a fault: homing moves, so the user has it done (`home: true`, at the start only, or
-/// the maker's tool).
+/// the maker's tool). All axes then home, in the plan's order: one that has its reference may be in another's way.
 class ZaberDriver : public SerialManipulator {
  public:
   ZaberDriver(const ZaberConfig& config, std::unique_ptr<Wire> wire);
@@ -28,6 +28,8 @@ class ZaberDriver : public SerialManipulator {
   ManipulatorAbilities abilities() const override;
   std::optional<Reading> reading() const override;
   bool moving() const override;
+  std::optional<Eigen::Vector3d> homingEnds() const override;
+  void planHoming(const HomingPlan& plan) override { homing_ = plan; }
 
   const std::string& note() const { return note_; }                 ///< the last warning that is no fault
   double largestCorrection() const { return largest_correction_; }  ///< m, of a carried-on position by a reading
@@ -86,7 +88,7 @@ class ZaberDriver : public SerialManipulator {
   void missedReply();
   void next();
   bool nextOfSession();
-  bool nextOfHoming(int axis);
+  bool nextOfHoming();
   bool nextOfSettings();
   void takeSetting(const Exchange& asked, const ZaberMessage& reply);
   bool nextOfMove();
@@ -110,6 +112,7 @@ class ZaberDriver : public SerialManipulator {
   bool may_home_;         // until everything has been known once, and while the program has not stood still
   std::string setting_;   // that was told last, and has to be told again
   int setting_tries_ = 0;
+  HomingPlan homing_;
   int number_ = 0;      // of the last command
   int turn_ = 0;        // 0..5: velocity and position of each axis
   int move_stage_ = 0;  // of a move: 0..2 speeds, 3..5 positions, then under way

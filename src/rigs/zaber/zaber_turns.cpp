@@ -41,8 +41,8 @@ bool ZaberDriver::nextOfSession() {
       }
       return true;
     }
-    if (!axis.has_reference && nextOfHoming(i)) return true;
   }
+  if (nextOfHoming()) return true;
   if (nextOfSettings()) return true;
   // Another axis' homing takes long.
   for (int i = 0; i < 3; ++i) {
@@ -86,19 +86,32 @@ void ZaberDriver::takeSetting(const Exchange& asked, const ZaberMessage& reply) 
   }
 }
 
-bool ZaberDriver::nextOfHoming(int i) {
+/// What looking for the reference positions needs next; false: nothing.
+bool ZaberDriver::nextOfHoming() {
+  const auto lacks = [](const Axis& axis) { return !axis.has_reference; };
+  const auto lacking = std::find_if(axes_.begin(), axes_.end(), lacks);
+  const bool begun = std::any_of(axes_.begin(), axes_.end(), [](const Axis& axis) { return axis.homed; });
+  if (lacking == axes_.end() && !begun) return false;
   if (state() == State::kFault && !clearing()) return false;
   // Neither a cleared fault nor a device that was switched off and on is leave to move.
-  if (!may_home_ || axes_[i].homed || clearing()) {
-    raiseFault(axisName(i) + " has no reference position: home it, by its maker's tool or by home: true at the start");
+  const bool may = may_home_ && !clearing() && homing_.refusal.empty();
+  if (lacking != axes_.end() && (!may || lacking->homed)) {
+    const std::string way = homing_.refusal.empty() ? "home it, by its maker's tool or by home: true at the start"
+                                                    : "home: true is refused, " + homing_.refusal;
+    raiseFault(axisName(static_cast<int>(lacking - axes_.begin())) + " has no reference position: " + way);
     return true;
   }
-  movesByItself();
-  axes_[i].position.reset();  // its numbers begin anew
-  axes_[i].read_since_begin = false;
-  begun_ = listened();
-  ask(Kind::kHome, i, "home");
-  return true;
+  for (const int i : homing_.order) {
+    if (axes_[i].homed) continue;
+    if (!may) return false;
+    movesByItself();
+    axes_[i].position.reset();  // its numbers begin anew
+    axes_[i].read_since_begin = false;
+    begun_ = listened();
+    ask(Kind::kHome, i, "home");
+    return true;
+  }
+  return false;
 }
 
 long long ZaberDriver::velocityData(int i) const {
