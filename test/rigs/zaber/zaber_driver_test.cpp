@@ -180,43 +180,6 @@ TEST_F(ZaberTest, HomesWhenItsConfigurationSaysSo) {
   rig_->run(1, [&] { ASSERT_EQ(rig_->driver().state(), ManipulatorDevice::State::kReady) << rig_->driver().why(); });
 }
 
-TEST_F(ZaberTest, HomesItsAxesInThePlansOrder) {
-  ZaberEmulatorConfig device;
-  device.referenced = false;
-  ZaberConfig driver = TestedZaber::config();
-  driver.home = true;
-  make(device, driver);
-  ASSERT_TRUE(rig_->driver().homingEnds());
-  EXPECT_EQ(*rig_->driver().homingEnds(), driver.joints.toJoints(Eigen::Vector3d::Zero()));
-  rig_->driver().planHoming({{2, 0, 1}, ""});
-  const Eigen::Vector3d begin = rig_->device().position();
-  int homed = 0;
-  const int order[] = {2, 0, 1};
-  ASSERT_TRUE(rig_->runUntil(
-      [&] {
-        const Eigen::Vector3d now = rig_->device().position();
-        while (homed < 3 && now[order[homed]] == 0) ++homed;
-        for (int i = homed + 1; i < 3; ++i)
-          EXPECT_EQ(now[order[i]], begin[order[i]]) << "joint " << order[i] << " goes first";
-        return homed == 3 || testing::Test::HasFailure();
-      },
-      60));
-  ASSERT_TRUE(rig_->runUntilReady(5)) << rig_->driver().why();
-}
-
-TEST_F(ZaberTest, DoesNotHomeWhereObstaclesAreInTheWay) {
-  ZaberEmulatorConfig device;
-  device.referenced = false;
-  ZaberConfig driver = TestedZaber::config();
-  driver.home = true;
-  make(device, driver);
-  rig_->driver().planHoming({{0, 1, 2}, "it would end in the dish"});
-  ASSERT_TRUE(rig_->runUntil([&] { return rig_->driver().state() == State::kFault; }, 2));
-  EXPECT_NE(rig_->driver().why().find("it would end in the dish"), std::string::npos) << rig_->driver().why();
-  rig_->run(2);
-  EXPECT_EQ(rig_->device().position(), ZaberEmulator(device).position());
-}
-
 TEST_F(ZaberTest, AStopThatTheLineLostIsSaidAgain) {
   start();
   const Eigen::Vector3d velocity(1e-3, 0, 0);
