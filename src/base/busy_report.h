@@ -15,6 +15,9 @@ class BusyReport {
     accepted_ = time;
   }
 
+  /// A motion was accepted whose true is still to be said. What else has changed by it waits for that.
+  bool pending() const { return pending_; }
+
   /// What to say at `time` (ns), when motions are (`busy`) or are not under way.
   bool step(bool busy, std::int64_t time) {
     if (time < last_) accepted_ = time - 1;  // a clock that was set back

@@ -176,6 +176,7 @@ void InjectionControllerNode::publishState(const ros::Time& now) {
   state.state = toText(model_.state());
   state.is_homed = model_.homed();
   state.is_busy = busy_.step(model_.busy(), static_cast<std::int64_t>(now.toNSec()));
+  if (busy_.pending() && state.is_busy == said_.is_busy) return;
   const bool same = state.state == said_.state && state.is_homed == said_.is_homed && state.is_busy == said_.is_busy;
   if (same && !std::exchange(answer_, false)) return;
   answer_ = false;

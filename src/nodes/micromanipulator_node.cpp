@@ -74,6 +74,7 @@ void MicromanipulatorNode::step(const Cycle::Tick& tick) {
 void MicromanipulatorNode::publishState(const Cycle::Tick& tick) {
   cell_microinjection::OperatingState state;
   state.is_busy = commands_.isBusy(tick);
+  if (commands_.busyIsPending() && state.is_busy == publisher_.said().is_busy) return;
   state.state = toText(commands_.state().state());
   state.is_homed = commands_.state().homed();
   if (!publisher_.publishState(state, tick.now, commands_.takeAnswer())) return;

@@ -34,6 +34,8 @@ class NeedleCommands {
   void step(const Cycle::Tick& tick);
   /// After the model's step: what is_busy says in this step.
   bool isBusy(const Cycle::Tick& tick);
+  /// See BusyReport::pending.
+  bool busyIsPending() const { return busy_.pending(); }
 
   const NeedleState& state() const { return state_; }
   /// As the device has it: a clock that is set back does not take it along. s

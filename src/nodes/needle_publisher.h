@@ -25,6 +25,7 @@ class NeedlePublisher {
   /// On change, or where a command is to be answered. Whether the state is another than before.
   bool publishState(cell_microinjection::OperatingState state, const ros::Time& now, bool answer);
   void publishAbilities(const ros::Time& now);
+  const cell_microinjection::OperatingState& said() const { return said_; }  ///< the last that was published
 
  private:
   void publishMotion(const ros::Time& now);

@@ -47,7 +47,9 @@ TEST(BusyReport, ATrueIsLaterThanTheCommand) {
   report.accept(10);
   EXPECT_FALSE(report.step(true, 9));   // a step that had begun before the command came
   EXPECT_FALSE(report.step(true, 10));  // who sent it at 10 waits for a later stamp
+  EXPECT_TRUE(report.pending());
   EXPECT_TRUE(report.step(true, 11));
+  EXPECT_FALSE(report.pending());
 }
 
 TEST(BusyReport, AClockThatIsSetBackKeepsNothingBack) {

@@ -35,22 +35,24 @@ class CrtkTest(unittest.TestCase):
 
     def setUp(self):
         self.newest, self.said = {}, set()
-        listen = [("/needle/measured_cp", PoseStamped, lambda message: self.newest.update(needle=message)),
-                  ("/diagnostics", DiagnosticArray, self.on_diagnostics)]
-        for topic, kind, handler in listen:
-            self.addCleanup(rospy.Subscriber(topic, kind, handler).unregister)
+        self.subscribers = [
+            rospy.Subscriber("/needle/measured_cp", PoseStamped, lambda message: self.newest.update(needle=message)),
+            rospy.Subscriber("/diagnostics", DiagnosticArray, self.on_diagnostics)]
         self.fault = self.publisher("/needle/emulated_fault", StringStamped)
         self.client = CrtkClient("/needle")
         self.addCleanup(self.client.close)
-        self.begin()
-
-    def begin(self):
         self.nodes = KillableNodes({"micromanipulator": {**rig(), "command_timeout": 1.0,
                                                          "velocity_command_timeout": 1.0}})
-        self.addCleanup(self.nodes.forget)  # called after stop()
-        self.addCleanup(self.nodes.stop)
+        self.addCleanup(self.end)
         self.client.check_connections()
         self.assertTrue(self.client.enable(), "ENABLED")
+
+    def end(self):
+        """Subscribers go before the master forgets the node: see KillableSession.close."""
+        self.nodes.stop()
+        for subscriber in (*self.subscribers, *self.client.subscribers):
+            subscriber.unregister()
+        self.nodes.forget()
 
     def publisher(self, topic, kind, **options):
         publisher = rospy.Publisher(topic, kind, queue_size=10, **options)
