@@ -1,6 +1,7 @@
 // What people and programs ask of the controller.
 
 #include <sstream>
+#include <utility>
 
 #include "control/injection_controller.h"
 
@@ -20,38 +21,62 @@ std::string InjectionController::heed(const std::string& command) {
   return obey(command);
 }
 
-std::string InjectionController::obey(const std::string& command) {
-  const std::string refusal = std::string("state is ") + toText(state_) + ", ";
-  if (command == "disable") {
-    state_ = OperatingState::kDisabled;
-    held_because_ = "DISABLED";
-    setpoint_.reset();
-    run_.end(InjectionOutcome::kDisabled, "disabled");
-    happen(InjectionEvent::kReset);
-  } else if (command == "enable") {
-    if (state_ == OperatingState::kFault) return refusal + "enable is allowed after disable";
-    if (state_ == OperatingState::kDisabled) setpoint_.reset();
-    state_ = OperatingState::kEnabled;
-  } else if (command == "pause") {
-    if (state_ != OperatingState::kEnabled) return refusal + "pause is allowed in ENABLED";
-    hold("PAUSED");
-  } else if (command == "resume") {
-    if (state_ != OperatingState::kPaused) return refusal + "resume is allowed in PAUSED";
-    state_ = OperatingState::kEnabled;
-    run_.rested();
-  } else if (command == "home") {
-    if (!setpoint_ || state_ == OperatingState::kFault) return refusal + "home is allowed in ENABLED and PAUSED";
-    state_ = OperatingState::kEnabled;
-    run_.end(InjectionOutcome::kPreempted, "home");
-    happen(InjectionEvent::kWithdraw);
-  } else {
-    return "\"" + command +
-           "\" is no command here; allowed: enable, disable, pause, resume, home, approach, indent, inject, withdraw";
+std::string InjectionController::obey(const std::string& word) {
+  const auto command = stateCommandOf(word);
+  if (!command) {
+    return "\"" + word +
+           "\" is no command here; allowed: enable, disable, pause, resume, home, unhome, approach, indent, inject, "
+           "withdraw";
   }
-  homing_ = command == "home";
-  paused_ = command == "pause";
+  std::string refusal = *command == StateCommand::kHome ? goHome() : change(*command);
+  if (!refusal.empty()) return refusal;
+  homing_ = *command == StateCommand::kHome;
+  if (*command != StateCommand::kUnhome) paused_ = *command == StateCommand::kPause;
   monitor_.skip();  // what comes next is no sequel of the motion until now
   target_offset_.reset();
+  return "";
+}
+
+/// CRTK's table, for all commands but home.
+std::string InjectionController::change(StateCommand command) {
+  const auto next = after(state_, command);
+  if (!next) return refusalOf(state_, command);
+  const OperatingState before = std::exchange(state_, *next);
+  switch (command) {
+    case StateCommand::kDisable:
+      held_because_ = "DISABLED";
+      setpoint_.reset();
+      run_.end(InjectionOutcome::kDisabled, "disabled");
+      happen(InjectionEvent::kReset);
+      break;
+    case StateCommand::kEnable:
+      if (before != OperatingState::kEnabled) setpoint_.reset();
+      if (before == OperatingState::kFault) happen(InjectionEvent::kReset);
+      break;
+    case StateCommand::kPause:
+      held_because_ = "PAUSED";
+      break;
+    case StateCommand::kResume:
+      run_.rested();
+      break;
+    case StateCommand::kUnhome:
+      unhomed_ = true;
+      run_.end(InjectionOutcome::kPreempted, "unhome");
+      break;
+    case StateCommand::kHome:
+      break;
+  }
+  return "";
+}
+
+/// Beyond CRTK's table PAUSED allows it, too: it is the way out of the cell when a guard holds the needle.
+std::string InjectionController::goHome() {
+  const bool allowed = state_ == OperatingState::kEnabled || state_ == OperatingState::kPaused;
+  if (!allowed) return std::string("state is ") + toText(state_) + ", home is allowed in ENABLED, PAUSED";
+  if (!setpoint_) return "the needle's position is not known yet";
+  state_ = OperatingState::kEnabled;
+  run_.end(InjectionOutcome::kPreempted, "home");
+  happen(InjectionEvent::kWithdraw);
   return "";
 }
 
@@ -59,6 +84,7 @@ std::string InjectionController::start(const InjectionGoal& goal) {
   if (byHand()) return "mode is manual: the hand moves the needle";
   if (state_ != OperatingState::kEnabled)
     return std::string("state is ") + toText(state_) + ", an injection starts in ENABLED";
+  if (unhomed_) return kNotHomed;
   if (!setpoint_) return "the needle's position is not known yet";
   if (homing_ || injection_ != InjectionState::kIdle) {
     return std::string("an injection starts in idle, the needle is in ") + (homing_ ? "homing" : toText(injection_));
@@ -80,6 +106,7 @@ std::string InjectionController::start(const InjectionGoal& goal) {
 std::string InjectionController::takeWord(InjectionEvent event) {
   if (state_ != OperatingState::kEnabled)
     return std::string("state is ") + toText(state_) + ", it is allowed in ENABLED";
+  if (unhomed_) return kNotHomed;
   if (!byHand()) return run_.confirm(event, injection_);
   if (event != InjectionEvent::kInject) return "mode is manual: the hand moves the needle";
   if (injection_ != InjectionState::kPunctured) return std::string("it is no step from ") + toText(injection_);

@@ -19,19 +19,6 @@ bool trusted(const std::optional<Eigen::Vector3d>& value) { return value && valu
 
 }  // namespace
 
-const char* toText(OperatingState state) {
-  switch (state) {
-    case OperatingState::kEnabled:
-      return "ENABLED";
-    case OperatingState::kPaused:
-      return "PAUSED";
-    case OperatingState::kFault:
-      return "FAULT";
-    default:
-      return "DISABLED";
-  }
-}
-
 InjectionController::InjectionController(const InjectionControllerConfig& config)
     : config_(config),
       monitor_(config.detection),
@@ -116,7 +103,9 @@ std::optional<Eigen::Vector3d> InjectionController::step(const Input& input, dou
   if (state_ == OperatingState::kPaused) {
     watchPulse(input, dt);
   } else if (homing_) {
-    goHome(input, dt);
+    stepHome(input, dt);
+  } else if (unhomed_ && injection_ != InjectionState::kWithdraw) {
+    holdUnhomed();
   } else if (byHand()) {
     if (const auto target = handTarget(input)) follow(*target, input, dt);
   } else if (const auto target = ownTarget(input, dt)) {
@@ -239,7 +228,7 @@ bool InjectionController::take(const InjectionRun::Step& step) {
   return !step.stop;
 }
 
-void InjectionController::goHome(const Input& input, double dt) {
+void InjectionController::stepHome(const Input& input, double dt) {
   const Eigen::Vector3d& axis = input.axis;
   held_because_ = "homing";
   const Eigen::Vector3d way = home_ - *setpoint_;
@@ -248,11 +237,17 @@ void InjectionController::goHome(const Input& input, double dt) {
   move(out > 1e-9 ? Eigen::Vector3d(out * axis) : Eigen::Vector3d(way - out * axis), input, dt);
   const Eigen::Vector3d left = home_ - *setpoint_;
   if (std::max(0.0, left.dot(axis)) + (left - left.dot(axis) * axis).norm() > 1e-9) return;
-  homing_ = false;
+  homing_ = unhomed_ = false;
   hold("PAUSED");
   if (byHand()) return;
   happen(InjectionEvent::kOut);
   monitor_.rearm();
+}
+
+void InjectionController::holdUnhomed() {
+  held_because_ = kNotHomed;
+  target_offset_.reset();
+  endPulse(held_because_);
 }
 
 void InjectionController::follow(const Eigen::Vector3d& target, const Input& input, double dt) {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/config_reader.h"
+#include "base/operating_state.h"
 #include "control/guards.h"
 #include "control/hand_observer.h"
 #include "control/injection_goal.h"
@@ -29,10 +30,6 @@ struct InjectionControllerConfig {
   static InjectionControllerConfig read(ConfigReader& reader);
 };
 
-/// States as in CRTK's operating_state.
-enum class OperatingState { kDisabled, kEnabled, kPaused, kFault };
-const char* toText(OperatingState state);
-
 /// Decides where the needle goes: takes the hand's target or moves it by itself, and lets through only what is safe.
 ///
 /// Without a trusted target, force or needle pose it holds the needle where its set-point is. It moves the needle in
@@ -49,7 +46,7 @@ const char* toText(OperatingState state);
 ///                                                             lasts, for the time guard at the most
 ///     needle stands still  the set-point waits for it (leash) same; what a hand did meanwhile is forgotten
 ///     silent injector      its pulse counts as over           PAUSED, when the pulse and injector_patience are over
-///     tracking, speed      FAULT: no set-point; only disable leaves it
+///     tracking, speed      FAULT: no set-point, until disable or enable
 ///     speed of set-point   never above the limit
 class InjectionController {
  public:
@@ -64,14 +61,15 @@ class InjectionController {
 
   explicit InjectionController(const InjectionControllerConfig& config);
 
-  /// enable, disable, pause, resume, home (CRTK state_command). home withdraws the needle along the pipette and takes
-  /// it over where it was enabled, never deeper than it is, also without a trusted force; then pauses: the way out when
-  /// the needle is held. approach (starts the configured goal), indent, inject and withdraw are the operator's words
-  /// to an injection: withdraw gives up (preempts) what the controller does by itself, in any state of it, and takes
-  /// the needle back to where it set out, also after a guard and where it was left in the cell by disable; what a
-  /// person has paused is PAUSED again when it is out. By hand there is only inject. Disabled in the cell and enabled
-  /// again, depth, offset and home stay: no injection starts there. Empty when obeyed, otherwise the reason for the
-  /// refusal; the state is then as before.
+  /// enable, disable, pause, resume, home, unhome (CRTK state_command; base/operating_state.h has the table, and home
+  /// is allowed in PAUSED, too). home withdraws the needle along the pipette and takes it over where it was enabled,
+  /// never deeper than it is, also without a trusted force; then pauses: the way out when the needle is held. unhome
+  /// ends what the controller does by itself and holds the needle until it is home. approach (starts the configured
+  /// goal), indent, inject and withdraw are the operator's words to an injection: withdraw gives up (preempts) what the
+  /// controller does by itself, in any state of it, and takes the needle back to where it set out, also after a guard
+  /// and where it was left in the cell by disable; what a person has paused is PAUSED again when it is out. By hand
+  /// there is only inject. Disabled in the cell and enabled again, depth, offset and home stay: no injection starts
+  /// there. Empty when obeyed, otherwise the reason for the refusal; the state is then as before.
   std::string command(const std::string& command);
   /// As the word withdraw, but of a program, which looks at the refusal itself: no notice.
   std::string withdraw();
@@ -88,9 +86,10 @@ class InjectionController {
 
   OperatingState state() const { return state_; }
   InjectionState injection() const { return injection_; }
-  bool busy() const;                            ///< moves of its own accord
-  bool waits() const { return run_.waits(); }   ///< for the operator's word
-  bool homed() const { return needle_known_; }  ///< axes are absolute: homed as soon as the needle's pose is known
+  bool busy() const;                           ///< moves of its own accord
+  bool waits() const { return run_.waits(); }  ///< for the operator's word
+  /// As soon as the needle's pose is known, since axes are absolute; after unhome when it is home again.
+  bool homed() const { return needle_known_ && !unhomed_; }
   const std::string& heldBecause() const { return held_because_; }  ///< empty while the needle follows
   bool followsTarget() const { return state_ == OperatingState::kEnabled && held_because_.empty(); }
   /// Why the last command was refused, or the pulse by hand that it asked for is over too early; else empty.
@@ -109,9 +108,12 @@ class InjectionController {
   bool byHand() const { return config_.mode == "manual"; }
   /// By hand: nobody leads the needle. Its operator may have let go to say something.
   static constexpr const char* kNoTarget = "no trusted target";
+  static constexpr const char* kNotHomed = "not homed; allowed after home";
 
   std::string heed(const std::string& command);
-  std::string obey(const std::string& command);
+  std::string obey(const std::string& word);
+  std::string change(StateCommand command);
+  std::string goHome();
   std::string takeWord(InjectionEvent event);
   void happen(InjectionEvent event);
   bool isInside(const Eigen::Vector3d& needle, const Eigen::Vector3d& axis) const;
@@ -129,7 +131,8 @@ class InjectionController {
   void stop(InjectionOutcome outcome, const std::string& reason);
   void stopNeedle(const Input& input);
   void endPulse(const std::string& why);
-  void goHome(const Input& input, double dt);
+  void stepHome(const Input& input, double dt);
+  void holdUnhomed();
   void follow(const Eigen::Vector3d& target, const Input& input, double dt);
   void refuse(const Eigen::Vector3d& motion);
   bool move(const Eigen::Vector3d& motion, const Input& input, double dt);
@@ -152,6 +155,7 @@ class InjectionController {
   bool limited_ = false;  ///< by hand: a guard was past its limit in the last step
   bool paused_ = false;   ///< by a person, not by a guard
   bool homing_ = false;
+  bool unhomed_ = false;  ///< by command, until the needle is home again
   bool needle_known_ = false;
   std::string held_because_ = "DISABLED";
   std::string notice_;

@@ -4,6 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "manipulator/homing_plan.h"
+
 namespace microinjection {
 
 /// What a micromanipulator can do, told honestly: who commands it adapts to this.
@@ -39,6 +41,10 @@ class ManipulatorDevice {
 
   /// Keeps every axis within its speed (m/s, > 0, of each joint), however far it is behind where it was sent.
   virtual void limitSpeed(const Eigen::Vector3d& axes) = 0;
+  /// Where each joint (m) gets to when its axis looks for its reference position by itself; empty: no axis does.
+  virtual std::optional<Eigen::Vector3d> homingEnds() const { return std::nullopt; }
+  /// How the axes may look for it, or why not. To be called before the first step where homingEnds() is not empty.
+  virtual void planHoming(const HomingPlan& plan) { (void)plan; }
   /// Follows a stream of set-points: joint positions (m) and their velocity (m/s).
   virtual void follow(const Eigen::Vector3d& joints, const Eigen::Vector3d& velocity) = 0;
   /// Goes there (m) in a straight line at `speed` (m/s, along the line), by the device's own profile where it has one.

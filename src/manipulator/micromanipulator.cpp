@@ -26,6 +26,7 @@ Micromanipulator::Micromanipulator(const ManipulatorGeometry& geometry, const Co
       follows_(device.abilities().follows) {
   adapt();
   device.limitSpeed({geometry.axes[0].velocity, geometry.axes[1].velocity, geometry.axes[2].velocity});
+  if (const auto ends = device.homingEnds()) device.planHoming(planHoming(geometry, guard, *ends));
 }
 
 /// A device behind a slow line turns out to be slower when it has been asked.
@@ -77,6 +78,7 @@ Eigen::Vector3d Micromanipulator::reachOf(const AxesMotion& motion) const {
 
 void Micromanipulator::begin(Mode mode, const AxesMotion& from) {
   mode_ = mode;
+  under_way_ = mode == Mode::kMove;
   setpoint_ = from;
   ended_.clear();
 }
@@ -177,6 +179,7 @@ void Micromanipulator::step(double time, double dt) {
   if (const std::string why = unable(); !why.empty()) {
     if (mode_ != Mode::kHold) ended_ = why;
     rest();
+    under_way_ = false;
     held_off_ = true;
   } else {
     haltIfCutOff();
@@ -188,6 +191,13 @@ void Micromanipulator::step(double time, double dt) {
   const bool was_ready = device_->state() == ManipulatorDevice::State::kReady;
   device_->step(time);
   if (!was_ready) adapt();
+  if (mode_ == Mode::kHold && !device_->moving()) under_way_ = false;
+}
+
+std::optional<Eigen::Isometry3d> Micromanipulator::setpointPose() const {
+  if (!unable().empty() || mode_ == Mode::kVelocity) return std::nullopt;
+  const bool by_itself = mode_ == Mode::kMove && !setpoint_;
+  return geometry_.tipPose(by_itself ? goal_ : start().position);
 }
 
 std::optional<Eigen::Isometry3d> Micromanipulator::tipPose() const {

@@ -44,6 +44,7 @@ class Micromanipulator {
   std::string movePosition(const Eigen::Isometry3d& tip_pose);              ///< CRTK move_cp; m, `world`
   void stop();                                                              ///< stops the device at once
   void clearFault();  ///< of the device, whose cause is gone; when there is none, lets a stream go on after a stop
+  void letStreamGoOn() { held_off_ = false; }  ///< after a stop, without a pause
 
   /// Advances by dt (s, > 0) to `time` (s), and the device with it.
   void step(double time, double dt);
@@ -55,6 +56,11 @@ class Micromanipulator {
 
   /// Where the device is sent; empty when it is not.
   const std::optional<AxesMotion>& setpoint() const { return setpoint_; }
+  /// CRTK setpoint_cp, `needle_tip` in `world`: where the next command takes over, which is where the device is at
+  /// rest, and the goal of a device that goes by itself. Empty while it is not ready or follows a velocity.
+  std::optional<Eigen::Isometry3d> setpointPose() const;
+  /// CRTK is_busy: a move was accepted, and neither has the device come to rest nor has another command taken over.
+  bool busy() const { return under_way_; }
   bool moving() const { return mode_ == Mode::kMove || mode_ == Mode::kVelocity; }  ///< of such a command
   ManipulatorDevice::State state() const { return device_->state(); }
   std::string why() const { return device_->why(); }   ///< why it is not ready; empty when it is
@@ -101,6 +107,7 @@ class Micromanipulator {
   double goal_age_ = 0;                                            ///< s, since the last servo_cp was taken up
   Eigen::Vector3d velocity_command_ = Eigen::Vector3d::Zero();     ///< m/s, joints
   double velocity_command_time_ = 0;                               ///< s
+  bool under_way_ = false;                                         ///< see busy()
   bool held_off_ = false;                                          ///< streams are
   double stream_pause_ = std::numeric_limits<double>::infinity();  ///< s, since the last command of a stream
   std::string ended_;

@@ -4,6 +4,7 @@
 #include <ros/ros.h>
 #include <rosgraph_msgs/Clock.h>
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <string>
@@ -60,6 +61,13 @@ class Cycle {
   void setBusy(bool busy) { busy_ = busy; }
 
  private:
+  /// Whatever came since the last step cannot have been here before it: its callbacks had run by then.
+  template <typename Message>
+  Arrival arrivalOf(const ros::MessageEvent<const Message>& event) const {
+    const ros::Time received = event.getReceiptTime();
+    const ros::Time earliest = last_step_.isZero() ? received : std::min(received, last_step_);
+    return {received, earliest, event.getPublisherName(), isLatched(event)};
+  }
   bool goesOn();
   void runLive();
   void runLockstep();
@@ -118,8 +126,7 @@ Input<Message>& Cycle::input(const std::string& topic, Phase phase, double timeo
     const bool trigger = phase == Phase::kSameTick;
     const auto receive = [this, &port, trigger](const Event& event) {
       // Listeners are the node's own code.
-      runGuarded(port.topic,
-                 [&] { port.receive(event.getConstMessage(), event.getReceiptTime(), event.getPublisherName()); });
+      runGuarded(port.topic, [&] { port.receive(event.getConstMessage(), arrivalOf(event)); });
       triggered_ = triggered_ || trigger;
     };
     subscribers_.push_back(

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <sstream>
+#include <utility>
 
 #include "nodes/conversions.h"
 #include "nodes/force_topic.h"
@@ -11,18 +12,27 @@
 namespace microinjection {
 namespace {
 
+constexpr char kStateTopic[] = "controller/state_command";
+
+// s: what was said longer ago must not begin a motion. The needle's commands have the same.
+constexpr double kOldestCommand = 3;
+
 /// Commands that stop or withdraw the needle are obeyed whatever their stamp.
 bool stops(const std::string& command) {
-  return command == "disable" || command == "pause" || command == "home" || command == "withdraw";
+  return command == "disable" || command == "pause" || command == "home" || command == "unhome" ||
+         command == "withdraw";
 }
+
+/// Commands that begin a motion of the controller's own.
+bool moves(const std::string& command) { return command == "home" || command == "withdraw" || command == "approach"; }
 
 }  // namespace
 
 const char* const InjectionControllerNode::kHelp =
     "injection_controller: decides where the needle goes and holds it when an input cannot be trusted.\n"
     "In: /teleop/servo_cp /needle/measured_cp, /cell/predicted_cf or /force_sensor/measured_cf, /injector/state,\n"
-    "/needle/abilities, /controller/state_command (enable, disable, pause, resume, home, approach, indent, inject,\n"
-    "withdraw). Action: /controller/inject. Out: /needle/servo_cp /controller/operating_state\n"
+    "/needle/abilities, /controller/state_command (enable, disable, pause, resume, home, unhome, approach, indent,\n"
+    "inject, withdraw). Action: /controller/inject. Out: /needle/servo_cp /controller/operating_state\n"
     "/controller/injection_state /injector/pulse /injector/stop.\n"
     "Parameters: ~mode (manual|semi_automatic|automatic), ~force_source (predicted|measured), ~speed_limit (m/s),\n"
     "~jump_limit (m), ~lag_limit (m), ~force_limit (N), ~detection/... ~motion/... ~goal/... ~injector, ~auto_enable,\n"
@@ -52,7 +62,8 @@ InjectionControllerNode::InjectionControllerNode(ros::NodeHandle node, ros::Node
                                                         parameters_.input_timeout)),
       setpoint_(cycle_.output<geometry_msgs::PoseStamped>("needle/servo_cp")),
       injection_(cycle_.output<cell_microinjection::InjectionStatus>("controller/injection_state", true)),
-      action_(cycle_.node(), model_, parameters_.model.goal) {
+      action_(cycle_.node(), model_, parameters_.model.goal),
+      repeated_(cycle_.node().resolveName(kStateTopic)) {
   if (parameters_.model.mode == "manual") {
     target_ = &cycle_.input<geometry_msgs::PoseStamped>("teleop/servo_cp", Phase::kSameTick, parameters_.input_timeout);
   }
@@ -69,19 +80,34 @@ InjectionControllerNode::InjectionControllerNode(ros::NodeHandle node, ros::Node
 
 void InjectionControllerNode::listenToCommands() {
   using cell_microinjection::StringStamped;
-  static constexpr char kTopic[] = "controller/state_command";
-  const auto take = [this](const StringStamped& message) {
-    if (stops(message.string) || isTimely(kTopic, message, ros::Time::now())) obey(message.string);
-  };
   if (cycle_.lockstep() && parameters_.commands_in_lockstep) {
-    auto& input = cycle_.input<StringStamped>(kTopic, Phase::kTickBefore, std::numeric_limits<double>::infinity());
+    auto& input = cycle_.input<StringStamped>(kStateTopic, Phase::kTickBefore, std::numeric_limits<double>::infinity());
     input.stamp_rule = StampRule::kAny;
-    input.listen([take](const StringStamped& message, const ros::Time&) { take(message); });
+    input.listen([this](const StringStamped& message, const ros::Time&) { take(message, false, false); });
     return;
   }
-  commands_ = subscribeGuarded<StringStamped>(
-      cycle_.node(), kTopic, 10, [take](const StringStamped& message, const std::string&) { take(message); },
+  commands_ = subscribeCommand<StringStamped>(
+      cycle_.node(), kStateTopic,
+      [this](const StringStamped& message, const CommandSource& source) {
+        take(message, source.latched, repeated_.mayBe(source));
+      },
       StampRule::kAny);
+}
+
+/// What stops is always obeyed. What begins a motion must not be an old command that a publisher which latches sends
+/// again: home, too, though its stamp may be anything else.
+void InjectionControllerNode::take(const cell_microinjection::StringStamped& message, bool latched, bool repeated) {
+  const std::string& command = message.string;
+  answer_ = true;
+  const ros::Time &stamp = message.header.stamp, now = ros::Time::now();
+  if (!stops(command) && !isTimely(kStateTopic, message, now)) return;
+  const bool stale = !stamp.isZero() && secondsBetween(stamp, now) > kOldestCommand;
+  const bool begins = !stops(command) || (command == "home" && latched);
+  if (begins && stale) return log_.answered("state command " + command, "it is stale");
+  if (begins && repeated) {
+    return log_.answered("state command " + command, std::string(kUnstampedLatched) + "; send it again");
+  }
+  obey(command);
 }
 
 void InjectionControllerNode::run() {
@@ -89,12 +115,14 @@ void InjectionControllerNode::run() {
 }
 
 void InjectionControllerNode::obey(const std::string& command) {
-  if (model_.command(command).empty()) {
-    ROS_INFO_STREAM("state command " << command << ": " << toText(model_.state()));
-  } else {
-    ROS_WARN_STREAM("state command " << model_.notice());
-  }
+  const bool ran = model_.running();
+  const std::string refusal = model_.command(command);
   told_ = model_.notice();
+  log_.answered("state command " + command, refusal);
+  if (!refusal.empty()) return;
+  ROS_INFO_STREAM("state command " << command << ": " << toText(model_.state()));
+  if (ran && !model_.running()) log_.overridden("the injection", "by " + command);
+  if (moves(command)) busy_.accept(static_cast<std::int64_t>(ros::Time::now().toNSec()));
 }
 
 void InjectionControllerNode::adaptTo(const cell_microinjection::ManipulatorAbilities& rig) {
@@ -147,8 +175,11 @@ void InjectionControllerNode::publishState(const ros::Time& now) {
   cell_microinjection::OperatingState state;
   state.state = toText(model_.state());
   state.is_homed = model_.homed();
-  state.is_busy = model_.busy();
-  if (state.state == said_.state && state.is_homed == said_.is_homed && state.is_busy == said_.is_busy) return;
+  state.is_busy = busy_.step(model_.busy(), static_cast<std::int64_t>(now.toNSec()));
+  if (busy_.pending() && state.is_busy == said_.is_busy) return;
+  const bool same = state.state == said_.state && state.is_homed == said_.is_homed && state.is_busy == said_.is_busy;
+  if (same && !std::exchange(answer_, false)) return;
+  answer_ = false;
   state.header.stamp = now;
   state_.publish(state);
   said_ = state;
@@ -176,13 +207,16 @@ void InjectionControllerNode::publishInjection(const ros::Time& now) {
   said_of_injection_ = status;
 }
 
-void InjectionControllerNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) const {
+void InjectionControllerNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   const bool fault = model_.state() == OperatingState::kFault;
   const bool good = model_.heldBecause().empty();
-  status.summary(fault  ? diagnostic_msgs::DiagnosticStatus::ERROR
-                 : good ? diagnostic_msgs::DiagnosticStatus::OK
-                        : diagnostic_msgs::DiagnosticStatus::WARN,
-                 good ? "the needle follows" : "needle held: " + model_.heldBecause());
+  const std::string news = log_.takeNews();
+  const std::string text = good ? "the needle follows" : "needle held: " + model_.heldBecause();
+  status.summary(fault                  ? diagnostic_msgs::DiagnosticStatus::ERROR
+                 : good && news.empty() ? diagnostic_msgs::DiagnosticStatus::OK
+                                        : diagnostic_msgs::DiagnosticStatus::WARN,
+                 text + (news.empty() ? "" : "; ") + news);
+  log_.addCounts(status);
   status.add("state", toText(model_.state()));
   status.add("speed limit (m/s)", model_.speedLimit());
 }

@@ -8,11 +8,14 @@
 #include <memory>
 #include <string>
 
+#include "base/busy_report.h"
 #include "cell_microinjection/InjectionStatus.h"
 #include "cell_microinjection/ManipulatorAbilities.h"
 #include "cell_microinjection/OperatingState.h"
 #include "cell_microinjection/StringStamped.h"
 #include "control/injection_controller.h"
+#include "nodes/command_log.h"
+#include "nodes/command_source.h"
 #include "nodes/cycle.h"
 #include "nodes/injection_action.h"
 #include "nodes/injector_link.h"
@@ -25,7 +28,8 @@ namespace microinjection {
 ///      /cell/predicted_cf or /force_sensor/measured_cf (WrenchStamped), /controller/state_command (StringStamped),
 ///      /needle/abilities (ManipulatorAbilities): a rig that follows late is driven slowly
 ///      /injector/state; the action Inject on /controller/inject
-/// Out: /needle/servo_cp (PoseStamped, `world`), /controller/operating_state (OperatingState, latched, on change),
+/// Out: /needle/servo_cp (PoseStamped, `world`), /controller/operating_state (OperatingState, latched, on change and in
+///      answer to each state_command),
 ///      /controller/injection_state (InjectionStatus, latched, on change and ten times a second), /injector/pulse,
 ///      /injector/stop
 ///
@@ -57,13 +61,14 @@ class InjectionControllerNode {
   };
 
   void listenToCommands();
+  void take(const cell_microinjection::StringStamped& message, bool latched, bool repeated);
   void obey(const std::string& command);
   void adaptTo(const cell_microinjection::ManipulatorAbilities& rig);
   void step(const Cycle::Tick& tick);
   void tellNotice();
   void publishState(const ros::Time& now);
   void publishInjection(const ros::Time& now);
-  void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
+  void report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   Parameters parameters_;
   InjectionController model_;
@@ -75,6 +80,10 @@ class InjectionControllerNode {
   Output<cell_microinjection::InjectionStatus>& injection_;
   std::unique_ptr<InjectorLink> injector_;  ///< null without an injector
   InjectionAction action_;
+  RepeatedCommands repeated_;
+  CommandLog log_;
+  BusyReport busy_;
+  bool answer_ = false;  ///< a state command was heard
   ros::Subscriber commands_;
   ros::Subscriber abilities_;
   bool adapted_ = false;  ///< to a rig's abilities

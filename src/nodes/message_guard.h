@@ -34,8 +34,9 @@ void runGuarded(const std::string& topic, const Callback& callback) {
   }
 }
 
-/// kAny is for commands that stop something: they are obeyed whatever their stamp.
-enum class StampRule { kTimely, kAny };
+/// kAny is for commands that stop something: they are obeyed whatever their stamp. kCommand is for commands of a
+/// stream, which may be without a stamp: they count from when they came.
+enum class StampRule { kTimely, kAny, kCommand };
 
 /// As NodeHandle::subscribe, for topics that are no Input of a Cycle: refuses messages whose stamp is ahead, and lets
 /// no exception out of `handler`, which is called with the message and the name of the node that sent it.

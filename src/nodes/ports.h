@@ -3,6 +3,8 @@
 #include <ros/ros.h>
 #include <std_msgs/Header.h>
 
+#include <boost/make_shared.hpp>
+
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -13,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "nodes/command_source.h"
 #include "nodes/finite_message.h"
 #include "nodes/message_guard.h"
 
@@ -55,10 +58,20 @@ class InputPort {
   std::string sender;    ///< node that the last message came from, whether it was taken or not
   std::string feeder;    ///< lock step: the node whose greeting is here, silence with stamp 0; empty: none yet
   bool cut_off = false;  ///< nothing counts as fresh; see Cycle
-  StampRule stamp_rule = StampRule::kTimely;  ///< kAny: listeners hear also what is stamped ahead; it is never fresh
+  /// kAny: listeners hear also what is stamped ahead; it is never fresh. kCommand: live, what has no stamp is taken as
+  /// of its arrival, unless its publisher latches.
+  StampRule stamp_rule = StampRule::kTimely;
 };
 
-/// The newest message of a topic, for one thread. A message with stamp 0 is invalid (CRTK) and withdraws the one
+/// How a message came, live.
+struct Arrival {
+  ros::Time time;
+  ros::Time earliest;  ///< when it cannot have been here yet: a node that was frozen finds old messages
+  std::string sender;
+  bool latched = false;  ///< by its publisher
+};
+
+/// The newest message of a topic, for one thread. Measured data with stamp 0 is invalid (CRTK) and withdraws the one
 /// before.
 template <typename Message>
 class Input : public InputPort {
@@ -92,12 +105,13 @@ class Input : public InputPort {
     }
   }
 
-  /// Live, a message that came at `now`. One whose stamp is ahead is refused, and the last one stays.
-  void receive(const Pointer& message, const ros::Time& now, const std::string& from) {
-    sender = from;
-    if (refuses(*message, now)) return;
-    notify(*message, now);
-    accept(message->header.stamp.isZero() ? nullptr : message, now);
+  /// Live. A message whose stamp is ahead is refused, and the last one stays.
+  void receive(const Pointer& message, const Arrival& arrival) {
+    sender = arrival.sender;
+    if (message->header.stamp.isZero() && stamp_rule == StampRule::kCommand) return receiveUnstamped(*message, arrival);
+    if (refuses(*message, arrival.time)) return;
+    notify(*message, arrival.time);
+    accept(message->header.stamp.isZero() ? nullptr : message, arrival.time);
   }
   void invalidate() override { newest_.reset(); }
   /// Lock step; see kSilentSuffix.
@@ -126,8 +140,15 @@ class Input : public InputPort {
     std::string sender;
   };
 
+  void receiveUnstamped(const Message& message, const Arrival& arrival) {
+    if (arrival.latched) return MessageRefusals::ofProcess().add(topic, kUnstampedLatched);
+    const auto stamped = boost::make_shared<Message>(message);
+    stamped->header.stamp = arrival.earliest;
+    notify(*stamped, arrival.time);
+    accept(stamped, arrival.time);
+  }
   bool refuses(const Message& message, const ros::Time& now) const {
-    if (stamp_rule == StampRule::kTimely) return !isTimely(topic, message, now);
+    if (stamp_rule != StampRule::kAny) return !isTimely(topic, message, now);
     if (!isAhead(message.header.stamp, now)) return false;
     notify(message, now);
     return true;

@@ -73,18 +73,32 @@ class TrustTest(unittest.TestCase):
         self.tick_until(lambda: why in self.world.diagnostics["micromanipulator: commands"].message)
         np.testing.assert_allclose(self.needle(), [0, 0, 50e-6], atol=1e-9)
 
-    def test_refuses_what_is_marked_invalid_or_in_another_frame(self):
-        self.move.publish(pose(20e-6, -10e-6, 70e-6))  # stamp 0
+    def test_refuses_what_is_not_finite_or_in_another_frame(self):
+        self.move.publish(pose(20e-6, -10e-6, 70e-6, "camera"))
+        self.tick_until_refused("move_cp refused: not a valid pose")
+        self.world.run(1200, lambda: {"/needle/servo_cp": pose(0, 0, 50e-6)})
+        self.move.publish(pose(20e-6, math.nan, 70e-6))
         self.tick_until_refused("move_cp refused: not a valid pose")
         command = TwistStamped()
-        command.twist.linear.x = 50e-6
-        self.velocity.publish(command)  # stamp 0
+        command.twist.linear.x = math.inf
+        self.velocity.publish(command)
         self.tick_until_refused("servo_cv refused: not a valid velocity")
-        self.world.run(700, lambda: {"/needle/servo_cp": pose(0, 0, 50e-6)})
+        self.world.run(1200, lambda: {"/needle/servo_cp": pose(0, 0, 50e-6)})
+        command.twist.linear.x = 50e-6
         command.header.stamp = self.world.now
         command.header.frame_id = "camera"
         self.velocity.publish(command)
         self.tick_until_refused("servo_cv refused: not a valid velocity")
+
+    def test_takes_what_has_no_stamp_as_of_its_arrival(self):
+        """CRTK: a command's stamp and frame may be empty."""
+        command = TwistStamped()
+        command.twist.linear.x = 50e-6
+        self.velocity.publish(command)
+        self.tick_until(lambda: self.needle()[0] > 1e-6)
+        self.world.run(300)
+        self.move.publish(pose(20e-6, -10e-6, 70e-6, ""))
+        self.tick_until(lambda: np.allclose(self.needle(), [20e-6, -10e-6, 70e-6], atol=1e-9))
 
     def test_refuses_stamps_that_are_ahead(self):
         """Of a second and more, up to the last one that there is; it used to end the node."""

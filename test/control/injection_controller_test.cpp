@@ -83,9 +83,34 @@ TEST_F(InjectionControllerTest, RefusesCommandsThatDoNotFitItsState) {
   EXPECT_NE(controller_.command("fly").find("\"fly\" is no command here; allowed: enable"), std::string::npos);
   EXPECT_EQ(controller_.state(), OperatingState::kDisabled);
   controller_.command("enable");
+  EXPECT_NE(controller_.command("resume"), "");
   EXPECT_EQ(controller_.command("pause"), "");
+  EXPECT_EQ(controller_.command("enable"), "state is PAUSED, enable is allowed in DISABLED, ENABLED, FAULT");
+  EXPECT_EQ(controller_.command("pause"), "");
+  EXPECT_EQ(controller_.state(), OperatingState::kPaused);
   EXPECT_EQ(controller_.command("resume"), "");
   EXPECT_EQ(controller_.state(), OperatingState::kEnabled);
+}
+
+TEST_F(InjectionControllerTest, UnhomedItHoldsTheNeedleUntilItIsHome) {
+  controller_.command("enable");
+  input_.target = kStart;
+  run(10);
+  EXPECT_TRUE(controller_.homed());
+  EXPECT_EQ(controller_.command("unhome"), "");
+  EXPECT_FALSE(controller_.homed());
+  EXPECT_EQ(controller_.state(), OperatingState::kEnabled);
+  *input_.target += Eigen::Vector3d(0, 0, -5e-6);
+  EXPECT_EQ(*run(100), kStart);
+  EXPECT_EQ(controller_.heldBecause(), "not homed; allowed after home");
+  EXPECT_EQ(controller_.command("home"), "");
+  run(10);
+  EXPECT_TRUE(controller_.homed());
+  EXPECT_EQ(controller_.state(), OperatingState::kPaused);
+  EXPECT_EQ(controller_.command("resume"), "");
+  run(1);
+  *input_.target += Eigen::Vector3d(0, 0, -5e-6);
+  EXPECT_LT((*run(100) - kStart - Eigen::Vector3d(0, 0, -5e-6)).norm(), 1e-15);
 }
 
 TEST_F(InjectionControllerTest, HoldsWhilePaused) {
@@ -149,16 +174,16 @@ TEST_F(InjectionControllerTest, PastTheForceLimitOnlyWithdraws) {
   EXPECT_LT((*run(100) - kStart - Eigen::Vector3d(0, 0, 10e-6)).norm(), 1e-12);
 }
 
-TEST_F(InjectionControllerTest, NeedleThatDoesNotFollowIsAFaultThatOnlyDisableLeaves) {
+TEST_F(InjectionControllerTest, NeedleThatDoesNotFollowIsAFaultUntilItIsEnabled) {
   controller_.command("enable");
   run(1);
   input_.needle = kStart + Eigen::Vector3d(1.01 * config_.guards.tracking_limit, 0, 0);
   EXPECT_FALSE(controller_.step(input_, kStep));
   EXPECT_EQ(controller_.state(), OperatingState::kFault);
-  EXPECT_NE(controller_.command("enable"), "");
-  EXPECT_NE(controller_.command("home"), "");
-  EXPECT_EQ(controller_.command("disable"), "");
+  for (const char* command : {"home", "pause", "resume"}) EXPECT_NE(controller_.command(command), "") << command;
+  EXPECT_FALSE(controller_.step(input_, kStep));
   EXPECT_EQ(controller_.command("enable"), "");
+  EXPECT_EQ(controller_.injection(), InjectionState::kIdle);
   EXPECT_EQ(*controller_.step(input_, kStep), *input_.needle) << "takes hold where the needle is";
 }
 

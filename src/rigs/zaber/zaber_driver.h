@@ -26,7 +26,8 @@ namespace microinjection {
 ///
 /// An axis without a reference position is a fault, and no position is told: homing moves, so the user has it done
 /// (`home: true`, at the start only, or the maker's tool). A reply shows only its most important flag. Where that may
-/// hide a lost reference, the axis is asked for all of them, before its position is taken and then in turn.
+/// hide a lost reference, the axis is asked for all of them, before its position is taken and then in turn. All axes
+/// home, in the plan's order: one that has its reference may be in another's way.
 class ZaberDriver : public SerialManipulator {
  public:
   ZaberDriver(const ZaberConfig& config, std::unique_ptr<Wire> wire);
@@ -34,6 +35,8 @@ class ZaberDriver : public SerialManipulator {
   ManipulatorAbilities abilities() const override;
   std::optional<Reading> reading() const override;
   bool moving() const override;
+  std::optional<Eigen::Vector3d> homingEnds() const override;
+  void planHoming(const HomingPlan& plan) override { homing_ = plan; }
 
   std::string note() const override;
   double largestCorrection() const { return largest_correction_; }  ///< m, of a carried-on position by a reading
@@ -111,7 +114,8 @@ class ZaberDriver : public SerialManipulator {
   // The begin of a session (zaber_session.cpp).
   bool nextOfSession();
   bool nextOfAxis(int axis);
-  bool nextOfHoming(int axis);
+  bool nextOfHoming();
+  void home(int axis);
   bool nextOfSettings();
   void takeSetting(const Exchange& asked, const std::string& data);
   std::string contradiction(int axis) const;
@@ -144,6 +148,7 @@ class ZaberDriver : public SerialManipulator {
   bool settled_ = false;  // in this session everything has been read and was at rest
   bool may_home_;         // until everything has been known once, and while the program has not stood still
   int setting_tries_ = 0;
+  HomingPlan homing_;
   int number_ = 0;       // of the last command
   int turn_ = 0;         // 0..5: velocity and position of each axis
   int asked_again_ = 0;  // the axis whose warnings were asked for last, because it shows one

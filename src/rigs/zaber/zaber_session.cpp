@@ -58,6 +58,7 @@ bool ZaberDriver::nextOfSession() {
   for (int i = 0; i < 3; ++i) {
     if (nextOfAxis(i)) return true;
   }
+  if (nextOfHoming()) return true;
   if (nextOfSettings()) return true;
   if (const std::string wrong = checkSettings(); !wrong.empty()) return raiseFault(wrong), true;
   adaptToAnswers();
@@ -77,7 +78,7 @@ bool ZaberDriver::nextOfAxis(int i) {
   if (axis.lists_due > 0) return ask(Kind::kWarnings, i, "warnings"), true;
   // Braking, or the session's stop did not reach it.
   if (axis.still_moves && !axis.homed) return ask(Kind::kStop, i, "stop"), true;
-  if (!axis.busy && !axis.has_reference) return nextOfHoming(i);
+  if (!axis.busy && !axis.has_reference) return false;  // its position means nothing; see nextOfHoming
   if (axis.read_since_begin && !axis.busy && !axis.filter.doubts()) return false;
   if (listened() - begun_ > (axis.homed ? kLongestHoming : kLongestBraking)) {
     lostStep(axisName(i) + (axis.busy ? " does not come to rest" : " has no steady position"));
@@ -155,21 +156,42 @@ void ZaberDriver::adaptToAnswers() {
   waitForSilence(answer_time_ + 60 * config_.byteTime() + 5e-3, std::max(config_.reply_timeout, 3 * answer_time_) + wire);
 }
 
-bool ZaberDriver::nextOfHoming(int i) {
-  Axis& axis = axes_[i];
-  if (state() == State::kFault && !clearing()) return ask(Kind::kWarnings, i, "warnings"), true;  // nothing is told
-  // Neither a cleared fault nor a device that was switched off and on is leave to move.
-  if (!may_home_ || axis.homed || clearing()) {
-    raiseFault(axisName(i) + " has no reference position: home it, by its maker's tool or by home: true at the start");
+/// What looking for the reference positions needs next; false: nothing.
+bool ZaberDriver::nextOfHoming() {
+  const auto lacks = [](const Axis& axis) { return !axis.has_reference; };
+  const auto lacking = std::find_if(axes_.begin(), axes_.end(), lacks);
+  const bool begun = std::any_of(axes_.begin(), axes_.end(), [](const Axis& axis) { return axis.homed; });
+  if (lacking == axes_.end() && !begun) return false;
+  const int first = static_cast<int>(lacking - axes_.begin());
+  if (state() == State::kFault && !clearing()) {  // no position is told
+    ask(Kind::kWarnings, lacking == axes_.end() ? 0 : first, "warnings");
     return true;
   }
+  // Neither a cleared fault nor a device that was switched off and on is leave to move.
+  const bool may = may_home_ && !clearing() && homing_.refusal.empty();
+  if (lacking != axes_.end() && (!may || lacking->homed)) {
+    raiseFault(axisName(first) + " has no reference position: " +
+               (homing_.refusal.empty() ? "home it, by its maker's tool or by home: true at the start"
+                                        : "home: true is refused, " + homing_.refusal));
+    return true;
+  }
+  for (const int i : homing_.order) {
+    if (axes_[i].homed) continue;
+    if (!may) return false;
+    home(i);
+    return true;
+  }
+  return false;
+}
+
+void ZaberDriver::home(int i) {
+  Axis& axis = axes_[i];
   movesByItself();
   axis.position.reset();  // its numbers begin anew
   axis.read_since_begin = false;
   axis.lists_due = 1;
   begun_ = listened();
   ask(Kind::kHome, i, "home");
-  return true;
 }
 
 }  // namespace microinjection
