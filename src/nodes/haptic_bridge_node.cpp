@@ -65,7 +65,7 @@ HapticBridgeNode::HapticBridgeNode(ros::NodeHandle node, ros::NodeHandle private
       clutch_(
           cycle_.input<sensor_msgs::Joy>("haptic/clutch", Phase::kTickBefore, orForEver(parameters_.timeouts.clutch))),
       hand_force_(cycle_.output<geometry_msgs::WrenchStamped>("haptic/servo_cf")),
-      trace_(cycle_.output<cell_microinjection::LatencyTrace>("haptic/force_trace")) {
+      trace_(cycle_.output<sensor_msgs::TimeReference>("haptic/force_trace")) {
   if (parameters_.model.require_operator) {
     operator_present_ = &cycle_.input<sensor_msgs::Joy>("haptic/operator_present", Phase::kTickBefore,
                                                         orForEver(parameters_.timeouts.operator_present));
@@ -170,11 +170,7 @@ void HapticBridgeNode::sendToRig(const Cycle::Tick& tick) {
 
 void HapticBridgeNode::trace(const Cycle::Tick& tick) {
   const auto* force = predicted_ ? predicted_->get(tick.now) : measured_->get(tick.now);
-  if (!isTraced(force->header.stamp)) return;
-  cell_microinjection::LatencyTrace trace;
-  trace.header.stamp = tick.now;
-  trace.origin = force->header.stamp;
-  trace_.publish(trace);
+  if (isTraced(force->header.stamp)) trace_.publish(toTrace(tick.now, force->header.stamp, "needle"));
 }
 
 void HapticBridgeNode::step(const Cycle::Tick& tick) {

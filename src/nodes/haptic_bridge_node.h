@@ -4,12 +4,12 @@
 #include <geometry_msgs/WrenchStamped.h>
 #include <ros/ros.h>
 #include <sensor_msgs/Joy.h>
+#include <sensor_msgs/TimeReference.h>
 
 #include <memory>
 #include <string>
 
 #include "cell_microinjection/InjectionStatus.h"
-#include "cell_microinjection/LatencyTrace.h"
 #include "cell_microinjection/LinkPacket.h"
 #include "nodes/cycle.h"
 #include "teleoperation/haptic_bridge.h"
@@ -26,7 +26,7 @@ namespace microinjection {
 ///      (PoseStamped), /cell/predicted_cf, /force_sensor/measured_cf or both (WrenchStamped),
 ///      /controller/injection_state (InjectionStatus; that there is a controller)
 /// Out: /haptic/servo_cf (WrenchStamped, N at the hand), /teleop/servo_cp (PoseStamped, tip in `world`),
-///      /haptic/force_trace (LatencyTrace)
+///      /haptic/force_trace (TimeReference)
 ///
 /// With link/scheme wave the rig is behind a network: needle and force come and the target goes in packets,
 /// /link/hand/received and /link/hand/sent (LinkPacket), to teleoperation_follower.
@@ -90,7 +90,7 @@ class HapticBridgeNode {
   Output<geometry_msgs::PoseStamped>* target_ = nullptr;  ///< null: behind a network
   std::unique_ptr<LinkLeader> link_;                      ///< null: no network
   Output<cell_microinjection::LinkPacket>* link_sent_ = nullptr;
-  Output<cell_microinjection::LatencyTrace>& trace_;
+  Output<sensor_msgs::TimeReference>& trace_;
   std::string hand_frame_;           ///< of the last hand
   bool without_controller_ = false;  ///< in the last step
   HapticBridge::Output output_;      ///< the last one, for the diagnostics

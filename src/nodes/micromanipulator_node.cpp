@@ -61,7 +61,7 @@ MicromanipulatorNode::MicromanipulatorNode(const ros::NodeHandle& node, ConfigRe
                                                       parameters_.model.command_timeout)),
       measured_(cycle_.output<geometry_msgs::PoseStamped>("needle/measured_cp")),
       velocity_(cycle_.output<geometry_msgs::TwistStamped>("needle/measured_cv")),
-      trace_(cycle_.output<cell_microinjection::LatencyTrace>("needle/setpoint_trace")) {
+      trace_(cycle_.output<sensor_msgs::TimeReference>("needle/setpoint_trace")) {
   if (cycle_.lockstep() && !rig_.inject) {
     throw ConfigError("rig = " + parameters_.rig +
                       ": a real one takes no part in lock step, it goes on while time stands");
@@ -196,10 +196,7 @@ void MicromanipulatorNode::obeyServo(const Cycle::Tick& tick) {
   const std::string why = unable();
   judge("servo_cp", why.empty() ? model_.servoPosition(*pose) : why);
   if (!isTraced(tick.now)) return;
-  cell_microinjection::LatencyTrace trace;
-  trace.header.stamp = tick.now;
-  trace.origin = message->header.stamp;
-  trace_.publish(trace);
+  trace_.publish(toTrace(tick.now, message->header.stamp, "hand"));
 }
 
 void MicromanipulatorNode::step(const Cycle::Tick& tick) {

@@ -4,13 +4,13 @@
 #include <geometry_msgs/TwistStamped.h>
 #include <ros/ros.h>
 #include <sensor_msgs/JointState.h>
+#include <sensor_msgs/TimeReference.h>
 
 #include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "cell_microinjection/LatencyTrace.h"
 #include "cell_microinjection/ManipulatorAbilities.h"
 #include "cell_microinjection/OperatingState.h"
 #include "cell_microinjection/StringStamped.h"
@@ -35,7 +35,7 @@ namespace microinjection {
 ///      the device does not know; /needle/true_cp (PoseStamped), where the tip truly is: of the simulated device only;
 ///      /needle/abilities (ManipulatorAbilities; on change and once a second), /needle/operating_state (OperatingState:
 ///      DISABLED without connection, FAULT until enable; on change, and in answer to each state_command);
-///      /needle/setpoint_trace (LatencyTrace); joint_states (JointState), for robot_state_publisher
+///      /needle/setpoint_trace (TimeReference); joint_states (JointState), for robot_state_publisher
 ///
 /// Parameters: /robot_description (URDF), and private those of MicromanipulatorConfig and
 ///   rig                sim (default), or a name of rigs/rig_registry.h
@@ -96,7 +96,7 @@ class MicromanipulatorNode {
   Output<geometry_msgs::PoseStamped>& measured_;
   Output<geometry_msgs::PoseStamped>* true_ = nullptr;  ///< null where the truth is not known
   Output<geometry_msgs::TwistStamped>& velocity_;
-  Output<cell_microinjection::LatencyTrace>& trace_;
+  Output<sensor_msgs::TimeReference>& trace_;
   std::vector<ros::Subscriber> subscribers_;
   ros::Publisher joint_states_;
   ros::Publisher state_;

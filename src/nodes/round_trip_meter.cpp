@@ -19,13 +19,13 @@ void forgetBefore(std::map<ros::Time, Value>& entries, const ros::Time& time) {
 }  // namespace
 
 RoundTripMeter::RoundTripMeter(ros::NodeHandle& node) {
-  using Trace = cell_microinjection::LatencyTrace;
+  using Trace = sensor_msgs::TimeReference;
   using geometry_msgs::WrenchStamped;
   setpoints_ = subscribeGuarded<Trace>(
       node, "needle/setpoint_trace", 100,
-      [this](const Trace& trace, const std::string&) { hand_of_needle_[trace.header.stamp] = trace.origin; });
+      [this](const Trace& trace, const std::string&) { hand_of_needle_[trace.header.stamp] = trace.time_ref; });
   traces_ = subscribeGuarded<Trace>(node, "haptic/force_trace", 100, [this](const Trace& trace, const std::string&) {
-    needle_of_force_[trace.header.stamp] = trace.origin;
+    needle_of_force_[trace.header.stamp] = trace.time_ref;
   });
   forces_ = subscribeGuarded<WrenchStamped>(node, "haptic/servo_cf", 100,
                                             [this](const WrenchStamped& message, const std::string&) {
