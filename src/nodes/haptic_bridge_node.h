@@ -12,6 +12,7 @@
 #include "cell_microinjection/InjectionStatus.h"
 #include "cell_microinjection/LinkPacket.h"
 #include "nodes/cycle.h"
+#include "nodes/haptic/force_receiver.h"
 #include "teleoperation/haptic_bridge.h"
 #include "teleoperation/link_leader.h"
 
@@ -19,7 +20,8 @@ namespace microinjection {
 
 /// Couples a haptic device to the needle. Without a trusted hand, needle or force it renders zero force and withdraws
 /// its target (stamp 0), so that the controller holds the needle. It does so without a controller, too: the needle then
-/// does not follow, and what it feels is no answer to the hand. Zero force is also the last that it says.
+/// does not follow, and what it feels is no answer to the hand; and while the node that tells the hand's position does
+/// not subscribe to the force on it (haptic/force_receiver.h). Zero force is also the last that it says.
 ///
 /// In:  /haptic/measured_cp (PoseStamped, the device's axes), /haptic/clutch and /haptic/operator_present (Joy,
 ///      buttons[0] is 1 while pressed or present; the latter counts with require_operator), /needle/measured_cp
@@ -33,6 +35,7 @@ namespace microinjection {
 ///
 /// Parameters (private): those of HapticBridgeConfig, link/... (LinkConfig) and
 ///   rate           Hz; default 1000, in [50, 5000]
+///   force_feedback whether the device renders a force, so that its driver must subscribe to it; default true
 ///   timeouts/...   s, past which an input is stale, each its own: hand, needle, predicted, measured (default 0.05),
 ///                  in (0, inf); operator_present (0.2; 0: what it said last holds until the hand is stale), clutch
 ///                  (0: what it said last holds, for devices that say it on change only) and controller (0.25; 0: not
@@ -57,6 +60,7 @@ class HapticBridgeNode {
   };
   struct Parameters {
     double rate = 1000;
+    bool force_feedback = true;
     Timeouts timeouts;
     HapticBridgeConfig model;
     LinkConfig link;
@@ -91,6 +95,7 @@ class HapticBridgeNode {
   std::unique_ptr<LinkLeader> link_;                      ///< null: no network
   Output<cell_microinjection::LinkPacket>* link_sent_ = nullptr;
   Output<sensor_msgs::TimeReference>& trace_;
+  ForceReceiver receiver_;
   std::string hand_frame_;           ///< of the last hand
   bool without_controller_ = false;  ///< in the last step
   HapticBridge::Output output_;      ///< the last one, for the diagnostics
