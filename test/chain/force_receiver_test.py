@@ -80,6 +80,7 @@ class ForceReceiverTest(unittest.TestCase):
 
     def check_held(self, what):
         """Held, and the reason is on the diagnostics; and so it stays."""
+        self.diagnostics.clear()
         until(lambda: what in self.why()[1], f"diagnostics that say {what}; they say {self.why()}")
         self.assertEqual(self.why()[0], 1)
         until(lambda: self.shown and not self.newest_followed(), "a hand that is not followed")

@@ -16,18 +16,19 @@ from participant import Participant
 
 GAIN = 2e5  # config/haptic_bridge.yaml
 STICKS = ("joy", "spacenav")  # they set a speed, and render no force
-LIMIT = 30000  # ticks
+TRACES = {"/haptic/force_trace": "needle", "/needle/setpoint_trace": "hand"}  # what was measured before
+LIMIT = 15000  # ticks
 
 
 class HapticContractTest(unittest.TestCase):
     def setUp(self):
+        self.driver = rospy.myargv()[1]
+        traces = dict.fromkeys(TRACES, TimeReference) if self.driver == "crtk" else {}
         self.world = Participant({}, {
             "/needle/measured_cp": PoseStamped, "/cell/predicted_cf": WrenchStamped, "/cell/state": CellState,
             "/emulated_haptic/measured_cf": WrenchStamped, "/operator/phase": StringStamped,
-            "/controller/injection_state": InjectionStatus, "/injector/state": InjectorState,
-            "/haptic/force_trace": TimeReference, "/needle/setpoint_trace": TimeReference})
-        self.driver = rospy.myargv()[1]
-        self.states, self.told, self.rest = [], {}, None
+            "/controller/injection_state": InjectionStatus, "/injector/state": InjectorState, **traces})
+        self.states, self.rest = [], None
         self.commands = rospy.Publisher("/controller/state_command", StringStamped, queue_size=1)
         self.world.await_links()
 
@@ -40,14 +41,9 @@ class HapticContractTest(unittest.TestCase):
 
     def tick(self):
         self.world.tick()
-        seen = self.world.seen
-        if "/controller/injection_state" in seen:
-            state = seen["/controller/injection_state"].state
-            if state != "idle" and self.states[-1:] != [state]:
-                self.states.append(state)
-        for topic in ("/haptic/force_trace", "/needle/setpoint_trace"):
-            if topic in seen:
-                self.told[topic] = seen[topic]
+        told = self.world.seen.get("/controller/injection_state")
+        if told and told.state != "idle" and self.states[-1:] != [told.state]:
+            self.states.append(told.state)
 
     def until(self, phase):
         """Ticks to the begin of a phase of the hand's motion."""
@@ -66,7 +62,7 @@ class HapticContractTest(unittest.TestCase):
         stroke = self.rest[2] - self.needle()[2]
         self.assertGreater(stroke, 2e-6, "the needle follows when the dead-man is held down first")
         self.assertLess(stroke, 6e-6)
-        for _ in range(100):
+        for _ in range(50):
             self.tick()
         held = self.needle()
         self.until("taken up")
@@ -76,7 +72,7 @@ class HapticContractTest(unittest.TestCase):
         self.check_felt_in_the_cell()
         self.until("inject")
         self.check_injection()
-        self.until("rest again")
+        self.until("done")
         self.check_out()
 
     def check_felt_in_the_cell(self):
@@ -96,11 +92,8 @@ class HapticContractTest(unittest.TestCase):
         # The mean, since the hand's own motion is damped (passivity, driver) and the device may be slow.
         self.assertAlmostEqual(sums[0] / sums[1], 1, delta=0.25)
         self.assertLess(sideways, 0.1 * sums[1] / count)
-        self.check_traces()
-
-    def check_traces(self):
-        for topic, source in (("/haptic/force_trace", "needle"), ("/needle/setpoint_trace", "hand")):
-            trace = self.told[topic]
+        for topic, source in TRACES.items() if self.driver == "crtk" else ():
+            trace = self.world.seen[topic]
             self.assertEqual(trace.source, source)
             self.assertLessEqual(trace.time_ref, trace.header.stamp)
             self.assertLess((trace.header.stamp - trace.time_ref).to_sec(), 0.05)
@@ -120,7 +113,7 @@ class HapticContractTest(unittest.TestCase):
         self.assertTrue(self.world.seen["/cell/state"].punctured)
         self.assertFalse(self.world.seen["/cell/state"].in_contact)
         np.testing.assert_allclose(self.felt(), 0, atol=0.05)
-        self.assertGreater(self.needle()[2], self.rest[2] - 12e-6)
+        self.assertGreater(self.needle()[2], self.rest[2] - 35e-6)
 
 
 if __name__ == "__main__":
