@@ -20,6 +20,7 @@ sys.path.insert(0, str(ROOT / 'src' / 'tools'))
 sys.path.insert(0, str(ROOT / 'src' / 'bench'))
 
 import full_solution  # noqa: E402
+import rospy  # noqa: E402
 from demo_session import DemoSession, SessionError  # noqa: E402
 from processes import Child, wait_until  # noqa: E402
 from realtime import SETTLE, Histograms, difference, write_motion  # noqa: E402
@@ -72,6 +73,7 @@ def measure(kind, arguments, folder):
     device = None
     try:
         session.wait_ready()
+        rospy.set_param('/publish_rate', 1000)  # Hz, of ros_geomagic, as the guide says; 100 by default
         device = Child(['rosrun', 'cell_microinjection', 'emulated_haptic', f'_kind:={kind}', f'_motion:={motion}'],
                        logs / 'device.log')
         histograms = Histograms(SOURCES)

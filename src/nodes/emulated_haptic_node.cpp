@@ -1,7 +1,9 @@
 #include "nodes/emulated_haptic_node.h"
 
 #include <algorithm>
+#include <limits>
 
+#include "nodes/conversions.h"
 #include "nodes/node_parameters.h"
 
 namespace microinjection {
@@ -9,7 +11,8 @@ namespace microinjection {
 const char* const EmulatedHapticNode::kHelp =
     "emulated_haptic: a haptic device that is not there, behind the topics of its driver, in a virtual hand that\n"
     "follows a recorded motion; measures the time from its pose to the force that comes back.\n"
-    "Parameters: ~kind (crtk|omni|geomagic), ~motion (file, required), ~start_delay (s), ~mass (kg),\n"
+    "Parameters: ~kind (crtk|omni|geomagic|force_dimension|dvrk|dvrk_2_0|falcon|joy|spacenav), ~motion (file, "
+    "required), ~start_delay (s), ~mass (kg),\n"
     "~damping (N s/m), ~stiffness (N/m), ~rate (Hz).\n";
 
 EmulatedHapticNode::Parameters EmulatedHapticNode::Parameters::read(const ros::NodeHandle& private_node) {
@@ -30,10 +33,16 @@ EmulatedHapticNode::EmulatedHapticNode(ros::NodeHandle node, ros::NodeHandle pri
       hand_(parameters_.hand, motion_.at(0).position),
       cycle_(node, parameters_.rate),
       meter_(cycle_.node()),
-      driver_(makeEmulatedDriver(parameters_.kind, cycle_.node(), [this](const auto& force, const ros::Time& received) {
-        force_ = force;
-        meter_.felt(force, received);
-      })) {
+      driver_(
+          makeEmulatedDriver(parameters_.kind, cycle_,
+                             [this](const auto& force, const ros::Time& received) { meter_.felt(force, received); })),
+      force_(cycle_.output<geometry_msgs::WrenchStamped>("emulated_haptic/measured_cf")),
+      phase_(cycle_.output<cell_microinjection::StringStamped>("operator/phase", true)) {
+  if (cycle_.lockstep() && driver_->hasUnstampedButtons()) {
+    present_ = &cycle_.input<sensor_msgs::Joy>("haptic/operator_present", Phase::kTickBefore,
+                                               std::numeric_limits<double>::infinity());
+  }
+  at_.position = hand_.position();
   report("device to bridge", meter_.atBridge());
   report("device to device", meter_.atDevice());
 }
@@ -50,12 +59,38 @@ void EmulatedHapticNode::run() {
   cycle_.run([this](const Cycle::Tick& tick) { step(tick); });
 }
 
+bool EmulatedHapticNode::buttonHasComeThrough(const ros::Time& now) const {
+  if (!present_) return true;
+  const sensor_msgs::Joy* joy = present_->get(now);
+  return (joy && !joy->buttons.empty() && joy->buttons[0] == 1) == at_.present;
+}
+
 void EmulatedHapticNode::step(const Cycle::Tick& tick) {
-  elapsed_ += tick.dt;
-  const HandMotion::Sample meant = motion_.at(std::max(0.0, elapsed_ - parameters_.start_delay));
-  hand_.step(meant.position, force_.allFinite() ? force_ : Eigen::Vector3d::Zero(), tick.dt);
-  driver_->tell(hand_.position(), meant.clutch, tick.now);
+  if (buttonHasComeThrough(tick.now)) elapsed_ += tick.dt;
+  const double time = std::max(0.0, elapsed_ - parameters_.start_delay);
+  const HandMotion::Sample meant = motion_.at(time);
+  driver_->hear(at_);
+  const Eigen::Vector3d force = driver_->render(at_);
+  const Eigen::Vector3d before = hand_.position();
+  hand_.step(meant.position, force.allFinite() ? force : Eigen::Vector3d::Zero(), tick.dt);
+  at_.position = hand_.position();
+  at_.velocity = (at_.position - before) / tick.dt;
+  at_.clutch = meant.clutch;
+  at_.present = elapsed_ >= parameters_.start_delay / 2 && meant.phase != "away";
+  at_.inject = meant.phase == "inject";
+  driver_->tell(at_, tick.now);
+  force_.publish(toWrench(force, tick.now, "view"));
+  publishPhase(tick.now, time >= motion_.duration() ? "done" : meant.phase);
   meter_.step(tick.now);
+}
+
+void EmulatedHapticNode::publishPhase(const ros::Time& now, const std::string& phase) {
+  if (phase_said_ == phase) return;
+  cell_microinjection::StringStamped message;
+  message.header.stamp = now;
+  message.string = phase;
+  phase_.publish(message);
+  phase_said_ = phase;
 }
 
 }  // namespace microinjection

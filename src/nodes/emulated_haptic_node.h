@@ -1,10 +1,13 @@
 #pragma once
 
+#include <geometry_msgs/WrenchStamped.h>
 #include <ros/ros.h>
+#include <sensor_msgs/Joy.h>
 
 #include <memory>
 #include <string>
 
+#include "cell_microinjection/StringStamped.h"
 #include "nodes/cycle.h"
 #include "nodes/haptic/emulated_driver.h"
 #include "nodes/round_trip_meter.h"
@@ -14,14 +17,18 @@
 namespace microinjection {
 
 /// A haptic device that is not there, behind the topics of its driver, in a virtual hand: to try an adapter, and to
-/// measure what all nodes add between the device's pose and the force that comes back to it (on /diagnostics). Live
-/// only.
+/// measure what all nodes add between the device's pose and the force that comes back to it (on /diagnostics).
+///
+/// The hand holds the dead-man down from half the start_delay on, but in a phase that is called `away`; in one that is
+/// called `inject` it presses the button for that, on a device that has one. In lock step it goes on only when a button
+/// that takes no part in it has come through.
 ///
 /// Topics: of the kind, see haptic/emulated_driver.h; In: /haptic/servo_cf, /needle/setpoint_trace,
-///         /haptic/force_trace
+///         /haptic/force_trace; Out: /emulated_haptic/measured_cf (WrenchStamped, N on the hand, in the view's axes),
+///         /operator/phase (StringStamped, latched, on change: the motion's phases, then done)
 ///
 /// Parameters (private): those of VirtualHandConfig and
-///   kind           crtk, omni or geomagic; default crtk
+///   kind           one of emulatedDrivers(); default crtk
 ///   motion         path of a hand motion (see teleoperation/hand_motion.h); required
 ///   start_delay    s, in which the hand rests before the motion; default 1, in [0, inf)
 ///   rate           Hz; default 1000, in [50, 5000]
@@ -43,6 +50,8 @@ class EmulatedHapticNode {
   };
 
   void step(const Cycle::Tick& tick);
+  bool buttonHasComeThrough(const ros::Time& now) const;
+  void publishPhase(const ros::Time& now, const std::string& phase);
   void report(const std::string& name, const IntervalHistogram& trips);
 
   Parameters parameters_;
@@ -51,8 +60,12 @@ class EmulatedHapticNode {
   Cycle cycle_;
   RoundTripMeter meter_;
   std::unique_ptr<EmulatedDriver> driver_;
-  Eigen::Vector3d force_ = Eigen::Vector3d::Zero();  ///< N, held until the next comes, as drivers do
-  double elapsed_ = 0;                               ///< s of steps; a stall of the machine pauses the hand
+  Output<geometry_msgs::WrenchStamped>& force_;
+  Output<cell_microinjection::StringStamped>& phase_;
+  Input<sensor_msgs::Joy>* present_ = nullptr;  ///< what came of the dead-man; null: not waited for
+  EmulatedHand at_;
+  double elapsed_ = 0;  ///< s of steps; a stall of the machine pauses the hand
+  std::string phase_said_;
 };
 
 }  // namespace microinjection

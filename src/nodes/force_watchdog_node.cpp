@@ -9,7 +9,7 @@ namespace microinjection {
 const char* const ForceWatchdogNode::kHelp =
     "force_watchdog: says zero force to a haptic device while nobody else says any.\n"
     "In and out: /haptic/servo_cf, or /DEVICE/force_feedback of a driver.\n"
-    "Parameters: ~kind (crtk|omni|geomagic), ~device (its namespace), ~timeout (s), ~rate (Hz).\n";
+    "Parameters: ~kind (crtk|omni|geomagic), ~device (its namespace), ~force, ~from_start, ~timeout (s), ~rate (Hz).\n";
 
 ForceWatchdogNode::Parameters ForceWatchdogNode::Parameters::read(const ros::NodeHandle& node,
                                                                   const ros::NodeHandle& private_node) {
@@ -18,6 +18,9 @@ ForceWatchdogNode::Parameters ForceWatchdogNode::Parameters::read(const ros::Nod
   reader.choice("kind", parameters.kind, {"crtk", "omni", "geomagic"});
   if (parameters.kind != "crtk") node.getParam("haptic_device/device", parameters.device);
   reader.text("device", parameters.device);
+  reader.text("force", parameters.force);
+  reader.boolean("from_start", parameters.from_start);
+  if (parameters.kind != "crtk" && parameters.force != "servo_cf") reader.error("force", "is a key of kind: crtk only");
   reader.number("timeout", parameters.timeout, Range::positive());
   reader.number("rate", parameters.rate, Range::closed(50, 5000));
   reader.finish();
@@ -26,7 +29,8 @@ ForceWatchdogNode::Parameters ForceWatchdogNode::Parameters::read(const ros::Nod
 
 ForceWatchdogNode::ForceWatchdogNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node)
     : parameters_(Parameters::read(node, private_node)),
-      force_(WatchedForce::make(parameters_.kind, parameters_.device, node, [this] { heard_ = ros::Time::now(); })) {}
+      force_(WatchedForce::make(parameters_.kind, parameters_.device, parameters_.force, node,
+                                [this] { heard_ = ros::Time::now(); })) {}
 
 void ForceWatchdogNode::run() {
   // Wakes up by the wall's time: it must also do so when nothing else does.
@@ -34,6 +38,7 @@ void ForceWatchdogNode::run() {
   for (ros::WallRate rate(parameters_.rate); ros::ok() && !master.orphaned(); rate.sleep()) {
     ros::spinOnce();
     const ros::Time now = ros::Time::now();
+    if (heard_.isZero() && !parameters_.from_start) continue;
     if (secondsBetween(heard_, now) >= parameters_.timeout) force_->sayZero(now);
   }
 }

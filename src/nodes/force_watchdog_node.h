@@ -17,6 +17,9 @@ namespace microinjection {
 /// Parameters (private):
 ///   kind     of the device: crtk, omni or geomagic; default crtk
 ///   device   namespace of the driver's topics; default that of the adapter (/haptic_device/device); of crtk haptic
+///   force    of crtk: topic of the force, below device; default servo_cf
+///   from_start  also before another node's first force; default true. false: where the first force frees an arm that
+///            falls unless it was told something first
 ///   timeout  s without a force of another node's; default 0.05, in (0, inf)
 ///   rate     Hz, of looking and of zero force; default 200, in [50, 5000]
 class ForceWatchdogNode {
@@ -28,7 +31,8 @@ class ForceWatchdogNode {
 
  private:
   struct Parameters {
-    std::string kind = "crtk", device = "haptic";
+    std::string kind = "crtk", device = "haptic", force = "servo_cf";
+    bool from_start = true;
     double timeout = 0.05;  // s
     double rate = 200;      // Hz
     static Parameters read(const ros::NodeHandle& node, const ros::NodeHandle& private_node);

@@ -48,6 +48,7 @@ HapticBridgeNode::Parameters HapticBridgeNode::Parameters::read(const ros::NodeH
   Parameters parameters;
   ConfigReader reader = parameterReader(private_node);
   reader.number("rate", parameters.rate, Range::closed(50, 5000));
+  reader.boolean("force_feedback", parameters.force_feedback);
   parameters.timeouts = Timeouts::read(reader.section("timeouts"));
   parameters.model = HapticBridgeConfig::read(reader);
   parameters.link = LinkConfig::read(reader.section("link"));
@@ -65,11 +66,13 @@ HapticBridgeNode::HapticBridgeNode(ros::NodeHandle node, ros::NodeHandle private
       clutch_(
           cycle_.input<sensor_msgs::Joy>("haptic/clutch", Phase::kTickBefore, orForEver(parameters_.timeouts.clutch))),
       hand_force_(cycle_.output<geometry_msgs::WrenchStamped>("haptic/servo_cf")),
-      trace_(cycle_.output<cell_microinjection::LatencyTrace>("haptic/force_trace")) {
+      trace_(cycle_.output<sensor_msgs::TimeReference>("haptic/force_trace")),
+      receiver_(hand_force_.publisher, parameters_.force_feedback && !cycle_.lockstep()) {
   if (parameters_.model.require_operator) {
     operator_present_ = &cycle_.input<sensor_msgs::Joy>("haptic/operator_present", Phase::kTickBefore,
                                                         orForEver(parameters_.timeouts.operator_present));
   }
+  receiver_.watch(hand_);
   parameters_.link.used() ? connectLink() : connectRig();
   cycle_.diagnostics().add("loop", [this](auto& status) { report(status); });
 }
@@ -170,11 +173,7 @@ void HapticBridgeNode::sendToRig(const Cycle::Tick& tick) {
 
 void HapticBridgeNode::trace(const Cycle::Tick& tick) {
   const auto* force = predicted_ ? predicted_->get(tick.now) : measured_->get(tick.now);
-  if (!isTraced(force->header.stamp)) return;
-  cell_microinjection::LatencyTrace trace;
-  trace.header.stamp = tick.now;
-  trace.origin = force->header.stamp;
-  trace_.publish(trace);
+  if (isTraced(force->header.stamp)) trace_.publish(toTrace(tick.now, force->header.stamp, "needle"));
 }
 
 void HapticBridgeNode::step(const Cycle::Tick& tick) {
@@ -187,6 +186,7 @@ void HapticBridgeNode::step(const Cycle::Tick& tick) {
   lookAtRig(input, tick);
   input.clutch = clutchPressed(tick.now);
   input.operator_present = operatorPresent(tick.now);
+  if (!receiver_.feels()) input.unfelt = receiver_.why();
   output_ = model_.step(input, tick.dt);
   hand_force_.publish(toWrench(output_.hand_force, tick.now, hand_frame_));
   sendToRig(tick);

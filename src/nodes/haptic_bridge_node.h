@@ -4,14 +4,15 @@
 #include <geometry_msgs/WrenchStamped.h>
 #include <ros/ros.h>
 #include <sensor_msgs/Joy.h>
+#include <sensor_msgs/TimeReference.h>
 
 #include <memory>
 #include <string>
 
 #include "cell_microinjection/InjectionStatus.h"
-#include "cell_microinjection/LatencyTrace.h"
 #include "cell_microinjection/LinkPacket.h"
 #include "nodes/cycle.h"
+#include "nodes/haptic/force_receiver.h"
 #include "teleoperation/haptic_bridge.h"
 #include "teleoperation/link_leader.h"
 
@@ -19,20 +20,22 @@ namespace microinjection {
 
 /// Couples a haptic device to the needle. Without a trusted hand, needle or force it renders zero force and withdraws
 /// its target (stamp 0), so that the controller holds the needle. It does so without a controller, too: the needle then
-/// does not follow, and what it feels is no answer to the hand. Zero force is also the last that it says.
+/// does not follow, and what it feels is no answer to the hand; and while the node that tells the hand's position does
+/// not subscribe to the force on it (haptic/force_receiver.h). Zero force is also the last that it says.
 ///
 /// In:  /haptic/measured_cp (PoseStamped, the device's axes), /haptic/clutch and /haptic/operator_present (Joy,
 ///      buttons[0] is 1 while pressed or present; the latter counts with require_operator), /needle/measured_cp
 ///      (PoseStamped), /cell/predicted_cf, /force_sensor/measured_cf or both (WrenchStamped),
 ///      /controller/injection_state (InjectionStatus; that there is a controller)
 /// Out: /haptic/servo_cf (WrenchStamped, N at the hand), /teleop/servo_cp (PoseStamped, tip in `world`),
-///      /haptic/force_trace (LatencyTrace)
+///      /haptic/force_trace (TimeReference)
 ///
 /// With link/scheme wave the rig is behind a network: needle and force come and the target goes in packets,
 /// /link/hand/received and /link/hand/sent (LinkPacket), to teleoperation_follower.
 ///
 /// Parameters (private): those of HapticBridgeConfig, link/... (LinkConfig) and
 ///   rate           Hz; default 1000, in [50, 5000]
+///   force_feedback whether the device renders a force, so that its driver must subscribe to it; default true
 ///   timeouts/...   s, past which an input is stale, each its own: hand, needle, predicted, measured (default 0.05),
 ///                  in (0, inf); operator_present (0.2; 0: what it said last holds until the hand is stale), clutch
 ///                  (0: what it said last holds, for devices that say it on change only) and controller (0.25; 0: not
@@ -57,6 +60,7 @@ class HapticBridgeNode {
   };
   struct Parameters {
     double rate = 1000;
+    bool force_feedback = true;
     Timeouts timeouts;
     HapticBridgeConfig model;
     LinkConfig link;
@@ -90,7 +94,8 @@ class HapticBridgeNode {
   Output<geometry_msgs::PoseStamped>* target_ = nullptr;  ///< null: behind a network
   std::unique_ptr<LinkLeader> link_;                      ///< null: no network
   Output<cell_microinjection::LinkPacket>* link_sent_ = nullptr;
-  Output<cell_microinjection::LatencyTrace>& trace_;
+  Output<sensor_msgs::TimeReference>& trace_;
+  ForceReceiver receiver_;
   std::string hand_frame_;           ///< of the last hand
   bool without_controller_ = false;  ///< in the last step
   HapticBridge::Output output_;      ///< the last one, for the diagnostics

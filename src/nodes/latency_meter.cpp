@@ -16,28 +16,29 @@ LatencyMeter::LatencyMeter(ros::NodeHandle& node)
 ros::Subscriber LatencyMeter::listen(ros::NodeHandle& node, const std::string& topic,
                                      void (LatencyMeter::*handler)(const Trace&)) {
   return subscribeGuarded<Trace>(node, topic, 100, [this, topic, handler](const Trace& trace, const std::string&) {
-    if (isAhead(trace.origin, ros::Time::now())) return MessageRefusals::ofProcess().add(topic, "its origin is ahead");
+    if (isAhead(trace.time_ref, ros::Time::now()))
+      return MessageRefusals::ofProcess().add(topic, "its time_ref is ahead");
     (this->*handler)(trace);
   });
 }
 
 void LatencyMeter::onSetpoint(const Trace& trace) {
-  hand_of_needle_[trace.header.stamp] = trace.origin;
+  hand_of_needle_[trace.header.stamp] = trace.time_ref;
   if (hand_of_needle_.size() > kRemembered) hand_of_needle_.erase(hand_of_needle_.begin());
   const auto waiting = force_waiting_.find(trace.header.stamp);
   if (waiting == force_waiting_.end()) return;
-  if (trace.origin > last_hand_) {
-    latencies_.add(secondsBetween(trace.origin, waiting->second));
-    last_hand_ = trace.origin;
+  if (trace.time_ref > last_hand_) {
+    latencies_.add(secondsBetween(trace.time_ref, waiting->second));
+    last_hand_ = trace.time_ref;
   }
   force_waiting_.erase(force_waiting_.begin(), std::next(waiting));
 }
 
 void LatencyMeter::onForce(const Trace& trace) {
-  const auto hand = hand_of_needle_.find(trace.origin);
+  const auto hand = hand_of_needle_.find(trace.time_ref);
   if (hand == hand_of_needle_.end()) {
     // The needle's trace is on its way, or the needle moved of itself and no hand sample belongs to the pose.
-    force_waiting_.emplace(trace.origin, trace.header.stamp);
+    force_waiting_.emplace(trace.time_ref, trace.header.stamp);
     if (force_waiting_.size() > kRemembered) force_waiting_.erase(force_waiting_.begin());
     return;
   }

@@ -26,7 +26,7 @@ namespace microinjection {
 ///      follows a velocity; /needle/true_cp (PoseStamped), where the tip truly is: of the simulated device only;
 ///      /needle/abilities (ManipulatorAbilities; on change and once a second), /needle/operating_state (OperatingState:
 ///      DISABLED without connection, FAULT until enable or disable; is_busy of moves only, once true and once false for
-///      each; on change, and in answer to each state_command); /needle/setpoint_trace (LatencyTrace); joint_states
+///      each; on change, and in answer to each state_command); /needle/setpoint_trace (TimeReference); joint_states
 ///      (JointState), for robot_state_publisher
 ///
 /// Parameters: /robot_description (URDF), and private those of MicromanipulatorConfig and

@@ -29,7 +29,7 @@ NeedleCommands::NeedleCommands(Cycle& cycle, const MicromanipulatorConfig& confi
       rig_(rig),
       model_(model),
       servo_(cycle.input<geometry_msgs::PoseStamped>("needle/servo_cp", Phase::kSameTick, config.command_timeout)),
-      trace_(cycle.output<cell_microinjection::LatencyTrace>("needle/setpoint_trace")),
+      trace_(cycle.output<sensor_msgs::TimeReference>("needle/setpoint_trace")),
       repeated_(cycle.node().resolveName(kStateTopic)) {
   if (!rig.inject && !allow_network) network_ = std::make_unique<NetworkWatch>();
   subscribe();
@@ -123,14 +123,7 @@ void NeedleCommands::obeyServo(const Cycle::Tick& tick) {
   const auto pose = trustedPose(message.get());
   if (!pose) return log_.answered("servo_cp", "not a valid pose in world");
   command("servo_cp", servo_.sender, [&] { return model_.servoPosition(*pose); });
-  if (isTraced(tick.now)) trace(message->header.stamp, tick.now);
-}
-
-void NeedleCommands::trace(const ros::Time& origin, const ros::Time& now) {
-  cell_microinjection::LatencyTrace message;
-  message.header.stamp = now;
-  message.origin = origin;
-  trace_.publish(message);
+  if (isTraced(tick.now)) trace_.publish(toTrace(tick.now, message->header.stamp, "hand"));
 }
 
 void NeedleCommands::onState(const cell_microinjection::StringStamped& message, const CommandSource& source) {

@@ -3,13 +3,13 @@
 #include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/TwistStamped.h>
 #include <ros/ros.h>
+#include <sensor_msgs/TimeReference.h>
 
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "base/busy_report.h"
-#include "cell_microinjection/LatencyTrace.h"
 #include "cell_microinjection/StringStamped.h"
 #include "manipulator/command_authority.h"
 #include "manipulator/micromanipulator.h"
@@ -56,7 +56,6 @@ class NeedleCommands {
   std::string obeyState(const cell_microinjection::StringStamped& message, const CommandSource& source);
   void change(StateCommand command, bool fault);
   void obeyServo(const Cycle::Tick& tick);
-  void trace(const ros::Time& origin, const ros::Time& now);
   double age(const ros::Time& stamp) const;
   template <typename Obey>
   void command(const std::string& name, const std::string& sender, const Obey& obey);
@@ -69,7 +68,7 @@ class NeedleCommands {
   RigDevice& rig_;
   Micromanipulator& model_;
   Input<geometry_msgs::PoseStamped>& servo_;
-  Output<cell_microinjection::LatencyTrace>& trace_;
+  Output<sensor_msgs::TimeReference>& trace_;
   RepeatedCommands repeated_;
   std::vector<ros::Subscriber> subscribers_;
   NeedleState state_;

@@ -7,7 +7,7 @@
 namespace microinjection {
 namespace {
 
-const ros::Duration kPatience(0.5);  // until every message of a round trip has come
+constexpr double kPatience = 0.5;  // s, until every message of a round trip has come
 const ros::Duration kMemory(2);
 constexpr double kSame = 1e-9;  // of a force: what units and axes may do to its last bits
 
@@ -19,13 +19,13 @@ void forgetBefore(std::map<ros::Time, Value>& entries, const ros::Time& time) {
 }  // namespace
 
 RoundTripMeter::RoundTripMeter(ros::NodeHandle& node) {
-  using Trace = cell_microinjection::LatencyTrace;
+  using Trace = sensor_msgs::TimeReference;
   using geometry_msgs::WrenchStamped;
   setpoints_ = subscribeGuarded<Trace>(
       node, "needle/setpoint_trace", 100,
-      [this](const Trace& trace, const std::string&) { hand_of_needle_[trace.header.stamp] = trace.origin; });
+      [this](const Trace& trace, const std::string&) { hand_of_needle_[trace.header.stamp] = trace.time_ref; });
   traces_ = subscribeGuarded<Trace>(node, "haptic/force_trace", 100, [this](const Trace& trace, const std::string&) {
-    needle_of_force_[trace.header.stamp] = trace.origin;
+    needle_of_force_[trace.header.stamp] = trace.time_ref;
   });
   forces_ = subscribeGuarded<WrenchStamped>(node, "haptic/servo_cf", 100,
                                             [this](const WrenchStamped& message, const std::string&) {
@@ -37,7 +37,7 @@ RoundTripMeter::RoundTripMeter(ros::NodeHandle& node) {
 void RoundTripMeter::felt(const Eigen::Vector3d& force, const ros::Time& received) { felt_[received] = force; }
 
 void RoundTripMeter::step(const ros::Time& now) {
-  while (!needle_of_force_.empty() && needle_of_force_.begin()->first < now - kPatience) {
+  while (!needle_of_force_.empty() && secondsBetween(needle_of_force_.begin()->first, now) > kPatience) {
     count(needle_of_force_.begin()->first, needle_of_force_.begin()->second);
     needle_of_force_.erase(needle_of_force_.begin());
   }

@@ -2,12 +2,12 @@
 
 #include <geometry_msgs/WrenchStamped.h>
 #include <ros/ros.h>
+#include <sensor_msgs/TimeReference.h>
 
 #include <Eigen/Core>
 #include <map>
 
 #include "base/interval_histogram.h"
-#include "cell_microinjection/LatencyTrace.h"
 
 namespace microinjection {
 

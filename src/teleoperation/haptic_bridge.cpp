@@ -47,6 +47,7 @@ HapticBridge::HapticBridge(const HapticBridgeConfig& config)
 
 std::string HapticBridge::whyHeld(const Input& input, const std::optional<Eigen::Vector3d>& force) const {
   if (!trusted(input.hand)) return "no trusted hand position";
+  if (!input.unfelt.empty()) return input.unfelt;
   if (!trusted(input.needle)) return "no trusted needle position";
   if (!force) return "no trusted force";
   if (config_.require_operator && !input.operator_present) return "the operator is not present";
@@ -83,7 +84,8 @@ HapticBridge::Output HapticBridge::step(const Input& input, double dt) {
   passivity_.observe(hand, dt);
 
   const bool held = !output.held_because.empty();
-  const bool interrupted = held && !input.clutch && (!config_.require_operator || input.operator_present);
+  const bool interrupted =
+      held && input.unfelt.empty() && !input.clutch && (!config_.require_operator || input.operator_present);
   const double speed = motion_.isRate() ? 0 : passivity_.velocity().norm();  // a stick may spring back
   output.state = engagement_.step({held, input.clutch, speed, held ? 0 : motion_.disagreement(hand, *input.needle),
                                    interrupted, dt, motion_.letGo(hand)});

@@ -55,6 +55,7 @@ class HapticBridge {
     TipForces force;                        ///< N, of the cell on the tip, `world`
     bool clutch = false;                    ///< pressed
     bool operator_present = false;          ///< counts with require_operator
+    std::string unfelt;                     ///< why the device does not take the force on the hand; empty: it does
   };
   struct Output {
     std::optional<Eigen::Vector3d> needle;                 ///< m, where the tip shall go; empty: hold

@@ -51,7 +51,7 @@ class HapticConfigTest(unittest.TestCase):
 
     def test_every_file(self):
         files = sorted((PACKAGE / "config/haptic").glob("*.yaml"))
-        self.assertGreaterEqual(len(files), 7)
+        self.assertGreaterEqual(len(files), 10)
         for file in files:
             with case(file.name):
                 self.assertTrue((PACKAGE / "launch/haptic" / file.with_suffix(".launch").name).exists())
@@ -79,10 +79,29 @@ class HapticConfigTest(unittest.TestCase):
                 self.assertEqual(set_["/injection_controller/force_source"], controller)
 
     def test_a_hand_that_may_fall_needs_its_operator(self):
-        for haptic in ("omni", "geomagic", "external", "joy", "spacenav", "keyboard", "marker"):
+        for haptic in ("dvrk", "external", "falcon", "force_dimension", "geomagic", "joy", "keyboard", "marker", "omni",
+                       "spacenav"):
             self.assertIs(self.parameters(haptic=haptic)["/haptic_bridge/require_operator"], True, haptic)
-        self.assertIs(self.parameters(haptic="external", require_operator="false")["/haptic_bridge/require_operator"],
-                      False)
+        for haptic in ("external", "force_dimension", "dvrk", "falcon"):
+            self.assertIs(self.parameters(haptic=haptic, require_operator="false")["/haptic_bridge/require_operator"],
+                          False)
+
+    def test_each_known_driver_has_its_own_topics(self):
+        for haptic, device, force in (("force_dimension", "/Falcon00", "body/servo_cf"),
+                                      ("dvrk", "/MTMR", "body/servo_cf"), ("falcon", "/falcon", "servo_cf")):
+            with case(haptic):
+                set_ = self.parameters(haptic=haptic)
+                self.assertEqual((set_["/haptic_device/kind"], set_["/haptic_device/device"]), ("crtk", device))
+                self.assertEqual(set_["/haptic_device/force"], force)
+                self.assertEqual(set_["/force_watchdog/device"], device)
+                self.assertEqual(set_.get("/force_watchdog/force", "servo_cf"), force)
+
+    def test_arguments_of_a_known_driver(self):
+        set_ = self.parameters(haptic="dvrk", device="/MTML", device_present="/pedal", position_type="transform")
+        self.assertEqual((set_["/haptic_device/device"], set_["/force_watchdog/device"]), ("/MTML", "/MTML"))
+        self.assertEqual(set_["/haptic_device/operator_present/topic"], "/pedal")
+        self.assertEqual(set_["/haptic_device/clutch/topic"], "/console/clutch")
+        self.assertEqual(set_["/haptic_device/position_type"], "transform")
 
 
 if __name__ == "__main__":

@@ -76,11 +76,18 @@ class OmniTest(HapticTest):
         self.press(0, 0)
         self.press(0, 1)
 
-    def test_a_stylus_that_the_driver_holds_counts_as_clutched(self):
-        self.world.run(50, lambda: {**self.good(), STATE: state(0, 0, 0, locked=True)})
-        self.assertEqual(self.seen(CLUTCH).buttons[0], 1)
-        self.world.run(50, self.good)
-        self.assertEqual(self.seen(CLUTCH).buttons[0], 0)
+    def test_the_lock_that_each_press_turns_over_is_no_clutch(self):
+        """The driver turns `locked` over at each press of the white button: locked at every second one."""
+        locked = False
+        for _ in range(3):
+            locked = not locked
+            told = lambda: {**self.good(), STATE: state(10, 20, -30, locked)}
+            self.buttons.publish(OmniButtonEvent(white_button=1))
+            self.until(lambda: PRESENT in self.world.seen and self.seen(PRESENT).buttons[0] == 1, told, "no operator")
+            self.world.run(50, told)
+            self.assertEqual((self.seen(CLUTCH).buttons[0], self.seen(PRESENT).buttons[0]), (0, 1))
+            self.buttons.publish(OmniButtonEvent())
+            self.until(lambda: self.seen(PRESENT).buttons[0] == 0, told, "the operator stays")
 
     def test_without_a_fresh_force_none_is_rendered(self):
         self.check_zero_and_stays(lambda: {STATE: state(0, 0, 0)})

@@ -9,13 +9,15 @@ namespace {
 
 constexpr double kStep = 1e-3;  // s
 const Eigen::Vector3d kNeedle(1e-6, 2e-6, 60e-6);
+constexpr char kUnfelt[] = "the driver does not subscribe to the force";
 
 /// What may be wrong at once, and what the bridge says of it: the first that is true.
 struct Case {
-  bool no_hand, no_needle, no_force, absent, clutch;
+  bool no_hand, no_needle, no_force, absent, clutch, unfelt;
 
   std::string why() const {
     if (no_hand) return "no trusted hand position";
+    if (unfelt) return kUnfelt;
     if (no_needle) return "no trusted needle position";
     if (no_force) return "no trusted force";
     if (absent) return "the operator is not present";
@@ -23,7 +25,10 @@ struct Case {
   }
 };
 
-Case caseOf(int bits) { return {(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0, (bits & 8) != 0, (bits & 16) != 0}; }
+constexpr int kCases = 64;
+Case caseOf(int bits) {
+  return {(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0, (bits & 8) != 0, (bits & 16) != 0, (bits & 32) != 0};
+}
 
 HapticBridgeConfig configOf(const std::string& mode, const std::string& alignment, bool require_operator) {
   HapticBridgeConfig config;
@@ -55,8 +60,9 @@ void check(const HapticBridgeConfig& config, const Case& wrong) {
   if (wrong.no_force) input.force.predicted.reset();
   input.operator_present = !wrong.absent;
   input.clutch = wrong.clutch;
+  if (wrong.unfelt) input.unfelt = kUnfelt;
   const Case counts{wrong.no_hand, wrong.no_needle, wrong.no_force, wrong.absent && config.require_operator,
-                    wrong.clutch};
+                    wrong.clutch,  wrong.unfelt};
   output = bridge.step(input, kStep);
   EXPECT_EQ(output.held_because, counts.why());
   EXPECT_EQ(output.needle.has_value(), counts.why().empty()) << "at once";
@@ -78,7 +84,7 @@ TEST(Presence, EveryCombinationOfClutchDeadManAndStaleInputs) {
   for (const char* mode : {"position", "rate"}) {
     for (const char* alignment : {"index", "agree"}) {
       for (const bool require_operator : {false, true}) {
-        for (int bits = 0; bits < 32; ++bits) {
+        for (int bits = 0; bits < kCases; ++bits) {
           SCOPED_TRACE(std::string(mode) + " " + alignment + (require_operator ? " dead-man " : " ") +
                        std::to_string(bits));
           check(configOf(mode, alignment, require_operator), caseOf(bits));
@@ -92,8 +98,8 @@ TEST(Presence, EveryCombinationOfClutchDeadManAndStaleInputs) {
 TEST(Presence, AHoldLastsUntilItsLastReasonIsGone) {
   HapticBridge bridge(configOf("position", "index", true));
   for (int i = 0; i < 200; ++i) bridge.step(good(0), kStep);
-  for (int first = 1; first < 32; ++first) {
-    for (int second = 1; second < 32; ++second) {
+  for (int first = 1; first < kCases; ++first) {
+    for (int second = 1; second < kCases; ++second) {
       for (const int bits : {first, second}) {
         const Case wrong = caseOf(bits);
         HapticBridge::Input input = good(0);
@@ -102,6 +108,7 @@ TEST(Presence, AHoldLastsUntilItsLastReasonIsGone) {
         if (wrong.no_force) input.force.predicted.reset();
         input.operator_present = !wrong.absent;
         input.clutch = wrong.clutch;
+        if (wrong.unfelt) input.unfelt = kUnfelt;
         const auto output = bridge.step(input, kStep);
         EXPECT_FALSE(output.needle) << first << " then " << second;
         EXPECT_EQ(output.held_because, wrong.why());

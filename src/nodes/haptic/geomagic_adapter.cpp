@@ -32,11 +32,14 @@ GeomagicAdapter::GeomagicAdapter(Cycle& cycle, const GeomagicConfig& config)
     : config_(config),
       pose_(cycle.input<geometry_msgs::PoseStamped>(config.device + "/pose", Phase::kSameTick, config.timeout)),
       buttons_(cycle.input<sensor_msgs::Joy>(config.device + "/joy", Phase::kTickBefore, config.timeout)),
-      force_(cycle.node().advertise<DeviceFeedback>(config.device + "/force_feedback", 10)) {}
+      force_(cycle.node().advertise<DeviceFeedback>(config.device + "/force_feedback", 10)),
+      receiver_(force_, !cycle.lockstep()) {
+  receiver_.watch(pose_);
+}
 
 std::optional<HandReading> GeomagicAdapter::read(const Cycle::Tick& tick) {
   const auto* pose = pose_.get(tick.now);
-  if (!pose) return std::nullopt;
+  if (!pose || !receiver_.feels()) return std::nullopt;
   const auto position = trustedPosition(pose, pose->header.frame_id, kLargestHandDistance / config_.length_unit);
   if (!position) return std::nullopt;
   HandReading reading;

@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "nodes/haptic/force_receiver.h"
 #include "nodes/haptic/haptic_adapter.h"
 
 namespace microinjection {
@@ -28,12 +29,14 @@ class GeomagicAdapter : public HapticAdapter {
 
   std::optional<HandReading> read(const Cycle::Tick& tick) override;
   void render(const Eigen::Vector3d& force, const Cycle::Tick& tick) override;
+  std::string whySilent() const override { return receiver_.why(); }
 
  private:
   GeomagicConfig config_;
   Input<geometry_msgs::PoseStamped>& pose_;
   Input<sensor_msgs::Joy>& buttons_;
   ros::Publisher force_;
+  ForceReceiver receiver_;
 };
 
 }  // namespace microinjection

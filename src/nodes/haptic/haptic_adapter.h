@@ -31,6 +31,8 @@ class HapticAdapter {
   virtual void render(const Eigen::Vector3d& force, const Cycle::Tick& tick) = 0;
   /// The operator's words for /controller/state_command since the last call.
   virtual std::vector<std::string> takeCommands() { return {}; }
+  /// Why there is no hand although the device is not silent; empty: it is, or there is a hand.
+  virtual std::string whySilent() const { return ""; }
   /// The operator wants to end the program.
   virtual bool wantsToEnd() const { return false; }
 };

@@ -29,7 +29,7 @@ const char* const HapticDeviceNode::kHelp =
     "In: /haptic/servo_cf and the device's own topics. Out: /haptic/measured_cp /haptic/clutch "
     "/haptic/operator_present\n"
     "/controller/state_command, and the device's force.\n"
-    "Parameters: ~kind (omni|geomagic|joy|keyboard|marker, required but for keyboard_hand), ~rate (Hz),\n"
+    "Parameters: ~kind (crtk|omni|geomagic|joy|keyboard|marker, required but for keyboard_hand), ~rate (Hz),\n"
     "~force_timeout (s) and those of the kind; see config/haptic/.\n";
 
 HapticDeviceNode::Parameters::Parameters(ConfigReader& reader, const std::string& default_kind) : kind(default_kind) {
@@ -116,8 +116,11 @@ void HapticDeviceNode::sayZeroForce() {
 }
 
 void HapticDeviceNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) const {
+  const std::string why = adapter_->whySilent();
   status.summary(last_ ? diagnostic_msgs::DiagnosticStatus::OK : diagnostic_msgs::DiagnosticStatus::WARN,
-                 last_ ? "the device tells where the hand is" : "the device is silent: zero force");
+                 last_         ? "the device tells where the hand is"
+                 : why.empty() ? "the device is silent: zero force"
+                               : "the hand is not followed: " + why);
   status.add("kind", kind_.name);
   if (last_) status.add("operator", last_->operator_present ? "present" : "not present");
 }

@@ -1,6 +1,7 @@
 #include "nodes/haptic/haptic_registry.h"
 
 #include "base/errors.h"
+#include "nodes/haptic/crtk_adapter.h"
 #include "nodes/haptic/geomagic_adapter.h"
 #include "nodes/haptic/joy_adapter.h"
 #include "nodes/haptic/keyboard_adapter.h"
@@ -21,9 +22,9 @@ std::unique_ptr<HapticAdapter> make(Cycle& cycle, ConfigReader& reader) {
 
 const std::vector<HapticKind>& hapticKinds() {
   static const std::vector<HapticKind> all{
-      {"omni", true, make<OmniAdapter>},      {"geomagic", true, make<GeomagicAdapter>},
-      {"joy", false, make<JoyAdapter>},       {"keyboard", false, make<KeyboardAdapter>},
-      {"marker", false, make<MarkerAdapter>},
+      {"crtk", true, make<CrtkAdapter>},          {"omni", true, make<OmniAdapter>},
+      {"geomagic", true, make<GeomagicAdapter>},  {"joy", false, make<JoyAdapter>},
+      {"keyboard", false, make<KeyboardAdapter>}, {"marker", false, make<MarkerAdapter>},
   };
   return all;
 }

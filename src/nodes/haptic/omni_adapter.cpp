@@ -27,7 +27,9 @@ OmniConfig OmniConfig::read(ConfigReader& reader) {
 OmniAdapter::OmniAdapter(Cycle& cycle, const OmniConfig& config)
     : config_(config),
       state_(cycle.input<OmniState>(config.device + "/state", Phase::kSameTick, config.timeout)),
-      force_(cycle.node().advertise<OmniFeedback>(config.device + "/force_feedback", 10)) {
+      force_(cycle.node().advertise<OmniFeedback>(config.device + "/force_feedback", 10)),
+      receiver_(force_, !cycle.lockstep()) {
+  receiver_.watch(state_);
   buttons_ = subscribeGuarded<OmniButtonEvent>(cycle.node(), config.device + "/button", 10,
                                                [this](const OmniButtonEvent& event, const std::string&) {
                                                  clutch_ = pressed(event, config_.clutch_button);
@@ -41,12 +43,13 @@ std::optional<HandReading> OmniAdapter::read(const Cycle::Tick& tick) {
     operator_present_ = false;
     return std::nullopt;
   }
+  if (!receiver_.feels()) return std::nullopt;
   const auto& p = state->pose.position;
   HandReading reading;
   reading.position = config_.length_unit * Eigen::Vector3d(p.x, p.y, p.z);
   if (!isWithin(reading.position, kLargestHandDistance)) return std::nullopt;
   reading.stamp = state->header.stamp;
-  reading.clutch = clutch_ || state->locked;
+  reading.clutch = clutch_;
   reading.operator_present = operator_present_ || config_.operator_button == "none";
   return reading;
 }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "nodes/conversions.h"
+#include "nodes/haptic/device_settings.h"
 #include "nodes/haptic/geomagic_messages.h"
 #include "nodes/haptic/omni_messages.h"
 
@@ -48,13 +49,13 @@ class TopicForce : public WatchedForce {
 }  // namespace
 
 std::unique_ptr<WatchedForce> WatchedForce::make(const std::string& kind, const std::string& device,
-                                                 ros::NodeHandle node, Heard heard) {
-  const auto on = [&](auto message, const char* topic) -> std::unique_ptr<WatchedForce> {
-    return std::make_unique<TopicForce<decltype(message)>>(device + topic, node, std::move(heard));
+                                                 const std::string& force, ros::NodeHandle node, Heard heard) {
+  const auto on = [&](auto message, const std::string& topic) -> std::unique_ptr<WatchedForce> {
+    return std::make_unique<TopicForce<decltype(message)>>(deviceTopic(device, topic), node, std::move(heard));
   };
-  if (kind == "crtk") return on(geometry_msgs::WrenchStamped(), "/servo_cf");
-  if (kind == "omni") return on(OmniFeedback(), "/force_feedback");
-  return on(DeviceFeedback(), "/force_feedback");
+  if (kind == "crtk") return on(geometry_msgs::WrenchStamped(), force);
+  if (kind == "omni") return on(OmniFeedback(), "force_feedback");
+  return on(DeviceFeedback(), "force_feedback");
 }
 
 }  // namespace microinjection

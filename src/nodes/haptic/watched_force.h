@@ -14,9 +14,10 @@ class WatchedForce {
   using Heard = std::function<void()>;
 
   /// @param kind    crtk, omni or geomagic
-  /// @param device  namespace of the driver's topics; of crtk: /haptic, that sessions remap
-  static std::unique_ptr<WatchedForce> make(const std::string& kind, const std::string& device, ros::NodeHandle node,
-                                            Heard heard);
+  /// @param device  namespace of the driver's topics; of crtk without an adapter: /haptic, that sessions remap
+  /// @param force   of crtk: topic of the force, below device
+  static std::unique_ptr<WatchedForce> make(const std::string& kind, const std::string& device,
+                                            const std::string& force, ros::NodeHandle node, Heard heard);
   virtual ~WatchedForce() = default;
   virtual void sayZero(const ros::Time& now) = 0;
 };

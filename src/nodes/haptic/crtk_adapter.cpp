@@ -1,0 +1,105 @@
+#include "nodes/haptic/crtk_adapter.h"
+
+#include <limits>
+
+#include "nodes/conversions.h"
+
+namespace microinjection {
+namespace {
+
+/// `none`: where there is no such button; `unknown`: where it has said nothing, or nothing of this one.
+bool heldDown(const Input<sensor_msgs::Joy>* input, int index, const ros::Time& now, bool none, bool unknown) {
+  if (!input) return none;
+  const sensor_msgs::Joy* joy = input->get(now);
+  return joy && index < static_cast<int>(joy->buttons.size()) ? joy->buttons[index] == 1 : unknown;
+}
+
+}  // namespace
+
+CrtkButton CrtkButton::read(ConfigReader reader, const std::string& topic) {
+  CrtkButton button{topic};
+  reader.text("topic", button.topic);
+  reader.integer("index", button.index, Range::closed(0, 63));
+  return button;
+}
+
+CrtkConfig CrtkConfig::read(ConfigReader& reader) {
+  CrtkConfig config;
+  reader.text("device", config.device);
+  reader.choice("position_type", config.position_type, {"pose", "transform"});
+  reader.text("force", config.force);
+  reader.number("timeout", config.timeout, Range::positive());
+  reader.number("button_timeout", config.button_timeout, Range::nonNegative());
+  config.clutch = CrtkButton::read(reader.section("clutch"), "clutch");
+  config.operator_present = CrtkButton::read(reader.section("operator_present"), "operator_present");
+  config.settings = DeviceSetting::readAll(reader, "settings");
+  return config;
+}
+
+CrtkAdapter::CrtkAdapter(Cycle& cycle, const CrtkConfig& config)
+    : config_(config),
+      lockstep_(cycle.lockstep()),
+      clutch_(listenTo(cycle, config.clutch)),
+      operator_present_(listenTo(cycle, config.operator_present)),
+      force_(cycle.output<geometry_msgs::WrenchStamped>(deviceTopic(config.device, config.force))),
+      settings_(cycle.node(), config.device, config.settings),
+      receiver_(force_.publisher, !lockstep_) {
+  const std::string topic = deviceTopic(config.device, "measured_cp");
+  if (config.position_type == "pose") {
+    pose_ = &cycle.input<geometry_msgs::PoseStamped>(topic, Phase::kSameTick, config.timeout);
+    receiver_.watch(*pose_);
+  } else {
+    transform_ = &cycle.input<geometry_msgs::TransformStamped>(topic, Phase::kSameTick, config.timeout);
+    receiver_.watch(*transform_);
+  }
+}
+
+Input<sensor_msgs::Joy>* CrtkAdapter::listenTo(Cycle& cycle, const CrtkButton& button) const {
+  if (button.topic.empty()) return nullptr;
+  const double timeout = config_.button_timeout > 0 ? config_.button_timeout : std::numeric_limits<double>::infinity();
+  return &cycle.input<sensor_msgs::Joy>(deviceTopic(config_.device, button.topic), Phase::kTickBefore, timeout);
+}
+
+std::optional<CrtkAdapter::Position> CrtkAdapter::position(const ros::Time& now) const {
+  if (pose_) {
+    const auto* pose = pose_->get(now);
+    if (!pose) return std::nullopt;
+    const auto& p = pose->pose.position;
+    return Position{pose->header.stamp, pose->header.frame_id, {p.x, p.y, p.z}};
+  }
+  const auto* transform = transform_->get(now);
+  if (!transform) return std::nullopt;
+  const auto& p = transform->transform.translation;
+  return Position{transform->header.stamp, transform->header.frame_id, {p.x, p.y, p.z}};
+}
+
+std::optional<HandReading> CrtkAdapter::read(const Cycle::Tick& tick) {
+  const auto told = position(tick.now);
+  // Also while it is silent: one that was started again must be told first, too.
+  ready_ = !receiver_.driver().empty() && settings_.taken(receiver_.driver(), tick.now);
+  if (!told || !isWithin(told->position, kLargestHandDistance)) {
+    why_ = told ? "its position is not finite, or too far away" : "";
+    // Of a driver that tells changes only: it may have missed to tell the last one.
+    if (!told && operator_present_ && config_.button_timeout <= 0) operator_present_->invalidate();
+    return std::nullopt;
+  }
+  frame_ = told->frame;
+  const bool feels = receiver_.feels();
+  why_ = ready_ ? receiver_.why() : receiver_.driver() + " has not yet heard its settings " + settings_.missing();
+  if (!ready_ || !feels) return std::nullopt;
+  HandReading reading;
+  reading.position = told->position;
+  reading.stamp = told->stamp;
+  // A clutch that says nothing counts as released where it tells changes only, a dead-man as let go.
+  const bool clutch_unknown = clutch_ && !clutch_->received.isZero();
+  reading.clutch = heldDown(clutch_, config_.clutch.index, tick.now, false, clutch_unknown);
+  reading.operator_present = heldDown(operator_present_, config_.operator_present.index, tick.now, true, false);
+  return reading;
+}
+
+/// None before the driver knows its settings: the force would be meant in another frame, and the arm would fall.
+void CrtkAdapter::render(const Eigen::Vector3d& force, const Cycle::Tick& tick) {
+  if (ready_) force_.publish(toWrench(force, tick.now, frame_));
+}
+
+}  // namespace microinjection
