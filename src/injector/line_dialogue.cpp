@@ -27,9 +27,9 @@ void LineDialogue::send(const std::string& line, double timeout, double time) {
 
 LineDialogue::Answer LineDialogue::listen(double time) {
   const std::string bytes = wire_.read(time);
+  if (!bytes.empty()) heard_ = time;
   if (!in_step_) {
-    if (!bytes.empty()) heard_ = time;
-    if (time - heard_ < framing_.quiet) return Answer::kNone;
+    if (!quiet(time)) return Answer::kNone;
     lines_.clear(false);
     in_step_ = true;
     return Answer::kNone;

@@ -9,6 +9,8 @@ namespace microinjection {
 
 /// One line at a time to a device, and the one that it answers. After a reply that was late, wrong or not asked for
 /// nothing is sent before the line has been quiet for a while, so that a late reply is not taken for the next one.
+/// Where replies look alike that is not enough: one that came twice would answer the next line, whose own reply the one
+/// after it, and so on for ever. Between two commands whoever uses this waits until quiet().
 class LineDialogue {
  public:
   struct Framing {
@@ -26,6 +28,8 @@ class LineDialogue {
   /// No reply is owed, and the line is trusted.
   bool free() const { return in_step_ && !waiting_; }
   bool waiting() const { return waiting_; }
+  /// Nothing has come for a while, so that no reply is on its way that nobody waits for.
+  bool quiet(double time) const { return time - heard_ >= framing_.quiet; }
 
   /// @pre free()
   void send(const std::string& line, double timeout, double time);
@@ -46,7 +50,7 @@ class LineDialogue {
   bool waiting_ = false, echoed_ = false;
   double deadline_ = 0;   ///< s, of the reply
   bool in_step_ = false;  ///< no reply is owed that could come late
-  double heard_ = 0;      ///< s, when the last byte came while out of step
+  double heard_ = -1e9;   ///< s, when the last byte came, or the line was distrusted
   unsigned bad_ = 0;
 };
 

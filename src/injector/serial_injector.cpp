@@ -49,9 +49,23 @@ bool SerialInjector::triggered() const {
   return task_ == Task::kPulse && step_ + 1 == protocol_.pulse.size() && dialogue_.waiting();
 }
 
+/// Why the pressure is not what reading() says, for all that is known.
+std::string SerialInjector::unsure() const {
+  if (protocol_.timed && !stopped_) return "the device has not said that its output is off";
+  if (time_ < unsure_until_) return "a pulse may be under way";
+  return balance_known_ || protocol_.balance.empty() ? "" : "the device has not accepted the balance pressure";
+}
+
+std::string SerialInjector::fault() const {
+  if (!fault_.empty()) return fault_;
+  if (!unguarded_.empty()) return unguarded_;
+  return trouble_.empty() ? unsure() : trouble_;
+}
+
 /// A pulse whose reply went wrong may be under way as well.
 bool SerialInjector::mayFlow() const {
-  return triggered() || model_.reading().busy || !fault_.empty() || (protocol_.timed && !stopped_);
+  return triggered() || model_.reading().busy || !fault_.empty() || (protocol_.timed && !stopped_) ||
+         time_ < unsure_until_;
 }
 
 std::string SerialInjector::pulse(const InjectionPulse& pulse) {
@@ -96,6 +110,7 @@ std::string SerialInjector::stop() {
 void SerialInjector::reset() {
   fault_.clear();
   tries_ = 0;
+  if (!balance_known_ && !waiting_balance_ && !protocol_.balance.empty()) waiting_balance_ = sent_balance_;
   model_.reset();
   report();
 }
@@ -118,7 +133,7 @@ bool SerialInjector::keepOpen(double time) {
   if (task_ != Task::kNone) giveUp("the line broke");
   if (flows && stopped_) fail("the line broke during a pulse, which may go on");
   if (waiting_pulse_) fail("the line broke");
-  stopped_ = false;
+  stopped_ = balance_known_ = false;
   pressure_.reset();
   if (trouble_.empty()) trouble_ = "the line broke";
   if (time - tried_ < kRetry) return false;
@@ -205,8 +220,10 @@ void SerialInjector::complete() {
     sent_pulse_.reset();
   } else if (done == Task::kBalance) {
     model_.setBalance(sent_balance_);
+    balance_known_ = true;
   } else if (done == Task::kStop) {
     stopped_ = true;
+    unsure_until_ = time_;
     const bool late = over_ && tries_ > 0;
     over_ && !late ? model_.finish() : static_cast<void>(model_.stop());
     if (late) fail("the pulse lasted longer than was asked for: its end was heard at the second time only");

@@ -16,10 +16,11 @@ namespace microinjection {
 ///
 /// A pulse is under way when the reply to its last line, the trigger, has accepted it. One that is refused before is
 /// not triggered. A trigger is sent once: when no good reply comes, nobody knows whether the pulse was done, which is a
-/// fault until reset(). A balance pressure, which does no harm twice, is sent again; of those that wait, the newest
-/// wins. A stop takes back a pulse that was not triggered yet; otherwise, where the protocol has lines for it, it goes
-/// before everything else, and is sent again as a balance pressure is. A pulse during which this program or its stop
-/// guard stood still is broken off, which is a fault; without a guard there is no pulse.
+/// fault until reset(), and as long as it would last. A balance pressure, which does no harm twice, is sent again; of
+/// those that wait, the newest wins. A stop takes back a pulse that was not triggered yet; otherwise, where the
+/// protocol has lines for it, it goes before everything else, and is sent again as a balance pressure is. A pulse
+/// during which this program or its stop guard stood still is broken off, which is a fault; without a guard there is no
+/// pulse.
 ///
 /// Where pulses are timed from here, the stop ends them, too. It is sent again and again until the device has accepted
 /// it, also after the line was opened, and until then there is no pulse: an output may be on.
@@ -37,7 +38,7 @@ class SerialInjector : public InjectorDevice {
   void reset() override;
   void step(double time) override;
   const InjectorReading& reading() const override { return reading_; }
-  std::string fault() const override { return !fault_.empty() ? fault_ : !unguarded_.empty() ? unguarded_ : trouble_; }
+  std::string fault() const override;
 
   unsigned badReplies() const { return bad_replies_ + dialogue_.badLines(); }
 
@@ -47,6 +48,7 @@ class SerialInjector : public InjectorDevice {
 
   const InjectorProtocol::Exchanges& exchanges(Task task) const;
   bool triggered() const;
+  std::string unsure() const;
   bool mayFlow() const;
   bool stopping() const { return waiting_stop_ || task_ == Task::kStop; }
   void checkGuard(double time);
@@ -84,7 +86,10 @@ class SerialInjector : public InjectorDevice {
   bool over_ = false;                      ///< the stop is the end of a timed pulse whose time is over
   bool stopped_ = false;                   ///< the device has accepted a stop since the line was opened
   double stop_failed_ = -1e9;              ///< s, when a stop was last given up
-  double ends_ = 0;                        ///< s, of a timed pulse
+  double ends_ = 0;                        ///< s, of the present pulse
+  double last_sent_ = 0;                   ///< s, when the last line was sent
+  double unsure_until_ = -1e9;             ///< s, end of a pulse that may be under way although nobody has accepted it
+  bool balance_known_ = false;             ///< the device has accepted the one that was sent last
   std::optional<double> waiting_balance_;  ///< Pa
   double sent_balance_ = 0;                ///< Pa
   int tries_ = 0;                          ///< of the present stop, balance or query without a good reply

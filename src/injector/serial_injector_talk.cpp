@@ -1,5 +1,6 @@
 // What is sent next, and what becomes of it without a good reply.
 
+#include <algorithm>
 #include <utility>
 
 #include "injector/serial_injector.h"
@@ -16,9 +17,12 @@ void SerialInjector::giveUpPulse(const std::string& why, bool was_triggered, Ref
   std::string what = "pulse " + std::to_string(sent_pulse_->id) + ": " + why;
   if (!was_triggered) {
     what += "; it was not triggered";
-  } else if (refusal == Refusal::kNo) {
+  } else {
+    stopped_ = false;  // where pulses are timed from here, a stop does no harm, whatever the device has said
+  }
+  if (was_triggered && refusal == Refusal::kNo) {
     what += "; it may have been done, and is not sent again";
-    stopped_ = false;
+    unsure_until_ = last_sent_ + protocol_.asSent(*sent_pulse_).duration + protocol_.framing.quiet;
   }
   sent_pulse_.reset();
   fail(what);
@@ -34,6 +38,7 @@ void SerialInjector::giveUp(const std::string& why, Refusal refusal) {
   if (given_up == Task::kPulse) {
     giveUpPulse(why, was_triggered, refusal);
   } else if (given_up == Task::kBalance) {
+    balance_known_ = false;
     if (last) return fail("balance pressure: " + why);
     if (!waiting_balance_) waiting_balance_ = sent_balance_;
   } else if (given_up == Task::kStop) {
@@ -41,6 +46,7 @@ void SerialInjector::giveUp(const std::string& why, Refusal refusal) {
     if (!last) return;
     stop_failed_ = time_;
     stopped_ = false;
+    unsure_until_ = std::max(unsure_until_, ends_);
     fail("stop: " + why + "; the pulse may go on");
   } else if (given_up == Task::kQuery && last) {
     trouble_ = "query: " + why;
@@ -57,6 +63,7 @@ void SerialInjector::talk(double time) {
   if (task_ != Task::kNone) putBack();
   if (task_ == Task::kNone && !next(time)) return;
   const InjectorProtocol::Exchange& exchange = exchanges(task_)[step_];
+  last_sent_ = time;
   dialogue_.send(exchange.send.fill(say_), exchange.timeout, time);
 }
 
@@ -64,7 +71,10 @@ void SerialInjector::talk(double time) {
 void SerialInjector::putBack() {
   const bool taken_back = task_ == Task::kPulse && !sent_pulse_;
   if (task_ == Task::kStop || (!waiting_stop_ && !taken_back)) return;
-  if (task_ == Task::kBalance && !waiting_balance_) waiting_balance_ = sent_balance_;
+  if (task_ == Task::kBalance) {
+    balance_known_ = false;  // the device may have heard it
+    if (!waiting_balance_) waiting_balance_ = sent_balance_;
+  }
   if (task_ == Task::kBegin) waiting_begin_ = true;
   sent_pulse_.reset();
   task_ = Task::kNone;
@@ -83,7 +93,7 @@ bool SerialInjector::next(double time) {
   const bool holds =
       protocol_.timed && model_.reading().busy;  // a line in between would end the pulse, or delay its end
   if (std::exchange(waiting_stop_, false)) return begin(Task::kStop);
-  if (holds) return false;
+  if (holds || !dialogue_.quiet(time)) return false;
   if (std::exchange(waiting_begin_, false)) return begin(Task::kBegin);
   if (waiting_balance_) {  // before the pulse, which returns to it
     sent_balance_ = protocol_.balanceAsSent(*std::exchange(waiting_balance_, std::nullopt));

@@ -159,6 +159,27 @@ TEST_F(DialogueTest, AStopGoesBetweenTheLinesOfABalance) {
   EXPECT_NEAR(injector.reading().pressure, 2000, 1);
 }
 
+TEST_F(DialogueTest, WhatMayBeUnderWayIsAFaultAfterAResetToo) {
+  run(1);
+  answers.erase("G");
+  injector.pulse({5, 12300, 3});
+  run(1);
+  injector.reset();
+  EXPECT_EQ(injector.fault(), "a pulse may be under way");
+  EXPECT_NE(injector.pulse({6, 12300, 0.1}), "");
+  run(1.9);
+  EXPECT_EQ(injector.fault(), "a pulse may be under way");
+  run(0.3);
+  EXPECT_EQ(injector.fault(), "");
+  injector.pulse({7, 12300, 30});
+  run(1);
+  injector.reset();
+  EXPECT_EQ(injector.stop(), "");
+  run(0.5);
+  EXPECT_EQ(count("S"), 1);
+  EXPECT_EQ(injector.fault(), "") << "the device has accepted a stop";
+}
+
 TEST_F(DialogueTest, ABalanceThatReadsBackOtherwiseIsNotTold) {
   run(1);
   answers["C20.0"] = "OK";
@@ -167,6 +188,12 @@ TEST_F(DialogueTest, ABalanceThatReadsBackOtherwiseIsNotTold) {
   EXPECT_EQ(count("C20.0"), 3);
   EXPECT_EQ(injector.fault(), "balance pressure: it reads back 10.0 instead of 20");
   EXPECT_NEAR(injector.reading().pressure, 1000, 1);
+  injector.reset();
+  EXPECT_EQ(injector.fault(), "the device has not accepted the balance pressure");
+  answers["C"] = "C=20.0";
+  run(1);
+  EXPECT_EQ(injector.fault(), "");
+  EXPECT_NEAR(injector.reading().pressure, 2000, 1);
 }
 
 /// Of two replies at once nobody knows which is the right one.
@@ -285,10 +312,14 @@ TEST_F(TimedTest, AnOutputIsTurnedOffWhenTheLineIsBack) {
 TEST_F(TimedTest, NoPulseBeforeTheOutputIsKnownToBeOff) {
   answers.erase("F");
   run(0.1);
-  EXPECT_EQ(injector.pulse({5, 20e3, 0.5}), "");
+  EXPECT_NE(injector.pulse({5, 20e3, 0.5}), "");
   run(3);
-  EXPECT_EQ(count("N"), 0);
-  EXPECT_NE(injector.fault().find("pulse 5 was not sent"), std::string::npos) << injector.fault();
+  injector.reset();
+  EXPECT_EQ(injector.fault(), "the device has not said that its output is off");
+  answers["F"] = "OK";
+  run(3);
+  EXPECT_EQ(injector.fault(), "");
+  EXPECT_EQ(injector.pulse({5, 20e3, 0.5}), "");
 }
 
 TEST_F(TimedTest, AStopEndsItBeforeItsTimeAndItDoesNotCount) {

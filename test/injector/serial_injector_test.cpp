@@ -142,7 +142,10 @@ TEST_F(SerialInjectorTest, RefusesWhatTheDeviceCannotDo) {
   fine.limits.pressure_range = {-50e3, 50e3};
   WireScript other;
   SerialInjector device(std::make_unique<ScriptedWire>(other), testProtocol(), fine);
-  device.step(0);
+  for (int i = 0; i < 20; ++i) {
+    device.step(0.05 * i);
+    if (!other.sent.empty() && device.fault() != "") other.incoming = "OK\r";
+  }
   EXPECT_EQ(device.pulse({1, 10e3, 0.4e-3}).rfind("in the digits of the device's line, pulse duration = 0 s", 0), 0U);
 }
 
