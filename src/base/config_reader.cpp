@@ -1,12 +1,29 @@
 #include "base/config_reader.h"
 
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <sstream>
 
 #include "base/errors.h"
 
 namespace microinjection {
+
+namespace {
+
+/// Control characters by their codes: a carriage return would hide what is before it on a terminal.
+std::string visible(const std::string& text) {
+  std::string shown;
+  for (const char each : text) {
+    const auto code = static_cast<unsigned char>(each);
+    char escaped[8];
+    std::snprintf(escaped, sizeof escaped, code < 0x20 || code == 0x7f ? "\\x%02x" : "%c", code);
+    shown += escaped;
+  }
+  return shown;
+}
+
+}  // namespace
 
 struct ConfigReader::Level {
   YAML::Node map;
@@ -55,7 +72,7 @@ std::string ConfigReader::valueText(const std::string& key) const {
   if (!has(key)) return "";
   YAML::Emitter out;
   out << YAML::Flow << static_cast<const YAML::Node&>(level_->map)[key];
-  return std::string(" = ") + out.c_str();
+  return std::string(" = ") + visible(out.c_str());
 }
 
 void ConfigReader::error(const std::string& key, const std::string& message) {

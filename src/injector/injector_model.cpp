@@ -27,10 +27,22 @@ std::string InjectorModel::pulse(const InjectionPulse& pulse) {
   if (pulse_) return "a pulse is under way";
   std::string refusal = config_.limits.check(pulse);
   if (!refusal.empty()) return refusal;
-  pulse_ = pulse;
+  open(pulse);
   left_ = pulse.duration;
-  reading_.busy = true;
   return "";
+}
+
+void InjectorModel::open(const InjectionPulse& pulse) {
+  pulse_ = pulse;
+  left_ = INFINITY;
+  reading_.busy = true;
+}
+
+void InjectorModel::finish() {
+  if (!pulse_) return;
+  reading_.last_id = pulse_->id;
+  ++reading_.pulses;
+  stop();
 }
 
 std::string InjectorModel::setBalance(double pressure) {
@@ -65,12 +77,7 @@ void InjectorModel::step(double time) {
     advance(pulse_->pressure, part);
     left_ -= part;
     dt -= part;
-    if (left_ <= 1e-9) {  // s: less is the rounding of the steps' sum
-      reading_.last_id = pulse_->id;
-      ++reading_.pulses;
-      reading_.busy = false;
-      pulse_.reset();
-    }
+    if (left_ <= 1e-9) finish();  // s: less is the rounding of the steps' sum
   }
   if (dt > 0) advance(balance_, dt);
   reading_.flow = flow_.flow(reading_.pressure, clogging_);

@@ -32,6 +32,11 @@ class InjectorModel : public InjectorDevice {
   const InjectorReading& reading() const override { return reading_; }
   std::string fault() const override { return ""; }
 
+  /// A pulse whose end somebody else decides, by finish() or stop(); its duration does not count, nor do the limits.
+  void open(const InjectionPulse& pulse);
+  /// Ends the pulse that is under way now, as done.
+  void finish();
+
   /// A fault on request: the tip resists `factor` times as much as when it is clean. @pre factor >= 1
   void clog(double factor) { clogging_ = factor; }
 

@@ -1,117 +1,118 @@
 #include "injector/injector_protocol.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <map>
-#include <vector>
+#include <sstream>
 
-#include "base/errors.h"
+#include "injector/protocol_places.h"
 
 namespace microinjection {
 namespace {
 
-/// Name of a place and its unit in SI.
-struct Unit {
-  const char* name;
-  double size;
-};
-constexpr double kPsi = 6894.757293168;  // Pa
-constexpr Unit kPressures[] = {
-    {"pressure_Pa", 1}, {"pressure_hPa", 100}, {"pressure_kPa", 1000}, {"pressure_psi", kPsi}};
-constexpr Unit kDurations[] = {{"duration_s", 1}, {"duration_ms", 1e-3}};
+constexpr double kDigits = 0.1;  // share of a number that the digits of a line may take away or add
 
-std::vector<std::string> names(bool with_durations) {
-  std::vector<std::string> all;
-  for (const Unit& unit : kPressures) all.emplace_back(unit.name);
-  for (const Unit& unit : kDurations) {
-    if (with_durations) all.emplace_back(unit.name);
+bool near(double value, double wanted, double share) { return std::abs(value - wanted) <= share * std::abs(wanted); }
+
+/// `value` (in units.size) as the first of the lines with a place for it says it; empty: none has one.
+std::optional<double> asWritten(const InjectorProtocol::Exchanges& exchanges, const std::vector<Place>& places,
+                                double value) {
+  for (const auto& exchange : exchanges) {
+    for (const Place& place : places) {
+      if (!exchange.send.has(place.name)) continue;
+      return exchange.send.rounded(place.name, place.toUnit(value)) * place.unit + place.zero;
+    }
   }
-  return all;
+  return std::nullopt;
 }
 
-void readRegex(ConfigReader& reader, const std::string& key, std::regex& regex) {
-  std::string text;
-  reader.text(key, text, ConfigReader::kRequired);
-  try {
-    regex = std::regex(text);
-  } catch (const std::regex_error& error) {
-    reader.error(key, std::string("is no regular expression: ") + error.what());
-  }
+std::string tooCoarse(const std::string& what, double asked, double sent, const std::string& unit) {
+  if (near(sent, asked, kDigits)) return "";
+  std::ostringstream out;
+  out << what << " = " << asked << ' ' << unit << ": the digits of the device's line make it " << sent << ' ' << unit;
+  return out.str();
 }
 
-InjectorProtocol::Exchange readExchange(ConfigReader reader, const std::vector<std::string>& places) {
-  InjectorProtocol::Exchange exchange;
-  std::string line;
-  reader.text("send", line, ConfigReader::kRequired);
-  try {
-    exchange.send = LineTemplate(line, places);
-  } catch (const ConfigError& error) {
-    reader.error("send", error.what());
-  }
-  readRegex(reader, "expect", exchange.expect);
-  reader.number("timeout", exchange.timeout, Range::positive());
-  return exchange;
+std::string other(const std::string& what, double asked, double set, const std::string& unit) {
+  if (near(asked, set, 1e-6)) return "";
+  std::ostringstream out;
+  out << what << " = " << asked << ' ' << unit << ": set by hand at the device, must be " << set << ' ' << unit;
+  return out.str();
 }
 
-template <std::size_t n>
-void addUnits(const Unit (&units)[n], double value, std::map<std::string, double>& values) {
-  for (const Unit& unit : units) values[unit.name] = value / unit.size;
-}
-
-template <std::size_t n>
-double rounded(const Unit (&units)[n], const LineTemplate& line, double value) {
-  for (const Unit& unit : units) {
-    const double sent = line.rounded(unit.name, value / unit.size);
-    if (sent != value / unit.size) return sent * unit.size;
-  }
+std::optional<double> toNumber(const std::string& text) {
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != '\0' || !std::isfinite(value)) return std::nullopt;
   return value;
 }
 
 }  // namespace
 
-InjectorProtocol InjectorProtocol::read(ConfigReader& reader) {
-  InjectorProtocol protocol;
-  protocol.pulse = readExchange(reader.section("pulse", ConfigReader::kRequired), names(true));
-  protocol.balance = readExchange(reader.section("balance", ConfigReader::kRequired), names(false));
-  if (reader.has("stop")) protocol.stop = readExchange(reader.section("stop"), {});
-  if (reader.has("query")) {
-    protocol.query = readExchange(reader.section("query"), {});
-    if (protocol.query->expect.mark_count() < 1) reader.error("query", "expect must have a group for the pressure");
-  }
-  reader.number("query_period", protocol.query_period, Range::positive());
-  reader.number("pressure_unit", protocol.pressure_unit, Range::positive());
-  readRegex(reader, "refuse", protocol.refuse);
-  reader.text("terminator", protocol.terminator);
-  reader.number("quiet", protocol.quiet, Range::nonNegative());
-  if (protocol.terminator.empty()) reader.error("terminator", "must not be empty");
-  return protocol;
-}
-
-std::string InjectorProtocol::pulseLine(const InjectionPulse& asked) const {
-  std::map<std::string, double> values;
-  addUnits(kPressures, asked.pressure, values);
-  addUnits(kDurations, asked.duration, values);
-  return pulse.send.fill(values);
-}
-
-std::string InjectorProtocol::balanceLine(double pressure) const {
-  std::map<std::string, double> values;
-  addUnits(kPressures, pressure, values);
-  return balance.send.fill(values);
-}
-
 InjectionPulse InjectorProtocol::asSent(const InjectionPulse& asked) const {
-  return {asked.id, rounded(kPressures, pulse.send, asked.pressure), rounded(kDurations, pulse.send, asked.duration)};
+  InjectionPulse sent = asked;
+  const auto pressure = asWritten(pulse, pressurePlaces(pressure_unit, pressure_zero), asked.pressure);
+  const auto duration = asWritten(pulse, durationPlaces(), asked.duration);
+  sent.pressure = pressure.value_or(pulse_pressure.value_or(asked.pressure));
+  sent.duration = timed ? asked.duration : duration.value_or(pulse_duration.value_or(asked.duration));
+  return sent;
 }
 
-std::optional<double> InjectorProtocol::queriedPressure(const std::string& reply) const {
-  std::smatch groups;
-  if (!query || !std::regex_match(reply, groups, query->expect)) return std::nullopt;
-  const std::string text = groups[1].str();
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != '\0' || !std::isfinite(value)) return std::nullopt;
-  return value * pressure_unit;
+double InjectorProtocol::balanceAsSent(double pressure) const {
+  return asWritten(balance, pressurePlaces(pressure_unit, pressure_zero), pressure).value_or(pressure);
+}
+
+std::string InjectorProtocol::refusal(const InjectionPulse& asked) const {
+  if (pulse_pressure) {
+    const std::string set = other("pulse pressure", asked.pressure, *pulse_pressure, "Pa");
+    if (!set.empty()) return set;
+  }
+  if (pulse_duration) {
+    const std::string set = other("pulse duration", asked.duration, *pulse_duration, "s");
+    if (!set.empty()) return set;
+  }
+  const InjectionPulse sent = asSent(asked);
+  const std::string coarse = tooCoarse("pulse pressure", asked.pressure, sent.pressure, "Pa");
+  return coarse.empty() ? tooCoarse("pulse duration", asked.duration, sent.duration, "s") : coarse;
+}
+
+std::string InjectorProtocol::balanceRefusal(double pressure) const {
+  if (balance.empty()) return "the device's balance pressure is set by hand: its protocol has no line for it";
+  return tooCoarse("balance pressure", pressure, balanceAsSent(pressure), "Pa");
+}
+
+InjectorProtocol::Values InjectorProtocol::pulseValues(const InjectionPulse& asked) const {
+  Values values = balanceValues(asked.pressure);
+  for (const Place& place : durationPlaces()) values[place.name] = place.toUnit(asked.duration);
+  return values;
+}
+
+InjectorProtocol::Values InjectorProtocol::balanceValues(double pressure) const {
+  Values values;
+  for (const Place& place : pressurePlaces(pressure_unit, pressure_zero)) values[place.name] = place.toUnit(pressure);
+  return values;
+}
+
+std::string InjectorProtocol::misread(const Exchange& exchange, const std::smatch& groups, const Values& values) {
+  if (exchange.confirm.empty()) return "";
+  const double wanted = values.at(exchange.confirm);
+  const auto read = toNumber(groups[1].str());
+  if (read && std::abs(*read - wanted) <= 1e-6 * std::max(1.0, std::abs(wanted))) return "";
+  std::ostringstream out;
+  out << "it reads back " << groups[1].str() << " instead of " << wanted;
+  return out.str();
+}
+
+std::optional<double> InjectorProtocol::queriedPressure(const std::smatch& groups) const {
+  const auto read = toNumber(groups[1].str());
+  if (!read) return std::nullopt;
+  return *read * pressure_unit + pressure_zero;
+}
+
+double InjectorProtocol::patience(const Exchanges& exchanges) {
+  double sum = 0;
+  for (const Exchange& exchange : exchanges) sum += exchange.timeout;
+  return sum;
 }
 
 }  // namespace microinjection

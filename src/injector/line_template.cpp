@@ -3,21 +3,37 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <regex>
 
 #include "base/errors.h"
 
 namespace microinjection {
 namespace {
 
-std::string withDecimals(double value, int decimals) {
+/// Adding 0 turns -0, which is no number of a device, into 0.
+double toDecimals(double value, int decimals) {
+  const double unit = std::pow(10.0, decimals);
+  return std::round(value * unit) / unit + 0.0;
+}
+
+std::string written(double value, int width, int decimals) {
   char text[64];
-  std::snprintf(text, sizeof text, "%.*f", decimals, value);
-  // "-0" is no number of a device.
-  const std::string written(text);
-  return written.find_first_not_of("-0.") == std::string::npos && written[0] == '-' ? written.substr(1) : written;
+  std::snprintf(text, sizeof text, "%0*.*f", width, decimals, value);
+  return text;
 }
 
 }  // namespace
+
+void LineTemplate::readFormat(const std::string& line, const std::string& format, Piece& piece) {
+  static const std::regex allowed("(?:0([1-9][0-9]?)\\.)?([0-9])");
+  std::smatch groups;
+  if (!std::regex_match(format, groups, allowed)) {
+    throw ConfigError("\"" + line + "\": behind a colon stand the digits behind the point, 0 to 9, or 0WIDTH.DIGITS " +
+                      "for leading zeros, not \"" + format + "\"");
+  }
+  if (groups[1].matched) piece.width = std::stoi(groups[1]);
+  piece.decimals = std::stoi(groups[2]);
+}
 
 LineTemplate::LineTemplate(const std::string& text, const std::vector<std::string>& names) {
   std::size_t from = 0;
@@ -27,17 +43,14 @@ LineTemplate::LineTemplate(const std::string& text, const std::vector<std::strin
     Piece piece{text.substr(from, open - from), text.substr(open + 1, close - open - 1)};
     const std::size_t colon = piece.name.find(':');
     if (colon != std::string::npos) {
-      const std::string digits = piece.name.substr(colon + 1);
-      if (digits.size() != 1 || digits[0] < '0' || digits[0] > '9') {
-        throw ConfigError("\"" + text + "\": behind a colon stands one digit, 0 to 9, not \"" + digits + "\"");
-      }
-      piece.decimals = digits[0] - '0';
+      readFormat(text, piece.name.substr(colon + 1), piece);
       piece.name.resize(colon);
     }
     if (std::find(names.begin(), names.end(), piece.name) == names.end()) {
       std::string all;
       for (const std::string& name : names) all += (all.empty() ? "{" : ", {") + name + "}";
-      throw ConfigError("\"" + text + "\": {" + piece.name + "} is not one of " + (all.empty() ? "none" : all));
+      throw ConfigError("\"" + text + "\": {" + piece.name + "} is not one of " + (all.empty() ? "none" : all) +
+                        ", and codes/" + piece.name + " is missing");
     }
     pieces_.push_back(piece);
     from = close + 1;
@@ -49,18 +62,22 @@ std::string LineTemplate::fill(const std::map<std::string, double>& values) cons
   std::string line;
   for (const Piece& piece : pieces_) {
     line += piece.text;
-    if (!piece.name.empty()) line += withDecimals(values.at(piece.name), piece.decimals);
+    if (!piece.name.empty())
+      line += written(toDecimals(values.at(piece.name), piece.decimals), piece.width, piece.decimals);
   }
   return line;
 }
 
-double LineTemplate::rounded(const std::string& name, double value) const {
+const LineTemplate::Piece* LineTemplate::find(const std::string& name) const {
   for (const Piece& piece : pieces_) {
-    if (piece.name != name) continue;
-    const double unit = std::pow(10.0, piece.decimals);
-    return std::round(value * unit) / unit;
+    if (piece.name == name && !name.empty()) return &piece;
   }
-  return value;
+  return nullptr;
+}
+
+double LineTemplate::rounded(const std::string& name, double value) const {
+  const Piece* const piece = find(name);
+  return piece ? toDecimals(value, piece->decimals) : value;
 }
 
 }  // namespace microinjection

@@ -1,9 +1,12 @@
 #include "nodes/injector_node.h"
 
 #include <utility>
+#include <vector>
 
+#include "injector/injector_registry.h"
 #include "injector/serial_injector.h"
 #include "nodes/node_parameters.h"
+#include "serial/emulated_wire.h"
 
 namespace microinjection {
 
@@ -27,6 +30,9 @@ InjectorNode::Parameters InjectorNode::Parameters::read(const ros::NodeHandle& p
     parameters.port = SerialPortConfig::read(serial, 9600);
     parameters.protocol = InjectorProtocol::read(serial);
   }
+  std::vector<std::string> emulators{"none"};
+  for (const Injector& injector : injectors()) emulators.push_back(injector.name);
+  reader.choice("emulated", parameters.emulated, emulators);
   reader.finish();
   return parameters;
 }
@@ -43,9 +49,9 @@ InjectorNode::InjectorNode(ros::NodeHandle node, ros::NodeHandle private_node)
   auto& stop = cycle_.input<cell_microinjection::StringStamped>("injector/stop", Phase::kTickBefore, INFINITY);
   stop.stamp_rule = StampRule::kAny;
   stop.listen([this](const auto& message, const ros::Time&) { onStop(message); });
-  balance_ = subscribeGuarded<cell_microinjection::Float64Stamped>(
+  balance_ = subscribeGuarded<sensor_msgs::FluidPressure>(
       cycle_.node(), "injector/set_balance", 100,
-      [this](const cell_microinjection::Float64Stamped& message, const std::string&) { onBalance(message); });
+      [this](const sensor_msgs::FluidPressure& message, const std::string&) { onBalance(message); });
   reset_ = private_node.advertiseService<std_srvs::Trigger::Request, std_srvs::Trigger::Response>(
       "reset", [this](std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
         device_->reset();
@@ -57,10 +63,17 @@ InjectorNode::InjectorNode(ros::NodeHandle node, ros::NodeHandle private_node)
   cycle_.diagnostics().add("injector", [this](auto& status) { report(status); });
 }
 
+std::unique_ptr<Wire> InjectorNode::makeWire() const {
+  for (const Injector& injector : injectors()) {
+    if (injector.name != parameters_.emulated) continue;
+    return std::make_unique<EmulatedWire>(injector.make_emulator(), parameters_.port.baud);
+  }
+  return std::make_unique<SerialPort>(parameters_.port);
+}
+
 void InjectorNode::makeDevice(ros::NodeHandle& private_node) {
   if (parameters_.source == "serial") {
-    device_ = std::make_unique<SerialInjector>(std::make_unique<SerialPort>(parameters_.port), parameters_.protocol,
-                                               parameters_.model);
+    device_ = std::make_unique<SerialInjector>(makeWire(), parameters_.protocol, parameters_.model);
     return;
   }
   auto model = std::make_unique<InjectorModel>(parameters_.model);
@@ -120,9 +133,9 @@ void InjectorNode::onStop(const cell_microinjection::StringStamped& message) {
   ROS_INFO_STREAM("stopped: " << message.string);
 }
 
-void InjectorNode::onBalance(const cell_microinjection::Float64Stamped& message) {
+void InjectorNode::onBalance(const sensor_msgs::FluidPressure& message) {
   const std::string late = untimely(message.header);
-  judge("set_balance", late.empty() ? device_->setBalance(message.data) : late);
+  judge("set_balance", late.empty() ? device_->setBalance(message.fluid_pressure) : late);
 }
 
 /// What may flow without anybody who could end it.

@@ -1,13 +1,13 @@
 #pragma once
 
 #include <ros/ros.h>
+#include <sensor_msgs/FluidPressure.h>
 #include <std_srvs/SetBool.h>
 #include <std_srvs/Trigger.h>
 
 #include <memory>
 #include <string>
 
-#include "cell_microinjection/Float64Stamped.h"
 #include "cell_microinjection/InjectionPulse.h"
 #include "cell_microinjection/InjectorState.h"
 #include "cell_microinjection/StringStamped.h"
@@ -16,6 +16,7 @@
 #include "injector/pulse_ids.h"
 #include "nodes/cycle.h"
 #include "serial/serial_port.h"
+#include "serial/wire.h"
 
 namespace microinjection {
 
@@ -25,7 +26,8 @@ namespace microinjection {
 /// takes part.
 ///
 /// In:  /injector/pulse (InjectionPulse), /injector/stop (StringStamped, the reason; always obeyed, however old: the
-///      pulse ends), /injector/set_balance (Float64Stamped, Pa)
+///      pulse ends), /injector/set_balance (sensor_msgs/FluidPressure: fluid_pressure, Pa, gauge as everywhere here,
+///      although the message calls it absolute; its variance is not read)
 /// Out: /injector/state (InjectorState)
 /// Services: ~reset (std_srvs/Trigger: clears fault and volume), with source simulated ~clog (std_srvs/SetBool)
 ///
@@ -39,6 +41,8 @@ namespace microinjection {
 ///   those of InjectorModelConfig, which the estimates of a real one's flow and volume need, too
 ///   serial/          path, baud, parity, stop_bits (SerialPortConfig; default 9600, 8N1) and those of
 ///                    InjectorProtocol; needed with source serial
+///   emulated         none, or the name of an injector (injector_registry.h) whose emulator, in this node and on its
+///                    time, is at the other end of the line instead of the port; default none
 class InjectorNode {
  public:
   static const char* const kHelp;
@@ -56,13 +60,15 @@ class InjectorNode {
     InjectorModelConfig model;
     SerialPortConfig port;
     InjectorProtocol protocol;
+    std::string emulated = "none";
     static Parameters read(const ros::NodeHandle& private_node);
   };
 
+  std::unique_ptr<Wire> makeWire() const;
   void makeDevice(ros::NodeHandle& private_node);
   void onPulse(const cell_microinjection::InjectionPulse& message);
   void onStop(const cell_microinjection::StringStamped& message);
-  void onBalance(const cell_microinjection::Float64Stamped& message);
+  void onBalance(const sensor_msgs::FluidPressure& message);
   std::string untimely(const std_msgs::Header& header) const;
   void judge(const std::string& command, const std::string& refusal);
   void endAbandonedPulse(const ros::Time& now);

@@ -5,6 +5,8 @@
 #include <sstream>
 #include <vector>
 
+#include "serial/line_ending.h"
+
 namespace microinjection {
 namespace {
 
@@ -68,8 +70,9 @@ std::vector<std::string> split(const std::string& line, char separator) {
 
 VoltReadingConfig VoltReadingConfig::read(ConfigReader& reader) {
   VoltReadingConfig config;
-  reader.text("separator", config.separator);
-  reader.text("terminator", config.terminator);
+  readPlainText(reader, "separator", config.separator);
+  if (config.separator == "TAB") config.separator = "\t";
+  readLineEnding(reader, "terminator", config.terminator);
   reader.integer("columns", config.columns, Range::closed(1, 32));
   reader.integer("first", config.first, Range::closed(0, 31));
   reader.integer("voltages", config.voltages, Range::closed(1, 32));
@@ -82,8 +85,7 @@ VoltReadingConfig VoltReadingConfig::read(ConfigReader& reader) {
   reader.vector("offset", config.offset, Range::finite(), ConfigReader::kRequired);
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   config.matrix = Eigen::Map<const Rows>(rows.data(), 2, config.voltages);
-  if (config.separator.size() != 1) reader.error("separator", "must be one character");
-  if (config.terminator.empty()) reader.error("terminator", "must not be empty");
+  if (config.separator.size() != 1) reader.error("separator", "must be one character, or TAB");
   if (config.first + config.voltages > config.columns) reader.error("columns", "must hold all voltages");
   if (config.voltage_range[0] >= config.voltage_range[1]) reader.error("voltage_range", "must be [lowest, highest]");
   return config;

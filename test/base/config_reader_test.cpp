@@ -136,6 +136,20 @@ TEST(ConfigReader, RefusesNumbersThatAreNotFinite) {
   }
 }
 
+TEST(ConfigReader, ShowsControlCharactersByTheirCodes) {
+  ConfigReader reader(YAML::Load(R"({end: "a\r"})"), "test");
+  std::string end;
+  reader.text("end", end);
+  reader.error("end", "is wrong");
+  try {
+    reader.finish();
+    FAIL();
+  } catch (const ConfigError& error) {
+    EXPECT_EQ(std::string(error.what()).find("\r"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("\\x0d"), std::string::npos) << error.what();
+  }
+}
+
 TEST(Range, KnowsItsEnds) {
   EXPECT_FALSE(Range::positive().contains(0));
   EXPECT_TRUE(Range::nonNegative().contains(0));

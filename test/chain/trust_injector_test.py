@@ -6,9 +6,10 @@ import unittest
 
 import rospy
 import rostest
+from sensor_msgs.msg import FluidPressure
 from std_srvs.srv import SetBool, Trigger
 
-from cell_microinjection.msg import Float64Stamped, InjectionPulse, InjectorState, StringStamped
+from cell_microinjection.msg import InjectionPulse, InjectorState, StringStamped
 from participant import Participant
 
 PRESSURE = 20e3  # Pa
@@ -20,7 +21,7 @@ class TrustTest(unittest.TestCase):
         cls.world = Participant({"/injector/pulse": InjectionPulse, "/injector/stop": StringStamped},
                                 {"/injector/state": InjectorState})
         cls.pulses = rospy.Publisher("/injector/pulse", InjectionPulse, queue_size=10)
-        cls.balance = rospy.Publisher("/injector/set_balance", Float64Stamped, queue_size=10)
+        cls.balance = rospy.Publisher("/injector/set_balance", FluidPressure, queue_size=10)
         cls.stops = rospy.Publisher("/injector/stop", StringStamped, queue_size=10)
         cls.world.await_links()
 
@@ -127,12 +128,12 @@ class TrustTest(unittest.TestCase):
     def test_a_wrong_balance_flows_back(self):
         right = self.state().pressure
         for pressure, sign in ((0.0, -1), (2 * right, 1)):
-            message = Float64Stamped(data=pressure)
+            message = FluidPressure(fluid_pressure=pressure)
             message.header.stamp = self.world.now
             self.balance.publish(message)
             self.tick_until(lambda: abs(self.state().pressure - pressure) < 1)
             self.assertGreater(sign * self.state().flow, 0)
-        message = Float64Stamped(data=right)
+        message = FluidPressure(fluid_pressure=right)
         message.header.stamp = self.world.now
         self.balance.publish(message)
         self.tick_until(lambda: abs(self.state().pressure - right) < 1e-3)

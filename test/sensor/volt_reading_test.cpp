@@ -75,6 +75,26 @@ TEST(VoltReading, ConfigurationIsStrict) {
   }
 }
 
+VoltReadingConfig configOf(const std::string& text) {
+  ConfigReader reader(YAML::Load("{matrix: [1, 0, 0, 1], offset: [0, 0], " + text + "}"), "test");
+  const VoltReadingConfig config = VoltReadingConfig::read(reader);
+  reader.finish();
+  return config;
+}
+
+/// A parameter server turns both \r and \r\n into \n.
+TEST(VoltReading, LineEndsAndTabulatorsAreNames) {
+  EXPECT_EQ(configOf("terminator: CRLF").terminator, "\r\n");
+  EXPECT_EQ(configOf("terminator: CR").terminator, "\r");
+  EXPECT_EQ(configOf("terminator: LF").terminator, "\n");
+  EXPECT_EQ(configOf("columns: 2").terminator, "\n");
+  EXPECT_EQ(*parseVoltages("1\t2", configOf("separator: TAB")), Eigen::Vector2d(1, 2));
+  for (const char* raw : {R"(terminator: "\r\n")", R"(terminator: "\r")", R"(terminator: "\n")", R"(terminator: "")",
+                          R"(separator: "\t")", R"(separator: "\r")"}) {
+    EXPECT_THROW(configOf(raw), std::exception) << raw;
+  }
+}
+
 /// One to three bytes dropped, changed or put in, or the end cut off.
 std::string damaged(std::string line, std::mt19937& random) {
   const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random() % n); };
