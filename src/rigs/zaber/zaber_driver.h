@@ -67,6 +67,7 @@ class ZaberDriver : public SerialManipulator {
     double position_time = 0;        // s
     double heard = 0;                // s of listened(), when it was last told truly
     double velocity = 0;             // m/s, carries the position on
+    double coasting = 0;             // m, by which a stop in this session left the position uncertain
     double end = 0;                  // m, where a move ends; NaN: it does not
     std::optional<long long> told;   // units of speed, of the velocity that the device follows
     bool busy = true;

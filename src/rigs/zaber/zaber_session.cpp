@@ -37,9 +37,13 @@ void ZaberDriver::begin(bool lost) {
   lost_ = lost;
   settled_ = false;
   turn_ = move_stage_ = setting_tries_ = 0;
-  for (Axis& axis : axes_) {
+  for (int i = 0; i < 3; ++i) {
+    Axis& axis = axes_[i];
     axis.filter.forget();
     axis.told.reset();
+    axis.coasting = lost || axis.velocity == 0 ? 0 : config_.reading_margin;
+    if (axis.position) axis.position = expected(i, time());
+    axis.position_time = time();
     axis.velocity = 0;
     axis.end = std::nan("");
     axis.read_since_begin = axis.homed = axis.still_moves = false;
