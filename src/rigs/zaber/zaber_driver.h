@@ -130,6 +130,9 @@ class ZaberDriver : public SerialManipulator {
   void sendExchange();
   long long velocityData(int axis) const;
   bool nextVelocity(int axis);
+  bool goalStands() const;
+  std::optional<long long> placeOfArrival(int axis) const;
+  bool canGoTo(int axis, long long place) const;
   std::optional<long long> endOfVelocity(int axis, long long data) const;
   long long moveSpeedData(int axis) const;
 
