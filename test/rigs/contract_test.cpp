@@ -17,9 +17,9 @@
 namespace microinjection {
 namespace {
 
-constexpr double kStep = 1e-3;   // s
-constexpr double kStale = 0.1;   // s, of MicromanipulatorConfig
-constexpr double kSpeed = 20e-6;  // m/s
+constexpr double kStep = 1e-3;              // s
+constexpr double kStale = 0.1;              // s, of MicromanipulatorConfig
+constexpr double kSpeed = 20e-6;            // m/s
 const Eigen::Vector3d kStart(0, 0, 60e-6);  // m
 
 struct Variant {

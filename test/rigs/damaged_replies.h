@@ -10,8 +10,8 @@
 
 namespace microinjection {
 
-/// An emulator half of whose replies arrive cut off, garbled, with foreign bytes, twice, behind the next one, or forged;
-/// its motion is untouched.
+/// An emulator half of whose replies arrive cut off, garbled, with foreign bytes, twice, behind the next one, or
+/// forged; its motion is untouched.
 class DamagedReplies : public ManipulatorEmulator {
  public:
   /// `forge`: makes a reply that is well formed and false; none: nothing is forged.

@@ -1,5 +1,5 @@
-// 200,000 damaged or reordered replies a protocol, to a driver at work: it must neither crash nor believe a position that
-// is not so, and be in step again as soon as the line is sound.
+// 200,000 damaged or reordered replies a protocol, to a driver at work: it must neither crash nor believe a position
+// that is not so, and be in step again as soon as the line is sound.
 
 #include <gtest/gtest.h>
 
@@ -181,9 +181,9 @@ void fuzzZaber(bool checksum, bool forges) {
   of_device.alerts = true;
   const auto device = std::make_shared<ZaberEmulator>(of_device);
   Resets resets(device);
-  Fuzz<ZaberDriver, ZaberConfig>(config, device, forge, allowed, at_rest,
-                                 [&](double time, bool disturbs) { resets.step(time, disturbs); })
-      .run(70000);
+  Fuzz<ZaberDriver, ZaberConfig>(config, device, forge, allowed, at_rest, [&](double time, bool disturbs) {
+    resets.step(time, disturbs);
+  }).run(70000);
   EXPECT_GT(resets.count(), 10);
 }
 

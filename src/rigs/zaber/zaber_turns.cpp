@@ -12,7 +12,7 @@ namespace {
 constexpr double kVelocityHolds = 0.1;  // s: a set-point's velocity is not followed for longer
 constexpr int kMoveTries = 2;
 constexpr long long kSlowestArrival = 16;  // units of speed, some 10 microsteps/s
-constexpr double kSlowest = 10;     // microsteps/s, of an axis of a move
+constexpr double kSlowest = 10;            // microsteps/s, of an axis of a move
 constexpr double kShortestWay = 3;  // microsteps, of a velocity: a shorter one may be none for an axis that is ahead
 
 }  // namespace
@@ -31,9 +31,7 @@ bool ZaberDriver::nextOfWarnings() {
   return false;
 }
 
-bool ZaberDriver::goalStands() const {
-  return goal()->velocity.isZero(0) || time() - goal()->time >= kVelocityHolds;
-}
+bool ZaberDriver::goalStands() const { return goal()->velocity.isZero(0) || time() - goal()->time >= kVelocityHolds; }
 
 long long ZaberDriver::velocityData(int i) const {
   const Eigen::Vector3d wanted = config_.joints.toDevice(goal()->joints);
@@ -133,7 +131,8 @@ bool ZaberDriver::nextOfMove() {
   for (; move_stage_ < 3; ++move_stage_) {
     const int i = move_stage_;
     const long long data = moveSpeedData(i);
-    if (!axes_[i].settings.movesHaveSpeeds()) return ask(Kind::kSpeed, i, "set maxspeed " + std::to_string(data), data), true;
+    if (!axes_[i].settings.movesHaveSpeeds())
+      return ask(Kind::kSpeed, i, "set maxspeed " + std::to_string(data), data), true;
     axes_[i].move_speed = static_cast<double>(data) / (config_.microsteps_per_metre[i] * kZaberSpeedUnit);
   }
   if (move_stage_ >= 6) {
@@ -184,8 +183,8 @@ void ZaberDriver::sendExchange() {
   exchange_->sent = true;
   exchange_->heard_at = time() + wire;
   exchange_->heard_from = listened() + wire;
-  exchange_->due = exchange_->heard_from + kZaberReplyBytes * config_.byteTime() +
-                   patience * (settled_ ? 1 : exchange_->tries);
+  exchange_->due =
+      exchange_->heard_from + kZaberReplyBytes * config_.byteTime() + patience * (settled_ ? 1 : exchange_->tries);
   say(bytes);
 }
 
