@@ -35,7 +35,8 @@ Faults: KIND[:VALUE][@TIME]; TIME in s since the start, at once without it
   drop:N       the next N bytes that it says are lost
   deaf:N       the next N bytes said to it are lost
   garble:N     the next N bytes that it says arrive with all bits turned over
-  error:CODE   its next command is answered with this error: MP-285: 0, 1, 2, 4, 8;
+  error:CODE   its next command is answered with this error: MP-285: 0, or a sum of 1, 2, 4, 8;
+               Eppendorf, Scientifica: a number from 0 to 999;
                Zaber: BADDATA, AGAIN, ... (rejection) or FS, WT, ... (a warning flag, until it is cleared)
   interrupt    what moves is stopped as if by hand
 

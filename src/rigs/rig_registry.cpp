@@ -1,8 +1,12 @@
 #include "rigs/rig_registry.h"
 
 #include "base/errors.h"
+#include "rigs/eppendorf/eppendorf_driver.h"
+#include "rigs/eppendorf/eppendorf_emulator.h"
 #include "rigs/mp285/mp285_driver.h"
 #include "rigs/mp285/mp285_emulator.h"
+#include "rigs/scientifica/scientifica_driver.h"
+#include "rigs/scientifica/scientifica_emulator.h"
 #include "rigs/zaber/zaber_driver.h"
 #include "rigs/zaber/zaber_emulator.h"
 
@@ -25,7 +29,9 @@ Rig rig(const std::string& name, int default_baud) {
 
 const std::vector<Rig>& rigs() {
   static const std::vector<Rig> all{
+      rig<EppendorfConfig, EppendorfDriver, EppendorfEmulator>("eppendorf", 19200),
       rig<Mp285Config, Mp285Driver, Mp285Emulator>("mp285", 9600),
+      rig<ScientificaConfig, ScientificaDriver, ScientificaEmulator>("scientifica", 38400),
       rig<ZaberConfig, ZaberDriver, ZaberEmulator>("zaber", 115200),
   };
   return all;

@@ -24,6 +24,7 @@ SerialPortConfig SerialPortConfig::read(ConfigReader& reader, int default_baud) 
   reader.integer("baud", config.baud, Range::positive());
   reader.choice("parity", config.parity, {"none", "even", "odd"});
   reader.integer("stop_bits", config.stop_bits, Range::closed(1, 2));
+  reader.choice("handshake", config.handshake, {"none", "rts_cts"});
   return config;
 }
 
@@ -60,7 +61,8 @@ struct SerialPort::Line {
                      : config.parity == "odd" ? Port::parity::odd
                                               : Port::parity::none));
     set(Port::stop_bits(config.stop_bits == 2 ? Port::stop_bits::two : Port::stop_bits::one));
-    set(Port::flow_control(Port::flow_control::none));
+    const bool hardware = config.handshake == "rts_cts";
+    set(Port::flow_control(hardware ? Port::flow_control::hardware : Port::flow_control::none));
     if (error)
       return config.path + ": " + std::to_string(config.baud) + " baud, " + config.frame() + ": " + error.message();
     requestLowLatency(port.native_handle());

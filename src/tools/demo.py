@@ -52,7 +52,7 @@ def parse_arguments():
     parser.add_argument('--clock', choices=('wall', 'lockstep'), default='wall',
                         help='wall time, or a simulated clock that gives the same bits on any machine')
     parser.add_argument('--rig', default='sim',
-                        help='sim, emulated_mp285, emulated_zaber, or a real one: mp285, zaber (%(default)s)')
+                        help='sim, a real one: eppendorf, mp285, scientifica, zaber; or emulated_ before its name (%(default)s)')
     parser.add_argument('--haptic', choices=('operator', 'external', 'none'), default='operator',
                         help='who moves the hand; a session without the operator ends with Ctrl-C')
     parser.add_argument('--motion', type=Path, default=MOTION,

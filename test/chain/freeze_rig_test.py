@@ -22,10 +22,11 @@ from live_chain import Master, until
 
 SPEED = 20e-6  # m/s, of all motion
 SILENCE = 0.2 + 0.04  # s, until the guard says stop, and its tick
-STOP = 0.05  # s, from the stop to standstill, wire included; far more than either device needs
+STOP = 0.05  # s, from the stop to standstill, wire included; far more than any of them needs
 AT_REST = 50  # readings in a row
 HELD_UP = 0.3  # s, that guard, device and this test may be kept from the processor beside what this test sees of it
-RIGS = (("zaber", "6.28"), ("zaber", "7.40"), ("mp285", None))  # an old Zaber has no moves that end by themselves
+RIGS = (("zaber", "6.28"), ("zaber", "7.40"), ("mp285", None), ("eppendorf", None),
+        ("scientifica", None))  # an old Zaber has no moves that end by themselves
 
 
 class Emulator:

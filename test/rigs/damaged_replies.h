@@ -10,8 +10,8 @@
 
 namespace microinjection {
 
-/// An emulator half of whose replies arrive cut off, garbled, with foreign bytes, twice, behind the next one, or
-/// forged; its motion is untouched.
+/// An emulator half of whose replies arrive cut off, garbled, with foreign bytes, twice, after the next one, or forged;
+/// its motion is untouched.
 class DamagedReplies : public ManipulatorEmulator {
  public:
   /// `forge`: makes a reply that is well formed and false; none: nothing is forged.
@@ -31,9 +31,12 @@ class DamagedReplies : public ManipulatorEmulator {
   void hear(const std::string& bytes, double time) override { device_->receive(bytes, time); }
   std::string say(double time) override {
     std::string reply = device_->send(time);
-    if (reply.empty()) return reply;
-    reply += std::exchange(held_, "");
-    if (!damaging_ || below(2) == 0) return reply;
+    if (reply.empty() || !damaging_) return reply;
+    if (!held_.empty()) {  // the last one comes after this one
+      ++damaged_;
+      return reply + std::exchange(held_, "");
+    }
+    if (below(2) == 0) return reply;
     const std::string whole = reply;
     damage(reply);
     if (reply != whole) ++damaged_;
@@ -75,7 +78,7 @@ class DamagedReplies : public ManipulatorEmulator {
       case 7:
         reply += reply;
         break;
-      case 8:  // the next one is heard before it
+      case 8:
         held_.swap(reply);
         break;
       default:

@@ -25,8 +25,7 @@ class LostTouchTest : public DriverTest<Tested> {
   }
   Eigen::Vector3d goal_ = Eigen::Vector3d::Zero();
 };
-using AllTested = testing::Types<TestedZaber, TestedMp285>;
-TYPED_TEST_SUITE(LostTouchTest, AllTested);
+TYPED_TEST_SUITE(LostTouchTest, AllTested, Names);
 
 TYPED_TEST(LostTouchTest, ASilentDevicesPositionIsNotToldForLong) {
   this->followUntil("silence:8");
@@ -51,7 +50,7 @@ TYPED_TEST(LostTouchTest, AnInterruptedCommandIsNotTakenUpAgain) {
   const Eigen::Vector3d there = rig.place();
   rig.run(2, [&] { EXPECT_FALSE(rig.device().moves()); });
   expectNear(rig.place(), there, 0);
-  expectNear(rig.read(), there, 0.1 * TypeParam::kStep);
+  expectNear(rig.read(), there, TypeParam::kTold);
   this->moveAndCheck();
 }
 

@@ -107,8 +107,7 @@ class GuardedRigTest : public testing::Test {
   SerialPort* port_ = nullptr;
   std::string reasons_;
 };
-using AllTested = testing::Types<TestedZaber, TestedMp285>;
-TYPED_TEST_SUITE(GuardedRigTest, AllTested);
+TYPED_TEST_SUITE(GuardedRigTest, AllTested, Names);
 
 TYPED_TEST(GuardedRigTest, ACycleThatDoesNotStepLeavesNothingInMotion) {
   ASSERT_TRUE(this->until([&] { return !this->moves(); }, false));

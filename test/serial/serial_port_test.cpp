@@ -62,6 +62,31 @@ TEST_F(SerialPortTest, CarriesEveryByteBothWays) {
   EXPECT_EQ(port_.read(0), "");  // and does not wait for more
 }
 
+TEST_F(SerialPortTest, AsksForTheHandshakeOfItsConfiguration) {
+  PseudoTerminal terminal(link_);
+  for (const char* handshake : {"none", "rts_cts"}) {
+    SerialPortConfig config;
+    config.path = link_;
+    config.handshake = handshake;
+    SerialPort port(config);
+    ASSERT_EQ(port.open(), "");
+    const int other = ::open(link_.c_str(), O_RDWR | O_NOCTTY);
+    termios settings{};
+    ASSERT_EQ(tcgetattr(other, &settings), 0);
+    EXPECT_EQ((settings.c_cflag & CRTSCTS) != 0, config.handshake == "rts_cts");
+    ::close(other);
+  }
+  const auto read = [](const std::string& text) {
+    ConfigReader reader(YAML::Load(text), "port.yaml");
+    const SerialPortConfig config = SerialPortConfig::read(reader, 9600);
+    reader.finish();
+    return config.handshake;
+  };
+  EXPECT_EQ(read("{path: /dev/x}"), "none");
+  EXPECT_EQ(read("{path: /dev/x, handshake: rts_cts}"), "rts_cts");
+  EXPECT_THROW(read("{path: /dev/x, handshake: dtr}"), ConfigError);
+}
+
 TEST_F(SerialPortTest, SaysWhyItDoesNotOpen) {
   EXPECT_NE(port_.open().find(link_), std::string::npos);
   EXPECT_FALSE(port_.isOpen());

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "rigs/answer_times.h"
 #include "rigs/mp285/mp285_config.h"
 #include "rigs/mp285/mp285_protocol.h"
 #include "rigs/reading_filter.h"
@@ -28,6 +29,7 @@ class Mp285Driver : public SerialManipulator {
   int malformed() const { return malformed_; }                      ///< answers that were none
 
  protected:
+  void connected() override { answers_.forget(); }
   void begin(bool lost) override;
   void stopSaid() override;
   void talk(const std::string& bytes) override;
@@ -37,12 +39,12 @@ class Mp285Driver : public SerialManipulator {
   enum class Kind { kStop, kStatus, kAbsolute, kPosition, kVelocity, kMove };
   struct Exchange {
     Kind kind;
-    double due;  // s of listened(), to be answered
+    double due;   // s of listened(), to be answered
+    double sent;  // s of listened(), when its last byte has gone
   };
   struct Move {
     Eigen::Vector3d from, to;  // microsteps, of the device
-    double begin;              // s
-    double speed;              // microsteps/s
+    double begin, duration;    // s
     bool follows;              // a short one towards a set-point
     bool coarse;
   };
@@ -52,15 +54,19 @@ class Mp285Driver : public SerialManipulator {
     bool operator==(const Speed& other) const { return um_per_s == other.um_per_s && fine == other.fine; }
   };
 
+  void measure(const Mp285Answer& answer);
   double byteTime() const { return 10.0 / config_.port.baud; }
   void ask(Kind kind, const std::string& bytes, double more_time = 0);
   void handle(const Mp285Answer& answer);
   void handleError(int error);
+  void takeStatus(const Mp285Status& status);
   void takePosition(const Mp285Position& position);
   void next();
   void nextTowardsGoal();
   Eigen::Vector3d goalPlace() const;
   int fastestAlong(const Eigen::Vector3d& way) const;
+  double metresPerSaidMetre(const Eigen::Vector3d& way) const;
+  double length(const Eigen::Vector3d& way) const { return way.cwiseProduct(microsteps_).norm(); }  // m
   Speed speedFor(const Eigen::Vector3d& way) const;
   Eigen::Vector3d carriedOn(double time) const;
   double recoveryTime() const;
@@ -69,10 +75,15 @@ class Mp285Driver : public SerialManipulator {
   Mp285Config config_;
   Mp285Parser parser_;
   ReadingFilter filter_;
+  AnswerTimes answers_;
+  double answer_time_;  // s, as it is measured, not less than in the file
   std::optional<Exchange> exchange_;
-  double last_byte_ = 0;        // s of listened()
-  double microstep_ = 0.04e-6;  // m, read from the status
-  double told_microstep_ = 0;   // m, in the last status
+  double last_byte_ = 0;     // s of listened()
+  double next_command_ = 0;  // s of listened(), at the earliest
+  /// m, a microstep of the device's axes as they are, and as the device's own um/s count them.
+  Eigen::Vector3d microsteps_ = Eigen::Vector3d::Constant(0.04e-6);
+  double nominal_microstep_ = 0.04e-6;
+  std::optional<Mp285Status> told_status_;  // the last one
   bool asked_stop_ = false, asked_status_ = false, absolute_ = false, settled_ = false;
   bool reading_due_ = true;                  // the position is to be read
   double next_rest_reading_ = 0;             // s

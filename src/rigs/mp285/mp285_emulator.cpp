@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include "base/errors.h"
 
 namespace microinjection {
 namespace {
+
+constexpr double kMicrostepsPerMicrometre = 25;  // as its speed counts them
 
 std::string fourBytes(double value) {
   const auto number = static_cast<std::int32_t>(std::lround(value));
@@ -51,7 +54,7 @@ void Mp285Emulator::advance(double time) {
   time_ = std::max(time, time_);
   if (!moving_ || dt <= 0) return;
   const Eigen::Vector3d way = end_ - place_;
-  const double step = speed_ * static_cast<double>(config_.step_div) * dt;  // microsteps
+  const double step = speed_ * kMicrostepsPerMicrometre * dt;  // microsteps
   const double left = way.norm() - step;
   if (fails_at_ >= 0 && left <= fails_at_) return interrupt(time);
   if (left > 0) {
@@ -69,7 +72,7 @@ void Mp285Emulator::interrupt(double time) {
   if (!moving_) return;
   moving_ = false;
   place_ = place_.array().round();
-  answerError(8, time);
+  answerError(std::exchange(fails_with_, 8), time);
 }
 
 void Mp285Emulator::answerError(int code, double time) {
@@ -93,6 +96,8 @@ void Mp285Emulator::hearByte(unsigned char byte, double time) {
   last_byte_ = time;
   if (moving_ && byte != 0x03) return;
   if (command_.empty() && byte == 0x03) return stop(time);
+  if (command_.empty() && time < deaf_until_) return;
+  if (command_.empty() && byte == 0x0a) return answer("\r", time);
   if (command_.empty() && commandLength(byte) == 0) {
     if (byte != 0x0d) answerError(4, time);
     return;
@@ -108,8 +113,8 @@ void Mp285Emulator::hearByte(unsigned char byte, double time) {
 }
 
 void Mp285Emulator::obey(double time) {
-  const bool fails_under_way = error_ == 8 && command_[0] == 'm';
-  if (error_ >= 0 && error_ != 8) {
+  const bool fails_under_way = error_ >= 8 && command_[0] == 'm';
+  if (error_ >= 0 && error_ < 8) {
     answerError(error_, time);
     error_ = -1;
     return;
@@ -127,8 +132,9 @@ void Mp285Emulator::obey(double time) {
     }
     case 'm':
       beginMove();
-      if (fails_under_way) fails_at_ = (end_ - place_).norm() / 2;
-      if (fails_under_way) error_ = -1;
+      if (!fails_under_way) return;
+      fails_at_ = (end_ - place_).norm() / 2;
+      fails_with_ = std::exchange(error_, -1);
       return;
     case 'o':
       place_.setZero();
@@ -142,27 +148,30 @@ void Mp285Emulator::obey(double time) {
 }
 
 void Mp285Emulator::beginMove() {
-  const double grid = fine_ ? 1 : 5, furthest = config_.travel * 1e6 * config_.step_div;
+  const double grid = fine_ ? 1 : 5;
   for (int i = 0; i < 3; ++i) {
     const double said = fromFourBytes(&command_[1 + 4 * static_cast<std::size_t>(i)]) + (absolute_ ? 0 : place_[i]);
+    const double furthest = config_.travel / config_.microsteps[i];
     end_[i] = std::clamp(std::round(said / grid) * grid, -furthest, furthest);
   }
   moving_ = true;
   ++moves_begun_;
 }
 
-/// 32 bytes as acq4 reads them, and a carriage return: flags (bit 5: absolute) at 0, step_div at 24, speed at 28.
+/// 32 bytes as a client printed them of a real one, and a carriage return, with what it can change: STEP_DIV at 24,
+/// STEP_MUL at 26, speed at 28. FLAGS stays 64: clients disagree on which of its bits tells the mode of moves.
 std::string Mp285Emulator::status() const {
-  std::string bytes(33, '\0');
-  bytes[0] = static_cast<char>(absolute_ ? 0x20 : 0);
-  bytes[24] = static_cast<char>(config_.step_div % 256);
-  bytes[25] = static_cast<char>(config_.step_div / 256);
-  bytes[26] = static_cast<char>(config_.step_div % 256);
-  const int word = speed_ + (fine_ ? 0x8000 : 0);
-  bytes[28] = static_cast<char>(word % 256);
-  bytes[29] = static_cast<char>(word / 256);
-  bytes[32] = '\r';
-  return bytes;
+  constexpr unsigned char kReal[] = {64,  0,  2,  4,  7,  0, 99, 0, 99, 0, 20, 0, 136, 19, 1,  120,
+                                     112, 23, 16, 39, 80, 0, 0,  0, 25, 0, 4,  0, 200, 0,  84, 1};
+  std::string bytes(reinterpret_cast<const char*>(kReal), sizeof(kReal));
+  const auto put = [&](std::size_t at, int number) {
+    bytes[at] = static_cast<char>(number % 256);
+    bytes[at + 1] = static_cast<char>(number / 256);
+  };
+  put(24, config_.step_div);
+  put(26, config_.step_mul);
+  put(28, speed_ + (fine_ ? 0x8000 : 0));
+  return bytes + '\r';
 }
 
 std::string Mp285Emulator::say(double time) {
@@ -172,12 +181,16 @@ std::string Mp285Emulator::say(double time) {
     said += answers_.front().bytes;
     answers_.erase(answers_.begin());
   }
+  if (!said.empty()) {
+    deaf_until_ = time + static_cast<double>(said.size()) * 10 / config_.baud + config_.command_pause;
+  }
   return said;
 }
 
 void Mp285Emulator::checkError(const std::string& code) const {
-  if (code.size() == 1 && std::string("01248").find(code) != std::string::npos) return;
-  throw ConfigError("fault = error:" + code + ": must be one of 0, 1, 2, 4, 8");
+  const bool digits = !code.empty() && code.size() <= 2 && code.find_first_not_of("0123456789") == std::string::npos;
+  if (digits && std::stoi(code) <= 15) return;
+  throw ConfigError("fault = error:" + code + ": must be 0, or the sum of 1, 2, 4 and 8");
 }
 
 }  // namespace microinjection

@@ -1,10 +1,13 @@
 #include "rigs/mp285/mp285_protocol.h"
 
+#include <cstdio>
+
 namespace microinjection {
 namespace {
 
-constexpr std::size_t kPositionBytes = 13, kStatusBytes = 33;  // with the carriage return
-constexpr std::size_t kFlags = 0, kStepDiv = 24, kSpeed = 28;  // in the status (acq4, mp285.py)
+constexpr std::size_t kPositionBytes = 13, kStatusBytes = 33;     // with the carriage return
+constexpr std::size_t kStepDiv = 24, kStepMul = 26, kSpeed = 28;  // in the status (acq4, instrulink)
+constexpr int kErrorBits = 0x0f;
 
 void append(std::string& bytes, std::uint32_t number, int size) {
   for (int i = 0; i < size; ++i) bytes += static_cast<char>((number >> (8 * i)) & 0xff);
@@ -25,14 +28,25 @@ Mp285Answer readPosition(const std::string& bytes) {
 
 Mp285Answer readStatus(const std::string& bytes) {
   Mp285Answer answer;
-  const std::uint32_t step_div = take(bytes, kStepDiv, 2), speed = take(bytes, kSpeed, 2);
-  if (step_div == 0) return answer;
   answer.kind = Mp285Answer::Kind::kStatus;
-  answer.status.microstep = 1e-6 / step_div;
+  answer.status.step_div = static_cast<int>(take(bytes, kStepDiv, 2));
+  answer.status.step_mul = static_cast<int>(take(bytes, kStepMul, 2));
+  const std::uint32_t speed = take(bytes, kSpeed, 2);
   answer.status.fine = (speed & 0x8000) != 0;
   answer.status.speed = static_cast<int>(speed & 0x7fff);
-  answer.status.absolute = (take(bytes, kFlags, 1) & 0x20) != 0;
+  for (std::size_t i = 0; i + 1 < bytes.size(); ++i) {
+    char text[4];
+    std::snprintf(text, sizeof(text), i == 0 ? "%02x" : " %02x", static_cast<unsigned char>(bytes[i]));
+    answer.status.bytes += text;
+  }
   return answer;
+}
+
+/// The error's bits; -1: the byte is none. Micro-Manager's form is ASCII, '0' to '?'; acq4 reads the bits alone.
+int errorBits(char byte) {
+  const int value = static_cast<unsigned char>(byte);
+  const bool bare = value <= kErrorBits && byte != '\r';
+  return bare || (value >= '0' && value <= '0' + kErrorBits) ? value & kErrorBits : -1;
 }
 
 }  // namespace
@@ -49,21 +63,22 @@ std::string mp285SetVelocity(int speed, bool fine) {
   return bytes + '\r';
 }
 
+std::optional<double> mp285Microstep(int step_div, int step_mul) {
+  const bool known = (step_div == 25 && step_mul == 4) || (step_div == 400 && step_mul == 400);
+  return known ? std::optional<double>(0.04e-6) : std::nullopt;
+}
+
 std::string mp285ErrorName(int error) {
-  switch (error) {
-    case 0:
-      return "a byte was overrun";
-    case 1:
-      return "frame error on the line";
-    case 2:
-      return "its buffer is full";
-    case 4:
-      return "bad command";
-    case 8:
-      return "the move was interrupted";
-    default:
-      return "error " + std::to_string(error);
-  }
+  if (error == 0) return "a byte was overrun";
+  std::string names;
+  const auto name = [&](int bit, const char* text) {
+    if (error & bit) names += (names.empty() ? "" : ", ") + std::string(text);
+  };
+  name(1, "frame error on the line");
+  name(2, "its buffer is full");
+  name(4, "bad command");
+  name(8, "the move was interrupted");
+  return names;
 }
 
 void Mp285Parser::expect(Expected expected) {
@@ -79,25 +94,22 @@ std::optional<Mp285Answer> Mp285Parser::shortAnswer() const {
     return answer;
   }
   if (bytes_.size() != 2 || bytes_[1] != '\r') return std::nullopt;
-  if (bytes_[0] == '=') {
+  if (bytes_[0] == '=' && expected_ == Expected::kStop) {  // to anything else it is three errors at once
     answer.kind = Mp285Answer::Kind::kStopped;
     return answer;
   }
-  int code = static_cast<unsigned char>(bytes_[0]);
-  if (code >= '0' && code <= '8') code -= '0';  // Micro-Manager's form
-  if (code != 0 && code != 1 && code != 2 && code != 4 && code != 8) return std::nullopt;
+  answer.error = errorBits(bytes_[0]);
+  if (answer.error < 0) return std::nullopt;
   answer.kind = Mp285Answer::Kind::kError;
-  answer.error = code;
   return answer;
 }
 
 std::optional<Mp285Answer> Mp285Parser::feed(const std::string& bytes, bool silent) {
   bytes_ += bytes;
   std::optional<Mp285Answer> answer;
-  const std::size_t whole = expected_ == Expected::kDone       ? 2
-                            : expected_ == Expected::kPosition ? kPositionBytes
-                                                               : kStatusBytes;
-  if (expected_ == Expected::kDone) {
+  const bool is_short = expected_ == Expected::kDone || expected_ == Expected::kStop;
+  const std::size_t whole = is_short ? 2 : expected_ == Expected::kPosition ? kPositionBytes : kStatusBytes;
+  if (is_short) {
     answer = shortAnswer();
   } else if (bytes_.size() == whole && bytes_.back() == '\r') {
     answer = expected_ == Expected::kPosition ? readPosition(bytes_) : readStatus(bytes_);

@@ -75,15 +75,116 @@ TEST_F(Mp285Test, FastMovesAreCoarseAndEndFine) {
   EXPECT_EQ(rig_->device().movesBegun(), 2);
 }
 
-TEST_F(Mp285Test, ReadsTheMicrostepRatherThanAssumingIt) {
+TEST_F(Mp285Test, KnowsTheMicrostepOfAnMp285A) {
   Mp285EmulatorConfig device;
-  device.step_div = 16;  // 0.0625 um
+  device.step_div = device.step_mul = 400;
   make(device);
   start();
   rig_->driver().moveTo(kPlace, 0.5e-3);
   ASSERT_TRUE(rig_->runUntilArrived());
-  expectNear(rig_->place(), kPlace, 0.51 * 0.0625e-6);
-  EXPECT_DOUBLE_EQ(rig_->driver().abilities().resolution, 0.0625e-6);
+  expectNear(rig_->place(), kPlace, 0.51 * kStep);
+  EXPECT_DOUBLE_EQ(rig_->driver().abilities().resolution, kStep);
+}
+
+TEST_F(Mp285Test, AnUnknownMicrostepIsRefusedWithTheBytesAndMovesNothing) {
+  for (const auto& [step_div, step_mul] : {std::pair(16, 4), {400, 4}, {25, 400}, {0, 0}}) {
+    SCOPED_TRACE(step_div);
+    Mp285EmulatorConfig device;
+    device.step_div = step_div;
+    device.step_mul = step_mul;
+    make(device);
+    rig_->run(10, [&] {
+      rig_->driver().moveTo(kPlace, 1e-3);
+      rig_->driver().clearFault();
+      EXPECT_FALSE(rig_->driver().reading());
+    });
+    EXPECT_EQ(rig_->driver().state(), State::kFault);
+    EXPECT_EQ(rig_->device().movesBegun(), 0);
+    const std::string why = rig_->driver().why();
+    EXPECT_NE(why.find("STEP_DIV = " + std::to_string(step_div) + " and STEP_MUL = " + std::to_string(step_mul)),
+              std::string::npos)
+        << why;
+    EXPECT_NE(why.find("40 00 02 04 07 00 63"), std::string::npos) << why;
+  }
+}
+
+TEST_F(Mp285Test, AKeyOverridesTheMicrostepOfEachAxis) {
+  auto config = TestedMp285::config();
+  config.microsteps << 0.0625e-6, 0.04e-6, 0.03e-6;
+  for (const int step_div : {16, 25}) {
+    SCOPED_TRACE(step_div);
+    Mp285EmulatorConfig device;
+    device.step_div = step_div;
+    device.microsteps = config.microsteps;
+    make(device, config);
+    start();
+    for (const double speed : {0.1e-3, 1e-3}) {
+      const Eigen::Vector3d goal = speed < 0.5e-3 ? kPlace : -kPlace;
+      const double from = rig_->time(), way = (goal - rig_->place()).norm();
+      double carried = 0;
+      rig_->driver().moveTo(goal, speed);
+      ASSERT_TRUE(rig_->runUntil(
+          [&] {
+            carried = std::max(carried, (rig_->read() - rig_->place()).norm());
+            return rig_->time() > from + 0.05 && !rig_->driver().moving();
+          },
+          5));
+      expectNear(rig_->place(), goal, 0.51 * 0.0625e-6);
+      // Without a known pair nobody knows how fast it is by its own um/s, so only the end is certain.
+      if (step_div == 25) EXPECT_LT(carried, 0.02 * way + speed * 4e-3);
+    }
+    EXPECT_EQ(rig_->driver().largestCorrection(), 0);
+  }
+}
+
+TEST_F(Mp285Test, AZeroInTheKeyIsTheStatus) {
+  auto config = TestedMp285::config();
+  config.microsteps << 0, 0, 0.03e-6;
+  Mp285EmulatorConfig device;
+  device.microsteps << 0.04e-6, 0.04e-6, 0.03e-6;
+  make(device, config);
+  start();
+  moveAndCheck();
+  device.step_div = 16;
+  make(device, config);
+  EXPECT_TRUE(rig_->runUntil([&] { return rig_->driver().state() == State::kFault; }, 3));
+}
+
+TEST_F(Mp285Test, LeavesTheDeviceAPauseAfterEachAnswer) {
+  Mp285EmulatorConfig device;
+  device.answer_time = 1.7e-3;  // s, so that answers come at any time of a step
+  make(device);
+  ASSERT_TRUE(rig_->runUntilReady(0.7)) << rig_->driver().why();  // nothing was said twice
+  moveAndCheck();
+  // A device that needs none is asked sooner; one that needs more would not hear.
+  auto hasty = TestedMp285::config();
+  hasty.command_pause = 0;
+  make({}, hasty);
+  EXPECT_FALSE(rig_->runUntilReady(3));
+}
+
+TEST_F(Mp285Test, SeveralErrorsAtOnceAreToldAndNoNoise) {
+  for (const bool ascii : {true, false}) {
+    SCOPED_TRACE(ascii);
+    Mp285EmulatorConfig device;
+    device.ascii_errors = ascii;
+    make(device);
+    start();
+    const int malformed = rig_->driver().malformed();
+    for (int i = 0; i < 3; ++i) {
+      rig_->inject("error:6");
+      rig_->run(1.2);
+    }
+    EXPECT_EQ(rig_->driver().malformed(), malformed);
+    ASSERT_EQ(rig_->driver().state(), State::kFault);
+    EXPECT_EQ(rig_->driver().why(), "MP-285: its buffer is full, bad command");
+    rig_->driver().clearFault();
+    ASSERT_TRUE(rig_->runUntilReady());
+    rig_->inject("error:9");  // of a move, half way
+    moveAndCheck();
+    EXPECT_EQ(rig_->device().movesBegun(), 2);
+    EXPECT_EQ(rig_->driver().malformed(), malformed);
+  }
 }
 
 TEST_F(Mp285Test, RecoversFromFaultsOfTheLineAndLosesNoMove) {

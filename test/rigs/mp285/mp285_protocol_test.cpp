@@ -47,9 +47,10 @@ TEST(Mp285Protocol, ACarriageReturnInAPositionIsANumber) {
   EXPECT_EQ(said->position, (Mp285Position{0x0d04, 0x0d0d0d0d, 0}));
 }
 
-TEST(Mp285Protocol, ReadsErrorsInBothForms) {
-  for (const int code : {0, 1, 2, 4, 8}) {
+TEST(Mp285Protocol, ReadsErrorsAndTheirSumsInBothForms) {
+  for (int code = 0; code <= 15; ++code) {
     for (const int said : {code, '0' + code}) {
+      if (said == 0x0d) continue;  // bare, it is the end of an answer
       const auto done = answer(Expected::kDone, bytes({said, 0x0d}));
       ASSERT_TRUE(done && done->kind == Kind::kError) << said;
       EXPECT_EQ(done->error, code);
@@ -59,28 +60,39 @@ TEST(Mp285Protocol, ReadsErrorsInBothForms) {
       EXPECT_EQ(position->error, code);
     }
   }
+  EXPECT_EQ(mp285ErrorName(1 + 8), "frame error on the line, the move was interrupted");
+  EXPECT_EQ(mp285ErrorName(0), "a byte was overrun");
 }
 
 TEST(Mp285Protocol, ReadsTheAnswersToAStop) {
-  EXPECT_EQ(answer(Expected::kDone, bytes({0x0d}))->kind, Kind::kDone);
-  EXPECT_EQ(answer(Expected::kDone, bytes({0x3d, 0x0d}))->kind, Kind::kStopped);
-  EXPECT_FALSE(answer(Expected::kDone, bytes({0x3d})));
+  EXPECT_EQ(answer(Expected::kStop, bytes({0x0d}))->kind, Kind::kDone);
+  EXPECT_EQ(answer(Expected::kStop, bytes({0x3d, 0x0d}))->kind, Kind::kStopped);
+  EXPECT_FALSE(answer(Expected::kStop, bytes({0x3d})));
+  EXPECT_EQ(answer(Expected::kDone, bytes({0x3d, 0x0d}))->error, 1 + 4 + 8);  // to anything else
 }
 
-TEST(Mp285Protocol, ReadsTheStatus) {
-  std::string status(33, '\0');
-  status[0] = 0x20;
-  status[24] = 25;
-  status[28] = static_cast<char>(0xe8);
-  status[29] = static_cast<char>(0x83);
-  status[32] = '\r';
-  const auto said = answer(Expected::kStatus, status);
+/// As a public client printed them of a real MP-285.
+const std::string kRealStatus = bytes({64, 0,  2,  4,  7, 0, 99, 0,  99, 0, 20, 0,   136, 19, 1, 120, 112,
+                                       23, 16, 39, 80, 0, 0, 0,  25, 0,  4, 0,  200, 0,   84, 1, 0x0d});
+
+TEST(Mp285Protocol, ReadsTheStatusOfARealOne) {
+  const auto said = answer(Expected::kStatus, kRealStatus);
   ASSERT_TRUE(said && said->kind == Kind::kStatus);
-  EXPECT_DOUBLE_EQ(said->status.microstep, 0.04e-6);
-  EXPECT_TRUE(said->status.fine && said->status.absolute);
-  EXPECT_EQ(said->status.speed, 1000);
-  status[24] = 0;
-  EXPECT_EQ(answer(Expected::kStatus, status)->kind, Kind::kMalformed);
+  EXPECT_EQ(said->status.step_div, 25);
+  EXPECT_EQ(said->status.step_mul, 4);
+  EXPECT_FALSE(said->status.fine);
+  EXPECT_EQ(said->status.speed, 200);
+  EXPECT_EQ(said->status.bytes.substr(0, 8), "40 00 02");
+  EXPECT_EQ(said->status.bytes.substr(said->status.bytes.size() - 5), "54 01");
+}
+
+TEST(Mp285Protocol, KnowsTheMicrostepOfTwoPairsOnly) {
+  EXPECT_DOUBLE_EQ(*mp285Microstep(25, 4), 0.04e-6);
+  EXPECT_DOUBLE_EQ(*mp285Microstep(400, 400), 0.04e-6);
+  for (const auto& [step_div, step_mul] :
+       {std::pair(25, 400), {400, 4}, {4, 25}, {0, 0}, {16, 4}, {25, 25}, {400, 0}, {100, 100}}) {
+    EXPECT_FALSE(mp285Microstep(step_div, step_mul)) << step_div << ", " << step_mul;
+  }
 }
 
 TEST(Mp285Protocol, RefusesWhatIsNoAnswer) {
@@ -88,7 +100,9 @@ TEST(Mp285Protocol, RefusesWhatIsNoAnswer) {
   EXPECT_EQ(answer(Expected::kPosition, std::string(7, 'x'), true)->kind, Kind::kMalformed);
   EXPECT_EQ(answer(Expected::kPosition, "\r", true)->kind, Kind::kMalformed);
   EXPECT_EQ(answer(Expected::kDone, "xy")->kind, Kind::kMalformed);
-  EXPECT_EQ(answer(Expected::kDone, bytes({3, 0x0d}))->kind, Kind::kMalformed);
+  for (const int byte : {0x10, 0x2f, 0x40, 0x61, 0xff}) {
+    EXPECT_EQ(answer(Expected::kDone, bytes({byte, 0x0d}))->kind, Kind::kMalformed) << byte;
+  }
   EXPECT_EQ(answer(Expected::kStatus, std::string(33, 'x'))->kind, Kind::kMalformed);
 }
 
