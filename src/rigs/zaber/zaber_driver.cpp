@@ -57,9 +57,7 @@ double ZaberDriver::longestAge() const {
 double ZaberDriver::longestGuess() const { return std::max(kLongestGuess, 1.3 * turnTime()); }
 
 /// No faster than it can brake in the distance from which it is slowed down.
-double ZaberDriver::fastest(int i) const {
-  return std::min({config_.speed, speedLimits()[i], acceleration_ / gain()});
-}
+double ZaberDriver::fastest(int i) const { return std::min({config_.speed, speedLimits()[i], acceleration_ / gain()}); }
 
 /// Of a speed (m/s), never rounded beyond the axis' fastest.
 long long ZaberDriver::speedData(int i, double speed) const {

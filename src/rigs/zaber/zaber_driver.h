@@ -70,6 +70,7 @@ class ZaberDriver : public SerialManipulator {
     double position_time = 0;        // s
     double heard = 0;                // s of listened(), when it was last told truly
     double velocity = 0;             // m/s, carries the position on
+    double coasting = 0;             // m, by which a stop in this session left the position uncertain
     double end = 0;                  // m, where a move ends; NaN: it does not
     std::optional<long long> told;   // units of speed, of the velocity that the device follows
     bool busy = true;
@@ -133,6 +134,9 @@ class ZaberDriver : public SerialManipulator {
   void sendExchange();
   long long velocityData(int axis) const;
   bool nextVelocity(int axis);
+  bool goalStands() const;
+  std::optional<long long> placeOfArrival(int axis) const;
+  bool canGoTo(int axis, long long place) const;
   std::optional<long long> endOfVelocity(int axis, long long data) const;
   long long moveSpeedData(int axis) const;
 
