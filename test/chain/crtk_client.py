@@ -2,9 +2,9 @@
 (src/crtk/utils.py, wait_move_handle.py, ral_ros1.py; MIT licence) without its code.
 
 What counts of it: commands have stamp 0 and an empty frame; state_command is latched, motion commands are not; an
-operating_state counts only when its stamp is later than that of the one before; wait() of a move needs is_busy true with
-a stamp later than the command, and false after it; home() and unhome() wait for another operating_state than the one at
-their begin; setpoint_cp() needs a stamp of the last 20 ms, or waits so long for another message.
+operating_state counts only when its stamp is later than that of the one before; wait() of a move needs is_busy true
+with a stamp later than the command, and false after it; home() and unhome() wait for another operating_state than the
+one at their begin; setpoint_cp() needs a stamp of the last 20 ms, or waits so long for another message.
 
 Differences: it waits by wall time, here up to PATIENCE, since a test machine stalls."""
 

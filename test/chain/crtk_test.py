@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The released CRTK client drives a live needle: unstamped commands, states, is_busy, set-point; nothing old is obeyed."""
+"""The released CRTK client drives a live needle: unstamped commands, states, is_busy, set-point; nothing old counts."""
 
 import pathlib
 import signal
@@ -206,8 +206,8 @@ class CrtkTest(unittest.TestCase):
         """As those of rostopic pub -1, and of the client until 1.1."""
         held = self.needle()
         for topic, said in (("move_cp", "move_cp refused:"), ("servo_cp", "needle/servo_cp: refused,")):
-            subprocess.run(["rostopic", "pub", "-1", f"/needle/{topic}", "geometry_msgs/PoseStamped",
-                            f"{{pose: {{position: {{x: {FAR[0]:f}, z: {FAR[2]:f}}}, orientation: {{w: 1.0}}}}}}"], check=True,
+            far = f"{{pose: {{position: {{x: {FAR[0]:f}, z: {FAR[2]:f}}}, orientation: {{w: 1.0}}}}}}"
+            subprocess.run(["rostopic", "pub", "-1", f"/needle/{topic}", "geometry_msgs/PoseStamped", far], check=True,
                            stdout=subprocess.DEVNULL)
             self.until_said(f"{said} it has no stamp and its publisher latches")
             np.testing.assert_allclose(self.needle(), held, atol=0.1e-6)
@@ -239,7 +239,7 @@ class CrtkTest(unittest.TestCase):
         self.until_said("two nodes command the needle")
 
     def test_when_the_node_starts_anew_it_obeys_nothing_old(self):
-        """The client's last state command is latched, and comes again. Last of the tests by its name: its node is another."""
+        """The client's last state command is latched and comes again. Last by its name: its node is another."""
         self.assertTrue(self.client.unhome())
         self.assertTrue(self.client.home())
         self.nodes.kill("micromanipulator")

@@ -12,6 +12,7 @@ import time
 import numpy as np
 import rospy
 import rostest
+from cell_microinjection.msg import OperatingState
 
 from case import case
 from haptic_driver import FORCE, HAND, PRESENT, HapticTest
@@ -93,7 +94,7 @@ class KeyboardTest(HapticTest):
         self.until(lambda: len(self.commands) >= 4, self.good, "no command")
         self.assertEqual(self.commands, ["enable", "inject", "home", "disable"])
 
-    def test_3_enable_goes_on_where_the_controller_is_paused(self):
+    def test_3_words_in_a_pause(self):
         """CRTK's enable does not end PAUSED; the operator has one key for both."""
         controller = rospy.Publisher("/controller/operating_state", OperatingState, queue_size=1, latch=True)
         controller.publish(OperatingState(state="PAUSED"))

@@ -28,7 +28,10 @@ class ZaberDriver : public SerialManipulator {
   ManipulatorAbilities abilities() const override;
   std::optional<Reading> reading() const override;
   bool moving() const override;
-  std::optional<Eigen::Vector3d> homingEnds() const override;
+  std::optional<Eigen::Vector3d> homingEnds() const override {
+    if (!config_.home) return std::nullopt;
+    return config_.joints.toJoints(Eigen::Vector3d::Zero());  // an axis counts from its reference position
+  }
   void planHoming(const HomingPlan& plan) override { homing_ = plan; }
 
   const std::string& note() const { return note_; }                 ///< the last warning that is no fault
