@@ -35,7 +35,10 @@ class ZaberDriver : public SerialManipulator {
   ManipulatorAbilities abilities() const override;
   std::optional<Reading> reading() const override;
   bool moving() const override;
-  std::optional<Eigen::Vector3d> homingEnds() const override;
+  std::optional<Eigen::Vector3d> homingEnds() const override {
+    if (!config_.home) return std::nullopt;
+    return config_.joints.toJoints(Eigen::Vector3d::Zero());  // an axis counts from its reference position
+  }
   void planHoming(const HomingPlan& plan) override { homing_ = plan; }
 
   std::string note() const override;
