@@ -41,6 +41,7 @@ class InjectorContractTest(unittest.TestCase):
 
     def setUp(self):
         self.tick_until(lambda: "/injector/state" in self.world.seen and not self.state().fault and not self.state().busy)
+        self.world.run(200)  # forty times the regulator's time constant
 
     def stamp(self, message):
         message.header.stamp = self.world.now

@@ -113,7 +113,7 @@ class LineEndsTest(unittest.TestCase):
         parameters["serial"]["codes"]["inject"] = 10  # what YAML makes of 012 without quotes
         self.check_refused("injector", parameters, ["serial/codes/inject = 10: must be 3 letters or digits"])
         del parameters["serial"]["codes"]["inject"]
-        self.check_refused("injector", parameters, ["serial/codes/inject is missing"])
+        self.check_refused("injector", parameters, ["codes/inject is missing"])
 
 
 if __name__ == "__main__":
