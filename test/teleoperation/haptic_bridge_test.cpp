@@ -236,6 +236,9 @@ TEST(HapticBridgeConfig, TheOneThatIsShippedHasTheDefaults) {
   ConfigReader reader(map, path);
   double rate = 0;
   reader.number("rate", rate, Range::positive(), ConfigReader::kRequired);
+  bool force_feedback = false;
+  reader.boolean("force_feedback", force_feedback);
+  EXPECT_TRUE(force_feedback);
   ConfigReader timeouts = reader.section("timeouts", ConfigReader::kRequired);
   for (const char* input : {"hand", "clutch", "operator_present", "needle", "predicted", "measured", "controller"}) {
     double timeout = 0;
