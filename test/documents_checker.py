@@ -1,4 +1,5 @@
 """What is wrong with the documents of a project, each line and token for itself."""
+import functools
 import re
 import shlex
 from pathlib import Path
@@ -18,6 +19,7 @@ build/core build/core-address build/core-thread cp cv cf SIGSTOP NAMESPACE/body/
 footpedals/operator_present console/operator_present'''.split())
 PLACEHOLDER = re.compile(r'\b[A-Z][A-Z0-9_]*\b|(?<![A-Za-z])(?:NAME|KIND|RIG)(?=_)|\.\.\.|\*')
 IDENTIFIER = re.compile(r'[A-Za-z_]\w*(?:::\w+)*(?:\(\))?')
+WRITTEN = ('csv', 'yaml', 'png', 'bag', 'md', 'active')
 SUFFIXES = ('md', 'py', 'cpp', 'h', 'launch', 'yaml', 'csv', 'png', 'bag', 'urdf', 'txt', 'xml', 'msg', 'srv', 'action',
             'test', 'sh', 'cff', 'rviz', 'bash')
 
@@ -156,6 +158,9 @@ class Checker:
                   'rostopic': self.check_ros_name, 'rosservice': self.check_ros_name, 'python3': self.check_python}
         if words[0] in checks:
             checks[words[0]](words)
+        for word in words:
+            if re.fullmatch(r'(config|src|launch|test|urdf)/[\w./-]+', word) and not (self.project.root / word).exists():
+                self.report(f'there is no file {word}')
 
     def check_dev(self, words):
         if len(words) < 2 or PLACEHOLDER.fullmatch(words[1]) or words[1] == '--help':
@@ -192,8 +197,6 @@ class Checker:
         for word in words[3:]:
             if word.startswith('--') and word not in known:
                 self.report(f'{words[2]} has no option {word}')
-            elif '/' in word and word.startswith(('config/', 'src/', 'launch/')) and word not in self.project.files:
-                self.report(f'there is no file {word}')
 
     def check_roslaunch(self, words):
         words = [word for word in words if not word.startswith(('--', '['))]
@@ -237,8 +240,6 @@ class Checker:
 
     def check_python(self, words):
         script = next((word for word in words[1:] if word.endswith('.py')), '')
-        if script and script not in self.project.files:
-            return self.report(f'there is no script {script}')
         known = self.project.programs.get(Path(script).name)
         for word in words:
             if known is not None and word.startswith('--') and word not in known | {'--help'}:
@@ -251,7 +252,11 @@ class Checker:
         if token in OTHERS or not re.search(r'[A-Za-z]', token):
             return
         first = token.split()[0]
-        if first in ('./dev', 'rosrun', 'roslaunch', 'rostopic', 'rosservice', 'python3') and ' ' in token:
+        either = re.fullmatch(r'([\w/]+\.)\{(\w+),(\w+)\}', token)
+        if either:
+            for suffix in either.groups()[1:]:
+                self.check_path(either.group(1) + suffix)
+        elif first in ('./dev', 'rosrun', 'roslaunch', 'rostopic', 'rosservice', 'python3') and ' ' in token:
             self.check_command(token)
         elif token.startswith('./dev') or token.startswith('test/') and token in self.project.files:
             pass
@@ -302,8 +307,8 @@ class Checker:
             pattern = '.*'.join(re.escape(part) for part in PLACEHOLDER.split(bare))
             known = project.files | project.folders | project.keys | project.topics
             there = any(re.fullmatch(f'(.*/)?{pattern}', name) for name in known) or not re.search(r'[a-z]', bare)
-        if not there and '.' in bare:
-            there = all(word in project.words for word in re.findall(r'\w+', bare))
+        if not there and bare.rsplit('.', 1)[-1] in WRITTEN:  # by a program, into a folder of the user's
+            there = bare.rsplit('/', 1)[-1] in self.all_code()
         if not there and '/' in token:
             there = f'/{bare}' in project.topics | project.parts or self.is_key(bare) or self.is_scene_key(bare)
         if not there:
@@ -316,10 +321,13 @@ class Checker:
         """A key that no file of config uses: each part of it is a text of the code."""
         return all(f'"{part}"' in self.texts() for part in token.split('/'))
 
+    @functools.lru_cache(maxsize=None)
     def texts(self):
-        if not hasattr(self, '_texts'):
-            self._texts = set(re.findall(r'"[a-z_]+"', self.project.sources('src/*/*.cpp', 'src/*/*/*.cpp')))
-        return self._texts
+        return set(re.findall(r'"[a-z_]+"', self.project.sources('src/*/*.cpp', 'src/*/*/*.cpp')))
+
+    @functools.lru_cache(maxsize=None)
+    def all_code(self):
+        return '\n'.join(self.project.code.values())
 
     def check_word(self, token):
         if PLACEHOLDER.fullmatch(token) and token not in self.project.words and not re.search('[_a-z]', token):

@@ -57,6 +57,7 @@ class Project:
         self.read_programs()
         self.read_nodes()
         self.keys = {key for path, text in self.code.items() if path.endswith('.yaml') for key in keys_of(text)}
+        self.keys |= set(re.findall(r'<param[^>]* name="([a-z_/]+)"', self.sources('launch/*', 'launch/haptic/*')))
 
     def text(self, path):
         return (self.root / path).read_text(errors='replace')
@@ -74,13 +75,15 @@ class Project:
 
     def read_launch_files(self):
         """{launch file: {argument: what is said of it}}; a fixed value is no argument."""
-        self.launch = {}
+        self.launch, self.defaults = {}, {}
         for path in self.files:
             if path.startswith('launch/') and path.endswith('.launch'):
                 tree = ElementTree.fromstring(self.text(path))
                 self.launch[path[len('launch/'):]] = {
                     arg.get('name'): f'{arg.get("doc", "")} {arg.get("default")}' for arg in tree.iter('arg')
                     if arg.get('default') is not None or arg.get('doc')}
+                self.defaults[path[len('launch/'):]] = {
+                    arg.get('name'): arg.get('default') for arg in tree.iter('arg') if arg.get('default') is not None}
         self.arguments = {name for arguments in self.launch.values() for name in arguments}
 
     def read_programs(self):
@@ -108,10 +111,12 @@ class Project:
         self.topics |= set(re.findall(r'"(/[a-z_]+(?:/[a-z_]+)*)"', text))
         self.topics |= {'/' + topic for topic in re.findall(r'"([a-z_]+/[a-z_]+(?:/[a-z_]+)?)"', text)}
         self.topics |= {f'/controller/inject/{part}' for part in ('goal', 'cancel', 'status', 'feedback', 'result')}
+        self.services = set()
         for path, source in self.code.items():
             if path.endswith('_node.cpp'):
                 node = Path(path).stem[:-len('_node')]
-                self.topics |= {f'/{node}/{name}' for name in re.findall(r'advertiseService[^;"]*\(\s*"(\w+)"', source)}
+                self.services |= {f'/{node}/{name}' for name in re.findall(r'advertiseService[^;"]*\(\s*"(\w+)"', source)}
+        self.topics |= self.services
         self.topics |= set(re.findall(r'<param name="(/[a-z_/]+)"', self.sources('launch/*')))
         self.topics |= {'/use_sim_time', '/lockstep/participants'} & set(re.findall(r'/[a-z_/]+', self.sources('launch/*')))
         self.parts = {part for name in self.topics for part in ('/'.join(name.split('/')[:n]) for n in range(2, 5))}

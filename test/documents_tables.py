@@ -3,8 +3,10 @@ import re
 
 import yaml
 
-from documents_checker import Checker
+from documents_checker import PACKAGE, Checker
 from documents_project import TOPIC_CALL, flatten
+
+DRIVERS = ('/phantom/', '/Geomagic/')  # topics of others that have an emulator here
 
 
 def table_rows(text, heading):
@@ -31,22 +33,27 @@ def check_parameters(project, text):
 
 
 def check_topics(project, text):
-    """Each topic and service that a node has is in topics_and_frames.md."""
-    ours = {topic for topic in project.topics if topic.count('/') > 1 and not topic.startswith(
-        ('/session', '/link/wave', '/proc', '/phantom', '/spacenav', '/controller/inject/', '/lockstep/participants'))}
+    """Each topic that a node publishes or hears below a name of ours, and each service, is in topics_and_frames.md."""
     calls = {'/' + topic.lstrip('/') for topic in TOPIC_CALL.findall(project.sources('src/nodes/*', 'src/nodes/haptic/*'))}
-    services = {topic for topic in ours if re.search(r'/(tare|reset|calibrate|clog)$', topic)}
-    return [f'{topic} is not in the tables' for topic in sorted((calls & ours) | services)
-            if f'`{topic}`' not in text and not re.search(r'/(state|button|force_feedback|joy|pose)$', topic) or
-            topic in services and f'`{topic}`' not in text]
+    ours = {topic for topic in calls if topic.count('/') > 1 and not topic.startswith(DRIVERS)} | project.services
+    return [f'{topic} is not in the tables' for topic in sorted(ours) if f'`{topic}`' not in text]
+
+
+def check_arguments(project, text):
+    """The table of session.launch has its arguments, and their defaults where the table gives one value."""
+    rows, arguments = table_rows(text, 'session.launch'), project.launch['session.launch']
+    problems = [f'session.launch: {name} is not in the table' for name in arguments if name not in rows]
+    problems += [f'session.launch: the table has {name}, the file has not' for name in rows if name not in arguments]
+    for name, default in project.defaults['session.launch'].items():
+        told = re.fullmatch(r'`([^`]*)`', rows[name][1]) if name in rows else None
+        if told and told.group(1) not in (default, default.replace(f'$(find {PACKAGE})/', '')) and '$(e' not in default:
+            problems.append(f'session.launch: {name} = {default} is not in the table')
+    return problems
 
 
 def check_commands(project, text):
-    """Every argument of session.launch, ./dev command and option of our commands is in commands.md."""
-    rows = table_rows(text, 'session.launch')
-    problems = [f'session.launch: {name} is not in the table' for name in project.launch['session.launch'] if name not in rows]
-    problems += [f'session.launch: the table has {name}, the file has not' for name in rows
-                 if name not in project.launch['session.launch']]
+    """Every ./dev command and option of our programs is in commands.md."""
+    problems = check_arguments(project, text)
     problems += [f'./dev {name} is not in the table' for name in project.dev if f'`./dev {name}' not in text]
     for program in ('indent', 'prepare', 'trajectory_error', 'emulate'):
         hidden = {'--help', '--ray'}

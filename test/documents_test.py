@@ -12,7 +12,7 @@ from pathlib import Path
 
 from documents_checker import Checker
 from documents_project import Project
-from documents_tables import check_commands, check_parameters, check_scene_keys, check_topics, reachable
+from documents_tables import check_arguments, check_commands, check_parameters, check_scene_keys, check_topics, reachable
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -114,6 +114,7 @@ See [other](doc/guide/other.md#how-its-rate-is-mostly), `config/bridge.yaml`, `s
                 '[page](nowhere.md)': 'no such file', '[page](other.md#nothing)': 'no such heading',
                 '[page](../other.md)': 'no such file', '![picture](scene.png)': 'no such file',
                 '`config/nothing.yaml`': 'no file, topic or key', '`cell/nothing.cpp`': 'no file, topic or key',
+                '`nodes/servo_cf.h`': 'no file, topic or key', '`scene.h`': 'no file, topic or key',
                 '`limits/torque`': 'no file, topic or key', '`serial/parity`': 'no file, topic or key',
                 '`launch/NAME.urdf`': 'no file, topic or key', '`torque_gain`': 'nothing of that name',
                 '`/haptic/servo_cx`': 'no node has a topic', '`/bridge/reset`': 'no node has a topic', '`--deep`': 'no program has an option',
@@ -135,7 +136,8 @@ See [other](doc/guide/other.md#how-its-rate-is-mostly), `config/bridge.yaml`, `s
                 'roslaunch cell_microinjection other.launch': 'no launch file', 'rostopic echo /haptic/none': 'no node has a topic',
                 'roslaunch cell_microinjection session.launch rig:=lathe': 'knows no lathe',
                 'roslaunch cell_microinjection session.launch speed:=1': 'no argument speed',
-                'rostopic pub -1 /haptic/servo_cf cell_microinjection/Nothing': 'no message', 'python3 src/none.py': 'no script'}.items():
+                'rostopic pub -1 /haptic/servo_cf cell_microinjection/Nothing': 'no message', 'python3 src/none.py': 'no file src/none.py',
+                'cp config/none.yaml mine.yaml': 'no file config/none.yaml'}.items():
             for block in (f'    {wrong}\n', f'```\n{wrong}\n```\n'):
                 with self.subTest(block=block):
                     found = self.problems(f'# Page\n\nText.\n\n{block}')
@@ -158,6 +160,8 @@ See [other](doc/guide/other.md#how-its-rate-is-mostly), `config/bridge.yaml`, `s
         self.assertIn('the file has not', check_parameters(project, table + '| `more` | 1 |\n')[0])
         self.assertEqual(check_topics(project, '`/haptic/servo_cf` `/bridge/tare`'), [])
         self.assertEqual(len(check_topics(project, '')), 2)
+        self.assertIn('rig = sim', check_arguments(project, '## session.launch\n| `rig` | `zaber` | |\n')[0])
+        self.assertIn('rig is not', check_arguments(project, '## session.launch\n| `mode` | | |\n')[0])
         self.assertIn('the key stretch', check_scene_keys(project, '`mesh/size`')[0])
 
     def test_finds_documents_that_no_link_leads_to(self):
