@@ -65,6 +65,9 @@ class Project:
     def sources(self, *patterns):
         return '\n'.join(text for path, text in self.code.items() if any(Path(path).match(pattern) for pattern in patterns))
 
+    def joined(self, paths):
+        return '\n'.join(self.code[path] for path in paths)
+
     def read_dev(self):
         """{command of ./dev: its options}, as ./dev itself says."""
         def help_of(*arguments):

@@ -1,5 +1,6 @@
 """The tables of the reference against code and configuration, and which documents links lead to."""
 import re
+from pathlib import Path
 
 import yaml
 
@@ -37,6 +38,37 @@ def check_topics(project, text):
     calls = {'/' + topic.lstrip('/') for topic in TOPIC_CALL.findall(project.sources('src/nodes/*', 'src/nodes/haptic/*'))}
     ours = {topic for topic in calls if topic.count('/') > 1 and not topic.startswith(DRIVERS)} | project.services
     return [f'{topic} is not in the tables' for topic in sorted(ours) if f'`{topic}`' not in text]
+
+
+def files_of(project, node):
+    """The files of src/nodes that a node is made of: its own, and what these include."""
+    found, waiting = set(), [f'src/nodes/{node}_node.cpp', f'src/nodes/haptic/{node}_node.cpp']
+    waiting += [path for path in project.code if node == 'haptic_device' and path.endswith('_adapter.cpp')]
+    while waiting:
+        path = waiting.pop()
+        if path in project.code and path not in found:
+            found.add(path)
+            included = re.findall(r'#include "(nodes/[^"]+)"', project.code[path])
+            waiting += [f'src/{name[:-1]}{end}' for name in included for end in ('h', 'cpp')] + [path[:-3] + 'h']
+    return found
+
+
+def check_nodes(project, text):
+    """Who publishes a topic is as the tables have it; who reads it knows its name."""
+    problems, told = [], {}
+    for line in text.splitlines():
+        cells = [cell.strip() for cell in line.strip().strip('|').split('|')]
+        for topic in re.findall(r'`(/[a-z_/]+)`', cells[0]) if line.startswith('|') else []:
+            nodes = [node for cell in cells[1:] for node in re.findall(r'`(\w+)`', cell) if node in project.programs]
+            told[topic] = set(nodes) if len(cells) > 2 else set()
+            problems += [f'{topic}: {node} does not know it' for node in nodes
+                         if not re.search(rf'["/ ]{topic[1:]}\b', project.joined(files_of(project, node)))]
+    for node in sorted(project.programs):
+        own = project.joined(path for path in files_of(project, node) if Path(path).stem.startswith(node))
+        for topic in re.findall(r'output<[^;()]*>\(\s*"([a-z_/]+)"', own):
+            if node not in told.get(f'/{topic}', {node}):
+                problems.append(f'/{topic}: {node} publishes it')
+    return problems
 
 
 def check_arguments(project, text):

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from documents_checker import Checker
 from documents_project import Project
-from documents_tables import check_arguments, check_commands, check_parameters, check_scene_keys, check_topics, reachable
+from documents_tables import check_arguments, check_commands, check_nodes, check_parameters, check_scene_keys, check_topics, reachable
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -41,6 +41,9 @@ class TheDocuments(unittest.TestCase):
 
     def test_have_every_topic(self):
         self.assert_table(check_topics, 'doc/reference/topics_and_frames.md')
+
+    def test_have_the_nodes_of_every_topic(self):
+        self.assert_table(check_nodes, 'doc/reference/topics_and_frames.md')
 
     def test_have_every_command_argument_and_option(self):
         self.assert_table(check_commands, 'doc/reference/commands.md')
@@ -160,6 +163,9 @@ See [other](doc/guide/other.md#how-its-rate-is-mostly), `config/bridge.yaml`, `s
         self.assertIn('the file has not', check_parameters(project, table + '| `more` | 1 |\n')[0])
         self.assertEqual(check_topics(project, '`/haptic/servo_cf` `/bridge/tare`'), [])
         self.assertEqual(len(check_topics(project, '')), 2)
+        self.assertEqual(check_nodes(project, '| `/haptic/servo_cf` | `Wrench` | `bridge` |\n'), [])
+        self.assertIn('does not know', check_nodes(project, '| `/haptic/other` | `Wrench` | `bridge` |\n')[0])
+        self.assertIn('bridge publishes it', check_nodes(project, '| `/haptic/servo_cf` | `Wrench` | you |\n')[0])
         self.assertIn('rig = sim', check_arguments(project, '## session.launch\n| `rig` | `zaber` | |\n')[0])
         self.assertIn('rig is not', check_arguments(project, '## session.launch\n| `mode` | | |\n')[0])
         self.assertIn('the key stretch', check_scene_keys(project, '`mesh/size`')[0])
