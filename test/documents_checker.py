@@ -8,6 +8,7 @@ HISTORY = {'CHANGELOG.md'}  # names what once was, and is wrapped as its entries
 README_LINES, COLUMNS, SENTENCE = 150, 100, 30
 
 
+PRIVATE = re.compile(r'\b(heeds?|distrusts?|judged?s?|tells?|told|says?|said|let go|lets go)\b', re.IGNORECASE)
 PACKAGE = 'cell_microinjection'
 # What others' programs are called: their options, topics and identifiers that the documents name.
 OTHERS = set('''/publish_rate /phantom /Geomagic /opt --ros-args --help out/demo out/bench out/test out/paper devel/setup.bash
@@ -136,6 +137,9 @@ class Checker:
     def check_sentences(self, paragraph):
         plain = re.sub(r'!?\[([^\]]*)\]\([^)]*\)', r'\1', re.sub(r'`[^`]*`', 'code', paragraph))
         for sentence in re.split(r'(?<=[.!?])[*_)"]*\s+', plain):
+            private = PRIVATE.search(sentence) if self.place.startswith(('README.md', 'doc/guide/')) else None
+            if private:
+                self.report(f'"{private.group()}" is a private word: {sentence[:60]} ...')
             words = re.findall(r"[A-Za-z0-9][\w/^'.-]*", sentence)
             if len(words) > SENTENCE:
                 self.report(f'a sentence of {len(words)} words, at most {SENTENCE}: {sentence[:60]} ...')

@@ -1,4 +1,5 @@
 """What the documents of a project may name: its files, commands, launch files, topics, keys and identifiers."""
+import os
 import re
 import subprocess
 import xml.etree.ElementTree as ElementTree
@@ -37,13 +38,19 @@ def keys_of(text):
     return found
 
 
+def files_below(root):
+    """Paths from `root`, but for what was built or written."""
+    for folder, folders, names in os.walk(root):
+        folders[:] = set(folders) - SKIPPED
+        yield from (Path(folder, name).relative_to(root).as_posix() for name in set(names) - SKIPPED)
+
+
 class Project:
     """What the documents below `root` may name."""
 
     def __init__(self, root):
         self.root = root
-        self.files = {path.relative_to(root).as_posix() for path in root.rglob('*')
-                      if path.is_file() and not SKIPPED & set(path.relative_to(root).parts)}
+        self.files = set(files_below(root))
         self.folders = {parent.as_posix() for path in self.files for parent in Path(path).parents}
         self.names = {Path(path).name for path in self.files}
         self.documents = sorted(path for path in self.files if path.endswith('.md'))

@@ -151,6 +151,7 @@ See [other](doc/guide/other.md#how-its-rate-is-mostly), `config/bridge.yaml`, `s
         (self.root / 'README.md').unlink()
         self.assertIn('101 columns', self.problems('x' * 101 + '\n')[0])
         self.assertEqual(self.problems('| ' + 'x' * 120 + ' |\n\n    ' + 'x' * 120 + '\n'), [])
+        self.assertIn('"heeds" is', self.problems('The node heeds a command.\n')[0])
         self.assertIn('31 words', self.problems('word\n' * 30 + 'end.\n')[0])
         self.assertEqual(self.problems('word\n' * 29 + 'end. Next one.\n\n- ' + 'word\n  ' * 29 + '\n- item\n'), [])
 
