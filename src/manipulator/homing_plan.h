@@ -17,7 +17,7 @@ struct HomingPlan {
 
 /// Looks for an order in which each axis gets to its reference position `ends` (m, of the joints) without coming nearer
 /// to an obstacle than the guard's margin, wherever within its travel each axis is at the begin: without a reference
-/// nobody knows. The way from a place is tried exactly; places are 1 mm apart, and closer near 0, where the needle works.
+/// nobody knows. Places are 1 mm apart, closer near 0 where the needle works; the way from each is tried exactly.
 HomingPlan planHoming(const ManipulatorGeometry& geometry, const CollisionGuard& guard, const Eigen::Vector3d& ends);
 
 }  // namespace microinjection

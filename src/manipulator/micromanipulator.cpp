@@ -19,11 +19,7 @@ MicromanipulatorConfig MicromanipulatorConfig::read(ConfigReader& reader) {
 
 Micromanipulator::Micromanipulator(const ManipulatorGeometry& geometry, const CollisionGuard& guard,
                                    const MicromanipulatorConfig& config, ManipulatorDevice& device)
-    : geometry_(geometry),
-      guard_(guard),
-      config_(config),
-      device_(&device),
-      follows_(device.abilities().follows) {
+    : geometry_(geometry), guard_(guard), config_(config), device_(&device), follows_(device.abilities().follows) {
   adapt();
   device.limitSpeed({geometry.axes[0].velocity, geometry.axes[1].velocity, geometry.axes[2].velocity});
   if (const auto ends = device.homingEnds()) device.planHoming(planHoming(geometry, guard, *ends));

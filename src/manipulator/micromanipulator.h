@@ -97,7 +97,7 @@ class Micromanipulator {
   CollisionGuard guard_;
   MicromanipulatorConfig config_;
   ManipulatorDevice* device_;
-  bool follows_;  ///< the device, set-points while it moves
+  bool follows_;    ///< the device, set-points while it moves
   double lag_ = 0;  ///< s, that a device which follows may go on with a velocity that is no longer the set-point's
   Mode mode_ = Mode::kHold;
   std::optional<AxesMotion> setpoint_;

@@ -44,6 +44,7 @@ void Cycle::run(const std::function<void(const Tick&)>& step) {
 
 void Cycle::step(const ros::Time& now) {
   sampled_queue_.callAvailable();
+  stalls_.step(now);
   if (now.isZero()) return;  // a simulated clock that has not begun
   if (now < last_step_) {    // a clock set back: nothing that was received before can be trusted
     for (auto& input : inputs_) input->invalidate();

@@ -13,6 +13,7 @@
 #include "nodes/cycle_diagnostics.h"
 #include "nodes/master_watch.h"
 #include "nodes/ports.h"
+#include "nodes/stall_watch.h"
 
 namespace microinjection {
 
@@ -53,6 +54,8 @@ class Cycle {
   bool lockstep() const { return lockstep_; }
   bool masterLost() const { return master_lost_; }  ///< in this step
   double period() const { return period_; }         ///< s
+  /// A message that is heard now cannot have come before; see StallWatch.
+  ros::Time earliestArrival() const { return stalls_.earliest(); }
 
   /// Steps until ROS shuts down or stop() is called.
   void run(const std::function<void(const Tick&)>& step);
@@ -61,12 +64,11 @@ class Cycle {
   void setBusy(bool busy) { busy_ = busy; }
 
  private:
-  /// Whatever came since the last step cannot have been here before it: its callbacks had run by then.
   template <typename Message>
   Arrival arrivalOf(const ros::MessageEvent<const Message>& event) const {
-    const ros::Time received = event.getReceiptTime();
-    const ros::Time earliest = last_step_.isZero() ? received : std::min(received, last_step_);
-    return {received, earliest, event.getPublisherName(), isLatched(event)};
+    const ros::Time received = event.getReceiptTime(), earliest = stalls_.earliest();
+    return {received, earliest.isZero() ? received : std::min(received, earliest), event.getPublisherName(),
+            isLatched(event)};
   }
   bool goesOn();
   void runLive();
@@ -95,6 +97,7 @@ class Cycle {
   std::vector<std::unique_ptr<OutputPort>> outputs_;
   std::vector<ros::Subscriber> subscribers_;
   ros::Time last_step_;
+  StallWatch stalls_;
   bool triggered_ = false;  // live: a kSameTick input has come
   ros::Time tick_;          // lock step: the clock's newest
   ros::Time stepped_tick_;  // lock step: the last one answered

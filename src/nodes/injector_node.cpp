@@ -29,6 +29,9 @@ InjectorNode::Parameters InjectorNode::Parameters::read(const ros::NodeHandle& p
     ConfigReader serial = reader.section("serial");
     parameters.port = SerialPortConfig::read(serial, 9600);
     parameters.protocol = InjectorProtocol::read(serial);
+    const InjectorProtocol& protocol = parameters.protocol;
+    const std::string refusal = protocol.balance.empty() ? "" : protocol.balanceRefusal(parameters.model.balance);
+    if (!refusal.empty()) reader.error("balance", refusal);
   }
   std::vector<std::string> emulators{"none"};
   for (const Injector& injector : injectors()) emulators.push_back(injector.name);

@@ -71,10 +71,10 @@ void NeedleCommands::onFault(const std::string& fault) {
   }
 }
 
-/// Age (s) of a command as of now, not of the last step: this node may have been frozen. One without a stamp counts
-/// from the last step, since it came after that.
+/// Age (s) of a command as of now, not of the last step: this node may have been frozen. One without a stamp is taken
+/// for as old as it can be.
 double NeedleCommands::age(const ros::Time& stamp) const {
-  const ros::Time since = stamp.isZero() ? now_ : stamp;
+  const ros::Time since = stamp.isZero() ? cycle_.earliestArrival() : stamp;
   return since.isZero() ? 0 : secondsBetween(since, std::max(now_, ros::Time::now()));
 }
 
@@ -131,7 +131,8 @@ void NeedleCommands::onState(const cell_microinjection::StringStamped& message, 
   const bool moved = model_.busy();
   const std::string refusal = obeyState(message, source);
   log_.answered("state_command " + message.string, refusal);
-  if (moved && !model_.busy()) log_.overridden("move_cp of " + mover_, "by " + message.string + " of " + source.sender);
+  if (moved && stops(message.string))
+    log_.overridden("move_cp of " + mover_, "by " + message.string + " of " + source.sender);
 }
 
 std::string NeedleCommands::obeyState(const cell_microinjection::StringStamped& message, const CommandSource& source) {

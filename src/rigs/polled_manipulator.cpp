@@ -9,6 +9,7 @@ namespace microinjection {
 namespace {
 
 constexpr double kLongestGuess = 0.1;  // s, of motion by which a position that is carried on may be off
+constexpr double kHeldAnswer = 0.02;   // s, for which a USB adapter may hold an answer back
 constexpr int kSetupTries = 6;         // of a line at the begin, which must be answered twice alike
 constexpr std::size_t kLongestLine = 80;
 
@@ -38,24 +39,26 @@ void PolledManipulatorConfig::readCommon(ConfigReader& reader, int default_baud,
 PolledManipulator::PolledManipulator(const PolledManipulatorConfig& config, std::unique_ptr<Wire> wire,
                                      const Dialect& dialect)
     : SerialManipulator(std::move(wire), {dialect.short_name, dialect.guarded_stop,
-                                          config.answer_time + dialect.stop_duration + 20 * config.byteTime() + 5e-3,
+                                          std::max(config.answer_time, kHeldAnswer) + dialect.stop_duration +
+                                              20 * config.byteTime() + 5e-3,
                                           config.reply_timeout + dialect.longest_move * config.byteTime()}),
       common_(config),
       dialect_(dialect),
-      lines_("\r", kLongestLine) {}
+      lines_("\r", kLongestLine),
+      answer_time_(config.answer_time) {}
 
 ManipulatorAbilities PolledManipulator::abilities() const {
   ManipulatorAbilities abilities;
   abilities.device = dialect_.device;
   abilities.follows = false;
-  const double reading = dialect_.longest_reading * common_.byteTime() + common_.answer_time;
+  const double reading = dialect_.longest_reading * common_.byteTime() + answer_time_;
   // A turn: a move is said, goes, and is seen to have arrived.
   const double turn =
-      dialect_.longest_move * common_.byteTime() + 2 * common_.answer_time + common_.segment_time + 2 * reading;
+      dialect_.longest_move * common_.byteTime() + 2 * answer_time_ + common_.segment_time + 2 * reading;
   abilities.command_interval = abilities.reading_interval = turn;
   abilities.resolution = count() * std::max(1.0, arrival());
   abilities.speed = std::min(common_.speed, speedLimits().maxCoeff());
-  abilities.latency = turn + dialect_.longest_move * common_.byteTime() + common_.answer_time;
+  abilities.latency = turn + dialect_.longest_move * common_.byteTime() + answer_time_;
   abilities.stop_time =
       dialect_.guarded_stop.size() * common_.byteTime() + common_.answer_time + dialect_.stop_duration;
   return abilities;
@@ -67,9 +70,8 @@ double PolledManipulator::recoveryTime() const {
   int lines = 1;
   for (int i = 0; !setup(i).empty(); ++i) lines += 2;
   return common_.reply_timeout + dialect_.longest_move * common_.byteTime() + dialect_.stop_duration +
-         lines * (kLineAndAnswer * common_.byteTime() + common_.answer_time) +
-         kReadings * (dialect_.longest_reading * common_.byteTime() + common_.answer_time) +
-         abilities().reading_interval;
+         lines * (kLineAndAnswer * common_.byteTime() + answer_time_) +
+         kReadings * (dialect_.longest_reading * common_.byteTime() + answer_time_) + abilities().reading_interval;
 }
 
 Eigen::Vector3d PolledManipulator::carriedOn(double at) const {
@@ -138,8 +140,15 @@ void PolledManipulator::malformed(const std::string& answer) {
                      : "says \"" + printable(answer) + "\" without being asked");
 }
 
+/// A slow adapter makes every turn longer; who commands the rig is told of it by its abilities.
+void PolledManipulator::measure(const std::string& answer) {
+  answers_.add(listened() - exchange_->sent - static_cast<double>(answer.size() + 1) * common_.byteTime());
+  answer_time_ = std::max(common_.answer_time, answers_.measured().value_or(0));
+}
+
 void PolledManipulator::handle(const std::string& answer) {
   if (!exchange_) return malformed(answer);
+  if (!answers_.measured()) measure(answer);
   switch (exchange_->kind) {
     case Kind::kSetup:
       return takeSetupAnswer(answer);
@@ -217,7 +226,7 @@ void PolledManipulator::takePlace(const Eigen::Vector3d& place) {
   const double under_way = common_.reading_margin / count() + kLongestGuess * speed;
   // At rest, and until it is known to be, only what is told four times can be another place than before.
   const double tolerance = move_ ? under_way : kSame;
-  if (!filter_.accept(place, expected, tolerance, tolerance)) return;  // asked again
+  if (!filter_.accept(place, expected, tolerance, tolerance) || !answers_.measured()) return;  // asked again
   if (move_) return checkMove(place);
   if (beginsAnew(place)) return;
   if (settled_) {
@@ -237,9 +246,10 @@ void PolledManipulator::rest(const Eigen::Vector3d& place) {
 }
 
 void PolledManipulator::ask(Kind kind, const std::string& line) {
-  const double bytes = static_cast<double>(line.size() + 1 + std::max(dialect_.longest_reading, line.size()));
+  const double sent = listened() + static_cast<double>(line.size() + 1) * common_.byteTime();
+  const double wire = static_cast<double>(std::max(dialect_.longest_reading, line.size())) * common_.byteTime();
   const double more = kind == Kind::kStop || kind == Kind::kSetup ? dialect_.stop_duration : 0;
-  exchange_ = Exchange{kind, line, listened() + bytes * common_.byteTime() + common_.reply_timeout + more};
+  exchange_ = Exchange{kind, line, sent + wire + common_.reply_timeout + more, sent};
   if (settled_ && !filter_.doubts()) trustFor(exchange_->due - listened() + recoveryTime());
   say(line + "\r");
 }

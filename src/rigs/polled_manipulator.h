@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "rigs/answer_times.h"
 #include "rigs/axis_order.h"
 #include "rigs/joint_axes.h"
 #include "rigs/reading_filter.h"
@@ -88,6 +89,7 @@ class PolledManipulator : public SerialManipulator {
   /// Whatever was set in the device may be forgotten.
   virtual void sessionLost() {}
 
+  void connected() final { answers_.forget(); }
   void begin(bool lost) final;
   void stopSaid() final;
   void talk(const std::string& bytes) final;
@@ -100,7 +102,8 @@ class PolledManipulator : public SerialManipulator {
   struct Exchange {
     Kind kind;
     std::string line;
-    double due;  // s of listened()
+    double due;   // s of listened()
+    double sent;  // s of listened(), when its last byte has gone
   };
   struct Move {
     Eigen::Vector3d from, to;  // counts
@@ -115,6 +118,7 @@ class PolledManipulator : public SerialManipulator {
   };
 
   void handle(const std::string& answer);
+  void measure(const std::string& answer);
   void takeSetupAnswer(const std::string& answer);
   void takeMotion(const std::string& answer);
   void takePosition(const std::string& answer);
@@ -139,6 +143,8 @@ class PolledManipulator : public SerialManipulator {
   const Dialect dialect_;
   LineSplitter lines_;
   ReadingFilter filter_;
+  AnswerTimes answers_;
+  double answer_time_;  // s, as it is measured, not less than in the file
   std::optional<Exchange> exchange_;
   int setup_step_ = 0;
   std::optional<std::string> setup_answer_;  // the last one to this step

@@ -9,7 +9,7 @@ namespace microinjection {
 /// pseudo-terminals, may know no such flag, and are left as they are.
 /// @param control  of the system, ::ioctl; for tests
 /// @returns whether the flag is set now
-bool requestLowLatency(
-    int fd, const std::function<int(int fd, unsigned long request, void* argument)>& control = nullptr);
+bool requestLowLatency(int fd,
+                       const std::function<int(int fd, unsigned long request, void* argument)>& control = nullptr);
 
 }  // namespace microinjection

@@ -2,9 +2,9 @@
 (src/crtk/utils.py, wait_move_handle.py, ral_ros1.py; MIT licence) without its code.
 
 What counts of it: commands have stamp 0 and an empty frame; state_command is latched, motion commands are not; an
-operating_state counts only when its stamp is later than that of the one before; wait() of a move needs is_busy true with
-a stamp later than the command, and false after it; home() and unhome() wait for another operating_state than the one at
-their begin; setpoint_cp() needs a stamp of the last 20 ms, or waits so long for another message.
+operating_state counts only when its stamp is later than that of the one before; wait() of a move needs is_busy true
+with a stamp later than the command, and false after it; home() and unhome() wait for another operating_state than the
+one at their begin; setpoint_cp() needs a stamp of the last 20 ms, or waits so long for another message.
 
 Differences: it waits by wall time, here up to PATIENCE, since a test machine stalls."""
 
@@ -39,13 +39,13 @@ class CrtkClient:
         self._last_busy = rospy.Time.now()
         self.history = []  # (state, is_homed, is_busy) of each operating_state, also of those that do not count
         name = namespace + "/"
-        self.subscribers = [rospy.Subscriber(name + "operating_state", OperatingState, self._on_state, queue_size=10),
-                            rospy.Subscriber(name + "setpoint_cp", PoseStamped, self._on_setpoint, queue_size=10)]
+        self._ends = [rospy.Subscriber(name + "operating_state", OperatingState, self._on_state, queue_size=10),
+                      rospy.Subscriber(name + "setpoint_cp", PoseStamped, self._on_setpoint, queue_size=10)]
         self._command = rospy.Publisher(name + "state_command", StringStamped, latch=True, queue_size=10)
         self._move = rospy.Publisher(name + "move_cp", PoseStamped, queue_size=10)
         self._servo = rospy.Publisher(name + "servo_cp", PoseStamped, queue_size=10)
         self._velocity = rospy.Publisher(name + "servo_cv", TwistStamped, queue_size=10)
-        self._ends = [*self.subscribers, self._command, self._move, self._servo, self._velocity]
+        self._ends += [self._command, self._move, self._servo, self._velocity]
 
     def check_connections(self, timeout=PATIENCE):
         """As its ral does: all topics have somebody at their other end."""
@@ -55,11 +55,6 @@ class CrtkClient:
                 missing = [each.name for each in self._ends if not each.get_num_connections()]
                 raise TimeoutError(f"not connected: {missing}")
             rospy.rostime.wallsleep(0.01)
-
-    def close(self):
-        """After its subscribers are unregistered."""
-        for each in (self._command, self._move, self._servo, self._velocity):
-            each.unregister()
 
     # what it hears
 

@@ -18,16 +18,18 @@ CLUTCH, PRESENT, COMMAND = "/haptic/clutch", "/haptic/operator_present", "/contr
 
 
 class HapticTest(unittest.TestCase):
-    """The world of a device: the bridge's force and the driver's topics (`driver`: topic -> class, in lock step)."""
+    """The world of a device: the bridge's force and the driver's topics (`driver`: topic -> class, in lock step;
+    `inputs`: the same of what the driver hears)."""
 
     driver = {}
+    inputs = {}
 
     @classmethod
     def setUpClass(cls):
         cls.commands = []
         rospy.Subscriber(COMMAND, StringStamped, lambda message: cls.commands.append(message.string))
         cls.world = Participant({FORCE: WrenchStamped, **cls.driver},
-                                {HAND: PoseStamped, CLUTCH: Joy, PRESENT: Joy})
+                                {HAND: PoseStamped, CLUTCH: Joy, PRESENT: Joy, **cls.inputs})
 
     def until(self, condition, messages, what):
         """Ticks with `messages` until condition(): a message outside of the lock step comes when it comes."""

@@ -12,6 +12,7 @@ import time
 import numpy as np
 import rospy
 import rostest
+from cell_microinjection.msg import OperatingState
 
 from case import case
 from haptic_driver import FORCE, HAND, PRESENT, HapticTest
@@ -92,6 +93,21 @@ class KeyboardTest(HapticTest):
         self.type(b"eiwd")
         self.until(lambda: len(self.commands) >= 4, self.good, "no command")
         self.assertEqual(self.commands, ["enable", "inject", "home", "disable"])
+
+    def test_3_words_in_a_pause(self):
+        """CRTK's enable does not end PAUSED; the operator has one key for both."""
+        controller = rospy.Publisher("/controller/operating_state", OperatingState, queue_size=1, latch=True)
+        controller.publish(OperatingState(state="PAUSED"))
+        self.world.await_links()
+        self.world.run(50, self.good)
+        for _ in range(20):  # until it has heard of the state
+            told = len(self.commands)
+            self.type(b"e")
+            self.until(lambda: len(self.commands) > told, self.good, "no command")
+            if self.commands[-1] == "resume":
+                break
+        controller.publish(OperatingState(state="ENABLED"))
+        self.assertEqual(self.commands[-1], "resume")
 
     def test_4_the_force_is_told(self):
         self.world.run(200, self.good)

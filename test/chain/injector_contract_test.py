@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Any injector, as a session has it: its file has come through roslaunch and the parameter server, and the device at the
-other end of the line is emulated as manuals have it, carriage returns and all."""
+"""Any injector, as a session has it: its file has come through roslaunch and the parameter server, and the device at
+the other end of the line is emulated as manuals have it, carriage returns and all."""
 
 import unittest
 
@@ -40,7 +40,9 @@ class InjectorContractTest(unittest.TestCase):
         self.fail(f"did not happen within {patience} s of ROS time; injector:\n{self.state()}")
 
     def setUp(self):
-        self.tick_until(lambda: "/injector/state" in self.world.seen and not self.state().fault and not self.state().busy)
+        self.tick_until(lambda: "/injector/state" in self.world.seen)
+        self.tick_until(lambda: not self.state().fault and not self.state().busy)
+        self.world.run(200)  # forty times the regulator's time constant
 
     def stamp(self, message):
         message.header.stamp = self.world.now

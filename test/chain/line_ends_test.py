@@ -1,6 +1,7 @@
 #!/usr/bin/python3
-"""Line protocols that came through roslaunch's parameter server: line ends that are names arrive, characters are refused, and
-without a command's number that its maker has not published there is no injector. The devices' lines are pseudo-terminals."""
+"""Line protocols that came through roslaunch's parameter server: line ends that are names arrive, characters are
+refused, and without a command's number that its maker has not published there is no injector. The devices' lines are
+pseudo-terminals."""
 
 import os
 import pathlib
@@ -112,8 +113,11 @@ class LineEndsTest(unittest.TestCase):
         self.check_refused("injector", parameters, ["serial/codes/inject = ", "must be 3 letters or digits"])
         parameters["serial"]["codes"]["inject"] = 10  # what YAML makes of 012 without quotes
         self.check_refused("injector", parameters, ["serial/codes/inject = 10: must be 3 letters or digits"])
+        parameters["serial"]["codes"]["inject"] = "901"
+        self.check_refused("injector", {**parameters, "pressure_range": [0.0, 1e5], "balance": 40.0},
+                           ["balance = 40", "the digits of the device's line make it 0 Pa"])
         del parameters["serial"]["codes"]["inject"]
-        self.check_refused("injector", parameters, ["serial/codes/inject is missing"])
+        self.check_refused("injector", parameters, ["codes/inject is missing"])
 
 
 if __name__ == "__main__":

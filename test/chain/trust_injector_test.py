@@ -28,6 +28,7 @@ class TrustTest(unittest.TestCase):
     def setUp(self):
         self.world.call("/injector/clog", SetBool, False)
         self.world.call("/injector/reset", Trigger)
+        self.world.run(2)  # so that the state that was seen last is one of after it
 
     def state(self):
         return self.world.seen["/injector/state"]

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "base/errors.h"
+#include "injector/femtojet_emulator.h"
 #include "injector/injector_bench.h"
 
 namespace microinjection {
@@ -190,6 +191,40 @@ INSTANTIATE_TEST_SUITE_P(All, InjectorContract, ::testing::ValuesIn(injectorName
                          [](const auto& name) { return name.param; });
 INSTANTIATE_TEST_SUITE_P(All, InjectorTroubles, ::testing::ValuesIn(realOnes()),
                          [](const auto& name) { return name.param; });
+
+/// What a FemtoJet sends before its answer is not published: any of these must do.
+TEST(Femtojet, WorksWhateverComesBeforeItsAnswers) {
+  using Echo = FemtojetEmulatorConfig::Echo;
+  for (const Echo echo : {Echo::kNone, Echo::kCommand, Echo::kEmptyLine}) {
+    for (const char* line_end : {"\r\n", "\n"}) {
+      FemtojetEmulatorConfig config;
+      config.echo = echo;
+      config.line_end = line_end;
+      InjectorBench bench("femtojet", injectorFile("femtojet"), nullptr, std::make_shared<FemtojetEmulator>(config));
+      bench.run(2);
+      ASSERT_EQ(bench.device().fault(), "");
+      ASSERT_EQ(bench.device().pulse({5, InjectorBench::kPressure, kDuration}), "");
+      bench.run(2);
+      EXPECT_EQ(bench.device().fault(), "");
+      EXPECT_EQ(bench.ended(), 1U);
+      EXPECT_EQ(bench.device().reading().last_id, 5U);
+    }
+  }
+}
+
+/// A knob that somebody has turned, or a module that was reset, is found by the next query.
+TEST(Voltage, AModuleThatWasResetIsAFault) {
+  InjectorBench bench("voltage");
+  bench.run(2);
+  bench.emulator().inject({Fault::Kind::kInterrupt, 0, "", bench.time()});
+  bench.run(3);
+  EXPECT_EQ(bench.device().fault().rfind("query: it reads back 00.000 instead of 0.109", 0), 0U)
+      << bench.device().fault();
+  EXPECT_NE(bench.device().pulse({5, InjectorBench::kPressure, kDuration}), "");
+  EXPECT_EQ(bench.device().setBalance(545), "");
+  bench.run(2);
+  EXPECT_EQ(bench.device().fault(), "");
+}
 
 TEST(InjectorFiles, EachHasAnEmulatorAndEachEmulatorAFile) {
   std::set<std::string> files, names;

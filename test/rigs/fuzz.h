@@ -7,16 +7,18 @@
 #include <memory>
 #include <random>
 #include <string>
+#include <utility>
 
 #include "rigs/damaged_replies.h"
 #include "rigs/emulated_rig.h"
 
 namespace microinjection {
 
-/// Damaged or reordered replies to a driver at work: it must neither crash nor believe a position that is not
+/// 200,000 damaged or reordered replies to a driver at work: it must neither crash nor believe a position that is not
 /// so, and be in step again as soon as the line is sound.
 template <typename Driver, typename Config>
 class Fuzz {
+  static constexpr int kReplies = 200000;
   static constexpr int kRepliesAtOnce = 2000;  // between two looks whether it is in step
   static constexpr double kSpeed = 0.1e-3;     // m/s
   static constexpr double kStep = 2e-3;        // s
@@ -34,10 +36,10 @@ class Fuzz {
         near_(near),
         told_(told) {}
 
-  /// Called in each step with the time (s) and whether the device may be troubled now, or must be left in order.
-  void troubleBy(std::function<void(double time, bool disturbs)> trouble) { trouble_ = std::move(trouble); }
+  /// Something that befalls the device, at each step (`time` in s); when the line is sound again it must be over.
+  void setTrouble(std::function<void(double time, bool disturbs)> trouble) { trouble_ = std::move(trouble); }
 
-  void run(int replies = 200000) {
+  void run(int replies = kReplies) {
     ASSERT_TRUE(rig_.runUntilReady());
     while (device_->damaged() < replies) {
       disturb();
@@ -112,8 +114,8 @@ class Fuzz {
 
   std::shared_ptr<DamagedReplies> device_;
   EmulatedRig<Driver, Config> rig_;
-  std::function<void(double, bool)> trouble_;
   std::mt19937 random_{11};
+  std::function<void(double, bool)> trouble_;
   double allowed_;  // m
   double allowed_at_rest_;
   double near_, told_;                    // m, of a goal that is reached, and of a place that is told on a sound line

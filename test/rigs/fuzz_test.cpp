@@ -1,10 +1,10 @@
-// 200,000 damaged replies of a Zaber.
-
-#include "rigs/fuzz.h"
+// Damaged and reordered replies of a Zaber: 210,000 in three lines, from devices that are switched off and on.
 
 #include <array>
+#include <cmath>
 #include <optional>
 
+#include "rigs/fuzz.h"
 #include "rigs/zaber/zaber_driver.h"
 #include "rigs/zaber/zaber_emulator.h"
 
@@ -77,8 +77,8 @@ void fuzzZaber(bool checksum, bool forges) {
   const auto device = std::make_shared<ZaberEmulator>(of_device);
   Resets resets(device);
   Fuzz<ZaberDriver, ZaberConfig> fuzz(config, device, forge, allowed, at_rest);
-  fuzz.troubleBy([&](double time, bool disturbs) { resets.step(time, disturbs); });
-  fuzz.run(70000);
+  fuzz.setTrouble([&](double time, bool disturbs) { resets.step(time, disturbs); });
+  fuzz.run(70000);  // of 200,000
   EXPECT_GT(resets.count(), 10);
 }
 

@@ -49,9 +49,10 @@ TEST(Fuzz, Eppendorf) {
   EppendorfConfig config;
   config.speed = kSpeed;
   config.reply_timeout = 0.05;  // s, so that it takes less virtual time
-  const double half_a_count = 0.5e-6 + 1e-9;
+  // Where it was stopped is known to a count until it is read.
+  const double count = 1e-6 + 1e-9, half_a_count = 0.5e-6 + 1e-9;
   Fuzz<EppendorfDriver, EppendorfConfig>(config, std::make_shared<EppendorfEmulator>(), forgeDigits,
-                                         allowedUnderWay(config), half_a_count, 0.51e-6, half_a_count)
+                                         allowedUnderWay(config), count, 1.01e-6, half_a_count)
       .run();
 }
 

@@ -7,6 +7,8 @@
 namespace microinjection {
 namespace {
 
+constexpr double kForEver = std::numeric_limits<double>::infinity();
+
 /// `none`: where there is no such button; `unknown`: where it has said nothing, or nothing of this one.
 bool heldDown(const Input<sensor_msgs::Joy>* input, int index, const ros::Time& now, bool none, bool unknown) {
   if (!input) return none;
@@ -28,6 +30,7 @@ CrtkConfig CrtkConfig::read(ConfigReader& reader) {
   reader.text("device", config.device);
   reader.choice("position_type", config.position_type, {"pose", "transform"});
   reader.text("force", config.force);
+  reader.text("state", config.state);
   reader.number("timeout", config.timeout, Range::positive());
   reader.number("button_timeout", config.button_timeout, Range::nonNegative());
   config.clutch = CrtkButton::read(reader.section("clutch"), "clutch");
@@ -44,6 +47,10 @@ CrtkAdapter::CrtkAdapter(Cycle& cycle, const CrtkConfig& config)
       force_(cycle.output<geometry_msgs::WrenchStamped>(deviceTopic(config.device, config.force))),
       settings_(cycle.node(), config.device, config.settings),
       receiver_(force_.publisher, !lockstep_) {
+  if (!config.state.empty()) {
+    state_ = &cycle.input<cell_microinjection::OperatingState>(deviceTopic(config.device, config.state),
+                                                               Phase::kTickBefore, kForEver);
+  }
   const std::string topic = deviceTopic(config.device, "measured_cp");
   if (config.position_type == "pose") {
     pose_ = &cycle.input<geometry_msgs::PoseStamped>(topic, Phase::kSameTick, config.timeout);
@@ -56,7 +63,7 @@ CrtkAdapter::CrtkAdapter(Cycle& cycle, const CrtkConfig& config)
 
 Input<sensor_msgs::Joy>* CrtkAdapter::listenTo(Cycle& cycle, const CrtkButton& button) const {
   if (button.topic.empty()) return nullptr;
-  const double timeout = config_.button_timeout > 0 ? config_.button_timeout : std::numeric_limits<double>::infinity();
+  const double timeout = config_.button_timeout > 0 ? config_.button_timeout : kForEver;
   return &cycle.input<sensor_msgs::Joy>(deviceTopic(config_.device, button.topic), Phase::kTickBefore, timeout);
 }
 
@@ -73,6 +80,15 @@ std::optional<CrtkAdapter::Position> CrtkAdapter::position(const ros::Time& now)
   return Position{transform->header.stamp, transform->header.frame_id, {p.x, p.y, p.z}};
 }
 
+std::string CrtkAdapter::whyUnfelt(const ros::Time& now) {
+  if (!ready_) return receiver_.driver() + " has not yet heard its settings " + settings_.missing();
+  if (!receiver_.feels()) return receiver_.why();
+  const auto* state = state_ ? state_->get(now) : nullptr;
+  if (!state_ || (state && state->state == "ENABLED" && state->is_homed)) return "";
+  if (!state) return "it has not told its state, " + state_->topic;
+  return "it takes no force: " + state->state + (state->is_homed ? "" : ", not homed");
+}
+
 std::optional<HandReading> CrtkAdapter::read(const Cycle::Tick& tick) {
   const auto told = position(tick.now);
   // Also while it is silent: one that was started again must be told first, too.
@@ -84,9 +100,8 @@ std::optional<HandReading> CrtkAdapter::read(const Cycle::Tick& tick) {
     return std::nullopt;
   }
   frame_ = told->frame;
-  const bool feels = receiver_.feels();
-  why_ = ready_ ? receiver_.why() : receiver_.driver() + " has not yet heard its settings " + settings_.missing();
-  if (!ready_ || !feels) return std::nullopt;
+  why_ = whyUnfelt(tick.now);
+  if (!why_.empty()) return std::nullopt;
   HandReading reading;
   reading.position = told->position;
   reading.stamp = told->stamp;

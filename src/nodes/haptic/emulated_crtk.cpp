@@ -7,6 +7,7 @@
 
 #include <limits>
 
+#include "cell_microinjection/OperatingState.h"
 #include "nodes/conversions.h"
 #include "nodes/haptic/emulated_driver.h"
 
@@ -63,8 +64,8 @@ struct CisstDevice {
 
 /// A device behind the cisst-ros bridge of sawForceDimensionSDK or dVRK. It is held where it is until the first force
 /// on body/servo_cf, whatever the message's frame and stamp. An arm of dVRK takes it in the gripper's frame unless
-/// body/set_cf_orientation_absolute, and weighs on the hand unless use_gravity_compensation; the Force Dimension SDK
-/// takes it in the axes of the base and compensates the weight. Buttons are told on change, latched.
+/// body/set_cf_orientation_absolute, weighs on the hand unless use_gravity_compensation, and tells its state; the Force
+/// Dimension SDK takes it in the axes of the base and compensates the weight. Buttons are told on change, latched.
 class EmulatedCisst : public EmulatedDriver {
  public:
   EmulatedCisst(Cycle& cycle, const CisstDevice& device, const Listener& listener)
@@ -87,6 +88,7 @@ class EmulatedCisst : public EmulatedDriver {
     if (!device.is_arm) return;
     listen(cycle, "/body/set_cf_orientation_absolute", absolute_);
     listen(cycle, "/use_gravity_compensation", compensated_);
+    state_ = &cycle.output<cell_microinjection::OperatingState>(device.device + "/operating_state", true);
   }
 
   Eigen::Vector3d render(const EmulatedHand& hand) override {
@@ -100,6 +102,7 @@ class EmulatedCisst : public EmulatedDriver {
   }
 
   void tell(const EmulatedHand& hand, const ros::Time& now) override {
+    if (state_ && !state_told_) tellState(now);
     if (hand.clutch != told_.clutch) clutch_.publish(toButton(now, hand.clutch));
     if (hand.present != told_.present) present_.publish(toButton(now, hand.present));
     told_ = hand;
@@ -128,6 +131,16 @@ class EmulatedCisst : public EmulatedDriver {
     return joy;
   }
 
+  /// Of an arm whose operator has homed it at the console; on change only.
+  void tellState(const ros::Time& now) {
+    cell_microinjection::OperatingState state;
+    state.header.stamp = now;
+    state.state = "ENABLED";
+    state.is_homed = true;
+    state_->publish(state);
+    state_told_ = true;
+  }
+
   void listen(Cycle& cycle, const std::string& topic, bool& value) {
     subscribers_.push_back(cycle.node().subscribe<std_msgs::Bool>(
         device_.device + topic, 1, [&value](const std_msgs::BoolConstPtr& message) { value = message->data; }));
@@ -136,12 +149,13 @@ class EmulatedCisst : public EmulatedDriver {
   CisstDevice device_;
   Output<geometry_msgs::PoseStamped>* pose_ = nullptr;
   Output<geometry_msgs::TransformStamped>* transform_ = nullptr;
+  Output<cell_microinjection::OperatingState>* state_ = nullptr;  // null: not told
   Output<sensor_msgs::Joy>&clutch_, &present_;
   std::vector<ros::Subscriber> subscribers_;
   EmulatedRate rate_;
   std::optional<Eigen::Vector3d> held_;              // m, the view's axes
   Eigen::Vector3d force_ = Eigen::Vector3d::Zero();  // N, as told
-  bool freed_ = false, absolute_ = false, compensated_ = false;
+  bool state_told_ = false, freed_ = false, absolute_ = false, compensated_ = false;
   EmulatedHand told_;
 };
 

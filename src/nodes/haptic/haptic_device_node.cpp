@@ -1,5 +1,6 @@
 #include "nodes/haptic/haptic_device_node.h"
 
+#include "cell_microinjection/OperatingState.h"
 #include "cell_microinjection/StringStamped.h"
 #include "nodes/conversions.h"
 #include "nodes/ending.h"
@@ -53,6 +54,11 @@ HapticDeviceNode::HapticDeviceNode(ros::NodeHandle node, ros::NodeHandle private
       operator_present_(cycle_.output<sensor_msgs::Joy>("haptic/operator_present")),
       commands_(cycle_.node().advertise<cell_microinjection::StringStamped>("controller/state_command", 10)),
       adapter_(kind_.make(cycle_, reader_)) {
+  using cell_microinjection::OperatingState;
+  controller_ = subscribeGuarded<OperatingState>(
+      cycle_.node(), "controller/operating_state", 10,
+      [this](const OperatingState& message, const std::string&) { paused_ = message.state == "PAUSED"; },
+      StampRule::kAny);
   cycle_.diagnostics().add("device", [this](auto& status) { report(status); });
 }
 
@@ -100,7 +106,8 @@ void HapticDeviceNode::publishCommands(const ros::Time& now) {
   for (const std::string& command : adapter_->takeCommands()) {
     cell_microinjection::StringStamped message;
     message.header.stamp = now;
-    message.string = command;
+    // The operator has one button for both; CRTK's enable does not end PAUSED.
+    message.string = command == "enable" && paused_ ? "resume" : command;
     commands_.publish(message);
   }
 }

@@ -57,6 +57,8 @@ class HapticDeviceNode {
   Output<sensor_msgs::Joy>& clutch_;
   Output<sensor_msgs::Joy>& operator_present_;
   ros::Publisher commands_;
+  ros::Subscriber controller_;
+  bool paused_ = false;  ///< the controller is
   std::unique_ptr<HapticAdapter> adapter_;
   std::optional<HandReading> last_;  ///< what was told last
   ros::Time told_buttons_, told_silence_;

@@ -8,6 +8,7 @@ namespace microinjection {
 namespace {
 
 constexpr double kFineLimit = 1310;      // um/s
+constexpr double kHeldAnswer = 0.02;     // s, for which a USB adapter may hold an answer back
 constexpr double kBytePause = 0.04;      // s, longest between two bytes of an answer (USB adapters collect for 16 ms)
 constexpr double kMoveAllowance = 0.5;   // s, that a move may take longer than its way at its speed, and a quarter
 constexpr double kWorthStopping = 0.15;  // s left of a move: for less, a new goal waits
@@ -19,20 +20,22 @@ constexpr int kTries = 2;                // of a move that ends elsewhere
 
 Mp285Driver::Mp285Driver(const Mp285Config& config, std::unique_ptr<Wire> wire)
     : SerialManipulator(std::move(wire),
-                        {"MP-285", std::string(1, kMp285Stop), config.answer_time + 6 * 10.0 / config.port.baud + 5e-3,
+                        {"MP-285", std::string(1, kMp285Stop),
+                         std::max(config.answer_time, kHeldAnswer) + 6 * 10.0 / config.port.baud + 5e-3,
                          config.half_command_time + 14 * 10.0 / config.port.baud}),
-      config_(config) {}
+      config_(config),
+      answer_time_(config.answer_time) {}
 
 ManipulatorAbilities Mp285Driver::abilities() const {
   ManipulatorAbilities abilities;
   abilities.device = "Sutter MP-285";
   abilities.follows = false;
   // A turn: move (14 bytes) and its end (1), position asked (2) and told (13), now and then a speed (4 and 1).
-  const double turn = 35 * byteTime() + 3 * (config_.answer_time + config_.command_pause) + config_.segment_time;
+  const double turn = 35 * byteTime() + 3 * (answer_time_ + config_.command_pause) + config_.segment_time;
   abilities.command_interval = abilities.reading_interval = turn;
   abilities.resolution = microsteps_.maxCoeff();
   abilities.speed = std::min(config_.speed, speedLimits().maxCoeff());
-  abilities.latency = turn + 19 * byteTime() + config_.answer_time;  // a set-point waits for the move under way
+  abilities.latency = turn + 19 * byteTime() + answer_time_;  // a set-point waits for the move under way
   abilities.stop_time = byteTime() + config_.answer_time;
   return abilities;
 }
@@ -40,8 +43,8 @@ ManipulatorAbilities Mp285Driver::abilities() const {
 /// Silence after an exchange that went wrong, the questions of a new session, an answer that is cut off, and as much as
 /// a turn to spare.
 double Mp285Driver::recoveryTime() const {
-  return config_.half_command_time + kBytePause + 14 * byteTime() + 56 * byteTime() +
-         4 * (config_.answer_time + config_.command_pause) + abilities().reading_interval;
+  return config_.half_command_time + kBytePause + 105 * byteTime() + 5 * (answer_time_ + config_.command_pause) +
+         abilities().reading_interval;
 }
 
 Eigen::Vector3d Mp285Driver::carriedOn(double at) const {
@@ -118,17 +121,28 @@ void Mp285Driver::ask(Kind kind, const std::string& bytes, double more_time) {
                  : kind == Kind::kStop   ? Expected::kStop
                                          : Expected::kDone);
   const double answer_bytes = kind == Kind::kStatus ? 33 : 13;
-  exchange_ =
-      Exchange{kind, listened() + (bytes.size() + answer_bytes) * byteTime() + config_.reply_timeout + more_time};
+  const double sent = listened() + static_cast<double>(bytes.size()) * byteTime();
+  exchange_ = Exchange{kind, sent + answer_bytes * byteTime() + config_.reply_timeout + more_time, sent};
   // It says nothing while it moves, nor unasked at rest: what it was asked last must be answered, or else, once, what
   // it is asked after that. Readings that are doubted are asked for again, but not trusted for longer.
   if (settled_ && !filter_.doubts()) trustFor(exchange_->due - listened() + recoveryTime());
   say(bytes);
 }
 
+/// A slow adapter makes every turn longer; who commands the rig is told of it by its abilities.
+void Mp285Driver::measure(const Mp285Answer& answer) {
+  using Answer = Mp285Answer::Kind;
+  const bool late = exchange_->kind == Kind::kMove;  // answered at its end
+  if (late || answers_.measured() || answer.kind == Answer::kError || answer.kind == Answer::kMalformed) return;
+  const int bytes = answer.kind == Answer::kPosition ? 13 : answer.kind == Answer::kStatus ? 33 : 1;
+  answers_.add(listened() - exchange_->sent - bytes * byteTime());
+  answer_time_ = std::max(config_.answer_time, answers_.measured().value_or(0));
+}
+
 void Mp285Driver::handle(const Mp285Answer& answer) {
   using Answer = Mp285Answer::Kind;
   const Kind kind = exchange_->kind;
+  measure(answer);
   exchange_.reset();
   next_command_ = listened() + config_.command_pause;
   if (answer.kind == Answer::kError) return handleError(answer.error);
@@ -197,7 +211,7 @@ void Mp285Driver::takePosition(const Mp285Position& told) {
   const Eigen::Vector3d expected = position_ ? carriedOn(time()) : Eigen::Vector3d::Constant(std::nan(""));
   // What stands does not change by a microstep, and a fine move ends where it was sent: else four must agree.
   const double tolerance = move_ && move_->coarse ? kCoarseStep + 1 : 0.5;
-  if (!filter_.accept(place, expected, tolerance, 0.5)) return;  // asked again
+  if (!filter_.accept(place, expected, tolerance, 0.5) || !answers_.measured()) return;  // asked again
   if (position_ && settled_) {
     largest_correction_ =
         std::max(largest_correction_, (place - expected).cwiseProduct(microsteps_).cwiseAbs().maxCoeff());

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "rigs/answer_times.h"
 #include "rigs/mp285/mp285_config.h"
 #include "rigs/mp285/mp285_protocol.h"
 #include "rigs/reading_filter.h"
@@ -28,6 +29,7 @@ class Mp285Driver : public SerialManipulator {
   int malformed() const { return malformed_; }                      ///< answers that were none
 
  protected:
+  void connected() override { answers_.forget(); }
   void begin(bool lost) override;
   void stopSaid() override;
   void talk(const std::string& bytes) override;
@@ -37,7 +39,8 @@ class Mp285Driver : public SerialManipulator {
   enum class Kind { kStop, kStatus, kAbsolute, kPosition, kVelocity, kMove };
   struct Exchange {
     Kind kind;
-    double due;  // s of listened(), to be answered
+    double due;   // s of listened(), to be answered
+    double sent;  // s of listened(), when its last byte has gone
   };
   struct Move {
     Eigen::Vector3d from, to;  // microsteps, of the device
@@ -51,6 +54,7 @@ class Mp285Driver : public SerialManipulator {
     bool operator==(const Speed& other) const { return um_per_s == other.um_per_s && fine == other.fine; }
   };
 
+  void measure(const Mp285Answer& answer);
   double byteTime() const { return 10.0 / config_.port.baud; }
   void ask(Kind kind, const std::string& bytes, double more_time = 0);
   void handle(const Mp285Answer& answer);
@@ -71,6 +75,8 @@ class Mp285Driver : public SerialManipulator {
   Mp285Config config_;
   Mp285Parser parser_;
   ReadingFilter filter_;
+  AnswerTimes answers_;
+  double answer_time_;  // s, as it is measured, not less than in the file
   std::optional<Exchange> exchange_;
   double last_byte_ = 0;     // s of listened()
   double next_command_ = 0;  // s of listened(), at the earliest

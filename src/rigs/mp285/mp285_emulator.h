@@ -18,7 +18,7 @@ struct Mp285EmulatorConfig {
   double baud = 9600;               ///< bit/s, of the line: says when an answer has gone
   double half_command_time = 0.25;  ///< s of silence after which half a command is forgotten
   bool locks_up = false;            ///< half a command is not forgotten, only a stop sets it free
-  bool ascii_errors = true;         ///< errors as '0' to '?', as Micro-Manager and the manual have them; else bare bits
+  bool ascii_errors = true;         ///< errors as '0' to '?' (Micro-Manager), else as bare bits (acq4)
 };
 
 /// A Sutter MP-285, written from what its clients say and show, and not from the driver: the commands and the status'

@@ -36,8 +36,8 @@ struct ZaberConfig {
   double reply_timeout = 0.05;    ///< s, after which an answer is missed, besides the time on the wire
   double reading_margin = 10e-6;  ///< m, by which a reading under way may differ from what is expected, besides motion
 
-  double byteTime() const { return 10.0 / port.baud; }    ///< s
-  double exchangeTime(double answer) const;               ///< s, a longer message and its answer, which takes `answer` s
+  double byteTime() const { return 10.0 / port.baud; }  ///< s
+  double exchangeTime(double answer) const;             ///< s, a longer message and its answer, which takes `answer` s
   /// s, that a motion which follows set-points must outlast when it is not renewed, or it would be one in jerks.
   double leastHorizon(double turn, double braking) const { return 2 * turn + speed / braking; }
 

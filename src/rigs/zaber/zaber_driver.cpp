@@ -27,12 +27,6 @@ ZaberDriver::ZaberDriver(const ZaberConfig& config, std::unique_ptr<Wire> wire)
       acceleration_(config.acceleration),
       may_home_(config.home) {}
 
-/// An axis counts from its reference position.
-std::optional<Eigen::Vector3d> ZaberDriver::homingEnds() const {
-  if (!config_.home) return std::nullopt;
-  return config_.joints.toJoints(Eigen::Vector3d::Zero());
-}
-
 double ZaberDriver::gain() const {
   // A loop with a dead time T is well damped up to a gain of about 0.4 / T; a turn is six exchanges.
   return config_.gain > 0 ? config_.gain : 0.3 / (7 * exchangeTime());
@@ -57,9 +51,7 @@ double ZaberDriver::longestAge() const {
 double ZaberDriver::longestGuess() const { return std::max(kLongestGuess, 1.3 * turnTime()); }
 
 /// No faster than it can brake in the distance from which it is slowed down.
-double ZaberDriver::fastest(int i) const {
-  return std::min({config_.speed, speedLimits()[i], acceleration_ / gain()});
-}
+double ZaberDriver::fastest(int i) const { return std::min({config_.speed, speedLimits()[i], acceleration_ / gain()}); }
 
 /// Of a speed (m/s), never rounded beyond the axis' fastest.
 long long ZaberDriver::speedData(int i, double speed) const {

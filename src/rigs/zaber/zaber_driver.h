@@ -35,7 +35,10 @@ class ZaberDriver : public SerialManipulator {
   ManipulatorAbilities abilities() const override;
   std::optional<Reading> reading() const override;
   bool moving() const override;
-  std::optional<Eigen::Vector3d> homingEnds() const override;
+  std::optional<Eigen::Vector3d> homingEnds() const override {
+    if (!config_.home) return std::nullopt;
+    return config_.joints.toJoints(Eigen::Vector3d::Zero());  // an axis counts from its reference position
+  }
   void planHoming(const HomingPlan& plan) override { homing_ = plan; }
 
   std::string note() const override;
@@ -70,6 +73,7 @@ class ZaberDriver : public SerialManipulator {
     double position_time = 0;        // s
     double heard = 0;                // s of listened(), when it was last told truly
     double velocity = 0;             // m/s, carries the position on
+    double coasting = 0;             // m, by which a stop in this session left the position uncertain
     double end = 0;                  // m, where a move ends; NaN: it does not
     std::optional<long long> told;   // units of speed, of the velocity that the device follows
     bool busy = true;
@@ -133,6 +137,9 @@ class ZaberDriver : public SerialManipulator {
   void sendExchange();
   long long velocityData(int axis) const;
   bool nextVelocity(int axis);
+  bool goalStands() const;
+  std::optional<long long> placeOfArrival(int axis) const;
+  bool canGoTo(int axis, long long place) const;
   std::optional<long long> endOfVelocity(int axis, long long data) const;
   long long moveSpeedData(int axis) const;
 

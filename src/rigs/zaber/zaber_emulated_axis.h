@@ -53,8 +53,8 @@ class ZaberEmulatedAxis {
   double largestSpeedData() const { return resolution_ * 16384.0; }
 
   Config config_;
-  double place_;      // microsteps from the home position
-  double zero_ = 0;   // microsteps, the place that it calls 0
+  double place_;     // microsteps from the home position
+  double zero_ = 0;  // microsteps, the place that it calls 0
   bool referenced_ = true;
   std::set<std::string> raised_;
   double velocity_ = 0;         // microsteps/s

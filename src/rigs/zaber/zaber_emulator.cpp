@@ -103,9 +103,7 @@ Eigen::Vector3d ZaberEmulator::position() const {
   return config_.microstep * Eigen::Vector3d(axes_[0].place(), axes_[1].place(), axes_[2].place());
 }
 
-int ZaberEmulator::movesBegun() const {
-  return axes_[0].movesBegun() + axes_[1].movesBegun() + axes_[2].movesBegun();
-}
+int ZaberEmulator::movesBegun() const { return axes_[0].movesBegun() + axes_[1].movesBegun() + axes_[2].movesBegun(); }
 
 bool ZaberEmulator::moves() const {
   return std::any_of(axes_.begin(), axes_.end(), [](const ZaberEmulatedAxis& axis) { return axis.busy(); });
@@ -124,8 +122,7 @@ void ZaberEmulator::advance(double time) {
         const bool moved = axis->busy();
         axis->advance(dt);
         if (!moved || axis->busy() || !device.alerts) continue;
-        say('!', device,
-            digits("%02d ", number) + digits("%d IDLE ", axis_number) + zaberFlagShown(axis->flags()), 0);
+        say('!', device, digits("%02d ", number) + digits("%d IDLE ", axis_number) + zaberFlagShown(axis->flags()), 0);
       }
     }
   }

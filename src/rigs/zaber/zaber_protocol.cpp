@@ -66,7 +66,8 @@ std::optional<std::vector<std::string>> ZaberMessage::flags() const {
   const std::string count = takeWord(text);
   std::vector<std::string> up;
   while (!text.empty()) up.push_back(takeWord(text));
-  const bool all_flags = std::all_of(up.begin(), up.end(), [](const auto& each) { return isFlag(each) && each != "--"; });
+  const bool all_flags =
+      std::all_of(up.begin(), up.end(), [](const auto& each) { return isFlag(each) && each != "--"; });
   const auto announced = zaberWholeNumber(count);
   if (count.size() != 2 || announced != static_cast<std::int64_t>(up.size()) || !all_flags) return std::nullopt;
   return up;

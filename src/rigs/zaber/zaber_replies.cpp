@@ -171,12 +171,14 @@ void ZaberDriver::takePosition(const Exchange& asked, const ZaberMessage& reply)
   const double step = 1 / config_.microsteps_per_metre[i];
   const double since = std::clamp(time() - axis.position_time, 0.0, longestGuess()) + exchangeTime();
   const bool rests = !reply.busy && axis.velocity == 0;
-  const double tolerance = rests ? 2.5 * step : config_.reading_margin + std::abs(axis.velocity) * since;
+  const double tolerance =
+      rests ? std::max(2.5 * step, axis.coasting) : config_.reading_margin + std::abs(axis.velocity) * since;
   const double agreement = reply.busy ? config_.reading_margin / 2 + config_.speed * turnTime() : 2.5 * step;
   using Coordinate = Eigen::VectorXd;
   if (!axis.filter.accept(Coordinate::Constant(1, place), Coordinate::Constant(1, guess), tolerance, agreement)) return;
   if (axis.read_since_begin) largest_correction_ = std::max(largest_correction_, std::abs(place - guess));
   const bool stands = axis.position && std::abs(place - *axis.position) < 0.5 * step;
+  if (!reply.busy) axis.coasting = 0;
   axis.position = place;
   axis.position_time = then;
   axis.heard = listened();

@@ -9,10 +9,10 @@
 namespace microinjection {
 namespace {
 
-constexpr double kLongestBraking = 1.5;  // s, after a stop
-constexpr double kLongestHoming = 120;   // s
-constexpr int kSettingTries = 120;       // of 18 settings that are told twice each
-constexpr double kAgreement = 0.1;       // share by which an acceleration may differ from the file's
+constexpr double kLongestBraking = 1.5;                // s, after a stop
+constexpr double kLongestHoming = 120;                 // s
+constexpr int kSettingTries = 120;                     // of 18 settings that are told twice each
+constexpr double kAgreement = 0.1;                     // share by which an acceleration may differ from the file's
 constexpr double kAccelUnit = kZaberSpeedUnit * 1e-4;  // data of the device's accelerations for 1 microstep/s^2
 
 std::string text(double value) {
@@ -37,9 +37,13 @@ void ZaberDriver::begin(bool lost) {
   lost_ = lost;
   settled_ = false;
   turn_ = move_stage_ = setting_tries_ = 0;
-  for (Axis& axis : axes_) {
+  for (int i = 0; i < 3; ++i) {
+    Axis& axis = axes_[i];
     axis.filter.forget();
     axis.told.reset();
+    axis.coasting = lost || axis.velocity == 0 ? 0 : config_.reading_margin;
+    if (axis.position) axis.position = expected(i, time());
+    axis.position_time = time();
     axis.velocity = 0;
     axis.end = std::nan("");
     axis.read_since_begin = axis.homed = axis.still_moves = false;
@@ -140,7 +144,8 @@ std::string ZaberDriver::checkSettings() {
     if (!wrong.empty()) return wrong;
     for (const auto name : {ZaberSettings::kAcceleration, ZaberSettings::kDeceleration}) {
       const auto data = axes_[i].settings.number(name);
-      if (data) slowest = std::min(slowest, static_cast<double>(*data) / (config_.microsteps_per_metre[i] * kAccelUnit));
+      if (data)
+        slowest = std::min(slowest, static_cast<double>(*data) / (config_.microsteps_per_metre[i] * kAccelUnit));
     }
   }
   acceleration_ = slowest;
@@ -153,7 +158,8 @@ void ZaberDriver::adaptToAnswers() {
   if (!lost_ || !measured) return;
   answer_time_ = std::max(config_.answer_time, *measured);
   const double wire = (kZaberCommandBytes + kZaberReplyBytes) * config_.byteTime();
-  waitForSilence(answer_time_ + 60 * config_.byteTime() + 5e-3, std::max(config_.reply_timeout, 3 * answer_time_) + wire);
+  waitForSilence(answer_time_ + 60 * config_.byteTime() + 5e-3,
+                 std::max(config_.reply_timeout, 3 * answer_time_) + wire);
 }
 
 /// What looking for the reference positions needs next; false: nothing.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "rigs/zaber/zaber_driver.h"
 
@@ -10,7 +11,8 @@ namespace {
 
 constexpr double kVelocityHolds = 0.1;  // s: a set-point's velocity is not followed for longer
 constexpr int kMoveTries = 2;
-constexpr double kSlowest = 10;     // microsteps/s, of an axis of a move
+constexpr long long kSlowestArrival = 16;  // units of speed, some 10 microsteps/s
+constexpr double kSlowest = 10;            // microsteps/s, of an axis of a move
 constexpr double kShortestWay = 3;  // microsteps, of a velocity: a shorter one may be none for an axis that is ahead
 
 }  // namespace
@@ -29,15 +31,18 @@ bool ZaberDriver::nextOfWarnings() {
   return false;
 }
 
+bool ZaberDriver::goalStands() const { return goal()->velocity.isZero(0) || time() - goal()->time >= kVelocityHolds; }
+
 long long ZaberDriver::velocityData(int i) const {
   const Eigen::Vector3d wanted = config_.joints.toDevice(goal()->joints);
-  const bool fresh = time() - goal()->time < kVelocityHolds;
-  Eigen::Vector3d velocity = config_.joints.directions.cwiseProduct(goal()->velocity) * (fresh ? 1 : 0);
+  Eigen::Vector3d velocity = config_.joints.directions.cwiseProduct(goal()->velocity) * (goalStands() ? 0 : 1);
   const double away = wanted[i] - expected(i, time());
   if (velocity[i] == 0 && std::abs(away) * config_.microsteps_per_metre[i] < 0.75) return 0;
+  // Who goes to a place stops there by himself; who is driven by velocities alone must not swing.
+  const double rate = goalStands() && axes_[i].settings.movesHaveSpeeds() ? 1 / turnTime() : gain();
   double share = 1;  // all axes are slowed down together, so that a long way stays straight
   for (int k = 0; k < 3; ++k) {
-    velocity[k] += gain() * (wanted[k] - expected(k, time()));
+    velocity[k] += rate * (wanted[k] - expected(k, time()));
     if (std::abs(velocity[k]) > fastest(k)) share = std::min(share, fastest(k) / std::abs(velocity[k]));
   }
   return speedData(i, share * velocity[i]);
@@ -46,22 +51,41 @@ long long ZaberDriver::velocityData(int i) const {
 /// Where (microsteps) a velocity ends unless it is renewed. Empty: the axis is to stand, the device cannot, or the end
 /// of its travel is nearer.
 std::optional<long long> ZaberDriver::endOfVelocity(int i, long long data) const {
-  const Axis& axis = axes_[i];
-  if (data == 0 || !axis.settings.movesHaveSpeeds()) return std::nullopt;
+  if (data == 0) return std::nullopt;
   const double way = std::max(std::abs(data / kZaberSpeedUnit) * horizon(), kShortestWay);
   const double from = expected(i, time()) * config_.microsteps_per_metre[i];
   const long long end = std::llround(from + std::copysign(way, static_cast<double>(data)));
-  const auto lowest = axis.settings.number(ZaberSettings::kLowest);
-  const auto highest = axis.settings.number(ZaberSettings::kHighest);
-  if (!lowest || !highest || end < *lowest || end > *highest) return std::nullopt;
-  return end;
+  return canGoTo(i, end) ? std::optional(end) : std::nullopt;
+}
+
+/// The set-point's place (microsteps) where it stands and is so near that the device may go there without renewal: it
+/// ends there by itself and does not pass it. Empty: it does not, the device cannot, or the place is outside.
+std::optional<long long> ZaberDriver::placeOfArrival(int i) const {
+  if (!goalStands()) return std::nullopt;
+  const double wanted = config_.joints.toDevice(goal()->joints)[i];
+  const long long place = std::llround(wanted * config_.microsteps_per_metre[i]);
+  const bool near = std::abs(wanted - expected(i, time())) <= fastest(i) * horizon();
+  return near && canGoTo(i, place) ? std::optional(place) : std::nullopt;
+}
+
+bool ZaberDriver::canGoTo(int i, long long place) const {
+  const ZaberSettings& settings = axes_[i].settings;
+  const auto lowest = settings.number(ZaberSettings::kLowest), highest = settings.number(ZaberSettings::kHighest);
+  return settings.movesHaveSpeeds() && lowest && highest && place >= *lowest && place <= *highest;
 }
 
 /// A velocity that is new, or that has to be renewed.
 bool ZaberDriver::nextVelocity(int i) {
   if (!goal() || !goal()->follows || !mayMove() || !axes_[i].position) return false;
-  const long long data = velocityData(i);
-  if (const auto end = endOfVelocity(i, data)) {
+  long long data = velocityData(i);
+  std::optional<long long> end = placeOfArrival(i);
+  if (end && axes_[i].told.value_or(0) != 0 &&
+      axes_[i].end == static_cast<double>(*end) / config_.microsteps_per_metre[i]) {
+    return false;  // it is on its way there
+  }
+  if (end && data != 0) data = std::copysign(std::max(std::llabs(data), kSlowestArrival), data);
+  if (!end) end = endOfVelocity(i, data);
+  if (end && data != 0) {
     ask(Kind::kVelocity, i, "move abs " + std::to_string(*end) + " " + std::to_string(std::abs(data)), data,
         static_cast<double>(*end) / config_.microsteps_per_metre[i]);
     return true;
@@ -107,7 +131,8 @@ bool ZaberDriver::nextOfMove() {
   for (; move_stage_ < 3; ++move_stage_) {
     const int i = move_stage_;
     const long long data = moveSpeedData(i);
-    if (!axes_[i].settings.movesHaveSpeeds()) return ask(Kind::kSpeed, i, "set maxspeed " + std::to_string(data), data), true;
+    if (!axes_[i].settings.movesHaveSpeeds())
+      return ask(Kind::kSpeed, i, "set maxspeed " + std::to_string(data), data), true;
     axes_[i].move_speed = static_cast<double>(data) / (config_.microsteps_per_metre[i] * kZaberSpeedUnit);
   }
   if (move_stage_ >= 6) {
@@ -158,8 +183,8 @@ void ZaberDriver::sendExchange() {
   exchange_->sent = true;
   exchange_->heard_at = time() + wire;
   exchange_->heard_from = listened() + wire;
-  exchange_->due = exchange_->heard_from + kZaberReplyBytes * config_.byteTime() +
-                   patience * (settled_ ? 1 : exchange_->tries);
+  exchange_->due =
+      exchange_->heard_from + kZaberReplyBytes * config_.byteTime() + patience * (settled_ ? 1 : exchange_->tries);
   say(bytes);
 }
 

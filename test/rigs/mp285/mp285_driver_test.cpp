@@ -154,7 +154,7 @@ TEST_F(Mp285Test, LeavesTheDeviceAPauseAfterEachAnswer) {
   Mp285EmulatorConfig device;
   device.answer_time = 1.7e-3;  // s, so that answers come at any time of a step
   make(device);
-  ASSERT_TRUE(rig_->runUntilReady(0.55)) << rig_->driver().why();  // nothing was said twice
+  ASSERT_TRUE(rig_->runUntilReady(0.7)) << rig_->driver().why();  // nothing was said twice
   moveAndCheck();
   // A device that needs none is asked sooner; one that needs more would not hear.
   auto hasty = TestedMp285::config();

@@ -86,8 +86,7 @@ TEST(ZaberEmulator, AnswersOnceADeviceWithTheDataOfAllAxes) {
   EXPECT_EQ(one("1 0"), "@01 0 OK BUSY -- 0\r\n");  // one of them moves
   EXPECT_EQ(one("1 1"), "@01 1 OK IDLE -- 0\r\n");
   Device three(chain());
-  EXPECT_EQ(three("0 0 get comm.address"),
-            "@01 0 OK IDLE -- 1\r\n@02 0 OK IDLE -- 2\r\n@03 0 OK IDLE -- 3\r\n");
+  EXPECT_EQ(three("0 0 get comm.address"), "@01 0 OK IDLE -- 1\r\n@02 0 OK IDLE -- 2\r\n@03 0 OK IDLE -- 3\r\n");
   EXPECT_EQ(three("2 0 get pos"), "@02 0 OK IDLE -- 262467\r\n");
   EXPECT_EQ(three("4 0 get pos"), "");
 }
@@ -97,8 +96,12 @@ TEST(ZaberEmulator, TellsTheSettingsThatClientsAskFor) {
   EXPECT_EQ(one("1 1 get accel"), "@01 1 OK IDLE -- 688\r\n");        // 0.2 m/s^2
   EXPECT_EQ(one("1 1 get maxspeed"), "@01 1 OK IDLE -- 172010\r\n");  // 5 mm/s
   EXPECT_EQ(one("1 0 get resolution"), "@01 0 OK IDLE -- 64 64 64\r\n");
-  for (const auto& [name, value] : {std::pair("system.access", "1"), {"comm.address", "1"}, {"comm.alert", "0"},
-                                    {"comm.checksum", "0"}, {"comm.protocol", "2"}, {"system.axiscount", "3"}}) {
+  for (const auto& [name, value] : {std::pair("system.access", "1"),
+                                    {"comm.address", "1"},
+                                    {"comm.alert", "0"},
+                                    {"comm.checksum", "0"},
+                                    {"comm.protocol", "2"},
+                                    {"system.axiscount", "3"}}) {
     EXPECT_EQ(one(std::string("1 0 get ") + name), std::string("@01 0 OK IDLE -- ") + value + "\r\n");
     EXPECT_EQ(one(std::string("1 1 get ") + name), "@01 1 RJ IDLE -- DEVICEONLY\r\n");
   }
@@ -110,8 +113,9 @@ TEST(ZaberEmulator, TellsTheSettingsThatClientsAskFor) {
 TEST(ZaberEmulator, RefusesWhatIsOutOfRange) {
   Device one;
   EXPECT_EQ(one("1 4 get pos"), "@01 0 RJ IDLE -- BADAXIS\r\n");
-  for (const char* command : {"move vel 1048577", "move vel -1048577", "move abs 524935", "move abs -1", "move rel 300000",
-                              "move abs 5 1048577", "move abs x", "set maxspeed 1048577", "set accel -1"}) {
+  for (const char* command :
+       {"move vel 1048577", "move vel -1048577", "move abs 524935", "move abs -1", "move rel 300000",
+        "move abs 5 1048577", "move abs x", "set maxspeed 1048577", "set accel -1"}) {
     EXPECT_EQ(one(std::string("1 1 ") + command), "@01 1 RJ IDLE -- BADDATA\r\n") << command;
   }
   EXPECT_EQ(one("1 1 move vel 1048576"), "@01 1 OK BUSY -- 0\r\n");

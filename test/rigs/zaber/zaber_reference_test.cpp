@@ -117,9 +117,9 @@ TEST_F(ZaberReferenceTest, APositionIsToldAgainWhenThereIsOne) {
   // The maker's tool: each axis is told what it had counted. The joint of axis 3 counts the other way.
   const Eigen::Vector3d place = TestedZaber::config().joints.toDevice(rig_->place());
   for (int i = 0; i < 3; ++i) {
-    rig_->device().receive("/1 " + std::to_string(i + 1) + " set pos " + std::to_string(std::lround(place[i] / kStep)) +
-                               "\n",
-                           rig_->time());
+    rig_->device().receive(
+        "/1 " + std::to_string(i + 1) + " set pos " + std::to_string(std::lround(place[i] / kStep)) + "\n",
+        rig_->time());
   }
   rig_->run(1);
   EXPECT_EQ(rig_->driver().state(), State::kFault);  // latched

@@ -129,7 +129,7 @@ TEST_F(ZaberSessionTest, ReadingsAreAsOftenAsItSaysAlsoOnASlowLine) {
 }
 
 TEST_F(ZaberSessionTest, FollowsOnASlowLineWithoutAheadOrFault) {
-  for (const double held : {17e-3, 40e-3}) {                // s
+  for (const double held : {17e-3, 40e-3}) {      // s
     for (const double speed : {20e-6, 200e-6}) {  // m/s
       SCOPED_TRACE(std::to_string(held) + " s, m/s: " + std::to_string(speed));
       makeWith(0.2, 0.2, held);
