@@ -15,7 +15,8 @@ struct SerialPortConfig {
   int baud = 9600;              ///< bit/s; 8 data bits
   std::string parity = "none";  ///< none, even or odd
   int stop_bits = 1;            ///< 1 or 2
-  /// none; rts_cts: RTS and CTS hold the sender back, so without the wires in the cable nothing is sent, not even a stop
+  /// none; rts_cts: RTS and CTS hold the sender back, so without the wires in the cable nothing is sent, not even a
+  /// stop
   std::string handshake = "none";
 
   std::string frame() const;  ///< as data sheets write it, e.g. 8N1

@@ -47,7 +47,9 @@ class CrtkTest(unittest.TestCase):
     def setUp(self):
         self.client.disable()
         self.assertTrue(self.client.enable())
-        self.client.home()
+        since = len(self.client.history)
+        self.client.home()  # a wait for the move would be over with it
+        until(lambda: self.busy_changes(since) == [True, False], "home, which is busy once")
         self.assertTrue(self.client.move_cp(START).wait(), self.nodes.report())
         self.said.clear()
 

@@ -24,11 +24,10 @@ struct CrtkButton {
 };
 
 struct CrtkConfig {
-  std::string device = "haptic";       ///< namespace of the driver's topics
-  std::string position_type = "pose";  ///< pose (PoseStamped) or transform (TransformStamped, before 2022)
-  std::string force = "servo_cf";      ///< topic of the force on the hand
-  std::string state;  ///< topic of its operating state (crtk_msgs/OperatingState), which must be ENABLED and homed;
-                      ///< empty: not asked for
+  std::string device = "haptic";        ///< namespace of the driver's topics
+  std::string position_type = "pose";   ///< pose (PoseStamped) or transform (TransformStamped, before 2022)
+  std::string force = "servo_cf";       ///< topic of the force on the hand
+  std::string state;                    ///< topic of its OperatingState, to be ENABLED and homed; empty: not asked for
   double timeout = 0.1;                 ///< s, past which the device is silent
   double button_timeout = 0;            ///< s; 0: what a button said last holds until the device was silent
   CrtkButton clutch;                    ///< held down: the hand moves alone

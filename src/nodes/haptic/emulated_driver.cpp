@@ -1,5 +1,7 @@
 #include "nodes/haptic/emulated_driver.h"
 
+#include <algorithm>
+
 #include "nodes/stamps.h"
 
 namespace microinjection {
@@ -16,9 +18,11 @@ std::unique_ptr<EmulatedDriver> makeEmulatedDriver(const std::string& kind, Cycl
 }
 
 bool EmulatedRate::due(const ros::Time& now) {
-  constexpr double kRounding = 1e-6;  // s
-  if (!last_.isZero() && secondsBetween(last_, now) < period_ - kRounding) return false;
-  last_ = now;
+  constexpr double kEarly = 5e-4;  // s: a step that comes a little early is the one that was meant
+  if (next_.isZero()) next_ = now;
+  if (secondsBetween(now, next_) > kEarly) return false;
+  // After a stall it does not catch up.
+  next_ = std::max(next_ + ros::Duration(period_), now);
   return true;
 }
 

@@ -64,7 +64,7 @@ class EmulatedRate {
 
  private:
   double period_;
-  ros::Time last_;
+  ros::Time next_;
 };
 
 /// The first button is `first`, the second `second`.
