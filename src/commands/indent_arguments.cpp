@@ -23,7 +23,7 @@ The scene is solved on finer and finer meshes until two of them agree. One CSV r
 force: of the cell on the needle, so force_z is positive when the cell is indented; nan where there is no solution.
 wall_s: time of that row's solutions. converged: 1, or 0 where finer meshes have no solution, for a reason that stderr tells.
 error_estimate: relative error of the force, from the last two meshes; nan for the live model, whose error is unknown
-(about 1 to 3, see the README), and for the membrane.
+(about 1 to 3, see doc/reference/benchmarks.md), and for the membrane.
 
 Models:
   auto          axisymmetric where offset and lateral are 0, else spatial

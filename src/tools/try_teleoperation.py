@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Does what README's "Teleoperate" tells a person to do, with made-up keys in a terminal or a made-up mouse in rviz.
+"""Does what doc/guide/teleoperate.md tells a person to do, with made-up keys or a made-up mouse in rviz.
 
     ./dev shell -- python3 src/tools/try_teleoperation.py OUT [--hand keyboard|marker] [--cell NAME]
 

@@ -8,7 +8,7 @@
 namespace microinjection {
 
 /// One axis of an emulated Zaber device: its motion, its settings, its warning flags, and the commands that an axis
-/// obeys. Written from the protocol's manuals and from public clients (doc/devices.md), not from our driver.
+/// obeys. Written from the protocol's manuals and from public clients (doc/reference/devices.md), not from our driver.
 ///
 /// The axis counts from where it was switched on until it is homed or `set pos` gives it a reference position; without
 /// one it warns WR and refuses moves to a place.

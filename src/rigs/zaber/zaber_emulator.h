@@ -28,7 +28,7 @@ struct ZaberEmulatorConfig {
 };
 
 /// Zaber devices with the ASCII protocol, written from the protocol's manuals and from public clients and not from the
-/// driver: which ones, and what is unverified, is in doc/devices.md.
+/// driver: which ones, and what is unverified, is in doc/reference/devices.md.
 ///
 /// Axis 0 is all axes of a device, which answers once, with the data of all of them; device 0 is all devices. A reply
 /// shows only its most important flag; `warnings` lists all. From firmware 7.25 on a move may have a speed and an

@@ -1,4 +1,4 @@
-// The emulated devices against the protocol's manuals and what public clients show of real ones (doc/devices.md).
+// The emulated devices against the manuals and what public clients show of real ones (doc/reference/devices.md).
 
 #include "rigs/zaber/zaber_emulator.h"
 

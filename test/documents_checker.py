@@ -1,0 +1,343 @@
+"""What is wrong with the documents of a project, each line and token for itself."""
+import functools
+import re
+import shlex
+from pathlib import Path
+
+HISTORY = {'CHANGELOG.md'}  # names what once was, and is wrapped as its entries came
+README_LINES, COLUMNS, SENTENCE = 150, 100, 30
+
+
+PRIVATE = re.compile(r'\b(heeds?|distrusts?|judged?s?|tells?|told|says?|said|let go|lets go)\b', re.IGNORECASE)
+PACKAGE = 'cell_microinjection'
+# What others' programs are called: their options, topics and identifiers that the documents name.
+OTHERS = set('''/publish_rate /phantom /Geomagic /opt --ros-args --help out/demo out/bench out/test out/paper devel/setup.bash
+install/setup.bash catkin_make roslaunch rosrun rostopic rosservice rosbag rosparam rosdep sudo apt-get true false none
+omni_msgs geomagic_control phantom_omni ros_falcon falconPos falconForce ulimit kill ROS_IP ROS_MASTER_URI HOME PWD
+sensor_msgs/Joy geometry_msgs/PoseStamped geometry_msgs/TwistStamped geometry_msgs/WrenchStamped std_msgs/Bool
+std_srvs/Trigger std_srvs/SetBool WrenchStamped PoseStamped TwistStamped JointState MarkerArray DiagnosticArray
+build/core build/core-address build/core-thread cp cv cf SIGSTOP NAMESPACE/body/servo_cf footpedals/clutch
+footpedals/operator_present console/operator_present'''.split())
+PLACEHOLDER = re.compile(r'\b[A-Z][A-Z0-9_]*\b|(?<![A-Za-z])(?:NAME|KIND|RIG)(?=_)|\.\.\.|\*')
+IDENTIFIER = re.compile(r'[A-Za-z_]\w*(?:::\w+)*(?:\(\))?')
+WRITTEN = ('csv', 'yaml', 'png', 'bag', 'md', 'active')
+SUFFIXES = ('md', 'py', 'cpp', 'h', 'launch', 'yaml', 'csv', 'png', 'bag', 'urdf', 'txt', 'xml', 'msg', 'srv', 'action',
+            'test', 'sh', 'cff', 'rviz', 'bash')
+
+
+def documents_prose(text):
+    """Yields (number of the first line, paragraph) of the prose: no table, block of commands or heading."""
+    paragraph, first, fenced = [], 0, False
+    for number, line in enumerate(text.splitlines() + [''], 1):
+        fence = line.lstrip().startswith('```')
+        fenced ^= fence
+        block = fence or fenced or (line.startswith('    ') and not paragraph) or re.match(r'\s*\|', line)
+        begins = bool(re.match(r'\s*([-*]|\d+\.) ', line))
+        if paragraph and (block or begins or not line.strip() or line.startswith('#')):
+            yield first, ' '.join(paragraph)
+            paragraph = []
+        if line.strip() and not block and not line.startswith('#'):
+            first = first if paragraph else number
+            paragraph.append(re.sub(r'^\s*([-*]|\d+\.) ', '', line).strip())
+
+
+def commands_of(text):
+    """Yields (line, command) of the blocks: indented by four and more after an empty line, or fenced."""
+    block, fenced, empty = False, False, True
+    for number, line in enumerate(text.splitlines(), 1):
+        if line.lstrip().startswith('```'):
+            fenced = not fenced
+        elif fenced or ((empty or block) and line.startswith('    ')):
+            block = True
+            yield number, line.strip()
+        else:
+            block = block and not line.strip()
+        empty = not line.strip()
+
+
+def slug(heading):
+    """The anchor of a heading."""
+    heading = re.sub(r'\[([^\]]*)\]\([^)]*\)', r'\1', heading).strip().lower()
+    return re.sub(r'[^\w\- ]', '', heading).replace(' ', '-')
+
+
+def anchors(text):
+    outside = re.sub(r'^```.*?^```', '', text, flags=re.MULTILINE | re.DOTALL)
+    return {slug(heading) for heading in re.findall(r'^#+ (.*)$', outside, re.MULTILINE)}
+
+
+class Checker:
+    """Collects what is wrong with the documents of a project, a line each."""
+
+    def __init__(self, project):
+        self.project = project
+        self.problems = []
+
+    def check(self):
+        for path in self.project.documents:
+            text = self.project.text(path)
+            self.check_links(path, text)
+            if path in HISTORY:
+                continue
+            self.check_form(path, text)
+            for number, line in enumerate(text.splitlines(), 1):
+                self.place = f'{path}:{number}'
+                if not line.startswith('    ') or '`' in line:
+                    for token in re.findall(r'(?<!`)`([^`\n]+)`(?!`)', line):
+                        self.check_token(token)
+            for number, line in commands_of(text):
+                self.place = f'{path}:{number}'
+                self.check_command(line)
+        return self.problems
+
+    def report(self, problem):
+        self.problems.append(f'{self.place}: {problem}')
+
+    # Links and form
+
+    def check_links(self, path, text):
+        outside = re.sub(r'`[^`\n]+`', lambda code: ' ' * len(code.group()), text)
+        for found in re.finditer(r'\]\(([^)\s]+)\)', outside):
+            target, _, anchor = found.group(1).partition('#')
+            if '://' in target or target.startswith('mailto:'):
+                continue
+            self.place = f'{path}:{text.count(chr(10), 0, found.start()) + 1}'
+            file = self.resolve(path, target) if target else path
+            if file not in self.project.files and file not in self.project.folders:
+                self.report(f'link to {target}: there is no such file')
+            elif anchor and anchor not in anchors(self.project.text(file)):
+                self.report(f'link to {found.group(1)}: there is no such heading')
+
+    @staticmethod
+    def resolve(path, target):
+        parts = []
+        for part in (Path(path).parent / target).as_posix().split('/'):
+            if part == '..':
+                parts = parts[:-1] if parts else ['..']
+            elif part != '.':
+                parts.append(part)
+        return '/'.join(parts) or '.'
+
+    def check_form(self, path, text):
+        lines = text.splitlines()
+        self.place = path
+        if path == 'README.md' and len(lines) > README_LINES:
+            self.report(f'{len(lines)} lines, at most {README_LINES}')
+        fenced = False
+        for number, line in enumerate(lines, 1):
+            fenced ^= line.startswith('```')
+            if len(line) > COLUMNS and not fenced and not re.match(r'\s*\||    |\s*!\[', line):
+                self.place = f'{path}:{number}'
+                self.report(f'{len(line)} columns, at most {COLUMNS}')
+        if path == 'README.md' or path.startswith('doc/'):
+            for number, paragraph in documents_prose(text):
+                self.place = f'{path}:{number}'
+                self.check_sentences(paragraph)
+
+    def check_sentences(self, paragraph):
+        plain = re.sub(r'!?\[([^\]]*)\]\([^)]*\)', r'\1', re.sub(r'`[^`]*`', 'code', paragraph))
+        for sentence in re.split(r'(?<=[.!?])[*_)"]*\s+', plain):
+            private = PRIVATE.search(sentence) if self.place.startswith(('README.md', 'doc/guide/')) else None
+            if private:
+                self.report(f'"{private.group()}" is a private word: {sentence[:60]} ...')
+            words = re.findall(r"[A-Za-z0-9][\w/^'.-]*", sentence)
+            if len(words) > SENTENCE:
+                self.report(f'a sentence of {len(words)} words, at most {SENTENCE}: {sentence[:60]} ...')
+
+    # Commands
+
+    def check_command(self, line):
+        line = re.sub(r'^\$ ', '', line)
+        line = re.sub(r'\s#\s.*$', '', line)
+        try:
+            words = shlex.split(line)
+        except ValueError:
+            return
+        if words[:2] == ['./dev', 'shell'] and '--' in words:
+            self.check_dev(words[:words.index('--')])
+            words = words[words.index('--') + 1:]
+        if not words:
+            return
+        checks = {'./dev': self.check_dev, 'rosrun': self.check_rosrun, 'roslaunch': self.check_roslaunch,
+                  'rostopic': self.check_ros_name, 'rosservice': self.check_ros_name, 'python3': self.check_python}
+        if words[0] in checks:
+            checks[words[0]](words)
+        for word in words:
+            if re.fullmatch(r'(config|src|launch|test|urdf)/[\w./-]+', word) and not (self.project.root / word).exists():
+                self.report(f'there is no file {word}')
+
+    def check_dev(self, words):
+        if len(words) < 2 or PLACEHOLDER.fullmatch(words[1]) or words[1] == '--help':
+            return
+        known = self.project.dev
+        if words[1] not in known:
+            return self.report(f'./dev has no command {words[1]}')
+        own = words[2:words.index('--')] if '--' in words else words[2:]
+        behind = words[words.index('--') + 1:] if '--' in words else []
+        options = set(known[words[1]])
+        if words[1] == 'bench' and own:
+            name = own[0]
+            if PLACEHOLDER.fullmatch(name):
+                return None
+            if name not in self.project.benches:
+                return self.report(f'there is no benchmark {name}')
+            options |= self.project.benches[name] | {'--csv', '--out'}
+        if words[1] in ('demo', 'paper'):
+            options |= self.project.programs.get({'demo': 'demo.py', 'paper': 'report.py'}[words[1]], set())
+        for word in own + behind:
+            if word.startswith('--') and word.split('=')[0] not in options:
+                self.report(f'{" ".join(words[:3])}: there is no option {word}')
+        if words[1] == 'test':
+            for folder in own:
+                if re.fullmatch('[a-z_]+', folder) and f'test/{folder}' not in self.project.folders and folder not in ('address', 'thread'):
+                    self.report(f'there is no folder test/{folder}')
+
+    def check_rosrun(self, words):
+        if len(words) < 3 or words[1] != PACKAGE or PLACEHOLDER.fullmatch(words[2]):
+            return
+        if words[2] not in self.project.programs:
+            return self.report(f'there is no program {words[2]}')
+        known = self.project.programs[words[2]] | {'--help'}
+        for word in words[3:]:
+            if word.startswith('--') and word not in known:
+                self.report(f'{words[2]} has no option {word}')
+
+    def check_roslaunch(self, words):
+        words = [word for word in words if not word.startswith(('--', '['))]
+        if len(words) < 3 or words[1] != PACKAGE:
+            return
+        if words[2] not in self.project.launch:
+            return self.report(f'there is no launch file {words[2]}')
+        for word in words[3:]:
+            name, assigned, value = word.partition(':=')
+            if not assigned:
+                continue
+            if name not in self.project.launch[words[2]]:
+                self.report(f'{words[2]} has no argument {name}')
+            else:
+                self.check_value(name, value, [words[2]])
+
+    def check_value(self, name, value, files):
+        """A word that an argument takes is a file of that name, or is in what the launch file says of the argument."""
+        if not re.fullmatch(r'[a-z][a-z_0-9]*', value):
+            return
+        if name == 'cell':
+            good = f'config/cells/{value}.yaml' in self.project.files
+        elif name == 'haptic':
+            good = f'launch/haptic/{value}.launch' in self.project.files
+        elif name in ('operator', 'record', 'history', 'scene', 'motion'):
+            good = True
+        else:
+            said = ' '.join(self.project.launch[file].get(name, '') for file in files)
+            good = value in ('true', 'false') or re.search(rf'\b{value}\b', said)
+        if not good:
+            self.report(f'{name}:={value}: the argument knows no {value}')
+
+    def check_ros_name(self, words):
+        for word in words[1:]:
+            if re.fullmatch(r'/[a-z_]+(/[a-z_]+)*', word):
+                self.check_name(word)
+            elif word.startswith(PACKAGE + '/'):
+                kind = re.sub(r'Action(Goal|Result|Feedback)?$', '', word.split('/')[1])
+                if not {f'{kind}.msg', f'{kind}.srv', f'{kind}.action'} & self.project.names:
+                    self.report(f'there is no message {word}')
+
+    def check_python(self, words):
+        script = next((word for word in words[1:] if word.endswith('.py')), '')
+        known = self.project.programs.get(Path(script).name)
+        for word in words:
+            if known is not None and word.startswith('--') and word not in known | {'--help'}:
+                self.report(f'{script} has no option {word}')
+
+    # What stands in backquotes
+
+    def check_token(self, token):
+        token = token.strip()
+        if token in OTHERS or not re.search(r'[A-Za-z]', token):
+            return
+        first = token.split()[0]
+        either = re.fullmatch(r'([\w/]+\.)\{(\w+),(\w+)\}', token)
+        if either:
+            for suffix in either.groups()[1:]:
+                self.check_path(either.group(1) + suffix)
+        elif first in ('./dev', 'rosrun', 'roslaunch', 'rostopic', 'rosservice', 'python3') and ' ' in token:
+            self.check_command(token)
+        elif token.startswith('./dev') or token.startswith('test/') and token in self.project.files:
+            pass
+        elif ':=' in token:
+            for word in token.split():
+                if ':=' in word:
+                    self.check_argument(*word.split(':=', 1))
+        elif first.startswith('--'):
+            name = first.split('=')[0]
+            if name != '--' and name not in self.project.options | OTHERS:
+                self.report(f'no program has an option {name}')
+        elif re.match(r'[a-z_/]+: ', token):
+            for key in re.findall(r'([a-z_]\w*):', token):
+                self.check_word(key)
+        elif ' ' in token or re.search(r'[=()<>^+"\\,@$]', token.rstrip('()')):
+            for word in re.findall(r'\b[a-z]+_\w+\b', token):
+                self.check_word(word)
+        elif token.startswith('/'):
+            self.check_name(token)
+        elif '/' in token or token.rsplit('.', 1)[-1] in SUFFIXES and '.' in token:
+            self.check_path(token)
+        elif IDENTIFIER.fullmatch(token) or re.fullmatch(r'[\w.:~-]+', token):
+            self.check_word(token)
+
+    def check_argument(self, name, value):
+        if name.startswith('_'):
+            return self.check_word(name[1:].split('/')[-1])
+        if name not in self.project.arguments:
+            return self.report(f'no launch file has an argument {name}')
+        return self.check_value(name, value, [file for file in self.project.launch if name in self.project.launch[file]])
+
+    def check_name(self, token):
+        """A topic, service or parameter from /, or the front part of one."""
+        token = token.rstrip('/')
+        if not re.match('/(tmp|dev|proc)/', token) and not PLACEHOLDER.search(token) and token not in self.project.topics | self.project.parts | OTHERS:
+            self.report(f'no node has a topic, service or parameter {token}')
+
+    def check_path(self, token):
+        """A file or folder from the root or from src/, an output that the code names, a topic or a key."""
+        bare = token.rstrip('/')
+        if re.match(r'(~|\$|out/|\.\./|-)', bare) or bare in OTHERS or '://' in bare:
+            return
+        project = self.project
+        if '*' not in bare and (project.root / bare).exists():
+            return
+        there = {bare, f'src/{bare}', f'test/{bare}'} & (project.files | project.folders) or bare in project.names
+        if PLACEHOLDER.search(bare):
+            pattern = '.*'.join(re.escape(part) for part in PLACEHOLDER.split(bare))
+            known = project.files | project.folders | project.keys | project.topics
+            there = any(re.fullmatch(f'(.*/)?{pattern}', name) for name in known) or not re.search(r'[a-z]', bare)
+        if not there and bare.rsplit('.', 1)[-1] in WRITTEN:  # by a program, into a folder of the user's
+            there = bare.rsplit('/', 1)[-1] in self.all_code()
+        if not there and '/' in token:
+            there = f'/{bare}' in project.topics | project.parts or self.is_key(bare) or self.is_scene_key(bare)
+        if not there:
+            self.report(f'there is no file, topic or key {token}')
+
+    def is_key(self, token):
+        return any(f'/{token}/' in f'/{key}/' for key in self.project.keys)
+
+    def is_scene_key(self, token):
+        """A key that no file of config uses: each part of it is a text of the code."""
+        return all(f'"{part}"' in self.texts() for part in token.split('/'))
+
+    @functools.lru_cache(maxsize=None)
+    def texts(self):
+        return set(re.findall(r'"[a-z_]+"', self.project.sources('src/*/*.cpp', 'src/*/*/*.cpp')))
+
+    @functools.lru_cache(maxsize=None)
+    def all_code(self):
+        return '\n'.join(self.project.code.values())
+
+    def check_word(self, token):
+        if PLACEHOLDER.fullmatch(token) and token not in self.project.words and not re.search('[_a-z]', token):
+            return
+        words = re.findall(r'[A-Za-z_]\w*', token)
+        missing = [word for word in words if word not in self.project.words and word not in OTHERS
+                   and not any(word in name for name in (self.project.names if '.' in token else ()))]
+        if missing and token not in self.project.dev and not PLACEHOLDER.fullmatch(token):
+            self.report(f'{token}: nothing of that name is in the code')

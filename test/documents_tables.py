@@ -1,0 +1,116 @@
+"""The tables of the reference against code and configuration, and which documents links lead to."""
+import re
+from pathlib import Path
+
+import yaml
+
+from documents_checker import PACKAGE, Checker
+from documents_project import TOPIC_CALL, flatten
+
+DRIVERS = ('/phantom/', '/Geomagic/')  # topics of others that have an emulator here
+
+
+def table_rows(text, heading):
+    """{first cell's words in backquotes: cells} of the tables below a heading."""
+    section = re.search(rf'^## {re.escape(heading)}\n(.*?)(?=^## |\Z)', text, re.MULTILINE | re.DOTALL)
+    rows = {}
+    for line in section.group(1).splitlines() if section else []:
+        cells = [cell.strip() for cell in line.strip().strip('|').split('|')]
+        for name in re.findall(r'`([^`]+)`', cells[0]) if line.startswith('|') else []:
+            rows[name] = cells
+    return rows
+
+
+def check_parameters(project, text):
+    """The tables of parameters.md are the files of config/, key by key and default by default."""
+    problems = []
+    for path in sorted(file for file in project.files if re.fullmatch(r'config/\w+\.yaml', file)):
+        wanted = dict(flatten(yaml.compose(project.text(path))))
+        rows = table_rows(text, path)
+        problems += [f'{path}: {key} = {value} is not in the table' for key, value in wanted.items()
+                     if rows.get(key, ['', None])[1] != value]
+        problems += [f'{path}: the table has {key}, the file has not' for key in rows if key not in wanted]
+    return problems
+
+
+def check_topics(project, text):
+    """Each topic that a node publishes or hears below a name of ours, and each service, is in topics_and_frames.md."""
+    calls = {'/' + topic.lstrip('/') for topic in TOPIC_CALL.findall(project.sources('src/nodes/*', 'src/nodes/haptic/*'))}
+    ours = {topic for topic in calls if topic.count('/') > 1 and not topic.startswith(DRIVERS)} | project.services
+    return [f'{topic} is not in the tables' for topic in sorted(ours) if f'`{topic}`' not in text]
+
+
+def files_of(project, node):
+    """The files of src/nodes that a node is made of: its own, and what these include."""
+    found, waiting = set(), [f'src/nodes/{node}_node.cpp', f'src/nodes/haptic/{node}_node.cpp']
+    waiting += [path for path in project.code if node == 'haptic_device' and path.endswith('_adapter.cpp')]
+    while waiting:
+        path = waiting.pop()
+        if path in project.code and path not in found:
+            found.add(path)
+            included = re.findall(r'#include "(nodes/[^"]+)"', project.code[path])
+            waiting += [f'src/{name[:-1]}{end}' for name in included for end in ('h', 'cpp')] + [path[:-3] + 'h']
+    return found
+
+
+def check_nodes(project, text):
+    """Who publishes a topic is as the tables have it; who reads it knows its name."""
+    problems, told = [], {}
+    for line in text.splitlines():
+        cells = [cell.strip() for cell in line.strip().strip('|').split('|')]
+        for topic in re.findall(r'`(/[a-z_/]+)`', cells[0]) if line.startswith('|') else []:
+            nodes = [node for cell in cells[1:] for node in re.findall(r'`(\w+)`', cell) if node in project.programs]
+            told[topic] = set(nodes) if len(cells) > 2 else set()
+            problems += [f'{topic}: {node} does not know it' for node in nodes
+                         if not re.search(rf'["/ ]{topic[1:]}\b', project.joined(files_of(project, node)))]
+    for node in sorted(project.programs):
+        own = project.joined(path for path in files_of(project, node) if Path(path).stem.startswith(node))
+        for topic in re.findall(r'output<[^;()]*>\(\s*"([a-z_/]+)"', own):
+            if node not in told.get(f'/{topic}', {node}):
+                problems.append(f'/{topic}: {node} publishes it')
+    return problems
+
+
+def check_arguments(project, text):
+    """The table of session.launch has its arguments, and their defaults where the table gives one value."""
+    rows, arguments = table_rows(text, 'session.launch'), project.launch['session.launch']
+    problems = [f'session.launch: {name} is not in the table' for name in arguments if name not in rows]
+    problems += [f'session.launch: the table has {name}, the file has not' for name in rows if name not in arguments]
+    for name, default in project.defaults['session.launch'].items():
+        told = re.fullmatch(r'`([^`]*)`', rows[name][1]) if name in rows else None
+        if told and told.group(1) not in (default, default.replace(f'$(find {PACKAGE})/', '')) and '$(e' not in default:
+            problems.append(f'session.launch: {name} = {default} is not in the table')
+    return problems
+
+
+def check_commands(project, text):
+    """Every ./dev command and option of our programs is in commands.md."""
+    problems = check_arguments(project, text)
+    problems += [f'./dev {name} is not in the table' for name in project.dev if f'`./dev {name}' not in text]
+    for program in ('indent', 'prepare', 'trajectory_error', 'emulate'):
+        hidden = {'--help', '--ray'}
+        rows = table_rows(text, program)
+        problems += [f'{program} {option} is not in the table' for option in sorted(project.programs[program] - hidden)
+                     if option not in rows]
+    return problems
+
+
+def check_scene_keys(project, text):
+    """Every key that the scene's readers ask for is in scene_file.md."""
+    code = project.sources('src/cell/scene.cpp', 'src/cell/puncture_config.cpp', 'src/cell/tensegrity_scene.cpp')
+    keys = set(re.findall(r'(?:read\w*\(\w+|\.(?:section|sections|choice|text|integer|number|vector|has))[(,]\s*"([a-z_]+)"', code))
+    return [f'the key {key} is not in the tables' for key in sorted(keys) if not re.search(rf'[`/]{key}[`/]', text)]
+
+
+def reachable(project, start='README.md'):
+    """The documents that links lead to."""
+    found, waiting = set(), [start]
+    while waiting:
+        path = waiting.pop()
+        if path in found or path not in project.files:
+            continue
+        found.add(path)
+        if path.endswith('.md'):
+            waiting += [Checker.resolve(path, target) for target in re.findall(r'\]\(([^)#\s]+)', project.text(path))
+                        if '://' not in target]
+    return found

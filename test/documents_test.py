@@ -1,0 +1,181 @@
+"""Holds the documents to what is there.
+
+Follows every relative link of every .md file. Checks what a document names in backquotes or in a block of commands: paths,
+files, ./dev commands and their options, programs and theirs, launch files and arguments, topics, services, keys and
+identifiers. Checks the tables of the reference against code and configuration, the length of README.md, the columns of all
+documents and the length of the guides' sentences.
+"""
+import re
+import tempfile
+import unittest
+from pathlib import Path
+
+from documents_checker import Checker
+from documents_project import Project
+from documents_tables import check_arguments, check_commands, check_nodes, check_parameters, check_scene_keys, check_topics, reachable
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+class TheDocuments(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.project = Project(ROOT)
+
+    def assert_none(self, problems):
+        self.assertFalse(problems, f'{len(problems)} problems:\n' + '\n'.join(problems))
+
+    def assert_table(self, check, path):
+        self.assert_none(check(self.project, self.project.text(path)))
+
+    def test_name_what_is_there(self):
+        self.assert_none(Checker(self.project).check())
+
+    def test_are_found_from_the_readme(self):
+        found = reachable(self.project)
+        self.assert_none([f'{path}: no link leads there' for path in self.project.documents
+                          if path.startswith('doc/') and path not in found])
+
+    def test_have_every_parameter_and_its_default(self):
+        self.assert_table(check_parameters, 'doc/reference/parameters.md')
+
+    def test_have_every_topic(self):
+        self.assert_table(check_topics, 'doc/reference/topics_and_frames.md')
+
+    def test_have_the_nodes_of_every_topic(self):
+        self.assert_table(check_nodes, 'doc/reference/topics_and_frames.md')
+
+    def test_have_every_command_argument_and_option(self):
+        self.assert_table(check_commands, 'doc/reference/commands.md')
+
+    def test_have_every_key_of_a_scene(self):
+        self.assert_table(check_scene_keys, 'doc/reference/scene_file.md')
+
+    def test_are_read_token_by_token(self):
+        self.assertGreater(len(self.project.topics), 40)
+        self.assertGreater(len(self.project.keys), 200)
+        self.assertIn('--tolerance', self.project.programs['indent'])
+        self.assertIn('--isolated', self.project.dev['shell'])
+        self.assertIn('/force_sensor/tare', self.project.topics)
+        self.assertGreater(sum(len(re.findall('`', self.project.text(path))) for path in self.project.documents), 1000)
+
+
+class TheCheck(unittest.TestCase):
+    """Each thing that a document may get wrong, in a small project, is reported, and what is right is not."""
+
+    FILES = {
+        'dev': """#!/bin/bash
+case "$*" in
+  --help) printf '  test          all tests\\n  bench NAME    a benchmark\\n' ;;
+  "test --help") echo 'usage: ./dev test [--core]' ;;
+esac
+""",
+        'launch/session.launch': '<launch><arg name="rig" default="sim" doc="sim or zaber"/><arg name="fixed" value="1"/></launch>',
+        'config/bridge.yaml': 'rate: 1000   # Hz\nlimits: {force: 3.0}\n# serial:\n#   baud: 9600   # bit/s\n',
+        'src/nodes/bridge_node.cpp': 'cycle.output<Wrench>("haptic/servo_cf"); node.advertiseService<A, B>("tare");\n',
+        'src/nodes/main/bridge.cpp': 'int main() {}\n',
+        'src/commands/indent.cpp': 'add("depths", po::value(&depths)); int main() {}\n',
+        'src/bench/accuracy.cpp': 'add("draws", po::value(&draws));\n',
+        'src/cell/scene.cpp': 'reader.number("stretch"); double forceGain = 1;\n',
+        'test/cell/scene_test.cpp': '\n',
+        'doc/guide/other.md': '# Other page\n\n## How its `rate` is, mostly\n',
+    }
+    GOOD = """# Title
+
+See [other](doc/guide/other.md#how-its-rate-is-mostly), `config/bridge.yaml`, `scene.cpp`, `cell/scene.cpp`, `limits/force`,
+`serial/baud`, `stretch`, `forceGain`, `/haptic/servo_cf`, `/bridge/tare`, `/haptic`, `rig:=zaber`, `--depths`,
+`launch/NAME.launch`, `./dev test --core`, `roslaunch cell_microinjection session.launch rig:=sim`.
+
+    ./dev test --core cell
+    ./dev bench accuracy -- --draws 3
+    rosrun cell_microinjection indent --depths 1
+    rostopic echo /haptic/servo_cf          # the force
+"""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root = Path(folder.name)
+        for name, text in self.FILES.items():
+            self.write(name, text)
+
+    def write(self, name, text):
+        path = self.root / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+
+    def problems(self, text, name='doc/guide/page.md'):
+        self.write(name, text)
+        return Checker(Project(self.root)).check()
+
+    def test_accepts_a_document_that_is_right(self):
+        good = re.sub(r'(?<=, )`|(?<=,)\n`', '\n`', self.GOOD)
+        self.assertEqual(self.problems(good, 'README.md'), [])
+
+    def test_reports_what_is_not_there(self):
+        for wrong, reason in {
+                '[page](nowhere.md)': 'no such file', '[page](other.md#nothing)': 'no such heading',
+                '[page](../other.md)': 'no such file', '![picture](scene.png)': 'no such file',
+                '`config/nothing.yaml`': 'no file, topic or key', '`cell/nothing.cpp`': 'no file, topic or key',
+                '`nodes/servo_cf.h`': 'no file, topic or key', '`scene.h`': 'no file, topic or key',
+                '`limits/torque`': 'no file, topic or key', '`serial/parity`': 'no file, topic or key',
+                '`launch/NAME.urdf`': 'no file, topic or key', '`torque_gain`': 'nothing of that name',
+                '`/haptic/servo_cx`': 'no node has a topic', '`/bridge/reset`': 'no node has a topic', '`--deep`': 'no program has an option',
+                '`speed:=1`': 'no launch file has an argument', '`fixed:=1`': 'no launch file has an argument',
+                '`rig:=lathe`': 'knows no lathe', '`./dev demo`': '', '`./dev walk --far`': 'no command walk',
+                '`./dev test --bore`': 'no option --bore', '`limits: {torque: 1}`': 'nothing of that name'}.items():
+            with self.subTest(wrong=wrong):
+                found = self.problems(f'# Page\n\nSee {wrong}.\n')
+                self.assertEqual(len(found), 1, found)
+                self.assertIn('doc/guide/page.md:3', found[0])
+                self.assertIn(reason, found[0])
+
+    def test_reports_commands_that_cannot_be_run(self):
+        for wrong, reason in {
+                './dev walk': 'no command walk', './dev test --far': 'no option --far', './dev test attic': 'no folder test/attic',
+                './dev bench speed': 'no benchmark speed', './dev bench accuracy -- --depths 1': 'no option --depths',
+                'rosrun cell_microinjection dent': 'no program dent', 'rosrun cell_microinjection indent --deep': 'no option --deep',
+                './dev shell -- rosrun cell_microinjection dent': 'no command shell',
+                'roslaunch cell_microinjection other.launch': 'no launch file', 'rostopic echo /haptic/none': 'no node has a topic',
+                'roslaunch cell_microinjection session.launch rig:=lathe': 'knows no lathe',
+                'roslaunch cell_microinjection session.launch speed:=1': 'no argument speed',
+                'rostopic pub -1 /haptic/servo_cf cell_microinjection/Nothing': 'no message', 'python3 src/none.py': 'no file src/none.py',
+                'cp config/none.yaml mine.yaml': 'no file config/none.yaml'}.items():
+            for block in (f'    {wrong}\n', f'```\n{wrong}\n```\n'):
+                with self.subTest(block=block):
+                    found = self.problems(f'# Page\n\nText.\n\n{block}')
+                    self.assertIn(reason, '\n'.join(found))
+
+    def test_reports_length_columns_and_sentences(self):
+        self.assertIn('151 lines', self.problems('word\n\n' * 75 + 'word\n', 'README.md')[0])
+        (self.root / 'README.md').unlink()
+        self.assertIn('101 columns', self.problems('x' * 101 + '\n')[0])
+        self.assertEqual(self.problems('| ' + 'x' * 120 + ' |\n\n    ' + 'x' * 120 + '\n'), [])
+        self.assertIn('"heeds" is', self.problems('The node heeds a command.\n')[0])
+        self.assertIn('31 words', self.problems('word\n' * 30 + 'end.\n')[0])
+        self.assertEqual(self.problems('word\n' * 29 + 'end. Next one.\n\n- ' + 'word\n  ' * 29 + '\n- item\n'), [])
+
+    def test_reports_tables_that_differ_from_the_code(self):
+        project = Project(self.root)
+        table = '## config/bridge.yaml\n\n| key | default |\n|---|---|\n| `rate` | 1000 |\n| `limits/force` | 3.0 |\n'
+        self.assertEqual(check_parameters(project, table), [])
+        self.assertIn('rate = 1000', check_parameters(project, table.replace('1000', '999'))[0])
+        self.assertIn('limits/force', check_parameters(project, table.replace('`limits/force`', '`force`'))[0])
+        self.assertIn('the file has not', check_parameters(project, table + '| `more` | 1 |\n')[0])
+        self.assertEqual(check_topics(project, '`/haptic/servo_cf` `/bridge/tare`'), [])
+        self.assertEqual(len(check_topics(project, '')), 2)
+        self.assertEqual(check_nodes(project, '| `/haptic/servo_cf` | `Wrench` | `bridge` |\n'), [])
+        self.assertIn('does not know', check_nodes(project, '| `/haptic/other` | `Wrench` | `bridge` |\n')[0])
+        self.assertIn('bridge publishes it', check_nodes(project, '| `/haptic/servo_cf` | `Wrench` | you |\n')[0])
+        self.assertIn('rig = sim', check_arguments(project, '## session.launch\n| `rig` | `zaber` | |\n')[0])
+        self.assertIn('rig is not', check_arguments(project, '## session.launch\n| `mode` | | |\n')[0])
+        self.assertIn('the key stretch', check_scene_keys(project, '`mesh/size`')[0])
+
+    def test_finds_documents_that_no_link_leads_to(self):
+        self.write('README.md', '[other](doc/guide/other.md)\n')
+        self.write('doc/guide/lonely.md', '# Lonely\n')
+        self.assertEqual(reachable(Project(self.root)), {'README.md', 'doc/guide/other.md'})
+
+
+if __name__ == '__main__':
+    unittest.main()
