@@ -11,7 +11,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseStamped, WrenchStamped
 from std_msgs.msg import Bool
 
-from cell_microinjection.msg import InjectionStatus
+from cell_microinjection.msg import InjectionStatus, OperatingState
 from foreign_messages import DeviceFeedback, OmniFeedback, OmniState
 from live_chain import until
 from messages import pose, wrench
@@ -56,11 +56,15 @@ class ForceReceiverTest(unittest.TestCase):
         if cls.haptic == "external":
             kinds.update({"/needle/measured_cp": PoseStamped, "/cell/predicted_cf": WrenchStamped,
                           "/controller/injection_state": InjectionStatus})
+        if cls.haptic == "dvrk":
+            kinds["/MTMR/operating_state"] = OperatingState
         publishers = {topic: rospy.Publisher(topic, kind, queue_size=1) for topic, kind in kinds.items()}
         messages = {topic: kind() for topic, kind in kinds.items()}
         messages.update({topic: pose(0, 0, 0) for topic, kind in kinds.items() if kind is PoseStamped})
         if cls.haptic == "external":
             messages["/cell/predicted_cf"] = wrench(0, 0, 0)
+        if cls.haptic == "dvrk":
+            messages["/MTMR/operating_state"] = OperatingState(state="ENABLED", is_homed=True)
         while not cls.ended.is_set() and not rospy.is_shutdown():
             for topic, publisher in publishers.items():
                 messages[topic].header.stamp = rospy.Time.now()
