@@ -13,6 +13,7 @@ from std_msgs.msg import Header, String
 
 from cell_microinjection.msg import InjectionStatus, InjectorState, OperatingState, StringStamped
 from killable_nodes import PACKAGE, PATIENCE, KillableNodes, parameters, rig
+from links import missing_links
 from messages import force, pose, position
 from participant import Participant
 
@@ -113,7 +114,8 @@ class Session:
         try:
             self.chain = Participant({}, {topic: kinds[topic] for topic in self._seen})
         except Exception as error:
-            raise AssertionError(f"the session does not begin: {error!r}; {self.nodes.report()}") from error
+            raise AssertionError(f"the session does not begin: {error!r}; no connection: {sorted(missing_links())}; "
+                                 f"{self.nodes.report()}") from error
         goal = pose(0, 0, START)
         goal.header.stamp = self.chain.now
         self._moves.publish(goal)

@@ -53,7 +53,7 @@ class StoppedTerminalTest(unittest.TestCase):
         self.chain.check_follows()
         commands = [("/controller/state_command", StringStamped(string="no command")),
                     ("/needle/state_command", StringStamped(string="no command")),
-                    ("/needle/move_cp", pose(0, 0, 0)), ("/injector/pulse", InjectionPulse(id=1)),
+                    ("/needle/move_cp", self.ahead(pose(0, 0, 0))), ("/injector/pulse", InjectionPulse(id=1)),
                     ("/haptic/measured_cp", self.ahead(pose(0, 0, 0, "haptic"))),
                     ("/needle/true_cp", self.ahead(pose(0, 0, 0))), ("/cell/predicted_cf", self.ahead(WrenchStamped()))]
         publishers = [(rospy.Publisher(topic, type(message), queue_size=1), message) for topic, message in commands]

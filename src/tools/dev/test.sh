@@ -84,12 +84,17 @@ run_tests() {
   # What an earlier run left must neither hide nor fake a failure.
   rm -rf "$junit" "$log"
   mkdir -p "$junit" "$RESULTS"
-  (cd "$build" && ctest --parallel "$(jobs)" --output-on-failure --no-tests=error --timeout "${TEST_TIMEOUT:-900}" -R "$(name_pattern "$@")") || status=$?
+  (cd "$build" && ctest --parallel "$(test_jobs)" --output-on-failure --no-tests=error --timeout "${TEST_TIMEOUT:-900}" -R "$(name_pattern "$@")") || status=$?
   cp "$build/Testing/Temporary/LastTest.log" "$log" || status=1
   say "test: summary of $kind"
   /usr/bin/python3 "$ROOT/src/tools/test_summary.py" "$junit" || status=1
   [[ $status -eq 0 ]] || fail "tests failed; the full output of all tests is in $log"
   echo "all passed; their full output is in $log"
+}
+
+# Sessions side by side need networks of their own; see in_own_network.
+test_jobs() {
+  if "$ROOT/src/tools/dev/in_own_network" --possible; then jobs; else echo 1; fi
 }
 
 # In the core, ctest's names begin with the folder of test/; with catkin they have it behind the kind of the test, except for
