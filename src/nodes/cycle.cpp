@@ -129,8 +129,8 @@ void Cycle::runLockstep() {
     step(now);
     for (auto& output : outputs_) output->endTick();
     stepped_tick_ = now;
-    // A topic may connect later than its greeting did. Nobody goes on, and latches what comes next, before this node has
-    // the first answer of each.
+    // A topic may connect later than its greeting did. Nobody goes on, and latches what comes next, before this node
+    // has the first answer of each.
     while (first && goesOn() && !answered(Phase::kTickBefore, now)) queue_.callAvailable(ros::WallDuration(0.1));
     acknowledge(now);
   }
