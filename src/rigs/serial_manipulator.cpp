@@ -48,6 +48,7 @@ void SerialManipulator::dropGoal() {
 }
 
 void SerialManipulator::stop() {
+  stopAsked();
   dropGoal();
   if (!stopped_) stop_wanted_ = true;  // said again and again it must not keep the device from being asked
 }

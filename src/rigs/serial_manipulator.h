@@ -58,6 +58,7 @@ class SerialManipulator : public ManipulatorDevice {
   virtual void begin(bool lost) = 0;
   /// The device has been told to stop and will stand in a moment; what it says is not heard until `begin`.
   virtual void stopSaid() {}
+  virtual void stopAsked() {}  ///< by stop(), at once and each time
   /// The program or its stop guard stood still: not even what moves without a goal may go on by itself.
   virtual void guardIntervened() {}
   /// Goes on with the conversation: with what came, and with what is to be said.

@@ -52,6 +52,7 @@ class ZaberDriver : public SerialManipulator {
   void talk(const std::string& bytes) override;
   void goalChanged() override;
   void guardIntervened() override { may_home_ = false; }
+  void stopAsked() override;
 
  private:
   enum class Kind { kPosition, kVelocity, kSpeed, kMove, kClear, kHome, kStop, kWarnings, kSetting };
@@ -153,7 +154,7 @@ class ZaberDriver : public SerialManipulator {
   double begun_ = 0;      // s, of this session
   bool lost_ = true;      // nothing was known at the begin of this session
   bool settled_ = false;  // in this session everything has been read and was at rest
-  bool may_home_;         // until everything has been known once, and while the program has not stood still
+  bool may_home_;         // until everything has been known once, or a homing was stopped, or the program stood still
   int setting_tries_ = 0;
   HomingPlan homing_;
   int number_ = 0;       // of the last command

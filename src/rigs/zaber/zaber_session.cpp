@@ -79,7 +79,8 @@ bool ZaberDriver::nextOfSession() {
 bool ZaberDriver::nextOfAxis(int i) {
   Axis& axis = axes_[i];
   if (!axis.cleared) return ask(Kind::kClear, i, "warnings clear"), true;
-  if (axis.lists_due > 0) return ask(Kind::kWarnings, i, "warnings"), true;
+  // While it homes it still has none; that must not be the last that is heard of it.
+  if (axis.lists_due > 0 && !(axis.homed && axis.busy)) return ask(Kind::kWarnings, i, "warnings"), true;
   // Braking, or the session's stop did not reach it.
   if (axis.still_moves && !axis.homed) return ask(Kind::kStop, i, "stop"), true;
   if (!axis.busy && !axis.has_reference) return false;  // its position means nothing; see nextOfHoming
@@ -188,6 +189,11 @@ bool ZaberDriver::nextOfHoming() {
     return true;
   }
   return false;
+}
+
+/// Who stops a homing does not want it to begin again.
+void ZaberDriver::stopAsked() {
+  if (std::any_of(axes_.begin(), axes_.end(), [](const Axis& axis) { return axis.homed; })) may_home_ = false;
 }
 
 void ZaberDriver::home(int i) {

@@ -72,5 +72,25 @@ TEST_F(ZaberHoming, IsDoneInThePlansOrder) {
   EXPECT_EQ(rig_->driver().state(), ManipulatorDevice::State::kReady) << rig_->driver().why();
 }
 
+TEST_F(ZaberHoming, IsNotTakenUpAgainAfterAStop) {
+  makeUnreferenced(config_);
+  ASSERT_TRUE(rig_->runUntil([&] { return rig_->device().moves(); }, 5));
+  rig_->run(0.5);
+  rig_->driver().stop();
+  rig_->run(1);
+  const Eigen::Vector3d stopped = rig_->device().position();
+  EXPECT_FALSE(rig_->device().moves());
+  rig_->run(20);
+  EXPECT_EQ(rig_->device().position(), stopped);
+  EXPECT_EQ(rig_->driver().state(), ManipulatorDevice::State::kFault);
+  EXPECT_NE(rig_->driver().why().find("no reference position"), std::string::npos) << rig_->driver().why();
+}
+
+TEST_F(ZaberHoming, EndsReadyAlsoBehindAMoreImportantWarning) {
+  makeUnreferenced(config_);
+  rig_->inject("error:WV");
+  EXPECT_TRUE(rig_->runUntilReady(60)) << rig_->driver().why();
+}
+
 }  // namespace
 }  // namespace microinjection
