@@ -20,7 +20,7 @@ Cycle::Cycle(const ros::NodeHandle& node, double rate)
 }
 
 bool Cycle::goesOn() {
-  if (!busy_ && master_.orphaned()) {
+  if (master_.orphaned() && !busy_) {
     ROS_ERROR("the ROS master has been away for too long, and nothing moves: this node ends");
     stopped_ = true;
   }

@@ -1,6 +1,5 @@
 #include "nodes/force_watchdog_node.h"
 
-#include "nodes/master_watch.h"
 #include "nodes/node_parameters.h"
 #include "nodes/stamps.h"
 
@@ -34,8 +33,7 @@ ForceWatchdogNode::ForceWatchdogNode(const ros::NodeHandle& node, const ros::Nod
 
 void ForceWatchdogNode::run() {
   // Wakes up by the wall's time: it must also do so when nothing else does.
-  const MasterWatch master(true);
-  for (ros::WallRate rate(parameters_.rate); ros::ok() && !master.orphaned(); rate.sleep()) {
+  for (ros::WallRate rate(parameters_.rate); ros::ok() && !master_.orphaned(); rate.sleep()) {
     ros::spinOnce();
     const ros::Time now = ros::Time::now();
     if (heard_.isZero() && !parameters_.from_start) continue;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "nodes/haptic/watched_force.h"
+#include "nodes/master_watch.h"
 
 namespace microinjection {
 
@@ -38,6 +39,7 @@ class ForceWatchdogNode {
     static Parameters read(const ros::NodeHandle& node, const ros::NodeHandle& private_node);
   };
 
+  const MasterWatch master_{true};
   Parameters parameters_;
   ros::Time heard_;  ///< when another node's force came last
   std::unique_ptr<WatchedForce> force_;

@@ -1,5 +1,6 @@
 #include "nodes/master_watch.h"
 
+#include <ros/init.h>
 #include <ros/master.h>
 #include <ros/param.h>
 #include <ros/this_node.h>
@@ -37,6 +38,8 @@ struct MasterWatch::Shared {
   std::atomic<bool> refused{false};
   std::atomic<Clock::time_point> answered{Clock::now()};
   std::atomic<double> away{0};  // s, counted by questions that were refused: not while this process stands still
+  std::atomic<bool> asked{false};  // whether `orphaned` was
+  double orphan_timeout = 60;      // s
   std::mutex mutex;             // of what follows, which a step does not look at
   std::condition_variable changed;
   bool ending = false;
@@ -50,6 +53,7 @@ struct MasterWatch::Shared {
       refused = !known;
       if (known) answered = Clock::now();
       away = known ? 0 : away + kPeriod.count();
+      if (away > orphan_timeout && !asked) ros::requestShutdown();
       lock.lock();
     }
     ended = true;
@@ -58,9 +62,10 @@ struct MasterWatch::Shared {
 };
 
 MasterWatch::MasterWatch(bool timed) : timed_(timed), shared_(std::make_shared<Shared>()) {
-  ros::param::get("/orphan_timeout", orphan_timeout_);
-  if (!(orphan_timeout_ > 0)) {
-    throw ConfigError("/orphan_timeout = " + std::to_string(orphan_timeout_) + ": must be in (0, inf)");
+  double& timeout = shared_->orphan_timeout;
+  ros::param::get("/orphan_timeout", timeout);
+  if (!(timeout > 0)) {
+    throw ConfigError("/orphan_timeout = " + std::to_string(timeout) + ": must be in (0, inf)");
   }
   std::thread([shared = shared_] {
     preferForThread(Priority::kOrdinary);  // its questions are nothing that the hand's loop should wait for
@@ -81,6 +86,9 @@ bool MasterWatch::lost() const {
   return timed_ && Clock::now() - shared_->answered.load(std::memory_order_relaxed) > kPatience;
 }
 
-bool MasterWatch::orphaned() const { return shared_->away.load(std::memory_order_relaxed) > orphan_timeout_; }
+bool MasterWatch::orphaned() const {
+  shared_->asked.store(true, std::memory_order_relaxed);
+  return shared_->away.load(std::memory_order_relaxed) > shared_->orphan_timeout;
+}
 
 }  // namespace microinjection

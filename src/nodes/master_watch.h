@@ -21,13 +21,13 @@ class MasterWatch {
   /// Neither waits nor locks.
   bool lost() const;
   /// Lost for longer than the parameter /orphan_timeout (s of wall time; default 60, in (0, inf)): whoever started this
-  /// node is gone, too. Neither waits nor locks.
+  /// node is gone, too. Neither waits nor locks. Who asks must end by itself. A node that never asks is still in its
+  /// constructor, where roscpp waits for the master for ever: ROS is then asked to shut down.
   bool orphaned() const;
 
  private:
   struct Shared;
   bool timed_;
-  double orphan_timeout_ = 60;      // s
   std::shared_ptr<Shared> shared_;  // the thread's, too: it cannot be stopped while a master keeps it waiting
 };
 
