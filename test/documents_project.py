@@ -55,7 +55,7 @@ class Project:
         self.names = {Path(path).name for path in self.files}
         self.documents = sorted(path for path in self.files if path.endswith('.md'))
         self.code = {path: self.text(path) for path in self.files
-                     if path.split('/')[0] in ('src', 'launch', 'config', 'msg', 'urdf', 'dev', 'package.xml', 'CMakeLists.txt',
+                     if path.split('/')[0] in ('src', 'benchmark', 'launch', 'config', 'msg', 'srv', 'action', 'urdf', 'dev', 'package.xml', 'CMakeLists.txt',
                                                'dependencies.txt') and not path.endswith(('.csv', '.md'))}
         columns = [self.text(path).split('\n', 1)[0] for path in self.files if path.endswith('.csv')]
         self.words = set(re.findall(r'\w+', '\n'.join([*self.code.values(), *columns])))
@@ -98,7 +98,7 @@ class Project:
 
     def read_programs(self):
         """{program: the options it knows}; empty for a node."""
-        self.programs = {Path(path).stem: set() for path in self.files if path.startswith('src/nodes/main/')}
+        self.programs = {Path(path).stem.removesuffix('_node'): set() for path in self.files if Path(path).match('src/nodes/*.cpp')}
         self.benches = {}
         for path, text in self.code.items():
             options = set(re.findall(r"""add_argument\(\s*['"](--[a-z-]+)""", text))
@@ -108,15 +108,15 @@ class Project:
                 shared = self.sources(f'src/commands/{place.stem}_*.cpp')
                 options |= {f'--{name}' for name in OPTION.findall(shared)}
                 self.programs[place.stem] = options
-            elif place.parent.as_posix() == 'src/bench' and not place.name.startswith('plot_') and place.suffix in ('.cpp', '.py'):
+            elif place.parent.as_posix() == 'benchmark' and not place.name.startswith('plot_') and place.suffix in ('.cpp', '.py'):
                 self.benches[place.stem] = options
-            elif place.suffix == '.py' and place.parent.as_posix() in ('src/tools', 'src/paper'):
+            elif place.suffix == '.py' and place.parent.as_posix() in ('src/tools', 'benchmark/paper'):
                 self.programs[place.name] = options
         self.options = set().union(*self.programs.values(), *self.benches.values(), *self.dev.values())
 
     def read_nodes(self):
         """Topics, services and global parameters, as the code has them."""
-        text = self.sources('src/nodes/*', 'src/nodes/haptic/*')
+        text = self.sources('src/nodes/*', 'src/nodes/*/*')
         self.topics = {'/' + topic.lstrip('/') for topic in TOPIC_CALL.findall(text)}
         self.topics |= set(re.findall(r'"(/[a-z_]+(?:/[a-z_]+)*)"', text))
         self.topics |= {'/' + topic for topic in re.findall(r'"([a-z_]+/[a-z_]+(?:/[a-z_]+)?)"', text)}

@@ -35,14 +35,14 @@ def check_parameters(project, text):
 
 def check_topics(project, text):
     """Each topic that a node publishes or hears below a name of ours, and each service, is in topics_and_frames.md."""
-    calls = {'/' + topic.lstrip('/') for topic in TOPIC_CALL.findall(project.sources('src/nodes/*', 'src/nodes/haptic/*'))}
+    calls = {'/' + topic.lstrip('/') for topic in TOPIC_CALL.findall(project.sources('src/nodes/*', 'src/nodes/*/*'))}
     ours = {topic for topic in calls if topic.count('/') > 1 and not topic.startswith(DRIVERS)} | project.services
     return [f'{topic} is not in the tables' for topic in sorted(ours) if f'`{topic}`' not in text]
 
 
 def files_of(project, node):
     """The files of src/nodes that a node is made of: its own, and what these include."""
-    found, waiting = set(), [f'src/nodes/{node}_node.cpp', f'src/nodes/haptic/{node}_node.cpp']
+    found, waiting = set(), [f'src/nodes/{node}_node.cpp', f'src/nodes/{node}.cpp']
     waiting += [path for path in project.code if node == 'haptic_device' and path.endswith('_adapter.cpp')]
     while waiting:
         path = waiting.pop()
@@ -97,7 +97,7 @@ def check_commands(project, text):
 
 def check_scene_keys(project, text):
     """Every key that the scene's readers ask for is in scene_file.md."""
-    code = project.sources('src/cell/scene.cpp', 'src/cell/puncture_config.cpp', 'src/cell/tensegrity_scene.cpp')
+    code = project.sources('src/cell/model/scene.cpp', 'src/cell/model/puncture_config.cpp', 'src/cell/model/tensegrity_scene.cpp')
     keys = set(re.findall(r'(?:read\w*\(\w+|\.(?:section|sections|choice|text|integer|number|vector|has))[(,]\s*"([a-z_]+)"', code))
     return [f'the key {key} is not in the tables' for key in sorted(keys) if not re.search(rf'[`/]{key}[`/]', text)]
 

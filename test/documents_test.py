@@ -73,20 +73,20 @@ esac
         'launch/session.launch': '<launch><arg name="rig" default="sim" doc="sim or zaber"/><arg name="fixed" value="1"/></launch>',
         'config/bridge.yaml': 'rate: 1000   # Hz\nlimits: {force: 3.0}\n# serial:\n#   baud: 9600   # bit/s\n',
         'src/nodes/bridge_node.cpp': 'cycle.output<Wrench>("haptic/servo_cf"); node.advertiseService<A, B>("tare");\n',
-        'src/nodes/main/bridge.cpp': 'int main() {}\n',
+        'src/nodes/clock.cpp': 'int main() {}\n',
         'src/commands/indent.cpp': 'add("depths", po::value(&depths)); int main() {}\n',
-        'src/bench/accuracy.cpp': 'add("draws", po::value(&draws));\n',
-        'src/cell/scene.cpp': 'reader.number("stretch"); double forceGain = 1;\n',
-        'test/cell/scene_test.cpp': '\n',
+        'benchmark/accuracy.cpp': 'add("draws", po::value(&draws));\n',
+        'src/cell/model/scene.cpp': 'reader.number("stretch"); double forceGain = 1;\n',
+        'test/cell/model/scene_test.cpp': '\n',
         'doc/guide/other.md': '# Other page\n\n## How its `rate` is, mostly\n',
     }
     GOOD = """# Title
 
-See [other](doc/guide/other.md#how-its-rate-is-mostly), `config/bridge.yaml`, `scene.cpp`, `cell/scene.cpp`, `limits/force`,
+See [other](doc/guide/other.md#how-its-rate-is-mostly), `config/bridge.yaml`, `scene.cpp`, `model/scene.cpp`, `limits/force`,
 `serial/baud`, `stretch`, `forceGain`, `/haptic/servo_cf`, `/bridge/tare`, `/haptic`, `rig:=zaber`, `--depths`,
 `launch/NAME.launch`, `./dev test --core`, `roslaunch cell_microinjection session.launch rig:=sim`.
 
-    ./dev test --core cell
+    ./dev test --core cell/model
     ./dev bench accuracy -- --draws 3
     rosrun cell_microinjection indent --depths 1
     rostopic echo /haptic/servo_cf          # the force

@@ -4,7 +4,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / 'src' / 'paper'))
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / 'benchmark' / 'paper'))
 
 import dynamics  # noqa: E402
 import force_depth  # noqa: E402

@@ -17,8 +17,8 @@
 
 #include "base/errors.h"
 #include "base/standard_output.h"
-#include "rigs/rig_registry.h"
-#include "serial/emulator_host.h"
+#include "rig/devices/rig_registry.h"
+#include "rig/serial/emulator_host.h"
 
 namespace microinjection {
 namespace {

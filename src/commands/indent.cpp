@@ -13,12 +13,12 @@
 #include "base/atomic_file.h"
 #include "base/errors.h"
 #include "base/standard_output.h"
-#include "cell/biomembrane.h"
-#include "cell/cell_model.h"
-#include "cell/converged_force.h"
-#include "cell/indentation.h"
-#include "cell/scene.h"
-#include "cell/tensegrity_cell.h"
+#include "cell/model/biomembrane.h"
+#include "cell/model/cell_model.h"
+#include "cell/model/converged_force.h"
+#include "cell/model/indentation.h"
+#include "cell/model/scene.h"
+#include "cell/model/tensegrity_cell.h"
 #include "commands/indent_arguments.h"
 
 namespace microinjection {

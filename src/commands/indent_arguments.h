@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cell/converged_force.h"
+#include "cell/model/converged_force.h"
 
 namespace microinjection {
 

@@ -19,10 +19,10 @@
 #include "base/errors.h"
 #include "base/standard_output.h"
 #include "base/worker_processes.h"
-#include "cell/scene.h"
-#include "surrogate/model_choice.h"
-#include "surrogate/prepared_cell.h"
-#include "surrogate/training_ray.h"
+#include "cell/model/scene.h"
+#include "cell/surrogate/model_choice.h"
+#include "cell/surrogate/prepared_cell.h"
+#include "cell/surrogate/training_ray.h"
 
 namespace microinjection {
 namespace {

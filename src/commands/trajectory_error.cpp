@@ -12,9 +12,9 @@
 #include "base/atomic_file.h"
 #include "base/errors.h"
 #include "base/standard_output.h"
-#include "cell/cell_problem.h"
-#include "cell/contact_place.h"
-#include "cell/scene_mesh.h"
+#include "cell/model/cell_problem.h"
+#include "cell/model/contact_place.h"
+#include "cell/model/scene_mesh.h"
 #include "commands/trajectory.h"
 
 namespace microinjection {

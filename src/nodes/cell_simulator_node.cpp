@@ -4,9 +4,10 @@
 #include <utility>
 
 #include "base/errors.h"
-#include "nodes/conversions.h"
-#include "nodes/node_parameters.h"
-#include "surrogate/serve_needle.h"
+#include "nodes/runtime/conversions.h"
+#include "nodes/runtime/node_parameters.h"
+#include "nodes/runtime/run_node.h"
+#include "cell/surrogate/serve_needle.h"
 
 namespace microinjection {
 
@@ -110,3 +111,7 @@ void CellSimulatorNode::report(diagnostic_updater::DiagnosticStatusWrapper& stat
 }
 
 }  // namespace microinjection
+
+int main(int argc, char** argv) {
+  return microinjection::runNode<microinjection::CellSimulatorNode>(argc, argv, "cell_simulator");
+}

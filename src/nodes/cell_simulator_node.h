@@ -7,11 +7,11 @@
 #include <memory>
 #include <string>
 
-#include "cell/cell_tracker.h"
-#include "cell/cell_under_needle.h"
+#include "cell/model/cell_tracker.h"
+#include "cell/model/cell_under_needle.h"
 #include "cell_microinjection/CellState.h"
-#include "nodes/cell_state_publisher.h"
-#include "nodes/cycle.h"
+#include "nodes/cell/cell_state_publisher.h"
+#include "nodes/runtime/cycle.h"
 
 namespace microinjection {
 

@@ -7,9 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "nodes/conversions.h"
-#include "nodes/message_guard.h"
-#include "nodes/node_parameters.h"
+#include "nodes/runtime/conversions.h"
+#include "nodes/runtime/message_guard.h"
+#include "nodes/runtime/node_parameters.h"
+#include "nodes/runtime/run_node.h"
 
 namespace microinjection {
 namespace {
@@ -219,3 +220,8 @@ void DisplayNode::reportInputs(diagnostic_updater::DiagnosticStatusWrapper& stat
 }
 
 }  // namespace microinjection
+
+int main(int argc, char** argv) {
+  return microinjection::runNode<microinjection::DisplayNode>(argc, argv, "display",
+                                                              microinjection::Priority::kOrdinary);
+}

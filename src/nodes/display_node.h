@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "nodes/display_frames.h"
-#include "nodes/display_scene.h"
-#include "nodes/master_watch.h"
+#include "nodes/display/display_frames.h"
+#include "nodes/display/display_scene.h"
+#include "nodes/runtime/master_watch.h"
 
 namespace microinjection {
 

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "nodes/conversions.h"
-#include "nodes/node_parameters.h"
+#include "nodes/runtime/conversions.h"
+#include "nodes/runtime/node_parameters.h"
+#include "nodes/runtime/run_node.h"
 
 namespace microinjection {
 
@@ -94,3 +95,7 @@ void EmulatedHapticNode::publishPhase(const ros::Time& now, const std::string& p
 }
 
 }  // namespace microinjection
+
+int main(int argc, char** argv) {
+  return microinjection::runNode<microinjection::EmulatedHapticNode>(argc, argv, "emulated_haptic");
+}

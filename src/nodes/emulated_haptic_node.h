@@ -8,11 +8,11 @@
 #include <string>
 
 #include "cell_microinjection/StringStamped.h"
-#include "nodes/cycle.h"
+#include "nodes/runtime/cycle.h"
 #include "nodes/haptic/emulated_driver.h"
-#include "nodes/round_trip_meter.h"
-#include "teleoperation/hand_motion.h"
-#include "teleoperation/virtual_hand.h"
+#include "nodes/runtime/round_trip_meter.h"
+#include "operation/teleoperation/hand_motion.h"
+#include "operation/teleoperation/virtual_hand.h"
 
 namespace microinjection {
 
@@ -29,7 +29,7 @@ namespace microinjection {
 ///
 /// Parameters (private): those of VirtualHandConfig and
 ///   kind           one of emulatedDrivers(); default crtk
-///   motion         path of a hand motion (see teleoperation/hand_motion.h); required
+///   motion         path of a hand motion (see operation/teleoperation/hand_motion.h); required
 ///   start_delay    s, in which the hand rests before the motion; default 1, in [0, inf)
 ///   rate           Hz; default 1000, in [50, 5000]
 class EmulatedHapticNode {

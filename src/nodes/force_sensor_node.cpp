@@ -1,8 +1,9 @@
 #include "nodes/force_sensor_node.h"
 
-#include "nodes/conversions.h"
-#include "nodes/frames.h"
-#include "nodes/node_parameters.h"
+#include "nodes/runtime/conversions.h"
+#include "nodes/runtime/frames.h"
+#include "nodes/runtime/node_parameters.h"
+#include "nodes/runtime/run_node.h"
 
 namespace microinjection {
 
@@ -161,3 +162,8 @@ void ForceSensorNode::report(diagnostic_updater::DiagnosticStatusWrapper& status
 }
 
 }  // namespace microinjection
+
+int main(int argc, char** argv) {
+  return microinjection::runNode<microinjection::ForceSensorNode>(argc, argv, "force_sensor",
+                                                                  microinjection::Priority::kPrompt);
+}

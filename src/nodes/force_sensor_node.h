@@ -8,9 +8,9 @@
 #include <memory>
 #include <string>
 
-#include "nodes/cycle.h"
-#include "nodes/force_sources.h"
-#include "sensor/force_readout.h"
+#include "nodes/runtime/cycle.h"
+#include "nodes/needle/force_sources.h"
+#include "rig/sensor/force_readout.h"
 
 namespace microinjection {
 

@@ -1,7 +1,8 @@
 #include "nodes/force_watchdog_node.h"
 
-#include "nodes/node_parameters.h"
-#include "nodes/stamps.h"
+#include "nodes/runtime/node_parameters.h"
+#include "nodes/runtime/stamps.h"
+#include "nodes/runtime/run_node.h"
 
 namespace microinjection {
 
@@ -42,3 +43,7 @@ void ForceWatchdogNode::run() {
 }
 
 }  // namespace microinjection
+
+int main(int argc, char** argv) {
+  return microinjection::runNode<microinjection::ForceWatchdogNode>(argc, argv, "force_watchdog");
+}

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "nodes/haptic/watched_force.h"
-#include "nodes/master_watch.h"
+#include "nodes/runtime/master_watch.h"
 
 namespace microinjection {
 

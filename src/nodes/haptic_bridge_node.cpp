@@ -2,12 +2,13 @@
 
 #include <limits>
 
-#include "nodes/conversions.h"
-#include "nodes/ending.h"
-#include "nodes/force_topic.h"
-#include "nodes/latency_meter.h"
-#include "nodes/link_messages.h"
-#include "nodes/node_parameters.h"
+#include "nodes/runtime/conversions.h"
+#include "nodes/runtime/ending.h"
+#include "nodes/runtime/force_topic.h"
+#include "nodes/runtime/latency_meter.h"
+#include "nodes/link/link_messages.h"
+#include "nodes/runtime/node_parameters.h"
+#include "nodes/runtime/run_node.h"
 
 namespace microinjection {
 namespace {
@@ -210,3 +211,8 @@ void HapticBridgeNode::report(diagnostic_updater::DiagnosticStatusWrapper& statu
 }
 
 }  // namespace microinjection
+
+int main(int argc, char** argv) {
+  using namespace microinjection;
+  return runNode<HapticBridgeNode>(argc, argv, "haptic_bridge", Priority::kRealTime, Ending::kInGoodOrder);
+}

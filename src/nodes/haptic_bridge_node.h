@@ -11,10 +11,10 @@
 
 #include "cell_microinjection/InjectionStatus.h"
 #include "cell_microinjection/LinkPacket.h"
-#include "nodes/cycle.h"
+#include "nodes/runtime/cycle.h"
 #include "nodes/haptic/force_receiver.h"
-#include "teleoperation/haptic_bridge.h"
-#include "teleoperation/link_leader.h"
+#include "operation/teleoperation/haptic_bridge.h"
+#include "operation/teleoperation/link_leader.h"
 
 namespace microinjection {
 

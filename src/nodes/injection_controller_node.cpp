@@ -5,9 +5,10 @@
 #include <sstream>
 #include <utility>
 
-#include "nodes/conversions.h"
-#include "nodes/force_topic.h"
-#include "nodes/node_parameters.h"
+#include "nodes/runtime/conversions.h"
+#include "nodes/runtime/force_topic.h"
+#include "nodes/runtime/node_parameters.h"
+#include "nodes/runtime/run_node.h"
 
 namespace microinjection {
 namespace {
@@ -222,3 +223,7 @@ void InjectionControllerNode::report(diagnostic_updater::DiagnosticStatusWrapper
 }
 
 }  // namespace microinjection
+
+int main(int argc, char** argv) {
+  return microinjection::runNode<microinjection::InjectionControllerNode>(argc, argv, "injection_controller");
+}

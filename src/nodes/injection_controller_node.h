@@ -13,12 +13,12 @@
 #include "cell_microinjection/ManipulatorAbilities.h"
 #include "cell_microinjection/OperatingState.h"
 #include "cell_microinjection/StringStamped.h"
-#include "control/injection_controller.h"
-#include "nodes/command_log.h"
-#include "nodes/command_source.h"
-#include "nodes/cycle.h"
-#include "nodes/injection_action.h"
-#include "nodes/injector_link.h"
+#include "operation/control/injection_controller.h"
+#include "nodes/runtime/command_log.h"
+#include "nodes/runtime/command_source.h"
+#include "nodes/runtime/cycle.h"
+#include "nodes/injection/injection_action.h"
+#include "nodes/injection/injector_link.h"
 
 namespace microinjection {
 

@@ -3,10 +3,11 @@
 #include <utility>
 #include <vector>
 
-#include "injector/injector_registry.h"
-#include "injector/serial_injector.h"
-#include "nodes/node_parameters.h"
-#include "serial/emulated_wire.h"
+#include "rig/injector/injector_registry.h"
+#include "rig/injector/serial_injector.h"
+#include "nodes/runtime/node_parameters.h"
+#include "nodes/runtime/run_node.h"
+#include "rig/serial/emulated_wire.h"
 
 namespace microinjection {
 
@@ -190,3 +191,8 @@ void InjectorNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) c
 }
 
 }  // namespace microinjection
+
+int main(int argc, char** argv) {
+  return microinjection::runNode<microinjection::InjectorNode>(argc, argv, "injector",
+                                                               microinjection::Priority::kPrompt);
+}

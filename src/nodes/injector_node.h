@@ -11,12 +11,12 @@
 #include "cell_microinjection/InjectionPulse.h"
 #include "cell_microinjection/InjectorState.h"
 #include "cell_microinjection/StringStamped.h"
-#include "injector/injector_model.h"
-#include "injector/injector_protocol.h"
-#include "injector/pulse_ids.h"
-#include "nodes/cycle.h"
-#include "serial/serial_port.h"
-#include "serial/wire.h"
+#include "rig/injector/injector_model.h"
+#include "rig/injector/injector_protocol.h"
+#include "rig/injector/pulse_ids.h"
+#include "nodes/runtime/cycle.h"
+#include "rig/serial/serial_port.h"
+#include "rig/serial/wire.h"
 
 namespace microinjection {
 

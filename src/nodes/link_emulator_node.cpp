@@ -3,7 +3,8 @@
 #include <limits>
 #include <string>
 
-#include "nodes/node_parameters.h"
+#include "nodes/runtime/node_parameters.h"
+#include "nodes/runtime/run_node.h"
 
 namespace microinjection {
 namespace {
@@ -61,3 +62,7 @@ void LinkEmulatorNode::run() {
 }
 
 }  // namespace microinjection
+
+int main(int argc, char** argv) {
+  return microinjection::runNode<microinjection::LinkEmulatorNode>(argc, argv, "link_emulator");
+}

@@ -4,8 +4,8 @@
 #include <std_msgs/Bool.h>
 
 #include "cell_microinjection/LinkPacket.h"
-#include "nodes/cycle.h"
-#include "teleoperation/link_emulator.h"
+#include "nodes/runtime/cycle.h"
+#include "operation/teleoperation/link_emulator.h"
 
 namespace microinjection {
 

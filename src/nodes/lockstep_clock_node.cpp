@@ -6,9 +6,10 @@
 #include <algorithm>
 
 #include "base/errors.h"
-#include "nodes/lockstep.h"
-#include "nodes/message_guard.h"
-#include "nodes/node_parameters.h"
+#include "nodes/runtime/lockstep.h"
+#include "nodes/runtime/message_guard.h"
+#include "nodes/runtime/node_parameters.h"
+#include "nodes/runtime/run_node.h"
 
 namespace microinjection {
 namespace {
@@ -104,3 +105,8 @@ void LockstepClockNode::run() {
 }
 
 }  // namespace microinjection
+
+int main(int argc, char** argv) {
+  return microinjection::runNode<microinjection::LockstepClockNode>(argc, argv, "lockstep_clock",
+                                                                    microinjection::Priority::kOrdinary);
+}

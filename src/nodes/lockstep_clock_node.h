@@ -7,7 +7,7 @@
 #include <set>
 #include <string>
 
-#include "nodes/master_watch.h"
+#include "nodes/runtime/master_watch.h"
 
 namespace microinjection {
 

@@ -1,7 +1,8 @@
 #include "nodes/micromanipulator_node.h"
 
 #include "base/errors.h"
-#include "nodes/node_parameters.h"
+#include "nodes/runtime/node_parameters.h"
+#include "nodes/runtime/run_node.h"
 
 namespace microinjection {
 namespace {
@@ -22,7 +23,7 @@ const char* const MicromanipulatorNode::kHelp =
     "home, unhome, stop). Out: /needle/measured_cp /needle/measured_cv /needle/setpoint_cp /needle/abilities\n"
     "/needle/operating_state joint_states.\n"
     "Parameters: /robot_description, ~rig (sim|eppendorf|mp285|scientifica|zaber), ~emulated, ~device/...\n"
-    "(src/rigs/NAME/NAME.yaml), ~emulator/... (what an emulated device is like), ~rate (Hz),\n"
+    "(config/rigs/NAME.yaml), ~emulator/... (what an emulated device is like), ~rate (Hz),\n"
     "~joint_states_rate (Hz), ~command_timeout (s), ~velocity_command_timeout (s), ~servo_speed_limit (m/s),\n"
     "~pipette_tilt (rad), ~collision_margin (m), ~allow_network; see config/micromanipulator.yaml. With a serial "
     "device:\n"
@@ -84,3 +85,7 @@ void MicromanipulatorNode::publishState(const Cycle::Tick& tick) {
 }
 
 }  // namespace microinjection
+
+int main(int argc, char** argv) {
+  return microinjection::runNode<microinjection::MicromanipulatorNode>(argc, argv, "micromanipulator");
+}

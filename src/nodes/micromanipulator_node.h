@@ -4,23 +4,23 @@
 
 #include <string>
 
-#include "nodes/cycle.h"
-#include "nodes/needle_commands.h"
-#include "nodes/needle_publisher.h"
-#include "nodes/rig_device.h"
+#include "nodes/runtime/cycle.h"
+#include "nodes/needle/needle_commands.h"
+#include "nodes/needle/needle_publisher.h"
+#include "nodes/needle/rig_device.h"
 
 namespace microinjection {
 
 /// A micromanipulator, simulated, emulated or real, behind the same topics, with CRTK's operating states. A refused
 /// command leaves the needle where it was; the reason is in the log and on the diagnostics, and so is a move that
 /// another command ends. A second node that commands the needle beside the first is a FAULT until `enable`
-/// (manipulator/command_authority.h).
+/// (rig/manipulator/command_authority.h).
 ///
 /// In:  /needle/servo_cp (PoseStamped), /needle/servo_cv (TwistStamped), /needle/move_cp (PoseStamped), in `world`; old
 ///      ones are refused. Without a stamp they count from their arrival, and are refused when their publisher latches;
 ///      /needle/state_command (StringStamped: enable, disable, pause, resume, home, unhome, as base/operating_state.h
 ///      has them, and stop, which keeps the state). home moves nothing: the driver finds the axes' reference positions;
-///      /needle/emulated_fault (StringStamped, see serial/fault.h), of a simulated or emulated device
+///      /needle/emulated_fault (StringStamped, see rig/serial/fault.h), of a simulated or emulated device
 /// Out: /needle/measured_cp (PoseStamped), /needle/measured_cv (TwistStamped), both at the tip in `world`, stamp 0
 ///      while the device does not know; /needle/setpoint_cp (PoseStamped), where the device is sent, stamp 0 while it
 ///      follows a velocity; /needle/true_cp (PoseStamped), where the tip truly is: of the simulated device only;
@@ -30,9 +30,9 @@ namespace microinjection {
 ///      (JointState), for robot_state_publisher
 ///
 /// Parameters: /robot_description (URDF), and private those of MicromanipulatorConfig and
-///   rig                sim (default), or a name of rigs/rig_registry.h
+///   rig                sim (default), or a name of rig/devices/rig_registry.h
 ///   emulated           default false; true: the driver talks to an emulated device in this process
-///   device/            the rig's own, as in src/rigs/NAME/NAME.yaml
+///   device/            the rig's own, as in config/rigs/NAME.yaml
 ///   emulator/          of an emulated one: latency (s, of its serial adapter), and what its emulator reads
 ///   rate               Hz; default 1000, in [50, 5000]
 ///   joint_states_rate  Hz; default 50, in (0, 1000]

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 
-#include "nodes/conversions.h"
-#include "nodes/node_parameters.h"
+#include "nodes/runtime/conversions.h"
+#include "nodes/runtime/node_parameters.h"
+#include "nodes/runtime/run_node.h"
 
 namespace microinjection {
 namespace {
@@ -89,3 +90,7 @@ void OperatorNode::publishPhase(const ros::Time& now, const std::string& phase) 
 }
 
 }  // namespace microinjection
+
+int main(int argc, char** argv) {
+  return microinjection::runNode<microinjection::OperatorNode>(argc, argv, "operator");
+}

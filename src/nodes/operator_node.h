@@ -9,9 +9,9 @@
 #include <string>
 
 #include "cell_microinjection/StringStamped.h"
-#include "nodes/cycle.h"
-#include "teleoperation/hand_motion.h"
-#include "teleoperation/virtual_hand.h"
+#include "nodes/runtime/cycle.h"
+#include "operation/teleoperation/hand_motion.h"
+#include "operation/teleoperation/virtual_hand.h"
 
 namespace microinjection {
 
@@ -23,7 +23,7 @@ namespace microinjection {
 ///      /controller/state_command (StringStamped: the word of a phase that is called inject, as it begins)
 ///
 /// Parameters (private): those of VirtualHandConfig and
-///   motion         path of a hand motion (see teleoperation/hand_motion.h); required
+///   motion         path of a hand motion (see operation/teleoperation/hand_motion.h); required
 ///   start_delay    s, in which the hand rests before the motion; default 1, in [0, inf)
 ///   wait_for_go    do nothing until the parameter /session/go is true; default false
 ///   rate           Hz; default 1000, in [50, 5000]

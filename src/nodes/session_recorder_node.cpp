@@ -15,8 +15,9 @@
 #include "base/atomic_file.h"
 #include "base/worker_processes.h"
 #include "cell_microinjection/OperatingState.h"
-#include "nodes/conversions.h"
-#include "nodes/node_parameters.h"
+#include "nodes/runtime/conversions.h"
+#include "nodes/runtime/node_parameters.h"
+#include "nodes/runtime/run_node.h"
 
 namespace microinjection {
 namespace {
@@ -268,3 +269,8 @@ std::string SessionRecorderNode::summary() const {
 }
 
 }  // namespace microinjection
+
+int main(int argc, char** argv) {
+  return microinjection::runNode<microinjection::SessionRecorderNode>(argc, argv, "session_recorder",
+                                                                      microinjection::Priority::kPrompt);
+}

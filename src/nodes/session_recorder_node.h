@@ -18,12 +18,12 @@
 #include "cell_microinjection/InjectionStatus.h"
 #include "cell_microinjection/InjectorState.h"
 #include "cell_microinjection/StringStamped.h"
-#include "nodes/bare_timer_loop.h"
-#include "nodes/cycle.h"
-#include "nodes/latency_meter.h"
-#include "nodes/session_files.h"
-#include "record/session_table.h"
-#include "record/training_log.h"
+#include "nodes/runtime/bare_timer_loop.h"
+#include "nodes/runtime/cycle.h"
+#include "nodes/runtime/latency_meter.h"
+#include "nodes/recording/session_files.h"
+#include "operation/record/session_table.h"
+#include "operation/record/training_log.h"
 
 namespace microinjection {
 

@@ -2,10 +2,11 @@
 
 #include <limits>
 
-#include "nodes/conversions.h"
-#include "nodes/force_topic.h"
-#include "nodes/link_messages.h"
-#include "nodes/node_parameters.h"
+#include "nodes/runtime/conversions.h"
+#include "nodes/runtime/force_topic.h"
+#include "nodes/link/link_messages.h"
+#include "nodes/runtime/node_parameters.h"
+#include "nodes/runtime/run_node.h"
 
 namespace microinjection {
 
@@ -95,3 +96,7 @@ void TeleoperationFollowerNode::report(diagnostic_updater::DiagnosticStatusWrapp
 }
 
 }  // namespace microinjection
+
+int main(int argc, char** argv) {
+  return microinjection::runNode<microinjection::TeleoperationFollowerNode>(argc, argv, "teleoperation_follower");
+}

@@ -8,9 +8,9 @@
 
 #include "cell_microinjection/InjectionStatus.h"
 #include "cell_microinjection/LinkPacket.h"
-#include "nodes/cycle.h"
-#include "teleoperation/force_source.h"
-#include "teleoperation/link_follower.h"
+#include "nodes/runtime/cycle.h"
+#include "operation/teleoperation/force_source.h"
+#include "operation/teleoperation/link_follower.h"
 
 namespace microinjection {
 

@@ -55,7 +55,7 @@ class Session:
     """An automatic injection with this rig."""
 
     def __init__(self, rig, emulator):
-        device = yaml.safe_load((PACKAGE / f"src/rigs/{rig}/{rig}.yaml").read_text())
+        device = yaml.safe_load((PACKAGE / f"config/rigs/{rig}.yaml").read_text())
         device["port"]["path"] = emulator.link
         goal = {"depth": 15e-6, "margin": 0.5e-6, "pulse": {"pressure": 20e3, "duration": 30.0}}
         motion = {f"{name}_speed": SPEED for name in ("stab", "indent", "approach", "retract")}

@@ -34,7 +34,7 @@ def parameters(node, **changes):
 
 def rig():
     """Those of the micromanipulator with the simulated rig."""
-    device = yaml.safe_load((PACKAGE / "src/rigs/sim/sim.yaml").read_text())
+    device = yaml.safe_load((PACKAGE / "config/rigs/sim.yaml").read_text())
     return parameters("micromanipulator", rig="sim", device=device)
 
 

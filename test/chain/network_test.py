@@ -68,7 +68,7 @@ class Rig:
         from cell_microinjection.msg import OperatingState
         from diagnostic_msgs.msg import DiagnosticArray
         package = rospkg.RosPack().get_path("cell_microinjection")
-        device = yaml.safe_load(open(f"{package}/src/rigs/zaber/zaber.yaml", encoding="utf-8"))
+        device = yaml.safe_load(open(f"{package}/config/rigs/zaber.yaml", encoding="utf-8"))
         device["port"]["path"] = f"{folder}/rig"
         self._programs = [subprocess.Popen(["rosmaster", "--core", "-p", str(PORT)], stdout=subprocess.DEVNULL)]
         until(lambda: subprocess.run(["rosparam", "list"], capture_output=True).returncode == 0, "a master")

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "nodes/conversions.h"
+#include "nodes/runtime/conversions.h"
 
 namespace microinjection {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "nodes/haptic/force_receiver.h"
-#include "nodes/stamps.h"
+#include "nodes/runtime/stamps.h"
 
 namespace microinjection {
 namespace {

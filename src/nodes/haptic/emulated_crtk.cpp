@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "cell_microinjection/OperatingState.h"
-#include "nodes/conversions.h"
+#include "nodes/runtime/conversions.h"
 #include "nodes/haptic/emulated_driver.h"
 
 namespace microinjection {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "nodes/stamps.h"
+#include "nodes/runtime/stamps.h"
 
 namespace microinjection {
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "nodes/cycle.h"
+#include "nodes/runtime/cycle.h"
 
 namespace microinjection {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "nodes/haptic/emulated_driver.h"
-#include "nodes/stamps.h"
+#include "nodes/runtime/stamps.h"
 
 namespace microinjection {
 namespace {

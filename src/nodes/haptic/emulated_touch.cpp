@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "nodes/conversions.h"
+#include "nodes/runtime/conversions.h"
 #include "nodes/haptic/emulated_driver.h"
 #include "nodes/haptic/geomagic_messages.h"
 #include "nodes/haptic/omni_messages.h"

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "nodes/ports.h"
+#include "nodes/runtime/ports.h"
 
 namespace microinjection {
 

@@ -1,6 +1,6 @@
 #include "nodes/haptic/geomagic_adapter.h"
 
-#include "nodes/conversions.h"
+#include "nodes/runtime/conversions.h"
 #include "nodes/haptic/geomagic_messages.h"
 
 namespace microinjection {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/config_reader.h"
-#include "nodes/cycle.h"
+#include "nodes/runtime/cycle.h"
 
 namespace microinjection {
 

@@ -2,9 +2,9 @@
 
 #include "cell_microinjection/OperatingState.h"
 #include "cell_microinjection/StringStamped.h"
-#include "nodes/conversions.h"
-#include "nodes/ending.h"
-#include "nodes/node_parameters.h"
+#include "nodes/runtime/conversions.h"
+#include "nodes/runtime/ending.h"
+#include "nodes/runtime/node_parameters.h"
 
 namespace microinjection {
 namespace {

@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-#include "nodes/cycle.h"
+#include "nodes/runtime/cycle.h"
 #include "nodes/haptic/haptic_registry.h"
 
 namespace microinjection {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "nodes/haptic/haptic_adapter.h"
-#include "teleoperation/stick_hand.h"
+#include "operation/teleoperation/stick_hand.h"
 
 namespace microinjection {
 

@@ -7,8 +7,8 @@
 #include "nodes/haptic/haptic_adapter.h"
 #include "nodes/haptic/raw_terminal.h"
 #include "nodes/haptic/session_news.h"
-#include "teleoperation/guided_hand.h"
-#include "teleoperation/terminal_keys.h"
+#include "operation/teleoperation/guided_hand.h"
+#include "operation/teleoperation/terminal_keys.h"
 
 namespace microinjection {
 

@@ -5,10 +5,10 @@
 
 #include <cstdio>
 
-#include "display/display_scale.h"
-#include "display/force_arrow.h"
-#include "nodes/conversions.h"
-#include "nodes/display_markers.h"
+#include "operation/display/display_scale.h"
+#include "operation/display/force_arrow.h"
+#include "nodes/runtime/conversions.h"
+#include "nodes/display/display_markers.h"
 #include "nodes/haptic/hand_marker.h"
 
 namespace microinjection {

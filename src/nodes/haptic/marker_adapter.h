@@ -10,7 +10,7 @@
 
 #include "nodes/haptic/haptic_adapter.h"
 #include "nodes/haptic/session_news.h"
-#include "teleoperation/guided_hand.h"
+#include "operation/teleoperation/guided_hand.h"
 
 namespace microinjection {
 

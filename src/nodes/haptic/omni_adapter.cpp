@@ -1,6 +1,6 @@
 #include "nodes/haptic/omni_adapter.h"
 
-#include "nodes/conversions.h"
+#include "nodes/runtime/conversions.h"
 
 namespace microinjection {
 namespace {

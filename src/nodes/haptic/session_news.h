@@ -7,7 +7,7 @@
 #include "cell_microinjection/InjectionStatus.h"
 #include "cell_microinjection/OperatingState.h"
 #include "diagnostic_msgs/DiagnosticArray.h"
-#include "nodes/cycle.h"
+#include "nodes/runtime/cycle.h"
 
 namespace microinjection {
 

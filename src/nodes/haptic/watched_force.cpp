@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "nodes/conversions.h"
+#include "nodes/runtime/conversions.h"
 #include "nodes/haptic/device_settings.h"
 #include "nodes/haptic/geomagic_messages.h"
 #include "nodes/haptic/omni_messages.h"

@@ -17,18 +17,29 @@ command_build() {
 
 command_clean() {
   [[ $# -eq 0 ]] || misuse "clean takes no arguments"
-  rm -rf "$WORKSPACE/build" "$WORKSPACE/devel" "$WORKSPACE/install" "$WORKSPACE/.catkin_workspace" "$ROOT/build" "$ROOT/out"
-  say "clean: removed catkin_ws/build, devel and install, build and out"
+  rm -rf "$WORKSPACE"/{build,devel,install,src,.catkin_workspace} "$ROOT/build" "$ROOT/out"
+  say "clean: removed what is in catkin_ws, build and out"
 }
 
 jobs() { echo "${JOBS:-$(nproc)}"; }
 
+# The package is the repository's root. A link from the workspace to all of it would lead back to the workspace, and ROS's
+# search of a package would follow it round and round: so each part has a link of its own.
+link_package() {
+  local package="$WORKSPACE/src/cell_microinjection" part
+  [[ ! -L $package ]] || rm "$package"  # of an older checkout
+  mkdir -p "$package"
+  find "$package" -maxdepth 1 -xtype l -delete
+  for part in package.xml CMakeLists.txt src benchmark msg srv action launch config urdf test; do
+    ln -sfn "../../../$part" "$package/$part"
+  done
+}
+
 # Makes the given targets (by default everything but the tests, installed), then takes the workspace's environment on.
-# Programs are looked for in the install space, because ROS's search of a source package follows the workspace's link back
-# to the package itself, forty times over: slow, and roslaunch then sees each launch file many times.
 build_workspace() {
   [[ $ROOT != *" "* ]] || fail "catkin cannot build below a path with a space in it: $ROOT"
   forget_moved_build "$WORKSPACE/build" "$WORKSPACE/devel" "$WORKSPACE/install"
+  link_package
   # catkin keeps the environment of its tests from the first configuration, and leaves out folders that are not there yet.
   mkdir -p "$WORKSPACE/devel/lib/python3/dist-packages"
   # An installation never forgets by itself a file that has since been renamed.

@@ -13,12 +13,12 @@ format_code() {
     cpp_files | xargs -0r clang-format --dry-run -Werror || return 1
     echo "formatted as .clang-format says"
   else
-    say "format: clang-format of src and test"
+    say "format: clang-format of src, benchmark and test"
     cpp_files | xargs -0r clang-format -i
   fi
 }
 
-cpp_files() { find "$ROOT/src" "$ROOT/test" -name '*.cpp' -print0 -o -name '*.h' -print0; }
+cpp_files() { find "$ROOT"/{src,benchmark,test} -name '*.cpp' -print0 -o -name '*.h' -print0; }
 
 command_lint() {
   [[ $# -le 1 ]] || misuse "lint takes one regular expression at the most"
@@ -35,7 +35,7 @@ command_lint() {
 
 check_python() {
   say "lint: Python syntax"
-  find "$ROOT/src" "$ROOT/test" -name '*.py' -print0 |
+  find "$ROOT"/{src,benchmark,test} -name '*.py' -print0 |
     PYTHONPYCACHEPREFIX="$ROOT/out/pycache" xargs -0r /usr/bin/python3 -m py_compile
 }
 
@@ -45,10 +45,10 @@ check_python() {
 check_package() {
   local copy="$ROOT/out/lint/cell_microinjection"
   say "lint: catkin_lint"
-  # Of a copy: its walk would follow the workspace's link back to the package itself, and see what was built.
+  # Of a copy: its walk would see what was built.
   rm -rf "$copy"
   mkdir -p "$copy"
-  cp -r "$ROOT"/{package.xml,CMakeLists.txt,src,msg,launch,config,urdf,test} "$copy"
+  cp -r "$ROOT"/{package.xml,CMakeLists.txt,src,benchmark,msg,srv,action,launch,config,urdf,test} "$copy"
   catkin_lint -W1 --strict --offline --ignore EXTERNAL_INTERFACE_PATH --ignore DUPLICATE_SUBDIR \
     --ignore MISSING_DEPEND --ignore UNINSTALLED_SCRIPT "$copy"
 }

@@ -25,21 +25,21 @@ command_bench() {
   mkdir -p "$folder"
   rm -f "$folder/$name.csv" "$folder/$name.png"
   say "bench: $name"
-  if [[ -f $ROOT/src/bench/$name.cpp ]]; then
+  if [[ -f $ROOT/benchmark/$name.cpp ]]; then
     "$(bench_program "$name")" --csv "$folder/$name.csv" "$@"
   else
-    /usr/bin/python3 "$ROOT/src/bench/$name.py" --out "$folder" "$@"
+    /usr/bin/python3 "$ROOT/benchmark/$name.py" --out "$folder" "$@"
   fi
   [[ -s $folder/$name.csv ]] || fail "the benchmark left no $folder/$name.csv"
-  if [[ -f $ROOT/src/bench/plot_$name.py ]]; then
-    /usr/bin/python3 "$ROOT/src/bench/plot_$name.py" "$folder/$name.csv" "$folder/$name.png"
+  if [[ -f $ROOT/benchmark/plot_$name.py ]]; then
+    /usr/bin/python3 "$ROOT/benchmark/plot_$name.py" "$folder/$name.csv" "$folder/$name.png"
   fi
   say "bench: results are in"
   ls "$folder/$name".*
 }
 
 bench_names() {
-  find "$ROOT/src/bench" -maxdepth 1 \( -name '*.cpp' -o -name '*.py' \) -not -name 'plot_*' -printf '%f\n' |
+  find "$ROOT/benchmark" -maxdepth 1 \( -name '*.cpp' -o -name '*.py' \) -not -name 'plot_*' -printf '%f\n' |
     sed -e 's/\.[a-z]*$//' | sort
 }
 
@@ -47,7 +47,7 @@ bench_names() {
 list_benches() {
   local name
   for name in $(bench_names); do
-    printf '%-20s %s\n' "$name" "$(sed -n -e '/^#!/d; s/^\(\/\/\/*\|"""\|#\) *//p' "$ROOT/src/bench/$name".{cpp,py} 2>/dev/null |
+    printf '%-20s %s\n' "$name" "$(sed -n -e '/^#!/d; s/^\(\/\/\/*\|"""\|#\) *//p' "$ROOT/benchmark/$name".{cpp,py} 2>/dev/null |
       head -n 1)"
   done
 }
@@ -55,7 +55,7 @@ list_benches() {
 bench_program() {
   local program
   program=$(find "$WORKSPACE/devel/lib" "$WORKSPACE/build" -name "bench_$1" -type f -perm -u+x -print -quit)
-  [[ -n $program ]] || fail "the build made no bench_$1; is it in src/bench/CMakeLists.txt?"
+  [[ -n $program ]] || fail "the build made no bench_$1; is it in benchmark/CMakeLists.txt?"
   echo "$program"
 }
 
@@ -63,8 +63,8 @@ command_paper() {
   [[ ${1:-} != -- ]] || shift
   setup
   build_workspace
-  say "paper: src/paper/report.py $*"
-  exec /usr/bin/python3 -B "$ROOT/src/paper/report.py" --programs "$WORKSPACE/devel/lib" --out "$ROOT/out/paper" "$@"
+  say "paper: benchmark/paper/report.py $*"
+  exec /usr/bin/python3 -B "$ROOT/benchmark/paper/report.py" --programs "$WORKSPACE/devel/lib" --out "$ROOT/out/paper" "$@"
 }
 
 command_shell() {

@@ -53,7 +53,10 @@ test_sanitized() {
   local sanitizer=$1 folder targets=()
   shift
   for folder in "$@"; do
-    ! compgen -G "$ROOT/test/$folder/*_test.cpp" >/dev/null || targets+=("${folder}_test")
+    for folder in "$folder" $(cd "$ROOT/test" && printf '%s ' "$folder"/*/); do
+      folder=${folder%/}
+      ! compgen -G "$ROOT/test/$folder/*_test.cpp" >/dev/null || targets+=("${folder//\//_}_test")
+    done
   done
   [[ $# -eq 0 || ${#targets[@]} -gt 0 ]] || misuse "no tests of the core in: $*"
   setup
@@ -101,9 +104,10 @@ test_jobs() {
 # a rostest with arguments, which is named after its file alone.
 name_pattern() {
   [[ $# -gt 0 ]] || { echo . && return; }
-  local folder names=()
+  local folder name names=()
   for folder in "$@"; do
-    names+=("^$folder(_|\$)" "_(gtest|python)_${folder}_")
+    name=${folder//\//_}
+    names+=("^$name(_|\$)" "_(gtest|python)_${name}_")
     compgen -G "$ROOT/test/$folder/*.test" >/dev/null && names+=(_rostest_)
   done
   local IFS='|'
@@ -112,7 +116,7 @@ name_pattern() {
 
 check_test_folders() {
   local folder folders
-  folders=$(find "$ROOT/test" -mindepth 1 -maxdepth 1 -type d -not -name '__*' -printf '%f ' | xargs -n1 | sort | xargs)
+  folders=$(find "$ROOT/test" -mindepth 1 -maxdepth 2 -type d -not -name '__*' -printf '%P\n' | sort | xargs)
   for folder in "$@"; do
     [[ " $folders " == *" $folder "* ]] || misuse "no tests in '$folder'; the folders of test/ are: $folders"
   done

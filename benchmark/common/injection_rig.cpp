@@ -1,0 +1,110 @@
+#include "benchmark/common/injection_rig.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace microinjection {
+
+InjectionRig::InjectionRig(const Config& config, const ManipulatorGeometry& geometry, ScaledCell& cell)
+    : geometry_(geometry),
+      device_(geometry, config.manipulator),
+      manipulator_(geometry, CollisionGuard(), {}, device_),
+      sensor_(config.sensor),
+      injector_({}),
+      controller_(config.controller),
+      cell_(&cell),
+      trouble_(config.trouble) {
+  Eigen::Isometry3d pose = geometry.tip_at_zero;
+  pose.translation() = config.start;
+  const std::string refusal = manipulator_.movePosition(pose);
+  if (!refusal.empty()) throw std::runtime_error("the rig cannot go where it starts: " + refusal);
+  // Out of the cell, before anything is watched.
+  int rested = 0;
+  while (rested < 100) {
+    time_ += kStep;
+    manipulator_.step(time_, kStep);
+    rested = manipulator_.moving() ? 0 : rested + 1;
+  }
+  began_ = time_;
+  const auto abilities = device_.abilities();
+  controller_.adaptTo(abilities.speed, abilities.latency + abilities.command_interval);
+  controller_.command("enable");
+}
+
+bool InjectionRig::isIn(Trouble::Kind kind) const {
+  constexpr double kStands = 3;  // s
+  const double since = time_ - began_ - trouble_.begin;
+  return trouble_.kind == kind && since >= 0 && (kind != Trouble::Kind::kRigStands || since < kStands);
+}
+
+void InjectionRig::run(double limit) {
+  step();
+  while (controller_.busy() && time_ < limit) step();
+}
+
+bool InjectionRig::holds() {
+  const bool stood = isIn(Trouble::Kind::kRigStands);  // it has yet to go where it was sent last
+  while (isIn(Trouble::Kind::kRigStands)) step();
+  for (int i = 0; i < (stood ? 1000 : 200); ++i) step();
+  const Eigen::Vector3d before = tip();
+  for (int i = 0; i < 500; ++i) step();
+  return (tip() - before).norm() < 1e-8 && !controller_.pulse() && !injector_.reading().busy;
+}
+
+void InjectionRig::step() {
+  time_ += kStep;
+  const Eigen::Vector3d tip = this->tip();
+  const Eigen::Vector3d force = cell_->step(tip, time_);
+  watch(force, tip);
+  const Eigen::Vector2d reading = sensor_.sample({force.z(), force.x()}, kStep);
+  InjectionController::Input input;
+  if (const auto pose = manipulator_.tipPose()) input.needle = pose->translation();
+  input.force = Eigen::Vector3d(reading.y(), 0, reading.x());
+  input.injector =
+      InjectorReport{injector_.reading().busy, injector_.reading().volume, injector_.reading().last_id == pulses_};
+  if (isIn(Trouble::Kind::kForceLost) || !cell_->trusted()) input.force.reset();  // as cell_simulator says it
+  if (isIn(Trouble::Kind::kNeedleLost)) input.needle.reset();
+  const InjectionState before = controller_.injection();
+  const int punctures_before = controller_.result().punctures;
+  const auto setpoint = controller_.step(input, kStep);
+  listen(before, punctures_before);
+  if (setpoint && !isIn(Trouble::Kind::kRigStands)) {
+    Eigen::Isometry3d pose = geometry_.tip_at_zero;
+    pose.translation() = *setpoint;
+    manipulator_.servoPosition(pose);
+  }
+  const auto pulse = controller_.pulse();
+  if (pulse && !pulsing_ && !isIn(Trouble::Kind::kInjectorDead))
+    injector_.pulse({++pulses_, pulse->pressure, pulse->duration});
+  if (!pulse && pulsing_ && injector_.reading().busy) injector_.stop();
+  pulsing_ = pulse.has_value();
+  injector_.step(time_);
+  manipulator_.step(time_, kStep);
+}
+
+void InjectionRig::watch(const Eigen::Vector3d& force, const Eigen::Vector3d& tip) {
+  truth_.trusted = truth_.trusted && cell_->trusted();
+  truth_.peak_force = std::max(truth_.peak_force, std::abs(force.z()));
+  if (cell_->touched() && !touch_height_) touch_height_ = tip.z();
+  truth_.depth = touch_height_ ? *touch_height_ - tip.z() : 0;
+  truth_.max_depth = std::max(truth_.max_depth, truth_.depth);
+  if (cell_->layersPunctured() <= truth_.punctures) return;
+  truth_.unfelt += truth_.punctures > felt_;
+  truth_.punctures = cell_->layersPunctured();
+  truth_.puncture_depth = truth_.depth;
+  failed_at_ = time_;
+}
+
+void InjectionRig::listen(InjectionState before, int punctures_before) {
+  const bool touch = before == InjectionState::kApproach && controller_.injection() == InjectionState::kContact;
+  truth_.false_detections += touch && !cell_->touched();
+  if (controller_.result().punctures <= punctures_before) return;
+  if (++felt_ > truth_.punctures) {
+    ++truth_.false_detections;
+    return;
+  }
+  truth_.latency = std::max(truth_.latency, time_ - failed_at_);
+}
+
+}  // namespace microinjection

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "benchmark/common/scaled_cell.h"
+#include "operation/control/injection_controller.h"
+#include "rig/injector/injector_model.h"
+#include "rig/manipulator/micromanipulator.h"
+#include "rig/manipulator/simulated_manipulator.h"
+#include "rig/sensor/force_sensor.h"
+
+namespace microinjection {
+
+/// A whole rig in virtual time, 1 kHz, without ROS: the controller sees what the simulated micromanipulator measures
+/// and what the virtual force sensor reads of the cell's force, one step old, and moves the needle and the injector.
+class InjectionRig {
+ public:
+  /// What goes wrong, `begin` (s) after the start.
+  struct Trouble {
+    enum class Kind { kNone, kForceLost, kNeedleLost, kRigStands, kInjectorDead };
+    Kind kind = Kind::kNone;
+    double begin = 0;
+  };
+  struct Config {
+    Trouble trouble;
+    InjectionControllerConfig controller;
+    ForceSensorConfig sensor;
+    SimulatedManipulatorConfig manipulator;
+    Eigen::Vector3d start = Eigen::Vector3d::Zero();  ///< m, of the tip
+  };
+  static constexpr double kStep = 1e-3;  ///< s
+
+  /// @param cell  outlives this
+  InjectionRig(const Config& config, const ManipulatorGeometry& geometry, ScaledCell& cell);
+
+  /// Until the controller's injection is over, or `limit` (s).
+  void run(double limit);
+  void step();
+
+  // What truly happened.
+  struct Truth {
+    double peak_force = 0;                 ///< N, along the pipette
+    double max_depth = 0;                  ///< m past where the tip touched
+    std::optional<double> puncture_depth;  ///< m, same, where the last membrane failed
+    int punctures = 0;
+    double latency = 0;        ///< s, longest from a membrane's failure to the controller's word
+    int false_detections = 0;  ///< touches without contact, and punctures without a failure
+    int unfelt = 0;            ///< failures that the controller has not felt
+    bool trusted = true;       ///< the cell's force, always
+    double depth = 0;          ///< m, now
+  };
+  const Truth& truth() const { return truth_; }
+  const InjectionController& controller() const { return controller_; }
+  Eigen::Vector3d tip() const { return geometry_.tip(device_.trueJoints()); }
+  /// Rests: 0.2 s later (a second after a rig that stood still goes again) the tip stays where it is for half a second,
+  /// and the injector is off.
+  bool holds();
+
+ private:
+  bool isIn(Trouble::Kind kind) const;
+  void watch(const Eigen::Vector3d& force, const Eigen::Vector3d& tip);
+  void listen(InjectionState before, int punctures_before);
+
+  ManipulatorGeometry geometry_;
+  SimulatedManipulator device_;
+  Micromanipulator manipulator_;
+  ForceSensor sensor_;
+  InjectorModel injector_;
+  InjectionController controller_;
+  ScaledCell* cell_;
+  Trouble trouble_;
+  double began_ = 0;  ///< s
+  double time_ = 0;   ///< s
+  std::uint64_t pulses_ = 0;
+  bool pulsing_ = false;
+  std::optional<double> touch_height_;  ///< m
+  int felt_ = 0;
+  double failed_at_ = 0;  ///< s
+  Truth truth_;
+};
+
+}  // namespace microinjection

@@ -1,0 +1,44 @@
+#include "benchmark/common/scaled_cell.h"
+
+#include <utility>
+
+#include "cell/surrogate/prepared_tracker.h"
+
+namespace microinjection {
+namespace {
+
+/// The same membranes on the prepared cell: lengths are smaller by `length`, forces by `force`.
+PunctureConfig onPrepared(PunctureConfig puncture, double length, double force) {
+  for (auto& layer : puncture.layers) {
+    layer.force /= force;
+    layer.depth /= length;
+    layer.dimple_radius /= length;
+    layer.gap /= length;
+    layer.stiffness *= length / force;
+  }
+  puncture.shaft.friction /= force;
+  puncture.shaft.adhesion *= length / force;
+  puncture.shaft.stiffness *= length / force;
+  return puncture;
+}
+
+}  // namespace
+
+ScaledCell::ScaledCell(const Scene& scene, std::shared_ptr<const PreparedCell> prepared, const Properties& properties) {
+  const double radius = 0.5 * properties.diameter, modulus = scene.cell.material().young_modulus;
+  length_ = radius / scene.radius();
+  force_ = properties.young_modulus / modulus * length_ * length_;
+  force_scale_ = properties.young_modulus * radius * radius;
+  Scene here = scene;
+  here.cell.material().viscoelasticity.prony = properties.prony;
+  here.cell.puncture = onPrepared(properties.puncture, length_, force_);
+  cell_ = std::make_unique<PuncturableCell>(here, std::make_unique<PreparedTracker>(here, std::move(prepared)));
+}
+
+Eigen::Vector3d ScaledCell::step(const Eigen::Vector3d& tip, double time) {
+  const TipForce answer = cell_->step(tip / length_, Eigen::Vector3d::UnitZ(), time);
+  trusted_ = answer.trusted;
+  return force_ * answer.force;
+}
+
+}  // namespace microinjection

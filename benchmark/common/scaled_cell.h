@@ -1,0 +1,44 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+
+#include "cell/model/puncturable_cell.h"
+#include "cell/surrogate/prepared_cell.h"
+
+namespace microinjection {
+
+/// A cell of any size and stiffness, whose membranes fail, from a prepared one by dimensional analysis: with gravity
+/// and inertia left out, a homogeneous neo-Hookean cell's force is F = E R^2 f(x / R), so lengths scale with R and
+/// forces with E R^2. Everything scales: holding pipette and needle, too, so that a cell twice as large meets a tip
+/// twice as large. Times do not.
+class ScaledCell {
+ public:
+  /// Of the wanted cell.
+  struct Properties {
+    double diameter = 56e-6;        ///< m
+    double young_modulus = 17.9e3;  ///< Pa, of a load held for ever
+    std::vector<PronyTerm> prony;
+    PunctureConfig puncture;  ///< of the wanted cell; `damping` and `lateral_stiffness` of the shaft 0
+  };
+
+  /// @param scene  of `prepared`: one layer, elastic
+  ScaledCell(const Scene& scene, std::shared_ptr<const PreparedCell> prepared, const Properties& properties);
+
+  /// N, on a tip at `tip` (m), upright, at `time` (s).
+  Eigen::Vector3d step(const Eigen::Vector3d& tip, double time);
+
+  int layersPunctured() const { return cell_->insertion().layers_punctured; }
+  bool touched() const { return cell_->contact().has_value(); }
+  bool trusted() const { return trusted_; }  ///< the last force
+  /// E R^2 (N): the size of its forces.
+  double forceScale() const { return force_scale_; }
+
+ private:
+  double length_, force_;  ///< of the wanted cell over the prepared one
+  double force_scale_;     ///< N
+  bool trusted_ = true;
+  std::unique_ptr<PuncturableCell> cell_;
+};
+
+}  // namespace microinjection

@@ -1,0 +1,214 @@
+#include "benchmark/common/teleoperation_loop.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "operation/teleoperation/link_follower.h"
+#include "operation/teleoperation/link_leader.h"
+
+namespace microinjection {
+namespace {
+
+constexpr double kPeriod = 1e-3;       // s, of bridge and rig
+constexpr int kSubsteps = 20;          // of the hand within it: the device's force is held, the hand is not
+constexpr int kFound = 1000;           // periods before the start, with a link that has epochs
+constexpr double kServoTime = 2e-3;    // s, by which the needle lags behind its target
+constexpr double kPressedForce = 1.2;  // N that the hand means to press with
+constexpr double kFree = 5e-3;         // m above what is touched
+constexpr double kInEnd = 1.0, kHalfOut = 6.0, kHalfOutEnd = 6.2, kOut = 10.0, kOutEnd = 10.5, kEnd = 11.0;  // s
+constexpr double kChatterStart = 1.5, kChatterEnd = 2.0, kChatterPeriod = 0.08;                              // s
+
+/// From 0 to 1 within [start, end] with the least jerk, as a reaching hand moves.
+double reach(double time, double start, double end) {
+  const double x = std::clamp((time - start) / (end - start), 0.0, 1.0);
+  return x * x * x * (10 + x * (-15 + 6 * x));
+}
+
+/// Root mean square of the hand about its straight line over [start, start + 1 s): a hand that creeps does not
+/// oscillate.
+double amplitude(const std::vector<TeleoperationLoop::Sample>& samples, double start) {
+  const auto first = static_cast<Eigen::Index>(std::lround(start / kPeriod));
+  const auto count = static_cast<Eigen::Index>(std::lround(1.0 / kPeriod));
+  const Eigen::VectorXd time = Eigen::VectorXd::LinSpaced(count, -1, 1);
+  Eigen::VectorXd hand(count);
+  for (Eigen::Index i = 0; i < count; ++i) hand[i] = samples[first + i].hand;
+  hand.array() -= hand.mean();
+  hand -= hand.dot(time) / time.squaredNorm() * time;
+  return hand.norm() / std::sqrt(static_cast<double>(count));
+}
+
+/// The whole loop's state, tick by tick. Everything moves along z; what is touched fills z < 0.
+class Simulation {
+ public:
+  explicit Simulation(const TeleoperationLoop& loop)
+      : loop_(loop),
+        hand_(loop.hand, Eigen::Vector3d(0, 0, kFree)),
+        bridge_(withController(loop)),
+        leader_(ports(loop)),
+        follower_(ports(loop)),
+        wave_leader_(loop.wave, loop.bridge.motion.position_scale, loop.bridge.force_gain, 1),
+        wave_follower_(loop.wave),
+        wave_forward_(loop.link),
+        wave_back_(otherSeed(loop.link)),
+        forward_(loop.link),
+        back_(otherSeed(loop.link)),
+        coupling_(loop.bridge.coupling),
+        needle_(kFree) {
+    deep_ = kPressedForce / loop.stiffness + kPressedForce / loop.hand.stiffness;
+  }
+
+  TeleoperationLoop::Result run() {
+    // The two ends of the link find each other before the hand sets out.
+    for (int i = wave() ? -kFound : 0; i * kPeriod < kEnd - kPeriod / 2; ++i) tick(i * kPeriod);
+    auto& samples = result_.samples;
+    if (wave()) samples.erase(samples.begin(), samples.begin() + kFound);
+    for (const double start : {4.0, 8.0}) {
+      const double early = amplitude(samples, start), late = amplitude(samples, start + 1);
+      if (late < result_.late_amplitude) continue;
+      result_.late_amplitude = late;
+      result_.late_over_early = early > 0 ? late / early : 0;
+    }
+    for (int i = 0; i < 1000; ++i) {
+      result_.contact_force += samples[5000 + i].force / 1000;
+      result_.needle_force += loop_.stiffness * std::max(0.0, -samples[5000 + i].needle) / 1000;
+    }
+    const auto hand = [](const auto& a, const auto& b) { return a.hand < b.hand; };
+    const auto needle = [](const auto& a, const auto& b) { return a.needle < b.needle; };
+    result_.overshoot = std::max(0.0, std::min_element(samples.begin(), samples.end(), hand)->hand -
+                                          std::min_element(samples.begin(), samples.end(), needle)->needle);
+    return result_;
+  }
+
+ private:
+  static HapticBridgeConfig withController(const TeleoperationLoop& loop) {
+    HapticBridgeConfig config = loop.bridge;
+    // With ports the proxy is where it does not wait for the network.
+    if (loop.controller == TeleoperationLoop::Controller::kWave) config = config.beforeLink();
+    if (loop.controller == TeleoperationLoop::Controller::kTwoPort) config.coupling.enabled = false;
+    config.passivity.enabled = loop.controller != TeleoperationLoop::Controller::kOff;
+    config.engagement.speed_limit = 1e3;  // m/s: that a fast hand is let go of would hide what is not passive
+    return config;
+  }
+  static TwoPortConfig ports(const TeleoperationLoop& loop) {
+    TwoPortConfig config = loop.ports;
+    config.enabled = loop.controller == TeleoperationLoop::Controller::kTwoPort;
+    return config;
+  }
+  static LinkConditions otherSeed(LinkConditions link) {
+    link.seed += 1000;
+    return link;
+  }
+
+  bool wave() const { return loop_.controller == TeleoperationLoop::Controller::kWave; }
+
+  void tick(double now) {
+    const double force = stepBridge(now);
+    moveHand(now, force);
+    const double moved = hand_.position().z();
+    stepRig(now);
+    result_.samples.push_back({now, moved, needle_, force, bridge_.observedEnergy()});
+    result_.observed_energy_min = std::min(result_.observed_energy_min, bridge_.observedEnergy());
+    result_.true_energy_min = std::min(result_.true_energy_min, true_energy_);
+    result_.margin_min = wave() ? std::min({result_.margin_min, wave_leader_.margin(), wave_follower_.margin()})
+                                : std::min({result_.margin_min, leader_.margin(), follower_.margin()});
+    result_.peak_force = std::max(result_.peak_force, std::abs(force));
+    result_.peak_force_rate = std::max(result_.peak_force_rate, std::abs(force - last_force_) / kPeriod);
+    last_force_ = force;
+    result_.drift = std::abs(needle_ - wanted_) * loop_.bridge.motion.position_scale;
+  }
+
+  /// Force on the hand (N) for the next period.
+  double stepBridge(double now) {
+    for (const LinkPacket& packet : wave_back_.receive(now)) wave_leader_.receive(packet);
+    for (const TeleoperationPacket& packet : back_.receive(now)) leader_.receive(packet);
+    const auto reflected = wave() ? wave_leader_.step(kPeriod) : leader_.step(Eigen::Vector3d(0, 0, wanted_), kPeriod);
+    const double scale = loop_.bridge.motion.position_scale;
+    HapticBridge::Input input;
+    const double resolution = loop_.device_resolution;
+    const double encoder = std::round(hand_.position().z() / resolution) * resolution;
+    input.hand = Eigen::Vector3d(0, 0, encoder);
+    input.needle = wave() ? wave_leader_.needle() : Eigen::Vector3d(0, 0, scale * needle_);
+    if (reflected) input.force.predicted = *reflected / loop_.bridge.force_gain;
+    const HapticBridge::Output output = bridge_.step(input, kPeriod);
+    if (output.needle) wanted_ = output.needle->z() / scale;
+    if (wave()) {
+      wave_leader_.setTarget(output.needle);
+      wave_forward_.send(wave_leader_.packet(), now);
+    } else if (output.needle) {
+      forward_.send(withGoal(leader_.packet()), now);
+    }
+    return output.hand_force.z();
+  }
+
+  /// The bridge's newest target, with the leader's energy up to now.
+  TeleoperationPacket withGoal(TeleoperationPacket packet) const {
+    packet.value = Eigen::Vector3d(0, 0, wanted_);
+    return packet;
+  }
+
+  void moveHand(double now, double force) {
+    const double dt = kPeriod / kSubsteps;
+    for (int i = 0; i < kSubsteps; ++i) {
+      const double time = now + (i + 1) * dt;
+      const double depth = kFree + deep_;
+      const double meant = kFree - depth * (reach(time, 0.3, kInEnd) - 0.5 * reach(time, kHalfOut, kHalfOutEnd) -
+                                            0.5 * reach(time, kOut, kOutEnd));
+      const double before = hand_.position().z();
+      const double total = force - loop_.device_damping * hand_speed_;
+      hand_.step(Eigen::Vector3d(0, 0, meant), Eigen::Vector3d(0, 0, total), dt);
+      hand_speed_ = (hand_.position().z() - before) / dt;
+      true_energy_ -= force * (hand_.position().z() - before);
+    }
+  }
+
+  void stepRig(double now) {
+    for (const LinkPacket& packet : wave_forward_.receive(now)) wave_follower_.receive(packet);
+    for (const TeleoperationPacket& packet : forward_.receive(now)) follower_.receive(packet);
+    const Eigen::Vector3d force(0, 0, touch(now));
+    const double scale = loop_.bridge.motion.position_scale;
+    std::optional<Eigen::Vector3d> goal;
+    if (wave()) {
+      goal = wave_follower_.step({Eigen::Vector3d(0, 0, scale * needle_), force / loop_.bridge.force_gain}, kPeriod);
+      if (goal) *goal /= scale;
+      wave_back_.send(wave_follower_.packet(), now);
+    } else {
+      goal = follower_.step(force, kPeriod);
+      back_.send(follower_.packet(), now);
+    }
+    if (!goal) return;
+    const bool yields = loop_.controller == TeleoperationLoop::Controller::kTwoPort;
+    const double yield = yields ? coupling_.step(force, kPeriod).z() : 0;
+    needle_ += (1 - std::exp(-kPeriod / kServoTime)) * (goal->z() + yield - needle_);
+  }
+
+  /// N at the hand's scale, of what is touched on the needle.
+  double touch(double now) const {
+    const bool gone = loop_.chatter && now >= kChatterStart && now < kChatterEnd &&
+                      std::fmod(now - kChatterStart, kChatterPeriod) < kChatterPeriod / 2;
+    return gone ? 0 : loop_.stiffness * std::max(0.0, -needle_);
+  }
+
+  const TeleoperationLoop& loop_;
+  VirtualHand hand_;
+  HapticBridge bridge_;
+  LeaderPort leader_;
+  FollowerPort follower_;
+  LinkLeader wave_leader_;
+  LinkFollower wave_follower_;
+  LinkEmulator<LinkPacket> wave_forward_, wave_back_;
+  LinkEmulator<TeleoperationPacket> forward_, back_;
+  VirtualCoupling coupling_;
+  double needle_;           ///< m, at the hand's scale
+  double wanted_ = kFree;   ///< m, at the hand's scale, by the bridge
+  double deep_ = 0;         ///< m, below the surface, where the hand means to be
+  double hand_speed_ = 0;   ///< m/s
+  double true_energy_ = 0;  ///< J
+  double last_force_ = 0;   ///< N
+  TeleoperationLoop::Result result_;
+};
+
+}  // namespace
+
+TeleoperationLoop::Result TeleoperationLoop::run() const { return Simulation(*this).run(); }
+
+}  // namespace microinjection

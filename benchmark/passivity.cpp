@@ -1,0 +1,160 @@
+// Energy and limit cycles at the hand: impedance, stiffness, delay, loss, chatter; controllers off and on: ./dev bench
+// passivity.
+
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <map>
+#include <random>
+#include <string>
+
+#include "benchmark/bench_main.h"
+#include "benchmark/common/teleoperation_loop.h"
+
+namespace microinjection {
+namespace {
+
+using Controller = TeleoperationLoop::Controller;
+using Result = TeleoperationLoop::Result;
+
+constexpr Controller kControllers[] = {Controller::kOff, Controller::kObserver, Controller::kTwoPort,
+                                       Controller::kWave};
+constexpr double kStillAmplitude = 5e-5;  // m, below which a hand is at rest
+constexpr double kDecay = 0.95;  // an oscillation that keeps more than this from second to second is a limit cycle
+
+std::string name(Controller controller) {
+  if (controller == Controller::kOff) return "off";
+  if (controller == Controller::kObserver) return "one_port";
+  return controller == Controller::kTwoPort ? "two_port" : "wave";
+}
+
+bool isLimitCycle(const Result& result) {
+  return result.late_amplitude > kStillAmplitude && result.late_over_early > kDecay;
+}
+
+bool isPassive(const TeleoperationLoop& loop, const Result& result) {
+  return result.observed_energy_min >= -loop.bridge.passivity.reserve;
+}
+
+struct Summary {
+  int cases = 0, active = 0, limit_cycles = 0;
+  double lowest = 0, peak_force = 0;
+
+  void add(const TeleoperationLoop& loop, const Result& result) {
+    ++cases;
+    active += isPassive(loop, result) ? 0 : 1;
+    limit_cycles += isLimitCycle(result) ? 1 : 0;
+    lowest = std::min(lowest, result.observed_energy_min);
+    peak_force = std::max(peak_force, result.peak_force);
+  }
+};
+
+class Table {
+ public:
+  explicit Table(int draws) : draws_(draws) {}
+
+  std::string make() {
+    emit(
+        "block,controller,seed,hand_mass_kg,hand_stiffness_N_per_m,hand_damping_N_s_per_m,stiffness_N_per_m,delay_ms,"
+        "jitter_ms,loss,chatter,observed_energy_min_J,"
+        "tolerance_J,"
+        "passive,true_energy_min_J,channel_margin_min_J,limit_cycle,late_amplitude_um,late_over_early,contact_force_N,"
+        "needle_force_N,"
+        "peak_force_N,peak_force_rate_N_per_s,needle_overshoot_um,needle_drift_um\n");
+    for (const Controller controller : kControllers) {
+      for (const double damping : {0.0, 5.0, 15.0, 50.0}) {
+        for (const double stiffness : {20.0, 60.0, 200.0, 600.0, 2000.0, 4000.0})
+          conditions(controller, damping, stiffness);
+      }
+    }
+    for (int i = 0; i < draws_; ++i) {
+      for (const Controller controller : kControllers) {
+        TeleoperationLoop loop = drawn(i);
+        loop.controller = controller;
+        add("drawn", loop);
+      }
+    }
+    for (const auto& [controller, sum] : summaries_) {
+      std::fprintf(stderr,
+                   "%s: %d cases, %d not passive, %d limit cycles, lowest energy %.2g J, largest force %.2f N\n",
+                   controller.c_str(), sum.cases, sum.active, sum.limit_cycles, sum.lowest, sum.peak_force);
+    }
+    return rows_;
+  }
+
+ private:
+  /// Between the grid's values, and with a network of its own.
+  static TeleoperationLoop drawn(int number) {
+    std::mt19937 random(1000 + number);
+    const auto between = [&](double low, double high) {
+      return std::uniform_real_distribution<double>(low, high)(random);
+    };
+    TeleoperationLoop loop;
+    loop.hand.mass = between(0.1, 0.4);
+    loop.hand.stiffness = between(150, 800);
+    loop.hand.damping = number % 4 == 0 ? 0 : between(5, 50);
+    loop.stiffness = 20 * std::pow(200, between(0, 1));
+    loop.link.delay = between(0, 0.2);
+    loop.link.jitter = between(0, 1) * std::max(5e-3, loop.link.delay);
+    loop.link.loss = between(0, 0.2);
+    loop.link.seed = 5000 + number;
+    loop.chatter = between(0, 1) < 0.5;
+    return loop;
+  }
+
+  void conditions(Controller controller, double damping, double stiffness) {
+    TeleoperationLoop loop;
+    loop.controller = controller;
+    loop.hand.damping = damping;
+    loop.stiffness = stiffness;
+    for (const bool chatter : {false, true}) {
+      loop.chatter = chatter;
+      loop.link = {};
+      add("grid", loop);
+      for (const double delay : {0.0, 0.02, 0.05, 0.1, 0.2}) {
+        loop.link.delay = delay;
+        loop.link.jitter = delay > 0 ? delay / 2 : 2e-3;
+        loop.link.loss = 0.2;
+        add("grid", loop);
+      }
+    }
+  }
+
+  void add(const std::string& block, const TeleoperationLoop& loop) {
+    const Result r = loop.run();
+    summaries_[block + ' ' + name(loop.controller)].add(loop, r);
+    char text[400];
+    std::snprintf(text, sizeof(text),
+                  "%s,%s,%u,%.3g,%.4g,%.4g,%.5g,%.4g,%.4g,%.3g,%d,%.3e,%.1e,%s,%.3e,%.3e,%s,%.2f,%.3f,%.3f,%.3f,%.3f,%."
+                  "0f,%.3f,%.3f\n",
+                  block.c_str(), name(loop.controller).c_str(), loop.link.seed, loop.hand.mass, loop.hand.stiffness,
+                  loop.hand.damping, loop.stiffness, 1e3 * loop.link.delay, 1e3 * loop.link.jitter, loop.link.loss,
+                  loop.chatter ? 1 : 0, r.observed_energy_min, loop.bridge.passivity.reserve,
+                  isPassive(loop, r) ? "yes" : "no", r.true_energy_min, r.margin_min, isLimitCycle(r) ? "yes" : "no",
+                  1e6 * r.late_amplitude, r.late_over_early, r.contact_force, r.needle_force, r.peak_force,
+                  r.peak_force_rate, 1e6 * loop.bridge.motion.position_scale * r.overshoot, 1e6 * r.drift);
+    emit(text);
+  }
+
+  void emit(const std::string& text) {
+    std::cout << text << std::flush;
+    rows_ += text;
+  }
+
+  int draws_;
+  std::string rows_;
+  std::map<std::string, Summary> summaries_;
+};
+
+}  // namespace
+}  // namespace microinjection
+
+int main(int argc, char** argv) {
+  int draws = 150;
+  boost::program_options::options_description more;
+  more.add_options()("draws", boost::program_options::value(&draws)->default_value(draws),
+                     "cases between the grid's, each with a network of its own");
+  return microinjection::benchMain(
+      argc, argv, "passivity: energy and limit cycles of the hand's port, controllers off and on",
+      [&] { return microinjection::Table(draws).make(); }, more);
+}

@@ -1,0 +1,289 @@
+#include "cell/contact/tip_contact.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "cell/mechanics/reference_element.h"
+
+namespace microinjection {
+namespace {
+
+/// Penetration that the next equilibrium may have: times the present one, and of the tip's radius.
+constexpr double kDeeper = 1.5;
+constexpr double kDeepestFirst = 1e-4;
+
+/// Gap over adhesion's range at which a point is free: the traction is then 1e-7 of the largest.
+constexpr double kFree = 20;
+
+/// A section's (r, z) lies at (r, 0, z).
+Eigen::Vector3d inSpace(const Eigen::Vector2d& v) { return {v[0], 0, v[1]}; }
+Eigen::Vector3d inSpace(const Eigen::Vector3d& v) { return v; }
+
+template <int Dim>
+Eigen::Matrix<double, Dim, 1> fromSpace(const Eigen::Vector3d& v) {
+  if constexpr (Dim == 2) {
+    return {v[0], v[2]};
+  } else {
+    return v;
+  }
+}
+
+/// Area of the deformed body's surface that a unit of the reference facet stands for.
+double areaDensity(const Eigen::Matrix<double, 2, 1>& tangent, const Eigen::Vector2d& x) {
+  constexpr double kTurn = 2 * 3.14159265358979323846;
+  return kTurn * x[0] * tangent.norm();
+}
+double areaDensity(const Eigen::Matrix<double, 3, 2>& tangents, const Eigen::Vector3d&) {
+  return tangents.col(0).cross(tangents.col(1)).norm();
+}
+
+}  // namespace
+
+template <int Dim>
+TipContact<Dim>::TipContact(const LayeredBody<Dim>& body, const RoundedTip& tip, const TipContactConfig& config)
+    : tip_(tip), config_(config) {
+  for (const auto& facet : body.mesh().facets) {
+    if (facet.layer == 0) addFacet(body, facet);
+  }
+  reset();
+}
+
+template <int Dim>
+void TipContact<Dim>::addFacet(const LayeredBody<Dim>& body, const typename QuadraticMesh<Dim>::Facet& facet) {
+  const bool quadratic = isQuadratic(body.kind());
+  Facet result;
+  result.nodes = quadratic ? QuadraticMesh<Dim>::kFacetNodes : Dim;
+  for (int a = 0; a < result.nodes; ++a) {
+    for (int k = 0; k < Dim; ++k) result.entries.push_back(Dim * facet.nodes[a] + k);
+  }
+  for (int k = 0; k < Dim; ++k) result.entries.push_back(body.tipEntry() + (Dim == 2 ? 2 * k : k));
+  for (const ReferenceElement::Point& at : referenceFacet<Dim>().points) {
+    Vector x = Vector::Zero();
+    Eigen::Matrix<double, Dim, Dim - 1> tangents = Eigen::Matrix<double, Dim, Dim - 1>::Zero();
+    for (int a = 0; a < QuadraticMesh<Dim>::kFacetNodes; ++a) {
+      x += at.shape[a] * body.mesh().nodes[facet.nodes[a]];
+      tangents += body.mesh().nodes[facet.nodes[a]] * at.gradient.row(a);
+    }
+    if (!quadratic) {  // a straight facet: its displacement is linear, and so is its shape
+      x.setZero();
+      for (int a = 0; a < Dim; ++a) x += at.barycentric[a] * body.mesh().nodes[facet.nodes[a]];
+    }
+    Point point;
+    point.undeformed = x - fromSpace<Dim>(config_.origin);
+    point.weight = at.weight * areaDensity(tangents, x);
+    point.shape = quadratic ? at.shape : at.barycentric;
+    result.points.push_back(point);
+  }
+  facets_.push_back(std::move(result));
+}
+
+template <int Dim>
+double TipContact<Dim>::gap(const Vector& at, Vector& normal, Matrix& curvature) const {
+  const Gap gap = tip_.gap(inSpace(at));
+  normal = fromSpace<Dim>(gap.normal);
+  for (int k = 0; k < Dim; ++k) {
+    for (int l = 0; l < Dim; ++l) curvature(k, l) = gap.curvature(Dim == 2 ? 2 * k : k, Dim == 2 ? 2 * l : l);
+  }
+  return gap.distance;
+}
+
+template <int Dim>
+typename TipContact<Dim>::Vector TipContact<Dim>::relative(const Facet& facet, const Point& point,
+                                                           const Eigen::VectorXd& state) const {
+  Vector at = point.undeformed;
+  for (int a = 0; a < facet.nodes; ++a) {
+    for (int k = 0; k < Dim; ++k) at[k] += point.shape[a] * state[facet.entries[Dim * a + k]];
+  }
+  for (int k = 0; k < Dim; ++k) at[k] -= state[facet.entries[Dim * facet.nodes + k]];
+  return at;
+}
+
+template <int Dim>
+bool TipContact<Dim>::contribution(const Point& point, const Vector& at, Local& local) const {
+  const bool stuck = config_.mode == TipContactConfig::Mode::kSticking && point.memory.touching;
+  const double stiffness = config_.penalty * point.weight;
+  if (stuck) {
+    const Vector stretch = at - point.memory.anchor;
+    local.energy = 0.5 * stiffness * stretch.squaredNorm();
+    local.gradient = stiffness * stretch;
+    local.hessian = stiffness * Matrix::Identity();
+    return true;
+  }
+  const double distance = tip_.distance(inSpace(at));
+  const bool rubbing = config_.friction > 0 && point.memory.touching;
+  const bool held = distance > 0 && point.memory.bonded;
+  if (distance >= 0 && !rubbing && !held) return false;
+  local = Local();
+  if (held) addAdhesion(point, at, local);
+  if (distance < 0) {
+    Vector normal;
+    Matrix curvature;
+    gap(at, normal, curvature);
+    local.energy = 0.5 * stiffness * distance * distance;
+    local.gradient = stiffness * distance * normal;
+    // On the way to equilibrium a point may lie far inside, where the true second derivative is that of a maximum.
+    const double bending = std::max(distance, -kDeeper * deepest_ - kDeepestFirst * tip_.radius());
+    local.hessian = stiffness * (normal * normal.transpose() + bending * curvature);
+  }
+  if (rubbing) addFriction(point, at, local);
+  return true;
+}
+
+/// Elastic up to the bound of Coulomb's law, then of constant force: Huber's function of the slip.
+template <int Dim>
+void TipContact<Dim>::addFriction(const Point& point, const Vector& at, Local& local) const {
+  const Matrix tangential = Matrix::Identity() - point.memory.normal * point.memory.normal.transpose();
+  const Vector slip = tangential * (at - point.memory.anchor);
+  const double stiffness = config_.penalty * point.weight,
+               bound = config_.friction * point.memory.traction * point.weight;
+  const double length = slip.norm();
+  if (stiffness * length <= bound) {
+    local.energy += 0.5 * stiffness * length * length;
+    local.gradient += stiffness * slip;
+    local.hessian += stiffness * tangential;
+    return;
+  }
+  const Vector direction = slip / length;
+  local.energy += bound * length - 0.5 * bound * bound / stiffness;
+  local.gradient += bound * direction;
+  local.hessian += bound / length * (tangential - direction * direction.transpose());
+}
+
+template <int Dim>
+void TipContact<Dim>::addAdhesion(const Point& point, const Vector& at, Local& local) const {
+  Vector normal;
+  Matrix curvature;
+  const double range = config_.adhesion_range, open = gap(at, normal, curvature) / range;
+  const double scale = config_.adhesion * point.weight, fading = std::exp(-open);
+  const double pull = scale / range * open * fading;
+  local.energy += scale * (1 - (1 + open) * fading);
+  local.gradient += pull * normal;
+  local.hessian += scale / (range * range) * (1 - open) * fading * normal * normal.transpose() + pull * curvature;
+}
+
+template <int Dim>
+bool TipContact<Dim>::evaluate(int index, const Eigen::VectorXd& state, Order order, LocalEnergy& result) const {
+  const Facet& facet = facets_[index];
+  const int nodes = facet.nodes, size = Dim * (nodes + 1);
+  result.zero = true;
+  for (const Point& point : facet.points) {
+    Local local;
+    if (!contribution(point, relative(facet, point, state), local)) continue;
+    if (result.zero) {
+      result.zero = false;
+      result.energy = 0;
+      if (order != Order::kEnergy) result.gradient.setZero(size);
+      if (order == Order::kHessian) result.hessian.setZero(size, size);
+    }
+    result.energy += local.energy;
+    if (order == Order::kEnergy) continue;
+    // The relative position moves with the nodes' shape functions, and against the tip.
+    const auto share = [&](int a) { return a < nodes ? point.shape[a] : -1.0; };
+    for (int a = 0; a <= nodes; ++a) {
+      result.gradient.template segment<Dim>(Dim * a) += share(a) * local.gradient;
+      for (int b = 0; order == Order::kHessian && b <= nodes; ++b) {
+        result.hessian.template block<Dim, Dim>(Dim * a, Dim * b) += share(a) * share(b) * local.hessian;
+      }
+    }
+  }
+  return true;
+}
+
+template <int Dim>
+bool TipContact<Dim>::settle(Memory& memory, const Vector& at) const {
+  Vector normal;
+  Matrix curvature;
+  const double distance = gap(at, normal, curvature);
+  const bool touched = memory.touching;
+  if (config_.mode == TipContactConfig::Mode::kSticking) {
+    if (touched && (at - memory.anchor).dot(normal) > 0) {  // the tip would pull
+      memory.touching = false;
+    } else if (!touched && distance < 0) {
+      const double before = tip_.distance(inSpace(memory.last));
+      const double share = before > 0 ? before / (before - distance) : 0;
+      const Vector met = memory.last + share * (at - memory.last);
+      const double off = gap(met, normal, curvature);
+      memory.anchor = met - off * normal;
+      memory.touching = true;
+    }
+    return touched != memory.touching;
+  }
+  if (config_.friction == 0) return false;
+  const double stiffness = config_.penalty, bound = config_.friction * memory.traction;
+  if (touched) {
+    const Vector slip = (at - memory.anchor) - memory.normal * memory.normal.dot(at - memory.anchor);
+    const double excess = stiffness * slip.norm() / bound;
+    memory.anchor = at - (excess > 1 ? Vector(slip / excess) : slip);
+  } else {
+    memory.anchor = at;
+  }
+  memory.touching = distance < 0;
+  memory.traction = stiffness * std::max(0.0, -distance);
+  memory.normal = normal;
+  return touched || memory.touching;
+}
+
+template <int Dim>
+bool TipContact<Dim>::beginStep(double /*duration*/) {
+  for (Facet& facet : facets_) {
+    for (Point& point : facet.points) point.memory = point.accepted;
+  }
+  return false;
+}
+
+template <int Dim>
+bool TipContact<Dim>::settle(const Eigen::VectorXd& state) {
+  bool changed = false;
+  deepest_ = 0;
+  for (Facet& facet : facets_) {
+    for (Point& point : facet.points) {
+      const Vector at = relative(facet, point, state);
+      deepest_ = std::max(deepest_, -tip_.distance(inSpace(at)));
+      changed = settle(point.memory, at) || changed;
+    }
+  }
+  return changed;
+}
+
+template <int Dim>
+void TipContact<Dim>::accept(const Eigen::VectorXd& state) {
+  for (Facet& facet : facets_) {
+    for (Point& point : facet.points) {
+      Memory& memory = point.memory;
+      memory.last = relative(facet, point, state);
+      if (config_.adhesion > 0) {
+        const double distance = tip_.distance(inSpace(memory.last));
+        memory.bonded = memory.touching || distance < 0 || (memory.bonded && distance < kFree * config_.adhesion_range);
+      }
+      point.accepted = memory;
+    }
+  }
+}
+
+template <int Dim>
+void TipContact<Dim>::reset() {
+  deepest_ = 0;
+  for (Facet& facet : facets_) {
+    for (Point& point : facet.points) {
+      point.accepted = Memory();
+      point.accepted.last = point.undeformed;
+      point.memory = point.accepted;
+    }
+  }
+}
+
+template <int Dim>
+int TipContact<Dim>::touchingPoints() const {
+  int count = 0;
+  for (const Facet& facet : facets_) {
+    for (const Point& point : facet.points)
+      count += tip_.distance(inSpace(point.memory.last)) < 0 || point.memory.touching;
+  }
+  return count;
+}
+
+template class TipContact<2>;
+template class TipContact<3>;
+
+}  // namespace microinjection

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "cell/contact/rounded_tip.h"
+#include "cell/mechanics/energy_term.h"
+#include "cell/mechanics/layered_body.h"
+
+namespace microinjection {
+
+struct TipContactConfig {
+  enum class Mode { kSticking, kSliding };
+  Mode mode = Mode::kSticking;
+  double friction = 0;                               ///< Coulomb's coefficient, >= 0, of kSliding
+  double adhesion = 0;                               ///< J/m^2, >= 0, to part what has touched
+  double adhesion_range = 0;                         ///< m, > 0 with adhesion: the gap at which it pulls most
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< m, lowest point of the tip's axis where it touches the cell
+  double penalty = 0;                                ///< Pa/m, traction per penetration, > 0
+};
+
+/// Unilateral contact of a body's outer surface with a rounded tip and its shaft, by penalty at the surface's
+/// quadrature points (Wriggers, "Computational contact mechanics", ch. 6); tractions are per undeformed area.
+///
+/// Sliding: energy penalty/2 gap^2 where the gap is negative. Coulomb's friction has an incremental potential too, with
+/// the normal traction of the step before as its bound. Sticking: a point sticks where it first touched, as long as the
+/// tip does not pull it; within the step of its touch it slides, and is then put back to where its path met the tip.
+///
+/// Adhesion: what has touched before is pulled back over a gap g > 0 by the traction G/d^2 g exp(-g/d) along the tip's
+/// normal, with the energy G = `adhesion` of parting and d = `adhesion_range` (Xu and Needleman, "Numerical simulations
+/// of fast crack growth in brittle solids", 1994, normal part); at most G/(e d). Where points stick, it takes over when
+/// they part. It is forgotten far out, where nothing of it is left.
+template <int Dim>
+class TipContact : public EnergyTerm {
+ public:
+  TipContact(const LayeredBody<Dim>& body, const RoundedTip& tip, const TipContactConfig& config);
+
+  int elementCount() const override { return static_cast<int>(facets_.size()); }
+  const std::vector<int>& entries(int facet) const override { return facets_[facet].entries; }
+  bool evaluate(int facet, const Eigen::VectorXd& state, Order order, LocalEnergy& result) const override;
+  bool beginStep(double duration) override;
+  bool settle(const Eigen::VectorXd& state) override;
+  void accept(const Eigen::VectorXd& state) override;
+  void reset() override;
+
+  int touchingPoints() const;  ///< quadrature points in contact at the last accepted state
+
+  /// m, by how much the tip enters the surface at the last equilibrium: to be small against its radius.
+  double penetration() const { return deepest_; }
+
+ private:
+  using Vector = Eigen::Matrix<double, Dim, 1>;
+  using Matrix = Eigen::Matrix<double, Dim, Dim>;
+  struct Memory {
+    Vector last = Vector::Zero();  ///< m, relative to the tip, at the end of the last step
+    bool touching = false;         ///< then `anchor` holds
+    Vector anchor =
+        Vector::Zero();  ///< m, relative to the tip: where the tangential (sticking: the whole) spring rests
+    Vector normal = Vector::Zero();  ///< out of the tip, where it settled last
+    double traction = 0;             ///< Pa, normal, where it settled last
+    bool bonded = false;             ///< has touched and not gone far: adhesion holds it
+  };
+  struct Point {
+    Vector undeformed = Vector::Zero();  ///< m, relative to the tip's origin
+    double weight = 0;                   ///< m^2
+    Eigen::VectorXd shape;               ///< of the facet's nodes
+    Memory memory, accepted;             ///< in this step, and of the last one that was accepted
+  };
+  struct Facet {
+    std::vector<int> entries;  ///< node by node, then the tip's
+    int nodes;
+    std::vector<Point> points;
+  };
+  struct Local {
+    double energy = 0;
+    Vector gradient = Vector::Zero();
+    Matrix hessian = Matrix::Zero();
+  };
+
+  void addFacet(const LayeredBody<Dim>& body, const typename QuadraticMesh<Dim>::Facet& facet);
+  Vector relative(const Facet& facet, const Point& point, const Eigen::VectorXd& state) const;
+  bool contribution(const Point& point, const Vector& at, Local& local) const;
+  void addFriction(const Point& point, const Vector& at, Local& local) const;
+  void addAdhesion(const Point& point, const Vector& at, Local& local) const;
+  bool settle(Memory& memory, const Vector& at) const;
+  double gap(const Vector& at, Vector& normal, Matrix& curvature) const;
+
+  RoundedTip tip_;
+  TipContactConfig config_;
+  std::vector<Facet> facets_;
+  double deepest_ = 0;  ///< m, penetration at the last equilibrium
+};
+
+}  // namespace microinjection

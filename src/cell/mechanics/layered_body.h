@@ -1,0 +1,125 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <stdexcept>
+#include <type_traits>
+#include <vector>
+
+#include "cell/material/material.h"
+#include "cell/mechanics/energy_term.h"
+#include "cell/mechanics/reference_element.h"
+#include "cell/mesh/quadratic_mesh.h"
+
+namespace microinjection {
+
+template <int Dim, int N>
+class ElementSum;
+
+/// What becomes of a state with inverted elements (det F <= 0 at a quadrature point). Small strain ignores it always,
+/// and materials that resist inversion refuse it always.
+enum class Inversion {
+  kRefused,  ///< such a state is not admissible
+  kAllowed   ///< its energy is what the material says
+};
+
+/// A mesh with an element that is not positively oriented.
+class InvertedElement : public std::invalid_argument {
+ public:
+  using std::invalid_argument::invalid_argument;
+};
+
+/// Strain energy of a body of layers on finite elements: in space (Dim = 3, displacements x, y, z) or, for a body of
+/// revolution deformed without twist, in its section (Dim = 2, displacements r, z; volumes are those of the whole
+/// body).
+///
+/// With a pressure p per element or vertex the dilatational energy kappa/2 g^2 of the material becomes
+/// p g - p^2 / (2 kappa), stationary in p: the same solution, without volumetric locking. The state's layout:
+/// displacement of node n, component k at Dim n + k; then pressures in units of pressureUnit(); then the tip's three.
+/// It remembers nothing (beginStep, accept and reset do nothing): immutable, safe to share between threads and systems.
+template <int Dim>
+class LayeredBody : public EnergyTerm {
+ public:
+  using Materials = std::vector<std::shared_ptr<const Material>>;  ///< of each layer
+
+  /// Throws InvertedElement when an element is not positively oriented, std::invalid_argument when a layer has no
+  /// material.
+  LayeredBody(QuadraticMesh<Dim> mesh, ElementKind kind, Materials materials,
+              Inversion inversion = Inversion::kRefused);
+
+  const QuadraticMesh<Dim>& mesh() const { return mesh_; }
+  const Materials& materials() const { return materials_; }
+  ElementKind kind() const { return kind_; }
+  int nodeCount() const { return node_count_; }  ///< of displacement, bubbles at the end
+  int pressureCount() const { return pressure_count_; }
+  int stateSize() const { return Dim * node_count_ + pressure_count_ + 3; }
+  int tipEntry() const { return stateSize() - 3; }
+  bool isLinear() const;
+  double pressureUnit() const { return pressure_unit_; }  ///< Pa/m
+
+  int elementCount() const override { return static_cast<int>(entries_.size()); }
+  /// Displacements component by component, then pressures.
+  const std::vector<int>& entries(int element) const override { return entries_[element]; }
+  bool evaluate(int element, const Eigen::VectorXd& state, Order order, LocalEnergy& result) const override;
+
+  /// Deformation gradient F at a quadrature point; of a section in the directions (r, theta, z).
+  Eigen::Matrix3d deformationGradient(int element, int point, const Eigen::VectorXd& state) const;
+  int pointCount() const { return point_count_; }  ///< of an element
+
+  /// Smallest det F of all quadrature points.
+  double smallestJacobian(const Eigen::VectorXd& state) const;
+
+  /// Undeformed volume of the body, m^3.
+  double volume() const;
+
+  /// For terms on the same elements: function(N) with the number of an element's nodes as a constant.
+  template <typename Function>
+  auto withNodes(Function&& function) const;
+  template <int N>
+  using Derivatives = Eigen::Map<const Eigen::Matrix<double, N, 3>>;
+  /// Of the shape functions, 1/m: see Strain.
+  template <int N>
+  Derivatives<N> derivatives(int element, int point) const;
+  double weight(int element, int point) const { return weights_[element * point_count_ + point]; }  ///< m^3
+
+ private:
+  void addElement(int index, const std::vector<ReferenceElement::Point>& quadrature);
+  template <int N>
+  Eigen::Matrix<double, N, Dim> displacement(int element, const Eigen::VectorXd& state) const;
+
+  template <int N>
+  bool evaluateNodes(int element, const Eigen::VectorXd& state, Order order, LocalEnergy& result) const;
+  template <int N, int M>
+  void addPressure(int element, const Material::Kinematics* at, const Eigen::VectorXd& state, ElementSum<Dim, N>& sum,
+                   LocalEnergy& result) const;
+
+  QuadraticMesh<Dim> mesh_;
+  ElementKind kind_;
+  Materials materials_;
+  Inversion inversion_;
+  int nodes_of_element_ = 0;
+  int node_count_ = 0;
+  int pressure_count_ = 0;
+  int point_count_ = 0;
+  double pressure_unit_ = 1;
+  std::vector<std::vector<int>> entries_;        ///< of each element
+  std::vector<double> weights_;                  ///< m^3, of each point of each element
+  std::vector<double> derivatives_;              ///< 1/m, (nodes x 3) of each point of each element: see Strain
+  std::vector<Eigen::VectorXd> pressure_shape_;  ///< at the quadrature points
+};
+
+template <int Dim>
+template <typename Function>
+auto LayeredBody<Dim>::withNodes(Function&& function) const {
+  if (isQuadratic(kind_)) return function(std::integral_constant<int, QuadraticMesh<Dim>::kNodes>());
+  if (kind_ == ElementKind::kMini) return function(std::integral_constant<int, Dim + 2>());
+  return function(std::integral_constant<int, Dim + 1>());
+}
+
+template <int Dim>
+template <int N>
+typename LayeredBody<Dim>::template Derivatives<N> LayeredBody<Dim>::derivatives(int element, int point) const {
+  return Derivatives<N>(derivatives_.data() + static_cast<std::size_t>(element * point_count_ + point) * N * 3);
+}
+
+}  // namespace microinjection

@@ -1,0 +1,216 @@
+#include "cell/mechanics/surface_tension.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "cell/mechanics/reference_element.h"
+
+namespace microinjection {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+/// tension times area less pressure times volume, of a unit of the reference facet: a function of the position and the
+/// tangents there, in this order (Dim^2 numbers).
+template <int Dim>
+struct Density {
+  double value = 0;
+  Eigen::Matrix<double, Dim * Dim, 1> gradient = Eigen::Matrix<double, Dim * Dim, 1>::Zero();
+  Eigen::Matrix<double, Dim * Dim, Dim* Dim> hessian = Eigen::Matrix<double, Dim * Dim, Dim * Dim>::Zero();
+};
+
+/// a x b = cross(a) b.
+Eigen::Matrix3d cross(const Eigen::Vector3d& a) {
+  Eigen::Matrix3d matrix;
+  matrix << 0, -a[2], a[1], a[2], 0, -a[0], -a[1], a[0], 0;
+  return matrix;
+}
+
+/// Area |a1 x a2| = sqrt(g) with the metric's determinant g. False when it vanishes.
+bool addArea(const Eigen::Matrix3d& at, double tension, Density<3>& density) {
+  const Eigen::Vector3d a1 = at.col(1), a2 = at.col(2);
+  const double g11 = a1.squaredNorm(), g22 = a2.squaredNorm(), g12 = a1.dot(a2);
+  const double area = a1.cross(a2).norm();
+  if (!(area > 0)) return false;
+  Eigen::Matrix<double, 6, 1> dg;
+  dg << 2 * (g22 * a1 - g12 * a2), 2 * (g11 * a2 - g12 * a1);
+  Eigen::Matrix<double, 6, 6> ddg;
+  const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d mixed = 4 * a1 * a2.transpose() - 2 * a2 * a1.transpose() - 2 * g12 * one;
+  ddg << 2 * (g22 * one - a2 * a2.transpose()), mixed, mixed.transpose(), 2 * (g11 * one - a1 * a1.transpose());
+  density.value += tension * area;
+  density.gradient.tail<6>() += tension / (2 * area) * dg;
+  density.hessian.bottomRightCorner<6, 6>() +=
+      tension / (2 * area) * (ddg - 1 / (2 * area * area) * dg * dg.transpose());
+  return true;
+}
+
+/// Volume 1/3 x . (a1 x a2), of the cone from the origin.
+void addVolume(const Eigen::Matrix3d& at, double pressure, Density<3>& density) {
+  const Eigen::Vector3d x = at.col(0), a1 = at.col(1), a2 = at.col(2);
+  const double factor = -pressure / 3;
+  density.value += factor * x.dot(a1.cross(a2));
+  Eigen::Matrix<double, 9, 1> gradient;
+  gradient << a1.cross(a2), a2.cross(x), x.cross(a1);
+  density.gradient += factor * gradient;
+  const Eigen::Matrix3d none = Eigen::Matrix3d::Zero(), xx = cross(x), aa1 = cross(a1), aa2 = cross(a2);
+  Eigen::Matrix<double, 9, 9> hessian;
+  hessian << none, -aa2, aa1, aa2, none, -xx, -aa1, xx, none;
+  density.hessian += factor * hessian;
+}
+
+/// Area 2 pi r |t|, t the tangent. False when it vanishes or the axis is crossed.
+bool addArea(const Eigen::Matrix2d& at, double tension, Density<2>& density) {
+  const double r = at(0, 0), length = at.col(1).norm(), factor = 2 * kPi * tension;
+  if (!(r > 0) || !(length > 0)) return false;
+  const Eigen::Vector2d direction = at.col(1) / length;
+  density.value += factor * r * length;
+  density.gradient[0] += factor * length;
+  density.gradient.tail<2>() += factor * r * direction;
+  density.hessian.block<2, 1>(2, 0) += factor * direction;
+  density.hessian.block<1, 2>(0, 2) += factor * direction.transpose();
+  density.hessian.bottomRightCorner<2, 2>() +=
+      factor * r / length * (Eigen::Matrix2d::Identity() - direction * direction.transpose());
+  return true;
+}
+
+/// Volume pi r^2 dz, of the slice.
+void addVolume(const Eigen::Matrix2d& at, double pressure, Density<2>& density) {
+  const double r = at(0, 0), dz = at(1, 1), factor = -pressure * kPi;
+  density.value += factor * r * r * dz;
+  density.gradient[0] += factor * 2 * r * dz;
+  density.gradient[3] += factor * r * r;
+  density.hessian(0, 0) += factor * 2 * dz;
+  density.hessian(0, 3) += factor * 2 * r;
+  density.hessian(3, 0) += factor * 2 * r;
+}
+
+}  // namespace
+
+template <int Dim>
+SurfaceTension<Dim>::SurfaceTension(const LayeredBody<Dim>& body, int layer, double radius, double tension)
+    : tension_(tension), pressure_(2 * tension / radius) {
+  if (!(radius > 0)) throw std::invalid_argument("radius " + std::to_string(radius) + " must be positive");
+  if (!(tension >= 0)) throw std::invalid_argument("tension " + std::to_string(tension) + " must not be negative");
+  const bool quadratic = isQuadratic(body.kind());
+  for (const ReferenceElement::Point& at : referenceFacet<Dim>().points) {
+    Point point;
+    point.weight = at.weight;
+    point.shape.resize(quadratic ? kMostNodes : Dim, Dim);
+    if (quadratic) {
+      point.shape << at.shape, at.gradient;
+    } else {
+      point.shape << at.barycentric, Eigen::Matrix<double, Dim, Dim - 1>::Zero();
+      point.shape.template block<1, Dim - 1>(0, 1).setConstant(-1);
+      point.shape.template bottomRightCorner<Dim - 1, Dim - 1>().setIdentity();
+    }
+    points_.push_back(point);
+  }
+  for (const auto& facet : body.mesh().facets) {
+    if (facet.layer == layer) addFacet(body, facet);
+  }
+  if (facets_.empty()) throw std::invalid_argument("the body has no surface of layer " + std::to_string(layer));
+}
+
+template <int Dim>
+void SurfaceTension<Dim>::addFacet(const LayeredBody<Dim>& body, const typename QuadraticMesh<Dim>::Facet& facet) {
+  const int nodes = static_cast<int>(points_[0].shape.rows());
+  Facet result;
+  result.undeformed.resize(Dim, nodes);
+  for (int a = 0; a < nodes; ++a) {
+    result.undeformed.col(a) = body.mesh().nodes[facet.nodes[a]];
+    for (int k = 0; k < Dim; ++k) result.entries.push_back(Dim * facet.nodes[a] + k);
+  }
+  LocalEnergy undeformed;
+  if (!integrate(result.undeformed, tension_, pressure_, Order::kGradient, undeformed)) {
+    throw std::invalid_argument("facet " + std::to_string(facets_.size()) + " of layer " + std::to_string(facet.layer) +
+                                " has no area");
+  }
+  result.energy = undeformed.energy;
+  result.dead_load = undeformed.gradient;
+  facets_.push_back(std::move(result));
+}
+
+template <int Dim>
+typename SurfaceTension<Dim>::Positions SurfaceTension<Dim>::positions(const Facet& facet,
+                                                                       const Eigen::VectorXd& state) const {
+  Positions x = facet.undeformed;
+  for (int i = 0; i < x.size(); ++i) x.data()[i] += state[facet.entries[i]];
+  return x;
+}
+
+/// Sums over one facet's quadrature points.
+template <int Dim>
+bool SurfaceTension<Dim>::integrate(const Positions& x, double tension, double pressure, Order order,
+                                    LocalEnergy& result) const {
+  const int nodes = static_cast<int>(x.cols()), size = Dim * nodes;
+  result.zero = false;
+  result.energy = 0;
+  if (order != Order::kEnergy) result.gradient.setZero(size);
+  if (order == Order::kHessian) result.hessian.setZero(size, size);
+  for (const Point& point : points_) {
+    const Eigen::Matrix<double, Dim, Dim> at = x * point.shape;
+    Density<Dim> density;
+    if (!addArea(at, tension, density)) return false;
+    addVolume(at, pressure, density);
+    result.energy += point.weight * density.value;
+    for (int a = 0; order != Order::kEnergy && a < nodes; ++a) {
+      for (int i = 0; i < Dim; ++i) {
+        const double share = point.weight * point.shape(a, i);
+        result.gradient.template segment<Dim>(Dim * a) += share * density.gradient.template segment<Dim>(Dim * i);
+      }
+      if (order != Order::kHessian) continue;
+      Eigen::Matrix<double, Dim, Dim* Dim> row = Eigen::Matrix<double, Dim, Dim * Dim>::Zero();
+      for (int i = 0; i < Dim; ++i) {
+        row += point.weight * point.shape(a, i) * density.hessian.template middleRows<Dim>(Dim * i);
+      }
+      for (int b = 0; b < nodes; ++b) {
+        for (int j = 0; j < Dim; ++j) {
+          result.hessian.template block<Dim, Dim>(Dim * a, Dim * b) +=
+              point.shape(b, j) * row.template middleCols<Dim>(Dim * j);
+        }
+      }
+    }
+  }
+  return std::isfinite(result.energy);
+}
+
+template <int Dim>
+bool SurfaceTension<Dim>::evaluate(int index, const Eigen::VectorXd& state, Order order, LocalEnergy& result) const {
+  const Facet& facet = facets_[index];
+  const Positions x = positions(facet, state);
+  if (!integrate(x, tension_, pressure_, order, result)) return false;
+  const Positions u = x - facet.undeformed;
+  result.energy -= facet.energy + facet.dead_load.dot(Eigen::Map<const Eigen::VectorXd>(u.data(), u.size()));
+  if (order != Order::kEnergy) result.gradient -= facet.dead_load;
+  return true;
+}
+
+template <int Dim>
+double SurfaceTension<Dim>::total(const Eigen::VectorXd& state, double tension, double pressure) const {
+  double sum = 0;
+  LocalEnergy local;
+  for (const Facet& facet : facets_) {
+    const bool defined = integrate(positions(facet, state), tension, pressure, Order::kEnergy, local);
+    sum += defined ? local.energy : std::numeric_limits<double>::quiet_NaN();
+  }
+  return sum;
+}
+
+template <int Dim>
+double SurfaceTension<Dim>::area(const Eigen::VectorXd& state) const {
+  return total(state, 1, 0);
+}
+
+template <int Dim>
+double SurfaceTension<Dim>::enclosedVolume(const Eigen::VectorXd& state) const {
+  return total(state, 0, -1);
+}
+
+template class SurfaceTension<2>;
+template class SurfaceTension<3>;
+
+}  // namespace microinjection

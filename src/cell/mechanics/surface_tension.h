@@ -1,0 +1,67 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "cell/mechanics/energy_term.h"
+#include "cell/mechanics/layered_body.h"
+
+namespace microinjection {
+
+/// Membrane tension of one layer's outer surface, a sphere of radius R in the reference configuration, which is the one
+/// under tension and at rest: Laplace's pressure p0 = 2 gamma / R inside balances the tension gamma. Energy, J,
+///
+///     gamma A(x) - p0 V(x) - G0 . u,  less its undeformed value,
+///
+/// with A the deformed area of the surface and V the volume that it encloses. Gamma and p0 stay what they are, whatever
+/// the deformation. The tension resists every change of shape, but alone not of size: a homogeneous ball needs a bulk
+/// modulus above 2 gamma / (3 R). The mesh's surface is not exactly a sphere, so its undeformed forces
+/// G0 = gamma dA/dx - p0 dV/dx do not quite vanish; they are taken off as a dead load, so that the undeformed state is
+/// at equilibrium exactly. They vanish with the size of the facets.
+///
+/// In a section (Dim = 2) area and volume are those of the whole surface of revolution. The surface is as the body's
+/// displacement: quadratic (curved facets) or linear (flat ones between vertices).
+template <int Dim>
+class SurfaceTension : public EnergyTerm {
+ public:
+  /// @param radius of the layer's outer surface, m, > 0 @param tension gamma, N/m, >= 0.
+  /// Throws std::invalid_argument when they are not, or when the body has no surface of this layer.
+  SurfaceTension(const LayeredBody<Dim>& body, int layer, double radius, double tension);
+
+  double pressure() const { return pressure_; }               ///< p0, Pa
+  double area(const Eigen::VectorXd& state) const;            ///< A, m^2
+  double enclosedVolume(const Eigen::VectorXd& state) const;  ///< V, m^3
+
+  int elementCount() const override { return static_cast<int>(facets_.size()); }
+  const std::vector<int>& entries(int facet) const override { return facets_[facet].entries; }
+
+  /// False where a facet has no area, or has crossed the axis (section).
+  bool evaluate(int facet, const Eigen::VectorXd& state, Order order, LocalEnergy& result) const override;
+
+ private:
+  static constexpr int kMostNodes = QuadraticMesh<Dim>::kFacetNodes;
+  using Positions = Eigen::Matrix<double, Dim, Eigen::Dynamic, Eigen::ColMajor, Dim, kMostNodes>;  ///< m, node by node
+  struct Point {
+    double weight;
+    /// Row of a node: its shape function and that one's derivatives by the reference coordinates.
+    Eigen::Matrix<double, Eigen::Dynamic, Dim> shape;
+  };
+  struct Facet {
+    std::vector<int> entries;  ///< node by node
+    Positions undeformed;
+    double energy;              ///< J, undeformed
+    Eigen::VectorXd dead_load;  ///< N, this facet's part of G0
+  };
+
+  void addFacet(const LayeredBody<Dim>& body, const typename QuadraticMesh<Dim>::Facet& facet);
+  Positions positions(const Facet& facet, const Eigen::VectorXd& state) const;
+  bool integrate(const Positions& x, double tension, double pressure, Order order, LocalEnergy& result) const;
+  double total(const Eigen::VectorXd& state, double tension, double pressure) const;
+
+  double tension_;
+  double pressure_;
+  std::vector<Point> points_;  ///< of every facet
+  std::vector<Facet> facets_;
+};
+
+}  // namespace microinjection

@@ -1,0 +1,174 @@
+#include "cell/mesh/cell_mesher.h"
+
+#include <gmsh.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cell/mesh/cell_geometry.h"
+#include "cell/mesh/circle_on_sphere.h"
+#include "cell/mesh/gmsh_session.h"
+#include "cell/mesh/size_field.h"
+#include "cell/mesh/tet_improvement.h"
+
+namespace microinjection {
+namespace {
+
+/// Raise it when the same configuration gives another mesh than before.
+constexpr int kMesherVersion = 3;
+
+/// radiusRatio of a tetrahedron that is worth moving vertices for, and of one that is worth another attempt.
+constexpr double kPoor = 0.25, kBad = 0.15;
+
+/// Of the wanted sizes, one attempt after the other: a few meshes in a hundred have a sliver between two triangles of
+/// an interface, or gmsh finds no mesh at all; a slightly finer one then has other triangles.
+constexpr double kScales[] = {1, 0.98, 0.96, 0.94, 0.92};
+
+// Within gmsh, lengths are in units of the cell's radius, and heights are divided by the elements' stretch: there the
+// elements are as high as wide.
+
+struct Vertex {
+  Eigen::Vector3d point;
+  Mobility mobility;
+};
+using Vertices = std::map<std::size_t, Vertex>;  // by gmsh's tag
+
+/// Adds the vertices of the closed entities of a dimension, stretched; entity -1: of all of them.
+void addVertices(int dimension, int entity, double stretch, Vertices& vertices) {
+  std::vector<std::size_t> tags;
+  std::vector<double> coordinates, parameters;
+  gmsh::model::mesh::getNodes(tags, coordinates, parameters, dimension, entity, true, false);
+  for (std::size_t i = 0; i < tags.size(); ++i) {
+    const double* at = &coordinates[3 * i];
+    vertices[tags[i]] = {Eigen::Vector3d(at[0], at[1], stretch * at[2]), {Mobility::Kind::kFree, 0}};
+  }
+}
+
+/// All vertices; those of spheres and circles moved the last bit onto them.
+Vertices exactVertices(const std::vector<double>& radii, const std::vector<CircleOnSphere>& circles, double stretch) {
+  Vertices vertices, on_sphere;
+  addVertices(3, -1, stretch, vertices);
+  addVertices(2, -1, stretch, on_sphere);
+  for (const auto& [tag, vertex] : on_sphere) {
+    const double from_centre = vertex.point.norm();
+    const double radius = *std::min_element(radii.begin(), radii.end(), [&](double a, double b) {
+      return std::abs(a - from_centre) < std::abs(b - from_centre);
+    });
+    vertices[tag] = {radius / from_centre * vertex.point, {Mobility::Kind::kOnSphere, radius}};
+  }
+  gmsh::vectorpair curves;
+  gmsh::model::getEntities(curves, 1);
+  for (const auto& curve : curves) {
+    const CircleOnSphere* circle = imprintedCircle(curve.second, circles, stretch);
+    if (circle == nullptr) continue;
+    Vertices on_circle;
+    addVertices(1, curve.second, stretch, on_circle);
+    for (const auto& [tag, vertex] : on_circle) vertices[tag] = {circle->project(vertex.point), {}};
+  }
+  return vertices;
+}
+
+/// Adds the tetrahedra of a volume, corners by gmsh's tags.
+void addTetrahedra(int volume, std::vector<std::array<std::size_t, 4>>& tetrahedra) {
+  constexpr int kTetrahedron = 4;  // gmsh's element type
+  std::vector<std::size_t> elements, corners;
+  gmsh::model::mesh::getElementsByType(kTetrahedron, elements, corners, volume);
+  for (std::size_t t = 0; t < elements.size(); ++t) {
+    tetrahedra.push_back({corners[4 * t], corners[4 * t + 1], corners[4 * t + 2], corners[4 * t + 3]});
+  }
+}
+
+/// `volumes`: outermost first.
+TetMesh collectMesh(const std::vector<int>& volumes, const Vertices& vertices) {
+  std::vector<std::array<std::size_t, 4>> tetrahedra;
+  TetMesh mesh;
+  for (std::size_t layer = 0; layer < volumes.size(); ++layer) {
+    addTetrahedra(volumes[layer], tetrahedra);
+    mesh.layers.resize(tetrahedra.size(), static_cast<int>(layer));
+  }
+  std::map<std::size_t, int> index;  // of the vertices in use, in the order of their tags
+  for (const auto& tetrahedron : tetrahedra) {
+    for (std::size_t tag : tetrahedron) index[tag] = 0;
+  }
+  std::vector<Mobility> mobility;
+  for (auto& [tag, number] : index) {
+    number = static_cast<int>(mesh.vertices.size());
+    mesh.vertices.push_back(vertices.at(tag).point);
+    mobility.push_back(vertices.at(tag).mobility);
+  }
+  for (const auto& tags : tetrahedra) {
+    const int t = static_cast<int>(mesh.tetrahedra.size());
+    mesh.tetrahedra.push_back({index.at(tags[0]), index.at(tags[1]), index.at(tags[2]), index.at(tags[3])});
+    if (tetrahedronVolume(mesh, t) < 0) std::swap(mesh.tetrahedra[t][0], mesh.tetrahedra[t][1]);
+  }
+  improveWorstTetrahedra(mesh, mobility, kPoor);
+  return mesh;
+}
+
+/// The cell in units of its radius.
+struct UnitCell {
+  std::vector<double> radii;
+  std::vector<CircleOnSphere> circles;
+  double stretch;
+
+  explicit UnitCell(const CellMeshConfig& config) : stretch(config.stretch) {
+    const double unit = config.radii.front();
+    for (double radius : config.radii) radii.push_back(radius / unit);
+    for (const auto& [centre, radius, side] : config.imprints) {
+      circles.emplace_back(centre / unit, radius / unit, side, 1);
+    }
+  }
+};
+
+/// `size`: wanted at a point of the cell, of an element as high as wide; one that is stretched has the same volume.
+template <typename Size>
+TetMesh makeUnitMesh(const UnitCell& cell, const Size& size) {
+  TetMesh mesh;
+  const double width = 1 / std::cbrt(cell.stretch);
+  inGmshSession("cell", [&] {
+    const std::vector<int> volumes = buildCellGeometry(cell.radii, cell.circles, cell.stretch);
+    gmsh::model::mesh::setSizeCallback(
+        [&](int, int, double x, double y, double z) { return width * size(Eigen::Vector3d(x, y, cell.stretch * z)); });
+    gmsh::model::mesh::generate(3);
+    mesh = collectMesh(volumes, exactVertices(cell.radii, cell.circles, cell.stretch));
+  });
+  return mesh;
+}
+
+}  // namespace
+
+TetMesh makeCellMesh(const CellMeshConfig& config) {
+  config.validate();
+  const double unit = config.radii.front();
+  const UnitCell cell(config);
+  const SizeField size(config);
+  TetMesh best;
+  std::string failure = "gmsh meshed the cell with flat tetrahedra";
+  double quality = 0;
+  for (double scale : kScales) {
+    try {
+      TetMesh mesh =
+          makeUnitMesh(cell, [&](const Eigen::Vector3d& point) { return scale * size(unit * point) / unit; });
+      const double worst = worstRadiusRatio(mesh);
+      if (worst > quality) {
+        quality = worst;
+        best = std::move(mesh);
+      }
+    } catch (const std::runtime_error& error) {
+      failure = error.what();
+    }
+    if (quality >= kBad) break;
+  }
+  if (best.tetrahedra.empty()) throw std::runtime_error(failure);
+  for (Eigen::Vector3d& vertex : best.vertices) vertex *= unit;
+  return best;
+}
+
+std::string mesherVersion() { return "gmsh " + gmshVersion() + " mesher " + std::to_string(kMesherVersion); }
+
+}  // namespace microinjection

@@ -1,0 +1,213 @@
+#include "cell/model/cell_problem.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "base/cpu_time.h"
+#include "cell/contact/tip_contact.h"
+#include "cell/mechanics/surface_tension.h"
+#include "cell/mechanics/viscous_stress.h"
+
+namespace microinjection {
+namespace {
+
+/// Contact's stiffness, times the stiffest layer's modulus over the tip's radius. The tip then enters the surface by a
+/// thousandth of its radius where the pressure is that modulus.
+constexpr double kPenalty = 1000;
+constexpr double kDeepest = 0.03;  ///< of the tip's radius, that it may enter the surface
+
+/// Pa, of the layer that resists most, before anything relaxes.
+double largestModulus(const Scene& scene) {
+  double result = 0;
+  for (const Scene::Layer& layer : scene.cell.layers) {
+    double ratio = 1;
+    for (const PronyTerm& term : layer.material.viscoelasticity.prony) ratio += term.modulus_ratio;
+    result = std::max(result, ratio * layer.material.young_modulus);
+  }
+  return result;
+}
+constexpr double kOnCircle = 1 + 1e-9;
+
+template <int Dim>
+typename LayeredBody<Dim>::Materials materials(const Scene& scene) {
+  typename LayeredBody<Dim>::Materials result;
+  for (const Scene::Layer& layer : scene.cell.layers) result.push_back(makeMaterial(layer.material));
+  return result;
+}
+
+SymmetricSolver::Method method(ElementKind element, int dimension) {
+  if (hasContinuousPressure(element)) return SymmetricSolver::Method::kIndefinite;
+  return dimension == 3 ? SymmetricSolver::Method::kSupernodal : SymmetricSolver::Method::kSimplicial;
+}
+
+double distanceFromLine(const Eigen::Vector2d& rz, const Eigen::Vector2d& /*on the axis*/) { return rz[0]; }
+double distanceFromLine(const Eigen::Vector3d& x, const Eigen::Vector2d& line) { return (x.head<2>() - line).norm(); }
+
+/// Nodes of the mesh that the body's elements displace: all, or the vertices.
+template <int Dim>
+int displacedNodes(const LayeredBody<Dim>& body) {
+  return isQuadratic(body.kind()) ? static_cast<int>(body.mesh().nodes.size()) : body.mesh().vertex_count;
+}
+
+/// Nodes of the outer surface's facets that lie within `radius` of a vertical line on one side.
+template <int Dim>
+std::vector<int> nodesWithin(const LayeredBody<Dim>& body, const Eigen::Vector2d& line, double radius, double side) {
+  const QuadraticMesh<Dim>& mesh = body.mesh();
+  std::vector<char> inside(mesh.nodes.size(), 0);
+  for (const auto& facet : mesh.facets) {
+    bool all = facet.layer == 0;
+    for (int corner = 0; corner < Dim; ++corner) {
+      const auto& x = mesh.nodes[facet.nodes[corner]];
+      all = all && side * x[Dim - 1] > 0 && distanceFromLine(x, line) <= kOnCircle * radius;
+    }
+    for (int node : facet.nodes) inside[node] |= all;
+  }
+  std::vector<int> nodes;
+  for (int node = 0; node < displacedNodes(body); ++node) {
+    if (inside[node]) nodes.push_back(node);
+  }
+  return nodes;
+}
+
+/// Throws std::invalid_argument when the mesh is not the half that is mirrored: its forces are doubled.
+template <int Dim>
+void checkMirror(const Scene& scene, const QuadraticMesh<Dim>& mesh) {
+  const auto beyond = [](const auto& x) { return x[1] < 0; };
+  if (Dim != 3 || scene.needle.offset.y() != 0 || std::any_of(mesh.nodes.begin(), mesh.nodes.end(), beyond)) {
+    throw std::invalid_argument("mirror symmetry needs the half y >= 0 of a mesh in space and the needle in y = 0");
+  }
+}
+
+}  // namespace
+
+template <int Dim>
+CellProblem<Dim>::CellProblem(const Scene& scene, QuadraticMesh<Dim> mesh, ElementKind element, Symmetry symmetry)
+    : symmetry_(symmetry), body_(std::make_shared<LayeredBody<Dim>>(std::move(mesh), element, materials<Dim>(scene))) {
+  if (symmetry == Symmetry::kMirror) checkMirror(scene, body_->mesh());
+  EquilibriumSystem::Terms terms = {body_};
+  bool linear = body_->isLinear() && !scene.needle.tip.rounded();
+  for (std::size_t i = 0; i < scene.cell.layers.size(); ++i) {
+    const Scene::Layer& layer = scene.cell.layers[i];
+    if (layer.surface_tension == 0) continue;
+    linear = false;
+    terms.push_back(
+        std::make_shared<SurfaceTension<Dim>>(*body_, static_cast<int>(i), layer.outer_radius, layer.surface_tension));
+  }
+  std::vector<ViscoelasticityConfig> viscoelasticity;
+  for (const Scene::Layer& layer : scene.cell.layers) viscoelasticity.push_back(layer.material.viscoelasticity);
+  if (!std::all_of(viscoelasticity.begin(), viscoelasticity.end(), [](const auto& layer) { return layer.empty(); })) {
+    linear = false;
+    terms.push_back(std::make_shared<ViscousStress<Dim>>(body_, viscoelasticity));
+  }
+  if (scene.needle.tip.rounded()) addContact(scene, terms);
+  system_ = std::make_unique<EquilibriumSystem>(terms, constraints(scene), method(element, Dim));
+  path_ = std::make_unique<LoadPath>(*system_, pathConfig(scene, linear));
+}
+
+template <int Dim>
+Constraints CellProblem<Dim>::constraints(const Scene& scene) const {
+  Constraints result;
+  result.entries.assign(body_->stateSize(), Constraints::kFree);
+  if (hasContinuousPressure(body_->kind())) {
+    result.pressures = body_->pressureCount();
+  } else {
+    std::fill_n(result.entries.end() - 3 - body_->pressureCount(), body_->pressureCount(), Constraints::kInternal);
+  }
+  for (int k = 0; k < 3; ++k) {  // a section's needle moves along the axis only
+    result.entries[body_->tipEntry() + k] = Dim == 2 && k != 2 ? Constraints::kFixed : Constraints::tip(k);
+  }
+  const bool mirror = symmetry_ == Symmetry::kMirror;
+  if (mirror) result.entries[body_->tipEntry() + 1] = Constraints::kFixed;
+  for (int node = 0; mirror && node < displacedNodes(*body_); ++node) {
+    if (body_->mesh().nodes[node][1] == 0) result.entries[Dim * node + 1] = Constraints::kFixed;
+  }
+  for (int node = 0; Dim == 2 && node < displacedNodes(*body_); ++node) {
+    if (body_->mesh().nodes[node][0] == 0) result.entries[Dim * node] = Constraints::kFixed;
+  }
+  std::vector<char> held(body_->nodeCount(), 0);
+  for (int node : nodesWithin(*body_, Eigen::Vector2d::Zero(), scene.holding_pipette.contact_radius, -1)) {
+    held[node] = 1;
+    for (int k = 0; k < Dim; ++k) result.entries[Dim * node + k] = Constraints::kFixed;
+  }
+  if (scene.needle.tip.rounded()) return result;
+  for (int node : nodesWithin(*body_, scene.needle.offset, scene.needle.tip.radius, +1)) {
+    if (held[node]) throw std::invalid_argument("the tip's patch and the held vertices overlap");
+    for (int k = 0; k < Dim; ++k) result.entries[Dim * node + k] = Constraints::tip(k);
+    if (mirror) result.entries[Dim * node + 1] = Constraints::kFixed;
+    if (Dim == 2) {  // along the axis only
+      result.entries[Dim * node] = Constraints::kFixed;
+      result.entries[Dim * node + 1] = Constraints::tip(2);
+    }
+  }
+  return result;
+}
+
+template <int Dim>
+void CellProblem<Dim>::addContact(const Scene& scene, EquilibriumSystem::Terms& terms) {
+  const Scene::Needle& needle = scene.needle;
+  const RoundedTip tip = RoundedTip::make(needle.tip.shape, needle.tip.radius, needle.tip.edge_radius);
+  TipContactConfig config;
+  config.mode = needle.contact.mode == "sliding" ? TipContactConfig::Mode::kSliding : TipContactConfig::Mode::kSticking;
+  config.friction = needle.contact.friction;
+  config.adhesion = needle.contact.adhesion_energy;
+  config.adhesion_range = needle.contact.adhesion_range;
+  config.origin << needle.offset, tip.touchHeight(scene.radius(), needle.offset);
+  config.penalty = kPenalty * largestModulus(scene) / needle.tip.radius;
+  contact_ = std::make_shared<TipContact<Dim>>(*body_, tip, config);
+  deepest_ = kDeepest * needle.tip.radius;
+  terms.push_back(contact_);
+}
+
+template <int Dim>
+LoadPathConfig CellProblem<Dim>::pathConfig(const Scene& scene, bool linear) {
+  const double diameter = scene.cell.diameter(), tip = scene.needle.tip.radius;
+  LoadPathConfig config;
+  config.length = diameter;
+  config.first_step = config.largest_step = diameter / 16;
+  config.smallest_step = 1e-3 * tip;
+  config.linear = linear;
+  if (scene.needle.tip.rounded()) {  // points stick where they first touch: the path must be followed closely
+    config.smooth = false;
+    config.first_step = tip / (Dim == 2 ? 40 : 20);  // steps in space cost seconds
+    config.largest_step = tip / (Dim == 2 ? 8 : 4);
+    config.smallest_step = 1e-5 * tip;
+    if (Dim == 3) config.easy = 10;  // points that come into contact take iterations at any length
+  }
+  return config;
+}
+
+template <int Dim>
+IndentationSolution CellProblem<Dim>::solve(const Eigen::Vector3d& tip_displacement, double duration) {
+  if (symmetry_ == Symmetry::kMirror && tip_displacement.y() != 0) {
+    throw std::invalid_argument("half a cell's tip must stay in the plane of symmetry, y = 0");
+  }
+  const double start = threadCpuTime();
+  const LoadPath::Result result = path_->advance(tip_displacement, duration);
+  IndentationSolution solution;
+  solution.converged = result.converged;
+  solution.reason = result.reason;
+  if (solution.converged && contact_ && contact_->penetration() > deepest_) {
+    solution.converged = false;
+    solution.reason =
+        "the tip enters the surface by more than 3 % of its radius: the contact is too soft for this cell";
+  }
+  solution.tip_displacement = path_->translation();
+  solution.force = -path_->reaction();
+  solution.stiffness = path_->stiffness();
+  if (symmetry_ == Symmetry::kMirror) {  // the other half
+    solution.force *= 2;
+    solution.stiffness *= 2;
+  }
+  solution.smallest_jacobian = body_->smallestJacobian(path_->state());
+  solution.newton_iterations = result.newton_iterations;
+  solution.cpu_time = threadCpuTime() - start;
+  return solution;
+}
+
+template class CellProblem<2>;
+template class CellProblem<3>;
+
+}  // namespace microinjection

@@ -1,0 +1,51 @@
+#include "cell/model/disc_cell.h"
+
+#include <algorithm>
+
+namespace microinjection {
+
+std::optional<SurfaceHit> DiscCell::hit(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                                        int start) const {
+  return castRayFrom(surface_, start, origin, direction);
+}
+
+TipPatch DiscCell::patchAt(const Eigen::Vector3d& point, const Eigen::Vector3d& axis) const {
+  return findTipPatch(surface_, point, axis, scene_.needle.tip.radius);
+}
+
+std::optional<Eigen::Vector3d> DiscCell::touch(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis,
+                                               int& hint) const {
+  const double outside = 2 * scene_.cell.diameter();
+  const Eigen::Vector3d origin = tip + (outside + tip.norm()) * axis;  // from outside, wherever the tip is
+  const auto found = hit(origin, -axis, hint);
+  if (!found) return std::nullopt;
+  hint = found->triangle;
+  return found->point;
+}
+
+bool DiscCell::isOff(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, const Eigen::Vector3d& touched_at) const {
+  if ((tip - touched_at).dot(axis) > 0) return true;
+  int hint = 0;
+  const auto now = touch(tip, axis, hint);  // where its line is now: it may have gone sideways
+  return !now || (tip - *now).dot(axis) > 0;
+}
+
+TipPlace DiscCell::placeAt(const Eigen::Vector3d& touched_at, const Eigen::Vector3d& axis) const {
+  return {touched_at, patchAt(touched_at, axis)};
+}
+
+LiveCell::Surface DiscCell::surfaceAtRest() const {
+  return {surface_.vertices, surface_.triangles, onSurface({held_vertices_})};
+}
+
+std::vector<std::uint32_t> DiscCell::onSurface(const TipPatch& patch) const {
+  std::vector<std::uint32_t> result;
+  for (const int vertex : patch.vertices) {
+    const auto found = std::lower_bound(surface_.mesh_vertices.begin(), surface_.mesh_vertices.end(), vertex);
+    if (found != surface_.mesh_vertices.end() && *found == vertex)
+      result.push_back(static_cast<std::uint32_t>(found - surface_.mesh_vertices.begin()));
+  }
+  return result;
+}
+
+}  // namespace microinjection

@@ -1,0 +1,71 @@
+#include "cell/model/indentation.h"
+
+#include <stdexcept>
+#include <utility>
+
+#include "base/cpu_time.h"
+
+namespace microinjection {
+namespace {
+
+Constraints makeConstraints(const CellModel& cell, const TipPatch& patch) {
+  const LayeredBody<3>& body = *cell.body();
+  Constraints constraints;
+  constraints.entries.assign(body.stateSize(), Constraints::kFree);
+  for (int k = 0; k < 3; ++k) {
+    for (int v : cell.heldVertices()) constraints.entries[3 * v + k] = Constraints::kFixed;
+    for (int v : patch.vertices) {
+      int& entry = constraints.entries[3 * v + k];
+      if (entry == Constraints::kFixed) {
+        throw std::invalid_argument("the tip's patch and the held vertices overlap");
+      }
+      entry = Constraints::tip(k);
+    }
+    constraints.entries[body.tipEntry() + k] = Constraints::tip(k);
+  }
+  return constraints;
+}
+
+LoadPathConfig pathConfig(const CellModel& cell) {
+  LoadPathConfig config;
+  config.length = cell.scene().cell.diameter();
+  config.first_step = config.largest_step = config.length / 16;
+  config.smallest_step = config.length * 1e-5;
+  config.linear = cell.body()->isLinear();
+  return config;
+}
+
+}  // namespace
+
+Indentation::Indentation(std::shared_ptr<const CellModel> cell, const TipPatch& patch)
+    : cell_(std::move(cell)),
+      system_({cell_->body()}, makeConstraints(*cell_, patch), SymmetricSolver::Method::kSimplicial),
+      path_(system_, pathConfig(*cell_)) {}
+
+IndentationSolution Indentation::solve(const Eigen::Vector3d& tip_displacement) {
+  const double start = threadCpuTime();
+  const LoadPath::Result result = path_.advance(tip_displacement);
+  IndentationSolution solution;
+  solution.converged = result.converged;
+  solution.reason = result.reason;
+  solution.tip_displacement = path_.translation();
+  solution.force = -path_.reaction();
+  solution.stiffness = path_.stiffness();
+  solution.smallest_jacobian = cell_->body()->smallestJacobian(path_.state());
+  solution.newton_iterations = result.newton_iterations;
+  solution.cpu_time = threadCpuTime() - start;
+  return solution;
+}
+
+Eigen::VectorXd Indentation::displacement() const {
+  return path_.state().head(3 * static_cast<Eigen::Index>(cell_->mesh().vertices.size()));
+}
+
+Eigen::VectorXd Indentation::surfaceDisplacement() const {
+  const std::vector<int>& nodes = cell_->surface().mesh_vertices;
+  Eigen::VectorXd result(3 * nodes.size());
+  for (std::size_t i = 0; i < nodes.size(); ++i) result.segment<3>(3 * i) = path_.state().segment<3>(3 * nodes[i]);
+  return result;
+}
+
+}  // namespace microinjection

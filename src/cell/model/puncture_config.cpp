@@ -1,0 +1,108 @@
+#include "cell/model/puncture_config.h"
+
+#include <cmath>
+#include <set>
+
+#include "cell/model/read_quantity.h"
+
+namespace microinjection {
+namespace {
+
+constexpr auto kRequired = ConfigReader::kRequired;
+
+void readLayer(ConfigReader reader, bool outermost, PunctureConfig::Layer& layer) {
+  reader.text("name", layer.name, kRequired);
+  readQuantity(reader, "force", layer.force, Range::positive(), "N");
+  readQuantity(reader, "depth", layer.depth, Range::positive(), "m");
+  readQuantity(reader, "strain", layer.strain, Range::positive(), "");
+  const int criteria = reader.has("force") + reader.has("depth") + reader.has("strain");
+  if (criteria != 1) reader.error("name", "must have one of force (N), depth (m), strain");
+  if (reader.has("strain")) {
+    readQuantity(reader, "dimple_radius", layer.dimple_radius, Range::positive(), "m", kRequired);
+  } else if (reader.has("dimple_radius")) {
+    reader.error("dimple_radius", "must be left out: it belongs to strain only");
+  }
+  for (const char* key : {"stiffness", "gap"}) {
+    if (outermost && reader.has(key)) {
+      reader.error(key, "must be left out: the outermost layer is the cell that the needle touches");
+    }
+  }
+  if (outermost) return;
+  readQuantity(reader, "stiffness", layer.stiffness, Range::positive(), "N/m", kRequired);
+  readQuantity(reader, "gap", layer.gap, Range::nonNegative(), "m");
+}
+
+void readShaft(const ConfigReader& reader, PunctureConfig::Shaft& shaft) {
+  readQuantity(reader, "friction", shaft.friction, Range::nonNegative(), "N");
+  readQuantity(reader, "adhesion", shaft.adhesion, Range::nonNegative(), "N/m");
+  readQuantity(reader, "stiffness", shaft.stiffness, Range::positive(), "N/m");
+  readQuantity(reader, "damping", shaft.damping, Range::nonNegative(), "Pa s");
+  readQuantity(reader, "lateral_stiffness", shaft.lateral_stiffness, Range::nonNegative(), "N/m");
+}
+
+bool finiteFrom(double lowest, double value) { return std::isfinite(value) && value >= lowest; }
+
+void checkLayer(const PunctureConfig::Layer& layer, const std::string& path, bool outermost, double tip_radius,
+                ConfigErrors& errors) {
+  errors.require(layer.force > 0, path + "force", layer.force, " N", "positive (N)");
+  errors.require(layer.depth > 0, path + "depth", layer.depth, " m", "positive (m)");
+  errors.require(layer.strain > 0, path + "strain", layer.strain, "", "positive");
+  errors.require(std::isinf(layer.strain) || (std::isfinite(layer.dimple_radius) && layer.dimple_radius > tip_radius),
+                 path + "dimple_radius", layer.dimple_radius, " m", "above needle/tip/radius");
+  errors.require(finiteFrom(0, layer.gap), path + "gap", layer.gap, " m", "0 or more");
+  errors.require(outermost || (std::isfinite(layer.stiffness) && layer.stiffness > 0), path + "stiffness",
+                 layer.stiffness, " N/m", "positive (N/m)");
+}
+
+}  // namespace
+
+double PunctureConfig::Layer::strainAt(double pushed, double tip_radius) const {
+  return std::hypot(1, pushed / (dimple_radius - tip_radius)) - 1;
+}
+
+bool PunctureConfig::Layer::fails(double push, double pushed, double tip_radius) const {
+  return push >= force || pushed >= depth || (std::isfinite(strain) && strainAt(pushed, tip_radius) >= strain);
+}
+
+PunctureConfig PunctureConfig::atForce(double force) {
+  PunctureConfig config;
+  config.layers.emplace_back().force = force;
+  return config;
+}
+
+void PunctureConfig::read(ConfigReader reader) {
+  if (reader.has("layers")) {
+    for (ConfigReader& layer : reader.sections("layers")) {
+      layers.emplace_back();
+      readLayer(layer, layers.size() == 1, layers.back());
+    }
+    if (layers.empty()) reader.error("layers", "must have at least one layer");
+    if (reader.has("force")) reader.error("force", "must be left out where there are layers: each has its own");
+  } else if (reader.has("force")) {
+    readQuantity(reader, "force", layers.emplace_back().force, Range::positive(), "N");
+  }
+  readShaft(reader.section("shaft"), shaft);
+  readQuantity(reader, "relaxation_time", relaxation_time, Range::positive(), "s");
+}
+
+void PunctureConfig::check(double tip_radius, ConfigErrors& errors) const {
+  const std::string path = "cell/puncture/";
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    const std::string at = path + "layers/" + std::to_string(i) + "/";
+    errors.require(!layers[i].name.empty() && names.insert(layers[i].name).second, at + "name", layers[i].name, "",
+                   "a name that no other layer has");
+    checkLayer(layers[i], at, i == 0, tip_radius, errors);
+  }
+  errors.require(finiteFrom(0, shaft.friction), path + "shaft/friction", shaft.friction, " N", "0 or more");
+  errors.require(finiteFrom(0, shaft.adhesion), path + "shaft/adhesion", shaft.adhesion, " N/m", "0 or more");
+  errors.require(finiteFrom(0, shaft.damping), path + "shaft/damping", shaft.damping, " Pa s", "0 or more");
+  errors.require(finiteFrom(0, shaft.lateral_stiffness), path + "shaft/lateral_stiffness", shaft.lateral_stiffness,
+                 " N/m", "0 or more");
+  errors.require(std::isfinite(shaft.stiffness) && shaft.stiffness > 0, path + "shaft/stiffness", shaft.stiffness,
+                 " N/m", "positive (N/m)");
+  errors.require(std::isfinite(relaxation_time) && relaxation_time > 0, path + "relaxation_time", relaxation_time, " s",
+                 "positive (s)");
+}
+
+}  // namespace microinjection

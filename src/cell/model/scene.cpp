@@ -1,0 +1,207 @@
+#include "cell/model/scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "base/config_reader.h"
+#include "base/errors.h"
+#include "cell/model/read_quantity.h"
+#include "cell/model/scene_check.h"
+#include "cell/model/tensegrity_scene.h"
+
+namespace microinjection {
+namespace {
+
+constexpr char kContinuum[] = "continuum", kTensegrity[] = "tensegrity";
+constexpr double kAgreement = 1e-6;  // of a diameter that is given twice, relative
+
+void readViscoelasticity(ConfigReader reader, ViscoelasticityConfig& value) {
+  for (ConfigReader& term_reader : reader.sections("prony")) {
+    PronyTerm& term = value.prony.emplace_back();
+    readQuantity(term_reader, "modulus_ratio", term.modulus_ratio, Range::positive(), "", ConfigReader::kRequired);
+    readQuantity(term_reader, "relaxation_time", term.relaxation_time, Range::positive(), "s", ConfigReader::kRequired);
+  }
+  readQuantity(reader, "viscosity", value.viscosity, Range::nonNegative(), "Pa s");
+}
+
+void readMaterial(ConfigReader reader, MaterialConfig& value) {
+  value.model.clear();  // unless it is read
+  reader.choice("model", value.model, materialModels(), ConfigReader::kRequired);
+  readQuantity(reader, "young_modulus", value.young_modulus, Range::positive(), "Pa", ConfigReader::kRequired);
+  readQuantity(reader, "poisson_ratio", value.poisson_ratio, Range::open(-1, 0.5), "", ConfigReader::kRequired);
+  readQuantity(reader, "mooney_ratio", value.mooney_ratio, Range::closed(0, 1), "");
+  if (reader.has("mooney_ratio") && !value.model.empty() && value.model != "mooney_rivlin") {
+    reader.error("mooney_ratio", "must be left out: it belongs to model mooney_rivlin only");
+  }
+  readViscoelasticity(reader.section("viscoelasticity"), value.viscoelasticity);
+}
+
+void readSurfaceTension(ConfigReader reader, Scene::Layer& value) {
+  readQuantity(reader, "surface_tension", value.surface_tension, Range::nonNegative(), "N/m");
+}
+
+void readLayers(ConfigReader cell, std::vector<Scene::Layer>& layers) {
+  layers.clear();
+  for (ConfigReader& reader : cell.sections("layers", ConfigReader::kRequired)) {
+    Scene::Layer& layer = layers.emplace_back();
+    layer.outer_radius = std::numeric_limits<double>::quiet_NaN();  // unless it is read
+    reader.text("name", layer.name, ConfigReader::kRequired);
+    readQuantity(reader, "outer_radius", layer.outer_radius, Range::positive(), "m", ConfigReader::kRequired);
+    readMaterial(reader.section("material", ConfigReader::kRequired), layer.material);
+    readSurfaceTension(reader, layer);
+  }
+  if (layers.empty()) cell.error("layers", "must have at least one layer");
+}
+
+void readLayeredCell(ConfigReader cell, Scene::Cell& value) {
+  readLayers(cell, value.layers);
+  Scene::Layer refused;
+  if (cell.has("material")) {
+    readMaterial(cell.section("material"), refused.material);
+    cell.error("material", "must be left out where there are layers: each has its own");
+  }
+  if (cell.has("surface_tension")) {
+    readSurfaceTension(cell, refused);
+    cell.error("surface_tension", "must be left out where there are layers: each has its own");
+  }
+  double diameter = std::numeric_limits<double>::quiet_NaN();
+  readQuantity(cell, "diameter", diameter, Range::positive(), "m");
+  const double outer_radius = value.layers.empty() ? diameter : value.layers.front().outer_radius;
+  if (std::abs(diameter - 2 * outer_radius) > kAgreement * diameter) {
+    std::ostringstream message;
+    message << "must be twice cell/layers/0/outer_radius = " << outer_radius << " m, or left out";
+    cell.error("diameter", message.str());
+  }
+}
+
+void readHomogeneousCell(ConfigReader cell, Scene::Cell& value) {
+  Scene::Layer& layer = value.layers.front();
+  double diameter = value.diameter();
+  readQuantity(cell, "diameter", diameter, Range::positive(), "m", ConfigReader::kRequired);
+  layer.outer_radius = diameter / 2;
+  if (!cell.has("material")) cell.error("material", "is missing; or give layers");
+  readMaterial(cell.section("material"), layer.material);
+  readSurfaceTension(cell, layer);
+}
+
+void readCell(ConfigReader cell, Scene::Cell& value) {
+  std::string model = kContinuum;
+  cell.choice("model", model, {kContinuum, kTensegrity});
+  if (model == kTensegrity) {
+    readTensegrity(cell, value.tensegrity.emplace());
+    value.layers.front().outer_radius = value.tensegrity->radius;
+  } else {
+    cell.has("layers") ? readLayeredCell(cell, value) : readHomogeneousCell(cell, value);
+  }
+  value.puncture.read(cell.section("puncture"));
+  if (!cell.has("biomembrane")) return;
+  ConfigReader biomembrane = cell.section("biomembrane");
+  value.biomembrane.emplace();
+  readQuantity(biomembrane, "thickness", value.biomembrane->thickness, Range::positive(), "m", ConfigReader::kRequired);
+  readQuantity(biomembrane, "dimple_radius", value.biomembrane->dimple_radius, Range::positive(), "m",
+               ConfigReader::kRequired);
+}
+
+void readAdhesion(ConfigReader contact, Scene::Contact& value) {
+  if (!contact.has("adhesion")) return;
+  ConfigReader adhesion = contact.section("adhesion");
+  readQuantity(adhesion, "energy", value.adhesion_energy, Range::positive(), "J/m^2", ConfigReader::kRequired);
+  readQuantity(adhesion, "range", value.adhesion_range, Range::positive(), "m", ConfigReader::kRequired);
+}
+
+void readNeedle(ConfigReader needle, Scene::Needle& value) {
+  ConfigReader tip = needle.section("tip", ConfigReader::kRequired);
+  value.tip.shape.clear();  // unless it is read
+  tip.choice("shape", value.tip.shape, tipShapes(), ConfigReader::kRequired);
+  readQuantity(tip, "radius", value.tip.radius, Range::positive(), "m", ConfigReader::kRequired);
+  const bool has_edge = value.tip.shape == "rounded_flat";
+  readQuantity(tip, "edge_radius", value.tip.edge_radius, Range::positive(), "m",
+               has_edge ? ConfigReader::kRequired : ConfigReader::kOptional);
+  if (!has_edge && !value.tip.shape.empty() && tip.has("edge_radius")) {
+    tip.error("edge_radius", "must be left out: it belongs to shape rounded_flat only");
+  }
+  ConfigReader contact = needle.section("contact");
+  if (contact.has("mode")) value.contact.mode.clear();  // unless it is read
+  contact.choice("mode", value.contact.mode, {"sticking", "sliding"});
+  readQuantity(contact, "friction", value.contact.friction, Range::nonNegative(), "");
+  if (value.contact.mode == "sliding" && value.tip.shape == "disc") {
+    contact.error("mode", std::string("must be ") + kDiscSticks);
+  }
+  if (value.contact.mode == "sticking" && contact.has("friction")) {
+    contact.error("friction", "must be left out: it belongs to mode sliding only");
+  }
+  readAdhesion(contact, value.contact);
+  Eigen::VectorXd offset = value.offset;
+  needle.vector("offset", offset, Range::finite());
+  value.offset = offset;
+}
+
+void readMesh(ConfigReader mesh, Scene::Mesh& value) {
+  if (mesh.has("size")) {
+    value.size = 0;
+    readQuantity(mesh, "size", *value.size, Range::positive(), "m");
+  }
+  ConfigReader refinement = mesh.section("refinement");
+  readQuantity(refinement, "zone", value.refinement.zone, Range::positive(), "needle diameters");
+  readQuantity(refinement, "density", value.refinement.density, {1, 100, false, false}, "");
+  readQuantity(mesh, "stretch", value.stretch, Range::closed(1, 4), "");
+}
+
+void readRequirements(ConfigReader requirements, Scene::Requirements& value) {
+  readQuantity(requirements, "force_error", value.force_error, Range::positive(), "relative");
+  readQuantity(requirements, "rate", value.rate, Range::positive(), "Hz");
+}
+
+}  // namespace
+
+double Scene::meshSize() const {
+  if (mesh.size) return *mesh.size;
+  const double wanted = needle.tip.radius * mesh.refinement.density;
+  return std::min(std::max(wanted, 0.05 * cell.diameter()), 0.3 * cell.diameter());
+}
+
+const std::vector<std::string>& tipShapes() {
+  static const std::vector<std::string> shapes = {"disc", "hemisphere", "rounded_flat"};
+  return shapes;
+}
+
+void Scene::validate() const { checkScene(*this); }
+
+void Scene::requireContinuum(const std::string& purpose) const {
+  if (cell.tensegrity) throw ConfigError("cell/model = tensegrity: must be continuum for " + purpose);
+}
+
+Scene parseScene(const YAML::Node& node, const std::string& origin) {
+  Scene scene;
+  ConfigReader reader(node, origin);
+  readCell(reader.section("cell", ConfigReader::kRequired), scene.cell);
+  const bool continuum = !scene.cell.tensegrity;
+  if (!continuum && reader.has("holding_pipette")) {
+    reader.error("holding_pipette", "must be left out: of a tensegrity cell the three lowest strut ends are held");
+  }
+  if (!continuum && reader.has("mesh")) {
+    reader.error("mesh", "must be left out: a tensegrity cell has microtubules/slices and membrane/divisions");
+  }
+  if (!continuum && reader.has("requirements")) {
+    reader.error("requirements", "must be left out: a tensegrity cell has one model, whose error is not known");
+  }
+  readQuantity(reader.section("holding_pipette", continuum ? ConfigReader::kRequired : ConfigReader::kOptional),
+               "contact_radius", scene.holding_pipette.contact_radius, Range::positive(), "m",
+               continuum ? ConfigReader::kRequired : ConfigReader::kOptional);
+  readNeedle(reader.section("needle", ConfigReader::kRequired), scene.needle);
+  readMesh(reader.section("mesh"), scene.mesh);
+  readRequirements(reader.section("requirements"), scene.requirements);
+  reader.finish();
+  try {
+    scene.validate();
+  } catch (const ConfigError& error) {
+    throw ConfigError(origin + ": " + error.what());
+  }
+  return scene;
+}
+
+Scene loadScene(const std::string& path) { return parseScene(loadYamlMap(path), path); }
+
+}  // namespace microinjection

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cell/model/live_cell.h"
+#include "cell/contact/rounded_tip.h"
+#include "cell/mesh/quadratic_mesh.h"
+
+namespace microinjection {
+
+/// Any scene live: P2-P0 elements, which do not lock, on a swept mesh (see sweepSection) that is coarser than those of
+/// converged solutions. Its force is too large by some per cent, and it follows the tip at some micrometres a second
+/// (`./dev bench live_models`). Rubbing and viscoelastic cells feel the tip's speed, as far as the solutions keep up
+/// with it. The needle is upright.
+class SweptCell : public LiveCell {
+ public:
+  static constexpr double kLevel = -2;  ///< see makeSceneMesh
+
+  /// Sets BLAS to one thread, see SymmetricSolver::useOneThread. Throws ConfigError when the scene is not valid or its
+  /// cell not stable at rest.
+  explicit SweptCell(const Scene& scene);
+
+  const Scene& scene() const override { return scene_; }
+  std::string description() const override;
+  const char* refusal(const Eigen::Vector3d& axis) const override;
+  std::optional<Eigen::Vector3d> touch(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis,
+                                       int& hint) const override;
+  bool isOff(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, const Eigen::Vector3d& touched_at) const override;
+  /// Not beside the cell's axis by less than a tenth of the tip's radius.
+  TipPlace placeAt(const Eigen::Vector3d& touched_at, const Eigen::Vector3d& axis) const override;
+  Eigen::Vector3d preparedDisplacement() const override;
+  std::unique_ptr<TipPath> path(const TipPlace& place) const override;
+  Surface surfaceAtRest() const override { return surface_; }
+  std::vector<std::uint32_t> onSurface(const TipPatch& /*patch*/) const override { return {}; }
+
+ private:
+  Scene scene_;
+  std::optional<RoundedTip> tip_;  ///< none: a disc
+  QuadraticMesh<2> section_;
+  Surface surface_;
+  int elements_ = 0, unknowns_ = 0;
+};
+
+}  // namespace microinjection

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "cell/model/cell_under_needle.h"
+#include "cell/model/contact_clock.h"
+#include "cell/model/live_cell.h"
+#include "cell/contact/tip_patch.h"
+#include "cell/tensegrity/tensegrity_loading.h"
+
+namespace microinjection {
+
+/// A tensegrity cell under one sticking patch of its membrane: every vertex of the patch moves by the displacement of
+/// the tip. Keeps its state and continues from it. One thread at a time.
+class TensegrityIndentation : public TipPath {
+ public:
+  /// Throws std::invalid_argument when the patch and the held strut ends overlap.
+  TensegrityIndentation(std::shared_ptr<const TensegrityStructure> structure, const TipPatch& patch);
+
+  /// Equilibrium at `tip_displacement` (m), reached along the straight line from the present one in `duration` (s;
+  /// infinite: nothing viscous resists). On failure the state stays at the last equilibrium that was found.
+  IndentationSolution solve(const Eigen::Vector3d& tip_displacement,
+                            double duration = std::numeric_limits<double>::infinity());
+  Eigen::Vector3d tipDisplacement() const { return loading_.displacement(); }  ///< m, in the present state
+  void reset() { loading_.reset(); }                                           ///< back to the cell without the needle
+
+  IndentationSolution follow(const TipMove& move) override;
+  std::shared_ptr<const std::vector<Eigen::Vector3d>> rest() const override { return nullptr; }
+  Eigen::VectorXd surfaceDisplacement() const override;
+  std::vector<CellUnderNeedle::Member> members() const override;
+
+ private:
+  TensegrityLoading loading_;
+  ContactClock clock_;
+};
+
+/// Struts, each in some pieces, and then cables, of a state; `cables` as TensegrityStructure::makeParts() made them.
+std::vector<CellUnderNeedle::Member> tensegrityMembers(const TensegrityStructure& structure, const Cables& cables,
+                                                       const Eigen::VectorXd& state);
+
+}  // namespace microinjection

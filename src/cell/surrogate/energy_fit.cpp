@@ -1,0 +1,34 @@
+#include "cell/surrogate/energy_fit.h"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <stdexcept>
+
+namespace microinjection {
+
+double largestForce(const std::vector<TrainingSample>& samples) {
+  double result = 0;
+  for (const TrainingSample& sample : samples) result = std::max(result, sample.force.norm());
+  return result;
+}
+
+void fitEnergy(EnergyExpansion& expansion, const std::vector<TrainingSample>& samples, const EnergyFitConfig& config) {
+  const int unknowns = expansion.size(), rows = 3 * static_cast<int>(samples.size());
+  const double largest = largestForce(samples);
+  if (!(largest > 0)) throw std::invalid_argument("no training sample has a force");
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(rows + unknowns, unknowns);
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(rows + unknowns), energy;
+  Eigen::Matrix3Xd gradient;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (samples[i].force.isZero(0)) continue;  // has lost the cell
+    const double weight = 1 / (samples[i].force.norm() + config.floor * largest);
+    expansion.basis(samples[i].angle, samples[i].displacement, energy, gradient);
+    matrix.middleRows<3>(3 * i) = weight * gradient;
+    right.segment<3>(3 * i) = -weight * samples[i].force;
+  }
+  const Eigen::VectorXd sizes = matrix.colwise().norm();
+  matrix.bottomRows(unknowns).diagonal() = config.regularisation * sizes;
+  expansion.setCoefficients(matrix.colPivHouseholderQr().solve(right));
+}
+
+}  // namespace microinjection

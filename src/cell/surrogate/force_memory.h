@@ -1,0 +1,30 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "cell/material/viscoelasticity.h"
+
+namespace microinjection {
+
+/// Viscoelastic memory of a force (quasi-linear viscoelasticity, Fung, "Biomechanics", 7.6): each Prony term adds q to
+/// the elastic force F, dq/dt + q/tau = beta dF/dt, integrated exactly for an F that changes evenly within the step.
+/// Where all of a nearly incompressible cell relaxes alike, this is what its force does at small strain.
+class ForceMemory {
+ public:
+  explicit ForceMemory(const std::vector<PronyTerm>& terms);
+
+  /// N, to be added to the elastic force (N), which was the last one `duration` (s, >= 0) ago. Allocates nothing.
+  Eigen::Vector3d step(const Eigen::Vector3d& elastic, double duration);
+  void reset();
+
+ private:
+  struct Branch {
+    PronyTerm term;
+    Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< N
+  };
+  std::vector<Branch> branches_;
+  Eigen::Vector3d elastic_ = Eigen::Vector3d::Zero();  ///< N, of the last step
+};
+
+}  // namespace microinjection

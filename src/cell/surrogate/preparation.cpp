@@ -1,0 +1,154 @@
+#include "cell/surrogate/preparation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "base/errors.h"
+#include "cell/model/scene_description.h"
+
+namespace microinjection {
+namespace {
+
+/// Of what the data mean and how they are computed: to be raised when that changes.
+constexpr int kVersion = 3;
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kDegree = kPi / 180;
+constexpr int kAngles = 4;
+constexpr int kPoints = 12;  ///< along a path as long as the range is deep
+constexpr int kFewest = 8;
+constexpr double kOverlap =
+    0.012;  ///< of the cell's radius, that a path's end overlaps with the cell: less only grazes
+
+/// Where a direction leaves the cylinder of the range. `tilt` from the needle's axis and `turn` about it, degrees.
+Eigen::Vector3d border(const PreparationRange& range, double tilt, double turn) {
+  const double side = std::sin(tilt * kDegree), down = std::cos(tilt * kDegree);
+  const double length = 1 / std::max(side / range.lateral, down / range.depth);
+  const double across = turn == 180 ? 0 : std::sin(turn * kDegree);  // exactly, for the sake of symmetry
+  return length * Eigen::Vector3d(side * std::cos(turn * kDegree), side * across, -down);
+}
+
+struct Target {
+  Eigen::Vector3d end;  ///< m
+  bool fine;            ///< solved on the fine mesh as well, if in the plane of symmetry
+};
+
+std::vector<Target> targets(const PreparationRange& range, bool on_axis) {
+  struct Cone {
+    double tilt;                ///< degrees
+    std::vector<double> turns;  ///< degrees
+    bool fine;
+  };
+  const std::vector<Cone> cones = {{12, {0, 180}, false},
+                                   {24, {0, 90, 180}, true},
+                                   {38, {0, 60, 120, 180}, true},
+                                   {55, {0, 90, 180}, true},
+                                   {72, {0, 60, 120, 180}, false}};
+  std::vector<Target> result = {{border(range, 0, 0), !on_axis}};  // on the axis the section is finer
+  for (const Cone& cone : cones) {
+    for (double turn : cone.turns) {
+      const Eigen::Vector3d end = border(range, cone.tilt, on_axis ? 0 : turn);
+      result.push_back({end, cone.fine && end.y() == 0});
+      if (on_axis) break;  // there all turns are the same
+    }
+  }
+  return result;
+}
+
+/// A tip that moves out of the cell from where it touched loses it.
+bool keepsContact(const Scene& scene, double angle, const Eigen::Vector3d& target) {
+  const double reach = scene.radius() + (scene.needle.tip.rounded() ? scene.needle.tip.radius : 0);
+  const Eigen::Vector3d centre = reach * Eigen::Vector3d(std::sin(angle), 0, std::cos(angle)) + target;
+  return reach - centre.norm() > kOverlap * scene.radius() || centre.z() < 0;
+}
+
+/// What a path costs, roughly: in time per length of the coarse mesh's half.
+double cost(const TrainingRay& ray) {
+  const double whole = ray.target.y() == 0 ? 1 : 4.5, fine = ray.level == kFineLevel ? 5 : 1;
+  return whole * fine * ray.points;
+}
+
+bool relaxesAlike(const PronyTerm& a, const PronyTerm& b) {
+  return a.modulus_ratio == b.modulus_ratio && a.relaxation_time == b.relaxation_time;
+}
+
+}  // namespace
+
+PreparationRange PreparationRange::standard(const Scene& scene) {
+  const double diameter = scene.cell.diameter();
+  return {60 * kDegree, 0.36 * diameter, 0.805 * diameter, 0.09 * diameter};
+}
+
+void Preparation::check(const Scene& scene) {
+  if (scene.cell.tensegrity) {
+    throw ConfigError(
+        "cell/model = tensegrity: must be continuum: a prepared cell is one of revolution about the holding "
+        "pipette's axis, and a tensegrity cell is not; it is solved live");
+  }
+  const std::vector<PronyTerm>& first = scene.cell.layers.front().material.viscoelasticity.prony;
+  for (const Scene::Layer& layer : scene.cell.layers) {
+    const ViscoelasticityConfig& own = layer.material.viscoelasticity;
+    if (own.viscosity > 0) {
+      throw ConfigError("viscoelasticity/viscosity of layer " + layer.name +
+                        ": must be left out: a prepared cell's memory is of Prony terms only");
+    }
+    const bool same = std::equal(own.prony.begin(), own.prony.end(), first.begin(), first.end(), relaxesAlike);
+    if (same) continue;
+    throw ConfigError("viscoelasticity of layer " + layer.name +
+                      ": must be that of the other layers: a prepared cell relaxes as a whole");
+  }
+  if (scene.needle.contact.friction > 0) {
+    std::ostringstream message;
+    message << "needle/contact/friction = " << scene.needle.contact.friction
+            << ": must be 0, or the mode sticking: friction takes energy, and a prepared cell has none to give";
+    throw ConfigError(message.str());
+  }
+  if (scene.needle.contact.adhesion_energy > 0) {
+    throw ConfigError("needle/contact/adhesion: must be left out: a prepared cell does not remember what has touched");
+  }
+}
+
+Scene Preparation::elastic(const Scene& scene) {
+  Scene result = scene;
+  for (Scene::Layer& layer : result.cell.layers) layer.material.viscoelasticity = ViscoelasticityConfig();
+  return result;
+}
+
+Preparation Preparation::plan(const Scene& scene, const PreparationRange& range) {
+  Preparation result;
+  result.range = range;
+  for (int i = 0; i < kAngles; ++i) {
+    const double angle = range.angle * i / (kAngles - 1);
+    for (const auto& [target, fine] : targets(range, i == 0)) {
+      if (!keepsContact(scene, angle, target)) continue;
+      const int points = static_cast<int>(std::lround(kPoints * std::sqrt(target.norm() / range.depth)));
+      result.rays.push_back({angle, target, std::max(points, kFewest), kCoarseLevel});
+      if (!fine) continue;
+      result.rays.push_back(result.rays.back());
+      result.rays.back().level = kFineLevel;
+    }
+  }
+  std::stable_sort(result.rays.begin(), result.rays.end(),
+                   [](const TrainingRay& a, const TrainingRay& b) { return cost(a) > cost(b); });
+  result.scales.angle = range.angle;
+  result.scales.length = range.axis_depth;
+  result.scales.energy = scene.cell.material().young_modulus * scene.needle.tip.radius * range.depth * range.depth;
+  return result;
+}
+
+std::string Preparation::description(const Scene& scene, const TrainingRay& ray) const {
+  std::ostringstream out;
+  out << description(scene) << " path " << std::hexfloat << ray.angle;
+  for (int i = 0; i < ray.target.size(); ++i) out << ' ' << ray.target[i];
+  out << ' ' << ray.points << " level " << ray.level;
+  return out.str();
+}
+
+std::string Preparation::description(const Scene& scene) const {
+  std::ostringstream out;
+  out << "prepared cell " << kVersion << ": " << describeCellAndTip(elastic(scene)) << std::hexfloat << " to "
+      << range.angle << ' ' << range.depth << ' ' << range.axis_depth << ' ' << range.lateral;
+  return out.str();
+}
+
+}  // namespace microinjection

@@ -1,0 +1,162 @@
+#include "cell/surrogate/training_ray.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <stdexcept>
+#include <vector>
+
+#include "base/bytes.h"
+#include "cell/model/cell_problem.h"
+#include "cell/model/contact_place.h"
+#include "cell/model/scene_mesh.h"
+#include "cell/mesh/outer_surface.h"
+
+namespace microinjection {
+namespace {
+
+constexpr ElementKind kElement = ElementKind::kP2P0;
+
+Scene at(const Scene& scene, double angle) {
+  Scene result = Preparation::elastic(scene);
+  result.needle.offset = ContactPlace::offsetFor(scene, angle);
+  return result;
+}
+
+/// A ray in the plane of the place and the cell's axis leaves the scene its mirror symmetry.
+bool inPlane(const TrainingRay& ray) { return ray.target.y() == 0; }
+
+/// Displacement of the whole coarse mesh's surface, whether all of it or the half y >= 0 is solved.
+class SurfaceOfState {
+ public:
+  SurfaceOfState(const Scene& there, const QuadraticMesh<3>& mesh, bool half) {
+    const QuadraticMesh<3> whole = makeSceneMesh<3>(there, kCoarseLevel);
+    const std::vector<int> candidates = outerNodes(mesh);
+    for (int node : outerNodes(whole)) {
+      Eigen::Vector3d x = whole.nodes[node];
+      const bool other_side = half && x.y() < 0;
+      if (other_side) x.y() *= -1;
+      sides_.push_back(other_side ? -1.0f : 1.0f);
+      nodes_.push_back(*std::min_element(candidates.begin(), candidates.end(), [&](int a, int b) {
+        return (mesh.nodes[a] - x).squaredNorm() < (mesh.nodes[b] - x).squaredNorm();
+      }));
+    }
+  }
+
+  /// m, xyz of each node, ascending.
+  Eigen::VectorXf displacement(const Eigen::VectorXd& state) const {
+    Eigen::VectorXf result(3 * static_cast<Eigen::Index>(nodes_.size()));
+    for (std::size_t n = 0; n < nodes_.size(); ++n) {
+      result.segment<3>(3 * n) = state.segment<3>(3 * nodes_[n]).cast<float>();
+      result[3 * n + 1] *= sides_[n];
+    }
+    return result;
+  }
+
+ private:
+  std::vector<int> nodes_;    ///< of the state, for each of the whole surface
+  std::vector<float> sides_;  ///< -1 where that is its mirror image
+};
+
+/// Share of a ray's target at its place `index`, from 0.
+double share(const TrainingRay& ray, int index) {
+  return static_cast<double>((index + 1) * (index + 1)) / (ray.points * ray.points);
+}
+
+/// Empty when the result can be of the ray.
+std::string mismatch(const TrainingResult& result, const TrainingRay& ray, Eigen::Index surface_size) {
+  const int count = static_cast<int>(result.samples.size());
+  if (count > ray.points || (count < ray.points && result.reason.empty()))
+    return "not all places of its path are there";
+  const Eigen::Index expected = ray.level == kCoarseLevel ? surface_size : 0;
+  for (int i = 0; i < count; ++i) {
+    const TrainingSample& sample = result.samples[i];
+    if (sample.angle != ray.angle || sample.displacement != share(ray, i) * ray.target) return "it is of another path";
+    if (sample.surface.size() != expected) return "its surface is of another mesh";
+  }
+  return "";
+}
+
+}  // namespace
+
+TrainingResult solveRay(const Scene& scene, const TrainingRay& ray) {
+  const Scene there = at(scene, ray.angle);
+  const bool half = inPlane(ray);
+  CellProblem<3> problem(there, half ? makeHalfSceneMesh(there, ray.level) : makeSceneMesh<3>(there, ray.level),
+                         kElement, half ? Symmetry::kMirror : Symmetry::kNone);
+  std::optional<SurfaceOfState> surface;
+  if (ray.level == kCoarseLevel) surface.emplace(there, problem.body().mesh(), half);
+  TrainingResult result;
+  for (int i = 0; i < ray.points; ++i) {
+    const Eigen::Vector3d displacement = share(ray, i) * ray.target;
+    const IndentationSolution solution = problem.solve(displacement);
+    if (!solution.converged) {
+      result.reason = solution.reason;
+      break;
+    }
+    result.samples.push_back({ray.angle, displacement, solution.force, {}});
+    if (surface) result.samples.back().surface = surface->displacement(problem.state());
+  }
+  return result;
+}
+
+std::string encode(const TrainingResult& result) {
+  ByteWriter writer;
+  writer.array(result.reason);
+  writer.number<std::uint64_t>(result.samples.size());
+  for (const TrainingSample& sample : result.samples) {
+    writer.number(sample.angle);
+    for (int i = 0; i < sample.displacement.size(); ++i) writer.number(sample.displacement[i]);
+    for (int i = 0; i < sample.force.size(); ++i) writer.number(sample.force[i]);
+    writer.array(sample.surface);
+  }
+  return writer.bytes();
+}
+
+TrainingResult decodeTraining(const std::string& bytes) {
+  ByteReader reader(bytes);
+  TrainingResult result;
+  reader.array(result.reason);
+  const auto count = reader.number<std::uint64_t>();
+  for (std::uint64_t i = 0; i < count; ++i) {
+    TrainingSample sample;
+    sample.angle = reader.number<double>();
+    for (int k = 0; k < sample.displacement.size(); ++k) sample.displacement[k] = reader.number<double>();
+    for (int k = 0; k < sample.force.size(); ++k) sample.force[k] = reader.number<double>();
+    reader.array(sample.surface);
+    if (!std::isfinite(sample.angle) || !sample.displacement.allFinite() || !sample.force.allFinite() ||
+        !sample.surface.allFinite()) {
+      throw std::runtime_error("a value is not finite");
+    }
+    result.samples.push_back(std::move(sample));
+  }
+  if (!reader.atEnd()) throw std::runtime_error("there is more than was written");
+  return result;
+}
+
+CacheRead<TrainingResult> loadTraining(const std::string& path, const std::string& description, const TrainingRay& ray,
+                                       Eigen::Index surface_size) {
+  const CacheRead<std::string> read = readCacheFile(path, description);
+  if (!read) return read.failure<TrainingResult>();
+  try {
+    TrainingResult result = decodeTraining(*read.content);
+    const std::string why = mismatch(result, ray, surface_size);
+    if (!why.empty()) return damagedCache<TrainingResult>(path, why);
+    return {std::move(result), CacheState::kRead, ""};
+  } catch (const std::runtime_error& error) {
+    return damagedCache<TrainingResult>(path, error.what());
+  }
+}
+
+TrainingSurface trainingSurface(const Scene& scene, double angle) {
+  const QuadraticMesh<3> mesh = makeSceneMesh<3>(at(scene, angle), kCoarseLevel);
+  const std::vector<int> nodes = outerNodes(mesh);
+  TrainingSurface surface;
+  surface.nodes.resize(3 * static_cast<Eigen::Index>(nodes.size()));
+  for (std::size_t n = 0; n < nodes.size(); ++n) surface.nodes.segment<3>(3 * n) = mesh.nodes[nodes[n]];
+  surface.triangles = outerTriangles(mesh);
+  return surface;
+}
+
+}  // namespace microinjection

@@ -1,0 +1,114 @@
+#include "nodes/cell/cell_state_publisher.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "nodes/runtime/real_time.h"
+
+namespace microinjection {
+namespace {
+
+constexpr char kCellFrame[] = "cell";
+
+template <typename Message>
+Message toMessage(const Eigen::Vector3d& vector) {
+  Message message;
+  message.x = vector.x();
+  message.y = vector.y();
+  message.z = vector.z();
+  return message;
+}
+
+}  // namespace
+
+void CellMoment::setReason(const std::string& text) {
+  trusted = text.empty();
+  const std::size_t length = std::min(text.size(), reason.size() - 1);
+  std::copy_n(text.begin(), length, reason.begin());
+  reason[length] = '\0';
+}
+
+CellStatePublisher::CellStatePublisher(CellUnderNeedle& cell, Output<cell_microinjection::CellState>& output,
+                                       double rate, Thread thread)
+    : cell_(cell), output_(output), period_(1 / rate) {
+  undeformed_.header.frame_id = kCellFrame;
+  for (const auto& triangle : cell_.triangles()) {
+    undeformed_.triangles.insert(undeformed_.triangles.end(), triangle.begin(), triangle.end());
+  }
+  undeformed_.held_vertices = cell_.held();
+  undeformed_.layers = cell_.layers();
+  if (thread == Thread::kOwn) thread_ = std::thread([this] { run(); });
+}
+
+CellStatePublisher::~CellStatePublisher() {
+  stop_ = true;
+  if (thread_.joinable()) thread_.join();
+}
+
+void CellStatePublisher::step(const CellMoment& moment) {
+  if (thread_.joinable()) {
+    moment_.write(moment);
+  } else if (secondsBetween(sent_, moment.now) >= period_) {
+    publish(moment);
+    sent_ = moment.now;
+  }
+}
+
+void CellStatePublisher::run() {
+  preferForThread(Priority::kOrdinary);
+  auto due = std::chrono::steady_clock::now();
+  const auto period =
+      std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(period_));
+  while (!stop_) {
+    due = std::max(due + period, std::chrono::steady_clock::now());  // after a stall: do not catch up
+    std::this_thread::sleep_until(due);
+    if (moment_.update()) publish(moment_.value());
+  }
+}
+
+void CellStatePublisher::fillSurface(cell_microinjection::CellState& state) {
+  const CellUnderNeedle::Picture picture = cell_.picture();
+  state.vertices.resize(picture.vertices.size());
+  std::transform(picture.vertices.begin(), picture.vertices.end(), state.vertices.begin(),
+                 [](const Eigen::Vector3d& vertex) { return toMessage<geometry_msgs::Point32>(vertex); });
+  state.displacement.assign(picture.displacement.begin(), picture.displacement.end());
+  state.contact_vertices = picture.touched;
+  for (const Eigen::Vector3d& hole : picture.holes) state.holes.push_back(toMessage<geometry_msgs::Point>(hole));
+  for (const CellUnderNeedle::Member& member : picture.members) {
+    state.member_points.push_back(toMessage<geometry_msgs::Point32>(member.from));
+    state.member_points.push_back(toMessage<geometry_msgs::Point32>(member.to));
+    state.member_force.push_back(static_cast<float>(member.force));
+    state.member_kind.push_back(static_cast<std::uint8_t>(member.kind));
+  }
+}
+
+void CellStatePublisher::publish(const CellMoment& moment) {
+  cell_microinjection::CellState state = undeformed_;
+  state.header.stamp = moment.now;
+  fillSurface(state);
+  if (moment.contact) {
+    state.in_contact = true;
+    state.touched_at = toMessage<geometry_msgs::Point>(moment.contact->touched_at);
+    state.indentation = moment.contact->indentation;
+    state.tip_displacement = toMessage<geometry_msgs::Vector3>(moment.contact->displacement);
+  }
+  state.force = toMessage<geometry_msgs::Vector3>(moment.force.force);
+  state.punctured = moment.insertion.punctured;
+  state.layers_punctured = static_cast<std::uint32_t>(moment.insertion.layers_punctured);
+  state.inside = moment.insertion.inside;
+  state.insertion_depth = moment.insertion.depth;
+  state.converged = moment.trusted;
+  state.reason = moment.reason.data();
+  state.smallest_jacobian = 1;
+  if (moment.solution) {
+    const CellUnderNeedle::Solution& solution = *moment.solution;
+    Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(state.contact_stiffness.data()) = solution.stiffness;
+    state.newton_iterations = solution.newton_iterations;
+    state.solve_time = solution.cpu_time;
+    state.solution_age = solution.age;
+    state.smallest_jacobian = solution.smallest_jacobian;
+  }
+  output_.publish(state);
+}
+
+}  // namespace microinjection

@@ -1,0 +1,65 @@
+#include "nodes/display/display_frames.h"
+
+#include <geometry_msgs/TransformStamped.h>
+#include <ros/time.h>
+
+#include "operation/display/display_scale.h"
+
+namespace microinjection {
+namespace {
+
+geometry_msgs::TransformStamped enlarged(const std::string& frame, const Eigen::Isometry3d& pose,
+                                         const ros::Time& stamp) {
+  const Eigen::Vector3d position = toDisplay(pose.translation());
+  const Eigen::Quaterniond rotation(pose.linear());
+  geometry_msgs::TransformStamped message;
+  message.header.stamp = stamp;
+  message.header.frame_id = "viz/world";
+  message.child_frame_id = "viz/" + frame;
+  message.transform.translation.x = position.x();
+  message.transform.translation.y = position.y();
+  message.transform.translation.z = position.z();
+  message.transform.rotation.x = rotation.x();
+  message.transform.rotation.y = rotation.y();
+  message.transform.rotation.z = rotation.z();
+  message.transform.rotation.w = rotation.w();
+  return message;
+}
+
+}  // namespace
+
+DisplayFrames::DisplayFrames(const ros::NodeHandle& node, const std::vector<std::string>& fixed)
+    : fixed_(fixed), listener_(node) {}
+
+std::optional<Eigen::Isometry3d> DisplayFrames::find(const std::string& parent, const std::string& frame) const {
+  return listener_.find(parent, frame);
+}
+
+void DisplayFrames::update() {
+  for (const std::string& frame : fixed_) {
+    const std::optional<Eigen::Isometry3d> pose = find("world", frame);
+    if (!pose) continue;
+    const auto last = published_.find(frame);
+    if (last != published_.end() && last->second.matrix() == pose->matrix()) continue;
+    static_broadcaster_.sendTransform(enlarged(frame, *pose, ros::Time::now()));
+    published_[frame] = *pose;
+  }
+}
+
+void DisplayFrames::publishNeedleTip(const Eigen::Isometry3d& tip) {
+  // tf refuses two transforms of one time, which happens while a simulated clock stands still.
+  const ros::Time now = ros::Time::now();
+  if (now.toSec() == tip_stamp_) return;
+  broadcaster_.sendTransform(enlarged("needle_tip", tip, now));
+  tip_stamp_ = now.toSec();
+}
+
+std::vector<std::string> DisplayFrames::missing() const {
+  std::vector<std::string> names;
+  for (const std::string& frame : fixed_) {
+    if (!published_.count(frame)) names.push_back(frame);
+  }
+  return names;
+}
+
+}  // namespace microinjection

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <ros/node_handle.h>
+#include <tf2_ros/static_transform_broadcaster.h>
+#include <tf2_ros/transform_broadcaster.h>
+
+#include <Eigen/Geometry>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "nodes/runtime/frames.h"
+
+namespace microinjection {
+
+/// Republishes the rig's frames at x 1e4 below viz/world: viz/NAME is where NAME is, for rviz only.
+class DisplayFrames {
+ public:
+  /// @param fixed  frames that rarely move, taken from tf; they are republished as static transforms.
+  DisplayFrames(const ros::NodeHandle& node, const std::vector<std::string>& fixed);
+
+  /// Takes over from tf what has changed; call it regularly.
+  void update();
+
+  /// Publishes viz/needle_tip. @param tip  finite pose of needle_tip in world (m).
+  void publishNeedleTip(const Eigen::Isometry3d& tip);
+
+  /// Pose in `parent` of `frame` (m), or nothing while tf does not know it.
+  std::optional<Eigen::Isometry3d> find(const std::string& parent, const std::string& frame) const;
+
+  /// Fixed frames that tf does not know yet; empty when all is well.
+  std::vector<std::string> missing() const;
+
+ private:
+  std::vector<std::string> fixed_;
+  FrameListener listener_;
+  tf2_ros::StaticTransformBroadcaster static_broadcaster_;
+  tf2_ros::TransformBroadcaster broadcaster_;
+  std::map<std::string, Eigen::Isometry3d> published_;  ///< fixed frames in world (m), as last sent
+  double tip_stamp_ = 0;                                ///< s, of the last viz/needle_tip
+};
+
+}  // namespace microinjection

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <visualization_msgs/MarkerArray.h>
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "operation/display/cell_members.h"
+#include "operation/display/cell_surface.h"
+#include "operation/display/display_config.h"
+#include "operation/display/readout.h"
+
+namespace microinjection {
+
+/// What is known of the scene, SI units; absent is what is not known or cannot be trusted.
+struct DisplayedState {
+  std::optional<CellSurface> surface;
+  CellMembers members;
+  std::vector<Eigen::Vector3d> holes;                  ///< m, where the outermost layer was punctured
+  std::string cell_frame = "cell";                     ///< of surface, members and holes
+  std::optional<Eigen::Isometry3d> holding_from_cell;  ///< pose of cell_frame in holding_pipette
+  std::optional<Eigen::Isometry3d> tip;                ///< pose of needle_tip in world
+  std::optional<Eigen::Vector3d> predicted;            ///< N, of the cell on the tip, in world
+  std::optional<Eigen::Vector3d> measured;             ///< N, as `predicted`
+  Readout readout;
+  bool alarm = false;  ///< the readout wants attention
+};
+
+/// Turns what is known into rviz's markers. Markers below viz/world, viz/cell, viz/needle_tip, viz/holding_pipette.
+class DisplayScene {
+ public:
+  explicit DisplayScene(const DisplayConfig& config);
+
+  /// What moves on its own, but for the cell: forces and readout.
+  void drawMoving(const DisplayedState& state, visualization_msgs::MarkerArray& markers) const;
+  /// The cell's surface, edges, members and contact.
+  void drawCell(const DisplayedState& state, visualization_msgs::MarkerArray& markers);
+  /// What stays: pipettes and legend.
+  void drawStill(const DisplayedState& state, visualization_msgs::MarkerArray& markers);
+  /// Since drawStill the colours' scale has.
+  bool stillChanged() const { return still_changed_; }
+
+ private:
+  void drawForce(const std::string& name, const DisplayedState& state, const std::optional<Eigen::Vector3d>& force,
+                 double beside, const Colour& colour, visualization_msgs::MarkerArray& markers) const;
+  void drawReadout(const DisplayedState& state, visualization_msgs::MarkerArray& markers) const;
+  void drawMembers(const CellMembers& members, const std::string& frame, visualization_msgs::MarkerArray& markers);
+  void drawLegend(visualization_msgs::MarkerArray& markers) const;
+  void fitHoldingPipette(const DisplayedState& state);
+
+  const DisplayConfig config_;
+  double tension_range_ = 0;  ///< N, largest tension seen
+  double colour_range_;       ///< m, displacement at the end of the colour scale
+  HoldingPipette holding_;    ///< as configured, with the mouth where the cell touches it
+  bool still_changed_ = false;
+  double holding_height_ = 0;  ///< m, of the mouth along the z axis of holding_pipette
+};
+
+}  // namespace microinjection

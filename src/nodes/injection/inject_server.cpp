@@ -1,0 +1,113 @@
+#include "nodes/injection/inject_server.h"
+
+#include "nodes/runtime/message_guard.h"
+
+#include <cstdlib>
+#include <iterator>
+#include <sstream>
+
+namespace microinjection {
+namespace {
+
+// ros::Time throws where a sum or a difference does not fit into its seconds; these do.
+constexpr std::int64_t kAhead = 1000000000;        // ns that a stamp may be ahead
+constexpr std::int64_t kStatusPeriod = 200000000;  // ns
+constexpr std::int64_t kStatusKept = 5000000000;   // ns that the status of a goal which is over is published on
+constexpr std::uint32_t kQueue = 50;               // messages, as actionlib's own server
+
+std::int64_t nanoseconds(const ros::Time& time) { return static_cast<std::int64_t>(time.toNSec()); }
+
+/// Empty, or what is wrong with the stamp. Before the clock has begun any may be right.
+std::string aheadOfTime(const ros::Time& stamp) {
+  const std::int64_t now = nanoseconds(ros::Time::now()), ahead = nanoseconds(stamp) - now;
+  if (now == 0 || ahead <= kAhead) return "";
+  std::ostringstream text;
+  text << "its stamp is " << 1e-9 * static_cast<double>(ahead) << " s ahead of the time, allowed "
+       << 1e-9 * static_cast<double>(kAhead) << " s";
+  return text.str();
+}
+
+}  // namespace
+
+InjectServer::InjectServer(const ros::NodeHandle& node, const OnGoal& on_goal,
+                           const std::function<void(GoalHandle)>& on_cancel)
+    : ActionServerBase([this, on_goal](GoalHandle goal) { on_goal(goal, refusal_); }, on_cancel),
+      node_(node, "controller/inject") {
+  start();
+}
+
+void InjectServer::initialize() {
+  status_ = node_.advertise<actionlib_msgs::GoalStatusArray>("status", kQueue, true);
+  result_ = node_.advertise<ActionResult>("result", kQueue);
+  feedback_ = node_.advertise<ActionFeedback>("feedback", kQueue);
+  using Goal = boost::shared_ptr<const ActionGoal>;
+  using Cancel = boost::shared_ptr<const actionlib_msgs::GoalID>;
+  goals_ = node_.subscribe<ActionGoal>("goal", kQueue, [this](const Goal& goal) {
+    refusal_.clear();  // of a goal before whose callback has thrown
+    runGuarded("goal", [&] { receiveGoal(goal); });
+  });
+  cancels_ = node_.subscribe<actionlib_msgs::GoalID>(
+      "cancel", kQueue, [this](const Cancel& cancel) { runGuarded("cancel", [&] { receiveCancel(cancel); }); });
+}
+
+void InjectServer::receiveGoal(const boost::shared_ptr<const ActionGoal>& message) {
+  refusal_ = aheadOfTime(message->goal_id.stamp);
+  if (refusal_.empty()) return goalCallback(message);
+  const auto refused = boost::make_shared<ActionGoal>(*message);
+  refused->goal_id.stamp = ros::Time::now();
+  goalCallback(refused);
+  refusal_.clear();
+}
+
+void InjectServer::receiveCancel(const actionlib_msgs::GoalIDConstPtr& message) {
+  const std::string wrong = aheadOfTime(message->stamp);
+  if (wrong.empty()) {
+    cancelCallback(message);
+  } else {
+    ROS_WARN_STREAM("a cancel of " << (message->id.empty() ? "all goals" : "goal " + message->id) << ": " << wrong
+                                   << "; no later goal is cancelled");
+    const auto timeless = boost::make_shared<actionlib_msgs::GoalID>(*message);
+    timeless->stamp = ros::Time();
+    cancelCallback(timeless);
+  }
+  last_cancel_ = ros::Time();  // or it would recall goals that come later
+}
+
+void InjectServer::publishResult(const actionlib_msgs::GoalStatus& status, const Result& result) {
+  ActionResult message;
+  message.header.stamp = ros::Time::now();
+  message.status = status;
+  message.result = result;
+  result_.publish(message);
+  publishStatus();
+}
+
+void InjectServer::publishFeedback(const actionlib_msgs::GoalStatus& status, const Feedback& feedback) {
+  ActionFeedback message;
+  message.header.stamp = ros::Time::now();
+  message.status = status;
+  message.feedback = feedback;
+  feedback_.publish(message);
+}
+
+void InjectServer::publishStatus() {
+  const ros::Time now = ros::Time::now();
+  actionlib_msgs::GoalStatusArray message;
+  message.header.stamp = now;
+  for (auto tracker = status_list_.begin(); tracker != status_list_.end();) {
+    message.status_list.push_back(tracker->status_);
+    // The cancel of a goal that never came has no handle that could tell its time.
+    const bool over = tracker->handle_tracker_.expired();
+    if (over && tracker->handle_destruction_time_.isZero()) tracker->handle_destruction_time_ = now;
+    const std::int64_t age = std::abs(nanoseconds(now) - nanoseconds(tracker->handle_destruction_time_));
+    tracker = over && age > kStatusKept ? status_list_.erase(tracker) : std::next(tracker);
+  }
+  status_.publish(message);
+  published_ns_ = nanoseconds(now);
+}
+
+void InjectServer::step(const ros::Time& now) {
+  if (std::abs(nanoseconds(now) - published_ns_) >= kStatusPeriod) publishStatus();
+}
+
+}  // namespace microinjection

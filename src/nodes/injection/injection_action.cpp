@@ -1,0 +1,142 @@
+#include "nodes/injection/injection_action.h"
+
+#include <cstdlib>
+#include <limits>
+#include <utility>
+
+namespace microinjection {
+namespace {
+
+constexpr std::int64_t kFeedback = 100000000;  ///< ns between two
+
+std::int64_t nanoseconds(const ros::Time& time) { return static_cast<std::int64_t>(time.toNSec()); }
+
+InjectionGoal toGoal(const cell_microinjection::InjectGoal& message) {
+  InjectionGoal goal;
+  goal.puncture = message.puncture;
+  goal.layers = message.layers;
+  goal.depth = message.depth;
+  goal.margin = message.margin;
+  goal.hold_time = message.hold_time;
+  goal.pulse.pressure = message.pressure;
+  goal.pulse.duration = message.duration;
+  goal.pulse.volume = message.volume;
+  return goal;
+}
+
+cell_microinjection::InjectResult toMessage(const InjectionResult& result) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  cell_microinjection::InjectResult message;
+  message.outcome = toText(result.outcome);
+  message.reason = result.reason;
+  message.peak_force = result.peak_force;
+  message.max_depth = result.max_depth;
+  message.punctures = result.punctures;
+  message.puncture_force = result.puncture_force.value_or(kNone);
+  message.puncture_depth = result.puncture_depth.value_or(kNone);
+  message.volume = result.volume;
+  message.duration = result.duration;
+  message.false_touches = result.false_touches;
+  return message;
+}
+
+}  // namespace
+
+InjectionAction::InjectionAction(const ros::NodeHandle& node, InjectionController& controller,
+                                 const InjectionGoal& configured)
+    : controller_(controller),
+      configured_(configured),
+      server_(
+          node, [this](GoalHandle goal, const std::string& refusal) { receive(goal, refusal); },
+          [this](GoalHandle goal) { cancel(goal); }) {}
+
+void InjectionAction::receive(GoalHandle goal, const std::string& refusal) {
+  const auto message = goal.getGoal();
+  const std::string problems = message->configured ? "" : toGoal(*message).problems();
+  if (!refusal.empty() || !problems.empty()) return refuse(goal, refusal.empty() ? problems : refusal);
+  recall("a newer goal came before it began");
+  next_ = goal;
+  leaves_ = true;
+}
+
+void InjectionAction::cancel(GoalHandle goal) {
+  if (current_.isValid() && goal == current_) leaves_ = true;
+  if (next_.isValid() && goal == next_) recall("cancelled before it began");
+}
+
+/// The goal that waits, if there is one.
+void InjectionAction::recall(const std::string& reason) {
+  if (!next_.isValid()) return;
+  cell_microinjection::InjectResult result = toMessage({});
+  result.outcome = toText(InjectionOutcome::kPreempted);
+  result.reason = reason;
+  next_.setCanceled(result, reason);
+  next_ = GoalHandle();
+}
+
+void InjectionAction::refuse(GoalHandle goal, const std::string& refusal) {
+  ROS_WARN_STREAM("injection refused: " << refusal);
+  cell_microinjection::InjectResult result = toMessage({});
+  result.outcome = "refused";
+  result.reason = refusal;
+  goal.setAccepted();
+  goal.setAborted(result, refusal);
+}
+
+void InjectionAction::step(const ros::Time& now) {
+  if (current_.isValid() && leaves_ && !withdrawn_) {
+    withdrawn_ = true;
+    controller_.withdraw();  // refused where there is nothing to withdraw from: then it is over already
+  }
+  if (current_.isValid() && !controller_.running()) end();
+  if (!current_.isValid() && next_.isValid()) begin();
+  if (current_.isValid() && std::abs(nanoseconds(now) - fed_back_ns_) >= kFeedback) {
+    publishFeedback();
+    fed_back_ns_ = nanoseconds(now);
+  }
+  server_.step(now);
+}
+
+void InjectionAction::begin() {
+  const GoalHandle goal = std::exchange(next_, GoalHandle());
+  const auto message = goal.getGoal();
+  const std::string refusal = controller_.start(message->configured ? configured_ : toGoal(*message));
+  if (!refusal.empty()) return refuse(goal, refusal);
+  current_ = goal;
+  current_.setAccepted();
+  leaves_ = withdrawn_ = false;
+  fed_back_ns_ = 0;
+}
+
+void InjectionAction::end() {
+  GoalHandle goal = std::exchange(current_, GoalHandle());
+  const InjectionResult& result = controller_.result();
+  const auto message = toMessage(result);
+  switch (result.outcome) {
+    case InjectionOutcome::kInjected:
+    case InjectionOutcome::kPunctured:
+    case InjectionOutcome::kIndented:
+      goal.setSucceeded(message, result.reason);
+      break;
+    case InjectionOutcome::kPreempted:
+      goal.setCanceled(message, result.reason);
+      break;
+    default:
+      goal.setAborted(message, result.reason);
+  }
+}
+
+void InjectionAction::publishFeedback() {
+  const InjectionFeedback& known = controller_.feedback();
+  cell_microinjection::InjectFeedback feedback;
+  feedback.state = toText(known.state);
+  feedback.waits = controller_.waits();
+  feedback.layer = known.layer;
+  feedback.layers = known.layers;
+  feedback.force = known.force;
+  feedback.depth = known.depth;
+  feedback.elapsed = known.elapsed;
+  current_.publishFeedback(feedback);
+}
+
+}  // namespace microinjection

@@ -1,0 +1,52 @@
+#include "nodes/injection/injector_link.h"
+
+#include <cmath>
+
+namespace microinjection {
+namespace {
+
+constexpr double kRepetition = 0.05;  // s
+
+}  // namespace
+
+InjectorLink::InjectorLink(Cycle& cycle, double timeout)
+    : state_(cycle.input<cell_microinjection::InjectorState>("injector/state", Phase::kTickBefore, timeout)),
+      pulse_(cycle.output<cell_microinjection::InjectionPulse>("injector/pulse")),
+      stop_(cycle.output<cell_microinjection::StringStamped>("injector/stop")) {}
+
+std::optional<InjectorReport> InjectorLink::report(const ros::Time& now) {
+  const auto* state = state_.get(now);
+  if (!state || !state->fault.empty() || !std::isfinite(state->volume)) return std::nullopt;
+  if (pending_ != 0) {
+    const bool over = state->last_id == pending_ || (begun_ && !state->busy);
+    begun_ = begun_ || state->busy;
+    if (over) pending_ = 0;
+  }
+  return InjectorReport{state->busy || pending_ != 0, state->volume, state->last_id == message_.id};
+}
+
+void InjectorLink::want(const std::optional<PulseGoal>& pulse, const ros::Time& now) {
+  if (pulse && !wanted_) {
+    message_.header.stamp = now;
+    message_.id = pending_ = now.toNSec();  // new, also for an injector that outlives this node; the same in lock step
+    message_.pressure = pulse->pressure;
+    message_.duration = pulse->duration;
+    message_.held = true;
+    pulse_.publish(message_);
+    begun_ = false;
+  }
+  if (pulse && pending_ != 0 && secondsBetween(message_.header.stamp, now) >= kRepetition) {
+    message_.header.stamp = now;
+    pulse_.publish(message_);
+  }
+  if (!pulse && wanted_ && pending_ != 0) {
+    cell_microinjection::StringStamped message;
+    message.header.stamp = now;
+    message.string = "the controller does not want it any more";
+    stop_.publish(message);
+    pending_ = 0;
+  }
+  wanted_ = pulse.has_value();
+}
+
+}  // namespace microinjection

@@ -1,0 +1,17 @@
+#include "nodes/haptic/haptic_device_node.h"
+#include "nodes/runtime/run_node.h"
+
+namespace {
+
+/// Started by the operator in a terminal, with the parameters that the session has left for it, or without any.
+struct KeyboardHand : microinjection::HapticDeviceNode {
+  KeyboardHand(const ros::NodeHandle& node, const ros::NodeHandle& private_node)
+      : HapticDeviceNode(node, private_node, "keyboard") {}
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using namespace microinjection;
+  return runNode<KeyboardHand>(argc, argv, "keyboard_hand", Priority::kRealTime, Ending::kInGoodOrder);
+}

@@ -1,0 +1,74 @@
+#include "nodes/link/link_messages.h"
+
+#include <cmath>
+#include <cstdint>
+
+#include "nodes/runtime/conversions.h"
+#include "nodes/runtime/finite_message.h"
+#include "nodes/runtime/message_refusals.h"
+#include "nodes/runtime/stamps.h"
+
+namespace microinjection {
+namespace {
+
+template <typename Message>
+void assign(Message& message, const Eigen::Vector3d& vector) {
+  message.x = vector.x();
+  message.y = vector.y();
+  message.z = vector.z();
+}
+
+/// Of a wave's integral (J^0.5 s^0.5), its energy (J) and the scales: far beyond any, and far from where squares
+/// overflow.
+constexpr double kLargestOfLink = 1e12;
+
+template <typename Vector>
+bool isWithin(const Vector& vector, double largest) {
+  return std::abs(vector.x) <= largest && std::abs(vector.y) <= largest && std::abs(vector.z) <= largest;
+}
+
+}  // namespace
+
+bool isPlausible(const std::string& topic, const cell_microinjection::LinkPacket& message) {
+  // Epochs count from the wall time (ns) at which the hand's side was started. A later one would lock all others out.
+  const std::uint64_t latest = ros::WallTime::now().toNSec() + static_cast<std::uint64_t>(1e9 * kLargestLead);
+  const bool good = message.epoch <= latest && isFinite(message) && isWithin(message.wave, kLargestOfLink) &&
+                    std::abs(message.energy) <= kLargestOfLink && std::abs(message.position_scale) <= kLargestOfLink &&
+                    std::abs(message.force_gain) <= kLargestOfLink && isWithin(message.needle, kLargestNeedleDistance);
+  if (!good) MessageRefusals::ofProcess().add(topic, "its numbers cannot be those of a hand and a rig");
+  return good;
+}
+
+cell_microinjection::LinkPacket toMessage(const LinkPacket& packet) {
+  cell_microinjection::LinkPacket message;
+  message.number = packet.number;
+  message.epoch = packet.epoch;
+  message.follows = packet.follows;
+  message.wave_number = packet.wave.sequence;
+  message.echo = packet.wave.echo;
+  assign(message.wave, packet.wave.value);
+  message.energy = packet.wave.energy;
+  message.position_scale = packet.position_scale;
+  message.force_gain = packet.force_gain;
+  message.trusted = packet.trusted;
+  assign(message.needle, packet.needle);
+  return message;
+}
+
+LinkPacket toPacket(const cell_microinjection::LinkPacket& message) {
+  LinkPacket packet;
+  packet.number = message.number;
+  packet.epoch = message.epoch;
+  packet.follows = message.follows;
+  packet.wave.sequence = message.wave_number;
+  packet.wave.echo = message.echo;
+  packet.wave.value = {message.wave.x, message.wave.y, message.wave.z};
+  packet.wave.energy = message.energy;
+  packet.position_scale = message.position_scale;
+  packet.force_gain = message.force_gain;
+  packet.trusted = message.trusted;
+  packet.needle = {message.needle.x, message.needle.y, message.needle.z};
+  return packet;
+}
+
+}  // namespace microinjection

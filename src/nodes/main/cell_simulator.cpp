@@ -1,6 +1,0 @@
-#include "nodes/cell_simulator_node.h"
-#include "nodes/run_node.h"
-
-int main(int argc, char** argv) {
-  return microinjection::runNode<microinjection::CellSimulatorNode>(argc, argv, "cell_simulator");
-}

@@ -1,6 +1,0 @@
-#include "nodes/emulated_haptic_node.h"
-#include "nodes/run_node.h"
-
-int main(int argc, char** argv) {
-  return microinjection::runNode<microinjection::EmulatedHapticNode>(argc, argv, "emulated_haptic");
-}

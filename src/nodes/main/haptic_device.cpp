@@ -1,7 +1,0 @@
-#include "nodes/haptic/haptic_device_node.h"
-#include "nodes/run_node.h"
-
-int main(int argc, char** argv) {
-  using namespace microinjection;
-  return runNode<HapticDeviceNode>(argc, argv, "haptic_device", Priority::kRealTime, Ending::kInGoodOrder);
-}

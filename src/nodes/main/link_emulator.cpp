@@ -1,6 +1,0 @@
-#include "nodes/link_emulator_node.h"
-#include "nodes/run_node.h"
-
-int main(int argc, char** argv) {
-  return microinjection::runNode<microinjection::LinkEmulatorNode>(argc, argv, "link_emulator");
-}

@@ -1,0 +1,88 @@
+#include "nodes/needle/force_sources.h"
+
+#include <utility>
+
+#include "nodes/runtime/conversions.h"
+
+namespace microinjection {
+namespace {
+
+/// What a two-axis sensor reads, in its frame: z axial, x lateral. The torque is not measured and 0.
+geometry_msgs::WrenchStamped twoAxes(const Eigen::Vector2d& reading, const ros::Time& stamp, const std::string& frame) {
+  return toWrench({reading[1], 0, reading[0]}, stamp, frame);
+}
+
+Eigen::Vector3d torqueOf(const geometry_msgs::WrenchStamped& message) {
+  const auto& t = message.wrench.torque;
+  return {t.x, t.y, t.z};
+}
+
+}  // namespace
+
+SimulatedForceSource::SimulatedForceSource(Cycle& cycle, double timeout, const ForceSensorConfig& config,
+                                           std::string frame, const Eigen::Isometry3d& tip_from_sensor)
+    : model_(config),
+      range_(config.range),
+      frame_(std::move(frame)),
+      sensor_from_tip_(tip_from_sensor.linear().transpose()),
+      force_(cycle.input<geometry_msgs::WrenchStamped>("cell/predicted_cf", Phase::kSameTick, timeout)),
+      needle_(cycle.input<geometry_msgs::PoseStamped>("needle/measured_cp", Phase::kTickBefore, timeout)) {}
+
+std::optional<ForceSource::Signal> SimulatedForceSource::read(const Cycle::Tick& tick) {
+  const auto pose = trustedPose(needle_.get(tick.now));
+  const auto* message = force_.get(tick.now);
+  const auto force = pose ? trustedForce(message, pose->linear()) : std::nullopt;
+  untrusted_ = force ? "" : pose ? "no trusted force" : "no trusted needle pose";
+  if (!force) return std::nullopt;
+  const Eigen::Vector3d felt = sensor_from_tip_ * (pose->linear().transpose() * *force);
+  const Eigen::Vector2d reading = model_.sample({felt.z(), felt.x()}, tick.dt);
+  return Signal{reading, message->header.stamp, twoAxes(reading, message->header.stamp, frame_)};
+}
+
+SerialForceSource::SerialForceSource(const SerialPortConfig& port, const VoltReadingConfig& config,
+                                     const Eigen::Vector2d& overload, double timeout, std::string frame)
+    : device_(std::make_unique<SerialPort>(port), config),
+      overload_(overload),
+      timeout_(timeout),
+      frame_(std::move(frame)) {}
+
+std::optional<ForceSource::Signal> SerialForceSource::read(const Cycle::Tick& tick) {
+  device_.step(tick.now.toSec());
+  const auto& reading = device_.reading();
+  const bool fresh = reading && tick.now.toSec() - reading->time <= timeout_;
+  untrusted_ = fresh ? "" : device_.trouble().empty() ? "no good line from the sensor" : device_.trouble();
+  if (!fresh || std::exchange(seen_, device_.goodLines()) == device_.goodLines()) return std::nullopt;
+  overload_.check(reading->force);
+  return Signal{reading->force, tick.now, twoAxes(reading->force, tick.now, frame_)};
+}
+
+void SerialForceSource::report(diagnostic_updater::DiagnosticStatusWrapper& status) const {
+  status.add("lines read", device_.goodLines());
+  status.add("lines skipped as bad", device_.badLines());
+}
+
+TopicForceSource::TopicForceSource(Cycle& cycle, double timeout, const Eigen::Vector2d& overload)
+    : frames_(cycle.node()),
+      overload_(overload),
+      wrench_(cycle.input<geometry_msgs::WrenchStamped>("force_sensor/device_cf", Phase::kSameTick, timeout)) {}
+
+std::optional<ForceSource::Signal> TopicForceSource::read(const Cycle::Tick& tick) {
+  const auto news = wrench_.takeNews();
+  const auto force = finiteForce(wrench_.get(tick.now));
+  if (!force || !isWithin(torqueOf(*wrench_.get(tick.now)), kLargestForce)) {
+    untrusted_ = "no trusted wrench on force_sensor/device_cf";
+    return std::nullopt;
+  }
+  if (!news) return std::nullopt;
+  const auto pose = frames_.find(kTipFrame, news->header.frame_id);
+  untrusted_ = pose ? "" : "tf has no way from frame '" + news->header.frame_id + "' to " + kTipFrame;
+  if (!pose) return std::nullopt;
+  // The same force about another point: the torque gains arm x force.
+  Signal signal{Eigen::VectorXd(6), news->header.stamp, *news};
+  const Eigen::Vector3d at_tip = pose->linear() * *force;
+  signal.values << at_tip, pose->linear() * torqueOf(*news) + pose->translation().cross(at_tip);
+  overload_.check({at_tip.z(), at_tip.head<2>().norm()});
+  return signal;
+}
+
+}  // namespace microinjection

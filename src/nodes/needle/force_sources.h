@@ -1,0 +1,112 @@
+#pragma once
+
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <geometry_msgs/PoseStamped.h>
+#include <geometry_msgs/WrenchStamped.h>
+
+#include <Eigen/Geometry>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "nodes/runtime/cycle.h"
+#include "nodes/runtime/frames.h"
+#include "rig/sensor/force_sensor.h"
+#include "rig/sensor/overload_latch.h"
+#include "rig/sensor/serial_force_sensor.h"
+#include "rig/serial/serial_port.h"
+
+namespace microinjection {
+
+/// Where the force sensor's readings come from.
+class ForceSource {
+ public:
+  struct Signal {
+    Eigen::VectorXd values;  ///< (axial, lateral) in the sensor's frame (N), or force (N) and torque (N m) at the tip
+    ros::Time stamp;
+    geometry_msgs::WrenchStamped raw;  ///< as the sensor sees it, in its own frame
+  };
+
+  virtual ~ForceSource() = default;
+
+  virtual int size() const = 0;  ///< of Signal::values
+  /// The largest of Signal::values that the sensor may be put under on purpose.
+  virtual Eigen::VectorXd range() const = 0;
+  /// The reading that is new in this step. Empty: there is none, and untrusted() tells whether something is wrong.
+  virtual std::optional<Signal> read(const Cycle::Tick& tick) = 0;
+  virtual bool overloaded() const = 0;
+  virtual void reset() = 0;
+  virtual bool saturated() const = 0;
+  virtual void report(diagnostic_updater::DiagnosticStatusWrapper&) const {}
+
+  /// Why there is no reading to trust; empty when there is one.
+  const std::string& untrusted() const { return untrusted_; }
+
+ protected:
+  std::string untrusted_;
+};
+
+/// The virtual sensor under the predicted force.
+class SimulatedForceSource : public ForceSource {
+ public:
+  /// `tip_from_sensor`: pose of the sensor in needle_tip.
+  SimulatedForceSource(Cycle& cycle, double timeout, const ForceSensorConfig& config, std::string frame,
+                       const Eigen::Isometry3d& tip_from_sensor);
+
+  int size() const override { return 2; }
+  Eigen::VectorXd range() const override { return range_; }
+  std::optional<Signal> read(const Cycle::Tick& tick) override;
+  bool overloaded() const override { return model_.overloaded(); }
+  void reset() override { model_.reset(); }
+  bool saturated() const override { return model_.saturated(); }
+
+ private:
+  ForceSensor model_;
+  Eigen::Vector2d range_;  ///< N
+  std::string frame_;
+  Eigen::Matrix3d sensor_from_tip_;
+  Input<geometry_msgs::WrenchStamped>& force_;
+  Input<geometry_msgs::PoseStamped>& needle_;
+};
+
+/// A real sensor's voltages on a serial line.
+class SerialForceSource : public ForceSource {
+ public:
+  SerialForceSource(const SerialPortConfig& port, const VoltReadingConfig& config, const Eigen::Vector2d& overload,
+                    double timeout, std::string frame);
+
+  int size() const override { return 2; }
+  Eigen::VectorXd range() const override { return overload_.limit(); }
+  std::optional<Signal> read(const Cycle::Tick& tick) override;
+  bool overloaded() const override { return overload_.latched(); }
+  void reset() override { overload_.reset(); }
+  bool saturated() const override { return device_.reading() && device_.reading()->saturated; }
+  void report(diagnostic_updater::DiagnosticStatusWrapper& status) const override;
+
+ private:
+  SerialForceSensor device_;
+  OverloadLatch overload_;
+  double timeout_;  ///< s
+  std::string frame_;
+  unsigned seen_ = 0;  ///< good lines at the step before
+};
+
+/// A wrench that another node measures, in any frame that tf knows; overload is of its force at the tip.
+class TopicForceSource : public ForceSource {
+ public:
+  TopicForceSource(Cycle& cycle, double timeout, const Eigen::Vector2d& overload);
+
+  int size() const override { return 6; }
+  Eigen::VectorXd range() const override { return Eigen::VectorXd::Zero(size()); }  ///< it is calibrated where it is
+  std::optional<Signal> read(const Cycle::Tick& tick) override;
+  bool overloaded() const override { return overload_.latched(); }
+  void reset() override { overload_.reset(); }
+  bool saturated() const override { return false; }
+
+ private:
+  FrameListener frames_;
+  OverloadLatch overload_;
+  Input<geometry_msgs::WrenchStamped>& wrench_;
+};
+
+}  // namespace microinjection

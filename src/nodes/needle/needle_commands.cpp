@@ -1,0 +1,257 @@
+#include "nodes/needle/needle_commands.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/errors.h"
+#include "nodes/runtime/conversions.h"
+#include "nodes/runtime/latency_meter.h"
+
+namespace microinjection {
+namespace {
+
+// s: what a publisher latched, and a node that starts anew hears again, must not move the needle a second time.
+constexpr double kOldestMove = 3;
+
+constexpr char kStateTopic[] = "needle/state_command";
+
+/// Commands that stop something are obeyed whatever their stamp, and also where the state does not know them.
+bool stops(const std::string& command) {
+  return command == "stop" || command == "disable" || command == "pause" || command == "unhome";
+}
+
+}  // namespace
+
+NeedleCommands::NeedleCommands(Cycle& cycle, const MicromanipulatorConfig& config, RigDevice& rig,
+                               Micromanipulator& model, bool allow_network)
+    : cycle_(cycle),
+      config_(config),
+      rig_(rig),
+      model_(model),
+      servo_(cycle.input<geometry_msgs::PoseStamped>("needle/servo_cp", Phase::kSameTick, config.command_timeout)),
+      trace_(cycle.output<sensor_msgs::TimeReference>("needle/setpoint_trace")),
+      repeated_(cycle.node().resolveName(kStateTopic)) {
+  if (!rig.inject && !allow_network) network_ = std::make_unique<NetworkWatch>();
+  subscribe();
+}
+
+void NeedleCommands::subscribe() {
+  servo_.stamp_rule = StampRule::kCommand;
+  // Of each message that comes between two steps, also of those that a newer one replaces.
+  servo_.listen([this](const geometry_msgs::PoseStamped& message, const ros::Time& now) {
+    if (secondsBetween(message.header.stamp, now) <= config_.command_timeout) authorize(servo_.sender);
+  });
+  using geometry_msgs::PoseStamped;
+  using geometry_msgs::TwistStamped;
+  ros::NodeHandle& node = cycle_.node();
+  subscribers_ = {
+      subscribeCommand<TwistStamped>(node, "needle/servo_cv",
+                                     [this](const auto& message, const auto& source) { onVelocity(message, source); }),
+      subscribeCommand<PoseStamped>(node, "needle/move_cp",
+                                    [this](const auto& message, const auto& source) { onMove(message, source); }),
+      subscribeCommand<cell_microinjection::StringStamped>(
+          node, kStateTopic, [this](const auto& message, const auto& source) { onState(message, source); },
+          StampRule::kAny)};
+  if (rig_.inject) subscribeFaults();
+}
+
+void NeedleCommands::subscribeFaults() {
+  using cell_microinjection::StringStamped;
+  subscribers_.push_back(subscribeGuarded<StringStamped>(
+      cycle_.node(), "needle/emulated_fault", 10,
+      [this](const StringStamped& message, const std::string&) { onFault(message.string); }));
+}
+
+void NeedleCommands::onFault(const std::string& fault) {
+  answer_ = true;
+  try {
+    rig_.inject(fault, time());
+  } catch (const ConfigError& error) {
+    log_.answered("emulated_fault", error.what());
+  }
+}
+
+/// Age (s) of a command as of now, not of the last step: this node may have been frozen. One without a stamp is taken
+/// for as old as it can be.
+double NeedleCommands::age(const ros::Time& stamp) const {
+  const ros::Time since = stamp.isZero() ? cycle_.earliestArrival() : stamp;
+  return since.isZero() ? 0 : secondsBetween(since, std::max(now_, ros::Time::now()));
+}
+
+/// A motion command that can be trusted: whether its sender may command, and what becomes of it.
+template <typename Obey>
+void NeedleCommands::command(const std::string& name, const std::string& sender, const Obey& obey) {
+  std::string why = unable();
+  const bool moved = model_.busy();
+  if (why.empty()) why = obey();
+  log_.answered(name, why);
+  if (why.empty() && moved) log_.overridden("move_cp of " + mover_, "by " + name + " of " + sender);
+}
+
+void NeedleCommands::onVelocity(const geometry_msgs::TwistStamped& message, const CommandSource& source) {
+  if (source.unstamped && source.latched) return log_.answered("servo_cv", kUnstampedLatched);
+  geometry_msgs::TwistStamped stamped = message;
+  if (source.unstamped) stamped.header.stamp = ros::Time::now();
+  const auto velocity = trustedVelocity(&stamped);
+  if (!velocity) return log_.answered("servo_cv", "not a valid velocity in world");
+  const double old = std::max(0.0, age(message.header.stamp));
+  if (old > config_.velocity_command_timeout) return log_.answered("servo_cv", "it is stale");
+  authorize(source.sender);
+  command("servo_cv", source.sender, [&] { return model_.servoVelocity(*velocity, time() - old); });
+}
+
+void NeedleCommands::onMove(const geometry_msgs::PoseStamped& message, const CommandSource& source) {
+  if (source.unstamped && source.latched) return log_.answered("move_cp", kUnstampedLatched);
+  geometry_msgs::PoseStamped stamped = message;
+  if (source.unstamped) stamped.header.stamp = ros::Time::now();
+  const auto pose = trustedPose(&stamped);
+  if (!pose) return log_.answered("move_cp", "not a valid pose in world");
+  if (age(message.header.stamp) > kOldestMove) return log_.answered("move_cp", "it is stale");
+  authorize(source.sender);
+  command("move_cp", source.sender, [&] {
+    std::string refusal = model_.movePosition(*pose);
+    if (refusal.empty()) busy_.accept(static_cast<std::int64_t>(ros::Time::now().toNSec()));
+    return refusal;
+  });
+  if (log_.refusal().empty()) mover_ = source.sender;
+}
+
+void NeedleCommands::obeyServo(const Cycle::Tick& tick) {
+  const auto message = servo_.takeNews();
+  if (!message) return;
+  if (!servo_.fresh(tick.now)) return log_.answered("servo_cp", master_lost_ ? unable() : "it is stale");
+  const auto pose = trustedPose(message.get());
+  if (!pose) return log_.answered("servo_cp", "not a valid pose in world");
+  command("servo_cp", servo_.sender, [&] { return model_.servoPosition(*pose); });
+  if (isTraced(tick.now)) trace_.publish(toTrace(tick.now, message->header.stamp, "hand"));
+}
+
+void NeedleCommands::onState(const cell_microinjection::StringStamped& message, const CommandSource& source) {
+  answer_ = true;
+  const bool moved = model_.busy();
+  const std::string refusal = obeyState(message, source);
+  log_.answered("state_command " + message.string, refusal);
+  if (moved && stops(message.string))
+    log_.overridden("move_cp of " + mover_, "by " + message.string + " of " + source.sender);
+}
+
+std::string NeedleCommands::obeyState(const cell_microinjection::StringStamped& message, const CommandSource& source) {
+  const bool old = repeated_.mayBe(source);
+  const std::string& word = message.string;
+  if (stops(word)) model_.stop();
+  if (word == "stop") return "";
+  const auto command = stateCommandOf(word);
+  if (!command) {
+    return "\"" + word + "\" is no command here; allowed: enable, disable, pause, resume, home, unhome, stop";
+  }
+  if (!stops(word)) {
+    if (!isTimely(kStateTopic, message, now_)) return "its stamp is ahead";
+    if (!source.unstamped && age(message.header.stamp) > kOldestMove) return "it is stale";
+    if (old) return std::string(kUnstampedLatched) + "; send it again";
+  }
+  state_.surround(surroundings());
+  const bool fault = state_.state() == OperatingState::kFault;
+  std::string refusal = state_.command(*command);
+  if (refusal.empty()) change(*command, fault);
+  return refusal;
+}
+
+/// What a command does beside the state. `fault`: the state it came in was FAULT.
+void NeedleCommands::change(StateCommand command, bool fault) {
+  switch (command) {
+    case StateCommand::kDisable:
+      if (!fault) break;
+      [[fallthrough]];
+    case StateCommand::kEnable:
+      authority_.clear();
+      model_.clearFault();
+      break;
+    case StateCommand::kResume:
+      model_.letStreamGoOn();
+      break;
+    case StateCommand::kHome:  // its axes have their reference: there is nothing to look for
+      busy_.accept(static_cast<std::int64_t>(ros::Time::now().toNSec()));
+      model_.letStreamGoOn();
+      break;
+    case StateCommand::kPause:
+    case StateCommand::kUnhome:
+      break;
+  }
+  state_.surround(surroundings());
+}
+
+void NeedleCommands::authorize(const std::string& sender) {
+  if (!unable().empty()) return;
+  if (authority_.admit(sender, time(), moves())) return;
+  model_.stop();
+  state_.surround(surroundings());
+  ROS_ERROR_STREAM(authority_.fault());
+}
+
+/// A device that is not there is not known to move.
+bool NeedleCommands::moves() const {
+  const bool there = model_.state() != ManipulatorDevice::State::kDisconnected;
+  return there && (model_.moving() || rig_.device->moving());
+}
+
+/// Decides whether the rig may be enabled. A needle that may be in a cell keeps its way out when an interface comes up.
+void NeedleCommands::lookAtNetwork() {
+  if (!network_) return;
+  const bool reachable = network_->reachable();
+  if (state_.disabledByCommand()) admitted_ = false;
+  admitted_ = admitted_ || (!reachable && !state_.disabledByCommand());
+  exposed_ = reachable && !admitted_;
+}
+
+NeedleState::Surroundings NeedleCommands::surroundings() const {
+  NeedleState::Surroundings surroundings{model_.state(), model_.joints().has_value(), authority_.fault(), ""};
+  if (!exposed_) return surroundings;
+  surroundings.barrier = "others can reach this machine's nodes through " + network_->interfaces() +
+                         "; allowed without these interfaces (./dev shell --isolated), or with allow_network = true";
+  return surroundings;
+}
+
+std::string NeedleCommands::unable() const { return master_lost_ ? "the ROS master is lost" : state_.unable(); }
+
+void NeedleCommands::step(const Cycle::Tick& tick) {
+  if (tick.now < now_) set_back_ += secondsBetween(tick.now, now_);
+  now_ = tick.now;
+  // What goes on by itself, too: nobody new could stop it.
+  if (cycle_.masterLost() && !master_lost_) model_.stop();
+  master_lost_ = cycle_.masterLost();
+  lookAtNetwork();
+  state_.surround(surroundings());
+  obeyServo(tick);
+}
+
+bool NeedleCommands::isBusy(const Cycle::Tick& tick) {
+  state_.surround(surroundings());
+  if (model_.ended() != ended_ && !model_.ended().empty()) ROS_WARN_STREAM("the motion ended: " << model_.ended());
+  ended_ = model_.ended();
+  return busy_.step(model_.busy(), static_cast<std::int64_t>(tick.now.toNSec()));
+}
+
+bool NeedleCommands::takeAnswer() { return std::exchange(answer_, false); }
+
+void NeedleCommands::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  using diagnostic_msgs::DiagnosticStatus;
+  std::string problem = log_.takeNews();
+  if (problem.empty()) problem = model_.ended();
+  const bool held = exposed_ || !authority_.fault().empty();
+  const std::string why = model_.why().empty() && held ? unable() : model_.why();
+  if (!why.empty() && problem != why) problem = why + (problem.empty() ? "" : "; ") + problem;
+  const auto level = !why.empty()      ? DiagnosticStatus::ERROR
+                     : problem.empty() ? DiagnosticStatus::OK
+                                       : DiagnosticStatus::WARN;
+  status.summary(level, !problem.empty() ? problem : model_.moving() ? "moves" : "holds");
+  status.add("device", rig_.device->abilities().device);
+  status.add("device's note", rig_.device->note());
+  status.add("operating state", toText(state_.state()));
+  if (network_ && network_->reachable() && admitted_) {
+    status.mergeSummary(DiagnosticStatus::ERROR, "others can reach this machine now through " + network_->interfaces() +
+                                                     ": after disable it is not enabled again");
+  }
+  log_.addCounts(status);
+}
+
+}  // namespace microinjection

@@ -1,0 +1,96 @@
+#include "nodes/needle/rig_device.h"
+
+#include <limits>
+
+#include "base/errors.h"
+#include "rig/manipulator/simulated_manipulator.h"
+#include "rig/devices/rig_registry.h"
+#include "rig/serial/emulated_wire.h"
+#include "rig/serial/fault.h"
+
+namespace microinjection {
+namespace {
+
+RigDevice makeSimulated(const ManipulatorGeometry& geometry, ConfigReader& reader) {
+  const auto config = SimulatedManipulatorConfig::read(reader);
+  reader.finish();
+  auto device = std::make_unique<SimulatedManipulator>(geometry, config);
+  SimulatedManipulator* simulated = device.get();
+  RigDevice rig;
+  rig.device = std::move(device);
+  rig.true_joints = [simulated] { return simulated->trueJoints(); };
+  rig.inject = [simulated](const std::string& text, double) {
+    const Fault fault = parseFault(text);
+    if (fault.kind != Fault::Kind::kError)
+      throw ConfigError("fault " + text + ": the simulated rig has error:CODE only");
+    simulated->injectFault("error " + fault.code + ", as was asked for");
+  };
+  return rig;
+}
+
+/// The cable between driver and emulator, which can be out for a while.
+class Cable {
+ public:
+  explicit Cable(EmulatedWire& wire) : wire_(wire) {}
+  void pull(double until) {
+    wire_.pull();
+    until_ = until;
+  }
+  void step(double time) {
+    if (time < until_) return;
+    wire_.plug();
+    until_ = std::numeric_limits<double>::infinity();
+  }
+
+ private:
+  EmulatedWire& wire_;
+  double until_ = std::numeric_limits<double>::infinity();  // s
+};
+
+double pullDuration(const std::string& text) {
+  std::size_t end = 0;
+  double duration = 0;
+  try {
+    duration = std::stod(text.substr(5), &end);
+  } catch (const std::exception&) {
+    end = 0;
+  }
+  if (end == 0 || end + 5 != text.size() || !(duration >= 0 && duration < 3600)) {
+    throw ConfigError("fault " + text + ": must be pull:S with 0 <= S < 3600 s");
+  }
+  return duration;
+}
+
+RigDevice makeEmulated(const Rig& rig, ConfigReader& reader, ConfigReader& emulator_reader) {
+  const std::shared_ptr<ManipulatorEmulator> emulator = rig.make_emulator();
+  double latency = 0;  // s
+  emulator_reader.number("latency", latency, Range::closed(0, 1));
+  emulator->configure(emulator_reader);
+  auto wire = std::make_unique<EmulatedWire>(emulator, rig.default_baud, latency);
+  const auto cable = std::make_shared<Cable>(*wire);  // the driver owns the wire and lives as long as the cable
+  RigDevice result;
+  result.device = rig.make_driver(reader, std::move(wire));
+  result.before_step = [cable](double time) { cable->step(time); };
+  result.inject = [cable, emulator](const std::string& text, double time) {
+    if (text.rfind("pull:", 0) == 0) return cable->pull(time + pullDuration(text));
+    emulator->inject(parseFault(text));
+  };
+  return result;
+}
+
+}  // namespace
+
+RigDevice makeRigDevice(const std::string& name, bool emulated, const ManipulatorGeometry& geometry,
+                        ConfigReader reader, ConfigReader emulator) {
+  if (name == "sim") {
+    if (emulated) throw ConfigError("emulated = true: must be false with rig = sim, which has no driver");
+    return makeSimulated(geometry, reader);
+  }
+  const Rig& rig = findRig(name);
+  if (emulated) return makeEmulated(rig, reader, emulator);
+  RigDevice result;
+  result.device = rig.make_driver(reader, nullptr);
+  return result;
+}
+
+}  // namespace microinjection

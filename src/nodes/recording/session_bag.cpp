@@ -1,0 +1,40 @@
+#include "nodes/recording/session_bag.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+
+namespace microinjection {
+
+SessionBag::SessionBag(const std::string& path) : path_(path), bag_(std::make_unique<rosbag::Bag>()) {
+  std::filesystem::create_directories(std::filesystem::absolute(path).parent_path());
+  bag_->open(path + ".active", rosbag::bagmode::Write);
+  bag_->setCompression(rosbag::compression::LZ4);
+}
+
+void SessionBag::giveUp(const std::string& what, int reason) {
+  trouble_ = path_ + ".active: cannot be written: " + what;
+  if (reason != 0) trouble_ += std::string(": ") + std::strerror(reason);
+  ROS_ERROR_STREAM(trouble_ << "; the bag ends here, the session goes on");
+  // A bag that failed is not destroyed: its destructor writes once more, and what it throws ends the program.
+  static_cast<void>(bag_.release());
+}
+
+std::string SessionBag::close() {
+  if (!bag_) return trouble_;
+  try {
+    errno = 0;
+    bag_->close();
+  } catch (const std::exception& error) {
+    const int reason = errno;
+    giveUp(error.what(), reason);
+    return trouble_;
+  }
+  bag_.reset();
+  if (std::rename((path_ + ".active").c_str(), path_.c_str()) != 0)
+    trouble_ = path_ + ".active: cannot be renamed: " + std::strerror(errno);
+  return trouble_;
+}
+
+}  // namespace microinjection

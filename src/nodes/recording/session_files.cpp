@@ -1,0 +1,49 @@
+#include "nodes/recording/session_files.h"
+
+#include <algorithm>
+
+namespace microinjection {
+namespace {
+
+/// ns without a lost row after which the disk counts as writable again: a last row may fit into a full one.
+constexpr std::uint64_t kSettled = 1000000000;
+
+}  // namespace
+
+SessionFiles::SessionFiles(const std::string& folder, const std::string& header, bool bag)
+    : rows_(folder + "/force_depth.csv", header) {
+  if (bag) bag_ = std::make_unique<SessionBag>(folder + "/session.bag");
+}
+
+void SessionFiles::step(const ros::Time& now) {
+  rows_.flush();
+  const std::uint64_t time = now.toNSec();
+  if (!rows_.trouble().empty()) {
+    trouble_ = rows_.trouble();
+    failed_at_ns_ = time;
+    if (!failing_) ROS_ERROR_STREAM(trouble_ << "; the session goes on, its rows are lost until there is space");
+    failing_ = true;
+  } else if (failing_ && (time < failed_at_ns_ || time - failed_at_ns_ > kSettled)) {
+    failing_ = false;
+    ROS_WARN_STREAM("force_depth.csv is written again; " << rows_.lost() << " rows are lost");
+  }
+}
+
+std::vector<std::string> SessionFiles::finish() {
+  std::vector<std::string> errors = {rows_.finish()};
+  if (bag_) errors.push_back(bag_->close());
+  errors.erase(std::remove(errors.begin(), errors.end(), ""), errors.end());
+  return errors;
+}
+
+void SessionFiles::report(diagnostic_updater::DiagnosticStatusWrapper& status) const {
+  using diagnostic_msgs::DiagnosticStatus;
+  status.summary(DiagnosticStatus::OK, "the session is written");
+  if (rows_.lost() > 0) status.summary(DiagnosticStatus::WARN, "rows of force_depth.csv are lost");
+  if (failing_) status.summary(DiagnosticStatus::ERROR, trouble_);
+  if (bag_ && !bag_->trouble().empty()) status.mergeSummary(DiagnosticStatus::ERROR, bag_->trouble());
+  status.add("rows written", rows_.written());
+  status.add("rows lost", rows_.lost());
+}
+
+}  // namespace microinjection

@@ -1,0 +1,105 @@
+#include "nodes/runtime/conversions.h"
+
+#include <cmath>
+
+namespace microinjection {
+namespace {
+
+bool isIn(const std::string& frame, const std::string& wanted) { return frame.empty() || frame == wanted; }
+
+Eigen::Vector3d toEigen(const geometry_msgs::Point& point) { return {point.x, point.y, point.z}; }
+
+void fill(geometry_msgs::Vector3& message, const Eigen::Vector3d& vector) {
+  message.x = vector.x();
+  message.y = vector.y();
+  message.z = vector.z();
+}
+
+}  // namespace
+
+bool isWithin(const Eigen::Vector3d& vector, double largest) {
+  // Not by the norm, whose squares may overflow.
+  return vector.allFinite() && vector.cwiseAbs().maxCoeff() <= largest;
+}
+
+std::optional<Eigen::Vector3d> trustedPosition(const geometry_msgs::PoseStamped* message, const std::string& frame,
+                                               double largest) {
+  if (!message || message->header.stamp.isZero() || !isIn(message->header.frame_id, frame)) return std::nullopt;
+  const Eigen::Vector3d position = toEigen(message->pose.position);
+  if (!isWithin(position, largest)) return std::nullopt;
+  return position;
+}
+
+std::optional<Eigen::Isometry3d> trustedPose(const geometry_msgs::PoseStamped* message) {
+  const auto position = trustedPosition(message, kWorldFrame);
+  if (!position) return std::nullopt;
+  const auto& q = message->pose.orientation;
+  const Eigen::Quaterniond orientation(q.w, q.x, q.y, q.z);
+  if (!(std::abs(orientation.norm() - 1) < 1e-3)) return std::nullopt;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = orientation.normalized().toRotationMatrix();
+  pose.translation() = *position;
+  return pose;
+}
+
+std::optional<Eigen::Vector3d> trustedVelocity(const geometry_msgs::TwistStamped* message) {
+  if (message->header.stamp.isZero() || !isIn(message->header.frame_id, kWorldFrame)) return std::nullopt;
+  const auto& v = message->twist.linear;
+  const Eigen::Vector3d velocity(v.x, v.y, v.z);
+  if (!isWithin(velocity, kLargestSpeed)) return std::nullopt;
+  return velocity;
+}
+
+std::optional<Eigen::Vector3d> finiteForce(const geometry_msgs::WrenchStamped* message) {
+  if (!message) return std::nullopt;
+  const auto& f = message->wrench.force;
+  const Eigen::Vector3d force(f.x, f.y, f.z);
+  if (!isWithin(force, kLargestForce)) return std::nullopt;
+  return force;
+}
+
+std::optional<Eigen::Vector3d> trustedForce(const geometry_msgs::WrenchStamped* message, const Eigen::Matrix3d& tip) {
+  auto force = finiteForce(message);
+  if (!force || isIn(message->header.frame_id, kWorldFrame)) return force;
+  if (message->header.frame_id == kTipFrame) return Eigen::Vector3d(tip * *force);
+  return std::nullopt;
+}
+
+geometry_msgs::PoseStamped toPose(const Eigen::Isometry3d& pose, const ros::Time& stamp, const std::string& frame) {
+  geometry_msgs::PoseStamped message;
+  message.header.stamp = stamp;
+  message.header.frame_id = frame;
+  message.pose.position.x = pose.translation().x();
+  message.pose.position.y = pose.translation().y();
+  message.pose.position.z = pose.translation().z();
+  const Eigen::Quaterniond orientation(pose.linear());
+  message.pose.orientation.w = orientation.w();
+  message.pose.orientation.x = orientation.x();
+  message.pose.orientation.y = orientation.y();
+  message.pose.orientation.z = orientation.z();
+  return message;
+}
+
+geometry_msgs::PoseStamped toPose(const Eigen::Vector3d& position, const ros::Time& stamp, const std::string& frame) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translation() = position;
+  return toPose(pose, stamp, frame);
+}
+
+geometry_msgs::WrenchStamped toWrench(const Eigen::Vector3d& force, const ros::Time& stamp, const std::string& frame) {
+  geometry_msgs::WrenchStamped message;
+  message.header.stamp = stamp;
+  message.header.frame_id = frame;
+  fill(message.wrench.force, force);
+  return message;
+}
+
+geometry_msgs::TwistStamped toTwist(const Eigen::Vector3d& velocity, const ros::Time& stamp, const std::string& frame) {
+  geometry_msgs::TwistStamped message;
+  message.header.stamp = stamp;
+  message.header.frame_id = frame;
+  fill(message.twist.linear, velocity);
+  return message;
+}
+
+}  // namespace microinjection

@@ -1,0 +1,107 @@
+#include "nodes/runtime/cycle_diagnostics.h"
+
+#include <diagnostic_msgs/DiagnosticStatus.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+namespace microinjection {
+
+using diagnostic_msgs::DiagnosticStatus;
+using diagnostic_updater::DiagnosticStatusWrapper;
+
+void CycleDiagnostics::add(const std::string& name, const std::function<void(DiagnosticStatusWrapper&)>& report) {
+  extra_.emplace_back(name, report);
+}
+
+void CycleDiagnostics::start() {
+  updater_ = std::make_unique<diagnostic_updater::Updater>();
+  updater_->setHardwareID("none");
+  updater_->add("cycle", [this](DiagnosticStatusWrapper& status) { reportCycle(status); });
+  updater_->add("inputs", [this](DiagnosticStatusWrapper& status) { reportInputs(status); });
+  for (const auto& task : extra_) updater_->add(task.first, task.second);
+  began_ = reported_ = now_;
+}
+
+void CycleDiagnostics::beginStep() {
+  const ros::SteadyTime now = ros::SteadyTime::now();
+  if (!step_began_.isZero()) intervals_.add(secondsBetween(step_began_, now));
+  step_began_ = now;
+}
+
+void CycleDiagnostics::endStep(const ros::Time& now) {
+  const double took = secondsBetween(step_began_, ros::SteadyTime::now());
+  ++steps_;
+  ++all_steps_;
+  step_time_ += took;
+  longest_step_ = std::max(longest_step_, took);
+  now_ = now;
+  if (!updater_) start();
+  if (secondsBetween(reported_, now) < 1) return;
+  updater_->force_update();
+  reported_ = now;
+  steps_ = 0;
+  step_time_ = longest_step_ = 0;
+}
+
+void CycleDiagnostics::reportCycle(DiagnosticStatusWrapper& status) {
+  const double reached = steps_ / std::max(1e-9, secondsBetween(reported_, now_));
+  const bool slow = reached < 0.9 * rate_;
+  status.summary(slow ? DiagnosticStatus::WARN : DiagnosticStatus::OK, slow ? "rate is too low" : "runs at its rate");
+  status.add("rate (Hz)", reached);
+  status.add("nominal rate (Hz)", rate_);
+  status.add("mean step time (s)", step_time_ / std::max(1u, steps_));
+  status.add("longest step time (s)", longest_step_);
+  status.add("steps since the start", all_steps_);
+  status.add("mean rate since the start (Hz)", (all_steps_ - 1) / std::max(1e-9, secondsBetween(began_, now_)));
+  reportIntervals(intervals_, status);
+  reportOutputs(status);
+}
+
+void CycleDiagnostics::reportOutputs(DiagnosticStatusWrapper& status) {
+  unsigned all_withheld = 0;
+  for (const OutputPort* output : outputs_) {
+    status.add("sent on " + output->topic, output->count);
+    if (output->withheld == 0) continue;
+    all_withheld += output->withheld;
+    status.add("withheld on " + output->topic + ", not finite", output->withheld);
+  }
+  if (all_withheld > withheld_) {
+    status.mergeSummary(DiagnosticStatus::ERROR, "a value that is not finite was withheld");
+  }
+  withheld_ = all_withheld;
+}
+
+void CycleDiagnostics::reportIntervals(const IntervalHistogram& intervals, DiagnosticStatusWrapper& status) {
+  status.add("median interval since the start (s of wall time)", intervals.quantile(0.5));
+  status.add("99 % interval since the start (s of wall time)", intervals.quantile(0.99));
+  status.add("intervals since the start", intervals.count());
+  status.add("intervals of more than two periods", intervals.countOverLimit());
+  std::string text;
+  for (const IntervalHistogram::Bin& bin : intervals.bins()) {
+    char entry[40];
+    std::snprintf(entry, sizeof(entry), "%.4g:%u ", bin.upper, bin.count);
+    text += entry;
+  }
+  status.add("intervals up to (s):count", text);
+}
+
+void CycleDiagnostics::reportInputs(DiagnosticStatusWrapper& status) {
+  status.summary(DiagnosticStatus::OK, "all inputs are fresh");
+  const auto cut_off = [](const InputPort* input) { return input->cut_off; };
+  if (std::any_of(inputs_.begin(), inputs_.end(), cut_off)) {
+    return status.summary(DiagnosticStatus::ERROR, "the ROS master is lost: no input counts");
+  }
+  for (const InputPort* input : inputs_) {
+    status.add("age of " + input->topic + " (s)", input->age(now_));
+    if (input->received.isZero() && std::isinf(input->timeout)) continue;  // a command comes when it comes
+    if (!input->fresh(now_)) {
+      status.mergeSummary(DiagnosticStatus::WARN, input->topic + (input->valid() ? " is stale" : " has nothing valid"));
+    }
+  }
+  MessageRefusals::ofProcess().report(status);
+}
+
+}  // namespace microinjection

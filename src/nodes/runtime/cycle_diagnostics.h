@@ -1,0 +1,57 @@
+#pragma once
+
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <ros/ros.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/interval_histogram.h"
+#include "nodes/runtime/ports.h"
+
+namespace microinjection {
+
+/// What each cyclic node says on /diagnostics: rate and step time, the age of every input, and what the node adds.
+/// Updated once a second of ROS time.
+class CycleDiagnostics {
+ public:
+  explicit CycleDiagnostics(double rate) : rate_(rate), intervals_(2 / rate) {}
+
+  void watch(const InputPort& port) { inputs_.push_back(&port); }
+  void watch(const OutputPort& port) { outputs_.push_back(&port); }
+
+  /// The node's own state: fills in level, message and values.
+  void add(const std::string& name, const std::function<void(diagnostic_updater::DiagnosticStatusWrapper&)>& report);
+
+  /// Says how long the intervals (s) of something periodic were.
+  static void reportIntervals(const IntervalHistogram& intervals, diagnostic_updater::DiagnosticStatusWrapper& status);
+
+  void beginStep();
+  void endStep(const ros::Time& now);
+
+ private:
+  void start();
+  void reportCycle(diagnostic_updater::DiagnosticStatusWrapper& status);
+  void reportInputs(diagnostic_updater::DiagnosticStatusWrapper& status);
+  void reportOutputs(diagnostic_updater::DiagnosticStatusWrapper& status);
+
+  double rate_;  ///< Hz, nominal
+  std::vector<const InputPort*> inputs_;
+  std::vector<const OutputPort*> outputs_;
+  std::vector<std::pair<std::string, std::function<void(diagnostic_updater::DiagnosticStatusWrapper&)>>> extra_;
+  std::unique_ptr<diagnostic_updater::Updater> updater_;  ///< made with the first step, when time runs
+  ros::Time now_;
+  ros::Time reported_;
+  ros::SteadyTime step_began_;
+  unsigned steps_ = 0;           ///< since reported_
+  double step_time_ = 0;         ///< s of wall time, sum since reported_
+  double longest_step_ = 0;      ///< s of wall time, since reported_
+  std::uint64_t all_steps_ = 0;  ///< since the start
+  unsigned withheld_ = 0;        ///< messages, until the last report
+  ros::Time began_;
+  IntervalHistogram intervals_;  ///< of wall time between steps, since the start
+};
+
+}  // namespace microinjection

@@ -1,0 +1,65 @@
+#include "nodes/runtime/round_trip_meter.h"
+
+#include <cmath>
+
+#include "nodes/runtime/message_guard.h"
+
+namespace microinjection {
+namespace {
+
+constexpr double kPatience = 0.5;  // s, until every message of a round trip has come
+const ros::Duration kMemory(2);
+constexpr double kSame = 1e-9;  // of a force: what units and axes may do to its last bits
+
+template <typename Value>
+void forgetBefore(std::map<ros::Time, Value>& entries, const ros::Time& time) {
+  entries.erase(entries.begin(), entries.lower_bound(time));
+}
+
+}  // namespace
+
+RoundTripMeter::RoundTripMeter(ros::NodeHandle& node) {
+  using Trace = sensor_msgs::TimeReference;
+  using geometry_msgs::WrenchStamped;
+  setpoints_ = subscribeGuarded<Trace>(
+      node, "needle/setpoint_trace", 100,
+      [this](const Trace& trace, const std::string&) { hand_of_needle_[trace.header.stamp] = trace.time_ref; });
+  traces_ = subscribeGuarded<Trace>(node, "haptic/force_trace", 100, [this](const Trace& trace, const std::string&) {
+    needle_of_force_[trace.header.stamp] = trace.time_ref;
+  });
+  forces_ = subscribeGuarded<WrenchStamped>(node, "haptic/servo_cf", 100,
+                                            [this](const WrenchStamped& message, const std::string&) {
+                                              const auto& force = message.wrench.force;
+                                              rendered_[message.header.stamp] = {force.x, force.y, force.z};
+                                            });
+}
+
+void RoundTripMeter::felt(const Eigen::Vector3d& force, const ros::Time& received) { felt_[received] = force; }
+
+void RoundTripMeter::step(const ros::Time& now) {
+  while (!needle_of_force_.empty() && secondsBetween(needle_of_force_.begin()->first, now) > kPatience) {
+    count(needle_of_force_.begin()->first, needle_of_force_.begin()->second);
+    needle_of_force_.erase(needle_of_force_.begin());
+  }
+  if (now.toSec() < kMemory.toSec()) return;
+  forgetBefore(hand_of_needle_, now - kMemory);
+  forgetBefore(rendered_, now - kMemory);
+  forgetBefore(felt_, now - kMemory);
+}
+
+void RoundTripMeter::count(const ros::Time& rendered, const ros::Time& needle) {
+  const auto hand = hand_of_needle_.find(needle);
+  const auto force = rendered_.find(rendered);
+  if (hand == hand_of_needle_.end() || hand->second <= last_hand_) return;  // moved of itself, or felt before
+  if (force == rendered_.end() || force->second.isZero(0)) return;
+  for (auto came = felt_.lower_bound(rendered); came != felt_.end(); ++came) {
+    // By its size: the device may have other axes than the bridge.
+    if (std::abs(came->second.norm() - force->second.norm()) > kSame * force->second.norm()) continue;
+    at_bridge_.add(secondsBetween(hand->second, rendered));
+    at_device_.add(secondsBetween(hand->second, came->first));
+    last_hand_ = hand->second;
+    return;
+  }
+}
+
+}  // namespace microinjection

@@ -1,0 +1,76 @@
+#include "operation/control/guards.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace microinjection {
+namespace {
+
+constexpr double kSpeedWindow = 0.02;  ///< s
+constexpr double kSlack = 1e-6;        ///< m, of a leash: what encoders and a thermal drift do
+
+/// `of`: what `what` ends with.
+std::string beyond(const char* what, double value, double limit, const char* unit, const char* of = "") {
+  if (value <= limit) return "";
+  std::ostringstream text;
+  text << what << of << ' ' << value << ' ' << unit << ", allowed " << limit << ' ' << unit;
+  return text.str();
+}
+
+}  // namespace
+
+GuardConfig GuardConfig::read(ConfigReader& reader) {
+  GuardConfig config;
+  reader.number("speed_limit", config.speed_limit, Range::positive());
+  reader.number("jump_limit", config.jump_limit, Range::positive());
+  reader.number("lag_limit", config.lag_limit, Range::positive());
+  reader.number("tracking_limit", config.tracking_limit, Range::positive());
+  reader.number("needle_speed_limit", config.needle_speed_limit, Range::positive());
+  reader.number("force_limit", config.force_limit, Range::positive());
+  reader.number("lateral_force_limit", config.lateral_force_limit, Range::positive());
+  reader.number("depth_limit", config.depth_limit, Range::positive());
+  reader.number("time_limit", config.time_limit, Range::positive());
+  return config;
+}
+
+double NeedleSpeed::step(const Eigen::Vector3d& position, double dt) {
+  for (Past& past : past_) past.age += dt;
+  while (past_.size() > 1 && past_[1].age >= kSpeedWindow) past_.pop_front();
+  const bool enough = !past_.empty() && past_.front().age >= kSpeedWindow;
+  const double speed = enough ? (position - past_.front().position).norm() / past_.front().age : 0;
+  past_.push_back({position, 0});
+  return speed;
+}
+
+double leash(const GuardConfig& config, double lag) {
+  return 2 * std::min(config.lag_limit, config.speed_limit * lag) + kSlack;
+}
+
+std::string rigFault(const GuardConfig& config, const Eigen::Vector3d& needle, const Eigen::Vector3d& setpoint,
+                     double speed) {
+  const double error = (needle - setpoint).norm();
+  if (error > config.tracking_limit) {
+    std::ostringstream text;
+    text << "the needle is " << error << " m from its set-point, allowed " << config.tracking_limit << " m";
+    return text.str();
+  }
+  return beyond("the needle moves at", speed, config.needle_speed_limit, "m/s");
+}
+
+std::string forceGuard(const GuardConfig& config, const Eigen::Vector3d& force, const Eigen::Vector3d& axis) {
+  const double along = force.dot(axis);
+  std::string reason = beyond("force along the pipette", std::abs(along), config.force_limit, "N");
+  if (!reason.empty()) return reason;
+  return beyond("force across the pipette", (force - along * axis).norm(), config.lateral_force_limit, "N");
+}
+
+std::string depthGuard(const GuardConfig& config, double depth) {
+  return beyond("depth past the touch", depth, config.depth_limit, "m");
+}
+
+std::string timeGuard(const GuardConfig& config, const char* state, double time) {
+  return beyond("time in state ", time, config.time_limit, "s", state);
+}
+
+}  // namespace microinjection

@@ -1,0 +1,137 @@
+// What people and programs ask of the controller.
+
+#include <sstream>
+#include <utility>
+
+#include "operation/control/injection_controller.h"
+
+namespace microinjection {
+
+std::string InjectionController::command(const std::string& command) {
+  std::string refusal = heed(command);
+  notice_ = refusal.empty() ? "" : command + " refused: " + refusal;
+  return refusal;
+}
+
+std::string InjectionController::heed(const std::string& command) {
+  if (command == "approach") return start(config_.goal);
+  if (command == "indent") return takeWord(InjectionEvent::kIndent);
+  if (command == "inject") return takeWord(InjectionEvent::kInject);
+  if (command == "withdraw") return withdraw();
+  return obey(command);
+}
+
+std::string InjectionController::obey(const std::string& word) {
+  const auto command = stateCommandOf(word);
+  if (!command) {
+    return "\"" + word +
+           "\" is no command here; allowed: enable, disable, pause, resume, home, unhome, approach, indent, inject, "
+           "withdraw";
+  }
+  std::string refusal = *command == StateCommand::kHome ? goHome() : change(*command);
+  if (!refusal.empty()) return refusal;
+  homing_ = *command == StateCommand::kHome;
+  if (*command != StateCommand::kUnhome) paused_ = *command == StateCommand::kPause;
+  monitor_.skip();  // what comes next is no sequel of the motion until now
+  target_offset_.reset();
+  return "";
+}
+
+/// CRTK's table, for all commands but home.
+std::string InjectionController::change(StateCommand command) {
+  const auto next = after(state_, command);
+  if (!next) return refusalOf(state_, command);
+  const OperatingState before = std::exchange(state_, *next);
+  switch (command) {
+    case StateCommand::kDisable:
+      held_because_ = "DISABLED";
+      setpoint_.reset();
+      run_.end(InjectionOutcome::kDisabled, "disabled");
+      happen(InjectionEvent::kReset);
+      break;
+    case StateCommand::kEnable:
+      if (before != OperatingState::kEnabled) setpoint_.reset();
+      if (before == OperatingState::kFault) happen(InjectionEvent::kReset);
+      break;
+    case StateCommand::kPause:
+      held_because_ = "PAUSED";
+      break;
+    case StateCommand::kResume:
+      run_.rested();
+      break;
+    case StateCommand::kUnhome:
+      unhomed_ = true;
+      run_.end(InjectionOutcome::kPreempted, "unhome");
+      break;
+    case StateCommand::kHome:
+      break;
+  }
+  return "";
+}
+
+/// Beyond CRTK's table PAUSED allows it, too: it is the way out of the cell when a guard holds the needle.
+std::string InjectionController::goHome() {
+  const bool allowed = state_ == OperatingState::kEnabled || state_ == OperatingState::kPaused;
+  if (!allowed) return std::string("state is ") + toText(state_) + ", home is allowed in ENABLED, PAUSED";
+  if (!setpoint_) return "the needle's position is not known yet";
+  state_ = OperatingState::kEnabled;
+  run_.end(InjectionOutcome::kPreempted, "home");
+  happen(InjectionEvent::kWithdraw);
+  return "";
+}
+
+std::string InjectionController::start(const InjectionGoal& goal) {
+  if (byHand()) return "mode is manual: the hand moves the needle";
+  if (state_ != OperatingState::kEnabled)
+    return std::string("state is ") + toText(state_) + ", an injection starts in ENABLED";
+  if (unhomed_) return kNotHomed;
+  if (!setpoint_) return "the needle's position is not known yet";
+  if (homing_ || injection_ != InjectionState::kIdle) {
+    return std::string("an injection starts in idle, the needle is in ") + (homing_ ? "homing" : toText(injection_));
+  }
+  if (monitor_.touched()) return "the needle is in the cell; withdraw or home takes it out";
+  std::string problems = goal.problems();
+  if (!problems.empty()) return problems;
+  if (goal.depth > config_.guards.depth_limit) {
+    std::ostringstream text;
+    text << "depth = " << goal.depth << " m, allowed up to depth_limit = " << config_.guards.depth_limit << " m";
+    return text.str();
+  }
+  run_.start(goal, *setpoint_);
+  monitor_.reset();
+  happen(InjectionEvent::kStart);
+  return "";
+}
+
+std::string InjectionController::takeWord(InjectionEvent event) {
+  if (state_ != OperatingState::kEnabled)
+    return std::string("state is ") + toText(state_) + ", it is allowed in ENABLED";
+  if (unhomed_) return kNotHomed;
+  if (!byHand()) return run_.confirm(event, injection_);
+  if (event != InjectionEvent::kInject) return "mode is manual: the hand moves the needle";
+  if (injection_ != InjectionState::kPunctured) return std::string("it is no step from ") + toText(injection_);
+  if (!held_because_.empty() && held_because_ != kNoTarget) return "the needle is held: " + held_because_;
+  if (config_.goal.pulse.duration <= 0) return "the goal has no pulse";
+  hand_pulse_.start(config_.goal.pulse, config_.motion.injector_patience);
+  pulse_by_hand_ = true;
+  happen(InjectionEvent::kInject);
+  return "";
+}
+
+std::string InjectionController::withdraw() {
+  if (byHand()) return "mode is manual: the hand withdraws the needle, or home";
+  const bool held = state_ == OperatingState::kEnabled || state_ == OperatingState::kPaused;
+  if (!held || !setpoint_)
+    return std::string("state is ") + toText(state_) + ", withdraw is allowed in ENABLED and PAUSED";
+  // Left in the cell by an injection that was disabled: it is known where it came from.
+  if (injection_ == InjectionState::kIdle && monitor_.touched() && !homing_) return obey("home");
+  if (homing_ || !after(injection_, InjectionEvent::kWithdraw)) {
+    return std::string("there is nothing to withdraw from in ") + (homing_ ? "homing" : toText(injection_));
+  }
+  state_ = OperatingState::kEnabled;
+  run_.withdraw();
+  happen(InjectionEvent::kWithdraw);
+  return "";
+}
+
+}  // namespace microinjection

@@ -1,0 +1,291 @@
+#include "operation/control/injection_controller.h"
+
+#include <algorithm>
+#include <limits>
+#include <sstream>
+
+namespace microinjection {
+namespace {
+
+constexpr double kOut = 1e-6;  ///< m before the touch, where a needle is out of the cell
+
+// Beyond these an announcement is a mistake: the fastest micromanipulators do some 0.02 m/s, and the slowest serial
+// line takes a fraction of a second for a command.
+constexpr double kSlowestRig = 1e-6;  ///< m/s: a slower one would hold the needle without saying so
+constexpr double kFastestRig = 1;     ///< m/s
+constexpr double kLatestRig = 10;     ///< s
+
+bool trusted(const std::optional<Eigen::Vector3d>& value) { return value && value->allFinite(); }
+
+}  // namespace
+
+InjectionController::InjectionController(const InjectionControllerConfig& config)
+    : config_(config),
+      monitor_(config.detection),
+      run_(config.motion, config.guards, config.mode == "automatic"),
+      leash_(leash(config.guards, std::numeric_limits<double>::infinity())) {}
+
+std::string InjectionController::adaptTo(double speed, double lag) {
+  const Range speeds = Range::closed(kSlowestRig, kFastestRig), lags = Range::closed(0, kLatestRig);
+  std::ostringstream refusal;
+  if (!speeds.contains(speed)) {
+    refusal << "speed = " << speed << " m/s, allowed " << speeds.text() << " m/s";
+  } else if (!lags.contains(lag)) {
+    refusal << "lag = " << lag << " s, allowed " << lags.text() << " s";
+  }
+  if (refusal.tellp() > 0) return refusal.str();
+  rig_speed_ = std::min(speed, lag > 0 ? config_.guards.lag_limit / lag : speed);
+  leash_ = leash(config_.guards, lag);
+  run_.limitSpeed(rig_speed_);
+  return "";
+}
+
+bool InjectionController::busy() const {
+  return state_ == OperatingState::kEnabled &&
+         (homing_ || run_.active() || (!byHand() && injection_ == InjectionState::kWithdraw));
+}
+
+InjectionFeedback InjectionController::feedback() const {
+  const InjectionGoal& goal = run_.goal();
+  const int layer = goal.puncture ? run_.result().punctures + 1 : 0;
+  const int layers = goal.puncture ? goal.layers : 0;
+  return {injection_, layer, layers, monitor_.force(), monitor_.depth(), run_.result().duration};
+}
+
+void InjectionController::happen(InjectionEvent event) {
+  const auto next = after(injection_, event);
+  if (!next) return;
+  injection_ = *next;
+  if (event == InjectionEvent::kPuncture) ++punctures_;
+  if (event == InjectionEvent::kStart) {
+    punctures_ = 0;
+    hand_pulse_ = {};
+  }
+  if (injection_ != InjectionState::kInject) {
+    if (pulse_by_hand_ && event == InjectionEvent::kFail) notice_ = "the pulse was ended: " + held_because_;
+    if (pulse_by_hand_ && event == InjectionEvent::kWithdraw) notice_ = "the pulse was ended: the needle is withdrawn";
+    pulse_by_hand_ = false;
+  }
+  if (event == InjectionEvent::kLost || event == InjectionEvent::kOut) monitor_.rearm();
+  if (event == InjectionEvent::kOut && paused_) hold("PAUSED");
+}
+
+bool InjectionController::isInside(const Eigen::Vector3d& needle, const Eigen::Vector3d& axis) const {
+  return monitor_.touched() && monitor_.depthOf(needle, axis) > -kOut;
+}
+
+void InjectionController::takeHold(const Eigen::Vector3d& needle, const Eigen::Vector3d& axis) {
+  setpoint_ = needle;
+  needle_speed_.reset();
+  // In the cell the way out, the touch and the force at rest stay what they were when it set out.
+  if (isInside(needle, axis)) return;
+  monitor_.reset();
+  home_ = needle;
+  if (config_.mode == "automatic" && config_.start_when_enabled && state_ == OperatingState::kEnabled)
+    start(config_.goal);
+}
+
+std::optional<Eigen::Vector3d> InjectionController::step(const Input& input, double dt) {
+  const bool known = trusted(input.needle);
+  needle_known_ = needle_known_ || known;
+  if (state_ == OperatingState::kDisabled || state_ == OperatingState::kFault) {
+    // Taken out by somebody else it is out.
+    if (known && monitor_.touched() && !isInside(*input.needle, input.axis)) monitor_.reset();
+    return std::nullopt;
+  }
+  if (!known) {
+    loseNeedle(dt);
+    return setpoint_;  // before the first pose there is nothing to hold yet
+  }
+  if (!setpoint_) takeHold(*input.needle, input.axis);
+  if (rigIsAtFault(*input.needle, dt)) return std::nullopt;
+  observe(input, trusted(input.force), dt);
+  if (state_ == OperatingState::kPaused) {
+    watchPulse(input, dt);
+  } else if (homing_) {
+    stepHome(input, dt);
+  } else if (unhomed_ && injection_ != InjectionState::kWithdraw) {
+    holdUnhomed();
+  } else if (byHand()) {
+    if (const auto target = handTarget(input)) follow(*target, input, dt);
+  } else if (const auto target = ownTarget(input, dt)) {
+    move(*target - *setpoint_, input, dt);
+  }
+  return setpoint_;
+}
+
+void InjectionController::loseNeedle(double dt) {
+  held_because_ = "no trusted needle position";
+  target_offset_.reset();
+  monitor_.skip();
+  needle_speed_.reset();
+  endPulse(held_because_);
+  if (byHand() || !run_.active() || state_ != OperatingState::kEnabled) return;
+  if (injection_ == InjectionState::kIndent) stop(InjectionOutcome::kGuard, held_because_ + " while it indents");
+  const std::string late = run_.wait(injection_, dt);
+  if (!late.empty()) stop(InjectionOutcome::kGuard, late);
+}
+
+bool InjectionController::rigIsAtFault(const Eigen::Vector3d& needle, double dt) {
+  const std::string fault = rigFault(config_.guards, needle, *setpoint_, needle_speed_.step(needle, dt));
+  if (fault.empty()) return false;
+  held_because_ = fault;
+  state_ = OperatingState::kFault;
+  run_.end(InjectionOutcome::kFault, fault);
+  happen(InjectionEvent::kFail);
+  return true;
+}
+
+void InjectionController::observe(const Input& input, bool force_trusted, double dt) {
+  if (force_trusted) {
+    monitor_.step(*input.needle, input.axis, *input.force);
+  } else {
+    monitor_.skip();
+  }
+  if (!byHand()) return;
+  watchHandPulse(input, dt);
+  if (!force_trusted) return;
+  const auto event = observer_.step(injection_, monitor_, pulse_by_hand_ ? std::nullopt : input.injector);
+  if (event) happen(*event);
+}
+
+/// A pulse goes on while the needle is PAUSED, but not past its volume.
+void InjectionController::watchPulse(const Input& input, double dt) {
+  if (!run_.active() || injection_ != InjectionState::kInject) return;
+  if (!trusted(input.force)) return endPulse("no trusted force");
+  take(run_.step(injection_, monitor_, input.injector, *setpoint_, input.axis, dt));
+}
+
+std::optional<Eigen::Vector3d> InjectionController::handTarget(const Input& input) {
+  held_because_.clear();
+  if (!trusted(input.target)) held_because_ = kNoTarget;
+  if (!trusted(input.force)) held_because_ = "no trusted force";
+  if (!held_because_.empty()) {
+    target_offset_.reset();
+    if (!trusted(input.force)) endPulse(held_because_);
+    return std::nullopt;
+  }
+  // The hand may have gone anywhere while the needle was held: the target counts from where it is now.
+  if (!target_offset_) target_offset_ = *setpoint_ - *input.target;
+  return *input.target + *target_offset_;
+}
+
+std::string InjectionController::guard(const Input& input) const {
+  std::string reason = forceGuard(config_.guards, *input.force, input.axis);
+  if (reason.empty()) reason = depthGuard(config_.guards, monitor_.depth());
+  return reason;
+}
+
+void InjectionController::hold(const std::string& reason) {
+  state_ = OperatingState::kPaused;
+  held_because_ = reason;
+}
+
+void InjectionController::stop(InjectionOutcome outcome, const std::string& reason) {
+  run_.end(outcome, reason);
+  hold(reason);
+}
+
+/// A needle that is behind its set-point must not go on deeper to it.
+void InjectionController::stopNeedle(const Input& input) {
+  const double ahead = (*input.needle - *setpoint_).dot(input.axis);
+  *setpoint_ += std::max(0.0, ahead) * input.axis;
+}
+
+std::optional<Eigen::Vector3d> InjectionController::ownTarget(const Input& input, double dt) {
+  const bool out = injection_ == InjectionState::kWithdraw;
+  held_because_.clear();
+  if (!run_.active() && !out) {
+    held_because_ = "no injection is under way";
+    return std::nullopt;
+  }
+  if (!out && !trusted(input.force)) {
+    held_because_ = "no trusted force";
+    // What the membrane does meanwhile is not known.
+    if (injection_ == InjectionState::kIndent) {
+      stop(InjectionOutcome::kGuard, "no trusted force while it indents");
+      stopNeedle(input);
+    }
+    endPulse(held_because_);
+    return std::nullopt;
+  }
+  const std::string beyond = out ? "" : guard(input);
+  if (!beyond.empty()) {
+    stop(InjectionOutcome::kGuard, beyond);
+    stopNeedle(input);
+    return std::nullopt;
+  }
+  const InjectionRun::Step step = run_.step(injection_, monitor_, input.injector, *setpoint_, input.axis, dt);
+  if (take(step)) return step.target;
+  stopNeedle(input);
+  return std::nullopt;
+}
+
+/// What a step of the injection brings; whether it goes on.
+bool InjectionController::take(const InjectionRun::Step& step) {
+  if (step.event) happen(*step.event);
+  if (step.stop) stop(*step.stop, step.reason);
+  return !step.stop;
+}
+
+void InjectionController::stepHome(const Input& input, double dt) {
+  const Eigen::Vector3d& axis = input.axis;
+  held_because_ = "homing";
+  const Eigen::Vector3d way = home_ - *setpoint_;
+  const double out = way.dot(axis);
+  // First out of the cell along the pipette, then across, for a needle that goes sideways tears; never deeper.
+  move(out > 1e-9 ? Eigen::Vector3d(out * axis) : Eigen::Vector3d(way - out * axis), input, dt);
+  const Eigen::Vector3d left = home_ - *setpoint_;
+  if (std::max(0.0, left.dot(axis)) + (left - left.dot(axis) * axis).norm() > 1e-9) return;
+  homing_ = unhomed_ = false;
+  hold("PAUSED");
+  if (byHand()) return;
+  happen(InjectionEvent::kOut);
+  monitor_.rearm();
+}
+
+void InjectionController::holdUnhomed() {
+  held_because_ = kNotHomed;
+  target_offset_.reset();
+  endPulse(held_because_);
+}
+
+void InjectionController::follow(const Eigen::Vector3d& target, const Input& input, double dt) {
+  Eigen::Vector3d motion = target - *setpoint_;
+  if (motion.norm() > config_.guards.jump_limit) {
+    std::ostringstream text;
+    text << "target is " << motion.norm() << " m away, allowed " << config_.guards.jump_limit
+         << " m; press the clutch to take hold afresh";
+    held_because_ = text.str();
+    return;
+  }
+  const std::string beyond = guard(input);
+  if (!beyond.empty()) {
+    if (!limited_) stopNeedle(input);
+    held_because_ = beyond + ": the needle may only be withdrawn";
+    motion = input.axis * std::max(0.0, (target - *setpoint_).dot(input.axis));
+    // What was refused is forgotten: when the force falls, as in a puncture, the needle must not catch up with it.
+    refuse(target - *setpoint_ - motion);
+  }
+  limited_ = !beyond.empty();
+  if (!move(motion, input, dt)) refuse(motion);
+}
+
+void InjectionController::refuse(const Eigen::Vector3d& motion) {
+  if (target_offset_) *target_offset_ -= motion;
+}
+
+bool InjectionController::move(const Eigen::Vector3d& motion, const Input& input, double dt) {
+  const double largest = std::min(config_.guards.speed_limit, rig_speed_) * dt;
+  const Eigen::Vector3d next =
+      *setpoint_ + (motion.norm() > largest ? Eigen::Vector3d(motion * (largest / motion.norm())) : motion);
+  const double ahead = (next - *input.needle).norm();
+  if (ahead > leash_ && ahead > (*setpoint_ - *input.needle).norm()) {
+    held_because_ = "the needle does not follow its set-point";
+    return false;
+  }
+  *setpoint_ = next;
+  return true;
+}
+
+}  // namespace microinjection

@@ -1,0 +1,236 @@
+#include "operation/control/injection_run.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace microinjection {
+namespace {
+
+constexpr double kArrived = 0.3e-6;  ///< m that the needle may be behind its set-point and counts as there
+constexpr double kSettling = 0.5;    ///< s, after which it counts as there anyway
+
+}  // namespace
+
+InjectionMotionConfig InjectionMotionConfig::read(ConfigReader& reader) {
+  InjectionMotionConfig config;
+  reader.number("approach_speed", config.approach_speed, Range::positive());
+  reader.number("travel_limit", config.travel_limit, Range::positive());
+  reader.number("indent_speed", config.indent_speed, Range::positive());
+  reader.number("stab_speed", config.stab_speed, Range::positive());
+  reader.number("stab_acceleration", config.stab_acceleration, Range::positive());
+  reader.number("overshoot", config.overshoot, Range::positive());
+  reader.number("stop_time", config.stop_time, Range::nonNegative());
+  reader.number("retract_speed", config.retract_speed, Range::positive());
+  reader.number("injector_patience", config.injector_patience, Range::positive());
+  if (config.stab_speed < config.indent_speed) reader.error("stab_speed", "must not be below indent_speed");
+  return config;
+}
+
+InjectionRun::InjectionRun(const InjectionMotionConfig& config, const GuardConfig& guards, bool automatic)
+    : config_(config), guards_(guards), automatic_(automatic) {}
+
+void InjectionRun::start(const InjectionGoal& goal, const Eigen::Vector3d& tip) {
+  const double fastest = fastest_;
+  *this = InjectionRun(config_, guards_, automatic_);
+  fastest_ = fastest;
+  goal_ = goal;
+  start_ = tip;
+  active_ = true;
+}
+
+std::string InjectionRun::confirm(InjectionEvent event, InjectionState state) {
+  if (automatic_) return "the injection goes on by itself";
+  if (!active_) return "no injection is under way";
+  if (event == InjectionEvent::kInject && (injected_ || goal_.pulse.duration <= 0)) {
+    return injected_ ? "it is injected already" : "the goal has no pulse";
+  }
+  const bool fits = state == state_ && (event == InjectionEvent::kIndent ? state == InjectionState::kContact
+                                                                         : state == InjectionState::kPunctured);
+  if (!waits_ || !fits) return std::string("it is no step from ") + toText(state) + (waits_ ? "" : " yet");
+  confirmed_ = event;
+  return "";
+}
+
+InjectionOutcome InjectionRun::done() const {
+  if (injected_) return InjectionOutcome::kInjected;
+  const bool through = result_.punctures >= goal_.layers;
+  if (goal_.puncture && through && goal_.pulse.duration <= 0) return InjectionOutcome::kPunctured;
+  if (!goal_.puncture && state_ == InjectionState::kIndent && waits_) return InjectionOutcome::kIndented;
+  return InjectionOutcome::kPreempted;
+}
+
+void InjectionRun::withdraw() {
+  in_state_ = 0;  // also after a time guard on the way out
+  if (!active_ || outcome_ != InjectionOutcome::kNone) return;
+  outcome_ = done();
+}
+
+void InjectionRun::end(InjectionOutcome outcome, const std::string& reason) {
+  if (!active_) return;
+  active_ = waits_ = false;
+  result_.outcome = outcome;
+  result_.reason = reason;
+}
+
+void InjectionRun::leave(InjectionOutcome outcome, const std::string& reason, Step& step) {
+  outcome_ = outcome;
+  reason_ = reason;
+  step.event = InjectionEvent::kWithdraw;
+}
+
+/// Whether the step that `event` begins may be done now.
+bool InjectionRun::goOn(InjectionEvent event) {
+  waits_ = !automatic_;
+  if (automatic_) return true;
+  if (confirmed_ != event) return false;
+  confirmed_.reset();
+  waits_ = false;
+  return true;
+}
+
+std::string InjectionRun::wait(InjectionState state, double dt) {
+  in_state_ += dt;
+  return timeGuard(guards_, toText(state), in_state_);
+}
+
+InjectionRun::Step InjectionRun::step(InjectionState state, const NeedleMonitor& monitor,
+                                      const std::optional<InjectorReport>& injector, const Eigen::Vector3d& setpoint,
+                                      const Eigen::Vector3d& axis, double dt) {
+  if (state != state_) enter(state, monitor);
+  in_state_ += waits_ ? 0 : dt;
+  if (active_) {
+    result_.duration += dt;
+    result_.peak_force = std::max(result_.peak_force, monitor.peakForce());
+    result_.max_depth = std::max(result_.max_depth, monitor.maxDepth());
+  }
+  // From where the set-point is: it may have waited for the needle, or been taken back to it.
+  travel_ = std::min(travel_, (start_ - setpoint).dot(axis));
+  Step step;
+  waits_ = false;
+  if (state == InjectionState::kApproach) approach(monitor, dt, step);
+  if (state == InjectionState::kContact) contact(monitor, step);
+  if (state == InjectionState::kIndent) indent(monitor, dt, step);
+  if (state == InjectionState::kPunctured) through(monitor, dt, step);
+  if (state == InjectionState::kInject) inject(injector, dt, step);
+  if (state == InjectionState::kWithdraw) retract(dt, step);
+  step.target = start_ - travel_ * axis;
+  if (step.event || step.stop) return step;
+  step.reason = timeGuard(guards_, toText(state), in_state_);
+  if (!step.reason.empty()) step.stop = InjectionOutcome::kGuard;
+  return step;
+}
+
+void InjectionRun::enter(InjectionState state, const NeedleMonitor& monitor) {
+  state_ = state;
+  in_state_ = rested_ = speed_ = 0;
+  waits_ = false;
+  confirmed_.reset();
+  if (state == InjectionState::kContact) touch_travel_ = travel_;
+  if (state == InjectionState::kIndent) end_travel_ = touch_travel_ + std::min(goal_.depth, guards_.depth_limit);
+  if (state == InjectionState::kPunctured && !injected_) {
+    const double deep = std::min(monitor.depth() + goal_.margin, guards_.depth_limit);
+    end_travel_ = std::max(travel_, touch_travel_ + deep);
+  }
+  if (state == InjectionState::kInject) wait_.start(goal_.pulse, config_.injector_patience);
+}
+
+void InjectionRun::approach(const NeedleMonitor& monitor, double dt, Step& step) {
+  if (!monitor.ready()) return;
+  if (monitor.touched()) {
+    step.event = InjectionEvent::kTouch;
+    return;
+  }
+  travel_ = std::min(config_.travel_limit, travel_ + std::min(config_.approach_speed, fastest_) * dt);
+  if (travel_ >= config_.travel_limit) leave(InjectionOutcome::kNoContact, "no cell within the travel limit", step);
+}
+
+void InjectionRun::contact(const NeedleMonitor& monitor, Step& step) {
+  if (!monitor.confirmed()) return;
+  if (!*monitor.confirmed()) {
+    ++result_.false_touches;
+    step.event = InjectionEvent::kLost;
+    return;
+  }
+  if (goOn(InjectionEvent::kIndent)) step.event = InjectionEvent::kIndent;
+}
+
+double InjectionRun::stabSpeed(const NeedleMonitor& monitor, double dt) const {
+  // A membrane behind must not fail in the same fall, in which it would not be felt.
+  const double overshoot = (result_.punctures + 1 < goal_.layers ? 0.5 : 1) * config_.overshoot;
+  const double fast = overshoot / (monitor.latency() * dt + config_.stop_time);
+  const double wanted = std::clamp(goal_.puncture ? fast : 0, config_.indent_speed, config_.stab_speed);
+  const double faster = std::min(wanted, std::max(speed_, config_.indent_speed) + config_.stab_acceleration * dt);
+  const double room = end_travel_ - travel_ - std::max(speed_, faster) * (config_.stop_time + dt);
+  const double braking = std::sqrt(2 * config_.stab_acceleration * std::max(0.0, room));
+  return std::max(config_.indent_speed, std::min(std::max(speed_, faster), braking));
+}
+
+void InjectionRun::indent(const NeedleMonitor& monitor, double dt, Step& step) {
+  if (monitor.punctured()) {
+    countPuncture(monitor, step);
+    return;
+  }
+  speed_ = stabSpeed(monitor, dt);
+  travel_ = std::min(end_travel_, travel_ + std::min(speed_, fastest_) * dt);
+  if (travel_ < end_travel_) return;
+  rested_ += dt;
+  const bool there = monitor.depth() >= end_travel_ - touch_travel_ - kArrived || rested_ > kSettling;
+  if (goal_.puncture && there) {
+    step.stop = InjectionOutcome::kNotPunctured;
+    step.reason = "the membrane has not given way at the goal's depth";
+  }
+  if (!goal_.puncture && rested_ >= goal_.hold_time) {
+    waits_ = !automatic_;
+    if (automatic_) leave(InjectionOutcome::kIndented, "", step);
+  }
+}
+
+void InjectionRun::countPuncture(const NeedleMonitor& monitor, Step& step) {
+  ++result_.punctures;
+  result_.puncture_force = monitor.forceBefore();
+  result_.puncture_depth = monitor.depth();
+  step.event = InjectionEvent::kPuncture;
+}
+
+void InjectionRun::through(const NeedleMonitor& monitor, double dt, Step& step) {
+  if (result_.punctures < goal_.layers) {
+    step.event = InjectionEvent::kIndent;
+    return;
+  }
+  travel_ = std::min(end_travel_, travel_ + std::min(config_.indent_speed, fastest_) * dt);
+  const bool there = monitor.depth() >= end_travel_ - touch_travel_ - kArrived;
+  if (travel_ < end_travel_ || !(there || in_state_ > kSettling)) return;
+  const bool injects = goal_.pulse.duration > 0 && !injected_;
+  if (injects) {
+    if (goOn(InjectionEvent::kInject)) step.event = InjectionEvent::kInject;
+    return;
+  }
+  waits_ = !automatic_;
+  rested_ += dt;
+  if (automatic_ && rested_ >= goal_.hold_time) leave(done(), "", step);
+}
+
+void InjectionRun::inject(const std::optional<InjectorReport>& injector, double dt, Step& step) {
+  const InjectorWait::Status status = wait_.step(injector, dt);
+  result_.volume = wait_.volume();
+  if (status == InjectorWait::Status::kOver) {
+    injected_ = true;
+    step.event = InjectionEvent::kInjected;
+  }
+  if (status == InjectorWait::Status::kBroken) {
+    return leave(InjectionOutcome::kNotInjected, "the pulse was broken off, or gave less than its volume", step);
+  }
+  if (status != InjectorWait::Status::kTimeOut) return;
+  if (injector) return leave(InjectionOutcome::kInjectorTimeOut, "the injector has not finished", step);
+  step.stop = InjectionOutcome::kInjectorTimeOut;
+  step.reason = "no trusted word of the injector";
+}
+
+void InjectionRun::retract(double dt, Step& step) {
+  travel_ = std::max(0.0, travel_ - std::min(config_.retract_speed, fastest_) * dt);
+  if (travel_ > 0) return;
+  step.event = InjectionEvent::kOut;
+  end(outcome_, reason_);
+}
+
+}  // namespace microinjection

@@ -1,0 +1,87 @@
+#include "operation/control/needle_monitor.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace microinjection {
+namespace {
+
+/// Of the contact force: smaller noise is not believed, else a force without noise would be touched by its rounding.
+constexpr double kSmallestNoise = 0.1;
+constexpr double kFalselyConfirmed = 1e-4;
+constexpr int kSmoothed = 32;  ///< samples
+constexpr int kBriefly = 8;    ///< samples, to find the crest of a force that rises in tens of milliseconds
+
+}  // namespace
+
+DetectionConfig DetectionConfig::read(ConfigReader& reader) {
+  DetectionConfig config;
+  reader.integer("noise_samples", config.noise_samples, Range::closed(20, 100000));
+  reader.number("contact_force", config.contact_force, Range::positive());
+  reader.number("contact_false_rate", config.contact_false_rate, Range::open(0, 0.01));
+  reader.integer("confirm_samples", config.confirm_samples, Range::closed(1, 10000));
+  reader.number("puncture_drop", config.puncture_drop, Range::open(0, 1));
+  reader.number("puncture_false_rate", config.puncture_false_rate, Range::open(0, 0.01));
+  reader.integer("puncture_pause", config.puncture_pause, Range::closed(0, 10000));
+  return config;
+}
+
+NeedleMonitor::NeedleMonitor(const DetectionConfig& config)
+    : config_(config), noise_(config.noise_samples, kSmallestNoise * config.contact_force) {}
+
+void NeedleMonitor::reset() { *this = NeedleMonitor(config_); }
+
+void NeedleMonitor::rearm() {
+  if (contact_) contact_->reset();
+  skip();
+  touched_at_.reset();
+  confirmed_.reset();
+  looked_ = 0;
+  looked_sum_ = depth_ = max_depth_ = peak_ = crest_ = force_before_ = 0;
+  punctured_ = false;
+}
+
+void NeedleMonitor::skip() {
+  travel_.reset();
+  if (puncture_) puncture_->reset();
+}
+
+double NeedleMonitor::force() const { return puncture_ ? puncture_->meanForce(kSmoothed) : 0; }
+
+void NeedleMonitor::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, const Eigen::Vector3d& force) {
+  const double axial = force.dot(axis);
+  punctured_ = false;
+  if (!noise_.ready()) {
+    noise_.add(axial);
+    if (!noise_.ready()) return;
+    contact_.emplace(noise_, config_.contact_force, config_.contact_false_rate);
+    puncture_.emplace(noise_, config_.puncture_drop, config_.puncture_false_rate, config_.puncture_pause);
+    return;
+  }
+  peak_ = std::max(peak_, std::abs(axial - offset()));
+  crest_ = std::max(crest_, puncture_->meanForce(kBriefly));
+  const double travel = -tip.dot(axis);
+  const bool fell = puncture_->step(axial - offset(), travel);
+  if (!touched_at_) {
+    const double advance = travel - travel_.value_or(travel);
+    travel_ = travel;
+    if (!contact_->step(axial, advance)) return;
+    touched_at_ = tip;
+  }
+  depth_ = depthOf(tip, axis);
+  max_depth_ = std::max(max_depth_, depth_);
+  if (!confirmed_) lookAgain(axial);
+  punctured_ = fell;
+  if (!fell) return;
+  force_before_ = crest_;
+  crest_ = 0;
+}
+
+void NeedleMonitor::lookAgain(double axial) {
+  looked_sum_ += axial - offset();
+  if (++looked_ < config_.confirm_samples) return;
+  const double uncertainty = noise_.deviation() * std::sqrt(1.0 / looked_ + 1.0 / config_.noise_samples);
+  confirmed_ = looked_sum_ / looked_ > normalQuantile(kFalselyConfirmed) * uncertainty;
+}
+
+}  // namespace microinjection

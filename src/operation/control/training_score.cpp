@@ -1,0 +1,168 @@
+#include "operation/control/training_score.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+#include "base/atomic_file.h"
+
+namespace microinjection {
+namespace {
+
+constexpr char kHeader[] =
+    "operator,session,outcome,peak_force_N,deformation_m,lateral_error_m,time_s,punctures,volume_m3,force_points,"
+    "deformation_points,lateral_points,time_points,punctures_points,volume_points,score\n";
+
+constexpr double kSetOut = 1e-6;  ///< m that the tip has moved when it has set out
+constexpr double kGaps = 0.05;    ///< share of the moments that may be left out
+
+/// Of the points: all up to the reference, none from twice the reference.
+double within(double value, double reference) { return std::clamp(2 - value / reference, 0.0, 1.0); }
+/// All at the reference, less by the relative difference.
+double at(double value, double reference) {
+  if (reference <= 0) return value <= 0 ? 1 : 0;
+  return std::max(0.0, 1 - std::abs(value - reference) / reference);
+}
+
+bool inCell(InjectionState state) {
+  return state == InjectionState::kContact || state == InjectionState::kIndent || state == InjectionState::kPunctured ||
+         state == InjectionState::kInject;
+}
+
+std::string contentOf(const std::string& path) {
+  if (!std::filesystem::exists(path)) return "";
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  if (!file) throw std::runtime_error(path + ": cannot be read");
+  return text.str();
+}
+
+}  // namespace
+
+TrainingTask TrainingTask::read(ConfigReader& reader) {
+  TrainingTask task;
+  reader.number("peak_force", task.peak_force, Range::positive());
+  reader.number("deformation", task.deformation, Range::positive());
+  reader.number("lateral_error", task.lateral_error, Range::positive());
+  reader.number("time", task.time, Range::positive());
+  reader.integer("punctures", task.punctures, Range::closed(0, 100));
+  reader.number("volume", task.volume, Range::nonNegative());
+  return task;
+}
+
+const char* toText(TrainingOutcome outcome) {
+  constexpr const char* kWords[] = {"complete", "aborted", "untrusted", "untouched"};
+  return kWords[static_cast<int>(outcome)];
+}
+
+void TrainingSession::addGap() {
+  if (state_ != InjectionState::kIdle || used_ > 0) ++left_out_;
+}
+
+void TrainingSession::add(const TrainingSample& sample) {
+  if (!std::isfinite(sample.time) || !sample.tip.allFinite() || !sample.axis.allFinite() || !sample.force.allFinite() ||
+      (sample.depth && !std::isfinite(*sample.depth))) {
+    addGap();
+    return;
+  }
+  state_ = sample.state;
+  fault_ = fault_ || state_ == InjectionState::kFault;
+  if (state_ != InjectionState::kIdle || used_ > 0) ++used_;
+  count(sample);
+  measured_.peak_force = std::max(measured_.peak_force, sample.force.norm());
+  follow(sample);
+  measureDepth(sample);
+}
+
+/// Punctures and volume: what has been added since the sample before.
+void TrainingSession::count(const TrainingSample& sample) {
+  if (punctures_) measured_.punctures += sample.punctures - (sample.punctures < *punctures_ ? 0 : *punctures_);
+  punctures_ = sample.punctures;
+  if (!std::isfinite(sample.volume)) return;
+  const bool through = state_ == InjectionState::kPunctured || state_ == InjectionState::kInject;
+  if (volume_ && through) measured_.volume += sample.volume - *volume_;
+  volume_ = sample.volume;
+}
+
+/// When the needle set out, and when it was last at work.
+void TrainingSession::follow(const TrainingSample& sample) {
+  if (state_ == InjectionState::kIdle) return;
+  if (!start_) start_ = sample.tip;
+  moving_ = moving_ || (sample.tip - *start_).norm() > kSetOut;
+  if (!moving_) began_ = sample.time;
+  if (state_ != InjectionState::kApproach) measured_.time = sample.time - began_;
+}
+
+void TrainingSession::measureDepth(const TrainingSample& sample) {
+  if (!sample.depth) {
+    entry_.reset();
+    return;
+  }
+  touched_ = true;
+  if (!entry_) entry_ = sample.tip + *sample.depth * sample.axis;
+  if (measured_.punctures == 0) measured_.deformation = std::max(measured_.deformation, *sample.depth);
+  if (!inCell(state_)) return;
+  const Eigen::Vector3d way = sample.tip - *entry_;
+  measured_.lateral_error = std::max(measured_.lateral_error, (way - way.dot(sample.axis) * sample.axis).norm());
+}
+
+void TrainingSession::judge(TrainingScore& score) const {
+  const bool out = state_ == InjectionState::kIdle || state_ == InjectionState::kApproach;
+  score.outcome = TrainingOutcome::kComplete;
+  if (fault_ || !out) {
+    score.outcome = TrainingOutcome::kAborted;
+    score.reason = fault_ ? "the rig was at fault" : std::string("it ended in ") + toText(state_);
+  }
+  if (left_out_ > kGaps * (used_ + left_out_)) {
+    score.outcome = TrainingOutcome::kUntrusted;
+    score.reason = "needle or force was not trusted in " + std::to_string(left_out_) + " of " +
+                   std::to_string(used_ + left_out_) + " moments";
+  }
+  if (!touched_) {
+    score.outcome = TrainingOutcome::kUntouched;
+    score.reason = "no cell was touched";
+  }
+}
+
+TrainingScore TrainingSession::score(const TrainingTask& task) const {
+  TrainingScore score = measured_;
+  judge(score);
+  if (score.outcome != TrainingOutcome::kComplete) return score;
+  score.points.force = kTrainingPoints.force * within(score.peak_force, task.peak_force);
+  score.points.deformation = kTrainingPoints.deformation * within(score.deformation, task.deformation);
+  score.points.lateral = kTrainingPoints.lateral * within(score.lateral_error, task.lateral_error);
+  score.points.time = kTrainingPoints.time * within(score.time, task.time);
+  score.points.punctures = kTrainingPoints.punctures * at(score.punctures, task.punctures);
+  score.points.volume = kTrainingPoints.volume * at(score.volume, task.volume);
+  return score;
+}
+
+void checkTrainingName(const std::string& text) {
+  if (text.empty() || text.find_first_of(",\"\r\n") != std::string::npos) {
+    throw std::invalid_argument("\"" + text + "\": must be a text without comma, quote and line break");
+  }
+}
+
+void appendTrainingRow(const std::string& path, const std::string& operator_name, const std::string& session,
+                       const TrainingScore& score) {
+  checkTrainingName(operator_name);
+  checkTrainingName(session);
+  std::string content = contentOf(path);
+  if (content.empty()) content = kHeader;
+  if (content.rfind(kHeader, 0) != 0) throw std::runtime_error(path + ": is not a history of training sessions");
+  if (content.back() != '\n') content += '\n';
+  std::ostringstream row;
+  row.precision(6);
+  const TrainingScore::Points& points = score.points;
+  row << operator_name << ',' << session << ',' << toText(score.outcome) << ',' << score.peak_force << ','
+      << score.deformation << ',' << score.lateral_error << ',' << score.time << ',' << score.punctures << ','
+      << score.volume << ',' << points.force << ',' << points.deformation << ',' << points.lateral << ',' << points.time
+      << ',' << points.punctures << ',' << points.volume << ',' << score.score() << '\n';
+  writeFileAtomically(path, content + row.str());
+}
+
+}  // namespace microinjection

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "operation/display/triangle_soup.h"
+
+namespace microinjection {
+
+/// Struts and cables of a cell that has some, as the simulator reports them.
+struct CellMembers {
+  static constexpr int kStrut = 0, kActin = 1, kIntermediate = 2;
+
+  std::vector<Eigen::Vector3d> points;  ///< m, from and to of each
+  std::vector<double> forces;           ///< N, of each, positive where it pulls
+  std::vector<int> kinds;               ///< of each
+
+  /// Empty when they can be drawn, otherwise what is wrong: not finite, or lengths that do not fit.
+  std::string defect() const;
+  double largestTension() const;  ///< N; 0 without any
+};
+
+/// Segments with a colour for each of their points, display units.
+struct ColouredLines {
+  LineList lines;
+  std::vector<Colour> colours;
+};
+
+/// The struts, in one colour.
+ColouredLines strutLines(const CellMembers& members);
+/// The cables, coloured by tension from 0 to `range` (N, > 0); a slack one is grey.
+ColouredLines cableLines(const CellMembers& members, double range);
+
+}  // namespace microinjection

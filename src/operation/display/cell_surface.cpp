@@ -1,0 +1,94 @@
+#include "operation/display/cell_surface.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <set>
+#include <utility>
+
+#include "operation/display/display_scale.h"
+#include "operation/display/shading.h"
+
+namespace microinjection {
+namespace {
+
+bool indicesFit(const std::vector<int>& indices, std::size_t size) {
+  return std::all_of(indices.begin(), indices.end(),
+                     [size](int index) { return index >= 0 && static_cast<std::size_t>(index) < size; });
+}
+
+}  // namespace
+
+std::string CellSurface::defect() const {
+  const std::size_t size = vertices.size();
+  if (size == 0 || triangles.empty()) return "surface is empty";
+  if (displacement.size() != size) return "displacement has another length than vertices";
+  for (const auto& triangle : triangles) {
+    if (!indicesFit({triangle.begin(), triangle.end()}, size)) return "triangles name a vertex that is not there";
+  }
+  if (!indicesFit(contact_vertices, size)) return "contact_vertices name a vertex that is not there";
+  if (!indicesFit(held_vertices, size)) return "held_vertices name a vertex that is not there";
+  for (std::size_t i = 0; i < size; ++i) {
+    if (!vertices[i].allFinite() || !std::isfinite(displacement[i])) return "surface is not finite";
+  }
+  return "";
+}
+
+double CellSurface::largestDisplacement() const {
+  return displacement.empty() ? 0 : *std::max_element(displacement.begin(), displacement.end());
+}
+
+std::vector<Eigen::Vector3d> vertexNormals(const CellSurface& surface) {
+  std::vector<Eigen::Vector3d> normals(surface.vertices.size(), Eigen::Vector3d::Zero());
+  for (const auto& [a, b, c] : surface.triangles) {
+    const Eigen::Vector3d& origin = surface.vertices[a];
+    const Eigen::Vector3d area = (surface.vertices[b] - origin).cross(surface.vertices[c] - origin);
+    for (const int vertex : {a, b, c}) normals[vertex] += area;
+  }
+  // stableNormalize, because areas of square micrometres are below the threshold of normalize.
+  for (Eigen::Vector3d& normal : normals) normal.stableNormalize();
+  return normals;
+}
+
+TriangleSoup colouredSurface(const CellSurface& surface, double range) {
+  const std::vector<Eigen::Vector3d> normals = vertexNormals(surface);
+  TriangleSoup soup;
+  soup.points.reserve(3 * surface.triangles.size());
+  soup.colours.reserve(3 * surface.triangles.size());
+  for (const auto& triangle : surface.triangles) {
+    for (const int vertex : triangle) {
+      soup.points.push_back(toDisplay(surface.vertices[vertex]));
+      soup.colours.push_back(
+          shaded(colourOfFraction(surface.displacement[vertex] / range), lampLight(normals[vertex])));
+    }
+  }
+  return soup;
+}
+
+LineList edges(const CellSurface& surface, double lift) {
+  const std::vector<Eigen::Vector3d> normals = vertexNormals(surface);
+  const auto lifted = [&](int vertex) -> Eigen::Vector3d {
+    return toDisplay(surface.vertices[vertex]) + lift * normals[vertex];
+  };
+  std::set<std::pair<int, int>> unique;
+  for (const auto& [a, b, c] : surface.triangles) {
+    for (const auto& edge : {std::minmax({a, b}), std::minmax({b, c}), std::minmax({c, a})}) unique.insert(edge);
+  }
+  LineList lines;
+  lines.reserve(2 * unique.size());
+  for (const auto& [a, b] : unique) {
+    lines.push_back(lifted(a));
+    lines.push_back(lifted(b));
+  }
+  return lines;
+}
+
+std::vector<Eigen::Vector3d> pointsAt(const CellSurface& surface, const std::vector<int>& vertices) {
+  std::vector<Eigen::Vector3d> points;
+  points.reserve(vertices.size());
+  for (const int vertex : vertices) points.push_back(toDisplay(surface.vertices[vertex]));
+  return points;
+}
+
+}  // namespace microinjection

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "operation/display/triangle_soup.h"
+
+namespace microinjection {
+
+/// The cell's deformed surface as the simulator reports it.
+struct CellSurface {
+  std::vector<Eigen::Vector3d> vertices;      ///< m
+  std::vector<std::array<int, 3>> triangles;  ///< counterclockwise as seen from outside
+  std::vector<double> displacement;           ///< m, magnitude at each vertex
+  std::vector<int> contact_vertices;
+  std::vector<int> held_vertices;
+
+  /// Empty when the surface can be drawn, otherwise what is wrong: not finite, or an index or length that does not fit.
+  std::string defect() const;
+  double largestDisplacement() const;  ///< m
+};
+
+/// Outward unit normals at the vertices, weighted with the triangles' areas; zero at a vertex without triangles.
+std::vector<Eigen::Vector3d> vertexNormals(const CellSurface& surface);
+
+/// The surface coloured by displacement from 0 to `range` (m, > 0), in display units. Light from above the viewer is
+/// baked into the colours, because rviz does not light triangles that have colours of their own.
+TriangleSoup colouredSurface(const CellSurface& surface, double range);
+
+/// Each edge once, lifted off the surface by `lift` (display units) so that it is not hidden in it.
+LineList edges(const CellSurface& surface, double lift);
+
+/// The points at `vertices`, display units.
+std::vector<Eigen::Vector3d> pointsAt(const CellSurface& surface, const std::vector<int>& vertices);
+
+}  // namespace microinjection

@@ -1,0 +1,18 @@
+#include "operation/display/display_config.h"
+
+namespace microinjection {
+
+DisplayConfig DisplayConfig::read(ConfigReader& reader) {
+  DisplayConfig config;
+  reader.number("rate", config.rate, {0, 60, true, false});
+  reader.boolean("edges", config.edges);
+  reader.number("colour_range", config.colour_range, Range::nonNegative());
+  reader.number("force_scale", config.force_scale, Range::positive());
+  ConfigReader injection_pipette = reader.section("injection_pipette");
+  config.injection_pipette = InjectionPipette::read(injection_pipette);
+  ConfigReader holding_pipette = reader.section("holding_pipette");
+  config.holding_pipette = HoldingPipette::read(holding_pipette);
+  return config;
+}
+
+}  // namespace microinjection

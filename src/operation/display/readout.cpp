@@ -1,0 +1,57 @@
+#include "operation/display/readout.h"
+
+#include <cstddef>
+#include <cstdio>
+#include <sstream>
+
+namespace microinjection {
+namespace {
+
+/// Always with `decimals`, so that the text does not jump about as it changes; "-" when there is no value.
+std::string fixedFigure(const std::optional<double>& value, double unit, int decimals) {
+  if (!value) return "-";
+  char figure[64];
+  std::snprintf(figure, sizeof figure, "%.*f", decimals, *value / unit);
+  return figure;
+}
+
+/// Breaks a text at spaces into at most `most` lines of `width` characters, longer where a word is longer.
+std::vector<std::string> wrapped(const std::string& text, std::size_t width, std::size_t most) {
+  std::vector<std::string> result;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    if (!result.empty() && result.back().size() + 1 + word.size() <= width) {
+      result.back() += " " + word;
+    } else if (result.size() < most) {
+      result.push_back(word);
+    } else {
+      result.back() += " ...";
+      break;
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+std::string micro(double value, int digits) {
+  char figure[64];
+  std::snprintf(figure, sizeof figure, "%.*g", digits, value * 1e6);
+  return figure;
+}
+
+std::vector<ReadoutLine> lines(const Readout& readout) {
+  using About = ReadoutLine::About;
+  constexpr std::size_t kWidth = 20, kMostStateLines = 5;
+  std::vector<ReadoutLine> result;
+  for (const std::string& part : wrapped(readout.state, kWidth, kMostStateLines))
+    result.push_back({About::kState, part});
+  if (!readout.injection.empty()) result.push_back({About::kMotion, readout.injection});
+  result.push_back({About::kMotion, "depth " + fixedFigure(readout.indentation, 1e-6, 2) + " um"});
+  result.push_back({About::kPredicted, "predicted " + fixedFigure(readout.predicted, 1e-6, 3) + " uN"});
+  result.push_back({About::kMeasured, "measured " + fixedFigure(readout.measured, 1e-6, 3) + " uN"});
+  if (readout.hand) result.push_back({About::kMotion, "hand " + fixedFigure(readout.hand->z(), 1e-3, 1) + " mm"});
+  return result;
+}
+
+}  // namespace microinjection

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "operation/display/colour_map.h"
+
+namespace microinjection {
+
+/// Triangles as a renderer takes them: three points each, counterclockwise as seen from outside.
+struct TriangleSoup {
+  std::vector<Eigen::Vector3d> points;  ///< display units
+  std::vector<Colour> colours;          ///< one a point, or empty: the renderer's own colour
+
+  void add(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
+    points.push_back(a);
+    points.push_back(b);
+    points.push_back(c);
+  }
+};
+
+/// Segments of two points each; display units.
+using LineList = std::vector<Eigen::Vector3d>;
+
+}  // namespace microinjection

@@ -1,0 +1,150 @@
+#include "operation/record/training_log.h"
+
+#include <array>
+#include <cmath>
+#include <iomanip>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+
+#include "base/atomic_file.h"
+
+namespace microinjection {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+/// A measure beside its reference, in SI units, and what it earned.
+struct Item {
+  const char* key;  ///< of training.yaml
+  const char* name;
+  const char* unit;  ///< for people
+  double scale;      ///< of that unit, in SI
+  double value, reference, points, most;
+};
+
+std::array<Item, 6> items(const TrainingScore& score, const TrainingTask& task) {
+  const TrainingScore::Points& points = score.points;
+  constexpr const TrainingScore::Points& most = kTrainingPoints;
+  return {{{"peak_force_N", "peak force", "uN", 1e-6, score.peak_force, task.peak_force, points.force, most.force},
+           {"deformation_m", "deformation", "um", 1e-6, score.deformation, task.deformation, points.deformation,
+            most.deformation},
+           {"lateral_error_m", "lateral error", "um", 1e-6, score.lateral_error, task.lateral_error, points.lateral,
+            most.lateral},
+           {"time_s", "time", "s", 1, score.time, task.time, points.time, most.time},
+           {"punctures", "punctures", "", 1, double(score.punctures), double(task.punctures), points.punctures,
+            most.punctures},
+           {"volume_m3", "volume", "pL", 1e-15, score.volume, task.volume, points.volume, most.volume}}};
+}
+
+/// `"` and `\` are all that a double-quoted YAML text of one line must not hold bare.
+std::string quoted(const std::string& text) {
+  std::string result = "\"";
+  for (const char letter : text)
+    result += (letter == '"' || letter == '\\') ? std::string("\\") + letter : std::string(1, letter);
+  return result + '"';
+}
+
+std::string toYaml(const TrainingConfig& config, const std::string& session, const TrainingScore& score, int left_out) {
+  std::ostringstream out;
+  out.precision(9);
+  out << "operator: " << quoted(config.operator_name) << "\nsession: " << quoted(session)
+      << "\noutcome: " << toText(score.outcome) << "\nreason: " << quoted(score.reason) << "\nscore: " << score.score()
+      << "\nmoments_left_out: " << left_out << "\nmeasures:\n";
+  for (const Item& item : items(score, config.task)) {
+    out << "  " << item.key << ": {value: " << item.value << ", reference: " << item.reference
+        << ", points: " << item.points << ", of: " << item.most << "}\n";
+  }
+  return out.str();
+}
+
+std::string toText(const TrainingConfig& config, const std::string& session, const TrainingScore& score) {
+  std::ostringstream out;
+  out << "training of " << config.operator_name << ", session " << session << ": " << std::fixed;
+  if (score.outcome == TrainingOutcome::kComplete) {
+    out << std::setprecision(0) << score.score() << " of " << kTrainingPoints.sum() << " points";
+  } else {
+    out << toText(score.outcome) << ", no points: " << score.reason;
+  }
+  if (score.outcome == TrainingOutcome::kUntouched) return out.str() + "; it is not in the history";
+  for (const Item& item : items(score, config.task)) {
+    out << "\n  " << std::left << std::setw(14) << item.name << std::right << std::setprecision(2) << std::setw(8)
+        << item.value / item.scale << " of " << std::setw(6) << item.reference / item.scale << ' ' << std::left
+        << std::setw(2) << item.unit << std::right << std::setprecision(1) << std::setw(8) << item.points << " of "
+        << std::setprecision(0) << item.most;
+  }
+  return out.str();
+}
+
+}  // namespace
+
+TrainingConfig TrainingConfig::read(ConfigReader& reader) {
+  TrainingConfig config;
+  reader.text("operator", config.operator_name, ConfigReader::kRequired);
+  reader.text("history", config.history, ConfigReader::kRequired);
+  reader.choice("force", config.force, {"predicted", "measured"});
+  reader.choice("punctures", config.punctures, {"cell", "felt"});
+  ConfigReader task = reader.section("task");
+  config.task = TrainingTask::read(task);
+  try {
+    if (!config.operator_name.empty()) checkTrainingName(config.operator_name);
+  } catch (const std::invalid_argument& error) {
+    reader.error("operator", error.what());
+  }
+  return config;
+}
+
+int TrainingLog::puncturesOf(const SessionTable::Row& row) {
+  if (config_.punctures == "felt") return row.punctures;
+  const SessionTable::Cell& now = row.cell;
+  // Back in a hole that was there already, the layers that failed there are told at once.
+  const bool old_hole = cell_ && cell_->layers_punctured == 0 && cell_->holes == now.holes;
+  if (cell_ && !old_hole && now.layers_punctured > cell_->layers_punctured)
+    cell_punctures_ += static_cast<int>(now.layers_punctured - cell_->layers_punctured);
+  cell_ = now;
+  return cell_punctures_;
+}
+
+void TrainingLog::add(const SessionTable::Row& row) {
+  std::optional<Eigen::Vector3d> force = row.predicted;
+  if (config_.force == "measured") {
+    force.reset();
+    if (row.measured) force = Eigen::Vector3d(row.measured->lateral, 0, row.measured->axial);
+  }
+  const int punctures = puncturesOf(row);
+  if (!row.needle || !force) return session_.addGap();
+  TrainingSample sample;
+  sample.time = row.time;
+  sample.tip = row.needle->tip;
+  sample.axis = row.needle->axis;
+  sample.force = *force;
+  if (row.depth && *row.depth >= 0) sample.depth = row.depth;
+  sample.state = injectionStateOf(row.injection).value_or(InjectionState::kIdle);
+  sample.volume = row.volume.value_or(kUnknown);
+  sample.punctures = punctures;
+  session_.add(sample);
+}
+
+TrainingLog::Result TrainingLog::finish(const std::string& folder, const std::string& session) const {
+  Result result;
+  result.score = session_.score(config_.task);
+  result.text = toText(config_, session, result.score);
+  const auto attempt = [&result](const auto& write) {
+    try {
+      write();
+      return true;
+    } catch (const std::exception& error) {
+      result.errors.push_back(error.what());
+      return false;
+    }
+  };
+  attempt([&] {
+    writeFileAtomically(folder + "/training.yaml", toYaml(config_, session, result.score, session_.leftOut()));
+  });
+  result.in_history = result.score.outcome != TrainingOutcome::kUntouched && attempt([&] {
+                        appendTrainingRow(config_.history, config_.operator_name, session, result.score);
+                      });
+  return result;
+}
+
+}  // namespace microinjection

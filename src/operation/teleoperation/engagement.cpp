@@ -1,0 +1,68 @@
+#include "operation/teleoperation/engagement.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace microinjection {
+
+EngagementConfig EngagementConfig::read(ConfigReader reader) {
+  EngagementConfig config;
+  reader.choice("mode", config.alignment, {"index", "agree"});
+  reader.number("tolerance", config.tolerance, Range::positive());
+  reader.number("speed", config.speed, Range::positive());
+  reader.number("speed_limit", config.speed_limit, Range::positive());
+  reader.number("speed_time", config.speed_time, Range::nonNegative());
+  reader.number("rest_time", config.rest_time, Range::nonNegative());
+  reader.number("interruption", config.interruption, Range::nonNegative());
+  return config;
+}
+
+/// From the second sample on: the first fast one may be a late one, and what it says of the time before is unknown.
+bool Engagement::tooFast(const Input& input) {
+  if (input.speed <= config_.speed_limit) {
+    fast_.reset();
+  } else {
+    fast_ = fast_ ? *fast_ + input.dt : 0;
+  }
+  return fast_ && *fast_ >= config_.speed_time - 1e-9;
+}
+
+Engagement::State Engagement::step(const Input& input) {
+  why_.clear();
+  if (input.clutch) anchored_ = false;
+  const bool followed = state_ == State::kFollow;
+  const bool lost = followed && tooFast(input);
+  if (lost) rest_ = config_.rest_time;
+  if (input.held) {
+    if (followed) held_time_ = 0;
+    held_time_ += input.interrupted ? input.dt : std::numeric_limits<double>::infinity();
+    return state_ = State::kHeld;
+  }
+  if (followed && !lost) return state_;
+  const bool goes_on = state_ == State::kHeld && held_time_ <= config_.interruption && rest_ == 0;
+  held_time_ = std::numeric_limits<double>::infinity();
+  state_ = State::kAlign;
+  fast_.reset();
+  const bool fast = input.speed > (goes_on ? config_.speed_limit : config_.speed);
+  if (rest_ > 0) rest_ = fast ? config_.rest_time : std::max(0.0, rest_ - input.dt);
+  if (fast) {
+    why_ = "the hand is fast";
+  } else if (rest_ > 0) {
+    why_ = "the hand was too fast to be one that holds the device: rest";
+  } else if (!input.let_go) {
+    why_ = "the hand would set a speed: let go of the device first";
+  } else if (anchored_ && config_.alignment == "agree" && input.disagreement > config_.tolerance) {
+    why_ = "the hand is not where it left the needle: go back there, or press and release the clutch";
+  } else {
+    state_ = State::kFollow;
+    anchored_ = true;
+  }
+  return state_;
+}
+
+std::string Engagement::name(State state) {
+  if (state == State::kHeld) return "held";
+  return state == State::kAlign ? "align" : "follow";
+}
+
+}  // namespace microinjection

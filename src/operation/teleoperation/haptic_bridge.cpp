@@ -1,0 +1,114 @@
+#include "operation/teleoperation/haptic_bridge.h"
+
+#include <algorithm>
+
+namespace microinjection {
+namespace {
+
+bool trusted(const std::optional<Eigen::Vector3d>& value) { return value && value->allFinite(); }
+
+}  // namespace
+
+HapticBridgeConfig HapticBridgeConfig::read(ConfigReader& reader) {
+  HapticBridgeConfig config;
+  reader.number("force_gain", config.force_gain, Range::nonNegative());
+  reader.number("ramp_time", config.ramp_time, Range::nonNegative());
+  reader.boolean("require_operator", config.require_operator);
+  config.frame = FrameMappingConfig::read(reader);
+  config.motion = MotionMappingConfig::read(reader);
+  config.engagement = EngagementConfig::read(reader.section("alignment"));
+  config.tremor = TremorFilterConfig::read(reader.section("tremor_filter"));
+  config.fixtures = VirtualFixturesConfig::read(reader.section("fixtures"));
+  config.force = ForceSourceConfig::read(reader);
+  config.limits = ForceLimits::read(reader);
+  config.coupling = VirtualCouplingConfig::read(reader.section("coupling"));
+  config.passivity = PassivityConfig::read(reader.section("passivity"));
+  return config;
+}
+
+HapticBridgeConfig HapticBridgeConfig::beforeLink() const {
+  HapticBridgeConfig config = *this;
+  config.coupling.enabled = false;
+  config.coupling.lateness = 0;
+  config.passivity.behind_channel = true;
+  return config;
+}
+
+HapticBridge::HapticBridge(const HapticBridgeConfig& config)
+    : config_(config),
+      frame_(config.frame),
+      tremor_(config.tremor),
+      motion_(config.motion),
+      engagement_(config.engagement),
+      fixtures_(config.fixtures, config.motion.position_scale),
+      coupling_(config.coupling),
+      passivity_(config.passivity),
+      limiter_(config.limits) {}
+
+std::string HapticBridge::whyHeld(const Input& input, const std::optional<Eigen::Vector3d>& force) const {
+  if (!trusted(input.hand)) return "no trusted hand position";
+  if (!input.unfelt.empty()) return input.unfelt;
+  if (!trusted(input.needle)) return "no trusted needle position";
+  if (!force) return "no trusted force";
+  if (config_.require_operator && !input.operator_present) return "the operator is not present";
+  return input.clutch ? "clutch is pressed" : "";
+}
+
+void HapticBridge::begin(const Eigen::Vector3d& hand, const Eigen::Vector3d& needle, const Eigen::Vector3d& force) {
+  motion_.anchor(hand, needle);
+  tremor_.reset(hand);
+  coupling_.reset(force);
+  yield_start_ = coupling_.yield();
+  ramp_ = 0;
+}
+
+Eigen::Vector3d HapticBridge::render(const Eigen::Vector3d& wanted, double dt) {
+  const Eigen::Vector3d& force = limiter_.step(wanted, passivity_.velocity(), dt);
+  passivity_.setRendered(force);
+  return frame_.toDevice(force);
+}
+
+HapticBridge::Output HapticBridge::step(const Input& input, double dt) {
+  const std::optional<Eigen::Vector3d> tip_force = chooseForce(config_.force, input.force);
+  Output output;
+  output.held_because = whyHeld(input, tip_force);
+  if (!trusted(input.hand)) {
+    engagement_.step({true, input.clutch});
+    limiter_.release();
+    passivity_.reset();
+    return output;
+  }
+  const Eigen::Vector3d hand = frame_.toWorld(*input.hand);
+  const bool followed = engagement_.state() == Engagement::State::kFollow;
+  if (!followed) passivity_.pause();
+  passivity_.observe(hand, dt);
+
+  const bool held = !output.held_because.empty();
+  const bool interrupted =
+      held && input.unfelt.empty() && !input.clutch && (!config_.require_operator || input.operator_present);
+  const double speed = motion_.isRate() ? 0 : passivity_.velocity().norm();  // a stick may spring back
+  output.state = engagement_.step({held, input.clutch, speed, held ? 0 : motion_.disagreement(hand, *input.needle),
+                                   interrupted, dt, motion_.letGo(hand)});
+  if (output.state != Engagement::State::kFollow) {
+    if (!held) output.held_because = engagement_.why();
+    output.hand_force = render(Eigen::Vector3d::Zero(), dt);
+    return output;
+  }
+
+  const Eigen::Vector3d touched = config_.force_gain * *tip_force;
+  if (!followed) begin(hand, *input.needle, touched);
+  ramp_ = config_.ramp_time > 0 ? std::min(1.0, ramp_ + dt / config_.ramp_time) : 1.0;
+  // A deflection that sets a speed has nothing to yield. The first step is exactly where the needle is.
+  const bool yields = followed && !motion_.isRate();
+  const Eigen::Vector3d yield =
+      yields ? Eigen::Vector3d(coupling_.step(touched, dt) - yield_start_) : Eigen::Vector3d::Zero();
+  const VirtualFixtures::Result fixed = fixtures_.apply(motion_.step(tremor_.step(hand, dt) + yield, dt));
+  motion_.limitTo(fixed.target);
+  output.needle = fixed.target;
+  const Eigen::Vector3d met = touched + fixed.hand_force;
+  const Eigen::Vector3d felt = met - coupling_.contactDamping(passivity_.stiffness()) * passivity_.velocity();
+  output.hand_force = render(passivity_.control(ramp_ * felt, met, dt), dt);
+  return output;
+}
+
+}  // namespace microinjection

@@ -1,0 +1,115 @@
+#include "operation/teleoperation/wave_receiver.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace microinjection {
+namespace {
+
+// Share of the reserve that a wave is not held with while packets are late. A wave u that is held is taken back with
+// the correction time t as it goes on. What is too much of its integral after a time s is m = u t (1 - exp(-s / t)); it
+// has cost u^2 t (1 - exp(-2 s / t)) / 4, and giving it back when nothing more comes costs m^2 / (4 t), no more than
+// that.
+constexpr double kKept = 0.5;
+
+}  // namespace
+
+void WavePlayout::receive(const TeleoperationPacket& packet) {
+  const std::uint64_t sequence = packet.sequence;
+  if (sequence == 0 || !packet.value.allFinite() || !std::isfinite(packet.energy)) return;
+  if (newest_ == 0 && sequence >= kLength) return;  // too late to begin
+  if (static_cast<double>(sequence) < played_ || sequence + kLength <= newest_) return;
+  sent_[sequence % kLength] = {sequence, packet.value, packet.energy};
+  newest_ = std::max(newest_, sequence);
+}
+
+WavePlayout::Sent WavePlayout::at(double sequence) const {
+  // From what was played last, or what came in between, to the next that came.
+  auto after = static_cast<std::uint64_t>(std::ceil(sequence));
+  while (sent_[after % kLength].sequence != after) ++after;
+  const Sent& end = sent_[after % kLength];
+  Sent start = last_;
+  double from = played_;
+  for (auto before = static_cast<std::uint64_t>(std::floor(sequence)); static_cast<double>(before) > played_;
+       --before) {
+    if (sent_[before % kLength].sequence != before) continue;
+    start = sent_[before % kLength];
+    from = static_cast<double>(before);
+    break;
+  }
+  const double way = static_cast<double>(after) - from;
+  const double share = way > 0 ? (sequence - from) / way : 1;
+  return {0, start.integral + share * (end.integral - start.integral),
+          start.energy + share * (end.energy - start.energy)};
+}
+
+std::optional<WavePlayout::Advance> WavePlayout::advance() {
+  if (newest_ == 0) return std::nullopt;
+  constexpr double kPlayedOff = 1e-4, kFastest = 1e-2;  // 1 a period
+  if (++observed_ == kObserved) {
+    faster_ = std::min(kFastest, kPlayedOff * std::max(0.0, least_ - 2));
+    observed_ = 0;
+    least_ = kLength;
+  }
+  double next = played_ + 1 + faster_;
+  // Far behind, after a burst, what cannot be kept is skipped over as if it were lost.
+  next = std::max(next, static_cast<double>(newest_) - (kLength - 2));
+  if (next > static_cast<double>(newest_)) {
+    least_ = faster_ = 0;
+    return Advance{Eigen::Vector3d::Zero(), 0, true};
+  }
+  least_ = std::min(least_, buffered());
+  const Sent now = at(next);
+  const Advance advance{now.integral - last_.integral, now.energy - last_.energy, false};
+  last_ = now;
+  played_ = next;
+  return advance;
+}
+
+WaveReceiverConfig WaveReceiverConfig::read(ConfigReader& reader) {
+  WaveReceiverConfig config;
+  reader.number("filter_time", config.filter_time, Range::positive());
+  reader.number("shelf", config.shelf, Range::closed(0, 0.5));
+  reader.number("correction_time", config.correction_time, Range::positive());
+  reader.number("reserve", config.reserve, Range::positive());
+  return config;
+}
+
+void WaveReceiver::reset() {
+  playout_.reset();
+  for (Eigen::Vector3d* zero : {&slow_, &filtered_, &wave_, &wanted_, &let_out_}) zero->setZero();
+  in_ = out_ = 0;
+  credit_ = config_.reserve;
+}
+
+const Eigen::Vector3d& WaveReceiver::step(double round_trip, double dt) {
+  const auto advance = playout_.advance();
+  if (!advance) return wave_;
+  const double slowness = std::max(round_trip, dt);
+  if (!advance->waits) {
+    const Eigen::Vector3d wave = advance->integral / dt;
+    wanted_ += advance->integral;
+    slow_ += (1 - std::exp(-dt / slowness)) * (wave - slow_);
+    const Eigen::Vector3d shelved = wave + config_.shelf * (slow_ - wave);
+    filtered_ += (1 - std::exp(-dt / config_.filter_time)) * (shelved - filtered_);
+    in_ += advance->energy;
+    credit_ += advance->energy;
+  }
+  // The filters' own lag of the integral: time constant times output.
+  const Eigen::Vector3d missing =
+      wanted_ - let_out_ - config_.filter_time * filtered_ - config_.shelf * slowness * slow_;
+  wave_ = filtered_ + missing / config_.correction_time;
+  // What the filters hold will come out of them; what they have taken out is gone.
+  const double held =
+      0.5 * (config_.filter_time * filtered_.squaredNorm() + config_.shelf * slowness * slow_.squaredNorm());
+  const double spare = std::max(0.0, credit_ - (advance->waits ? held + kKept * config_.reserve : 0));
+  const double energy = 0.5 * wave_.squaredNorm() * dt;
+  if (energy > spare) wave_ *= std::sqrt(spare / energy);
+  const double spent = std::min(energy, spare);
+  let_out_ += dt * wave_;
+  out_ += spent;
+  credit_ = std::min(credit_ - spent, config_.reserve + held);
+  return wave_;
+}
+
+}  // namespace microinjection

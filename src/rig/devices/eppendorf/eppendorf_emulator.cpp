@@ -1,0 +1,121 @@
+#include "rig/devices/eppendorf/eppendorf_emulator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <regex>
+#include <vector>
+
+namespace microinjection {
+namespace {
+
+constexpr int kUnknown = 1, kNotRemote = 2, kParameters = 3, kBusy = 4;  // assumed
+
+/// Whole numbers, separated by spaces or by their signs; nothing else may be there.
+std::optional<std::vector<long>> numbersIn(const std::string& text) {
+  static const std::regex form(R"(( *[ +-]\d+)* *)"), number(R"([+-]?\d+)");
+  if (!std::regex_match(text, form)) return std::nullopt;
+  std::vector<long> numbers;
+  for (std::sregex_iterator each(text.begin(), text.end(), number), end; each != end; ++each) {
+    long value = 0;
+    if (!isWhole(each->str(), value)) return std::nullopt;
+    numbers.push_back(value);
+  }
+  return numbers;
+}
+
+}  // namespace
+
+std::string EppendorfEmulator::error(int code) const {
+  char text[16];
+  std::snprintf(text, sizeof(text), "ERR=%03d", code);
+  return text;
+}
+
+void EppendorfEmulator::obey(const std::string& command, double time) {
+  const std::string name = command.substr(0, 4);
+  const auto numbers = numbersIn(command.substr(std::min<std::size_t>(4, command.size())));
+  const bool goes = name == "C007" || name == "C012";
+  if (!numbers || numbers->size() != (goes ? 6u : 0u)) return answer(error(kParameters), time);
+  if ((goes || name == "C008") && !remote_) return answer(error(kNotRemote), time);
+  if (name == "C001") return answer("A001 5181 V1.08", time);
+  if (name == "C010") return answer(positionText(), time);
+  if (name == "C013") {
+    at_end_ = "A013";
+    return moves() ? void() : stand(time);
+  }
+  if (goes) {
+    if (moves()) return answer(error(kBusy), time);
+    std::array<long, 6> six{};
+    std::copy(numbers->begin(), numbers->end(), six.begin());
+    goTo(six, name == "C007" ? "A007" : "");
+    return name == "C012" ? answer("A012", time) : void();
+  }
+  if (name != "C003" && name != "C004" && name != "C005" && name != "C008") return answer(error(kUnknown), time);
+  stop();
+  if (name == "C003") place_.setZero();
+  remote_ = name == "C004" || (remote_ && name != "C005");
+  answer("A" + name.substr(1), time);
+}
+
+void EppendorfEmulator::goTo(const std::array<long, 6>& numbers, const std::string& answer_at_end) {
+  const double furthest = std::round(config_.travel / config_.microstep);
+  for (int i = 0; i < 3; ++i) {
+    speeds_[i] = static_cast<double>(std::abs(numbers[i + 3])) * 1e-6 / config_.microstep;
+    const double goal = std::round(static_cast<double>(numbers[i]) * 1e-6 / config_.microstep);
+    end_[i] = speeds_[i] == 0 ? place_[i] : std::clamp(goal, -furthest, furthest);
+  }
+  at_end_ = answer_at_end;
+  beginMoving();
+}
+
+void EppendorfEmulator::move(double time, double dt) {
+  for (int i = 0; i < 3; ++i) {
+    const double left = end_[i] - place_[i], step = speeds_[i] * dt;
+    place_[i] = std::abs(left) <= step ? end_[i] : place_[i] + std::copysign(step, left);
+  }
+  if (place_ == end_) stand(time);
+}
+
+void EppendorfEmulator::stand(double time) {
+  endMoving();
+  if (!at_end_.empty()) answer(at_end_ == "A007" ? "A007 " + std::to_string(limits()) : at_end_, time);
+  at_end_.clear();
+}
+
+void EppendorfEmulator::stop() {
+  place_ = place_.array().round();
+  endMoving();
+  at_end_.clear();
+}
+
+void EppendorfEmulator::interrupt(double /*time*/) { stop(); }
+
+void EppendorfEmulator::shiftByHand(const Eigen::Vector3d& way) {
+  place_ = (place_ + way / config_.microstep).array().round();
+}
+
+int EppendorfEmulator::limits() const {
+  const double furthest = std::round(config_.travel / config_.microstep);
+  int bits = 0;
+  for (int i = 0; i < 3; ++i) {
+    if (place_[i] <= -furthest) bits |= 1 << (2 * i);
+    if (place_[i] >= furthest) bits |= 2 << (2 * i);
+  }
+  return bits;
+}
+
+std::string EppendorfEmulator::positionText() const {
+  std::string text = "A010";
+  for (int i = 0; i < 3; ++i) {
+    const double um = place_[i] * config_.microstep * 1e6;
+    char number[24];
+    std::snprintf(number, sizeof(number), config_.signs_separate && i > 0 ? "%+.*f" : " %.*f", config_.decimals ? 2 : 0,
+                  std::abs(um) < 0.005 ? 0.0 : um);
+    text += std::string(number) == " -0" ? " 0" : number;
+  }
+  return text + " " + std::to_string(limits());
+}
+
+}  // namespace microinjection

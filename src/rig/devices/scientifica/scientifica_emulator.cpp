@@ -1,0 +1,140 @@
+#include "rig/devices/scientifica/scientifica_emulator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace microinjection {
+namespace {
+
+constexpr int kUnknown = 3;
+
+}  // namespace
+
+/// Settings of a card as it is delivered (ScanImage, Micro-Manager); those of version 3 are the same motion.
+ScientificaEmulator::ScientificaEmulator(const ScientificaEmulatorConfig& config)
+    : TextEmulator(config.answer_time), config_(config) {
+  if (config_.scale == 0) config_.scale = isOld() ? -6.4 : 1600;
+  top_ = isOld() ? 30000 : 2344;
+  first_ = isOld() ? 5000 : 391;
+  acc_ = isOld() ? 500 : 19531;
+}
+
+double ScientificaEmulator::stepsPerSecond(int top) const {
+  return (isOld() ? top / (2 * 6.4) : top) * 1e-6 * kStepsPerMetre;
+}
+
+double ScientificaEmulator::acceleration() const { return (isOld() ? 250 * acc_ / 6.4 : acc_) * 1e-6 * kStepsPerMetre; }
+
+void ScientificaEmulator::obey(const std::string& command, double time) {
+  const std::vector<std::string> words = capitalWords(command);
+  if (words.empty()) return;
+  if (words[0] == "STOP") {
+    stopping_ = true;
+    return answer("A", time);
+  }
+  if (words[0] == "ABS" || words[0] == "REL") return goTo(words, words[0] == "REL", time);
+  if (words[0] == "ZERO") {
+    if (moves()) return answer("E", time);
+    place_.setZero();
+    return answer("A", time);
+  }
+  if (!tell(words, time) && !set(words, time)) answer(error(kUnknown), time);
+}
+
+bool ScientificaEmulator::tell(const std::vector<std::string>& words, double time) {
+  const std::string& word = words[0];
+  char text[64] = "";
+  if (words.size() == 2 && word == "USTEP" && !isOld() && std::string("XYZ").find(words[1]) != std::string::npos) {
+    std::snprintf(text, sizeof(text), "%.2f", config_.scale);
+  } else if (words.size() != 1) {
+    return false;
+  } else if ((word == "UUX" || word == "UUY" || word == "UUZ") && isOld()) {
+    std::snprintf(text, sizeof(text), "%.2f", config_.scale);
+  } else if (word == "S") {
+    std::snprintf(text, sizeof(text), "%d", !moves() ? 0 : stopping_ ? 5 : 3);
+  } else if (word == "TOP" || word == "FIRST" || word == "ACC") {
+    std::snprintf(text, sizeof(text), "%d", word == "TOP" ? top_ : word == "FIRST" ? first_ : acc_);
+  } else if (word == "LIMITS") {
+    std::snprintf(text, sizeof(text), "0");
+  }
+  std::string told = text;
+  if (word == "SCIENTIFICA") told = config_.maker;
+  if (word == "VER") told = config_.version;
+  if (word == "DATE") told = "Scientifica " + config_.version + "\tJan 01 2020\t12:00:00";
+  if (word == "TYPE") told = isOld() ? "1.05" : "3.05";
+  if (word == "DESC") told = "PatchStar";
+  if (word == "P" || word == "POS") told = positionText();
+  if (told.empty()) return false;
+  answer(told, time);
+  return true;
+}
+
+bool ScientificaEmulator::set(const std::vector<std::string>& words, double time) {
+  long number = 0;
+  if (words.size() != 2 || !isWhole(words[1], number)) return false;
+  const bool speed = words[0] == "TOP" || words[0] == "FIRST";
+  if (!speed && words[0] != "ACC") return false;
+  const long least = !isOld() ? 1 : speed ? 1000 : 10, most = isOld() && !speed ? 1000 : isOld() ? 50000 : 1000000;
+  if (number < least || number > most) {
+    answer("E", time);
+    return true;
+  }
+  (words[0] == "TOP" ? top_ : words[0] == "FIRST" ? first_ : acc_) = static_cast<int>(number);
+  answer("A", time);
+  return true;
+}
+
+/// Two numbers are x and y, three are all axes.
+void ScientificaEmulator::goTo(const std::vector<std::string>& words, bool relative, double time) {
+  Eigen::Vector3d end = place_;
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    long number = 0;
+    if (i > 3 || !isWhole(words[i], number)) return answer(error(kUnknown), time);
+    end[static_cast<Eigen::Index>(i) - 1] =
+        (relative ? place_[static_cast<Eigen::Index>(i) - 1] : 0) + static_cast<double>(number) * stepsPerCount();
+  }
+  if (words.size() < 3) return answer(error(kUnknown), time);
+  if (moves()) return;
+  const double furthest = config_.travel * kStepsPerMetre;
+  end_ = end.array().round().max(-furthest).min(furthest);
+  answer("A", time);
+  stopping_ = false;
+  speed_ = std::min(stepsPerSecond(first_), stepsPerSecond(top_));
+  beginMoving();
+}
+
+void ScientificaEmulator::move(double /*time*/, double dt) {
+  // Small steps, so that the ramps do not depend on how often it is asked.
+  const double a = acceleration(), least = std::min(stepsPerSecond(first_), stepsPerSecond(top_));
+  for (double left = dt; left > 0 && moves(); left -= 0.2e-3) {
+    const double h = std::min(left, 0.2e-3), way = (end_ - place_).norm();
+    const bool brakes = stopping_ || speed_ * speed_ / (2 * a) >= way;
+    speed_ = brakes ? std::max(speed_ - a * h, least) : std::min(speed_ + a * h, stepsPerSecond(top_));
+    if (speed_ * h >= way) {
+      place_ = end_;
+      endMoving();
+    } else {
+      place_ += (end_ - place_) * (speed_ * h / way);
+    }
+    if (stopping_ && speed_ <= least) {
+      place_ = place_.array().round();
+      endMoving();
+    }
+  }
+  if (!moves()) stopping_ = false;
+}
+
+void ScientificaEmulator::interrupt(double /*time*/) {
+  place_ = place_.array().round();
+  endMoving();
+  stopping_ = false;
+}
+
+std::string ScientificaEmulator::positionText() const {
+  std::string text;
+  for (int i = 0; i < 3; ++i) text += (i > 0 ? "\t" : "") + std::to_string(std::lround(place_[i] / stepsPerCount()));
+  return text;
+}
+
+}  // namespace microinjection

@@ -1,0 +1,193 @@
+#include "rig/devices/serial_manipulator.h"
+
+#include <algorithm>
+
+namespace microinjection {
+namespace {
+
+constexpr double kOpenInterval = 0.5;   // s, between attempts to open the line
+constexpr double kStopInterval = 0.5;   // s, between stops while nobody guards the line
+constexpr double kLongestDrain = 2;     // s: a line that is never silent is not the device's
+constexpr double kLongestGap = 0.02;    // s between two steps: what is heard in a longer one comes late for no fault
+                                        // of the device's
+constexpr double kPauseInFault = 0.5;   // s, between attempts while nothing may move anyway
+constexpr int kAttempts = 3;            // failures in a row that make a fault
+constexpr double kStreamEnds = 0.1;     // s: set-points that pause for longer have ended
+constexpr int kSuccessesToForget = 12;  // exchanges after which a failure is no longer in a row with the next
+
+}  // namespace
+
+SerialManipulator::SerialManipulator(std::unique_ptr<Wire> wire, const Link& link)
+    : wire_(std::move(wire)), link_(link), why_(link.device + ": not connected yet") {
+  wire_->setGuardedStop(link_.stop);  // a node that is killed or stands still must not leave a device in motion
+}
+
+SerialManipulator::~SerialManipulator() {
+  if (wire_->isOpen()) wire_->write(link_.stop, time_);
+}
+
+void SerialManipulator::follow(const Eigen::Vector3d& joints, const Eigen::Vector3d& velocity) {
+  if (!mayMove() || !joints.allFinite() || !velocity.allFinite()) return;
+  const bool same = goal_ && goal_->follows && goal_->joints == joints && goal_->velocity == velocity;
+  goal_ = Goal{true, joints, velocity, 0, time_};
+  stopped_ = false;
+  if (!same) goalChanged();
+}
+
+void SerialManipulator::moveTo(const Eigen::Vector3d& joints, double speed) {
+  if (!mayMove() || !joints.allFinite() || !(speed > 0)) return;
+  const bool same = goal_ && !goal_->follows && goal_->joints == joints && goal_->speed == speed;
+  goal_ = Goal{false, joints, Eigen::Vector3d::Zero(), speed, time_};
+  stopped_ = false;
+  if (!same) goalChanged();
+}
+
+void SerialManipulator::dropGoal() {
+  goal_.reset();
+  goalChanged();
+}
+
+void SerialManipulator::stop() {
+  stopAsked();
+  dropGoal();
+  if (!stopped_) stop_wanted_ = true;  // said again and again it must not keep the device from being asked
+}
+
+void SerialManipulator::clearFault() {
+  if (fault_.empty() || clearing_) return;
+  clearing_ = true;
+  failures_ = 0;
+  stop_wanted_ = true;
+}
+
+void SerialManipulator::beginSession(double quiet) {
+  wire_->write(link_.stop, time_);
+  stopSaid();
+  stopped_ = !goal_;
+  talking_ = false;
+  drain_since_ = last_byte_ = listened_;
+  quiet_ = quiet;
+}
+
+void SerialManipulator::stopFirst() { beginSession(link_.quiet_in_step); }
+
+void SerialManipulator::lineLost() {
+  was_open_ = talking_ = ready_ = sure_ = stop_wanted_ = false;
+  next_open_ = time_ + kOpenInterval;
+  why_ = link_.device + ": the line broke; trying again";
+  dropGoal();
+}
+
+/// Whether the device may go on. After an intervention the session begins anew, and the stop is sent once more: the
+/// guard may have been lost before it sent one.
+bool SerialManipulator::guarded() {
+  const Wire::GuardReport guard = wire_->beat();
+  const bool missing = !guard.missing.empty();
+  if (!missing && guard.intervention.empty()) return true;
+  why_ = link_.device + ": " + (missing ? "no stop guard: " + guard.missing : guard.intervention);
+  if (guard.intervention.empty() && time_ < next_stop_) return false;
+  next_stop_ = time_ + kStopInterval;
+  ready_ = sure_ = stop_wanted_ = false;
+  lost_ = true;
+  dropGoal();
+  guardIntervened();
+  beginSession(link_.quiet_after_loss);
+  return false;
+}
+
+void SerialManipulator::lostStep(const std::string& reason) {
+  successes_ = 0;
+  lost_ = true;
+  if (++failures_ >= kAttempts) {
+    raiseFault(reason);
+  } else {
+    beginSession(link_.quiet_after_loss);
+  }
+}
+
+/// Nobody knows where it is: it is as good as not connected. It is told to rest, and no command waits for it to answer.
+void SerialManipulator::loseTouch() {
+  sure_ = ready_ = false;
+  why_ = link_.device + ": it has told no position for too long; trying again";
+  dropGoal();
+  lostStep("no answer that tells its position");
+}
+
+void SerialManipulator::raiseFault(const std::string& reason) {
+  const bool again = !fault_.empty() && !clearing_;
+  fault_ = link_.device + ": " + reason;
+  clearing_ = sure_ = false;
+  lost_ = true;
+  dropGoal();
+  beginSession(again ? std::max(kPauseInFault, link_.quiet_after_loss) : link_.quiet_after_loss);
+}
+
+void SerialManipulator::known() {
+  ready_ = sure_ = true;
+  if (clearing_) fault_.clear();
+  clearing_ = false;
+}
+
+void SerialManipulator::understood() {
+  if (++successes_ >= kSuccessesToForget) failures_ = 0;
+}
+
+/// A goal that was reached is over: a person who turns the device's own hand wheel or knob must not be worked against.
+void SerialManipulator::letGoOfReachedGoal() {
+  const bool goes_on = goal_ && goal_->follows && time_ - goal_->time < kStreamEnds;
+  if (goal_ && !goes_on && mayMove() && !moving()) dropGoal();
+}
+
+void SerialManipulator::step(double time) {
+  listened_ += std::min(time - time_, kLongestGap);
+  time_ = time;
+  if (!wire_->isOpen()) {
+    if (was_open_) lineLost();
+    if (time < next_open_) return;
+    next_open_ = time + kOpenInterval;
+    why_ = wire_->open();
+    if (!why_.empty()) return;
+    was_open_ = lost_ = true;
+    why_ = link_.device + ": connected, no answer yet";
+    connected();
+    beginSession(link_.quiet_after_loss);
+  }
+  std::string bytes = wire_->read(time);
+  if (!wire_->isOpen()) return lineLost();
+  if (!guarded()) return;
+  if (sure_ && listened_ > trusted_until_) return loseTouch();
+  if (stop_wanted_) {
+    stop_wanted_ = false;
+    beginSession(talking_ && !clearing_ ? link_.quiet_in_step : std::max(quiet_, link_.quiet_in_step));
+  }
+  if (!talking_) {
+    if (!bytes.empty()) last_byte_ = listened_;
+    if (listened_ - drain_since_ > kLongestDrain) return lostStep("the line is never silent; is it the right port?");
+    if (listened_ - last_byte_ < quiet_) return;
+    bytes.clear();
+    talking_ = true;
+    begin(lost_);
+    lost_ = false;
+  }
+  talk(bytes);
+  letGoOfReachedGoal();
+}
+
+ManipulatorDevice::State SerialManipulator::state() const {
+  if (!wire_->isOpen()) return State::kDisconnected;
+  if (!fault_.empty()) return State::kFault;
+  return ready_ ? State::kReady : State::kDisconnected;
+}
+
+std::string SerialManipulator::why() const {
+  switch (state()) {
+    case State::kReady:
+      return "";
+    case State::kFault:
+      return fault_;
+    default:
+      return why_;
+  }
+}
+
+}  // namespace microinjection

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "rig/devices/zaber/zaber_protocol.h"
+
+namespace microinjection {
+
+/// What an axis tells of itself, asked once for a connection. An answer counts when it was given twice alike: a damaged
+/// one would last.
+class ZaberSettings {
+ public:
+  enum Name { kVersion, kLowest, kHighest, kAcceleration, kDeceleration, kResolution, kNames };
+
+  static std::string command(Name name);
+  static bool ofDevice(Name name) { return name == kVersion; }  ///< to be asked of axis 0
+  /// Older firmware and direct drives do not know all of them.
+  static bool mayBeUnknown(Name name) { return name == kDeceleration || name == kResolution; }
+
+  std::optional<Name> missing() const;  ///< the next to be asked; empty: all are known
+  void take(Name name, const std::string& data);
+  void takeUnknown(Name name);  ///< the device does not know it
+  void forget() { *this = {}; }
+
+  bool movesHaveSpeeds() const { return moves_have_speeds_.value_or(false); }  ///< of their own
+  bool oldFirmware() const { return moves_have_speeds_ == false; }
+  std::optional<std::int64_t> number(Name name) const { return numbers_[name]; }  ///< data of the setting
+
+ private:
+  std::array<std::string, kNames> last_;
+  std::array<bool, kNames> known_{};
+  std::array<std::optional<std::int64_t>, kNames> numbers_;
+  std::optional<bool> moves_have_speeds_;
+};
+
+}  // namespace microinjection

@@ -1,0 +1,89 @@
+#include "rig/injector/femtojet_emulator.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <regex>
+#include <utility>
+
+#include "base/errors.h"
+
+namespace microinjection {
+namespace {
+
+constexpr char kFaulty[] = "ERR=001";
+constexpr double kHectopascal = 100;  // Pa
+
+/// "=" and ten characters, the number at their end.
+std::string parameter(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "=%10.10g", value);
+  return text;
+}
+
+}  // namespace
+
+void FemtojetEmulator::hear(const std::string& bytes, double time) {
+  time_ = std::max(time, time_);
+  for (const char each : bytes) {
+    if (each != '\r' && each != '\n') {
+      command_ += each;
+      continue;
+    }
+    if (command_.empty()) continue;  // the line feed behind a carriage return
+    const std::string first = config_.echo == FemtojetEmulatorConfig::Echo::kCommand ? command_ : "";
+    const bool two_lines = config_.echo != FemtojetEmulatorConfig::Echo::kNone;
+    const std::string answer = (two_lines ? first + config_.line_end : "") + obey(command_) + config_.line_end;
+    answers_.add(answer, time_ + config_.answer_time);
+    command_.clear();
+  }
+}
+
+std::string FemtojetEmulator::obey(const std::string& line) {
+  if (!error_.empty()) return "ERR=" + std::exchange(error_, "");
+  static const std::regex form("[Cc]([0-9]{3})(?:=(.{1,10}))?");
+  std::smatch groups;
+  if (!std::regex_match(line, groups, form)) return kFaulty;
+  return groups[2].matched ? enter(groups[1], groups[2]) : execute(groups[1]);
+}
+
+std::string FemtojetEmulator::execute(const std::string& number) {
+  const std::string answer = "A" + number;
+  if (number == "152") return answer + parameter(injection_time_);
+  if (number == "153") return answer + parameter(compensation_ / kHectopascal);
+  if (number == "154") return answer + parameter(injection_ / kHectopascal);
+  if (number != config_.inject || time_ < injects_until_) return kFaulty;
+  injects_until_ = time_ + injection_time_;
+  return answer;
+}
+
+std::string FemtojetEmulator::enter(const std::string& number, const std::string& text) {
+  static const std::regex plain("[0-9]+(\\.[0-9]+)?");
+  if (!std::regex_match(text, plain)) return kFaulty;
+  const double value = std::stod(text);
+  const bool is_time = number == "042";
+  if (value > (is_time ? config_.longest : config_.highest / kHectopascal)) return kFaulty;
+  if (is_time) {
+    injection_time_ = value;
+  } else if (number == "043") {
+    compensation_ = value * kHectopascal;
+  } else if (number == "044") {
+    injection_ = value * kHectopascal;
+  } else {
+    return kFaulty;
+  }
+  return "A" + number;
+}
+
+std::string FemtojetEmulator::say(double time) {
+  time_ = std::max(time, time_);
+  return answers_.take(time);
+}
+
+void FemtojetEmulator::checkError(const std::string& code) const {
+  if (code.size() == 3 && std::all_of(code.begin(), code.end(), [](unsigned char c) { return std::isdigit(c); }))
+    return;
+  throw ConfigError("fault = error:" + code + ": must be three digits");
+}
+
+}  // namespace microinjection

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <optional>
+
+#include "rig/injector/injector_device.h"
+#include "rig/injector/injector_limits.h"
+#include "rig/injector/pipette_flow.h"
+
+namespace microinjection {
+
+struct InjectorModelConfig {
+  double rise_time = 5e-3;  ///< s, time constant of the regulator's first-order response
+  double balance = 545;     ///< Pa, gauge, at the start
+  PipetteConfig pipette;
+  InjectorLimits limits;
+
+  /// Keys of its own, the section `pipette`, and the limits.
+  static InjectorModelConfig read(ConfigReader& reader);
+};
+
+/// A pressure regulator behind a pipette: p' = (target - p) / rise_time, flow by PipetteFlow. Pressure and volume are
+/// integrated exactly, also where a pulse ends within a step, so that nothing depends on the steps.
+class InjectorModel : public InjectorDevice {
+ public:
+  explicit InjectorModel(const InjectorModelConfig& config);
+
+  std::string pulse(const InjectionPulse& pulse) override;
+  std::string setBalance(double pressure) override;
+  std::string stop() override;
+  void reset() override;
+  void step(double time) override;
+  const InjectorReading& reading() const override { return reading_; }
+  std::string fault() const override { return ""; }
+
+  /// A pulse whose end somebody else decides, by finish() or stop(); its duration does not count, nor do the limits.
+  void open(const InjectionPulse& pulse);
+  /// Ends the pulse that is under way now, as done.
+  void finish();
+
+  /// A fault on request: the tip resists `factor` times as much as when it is clean. @pre factor >= 1
+  void clog(double factor) { clogging_ = factor; }
+
+ private:
+  void advance(double target, double dt);
+
+  InjectorModelConfig config_;
+  PipetteFlow flow_;
+  double balance_;  ///< Pa
+  double clogging_ = 1;
+  std::optional<InjectionPulse> pulse_;
+  double left_ = 0;  ///< s, of the pulse
+  double time_ = 0;  ///< s
+  bool begun_ = false;
+  InjectorReading reading_;
+};
+
+}  // namespace microinjection

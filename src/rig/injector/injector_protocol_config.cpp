@@ -1,0 +1,153 @@
+// Reads an InjectorProtocol.
+
+#include <algorithm>
+
+#include "base/errors.h"
+#include "rig/injector/injector_protocol.h"
+#include "rig/injector/protocol_places.h"
+#include "rig/serial/line_ending.h"
+
+namespace microinjection {
+namespace {
+
+using Exchange = InjectorProtocol::Exchange;
+using Exchanges = InjectorProtocol::Exchanges;
+using Names = std::vector<std::string>;
+
+/// The texts that stand for {NAME} in lines and expressions: what only the user knows of the device.
+class Codes {
+ public:
+  explicit Codes(ConfigReader reader) : reader_(std::move(reader)) {}
+
+  /// The text with its codes in place; {NAME} that is none stays, for others to judge.
+  std::string replace(const std::string& text) {
+    static const std::regex place("\\{([A-Za-z_]+)(?::([0-9]+))?\\}");
+    std::string replaced;
+    auto from = text.cbegin();
+    for (std::sregex_iterator at(text.cbegin(), text.cend(), place), end; at != end; ++at) {
+      const std::smatch& found = *at;
+      replaced.append(from, found[0].first);
+      from = found[0].second;
+      replaced += reader_.has(found[1]) ? read(found[1], found[2]) : found[0].str();
+    }
+    return replaced.append(from, text.cend());
+  }
+
+ private:
+  std::string read(const std::string& name, const std::string& length) {
+    std::string code;
+    reader_.text(name, code);
+    const bool plain = std::all_of(code.begin(), code.end(), [](unsigned char c) { return std::isalnum(c); });
+    const bool fits = length.empty() ? !code.empty() : std::to_string(code.size()) == length;
+    if (plain && fits) return code;
+    // A code as wrong as this is named once, however often the lines need it.
+    if (std::find(wrong_.begin(), wrong_.end(), name) == wrong_.end()) {
+      reader_.error(name, "must be " + (length.empty() ? "" : length + " ") +
+                              "letters or digits, in quotes, from your device's manual");
+      wrong_.push_back(name);
+    }
+    return "";
+  }
+
+  ConfigReader reader_;
+  Names wrong_;
+};
+
+std::regex readRegex(ConfigReader& reader, const std::string& key, Codes& codes) {
+  std::string text;
+  readPlainText(reader, key, text, ConfigReader::kRequired);
+  try {
+    return std::regex(codes.replace(text));
+  } catch (const std::regex_error& error) {
+    reader.error(key, std::string("is no regular expression: ") + error.what());
+    return {};
+  }
+}
+
+Exchange readExchange(ConfigReader& reader, Codes& codes, const Names& places) {
+  Exchange exchange;
+  std::string line;
+  readPlainText(reader, "send", line, ConfigReader::kRequired);
+  if (reader.has("send") && line.empty()) reader.error("send", "must not be empty");
+  try {
+    exchange.send = LineTemplate(codes.replace(line), places);
+  } catch (const ConfigError& error) {
+    reader.error("send", error.what());
+  }
+  exchange.expect = readRegex(reader, "expect", codes);
+  reader.choice("confirm", exchange.confirm, places);
+  if (!exchange.confirm.empty() && exchange.expect.mark_count() < 1) {
+    reader.error("expect", "must have a group for the number that is to be confirmed");
+  }
+  reader.number("timeout", exchange.timeout, Range::positive());
+  return exchange;
+}
+
+Exchanges readExchanges(ConfigReader& reader, const std::string& key, Codes& codes, const Names& places,
+                        ConfigReader::Presence presence = ConfigReader::kOptional) {
+  Exchanges exchanges;
+  for (ConfigReader& each : reader.sections(key, presence)) exchanges.push_back(readExchange(each, codes, places));
+  if (reader.has(key) && exchanges.empty()) reader.error(key, "must have at least one exchange");
+  return exchanges;
+}
+
+bool say(const Exchanges& exchanges, const std::vector<Place>& places) {
+  return std::any_of(exchanges.begin(), exchanges.end(), [&](const Exchange& exchange) {
+    return std::any_of(places.begin(), places.end(), [&](const Place& place) { return exchange.send.has(place.name); });
+  });
+}
+
+/// A number that no line says is the device's own, and must be known.
+std::optional<double> readFixed(ConfigReader& reader, const std::string& key, bool said, const Range& range) {
+  double value = 0;
+  if (said) {
+    if (reader.has(key)) reader.error(key, "a line of pulse says it: leave the key out");
+    reader.number(key, value);  // a known key
+    return std::nullopt;
+  }
+  reader.number(key, value, range, ConfigReader::kRequired);
+  return value;
+}
+
+LineDialogue::Framing readFraming(ConfigReader& reader) {
+  LineDialogue::Framing framing;
+  readLineEnding(reader, "terminator", framing.reply_end);
+  framing.send_end = framing.reply_end;
+  readLineEnding(reader, "send_terminator", framing.send_end);
+  reader.boolean("echo", framing.echo);
+  reader.number("quiet", framing.quiet, Range::nonNegative());
+  return framing;
+}
+
+}  // namespace
+
+InjectorProtocol InjectorProtocol::read(ConfigReader& reader) {
+  InjectorProtocol protocol;
+  protocol.framing = readFraming(reader);
+  reader.number("pressure_unit", protocol.pressure_unit, Range::positive());
+  reader.number("pressure_zero", protocol.pressure_zero);
+  Codes codes(reader.section("codes"));
+  const std::vector<Place> pressures = pressurePlaces(protocol.pressure_unit, protocol.pressure_zero);
+  const std::vector<Place> durations = durationPlaces();
+  const Names pressure_names = names(pressures);
+  Names all = pressure_names;
+  for (const Place& place : durations) all.push_back(place.name);
+  protocol.begin = readExchanges(reader, "begin", codes, {});
+  protocol.pulse = readExchanges(reader, "pulse", codes, all, ConfigReader::kRequired);
+  protocol.balance = readExchanges(reader, "balance", codes, pressure_names);
+  protocol.stop = readExchanges(reader, "stop", codes, pressure_names);
+  if (reader.has("query")) {
+    ConfigReader query = reader.section("query");
+    protocol.query.push_back(readExchange(query, codes, pressure_names));
+  }
+  reader.number("query_period", protocol.query_period, Range::positive());
+  reader.boolean("timed", protocol.timed);
+  if (protocol.timed && protocol.stop.empty()) reader.error("timed", "needs stop, which ends the pulse");
+  protocol.pulse_pressure = readFixed(reader, "pulse_pressure", say(protocol.pulse, pressures), Range::finite());
+  protocol.pulse_duration =
+      readFixed(reader, "pulse_duration", protocol.timed || say(protocol.pulse, durations), Range::positive());
+  protocol.refuse = readRegex(reader, "refuse", codes);
+  return protocol;
+}
+
+}  // namespace microinjection

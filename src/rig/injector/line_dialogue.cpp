@@ -1,0 +1,66 @@
+#include "rig/injector/line_dialogue.h"
+
+#include <utility>
+
+namespace microinjection {
+namespace {
+
+constexpr std::size_t kLongestLine = 256;  // bytes
+
+}  // namespace
+
+LineDialogue::LineDialogue(Wire& wire, const Framing& framing)
+    : wire_(wire), framing_(framing), lines_(framing.reply_end, kLongestLine) {}
+
+void LineDialogue::distrust(double time) {
+  in_step_ = waiting_ = false;
+  heard_ = time;
+}
+
+void LineDialogue::send(const std::string& line, double timeout, double time) {
+  sent_ = line;
+  waiting_ = true;
+  echoed_ = false;
+  deadline_ = time + timeout;
+  wire_.write(line + framing_.send_end, time);
+}
+
+LineDialogue::Answer LineDialogue::listen(double time) {
+  const std::string bytes = wire_.read(time);
+  if (!bytes.empty()) heard_ = time;
+  if (!in_step_) {
+    if (!quiet(time)) return Answer::kNone;
+    lines_.clear(false);
+    in_step_ = true;
+    return Answer::kNone;
+  }
+  int replies = 0;
+  const unsigned too_long = lines_.tooLong();
+  for (std::string& line : lines_.feed(bytes)) {
+    if (framing_.reply_end == "\n" && !line.empty() && line.back() == '\r') line.pop_back();
+    if (echoes(line)) continue;
+    reply_ = std::move(line);
+    ++replies;
+  }
+  const bool waited = waiting_;
+  if (replies > (waited ? 1 : 0) || lines_.tooLong() > too_long) {
+    bad_ += static_cast<unsigned>(replies);
+    distrust(time);
+    return waited ? Answer::kUnclear : Answer::kNone;
+  }
+  if (replies == 1) {
+    waiting_ = false;
+    return Answer::kReply;
+  }
+  if (!waited || time <= deadline_) return Answer::kNone;
+  distrust(time);
+  return Answer::kLate;
+}
+
+bool LineDialogue::echoes(const std::string& line) {
+  if (!framing_.echo || !waiting_ || echoed_ || !(line.empty() || line == sent_)) return false;
+  echoed_ = true;
+  return true;
+}
+
+}  // namespace microinjection

@@ -1,0 +1,249 @@
+#include "rig/injector/serial_injector.h"
+
+#include <utility>
+
+namespace microinjection {
+namespace {
+
+constexpr double kRetry = 1;  // s, between attempts to open the line, and to stop a timed pulse
+
+}  // namespace
+
+SerialInjector::SerialInjector(std::unique_ptr<Wire> wire, const InjectorProtocol& protocol,
+                               const InjectorModelConfig& model)
+    : wire_(std::move(wire)),
+      protocol_(protocol),
+      limits_(model.limits),
+      model_(model),
+      dialogue_(*wire_, protocol.framing),
+      sent_balance_(model.balance) {
+  if (!protocol_.balance.empty()) waiting_balance_ = model.balance;
+  if (protocol_.stop.empty()) return;
+  first_stop_ = protocol_.stop.front().send.fill(protocol_.balanceValues(model.balance)) + protocol_.framing.send_end;
+  wire_->setGuardedStop(first_stop_);  // a pulse must not outlive its node
+}
+
+SerialInjector::~SerialInjector() {
+  if (!first_stop_.empty() && mayFlow() && wire_->isOpen()) wire_->write(first_stop_, time_);
+}
+
+const InjectorProtocol::Exchanges& SerialInjector::exchanges(Task task) const {
+  static const InjectorProtocol::Exchanges none;
+  switch (task) {
+    case Task::kBegin:
+      return protocol_.begin;
+    case Task::kPulse:
+      return protocol_.pulse;
+    case Task::kBalance:
+      return protocol_.balance;
+    case Task::kStop:
+      return protocol_.stop;
+    case Task::kQuery:
+      return protocol_.query;
+    default:
+      return none;
+  }
+}
+
+bool SerialInjector::triggered() const {
+  return task_ == Task::kPulse && step_ + 1 == protocol_.pulse.size() && dialogue_.waiting();
+}
+
+/// Why the pressure is not what reading() says, for all that is known.
+std::string SerialInjector::unsure() const {
+  if (protocol_.timed && !stopped_) return "the device has not said that its output is off";
+  if (time_ < unsure_until_) return "a pulse may be under way";
+  return balance_known_ || protocol_.balance.empty() ? "" : "the device has not accepted the balance pressure";
+}
+
+std::string SerialInjector::fault() const {
+  if (!fault_.empty()) return fault_;
+  if (!unguarded_.empty()) return unguarded_;
+  return trouble_.empty() ? unsure() : trouble_;
+}
+
+/// A pulse whose reply went wrong may be under way as well.
+bool SerialInjector::mayFlow() const {
+  return triggered() || model_.reading().busy || !fault_.empty() || (protocol_.timed && !stopped_) ||
+         time_ < unsure_until_;
+}
+
+std::string SerialInjector::pulse(const InjectionPulse& pulse) {
+  if (!fault().empty()) return fault();
+  if (waiting_pulse_ || sent_pulse_ || model_.reading().busy) return "a pulse is under way";
+  std::string asked = limits_.check(pulse);
+  if (!asked.empty()) return asked;
+  // What the device makes of it counts: a pulse of 0.4 ms is none at all where the line has whole milliseconds.
+  const std::string sent = limits_.check(protocol_.asSent(pulse));
+  if (!sent.empty()) return "in the digits of the device's line, " + sent;
+  const std::string refusal = protocol_.refusal(pulse);
+  if (!refusal.empty()) return refusal;
+  waiting_pulse_ = pulse;
+  waits_since_ = time_;
+  report();
+  return "";
+}
+
+std::string SerialInjector::setBalance(double pressure) {
+  if (!fault_.empty()) return fault_;
+  std::string refusal = limits_.checkPressure("balance pressure", pressure);
+  if (refusal.empty()) refusal = protocol_.balanceRefusal(pressure);
+  if (!refusal.empty()) return refusal;
+  waiting_balance_ = pressure;
+  tries_ = 0;
+  return "";
+}
+
+std::string SerialInjector::stop() {
+  waiting_pulse_.reset();
+  if (!triggered()) sent_pulse_.reset();  // what was only set up is dropped before its next line
+  const bool can = !protocol_.stop.empty();
+  if (can && mayFlow() && !stopping()) {
+    waiting_stop_ = true;
+    over_ = false;
+    tries_ = 0;
+  }
+  report();
+  return can || !mayFlow() ? "" : "the protocol has no line for it";
+}
+
+void SerialInjector::reset() {
+  fault_.clear();
+  tries_ = 0;
+  if (!balance_known_ && !waiting_balance_ && !protocol_.balance.empty()) waiting_balance_ = sent_balance_;
+  model_.reset();
+  report();
+}
+
+void SerialInjector::step(double time) {
+  time_ = time;
+  checkGuard(time);  // before the model lets a pulse go on that the guard has ended
+  model_.step(time);
+  if (keepOpen(time)) {
+    listen(time);
+    keepStopped(time);
+    if (wire_->isOpen()) talk(time);
+  }
+  report();
+}
+
+bool SerialInjector::keepOpen(double time) {
+  if (wire_->isOpen()) return true;
+  const bool flows = protocol_.timed && model_.reading().busy;
+  if (task_ != Task::kNone) giveUp("the line broke");
+  if (flows && stopped_) fail("the line broke during a pulse, which may go on");
+  if (waiting_pulse_) fail("the line broke");
+  stopped_ = balance_known_ = false;
+  pressure_.reset();
+  if (trouble_.empty()) trouble_ = "the line broke";
+  if (time - tried_ < kRetry) return false;
+  tried_ = time;
+  trouble_ = wire_->open();
+  if (!trouble_.empty()) return false;
+  // The device may have been switched off meanwhile.
+  if (!waiting_balance_ && !protocol_.balance.empty()) waiting_balance_ = sent_balance_;
+  waiting_begin_ = !protocol_.begin.empty();
+  tries_ = 0;
+  dialogue_.distrust(time);
+  return true;
+}
+
+/// The guard's stop has ended a pulse, or a guard that was lost cannot: either way the device is told to stop. What it
+/// answered the guard is passed over as a late reply is.
+void SerialInjector::checkGuard(double time) {
+  const Wire::GuardReport guard = wire_->beat();
+  unguarded_ = guard.missing.empty() ? "" : "no stop guard: " + guard.missing;
+  if (guard.intervention.empty()) return;
+  const bool flows = mayFlow();
+  if (model_.reading().busy) fail("the pulse was broken off: " + guard.intervention);
+  model_.stop();
+  if (task_ != Task::kNone) giveUp(guard.intervention);
+  if (waiting_pulse_) fail(guard.intervention);
+  if (flows && !protocol_.stop.empty()) waiting_stop_ = true;
+  over_ = false;
+  dialogue_.distrust(time);
+  tries_ = 0;
+}
+
+/// Of pulses that are timed from here: a stop when the time is over, and as long as an output may be on.
+void SerialInjector::keepStopped(double time) {
+  if (!protocol_.timed || stopping() || triggered() || time - stop_failed_ < kRetry) return;
+  const bool over = model_.reading().busy && stopped_ && time >= ends_;
+  if (!over && stopped_) return;
+  waiting_stop_ = true;
+  over_ = over;
+  tries_ = 0;
+}
+
+void SerialInjector::listen(double time) {
+  switch (dialogue_.listen(time)) {
+    case LineDialogue::Answer::kReply:
+      return take(dialogue_.reply());
+    case LineDialogue::Answer::kLate:
+      return giveUp("no good reply in time");
+    case LineDialogue::Answer::kUnclear:
+      return giveUp("more than one reply");
+    case LineDialogue::Answer::kNone:
+      return;
+  }
+}
+
+void SerialInjector::take(const std::string& reply) {
+  if (task_ != Task::kBegin && std::regex_match(reply, protocol_.refuse)) {
+    return giveUp("refused: " + reply, Refusal::kYes);
+  }
+  const InjectorProtocol::Exchange& exchange = exchanges(task_)[step_];
+  std::smatch groups;
+  std::string wrong = std::regex_match(reply, groups, exchange.expect) ? "" : "a wrong reply";
+  if (wrong.empty()) wrong = InjectorProtocol::misread(exchange, groups, say_);
+  if (wrong.empty() && task_ == Task::kQuery && groups.size() > 1 && exchange.confirm.empty()) {
+    const auto pressure = protocol_.queriedPressure(groups);
+    if (pressure && limits_.checkPressure("", *pressure).empty()) {
+      pressure_ = pressure;
+    } else {
+      wrong = "a wrong reply";
+    }
+  }
+  if (!wrong.empty()) {
+    dialogue_.distrust(time_);
+    return giveUp(wrong);
+  }
+  if (++step_ == exchanges(task_).size()) complete();
+}
+
+void SerialInjector::complete() {
+  const Task done = std::exchange(task_, Task::kNone);
+  if (done == Task::kPulse) {
+    const InjectionPulse pulse = protocol_.asSent(*sent_pulse_);
+    protocol_.timed ? model_.open(pulse) : static_cast<void>(model_.pulse(pulse));
+    ends_ = time_ + pulse.duration;
+    sent_pulse_.reset();
+  } else if (done == Task::kBalance) {
+    model_.setBalance(sent_balance_);
+    balance_known_ = true;
+  } else if (done == Task::kStop) {
+    stopped_ = true;
+    unsure_until_ = time_;
+    const bool late = over_ && tries_ > 0;
+    over_ && !late ? model_.finish() : static_cast<void>(model_.stop());
+    if (late) fail("the pulse lasted longer than was asked for: its end was heard at the second time only");
+    over_ = false;
+  }
+  tries_ = 0;
+  trouble_.clear();
+}
+
+/// What went wrong first stays; the same again adds nothing.
+void SerialInjector::fail(const std::string& why) {
+  if (fault_.find(why) == std::string::npos) fault_ += (fault_.empty() ? "" : "; ") + why;
+  if (waiting_pulse_) fault_ += "; pulse " + std::to_string(waiting_pulse_->id) + " was not sent";
+  waiting_pulse_.reset();
+}
+
+void SerialInjector::report() {
+  reading_ = model_.reading();
+  reading_.busy = reading_.busy || waiting_pulse_ || sent_pulse_ || stopping();
+  if (pressure_) reading_.pressure = *pressure_;
+}
+
+}  // namespace microinjection

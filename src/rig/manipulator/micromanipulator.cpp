@@ -1,0 +1,217 @@
+#include "rig/manipulator/micromanipulator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+namespace microinjection {
+
+MicromanipulatorConfig MicromanipulatorConfig::read(ConfigReader& reader) {
+  MicromanipulatorConfig config;
+  reader.number("pipette_tilt", config.pipette_tilt);
+  reader.number("collision_margin", config.collision_margin, Range::nonNegative());
+  reader.number("command_timeout", config.command_timeout, Range::positive());
+  reader.number("velocity_command_timeout", config.velocity_command_timeout, Range::positive());
+  reader.number("servo_speed_limit", config.servo_speed_limit, Range::positive());
+  return config;
+}
+
+Micromanipulator::Micromanipulator(const ManipulatorGeometry& geometry, const CollisionGuard& guard,
+                                   const MicromanipulatorConfig& config, ManipulatorDevice& device)
+    : geometry_(geometry), guard_(guard), config_(config), device_(&device), follows_(device.abilities().follows) {
+  adapt();
+  device.limitSpeed({geometry.axes[0].velocity, geometry.axes[1].velocity, geometry.axes[2].velocity});
+  if (const auto ends = device.homingEnds()) device.planHoming(planHoming(geometry, guard, *ends));
+}
+
+/// A device behind a slow line turns out to be slower when it has been asked.
+void Micromanipulator::adapt() {
+  const ManipulatorAbilities abilities = device_->abilities();
+  lag_ = follows_ ? abilities.latency + abilities.command_interval : 0;
+}
+
+std::string Micromanipulator::unable() const {
+  if (device_->state() != ManipulatorDevice::State::kReady) {
+    return device_->why().empty() ? "the device is not ready" : device_->why();
+  }
+  return device_->reading() ? "" : "the device does not know its position yet";
+}
+
+Micromanipulator::Commanded Micromanipulator::checkPose(const Eigen::Isometry3d& tip_pose) const {
+  if (!tip_pose.matrix().allFinite()) return {{}, "pose is not finite"};
+  const double angle = Eigen::AngleAxisd(geometry_.tip_at_zero.linear().transpose() * tip_pose.linear()).angle();
+  if (angle > 1e-3)
+    return {{}, "orientation differs from the pipette's by " + std::to_string(angle) + " rad, allowed 0.001"};
+  const Eigen::Vector3d joints = geometry_.joints(tip_pose.translation());
+  const std::string outside = geometry_.outsideTravel(joints);
+  return {joints, outside.empty() ? guard_.blocks(joints) : outside};
+}
+
+/// From where and how fast the next command takes over: on from the set-point, or from what the device measures.
+AxesMotion Micromanipulator::start() const {
+  const bool resting = mode_ == Mode::kHold && !device_->moving();
+  if (setpoint_ && !resting) return *setpoint_;
+  const ManipulatorDevice::Reading reading = *device_->reading();
+  AxesMotion motion{reading.joints, Eigen::Vector3d::Zero()};
+  if (!resting) {
+    for (int i = 0; i < 3; ++i) {
+      const double largest = geometry_.axes[i].velocity;
+      motion.velocity[i] = std::clamp(reading.velocity[i], -largest, largest);
+    }
+  }
+  return motion;
+}
+
+Eigen::Vector3d Micromanipulator::restAfter(const AxesMotion& motion) const {
+  return motion.position + motion.velocity * brakingTime(geometry_, motion.velocity) / 2;
+}
+
+/// Where the device may get to when it is told to rest now.
+Eigen::Vector3d Micromanipulator::reachOf(const AxesMotion& motion) const {
+  return restAfter(motion) + motion.velocity * lag_;
+}
+
+void Micromanipulator::begin(Mode mode, const AxesMotion& from) {
+  mode_ = mode;
+  under_way_ = mode == Mode::kMove;
+  setpoint_ = from;
+  ended_.clear();
+}
+
+/// Why nothing may be moved by a stream, of which one command is here; else empty.
+std::string Micromanipulator::streamRefusal() {
+  const bool begins = std::exchange(stream_pause_, 0) > config_.command_timeout;
+  if (std::string why = unable(); !why.empty()) return why;
+  if (begins) held_off_ = false;
+  if (!held_off_) return "";
+  return "the needle was stopped; a stream moves it again after a pause of " + std::to_string(config_.command_timeout) +
+         " s or after enable";
+}
+
+std::string Micromanipulator::servoPosition(const Eigen::Isometry3d& tip_pose) {
+  if (std::string why = streamRefusal(); !why.empty()) return why;
+  const Commanded commanded = checkPose(tip_pose);
+  if (!commanded.refusal.empty()) return commanded.refusal;
+  const AxesMotion from = start();
+  if (std::string why = guard_.blocksWay(from.position, commanded.joints); !why.empty()) return why;
+  if (mode_ != Mode::kServo) {
+    goal_ = from.position;
+    goal_age_ = 0;
+    goal_is_new_ = false;
+  }
+  if (!goal_is_new_) last_goal_ = goal_;
+  goal_ = commanded.joints;
+  goal_is_new_ = true;
+  begin(Mode::kServo, from);
+  return "";
+}
+
+std::string Micromanipulator::movePosition(const Eigen::Isometry3d& tip_pose) {
+  if (std::string why = unable(); !why.empty()) return why;
+  const Commanded commanded = checkPose(tip_pose);
+  if (!commanded.refusal.empty()) return commanded.refusal;
+  const AxesMotion from = start();
+  const Eigen::Vector3d turn = follows_ ? restAfter(from) : device_->reading()->joints;
+  if (std::string why = guard_.blocksWay(turn, commanded.joints); !why.empty()) return why;
+  goal_ = commanded.joints;
+  begin(Mode::kMove, from);
+  if (follows_) return "";
+  setpoint_.reset();
+  const Eigen::Vector3d way = goal_ - turn;
+  if (way.norm() > 0) device_->moveTo(goal_, straightSpeed(geometry_, way.normalized()));
+  return "";
+}
+
+std::string Micromanipulator::servoVelocity(const Eigen::Vector3d& velocity, double time) {
+  if (!velocity.allFinite()) return "velocity is not finite";
+  if (std::string why = streamRefusal(); !why.empty()) return why;
+  const Eigen::Vector3d joint_velocity = geometry_.directions.inverse() * velocity;
+  if (std::string why = geometry_.tooFast(joint_velocity); !why.empty()) return why;
+  if (velocity.norm() > config_.servo_speed_limit * (1 + 1e-9)) {
+    std::ostringstream why;
+    why << "speed = " << velocity.norm() << " m/s, allowed at most servo_speed_limit = " << config_.servo_speed_limit;
+    return why.str();
+  }
+  // Too near to an end of its travel or to an obstacle to go that way for a step and come to rest before it?
+  const AxesMotion from = start();
+  const Eigen::Vector3d rest = reachOf({from.position + joint_velocity * last_dt_, joint_velocity});
+  if (!joint_velocity.isZero()) {
+    if (std::string why = geometry_.leavesTravel(from.position, rest); !why.empty()) return why;
+    if (std::string why = guard_.blocksWay(from.position, rest); !why.empty()) return why;
+  }
+  velocity_command_ = joint_velocity;
+  velocity_command_time_ = time;
+  begin(Mode::kVelocity, from);
+  return "";
+}
+
+/// Forgets the set-point: the next command starts from what the device measures.
+void Micromanipulator::rest() {
+  mode_ = Mode::kHold;
+  setpoint_.reset();
+}
+
+void Micromanipulator::halt() {
+  device_->stop();
+  rest();
+}
+
+void Micromanipulator::stop() {
+  halt();
+  held_off_ = true;
+}
+
+void Micromanipulator::clearFault() {
+  if (device_->state() == ManipulatorDevice::State::kReady) held_off_ = false;
+  rest();
+  device_->clearFault();
+}
+
+void Micromanipulator::step(double time, double dt) {
+  if (last_dt_ == 0) device_->step(time - dt);  // sets its clock
+  last_dt_ = dt;
+  stream_pause_ += dt;
+  if (const std::string why = unable(); !why.empty()) {
+    if (mode_ != Mode::kHold) ended_ = why;
+    rest();
+    under_way_ = false;
+    held_off_ = true;
+  } else {
+    haltIfCutOff();
+  }
+  if (mode_ != Mode::kHold) {
+    stepMode(time, dt);
+    if (setpoint_) device_->follow(setpoint_->position, setpoint_->velocity);
+  }
+  const bool was_ready = device_->state() == ManipulatorDevice::State::kReady;
+  device_->step(time);
+  if (!was_ready) adapt();
+  if (mode_ == Mode::kHold && !device_->moving()) under_way_ = false;
+}
+
+std::optional<Eigen::Isometry3d> Micromanipulator::setpointPose() const {
+  if (!unable().empty() || mode_ == Mode::kVelocity) return std::nullopt;
+  const bool by_itself = mode_ == Mode::kMove && !setpoint_;
+  return geometry_.tipPose(by_itself ? goal_ : start().position);
+}
+
+std::optional<Eigen::Isometry3d> Micromanipulator::tipPose() const {
+  const auto measured = joints();
+  if (!measured) return std::nullopt;
+  return geometry_.tipPose(*measured);
+}
+
+std::optional<Eigen::Vector3d> Micromanipulator::tipVelocity() const {
+  const auto reading = device_->reading();
+  if (!reading) return std::nullopt;
+  return geometry_.directions * reading->velocity;
+}
+
+std::optional<Eigen::Vector3d> Micromanipulator::joints() const {
+  const auto reading = device_->reading();
+  if (!reading) return std::nullopt;
+  return reading->joints;
+}
+
+}  // namespace microinjection

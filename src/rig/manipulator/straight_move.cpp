@@ -1,0 +1,65 @@
+#include "rig/manipulator/straight_move.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "rig/manipulator/approach_speed.h"
+
+namespace microinjection {
+namespace {
+
+double straightAcceleration(const ManipulatorGeometry& geometry, const Eigen::Vector3d& direction) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 3; ++i) {
+    if (direction[i] != 0) least = std::min(least, geometry.axes[i].acceleration / std::abs(direction[i]));
+  }
+  return least;
+}
+
+Eigen::Vector3d braked(const ManipulatorGeometry& geometry, const Eigen::Vector3d& velocity, double dt) {
+  const double time = brakingTime(geometry, velocity);
+  return time > dt ? Eigen::Vector3d(velocity * (1 - dt / time)) : Eigen::Vector3d::Zero();
+}
+
+}  // namespace
+
+double brakingTime(const ManipulatorGeometry& geometry, const Eigen::Vector3d& velocity) {
+  double longest = 0;
+  for (int i = 0; i < 3; ++i) longest = std::max(longest, std::abs(velocity[i]) / geometry.axes[i].acceleration);
+  return longest;
+}
+
+void brake(const ManipulatorGeometry& geometry, AxesMotion& motion, double dt) {
+  motion.velocity = braked(geometry, motion.velocity, dt);
+  motion.position += motion.velocity * dt;
+}
+
+bool atRest(const ManipulatorGeometry& geometry, const AxesMotion& motion, const Eigen::Vector3d& goal, double dt) {
+  return (goal - motion.position).norm() < kArrived && brakingTime(geometry, motion.velocity) <= dt;
+}
+
+double straightSpeed(const ManipulatorGeometry& geometry, const Eigen::Vector3d& direction) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 3; ++i) {
+    if (direction[i] != 0) least = std::min(least, geometry.axes[i].velocity / std::abs(direction[i]));
+  }
+  return least;
+}
+
+Eigen::Vector3d straightVelocity(const ManipulatorGeometry& geometry, const AxesMotion& motion,
+                                 const Eigen::Vector3d& goal, double speed, double dt) {
+  const Eigen::Vector3d way = goal - motion.position;
+  const double distance = way.norm();
+  if (distance == 0) return braked(geometry, motion.velocity, dt);
+  const Eigen::Vector3d direction = way / distance;
+  const double forward = motion.velocity.dot(direction);
+  const double acceleration = straightAcceleration(geometry, direction);
+  const bool aside = (motion.velocity - forward * direction).norm() > 1e-6 * motion.velocity.norm();
+  const bool past = forward > acceleration * dt + approachSpeed(distance, acceleration, dt);
+  if (forward < 0 || aside || past) return braked(geometry, motion.velocity, dt);
+  return direction * std::min({speed, straightSpeed(geometry, direction), approachSpeed(distance, acceleration, dt),
+                               forward + acceleration * dt});
+}
+
+}  // namespace microinjection

@@ -1,0 +1,146 @@
+#include "rig/serial/serial_port.h"
+
+#include <sys/file.h>
+#include <termios.h>
+
+#include <array>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/serial_port.hpp>
+#include <boost/asio/write.hpp>
+#include <cstring>
+
+#include "rig/serial/low_latency.h"
+#include "rig/serial/stop_guard.h"
+
+namespace microinjection {
+
+namespace asio = boost::asio;
+using boost::system::error_code;
+
+SerialPortConfig SerialPortConfig::read(ConfigReader& reader, int default_baud) {
+  SerialPortConfig config;
+  config.baud = default_baud;
+  reader.text("path", config.path, ConfigReader::kRequired);
+  reader.integer("baud", config.baud, Range::positive());
+  reader.choice("parity", config.parity, {"none", "even", "odd"});
+  reader.integer("stop_bits", config.stop_bits, Range::closed(1, 2));
+  reader.choice("handshake", config.handshake, {"none", "rts_cts"});
+  return config;
+}
+
+std::string SerialPortConfig::frame() const {
+  return std::string("8") + (parity == "even" ? "E" : parity == "odd" ? "O" : "N") + std::to_string(stop_bits);
+}
+
+/// Its handlers run in `context.poll()` only, so that everything happens in the caller's thread.
+struct SerialPort::Line {
+  static constexpr std::size_t kMostUnsent = 1 << 16;  // bytes: a device that takes none for so long is gone
+
+  asio::io_context context{1};
+  asio::serial_port port{context};
+  std::array<char, 4096> buffer;
+  std::string received;
+  std::string unsent;   // handed over, and not yet given to the system
+  std::string sending;  // must stay where it is while it is sent
+  bool broken = false;
+  StopGuard stop_guard;
+
+  std::string open(const SerialPortConfig& config) {
+    error_code error;
+    port.open(config.path, error);
+    if (error) return config.path + ": " + error.message();
+    // Two programs on one line would garble each other; unlike TIOCEXCL this ends with the program.
+    if (flock(port.native_handle(), LOCK_EX | LOCK_NB) != 0) return config.path + ": in use by another program";
+    using Port = asio::serial_port_base;
+    const auto set = [&](const auto& option) {
+      if (!error) port.set_option(option, error);
+    };
+    set(Port::baud_rate(static_cast<unsigned>(config.baud)));
+    set(Port::character_size(8));
+    set(Port::parity(config.parity == "even"  ? Port::parity::even
+                     : config.parity == "odd" ? Port::parity::odd
+                                              : Port::parity::none));
+    set(Port::stop_bits(config.stop_bits == 2 ? Port::stop_bits::two : Port::stop_bits::one));
+    const bool hardware = config.handshake == "rts_cts";
+    set(Port::flow_control(hardware ? Port::flow_control::hardware : Port::flow_control::none));
+    if (error)
+      return config.path + ": " + std::to_string(config.baud) + " baud, " + config.frame() + ": " + error.message();
+    requestLowLatency(port.native_handle());
+    tcflush(port.native_handle(), TCIFLUSH);
+    listen();
+    return "";
+  }
+
+  void listen() {
+    port.async_read_some(asio::buffer(buffer), [this](const error_code& error, std::size_t size) {
+      received.append(buffer.data(), size);
+      if (error) {
+        broken = true;
+      } else {
+        listen();
+      }
+    });
+  }
+
+  void send() {
+    if (!sending.empty() || unsent.empty()) return;
+    sending.swap(unsent);
+    asio::async_write(port, asio::buffer(sending), [this](const error_code& error, std::size_t) {
+      sending.clear();
+      if (error) broken = true;
+      if (!broken) send();
+    });
+  }
+
+  void poll() {
+    context.poll();
+    if (context.stopped()) context.restart();
+  }
+};
+
+SerialPort::SerialPort(const SerialPortConfig& config) : config_(config) {}
+SerialPort::~SerialPort() = default;
+
+std::string SerialPort::open() {
+  line_ = std::make_unique<Line>();
+  std::string reason = line_->open(config_);
+  if (reason.empty() && !guarded_stop_.empty()) {
+    reason = line_->stop_guard.begin(line_->port.native_handle(), guarded_stop_);
+    if (!reason.empty()) reason = config_.path + ": no stop guard: " + reason;
+  }
+  if (!reason.empty()) line_.reset();
+  return reason;
+}
+
+bool SerialPort::isOpen() const { return line_ != nullptr; }
+
+pid_t SerialPort::guardProcess() const { return line_ ? line_->stop_guard.process() : -1; }
+
+Wire::GuardReport SerialPort::beat() {
+  if (!line_ || guarded_stop_.empty()) return {};
+  GuardReport report = line_->stop_guard.beat();
+  if (!report.intervention.empty()) line_->unsent.clear();  // what is half sent goes on, so that the stop is understood
+  return report;
+}
+
+std::string SerialPort::read(double /*time*/) {
+  if (!line_) return "";
+  line_->poll();
+  std::string result;
+  result.swap(line_->received);
+  if (line_->broken) line_.reset();
+  return result;
+}
+
+void SerialPort::write(const std::string& bytes, double /*time*/) {
+  if (!line_) return;
+  // A program that comes alive in the middle of a step must not set a device in motion that was stopped.
+  if (!guarded_stop_.empty() && bytes != guarded_stop_ && line_->stop_guard.intervened()) return;
+  line_->unsent += bytes;
+  line_->send();
+  line_->poll();
+  if (line_->unsent.size() > Line::kMostUnsent) line_->broken = true;
+  if (line_->broken && line_->received.empty()) line_.reset();
+}
+
+}  // namespace microinjection

@@ -1,0 +1,160 @@
+#include "rig/serial/stop_guard_process.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstddef>
+#include <cstdint>
+#include <ctime>
+#include <initializer_list>
+
+namespace microinjection {
+namespace {
+
+constexpr int kLine = 0, kDriver = 1;  // the guard's descriptors
+constexpr int kTick = 20;              // ms
+
+/// Closes every descriptor from `first` on, without what may not be called here: close_range() is not in every libc.
+void closeAllFrom(int first) {
+  struct Entry {  // linux_dirent64
+    std::uint64_t inode;
+    std::int64_t offset;
+    unsigned short length;
+    unsigned char type;
+    char name[1];
+  };
+  alignas(Entry) char entries[2048];
+  const int list = open("/proc/self/fd", O_RDONLY | O_DIRECTORY);
+  bool found = list >= 0;
+  while (found) {  // from the start again, since what is closed leaves the list
+    found = false;
+    lseek(list, 0, SEEK_SET);
+    const long size = syscall(SYS_getdents64, list, entries, sizeof(entries));
+    for (long at = 0; at < size;) {
+      const auto* entry = reinterpret_cast<const Entry*>(entries + at);
+      int number = 0;
+      for (const char* digit = entries + at + offsetof(Entry, name); *digit >= '0' && *digit <= '9'; ++digit)
+        number = 10 * number + *digit - '0';
+      if (number >= first && number != list && close(number) == 0) found = true;
+      at += entry->length;
+    }
+  }
+  if (list >= 0) {
+    close(list);
+  } else {
+    for (int number = first; number < 1024; ++number) close(number);
+  }
+}
+
+double now() {
+  timespec time{};
+  clock_gettime(CLOCK_MONOTONIC, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+class Guard {
+ public:
+  Guard(const char* stop, std::size_t size) : stop_(stop), size_(size), written_(size), last_tick_(now()) {}
+
+  void guardUntilDriverIsGone() {
+    while (hear()) {
+      countSilence();
+      report();  // before the stop is on the line: a driver that wakes up in between must not write behind it
+      write();
+      wait(kTick);
+    }
+  }
+  void stopDevice() {
+    if (written_ == size_) written_ = 0;  // one that was begun is sent to its end
+    for (write(); written_ < size_; write()) wait(-1);
+  }
+
+ private:
+  /// Reads all beats. False: the driver is gone.
+  bool hear() {
+    char beats[64];
+    heard_ = false;
+    for (;;) {
+      const ssize_t size = recv(kDriver, beats, sizeof(beats), MSG_DONTWAIT);
+      if (size > 0) {
+        heard_ = true;
+      } else if (size == 0 || errno != EINTR) {
+        return size < 0 && errno == EAGAIN;
+      }
+    }
+  }
+
+  /// A tick that took much longer than it should counts as one: the machine stood still, and the driver with it.
+  void countSilence() {
+    const double time = now(), passed = time - last_tick_;
+    last_tick_ = time;
+    silence_ = heard_ ? 0 : silence_ + (passed < 2e-3 * kTick ? passed : 1e-3 * kTick);
+    if (heard_) {
+      reported_ = false;
+      send(kStopGuardEcho);
+    }
+    if (silence_ < kStopGuardSilence) return;
+    silence_ = 0;  // sent again after as much silence: the line may lose a byte
+    stopping_ = true;
+    if (written_ == size_) written_ = 0;
+  }
+
+  /// The open file is the driver's as well, so that it must stay non-blocking.
+  void write() {
+    while (written_ < size_) {
+      const ssize_t written = ::write(kLine, stop_ + written_, size_ - written_);
+      if (written > 0) {
+        written_ += static_cast<std::size_t>(written);
+      } else if (written < 0 && errno == EAGAIN) {
+        return;
+      } else if (written == 0 || errno != EINTR) {
+        written_ = size_;  // the line is broken
+      }
+    }
+  }
+
+  void report() {
+    if (!stopping_) return;
+    if (!reported_) reported_ = send(kStopGuardStopped);
+    stopping_ = !reported_;
+  }
+
+  static bool send(char message) { return ::send(kDriver, &message, 1, MSG_DONTWAIT | MSG_NOSIGNAL) == 1; }
+
+  /// Does not wake at every beat, but at once when the driver is gone or the line takes the rest of a stop.
+  void wait(int duration) {
+    pollfd ends[2] = {{written_ < size_ ? kLine : -1, POLLOUT, 0}, {duration < 0 ? -1 : kDriver, POLLRDHUP, 0}};
+    poll(ends, 2, duration);
+  }
+
+  const char* stop_;
+  std::size_t size_, written_;
+  double last_tick_;    // s
+  double silence_ = 0;  // s, of the driver
+  bool heard_ = false, stopping_ = false, reported_ = false;
+};
+
+}  // namespace
+
+void runStopGuard(int line, int driver, const char* stop, std::size_t size) {
+  setsid();  // what ends the program's whole group must not end this one
+  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) signal(number, SIG_IGN);
+  prctl(PR_SET_NAME, "stop_guard");  // nor what ends programs by their name
+  // Nothing else may be kept open: neither connections nor the socket's other end.
+  dup2(line, kLine);
+  dup2(driver, kDriver);
+  closeAllFrom(3);
+  close(2);
+  Guard guard(stop, size);
+  guard.guardUntilDriverIsGone();
+  guard.stopDevice();
+  _exit(0);
+}
+
+}  // namespace microinjection

@@ -1,0 +1,82 @@
+// What a scene says of puncture.
+
+#include "cell/model/puncture_config.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "cell/model/scene_description.h"
+#include "cell/model/scene_texts.h"
+
+namespace microinjection {
+namespace {
+
+YAML::Node with(const char* puncture) {
+  YAML::Node node = YAML::Load(kGood);
+  node["cell"]["puncture"] = YAML::Load(puncture);
+  return node;
+}
+
+constexpr char kWhole[] = R"(
+layers:
+  - {name: zona, strain: 0.5, dimple_radius: 20e-6}
+  - {name: oolemma, gap: 1e-6, stiffness: 0.05, depth: 3e-6}
+shaft: {friction: 1e-7, adhesion: 2e-3, stiffness: 0.4, damping: 3, lateral_stiffness: 0.02}
+relaxation_time: 1e-3
+)";
+
+TEST(PunctureConfig, ReadsEveryKey) {
+  const PunctureConfig config = parseScene(with(kWhole), "scene.yaml").cell.puncture;
+  ASSERT_EQ(config.layers.size(), 2u);
+  EXPECT_EQ(config.layers[0].strain, 0.5);
+  EXPECT_EQ(config.layers[0].dimple_radius, 20e-6);
+  EXPECT_TRUE(std::isinf(config.layers[0].force) && std::isinf(config.layers[0].depth));
+  EXPECT_EQ(config.layers[1].name, "oolemma");
+  EXPECT_EQ(config.layers[1].gap, 1e-6);
+  EXPECT_EQ(config.layers[1].stiffness, 0.05);
+  EXPECT_EQ(config.layers[1].depth, 3e-6);
+  EXPECT_EQ(config.shaft.friction, 1e-7);
+  EXPECT_EQ(config.shaft.adhesion, 2e-3);
+  EXPECT_EQ(config.shaft.stiffness, 0.4);
+  EXPECT_EQ(config.shaft.damping, 3);
+  EXPECT_EQ(config.shaft.lateral_stiffness, 0.02);
+  EXPECT_EQ(config.relaxation_time, 1e-3);
+}
+
+TEST(PunctureConfig, IsStrict) {
+  expectIn(
+      errorsOf(with("{layers: [{name: zona, gap: 1e-6, stiffness: 1, force: 1e-6, depth: 1e-6}, {force: -1}, "
+                    "{name: nucleus, stiffness: 1, strain: 0.1}, {name: b, stiffness: 1, depth: 1e-6, "
+                    "dimple_radius: 1e-5}], force: 1e-6, shaft: {friction: -1, drag: 2}, relaxation_time: 0}")),
+      {"cell/puncture/layers/0/name = zona: must have one of force (N), depth (m), strain",
+       "cell/puncture/layers/0/gap = 1e-6: must be left out", "cell/puncture/layers/0/stiffness = 1: must be left",
+       "cell/puncture/layers/1/name is missing", "cell/puncture/layers/1/stiffness is missing",
+       "cell/puncture/layers/1/force = -1: must be a number in (0, inf) N",
+       "cell/puncture/layers/2/dimple_radius is missing",
+       "cell/puncture/layers/3/dimple_radius = 1e-5: must be left out",
+       "cell/puncture/force = 1e-6: must be left out where there are layers",
+       "cell/puncture/shaft/friction = -1: must be a number in [0, inf) N", "cell/puncture/shaft/drag: unknown key",
+       "cell/puncture/relaxation_time = 0: must be a number in (0, inf) s"});
+  expectIn(errorsOf(with("{layers: []}")), {"cell/puncture/layers = []: must have at least one layer"});
+  expectIn(errorsOf(with("{layers: [{name: a, strain: 1, dimple_radius: 3e-6}, {name: a, stiffness: 1, force: 1}]}")),
+           {"cell/puncture/layers/0/dimple_radius = 3e-06 m: must be above needle/tip/radius",
+            "cell/puncture/layers/1/name = a: must be a name that no other layer has"});
+}
+
+TEST(PunctureConfig, StrainIsTheConesStretch) {
+  PunctureConfig::Layer layer;
+  layer.dimple_radius = 7e-6;
+  EXPECT_NEAR(layer.strainAt(3e-6, 3e-6), 0.25, 1e-15);  // 3, 4, 5
+  EXPECT_NEAR(layer.strainAt(1e-8, 3e-6), 1e-16 / (2 * 16e-12), 1e-10);
+}
+
+/// What was prepared for a cell serves it however it is punctured.
+TEST(PunctureConfig, IsNoPartOfThePreparedCell) {
+  const Scene never = parseScene(YAML::Load(kGood), "scene.yaml"), scene = parseScene(with(kWhole), "scene.yaml");
+  EXPECT_EQ(describeCellAndTip(scene), describeCellAndTip(never));
+}
+
+}  // namespace
+}  // namespace microinjection

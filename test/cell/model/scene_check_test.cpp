@@ -1,0 +1,190 @@
+// Scenes that are refused, and what the messages say.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "cell/model/scene_texts.h"
+
+namespace microinjection {
+namespace {
+
+TEST(SceneCheck, NamesEveryBadKeyAtOnce) {
+  YAML::Node node = YAML::Load(kGood);
+  node["cell"]["material"]["model"] = "rubber";
+  node["cell"]["material"]["poisson_ratio"] = 0.5;
+  node["cell"]["material"]["viscoelasticity"] = YAML::Load("{prony: [{modulus_ratio: 0}], viscosity: -1, damping: 1}");
+  node["cell"]["surface_tension"] = -1;
+  node["cell"]["diametre"] = 1;
+  node["cell"]["puncture"] = YAML::Load("{force: 0}");
+  node["needle"]["tip"]["shape"] = "cone";
+  node["needle"]["contact"] = YAML::Load("{mode: glued, friction: -1}");
+  node["holding_pipette"].remove("contact_radius");
+  node["mesh"]["size"] = -1;
+  const std::string text = errorsOf(node);
+  expectIn(text, {"scene.yaml: cell/material/model = rubber: must be one of: linear, st_venant_kirchhoff, neo_hookean",
+                  "cell/material/poisson_ratio = 0.5: must be a number in (-1, 0.5)",
+                  "cell/material/viscoelasticity/prony/0/modulus_ratio = 0: must be a number in (0, inf)",
+                  "cell/material/viscoelasticity/prony/0/relaxation_time is missing",
+                  "cell/material/viscoelasticity/viscosity = -1: must be a number in [0, inf) Pa s",
+                  "cell/material/viscoelasticity/damping: unknown key",
+                  "cell/surface_tension = -1: must be a number in [0, inf) N/m", "cell/diametre: unknown key",
+                  "cell/puncture/force = 0: must be a number in (0, inf) N",
+                  "needle/tip/shape = cone: must be one of: disc, hemisphere, rounded_flat",
+                  "needle/contact/mode = glued: must be one of: sticking, sliding",
+                  "needle/contact/friction = -1: must be a number in [0, inf)",
+                  "holding_pipette/contact_radius is missing", "mesh/size = -1: must be a number in (0, inf) m"});
+}
+
+TEST(SceneCheck, AdhesionMembraneAndStretchAreStrict) {
+  YAML::Node node = YAML::Load(kGood);
+  node["needle"]["contact"] = YAML::Load("{adhesion: {energy: 1e-3, range: 1e-7}}");
+  node["cell"]["biomembrane"] = YAML::Load("{thickness: 4e-6, dimple_radius: 1e-6}");
+  node["mesh"]["stretch"] = 2;
+  expectIn(errorsOf(node), {"needle/contact/adhesion/energy = 0.001 J/m^2: must be left out: a disc never parts",
+                            "cell/biomembrane/dimple_radius = 1e-06 m: must be above needle/tip/radius"});
+  node["needle"]["tip"] = YAML::Load("{shape: hemisphere, radius: 3e-6}");
+  node["cell"]["biomembrane"]["dimple_radius"] = 20e-6;
+  EXPECT_EQ(errorsOf(node), "");
+  const Scene scene = parseScene(node, "scene.yaml");
+  EXPECT_EQ(scene.needle.contact.adhesion_energy, 1e-3);
+  EXPECT_EQ(scene.needle.contact.adhesion_range, 1e-7);
+  EXPECT_EQ(scene.cell.biomembrane->thickness, 4e-6);
+  EXPECT_EQ(scene.mesh.stretch, 2);
+  node["needle"]["contact"] = YAML::Load("{adhesion: {energy: 0, reach: 1e-7}}");
+  node["cell"]["biomembrane"] = YAML::Load("{thickness: -1}");
+  node["mesh"]["stretch"] = 5;
+  expectIn(errorsOf(node),
+           {"needle/contact/adhesion/energy = 0: must be a number in (0, inf) J/m^2",
+            "needle/contact/adhesion/range is missing", "needle/contact/adhesion/reach: unknown key",
+            "cell/biomembrane/thickness = -1: must be a number in (0, inf) m",
+            "cell/biomembrane/dimple_radius is missing", "mesh/stretch = 5: must be a number in [1, 4]"});
+}
+
+TEST(SceneCheck, RefusesLayersThatDoNotFit) {
+  const auto with = [](const char* change) {
+    YAML::Node node = YAML::Load(kLayered);
+    const YAML::Node changes = YAML::Load(change);
+    for (const auto& item : changes) node["cell"]["layers"][1][item.first.Scalar()] = item.second;
+    return errorsOf(node);
+  };
+  EXPECT_EQ(with("{}"), "");
+  EXPECT_EQ(with("{outer_radius: 27.944e-6}"), "");  // 1/500 of 28 um is 0.056 um
+  expectIn(with("{outer_radius: 27.95e-6, surface_tension: -1, young_modulus: 3}"),
+           {"scene.yaml: cell/layers/1/surface_tension = -1: must be a number in [0, inf) N/m",
+            "cell/layers/1/young_modulus: unknown key"});
+  expectIn(with("{outer_radius: 27.95e-6, name: zona}"),
+           {"cell/layers/0 (zona) is 5e-08 m thick: must be at least 1/500 of the cell's radius, 5.6e-08 m",
+            "cell/layers/1/name = zona: must be a name that no other layer has"});
+  expectIn(with("{outer_radius: 0.05e-6}"), {"cell/layers/1 (cytoplasm) is 5e-08 m thick"});
+  expectIn(with("{outer_radius: 28e-6, name: ''}"),
+           {"cell/layers/1/outer_radius = 2.8e-05 m: must be below the 2.8e-05 m of the layer around it",
+            "cell/layers/1/name = : must be"});
+}
+
+TEST(SceneCheck, TakesEitherOneMaterialOrLayers) {
+  YAML::Node both = YAML::Load(kLayered);
+  both["cell"]["material"] = YAML::Load("{model: linear, young_modulus: 1, poisson_ratio: 0}");
+  both["cell"]["surface_tension"] = 1;
+  expectIn(errorsOf(both), {"cell/material = {model: linear, young_modulus: 1, poisson_ratio: 0}: must be left out",
+                            "cell/surface_tension = 1: must be left out where there are layers"});
+  YAML::Node neither = YAML::Load(kGood);
+  neither["cell"] = YAML::Load("{}");
+  expectIn(errorsOf(neither), {"cell/material: is missing; or give layers", "cell/diameter is missing"});
+  neither["cell"] = YAML::Load("{layers: []}");
+  expectIn(errorsOf(neither), {"cell/layers = []: must have at least one layer"});
+}
+
+TEST(SceneCheck, RefusesKeysThatBelongToSomethingElse) {
+  const auto with = [](const char* needle, const char* material = "{}") {
+    YAML::Node node = YAML::Load(kGood);
+    node["needle"] = YAML::Load(needle);
+    const YAML::Node changes = YAML::Load(material);
+    for (const auto& item : changes) node["cell"]["material"][item.first.Scalar()] = item.second;
+    return errorsOf(node);
+  };
+  expectIn(
+      with("{tip: {shape: disc, radius: 3e-6, edge_radius: 1e-6}, contact: {mode: sliding}}", "{mooney_ratio: 0.5}"),
+      {"needle/tip/edge_radius = 1e-6: must be left out: it belongs to shape rounded_flat only",
+       "needle/contact/mode = sliding: must be sticking: the disc's sharp edge is the paper's nodal contact, which "
+       "sticks; rounded_flat slides",
+       "cell/material/mooney_ratio = 0.5: must be left out: it belongs to model mooney_rivlin only"});
+  expectIn(with("{tip: {shape: hemisphere, radius: 3e-6, edge_radius: 3e-6}, contact: {friction: 0}}"),
+           {"needle/tip/edge_radius = 3e-6: must be left out",
+            "needle/contact/friction = 0: must be left out: it belongs to mode sliding only"});
+  expectIn(with("{tip: {shape: rounded_flat, radius: 3e-6}}"), {"needle/tip/edge_radius is missing"});
+  expectIn(with("{tip: {shape: rounded_flat, radius: 3e-6, edge_radius: 3.1e-6}}"),
+           {"needle/tip/edge_radius = 3.1e-06 m: must be from 1/20 of the tip's radius to all of it, 3e-06 m"});
+  EXPECT_EQ(
+      with("{tip: {shape: rounded_flat, radius: 3e-6, edge_radius: 3e-6}}", "{model: mooney_rivlin, mooney_ratio: 1}"),
+      "");
+  expectIn(with("{tip: {shape: disc, radius: 3e-6}}", "{model: mooney_rivlin, mooney_ratio: 1.1}"),
+           {"cell/material/mooney_ratio = 1.1: must be a number in [0, 1]"});
+}
+
+TEST(SceneCheck, RefusesGeometryThatDoesNotFit) {
+  const auto with = [](const char* section, const char* key, const char* value, const char* shape = "disc") {
+    YAML::Node node = YAML::Load(kGood);
+    node["needle"]["tip"]["shape"] = shape;
+    node[section][key] = YAML::Load(value);
+    return errorsOf(node);
+  };
+  expectIn(with("needle", "offset", "[25e-6, 0]"),
+           {"needle/offset (its length) = 2.5e-05 m: must be with the tip's radius below 0.95"});
+  EXPECT_EQ(with("needle", "offset", "[20e-6, 0]"), "");
+  EXPECT_EQ(with("needle", "offset", "[25e-6, 0]", "hemisphere"), "");
+  expectIn(with("needle", "offset", "[26.7e-6, 0]", "hemisphere"), {"needle/offset (its length) = 2.67e-05 m"});
+  expectIn(with("needle", "tip", "{shape: hemisphere, radius: 29e-6}"), {"needle/tip/radius = 2.9e-05 m"});
+  expectIn(with("needle", "tip", "{shape: disc, radius: 27e-6}"), {"needle/tip/radius = 2.7e-05 m"});
+  expectIn(with("holding_pipette", "contact_radius", "27e-6"), {"holding_pipette/contact_radius = 2.7e-05 m"});
+  expectIn(with("mesh", "size", "40e-6"), {"mesh/size = 4e-05 m"});
+  expectIn(with("mesh", "refinement", "{density: 0.5}"), {"mesh/refinement/density"});
+}
+
+TEST(SceneCheck, TakesTheTipsAndCellsThatThereAre) {
+  for (const double diameter : {20e-6, 56e-6, 120e-6, 1.2e-3}) {
+    for (const double radius : {0.5e-6, 1e-6, 3e-6, 5e-6, 10e-6}) {
+      for (const std::string& shape : tipShapes()) {
+        if (shape == "disc" && radius > 0.9 * diameter / 2) continue;  // as wide as the cell
+        Scene scene;
+        scene.cell.layers.front().outer_radius = diameter / 2;
+        scene.holding_pipette.contact_radius = diameter / 6;
+        scene.needle.tip = {shape, radius, shape == "rounded_flat" ? radius / 3 : 0};
+        EXPECT_NO_THROW(scene.validate()) << diameter << " " << radius << " " << shape;
+        EXPECT_LE(scene.meshSize(), 0.3 * diameter);
+        EXPECT_GE(scene.meshSize(), 0.05 * diameter);
+      }
+    }
+  }
+}
+
+TEST(SceneCheck, ValidateGuardsScenesMadeInCode) {
+  Scene scene;
+  EXPECT_NO_THROW(scene.validate());
+  EXPECT_EQ(scene.cell.diameter(), 56e-6);
+  scene.cell.layers.front().outer_radius = 0;
+  scene.cell.material().young_modulus = -1;
+  scene.needle.contact.mode = "sliding";
+  scene.needle.tip.edge_radius = 1e-6;
+  const auto errors = [&]() -> std::string {
+    try {
+      scene.validate();
+    } catch (const ConfigError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  expectIn(errors(), {"cell/diameter = 0", "cell/material/young_modulus = -1", "needle/contact/mode = sliding: must be",
+                      "needle/tip/edge_radius = 1e-06 m: must be left out"});
+  scene.cell.layers.push_back({"nucleus", -1e-6, {}, std::nan("")});
+  scene.cell.layers.back().material.model = "rubber";
+  expectIn(errors(), {"cell/layers/0/outer_radius = 0", "cell/layers/0/material/young_modulus = -1",
+                      "cell/layers/1/outer_radius = -1e-06 m", "cell/layers/1/material/model = rubber",
+                      "cell/layers/1/surface_tension = nan"});
+  scene.cell.layers.clear();
+  expectIn(errors(), {"cell/layers: must have at least one layer"});
+}
+
+}  // namespace
+}  // namespace microinjection

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cell/model/cell_under_needle.h"
+
+namespace microinjection {
+
+/// A ball that a point-like tip from above meets as a spring, the same in all directions, from where it touched.
+class SpringCell : public CellUnderNeedle {
+ public:
+  SpringCell(double radius, double stiffness) : radius_(radius), stiffness_(stiffness) {}  ///< m, N/m
+
+  TipForce step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double /*time*/) override {
+    const double aside = tip.head<2>().norm();
+    const double height = aside < radius_ ? std::sqrt(radius_ * radius_ - aside * aside) : -radius_;
+    if (tip.z() >= height || aside >= radius_) contact_.reset();
+    if (tip.z() >= height || aside >= radius_) return {};
+    if (!contact_) contact_ = Contact{{tip.x(), tip.y(), height}, Eigen::Vector3d::Zero(), 0};
+    contact_->displacement = tip - contact_->touched_at;
+    contact_->indentation = -contact_->displacement.dot(axis);
+    return {trusted, trusted ? Eigen::Vector3d(-stiffness_ * contact_->displacement) : Eigen::Vector3d::Zero()};
+  }
+  void release() override {
+    contact_.reset();
+    ++released;
+  }
+
+  const std::optional<Contact>& contact() const override { return contact_; }
+  const std::string& distrust() const override { return distrust_; }
+  std::optional<Solution> solution(double /*time*/) const override { return std::nullopt; }
+  std::vector<std::array<int, 3>> triangles() const override { return {}; }
+  std::vector<std::uint32_t> held() const override { return {}; }
+  Picture picture() override { return {}; }
+
+  bool trusted = true;
+  int released = 0;
+
+ private:
+  double radius_, stiffness_;
+  std::optional<Contact> contact_;
+  std::string distrust_;
+};
+
+}  // namespace microinjection

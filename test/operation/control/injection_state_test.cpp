@@ -1,0 +1,51 @@
+#include "operation/control/injection_state.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <string>
+#include <utility>
+
+namespace microinjection {
+namespace {
+
+// Written once more, by name: each change of the table has to be made twice, on purpose.
+const std::map<std::pair<std::string, std::string>, std::string> kExpected = {
+    {{"idle", "start"}, "approach"},          {{"approach", "touch"}, "contact"},
+    {{"approach", "withdraw"}, "withdraw"},   {{"contact", "lost"}, "approach"},
+    {{"contact", "indent"}, "indent"},        {{"contact", "puncture"}, "punctured"},
+    {{"contact", "withdraw"}, "withdraw"},    {{"indent", "puncture"}, "punctured"},
+    {{"indent", "withdraw"}, "withdraw"},     {{"punctured", "indent"}, "indent"},
+    {{"punctured", "puncture"}, "punctured"}, {{"punctured", "inject"}, "inject"},
+    {{"punctured", "withdraw"}, "withdraw"},  {{"inject", "injected"}, "punctured"},
+    {{"inject", "withdraw"}, "withdraw"},     {{"withdraw", "touch"}, "contact"},
+    {{"withdraw", "withdraw"}, "withdraw"},   {{"withdraw", "out"}, "idle"},
+};
+
+TEST(InjectionState, EachEventInEachState) {
+  for (const InjectionState state : kInjectionStates) {
+    for (const InjectionEvent event : kInjectionEvents) {
+      const std::string from = toText(state), what = toText(event);
+      std::string expected = "none";
+      if (kExpected.count({from, what}) != 0) expected = kExpected.at({from, what});
+      if (what == "fail") expected = "fault";
+      if (what == "reset") expected = "idle";
+      const auto next = after(state, event);
+      EXPECT_EQ(next ? toText(*next) : "none", expected) << from << ", " << what;
+    }
+  }
+}
+
+TEST(InjectionState, FromEveryStateInTheCellThereIsAWayOut) {
+  for (const char* name : {"approach", "contact", "indent", "punctured", "inject", "withdraw"}) {
+    for (const InjectionState state : kInjectionStates) {
+      if (toText(state) != std::string(name)) continue;
+      const auto next = after(state, InjectionEvent::kWithdraw);
+      ASSERT_TRUE(next) << name;
+      EXPECT_EQ(after(*next, InjectionEvent::kOut), InjectionState::kIdle) << name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace microinjection

@@ -1,0 +1,46 @@
+#include "rig/devices/eppendorf/eppendorf_protocol.h"
+
+#include <gtest/gtest.h>
+
+namespace microinjection {
+namespace {
+
+TEST(EppendorfProtocol, SaysCommandsAsTheManualPrintsThem) {
+  EXPECT_EQ(eppendorfRemote(), "C004");
+  EXPECT_EQ(eppendorfManual(), "C005");
+  EXPECT_EQ(eppendorfStop(), "C008");
+  EXPECT_EQ(eppendorfPosition(), "C010");
+  EXPECT_EQ(eppendorfGoTo({100, -200, 300}, {1000, 0, 7500}), "C012 100 -200 300 1000 0 7500");
+}
+
+TEST(EppendorfProtocol, KnowsTheAnswerToACommand) {
+  EXPECT_TRUE(isEppendorfAnswer("A004", eppendorfRemote()));
+  EXPECT_TRUE(isEppendorfAnswer("A012", eppendorfGoTo({1, 2, 3}, {4, 5, 6})));
+  for (const char* answer : {"A005", "A0040", "A004 ", "a004", "C004", ""}) {
+    EXPECT_FALSE(isEppendorfAnswer(answer, eppendorfRemote())) << answer;
+  }
+}
+
+TEST(EppendorfProtocol, ReadsPositionsSeparatedBySpacesOrSigns) {
+  for (const char* answer : {"A010 100 -200 300 0", "A010 100-200+300 0", "A010 +100 -200 +300 0", "A010+100-200+300 0",
+                             "A010  100  -200  300  0", "A010 100.0 -200.00 300.000 0"}) {
+    const auto position = readEppendorfPosition(answer);
+    ASSERT_TRUE(position) << answer;
+    EXPECT_EQ(position->place, Eigen::Vector3d(100, -200, 300)) << answer;
+    EXPECT_EQ(position->limits, 0);
+  }
+  EXPECT_EQ(readEppendorfPosition("A010 1 2 3 34")->limits, 34);
+  EXPECT_EQ(readEppendorfPosition("A010 -0.25 2 3 0")->place.x(), -0.25);
+}
+
+TEST(EppendorfProtocol, RefusesWhatIsNoPosition) {
+  for (const char* answer : {"", "A010", "A010 100 -200 300", "A010 100 -200 300 0 0", "A009 100 -200 300 0",
+                             "A010 100,-200,300,0", "A010 1e2 -200 300 0", "A010 100 - 200 300 0", "A010100 -200 300 0",
+                             "A010 1234567890 0 0 0", "A010 100 200 nan 0", " A010 100 -200 300 0",
+                             "A010 100 -200 300 0 ", "A010 100 -200 300. 0", "A010 100 -200 .5 0"}) {
+    EXPECT_FALSE(readEppendorfPosition(answer)) << answer;
+  }
+}
+
+}  // namespace
+}  // namespace microinjection

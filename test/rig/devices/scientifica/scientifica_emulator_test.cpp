@@ -1,0 +1,96 @@
+// The emulated PatchStar against what its clients send and note; its driver plays no part.
+
+#include "rig/devices/scientifica/scientifica_emulator.h"
+
+#include <gtest/gtest.h>
+
+#include "rig/devices/line_client.h"
+
+namespace microinjection {
+namespace {
+
+struct Client : LineClient {
+  explicit Client(const std::string& version = "3.12") : Client(makeDevice(version), version < "3" ? 9600 : 38400) {}
+  std::shared_ptr<ScientificaEmulator> device;
+
+ private:
+  Client(const std::shared_ptr<ScientificaEmulator>& emulator, double baud)
+      : LineClient(emulator, baud), device(emulator) {}
+  static std::shared_ptr<ScientificaEmulator> makeDevice(const std::string& version) {
+    ScientificaEmulatorConfig config;
+    config.version = version;
+    return std::make_shared<ScientificaEmulator>(config);
+  }
+};
+
+/// What acq4 asks when it connects.
+TEST(ScientificaEmulator, TellsWhatItIsInTheUnitsOfItsVersion) {
+  Client old("2.13"), card("3.12");
+  EXPECT_EQ(card.answers("scientifica\r"), "Y519\r");
+  EXPECT_EQ(card.answers("ver\r"), "3.12\r");
+  EXPECT_EQ(card.answers("type\r"), "3.05\r");
+  EXPECT_EQ(card.answers("USTEP X\r"), "1600.00\r");
+  EXPECT_EQ(card.answers("UUX\r"), "E,3\r");
+  EXPECT_EQ(old.answers("ver\r"), "2.13\r");
+  EXPECT_EQ(old.answers("UUX\r"), "-6.40\r");
+  EXPECT_EQ(old.answers("TOP\r"), "30000\r");
+  EXPECT_EQ(old.answers("ACC\r"), "500\r");
+  EXPECT_EQ(old.answers("TOP 999\r"), "E\r");
+  EXPECT_EQ(old.answers("TOP 1000\r"), "A\r");
+  EXPECT_EQ(old.answers("TOP\r"), "1000\r");
+}
+
+TEST(ScientificaEmulator, MovesAndTellsItsMotion) {
+  for (const char* version : {"2.13", "3.12"}) {
+    Client client(version);
+    const int per_um = version[0] == '2' ? 10 : 100;
+    EXPECT_EQ(client.answers("S\r"), "0\r");
+    EXPECT_EQ(client.answers("ABS " + std::to_string(1000 * per_um) + " 0 0\r"), "A\r");
+    EXPECT_NE(client.answers("s\r", 0.05), "0\r");
+    EXPECT_EQ(client.answers("ABS 0 0 0\r"), "");  // acq4: it is not answered
+    client.listen(2);
+    EXPECT_EQ(client.answers("S\r"), "0\r");
+    EXPECT_EQ(client.answers("P\r"), std::to_string(1000 * per_um) + "\t0\t0\r");
+    EXPECT_EQ(client.answers("POS\r"), std::to_string(1000 * per_um) + "\t0\t0\r");
+    EXPECT_NEAR(client.device->position().x(), 1e-3, 1e-9);
+  }
+}
+
+/// Micro-Manager's stage moves x and y.
+TEST(ScientificaEmulator, TwoNumbersMoveTwoAxes) {
+  Client client("2.13");
+  EXPECT_EQ(client.answers("ABS 1000 2000 3000\r", 2), "A\r");
+  EXPECT_EQ(client.answers("abs 500 600\r", 2), "A\r");
+  EXPECT_EQ(client.answers("POS\r"), "500\t600\t3000\r");
+  EXPECT_EQ(client.answers("rel 10 0 -10\r", 2), "A\r");
+  EXPECT_EQ(client.answers("POS\r"), "510\t600\t2990\r");
+}
+
+/// TOP 12800 of a version 2 card is 1 mm/s, ACC 500 is 19.5 mm/s^2.
+TEST(ScientificaEmulator, MovesAtItsSpeedWithItsRamps) {
+  Client client("2.13");
+  client.answers("TOP 12800\r");
+  client.answers("FIRST 1000\r");
+  client.answers("ABS 20000 0 0\r", 0);
+  client.listen(1);
+  const double before = client.device->position().x();
+  client.listen(0.5);
+  EXPECT_NEAR((client.device->position().x() - before) / 0.5, 1e-3, 0.01e-3);
+  const double told = client.device->position().x(), wire = 5 * 10.0 / 9600;  // s
+  EXPECT_EQ(client.answers("STOP\r", 1, 0), "A\r");
+  EXPECT_FALSE(client.device->moves());
+  EXPECT_NEAR(client.device->position().x() - told, 1e-3 * wire + 1e-6 / (2 * 0.0195), 2e-6);
+}
+
+TEST(ScientificaEmulator, RefusesWhatIsNoCommand) {
+  Client client;
+  for (const char* command :
+       {"APPROACH\r", "ABS\r", "ABS 1\r", "ABS 1 2 x\r", "ABS 1 2 3 4\r", "ABS 1.5 2 3\r", "FOO 1\r"}) {
+    EXPECT_EQ(client.answers(command), "E,3\r") << command;
+  }
+  EXPECT_EQ(client.answers("\r"), "");
+  EXPECT_EQ(client.device->movesBegun(), 0);
+}
+
+}  // namespace
+}  // namespace microinjection

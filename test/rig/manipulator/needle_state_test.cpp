@@ -1,0 +1,84 @@
+#include "rig/manipulator/needle_state.h"
+
+#include <gtest/gtest.h>
+
+namespace microinjection {
+namespace {
+
+using State = OperatingState;
+using Command = StateCommand;
+using Device = ManipulatorDevice::State;
+
+class NeedleStateTest : public testing::Test {
+ protected:
+  NeedleStateTest() { state_.surround({Device::kReady, true, "", ""}); }
+  NeedleState state_;
+};
+
+TEST_F(NeedleStateTest, PausesAndResumes) {
+  EXPECT_EQ(state_.state(), State::kEnabled);
+  EXPECT_EQ(state_.unable(), "");
+  EXPECT_EQ(state_.command(Command::kPause), "");
+  EXPECT_EQ(state_.state(), State::kPaused);
+  EXPECT_EQ(state_.unable(), "PAUSED; allowed after resume");
+  EXPECT_NE(state_.command(Command::kEnable), "");  // the convention's table: invalid
+  EXPECT_EQ(state_.state(), State::kPaused);
+  EXPECT_EQ(state_.command(Command::kResume), "");
+  EXPECT_EQ(state_.state(), State::kEnabled);
+  EXPECT_NE(state_.command(Command::kResume), "");
+}
+
+TEST_F(NeedleStateTest, IsDisabledUntilSomebodyEnables) {
+  EXPECT_EQ(state_.command(Command::kDisable), "");
+  EXPECT_EQ(state_.state(), State::kDisabled);
+  EXPECT_NE(state_.command(Command::kPause), "");
+  EXPECT_EQ(state_.unable(), "DISABLED; allowed after enable");
+  EXPECT_EQ(state_.command(Command::kEnable), "");
+  EXPECT_EQ(state_.state(), State::kEnabled);
+}
+
+TEST_F(NeedleStateTest, AFaultEndsWhereItsCommandLeads) {
+  EXPECT_EQ(state_.command(Command::kPause), "");
+  state_.surround({Device::kFault, true, "", ""});
+  EXPECT_EQ(state_.state(), State::kFault);
+  EXPECT_NE(state_.command(Command::kPause), "");
+  EXPECT_NE(state_.command(Command::kResume), "");
+  EXPECT_NE(state_.command(Command::kHome), "");
+  EXPECT_EQ(state_.command(Command::kEnable), "");
+  EXPECT_EQ(state_.state(), State::kFault);  // its cause is not gone yet
+  state_.surround({Device::kReady, true, "", ""});
+  EXPECT_EQ(state_.state(), State::kEnabled);
+  state_.surround({Device::kReady, true, "two nodes", ""});
+  EXPECT_EQ(state_.state(), State::kFault);
+  EXPECT_EQ(state_.command(Command::kDisable), "");
+  state_.surround({Device::kReady, true, "", ""});
+  EXPECT_EQ(state_.state(), State::kDisabled);
+}
+
+TEST_F(NeedleStateTest, WithoutADeviceOrBehindABarrierItIsDisabled) {
+  state_.surround({Device::kDisconnected, false, "", ""});
+  EXPECT_EQ(state_.state(), State::kDisabled);
+  EXPECT_FALSE(state_.homed());
+  state_.surround({Device::kReady, true, "", "others can reach it"});
+  EXPECT_EQ(state_.state(), State::kDisabled);
+  EXPECT_EQ(state_.unable(), "others can reach it");
+  state_.surround({Device::kReady, true, "", ""});
+  EXPECT_EQ(state_.state(), State::kEnabled);
+}
+
+TEST_F(NeedleStateTest, UnhomedItIsHeldUntilItIsHome) {
+  EXPECT_TRUE(state_.homed());
+  EXPECT_EQ(state_.command(Command::kUnhome), "");
+  EXPECT_EQ(state_.state(), State::kEnabled);
+  EXPECT_FALSE(state_.homed());
+  EXPECT_EQ(state_.unable(), "the needle is not homed; allowed after home");
+  state_.surround({Device::kReady, false, "", ""});
+  EXPECT_NE(state_.command(Command::kHome), "");
+  state_.surround({Device::kReady, true, "", ""});
+  EXPECT_EQ(state_.command(Command::kHome), "");
+  EXPECT_TRUE(state_.homed());
+  EXPECT_EQ(state_.unable(), "");
+}
+
+}  // namespace
+}  // namespace microinjection

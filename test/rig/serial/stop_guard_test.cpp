@@ -1,0 +1,244 @@
+#include "rig/serial/stop_guard.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/prctl.h>
+#include <sys/ptrace.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <functional>
+#include <thread>
+
+#include "rig/serial/pseudo_terminal.h"
+#include "rig/serial/serial_port.h"
+
+namespace microinjection {
+namespace {
+
+constexpr char kStop[] = "/stop\n";
+
+void sleepFor(int duration) { std::this_thread::sleep_for(std::chrono::milliseconds(duration)); }
+
+/// A guard that this program shows its steps, or does not. Steps of 1 ms are counted, not seconds: on a machine that
+/// stands still the guard counts as few.
+class StopGuardTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_GE(line_, 0);
+    ASSERT_EQ(guard_.begin(line_, kStop), "");
+  }
+  void TearDown() override {
+    close(line_);
+    endDriver();
+  }
+  void endDriver() {
+    if (driver_ > 0) kill(driver_, SIGKILL);
+    if (driver_ > 0) waitpid(driver_, nullptr, 0);
+    driver_ = -1;
+  }
+
+  Wire::GuardReport step() {
+    const auto last = std::chrono::steady_clock::now();
+    sleepFor(1);
+    held_up_ = held_up_ || std::chrono::steady_clock::now() - last > std::chrono::milliseconds(100);
+    Wire::GuardReport report = guard_.beat();
+    if (!report.intervention.empty()) interventions_ += report.intervention + ".";
+    heard_ += terminal_.read();
+    return report;
+  }
+  bool stepUntil(const std::function<bool()>& done) {
+    for (int i = 0; i < 5000 && !done(); ++i) step();
+    return done();
+  }
+  /// Shows no step.
+  bool restUntil(const std::function<bool()>& done) {
+    for (int i = 0; i < 5000 && !done(); ++i) {
+      sleepFor(1);
+      heard_ += terminal_.read();
+    }
+    return done();
+  }
+  bool hasStopped() const { return heard_.find(kStop) != std::string::npos; }
+  /// Unless the machine let the guard run and this program not, so that the guard was right.
+  void expectUndisturbed() const {
+    if (held_up_) return;
+    EXPECT_EQ(interventions_, "");
+    EXPECT_EQ(heard_, "");
+  }
+  static bool lives(pid_t process) { return kill(process, 0) == 0; }
+
+  const std::string link_ = testing::TempDir() + "stop_guard_test_" + std::to_string(getpid());
+  PseudoTerminal terminal_{link_};
+  int line_ = open(link_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+  StopGuard guard_;
+  pid_t driver_ = -1;  // a program of its own
+  std::string heard_, interventions_;
+  bool held_up_ = false;
+};
+
+TEST_F(StopGuardTest, SendsNothingWhileTheProgramGoesOn) {
+  for (int i = 0; i < 600; ++i) EXPECT_EQ(step().missing, "");
+  const pid_t process = guard_.process();
+  guard_.end();
+  EXPECT_FALSE(lives(process));
+  heard_ += terminal_.read();
+  expectUndisturbed();
+}
+
+TEST_F(StopGuardTest, ACycleThatDoesNotStepIsStoppedAndLearnsWhy) {
+  step();
+  ASSERT_TRUE(restUntil([&] { return hasStopped(); }));
+  // Again and again: the line may lose a byte.
+  ASSERT_TRUE(restUntil([&] { return heard_.rfind(std::string(kStop) + kStop, 0) == 0; })) << heard_;
+  EXPECT_NE(fcntl(line_, F_GETFL) & O_NONBLOCK, 0);  // the open file is this program's as well
+  EXPECT_TRUE(guard_.intervened());
+  ASSERT_TRUE(stepUntil([&] { return !interventions_.empty(); }));
+  EXPECT_NE(interventions_.find("the program stood still for more than 0.2 s"), std::string::npos);
+  // Once: after that it is guarded as before.
+  heard_.clear();
+  interventions_.clear();
+  for (int i = 0; i < 600; ++i) EXPECT_EQ(step().missing, "");
+  expectUndisturbed();
+  heard_.clear();
+  ASSERT_TRUE(restUntil([&] { return hasStopped(); }));
+  ASSERT_TRUE(stepUntil([&] { return !interventions_.empty(); }));
+}
+
+TEST_F(StopGuardTest, AStopThatALineDoesNotTakeYetIsSentToItsEnd) {
+  std::string full(4096, 'x');  // nobody reads, and the line takes no more
+  while (write(line_, full.data(), full.size()) > 0) {
+  }
+  for (int i = 0; i < 20; ++i) sleepFor(20);  // ticks, as the guard's
+  EXPECT_NE(fcntl(line_, F_GETFL) & O_NONBLOCK, 0);
+  ASSERT_TRUE(restUntil([&] { return hasStopped(); }));
+  ASSERT_TRUE(stepUntil([&] { return !interventions_.empty(); }));
+}
+
+TEST_F(StopGuardTest, AKilledGuardIsNoticedAndReplaced) {
+  step();
+  const pid_t first = guard_.process();
+  kill(first, SIGKILL);
+  bool unguarded = false;
+  ASSERT_TRUE(stepUntil([&] { return unguarded = guard_.process() != first, !interventions_.empty(); }));
+  EXPECT_EQ(interventions_, "the stop guard ended.");
+  EXPECT_TRUE(unguarded);
+  ASSERT_TRUE(stepUntil([&] { return step().missing.empty(); }));
+  EXPECT_NE(guard_.process(), first);
+  if (!held_up_) EXPECT_EQ(heard_, "");  // its driver sends the stop
+  heard_.clear();
+  ASSERT_TRUE(restUntil([&] { return hasStopped(); }));
+}
+
+TEST_F(StopGuardTest, AFrozenGuardIsKilledAndReplaced) {
+  step();
+  const pid_t first = guard_.process();
+  kill(first, SIGSTOP);
+  ASSERT_TRUE(stepUntil([&] { return !interventions_.empty(); }));
+  EXPECT_EQ(interventions_, "the stop guard stood still for more than 0.2 s.");
+  ASSERT_TRUE(stepUntil([&] { return step(), !lives(first); }));
+  ASSERT_TRUE(stepUntil([&] { return step().missing.empty(); }));
+  ASSERT_TRUE(restUntil([&] { return hasStopped(); }));
+}
+
+/// A debugger that has stopped a process and waits at its prompt; empty where the system allows none.
+pid_t startDebugger(pid_t process) {
+  int attached[2];
+  if (pipe(attached) != 0) return -1;
+  const pid_t debugger = fork();
+  if (debugger == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    const bool done = ptrace(PTRACE_ATTACH, process, nullptr, nullptr) == 0 && waitpid(process, nullptr, 0) == process;
+    const char answer = done ? 'y' : 'n';
+    if (write(attached[1], &answer, 1) != 1) _exit(1);
+    for (;;) pause();
+  }
+  char answer = 'n';
+  const bool heard = read(attached[0], &answer, 1) == 1;
+  close(attached[0]);
+  close(attached[1]);
+  if (heard && answer == 'y') return debugger;
+  kill(debugger, SIGKILL);
+  waitpid(debugger, nullptr, 0);
+  return -1;
+}
+
+TEST_F(StopGuardTest, AGuardThatADebuggerHoldsOnToDoesNotHoldTheDriver) {
+  step();
+  const pid_t first = guard_.process(), debugger = startDebugger(first);
+  if (debugger < 0) GTEST_SKIP() << "no process may be debugged here";
+  EXPECT_TRUE(stepUntil([&] { return !interventions_.empty(); }));
+  EXPECT_TRUE(stepUntil([&] { return step().missing.empty(); }));
+  EXPECT_NE(guard_.process(), first);
+  EXPECT_TRUE(lives(first)) << "it has ended: the debugger held nothing";
+  kill(debugger, SIGKILL);
+  waitpid(debugger, nullptr, 0);
+  EXPECT_TRUE(stepUntil([&] { return step(), !lives(first); }));
+}
+
+TEST_F(StopGuardTest, GuardsThatCannotBeStartedAreReported) {
+  step();
+  rlimit limit{};
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &limit), 0);
+  const rlimit none{0, limit.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &none), 0);
+  kill(guard_.process(), SIGKILL);
+  const bool tried = stepUntil([&] { return step().missing.find("open files") != std::string::npos; });
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &limit), 0);
+  ASSERT_TRUE(tried);
+  EXPECT_EQ(guard_.process(), -1);
+  ASSERT_TRUE(stepUntil([&] { return step().missing.empty(); }));
+  ASSERT_TRUE(restUntil([&] { return hasStopped(); }));
+}
+
+TEST_F(StopGuardTest, AMachineThatStandsStillAsAWholeIsNotTakenForAFrozenProgram) {
+  step();
+  sleepFor(60);  // it has heard that
+  kill(guard_.process(), SIGSTOP);
+  for (int i = 0; i < 30; ++i) sleepFor(20);  // neither the guard nor this program
+  kill(guard_.process(), SIGCONT);
+  for (int i = 0; i < 300; ++i) step();
+  expectUndisturbed();
+}
+
+/// A program of its own that sends ten commands a cycle, ".", and then why it was stopped.
+pid_t startDriver(const std::string& link) {
+  const pid_t driver = fork();
+  if (driver != 0) return driver;
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  SerialPort port({link, 9600});
+  port.setGuardedStop(kStop);
+  if (!port.open().empty()) _exit(1);
+  port.write("begun", 0);
+  for (;;) {
+    for (int i = 0; i < 10; ++i) port.write(".", 0);
+    const std::string why = port.beat().intervention;
+    if (!why.empty()) port.write(why, 0);
+    port.read(0);
+    sleepFor(1);
+  }
+}
+
+TEST_F(StopGuardTest, AFrozenProgramsDeviceIsStoppedAndHearsNothingElseWhenItIsAliveAgain) {
+  guard_.end();
+  driver_ = startDriver(link_);
+  ASSERT_TRUE(restUntil([&] { return heard_.find("begun...") != std::string::npos; }));
+  kill(driver_, SIGSTOP);
+  ASSERT_TRUE(restUntil([&] { return hasStopped(); }));
+  kill(driver_, SIGCONT);
+  ASSERT_TRUE(restUntil([&] { return heard_.find("the program stood still") != std::string::npos; })) << heard_;
+  // From the stop to where it knows of it there is nothing but stops, and what it was just about to write.
+  std::string between = heard_.substr(heard_.find(kStop), heard_.find("the program stood") - heard_.find(kStop));
+  while (between.rfind(kStop, 0) == 0) between.erase(0, sizeof(kStop) - 1);
+  EXPECT_LE(between.size(), 1U) << between;
+  kill(driver_, SIGSTOP);
+  endDriver();  // killed while it stands still: the guard ends, and the line is free
+  SerialPort next({link_, 9600});
+  EXPECT_TRUE(restUntil([&] { return next.open().empty(); }));
+}
+
+}  // namespace
+}  // namespace microinjection
