@@ -65,7 +65,7 @@ def measure(kind, arguments, folder):
     """Returns {what: (count, late, {upper edge in s: count})} of one device."""
     logs = arguments.out / 'log'
     logs.mkdir(parents=True, exist_ok=True)
-    motion = folder / 'motion.csv'
+    motion = folder / 'motion.yaml'
     write_motion(motion, arguments.seconds + SETTLE + 30)
     session = DemoSession(ROOT / 'launch' / 'session.launch', logs, {
         'cell': arguments.cell, 'model': arguments.model, 'rig': 'sim', 'haptic': HAPTIC[kind], 'clock': 'wall',

@@ -17,15 +17,13 @@ namespace {
 using Controller = TeleoperationLoop::Controller;
 using Result = TeleoperationLoop::Result;
 
-constexpr Controller kControllers[] = {Controller::kOff, Controller::kObserver, Controller::kTwoPort,
-                                       Controller::kWave};
+constexpr Controller kControllers[] = {Controller::kOff, Controller::kObserver, Controller::kWave};
 constexpr double kStillAmplitude = 5e-5;  // m, below which a hand is at rest
 constexpr double kDecay = 0.95;  // an oscillation that keeps more than this from second to second is a limit cycle
 
 std::string name(Controller controller) {
   if (controller == Controller::kOff) return "off";
-  if (controller == Controller::kObserver) return "one_port";
-  return controller == Controller::kTwoPort ? "two_port" : "wave";
+  return controller == Controller::kObserver ? "one_port" : "wave";
 }
 
 bool isLimitCycle(const Result& result) {

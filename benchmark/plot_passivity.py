@@ -8,14 +8,14 @@ matplotlib.use('Agg')
 import matplotlib.pyplot as plt  # noqa: E402
 
 CONTROLLERS = {'off': ('controllers off', '#e45756'), 'one_port': ('passivity at the hand', '#f58518'),
-               'two_port': ('two ports', '#4c78a8'), 'wave': ('waves', '#54a24b')}
+               'wave': ('waves', '#54a24b')}
 STILL = 50.0  # um, rms, below which the benchmark calls a hand at rest
 
 
 def scatter(axes, rows, x, y, log_y=False):
     for i, (controller, (label, colour)) in enumerate(CONTROLLERS.items()):
         chosen = [row for row in rows if row['controller'] == controller]
-        axes.scatter([x(row) + 0.2 * (i - 1.5) for row in chosen], [y(row) for row in chosen], s=10, color=colour,
+        axes.scatter([x(row) + 0.2 * (i - 1) for row in chosen], [y(row) for row in chosen], s=10, color=colour,
                      alpha=0.6, label=label, linewidths=0)
     axes.set_yscale('log' if log_y else 'symlog', **({} if log_y else {'linthresh': 1e-4}))
     axes.grid(color='0.92')

@@ -16,6 +16,8 @@ import time
 import xmlrpc.client
 from pathlib import Path
 
+import yaml
+
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / 'src' / 'tools'))
 
@@ -46,20 +48,14 @@ def say(text):
 
 
 def write_motion(path, seconds):
-    """Writes the demo's hand motion, its way to the cell and back repeated until `seconds` are over."""
-    lines = (ROOT / 'config' / 'hand_motions' / 'indent_and_retract.csv').read_text(encoding='utf-8').splitlines()
-    rows = list(csv.reader(line for line in lines if not line.startswith('#')))
-    header, rows = rows[0], rows[1:]
-    clutch = header.index('clutch')
-    free = 1 + max(number for number, row in enumerate(rows) if row[clutch] == '1')
-    again = rows[free:]  # begins and ends where the clutch was let go
-    step = float(rows[1][0]) - float(rows[0][0])
-    end = float(rows[-1][0]) + step
-    while end < seconds:
-        rows += [[f'{float(row[0]) - float(again[0][0]) + end:.3f}', *row[1:]] for row in again]
-        end = float(rows[-1][0]) + step
-    with open(path, 'w', encoding='utf-8', newline='') as file:
-        csv.writer(file, lineterminator='\n').writerows([header, *rows])
+    """Writes a hand motion whose path to the cell and back is repeated until `seconds` are over."""
+    motion = yaml.safe_load((ROOT / 'config' / 'hand_motions' / 'indent_and_retract.yaml').read_text(encoding='utf-8'))
+    path_of_hand = motion['path']
+    free = 1 + max(number for number, waypoint in enumerate(path_of_hand) if waypoint.get('clutch'))
+    again = path_of_hand[free:]  # begins and ends where the clutch was released
+    while sum(waypoint['duration'] for waypoint in path_of_hand) < seconds:
+        path_of_hand = path_of_hand + again
+    path.write_text(yaml.safe_dump({**motion, 'path': path_of_hand}), encoding='utf-8')
 
 
 class Histograms:
@@ -134,7 +130,7 @@ def measure(session, seconds):
 def run(arguments, folder):
     logs = arguments.out / 'realtime_log'
     logs.mkdir(parents=True, exist_ok=True)
-    motion = folder / 'motion.csv'
+    motion = folder / 'motion.yaml'
     write_motion(motion, arguments.seconds + SETTLE + 30)
     session = DemoSession(ROOT / 'launch' / 'session.launch', logs, {
         'cell': arguments.cell, 'model': arguments.model, 'rig': 'sim', 'haptic': 'operator', 'clock': 'wall',

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "operation/teleoperation/link_follower.h"
 #include "operation/teleoperation/link_leader.h"
@@ -12,6 +14,7 @@ namespace {
 constexpr double kPeriod = 1e-3;       // s, of bridge and rig
 constexpr int kSubsteps = 20;          // of the hand within it: the device's force is held, the hand is not
 constexpr int kFound = 1000;           // periods before the start, with a link that has epochs
+constexpr double kTimeout = 0.3;       // s without a value: the needle holds, the hand feels nothing
 constexpr double kServoTime = 2e-3;    // s, by which the needle lags behind its target
 constexpr double kPressedForce = 1.2;  // N that the hand means to press with
 constexpr double kFree = 5e-3;         // m above what is touched
@@ -37,6 +40,32 @@ double amplitude(const std::vector<TeleoperationLoop::Sample>& samples, double s
   return hand.norm() / std::sqrt(static_cast<double>(count));
 }
 
+/// What crosses a network without waves: a value alone.
+struct Packet {
+  double sent = 0;  ///< s
+  Eigen::Vector3d value = Eigen::Vector3d::Zero();
+};
+
+/// The newest of them; nothing once that came too long ago.
+class Inbox {
+ public:
+  void receive(const Packet& packet) {
+    if (newest_ && packet.sent <= newest_->sent) return;
+    newest_ = packet;
+    fresh_ = true;
+  }
+  std::optional<Eigen::Vector3d> value(double now) {
+    if (std::exchange(fresh_, false)) received_ = now;
+    if (!newest_ || now - received_ > kTimeout) return std::nullopt;
+    return newest_->value;
+  }
+
+ private:
+  std::optional<Packet> newest_;
+  bool fresh_ = false;
+  double received_ = 0;  ///< s
+};
+
 /// The whole loop's state, tick by tick. Everything moves along z; what is touched fills z < 0.
 class Simulation {
  public:
@@ -44,15 +73,12 @@ class Simulation {
       : loop_(loop),
         hand_(loop.hand, Eigen::Vector3d(0, 0, kFree)),
         bridge_(withController(loop)),
-        leader_(ports(loop)),
-        follower_(ports(loop)),
         wave_leader_(loop.wave, loop.bridge.motion.position_scale, loop.bridge.force_gain, 1),
         wave_follower_(loop.wave),
         wave_forward_(loop.link),
         wave_back_(otherSeed(loop.link)),
         forward_(loop.link),
         back_(otherSeed(loop.link)),
-        coupling_(loop.bridge.coupling),
         needle_(kFree) {
     deep_ = kPressedForce / loop.stiffness + kPressedForce / loop.hand.stiffness;
   }
@@ -82,16 +108,9 @@ class Simulation {
  private:
   static HapticBridgeConfig withController(const TeleoperationLoop& loop) {
     HapticBridgeConfig config = loop.bridge;
-    // With ports the proxy is where it does not wait for the network.
     if (loop.controller == TeleoperationLoop::Controller::kWave) config = config.beforeLink();
-    if (loop.controller == TeleoperationLoop::Controller::kTwoPort) config.coupling.enabled = false;
     config.passivity.enabled = loop.controller != TeleoperationLoop::Controller::kOff;
     config.engagement.speed_limit = 1e3;  // m/s: that a fast hand is let go of would hide what is not passive
-    return config;
-  }
-  static TwoPortConfig ports(const TeleoperationLoop& loop) {
-    TwoPortConfig config = loop.ports;
-    config.enabled = loop.controller == TeleoperationLoop::Controller::kTwoPort;
     return config;
   }
   static LinkConditions otherSeed(LinkConditions link) {
@@ -109,8 +128,7 @@ class Simulation {
     result_.samples.push_back({now, moved, needle_, force, bridge_.observedEnergy()});
     result_.observed_energy_min = std::min(result_.observed_energy_min, bridge_.observedEnergy());
     result_.true_energy_min = std::min(result_.true_energy_min, true_energy_);
-    result_.margin_min = wave() ? std::min({result_.margin_min, wave_leader_.margin(), wave_follower_.margin()})
-                                : std::min({result_.margin_min, leader_.margin(), follower_.margin()});
+    if (wave()) result_.margin_min = std::min({result_.margin_min, wave_leader_.margin(), wave_follower_.margin()});
     result_.peak_force = std::max(result_.peak_force, std::abs(force));
     result_.peak_force_rate = std::max(result_.peak_force_rate, std::abs(force - last_force_) / kPeriod);
     last_force_ = force;
@@ -120,8 +138,8 @@ class Simulation {
   /// Force on the hand (N) for the next period.
   double stepBridge(double now) {
     for (const LinkPacket& packet : wave_back_.receive(now)) wave_leader_.receive(packet);
-    for (const TeleoperationPacket& packet : back_.receive(now)) leader_.receive(packet);
-    const auto reflected = wave() ? wave_leader_.step(kPeriod) : leader_.step(Eigen::Vector3d(0, 0, wanted_), kPeriod);
+    for (const Packet& packet : back_.receive(now)) force_inbox_.receive(packet);
+    const auto reflected = wave() ? wave_leader_.step(kPeriod) : force_inbox_.value(now);
     const double scale = loop_.bridge.motion.position_scale;
     HapticBridge::Input input;
     const double resolution = loop_.device_resolution;
@@ -135,15 +153,9 @@ class Simulation {
       wave_leader_.setTarget(output.needle);
       wave_forward_.send(wave_leader_.packet(), now);
     } else if (output.needle) {
-      forward_.send(withGoal(leader_.packet()), now);
+      forward_.send({now, Eigen::Vector3d(0, 0, wanted_)}, now);
     }
     return output.hand_force.z();
-  }
-
-  /// The bridge's newest target, with the leader's energy up to now.
-  TeleoperationPacket withGoal(TeleoperationPacket packet) const {
-    packet.value = Eigen::Vector3d(0, 0, wanted_);
-    return packet;
   }
 
   void moveHand(double now, double force) {
@@ -163,7 +175,7 @@ class Simulation {
 
   void stepRig(double now) {
     for (const LinkPacket& packet : wave_forward_.receive(now)) wave_follower_.receive(packet);
-    for (const TeleoperationPacket& packet : forward_.receive(now)) follower_.receive(packet);
+    for (const Packet& packet : forward_.receive(now)) goal_inbox_.receive(packet);
     const Eigen::Vector3d force(0, 0, touch(now));
     const double scale = loop_.bridge.motion.position_scale;
     std::optional<Eigen::Vector3d> goal;
@@ -172,13 +184,11 @@ class Simulation {
       if (goal) *goal /= scale;
       wave_back_.send(wave_follower_.packet(), now);
     } else {
-      goal = follower_.step(force, kPeriod);
-      back_.send(follower_.packet(), now);
+      goal = goal_inbox_.value(now);
+      back_.send({now, force}, now);
     }
     if (!goal) return;
-    const bool yields = loop_.controller == TeleoperationLoop::Controller::kTwoPort;
-    const double yield = yields ? coupling_.step(force, kPeriod).z() : 0;
-    needle_ += (1 - std::exp(-kPeriod / kServoTime)) * (goal->z() + yield - needle_);
+    needle_ += (1 - std::exp(-kPeriod / kServoTime)) * (goal->z() - needle_);
   }
 
   /// N at the hand's scale, of what is touched on the needle.
@@ -191,13 +201,11 @@ class Simulation {
   const TeleoperationLoop& loop_;
   VirtualHand hand_;
   HapticBridge bridge_;
-  LeaderPort leader_;
-  FollowerPort follower_;
+  Inbox force_inbox_, goal_inbox_;
   LinkLeader wave_leader_;
   LinkFollower wave_follower_;
   LinkEmulator<LinkPacket> wave_forward_, wave_back_;
-  LinkEmulator<TeleoperationPacket> forward_, back_;
-  VirtualCoupling coupling_;
+  LinkEmulator<Packet> forward_, back_;
   double needle_;           ///< m, at the hand's scale
   double wanted_ = kFree;   ///< m, at the hand's scale, by the bridge
   double deep_ = 0;         ///< m, below the surface, where the hand means to be

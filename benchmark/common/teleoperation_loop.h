@@ -7,7 +7,6 @@
 #include "operation/teleoperation/haptic_bridge.h"
 #include "operation/teleoperation/link_config.h"
 #include "operation/teleoperation/link_emulator.h"
-#include "operation/teleoperation/two_port.h"
 #include "operation/teleoperation/virtual_hand.h"
 
 namespace microinjection {
@@ -15,7 +14,7 @@ namespace microinjection {
 /// A hand, a haptic device, the bridge, a network, a needle and an elastic thing with the needle's motion along one
 /// axis.
 struct TeleoperationLoop {
-  enum class Controller { kOff, kObserver, kTwoPort, kWave };
+  enum class Controller { kOff, kObserver, kWave };
 
   VirtualHandConfig hand;
   double device_damping = 0.2;      ///< N s/m, of the device itself
@@ -23,9 +22,8 @@ struct TeleoperationLoop {
   double stiffness = 60;            ///< N/m at the hand, of what is touched; nothing damps it
   LinkConditions link;              ///< either way
   bool chatter = false;  ///< the force drops to zero and returns, again and again, as a membrane that gives way
-  Controller controller = Controller::kTwoPort;
+  Controller controller = Controller::kObserver;
   HapticBridgeConfig bridge;
-  TwoPortConfig ports;
   LinkConfig wave;
 
   struct Sample {
@@ -38,7 +36,7 @@ struct TeleoperationLoop {
   struct Result {
     double observed_energy_min = 0;  ///< J, by the bridge, with the device's encoders
     double true_energy_min = 0;      ///< J, of force and motion themselves
-    double margin_min = 0;           ///< J, of the channel's two directions
+    double margin_min = 0;           ///< J, of the waves' two directions; 0 without waves
     double peak_force = 0;           ///< N, on the hand
     double peak_force_rate = 0;      ///< N/s
     double overshoot = 0;            ///< m, of the needle below the deepest that the hand was, at the hand's scale

@@ -25,7 +25,7 @@ from session_monitor import Progress
 
 ROOT = Path(os.environ.get('MICROINJECTION_ROOT') or Path(__file__).resolve().parents[2])
 CELL = 'mouse_oocyte_injection'
-MOTION = ROOT / 'config' / 'hand_motions' / 'puncture_and_inject.csv'
+MOTION = ROOT / 'config' / 'hand_motions' / 'puncture_and_inject.yaml'
 OUT = ('idle', 'approach')  # states of an injection whose needle is out of the cell
 RESULTS = ('force_depth.csv', 'force_depth.png', 'scene.png', 'session.bag', 'summary.yaml')
 

@@ -17,7 +17,7 @@ from case import case
 
 NODES = pathlib.Path(sys.argv[0]).parent  # this program is found beside them
 SCENE = rospkg.RosPack().get_path("cell_microinjection") + "/test/chain/coarse_oocyte.yaml"
-MOTION = rospkg.RosPack().get_path("cell_microinjection") + "/config/hand_motions/indent_and_retract.csv"
+MOTION = rospkg.RosPack().get_path("cell_microinjection") + "/config/hand_motions/indent_and_retract.yaml"
 EMPTY = tempfile.mkdtemp()  # no mesh, nothing prepared
 GOOD = {  # what each node cannot do without
     "cell_simulator": {"scene": SCENE},

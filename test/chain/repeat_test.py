@@ -19,13 +19,20 @@ from processes import free_port  # noqa: E402
 PATIENCE = 200  # s of wall time; only a session that hangs takes that long
 
 
+# Of the hand: phase, s, m, clutch. It indents, punctures, injects and retracts.
+PATH = [("approach", 2.0, -19.2e-3, False), ("approach", 0.2, -19.2e-3, True), ("approach", 1.2, 0.0, True),
+        ("approach", 0.2, 0.0, False), ("approach", 1.6, -10.8e-3, False), ("touch", 1.0, -13.8e-3, False),
+        ("indent", 0.4, -16.8e-3, False), ("hold", 0.2, -16.8e-3, False), ("puncture", 0.8, -24.8e-3, False),
+        ("puncture", 0.5, -24.8e-3, False), ("inject", 0.6, -24.8e-3, False), ("retract", 1.2, -10.8e-3, False),
+        ("retract", 1.0, 0.0, False)]
+
+
 def run_session(folder, training):
     """A lock-step session on a master of its own; returns the bytes of its force_depth.csv. `training`: arguments of
     session.launch."""
-    motion = pathlib.Path(folder) / "motion.csv"
-    subprocess.run(["/usr/bin/python3", str(ROOT / "src/tools/make_hand_motion.py"), "--out", str(motion), "--depth",
-                    "4e-6", "--speed", "10e-6", "--hold", "0.2", "--tremor", "0", "--puncture", "12e-6", "--inject",
-                    "0.6"], check=True)
+    motion = pathlib.Path(folder) / "motion.yaml"
+    motion.write_text(yaml.safe_dump({"path": [dict(zip(("phase", "duration", "z", "clutch"), waypoint))
+                                               for waypoint in PATH]}))
     port = free_port()
     out = pathlib.Path(folder) / "out"
     subprocess.run(

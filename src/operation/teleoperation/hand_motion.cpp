@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "base/errors.h"
+#include "operation/teleoperation/generated_motion.h"
 
 namespace microinjection {
 namespace {
@@ -43,6 +44,10 @@ HandMotion::Sample toSample(const std::string& line, const std::string& where) {
 }  // namespace
 
 HandMotion HandMotion::load(const std::string& path) {
+  const std::string ending = ".yaml";
+  if (path.size() > ending.size() && path.compare(path.size() - ending.size(), ending.size(), ending) == 0) {
+    return HandMotion(generateMotion(ConfigReader(loadYamlMap(path), path)));
+  }
   std::ifstream file(path);
   if (!file) throw ConfigError(path + ": cannot be read");
   std::vector<Sample> samples;

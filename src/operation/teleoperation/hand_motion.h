@@ -6,7 +6,7 @@
 
 namespace microinjection {
 
-/// A hand's motion over time, as recorded: where the hand means to be, its clutch and what it is doing.
+/// A hand's motion over time, recorded or synthetic: where the hand means to be, its clutch and what it is doing.
 class HandMotion {
  public:
   struct Sample {
@@ -16,8 +16,9 @@ class HandMotion {
     std::string phase;                                   ///< for people: approach, touch, indent, ...
   };
 
-  /// Reads `time_s,x_m,y_m,z_m,clutch,phase` with a header line; lines that begin with # are comments.
-  /// @throws ConfigError naming file and line: wrong header, not a number, not finite, time that does not increase.
+  /// Of a .yaml file: synthetic, see generated_motion.h. Of any other: samples `time_s,x_m,y_m,z_m,clutch,phase` with a
+  /// header line; lines that begin with # are comments.
+  /// @throws ConfigError naming file and key or line: wrong header, not a number, not finite, time that does not increase.
   static HandMotion load(const std::string& path);
 
   /// @throws ConfigError without two samples, or when time does not increase.

@@ -1,0 +1,68 @@
+#!/usr/bin/python3
+"""Checks the arguments of session.launch, which calls it before any node starts. Usage: NAME:=VALUE ...
+
+Says what is wrong, each argument with its value and what is allowed, and ends with status 1: roslaunch then stops.
+"""
+
+import pathlib
+import sys
+
+PACKAGE = pathlib.Path(__file__).resolve().parents[1]
+
+
+def stems(folder, pattern):
+    return sorted(path.stem for path in (PACKAGE / folder).glob(pattern))
+
+
+def choices():
+    """{argument: what it may be}; of devices what has a file."""
+    rigs = [name for name in stems("config/rigs", "*.yaml") if name not in ("sim", "imperfect")]
+    injectors = stems("config/injectors", "*.yaml")
+    boolean = ["true", "false"]
+    flags = ("allow_network", "require_operator", "inject", "link_emulated", "auto_enable", "display", "rviz", "bag",
+             "end_when_done", "wait_for_go")
+    return {
+        "model": ["auto", "prepared", "live"],
+        "rig": ["sim", *rigs, *(f"emulated_{name}" for name in rigs)],
+        "sensor": ["simulated", "serial", "topic", "none"],
+        "injector": ["simulated", *injectors, *(f"emulated_{name}" for name in injectors), "serial", "none"],
+        "haptic": stems("launch/haptic", "*.launch"),
+        "position_type": ["", "pose", "transform"],
+        "mode": ["manual", "automatic", "semi_automatic"],
+        "force_source": ["predicted", "measured"],
+        "hand_force": ["predicted", "measured", "blend"],
+        "link": ["none", "wave"],
+        "clock": ["wall", "lockstep", "external"],
+        **{flag: boolean for flag in flags}}
+
+
+def problems(arguments):
+    """@returns a line for each argument that is wrong."""
+    found = []
+    for name, allowed in choices().items():
+        value = arguments[name].lower() if allowed == ["true", "false"] else arguments[name]
+        if value not in allowed:
+            found.append(f"{name} = '{arguments[name]}': must be one of: {', '.join(filter(None, allowed))}")
+    if not pathlib.Path(arguments["scene"]).is_file():
+        names = ", ".join(stems("config/cells", "*.yaml"))
+        found.append(f"cell, scene = '{arguments['scene']}': no such file; the cells are: {names}")
+    if arguments["clock"] == "lockstep" and arguments["haptic"] not in ("operator", "none"):
+        found.append(f"clock = 'lockstep' with haptic = '{arguments['haptic']}': must be with operator or none, "
+                     "which keep the clock's time")
+    if arguments["mode"] != "manual" and arguments["haptic"] != "none":
+        found.append(f"mode = '{arguments['mode']}': must be with haptic:=none")
+    if arguments["operator"] and not arguments["record"]:
+        found.append(f"operator = '{arguments['operator']}': must be with record:=FOLDER, which the score is of")
+    return found
+
+
+def main():
+    found = problems(dict(argument.split(":=", 1) for argument in sys.argv[1:]))
+    for line in found:
+        print(f"session.launch: {line}", file=sys.stderr)
+    print("checked")  # the parameter's value
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
