@@ -6,12 +6,16 @@
 #include <vector>
 
 #include "base/errors.h"
+#include "base/range.h"
 
 namespace microinjection {
 
-/// Collects what is wrong with a configuration, to tell it all at once.
+/// Collects what is wrong with a configuration, to report it all at once: key, value and what is allowed.
 class ConfigErrors {
  public:
+  /// `subject` begins each message; it may be empty.
+  explicit ConfigErrors(const std::string& subject = "") : prefix_(subject.empty() ? "" : subject + ": ") {}
+
   /// "KEY = VALUE UNIT: must be ALLOWED" unless `good`. `unit` begins with a space, or is empty.
   template <typename Value>
   void require(bool good, const std::string& key, const Value& value, const std::string& unit,
@@ -21,21 +25,26 @@ class ConfigErrors {
     message << key << " = " << value << unit << ": must be " << allowed;
     add(message.str());
   }
+  void require(const Range& range, const std::string& key, double value, const std::string& unit = "") {
+    require(range.contains(value), key, value, unit, "in " + range.text() + unit);
+  }
   /// Requires one of `names`.
   void requireOneOf(const std::vector<std::string>& names, const std::string& key, const std::string& value) {
     std::string all;
     for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
     require(std::find(names.begin(), names.end(), value) != names.end(), key, value, "", "one of: " + all);
   }
-  void add(const std::string& message) { messages_.push_back(message); }
+  void add(const std::string& message) { messages_.push_back(prefix_ + message); }
 
+  bool good() const { return messages_.empty(); }
   const std::vector<std::string>& messages() const { return messages_; }
   /// Throws ConfigError when there are some.
   void throwAny() const {
-    if (!messages_.empty()) throw ConfigError(messages_);
+    if (!good()) throw ConfigError(messages_);
   }
 
  private:
+  std::string prefix_;
   std::vector<std::string> messages_;
 };
 

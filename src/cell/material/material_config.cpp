@@ -1,17 +1,9 @@
-#include <algorithm>
-#include <cmath>
-#include <sstream>
 #include <utility>
 
-#include "base/errors.h"
-#include "cell/material/corotated.h"
+#include "base/config_errors.h"
 #include "cell/material/lame.h"
-#include "cell/material/linear_material.h"
 #include "cell/material/material.h"
-#include "cell/material/mooney_rivlin.h"
-#include "cell/material/neo_hookean.h"
-#include "cell/material/st_venant_kirchhoff.h"
-#include "cell/material/stable_neo_hookean.h"
+#include "cell/material/material_models.h"
 
 namespace microinjection {
 namespace {
@@ -34,12 +26,6 @@ const std::pair<const char*, Factory> kModels[] = {{"linear", make<LinearMateria
                                                    {"stable_neo_hookean", make<StableNeoHookean>},
                                                    {"corotated", make<Corotated>}};
 
-std::string listOfModels() {
-  std::string list;
-  for (const std::string& model : materialModels()) list += (list.empty() ? "" : ", ") + model;
-  return list;
-}
-
 }  // namespace
 
 const std::vector<std::string>& materialModels() {
@@ -52,20 +38,13 @@ const std::vector<std::string>& materialModels() {
 }
 
 void MaterialConfig::validate() const {
-  std::vector<std::string> errors;
-  const auto report = [&](const std::string& key, const auto& value, const std::string& allowed) {
-    std::ostringstream message;
-    message << "material: " << key << " = " << value << ": must be " << allowed;
-    errors.push_back(message.str());
-  };
-  const std::vector<std::string>& models = materialModels();
-  if (std::find(models.begin(), models.end(), model) == models.end())
-    report("model", model, "one of: " + listOfModels());
-  if (!(std::isfinite(young_modulus) && young_modulus > 0)) report("young_modulus", young_modulus, "in (0, inf) Pa");
-  if (!(poisson_ratio > -1 && poisson_ratio < 0.5)) report("poisson_ratio", poisson_ratio, "in (-1, 0.5)");
-  if (!(mooney_ratio >= 0 && mooney_ratio <= 1)) report("mooney_ratio", mooney_ratio, "in [0, 1]");
-  for (const std::string& error : viscoelasticity.errors()) errors.push_back("material: viscoelasticity/" + error);
-  if (!errors.empty()) throw ConfigError(errors);
+  ConfigErrors errors("material");
+  errors.requireOneOf(materialModels(), "model", model);
+  errors.require(Range::positive(), "young_modulus", young_modulus, " Pa");
+  errors.require(Range::open(-1, 0.5), "poisson_ratio", poisson_ratio);
+  errors.require(Range::closed(0, 1), "mooney_ratio", mooney_ratio);
+  viscoelasticity.check("viscoelasticity/", errors);
+  errors.throwAny();
 }
 
 std::unique_ptr<Material> makeMaterial(const MaterialConfig& config) {

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "base/config_errors.h"
+
 namespace microinjection {
 
 /// One Maxwell branch beside the elastic material.
@@ -19,11 +21,8 @@ struct ViscoelasticityConfig {
 
   bool empty() const { return prony.empty() && viscosity == 0; }
 
-  /// One line an error: key, value and what is allowed.
-  std::vector<std::string> errors() const;
-
-  /// Throws ConfigError with all errors at once.
-  void validate() const;
+  /// Adds what is wrong, with `path` before each key.
+  void check(const std::string& path, ConfigErrors& errors) const;
 };
 
 }  // namespace microinjection

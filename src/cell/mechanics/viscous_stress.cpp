@@ -19,7 +19,9 @@ ViscousStress<Dim>::ViscousStress(std::shared_ptr<const LayeredBody<Dim>> body,
     throw std::invalid_argument("viscoelasticity of " + std::to_string(layers_.size()) + " layers for a body of " +
                                 std::to_string(body_->materials().size()));
   }
-  for (const ViscoelasticityConfig& layer : layers_) layer.validate();
+  ConfigErrors errors;
+  for (const ViscoelasticityConfig& layer : layers_) layer.check("viscoelasticity: ", errors);
+  errors.throwAny();
   const int displacements = body_->withNodes([](auto nodes) { return Dim * decltype(nodes)::value; });
   for (int e = 0; e < body_->elementCount(); ++e) {
     const int layer = body_->mesh().layers[e];

@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-#include "cell/mesh/config_check.h"
+#include "cell/mesh/layer_radii.h"
 
 namespace microinjection {
 namespace {
@@ -17,18 +17,18 @@ constexpr double kSmallestSize = 1e-6;
 /// Points of an arc nearer to each other than this are one, rad.
 constexpr double kSamePoint = 1e-9;
 
-void checkPoint(ConfigCheck& check, const std::string& key, double r, double side, double radius) {
-  check.require(r >= 0 && r <= radius, key + ".r", r, "in [0, the cell's radius]");
-  check.require(side == 1 || side == -1, key + ".side", side, "+1 or -1");
+void checkPoint(ConfigErrors& errors, const std::string& key, double r, double side, double radius) {
+  errors.require(r >= 0 && r <= radius, key + ".r", r, "", "in [0, the cell's radius]");
+  errors.require(side == 1 || side == -1, key + ".side", side, "", "+1 or -1");
 }
 
 /// @pre the points are good
-void checkGaps(ConfigCheck& check, const SectionMeshConfig& config) {
+void checkGaps(ConfigErrors& errors, const SectionMeshConfig& config) {
   const std::vector<Eigen::Vector2d> points = namedPoints(config, 0);
   for (std::size_t i = 1; i < points.size(); ++i) {
     const double apart = (points[i] - points[i - 1]).norm();
-    check.require(apart >= kSmallestSize * config.radii.front(), "distance of neighbouring points on the outer arc",
-                  apart, "0 or at least 1e-6 of the cell's radius, also from the axis");
+    errors.require(apart >= kSmallestSize * config.radii.front(), "distance of neighbouring points on the outer arc",
+                   apart, "", "0 or at least 1e-6 of the cell's radius, also from the axis");
   }
 }
 
@@ -60,29 +60,29 @@ std::vector<Eigen::Vector2d> namedPoints(const SectionMeshConfig& config, std::s
 }
 
 void SectionMeshConfig::validate() const {
-  ConfigCheck check("section mesh");
-  check.require(isPositive(size), "size", size, "positive");
-  check.require(isPositive(growth) && growth <= 1, "growth", growth, "in (0, 1]");
-  if (check.requireLayers(radii, kThinnestLayer)) {
+  ConfigErrors errors("section mesh");
+  errors.require(Range::positive(), "size", size);
+  errors.require(Range{0, 1, true, false}, "growth", growth);
+  if (requireLayerRadii(radii, kThinnestLayer, errors)) {
     const double cell = radii.front();
     const auto checkSize = [&](const std::string& key, double value) {
-      check.require(std::isfinite(value) && value >= kSmallestSize * cell, key, value,
-                    "at least 1e-6 of the cell's radius");
+      errors.require(std::isfinite(value) && value >= kSmallestSize * cell, key, value, "",
+                     "at least 1e-6 of the cell's radius");
     };
-    if (isPositive(size)) checkSize("size", size);
+    if (Range::positive().contains(size)) checkSize("size", size);
     for (std::size_t i = 0; i < refinements.size(); ++i) {
       const Refinement& refinement = refinements[i];
-      checkPoint(check, keyOf("refinements", i), refinement.r, refinement.side, cell);
-      check.require(std::isfinite(refinement.reach) && refinement.reach >= 0, keyOf("refinements", i, "reach"),
-                    refinement.reach, "0 or positive");
+      checkPoint(errors, keyOf("refinements", i), refinement.r, refinement.side, cell);
+      errors.require(std::isfinite(refinement.reach) && refinement.reach >= 0, keyOf("refinements", i, "reach"),
+                     refinement.reach, "", "0 or positive");
       checkSize(keyOf("refinements", i, "size"), refinement.size);
     }
     for (std::size_t i = 0; i < vertices.size(); ++i) {
-      checkPoint(check, keyOf("vertices", i), vertices[i].r, vertices[i].side, cell);
+      checkPoint(errors, keyOf("vertices", i), vertices[i].r, vertices[i].side, cell);
     }
-    if (check.good()) checkGaps(check, *this);
+    if (errors.good()) checkGaps(errors, *this);
   }
-  check.finish();
+  errors.throwAny();
 }
 
 }  // namespace microinjection

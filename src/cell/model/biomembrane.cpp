@@ -16,8 +16,7 @@ Biomembrane::Biomembrane(double young_modulus, double poisson_ratio, double tip_
   const double h = config.thickness, a = config.dimple_radius;
   ConfigErrors errors;
   errors.require(young_modulus > 0, "biomembrane: young_modulus", young_modulus, " Pa", "> 0 (Pa)");
-  errors.require(poisson_ratio > -1 && poisson_ratio < 0.5, "biomembrane: poisson_ratio", poisson_ratio, "",
-                 "in (-1, 0.5)");
+  errors.require(Range::open(-1, 0.5), "biomembrane: poisson_ratio", poisson_ratio);
   errors.require(h > 0, "biomembrane: thickness", h, " m", "> 0 (m)");
   errors.require(tip_radius > 0 && tip_radius < a, "biomembrane: tip_radius", tip_radius, " m",
                  "in (0, dimple_radius) (m)");

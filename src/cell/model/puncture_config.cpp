@@ -40,8 +40,6 @@ void readShaft(const ConfigReader& reader, PunctureConfig::Shaft& shaft) {
   readQuantity(reader, "lateral_stiffness", shaft.lateral_stiffness, Range::nonNegative(), "N/m");
 }
 
-bool finiteFrom(double lowest, double value) { return std::isfinite(value) && value >= lowest; }
-
 void checkLayer(const PunctureConfig::Layer& layer, const std::string& path, bool outermost, double tip_radius,
                 ConfigErrors& errors) {
   errors.require(layer.force > 0, path + "force", layer.force, " N", "positive (N)");
@@ -49,7 +47,7 @@ void checkLayer(const PunctureConfig::Layer& layer, const std::string& path, boo
   errors.require(layer.strain > 0, path + "strain", layer.strain, "", "positive");
   errors.require(std::isinf(layer.strain) || (std::isfinite(layer.dimple_radius) && layer.dimple_radius > tip_radius),
                  path + "dimple_radius", layer.dimple_radius, " m", "above needle/tip/radius");
-  errors.require(finiteFrom(0, layer.gap), path + "gap", layer.gap, " m", "0 or more");
+  errors.require(Range::nonNegative(), path + "gap", layer.gap, " m");
   errors.require(outermost || (std::isfinite(layer.stiffness) && layer.stiffness > 0), path + "stiffness",
                  layer.stiffness, " N/m", "positive (N/m)");
 }
@@ -94,15 +92,12 @@ void PunctureConfig::check(double tip_radius, ConfigErrors& errors) const {
                    "a name that no other layer has");
     checkLayer(layers[i], at, i == 0, tip_radius, errors);
   }
-  errors.require(finiteFrom(0, shaft.friction), path + "shaft/friction", shaft.friction, " N", "0 or more");
-  errors.require(finiteFrom(0, shaft.adhesion), path + "shaft/adhesion", shaft.adhesion, " N/m", "0 or more");
-  errors.require(finiteFrom(0, shaft.damping), path + "shaft/damping", shaft.damping, " Pa s", "0 or more");
-  errors.require(finiteFrom(0, shaft.lateral_stiffness), path + "shaft/lateral_stiffness", shaft.lateral_stiffness,
-                 " N/m", "0 or more");
-  errors.require(std::isfinite(shaft.stiffness) && shaft.stiffness > 0, path + "shaft/stiffness", shaft.stiffness,
-                 " N/m", "positive (N/m)");
-  errors.require(std::isfinite(relaxation_time) && relaxation_time > 0, path + "relaxation_time", relaxation_time, " s",
-                 "positive (s)");
+  errors.require(Range::nonNegative(), path + "shaft/friction", shaft.friction, " N");
+  errors.require(Range::nonNegative(), path + "shaft/adhesion", shaft.adhesion, " N/m");
+  errors.require(Range::nonNegative(), path + "shaft/damping", shaft.damping, " Pa s");
+  errors.require(Range::nonNegative(), path + "shaft/lateral_stiffness", shaft.lateral_stiffness, " N/m");
+  errors.require(Range::positive(), path + "shaft/stiffness", shaft.stiffness, " N/m");
+  errors.require(Range::positive(), path + "relaxation_time", relaxation_time, " s");
 }
 
 }  // namespace microinjection

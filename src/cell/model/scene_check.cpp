@@ -19,7 +19,6 @@ constexpr double kReach = 0.95;     // of the cell's radius
 constexpr double kThinnestLayer = 1.0 / 500;  // of the cell's radius
 
 bool positive(double value) { return std::isfinite(value) && value > 0; }
-bool notNegative(double value) { return std::isfinite(value) && value >= 0; }
 
 std::string metres(double value) {
   std::ostringstream text;
@@ -37,8 +36,7 @@ void checkLayer(const Scene::Layer& layer, const std::string& path, ConfigErrors
       errors.add(path + (line.compare(0, colon, "material") ? line : line.replace(colon, 2, "/")));
     }
   }
-  errors.require(notNegative(layer.surface_tension), path + "surface_tension", layer.surface_tension, " N/m",
-                 "0 or more N/m");
+  errors.require(Range::nonNegative(), path + "surface_tension", layer.surface_tension, " N/m");
 }
 
 void checkLayers(const std::vector<Scene::Layer>& layers, ConfigErrors& errors) {
@@ -51,7 +49,7 @@ void checkLayers(const std::vector<Scene::Layer>& layers, ConfigErrors& errors) 
     checkLayer(layer, path, errors);
     errors.require(!layer.name.empty() && names.insert(layer.name).second, path + "name", layer.name, "",
                    "a name that no other layer has");
-    errors.require(positive(layer.outer_radius), path + "outer_radius", layer.outer_radius, " m", "positive (m)");
+    errors.require(Range::positive(), path + "outer_radius", layer.outer_radius, " m");
     if (!positive(layer.outer_radius) || !positive(radius)) continue;
     const double inner = i + 1 < layers.size() ? layers[i + 1].outer_radius : 0;
     if (inner >= layer.outer_radius) {
@@ -69,7 +67,7 @@ void checkCell(const Scene::Cell& cell, ConfigErrors& errors) {
     for (const std::string& error : cell.tensegrity->errors()) errors.add("cell/" + error);
   } else if (cell.layers.size() == 1) {
     checkLayer(cell.layers.front(), "cell/", errors);
-    errors.require(positive(cell.diameter()), "cell/diameter", cell.diameter(), " m", "positive (m)");
+    errors.require(Range::positive(), "cell/diameter", cell.diameter(), " m");
   } else {
     checkLayers(cell.layers, errors);
   }
@@ -93,8 +91,7 @@ void checkTip(const Scene::Tip& tip, double cell_radius, ConfigErrors& errors) {
 void checkAdhesion(const Scene::Needle& needle, ConfigErrors& errors) {
   const Scene::Contact& contact = needle.contact;
   const bool there = contact.adhesion_energy > 0;
-  errors.require(notNegative(contact.adhesion_energy), "needle/contact/adhesion/energy", contact.adhesion_energy,
-                 " J/m^2", "0 or more");
+  errors.require(Range::nonNegative(), "needle/contact/adhesion/energy", contact.adhesion_energy, " J/m^2");
   errors.require(!there || needle.tip.rounded(), "needle/contact/adhesion/energy", contact.adhesion_energy, " J/m^2",
                  "left out: a disc never parts from what it touches");
   errors.require(!there || positive(contact.adhesion_range), "needle/contact/adhesion/range", contact.adhesion_range,
@@ -115,8 +112,7 @@ void checkNeedle(const Scene::Needle& needle, double cell_radius, ConfigErrors& 
   const std::string& mode = needle.contact.mode;
   errors.require(mode == "sticking" || mode == "sliding", "needle/contact/mode", mode, "", "one of: sticking, sliding");
   errors.require(mode != "sliding" || needle.tip.rounded(), "needle/contact/mode", mode, "", kDiscSticks);
-  errors.require(notNegative(needle.contact.friction), "needle/contact/friction", needle.contact.friction, "",
-                 "0 or more");
+  errors.require(Range::nonNegative(), "needle/contact/friction", needle.contact.friction);
   errors.require(mode == "sliding" || needle.contact.friction == 0, "needle/contact/friction", needle.contact.friction,
                  "", "left out: it belongs to mode sliding only");
   checkAdhesion(needle, errors);
@@ -135,11 +131,9 @@ void checkMesh(const Scene& scene, ConfigErrors& errors) {
   errors.require(scene.meshSize() >= diameter / 200 && scene.meshSize() <= diameter / 2, "mesh/size", scene.meshSize(),
                  " m", "from 1/200 to half of the cell's diameter, " + metres(diameter));
   const Scene::Refinement& refinement = scene.mesh.refinement;
-  errors.require(positive(refinement.zone), "mesh/refinement/zone", refinement.zone, "", "positive");
-  errors.require(refinement.density >= 1 && refinement.density <= 100, "mesh/refinement/density", refinement.density,
-                 "", "in [1, 100]");
-  errors.require(scene.mesh.stretch >= 1 && scene.mesh.stretch <= 4, "mesh/stretch", scene.mesh.stretch, "",
-                 "in [1, 4]");
+  errors.require(Range::positive(), "mesh/refinement/zone", refinement.zone);
+  errors.require(Range::closed(1, 100), "mesh/refinement/density", refinement.density);
+  errors.require(Range::closed(1, 4), "mesh/stretch", scene.mesh.stretch);
 }
 
 }  // namespace

@@ -12,46 +12,37 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr int kCables = 36;
 
 bool positive(double value) { return std::isfinite(value) && value > 0; }
-bool notNegative(double value) { return std::isfinite(value) && value >= 0; }
 
 void checkFilaments(const FilamentConfig& filaments, const std::string& path, ConfigErrors& errors) {
-  errors.require(positive(filaments.young_modulus), path + "young_modulus", filaments.young_modulus, " Pa",
-                 "positive (Pa)");
-  errors.require(positive(filaments.bending_stiffness), path + "bending_stiffness", filaments.bending_stiffness,
-                 " N m^2", "positive (N m^2)");
+  errors.require(Range::positive(), path + "young_modulus", filaments.young_modulus, " Pa");
+  errors.require(Range::positive(), path + "bending_stiffness", filaments.bending_stiffness, " N m^2");
   errors.require(filaments.count >= 1, path + "count", filaments.count, "", "1 or more");
 }
 
 void checkCable(const CableConfig& cable, const std::string& path, ConfigErrors& errors) {
   checkFilaments(cable.filaments, path, errors);
-  errors.require(notNegative(cable.prestrain), path + "prestrain", cable.prestrain, "", "0 or more");
-  errors.require(notNegative(cable.retardation_time), path + "retardation_time", cable.retardation_time, " s",
-                 "0 or more s");
+  errors.require(Range::nonNegative(), path + "prestrain", cable.prestrain);
+  errors.require(Range::nonNegative(), path + "retardation_time", cable.retardation_time, " s");
 }
 
 void checkStrut(const StrutConfig& strut, ConfigErrors& errors) {
   const std::string path = "microtubules/";
   checkFilaments(strut.filaments, path, errors);
-  errors.require(strut.poisson_ratio > -1 && strut.poisson_ratio < 0.5, path + "poisson_ratio", strut.poisson_ratio, "",
-                 "in (-1, 0.5)");
+  errors.require(Range::open(-1, 0.5), path + "poisson_ratio", strut.poisson_ratio);
   errors.requireOneOf(strutModels(), path + "model", strut.model);
   errors.requireOneOf(strutElements(), path + "element", strut.element);
   errors.require(strut.slices >= 2 && strut.slices % 2 == 0, path + "slices", strut.slices, "", "even, 2 or more");
-  errors.require(strut.bow >= 0 && strut.bow <= 0.1, path + "bow", strut.bow, "", "in [0, 0.1]");
+  errors.require(Range::closed(0, 0.1), path + "bow", strut.bow);
 }
 
 void checkMembrane(const MembraneConfig& membrane, ConfigErrors& errors) {
   const std::string path = "membrane/";
-  errors.require(positive(membrane.young_modulus), path + "young_modulus", membrane.young_modulus, " Pa",
-                 "positive (Pa)");
-  errors.require(membrane.poisson_ratio > -1 && membrane.poisson_ratio <= 0.5, path + "poisson_ratio",
-                 membrane.poisson_ratio, "", "in (-1, 0.5]");
-  errors.require(positive(membrane.thickness), path + "thickness", membrane.thickness, " m", "positive (m)");
-  errors.require(notNegative(membrane.tension), path + "tension", membrane.tension, " N/m", "0 or more N/m");
-  errors.require(notNegative(membrane.retardation_time), path + "retardation_time", membrane.retardation_time, " s",
-                 "0 or more s");
-  errors.require(membrane.divisions >= 1 && membrane.divisions <= 40, path + "divisions", membrane.divisions, "",
-                 "in [1, 40]");
+  errors.require(Range::positive(), path + "young_modulus", membrane.young_modulus, " Pa");
+  errors.require(Range{-1, 0.5, true, false}, path + "poisson_ratio", membrane.poisson_ratio);
+  errors.require(Range::positive(), path + "thickness", membrane.thickness, " m");
+  errors.require(Range::nonNegative(), path + "tension", membrane.tension, " N/m");
+  errors.require(Range::nonNegative(), path + "retardation_time", membrane.retardation_time, " s");
+  errors.require(Range::closed(1, 40), path + "divisions", membrane.divisions);
 }
 
 }  // namespace
