@@ -21,14 +21,14 @@ format_code() {
 cpp_files() { find "$ROOT"/{src,benchmark,test} -name '*.cpp' -print0 -o -name '*.h' -print0; }
 
 command_lint() {
-  [[ $# -le 1 ]] || misuse "lint takes one regular expression at the most"
+  [[ $# -le 1 && (${1:---quick} == --quick || $1 != -*) ]] || misuse "lint takes --quick or one regular expression, not '$*'"
   setup
-  build_workspace
+  [[ ${1:-} == --quick ]] || build_workspace
   local failed=()
   format_code --check || failed+=(clang-format)
   check_python || failed+=(Python)
   check_package || failed+=(catkin_lint)
-  run_clang_tidy "${1:-.}" || failed+=(clang-tidy)
+  [[ ${1:-} == --quick ]] || run_clang_tidy "${1:-.}" || failed+=(clang-tidy)
   [[ ${#failed[@]} -eq 0 ]] || fail "lint: complaints of ${failed[*]} (above)"
   say "lint: no complaints"
 }
