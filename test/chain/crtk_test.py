@@ -177,7 +177,7 @@ class CrtkTest(unittest.TestCase):
         until(lambda: self.commands, "diagnostics of the commands")
         for refuse, why in ((lambda: self.client.state_command("resume"),
                              "state_command resume refused: state is ENABLED, resume is allowed in PAUSED"),
-                            (lambda: self.client.state_command("dance"), 'state_command dance refused: "dance" is no '),
+                            (lambda: self.client.state_command("dance"), 'state_command dance refused: "dance" is'),
                             (lambda: self.client.move_cp([1.0, 0, 0]), "move_cp refused: manipulator_x = 1 m, allowed")):
             with case(why):
                 before = refused()

@@ -70,7 +70,7 @@ class InjectorContractTest(InjectorTest):
     def test_the_balance_pressure_is_gauge_and_has_limits(self):
         """The message is made for absolute pressures. One is beyond the limits of most; a FemtoJet's are wider."""
         right = self.state().pressure
-        lowest, highest = rospy.get_param("/injector/pressure_range")
+        lowest, highest = map(float, rospy.get_param("/injector/pressure_range"))  # 600.0e3 is a text to YAML 1.1
         for beyond in (lowest - 100, highest + 1000, ATMOSPHERE + highest):
             self.set_balance(beyond)
             why = f"balance pressure = {beyond:g} Pa, allowed [{lowest:g}, {highest:g}] Pa"
