@@ -82,7 +82,7 @@ esac
     }
     GOOD = """# Title
 
-See [other](doc/guide/other.md#how-its-rate-is-mostly), `config/bridge.yaml`, `scene.cpp`, `model/scene.cpp`, `limits/force`,
+See [other](doc/guide/other.md#how-its-rate-is-mostly), `config/bridge.yaml`, `scene.cpp`, `cell/model/scene.cpp`, `limits/force`,
 `serial/baud`, `stretch`, `forceGain`, `/haptic/servo_cf`, `/bridge/tare`, `/haptic`, `rig:=zaber`, `--depths`,
 `launch/NAME.launch`, `./dev test --core`, `roslaunch cell_microinjection session.launch rig:=sim`.
 

@@ -28,6 +28,8 @@ std::optional<StateCommand> stateCommandOf(const std::string& word) {
   return std::nullopt;
 }
 
+/// PAUSED and enable: "PAUSED (invalid)" in the convention's table, since who has paused the robot must end that
+/// explicitly, by resume or disable. cisst's prmOperatingState refuses it as well.
 std::optional<OperatingState> after(OperatingState state, StateCommand command) {
   static const Next kTable[4][6] = {
       {State::kEnabled, State::kDisabled, {}, {}, {}, State::kDisabled},

@@ -37,8 +37,9 @@ Faults: KIND[:VALUE][@TIME]; TIME in s since the start, at once without it
   garble:N     the next N bytes that it says arrive with all bits turned over
   error:CODE   its next command is answered with this error: MP-285: 0, or a sum of 1, 2, 4, 8;
                Eppendorf, Scientifica: a number from 0 to 999;
-               Zaber: BADDATA, AGAIN, ... (rejection), FS, WT, ... (a warning flag, until it is cleared)
-               or RESET (it was switched off and on: it counts from 0 and has no reference position)
+               Zaber: BADDATA, AGAIN, ... (rejection), FS, WT, ... (a warning flag, until it is cleared);
+               all: RESET (it was switched off and on: it counts from 0 where it stands, without a reference position,
+               with the settings of delivery)
   interrupt    what moves is stopped as if by hand
 
 Exit status: 0 interrupted; 2 bad usage, a terminal or link that cannot be made, or output that cannot be written.

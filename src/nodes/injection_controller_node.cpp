@@ -96,14 +96,14 @@ void InjectionControllerNode::listenToCommands() {
 }
 
 /// What stops is always obeyed. What begins a motion must not be an old command that a publisher which latches sends
-/// again: home, too, though its stamp may be anything else.
+/// again: home and withdraw, too, though their stamps may be anything else.
 void InjectionControllerNode::take(const cell_microinjection::StringStamped& message, bool latched, bool repeated) {
   const std::string& command = message.string;
   answer_ = true;
   const ros::Time &stamp = message.header.stamp, now = ros::Time::now();
   if (!stops(command) && !isTimely(kStateTopic, message, now)) return;
   const bool stale = !stamp.isZero() && secondsBetween(stamp, now) > kOldestCommand;
-  const bool begins = !stops(command) || (command == "home" && latched);
+  const bool begins = !stops(command) || (moves(command) && latched);
   if (begins && stale) return log_.answered("state command " + command, "it is stale");
   if (begins && repeated) {
     return log_.answered("state command " + command, std::string(kUnstampedLatched) + "; send it again");

@@ -14,6 +14,7 @@ import rospy
 import rostest
 
 from case import case
+from live_chain import until
 
 NODES = pathlib.Path(sys.argv[0]).parent  # this program is found beside them
 SCENE = rospkg.RosPack().get_path("cell_microinjection") + "/test/chain/coarse_oocyte.yaml"
@@ -127,10 +128,8 @@ class BadParametersTest(unittest.TestCase):
                     rospy.delete_param(f"/tried_{node}/{key}")
                 process = start(node, parameters)
                 try:
-                    for _ in range(600):
-                        if f"/tried_{node}" in rosnode.get_node_names() or process.poll() is not None:
-                            break
-                        rospy.rostime.wallsleep(0.1)
+                    until(lambda: f"/tried_{node}" in rosnode.get_node_names() or process.poll() is not None,
+                          "its end, or a node that the master knows")
                     self.assertIsNone(process.poll(), "ended")
                     self.assertIn(f"/tried_{node}", rosnode.get_node_names())
                 finally:

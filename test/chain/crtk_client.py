@@ -9,12 +9,12 @@ one at their begin; setpoint_cp() needs a stamp of the last 20 ms, or waits so l
 Differences: it waits by wall time, here up to PATIENCE, since a test machine stalls."""
 
 import threading
-import time
 
 import rospy
 from cell_microinjection.msg import OperatingState, StringStamped
 from geometry_msgs.msg import PoseStamped, TwistStamped
 
+from live_chain import until
 from messages import position
 
 PATIENCE = 30.0  # s; only a wait that never ends takes that long
@@ -47,14 +47,9 @@ class CrtkClient:
         self._velocity = rospy.Publisher(name + "servo_cv", TwistStamped, queue_size=10)
         self._ends += [self._command, self._move, self._servo, self._velocity]
 
-    def check_connections(self, timeout=PATIENCE):
+    def check_connections(self):
         """As its ral does: all topics have somebody at their other end."""
-        end = time.monotonic() + timeout
-        while any(not each.get_num_connections() for each in self._ends):
-            if time.monotonic() > end:
-                missing = [each.name for each in self._ends if not each.get_num_connections()]
-                raise TimeoutError(f"not connected: {missing}")
-            rospy.rostime.wallsleep(0.01)
+        until(lambda: all(each.get_num_connections() for each in self._ends), "connections of all its topics")
 
     # what it hears
 

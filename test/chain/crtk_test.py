@@ -11,15 +11,17 @@ import numpy as np
 import rospy
 import rostest
 from cell_microinjection.msg import StringStamped
-from diagnostic_msgs.msg import DiagnosticArray
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import PoseStamped
 
-from crtk_client import CrtkClient, unstamped
+from case import case
+from crtk_client import CrtkClient
 from killable_nodes import KillableNodes, rig
 from live_chain import Master, until
 from messages import position
 
 START = np.array([0, 0, 60e-6])  # m, of the tip with all joints at 0
+OLDEST_MOVE = rospy.Duration(3)  # that it may be obeyed
 FAR = np.array([3e-3, 0, 60e-6])  # m, 1.5 s away
 
 
@@ -28,14 +30,15 @@ class CrtkTest(unittest.TestCase):
     def setUpClass(cls):
         cls.master = Master()
         rospy.init_node("client")
-        cls.newest, cls.said = {}, set()
+        cls.places, cls.said, cls.commands = [], set(), None
         cls.subscribers = [
-            rospy.Subscriber("/needle/measured_cp", PoseStamped, lambda message: cls.newest.update(needle=message)),
+            rospy.Subscriber("/needle/measured_cp", PoseStamped, lambda message: cls.places.append(position(message))),
             rospy.Subscriber("/diagnostics", DiagnosticArray, cls.on_diagnostics)]
         cls.fault = rospy.Publisher("/needle/emulated_fault", StringStamped, queue_size=10)
         cls.client = CrtkClient("/needle")
         cls.nodes = KillableNodes({"micromanipulator": {**rig(), "command_timeout": 1.0,
-                                                        "velocity_command_timeout": 1.0}})
+                                                        "velocity_command_timeout": 1.0,
+                                                        "diagnostic_period": 0.1}})
         cls.client.check_connections()
         until(cls.fault.get_num_connections, "a rig that can be at fault")
 
@@ -55,7 +58,9 @@ class CrtkTest(unittest.TestCase):
 
     @classmethod
     def on_diagnostics(cls, message):
-        cls.said |= {status.message for status in message.status if status.name.startswith("micromanipulator")}
+        ours = [status for status in message.status if status.name.startswith("micromanipulator")]
+        cls.said |= {status.message for status in ours}
+        cls.commands = next((status for status in ours if status.name.endswith("commands")), cls.commands)
 
     def publisher(self, topic, kind, **options):
         publisher = rospy.Publisher(topic, kind, queue_size=10, **options)
@@ -63,7 +68,13 @@ class CrtkTest(unittest.TestCase):
         return publisher
 
     def needle(self):
-        return position(self.newest["needle"])
+        return self.places[-1]
+
+    def await_poses(self, number):
+        """@returns the next poses (m), one a millisecond of the node's."""
+        first = len(self.places)
+        until(lambda: len(self.places) >= first + number, f"{number} poses of the needle")
+        return np.array(self.places[first:first + number])
 
     def until_said(self, text):
         try:
@@ -82,16 +93,8 @@ class CrtkTest(unittest.TestCase):
         return handle
 
     def check_rests(self):
-        """At rest soon: each of ten poses, of the second after, is the same."""
-        until(lambda: self.stands(), "a needle at rest")
-
-    def stands(self):
-        held = self.needle()
-        for _ in range(20):
-            rospy.rostime.wallsleep(0.01)
-            if np.abs(self.needle() - held).max() > 1e-9:
-                return False
-        return True
+        """At rest soon: all of 200 poses in turn are the same."""
+        until(lambda: np.ptp(self.await_poses(200), axis=0).max() <= 1e-9, "a needle at rest")
 
     def busy_changes(self, since):
         """What is_busy said, each change of it."""
@@ -112,7 +115,7 @@ class CrtkTest(unittest.TestCase):
         for target in (START + [0.2e-3, 0, 0], START + [0.2e-3, 0, 0], START):  # the second one has no length
             since = len(self.client.history)
             self.assertTrue(self.client.move_cp(target).wait())
-            rospy.rostime.wallsleep(0.1)
+            self.await_poses(100)
             self.assertEqual(self.busy_changes(since), [True, False])
 
     def test_a_move_that_takes_over_is_busy_again(self):
@@ -129,14 +132,14 @@ class CrtkTest(unittest.TestCase):
         since = len(self.client.history)
         for step in range(100):
             self.client.servo_cp(START + [0, 0, 1e-6 * step])
-            rospy.rostime.wallsleep(0.005)
+            self.await_poses(5)
         until(lambda: self.is_at(START + [0, 0, 99e-6]), "the last set-point")
         self.assertEqual(self.busy_changes(since), [])
 
     def test_unstamped_velocities(self):
         for _ in range(40):
             self.client.servo_cv([50e-6, 0, 0])
-            rospy.rostime.wallsleep(0.01)
+            self.await_poses(10)
         self.assertGreater(self.needle()[0], 5e-6)
         self.check_rests()  # when they have become old
         self.assertFalse(self.client.is_busy())
@@ -154,14 +157,35 @@ class CrtkTest(unittest.TestCase):
         self.until_said("move_cp of /client overridden: by pause of /client")
         self.client.move_cp(START)
         self.until_said("move_cp refused: PAUSED; allowed after resume")
-        self.assertFalse(self.client.enable(timeout=0.5), "the convention: enable is invalid in PAUSED")
+        # The convention's table of transitions: enable is invalid in PAUSED, which it does not end.
+        heard = len(self.client.history)
+        self.client.state_command("enable")
         self.until_said("state is PAUSED, enable is allowed in DISABLED, ENABLED, FAULT")
+        until(lambda: len(self.client.history) > heard, "the answer to a state command")
+        self.assertEqual({state for state, _, _ in self.client.history[heard:]}, {"PAUSED"})
         self.client.state_command("resume")
         self.assertTrue(self.client.wait_for_state("ENABLED"))
         self.check_rests()
         self.assertTrue(self.is_at(paused), "what was paused does not go on by itself")
         self.assertTrue(self.client.move_cp(START).wait())
         self.assertTrue(self.is_at(START))
+
+    def test_a_refused_command_is_on_diagnostics(self):
+        def refused():
+            return next(int(pair.value) for pair in self.commands.values if pair.key == "commands refused")
+
+        until(lambda: self.commands, "diagnostics of the commands")
+        for refuse, why in ((lambda: self.client.state_command("resume"),
+                             "state_command resume refused: state is ENABLED, resume is allowed in PAUSED"),
+                            (lambda: self.client.state_command("dance"), 'state_command dance refused: "dance" is'),
+                            (lambda: self.client.move_cp([1.0, 0, 0]), "move_cp refused: manipulator_x = 1 m, allowed")):
+            with case(why):
+                before = refused()
+                refuse()
+                until(lambda: why in self.commands.message, "the refusal")
+                self.assertEqual((self.commands.level, refused()), (DiagnosticStatus.WARN, before + 1))
+        self.assertTrue(self.client.move_cp(START).wait())
+        until(lambda: self.commands.level == DiagnosticStatus.OK, "what is obeyed takes the warning away")
 
     def test_disable_in_a_move_and_enable(self):
         self.set_off()
@@ -219,26 +243,27 @@ class CrtkTest(unittest.TestCase):
         process.send_signal(signal.SIGSTOP)
         try:
             self.client.move_cp(FAR)
-            rospy.rostime.wallsleep(3.5)  # longer than a move may be old
+            sent = rospy.Time.now()
+            until(lambda: rospy.Time.now() > sent + OLDEST_MOVE, "a move that is too old")
         finally:
             process.send_signal(signal.SIGCONT)
         self.until_said("move_cp refused: it is stale")
+        self.await_poses(300)  # for 0.2 s all that has no stamp may have waited
         self.assertTrue(self.is_at(START))
 
     def test_a_second_node_that_commands_is_a_fault(self):
         """As with stamps: an unstamped command has a sender, too."""
         stranger = subprocess.Popen([pathlib.Path(sys.argv[0]).parent / "second_master.py"])
         try:
-            for _ in range(2000):
-                self.client.servo_cp(START)
-                if self.client.operating_state() == "FAULT":
-                    break
-                rospy.rostime.wallsleep(0.01)
-            self.assertEqual(self.client.operating_state(), "FAULT")
+            until(self.servoes_into_a_fault, "a fault")
         finally:
             stranger.kill()
             stranger.wait()
         self.until_said("two nodes command the needle")
+
+    def servoes_into_a_fault(self):
+        self.client.servo_cp(START)
+        return self.client.operating_state() == "FAULT"
 
     def test_when_the_node_starts_anew_it_obeys_nothing_old(self):
         """The client's last state command is latched and comes again. Last by its name: its node is another."""

@@ -61,8 +61,8 @@ class Session:
         motion = {f"{name}_speed": SPEED for name in ("stab", "indent", "approach", "retract")}
         controller = parameters("injection_controller", mode="automatic", goal=goal, detection={"noise_samples": 50},
                                 motion=motion, speed_limit=SPEED, auto_enable=False, input_timeout=1.0)
-        self.seen = {}
-        self._subscribers = [rospy.Subscriber(topic, kind, lambda message, topic=topic: self.seen.update({topic: message}))
+        self.seen, self._has_moved = {}, False
+        self._subscribers = [rospy.Subscriber(topic, kind, self._receive, topic)
                              for topic, kind in (("/controller/injection_state", InjectionStatus),
                                                  ("/needle/operating_state", OperatingState),
                                                  ("/needle/measured_cp", PoseStamped))]
@@ -76,6 +76,10 @@ class Session:
         self.commands = rospy.Publisher("/controller/state_command", StringStamped, queue_size=1)
         self.process = self.nodes.process("micromanipulator")
 
+    def _receive(self, message, topic):
+        self.seen[topic] = message
+        self._has_moved = self._has_moved or topic == "/needle/operating_state" and message.is_busy
+
     def begin(self):
         """The needle goes to 4 um above the cell, and the injection begins."""
         until(lambda: self.rig() == "ENABLED", "a rig that is ready")
@@ -83,9 +87,11 @@ class Session:
         message = PoseStamped()
         message.header.stamp = rospy.Time.now()
         message.pose.position.z, message.pose.orientation.w = 32e-6, 1
+        self._has_moved = False
         self._move.publish(message)
         until(self.is_at_start, "a needle above the cell")
-        until(lambda: not self.seen["/needle/operating_state"].is_busy, "a needle that rests")
+        # Its pose may come before the state that belongs to it: the injection would begin beside the move.
+        until(lambda: self._has_moved and not self.seen["/needle/operating_state"].is_busy, "a needle that rests")
         self.commands.publish(StringStamped(string="enable"))
 
     def rig(self):

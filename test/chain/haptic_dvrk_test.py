@@ -1,22 +1,25 @@
 #!/usr/bin/python3
-"""A dVRK arm's adapter: switches before any force, its state, taps, and zero force when anything is silent."""
+"""A dVRK arm's adapter: switches before any force, its state, taps, and zero force when anything is silent. With the
+argument transform its positions are transforms, as before 2022."""
 
 import math
+import sys
 
 import numpy as np
 import rospy
 import rostest
-from geometry_msgs.msg import PoseStamped, WrenchStamped
+from geometry_msgs.msg import PoseStamped, TransformStamped, WrenchStamped
 from sensor_msgs.msg import Joy
 from std_msgs.msg import Bool
 
 from case import case
 from cell_microinjection.msg import OperatingState
 from haptic_driver import CLUTCH, FORCE, PRESENT, HapticTest
-from messages import force, pose, wrench
+from messages import force, pose, transform, wrench
 
 ARM, FOOT, HEAD, STATE = "/MTMR/measured_cp", "/console/clutch", "/console/operator_present", "/MTMR/operating_state"
 RENDERED = "/MTMR/body/servo_cf"
+KIND, PLACE = (TransformStamped, transform) if "transform" in sys.argv else (PoseStamped, pose)
 SETTINGS = ("/MTMR/body/set_cf_orientation_absolute", "/MTMR/use_gravity_compensation")
 
 
@@ -25,7 +28,7 @@ def state(name="ENABLED", homed=True):
 
 
 class DvrkTest(HapticTest):
-    driver = {ARM: PoseStamped, FOOT: Joy, HEAD: Joy, STATE: OperatingState}
+    driver = {ARM: KIND, FOOT: Joy, HEAD: Joy, STATE: OperatingState}
     inputs = {RENDERED: WrenchStamped}
 
     @classmethod
@@ -34,10 +37,13 @@ class DvrkTest(HapticTest):
         cls.switches = [rospy.Subscriber(topic, Bool, lambda message, topic=topic: cls.set_.update({topic: message.data}))
                         for topic in SETTINGS]
         super().setUpClass()
+        # Who the driver is shows by its positions only: it cannot be known yet whether it has heard its settings.
+        cls.world.run(300, {FORCE: wrench(0.1, 0.2, -0.3, "haptic")})
+        cls.before_its_settings = cls.world.seen.get(RENDERED)
 
     def arm(self):
         """Buttons and state are told on change only."""
-        return {ARM: pose(0.01, 0.02, -0.03, "HRSV"), FORCE: wrench(0.1, 0.2, -0.3, "haptic")}
+        return {ARM: PLACE(0.01, 0.02, -0.03, "HRSV"), FORCE: wrench(0.1, 0.2, -0.3, "haptic")}
 
     def told(self):
         return self.seen(CLUTCH).buttons[0], self.seen(PRESENT).buttons[0]
@@ -54,6 +60,10 @@ class DvrkTest(HapticTest):
 
     def rendered(self):
         return force(self.seen(RENDERED))
+
+    def test_no_force_is_said_before_its_settings(self):
+        """Not even zero: the first one frees the arm, which would then fall."""
+        self.assertIsNone(self.before_its_settings)
 
     def test_both_switches_are_set(self):
         self.assertEqual(self.set_, dict.fromkeys(SETTINGS, True))
@@ -88,9 +98,9 @@ class DvrkTest(HapticTest):
                 np.testing.assert_array_equal(self.rendered(), 0)
 
     def test_without_a_fresh_force_or_a_sensible_arm_none_is_rendered(self):
-        for name, bad in (("silent bridge", lambda: {ARM: pose(0, 0, 0)}), ("silent arm", lambda: {FORCE: wrench(1, 0, 0)}),
+        for name, bad in (("silent bridge", lambda: {ARM: PLACE(0, 0, 0)}), ("silent arm", lambda: {FORCE: wrench(1, 0, 0)}),
                           ("no number", lambda: {**self.arm(), FORCE: wrench(math.nan, 0, 0)}),
-                          ("no place", lambda: {**self.arm(), ARM: pose(math.inf, 0, 0)})):
+                          ("no place", lambda: {**self.arm(), ARM: PLACE(math.inf, 0, 0)})):
             with case(name):
                 self.begin()
                 self.world.run(200, bad)

@@ -17,6 +17,12 @@ class FalconTest(HapticTest):
     driver = {POSITION: PoseStamped, JOY: Joy}
     inputs = {RENDERED: WrenchStamped}
 
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.world.run(10)  # the driver says nothing yet
+        cls.first = cls.world.seen.get(RENDERED)
+
     def good(self, *buttons):
         return {POSITION: pose(0.01, 0.02, 0.12, "falcon_front"), JOY: Joy(buttons=[*buttons, 0, 0]),
                 FORCE: wrench(0.1, 0.2, -0.3, "haptic")}
@@ -34,6 +40,11 @@ class FalconTest(HapticTest):
             self.assertEqual(self.told(), (0, 1))
             self.world.run(100, lambda: {POSITION: pose(0, 0, 0.12, "falcon_front"), **bad})
             self.assertEqual(self.told(), (1, 0))
+
+    def test_zero_force_is_said_before_the_driver_says_anything(self):
+        """It holds the last one for ever, which may be that of an adapter before this one."""
+        self.assertIsNotNone(self.first)
+        np.testing.assert_array_equal(force(self.first), 0)
 
     def test_the_force_is_in_the_drivers_frame(self):
         """It takes no other."""

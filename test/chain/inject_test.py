@@ -21,7 +21,9 @@ LAST_TIME = rospy.Time(4294967295, 999999999)  # that a stamp can hold
 ENDED = (GoalStatus.SUCCEEDED, GoalStatus.PREEMPTED, GoalStatus.ABORTED)
 
 
-class InjectTest(InjectionChainTest):
+class InjectPulseTest(InjectionChainTest):
+    """What the injector has a part in."""
+
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
@@ -48,6 +50,47 @@ class InjectTest(InjectionChainTest):
         # The status may come before the result.
         self.tick_until(lambda: self.client.get_state() in ENDED and self.client.get_result(), "the result")
         return self.client.get_state(), self.client.get_result()
+
+    def test_3_a_whole_injection(self):
+        start, before = self.needle(), self.chain.seen["/injector/state"]
+        self.send()
+        state, result = self.result()
+        self.assertEqual((state, result.outcome, result.reason), (GoalStatus.SUCCEEDED, "injected", ""))
+        self.chain.run(300)
+        self.check_out(start)
+        passed = [name for name in self.states if name != "idle"]
+        self.assertEqual(passed, ["approach", "contact", "indent", "punctured", "inject", "punctured", "withdraw"])
+        self.assertEqual(result.punctures, 1)
+        self.assertAlmostEqual(result.puncture_force / PUNCTURE, 1, delta=0.05)
+        self.assertGreaterEqual(result.max_depth, result.puncture_depth + 1.9e-6)
+        cell, injector = self.chain.seen["/cell/state"], self.chain.seen["/injector/state"]
+        self.assertTrue(cell.punctured)
+        self.assertEqual((len(cell.holes), cell.inside), (1, False))
+        self.assertEqual(injector.pulses, before.pulses + 1)
+        # What the pressure's fall after the pulse pushes out is not the pulse's.
+        self.assertAlmostEqual(result.volume / (injector.volume - before.volume), 1, delta=0.1)
+        self.assertGreater(result.volume, 0)
+
+    def test_4_cancelled_while_it_injects_the_pulse_stops_and_it_withdraws(self):
+        self.move_aside(8e-6)  # of the hole
+        start, pulses = self.needle(), self.chain.seen["/injector/state"].pulses
+        self.send(duration=30.0)
+        self.tick_until(lambda: self.chain.seen["/injector/state"].busy, "a pulse")
+        self.chain.run(100)
+        self.assertEqual(self.status().state, "inject")
+        self.client.cancel_goal()
+        self.tick_until(lambda: self.status().state == "withdraw", "the withdrawal")
+        # A device on a serial line answers two commands meanwhile.
+        patience = 5 if rospy.get_param("/injector/source") == "simulated" else 150
+        self.tick_until(lambda: not self.chain.seen["/injector/state"].busy, "the end of the pulse", patience)
+        state, result = self.result()
+        self.assertEqual((state, result.outcome, result.punctures), (GoalStatus.PREEMPTED, "preempted", 1))
+        self.check_out(start)
+        self.assertEqual(self.chain.seen["/injector/state"].pulses, pulses)
+
+
+class InjectTest(InjectPulseTest):
+    """And what it has none in."""
 
     def test_1_a_goal_that_cannot_be_is_aborted_with_the_reason(self):
         start = self.needle()
@@ -148,43 +191,6 @@ class InjectTest(InjectionChainTest):
         self.check_out(start)
         self.assertFalse(self.chain.seen["/cell/state"].punctured)
 
-    def test_3_a_whole_injection(self):
-        start, before = self.needle(), self.chain.seen["/injector/state"]
-        self.send()
-        state, result = self.result()
-        self.assertEqual((state, result.outcome, result.reason), (GoalStatus.SUCCEEDED, "injected", ""))
-        self.chain.run(300)
-        self.check_out(start)
-        passed = [name for name in self.states if name != "idle"]
-        self.assertEqual(passed, ["approach", "contact", "indent", "punctured", "inject", "punctured", "withdraw"])
-        self.assertEqual(result.punctures, 1)
-        self.assertAlmostEqual(result.puncture_force / PUNCTURE, 1, delta=0.05)
-        self.assertGreaterEqual(result.max_depth, result.puncture_depth + 1.9e-6)
-        cell, injector = self.chain.seen["/cell/state"], self.chain.seen["/injector/state"]
-        self.assertTrue(cell.punctured)
-        self.assertEqual((len(cell.holes), cell.inside), (1, False))
-        self.assertEqual(injector.pulses, before.pulses + 1)
-        # What the pressure's fall after the pulse pushes out is not the pulse's.
-        self.assertAlmostEqual(result.volume / (injector.volume - before.volume), 1, delta=0.1)
-        self.assertGreater(result.volume, 0)
-
-    def test_4_cancelled_while_it_injects_the_pulse_stops_and_it_withdraws(self):
-        self.move_aside(8e-6)  # of the hole
-        start, pulses = self.needle(), self.chain.seen["/injector/state"].pulses
-        self.send(duration=30.0)
-        self.tick_until(lambda: self.chain.seen["/injector/state"].busy, "a pulse")
-        self.chain.run(100)
-        self.assertEqual(self.status().state, "inject")
-        self.client.cancel_goal()
-        self.tick_until(lambda: self.status().state == "withdraw", "the withdrawal")
-        # A device on a serial line answers two commands meanwhile.
-        patience = 5 if rospy.get_param("/injector/source") == "simulated" else 150
-        self.tick_until(lambda: not self.chain.seen["/injector/state"].busy, "the end of the pulse", patience)
-        state, result = self.result()
-        self.assertEqual((state, result.outcome, result.punctures), (GoalStatus.PREEMPTED, "preempted", 1))
-        self.check_out(start)
-        self.assertEqual(self.chain.seen["/injector/state"].pulses, pulses)
-
     def test_5_through_two_membranes(self):
         """States and feedback tell of each; the injector works behind the last."""
         self.move_aside(-16e-6)  # where no hole is
@@ -213,6 +219,8 @@ class InjectTest(InjectionChainTest):
 
 if __name__ == "__main__":
     rospy.init_node("asker")
-    # With a rig of another kind the same whole injection; what the controller does besides does not depend on the rig.
-    chosen = InjectTest if rospy.myargv()[1] == "sim" else "__main__.InjectTest.test_3_a_whole_injection"
-    rostest.rosrun("cell_microinjection", "inject", chosen)
+    # What the controller does besides does not depend on the rig, nor on the injector.
+    rig, injector = rospy.myargv()[1:3]
+    chosen = InjectTest if injector == "simulated" else InjectPulseTest
+    rostest.rosrun("cell_microinjection", "inject",
+                   chosen if rig == "sim" else "__main__.InjectPulseTest.test_3_a_whole_injection")

@@ -23,7 +23,7 @@ class KillOwnTest(KillCase):
             self.in_state("withdraw", ticks)
 
     def test_controller(self):
-        for state, ticks in (("approach", 100), ("indent", 60), ("withdraw", 60)):
+        for state, ticks in self.cases(("approach", 100), ("indent", 60), ("withdraw", 60)):
             with case(state):
                 self.in_course(state, ticks)
                 killed = self.kill("injection_controller")
@@ -31,7 +31,7 @@ class KillOwnTest(KillCase):
                 self.tearDown()
 
     def test_micromanipulator(self):
-        for state, ticks in (("approach", 100), ("indent", 60), ("withdraw", 60)):
+        for state, ticks in self.cases(("approach", 100), ("indent", 60), ("withdraw", 60)):
             with case(state):
                 self.in_course(state, ticks)
                 killed = self.kill("micromanipulator")
@@ -39,7 +39,7 @@ class KillOwnTest(KillCase):
                 self.tearDown()
 
     def test_cell_simulator(self):
-        for state, ticks in (("approach", 100), ("indent", 60)):
+        for state, ticks in self.cases(("approach", 100), ("indent", 60)):
             with case(state):
                 self.in_course(state, ticks)
                 killed = self.kill("cell_simulator")

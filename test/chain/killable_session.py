@@ -157,6 +157,12 @@ class KillCase(unittest.TestCase):
 
     FREEZES = "freeze" in sys.argv  # instead of being killed, nodes are stopped and stay
 
+    @classmethod
+    def cases(cls, *of_kill, of_freeze="indent"):
+        """(state, ticks in it) in which a node is killed; of those the one in which it is frozen: to the others it is as
+        silent then, whatever the state, and they cannot tell the difference."""
+        return [case for case in of_kill if not cls.FREEZES or case[0] == of_freeze]
+
     def setUp(self):
         self.session = None
 

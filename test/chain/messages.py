@@ -1,7 +1,7 @@
 """Short ways to the messages of the chain. Metres and newtons."""
 
 import numpy as np
-from geometry_msgs.msg import PoseStamped, WrenchStamped
+from geometry_msgs.msg import PoseStamped, TransformStamped, WrenchStamped
 
 
 def pose(x, y, z, frame="world"):
@@ -9,6 +9,14 @@ def pose(x, y, z, frame="world"):
     message.header.frame_id = frame
     message.pose.position.x, message.pose.position.y, message.pose.position.z = x, y, z
     message.pose.orientation.w = 1
+    return message
+
+
+def transform(x, y, z, frame="world"):
+    message = TransformStamped()
+    message.header.frame_id = frame
+    message.transform.translation.x, message.transform.translation.y, message.transform.translation.z = x, y, z
+    message.transform.rotation.w = 1
     return message
 
 

@@ -24,7 +24,7 @@ class Participant:
         self._patience = patience
         self.seen = {}
         self.now = rospy.Time()
-        self.diagnostics = {}
+        self.diagnostics, self._reported = {}, {}
         self._ticks = queue.Queue()
         self._outputs = {topic: self._advertise(topic, kind) for topic, kind in outputs.items()}
         self._silences = {topic: self._advertise(topic + "/silent", Header) for topic in outputs}
@@ -90,6 +90,7 @@ class Participant:
     def _on_diagnostics(self, message):
         for status in message.status:
             self.diagnostics[status.name] = status
+            self._reported[status.name] = message.header.stamp
 
     def _acknowledge(self, stamp):
         self._acknowledgement.publish(Header(stamp=stamp, frame_id=rospy.get_name()))
@@ -114,6 +115,16 @@ class Participant:
     def run(self, ticks, messages=None):
         for _ in range(ticks):
             self.tick(messages() if callable(messages) else messages)
+
+    def run_to_status(self, name, ticks, messages=None):
+        """Some ticks, and more until the diagnostics of a later one have come. @returns (level, message) of `name`."""
+        self.run(ticks, messages)
+        since = self.now
+        for _ in range(20000):
+            if self._reported.get(name, rospy.Time()) > since:
+                return self.status(name)
+            self.run(1, messages)
+        raise RuntimeError(f"no diagnostics of {name} since {since}: {self._reported}")
 
     def unsubscribe(self):
         """Hears nothing any more."""

@@ -13,6 +13,7 @@ from messages import pose, position, wrench
 from participant import INVALID, Participant
 
 START = 60e-6  # m
+STATUS = "injection_controller: control"
 
 
 class TrustTest(unittest.TestCase):
@@ -27,9 +28,7 @@ class TrustTest(unittest.TestCase):
 
     def setUp(self):
         self.target = self.setpoint() if "/needle/servo_cp" in self.world.seen else START
-        self.world.run(300, self.good)
-        self.world.run(1000, self.good)  # diagnostics of a good state
-        self.assertEqual(self.world.status("injection_controller: control"), (0, "the needle follows"))
+        self.assertEqual(self.world.run_to_status(STATUS, 300, self.good), (0, "the needle follows"))
 
     def good(self):
         """A target, a needle that is where it was sent, a force."""
@@ -48,9 +47,8 @@ class TrustTest(unittest.TestCase):
         self.world.run(60, messages)  # past the time-out of 50 ms
         held = self.setpoint()
         self.target -= 10e-6
-        self.world.run(1200, messages)
+        level, text = self.world.run_to_status(STATUS, 300, messages)
         self.assertEqual(self.setpoint(), held)
-        level, text = self.world.status("injection_controller: control")
         self.assertNotEqual(level, 0)
         self.assertIn(why, text)
         # Back again: what the target did meanwhile must not be caught up with, what it does now must be followed.
@@ -119,8 +117,8 @@ class TrustTest(unittest.TestCase):
             """m/s that the needle may be moved at after this announcement."""
             abilities.publish(ManipulatorAbilities(device="test", speed=speed, latency=latency,
                                                    command_interval=interval))
-            self.world.run(1100, self.good)
-            values = self.world.diagnostics["injection_controller: control"].values
+            self.world.run_to_status(STATUS, 20, self.good)
+            values = self.world.diagnostics[STATUS].values
             return next(float(pair.value) for pair in values if pair.key == "speed limit (m/s)")
 
         self.assertAlmostEqual(limit(44e-6, 0.0), 44e-6)
@@ -132,9 +130,9 @@ class TrustTest(unittest.TestCase):
     def test_target_that_leaps(self):
         held = self.setpoint()
         self.target -= 150e-6
-        self.world.run(1200, self.good)
+        text = self.world.run_to_status(STATUS, 300, self.good)[1]
         self.assertEqual(self.setpoint(), held)
-        self.assertIn("allowed 0.0001 m", self.world.status("injection_controller: control")[1])
+        self.assertIn("allowed 0.0001 m", text)
         self.target += 150e-6
         self.world.run(300, self.good)
 

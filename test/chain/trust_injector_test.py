@@ -2,48 +2,20 @@
 """The injector does a pulse once, refuses what is old, repeated or out of its range, and shows what flows back."""
 
 import math
-import unittest
 
 import rospy
 import rostest
-from sensor_msgs.msg import FluidPressure
 from std_srvs.srv import SetBool, Trigger
 
-from cell_microinjection.msg import InjectionPulse, InjectorState, StringStamped
-from participant import Participant
-
-PRESSURE = 20e3  # Pa
+from cell_microinjection.msg import InjectionPulse, StringStamped
+from injector_world import PRESSURE, InjectorTest
 
 
-class TrustTest(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.world = Participant({"/injector/pulse": InjectionPulse, "/injector/stop": StringStamped},
-                                {"/injector/state": InjectorState})
-        cls.pulses = rospy.Publisher("/injector/pulse", InjectionPulse, queue_size=10)
-        cls.balance = rospy.Publisher("/injector/set_balance", FluidPressure, queue_size=10)
-        cls.stops = rospy.Publisher("/injector/stop", StringStamped, queue_size=10)
-        cls.world.await_links()
-
+class TrustTest(InjectorTest):
     def setUp(self):
         self.world.call("/injector/clog", SetBool, False)
         self.world.call("/injector/reset", Trigger)
         self.world.run(2)  # so that the state that was seen last is one of after it
-
-    def state(self):
-        return self.world.seen["/injector/state"]
-
-    def tick_until(self, condition):
-        for _ in range(20000):
-            self.world.tick()
-            if condition():
-                return
-        self.fail("did not happen within 20 s of ROS time")
-
-    def send(self, number, pressure=PRESSURE, duration=0.05, age=0.0, held=False):
-        message = InjectionPulse(id=number, pressure=pressure, duration=duration, held=held)
-        message.header.stamp = self.world.now - rospy.Duration(age)
-        self.pulses.publish(message)
 
     def inject(self, number):
         """Volume (m^3) of a pulse."""
@@ -67,9 +39,8 @@ class TrustTest(unittest.TestCase):
         before = self.state().pulses
         self.send(**pulse)
         self.tick_until(lambda: why in self.state().refusal)
-        self.world.run(1200)
+        level, text = self.world.run_to_status("injector: injector", 300)
         self.assertEqual(self.state().pulses, before)
-        level, text = self.world.status("injector: injector")
         self.assertNotEqual(level, 0)
         self.assertIn(why, text)
 
@@ -129,14 +100,10 @@ class TrustTest(unittest.TestCase):
     def test_a_wrong_balance_flows_back(self):
         right = self.state().pressure
         for pressure, sign in ((0.0, -1), (2 * right, 1)):
-            message = FluidPressure(fluid_pressure=pressure)
-            message.header.stamp = self.world.now
-            self.balance.publish(message)
+            self.set_balance(pressure)
             self.tick_until(lambda: abs(self.state().pressure - pressure) < 1)
             self.assertGreater(sign * self.state().flow, 0)
-        message = FluidPressure(fluid_pressure=right)
-        message.header.stamp = self.world.now
-        self.balance.publish(message)
+        self.set_balance(right)
         self.tick_until(lambda: abs(self.state().pressure - right) < 1e-3)
 
     def test_a_clogged_tip_lets_less_through(self):

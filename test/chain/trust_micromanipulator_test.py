@@ -16,6 +16,8 @@ from geometry_msgs.msg import PoseStamped, TwistStamped
 from messages import pose, position
 from participant import Participant
 
+STATUS = "micromanipulator: commands"
+
 
 class TrustTest(unittest.TestCase):
     @classmethod
@@ -36,9 +38,8 @@ class TrustTest(unittest.TestCase):
         return position(self.world.seen["/needle/measured_cp"])
 
     def check_refused(self, command, why):
-        self.world.run(1200, {"/needle/servo_cp": command})
+        level, text = self.world.run_to_status(STATUS, 300, {"/needle/servo_cp": command})
         np.testing.assert_allclose(self.needle(), [0, 0, 50e-6], atol=1e-9)
-        level, text = self.world.status("micromanipulator: commands")
         self.assertNotEqual(level, 0)
         self.assertIn(why, text)
 
@@ -70,20 +71,20 @@ class TrustTest(unittest.TestCase):
         self.assertLess(held[0], 50e-6 * 0.2)  # 0.1 s of command, and its braking
 
     def tick_until_refused(self, why):
-        self.tick_until(lambda: why in self.world.diagnostics["micromanipulator: commands"].message)
+        self.tick_until(lambda: why in self.world.diagnostics[STATUS].message)
         np.testing.assert_allclose(self.needle(), [0, 0, 50e-6], atol=1e-9)
 
     def test_refuses_what_is_not_finite_or_in_another_frame(self):
         self.move.publish(pose(20e-6, -10e-6, 70e-6, "camera"))
         self.tick_until_refused("move_cp refused: not a valid pose")
-        self.world.run(1200, lambda: {"/needle/servo_cp": pose(0, 0, 50e-6)})
+        self.world.run_to_status(STATUS, 20, lambda: {"/needle/servo_cp": pose(0, 0, 50e-6)})
         self.move.publish(pose(20e-6, math.nan, 70e-6))
         self.tick_until_refused("move_cp refused: not a valid pose")
         command = TwistStamped()
         command.twist.linear.x = math.inf
         self.velocity.publish(command)
         self.tick_until_refused("servo_cv refused: not a valid velocity")
-        self.world.run(1200, lambda: {"/needle/servo_cp": pose(0, 0, 50e-6)})
+        self.world.run_to_status(STATUS, 20, lambda: {"/needle/servo_cp": pose(0, 0, 50e-6)})
         command.twist.linear.x = 50e-6
         command.header.stamp = self.world.now
         command.header.frame_id = "camera"
@@ -132,7 +133,7 @@ class TrustTest(unittest.TestCase):
         command.header.stamp = self.world.now
         self.velocity.publish(command)
         self.tick_until(lambda: "allowed at most servo_speed_limit" in
-                        self.world.diagnostics["micromanipulator: commands"].message)
+                        self.world.diagnostics[STATUS].message)
 
     def test_second_publisher_is_a_fault_until_enable(self):
         """It is another node, since this one may publish on as many topics as it likes."""
@@ -146,10 +147,9 @@ class TrustTest(unittest.TestCase):
             self.assertEqual(self.state(), "FAULT")
             moved = self.needle()[2] - 50e-6
             self.assertLess(moved, 1e-6)
-            self.world.run(1200, holding)
-            status = self.world.diagnostics["micromanipulator: commands"]
-            self.assertEqual(status.level, 2)
-            self.assertRegex(status.message, "two nodes command the needle: (/world and /stranger|/stranger and /world)")
+            level, text = self.world.run_to_status(STATUS, 300, holding)
+            self.assertEqual(level, 2)
+            self.assertRegex(text, "two nodes command the needle: (/world and /stranger|/stranger and /world)")
             np.testing.assert_allclose(self.needle()[2], 50e-6 + moved, atol=1e-6)
         finally:
             stranger.kill()

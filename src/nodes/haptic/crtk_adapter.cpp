@@ -112,9 +112,11 @@ std::optional<HandReading> CrtkAdapter::read(const Cycle::Tick& tick) {
   return reading;
 }
 
-/// None before the driver knows its settings: the force would be meant in another frame, and the arm would fall.
+/// A device holds the last force for ever, which may be that of an adapter before this one: it gets zero before
+/// anything is known of it. One that needs settings gets nothing before it has them, not even zero: in an arm of dVRK
+/// the first force ends the position control that holds it, so that without gravity compensation it would fall.
 void CrtkAdapter::render(const Eigen::Vector3d& force, const Cycle::Tick& tick) {
-  if (ready_) force_.publish(toWrench(force, tick.now, frame_));
+  if (ready_ || config_.settings.empty()) force_.publish(toWrench(force, tick.now, frame_));
 }
 
 }  // namespace microinjection

@@ -39,7 +39,7 @@ void CycleDiagnostics::endStep(const ros::Time& now) {
   longest_step_ = std::max(longest_step_, took);
   now_ = now;
   if (!updater_) start();
-  if (secondsBetween(reported_, now) < 1) return;
+  if (secondsBetween(reported_, now) < updater_->getPeriod()) return;
   updater_->force_update();
   reported_ = now;
   steps_ = 0;

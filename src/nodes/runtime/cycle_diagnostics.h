@@ -14,7 +14,7 @@
 namespace microinjection {
 
 /// What each cyclic node says on /diagnostics: rate and step time, the age of every input, and what the node adds.
-/// Updated once a second of ROS time.
+/// Updated each `~diagnostic_period` of ROS time, as diagnostic_updater has it; default 1 s.
 class CycleDiagnostics {
  public:
   explicit CycleDiagnostics(double rate) : rate_(rate), intervals_(2 / rate) {}

@@ -121,8 +121,8 @@ std::string InjectionController::takeWord(InjectionEvent event) {
 std::string InjectionController::withdraw() {
   if (byHand()) return "mode is manual: the hand withdraws the needle, or home";
   const bool held = state_ == OperatingState::kEnabled || state_ == OperatingState::kPaused;
-  if (!held || !setpoint_)
-    return std::string("state is ") + toText(state_) + ", withdraw is allowed in ENABLED and PAUSED";
+  if (!held) return std::string("state is ") + toText(state_) + ", withdraw is allowed in ENABLED and PAUSED";
+  if (!setpoint_) return "the needle's position is not known yet";
   // Left in the cell by an injection that was disabled: it is known where it came from.
   if (injection_ == InjectionState::kIdle && monitor_.touched() && !homing_) return obey("home");
   if (homing_ || !after(injection_, InjectionEvent::kWithdraw)) {

@@ -12,6 +12,9 @@ namespace microinjection {
 /// An emulated micromanipulator: what a test may look at without asking over the line.
 class ManipulatorEmulator : public DeviceEmulator {
  public:
+  /// The code of an "error" that each of them knows: it was switched off and on, and counts from 0 where it stands.
+  static constexpr char kReset[] = "RESET";
+
   virtual Eigen::Vector3d position() const = 0;  ///< m, of the device's axes, as they are
   virtual int movesBegun() const = 0;            ///< moves to a place that it has begun
   virtual bool moves() const = 0;

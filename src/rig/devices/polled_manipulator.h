@@ -5,48 +5,33 @@
 #include <string>
 #include <vector>
 
-#include "rig/devices/answer_times.h"
-#include "rig/devices/axis_order.h"
-#include "rig/devices/joint_axes.h"
-#include "rig/devices/reading_filter.h"
-#include "rig/devices/serial_manipulator.h"
+#include "rig/devices/move_by_move.h"
 #include "rig/serial/line_splitter.h"
-#include "rig/serial/serial_port.h"
 
 namespace microinjection {
 
 /// Keys that every device below has in its file.
-struct PolledManipulatorConfig {
-  SerialPortConfig port;
-  AxisOrder axes;
-  JointAxes joints;
-  double speed = 1e-3;               ///< m/s, largest along a move
-  double segment_time = 0.05;        ///< s, that a short move towards a set-point should take
-  double answer_time = 5e-3;         ///< s, that the device takes to answer
-  double reply_timeout = 0.3;        ///< s, after which an answer is missed, besides the time on the wire
-  double rest_reading_interval = 1;  ///< s, between readings at rest
-  double reading_margin = 5e-6;      ///< m, by which a reading under way may be off, besides 0.1 s of motion
-
-  double byteTime() const { return 10.0 / port.baud; }  ///< s
+struct PolledManipulatorConfig : MoveByMoveConfig {
+  double reading_margin = 5e-6;  ///< m, by which a reading under way may be off, besides 0.1 s of motion
 
  protected:
   void readCommon(ConfigReader& reader, int default_baud, const Range& speeds);  ///< m/s
 };
 
-/// A manipulator behind lines of text that goes from one move to the next, as the MP-285 does, and that tells its
-/// position while it moves. Set-points become short moves, each to the newest set-point. A move is never said while
-/// another may be under way, nor on suspicion: after anything that went wrong the device is stopped and stands before
-/// it is sent on. Its dialect is the deriving class' business.
+/// A manipulator behind lines of text that goes from one move to the next and tells its position while it moves. A
+/// move is never said while another may be under way, nor on suspicion: after anything that went wrong the device is
+/// stopped and stands before it is sent on. Its dialect is the deriving class' business.
 ///
-/// A position counts when it is where it may be (at rest: where it was), or when four in a row agree. A device at rest
-/// that tells another place after the line was lost, or where nobody but this program can move it, is a fault: its
-/// coordinates may have begun anew.
-class PolledManipulator : public SerialManipulator {
+/// A position counts when it is where it may be (at rest: where it was), or when four in a row agree. Another place at
+/// rest, with the line sound, is that of a hand, if the device can be moved by hand. What was set in it is then said
+/// again: it may have been switched off and on before.
+class PolledManipulator : public MoveByMove {
  public:
   struct Dialect {
     std::string device;            ///< its name, e.g. "Eppendorf PatchMan NP 2"
     std::string short_name;        ///< in messages
     std::string guarded_stop;      ///< bytes that stop it, whatever was half said before
+    std::string farewell;          ///< bytes that give it back when the program ends, after the stop
     std::string stop;              ///< a line, answered when it stops
     std::string position, motion;  ///< lines that ask; no motion: the position tells when it stands
     std::size_t longest_move;      ///< bytes of what a move takes, answers included
@@ -55,16 +40,14 @@ class PolledManipulator : public SerialManipulator {
     bool moved_by_hand;            ///< somebody else may move it while this program has it
   };
   struct Plan {
-    std::vector<std::string> lines;  ///< each with an acknowledgement; the last one moves
-    double duration;                 ///< s, that the move takes
+    std::string setting;  ///< a line that is said before, unless it was the last one; empty: none
+    std::string move;     ///< the line that moves; both have an acknowledgement
+    double duration = 0;  ///< s, that the move takes
+    double speed = 0;     ///< m/s, along it; may be more than was asked for, where the device cannot go that slowly
+    double aside = 0;     ///< counts, by which it leaves the straight line
   };
 
   ManipulatorAbilities abilities() const override;
-  std::optional<Reading> reading() const override;
-  bool moving() const override;
-
-  double largestCorrection() const { return largest_correction_; }  ///< m, of a carried-on position by a reading
-  int malformed() const { return malformed_; }                      ///< answers that were none
 
  protected:
   PolledManipulator(const PolledManipulatorConfig& config, std::unique_ptr<Wire> wire, const Dialect& dialect);
@@ -76,88 +59,79 @@ class PolledManipulator : public SerialManipulator {
   virtual std::string takeSetup(int step, const std::string& answer) = 0;
   /// Counts of the device's axes; empty when the line is none.
   virtual std::optional<Eigen::Vector3d> readPosition(const std::string& answer) = 0;
+  /// A line that tells after a lost session whether a setting, the last one that the device has confirmed, is kept.
+  virtual std::string askKept(const std::string& setting) const = 0;
+  virtual bool isKept(const std::string& setting, const std::string& answer) const = 0;
   virtual std::optional<bool> readMotion(const std::string& /*answer*/) const { return std::nullopt; }
   virtual bool acknowledges(const std::string& line, const std::string& answer) const = 0;
   /// A straight move between places (counts, whole) at `speed` (m/s), with no axis faster than `fastest` (m/s) where
   /// the device can do that.
   virtual Plan plan(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double speed,
-                    const Eigen::Vector3d& fastest) = 0;
+                    const Eigen::Vector3d& fastest) const = 0;
   virtual double count() const = 0;                         ///< m
-  virtual double arrival() const { return 0.5; }            ///< counts from its goal at which an axis has arrived
-  virtual double slowest() const { return 0; }              ///< m/s; slower ways are gone in steps
   virtual std::string whyNotArrived() const { return ""; }  ///< what the device tells of it
-  /// Whatever was set in the device may be forgotten.
-  virtual void sessionLost() {}
 
-  void connected() final { answers_.forget(); }
+  Eigen::Vector3d counts() const final { return Eigen::Vector3d::Constant(count()); }
+  double recoveryTime() const final;
   void begin(bool lost) final;
   void stopSaid() final;
   void talk(const std::string& bytes) final;
-  void goalChanged() final { tries_ = 0; }
 
  private:
-  static constexpr double kSame = 0.5;  // counts: what stands does not change by one
-
-  enum class Kind { kSetup, kStop, kPosition, kMotion, kMove };
+  enum class Kind { kKept, kSetup, kStop, kPosition, kMotion, kMove };
   struct Exchange {
     Kind kind;
     std::string line;
     double due;   // s of listened()
     double sent;  // s of listened(), when its last byte has gone
   };
-  struct Move {
-    Eigen::Vector3d from, to;  // counts
-    double end;                // s, of all of it
-    double begin, duration;    // s, of what is left since `from` was read
-    double overdue;            // s, by when it has arrived
-    double next;               // s, before which no further one begins: it goes slower than the device can
-    bool follows;              // a short one towards a set-point
-    std::vector<std::string> unsaid;
+  /// Of the move under way.
+  struct Progress {
+    std::string setting, move;    // lines, as long as they are not said
+    double end = 0;               // s, of all of it
+    double overdue = 0;           // s of listened(), by when it has arrived
+    double next = 0;              // s, before which no further one begins: it goes slower than the device can
     int at_goal = 0;              // readings in a row
+    bool zero_asked = false;      // whether its settings are kept, when it reads 0 at its goal
     std::optional<double> stood;  // s of listened(), since when the device says that it stands
   };
 
+  /// A way that may be gone in parts, and where its next part begins.
+  struct Line {
+    Eigen::Vector3d begin, goal, next;  // counts
+  };
+
   void handle(const std::string& answer);
-  void measure(const std::string& answer);
   void takeSetupAnswer(const std::string& answer);
+  void takeNotKept();
   void takeMotion(const std::string& answer);
   void takePosition(const std::string& answer);
   void takePlace(const Eigen::Vector3d& place);
-  void rest(const Eigen::Vector3d& place);
-  static Eigen::Vector3d onTheWay(const Eigen::Vector3d& from, const Eigen::Vector3d& way, double share);
+  Eigen::Vector3d onTheWay(const Eigen::Vector3d& from, double share) const;
   void checkMove(const Eigen::Vector3d& place);
-  bool beginsAnew(const Eigen::Vector3d& place);
-  void malformed(const std::string& answer);
+  void endedElsewhere(const Eigen::Vector3d& place);
+  void notUnderstood(const std::string& answer);
+  void forgetSettings();
   void ask(Kind kind, const std::string& line);
   void next();
+  void sayMove();
   void nextOfMove();
   void nextTowardsGoal();
-  Eigen::Vector3d goalPlace() const;
-  bool isThere(const Eigen::Vector3d& place, const Eigen::Vector3d& goal) const;
-  double wantedSpeed(const Eigen::Vector3d& way) const;
-  Eigen::Vector3d carriedOn(double time) const;
-  double recoveryTime() const;
-  double timeLeft() const { return move_ ? move_->begin + move_->duration - time() : 0; }
 
-  const PolledManipulatorConfig common_;
+  const double reading_margin_;  // m
   const Dialect dialect_;
   LineSplitter lines_;
-  ReadingFilter filter_;
-  AnswerTimes answers_;
-  double answer_time_;  // s, as it is measured, not less than in the file
   std::optional<Exchange> exchange_;
   int setup_step_ = 0;
   std::optional<std::string> setup_answer_;  // the last one to this step
   int setup_tries_ = 0;
-  bool asked_stop_ = false, settled_ = false, asked_motion_ = false;
-  bool lost_session_ = false, begun_anew_ = false;
-  double next_rest_reading_ = 0, next_move_ = 0;  // s
-  std::optional<Eigen::Vector3d> position_;       // counts, the last true one or where it was stopped
-  std::optional<Eigen::Vector3d> rested_;         // counts, where it stood when it was last heard of
-  std::optional<Move> move_;                      // under way
-  int tries_ = 0;                                 // moves that ended elsewhere
-  double largest_correction_ = 0;                 // m
-  int malformed_ = 0;
+  std::string setting_;    // of the last move that had one; empty: not known
+  std::string confirmed_;  // setting, not forgotten with a lost session
+  int not_kept_ = 0;       // answers in a row, that it is not kept
+  bool ask_kept_ = false, asked_stop_ = false, asked_motion_ = false;
+  double next_move_ = 0;  // s
+  Progress progress_;
+  std::optional<Line> line_;  // the last one
 };
 
 }  // namespace microinjection

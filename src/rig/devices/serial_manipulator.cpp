@@ -23,7 +23,7 @@ SerialManipulator::SerialManipulator(std::unique_ptr<Wire> wire, const Link& lin
 }
 
 SerialManipulator::~SerialManipulator() {
-  if (wire_->isOpen()) wire_->write(link_.stop, time_);
+  if (wire_->isOpen()) wire_->write(link_.stop + link_.farewell, time_);
 }
 
 void SerialManipulator::follow(const Eigen::Vector3d& joints, const Eigen::Vector3d& velocity) {

@@ -39,6 +39,7 @@ class SerialManipulator : public ManipulatorDevice {
     std::string stop;             ///< bytes that stop it, whatever it is doing
     double quiet_in_step = 0;     ///< s of silence that end what follows a stop
     double quiet_after_loss = 0;  ///< s of silence after which nothing belated comes and no half command is left
+    std::string farewell{};       ///< bytes after the last stop, which give the device back
   };
   struct Goal {
     bool follows = false;                                ///< a set-point, otherwise a move
@@ -49,7 +50,7 @@ class SerialManipulator : public ManipulatorDevice {
   };
 
   SerialManipulator(std::unique_ptr<Wire> wire, const Link& link);
-  ~SerialManipulator() override;  ///< sends a stop
+  ~SerialManipulator() override;  ///< sends a stop and the farewell
 
   /// The line has been opened: there may be another device at its end.
   virtual void connected() {}

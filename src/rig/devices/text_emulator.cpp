@@ -50,8 +50,20 @@ std::string TextEmulator::say(double time) {
 
 void TextEmulator::checkError(const std::string& code) const {
   long number = 0;
-  if (isWhole(code, number) && number >= 0 && number <= 999) return;
-  throw ConfigError("fault = error:" + code + ": must be a number from 0 to 999");
+  if (code == kReset || (isWhole(code, number) && number >= 0 && number <= 999)) return;
+  throw ConfigError("fault = error:" + code + ": must be a number from 0 to 999, or RESET");
+}
+
+void TextEmulator::failNextCommand(const std::string& code) {
+  if (code != kReset) {
+    error_ = std::stoi(code);
+    return;
+  }
+  command_.clear();
+  answers_.clear();
+  error_ = -1;
+  moving_ = false;
+  switchOn();
 }
 
 std::vector<std::string> capitalWords(const std::string& command) {

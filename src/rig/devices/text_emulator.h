@@ -22,11 +22,13 @@ class TextEmulator : public ManipulatorEmulator {
   /// Moves on to `time` (s), `dt` s since the last call; only called while it moves.
   virtual void move(double time, double dt) = 0;
   virtual std::string error(int code) const = 0;
+  /// Position and settings become those after it has been switched on. It stands, and what it was told is forgotten.
+  virtual void switchOn() = 0;
 
   void hear(const std::string& bytes, double time) final;
   std::string say(double time) final;
   void checkError(const std::string& code) const final;
-  void failNextCommand(const std::string& code) final { error_ = std::stoi(code); }
+  void failNextCommand(const std::string& code) final;
 
   void answer(const std::string& line, double time) { answers_.push_back({time + answer_time_, line + "\r"}); }
   void beginMoving() { moving_ = true, ++moves_begun_; }

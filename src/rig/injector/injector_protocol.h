@@ -38,7 +38,7 @@ class InjectorProtocol {
   static InjectorProtocol read(ConfigReader& reader);
 
   LineDialogue::Framing framing;
-  Exchanges begin;            ///< after the line was opened; a refusal there is passed over
+  Exchanges begin;            ///< first, after the line was opened; a refusal there is passed over
   Exchanges pulse;            ///< the last one triggers it
   Exchanges balance;          ///< none: the device's balance pressure is set by hand
   Exchanges stop;             ///< ends a pulse, back to balance; the first line alone must. None: it cannot be ended

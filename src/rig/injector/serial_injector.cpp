@@ -5,7 +5,8 @@
 namespace microinjection {
 namespace {
 
-constexpr double kRetry = 1;  // s, between attempts to open the line, and to stop a timed pulse
+constexpr double kRetry = 1;      // s, between attempts to open the line, and to stop a timed pulse
+constexpr double kRiseTimes = 5;  // after which 0.7 % of a change of pressure are left
 
 }  // namespace
 
@@ -16,7 +17,8 @@ SerialInjector::SerialInjector(std::unique_ptr<Wire> wire, const InjectorProtoco
       limits_(model.limits),
       model_(model),
       dialogue_(*wire_, protocol.framing),
-      sent_balance_(model.balance) {
+      sent_balance_(model.balance),
+      settling_(kRiseTimes * model.rise_time) {
   if (!protocol_.balance.empty()) waiting_balance_ = model.balance;
   if (protocol_.stop.empty()) return;
   first_stop_ = protocol_.stop.front().send.fill(protocol_.balanceValues(model.balance)) + protocol_.framing.send_end;
@@ -118,7 +120,9 @@ void SerialInjector::reset() {
 void SerialInjector::step(double time) {
   time_ = time;
   checkGuard(time);  // before the model lets a pulse go on that the guard has ended
+  const bool flowed = model_.reading().busy;
   model_.step(time);
+  if (flowed && !model_.reading().busy) pressureChanges();  // by the device's own clock
   if (keepOpen(time)) {
     listen(time);
     keepStopped(time);
@@ -199,7 +203,7 @@ void SerialInjector::take(const std::string& reply) {
   if (wrong.empty() && task_ == Task::kQuery && groups.size() > 1 && exchange.confirm.empty()) {
     const auto pressure = protocol_.queriedPressure(groups);
     if (pressure && limits_.checkPressure("", *pressure).empty()) {
-      pressure_ = pressure;
+      takePressure(*pressure);
     } else {
       wrong = "a wrong reply";
     }
@@ -213,6 +217,7 @@ void SerialInjector::take(const std::string& reply) {
 
 void SerialInjector::complete() {
   const Task done = std::exchange(task_, Task::kNone);
+  if (done == Task::kPulse || done == Task::kBalance || done == Task::kStop) pressureChanges();
   if (done == Task::kPulse) {
     const InjectionPulse pulse = protocol_.asSent(*sent_pulse_);
     protocol_.timed ? model_.open(pulse) : static_cast<void>(model_.pulse(pulse));
@@ -238,6 +243,17 @@ void SerialInjector::fail(const std::string& why) {
   if (fault_.find(why) == std::string::npos) fault_ += (fault_.empty() ? "" : "; ") + why;
   if (waiting_pulse_) fault_ += "; pulse " + std::to_string(waiting_pulse_->id) + " was not sent";
   waiting_pulse_.reset();
+}
+
+/// What was queried before is not so any more.
+void SerialInjector::pressureChanges() {
+  pressure_.reset();
+  changed_ = time_;
+}
+
+/// A pressure that was asked for before it had settled is of before the change, or on its way.
+void SerialInjector::takePressure(double queried) {
+  if (last_sent_ >= changed_ + settling_) pressure_ = queried;
 }
 
 void SerialInjector::report() {

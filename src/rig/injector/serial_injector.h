@@ -25,7 +25,8 @@ namespace microinjection {
 /// Where pulses are timed from here, the stop ends them, too. It is sent again and again until the device has accepted
 /// it, also after the line was opened, and until then there is no pulse: an output may be on.
 ///
-/// Flow and volume are estimates by the model of the pipette and the device's rise time.
+/// Flow and volume are estimates by the model of the pipette and the device's rise time. So is the pressure until it
+/// has been asked for since it changed last: what was queried before is of another pulse, or of none.
 class SerialInjector : public InjectorDevice {
  public:
   /// `model`: pipette, limits and the device's rise time; its balance pressure is sent at the start.
@@ -64,6 +65,8 @@ class SerialInjector : public InjectorDevice {
   void putBack();
   bool begin(Task task);
   bool next(double time);
+  void pressureChanges();
+  void takePressure(double queried);
   void report();
 
   std::unique_ptr<Wire> wire_;
@@ -93,7 +96,9 @@ class SerialInjector : public InjectorDevice {
   std::optional<double> waiting_balance_;  ///< Pa
   double sent_balance_ = 0;                ///< Pa
   int tries_ = 0;                          ///< of the present stop, balance or query without a good reply
-  std::optional<double> pressure_;         ///< Pa, as queried
+  double settling_;                        ///< s, until the regulator's response has died away
+  double changed_ = -1e9;                  ///< s, when a pulse, its end or a new balance changed the pressure last
+  std::optional<double> pressure_;         ///< Pa, as queried since then
   unsigned bad_replies_ = 0;
   std::string fault_;                                 ///< until reset()
   std::string trouble_ = "the line is not open yet";  ///< while it lasts

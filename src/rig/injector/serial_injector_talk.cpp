@@ -37,6 +37,9 @@ void SerialInjector::giveUp(const std::string& why, Refusal refusal) {
   const Task given_up = std::exchange(task_, Task::kNone);
   if (given_up == Task::kPulse) {
     giveUpPulse(why, was_triggered, refusal);
+  } else if (given_up == Task::kBegin) {
+    waiting_begin_ = !last;
+    if (last) tries_ = 0;  // a device that knows no such line is stopped all the same
   } else if (given_up == Task::kBalance) {
     balance_known_ = false;
     if (last) return fail("balance pressure: " + why);
@@ -67,15 +70,15 @@ void SerialInjector::talk(double time) {
   dialogue_.send(exchange.send.fill(say_), exchange.timeout, time);
 }
 
-/// Between two lines of a command: a stop does not wait for the rest, and a pulse that was taken back ends here.
+/// Between two lines of a command: a stop does not wait for the rest, and a pulse that was taken back ends here. Begin
+/// is finished first: before it a device may not know the stop.
 void SerialInjector::putBack() {
   const bool taken_back = task_ == Task::kPulse && !sent_pulse_;
-  if (task_ == Task::kStop || (!waiting_stop_ && !taken_back)) return;
+  if (task_ == Task::kStop || task_ == Task::kBegin || (!waiting_stop_ && !taken_back)) return;
   if (task_ == Task::kBalance) {
     balance_known_ = false;  // the device may have heard it
     if (!waiting_balance_) waiting_balance_ = sent_balance_;
   }
-  if (task_ == Task::kBegin) waiting_begin_ = true;
   sent_pulse_.reset();
   task_ = Task::kNone;
 }
@@ -92,9 +95,9 @@ bool SerialInjector::begin(Task task) {
 bool SerialInjector::next(double time) {
   const bool holds =
       protocol_.timed && model_.reading().busy;  // a line in between would end the pulse, or delay its end
+  if (std::exchange(waiting_begin_, false)) return begin(Task::kBegin);  // the line was quiet since it was opened
   if (std::exchange(waiting_stop_, false)) return begin(Task::kStop);
   if (holds || !dialogue_.quiet(time)) return false;
-  if (std::exchange(waiting_begin_, false)) return begin(Task::kBegin);
   if (waiting_balance_) {  // before the pulse, which returns to it
     sent_balance_ = protocol_.balanceAsSent(*std::exchange(waiting_balance_, std::nullopt));
     return begin(Task::kBalance);

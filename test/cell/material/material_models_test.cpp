@@ -133,8 +133,8 @@ TEST(MaterialConfig, RefusesBadValuesAllAtOnce) {
     const std::string text = error.what();
     for (const char* line :
          {"material: model = rubber: must be one of: linear, st_venant_kirchhoff, neo_hookean, ",
-          "material: young_modulus = -3: must be in (0, inf) Pa", "material: poisson_ratio = 0.7: must be in (-1, 0.5)",
-          "material: mooney_ratio = 2: must be in [0, 1]",
+          "material: young_modulus = -3 Pa: must be in (0, inf) Pa",
+          "material: poisson_ratio = 0.7: must be in (-1, 0.5)", "material: mooney_ratio = 2: must be in [0, 1]",
           "material: viscoelasticity/prony[0]/relaxation_time = 0: must be in (0, inf) s",
           "material: viscoelasticity/prony[1]/modulus_ratio = -1: must be in (0, inf)",
           "material: viscoelasticity/viscosity = -4: must be in [0, inf) Pa s"}) {

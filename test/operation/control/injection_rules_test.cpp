@@ -44,6 +44,13 @@ class InjectionRulesTest : public InjectionFixture {
   }
 };
 
+TEST_F(InjectionRulesTest, ARefusedWithdrawalSaysWhatIsMissing) {
+  controller_ = InjectionController(config_);
+  EXPECT_EQ(controller_.command("withdraw"), "state is DISABLED, withdraw is allowed in ENABLED and PAUSED");
+  controller_.command("enable");
+  EXPECT_EQ(controller_.command("withdraw"), "the needle's position is not known yet");
+}
+
 TEST_F(InjectionRulesTest, DepthAndForceAcrossEndItWhereverTheyComeFrom) {
   rig_.puncture_force = 1;
   config_.guards.depth_limit = config_.goal.depth = 15e-6;

@@ -4,7 +4,7 @@
 
 #include <memory>
 #include <string>
-#include <type_traits>
+#include <vector>
 
 #include "rig/devices/emulated_rig.h"
 #include "rig/devices/eppendorf/eppendorf_driver.h"
@@ -26,6 +26,7 @@ struct TestedZaber {
   using Config = ZaberConfig;
   using Emulator = ZaberEmulator;
   using EmulatorConfig = ZaberEmulatorConfig;
+  static constexpr char kName[] = "zaber";
   static constexpr double kStep = 0.047625e-6;   // m, a microstep
   static constexpr double kMotorStep = kStep;    // m
   static constexpr double kTold = 0.1 * kStep;   // m, by which a place that is told may be off
@@ -45,19 +46,22 @@ struct TestedZaber {
   static Eigen::Vector3d inJointOrder(const Eigen::Vector3d& position) { return position; }
 };
 
-struct TestedMp285 {
-  using Driver = Mp285Driver;
-  using Config = Mp285Config;
-  using Emulator = Mp285Emulator;
-  using EmulatorConfig = Mp285EmulatorConfig;
-  static constexpr double kStep = 0.04e-6;      // m, a microstep
-  static constexpr double kMotorStep = kStep;   // m
-  static constexpr double kTold = 0.1 * kStep;  // m, by which a place that is told may be off
+/// One that goes from one move to the next, with its axes in another order than the joints.
+template <typename DriverType, typename ConfigType, typename EmulatorType, typename EmulatorConfigType>
+struct TestedMoveByMove {
+  using Driver = DriverType;
+  using Config = ConfigType;
+  using Emulator = EmulatorType;
+  using EmulatorConfig = EmulatorConfigType;
   static constexpr double kFastest = 1e-3;      // m/s
   static constexpr double kLongestBlind = 1.5;  // s, a short move and its failed exchange
   static constexpr char kLostReply[] = "drop:1", kSilence[] = "silence:1.1";
-  static constexpr double kStopOnWire = 10.0 / 9600;  // s
-  static constexpr bool kMovedByHand = true;          // somebody else may move it
+  static constexpr bool kMovedByHand = true;
+  static constexpr double kRamp = 0;         // s, that a move takes longer for each m/s of its speed
+  static constexpr double kSlower = 0;       // share of a speed that is not used, where it is rounded
+  static constexpr double kEndIsSeen = 1;    // s, until a move that was interrupted is begun again
+  static constexpr double kMostMoves = 1.6;  // of a stream, in a turn as it is told
+  static constexpr int kMovesAtMost = 2;     // in the place of one that is disturbed
 
   static Config config() {
     Config config;
@@ -67,65 +71,75 @@ struct TestedMp285 {
     return config;
   }
   static Eigen::Vector3d inJointOrder(const Eigen::Vector3d& position) { return config().axes.inJointOrder(position); }
+  static std::vector<EmulatorConfig> devices() { return {{}}; }
 };
 
-struct TestedEppendorf {
-  using Driver = EppendorfDriver;
-  using Config = EppendorfConfig;
-  using Emulator = EppendorfEmulator;
-  using EmulatorConfig = EppendorfEmulatorConfig;
-  static constexpr double kStep = 1e-6;          // m, a count
-  static constexpr double kMotorStep = 0.04e-6;  // m
-  static constexpr double kTold = 0.5e-6;        // m: a place is told as whole counts
-  static constexpr double kFastest = 1e-3;       // m/s
-  static constexpr double kLongestBlind = 1.5;   // s
-  static constexpr char kLostReply[] = "drop:1", kSilence[] = "silence:1.1";
+struct TestedMp285 : TestedMoveByMove<Mp285Driver, Mp285Config, Mp285Emulator, Mp285EmulatorConfig> {
+  static constexpr char kName[] = "mp285";
+  static constexpr double kStep = 0.04e-6;            // m, a microstep
+  static constexpr double kMotorStep = kStep;         // m
+  static constexpr double kTold = 0.1 * kStep;        // m
+  static constexpr double kStopOnWire = 10.0 / 9600;  // s
+  /// m, by which a place may be off under way: the begin of a move is known to some ms.
+  static double offUnderWay(double speed) { return 10e-3 * speed; }
+  static std::vector<EmulatorConfig> devices() {
+    std::vector<EmulatorConfig> all(4);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      all[i].locks_up = i % 2 == 1;
+      all[i].ascii_errors = i < 2;
+    }
+    return all;
+  }
+  static std::vector<std::string> faults() {
+    return {"drop:1",  "deaf:1",  "deaf:4",  "garble:1", "garble:3",      "silence:0.1", "error:0",
+            "error:1", "error:2", "error:4", "error:8",  "interrupt@0.9", "drop:1@0.9",  "silence:1@0.9"};
+  }
+};
+
+struct TestedEppendorf
+    : TestedMoveByMove<EppendorfDriver, EppendorfConfig, EppendorfEmulator, EppendorfEmulatorConfig> {
+  static constexpr char kName[] = "eppendorf";
+  static constexpr double kStep = 1e-6;                    // m, a count
+  static constexpr double kMotorStep = 0.04e-6;            // m
+  static constexpr double kTold = 0.5e-6;                  // m: a place is told as whole counts
   static constexpr double kStopOnWire = 7 * 10.0 / 19200;  // s
   static constexpr bool kMovedByHand = false;
-
-  static Config config() {
-    Config config;
-    config.axes.of_joint = {2, 0, 1};
-    config.joints.directions << 1, -1, 1;
-    config.joints.origin << 10e-6, 0, -20e-6;
-    return config;
+  static constexpr double kSlower = 0.05;
+  static constexpr double kMostMoves = 2;
+  static constexpr double kEndIsSeen = 3;  // s: it does not tell that it stands
+  /// m: what it moves in an exchange, and rounding.
+  static double offUnderWay(double speed) { return 30e-3 * speed; }
+  static std::vector<std::string> faults() {
+    return {"drop:1",      "deaf:1",  "deaf:4",        "garble:1",   "garble:3",
+            "silence:0.1", "error:4", "interrupt@0.9", "drop:1@0.9", "silence:0.5@0.9"};
   }
-  static Eigen::Vector3d inJointOrder(const Eigen::Vector3d& position) { return config().axes.inJointOrder(position); }
 };
 
-struct TestedScientifica {
-  using Driver = ScientificaDriver;
-  using Config = ScientificaConfig;
-  using Emulator = ScientificaEmulator;
-  using EmulatorConfig = ScientificaEmulatorConfig;
+struct TestedScientifica
+    : TestedMoveByMove<ScientificaDriver, ScientificaConfig, ScientificaEmulator, ScientificaEmulatorConfig> {
+  static constexpr char kName[] = "scientifica";
   static constexpr double kStep = 0.02e-6;        // m: a microstep and a count
   static constexpr double kMotorStep = 0.016e-6;  // m
   static constexpr double kTold = 0.006e-6;       // m: a place is told as whole counts
-  static constexpr double kFastest = 1e-3;        // m/s
-  static constexpr double kLongestBlind = 1.5;    // s
-  static constexpr char kLostReply[] = "drop:1", kSilence[] = "silence:1.3";
+  static constexpr char kSilence[] = "silence:1.3";
   static constexpr double kStopOnWire = 6 * 10.0 / 38400;  // s
-  static constexpr bool kMovedByHand = true;
-
-  static Config config() {
-    Config config;
-    config.axes.of_joint = {2, 0, 1};
-    config.joints.directions << 1, -1, 1;
-    config.joints.origin << 10e-6, 0, -20e-6;
-    return config;
+  static constexpr double kRamp = 1 / 0.03;
+  static constexpr int kMovesAtMost = 3;
+  /// m: a ramp, and what it moves in an exchange.
+  static double offUnderWay(double speed) { return 1e-6 + 50e-3 * speed; }
+  static std::vector<std::string> faults() {
+    return {"drop:1",      "deaf:1",  "deaf:4",        "garble:1",   "garble:3",
+            "silence:0.1", "error:3", "interrupt@0.9", "drop:1@0.9", "silence:0.5@0.9"};
   }
-  static Eigen::Vector3d inJointOrder(const Eigen::Vector3d& position) { return config().axes.inJointOrder(position); }
 };
 
-/// A new driver adds its name here and to Names.
+/// A new driver adds its name here.
 using AllTested = testing::Types<TestedZaber, TestedMp285, TestedEppendorf, TestedScientifica>;
+using AllMoveByMove = testing::Types<TestedMp285, TestedEppendorf, TestedScientifica>;
 struct Names {
   template <typename Tested>
   static std::string GetName(int) {
-    return std::is_same_v<Tested, TestedZaber>       ? "zaber"
-           : std::is_same_v<Tested, TestedMp285>     ? "mp285"
-           : std::is_same_v<Tested, TestedEppendorf> ? "eppendorf"
-                                                     : "scientifica";
+    return Tested::kName;
   }
 };
 

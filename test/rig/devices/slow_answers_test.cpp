@@ -15,8 +15,7 @@ class SlowAnswersTest : public DriverTest<Tested> {
     this->start();
   }
 };
-using MoveByMove = testing::Types<TestedMp285, TestedEppendorf, TestedScientifica>;
-TYPED_TEST_SUITE(SlowAnswersTest, MoveByMove, Names);
+TYPED_TEST_SUITE(SlowAnswersTest, AllMoveByMove, Names);
 
 TYPED_TEST(SlowAnswersTest, AbilitiesTellOfThem) {
   const ManipulatorAbilities slow = this->rig_->driver().abilities();

@@ -116,5 +116,64 @@ TEST_F(TimedTest, AStopEndsItBeforeItsTimeAndItDoesNotCount) {
   EXPECT_EQ(injector.fault(), "");
 }
 
+constexpr char kLocked[] = "begin: [{send: U, expect: OK}, {send: V, expect: OK}]\n";
+
+/// A device that does nothing before it is unlocked, at the start and each time that it was switched off.
+class LockedTest : public DialogueTest {
+ protected:
+  LockedTest() : DialogueTest(std::string(kTimed) + kLocked) { lock(); }
+  void lock() { answers = {{"U", "OK"}, {"V", "OK"}, {"N", "ERR locked"}, {"F", "ERR locked"}}; }
+  void runLocked(double duration) {
+    const long unlocked = count("V");
+    for (const double end = time + duration; time < end;) {
+      run(0.01);
+      if (count("V") > unlocked) answers["N"] = answers["F"] = "OK";
+    }
+  }
+};
+
+TEST_F(LockedTest, HearsItsBeginBeforeTheFirstStop) {
+  runLocked(1);
+  EXPECT_EQ(said, (std::vector<std::string>{"U", "V", "F"}));
+  EXPECT_EQ(injector.fault(), "");
+  EXPECT_EQ(injector.pulse({5, 20e3, 0.5}), "");
+  runLocked(1);
+  EXPECT_EQ(injector.reading().pulses, 1U);
+}
+
+TEST_F(LockedTest, HearsItAgainWhenTheLineIsBackAlsoInAPulse) {
+  runLocked(1);
+  injector.pulse({5, 20e3, 30});
+  runLocked(1);
+  script.open = false;
+  script.refusal = "unplugged";
+  runLocked(2);
+  lock();
+  said.clear();
+  script.refusal.clear();
+  runLocked(2);
+  EXPECT_EQ(said, (std::vector<std::string>{"U", "V", "F"}));
+  EXPECT_FALSE(injector.reading().busy);
+  EXPECT_EQ(injector.fault(), "the line broke during a pulse, which may go on");
+}
+
+TEST_F(LockedTest, ABeginWithoutReplyIsSaidAgain) {
+  answers.erase("V");
+  run(0.7);
+  EXPECT_EQ(said, (std::vector<std::string>{"U", "V"}));
+  answers["V"] = "OK";
+  runLocked(1);
+  EXPECT_EQ(said, (std::vector<std::string>{"U", "V", "U", "V", "F"}));
+  EXPECT_EQ(injector.fault(), "");
+}
+
+TEST_F(LockedTest, ADeviceWithoutBeginIsStoppedAllTheSame) {
+  answers = {{"N", "OK"}, {"F", "OK"}};
+  run(10);
+  EXPECT_EQ(count("U"), 3);
+  EXPECT_EQ(said.back(), "F");
+  EXPECT_EQ(injector.fault(), "");
+}
+
 }  // namespace
 }  // namespace microinjection

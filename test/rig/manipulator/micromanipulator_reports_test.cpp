@@ -1,43 +1,14 @@
-#include <gtest/gtest.h>
+// What CRTK asks of a manipulator beside its motion: is_busy, setpoint_cp, and a way to home.
 
 #include <cmath>
 #include <optional>
 
-#include "rig/manipulator/micromanipulator.h"
-#include "rig/manipulator/simulated_manipulator.h"
-
-// What CRTK asks of a manipulator beside its motion: is_busy, setpoint_cp, and a way to home.
+#include "rig/manipulator/plain_rig.h"
 
 namespace microinjection {
 namespace {
 
-constexpr double kStep = 1e-3;  // s
-
-ManipulatorGeometry geometry() {
-  ManipulatorGeometry rig;
-  for (auto& axis : rig.axes) axis = {"axis", -1e-3, 1e-3, 2e-3, 0.05};
-  rig.directions.setIdentity();
-  rig.tip_at_zero.setIdentity();
-  return rig;
-}
-
-Eigen::Isometry3d at(double x, double y, double z) {
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.translation() << x, y, z;
-  return pose;
-}
-
-class MicromanipulatorReports : public testing::Test {
- protected:
-  void run(double duration) {
-    for (long i = std::lround(duration / kStep); i > 0; --i) rig_.step(time_ += kStep, kStep);
-  }
-
-  SimulatedManipulatorConfig device_config_;
-  SimulatedManipulator device_{geometry(), device_config_};
-  Micromanipulator rig_{geometry(), CollisionGuard(), MicromanipulatorConfig(), device_};
-  double time_ = 0;  // s
-};
+class MicromanipulatorReports : public PlainRigTest {};
 
 TEST_F(MicromanipulatorReports, IsBusyWithMovesOnly) {
   ASSERT_EQ(rig_.movePosition(at(1e-4, 0, 0)), "");

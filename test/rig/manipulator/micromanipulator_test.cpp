@@ -1,48 +1,12 @@
-#include "rig/manipulator/micromanipulator.h"
-
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <limits>
 
-#include "rig/manipulator/simulated_manipulator.h"
+#include "rig/manipulator/plain_rig.h"
 
 namespace microinjection {
 namespace {
 
-constexpr double kStep = 1e-3;  // s
-
-ManipulatorGeometry geometry() {
-  ManipulatorGeometry rig;
-  for (auto& axis : rig.axes) axis = {"axis", -1e-3, 1e-3, 2e-3, 0.05};
-  rig.directions.setIdentity();
-  rig.tip_at_zero.setIdentity();
-  return rig;
-}
-
-Eigen::Isometry3d at(double x, double y, double z) {
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.translation() << x, y, z;
-  return pose;
-}
-
-class MicromanipulatorTest : public testing::Test {
- protected:
-  void run(double duration) {
-    const int steps = static_cast<int>(std::lround(duration / kStep));
-    for (int i = 0; i < steps; ++i) {
-      time_ += kStep;
-      rig_.step(time_, kStep);
-      fastest_ = std::max(fastest_, rig_.tipVelocity()->norm());
-    }
-  }
-
-  SimulatedManipulatorConfig device_config_;
-  SimulatedManipulator device_{geometry(), device_config_};
-  Micromanipulator rig_{geometry(), CollisionGuard(), MicromanipulatorConfig(), device_};
-  double time_ = 0;     // s
-  double fastest_ = 0;  // m/s
-};
+class MicromanipulatorTest : public PlainRigTest {};
 
 TEST_F(MicromanipulatorTest, ServoFollowsWithTheStatedLag) {
   // A ramp of speed v is followed with the lag v tau once the start has died away.

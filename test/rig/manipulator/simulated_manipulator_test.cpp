@@ -1,25 +1,15 @@
 #include "rig/manipulator/simulated_manipulator.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <vector>
 
 #include "base/errors.h"
+#include "rig/manipulator/plain_rig.h"
 
 namespace microinjection {
 namespace {
 
-constexpr double kStep = 1e-3;  // s
 const Eigen::Vector3d kRest = Eigen::Vector3d::Zero();
-
-ManipulatorGeometry geometry() {
-  ManipulatorGeometry rig;
-  for (auto& axis : rig.axes) axis = {"axis", -1e-3, 1e-3, 2e-3, 0.05};
-  rig.directions.setIdentity();
-  rig.tip_at_zero.setIdentity();
-  return rig;
-}
 
 SimulatedManipulatorConfig ideal() {
   SimulatedManipulatorConfig config;

@@ -13,6 +13,8 @@ class Damage {
  public:
   explicit Damage(unsigned seed) : random_(seed) {}
 
+  std::mt19937& random() { return random_; }
+  bool holds() const { return !held_.empty(); }  ///< a reply that comes late
   std::size_t below(std::size_t end) { return std::uniform_int_distribution<std::size_t>(0, end - 1)(random_); }
 
   /// What arrives of `reply`. @pre it is not empty

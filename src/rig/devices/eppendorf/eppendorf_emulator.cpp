@@ -53,7 +53,7 @@ void EppendorfEmulator::obey(const std::string& command, double time) {
     return name == "C012" ? answer("A012", time) : void();
   }
   if (name != "C003" && name != "C004" && name != "C005" && name != "C008") return answer(error(kUnknown), time);
-  stop();
+  if (name != "C005" || config_.manual_stops) stop();
   if (name == "C003") place_.setZero();
   remote_ = name == "C004" || (remote_ && name != "C005");
   answer("A" + name.substr(1), time);
@@ -91,6 +91,12 @@ void EppendorfEmulator::stop() {
 }
 
 void EppendorfEmulator::interrupt(double /*time*/) { stop(); }
+
+void EppendorfEmulator::switchOn() {
+  at_end_.clear();
+  place_.setZero();
+  remote_ = false;
+}
 
 void EppendorfEmulator::shiftByHand(const Eigen::Vector3d& way) {
   place_ = (place_ + way / config_.microstep).array().round();

@@ -12,6 +12,7 @@ struct EppendorfEmulatorConfig {
   double travel = 10e-3;        ///< m, to either side of 0, where the limit switches are
   double answer_time = 3e-3;    ///< s, from a command's end to its answer's begin; assumed
   bool decimals = false;        ///< tells positions with two decimals
+  bool manual_stops = true;     ///< C005 stops what moves, as the manual says; else what moves goes on
   bool signs_separate = false;  ///< tells a position as "A010 100-200+300 0", as the manual's examples of commands are
 };
 
@@ -33,6 +34,7 @@ class EppendorfEmulator : public TextEmulator {
   void move(double time, double dt) override;
   std::string error(int code) const override;
   void interrupt(double time) override;
+  void switchOn() override;
 
  private:
   void goTo(const std::array<long, 6>& numbers, const std::string& answer_at_end);

@@ -2,96 +2,60 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace microinjection {
 namespace {
 
-constexpr double kFineLimit = 1310;      // um/s
-constexpr double kHeldAnswer = 0.02;     // s, for which a USB adapter may hold an answer back
-constexpr double kBytePause = 0.04;      // s, longest between two bytes of an answer (USB adapters collect for 16 ms)
-constexpr double kMoveAllowance = 0.5;   // s, that a move may take longer than its way at its speed, and a quarter
-constexpr double kWorthStopping = 0.15;  // s left of a move: for less, a new goal waits
-constexpr double kCoarseStep = 5;        // microsteps, of a coarse move's end
-constexpr int kSlowest = 20;             // um/s, of a short move
-constexpr int kTries = 2;                // of a move that ends elsewhere
+constexpr double kFineLimit = 1310;     // um/s
+constexpr double kHeldAnswer = 0.02;    // s, for which a USB adapter may hold an answer back
+constexpr double kBytePause = 0.04;     // s, longest between two bytes of an answer (USB adapters collect for 16 ms)
+constexpr double kMoveAllowance = 0.5;  // s, that a move may take longer than its way at its speed, and a quarter
+constexpr double kCoarseStep = 5;       // microsteps, of a coarse move's end
+constexpr double kMargin = 5e-6;        // m, from the ends of a move at which it may still be on its way
+constexpr int kSlowest = 20;            // um/s, of a short move
+constexpr int kTries = 2;               // of a move that ends elsewhere
+constexpr std::size_t kMoveBytes = 19;  // what a move takes: with now and then a speed before it, and both answers
 
 }  // namespace
 
 Mp285Driver::Mp285Driver(const Mp285Config& config, std::unique_ptr<Wire> wire)
-    : SerialManipulator(std::move(wire),
-                        {"MP-285", std::string(1, kMp285Stop),
-                         std::max(config.answer_time, kHeldAnswer) + 6 * 10.0 / config.port.baud + 5e-3,
-                         config.half_command_time + 14 * 10.0 / config.port.baud}),
-      config_(config),
-      answer_time_(config.answer_time) {}
+    : MoveByMove(config, std::move(wire),
+                 {"MP-285", std::string(1, kMp285Stop),
+                  std::max(config.answer_time, kHeldAnswer) + 6 * config.byteTime() + 5e-3,
+                  config.half_command_time + 14 * config.byteTime()},
+                 kMoveBytes),
+      config_(config) {}
 
 ManipulatorAbilities Mp285Driver::abilities() const {
-  ManipulatorAbilities abilities;
-  abilities.device = "Sutter MP-285";
-  abilities.follows = false;
   // A turn: move (14 bytes) and its end (1), position asked (2) and told (13), now and then a speed (4 and 1).
-  const double turn = 35 * byteTime() + 3 * (answer_time_ + config_.command_pause) + config_.segment_time;
-  abilities.command_interval = abilities.reading_interval = turn;
-  abilities.resolution = microsteps_.maxCoeff();
-  abilities.speed = std::min(config_.speed, speedLimits().maxCoeff());
-  abilities.latency = turn + 19 * byteTime() + answer_time_;  // a set-point waits for the move under way
-  abilities.stop_time = byteTime() + config_.answer_time;
+  const double turn = 35 * config_.byteTime() + 3 * (answer_time_ + config_.command_pause) + config_.segment_time;
+  ManipulatorAbilities abilities = abilitiesWith(turn);
+  abilities.device = "Sutter MP-285";
   return abilities;
 }
 
 /// Silence after an exchange that went wrong, the questions of a new session, an answer that is cut off, and as much as
 /// a turn to spare.
 double Mp285Driver::recoveryTime() const {
-  return config_.half_command_time + kBytePause + 105 * byteTime() + 5 * (answer_time_ + config_.command_pause) +
-         abilities().reading_interval;
-}
-
-Eigen::Vector3d Mp285Driver::carriedOn(double at) const {
-  if (!move_) return *position_;
-  const double gone = std::max(0.0, at - move_->begin);
-  if (gone >= move_->duration) return move_->to;
-  return move_->from + (move_->to - move_->from) * (gone / move_->duration);
-}
-
-double Mp285Driver::timeLeft() const { return move_ ? move_->begin + move_->duration - time() : 0; }
-
-std::optional<ManipulatorDevice::Reading> Mp285Driver::reading() const {
-  if (!position_ || !sure()) return std::nullopt;
-  const Eigen::Vector3d place = carriedOn(time()).cwiseProduct(microsteps_);
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
-  if (timeLeft() > 0 && time() > move_->begin) {
-    velocity = (move_->to - move_->from).cwiseProduct(microsteps_) / move_->duration;
-  }
-  return Reading{config_.joints.toJoints(config_.axes.inJointOrder(place)),
-                 config_.joints.directions.cwiseProduct(config_.axes.inJointOrder(velocity))};
-}
-
-Eigen::Vector3d Mp285Driver::goalPlace() const {
-  return config_.axes.inDeviceOrder(config_.joints.toDevice(goal()->joints)).cwiseQuotient(microsteps_).array().round();
-}
-
-bool Mp285Driver::moving() const {
-  if (!goal()) return !settled_;
-  return move_ || !settled_ || !position_ || *position_ != goalPlace();
+  return config_.half_command_time + kBytePause + 105 * config_.byteTime() +
+         5 * (answer_time_ + config_.command_pause) + abilities().reading_interval;
 }
 
 void Mp285Driver::begin(bool lost) {
+  MoveByMove::begin(lost);
   exchange_.reset();
-  filter_.forget();
-  settled_ = asked_stop_ = false;
+  asked_stop_ = false;
   reading_due_ = true;
-  if (lost) {
-    asked_status_ = absolute_ = false;
-    told_status_.reset();
-    speed_.reset();
-  }
+  if (!lost) return;
+  asked_status_ = false;
+  told_status_.reset();
+  forgetSettings();
 }
 
-void Mp285Driver::stopSaid() {
-  if (position_) position_ = carriedOn(time() + byteTime());
-  move_.reset();
-  trustAtMost(config_.reply_timeout + 15 * byteTime() + recoveryTime());
+/// Whatever was set in the device may be lost.
+void Mp285Driver::forgetSettings() {
+  absolute_ = false;
+  speed_.reset();
 }
 
 void Mp285Driver::talk(const std::string& bytes) {
@@ -102,10 +66,8 @@ void Mp285Driver::talk(const std::string& bytes) {
       handle(*answer);
     } else if (listened() > exchange_->due) {
       lostStep("no answer, or half of one");
-    } else if (exchange_->kind == Kind::kMove && goal() && timeLeft() > kWorthStopping) {
-      // The newest wins: a long move is broken off when it is not the one that is wanted any more.
-      const bool still_wanted = !move_->follows && !goal()->follows && (move_->to - goalPlace()).isZero();
-      if (!still_wanted) stopFirst();
+    } else if (exchange_->kind == Kind::kMove && isOutdated()) {
+      stopFirst();
     }
   } else if (!bytes.empty()) {
     ++malformed_;  // nobody asked: what is under way cannot be told from an answer any more
@@ -121,28 +83,21 @@ void Mp285Driver::ask(Kind kind, const std::string& bytes, double more_time) {
                  : kind == Kind::kStop   ? Expected::kStop
                                          : Expected::kDone);
   const double answer_bytes = kind == Kind::kStatus ? 33 : 13;
-  const double sent = listened() + static_cast<double>(bytes.size()) * byteTime();
-  exchange_ = Exchange{kind, sent + answer_bytes * byteTime() + config_.reply_timeout + more_time, sent};
+  const double sent = listened() + static_cast<double>(bytes.size()) * config_.byteTime();
+  exchange_ = Exchange{kind, sent + answer_bytes * config_.byteTime() + config_.reply_timeout + more_time, sent};
   // It says nothing while it moves, nor unasked at rest: what it was asked last must be answered, or else, once, what
   // it is asked after that. Readings that are doubted are asked for again, but not trusted for longer.
   if (settled_ && !filter_.doubts()) trustFor(exchange_->due - listened() + recoveryTime());
   say(bytes);
 }
 
-/// A slow adapter makes every turn longer; who commands the rig is told of it by its abilities.
-void Mp285Driver::measure(const Mp285Answer& answer) {
-  using Answer = Mp285Answer::Kind;
-  const bool late = exchange_->kind == Kind::kMove;  // answered at its end
-  if (late || answers_.measured() || answer.kind == Answer::kError || answer.kind == Answer::kMalformed) return;
-  const int bytes = answer.kind == Answer::kPosition ? 13 : answer.kind == Answer::kStatus ? 33 : 1;
-  answers_.add(listened() - exchange_->sent - bytes * byteTime());
-  answer_time_ = std::max(config_.answer_time, answers_.measured().value_or(0));
-}
-
 void Mp285Driver::handle(const Mp285Answer& answer) {
   using Answer = Mp285Answer::Kind;
   const Kind kind = exchange_->kind;
-  measure(answer);
+  const bool late = kind == Kind::kMove;  // answered at its end
+  if (!late && answer.kind != Answer::kError && answer.kind != Answer::kMalformed) {
+    measure(exchange_->sent, kind == Kind::kPosition ? 13 : kind == Kind::kStatus ? 33 : 1);
+  }
   exchange_.reset();
   next_command_ = listened() + config_.command_pause;
   if (answer.kind == Answer::kError) return handleError(answer.error);
@@ -169,7 +124,8 @@ void Mp285Driver::handle(const Mp285Answer& answer) {
       takePosition(answer.position);
       break;
     case Kind::kVelocity:
-      break;  // known since it was sent
+      confirmed_ = speed_;
+      break;
     case Kind::kMove:
       reading_due_ = true;
       break;
@@ -179,8 +135,9 @@ void Mp285Driver::handle(const Mp285Answer& answer) {
 /// What a microstep is. Garbled, it would make every position wrong: it counts when it is said twice. A size that is
 /// not known moves nothing.
 void Mp285Driver::takeStatus(const Mp285Status& status) {
-  const bool twice =
-      told_status_ && told_status_->step_div == status.step_div && told_status_->step_mul == status.step_mul;
+  const bool twice = told_status_ && told_status_->step_div == status.step_div &&
+                     told_status_->step_mul == status.step_mul && told_status_->speed == status.speed &&
+                     told_status_->fine == status.fine;
   told_status_ = status;
   if (!twice) return;
   const std::optional<double> known = mp285Microstep(status.step_div, status.step_mul);
@@ -190,10 +147,14 @@ void Mp285Driver::takeStatus(const Mp285Status& status) {
                       ") are no known size of a microstep; measure it and set microsteps");
   }
   asked_status_ = true;
+  if (confirmed_ && !(*confirmed_ == Speed{status.speed, status.fine})) settings_lost_ = true;
   nominal_microstep_ = known.value_or(config_.microsteps.minCoeff());
   Eigen::Vector3d microsteps;
   for (int i = 0; i < 3; ++i) microsteps[i] = config_.microsteps[i] > 0 ? config_.microsteps[i] : *known;
-  if (microsteps != microsteps_) position_.reset();
+  if (microsteps != microsteps_) {
+    position_.reset();
+    watch_.forget();
+  }
   microsteps_ = microsteps;
 }
 
@@ -210,18 +171,16 @@ void Mp285Driver::takePosition(const Mp285Position& told) {
   const Eigen::Vector3d place(told[0], told[1], told[2]);
   const Eigen::Vector3d expected = position_ ? carriedOn(time()) : Eigen::Vector3d::Constant(std::nan(""));
   // What stands does not change by a microstep, and a fine move ends where it was sent: else four must agree.
-  const double tolerance = move_ && move_->coarse ? kCoarseStep + 1 : 0.5;
+  const double tolerance = move_ && coarse_ ? kCoarseStep + 1 : 0.5;
   if (!filter_.accept(place, expected, tolerance, 0.5) || !answers_.measured()) return;  // asked again
-  if (position_ && settled_) {
-    largest_correction_ =
-        std::max(largest_correction_, (place - expected).cwiseProduct(microsteps_).cwiseAbs().maxCoeff());
-  }
+  const bool elsewhere = !((place - expected).cwiseAbs().maxCoeff() <= tolerance);
+  const double outside = move_ ? watch_.outside(place, counts()) : 0;
+  if (beginsAnew(place, outside, isNewZero(place, kMargin), kMargin)) return;
+  if (position_ && settled_) corrected(place, expected);
+  if (settled_ && !move_ && elsewhere) forgetSettings();
   const bool missed = move_ && (place - move_->to).cwiseAbs().maxCoeff() > tolerance;
-  trustFor(std::numeric_limits<double>::infinity());  // it stands
-  position_ = place;
-  move_.reset();
+  rest(place);
   reading_due_ = false;
-  next_rest_reading_ = time() + config_.rest_reading_interval;
   if (!settled_) {
     settled_ = true;
     known();
@@ -238,7 +197,7 @@ void Mp285Driver::next() {
   if (!asked_status_) return ask(Kind::kStatus, mp285AskStatus());
   if (!absolute_) return ask(Kind::kAbsolute, mp285AbsoluteMode());
   if (reading_due_) return ask(Kind::kPosition, mp285AskPosition());
-  if (goal() && mayMove() && *position_ != goalPlace()) return nextTowardsGoal();
+  if (goal() && mayMove() && !isThere(*position_, goalPlace())) return nextTowardsGoal();
   if (config_.rest_reading_interval > 0 && time() >= next_rest_reading_) reading_due_ = true;
 }
 
@@ -247,23 +206,12 @@ double Mp285Driver::metresPerSaidMetre(const Eigen::Vector3d& way) const {
   return length(way) / (way.norm() * nominal_microstep_);
 }
 
-/// The largest speed (um/s, as it is said) along a way at which no axis is faster than it may be; at least 1 um/s.
-int Mp285Driver::fastestAlong(const Eigen::Vector3d& way) const {
-  const Eigen::Vector3d direction = config_.axes.inJointOrder(way.cwiseProduct(microsteps_).normalized()).cwiseAbs();
-  double speed = config_.speed;
-  for (int i = 0; i < 3; ++i) {
-    if (direction[i] > 0) speed = std::min(speed, speedLimits()[i] / direction[i]);
-  }
-  return std::max(1, static_cast<int>(speed / metresPerSaidMetre(way) * 1e6 + 1e-6));
-}
-
 Mp285Driver::Speed Mp285Driver::speedFor(const Eigen::Vector3d& whole_way) const {
   const double way = whole_way.norm();
-  double speed = goal()->speed;
-  if (goal()->follows) speed = std::max(1.2 * goal()->velocity.norm(), length(whole_way) / config_.segment_time);
-  int um_per_s = static_cast<int>(std::lround(std::min(speed, config_.speed) / metresPerSaidMetre(whole_way) * 1e6));
+  const double per_said = metresPerSaidMetre(whole_way);
+  int um_per_s = static_cast<int>(std::lround(std::min(askedSpeed(whole_way), config_.speed) / per_said * 1e6));
   um_per_s = std::max(um_per_s, goal()->follows ? kSlowest : 1);
-  int fastest = fastestAlong(whole_way);
+  int fastest = std::max(1, static_cast<int>(fastestAlong(whole_way) / per_said * 1e6 + 1e-6));  // as it is said
   const bool fine =
       std::min(um_per_s, fastest) <= kFineLimit || way < 10 * kCoarseStep;  // the rest of a coarse move is a fine one
   if (fine) fastest = std::min(fastest, static_cast<int>(kFineLimit));
@@ -277,14 +225,15 @@ Mp285Driver::Speed Mp285Driver::speedFor(const Eigen::Vector3d& whole_way) const
 }
 
 void Mp285Driver::nextTowardsGoal() {
-  const Eigen::Vector3d way = goalPlace() - *position_;
+  const Eigen::Vector3d goal_place = goalPlace(), way = goal_place - *position_;
   const Speed speed = speedFor(way);
   if (!speed_ || !(*speed_ == speed)) {
+    confirmed_.reset();
     speed_ = speed;  // if this fails, the session that follows forgets it
     return ask(Kind::kVelocity, mp285SetVelocity(speed.um_per_s, speed.fine));
   }
   const double rate = speed.um_per_s * 1e-6 / nominal_microstep_;  // microsteps/s
-  Move move{*position_, goalPlace(), 0, 0, goal()->follows, !speed.fine};
+  Move move{*position_, goal_place, goal_place, goal()->follows, 0, 0};
   const double longest = rate * 2 * config_.segment_time;
   if (move.follows && way.norm() > longest) move.to = (move.from + way.normalized() * longest).array().round();
   move.duration = (move.to - move.from).norm() / rate;
@@ -293,8 +242,10 @@ void Mp285Driver::nextTowardsGoal() {
     if (std::abs(move.to[i]) > 2e9) return raiseFault("the goal is too far away to be said");
     place[i] = static_cast<std::int32_t>(move.to[i]);
   }
-  move.begin = time() + 14 * byteTime();
+  move.begin = time() + 14 * config_.byteTime();
   move_ = move;
+  coarse_ = !speed.fine;
+  watch_.goesTo(move.to);
   ask(Kind::kMove, mp285Move(place), 1.25 * timeLeft() + kMoveAllowance);
 }
 

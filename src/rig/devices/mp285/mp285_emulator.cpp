@@ -49,6 +49,21 @@ std::size_t commandLength(unsigned char letter) {
 
 }  // namespace
 
+void Mp285Emulator::switchOn() {
+  place_.setZero();
+  speed_ = config_.speed;
+  fine_ = config_.fine;
+  moving_ = false;
+  absolute_ = true;
+  fails_at_ = error_ = -1;
+  command_.clear();
+  answers_.clear();
+}
+
+void Mp285Emulator::failNextCommand(const std::string& code) {
+  code == kReset ? switchOn() : void(error_ = std::stoi(code));
+}
+
 void Mp285Emulator::advance(double time) {
   const double dt = time - time_;
   time_ = std::max(time, time_);
@@ -189,8 +204,8 @@ std::string Mp285Emulator::say(double time) {
 
 void Mp285Emulator::checkError(const std::string& code) const {
   const bool digits = !code.empty() && code.size() <= 2 && code.find_first_not_of("0123456789") == std::string::npos;
-  if (digits && std::stoi(code) <= 15) return;
-  throw ConfigError("fault = error:" + code + ": must be 0, or the sum of 1, 2, 4 and 8");
+  if (code == kReset || (digits && std::stoi(code) <= 15)) return;
+  throw ConfigError("fault = error:" + code + ": must be 0, the sum of 1, 2, 4 and 8, or RESET");
 }
 
 }  // namespace microinjection

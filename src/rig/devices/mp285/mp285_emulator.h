@@ -26,13 +26,11 @@ struct Mp285EmulatorConfig {
 /// errors from Micro-Manager's adapter. While it moves it hears nothing but the stop. Errors that can be asked for: 0
 /// to 15, the sum of 1, 2, 4 and 8; one with 8 is that of the next move, half way, others of the next command, which is
 /// then not obeyed. Nobody has compared it with a device; what is assumed: that it is deaf in the pause after an answer
-/// (clients only wait), how long half a command is remembered, that its um/s are of 25 microsteps.
+/// (clients only wait), how long half a command is remembered, that its um/s are of 25 microsteps, that it counts from
+/// 0 where it is switched on.
 class Mp285Emulator : public ManipulatorEmulator {
  public:
-  explicit Mp285Emulator(const Mp285EmulatorConfig& config = {}) : config_(config) {
-    speed_ = config.speed;
-    fine_ = config.fine;
-  }
+  explicit Mp285Emulator(const Mp285EmulatorConfig& config = {}) : config_(config) { switchOn(); }
 
   Eigen::Vector3d position() const override { return place_.cwiseProduct(config_.microsteps); }
   int movesBegun() const override { return moves_begun_; }
@@ -45,7 +43,7 @@ class Mp285Emulator : public ManipulatorEmulator {
   void hear(const std::string& bytes, double time) override;
   std::string say(double time) override;
   void checkError(const std::string& code) const override;
-  void failNextCommand(const std::string& code) override { error_ = std::stoi(code); }
+  void failNextCommand(const std::string& code) override;
   void interrupt(double time) override;
 
  private:
@@ -54,6 +52,7 @@ class Mp285Emulator : public ManipulatorEmulator {
     std::string bytes;
   };
 
+  void switchOn();
   void advance(double time);
   void hearByte(unsigned char byte, double time);
   void stop(double time);

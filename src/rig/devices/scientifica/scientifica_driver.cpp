@@ -34,8 +34,6 @@ double ScientificaDriver::count() const { return scientificaCount(config_.versio
 /// A motor's step is 1/64 um, so a count of version 3 need not be a place at which it can stand.
 double ScientificaDriver::arrival() const { return config_.version == 2 ? 1 : 2; }
 
-double ScientificaDriver::slowest() const { return scientificaSlowest(config_.version); }
-
 std::string ScientificaDriver::setup(int step) const {
   switch (step) {
     case kMaker:
@@ -49,7 +47,7 @@ std::string ScientificaDriver::setup(int step) const {
     case kAcceleration:
       return "ACC " + std::to_string(scientificaAcceleration(config_.version, config_.acceleration));
     case kStartSpeed:
-      return "FIRST " + std::to_string(scientificaTop(config_.version, slowest()));
+      return "FIRST " + std::to_string(scientificaTop(config_.version, scientificaSlowest(config_.version)));
     default:
       return "";
   }
@@ -74,6 +72,15 @@ std::string ScientificaDriver::takeSetup(int step, const std::string& answer) {
   }
 }
 
+/// A setting is a word and a number; the word alone asks for the number.
+std::string ScientificaDriver::askKept(const std::string& setting) const {
+  return setting.substr(0, setting.find(' '));
+}
+
+bool ScientificaDriver::isKept(const std::string& setting, const std::string& answer) const {
+  return readScientificaNumber(answer) == readScientificaNumber(setting.substr(setting.find(' ') + 1));
+}
+
 std::optional<Eigen::Vector3d> ScientificaDriver::readPosition(const std::string& answer) {
   return readScientificaPosition(answer);
 }
@@ -87,17 +94,14 @@ bool ScientificaDriver::acknowledges(const std::string& /*line*/, const std::str
 }
 
 PolledManipulator::Plan ScientificaDriver::plan(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double speed,
-                                                const Eigen::Vector3d& /*fastest*/) {
-  Plan plan{{}, 0};
+                                                const Eigen::Vector3d& /*fastest*/) const {
   const int top = scientificaTop(config_.version, speed);
-  if (top != top_) plan.lines.push_back("TOP " + std::to_string(top));
-  top_ = top;  // if this fails, the session that follows forgets it
-  plan.lines.push_back(scientificaGoTo({std::lround(to.x()), std::lround(to.y()), std::lround(to.z())}));
+  const std::string move = scientificaGoTo({std::lround(to.x()), std::lround(to.y()), std::lround(to.z())});
   // It speeds up and slows down.
   const double way = (to - from).norm() * count(), v = scientificaSpeed(config_.version, top);
   const double a = config_.acceleration;
-  plan.duration = way > v * v / a ? way / v + v / a : 2 * std::sqrt(way / a);
-  return plan;
+  const double duration = way > v * v / a ? way / v + v / a : 2 * std::sqrt(way / a);
+  return {"TOP " + std::to_string(top), move, duration, v, 0};
 }
 
 }  // namespace microinjection

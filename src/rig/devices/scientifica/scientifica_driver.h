@@ -18,17 +18,16 @@ class ScientificaDriver : public PolledManipulator {
   std::string takeSetup(int step, const std::string& answer) override;
   std::optional<Eigen::Vector3d> readPosition(const std::string& answer) override;
   std::optional<bool> readMotion(const std::string& answer) const override;
+  std::string askKept(const std::string& setting) const override;
+  bool isKept(const std::string& setting, const std::string& answer) const override;
   bool acknowledges(const std::string& line, const std::string& answer) const override;
   Plan plan(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double speed,
-            const Eigen::Vector3d& fastest) override;
+            const Eigen::Vector3d& fastest) const override;
   double count() const override;
   double arrival() const override;
-  double slowest() const override;
-  void sessionLost() override { top_ = 0; }
 
  private:
   const ScientificaConfig config_;
-  int top_ = 0;  // that the device is set to; 0: not known
 };
 
 }  // namespace microinjection

@@ -11,10 +11,16 @@ constexpr int kUnknown = 3;
 
 }  // namespace
 
-/// Settings of a card as it is delivered (ScanImage, Micro-Manager); those of version 3 are the same motion.
 ScientificaEmulator::ScientificaEmulator(const ScientificaEmulatorConfig& config)
     : TextEmulator(config.answer_time), config_(config) {
   if (config_.scale == 0) config_.scale = isOld() ? -6.4 : 1600;
+  switchOn();
+}
+
+/// Settings of a card as it is delivered (ScanImage, Micro-Manager); those of version 3 are the same motion.
+void ScientificaEmulator::switchOn() {
+  place_.setZero();
+  stopping_ = false;
   top_ = isOld() ? 30000 : 2344;
   first_ = isOld() ? 5000 : 391;
   acc_ = isOld() ? 500 : 19531;

@@ -17,9 +17,10 @@ struct ScientificaEmulatorConfig {
 
 /// A Scientifica PatchStar, written from what its clients say and note of the motion card's command list, and not from
 /// the driver: SCIENTIFICA, VER, DATE, TYPE, DESC, POS and P, ABS, REL, S, STOP, TOP, FIRST, ACC, UUX.., USTEP, ZERO,
-/// LIMITS. Words may be small. Assumed: one straight line with the speed along it and linear ramps; "E,3" for what it
-/// does not know (ScanImage notes it of one command); no answer to an ABS while it moves (acq4's note). An error that
-/// is asked for answers the next command, which is not obeyed.
+/// LIMITS. Words may be small. Assumed: it counts from 0 where it is switched on, with the settings of delivery; one
+/// straight line with the speed along it and linear ramps; "E,3" for what it does not know (ScanImage notes it of one
+/// command); no answer to an ABS while it moves (acq4's note). An error that is asked for answers the next command,
+/// which is not obeyed.
 class ScientificaEmulator : public TextEmulator {
  public:
   explicit ScientificaEmulator(const ScientificaEmulatorConfig& config = {});
@@ -32,6 +33,7 @@ class ScientificaEmulator : public TextEmulator {
   void move(double time, double dt) override;
   std::string error(int code) const override { return "E," + std::to_string(code); }
   void interrupt(double time) override;
+  void switchOn() override;
 
  private:
   static constexpr double kStepsPerMetre = 64e6;  // a motor's step is 1/64 um
@@ -47,7 +49,7 @@ class ScientificaEmulator : public TextEmulator {
 
   ScientificaEmulatorConfig config_;
   Eigen::Vector3d place_ = Eigen::Vector3d::Zero(), end_ = Eigen::Vector3d::Zero();  // steps
-  int top_, first_, acc_;                                                            // as they are set
+  int top_ = 0, first_ = 0, acc_ = 0;                                                // as they are set
   double speed_ = 0;                                                                 // steps/s, now
   bool stopping_ = false;
 };

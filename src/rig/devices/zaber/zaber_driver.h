@@ -26,8 +26,9 @@ namespace microinjection {
 ///
 /// An axis without a reference position is a fault, and no position is told: homing moves, so the user has it done
 /// (`home: true`, at the start only, or the maker's tool). A reply shows only its most important flag. Where that may
-/// hide a lost reference, the axis is asked for all of them, before its position is taken and then in turn. All axes
-/// home, in the plan's order: one that has its reference may be in another's way.
+/// hide a lost reference, the axis is asked for all of them, before its position is taken and then in turn. Warnings
+/// that change faster than they can be listed are a fault. All axes home, in the plan's order: one that has its
+/// reference may be in another's way.
 class ZaberDriver : public SerialManipulator {
  public:
   ZaberDriver(const ZaberConfig& config, std::unique_ptr<Wire> wire);
@@ -87,6 +88,7 @@ class ZaberDriver : public SerialManipulator {
     std::string shown;   // the flag that may hide WR, when its warnings were listed last; empty: none
     int lists_due = 0;   // lists of its warnings that have to be heard, before anything else of it is believed
     std::string listed;  // the list that has to be told twice
+    int lists = 0;       // heard since a position was taken
     ZaberSettings settings;
   };
 

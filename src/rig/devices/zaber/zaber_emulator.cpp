@@ -271,7 +271,7 @@ std::string ZaberEmulator::say(double time) {
 
 void ZaberEmulator::checkError(const std::string& code) const {
   const auto& names = rejections();
-  if (isFlagName(code) || code == "RESET" || std::find(names.begin(), names.end(), code) != names.end()) return;
+  if (isFlagName(code) || code == kReset || std::find(names.begin(), names.end(), code) != names.end()) return;
   std::string all;
   for (const std::string& name : names) all += name + ", ";
   throw ConfigError("fault = error:" + code + ": must be one of " + all +
@@ -279,11 +279,11 @@ void ZaberEmulator::checkError(const std::string& code) const {
 }
 
 void ZaberEmulator::failNextCommand(const std::string& code) {
-  if (code != "RESET" && !isFlagName(code)) {
+  if (code != kReset && !isFlagName(code)) {
     rejection_ = code;
     return;
   }
-  for (ZaberEmulatedAxis& axis : axes_) code == "RESET" ? axis.restart() : axis.raise(code);
+  for (ZaberEmulatedAxis& axis : axes_) code == kReset ? axis.restart() : axis.raise(code);
 }
 
 void ZaberEmulator::interrupt(double time) {

@@ -11,6 +11,7 @@ namespace {
 constexpr double kRetryPause = 0.02;  // s, after AGAIN and its like
 constexpr int kTries = 3;             // of a message
 constexpr int kStalls = 10;           // readings of an axis at rest that was told to move
+constexpr int kMostLists = 20;        // of warnings, without a position between them
 
 }  // namespace
 
@@ -57,6 +58,11 @@ void ZaberDriver::loseReference(int i) {
 
 void ZaberDriver::takeWarnings(const Exchange& asked, const ZaberMessage& reply) {
   Axis& axis = axes_[asked.axis];
+  const bool told_already = state() == State::kFault && !clearing();
+  if (!told_already && ++axis.lists > kMostLists) {
+    return raiseFault(axisName(asked.axis) + ": its warnings do not stay the same, the last are \"" + reply.data +
+                      "\": behind them a lost reference position could hide");
+  }
   const bool twice = axis.listed == reply.data;
   axis.listed = reply.data;
   if (axis.lists_due > 1 || (!twice && !settled_)) {
@@ -102,7 +108,9 @@ void ZaberDriver::takeReply(const Exchange& done, const ZaberMessage& reply) {
   switch (done.kind) {
     case Kind::kPosition:
       axis.still_moves = reply.busy;
-      if (axis.has_reference && axis.lists_due == 0) takePosition(done, reply);
+      if (!axis.has_reference || axis.lists_due > 0) break;
+      axis.lists = 0;
+      takePosition(done, reply);
       break;
     case Kind::kVelocity:
       axis.position = expected(done.axis, time());

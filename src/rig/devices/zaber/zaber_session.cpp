@@ -49,7 +49,7 @@ void ZaberDriver::begin(bool lost) {
     axis.read_since_begin = axis.homed = axis.still_moves = false;
     axis.busy = true;
     axis.cleared = !clearing();
-    axis.stalls = 0;
+    axis.stalls = axis.lists = 0;
     axis.listed.clear();
     if (lost) axis.lists_due = 2;
     if (clearing()) axis.settings.forget();  // they may have been what was wrong

@@ -86,6 +86,16 @@ TEST(EppendorfEmulator, TellsPositionsInOtherForms) {
   EXPECT_EQ(client.answers("C010\r"), "A010 100.00-200.00+300.00 0\r");
 }
 
+TEST(EppendorfEmulator, CountsFromZeroWhereItIsSwitchedOnAndIsNotUnderRemoteControl) {
+  Client client;
+  client.answers("C004\r");
+  client.answers("C012 1000 0 0 1000 0 0\r", 0.3);
+  client.device->inject(parseFault("error:RESET"));
+  EXPECT_EQ(client.answers("C010\r"), "A010 0 0 0 0\r");
+  EXPECT_FALSE(client.device->moves());
+  EXPECT_EQ(client.answers("C008\r").substr(0, 4), "ERR=");
+}
+
 TEST(EppendorfEmulator, RefusesWhatIsNoCommand) {
   Client client;
   client.answers("C004\r");

@@ -64,6 +64,18 @@ TEST(Mp285Emulator, AnswersAStopAsItStoodOrMoved) {
   EXPECT_EQ(client.answers("\x03"), "=\r");
 }
 
+TEST(Mp285Emulator, CountsFromZeroWhereItIsSwitchedOnWithTheSettingsOfDelivery) {
+  Client client;
+  const std::string delivered = client.answers("s\r");
+  EXPECT_EQ(client.answers(std::string("V\x64\x80\r")), "\r");
+  EXPECT_NE(client.answers("s\r"), delivered);
+  EXPECT_EQ(client.answers(move(25000)), "");
+  client.device->inject(parseFault("error:RESET"));
+  EXPECT_EQ(client.answers("c\r"), std::string(12, '\0') + "\r");
+  EXPECT_FALSE(client.device->moves());
+  EXPECT_EQ(client.answers("s\r"), delivered);
+}
+
 TEST(Mp285Emulator, HearsNoCommandInThePauseAfterAnAnswer) {
   Client client;
   EXPECT_EQ(client.firstBytes("a\r"), "\r");

@@ -82,6 +82,19 @@ TEST(ScientificaEmulator, MovesAtItsSpeedWithItsRamps) {
   EXPECT_NEAR(client.device->position().x() - told, 1e-3 * wire + 1e-6 / (2 * 0.0195), 2e-6);
 }
 
+TEST(ScientificaEmulator, CountsFromZeroWhereItIsSwitchedOnWithTheSettingsOfDelivery) {
+  Client client("2.13");
+  for (const char* command : {"TOP 12800\r", "FIRST 1000\r", "ACC 700\r", "ABS 20000 0 0\r"}) {
+    EXPECT_EQ(client.answers(command), "A\r");
+  }
+  client.device->inject(parseFault("error:RESET"));
+  EXPECT_EQ(client.answers("S\r"), "0\r");
+  EXPECT_EQ(client.answers("POS\r"), "0\t0\t0\r");
+  EXPECT_EQ(client.answers("TOP\r"), "30000\r");
+  EXPECT_EQ(client.answers("FIRST\r"), "5000\r");
+  EXPECT_EQ(client.answers("ACC\r"), "500\r");
+}
+
 TEST(ScientificaEmulator, RefusesWhatIsNoCommand) {
   Client client;
   for (const char* command :

@@ -1,0 +1,158 @@
+#include "rig/devices/move_by_move.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace microinjection {
+namespace {
+
+constexpr double kWorthStopping = 0.15;  // s left of a move: to break it off and to begin another takes as long
+
+}  // namespace
+
+void MoveByMoveConfig::readCommon(ConfigReader& reader, int default_baud, const Range& speeds,
+                                  const Range& rest_readings) {
+  ConfigReader line = reader.section("port", ConfigReader::kRequired);
+  port = SerialPortConfig::read(line, default_baud);
+  axes = AxisOrder::read(reader);
+  joints = JointAxes::read(reader);
+  reader.number("speed", speed, speeds);
+  reader.number("segment_time", segment_time, {0.01, 1});
+  reader.number("answer_time", answer_time, Range::nonNegative());
+  reader.number("reply_timeout", reply_timeout, Range::positive());
+  reader.number("rest_reading_interval", rest_reading_interval, rest_readings);
+}
+
+MoveByMove::MoveByMove(const MoveByMoveConfig& config, std::unique_ptr<Wire> wire, const Link& link,
+                       std::size_t longest_move)
+    : SerialManipulator(std::move(wire), link),
+      common_(config),
+      answer_time_(config.answer_time),
+      stop_bytes_(static_cast<double>(link.stop.size())),
+      longest_move_(static_cast<double>(longest_move)) {}
+
+ManipulatorAbilities MoveByMove::abilitiesWith(double turn) const {
+  ManipulatorAbilities abilities;
+  abilities.follows = false;
+  abilities.command_interval = abilities.reading_interval = turn;
+  abilities.resolution = counts().maxCoeff() * std::max(1.0, arrival());
+  abilities.speed = std::min(common_.speed, speedLimits().maxCoeff());
+  // A set-point waits for the move under way, and is then said.
+  abilities.latency = turn + longest_move_ * common_.byteTime() + answer_time_;
+  abilities.stop_time = stop_bytes_ * common_.byteTime() + common_.answer_time;
+  return abilities;
+}
+
+void MoveByMove::measure(double sent, std::size_t answer_bytes) {
+  if (answers_.measured()) return;
+  answers_.add(listened() - sent - static_cast<double>(answer_bytes) * common_.byteTime());
+  answer_time_ = std::max(common_.answer_time, answers_.measured().value_or(0));
+}
+
+Eigen::Vector3d MoveByMove::carriedOn(double at) const {
+  if (!move_) return *position_;
+  const double gone = std::max(0.0, at - move_->begin);
+  if (gone >= move_->duration) return move_->to;
+  return move_->from + (move_->to - move_->from) * (gone / move_->duration);
+}
+
+std::optional<ManipulatorDevice::Reading> MoveByMove::reading() const {
+  if (!position_ || !sure()) return std::nullopt;
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+  if (timeLeft() > 0 && time() > move_->begin) {
+    velocity = (move_->to - move_->from).cwiseProduct(counts()) / move_->duration;
+  }
+  return Reading{common_.joints.toJoints(common_.axes.inJointOrder(carriedOn(time()).cwiseProduct(counts()))),
+                 common_.joints.directions.cwiseProduct(common_.axes.inJointOrder(velocity))};
+}
+
+Eigen::Vector3d MoveByMove::goalPlace() const {
+  const Eigen::Vector3d device = common_.axes.inDeviceOrder(common_.joints.toDevice(goal()->joints));
+  return device.cwiseQuotient(counts()).array().round();
+}
+
+bool MoveByMove::isThere(const Eigen::Vector3d& place, const Eigen::Vector3d& goal) const {
+  return (place - goal).cwiseAbs().maxCoeff() <= arrival();
+}
+
+bool MoveByMove::moving() const {
+  if (!goal()) return !settled_;
+  return move_ || !settled_ || !position_ || !isThere(*position_, goalPlace());
+}
+
+double MoveByMove::askedSpeed(const Eigen::Vector3d& way) const {
+  if (!goal()->follows) return goal()->speed;
+  return std::max(1.2 * goal()->velocity.norm(), length(way) / common_.segment_time);
+}
+
+double MoveByMove::fastestAlong(const Eigen::Vector3d& way) const {
+  const Eigen::Vector3d direction = common_.axes.inJointOrder(way.cwiseProduct(counts()).normalized()).cwiseAbs();
+  double speed = common_.speed;
+  for (int i = 0; i < 3; ++i) {
+    if (direction[i] > 0) speed = std::min(speed, speedLimits()[i] / direction[i]);
+  }
+  return speed;
+}
+
+/// Whether the move under way is to be broken off for the goal: the newest wins. A short move towards a set-point is
+/// not broken off for another set-point. It takes about segment_time, and a stream has a newer set-point at each step:
+/// with any limit below segment_time each move would be broken off and the needle would stand most of the time.
+bool MoveByMove::isOutdated() const {
+  if (!goal() || timeLeft() <= kWorthStopping) return false;
+  if (move_->follows || goal()->follows) return move_->follows != goal()->follows;
+  return !isThere(move_->goal, goalPlace());
+}
+
+void MoveByMove::begin(bool /*lost*/) {
+  filter_.forget();
+  settled_ = false;
+  begun_anew_ = begun_anew_ && !clearing();
+}
+
+void MoveByMove::stopSaid() {
+  if (position_) position_ = carriedOn(time() + stop_bytes_ * common_.byteTime());
+  move_.reset();
+  settled_ = false;
+  trustAtMost(common_.reply_timeout + longest_move_ * common_.byteTime() + recoveryTime());
+}
+
+void MoveByMove::corrected(const Eigen::Vector3d& place, const Eigen::Vector3d& expected) {
+  const Eigen::Vector3d by = (place - expected).cwiseProduct(counts());
+  largest_correction_ = std::max(largest_correction_, by.cwiseAbs().maxCoeff());
+}
+
+/// It stands there, until it is asked again.
+void MoveByMove::rest(const Eigen::Vector3d& place) {
+  position_ = place;
+  move_.reset();
+  watch_.stands(place);
+  settings_lost_ = false;
+  next_rest_reading_ = time() + common_.rest_reading_interval;
+  trustFor(std::numeric_limits<double>::infinity());
+}
+
+/// Whether a place is exactly 0, where a device begins to count, although this one was elsewhere. One that has lost its
+/// settings was switched off, also where 0 is an end of its move.
+bool MoveByMove::isNewZero(const Eigen::Vector3d& place, double margin) const {
+  if (!place.isZero(kSame)) return false;
+  if (settings_lost_) return !watch_.remainsAt(place, counts(), margin);
+  if (watch_.mayStandAt(place, counts(), margin)) return false;
+  return !position_ || length(carriedOn(time()) - place) > margin;
+}
+
+/// Whether the device counts anew: what was known of it is void then. `outside` (m): by how much it tells a place where
+/// it cannot be; `new_zero`: it tells the place at which a device begins to count.
+bool MoveByMove::beginsAnew(const Eigen::Vector3d& place, double outside, bool new_zero, double margin) {
+  if (begun_anew_) return true;
+  if (outside <= margin && !new_zero) return false;
+  const double way = position_ ? length(place - carriedOn(time())) : outside;
+  position_.reset();
+  watch_.forget();
+  begun_anew_ = true;  // and so no position is told
+  raiseFault("it tells a place " + std::to_string(std::lround(way * 1e6)) +
+             " um from where it must be: if it was switched off its coordinates began anew; check them, then enable");
+  return true;
+}
+
+}  // namespace microinjection
