@@ -135,9 +135,9 @@ TEST(MaterialConfig, RefusesBadValuesAllAtOnce) {
          {"material: model = rubber: must be one of: linear, st_venant_kirchhoff, neo_hookean, ",
           "material: young_modulus = -3 Pa: must be in (0, inf) Pa",
           "material: poisson_ratio = 0.7: must be in (-1, 0.5)", "material: mooney_ratio = 2: must be in [0, 1]",
-          "material: viscoelasticity/prony[0]/relaxation_time = 0: must be in (0, inf) s",
+          "material: viscoelasticity/prony[0]/relaxation_time = 0 s: must be in (0, inf) s",
           "material: viscoelasticity/prony[1]/modulus_ratio = -1: must be in (0, inf)",
-          "material: viscoelasticity/viscosity = -4: must be in [0, inf) Pa s"}) {
+          "material: viscoelasticity/viscosity = -4 Pa s: must be in [0, inf) Pa s"}) {
       EXPECT_NE(text.find(line), std::string::npos) << line << "\nis not in\n" << text;
     }
   }
