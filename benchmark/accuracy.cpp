@@ -14,9 +14,9 @@
 #include "benchmark/bench_main.h"
 #include "benchmark/common/forked_case.h"
 #include "benchmark/common/reference_scenes.h"
-#include "cell/model/cell_model.h"
 #include "cell/model/cell_problem.h"
 #include "cell/model/indentation.h"
+#include "cell/model/p1_cell.h"
 #include "cell/model/scene_mesh.h"
 
 namespace microinjection {
@@ -63,7 +63,7 @@ std::string live(const ReferenceScene& scene, double size) {
   Case made{"live", "p1"};
   Scene changed = scene.scene;
   changed.mesh.size = size;
-  const auto cell = std::make_shared<const CellModel>(changed);
+  const auto cell = std::make_shared<const P1Cell>(changed);
   made.vertices = cell->mesh().vertices.size();
   made.elements = cell->mesh().tetrahedra.size();
   Indentation indentation(cell, cell->patchAt({0, 0, changed.radius()}, Eigen::Vector3d::UnitZ()));

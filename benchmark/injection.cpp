@@ -28,7 +28,7 @@ constexpr double kLongest = 180;  ///< s of virtual time
 
 struct Bench {
   Scene scene = loadScene(kScene);
-  std::shared_ptr<const PreparedCell> prepared = std::make_shared<const PreparedCell>(preparedScene(scene, kScene));
+  std::shared_ptr<const SurrogateData> prepared = std::make_shared<const SurrogateData>(preparedScene(scene, kScene));
   ManipulatorGeometry geometry;
   SimulatedManipulatorConfig manipulator;
 
@@ -106,11 +106,11 @@ void summarise(const std::vector<Outcome>& all) {
   std::fprintf(
       stderr,
       "injection: outside of guards: %ld; felt without cause: %ld; failures not felt: %ld; of a force that is not "
-      "trusted: %ld\n",
+      "valid: %ld\n",
       count([](const Outcome& o) { return !o.within; }),
       count([](const Outcome& o) { return o.truth.false_detections > 0; }),
       count([](const Outcome& o) { return o.truth.unfelt > 0; }),
-      count([](const Outcome& o) { return !o.truth.trusted; }));
+      count([](const Outcome& o) { return !o.truth.valid; }));
   const auto limits = [](const Outcome& o) { return injectionSettings(o.of).guards; };
   medianAndWorst(all, "peak force", "of the limit",
                  [&](const Outcome& o) { return o.truth.peak_force / limits(o).force_limit; });

@@ -10,7 +10,7 @@
 #include "benchmark/bench_main.h"
 #include "benchmark/common/call_times.h"
 #include "cell/model/cell_problem.h"
-#include "cell/model/contact_place.h"
+#include "cell/model/contact_frame.h"
 #include "cell/model/converged_force.h"
 #include "cell/model/scene_mesh.h"
 
@@ -36,7 +36,7 @@ const std::vector<Candidate> kCandidates = {{"p1", ElementKind::kP1, -2},      {
 
 Scene sceneAt(double degrees) {
   Scene scene = loadScene(std::string(MICROINJECTION_SOURCE_DIR) + "/config/cells/mouse_oocyte_pipette.yaml");
-  scene.needle.offset = ContactPlace::offsetFor(scene, degrees * kDegree);
+  scene.needle.offset = ContactFrame::offsetFor(scene, degrees * kDegree);
   return scene;
 }
 

@@ -1,4 +1,4 @@
-"""Picture of the passivity benchmark: least energy and late oscillation of the hand's port. Usage: CSV PNG."""
+"""DeformedSurface of the passivity benchmark: least energy and late oscillation of the hand's port. Usage: CSV PNG."""
 import csv
 import sys
 

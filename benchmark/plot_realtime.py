@@ -1,4 +1,4 @@
-"""Picture of the real-time benchmark: how late periods were, cell simulator and bare loop. Usage: CSV PNG."""
+"""DeformedSurface of the real-time benchmark: how late periods were, cell simulator and bare loop. Usage: CSV PNG."""
 import csv
 import sys
 

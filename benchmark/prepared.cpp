@@ -21,7 +21,7 @@
 #include "benchmark/common/prepared_scene.h"
 #include "cell/model/cell_problem.h"
 #include "cell/model/scene_mesh.h"
-#include "cell/surrogate/prepared_tracker.h"
+#include "cell/surrogate/surrogate_cell_model.h"
 #include "cell/surrogate/training_ray.h"
 
 namespace microinjection {
@@ -62,11 +62,11 @@ std::vector<TrainingRay> unseenPaths(const PreparationRange& range) {
 
 /// Random closed paths in and out of the cell and of the range: largest share of the energy that went to and fro which
 /// the needle got for nothing (negative: it lost some).
-double createdEnergy(const Scene& scene, const std::shared_ptr<const PreparedCell>& cell) {
+double createdEnergy(const Scene& scene, const std::shared_ptr<const SurrogateData>& cell) {
   constexpr int kClosed = 200, kLegs = 6, kSteps = 2000;
   std::mt19937 random(5);
   std::uniform_real_distribution<double> share(-1, 1);
-  PreparedContact contact(scene, cell);
+  SurrogateContact contact(scene, cell);
   const double radius = scene.radius(), top = radius + 2 * scene.needle.tip.radius;
   double worst = -1;
   for (int path = 0; path < kClosed; ++path) {
@@ -93,7 +93,7 @@ double createdEnergy(const Scene& scene, const std::shared_ptr<const PreparedCel
   return worst;
 }
 
-std::string row(const PreparedCell& cell, const TrainingSample& sample, const Eigen::VectorXd& displaced) {
+std::string row(const SurrogateData& cell, const TrainingSample& sample, const Eigen::VectorXd& displaced) {
   ForceField::Local local;
   cell.field.makeLocal(sample.angle, local);
   Eigen::Matrix3d jacobian;
@@ -107,13 +107,13 @@ std::string row(const PreparedCell& cell, const TrainingSample& sample, const Ei
 
 /// Difference of the surfaces, m: nodes of another mesh do not correspond, so the reference is solved on the
 /// training's.
-Eigen::VectorXd surfaceError(const PreparedCell& cell, const TrainingSample& on_training_mesh) {
+Eigen::VectorXd surfaceError(const SurrogateData& cell, const TrainingSample& on_training_mesh) {
   Eigen::VectorXd rest, displaced;
   cell.surface.evaluate(on_training_mesh.angle, on_training_mesh.displacement, rest, displaced);
   return displaced - on_training_mesh.surface.cast<double>();
 }
 
-std::string solvePath(const Scene& scene, const PreparedCell& cell, const TrainingRay& ray) {
+std::string solvePath(const Scene& scene, const SurrogateData& cell, const TrainingRay& ray) {
   TrainingRay fine_ray = ray;
   fine_ray.level = kLevel;
   const TrainingResult fine = solveRay(scene, fine_ray), coarse = solveRay(scene, ray);
@@ -127,8 +127,8 @@ std::string solvePath(const Scene& scene, const PreparedCell& cell, const Traini
   return rows;
 }
 
-void reportTimes(const Scene& scene, std::shared_ptr<const PreparedCell> cell) {
-  PreparedContact contact(scene, cell);
+void reportTimes(const Scene& scene, std::shared_ptr<const SurrogateData> cell) {
+  SurrogateContact contact(scene, cell);
   std::mt19937 random(3);
   std::uniform_real_distribution<double> noise(-1, 1);
   std::vector<double> times;
@@ -155,7 +155,7 @@ void reportTimes(const Scene& scene, std::shared_ptr<const PreparedCell> cell) {
 /// the training's mesh.
 std::string pathDependence(const Scene& scene, double angle_deg, const Eigen::Vector3d& end) {
   Scene there = scene;
-  there.needle.offset = ContactPlace::offsetFor(scene, angle_deg * M_PI / 180);
+  there.needle.offset = ContactFrame::offsetFor(scene, angle_deg * M_PI / 180);
   CellProblem<3> straight(there, makeSceneMesh<3>(there, kCoarseLevel), ElementKind::kP2P0);
   CellProblem<3> bent(there, makeSceneMesh<3>(there, kCoarseLevel), ElementKind::kP2P0);
   const Eigen::Vector3d force = straight.solve(end).force;
@@ -169,9 +169,9 @@ std::string pathDependence(const Scene& scene, double angle_deg, const Eigen::Ve
 }
 
 /// With Prony terms, at constant speed on the axis, against the section in which the material itself relaxes.
-std::string memoryError(Scene scene, const std::shared_ptr<const PreparedCell>& cell, double speed) {
+std::string memoryError(Scene scene, const std::shared_ptr<const SurrogateData>& cell, double speed) {
   scene.cell.material().viscoelasticity.prony = {{0.5, 0.2}, {0.3, 2}};
-  PreparedTracker tracker(scene, cell);
+  SurrogateCellModel tracker(scene, cell);
   CellProblem<2> section(scene, makeSceneMesh<2>(scene, 0), ElementKind::kP2P0);
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   std::string text;
@@ -219,7 +219,7 @@ void summarise(const std::string& table) {
 std::string table(double poisson_ratio) {
   const std::string file = sceneFile(poisson_ratio);
   const Scene scene = loadScene(file);
-  const auto cell = std::make_shared<const PreparedCell>(preparedScene(scene, file));
+  const auto cell = std::make_shared<const SurrogateData>(preparedScene(scene, file));
   reportTimes(scene, cell);
   std::fprintf(stderr, "prepared: energy created on closed paths: at most %.2g of what was exchanged\n",
                createdEnergy(scene, cell));

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "benchmark/bench_main.h"
-#include "cell/model/cell_model.h"
 #include "cell/mechanics/equilibrium_system.h"
+#include "cell/model/p1_cell.h"
 
 namespace microinjection {
 namespace {
@@ -52,7 +52,7 @@ Timing timeSolver(Method method, const Matrix& lower) {
 }
 
 /// Of the cell with what is held fixed and a disc that sticks to the tip.
-Constraints makeConstraints(const CellModel& cell) {
+Constraints makeConstraints(const P1Cell& cell) {
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   Constraints constraints;
   constraints.entries.assign(cell.body()->stateSize(), Constraints::kFree);
@@ -69,7 +69,7 @@ Constraints makeConstraints(const CellModel& cell) {
 std::string measure(double size) {
   Scene scene;
   scene.mesh.size = size;
-  const CellModel cell(scene);
+  const P1Cell cell(scene);
   const Constraints constraints = makeConstraints(cell);
   const Eigen::VectorXd undeformed = Eigen::VectorXd::Zero(cell.body()->stateSize());
   std::ostringstream rows;

@@ -17,10 +17,10 @@
 #include "benchmark/common/paper_mesh.h"
 #include "benchmark/common/prepared_scene.h"
 #include "benchmark/common/reference_scenes.h"
+#include "cell/mechanics/explicit_step.h"
 #include "cell/model/cell_problem.h"
 #include "cell/model/scene_mesh.h"
-#include "cell/mechanics/explicit_step.h"
-#include "cell/surrogate/prepared_contact.h"
+#include "cell/surrogate/surrogate_contact.h"
 
 namespace microinjection {
 namespace {
@@ -155,9 +155,9 @@ std::string converging(const ReferenceScene& scene, const std::string& element, 
 
 /// One force: with its stiffness, at the needle's next place.
 std::string prepared(const ReferenceScene& scene) {
-  const auto cell = std::make_shared<const PreparedCell>(preparedScene(loadScene(kPreparedScene), kPreparedScene));
+  const auto cell = std::make_shared<const SurrogateData>(preparedScene(loadScene(kPreparedScene), kPreparedScene));
   Row row{scene.name + " prepared", "energy", static_cast<std::size_t>(cell->surface.nodeCount()), 0, {}, {}};
-  PreparedContact contact(scene.scene, cell);
+  SurrogateContact contact(scene.scene, cell);
   const double top = scene.scene.radius();
   contact.step({0, 0, top + 1e-9});
   for (const ReferenceScene::Point& point : scene.points) {

@@ -16,9 +16,9 @@ constexpr int kApproach = 10000;     ///< steps of a needle that sets out and fe
 constexpr int kRuns = 100, kTrials = 200;
 
 /// A monitor behind a sensor that reads a force along the pipette; each run has its own offset and noise.
-class Feeler {
+class DetectorRun {
  public:
-  Feeler(const DetectionConfig& config, int seed) : monitor_(config), sensor_(sensor(seed)) {
+  DetectorRun(const DetectionConfig& config, int seed) : monitor_(config), sensor_(sensor(seed)) {
     while (!monitor_.ready()) step(0);
   }
   void step(double force) {
@@ -42,7 +42,7 @@ class Feeler {
 void falseTouches(const DetectionConfig& config) {
   int alarms = 0, confirmed = 0, punctures = 0;
   for (int run = 1; run <= kRuns; ++run) {
-    Feeler feeler(config, run);
+    DetectorRun feeler(config, run);
     for (int i = 0; i < kApproach; ++i) {
       feeler.step(0);
       punctures += feeler.monitor().punctured();
@@ -66,7 +66,7 @@ void latencies(const DetectionConfig& config, const char* what, double before, d
   std::vector<int> steps;
   int missed = 0;
   for (int trial = 1; trial <= kTrials; ++trial) {
-    Feeler feeler(config, trial);
+    DetectorRun feeler(config, trial);
     for (int i = 0; i < 600; ++i) feeler.step(before);
     int count = 0;
     do {

@@ -63,7 +63,7 @@ void InjectionRig::step() {
   input.force = Eigen::Vector3d(reading.y(), 0, reading.x());
   input.injector =
       InjectorReport{injector_.reading().busy, injector_.reading().volume, injector_.reading().last_id == pulses_};
-  if (isIn(Trouble::Kind::kForceLost) || !cell_->trusted()) input.force.reset();  // as cell_simulator says it
+  if (isIn(Trouble::Kind::kForceLost) || !cell_->valid()) input.force.reset();  // as cell_simulator says it
   if (isIn(Trouble::Kind::kNeedleLost)) input.needle.reset();
   const InjectionState before = controller_.injection();
   const int punctures_before = controller_.result().punctures;
@@ -84,7 +84,7 @@ void InjectionRig::step() {
 }
 
 void InjectionRig::watch(const Eigen::Vector3d& force, const Eigen::Vector3d& tip) {
-  truth_.trusted = truth_.trusted && cell_->trusted();
+  truth_.valid = truth_.valid && cell_->valid();
   truth_.peak_force = std::max(truth_.peak_force, std::abs(force.z()));
   if (cell_->touched() && !touch_height_) touch_height_ = tip.z();
   truth_.depth = touch_height_ ? *touch_height_ - tip.z() : 0;

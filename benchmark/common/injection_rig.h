@@ -47,7 +47,7 @@ class InjectionRig {
     double latency = 0;        ///< s, longest from a membrane's failure to the controller's word
     int false_detections = 0;  ///< touches without contact, and punctures without a failure
     int unfelt = 0;            ///< failures that the controller has not felt
-    bool trusted = true;       ///< the cell's force, always
+    bool valid = true;         ///< the cell's force, always
     double depth = 0;          ///< m, now
   };
   const Truth& truth() const { return truth_; }

@@ -3,10 +3,10 @@
 #include <memory>
 #include <vector>
 
-#include "cell/model/scene.h"
 #include "cell/mechanics/layered_body.h"
 #include "cell/mechanics/load_path.h"
 #include "cell/mesh/tet_mesh.h"
+#include "cell/model/scene.h"
 
 namespace microinjection {
 
@@ -33,7 +33,8 @@ struct P1Cell {
 
 P1Cell makeP1Cell(const Scene& scene, const PaperMesh& mesh);
 
-/// Quasi-static P1 of a scene's outermost material, with the live cell's solver (cell/model/indentation.h) on any P1Cell.
+/// Quasi-static P1 of a scene's outermost material, with the live cell's solver (cell/model/indentation.h) on any
+/// P1Cell.
 class P1QuasiStatic {
  public:
   P1QuasiStatic(const Scene& scene, const P1Cell& cell);

@@ -2,12 +2,12 @@
 
 #include <string>
 
-#include "cell/surrogate/prepared_cell.h"
+#include "cell/surrogate/surrogate_data.h"
 
 namespace microinjection {
 
 /// What `prepare` left of a scene in the cache; runs it first, which takes minutes, where there is nothing.
 /// `scene_file`: where the scene was read. @throws std::runtime_error when that fails.
-PreparedCell preparedScene(const Scene& scene, const std::string& scene_file);
+SurrogateData preparedScene(const Scene& scene, const std::string& scene_file);
 
 }  // namespace microinjection

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "cell/surrogate/prepared_tracker.h"
+#include "cell/surrogate/surrogate_cell_model.h"
 
 namespace microinjection {
 namespace {
@@ -24,7 +24,8 @@ PunctureConfig onPrepared(PunctureConfig puncture, double length, double force) 
 
 }  // namespace
 
-ScaledCell::ScaledCell(const Scene& scene, std::shared_ptr<const PreparedCell> prepared, const Properties& properties) {
+ScaledCell::ScaledCell(const Scene& scene, std::shared_ptr<const SurrogateData> prepared,
+                       const Properties& properties) {
   const double radius = 0.5 * properties.diameter, modulus = scene.cell.material().young_modulus;
   length_ = radius / scene.radius();
   force_ = properties.young_modulus / modulus * length_ * length_;
@@ -32,12 +33,12 @@ ScaledCell::ScaledCell(const Scene& scene, std::shared_ptr<const PreparedCell> p
   Scene here = scene;
   here.cell.material().viscoelasticity.prony = properties.prony;
   here.cell.puncture = onPrepared(properties.puncture, length_, force_);
-  cell_ = std::make_unique<PuncturableCell>(here, std::make_unique<PreparedTracker>(here, std::move(prepared)));
+  cell_ = std::make_unique<PuncturableCell>(here, std::make_unique<SurrogateCellModel>(here, std::move(prepared)));
 }
 
 Eigen::Vector3d ScaledCell::step(const Eigen::Vector3d& tip, double time) {
   const TipForce answer = cell_->step(tip / length_, Eigen::Vector3d::UnitZ(), time);
-  trusted_ = answer.trusted;
+  trusted_ = answer.valid;
   return force_ * answer.force;
 }
 

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "cell/model/puncturable_cell.h"
-#include "cell/surrogate/prepared_cell.h"
+#include "cell/surrogate/surrogate_data.h"
 
 namespace microinjection {
 
@@ -23,14 +23,14 @@ class ScaledCell {
   };
 
   /// @param scene  of `prepared`: one layer, elastic
-  ScaledCell(const Scene& scene, std::shared_ptr<const PreparedCell> prepared, const Properties& properties);
+  ScaledCell(const Scene& scene, std::shared_ptr<const SurrogateData> prepared, const Properties& properties);
 
   /// N, on a tip at `tip` (m), upright, at `time` (s).
   Eigen::Vector3d step(const Eigen::Vector3d& tip, double time);
 
   int layersPunctured() const { return cell_->insertion().layers_punctured; }
   bool touched() const { return cell_->contact().has_value(); }
-  bool trusted() const { return trusted_; }  ///< the last force
+  bool valid() const { return trusted_; }  ///< the last force
   /// E R^2 (N): the size of its forces.
   double forceScale() const { return force_scale_; }
 

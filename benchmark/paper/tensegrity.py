@@ -64,7 +64,7 @@ def items_of_mesh(data_dir):
              f'{1e3 * found["force_median_s"]:.2g}, {1e3 * found["force_99_s"]:.2g}', 'ms',
              REPRODUCED if served else DIFFERENCE,
              f'extrapolated from the last solution, which a thread of its own makes in {1e3 * found["solution_median_s"]:.0f} ms '
-             f'(median) of processor time; {100 * found["untrusted_share"]:.2g} % of the forces could not be trusted')]
+             f'(median) of processor time; {100 * found["untrusted_share"]:.2g} % of the forces could not be valid')]
 
 
 def items_of_loads(data_dir):

@@ -7,9 +7,9 @@
 
 #include "base/cpu_time.h"
 #include "benchmark/common/call_times.h"
-#include "cell/model/cell_tracker.h"
-#include "cell/model/tensegrity_cell.h"
 #include "cell/mechanics/largest_frequency.h"
+#include "cell/model/online_cell_model.h"
+#include "cell/model/tensegrity_cell.h"
 
 namespace microinjection {
 namespace {
@@ -51,17 +51,17 @@ void serve(const std::shared_ptr<const TensegrityCell>& cell, const Add& add) {
   CellTrackerConfig config;
   config.fixed_period = true;
   config.solution_period = 0.1;
-  CellTracker tracker(cell, config);
+  OnlineCellModel tracker(cell, config);
   const Eigen::Vector3d end = cell->structure().geometry().ends[topEnd(cell->structure().geometry())];
   std::vector<double> times, solutions;
-  int untrusted = 0;
+  int invalid = 0;
   for (int i = 0; i < kSteps; ++i) {
     const double time = 1e-3 * i;
     const Eigen::Vector3d tip = end + Eigen::Vector3d(0, 0, 5e-6 - 1e-8 * i);
     const double start = threadCpuTime();
     const TipForce force = tracker.step(tip, Eigen::Vector3d::UnitZ(), time);
     times.push_back(threadCpuTime() - start);
-    untrusted += !force.trusted;
+    invalid += !force.valid;
     if (const auto solution = tracker.solution(time)) solutions.push_back(solution->cpu_time);
   }
   add("force_median_s", quantile(times, 0.5));
@@ -69,7 +69,7 @@ void serve(const std::shared_ptr<const TensegrityCell>& cell, const Add& add) {
   add("force_longest_s", quantile(times, 1));
   add("solution_median_s", quantile(solutions, 0.5));
   add("solution_longest_s", quantile(solutions, 1));
-  add("untrusted_share", static_cast<double>(untrusted) / kSteps);
+  add("untrusted_share", static_cast<double>(invalid) / kSteps);
 }
 
 }  // namespace

@@ -14,9 +14,9 @@
 #include "base/errors.h"
 #include "base/standard_output.h"
 #include "cell/model/biomembrane.h"
-#include "cell/model/cell_model.h"
 #include "cell/model/converged_force.h"
 #include "cell/model/indentation.h"
+#include "cell/model/p1_cell.h"
 #include "cell/model/scene.h"
 #include "cell/model/tensegrity_cell.h"
 #include "commands/indent_arguments.h"
@@ -31,8 +31,8 @@ constexpr int kConverged = 0, kBadUsage = 2, kNotConverged = 3, kNotAccurate = 4
 template <typename Path, typename Solve>
 ForcePoint solveLive(Path& path, double depth, const Eigen::Vector2d& lateral, const Solve& solve) {
   const auto start = std::chrono::steady_clock::now();
-  const bool on_the_way = lateral.isZero(0) && -path.tipDisplacement().z() <= depth;
-  if (!on_the_way) path.reset();
+  const bool on_path = lateral.isZero(0) && -path.tipDisplacement().z() <= depth;
+  if (!on_path) path.reset();
   const IndentationSolution solution = solve(Eigen::Vector3d(lateral.x(), lateral.y(), -depth));
   ForcePoint point;
   point.depth = depth;
@@ -46,7 +46,7 @@ ForcePoint solveLive(Path& path, double depth, const Eigen::Vector2d& lateral, c
   return point;
 }
 
-TipPatch tipPatch(const DiscCell& cell) {
+TipPatch tipPatch(const DiscContactCell& cell) {
   const Eigen::Vector2d& offset = cell.scene().needle.offset;
   const TipPatch patch = cell.patchAt({offset.x(), offset.y(), cell.scene().radius()}, Eigen::Vector3d::UnitZ());
   std::fprintf(stderr, "indent: %s; %zu vertices under the tip\n", cell.description().c_str(), patch.vertices.size());
@@ -54,7 +54,7 @@ TipPatch tipPatch(const DiscCell& cell) {
 }
 
 std::vector<ForcePoint> live(const Scene& scene, const Indenting& indenting) {
-  const auto cell = std::make_shared<const CellModel>(scene);
+  const auto cell = std::make_shared<const P1Cell>(scene);
   Indentation indentation(cell, tipPatch(*cell));
   std::vector<ForcePoint> points;
   const auto solve = [&](const Eigen::Vector3d& target) { return indentation.solve(target); };

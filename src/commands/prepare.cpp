@@ -21,7 +21,7 @@
 #include "base/worker_processes.h"
 #include "cell/model/scene.h"
 #include "cell/surrogate/model_choice.h"
-#include "cell/surrogate/prepared_cell.h"
+#include "cell/surrogate/surrogate_data.h"
 #include "cell/surrogate/training_ray.h"
 
 namespace microinjection {
@@ -120,7 +120,7 @@ class Preparing {
     solveMissing();
     const std::vector<TrainingResult> results = loadAll();
     std::fprintf(stderr, "prepare: fitting\n");
-    const PreparedCell cell = PreparedCell::fit(scene_, plan_, results);
+    const SurrogateData cell = SurrogateData::fit(scene_, plan_, results);
     cell.save(scene_, plan_.range, path);
     if (cell.range.axis_depth < 0.999 * plan_.range.axis_depth) {
       std::fprintf(stderr, "prepare: on the axis the cell has a solution to %.3g um only\n",
@@ -152,7 +152,7 @@ class Preparing {
 
   bool wasPrepared(const std::string& path) const {
     if (arguments_.again) return false;
-    const auto prepared = PreparedCell::load(scene_, plan_.range, path);
+    const auto prepared = SurrogateData::load(scene_, plan_.range, path);
     tellDamage(prepared.state, prepared.reason);
     return static_cast<bool>(prepared);
   }

@@ -47,31 +47,31 @@ double number(const std::string& cell, const std::string& path) {
 }
 
 /// From its start to its deepest place.
-void cutAtDeepest(std::vector<TouchedMoment>& contact) {
+void cutAtDeepest(std::vector<ContactSample>& contact) {
   const auto deepest = std::min_element(contact.begin(), contact.end(),
                                         [](const auto& a, const auto& b) { return a.tip.z() < b.tip.z(); });
   if (deepest != contact.end()) contact.erase(deepest + 1, contact.end());
 }
 
 /// From its start to its largest force.
-void cutAtPuncture(std::vector<TouchedMoment>& contact) {
+void cutAtPuncture(std::vector<ContactSample>& contact) {
   const auto largest = std::max_element(contact.begin(), contact.end(),
                                         [](const auto& a, const auto& b) { return a.axial_force < b.axial_force; });
   if (largest != contact.end()) contact.erase(largest + 1, contact.end());
 }
 
-double depth(const std::vector<TouchedMoment>& way) {
+double depth(const std::vector<ContactSample>& way) {
   return way.empty() ? 0 : way.front().tip.z() - way.back().tip.z();
 }
 
 }  // namespace
 
-std::vector<TouchedMoment> readWayIn(const std::string& path) {
+std::vector<ContactSample> readIndentationPath(const std::string& path) {
   std::ifstream file(path);
   std::string line;
   if (!std::getline(file, line)) throw ConfigError(path + ": cannot be read");
   const Columns columns(split(line), path);
-  std::vector<TouchedMoment> longest, contact;
+  std::vector<ContactSample> longest, contact;
   const auto end = [&] {
     cutAtDeepest(contact);
     if (depth(contact) > depth(longest)) longest = contact;
@@ -90,7 +90,7 @@ std::vector<TouchedMoment> readWayIn(const std::string& path) {
       continue;
     }
     if (cells[columns.force].empty() || cells[columns.z].empty()) continue;
-    TouchedMoment moment;
+    ContactSample moment;
     moment.tip = {number(cells[columns.x], path), number(cells[columns.y], path), number(cells[columns.z], path)};
     moment.axial_force = number(cells[columns.force], path);
     contact.push_back(moment);
@@ -100,10 +100,10 @@ std::vector<TouchedMoment> readWayIn(const std::string& path) {
   return longest;
 }
 
-std::vector<TouchedMoment> thinOut(const std::vector<TouchedMoment>& way, int count) {
-  std::vector<TouchedMoment> result;
+std::vector<ContactSample> thinOut(const std::vector<ContactSample>& way, int count) {
+  std::vector<ContactSample> result;
   const double top = way.front().tip.z(), all = depth(way);
-  for (const TouchedMoment& moment : way) {
+  for (const ContactSample& moment : way) {
     const double wanted = all * static_cast<double>(result.size() + 1) / count;
     if (static_cast<int>(result.size()) < count && top - moment.tip.z() >= wanted * (1 - 1e-12)) {
       result.push_back(moment);

@@ -7,7 +7,7 @@
 namespace microinjection {
 
 /// A moment of a recorded session in which the tip touched the cell.
-struct TouchedMoment {
+struct ContactSample {
   Eigen::Vector3d tip = Eigen::Vector3d::Zero();  ///< m, in the world
   double axial_force = 0;                         ///< N, predicted, along the pipette
 };
@@ -16,9 +16,9 @@ struct TouchedMoment {
 /// deepest place before the contact ended, or to where a layer gave way (column punctured, where there is one: the
 /// cell says so some milliseconds late, hence the largest force before). Throws ConfigError when the file cannot be
 /// read, lacks a column or has no contact.
-std::vector<TouchedMoment> readWayIn(const std::string& path);
+std::vector<ContactSample> readIndentationPath(const std::string& path);
 
 /// `count` moments of a way in, evenly in depth, the deepest the last.
-std::vector<TouchedMoment> thinOut(const std::vector<TouchedMoment>& way, int count);
+std::vector<ContactSample> thinOut(const std::vector<ContactSample>& way, int count);
 
 }  // namespace microinjection

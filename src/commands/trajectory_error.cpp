@@ -13,7 +13,7 @@
 #include "base/errors.h"
 #include "base/standard_output.h"
 #include "cell/model/cell_problem.h"
-#include "cell/model/contact_place.h"
+#include "cell/model/contact_frame.h"
 #include "cell/model/scene_mesh.h"
 #include "commands/trajectory.h"
 
@@ -54,16 +54,16 @@ int compare(const Arguments& arguments) {
     throw ConfigError("viscoelasticity of layer " + layer.name +
                       ": must be left out: the session's times are not known here");
   }
-  const std::vector<TouchedMoment> way = readWayIn(arguments.session);
+  const std::vector<ContactSample> way = readIndentationPath(arguments.session);
   scene.needle.offset = way.front().tip.head<2>();
-  const auto place = ContactPlace::at(scene, scene.needle.offset);
+  const auto place = ContactFrame::at(scene, scene.needle.offset);
   if (!place) throw ConfigError(arguments.session + ": the tip is beside the cell of " + arguments.scene);
   CellProblem<3> problem(scene, makeSceneMesh<3>(scene, arguments.level), ElementKind::kP2P0);
   std::string table = "depth_m,session_N,full_N,error\n";
   std::cout << table;
   flushStandardOutput();
   std::vector<double> errors;
-  for (const TouchedMoment& moment : thinOut(way, arguments.points)) {
+  for (const ContactSample& moment : thinOut(way, arguments.points)) {
     const IndentationSolution full = problem.solve(moment.tip - place->origin);
     if (!full.converged) throw std::runtime_error("the full solution is lost: " + full.reason);
     if (!(full.force.z() > 0)) continue;  // still above the mesh's first point of contact

@@ -4,10 +4,10 @@
 #include <utility>
 
 #include "base/errors.h"
+#include "cell/surrogate/make_cell_model.h"
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/node_parameters.h"
 #include "nodes/runtime/run_node.h"
-#include "cell/surrogate/serve_needle.h"
 
 namespace microinjection {
 
@@ -37,22 +37,22 @@ CellSimulatorNode::Parameters CellSimulatorNode::Parameters::read(const ros::Nod
 CellSimulatorNode::CellSimulatorNode(ros::NodeHandle node, ros::NodeHandle private_node)
     : parameters_(Parameters::read(private_node)),
       cycle_(node, parameters_.rate),
-      needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/" + parameters_.needle + "_cp", Phase::kSameTick,
+      needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/" + parameters_.needle + "_cp", InputPhase::kThisTick,
                                                        parameters_.needle_timeout)),
       force_(cycle_.output<geometry_msgs::WrenchStamped>("cell/predicted_cf")),
       state_(cycle_.output<cell_microinjection::CellState>("cell/state", true)) {
   parameters_.tracker.fixed_period = cycle_.lockstep();
   cell_ = makeCell();
-  untrusted_.reserve(200);  // no step has to find memory for it
+  invalid_reason_.reserve(200);  // no step has to find memory for it
   using Thread = CellStatePublisher::Thread;
   const auto thread = cycle_.lockstep() ? Thread::kOfTheStep : Thread::kOwn;
   state_publisher_ = std::make_unique<CellStatePublisher>(*cell_, state_, parameters_.state_rate, thread);
   cycle_.diagnostics().add("solver", [this](auto& status) { report(status); });
 }
 
-std::unique_ptr<CellUnderNeedle> CellSimulatorNode::makeCell() const {
+std::unique_ptr<CellModel> CellSimulatorNode::makeCell() const {
   const Scene scene = loadScene(parameters_.scene);
-  ServedCell served = serveNeedle(scene, parameters_.model, parameters_.tracker, parameters_.scene);
+  ChosenCellModel served = makeCellModel(scene, parameters_.model, parameters_.tracker, parameters_.scene);
   if (served.as_required) {
     ROS_INFO_STREAM(served.said);
   } else {
@@ -68,16 +68,16 @@ void CellSimulatorNode::run() {
 void CellSimulatorNode::step(const Cycle::Tick& tick) {
   TipForce force{false, Eigen::Vector3d::Zero()};
   const auto* message = needle_.get(tick.now);
-  const auto pose = trustedPose(message);
+  const auto pose = validPose(message);
   if (pose) {
     force = cell_->step(pose->translation(), pose->linear().col(2), tick.now.toSec());
-    untrusted_ = cell_->distrust();
+    invalid_reason_ = cell_->invalidReason();
   } else {
-    untrusted_ = "no trusted needle pose";
+    invalid_reason_ = "no valid needle pose";
   }
   const ros::Time stamp = message ? message->header.stamp : tick.now;
   const auto wrench = toWrench(force.force, stamp, kWorldFrame);
-  if (force.trusted) {
+  if (force.valid) {
     force_.publish(wrench);
   } else {
     force_.publishInvalid(wrench);
@@ -92,17 +92,17 @@ CellMoment CellSimulatorNode::moment(const ros::Time& now, const TipForce& force
   moment.contact = cell_->contact();
   moment.solution = cell_->solution(now.toSec());
   moment.insertion = cell_->insertion();
-  moment.setReason(untrusted_);
+  moment.setReason(invalid_reason_);
   return moment;
 }
 
 void CellSimulatorNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
-  const bool good = untrusted_.empty();
+  const bool good = invalid_reason_.empty();
   status.summary(good ? diagnostic_msgs::DiagnosticStatus::OK : diagnostic_msgs::DiagnosticStatus::WARN,
                  good ? (cell_->insertion().inside ? "punctured"
                          : cell_->contact()        ? "in contact"
                                                    : "free")
-                      : untrusted_);
+                      : invalid_reason_);
   if (const auto solution = cell_->solution(ros::Time::now().toSec())) {
     status.add("Newton iterations", solution->newton_iterations);
     status.add("solution time (s of CPU)", solution->cpu_time);

@@ -7,15 +7,15 @@
 #include <memory>
 #include <string>
 
-#include "cell/model/cell_tracker.h"
-#include "cell/model/cell_under_needle.h"
+#include "cell/model/cell_model.h"
+#include "cell/model/online_cell_model.h"
 #include "cell_microinjection/CellState.h"
 #include "nodes/cell/cell_state_publisher.h"
 #include "nodes/runtime/cycle.h"
 
 namespace microinjection {
 
-/// The cell under the needle: a prepared one (see PreparedCell) or a live one (see makeLiveCell). Where it has no
+/// The cell under the needle: a prepared one (see SurrogateData) or a live one (see makeLiveCell). Where it has no
 /// trustworthy force it says so: the wrench then has stamp 0.
 ///
 /// In:  /needle/measured_cp or /needle/true_cp (PoseStamped, tip in `world`)
@@ -47,18 +47,18 @@ class CellSimulatorNode {
     static Parameters read(const ros::NodeHandle& private_node);
   };
 
-  std::unique_ptr<CellUnderNeedle> makeCell() const;
+  std::unique_ptr<CellModel> makeCell() const;
   void step(const Cycle::Tick& tick);
   CellMoment moment(const ros::Time& now, const TipForce& force) const;
   void report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   Parameters parameters_;
   Cycle cycle_;
-  std::unique_ptr<CellUnderNeedle> cell_;
+  std::unique_ptr<CellModel> cell_;
   Input<geometry_msgs::PoseStamped>& needle_;
   Output<geometry_msgs::WrenchStamped>& force_;
   Output<cell_microinjection::CellState>& state_;
-  std::string untrusted_;                                ///< why the last force was not to be trusted; else empty
+  std::string invalid_reason_;                           ///< why the last force was not to be valid; else empty
   std::unique_ptr<CellStatePublisher> state_publisher_;  ///< last: it uses cell and output in a thread of its own
 };
 

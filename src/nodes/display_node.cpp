@@ -132,14 +132,14 @@ void DisplayNode::onState(const cell_microinjection::CellState& message) {
   cell_changed_ = true;
 }
 
-void DisplayNode::lookForTip() {
+void DisplayNode::findTipTransform() {
   const bool was_known = state_.tip.has_value();
   state_.tip = frames_.find("world", "needle_tip");
-  if (state_.tip.has_value() != was_known) still_drawn_ = {};  // the pipette comes or goes at once
+  if (state_.tip.has_value() != was_known) fixed_drawn_ = {};  // the pipette comes or goes at once
 }
 
 void DisplayNode::onHand(const geometry_msgs::PoseStamped& message) {
-  state_.readout.hand = isValid(message) ? trustedPosition(&message, message.header.frame_id) : std::nullopt;
+  state_.readout.hand = isValid(message) ? validPosition(&message, message.header.frame_id) : std::nullopt;
   count(kHand, state_.readout.hand.has_value());
 }
 
@@ -150,7 +150,7 @@ void DisplayNode::onInjection(const cell_microinjection::InjectionStatus& messag
 
 void DisplayNode::onMeasuredForce(const geometry_msgs::WrenchStamped& message) {
   const Eigen::Isometry3d tip = state_.tip.value_or(Eigen::Isometry3d::Identity());
-  state_.measured = isValid(message) ? trustedForce(&message, tip.linear()) : std::nullopt;
+  state_.measured = isValid(message) ? validForce(&message, tip.linear()) : std::nullopt;
   state_.readout.measured = magnitude(state_.measured);
   count(kMeasured, state_.measured.has_value());
 }
@@ -158,7 +158,7 @@ void DisplayNode::onMeasuredForce(const geometry_msgs::WrenchStamped& message) {
 void DisplayNode::draw() {
   const ros::WallTime start = ros::WallTime::now();
   frames_.update();
-  lookForTip();
+  findTipTransform();
   if (state_.tip) frames_.publishNeedleTip(*state_.tip);
   if (markers_.getNumSubscribers() > 0) {
     visualization_msgs::MarkerArray markers;
@@ -168,14 +168,14 @@ void DisplayNode::draw() {
     markers_.publish(markers);
   }
   if (still_.getNumSubscribers() > 0 &&
-      (scene_.stillChanged() || start - still_drawn_ > ros::WallDuration(kStillPeriod))) {
+      (scene_.fixedChanged() || start - fixed_drawn_ > ros::WallDuration(kStillPeriod))) {
     state_.holding_from_cell = frames_.find("holding_pipette", state_.cell_frame);
     visualization_msgs::MarkerArray markers;
-    scene_.drawStill(state_, markers);
+    scene_.drawFixed(state_, markers);
     still_.publish(markers);
-    still_drawn_ = start;
+    fixed_drawn_ = start;
   }
-  if (master_.orphaned()) {
+  if (master_.masterLostForLong()) {
     ROS_ERROR("the ROS master has been away for too long: this node ends");
     ros::requestShutdown();
   }

@@ -13,7 +13,7 @@
 
 #include "nodes/display/display_frames.h"
 #include "nodes/display/display_scene.h"
-#include "nodes/runtime/master_watch.h"
+#include "nodes/runtime/master_monitor.h"
 
 namespace microinjection {
 
@@ -53,7 +53,7 @@ class DisplayNode {
   void onMeasuredForce(const geometry_msgs::WrenchStamped& message);
   template <typename Message>
   void listen(const ros::NodeHandle& node, InputId input, void (DisplayNode::*handler)(const Message&));
-  void lookForTip();
+  void findTipTransform();
   void count(InputId input, bool drawn);
 
   void draw();
@@ -64,11 +64,11 @@ class DisplayNode {
   DisplayScene scene_;
   DisplayFrames frames_;
   DisplayedState state_;  ///< the latest input
-  MasterWatch master_{true};
+  MasterMonitor master_{true};
   bool cell_changed_ = false;  ///< since it was drawn
   std::array<Input, kInputs> inputs_;
 
-  ros::WallTime still_drawn_;  ///< when the markers that stay were last sent
+  ros::WallTime fixed_drawn_;  ///< when the markers that stay were last sent
   ros::WallTime reported_;
   unsigned drawings_ = 0;       ///< since reported_
   double longest_drawing_ = 0;  ///< s of wall time, since reported_

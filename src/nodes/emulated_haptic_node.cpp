@@ -40,7 +40,7 @@ EmulatedHapticNode::EmulatedHapticNode(ros::NodeHandle node, ros::NodeHandle pri
       force_(cycle_.output<geometry_msgs::WrenchStamped>("emulated_haptic/measured_cf")),
       phase_(cycle_.output<cell_microinjection::StringStamped>("operator/phase", true)) {
   if (cycle_.lockstep() && driver_->hasUnstampedButtons()) {
-    present_ = &cycle_.input<sensor_msgs::Joy>("haptic/operator_present", Phase::kTickBefore,
+    present_ = &cycle_.input<sensor_msgs::Joy>("haptic/operator_present", InputPhase::kPreviousTick,
                                                std::numeric_limits<double>::infinity());
   }
   at_.position = hand_.position();
@@ -70,7 +70,7 @@ void EmulatedHapticNode::step(const Cycle::Tick& tick) {
   if (buttonHasComeThrough(tick.now)) elapsed_ += tick.dt;
   const double time = std::max(0.0, elapsed_ - parameters_.start_delay);
   const HandMotion::Sample meant = motion_.at(time);
-  driver_->hear(at_);
+  driver_->process(at_);
   const Eigen::Vector3d force = driver_->render(at_);
   const Eigen::Vector3d before = hand_.position();
   hand_.step(meant.position, force.allFinite() ? force : Eigen::Vector3d::Zero(), tick.dt);
@@ -79,19 +79,19 @@ void EmulatedHapticNode::step(const Cycle::Tick& tick) {
   at_.clutch = meant.clutch;
   at_.present = elapsed_ >= parameters_.start_delay / 2 && meant.phase != "away";
   at_.inject = meant.phase == "inject";
-  driver_->tell(at_, tick.now);
+  driver_->publish(at_, tick.now);
   force_.publish(toWrench(force, tick.now, "view"));
   publishPhase(tick.now, time >= motion_.duration() ? "done" : meant.phase);
   meter_.step(tick.now);
 }
 
 void EmulatedHapticNode::publishPhase(const ros::Time& now, const std::string& phase) {
-  if (phase_said_ == phase) return;
+  if (phase_published_ == phase) return;
   cell_microinjection::StringStamped message;
   message.header.stamp = now;
   message.string = phase;
   phase_.publish(message);
-  phase_said_ = phase;
+  phase_published_ = phase;
 }
 
 }  // namespace microinjection

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "cell_microinjection/StringStamped.h"
-#include "nodes/runtime/cycle.h"
 #include "nodes/haptic/emulated_driver.h"
+#include "nodes/runtime/cycle.h"
 #include "nodes/runtime/round_trip_meter.h"
 #include "operation/teleoperation/hand_motion.h"
 #include "operation/teleoperation/virtual_hand.h"
@@ -65,7 +65,7 @@ class EmulatedHapticNode {
   Input<sensor_msgs::Joy>* present_ = nullptr;  ///< what came of the dead-man; null: not waited for
   EmulatedHand at_;
   double elapsed_ = 0;  ///< s of steps; a stall of the machine pauses the hand
-  std::string phase_said_;
+  std::string phase_published_;
 };
 
 }  // namespace microinjection

@@ -68,7 +68,7 @@ void ForceSensorNode::advertiseServices(ros::NodeHandle private_node) {
   private_node.setCallbackQueue(cycle_.node().getCallbackQueue());
   tare_ = private_node.advertiseService<Trigger::Request, Trigger::Response>(
       "tare", [this](Trigger::Request&, Trigger::Response& response) {
-        const std::string refusal = unready().empty() ? readout_.beginTare() : unready();
+        const std::string refusal = notReadyReason().empty() ? readout_.beginTare() : notReadyReason();
         response.success = refusal.empty();
         response.message = refusal.empty() ? readout_.outcome() : refusal;
         return true;
@@ -97,7 +97,7 @@ bool ForceSensorNode::calibrate(cell_microinjection::CalibrateForce::Request& re
 std::string ForceSensorNode::act(const cell_microinjection::CalibrateForce::Request& request) {
   switch (request.action) {
     case cell_microinjection::CalibrateForce::Request::ADD: {
-      if (!unready().empty()) return unready();
+      if (!notReadyReason().empty()) return notReadyReason();
       const Eigen::Vector3d at_tip(request.force.x, request.force.y, request.force.z);
       const Eigen::Vector3d known = tip_from_sensor_.linear().transpose() * at_tip;
       return readout_.beginPoint(Eigen::Vector2d(known.z(), known.x()));
@@ -112,9 +112,9 @@ std::string ForceSensorNode::act(const cell_microinjection::CalibrateForce::Requ
   }
 }
 
-std::string ForceSensorNode::unready() const {
+std::string ForceSensorNode::notReadyReason() const {
   if (source_->overloaded()) return "the sensor is overloaded: reset it first";
-  return source_->untrusted();
+  return source_->invalid();
 }
 
 void ForceSensorNode::run() {
@@ -123,7 +123,7 @@ void ForceSensorNode::run() {
 
 void ForceSensorNode::step(const Cycle::Tick& tick) {
   const auto signal = source_->read(tick);
-  if (!source_->untrusted().empty() || source_->overloaded()) return publishInvalid(tick);
+  if (!source_->invalid().empty() || source_->overloaded()) return publishInvalid(tick);
   if (!signal) return;
   raw_.publish(signal->raw);
   measured_.publish(atTip(readout_.read(signal->values, tick.now.toSec()), signal->stamp));
@@ -150,8 +150,8 @@ void ForceSensorNode::report(diagnostic_updater::DiagnosticStatusWrapper& status
   using diagnostic_msgs::DiagnosticStatus;
   if (source_->overloaded()) {
     status.summary(DiagnosticStatus::ERROR, "overloaded; wants the service ~reset");
-  } else if (!source_->untrusted().empty()) {
-    status.summary(DiagnosticStatus::WARN, source_->untrusted());
+  } else if (!source_->invalid().empty()) {
+    status.summary(DiagnosticStatus::WARN, source_->invalid());
   } else {
     status.summary(source_->saturated() ? DiagnosticStatus::WARN : DiagnosticStatus::OK,
                    source_->saturated() ? "saturated" : "measures");

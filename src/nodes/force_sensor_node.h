@@ -8,8 +8,8 @@
 #include <memory>
 #include <string>
 
-#include "nodes/runtime/cycle.h"
 #include "nodes/needle/force_sources.h"
+#include "nodes/runtime/cycle.h"
 #include "rig/sensor/force_readout.h"
 
 namespace microinjection {
@@ -23,7 +23,7 @@ namespace microinjection {
 ///      topic:     /force_sensor/device_cf (WrenchStamped in any frame that tf joins to `needle_tip`)
 /// Out: /force_sensor/measured_cf (WrenchStamped at the tip in `needle_tip`, tared and calibrated)
 ///      /force_sensor/raw_cf (WrenchStamped in the sensor's frame, as it is; a two-axis sensor measures no torque)
-///      both with stamp 0 when there is no trusted force to sense, and from an overload to a reset
+///      both with stamp 0 when there is no valid force to sense, and from an overload to a reset
 /// Services: ~tare, ~reset (std_srvs/Trigger), ~calibrate (CalibrateForce; two-axis sensors). Averages take their time:
 ///      a service only begins one, and its outcome is on /diagnostics.
 ///
@@ -68,7 +68,7 @@ class ForceSensorNode {
   bool calibrate(cell_microinjection::CalibrateForce::Request& request,
                  cell_microinjection::CalibrateForce::Response& response);
   std::string act(const cell_microinjection::CalibrateForce::Request& request);
-  std::string unready() const;
+  std::string notReadyReason() const;
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
   Parameters parameters_;

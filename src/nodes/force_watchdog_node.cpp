@@ -1,8 +1,8 @@
 #include "nodes/force_watchdog_node.h"
 
 #include "nodes/runtime/node_parameters.h"
-#include "nodes/runtime/stamps.h"
 #include "nodes/runtime/run_node.h"
+#include "nodes/runtime/stamps.h"
 
 namespace microinjection {
 
@@ -34,11 +34,11 @@ ForceWatchdogNode::ForceWatchdogNode(const ros::NodeHandle& node, const ros::Nod
 
 void ForceWatchdogNode::run() {
   // Wakes up by the wall's time: it must also do so when nothing else does.
-  for (ros::WallRate rate(parameters_.rate); ros::ok() && !master_.orphaned(); rate.sleep()) {
+  for (ros::WallRate rate(parameters_.rate); ros::ok() && !master_.masterLostForLong(); rate.sleep()) {
     ros::spinOnce();
     const ros::Time now = ros::Time::now();
     if (heard_.isZero() && !parameters_.from_start) continue;
-    if (secondsBetween(heard_, now) >= parameters_.timeout) force_->sayZero(now);
+    if (secondsBetween(heard_, now) >= parameters_.timeout) force_->publishZeroForce(now);
   }
 }
 

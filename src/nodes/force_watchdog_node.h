@@ -6,7 +6,7 @@
 #include <string>
 
 #include "nodes/haptic/watched_force.h"
-#include "nodes/runtime/master_watch.h"
+#include "nodes/runtime/master_monitor.h"
 
 namespace microinjection {
 
@@ -39,7 +39,7 @@ class ForceWatchdogNode {
     static Parameters read(const ros::NodeHandle& node, const ros::NodeHandle& private_node);
   };
 
-  const MasterWatch master_{true};
+  const MasterMonitor master_{true};
   Parameters parameters_;
   ros::Time heard_;  ///< when another node's force came last
   std::unique_ptr<WatchedForce> force_;

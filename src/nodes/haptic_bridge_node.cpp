@@ -2,11 +2,11 @@
 
 #include <limits>
 
+#include "nodes/link/link_messages.h"
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/ending.h"
 #include "nodes/runtime/force_topic.h"
 #include "nodes/runtime/latency_meter.h"
-#include "nodes/link/link_messages.h"
 #include "nodes/runtime/node_parameters.h"
 #include "nodes/runtime/run_node.h"
 
@@ -62,15 +62,15 @@ HapticBridgeNode::HapticBridgeNode(ros::NodeHandle node, ros::NodeHandle private
     : parameters_(Parameters::read(private_node)),
       model_(parameters_.model),
       cycle_(node, parameters_.rate),
-      hand_(
-          cycle_.input<geometry_msgs::PoseStamped>("haptic/measured_cp", Phase::kSameTick, parameters_.timeouts.hand)),
-      clutch_(
-          cycle_.input<sensor_msgs::Joy>("haptic/clutch", Phase::kTickBefore, orForEver(parameters_.timeouts.clutch))),
+      hand_(cycle_.input<geometry_msgs::PoseStamped>("haptic/measured_cp", InputPhase::kThisTick,
+                                                     parameters_.timeouts.hand)),
+      clutch_(cycle_.input<sensor_msgs::Joy>("haptic/clutch", InputPhase::kPreviousTick,
+                                             orForEver(parameters_.timeouts.clutch))),
       hand_force_(cycle_.output<geometry_msgs::WrenchStamped>("haptic/servo_cf")),
       trace_(cycle_.output<sensor_msgs::TimeReference>("haptic/force_trace")),
       receiver_(hand_force_.publisher, parameters_.force_feedback && !cycle_.lockstep()) {
   if (parameters_.model.require_operator) {
-    operator_present_ = &cycle_.input<sensor_msgs::Joy>("haptic/operator_present", Phase::kTickBefore,
+    operator_present_ = &cycle_.input<sensor_msgs::Joy>("haptic/operator_present", InputPhase::kPreviousTick,
                                                         orForEver(parameters_.timeouts.operator_present));
   }
   receiver_.watch(hand_);
@@ -79,14 +79,14 @@ HapticBridgeNode::HapticBridgeNode(ros::NodeHandle node, ros::NodeHandle private
 }
 
 void HapticBridgeNode::connectRig() {
-  needle_ =
-      &cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", Phase::kTickBefore, parameters_.timeouts.needle);
+  needle_ = &cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", InputPhase::kPreviousTick,
+                                                      parameters_.timeouts.needle);
   predicted_ = forceInput(parameters_.model.force.usesPredicted(), "predicted", parameters_.timeouts.predicted);
   measured_ = forceInput(parameters_.model.force.usesMeasured(), "measured", parameters_.timeouts.measured);
   target_ = &cycle_.output<geometry_msgs::PoseStamped>("teleop/servo_cp");
   if (parameters_.timeouts.controller <= 0) return;
-  controller_ = &cycle_.input<cell_microinjection::InjectionStatus>("controller/injection_state", Phase::kTickBefore,
-                                                                    parameters_.timeouts.controller);
+  controller_ = &cycle_.input<cell_microinjection::InjectionStatus>(
+      "controller/injection_state", InputPhase::kPreviousTick, parameters_.timeouts.controller);
 }
 
 void HapticBridgeNode::connectLink() {
@@ -94,7 +94,7 @@ void HapticBridgeNode::connectLink() {
   link_ = std::make_unique<LinkLeader>(parameters_.link, parameters_.model.motion.position_scale,
                                        parameters_.model.force_gain, ros::WallTime::now().toNSec());
   cycle_
-      .input<cell_microinjection::LinkPacket>("link/hand/received", Phase::kTickBefore,
+      .input<cell_microinjection::LinkPacket>("link/hand/received", InputPhase::kPreviousTick,
                                               std::numeric_limits<double>::infinity())
       .listen([this](const auto& message, const ros::Time&) {
         if (isPlausible("link/hand/received", message)) link_->receive(toPacket(message));
@@ -105,22 +105,22 @@ void HapticBridgeNode::connectLink() {
 Input<geometry_msgs::WrenchStamped>* HapticBridgeNode::forceInput(bool used, const std::string& source,
                                                                   double timeout) {
   if (!used) return nullptr;
-  return &cycle_.input<geometry_msgs::WrenchStamped>(forceTopic(source), Phase::kTickBefore, timeout);
+  return &cycle_.input<geometry_msgs::WrenchStamped>(forceTopic(source), InputPhase::kPreviousTick, timeout);
 }
 
 void HapticBridgeNode::run() {
   cycle_.run([this](const Cycle::Tick& tick) {
-    if (askedToEnd()) {
+    if (shutdownRequested()) {
       cycle_.stop();
     } else {
       step(tick);
     }
   });
-  sayZeroForce();
+  publishZeroForce();
 }
 
 /// For a driver that holds the last force.
-void HapticBridgeNode::sayZeroForce() {
+void HapticBridgeNode::publishZeroForce() {
   for (int i = 0; i < kLastForces && ros::ok(); ++i) {
     const ros::Time now = ros::Time::now();
     hand_force_.publish(toWrench(Eigen::Vector3d::Zero(), now, hand_frame_));
@@ -142,7 +142,7 @@ bool HapticBridgeNode::operatorPresent(const ros::Time& now) const {
   return joy && !joy->buttons.empty() && heldDown(*joy);
 }
 
-void HapticBridgeNode::lookAtRig(HapticBridge::Input& input, const Cycle::Tick& tick) {
+void HapticBridgeNode::readRig(HapticBridge::Input& input, const Cycle::Tick& tick) {
   if (link_) {
     // Whichever source the rig feels it from.
     const auto force = link_->step(tick.dt);
@@ -150,12 +150,12 @@ void HapticBridgeNode::lookAtRig(HapticBridge::Input& input, const Cycle::Tick& 
     if (force) input.force.predicted = input.force.measured = *force / parameters_.model.force_gain;
     return;
   }
-  const auto needle = trustedPose(needle_->get(tick.now));
+  const auto needle = validPose(needle_->get(tick.now));
   without_controller_ = !controllerLives(tick.now);
   if (!needle || without_controller_) return;
   input.needle = needle->translation();
-  input.force.predicted = trustedForce(predicted_ ? predicted_->get(tick.now) : nullptr, needle->linear());
-  input.force.measured = trustedForce(measured_ ? measured_->get(tick.now) : nullptr, needle->linear());
+  input.force.predicted = validForce(predicted_ ? predicted_->get(tick.now) : nullptr, needle->linear());
+  input.force.measured = validForce(measured_ ? measured_->get(tick.now) : nullptr, needle->linear());
 }
 
 void HapticBridgeNode::sendToRig(const Cycle::Tick& tick) {
@@ -183,8 +183,8 @@ void HapticBridgeNode::step(const Cycle::Tick& tick) {
   if (hand) hand_frame_ = hand->header.frame_id;
   // Of a device that tells changes only: when it fell silent it may have missed to tell the last one.
   if (!hand && operator_present_ && parameters_.timeouts.operator_present <= 0) operator_present_->invalidate();
-  if (hand) input.hand = trustedPosition(hand, hand->header.frame_id, kLargestHandDistance);
-  lookAtRig(input, tick);
+  if (hand) input.hand = validPosition(hand, hand->header.frame_id, kLargestHandDistance);
+  readRig(input, tick);
   input.clutch = clutchPressed(tick.now);
   input.operator_present = operatorPresent(tick.now);
   if (!receiver_.feels()) input.unfelt = receiver_.why();
@@ -194,11 +194,11 @@ void HapticBridgeNode::step(const Cycle::Tick& tick) {
 }
 
 void HapticBridgeNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) const {
-  const bool good = output_.held_because.empty();
+  const bool good = output_.hold_reason.empty();
   status.summary(good ? diagnostic_msgs::DiagnosticStatus::OK : diagnostic_msgs::DiagnosticStatus::WARN,
                  good                  ? "the loop is closed"
                  : without_controller_ ? "needle held, zero force: the controller is silent"
-                                       : "needle held, zero force: " + output_.held_because);
+                                       : "needle held, zero force: " + output_.hold_reason);
   status.add("state", Engagement::name(output_.state));
   status.add("force source", parameters_.model.force.source);
   status.add("tremor filter's delay (s)", model_.delay());
@@ -214,5 +214,5 @@ void HapticBridgeNode::report(diagnostic_updater::DiagnosticStatusWrapper& statu
 
 int main(int argc, char** argv) {
   using namespace microinjection;
-  return runNode<HapticBridgeNode>(argc, argv, "haptic_bridge", Priority::kRealTime, Ending::kInGoodOrder);
+  return runNode<HapticBridgeNode>(argc, argv, "haptic_bridge", Priority::kRealTime, ShutdownMode::kInGoodOrder);
 }

@@ -11,14 +11,14 @@
 
 #include "cell_microinjection/InjectionStatus.h"
 #include "cell_microinjection/LinkPacket.h"
-#include "nodes/runtime/cycle.h"
 #include "nodes/haptic/force_receiver.h"
+#include "nodes/runtime/cycle.h"
 #include "operation/teleoperation/haptic_bridge.h"
 #include "operation/teleoperation/link_leader.h"
 
 namespace microinjection {
 
-/// Couples a haptic device to the needle. Without a trusted hand, needle or force it renders zero force and withdraws
+/// Couples a haptic device to the needle. Without a valid hand, needle or force it renders zero force and withdraws
 /// its target (stamp 0), so that the controller holds the needle. It does so without a controller, too: the needle then
 /// does not follow, and what it feels is no answer to the hand; and while the node that tells the hand's position does
 /// not subscribe to the force on it (haptic/force_receiver.h). Zero force is also the last that it says.
@@ -70,14 +70,14 @@ class HapticBridgeNode {
   void step(const Cycle::Tick& tick);
   void connectRig();
   void connectLink();
-  void lookAtRig(HapticBridge::Input& input, const Cycle::Tick& tick);
+  void readRig(HapticBridge::Input& input, const Cycle::Tick& tick);
   void sendToRig(const Cycle::Tick& tick);
   void trace(const Cycle::Tick& tick);
   Input<geometry_msgs::WrenchStamped>* forceInput(bool used, const std::string& source, double timeout);
   bool clutchPressed(const ros::Time& now) const;
   bool operatorPresent(const ros::Time& now) const;
   bool controllerLives(const ros::Time& now) const;
-  void sayZeroForce();
+  void publishZeroForce();
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
   Parameters parameters_;

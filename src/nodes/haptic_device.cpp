@@ -3,5 +3,5 @@
 
 int main(int argc, char** argv) {
   using namespace microinjection;
-  return runNode<HapticDeviceNode>(argc, argv, "haptic_device", Priority::kRealTime, Ending::kInGoodOrder);
+  return runNode<HapticDeviceNode>(argc, argv, "haptic_device", Priority::kRealTime, ShutdownMode::kInGoodOrder);
 }

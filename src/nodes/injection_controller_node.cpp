@@ -30,7 +30,7 @@ bool moves(const std::string& command) { return command == "home" || command == 
 }  // namespace
 
 const char* const InjectionControllerNode::kHelp =
-    "injection_controller: decides where the needle goes and holds it when an input cannot be trusted.\n"
+    "injection_controller: decides where the needle goes and holds it when an input cannot be valid.\n"
     "In: /teleop/servo_cp /needle/measured_cp, /cell/predicted_cf or /force_sensor/measured_cf, /injector/state,\n"
     "/needle/abilities, /controller/state_command (enable, disable, pause, resume, home, unhome, approach, indent,\n"
     "inject, withdraw). Action: /controller/inject. Out: /needle/servo_cp /controller/operating_state\n"
@@ -57,16 +57,17 @@ InjectionControllerNode::InjectionControllerNode(ros::NodeHandle node, ros::Node
     : parameters_(Parameters::read(private_node)),
       model_(parameters_.model),
       cycle_(node, parameters_.rate),
-      needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", Phase::kTickBefore,
+      needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", InputPhase::kPreviousTick,
                                                        parameters_.input_timeout)),
-      force_(cycle_.input<geometry_msgs::WrenchStamped>(forceTopic(parameters_.force_source), Phase::kTickBefore,
+      force_(cycle_.input<geometry_msgs::WrenchStamped>(forceTopic(parameters_.force_source), InputPhase::kPreviousTick,
                                                         parameters_.input_timeout)),
       setpoint_(cycle_.output<geometry_msgs::PoseStamped>("needle/servo_cp")),
       injection_(cycle_.output<cell_microinjection::InjectionStatus>("controller/injection_state", true)),
       action_(cycle_.node(), model_, parameters_.model.goal),
       repeated_(cycle_.node().resolveName(kStateTopic)) {
   if (parameters_.model.mode == "manual") {
-    target_ = &cycle_.input<geometry_msgs::PoseStamped>("teleop/servo_cp", Phase::kSameTick, parameters_.input_timeout);
+    target_ =
+        &cycle_.input<geometry_msgs::PoseStamped>("teleop/servo_cp", InputPhase::kThisTick, parameters_.input_timeout);
   }
   if (parameters_.injector) injector_ = std::make_unique<InjectorLink>(cycle_, parameters_.input_timeout);
   state_ = cycle_.node().advertise<cell_microinjection::OperatingState>("controller/operating_state", 10, true);
@@ -76,13 +77,14 @@ InjectionControllerNode::InjectionControllerNode(ros::NodeHandle node, ros::Node
       cycle_.node(), "needle/abilities", 1,
       [this](const ManipulatorAbilities& message, const std::string&) { adaptTo(message); });
   cycle_.diagnostics().add("control", [this](auto& status) { report(status); });
-  if (parameters_.auto_enable) obey("enable");
+  if (parameters_.auto_enable) execute("enable");
 }
 
 void InjectionControllerNode::listenToCommands() {
   using cell_microinjection::StringStamped;
   if (cycle_.lockstep() && parameters_.commands_in_lockstep) {
-    auto& input = cycle_.input<StringStamped>(kStateTopic, Phase::kTickBefore, std::numeric_limits<double>::infinity());
+    auto& input =
+        cycle_.input<StringStamped>(kStateTopic, InputPhase::kPreviousTick, std::numeric_limits<double>::infinity());
     input.stamp_rule = StampRule::kAny;
     input.listen([this](const StringStamped& message, const ros::Time&) { take(message, false, false); });
     return;
@@ -108,14 +110,14 @@ void InjectionControllerNode::take(const cell_microinjection::StringStamped& mes
   if (begins && repeated) {
     return log_.answered("state command " + command, std::string(kUnstampedLatched) + "; send it again");
   }
-  obey(command);
+  execute(command);
 }
 
 void InjectionControllerNode::run() {
   cycle_.run([this](const Cycle::Tick& tick) { step(tick); });
 }
 
-void InjectionControllerNode::obey(const std::string& command) {
+void InjectionControllerNode::execute(const std::string& command) {
   const bool ran = model_.running();
   const std::string refusal = model_.command(command);
   told_ = model_.notice();
@@ -145,14 +147,14 @@ void InjectionControllerNode::adaptTo(const cell_microinjection::ManipulatorAbil
 
 void InjectionControllerNode::step(const Cycle::Tick& tick) {
   const auto* target = target_ ? target_->get(tick.now) : nullptr;
-  const auto needle = trustedPose(needle_.get(tick.now));
+  const auto needle = validPose(needle_.get(tick.now));
   InjectionController::Input input;
-  input.target = trustedPosition(target, kWorldFrame);
+  input.target = validPosition(target, kWorldFrame);
   if (injector_) input.injector = injector_->report(tick.now);
   if (needle) {
     input.needle = needle->translation();
     input.axis = needle->linear().col(2);
-    input.force = trustedForce(force_.get(tick.now), needle->linear());
+    input.force = validForce(force_.get(tick.now), needle->linear());
   }
   if (const auto setpoint = model_.step(input, tick.dt)) {
     Eigen::Isometry3d pose = needle ? *needle : Eigen::Isometry3d::Identity();
@@ -161,12 +163,12 @@ void InjectionControllerNode::step(const Cycle::Tick& tick) {
   }
   if (injector_) injector_->want(model_.pulse(), tick.now);
   action_.step(tick.now);
-  tellNotice();
+  logNotice();
   publishState(tick.now);
   publishInjection(tick.now);
 }
 
-void InjectionControllerNode::tellNotice() {
+void InjectionControllerNode::logNotice() {
   if (model_.notice() == told_) return;
   told_ = model_.notice();
   if (!told_.empty()) ROS_WARN_STREAM(told_);
@@ -200,19 +202,19 @@ void InjectionControllerNode::publishInjection(const ros::Time& now) {
   status.outcome = toText(model_.result().outcome);
   status.reason = model_.result().reason;
   status.notice = model_.notice();
-  const auto& said = said_of_injection_;
+  const auto& said = last_published_injection_;
   const bool same = status.state == said.state && status.waits == said.waits && status.punctures == said.punctures &&
                     status.outcome == said.outcome && status.notice == said.notice;
   if (same && secondsBetween(said.header.stamp, now) < kPeriod) return;
   injection_.publish(status);
-  said_of_injection_ = status;
+  last_published_injection_ = status;
 }
 
 void InjectionControllerNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   const bool fault = model_.state() == OperatingState::kFault;
-  const bool good = model_.heldBecause().empty();
-  const std::string news = log_.takeNews();
-  const std::string text = good ? "the needle follows" : "needle held: " + model_.heldBecause();
+  const bool good = model_.holdReason().empty();
+  const std::string news = log_.takeUpdates();
+  const std::string text = good ? "the needle follows" : "needle held: " + model_.holdReason();
   status.summary(fault                  ? diagnostic_msgs::DiagnosticStatus::ERROR
                  : good && news.empty() ? diagnostic_msgs::DiagnosticStatus::OK
                                         : diagnostic_msgs::DiagnosticStatus::WARN,

@@ -13,16 +13,16 @@
 #include "cell_microinjection/ManipulatorAbilities.h"
 #include "cell_microinjection/OperatingState.h"
 #include "cell_microinjection/StringStamped.h"
-#include "operation/control/injection_controller.h"
+#include "nodes/injection/injection_action.h"
+#include "nodes/injection/injector_link.h"
 #include "nodes/runtime/command_log.h"
 #include "nodes/runtime/command_source.h"
 #include "nodes/runtime/cycle.h"
-#include "nodes/injection/injection_action.h"
-#include "nodes/injection/injector_link.h"
+#include "operation/control/injection_controller.h"
 
 namespace microinjection {
 
-/// The one that moves the needle, simulated or real. Holds it when an input cannot be trusted.
+/// The one that moves the needle, simulated or real. Holds it when an input cannot be valid.
 ///
 /// In:  /teleop/servo_cp (PoseStamped, `world`; with mode manual), /needle/measured_cp (PoseStamped),
 ///      /cell/predicted_cf or /force_sensor/measured_cf (WrenchStamped), /controller/state_command (StringStamped),
@@ -62,10 +62,10 @@ class InjectionControllerNode {
 
   void listenToCommands();
   void take(const cell_microinjection::StringStamped& message, bool latched, bool repeated);
-  void obey(const std::string& command);
+  void execute(const std::string& command);
   void adaptTo(const cell_microinjection::ManipulatorAbilities& rig);
   void step(const Cycle::Tick& tick);
-  void tellNotice();
+  void logNotice();
   void publishState(const ros::Time& now);
   void publishInjection(const ros::Time& now);
   void report(diagnostic_updater::DiagnosticStatusWrapper& status);
@@ -88,9 +88,9 @@ class InjectionControllerNode {
   ros::Subscriber abilities_;
   bool adapted_ = false;  ///< to a rig's abilities
   ros::Publisher state_;
-  cell_microinjection::OperatingState said_;                ///< the last that was published
-  cell_microinjection::InjectionStatus said_of_injection_;  ///< the last that was published
-  std::string told_;                                        ///< the last notice that is in the log
+  cell_microinjection::OperatingState said_;                       ///< the last that was published
+  cell_microinjection::InjectionStatus last_published_injection_;  ///< the last that was published
+  std::string told_;                                               ///< the last notice that is in the log
 };
 
 }  // namespace microinjection

@@ -3,10 +3,10 @@
 #include <utility>
 #include <vector>
 
-#include "rig/injector/injector_registry.h"
-#include "rig/injector/serial_injector.h"
 #include "nodes/runtime/node_parameters.h"
 #include "nodes/runtime/run_node.h"
+#include "rig/injector/injector_registry.h"
+#include "rig/injector/serial_injector.h"
 #include "rig/serial/emulated_wire.h"
 
 namespace microinjection {
@@ -48,9 +48,9 @@ InjectorNode::InjectorNode(ros::NodeHandle node, ros::NodeHandle private_node)
   private_node.setCallbackQueue(cycle_.node().getCallbackQueue());
   makeDevice(private_node);
   // No command that comes between two steps is lost.
-  cycle_.input<cell_microinjection::InjectionPulse>("injector/pulse", Phase::kTickBefore, INFINITY)
+  cycle_.input<cell_microinjection::InjectionPulse>("injector/pulse", InputPhase::kPreviousTick, INFINITY)
       .listen([this](const auto& message, const ros::Time&) { onPulse(message); });
-  auto& stop = cycle_.input<cell_microinjection::StringStamped>("injector/stop", Phase::kTickBefore, INFINITY);
+  auto& stop = cycle_.input<cell_microinjection::StringStamped>("injector/stop", InputPhase::kPreviousTick, INFINITY);
   stop.stamp_rule = StampRule::kAny;
   stop.listen([this](const auto& message, const ros::Time&) { onStop(message); });
   balance_ = subscribeGuarded<sensor_msgs::FluidPressure>(
@@ -96,14 +96,14 @@ void InjectorNode::run() {
   cycle_.run([this](const Cycle::Tick& tick) { step(tick); });
 }
 
-std::string InjectorNode::untimely(const std_msgs::Header& header) const {
+std::string InjectorNode::stampError(const std_msgs::Header& header) const {
   if (header.stamp.isZero()) return "its stamp is 0";
   const double age = secondsBetween(header.stamp, ros::Time::now());
   if (age > parameters_.command_timeout) return "it is stale";
   return age < -parameters_.command_timeout ? "it is from the future" : "";
 }
 
-void InjectorNode::judge(const std::string& command, const std::string& refusal) {
+void InjectorNode::reportRefusal(const std::string& command, const std::string& refusal) {
   refusal_ = refusal.empty() ? "" : command + " refused: " + refusal;
   if (refusal_.empty()) return;
   ++refused_;
@@ -112,9 +112,9 @@ void InjectorNode::judge(const std::string& command, const std::string& refusal)
 
 void InjectorNode::onPulse(const cell_microinjection::InjectionPulse& message) {
   const std::string command = "pulse " + std::to_string(message.id);
-  if (message.id == 0) return judge(command, "its id is 0, which means none");
-  const std::string late = untimely(message.header);
-  if (!late.empty()) return judge(command, late);
+  if (message.id == 0) return reportRefusal(command, "its id is 0, which means none");
+  const std::string late = stampError(message.header);
+  if (!late.empty()) return reportRefusal(command, late);
   // A refused id is known as well: the same message, heard again, must not inject unexpectedly later.
   if (!ids_.isNew(message.id)) {
     if (message.id == held_) {
@@ -126,20 +126,20 @@ void InjectorNode::onPulse(const cell_microinjection::InjectionPulse& message) {
   }
   const std::string refusal =
       cycle_.masterLost() ? "the ROS master is lost" : device_->pulse({message.id, message.pressure, message.duration});
-  judge(command, refusal);
+  reportRefusal(command, refusal);
   if (!message.held || !refusal.empty()) return;
   held_ = message.id;
   wanted_ = message.header.stamp;
 }
 
 void InjectorNode::onStop(const cell_microinjection::StringStamped& message) {
-  judge("stop", device_->stop());
+  reportRefusal("stop", device_->stop());
   ROS_INFO_STREAM("stopped: " << message.string);
 }
 
 void InjectorNode::onBalance(const sensor_msgs::FluidPressure& message) {
-  const std::string late = untimely(message.header);
-  judge("set_balance", late.empty() ? device_->setBalance(message.fluid_pressure) : late);
+  const std::string late = stampError(message.header);
+  reportRefusal("set_balance", late.empty() ? device_->setBalance(message.fluid_pressure) : late);
 }
 
 /// What may flow without anybody who could end it.
@@ -150,7 +150,7 @@ void InjectorNode::endAbandonedPulse(const ros::Time& now) {
   if (!device_->reading().busy || !(lost || silent)) return;
   held_ = 0;
   ROS_WARN_STREAM("the pulse is ended: " << (lost ? "the ROS master is lost" : "who asked for it is silent"));
-  judge("stop", device_->stop());
+  reportRefusal("stop", device_->stop());
 }
 
 void InjectorNode::step(const Cycle::Tick& tick) {

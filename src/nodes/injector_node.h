@@ -11,10 +11,10 @@
 #include "cell_microinjection/InjectionPulse.h"
 #include "cell_microinjection/InjectorState.h"
 #include "cell_microinjection/StringStamped.h"
+#include "nodes/runtime/cycle.h"
 #include "rig/injector/injector_model.h"
 #include "rig/injector/injector_protocol.h"
 #include "rig/injector/pulse_ids.h"
-#include "nodes/runtime/cycle.h"
 #include "rig/serial/serial_port.h"
 #include "rig/serial/wire.h"
 
@@ -69,8 +69,8 @@ class InjectorNode {
   void onPulse(const cell_microinjection::InjectionPulse& message);
   void onStop(const cell_microinjection::StringStamped& message);
   void onBalance(const sensor_msgs::FluidPressure& message);
-  std::string untimely(const std_msgs::Header& header) const;
-  void judge(const std::string& command, const std::string& refusal);
+  std::string stampError(const std_msgs::Header& header) const;
+  void reportRefusal(const std::string& command, const std::string& refusal);
   void endAbandonedPulse(const ros::Time& now);
   void step(const Cycle::Tick& tick);
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;

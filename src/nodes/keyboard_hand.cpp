@@ -13,5 +13,5 @@ struct KeyboardHand : microinjection::HapticDeviceNode {
 
 int main(int argc, char** argv) {
   using namespace microinjection;
-  return runNode<KeyboardHand>(argc, argv, "keyboard_hand", Priority::kRealTime, Ending::kInGoodOrder);
+  return runNode<KeyboardHand>(argc, argv, "keyboard_hand", Priority::kRealTime, ShutdownMode::kInGoodOrder);
 }

@@ -39,7 +39,7 @@ LinkEmulatorNode::LinkEmulatorNode(ros::NodeHandle node, ros::NodeHandle private
       rig_received_(cycle_.output<Message>("link/rig/received")),
       hand_received_(cycle_.output<Message>("link/hand/received")) {
   const auto relay = [this](const std::string& topic, LinkEmulator<Message>& link) {
-    cycle_.input<Message>(topic, Phase::kTickBefore, std::numeric_limits<double>::infinity())
+    cycle_.input<Message>(topic, InputPhase::kPreviousTick, std::numeric_limits<double>::infinity())
         .listen([&link](const Message& message, const ros::Time& now) { link.send(message, now.toSec()); });
   };
   plug_ = subscribeGuarded<std_msgs::Bool>(

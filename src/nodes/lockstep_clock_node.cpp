@@ -33,7 +33,7 @@ LockstepClockNode::LockstepClockNode(ros::NodeHandle node, ros::NodeHandle priva
   if (participants_.empty()) throw ConfigError("/lockstep/participants must be a list of at least one node's name");
   missing_ = participants_;
   node.setCallbackQueue(&queue_);
-  left_ = node.advertise<std_msgs::String>(kLeftTopic, 10, true);
+  departed_ = node.advertise<std_msgs::String>(kLeftTopic, 10, true);
   clock_ = node.advertise<rosgraph_msgs::Clock>(
       "/clock", 10, {},
       [this](const ros::SingleSubscriberPublisher& who) { leave(who.getSubscriberName(), "has ended"); }, {}, true);
@@ -54,11 +54,11 @@ void LockstepClockNode::leave(const std::string& name, const std::string& why) {
   missing_.erase(name);
   ROS_WARN_STREAM(name << " has left the lock step at " << tick_ << " s; it " << why << "; time goes on without it");
   std_msgs::String message;
-  message.data = said_left_ += name + " ";
-  left_.publish(message);
+  message.data = departed_published_ += name + " ";
+  departed_.publish(message);
 }
 
-bool LockstepClockNode::goesOn() const { return ros::ok() && !master_.orphaned(); }
+bool LockstepClockNode::shouldContinue() const { return ros::ok() && !master_.masterLostForLong(); }
 
 std::string LockstepClockNode::missing() const {
   std::string names;
@@ -69,7 +69,7 @@ std::string LockstepClockNode::missing() const {
 void LockstepClockNode::waitForAll() {
   ros::SteadyTime before = ros::SteadyTime::now(), warned = before;
   double waited = 0;  // s; a clock that stood still itself has waited for nobody
-  while (goesOn() && !missing_.empty()) {
+  while (shouldContinue() && !missing_.empty()) {
     queue_.callAvailable(ros::WallDuration(0.1));
     const ros::SteadyTime now = ros::SteadyTime::now();
     if (secondsBetween(warned, now) >= warn_after_) {
@@ -93,7 +93,7 @@ void LockstepClockNode::pace(const ros::SteadyTime& began) const {
 void LockstepClockNode::run() {
   waitForAll();
   const ros::SteadyTime began = ros::SteadyTime::now();
-  while (goesOn() && !participants_.empty()) {
+  while (shouldContinue() && !participants_.empty()) {
     tick_ += ros::Duration(step_);
     missing_ = participants_;
     rosgraph_msgs::Clock message;

@@ -7,7 +7,7 @@
 #include <set>
 #include <string>
 
-#include "nodes/runtime/master_watch.h"
+#include "nodes/runtime/master_monitor.h"
 
 namespace microinjection {
 
@@ -35,7 +35,7 @@ class LockstepClockNode {
   void onAcknowledgement(const std_msgs::HeaderConstPtr& header);
   void leave(const std::string& name, const std::string& why);
   std::string missing() const;  ///< their names
-  bool goesOn() const;
+  bool shouldContinue() const;
   void waitForAll();
   void pace(const ros::SteadyTime& began) const;
 
@@ -46,11 +46,11 @@ class LockstepClockNode {
   std::set<std::string> participants_;
   std::set<std::string> missing_;  ///< those that have not answered the present tick
   ros::Time tick_;
-  MasterWatch master_{false};
+  MasterMonitor master_{false};
   ros::CallbackQueue queue_;
   ros::Publisher clock_;
-  ros::Publisher left_;
-  std::string said_left_;
+  ros::Publisher departed_;
+  std::string departed_published_;
   ros::Subscriber acknowledgements_, leave_;
 };
 

@@ -4,10 +4,10 @@
 
 #include <string>
 
-#include "nodes/runtime/cycle.h"
 #include "nodes/needle/needle_commands.h"
 #include "nodes/needle/needle_publisher.h"
 #include "nodes/needle/rig_device.h"
+#include "nodes/runtime/cycle.h"
 
 namespace microinjection {
 

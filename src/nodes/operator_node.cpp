@@ -39,8 +39,8 @@ OperatorNode::OperatorNode(ros::NodeHandle node, ros::NodeHandle private_node)
       motion_(HandMotion::load(parameters_.motion)),
       hand_(parameters_.hand, motion_.at(0).position),
       cycle_(node, parameters_.rate),
-      force_(
-          cycle_.input<geometry_msgs::WrenchStamped>("haptic/servo_cf", Phase::kTickBefore, parameters_.force_timeout)),
+      force_(cycle_.input<geometry_msgs::WrenchStamped>("haptic/servo_cf", InputPhase::kPreviousTick,
+                                                        parameters_.force_timeout)),
       position_(cycle_.output<geometry_msgs::PoseStamped>("haptic/measured_cp")),
       clutch_(cycle_.output<sensor_msgs::Joy>("haptic/clutch", true)),
       phase_(cycle_.output<cell_microinjection::StringStamped>("operator/phase", true)),
@@ -71,22 +71,22 @@ void OperatorNode::step(const Cycle::Tick& tick) {
 }
 
 void OperatorNode::publishClutch(const ros::Time& now, bool pressed) {
-  if (clutch_said_ == pressed) return;
+  if (clutch_published_ == pressed) return;
   sensor_msgs::Joy message;
   message.header.stamp = now;
   message.buttons = {pressed ? 1 : 0};
   clutch_.publish(message);
-  clutch_said_ = pressed;
+  clutch_published_ = pressed;
 }
 
 void OperatorNode::publishPhase(const ros::Time& now, const std::string& phase) {
-  if (phase_said_ == phase) return;
+  if (phase_published_ == phase) return;
   cell_microinjection::StringStamped message;
   message.header.stamp = now;
   message.string = phase;
   phase_.publish(message);
   if (phase == kWord) word_.publish(message);
-  phase_said_ = phase;
+  phase_published_ = phase;
 }
 
 }  // namespace microinjection

@@ -61,8 +61,8 @@ class OperatorNode {
   Output<cell_microinjection::StringStamped>& phase_;
   Output<cell_microinjection::StringStamped>& word_;
   double elapsed_ = 0;  ///< s of steps; a stall of the machine pauses the hand
-  std::optional<bool> clutch_said_;
-  std::string phase_said_;
+  std::optional<bool> clutch_published_;
+  std::string phase_published_;
 };
 
 }  // namespace microinjection

@@ -94,20 +94,21 @@ SessionRecorderNode::SessionRecorderNode(ros::NodeHandle node, ros::NodeHandle p
       files_(parameters_.output_dir, SessionTable::kHeader, parameters_.bag),
       table_(std::llround(1e9 * parameters_.row_period), cycle_.lockstep() ? kPatienceInLockstep : kPatience,
              [this](const std::string& line) { files_.rows().append(line); }),
-      predicted_(cycle_.input<geometry_msgs::WrenchStamped>("cell/predicted_cf", Phase::kTickBefore, 0.05)),
-      needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", Phase::kTickBefore, 0.05)),
-      measured_(cycle_.input<geometry_msgs::WrenchStamped>("force_sensor/measured_cf", Phase::kTickBefore, 0.05)),
-      cell_(cycle_.input<cell_microinjection::CellState>("cell/state", Phase::kTickBefore, kForever)),
-      injection_(cycle_.input<cell_microinjection::InjectionStatus>("controller/injection_state", Phase::kTickBefore,
-                                                                    kForever)) {
+      predicted_(cycle_.input<geometry_msgs::WrenchStamped>("cell/predicted_cf", InputPhase::kPreviousTick, 0.05)),
+      needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", InputPhase::kPreviousTick, 0.05)),
+      measured_(
+          cycle_.input<geometry_msgs::WrenchStamped>("force_sensor/measured_cf", InputPhase::kPreviousTick, 0.05)),
+      cell_(cycle_.input<cell_microinjection::CellState>("cell/state", InputPhase::kPreviousTick, kForever)),
+      injection_(cycle_.input<cell_microinjection::InjectionStatus>("controller/injection_state",
+                                                                    InputPhase::kPreviousTick, kForever)) {
   if (parameters_.injector) {
-    injector_ = &cycle_.input<cell_microinjection::InjectorState>("injector/state", Phase::kTickBefore, 0.05);
+    injector_ = &cycle_.input<cell_microinjection::InjectorState>("injector/state", InputPhase::kPreviousTick, 0.05);
   }
   if (parameters_.hand) {
-    hand_ = &cycle_.input<geometry_msgs::PoseStamped>("haptic/measured_cp", Phase::kTickBefore, kForever);
-    clutch_ = &cycle_.input<sensor_msgs::Joy>("haptic/clutch", Phase::kTickBefore, kForever);
-    hand_force_ = &cycle_.input<geometry_msgs::WrenchStamped>("haptic/servo_cf", Phase::kTickBefore, 0.05);
-    phase_ = &cycle_.input<cell_microinjection::StringStamped>("operator/phase", Phase::kTickBefore, kForever);
+    hand_ = &cycle_.input<geometry_msgs::PoseStamped>("haptic/measured_cp", InputPhase::kPreviousTick, kForever);
+    clutch_ = &cycle_.input<sensor_msgs::Joy>("haptic/clutch", InputPhase::kPreviousTick, kForever);
+    hand_force_ = &cycle_.input<geometry_msgs::WrenchStamped>("haptic/servo_cf", InputPhase::kPreviousTick, 0.05);
+    phase_ = &cycle_.input<cell_microinjection::StringStamped>("operator/phase", InputPhase::kPreviousTick, kForever);
   }
   began_ = localTime();
   if (parameters_.training) training_ = std::make_unique<TrainingLog>(*parameters_.training);
@@ -127,13 +128,13 @@ SessionRecorderNode::SessionRecorderNode(ros::NodeHandle node, ros::NodeHandle p
 
 void SessionRecorderNode::fillTable() {
   needle_.listen([this](const geometry_msgs::PoseStamped& message, const ros::Time&) {
-    const auto pose = trustedPose(&message);
+    const auto pose = validPose(&message);
     if (!pose) return table_.needle.withdraw();
     tip_orientation_ = pose->linear();
     table_.needle.put(stampOf(message), {{pose->translation(), pose->linear().col(2)}});
   });
   predicted_.listen([this](const geometry_msgs::WrenchStamped& message, const ros::Time&) {
-    putForce(message, trustedForce(&message, tip_orientation_), table_.predicted);
+    putForce(message, validForce(&message, tip_orientation_), table_.predicted);
   });
   measured_.listen([this](const geometry_msgs::WrenchStamped& message, const ros::Time&) {
     std::optional<SessionTable::Measured> measured;
@@ -142,8 +143,8 @@ void SessionRecorderNode::fillTable() {
   });
   cell_.listen([this](const cell_microinjection::CellState& message, const ros::Time&) {
     SessionTable::Cell cell{std::nullopt, message.punctured != 0, message.layers_punctured, message.holes.size()};
-    const auto& touched_at = message.touched_at;
-    if (message.in_contact) cell.touched_at = Eigen::Vector3d(touched_at.x, touched_at.y, touched_at.z);
+    const auto& contact_point = message.contact_point;
+    if (message.in_contact) cell.contact_point = Eigen::Vector3d(contact_point.x, contact_point.y, contact_point.z);
     table_.cell.put(stampOf(message), cell);
     layers_ = message.layers;
   });

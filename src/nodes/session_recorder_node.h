@@ -18,10 +18,10 @@
 #include "cell_microinjection/InjectionStatus.h"
 #include "cell_microinjection/InjectorState.h"
 #include "cell_microinjection/StringStamped.h"
+#include "nodes/recording/session_files.h"
 #include "nodes/runtime/bare_timer_loop.h"
 #include "nodes/runtime/cycle.h"
 #include "nodes/runtime/latency_meter.h"
-#include "nodes/recording/session_files.h"
 #include "operation/record/session_table.h"
 #include "operation/record/training_log.h"
 

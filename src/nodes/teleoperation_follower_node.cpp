@@ -2,9 +2,9 @@
 
 #include <limits>
 
+#include "nodes/link/link_messages.h"
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/force_topic.h"
-#include "nodes/link/link_messages.h"
 #include "nodes/runtime/node_parameters.h"
 #include "nodes/runtime/run_node.h"
 
@@ -37,21 +37,21 @@ TeleoperationFollowerNode::TeleoperationFollowerNode(ros::NodeHandle node, ros::
     : parameters_(Parameters::read(private_node)),
       model_(parameters_.link),
       cycle_(node, parameters_.rate),
-      needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", Phase::kTickBefore,
+      needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", InputPhase::kPreviousTick,
                                                        parameters_.needle_timeout)),
       predicted_(forceInput(parameters_.force.usesPredicted(), "predicted", parameters_.predicted_timeout)),
       measured_(forceInput(parameters_.force.usesMeasured(), "measured", parameters_.measured_timeout)),
       sent_(cycle_.output<cell_microinjection::LinkPacket>("link/rig/sent")),
       target_(cycle_.output<geometry_msgs::PoseStamped>("teleop/servo_cp")) {
   cycle_
-      .input<cell_microinjection::LinkPacket>("link/rig/received", Phase::kTickBefore,
+      .input<cell_microinjection::LinkPacket>("link/rig/received", InputPhase::kPreviousTick,
                                               std::numeric_limits<double>::infinity())
       .listen([this](const auto& message, const ros::Time&) {
         if (isPlausible("link/rig/received", message)) model_.receive(toPacket(message));
       });
   if (parameters_.controller_timeout > 0) {
-    controller_ = &cycle_.input<cell_microinjection::InjectionStatus>("controller/injection_state", Phase::kTickBefore,
-                                                                      parameters_.controller_timeout);
+    controller_ = &cycle_.input<cell_microinjection::InjectionStatus>(
+        "controller/injection_state", InputPhase::kPreviousTick, parameters_.controller_timeout);
   }
   cycle_.diagnostics().add("link", [this](auto& status) { report(status); });
 }
@@ -59,7 +59,7 @@ TeleoperationFollowerNode::TeleoperationFollowerNode(ros::NodeHandle node, ros::
 Input<geometry_msgs::WrenchStamped>* TeleoperationFollowerNode::forceInput(bool used, const std::string& source,
                                                                            double timeout) {
   if (!used) return nullptr;
-  return &cycle_.input<geometry_msgs::WrenchStamped>(forceTopic(source), Phase::kTickBefore, timeout);
+  return &cycle_.input<geometry_msgs::WrenchStamped>(forceTopic(source), InputPhase::kPreviousTick, timeout);
 }
 
 void TeleoperationFollowerNode::run() {
@@ -69,11 +69,11 @@ void TeleoperationFollowerNode::run() {
 void TeleoperationFollowerNode::step(const Cycle::Tick& tick) {
   LinkFollower::Input input;
   input.controller = !controller_ || controller_->get(tick.now);
-  if (const auto needle = trustedPose(needle_.get(tick.now))) {
+  if (const auto needle = validPose(needle_.get(tick.now))) {
     input.needle = needle->translation();
     TipForces forces;
-    forces.predicted = trustedForce(predicted_ ? predicted_->get(tick.now) : nullptr, needle->linear());
-    forces.measured = trustedForce(measured_ ? measured_->get(tick.now) : nullptr, needle->linear());
+    forces.predicted = validForce(predicted_ ? predicted_->get(tick.now) : nullptr, needle->linear());
+    forces.measured = validForce(measured_ ? measured_->get(tick.now) : nullptr, needle->linear());
     input.force = chooseForce(parameters_.force, forces);
   }
   const auto target = model_.step(input, tick.dt);
@@ -88,9 +88,9 @@ void TeleoperationFollowerNode::step(const Cycle::Tick& tick) {
 }
 
 void TeleoperationFollowerNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) const {
-  const bool good = model_.heldBecause().empty();
+  const bool good = model_.holdReason().empty();
   status.summary(good ? diagnostic_msgs::DiagnosticStatus::OK : diagnostic_msgs::DiagnosticStatus::WARN,
-                 good ? "the needle follows" : "needle held: " + model_.heldBecause());
+                 good ? "the needle follows" : "needle held: " + model_.holdReason());
   status.add("hand's side heard (s ago)", model_.age());
   status.add("energy left of what came (J)", model_.margin());
 }

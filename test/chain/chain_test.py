@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Hand to needle to cell to hand: touch is felt with the right sign and size, and what cannot be trusted holds the needle."""
+"""Hand to needle to cell to hand: touch is felt with the right sign and size, and what cannot be valid holds the needle."""
 
 import csv
 import math
@@ -70,7 +70,7 @@ class ChainTest(unittest.TestCase):
         state = self.chain.seen["/cell/state"]
         self.assertTrue(state.in_contact)
         self.assertTrue(state.converged, state.reason)
-        self.assertAlmostEqual(state.touched_at.z - state.indentation, self.needle()[2], delta=1e-9)
+        self.assertAlmostEqual(state.contact_point.z - state.indentation, self.needle()[2], delta=1e-9)
         expected = self.indent(state.indentation)
         self.assertGreater(expected, 0.3e-6)
         felt = self.hand_force()
@@ -134,10 +134,10 @@ class ChainTest(unittest.TestCase):
         self.move(0.0)
 
     def test_4_a_silent_hand_holds_the_needle(self):
-        self.check_held({}, "no trusted hand position")
+        self.check_held({}, "no valid hand position")
 
     def test_5_a_hand_that_is_not_finite_holds_the_needle(self):
-        self.check_held(lambda: {"/haptic/measured_cp": pose(0, math.nan, self.z, "haptic")}, "no trusted hand position")
+        self.check_held(lambda: {"/haptic/measured_cp": pose(0, math.nan, self.z, "haptic")}, "no valid hand position")
 
     def test_6_clutch_moves_the_hand_alone(self):
         self.move(-10e-3)

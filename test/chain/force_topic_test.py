@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A wrench from elsewhere arrives at the tip, in its axes and about its centre; what tf cannot place is not trusted."""
+"""A wrench from elsewhere arrives at the tip, in its axes and about its centre; what tf cannot place is not valid."""
 
 import math
 import unittest
@@ -55,8 +55,8 @@ class ForceTopicTest(unittest.TestCase):
 
     def test_what_cannot_be_placed_or_read_is_not_trusted(self):
         for bad, why in ((wrench(1e-6, 0, 0, "nowhere"), "no way from frame 'nowhere'"),
-                         (wrench(math.nan, 0, 0, "transducer"), "no trusted wrench"),
-                         (None, "no trusted wrench")):
+                         (wrench(math.nan, 0, 0, "transducer"), "no valid wrench"),
+                         (None, "no valid wrench")):
             self.world.run(20, {DEVICE: wrench(0, 0, 0, "transducer")})
             self.assertFalse(self.measured().header.stamp.is_zero())
             self.world.run(1200, {DEVICE: bad} if bad else None)

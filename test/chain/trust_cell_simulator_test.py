@@ -39,7 +39,7 @@ class TrustTest(unittest.TestCase):
         np.testing.assert_array_equal(force(predicted), 0)
         self.assertFalse(self.world.seen["/cell/state"].converged)
         self.assertNotEqual(level, 0)
-        self.assertIn("no trusted needle pose", text)
+        self.assertIn("no valid needle pose", text)
 
     def test_stale(self):
         self.check_untrusted({})

@@ -54,7 +54,7 @@ class TrustTest(unittest.TestCase):
             level, text = self.world.run_to_status("force_sensor: sensor", 300, self.messages(bad))
             self.assertTrue(self.reading().header.stamp.is_zero())
             self.assertNotEqual(level, 0)
-            self.assertIn("no trusted force", text)
+            self.assertIn("no valid force", text)
 
     def mean(self, predicted, topic="/force_sensor/measured_cf", ticks=200):
         """(lateral, axial) under a force, averaged against the noise."""

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The bridge renders zero force and withdraws its target while hand, needle or force cannot be trusted."""
+"""The bridge renders zero force and withdraws its target while hand, needle or force cannot be valid."""
 
 import math
 import unittest
@@ -42,12 +42,12 @@ class TrustTest(unittest.TestCase):
         self.assertIn(why, text)
 
     def test_hand(self):
-        self.check_open({"/haptic/measured_cp": None}, "no trusted hand position")
-        self.check_open({"/haptic/measured_cp": pose(math.nan, 0, 0)}, "no trusted hand position")
+        self.check_open({"/haptic/measured_cp": None}, "no valid hand position")
+        self.check_open({"/haptic/measured_cp": pose(math.nan, 0, 0)}, "no valid hand position")
 
     def test_needle(self):
-        self.check_open({"/needle/measured_cp": None}, "no trusted needle position")
-        self.check_open({"/needle/measured_cp": pose(0, 0, math.inf)}, "no trusted needle position")
+        self.check_open({"/needle/measured_cp": None}, "no valid needle position")
+        self.check_open({"/needle/measured_cp": pose(0, 0, math.inf)}, "no valid needle position")
 
     def test_controller(self):
         self.check_open({"/controller/injection_state": None}, "the controller is silent")
@@ -60,10 +60,10 @@ class TrustTest(unittest.TestCase):
         self.world.tick({**self.good(), "/haptic/clutch": Joy(buttons=[0])})
 
     def test_force(self):
-        self.check_open({"/cell/predicted_cf": INVALID}, "no trusted force")
-        self.check_open({"/cell/predicted_cf": None}, "no trusted force")
-        self.check_open({"/cell/predicted_cf": wrench(0, math.nan, 0)}, "no trusted force")
-        self.check_open({"/cell/predicted_cf": wrench(0, 0, 1e-6, "camera")}, "no trusted force")
+        self.check_open({"/cell/predicted_cf": INVALID}, "no valid force")
+        self.check_open({"/cell/predicted_cf": None}, "no valid force")
+        self.check_open({"/cell/predicted_cf": wrench(0, math.nan, 0)}, "no valid force")
+        self.check_open({"/cell/predicted_cf": wrench(0, 0, 1e-6, "camera")}, "no valid force")
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The controller holds the needle while target, needle or force cannot be trusted, and says so."""
+"""The controller holds the needle while target, needle or force cannot be valid, and says so."""
 
 import math
 import unittest
@@ -59,18 +59,18 @@ class TrustTest(unittest.TestCase):
         self.assertAlmostEqual(self.setpoint(), held - 2e-6, delta=1e-12)
 
     def test_target(self):
-        self.check_held({"/teleop/servo_cp": None}, "no trusted target")
-        self.check_held({"/teleop/servo_cp": INVALID}, "no trusted target")
-        self.check_held({"/teleop/servo_cp": pose(0, 0, math.nan)}, "no trusted target")
-        self.check_held({"/teleop/servo_cp": pose(0, 0, 0, "camera")}, "no trusted target")
+        self.check_held({"/teleop/servo_cp": None}, "no valid target")
+        self.check_held({"/teleop/servo_cp": INVALID}, "no valid target")
+        self.check_held({"/teleop/servo_cp": pose(0, 0, math.nan)}, "no valid target")
+        self.check_held({"/teleop/servo_cp": pose(0, 0, 0, "camera")}, "no valid target")
 
     def test_force(self):
-        self.check_held({"/cell/predicted_cf": None}, "no trusted force")
-        self.check_held({"/cell/predicted_cf": wrench(0, 0, math.inf)}, "no trusted force")
+        self.check_held({"/cell/predicted_cf": None}, "no valid force")
+        self.check_held({"/cell/predicted_cf": wrench(0, 0, math.inf)}, "no valid force")
 
     def test_needle(self):
-        self.check_held({"/needle/measured_cp": None}, "no trusted needle position")
-        self.check_held({"/needle/measured_cp": pose(math.nan, 0, 0)}, "no trusted needle position")
+        self.check_held({"/needle/measured_cp": None}, "no valid needle position")
+        self.check_held({"/needle/measured_cp": pose(math.nan, 0, 0)}, "no valid needle position")
 
     def test_through_the_membrane_the_word_inject_is_one_pulse_and_disable_stops_it(self):
         """A membrane of 0.2 N/m that fails 5 um deep."""

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "base/cache_file.h"
-#include "cell/surrogate/prepared_cell.h"
+#include "cell/surrogate/surrogate_data.h"
 
 namespace microinjection {
 namespace {

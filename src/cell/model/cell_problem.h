@@ -4,11 +4,11 @@
 #include <limits>
 #include <memory>
 
-#include "cell/model/indentation_solution.h"
-#include "cell/model/scene.h"
 #include "cell/mechanics/equilibrium_system.h"
 #include "cell/mechanics/layered_body.h"
 #include "cell/mechanics/load_path.h"
+#include "cell/model/indentation_solution.h"
+#include "cell/model/scene.h"
 
 namespace microinjection {
 

@@ -11,9 +11,9 @@
 #include <utility>
 
 #include "base/errors.h"
+#include "cell/contact/rounded_tip.h"
 #include "cell/model/cell_problem.h"
 #include "cell/model/scene_mesh.h"
-#include "cell/contact/rounded_tip.h"
 
 namespace microinjection {
 namespace {
@@ -176,7 +176,7 @@ bool ConvergedForce::done(const ForcePoint& point) const {
 }
 
 /// Takes what a level tells.
-void ConvergedForce::takeOver(const Level& level, Before& before, std::vector<ForcePoint>& points) const {
+void ConvergedForce::adopt(const Level& level, Before& before, std::vector<ForcePoint>& points) const {
   const Refinement refinement = refinementOf(axisymmetric_, scene_.needle.tip);
   double largest = 0;
   for (const auto& force : level.forces) largest = force ? std::max(largest, force->norm()) : largest;
@@ -210,14 +210,14 @@ void ConvergedForce::takeOver(const Level& level, Before& before, std::vector<Fo
 }
 
 /// No finer mesh; what was found stays.
-void ConvergedForce::giveUp(const std::string& why, std::vector<ForcePoint>& points) const {
+void ConvergedForce::abort(const std::string& why, std::vector<ForcePoint>& points) const {
   for (ForcePoint& point : points) {
     if (!done(point) && point.reason.empty()) point.reason = "a finer mesh failed: " + why;
   }
 }
 
 /// Whether a finer level may help some depth.
-bool ConvergedForce::goOn(const std::vector<ForcePoint>& points, const Level& level) const {
+bool ConvergedForce::continuePath(const std::vector<ForcePoint>& points, const Level& level) const {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const bool may = level.forces[i] || level.report.level < 1;  // the coarsest meshes are not the last word
     if (!done(points[i]) && may) return true;
@@ -237,14 +237,14 @@ std::vector<ForcePoint> ConvergedForce::solve(const std::function<void(const Lev
       level = axisymmetric_ ? solveLevel<2>(number) : solveLevel<3>(number);
     } catch (const std::exception& error) {
       if (number == refinement.first) throw;
-      giveUp(error.what(), points);
+      abort(error.what(), points);
       break;
     }
-    takeOver(level, before, points);
+    adopt(level, before, points);
     if (report) report(level.report);
     const double next = level.report.wall_time * refinement.cost;
     const bool out_of_time = number > refinement.first && secondsSince(start) + next > config_.time;
-    if (!goOn(points, level) || out_of_time) break;
+    if (!continuePath(points, level) || out_of_time) break;
   }
   for (ForcePoint& point : points) {
     if (!point.converged && point.reason.empty()) point.reason = "one mesh only has a solution";

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "cell/model/scene.h"
 #include "cell/mechanics/reference_element.h"
+#include "cell/model/scene.h"
 
 namespace microinjection {
 
@@ -70,7 +70,7 @@ struct LevelReport {
 /// needle's edge are refined from mesh to mesh by a factor (2 in the section, sqrt 2 in space) and the error is of
 /// first order in their size, or better, so that the finer mesh's error is at most the change over (factor - 1). A
 /// depth is converged when there is an equilibrium on two meshes at least, the second the finest that was needed; where
-/// finer meshes lose the solution before a depth that a single coarse one reaches, there is none to be trusted, and the
+/// finer meshes lose the solution before a depth that a single coarse one reaches, there is none to be valid, and the
 /// point says so.
 class ConvergedForce {
  public:
@@ -94,12 +94,12 @@ class ConvergedForce {
   CellProblem<Dim> makeProblem(double level) const;
   template <int Dim>
   Level solveLevel(double level) const;
-  void takeOver(const Level& level, Before& before, std::vector<ForcePoint>& points) const;
+  void adopt(const Level& level, Before& before, std::vector<ForcePoint>& points) const;
   bool done(const ForcePoint& point) const;
   std::vector<std::size_t> order() const;
   bool resolves(const Eigen::Vector3d& displacement) const;
-  void giveUp(const std::string& why, std::vector<ForcePoint>& points) const;
-  bool goOn(const std::vector<ForcePoint>& points, const Level& level) const;
+  void abort(const std::string& why, std::vector<ForcePoint>& points) const;
+  bool continuePath(const std::vector<ForcePoint>& points, const Level& level) const;
 
   Scene scene_;
   Indenting indenting_;

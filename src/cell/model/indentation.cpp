@@ -8,7 +8,7 @@
 namespace microinjection {
 namespace {
 
-Constraints makeConstraints(const CellModel& cell, const TipPatch& patch) {
+Constraints makeConstraints(const P1Cell& cell, const TipPatch& patch) {
   const LayeredBody<3>& body = *cell.body();
   Constraints constraints;
   constraints.entries.assign(body.stateSize(), Constraints::kFree);
@@ -26,7 +26,7 @@ Constraints makeConstraints(const CellModel& cell, const TipPatch& patch) {
   return constraints;
 }
 
-LoadPathConfig pathConfig(const CellModel& cell) {
+LoadPathConfig pathConfig(const P1Cell& cell) {
   LoadPathConfig config;
   config.length = cell.scene().cell.diameter();
   config.first_step = config.largest_step = config.length / 16;
@@ -37,7 +37,7 @@ LoadPathConfig pathConfig(const CellModel& cell) {
 
 }  // namespace
 
-Indentation::Indentation(std::shared_ptr<const CellModel> cell, const TipPatch& patch)
+Indentation::Indentation(std::shared_ptr<const P1Cell> cell, const TipPatch& patch)
     : cell_(std::move(cell)),
       system_({cell_->body()}, makeConstraints(*cell_, patch), SymmetricSolver::Method::kSimplicial),
       path_(system_, pathConfig(*cell_)) {}

@@ -4,11 +4,11 @@
 #include <memory>
 #include <vector>
 
-#include "cell/model/cell_model.h"
-#include "cell/model/indentation_solution.h"
 #include "cell/contact/tip_patch.h"
 #include "cell/mechanics/equilibrium_system.h"
 #include "cell/mechanics/load_path.h"
+#include "cell/model/indentation_solution.h"
+#include "cell/model/p1_cell.h"
 
 namespace microinjection {
 
@@ -17,7 +17,7 @@ namespace microinjection {
 class Indentation : public TipPath {
  public:
   /// Throws std::invalid_argument when the patch and the held vertices overlap or leave nothing free.
-  Indentation(std::shared_ptr<const CellModel> cell, const TipPatch& patch);
+  Indentation(std::shared_ptr<const P1Cell> cell, const TipPatch& patch);
   Indentation(const Indentation&) = delete;  // the path refers to the system
   Indentation& operator=(const Indentation&) = delete;
 
@@ -28,7 +28,7 @@ class Indentation : public TipPath {
   /// Displacement of the mesh's vertices, m, xyz per vertex.
   Eigen::VectorXd displacement() const;
 
-  IndentationSolution follow(const TipMove& move) override { return solve(move.displacement); }
+  IndentationSolution follow(const TipMotion& move) override { return solve(move.displacement); }
   std::shared_ptr<const std::vector<Eigen::Vector3d>> rest() const override { return nullptr; }
   Eigen::VectorXd surfaceDisplacement() const override;
 
@@ -39,7 +39,7 @@ class Indentation : public TipPath {
   void reset() { path_.reset(); }
 
  private:
-  std::shared_ptr<const CellModel> cell_;
+  std::shared_ptr<const P1Cell> cell_;
   EquilibriumSystem system_;
   LoadPath path_;
 };

@@ -7,25 +7,25 @@
 
 namespace microinjection {
 
-PuncturableCell::PuncturableCell(const Scene& scene, std::unique_ptr<CellUnderNeedle> cell)
+PuncturableCell::PuncturableCell(const Scene& scene, std::unique_ptr<CellModel> cell)
     : config_(scene.cell.puncture),
       tip_(scene.needle.tip),
       radius_(scene.radius()),
       cell_(std::move(cell)),
       shaft_(config_.shaft),
       fading_(config_.relaxation_time) {
-  distrust_.reserve(200);
+  invalid_reason_.reserve(200);
 }
 
 TipForce PuncturableCell::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time) {
-  distrust_.clear();
-  asked_cell_ = false;
+  invalid_reason_.clear();
+  inner_force_used_ = false;
   if (!tip.allFinite() || !axis.allFinite() || !std::isfinite(time)) {
-    distrust_ = "the needle's pose is not finite";
+    invalid_reason_ = "the needle's pose is not finite";
     return {false, Eigen::Vector3d::Zero()};
   }
   const Pose pose{tip, axis, time, last_time_ ? std::max(time - *last_time_, 0.0) : 0};
-  const TipForce result = answer(pose);
+  const TipForce result = computeForce(pose);
   work_ = workTo(result.force, tip);
   last_force_ = result.force;
   last_tip_ = tip;
@@ -37,8 +37,8 @@ double PuncturableCell::workTo(const Eigen::Vector3d& force, const Eigen::Vector
   return last_time_ ? work_ - 0.5 * (last_force_ + force).dot(tip - last_tip_) : 0;
 }
 
-TipForce PuncturableCell::answer(const Pose& pose) {
-  if (!in_ && !cell_->contact()) {
+TipForce PuncturableCell::computeForce(const Pose& pose) {
+  if (!hole_ && !cell_->contact()) {
     const auto hole = holes_.under(pose.tip, pose.axis, tip_.radius);
     if (hole && isOut(*hole, pose)) return {true, fading_.at(pose.tip, pose.time)};
     if (hole) {
@@ -46,19 +46,19 @@ TipForce PuncturableCell::answer(const Pose& pose) {
       enter(*hole, pose);
     }
   }
-  if (!in_) return touch(pose);
-  if (isOut(*in_, pose)) {
+  if (!hole_) return touch(pose);
+  if (isOut(*hole_, pose)) {
     leave(pose);
     return {true, fading_.at(pose.tip, pose.time)};
   }
-  return {true, inside(pose)};
+  return {true, forceInside(pose)};
 }
 
 TipForce PuncturableCell::touch(const Pose& pose) {
   const bool touched = cell_->contact().has_value();
-  asked_cell_ = true;
+  inner_force_used_ = true;
   TipForce result = cell_->step(pose.tip, pose.axis, pose.time);
-  if (!result.trusted) return result;
+  if (!result.valid) return result;
   const auto& contact = cell_->contact();
   if (!touched && contact) work_ = 0;
   const double push = result.force.dot(pose.axis);
@@ -68,61 +68,61 @@ TipForce PuncturableCell::touch(const Pose& pose) {
   result.force += fading_.at(pose.tip, pose.time);
   if (!failed) return result;
   fading_.start(result.force, pose.tip, workTo(result.force, pose.tip), pose.time);
-  const int hole = holes_.add({contact->touched_at, 0});
+  const int hole = holes_.add({contact->contact_point, 0});
   shown_.write(holes_);
   cell_->release();
-  asked_cell_ = false;
+  inner_force_used_ = false;
   enter(hole, pose);
-  loseLayer(pose);
+  failLayer(pose);
   return result;
 }
 
-Eigen::Vector3d PuncturableCell::inside(const Pose& pose) {
-  seeDepth(pose);
+Eigen::Vector3d PuncturableCell::forceInside(const Pose& pose) {
+  updateDepth(pose);
   const double age = (pose.time - failed_at_) / config_.relaxation_time;
-  const double length = isThrough() ? (insertion_.depth - next_at_) * -std::expm1(-std::max(age, 0.0)) : 0;
+  const double length = isThrough() ? (insertion_.depth - next_layer_depth_) * -std::expm1(-std::max(age, 0.0)) : 0;
   const Eigen::Vector3d shaft = shaft_.step(pose.tip, pose.axis, length, pose.duration);
   Eigen::Vector3d others = fading_.at(pose.tip, pose.time);
   if (isThrough()) return others + shaft;
-  const Layer& layer = config_.layers[holes_[*in_].layers];
-  const double pushed = std::max(insertion_.depth - next_at_, 0.0), push = layer.stiffness * pushed;
+  const Layer& layer = config_.layers[holes_[*hole_].layers];
+  const double pushed = std::max(insertion_.depth - next_layer_depth_, 0.0), push = layer.stiffness * pushed;
   others += std::min(push, layer.force) * pose.axis;
   if (layer.fails(push, pushed, tip_.radius)) {
     fading_.start(others, pose.tip, workTo(others + shaft, pose.tip), pose.time);
-    loseLayer(pose);
+    failLayer(pose);
   }
   return others + shaft;
 }
 
 void PuncturableCell::enter(int hole, const Pose& pose) {
-  in_ = hole;
-  next_at_ = 0;
-  for (int i = 1; i <= std::min(holes_[hole].layers, layerCount() - 1); ++i) next_at_ += config_.layers[i].gap;
+  hole_ = hole;
+  next_layer_depth_ = 0;
+  for (int i = 1; i <= std::min(holes_[hole].layers, layerCount() - 1); ++i) next_layer_depth_ += config_.layers[i].gap;
   failed_at_ = -std::numeric_limits<double>::infinity();
   shaft_.enter(pose.tip);
   insertion_.inside = true;
   insertion_.layers_punctured = holes_[hole].layers;
-  seeDepth(pose);
+  updateDepth(pose);
 }
 
 void PuncturableCell::leave(const Pose& pose) {
   fading_.start(last_force_, pose.tip, workTo(last_force_, pose.tip), pose.time);
-  in_.reset();
+  hole_.reset();
   in_contact_.reset();
   insertion_.inside = false;
   insertion_.depth = 0;
 }
 
-void PuncturableCell::loseLayer(const Pose& pose) {
-  insertion_.layers_punctured = ++holes_[*in_].layers;
+void PuncturableCell::failLayer(const Pose& pose) {
+  insertion_.layers_punctured = ++holes_[*hole_].layers;
   insertion_.punctured = true;
   failed_at_ = pose.time;
-  if (!isThrough()) next_at_ = insertion_.depth + config_.layers[holes_[*in_].layers].gap;
+  if (!isThrough()) next_layer_depth_ = insertion_.depth + config_.layers[holes_[*hole_].layers].gap;
 }
 
-void PuncturableCell::seeDepth(const Pose& pose) {
-  insertion_.depth = (holes_[*in_].place - pose.tip).dot(pose.axis);
-  in_contact_ = Contact{holes_[*in_].place, pose.tip - holes_[*in_].place, insertion_.depth};
+void PuncturableCell::updateDepth(const Pose& pose) {
+  insertion_.depth = (holes_[*hole_].place - pose.tip).dot(pose.axis);
+  in_contact_ = Contact{holes_[*hole_].place, pose.tip - holes_[*hole_].place, insertion_.depth};
 }
 
 bool PuncturableCell::isOut(int hole, const Pose& pose) const {
@@ -139,7 +139,7 @@ double PuncturableCell::clearance(const Eigen::Vector3d& tip, const Eigen::Vecto
 
 void PuncturableCell::release() {
   cell_->release();
-  in_.reset();
+  hole_.reset();
   in_contact_.reset();
   insertion_.inside = false;
   insertion_.depth = 0;
@@ -151,15 +151,17 @@ std::vector<std::string> PuncturableCell::layers() const {
   return names;
 }
 
-const std::string& PuncturableCell::distrust() const { return asked_cell_ ? cell_->distrust() : distrust_; }
+const std::string& PuncturableCell::invalidReason() const {
+  return inner_force_used_ ? cell_->invalidReason() : invalid_reason_;
+}
 
-std::optional<CellUnderNeedle::Solution> PuncturableCell::solution(double time) const {
-  if (in_) return std::nullopt;
+std::optional<CellModel::Solution> PuncturableCell::solution(double time) const {
+  if (hole_) return std::nullopt;
   return cell_->solution(time);
 }
 
-CellUnderNeedle::Picture PuncturableCell::picture() {
-  Picture picture = cell_->picture();
+CellModel::DeformedSurface PuncturableCell::deformedSurface() {
+  DeformedSurface picture = cell_->deformedSurface();
   shown_.update();
   for (int i = 0; i < shown_.value().count(); ++i) picture.holes.push_back(shown_.value()[i].place);
   return picture;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/latest_value.h"
-#include "cell/model/cell_under_needle.h"
+#include "cell/model/cell_model.h"
 #include "cell/model/fading_force.h"
 #include "cell/model/puncture_holes.h"
 #include "cell/model/scene.h"
@@ -29,23 +29,23 @@ namespace microinjection {
 ///
 /// Where a force is lost it fades (FadingForce) from what it was in that step, so that the needle feels no step. It
 /// returns at most the work that the needle has done since it touched. What is then left is passive by itself.
-class PuncturableCell : public CellUnderNeedle {
+class PuncturableCell : public CellModel {
  public:
-  PuncturableCell(const Scene& scene, std::unique_ptr<CellUnderNeedle> cell);
+  PuncturableCell(const Scene& scene, std::unique_ptr<CellModel> cell);
 
   /// O(1), but for the inner cell; neither allocates nor locks.
   TipForce step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time) override;
   void release() override;
 
   /// In the cell: since the tip touched the surface or, in an old hole, passed it.
-  const std::optional<Contact>& contact() const override { return in_ ? in_contact_ : cell_->contact(); }
+  const std::optional<Contact>& contact() const override { return hole_ ? in_contact_ : cell_->contact(); }
   Insertion insertion() const override { return insertion_; }
   std::vector<std::string> layers() const override;
-  const std::string& distrust() const override;
+  const std::string& invalidReason() const override;
   std::optional<Solution> solution(double time) const override;
   std::vector<std::array<int, 3>> triangles() const override { return cell_->triangles(); }
   std::vector<std::uint32_t> held() const override { return cell_->held(); }
-  Picture picture() override;
+  DeformedSurface deformedSurface() override;
 
  private:
   using Layer = PunctureConfig::Layer;
@@ -54,15 +54,15 @@ class PuncturableCell : public CellUnderNeedle {
     double time, duration;
   };
 
-  TipForce answer(const Pose& pose);
+  TipForce computeForce(const Pose& pose);
   TipForce touch(const Pose& pose);
-  Eigen::Vector3d inside(const Pose& pose);
+  Eigen::Vector3d forceInside(const Pose& pose);
   void enter(int hole, const Pose& pose);
   void leave(const Pose& pose);
-  void loseLayer(const Pose& pose);
-  void seeDepth(const Pose& pose);
+  void failLayer(const Pose& pose);
+  void updateDepth(const Pose& pose);
   int layerCount() const { return static_cast<int>(config_.layers.size()); }
-  bool isThrough() const { return holes_[*in_].layers == layerCount(); }  ///< all layers, where the needle is
+  bool isThrough() const { return holes_[*hole_].layers == layerCount(); }  ///< all layers, where the needle is
   /// Whether the tip is off the cell at rest, as far as the hole's place is on its surface.
   bool isOut(int hole, const Pose& pose) const;
   /// m along the axis, of a tip from where it touches the round cell at rest; infinite beside it.
@@ -73,20 +73,20 @@ class PuncturableCell : public CellUnderNeedle {
   PunctureConfig config_;
   Scene::Tip tip_;
   double radius_;  ///< m, of the cell
-  std::unique_ptr<CellUnderNeedle> cell_;
+  std::unique_ptr<CellModel> cell_;
   ShaftResistance shaft_;
   FadingForce fading_;
   PunctureHoles holes_;
-  std::optional<int> in_;    ///< hole that the needle is in
-  double next_at_ = 0;       ///< m below the surface, where the next layer lies; once all failed: lay the last
-  double failed_at_ = 0;     ///< s, when the last layer here failed; negative infinity: before the needle came in
-  bool asked_cell_ = false;  ///< the last force is the inner cell's
-  double work_ = 0;          ///< J, see workTo()
+  std::optional<int> hole_;        ///< hole that the needle is in
+  double next_layer_depth_ = 0;    ///< m below the surface, where the next layer lies; once all failed: lay the last
+  double failed_at_ = 0;           ///< s, when the last layer here failed; negative infinity: before the needle came in
+  bool inner_force_used_ = false;  ///< the last force is the inner cell's
+  double work_ = 0;                ///< J, see workTo()
   Eigen::Vector3d last_force_ = Eigen::Vector3d::Zero(), last_tip_ = Eigen::Vector3d::Zero();
   std::optional<double> last_time_;  ///< s
   Insertion insertion_;
   std::optional<Contact> in_contact_;
-  std::string distrust_;
+  std::string invalid_reason_;
   LatestValue<PunctureHoles> shown_;  ///< from the thread that steps to the one that draws
 };
 

@@ -32,13 +32,13 @@ class PunctureHoles {
   std::optional<int> under(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double radius) const {
     std::optional<int> nearest;
     for (int i = 0; i < count(); ++i) {
-      if (!isUnder(i, tip, axis, radius)) continue;
+      if (!isOnNeedleLine(i, tip, axis, radius)) continue;
       radius = distance(i, tip, axis);
       nearest = i;
     }
     return nearest;
   }
-  bool isUnder(int index, const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double radius) const {
+  bool isOnNeedleLine(int index, const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double radius) const {
     return distance(index, tip, axis) <= radius && holes_[index].place.dot(axis) > 0;
   }
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "cell/material/material.h"
 #include "cell/model/biomembrane.h"
 #include "cell/model/puncture_config.h"
-#include "cell/material/material.h"
 #include "cell/tensegrity/tensegrity_config.h"
 
 namespace microinjection {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "cell/model/scene.h"
 #include "cell/mesh/quadratic_mesh.h"
+#include "cell/model/scene.h"
 
 namespace microinjection {
 

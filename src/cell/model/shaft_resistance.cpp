@@ -6,7 +6,7 @@ namespace microinjection {
 
 void ShaftResistance::enter(const Eigen::Vector3d& tip) {
   entered_at_ = last_ = tip;
-  stuck_ = 0;
+  spring_origin_ = 0;
 }
 
 Eigen::Vector3d ShaftResistance::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double length,
@@ -15,8 +15,8 @@ Eigen::Vector3d ShaftResistance::step(const Eigen::Vector3d& tip, const Eigen::V
   last_ = tip;
   const double inside = std::max(length, 0.0);
   const double longest = (config_.friction + config_.adhesion * inside) / config_.stiffness;
-  stuck_ = std::clamp(stuck_ + move.dot(axis), -longest, longest);
-  Eigen::Vector3d force = -config_.stiffness * stuck_ * axis;
+  spring_origin_ = std::clamp(spring_origin_ + move.dot(axis), -longest, longest);
+  Eigen::Vector3d force = -config_.stiffness * spring_origin_ * axis;
   force -= config_.lateral_stiffness * (way - way.dot(axis) * axis);
   if (duration > 0) force -= config_.damping * inside / duration * move;
   return force;

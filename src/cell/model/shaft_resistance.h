@@ -27,7 +27,7 @@ class ShaftResistance {
  private:
   PunctureConfig::Shaft config_;
   Eigen::Vector3d entered_at_ = Eigen::Vector3d::Zero(), last_ = Eigen::Vector3d::Zero();  ///< m
-  double stuck_ = 0;  ///< m along the axis, of the spring that sticks to the shaft
+  double spring_origin_ = 0;  ///< m along the axis, of the spring that sticks to the shaft
 };
 
 }  // namespace microinjection

@@ -8,7 +8,7 @@
 
 namespace microinjection {
 
-SolutionThread::SolutionThread(std::shared_ptr<const LiveCell> cell)
+SolutionThread::SolutionThread(std::shared_ptr<const OnlineCell> cell)
     : cell_(std::move(cell)), thread_([this] { run(); }) {}
 
 SolutionThread::~SolutionThread() {
@@ -22,11 +22,11 @@ SolutionThread::~SolutionThread() {
 
 // The solving thread has the lock for the exchange of a pointer, but may lose the processor while it does.
 
-bool SolutionThread::ask(const std::shared_ptr<const TipPlace>& place, const TipMove& move) {
+bool SolutionThread::request(const std::shared_ptr<const ContactPoint>& place, const TipMotion& move) {
   {
     const std::unique_lock<std::mutex> lock(mutex_, std::try_to_lock);
     if (!lock) return false;
-    question_ = Question{place, move};
+    request_ = Request{place, move};
   }
   changed_.notify_all();
   return true;
@@ -36,14 +36,14 @@ std::shared_ptr<const CellSolution> SolutionThread::take() {
   const std::unique_lock<std::mutex> lock(mutex_, std::try_to_lock);
   if (!lock) return nullptr;
   if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
-  return std::exchange(answer_, nullptr);
+  return std::exchange(solution_, nullptr);
 }
 
 std::shared_ptr<const CellSolution> SolutionThread::wait() {
   std::unique_lock<std::mutex> lock(mutex_);
-  changed_.wait(lock, [this] { return answer_ || failure_; });
+  changed_.wait(lock, [this] { return solution_ || failure_; });
   if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
-  return std::exchange(answer_, nullptr);
+  return std::exchange(solution_, nullptr);
 }
 
 void SolutionThread::run() {
@@ -56,9 +56,9 @@ void SolutionThread::run() {
   setpriority(PRIO_PROCESS, 0, real_time ? -10 : 5);
   std::unique_lock<std::mutex> lock(mutex_);
   while (true) {
-    changed_.wait(lock, [this] { return stop_ || question_; });
+    changed_.wait(lock, [this] { return stop_ || request_; });
     if (stop_) return;
-    const Question question = std::move(*std::exchange(question_, std::nullopt));
+    const Request question = std::move(*std::exchange(request_, std::nullopt));
     lock.unlock();
     std::shared_ptr<const CellSolution> answer;
     std::exception_ptr failure;
@@ -68,13 +68,13 @@ void SolutionThread::run() {
       failure = std::current_exception();
     }
     lock.lock();
-    answer_ = std::move(answer);
+    solution_ = std::move(answer);
     failure_ = failure;
     changed_.notify_all();
   }
 }
 
-std::shared_ptr<const CellSolution> SolutionThread::solve(const Question& question) {
+std::shared_ptr<const CellSolution> SolutionThread::solve(const Request& question) {
   if (!path_ || !question.place->sameAs(place_)) {
     path_ = cell_->path(*question.place);
     place_ = *question.place;
@@ -86,8 +86,8 @@ std::shared_ptr<const CellSolution> SolutionThread::solve(const Question& questi
   solution->displacement = path_->surfaceDisplacement();
   solution->members = path_->members();
   const auto unused = [](const auto& given) { return given.use_count() == 1; };
-  given_.erase(std::remove_if(given_.begin(), given_.end(), unused), given_.end());
-  given_.push_back(solution);
+  published_.erase(std::remove_if(published_.begin(), published_.end(), unused), published_.end());
+  published_.push_back(solution);
   return solution;
 }
 

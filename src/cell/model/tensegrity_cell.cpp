@@ -16,7 +16,7 @@ const TensegrityConfig& validated(const Scene& scene) {
 }  // namespace
 
 TensegrityCell::TensegrityCell(const Scene& scene)
-    : DiscCell(scene), structure_(std::make_shared<const TensegrityStructure>(validated(scene))) {
+    : DiscContactCell(scene), structure_(std::make_shared<const TensegrityStructure>(validated(scene))) {
   surface_ = structure_->surface();
   held_vertices_ = structure_->heldNodes();
 }
@@ -33,9 +33,9 @@ std::string TensegrityCell::description() const {
   return text.str();
 }
 
-std::unique_ptr<TipPath> TensegrityCell::path(const TipPlace& place) const { return indentation(place.patch); }
+std::unique_ptr<TipPath> TensegrityCell::path(const ContactPoint& place) const { return indentation(place.patch); }
 
-std::vector<CellUnderNeedle::Member> TensegrityCell::membersAtRest() const {
+std::vector<CellModel::Member> TensegrityCell::undeformedMembers() const {
   return tensegrityMembers(*structure_, *structure_->makeParts().cables, structure_->start());
 }
 

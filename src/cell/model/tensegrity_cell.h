@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "cell/model/disc_cell.h"
+#include "cell/model/disc_contact_cell.h"
 #include "cell/model/tensegrity_indentation.h"
 #include "cell/tensegrity/tensegrity_structure.h"
 
@@ -12,7 +12,7 @@ namespace microinjection {
 
 /// The cell of a scene of model tensegrity: the needle meets its membrane anywhere, strut ends being vertices of it.
 /// A strut or cable inside is not met by the needle.
-class TensegrityCell : public DiscCell {
+class TensegrityCell : public DiscContactCell {
  public:
   /// Throws ConfigError when the scene is not valid or of another model, std::runtime_error as TensegrityStructure.
   explicit TensegrityCell(const Scene& scene);
@@ -21,8 +21,8 @@ class TensegrityCell : public DiscCell {
   /// Throws std::invalid_argument when the patch and the held strut ends overlap.
   std::unique_ptr<TensegrityIndentation> indentation(const TipPatch& patch) const;
   std::string description() const override;
-  std::unique_ptr<TipPath> path(const TipPlace& place) const override;
-  std::vector<CellUnderNeedle::Member> membersAtRest() const override;
+  std::unique_ptr<TipPath> path(const ContactPoint& place) const override;
+  std::vector<CellModel::Member> undeformedMembers() const override;
 
  private:
   std::shared_ptr<const TensegrityStructure> structure_;

@@ -12,9 +12,9 @@ constexpr double kLead = 0.03;  ///< s, about what a solution takes
 
 }  // namespace
 
-std::vector<CellUnderNeedle::Member> tensegrityMembers(const TensegrityStructure& structure, const Cables& cables,
-                                                       const Eigen::VectorXd& state) {
-  using Member = CellUnderNeedle::Member;
+std::vector<CellModel::Member> tensegrityMembers(const TensegrityStructure& structure, const Cables& cables,
+                                                 const Eigen::VectorXd& state) {
+  using Member = CellModel::Member;
   constexpr std::size_t kEvery = 4;  // sections between the points of a strut's line
   std::vector<Member> result;
   for (int strut = 0; strut < 6; ++strut) {
@@ -54,7 +54,7 @@ IndentationSolution TensegrityIndentation::solve(const Eigen::Vector3d& tip_disp
   return solution;
 }
 
-IndentationSolution TensegrityIndentation::follow(const TipMove& move) {
+IndentationSolution TensegrityIndentation::follow(const TipMotion& move) {
   if (clock_.startsAgain(move)) reset();
   return solve(move.displacement, clock_.pass(move));
 }
@@ -70,7 +70,7 @@ Eigen::VectorXd TensegrityIndentation::surfaceDisplacement() const {
   return result;
 }
 
-std::vector<CellUnderNeedle::Member> TensegrityIndentation::members() const {
+std::vector<CellModel::Member> TensegrityIndentation::members() const {
   return tensegrityMembers(loading_.structure(), loading_.cables(), loading_.state());
 }
 

@@ -5,10 +5,10 @@
 #include <memory>
 #include <vector>
 
-#include "cell/model/cell_under_needle.h"
-#include "cell/model/contact_clock.h"
-#include "cell/model/live_cell.h"
 #include "cell/contact/tip_patch.h"
+#include "cell/model/cell_model.h"
+#include "cell/model/contact_time.h"
+#include "cell/model/online_cell.h"
 #include "cell/tensegrity/tensegrity_loading.h"
 
 namespace microinjection {
@@ -27,18 +27,18 @@ class TensegrityIndentation : public TipPath {
   Eigen::Vector3d tipDisplacement() const { return loading_.displacement(); }  ///< m, in the present state
   void reset() { loading_.reset(); }                                           ///< back to the cell without the needle
 
-  IndentationSolution follow(const TipMove& move) override;
+  IndentationSolution follow(const TipMotion& move) override;
   std::shared_ptr<const std::vector<Eigen::Vector3d>> rest() const override { return nullptr; }
   Eigen::VectorXd surfaceDisplacement() const override;
-  std::vector<CellUnderNeedle::Member> members() const override;
+  std::vector<CellModel::Member> members() const override;
 
  private:
   TensegrityLoading loading_;
-  ContactClock clock_;
+  ContactTime clock_;
 };
 
 /// Struts, each in some pieces, and then cables, of a state; `cables` as TensegrityStructure::makeParts() made them.
-std::vector<CellUnderNeedle::Member> tensegrityMembers(const TensegrityStructure& structure, const Cables& cables,
-                                                       const Eigen::VectorXd& state);
+std::vector<CellModel::Member> tensegrityMembers(const TensegrityStructure& structure, const Cables& cables,
+                                                 const Eigen::VectorXd& state);
 
 }  // namespace microinjection

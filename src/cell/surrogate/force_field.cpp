@@ -62,7 +62,7 @@ void ForceField::fit(const std::vector<TrainingSample>& samples, const EnergyFit
 }
 
 void ForceField::makeLocal(double angle, Local& local) const {
-  local.place_ = angle / scales_.angle;
+  local.contact_frame_ = angle / scales_.angle;
   away_.makeLocal(angle, local.away_);
   lateral_.makeLocal(angle, local.lateral_);
   axial_.makeLocal(angle, local.axial_);
@@ -77,7 +77,7 @@ Eigen::Vector3d ForceField::Local::evaluate(const Eigen::Vector3d& u, Eigen::Mat
   }
   if (!(squared.value > 0)) return Eigen::Vector3d::Zero();
   const Jet scale = inverse(sqrt(squared)), across = lateral_.evaluate(u);
-  const Jet x = place_ * away_.evaluate(u) + Jet::coordinate(0, u.x()) * scale * across;
+  const Jet x = contact_frame_ * away_.evaluate(u) + Jet::coordinate(0, u.x()) * scale * across;
   const Jet y = Jet::coordinate(1, u.y()) * scale * across, z = axial_.evaluate(u);
   jacobian << x.gradient.transpose(), y.gradient.transpose(), z.gradient.transpose();
   return {x.value, y.value, z.value};

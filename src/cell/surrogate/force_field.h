@@ -33,7 +33,7 @@ class ForceField {
 
    private:
     friend class ForceField;
-    double place_ = 0;
+    double contact_frame_ = 0;
     EnergyExpansion::Local away_, lateral_, axial_;
   };
   void makeLocal(double angle, Local& local) const;

@@ -9,11 +9,11 @@
 #include "base/bytes.h"
 #include "base/cache_file.h"
 #include "base/cpu_time.h"
-#include "cell/model/cell_model.h"
-#include "cell/model/contact_place.h"
+#include "cell/model/contact_frame.h"
 #include "cell/model/converged_force.h"
-#include "cell/model/live_cell.h"
-#include "cell/surrogate/prepared_contact.h"
+#include "cell/model/online_cell.h"
+#include "cell/model/p1_cell.h"
+#include "cell/surrogate/surrogate_contact.h"
 
 namespace microinjection {
 namespace {
@@ -38,7 +38,7 @@ std::string figuresDescription(const Scene& scene, const std::string& name) {
   std::ostringstream out;
   out << plan.description(scene) << " figures " << kFigures << ' ' << name << " on " << std::hexfloat
       << scene.meshSize() << ' ' << scene.mesh.refinement.zone << ' ' << scene.mesh.refinement.density << ' '
-      << scene.mesh.stretch << (CellModel::refusals(scene).empty() ? " linear" : " swept");
+      << scene.mesh.stretch << (P1Cell::refusals(scene).empty() ? " linear" : " swept");
   return out.str();
 }
 
@@ -83,7 +83,7 @@ ModelFigures measureLiveCell(const Scene& scene) {
   config.finest = kFinestSection;
   const std::vector<ForcePoint> truth = ConvergedForce(axial, indenting, config).solve();
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
-  const auto live = cell->path(cell->placeAt(axial.radius() * up, up));
+  const auto live = cell->path(cell->contactAt(axial.radius() * up, up));
   const auto solve = [&](double depth) {
     IndentationSolution solution;
     do {
@@ -114,10 +114,10 @@ ModelFigures measureLiveCell(const Scene& scene) {
   return figures;
 }
 
-ModelFigures measurePreparedCell(const Scene& scene, const std::shared_ptr<const PreparedCell>& cell) {
-  PreparedContact contact(scene, cell);
+ModelFigures measurePreparedCell(const Scene& scene, const std::shared_ptr<const SurrogateData>& cell) {
+  SurrogateContact contact(scene, cell);
   std::vector<double> times(kTimedSteps);
-  const Eigen::Vector3d touch = ContactPlace::at(scene, ContactPlace::offsetFor(scene, 0.4))->origin;
+  const Eigen::Vector3d touch = ContactFrame::at(scene, ContactFrame::offsetFor(scene, 0.4))->origin;
   for (int i = 0; i < kTimedSteps; ++i) {
     const double way = 0.01 * i, depth = 0.5 * cell->range.depth * (1 - std::cos(way));
     const double start = threadCpuTime();

@@ -7,7 +7,7 @@
 
 #include "base/cache_file.h"
 #include "cell/model/scene.h"
-#include "cell/surrogate/prepared_cell.h"
+#include "cell/surrogate/surrogate_data.h"
 
 namespace microinjection {
 
@@ -33,7 +33,7 @@ ModelChoice chooseModel(const Scene::Requirements& requirements, std::vector<Mod
 ModelFigures measureLiveCell(const Scene& scene);
 
 /// Error as found when it was fitted (nine of ten equilibria have less), time (99 of 100 steps take less) measured now.
-ModelFigures measurePreparedCell(const Scene& scene, const std::shared_ptr<const PreparedCell>& cell);
+ModelFigures measurePreparedCell(const Scene& scene, const std::shared_ptr<const SurrogateData>& cell);
 
 /// Kept where the scene's prepared data lie, for a choice that must not take a minute.
 void saveFigures(const Scene& scene, const ModelFigures& figures);

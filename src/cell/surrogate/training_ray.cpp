@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "base/bytes.h"
-#include "cell/model/cell_problem.h"
-#include "cell/model/contact_place.h"
-#include "cell/model/scene_mesh.h"
 #include "cell/mesh/outer_surface.h"
+#include "cell/model/cell_problem.h"
+#include "cell/model/contact_frame.h"
+#include "cell/model/scene_mesh.h"
 
 namespace microinjection {
 namespace {
@@ -20,7 +20,7 @@ constexpr ElementKind kElement = ElementKind::kP2P0;
 
 Scene at(const Scene& scene, double angle) {
   Scene result = Preparation::elastic(scene);
-  result.needle.offset = ContactPlace::offsetFor(scene, angle);
+  result.needle.offset = ContactFrame::offsetFor(scene, angle);
   return result;
 }
 

@@ -22,14 +22,14 @@ Message toMessage(const Eigen::Vector3d& vector) {
 }  // namespace
 
 void CellMoment::setReason(const std::string& text) {
-  trusted = text.empty();
+  valid = text.empty();
   const std::size_t length = std::min(text.size(), reason.size() - 1);
   std::copy_n(text.begin(), length, reason.begin());
   reason[length] = '\0';
 }
 
-CellStatePublisher::CellStatePublisher(CellUnderNeedle& cell, Output<cell_microinjection::CellState>& output,
-                                       double rate, Thread thread)
+CellStatePublisher::CellStatePublisher(CellModel& cell, Output<cell_microinjection::CellState>& output, double rate,
+                                       Thread thread)
     : cell_(cell), output_(output), period_(1 / rate) {
   undeformed_.header.frame_id = kCellFrame;
   for (const auto& triangle : cell_.triangles()) {
@@ -67,14 +67,14 @@ void CellStatePublisher::run() {
 }
 
 void CellStatePublisher::fillSurface(cell_microinjection::CellState& state) {
-  const CellUnderNeedle::Picture picture = cell_.picture();
+  const CellModel::DeformedSurface picture = cell_.deformedSurface();
   state.vertices.resize(picture.vertices.size());
   std::transform(picture.vertices.begin(), picture.vertices.end(), state.vertices.begin(),
                  [](const Eigen::Vector3d& vertex) { return toMessage<geometry_msgs::Point32>(vertex); });
   state.displacement.assign(picture.displacement.begin(), picture.displacement.end());
   state.contact_vertices = picture.touched;
   for (const Eigen::Vector3d& hole : picture.holes) state.holes.push_back(toMessage<geometry_msgs::Point>(hole));
-  for (const CellUnderNeedle::Member& member : picture.members) {
+  for (const CellModel::Member& member : picture.members) {
     state.member_points.push_back(toMessage<geometry_msgs::Point32>(member.from));
     state.member_points.push_back(toMessage<geometry_msgs::Point32>(member.to));
     state.member_force.push_back(static_cast<float>(member.force));
@@ -88,7 +88,7 @@ void CellStatePublisher::publish(const CellMoment& moment) {
   fillSurface(state);
   if (moment.contact) {
     state.in_contact = true;
-    state.touched_at = toMessage<geometry_msgs::Point>(moment.contact->touched_at);
+    state.contact_point = toMessage<geometry_msgs::Point>(moment.contact->contact_point);
     state.indentation = moment.contact->indentation;
     state.tip_displacement = toMessage<geometry_msgs::Vector3>(moment.contact->displacement);
   }
@@ -97,11 +97,11 @@ void CellStatePublisher::publish(const CellMoment& moment) {
   state.layers_punctured = static_cast<std::uint32_t>(moment.insertion.layers_punctured);
   state.inside = moment.insertion.inside;
   state.insertion_depth = moment.insertion.depth;
-  state.converged = moment.trusted;
+  state.converged = moment.valid;
   state.reason = moment.reason.data();
   state.smallest_jacobian = 1;
   if (moment.solution) {
-    const CellUnderNeedle::Solution& solution = *moment.solution;
+    const CellModel::Solution& solution = *moment.solution;
     Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(state.contact_stiffness.data()) = solution.stiffness;
     state.newton_iterations = solution.newton_iterations;
     state.solve_time = solution.cpu_time;

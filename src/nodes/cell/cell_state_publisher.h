@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "base/latest_value.h"
-#include "cell/model/cell_under_needle.h"
+#include "cell/model/cell_model.h"
 #include "cell_microinjection/CellState.h"
 #include "nodes/runtime/ports.h"
 
@@ -19,11 +19,11 @@ namespace microinjection {
 struct CellMoment {
   ros::Time now;
   TipForce force;
-  std::optional<CellUnderNeedle::Contact> contact;
-  std::optional<CellUnderNeedle::Solution> solution;
-  CellUnderNeedle::Insertion insertion;
-  bool trusted = true;
-  std::array<char, 200> reason{};  ///< why the force is not trusted, cut where it is too long
+  std::optional<CellModel::Contact> contact;
+  std::optional<CellModel::Solution> solution;
+  CellModel::Insertion insertion;
+  bool valid = true;
+  std::array<char, 200> reason{};  ///< why the force is not valid, cut where it is too long
 
   void setReason(const std::string& text);
 };
@@ -36,7 +36,7 @@ class CellStatePublisher {
   enum class Thread { kOwn, kOfTheStep };
 
   /// @param rate  Hz. `cell` and `output` outlive it.
-  CellStatePublisher(CellUnderNeedle& cell, Output<cell_microinjection::CellState>& output, double rate, Thread thread);
+  CellStatePublisher(CellModel& cell, Output<cell_microinjection::CellState>& output, double rate, Thread thread);
   ~CellStatePublisher();
   CellStatePublisher(const CellStatePublisher&) = delete;
   CellStatePublisher& operator=(const CellStatePublisher&) = delete;
@@ -49,7 +49,7 @@ class CellStatePublisher {
   void publish(const CellMoment& moment);
   void fillSurface(cell_microinjection::CellState& state);
 
-  CellUnderNeedle& cell_;
+  CellModel& cell_;
   Output<cell_microinjection::CellState>& output_;
   double period_;                              ///< s
   cell_microinjection::CellState undeformed_;  ///< what stays the same in every message

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <vector>
 
+#include "nodes/display/display_markers.h"
 #include "operation/display/display_scale.h"
 #include "operation/display/force_arrow.h"
 #include "operation/display/legend.h"
 #include "operation/display/pipettes.h"
-#include "nodes/display/display_markers.h"
 
 namespace microinjection {
 namespace {
@@ -127,7 +127,7 @@ void DisplayScene::fitHoldingPipette(const DisplayedState& state) {
   holding_height_ = mouth.height;
 }
 
-void DisplayScene::drawStill(const DisplayedState& state, visualization_msgs::MarkerArray& markers) {
+void DisplayScene::drawFixed(const DisplayedState& state, visualization_msgs::MarkerArray& markers) {
   fitHoldingPipette(state);
   visualization_msgs::Marker holding =
       triangleMarker({"viz/holding_pipette", "holding_pipette"}, glass(holding_), {1, 1, 1, 1});

@@ -14,7 +14,7 @@
 
 namespace microinjection {
 
-/// What is known of the scene, SI units; absent is what is not known or cannot be trusted.
+/// What is known of the scene, SI units; absent is what is not known or cannot be valid.
 struct DisplayedState {
   std::optional<CellSurface> surface;
   CellMembers members;
@@ -38,9 +38,9 @@ class DisplayScene {
   /// The cell's surface, edges, members and contact.
   void drawCell(const DisplayedState& state, visualization_msgs::MarkerArray& markers);
   /// What stays: pipettes and legend.
-  void drawStill(const DisplayedState& state, visualization_msgs::MarkerArray& markers);
-  /// Since drawStill the colours' scale has.
-  bool stillChanged() const { return still_changed_; }
+  void drawFixed(const DisplayedState& state, visualization_msgs::MarkerArray& markers);
+  /// Since drawFixed the colours' scale has.
+  bool fixedChanged() const { return still_changed_; }
 
  private:
   void drawForce(const std::string& name, const DisplayedState& state, const std::optional<Eigen::Vector3d>& force,

@@ -49,14 +49,14 @@ CrtkAdapter::CrtkAdapter(Cycle& cycle, const CrtkConfig& config)
       receiver_(force_.publisher, !lockstep_) {
   if (!config.state.empty()) {
     state_ = &cycle.input<cell_microinjection::OperatingState>(deviceTopic(config.device, config.state),
-                                                               Phase::kTickBefore, kForEver);
+                                                               InputPhase::kPreviousTick, kForEver);
   }
   const std::string topic = deviceTopic(config.device, "measured_cp");
   if (config.position_type == "pose") {
-    pose_ = &cycle.input<geometry_msgs::PoseStamped>(topic, Phase::kSameTick, config.timeout);
+    pose_ = &cycle.input<geometry_msgs::PoseStamped>(topic, InputPhase::kThisTick, config.timeout);
     receiver_.watch(*pose_);
   } else {
-    transform_ = &cycle.input<geometry_msgs::TransformStamped>(topic, Phase::kSameTick, config.timeout);
+    transform_ = &cycle.input<geometry_msgs::TransformStamped>(topic, InputPhase::kThisTick, config.timeout);
     receiver_.watch(*transform_);
   }
 }
@@ -64,7 +64,7 @@ CrtkAdapter::CrtkAdapter(Cycle& cycle, const CrtkConfig& config)
 Input<sensor_msgs::Joy>* CrtkAdapter::listenTo(Cycle& cycle, const CrtkButton& button) const {
   if (button.topic.empty()) return nullptr;
   const double timeout = config_.button_timeout > 0 ? config_.button_timeout : kForEver;
-  return &cycle.input<sensor_msgs::Joy>(deviceTopic(config_.device, button.topic), Phase::kTickBefore, timeout);
+  return &cycle.input<sensor_msgs::Joy>(deviceTopic(config_.device, button.topic), InputPhase::kPreviousTick, timeout);
 }
 
 std::optional<CrtkAdapter::Position> CrtkAdapter::position(const ros::Time& now) const {
@@ -94,14 +94,14 @@ std::optional<HandReading> CrtkAdapter::read(const Cycle::Tick& tick) {
   // Also while it is silent: one that was started again must be told first, too.
   ready_ = !receiver_.driver().empty() && settings_.taken(receiver_.driver(), tick.now);
   if (!told || !isWithin(told->position, kLargestHandDistance)) {
-    why_ = told ? "its position is not finite, or too far away" : "";
+    reason_ = told ? "its position is not finite, or too far away" : "";
     // Of a driver that tells changes only: it may have missed to tell the last one.
     if (!told && operator_present_ && config_.button_timeout <= 0) operator_present_->invalidate();
     return std::nullopt;
   }
   frame_ = told->frame;
-  why_ = whyUnfelt(tick.now);
-  if (!why_.empty()) return std::nullopt;
+  reason_ = whyUnfelt(tick.now);
+  if (!reason_.empty()) return std::nullopt;
   HandReading reading;
   reading.position = told->position;
   reading.stamp = told->stamp;

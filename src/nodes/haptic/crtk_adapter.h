@@ -48,7 +48,7 @@ class CrtkAdapter : public HapticAdapter {
 
   std::optional<HandReading> read(const Cycle::Tick& tick) override;
   void render(const Eigen::Vector3d& force, const Cycle::Tick& tick) override;
-  std::string whySilent() const override { return why_; }
+  std::string whySilent() const override { return reason_; }
 
  private:
   struct Position {
@@ -73,7 +73,7 @@ class CrtkAdapter : public HapticAdapter {
   ForceReceiver receiver_;
   bool ready_ = false;  ///< the driver knows its settings
   std::string frame_;   ///< of the last position
-  std::string why_;
+  std::string reason_;
 };
 
 }  // namespace microinjection

@@ -8,8 +8,8 @@
 #include <limits>
 
 #include "cell_microinjection/OperatingState.h"
-#include "nodes/runtime/conversions.h"
 #include "nodes/haptic/emulated_driver.h"
+#include "nodes/runtime/conversions.h"
 
 namespace microinjection {
 namespace {
@@ -29,7 +29,7 @@ class EmulatedCrtk : public EmulatedDriver {
       : position_(cycle.output<geometry_msgs::PoseStamped>("haptic/measured_cp")),
         clutch_(cycle.output<sensor_msgs::Joy>("haptic/clutch", true)),
         present_(cycle.output<sensor_msgs::Joy>("haptic/operator_present", true)) {
-    cycle.input<WrenchStamped>("haptic/servo_cf", Phase::kTickBefore, kForEver)
+    cycle.input<WrenchStamped>("haptic/servo_cf", InputPhase::kPreviousTick, kForEver)
         .listen([this, listener](const WrenchStamped& message, const ros::Time& received) {
           force_ = toVector(message);
           listener(force_, received);
@@ -38,7 +38,7 @@ class EmulatedCrtk : public EmulatedDriver {
 
   Eigen::Vector3d render(const EmulatedHand&) override { return force_; }
 
-  void tell(const EmulatedHand& hand, const ros::Time& now) override {
+  void publish(const EmulatedHand& hand, const ros::Time& now) override {
     position_.publish(toPose(hand.position, now, "haptic"));
     if (hand.clutch != told_.clutch) clutch_.publish(toJoy(now, hand.clutch));
     if (hand.present != told_.present) present_.publish(toJoy(now, hand.present));
@@ -79,7 +79,7 @@ class EmulatedCisst : public EmulatedDriver {
     } else {
       pose_ = &cycle.output<geometry_msgs::PoseStamped>(position);
     }
-    cycle.input<WrenchStamped>(device.device + "/body/servo_cf", Phase::kTickBefore, kForEver)
+    cycle.input<WrenchStamped>(device.device + "/body/servo_cf", InputPhase::kPreviousTick, kForEver)
         .listen([this, listener](const WrenchStamped& message, const ros::Time& received) {
           force_ = toVector(message);
           freed_ = true;
@@ -101,7 +101,7 @@ class EmulatedCisst : public EmulatedDriver {
     return device_.axes.transpose() * meant - weight * Eigen::Vector3d::UnitZ();
   }
 
-  void tell(const EmulatedHand& hand, const ros::Time& now) override {
+  void publish(const EmulatedHand& hand, const ros::Time& now) override {
     if (state_ && !state_told_) tellState(now);
     if (hand.clutch != told_.clutch) clutch_.publish(toButton(now, hand.clutch));
     if (hand.present != told_.present) present_.publish(toButton(now, hand.present));
@@ -166,7 +166,7 @@ class EmulatedFalcon : public EmulatedDriver {
   EmulatedFalcon(Cycle& cycle, const Listener& listener)
       : position_(cycle.output<geometry_msgs::PoseStamped>("falcon/measured_cp", true)),
         joy_(cycle.output<sensor_msgs::Joy>("falcon/joy", true)) {
-    cycle.input<WrenchStamped>("falcon/servo_cf", Phase::kTickBefore, kForEver)
+    cycle.input<WrenchStamped>("falcon/servo_cf", InputPhase::kPreviousTick, kForEver)
         .listen([this, listener](const WrenchStamped& message, const ros::Time& received) {
           listener(toVector(message), received);
           if (message.header.frame_id.empty() || message.header.frame_id == kFrame) force_ = toVector(message);
@@ -175,7 +175,7 @@ class EmulatedFalcon : public EmulatedDriver {
 
   Eigen::Vector3d render(const EmulatedHand&) override { return {force_.x(), -force_.z(), force_.y()}; }
 
-  void tell(const EmulatedHand& hand, const ros::Time& now) override {
+  void publish(const EmulatedHand& hand, const ros::Time& now) override {
     const Eigen::Vector3d& p = hand.position;
     const Eigen::Vector3d position(p.x(), p.z(), kCentre - p.y());
     position_.publish(toPose(position, now, kFrame));

@@ -32,11 +32,11 @@ class EmulatedDriver {
 
   virtual ~EmulatedDriver() = default;
   /// Before each step: takes what has come outside of the cycle's inputs.
-  virtual void hear(const EmulatedHand&) {}
+  virtual void process(const EmulatedHand&) {}
   /// N on the hand now, in the view's axes: drivers hold the last force for ever.
   virtual Eigen::Vector3d render(const EmulatedHand&) { return Eigen::Vector3d::Zero(); }
   /// Publishes what the driver would now.
-  virtual void tell(const EmulatedHand& hand, const ros::Time& now) = 0;
+  virtual void publish(const EmulatedHand& hand, const ros::Time& now) = 0;
   /// Its buttons take no part in the lock step: they come when they come.
   virtual bool hasUnstampedButtons() const { return false; }
 };
@@ -87,7 +87,7 @@ class UnstampedForce {
     subscriber_ = node_.subscribe<Message, const Event&>(topic, 100, receive, {}, ros::TransportHints().tcpNoDelay());
   }
 
-  void hear() {
+  void process() {
     const unsigned before = count_;
     queue_.callAvailable();
     if (!lockstep_ || ++steps_ <= 2) return;

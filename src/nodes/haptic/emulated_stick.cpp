@@ -18,7 +18,7 @@ class EmulatedJoy : public EmulatedDriver {
  public:
   explicit EmulatedJoy(Cycle& cycle) : joy_(cycle.output<sensor_msgs::Joy>("joy")) {}
 
-  void tell(const EmulatedHand& hand, const ros::Time& now) override {
+  void publish(const EmulatedHand& hand, const ros::Time& now) override {
     const Eigen::Vector3d at = share(hand);
     sensor_msgs::Joy joy;
     joy.header.stamp = now;
@@ -54,7 +54,7 @@ class EmulatedSpacenav : public EmulatedDriver {
  public:
   explicit EmulatedSpacenav(Cycle& cycle) : joy_(cycle.output<sensor_msgs::Joy>("spacenav/joy")) {}
 
-  void tell(const EmulatedHand& hand, const ros::Time& now) override {
+  void publish(const EmulatedHand& hand, const ros::Time& now) override {
     const Eigen::Vector3d at = share(hand);
     if (hand.inject != inject_) {
       inject_ = hand.inject;

@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include "nodes/runtime/conversions.h"
 #include "nodes/haptic/emulated_driver.h"
 #include "nodes/haptic/geomagic_messages.h"
 #include "nodes/haptic/omni_messages.h"
+#include "nodes/runtime/conversions.h"
 
 namespace microinjection {
 namespace {
@@ -31,14 +31,14 @@ class EmulatedOmni : public EmulatedDriver {
           listener(toVector(message.force), received);
         }) {}
 
-  void hear(const EmulatedHand& hand) override {
+  void process(const EmulatedHand& hand) override {
     damping_ = damping(hand);
-    messages_.hear();
+    messages_.process();
   }
   Eigen::Vector3d render(const EmulatedHand&) override { return force_; }
   bool hasUnstampedButtons() const override { return true; }
 
-  void tell(const EmulatedHand& hand, const ros::Time& now) override {
+  void publish(const EmulatedHand& hand, const ros::Time& now) override {
     told_.header.stamp = now;
     told_.pose = toPose(Eigen::Vector3d(hand.position / kMillimetre), now, "").pose;
     told_.velocity.x = hand.velocity.x() / kMillimetre;
@@ -83,10 +83,10 @@ class EmulatedGeomagic : public EmulatedDriver {
     rate_ = EmulatedRate(1 / rate);
   }
 
-  void hear(const EmulatedHand& hand) override {
+  void process(const EmulatedHand& hand) override {
     position_ = toDevice(hand.position) / kMillimetre;
     damping_ = toDevice(damping(hand));
-    messages_.hear();
+    messages_.process();
   }
 
   Eigen::Vector3d render(const EmulatedHand&) override {
@@ -97,7 +97,7 @@ class EmulatedGeomagic : public EmulatedDriver {
     return {force.x(), -force.z(), force.y()};
   }
 
-  void tell(const EmulatedHand& hand, const ros::Time& now) override {
+  void publish(const EmulatedHand& hand, const ros::Time& now) override {
     if (!rate_.due(now)) return;
     const Eigen::Vector3d position = toDevice(hand.position) / kMillimetre;
     const bool glitch = told_ && (position - *told_).cwiseAbs().maxCoeff() > kGlitch;

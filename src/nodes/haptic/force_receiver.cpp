@@ -26,14 +26,14 @@ bool isSubscribed(const ros::Publisher& publisher, const std::string& node) {
 bool ForceReceiver::feels() {
   const ros::SteadyTime now = ros::SteadyTime::now();
   if (!asked_ || driver_.empty()) return true;
-  if (driver_ == looked_at_ && now - looked_ < kPeriod) return why_.empty();
+  if (driver_ == looked_at_ && now - looked_ < kPeriod) return reason_.empty();
   const bool felt = isSubscribed(force_, driver_);
   if (felt || driver_ != looked_at_) felt_ = now;
   looked_at_ = driver_;
   looked_ = now;
-  why_ = felt ? "" : driver_ + " does not subscribe to the hand's force, " + force_.getTopic();
+  reason_ = felt ? "" : driver_ + " does not subscribe to the hand's force, " + force_.getTopic();
   if (now - felt_ > kConnecting) {
-    ROS_WARN_STREAM_THROTTLE(10, why_ << ": the hand would feel nothing, and the needle does not follow it");
+    ROS_WARN_STREAM_THROTTLE(10, reason_ << ": the hand would feel nothing, and the needle does not follow it");
   }
   return felt;
 }

@@ -28,7 +28,7 @@ class ForceReceiver {
   /// Looks again each 50 ms.
   bool feels();
   /// Why feels() was false; empty while it was true.
-  const std::string& why() const { return why_; }
+  const std::string& why() const { return reason_; }
   /// The node that the hand's last position came from; empty: none yet.
   const std::string& driver() const { return driver_; }
 
@@ -37,7 +37,7 @@ class ForceReceiver {
   bool asked_;
   std::string driver_, looked_at_;
   ros::SteadyTime looked_, felt_;  ///< when last; felt_ from when this driver was new
-  std::string why_;
+  std::string reason_;
 };
 
 /// Whether a node is connected to a topic that this process publishes.

@@ -1,7 +1,7 @@
 #include "nodes/haptic/geomagic_adapter.h"
 
-#include "nodes/runtime/conversions.h"
 #include "nodes/haptic/geomagic_messages.h"
+#include "nodes/runtime/conversions.h"
 
 namespace microinjection {
 namespace {
@@ -30,8 +30,8 @@ GeomagicConfig GeomagicConfig::read(ConfigReader& reader) {
 
 GeomagicAdapter::GeomagicAdapter(Cycle& cycle, const GeomagicConfig& config)
     : config_(config),
-      pose_(cycle.input<geometry_msgs::PoseStamped>(config.device + "/pose", Phase::kSameTick, config.timeout)),
-      buttons_(cycle.input<sensor_msgs::Joy>(config.device + "/joy", Phase::kTickBefore, config.timeout)),
+      pose_(cycle.input<geometry_msgs::PoseStamped>(config.device + "/pose", InputPhase::kThisTick, config.timeout)),
+      buttons_(cycle.input<sensor_msgs::Joy>(config.device + "/joy", InputPhase::kPreviousTick, config.timeout)),
       force_(cycle.node().advertise<DeviceFeedback>(config.device + "/force_feedback", 10)),
       receiver_(force_, !cycle.lockstep()) {
   receiver_.watch(pose_);
@@ -40,7 +40,7 @@ GeomagicAdapter::GeomagicAdapter(Cycle& cycle, const GeomagicConfig& config)
 std::optional<HandReading> GeomagicAdapter::read(const Cycle::Tick& tick) {
   const auto* pose = pose_.get(tick.now);
   if (!pose || !receiver_.feels()) return std::nullopt;
-  const auto position = trustedPosition(pose, pose->header.frame_id, kLargestHandDistance / config_.length_unit);
+  const auto position = validPosition(pose, pose->header.frame_id, kLargestHandDistance / config_.length_unit);
   if (!position) return std::nullopt;
   HandReading reading;
   reading.position = config_.length_unit * *position;

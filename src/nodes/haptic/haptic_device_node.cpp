@@ -47,7 +47,7 @@ HapticDeviceNode::HapticDeviceNode(ros::NodeHandle node, ros::NodeHandle private
       cycle_(node, parameters_.rate),
       // Handed on as soon as it comes, where that cannot set the bridge off again.
       force_(cycle_.input<geometry_msgs::WrenchStamped>(
-          "haptic/servo_cf", kind_.paced && !cycle_.lockstep() ? Phase::kSameTick : Phase::kTickBefore,
+          "haptic/servo_cf", kind_.paced && !cycle_.lockstep() ? InputPhase::kThisTick : InputPhase::kPreviousTick,
           parameters_.force_timeout)),
       position_(cycle_.output<geometry_msgs::PoseStamped>("haptic/measured_cp")),
       clutch_(cycle_.output<sensor_msgs::Joy>("haptic/clutch")),
@@ -64,13 +64,13 @@ HapticDeviceNode::HapticDeviceNode(ros::NodeHandle node, ros::NodeHandle private
 
 void HapticDeviceNode::run() {
   cycle_.run([this](const Cycle::Tick& tick) {
-    if (askedToEnd() || adapter_->wantsToEnd()) {
+    if (shutdownRequested() || adapter_->wantsToEnd()) {
       cycle_.stop();
     } else {
       step(tick);
     }
   });
-  sayZeroForce();
+  publishZeroForce();
 }
 
 void HapticDeviceNode::step(const Cycle::Tick& tick) {
@@ -78,7 +78,7 @@ void HapticDeviceNode::step(const Cycle::Tick& tick) {
   const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
   adapter_->render(hand ? finiteForce(force_.get(tick.now)).value_or(zero) : zero, tick);
   if (!hand) {
-    publishSilence(tick.now);
+    publishNoMessage(tick.now);
   } else if (!last_ || hand->stamp != last_->stamp) {
     position_.publish(toPose(hand->position, hand->stamp, kHapticFrame));
   }
@@ -88,16 +88,16 @@ void HapticDeviceNode::step(const Cycle::Tick& tick) {
 }
 
 /// Not in every step: it sets the bridge off, whose force sets off this node, and both would run as fast as they can.
-void HapticDeviceNode::publishSilence(const ros::Time& now) {
-  if (!last_ && secondsBetween(told_silence_, now) < kSilencePeriod) return;
-  told_silence_ = now;
+void HapticDeviceNode::publishNoMessage(const ros::Time& now) {
+  if (!last_ && secondsBetween(silence_published_, now) < kSilencePeriod) return;
+  silence_published_ = now;
   position_.publishInvalid(toPose(Eigen::Vector3d::Zero(), now, kHapticFrame));
 }
 
 void HapticDeviceNode::publishButtons(const ros::Time& now, bool clutch, bool operator_present) {
   const bool changed = !last_ || last_->clutch != clutch || last_->operator_present != operator_present;
-  if (!changed && secondsBetween(told_buttons_, now) < kButtonPeriod) return;
-  told_buttons_ = now;
+  if (!changed && secondsBetween(buttons_published_, now) < kButtonPeriod) return;
+  buttons_published_ = now;
   clutch_.publish(button(now, clutch));
   operator_present_.publish(button(now, operator_present));
 }
@@ -112,7 +112,7 @@ void HapticDeviceNode::publishCommands(const ros::Time& now) {
   }
 }
 
-void HapticDeviceNode::sayZeroForce() {
+void HapticDeviceNode::publishZeroForce() {
   for (int i = 0; i < kLastForces && ros::ok(); ++i) {
     const ros::Time now = ros::Time::now();
     adapter_->render(Eigen::Vector3d::Zero(), {now, cycle_.period()});

@@ -9,8 +9,8 @@
 #include <optional>
 #include <string>
 
-#include "nodes/runtime/cycle.h"
 #include "nodes/haptic/haptic_registry.h"
+#include "nodes/runtime/cycle.h"
 
 namespace microinjection {
 
@@ -42,11 +42,11 @@ class HapticDeviceNode {
   };
 
   void step(const Cycle::Tick& tick);
-  void publishSilence(const ros::Time& now);
+  void publishNoMessage(const ros::Time& now);
   void publishButtons(const ros::Time& now, bool clutch, bool operator_present);
   void publishCommands(const ros::Time& now);
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
-  void sayZeroForce();
+  void publishZeroForce();
 
   ConfigReader reader_;
   Parameters parameters_;
@@ -61,7 +61,7 @@ class HapticDeviceNode {
   bool paused_ = false;  ///< the controller is
   std::unique_ptr<HapticAdapter> adapter_;
   std::optional<HandReading> last_;  ///< what was told last
-  ros::Time told_buttons_, told_silence_;
+  ros::Time buttons_published_, silence_published_;
 };
 
 }  // namespace microinjection

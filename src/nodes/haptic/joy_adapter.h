@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "nodes/haptic/haptic_adapter.h"
-#include "operation/teleoperation/stick_hand.h"
+#include "operation/teleoperation/rate_input.h"
 
 namespace microinjection {
 
@@ -34,7 +34,7 @@ class JoyAdapter : public HapticAdapter {
   void listen(const sensor_msgs::Joy& joy);
 
   JoyConfig config_;
-  StickHand stick_;
+  RateInput stick_;
   Input<sensor_msgs::Joy>& joy_;
   std::vector<int> last_buttons_;
   std::vector<std::string> commands_;

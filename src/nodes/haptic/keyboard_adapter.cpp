@@ -41,12 +41,12 @@ KeyboardAdapter::KeyboardAdapter(Cycle& cycle, const KeyboardConfig& config)
   std::fputs(kKeys, stdout);
 }
 
-void KeyboardAdapter::obey(const std::string& key) {
+void KeyboardAdapter::execute(const std::string& key) {
   if (const auto direction = directions().find(key); direction != directions().end()) {
     hand_.moveBy(config_.step * direction->second);
     return;
   }
-  hand_.letGo();  // any other key: the operator does something else
+  hand_.release();  // any other key: the operator does something else
   if (const auto word = words().find(key); word != words().end()) commands_.push_back(word->second);
   if (key == "+") config_.step *= 2;
   if (key == "-") config_.step /= 2;
@@ -56,9 +56,9 @@ void KeyboardAdapter::obey(const std::string& key) {
 std::optional<HandReading> KeyboardAdapter::read(const Cycle::Tick& tick) {
   const std::string typed = terminal_.read();
   for (const char byte : typed) {
-    if (const auto key = keys_.feed(byte)) obey(*key);
+    if (const auto key = keys_.feed(byte)) execute(*key);
   }
-  if (typed.empty() && keys_.wait(tick.dt)) obey("other");
+  if (typed.empty() && keys_.wait(tick.dt)) execute("other");
   HandReading reading;
   reading.position = hand_.step(tick.dt);
   reading.stamp = tick.now;

@@ -6,8 +6,8 @@
 
 #include "nodes/haptic/haptic_adapter.h"
 #include "nodes/haptic/raw_terminal.h"
-#include "nodes/haptic/session_news.h"
-#include "operation/teleoperation/guided_hand.h"
+#include "nodes/haptic/session_state.h"
+#include "operation/teleoperation/goal_hand.h"
 #include "operation/teleoperation/terminal_keys.h"
 
 namespace microinjection {
@@ -32,12 +32,12 @@ class KeyboardAdapter : public HapticAdapter {
   bool wantsToEnd() const override { return ended_ || terminal_.closed(); }
 
  private:
-  void obey(const std::string& key);
+  void execute(const std::string& key);
 
   KeyboardConfig config_;
-  GuidedHand hand_;
+  GoalHand hand_;
   TerminalKeys keys_;
-  SessionNews news_;
+  SessionState news_;
   std::vector<std::string> commands_;
   ros::Time shown_;
   bool ended_ = false;

@@ -5,11 +5,11 @@
 
 #include <cstdio>
 
-#include "operation/display/display_scale.h"
-#include "operation/display/force_arrow.h"
-#include "nodes/runtime/conversions.h"
 #include "nodes/display/display_markers.h"
 #include "nodes/haptic/hand_marker.h"
+#include "nodes/runtime/conversions.h"
+#include "operation/display/display_scale.h"
+#include "operation/display/force_arrow.h"
 
 namespace microinjection {
 namespace {
@@ -42,8 +42,8 @@ MarkerAdapter::MarkerAdapter(Cycle& cycle, const MarkerConfig& config)
     : config_(config),
       hand_(config.hand),
       news_(cycle),
-      needle_(cycle.input<geometry_msgs::PoseStamped>("needle/measured_cp", Phase::kTickBefore, kTimeout)),
-      target_(cycle.input<geometry_msgs::PoseStamped>("teleop/servo_cp", Phase::kTickBefore, kTimeout)),
+      needle_(cycle.input<geometry_msgs::PoseStamped>("needle/measured_cp", InputPhase::kPreviousTick, kTimeout)),
+      target_(cycle.input<geometry_msgs::PoseStamped>("teleop/servo_cp", InputPhase::kPreviousTick, kTimeout)),
       force_(cycle.node().advertise<visualization_msgs::MarkerArray>("hand_marker/force", 1, true)) {
   controller_ = subscribeGuarded<cell_microinjection::OperatingState>(
       cycle.node(), "controller/operating_state", 10,
@@ -64,14 +64,14 @@ MarkerAdapter::MarkerAdapter(Cycle& cycle, const MarkerConfig& config)
 void MarkerAdapter::onFeedback(const Feedback& feedback) {
   using Event = visualization_msgs::InteractiveMarkerFeedback;
   const auto event = feedback->event_type;
-  if (event == Event::MOUSE_UP) return letGo();
+  if (event == Event::MOUSE_UP) return release();
   if (event != Event::MOUSE_DOWN && event != Event::POSE_UPDATE && event != Event::KEEP_ALIVE) return;
   const auto& p = feedback->pose.position;
   const Eigen::Vector3d to = fromDisplay({p.x, p.y, p.z});
   if (feedback->header.frame_id != kFrame || !to.allFinite() || to.norm() > kLargestNeedleDistance) {
     ROS_WARN_THROTTLE(5, "the handle cannot be dragged in frame '%s': set rviz's fixed frame to %s",
                       feedback->header.frame_id.c_str(), kFrame);
-    return letGo();
+    return release();
   }
   handle_ = to;  // also of a drag that is lost: then it is put back
   if (event == Event::MOUSE_DOWN) takeHold();
@@ -83,35 +83,35 @@ void MarkerAdapter::takeHold() {
   lost_because_ = tip_ ? "" : "the needle's place is not known";
   if (!tip_) return;
   dragged_ = true;
-  led_ = false;
+  was_controlling_ = false;
   held_ = 0;
   drag_from_ = handle_;
   hand_from_ = hand_.position();
 }
 
-void MarkerAdapter::letGo() {
+void MarkerAdapter::release() {
   dragged_ = false;
-  hand_.letGo();
+  hand_.release();
 }
 
 void MarkerAdapter::pull(const Cycle::Tick& tick) {
   if (!dragged_) return;
   const bool leads = controller_state_.empty() && target_.get(tick.now);
   held_ = leads ? 0 : held_ + tick.dt;
-  led_ = led_ || leads;
-  const bool long_held = held_ > (led_ ? kLongHold : kLongStart);
+  was_controlling_ = was_controlling_ || leads;
+  const bool long_held = held_ > (was_controlling_ ? kLongHold : kLongStart);
   if (long_held || !hand_.present()) {
     lost_because_ = !hand_.present()             ? "rviz was silent"
                     : !controller_state_.empty() ? "the controller is " + controller_state_
                     : !news_.held().empty()      ? news_.held()
                                                  : "the needle was held";
-    return letGo();
+    return release();
   }
   hand_.moveTo(leads ? hand_from_ + config_.hand_scale * (handle_ - drag_from_) : hand_.position());
 }
 
 std::optional<HandReading> MarkerAdapter::read(const Cycle::Tick& tick) {
-  const auto needle = trustedPose(needle_.get(tick.now));
+  const auto needle = validPose(needle_.get(tick.now));
   tip_ = needle ? std::optional<Eigen::Vector3d>(needle->translation()) : std::nullopt;
   ros::getGlobalCallbackQueue()->callAvailable();  // where the server hears rviz
   pull(tick);
@@ -126,7 +126,7 @@ void MarkerAdapter::render(const Eigen::Vector3d& force, const Cycle::Tick& tick
   if (secondsBetween(shown_, tick.now) < kShowPeriod) return;
   shown_ = tick.now;
   followNeedle();
-  showForce(force);
+  displayForce(force);
 }
 
 void MarkerAdapter::followNeedle() {
@@ -148,7 +148,7 @@ std::string MarkerAdapter::why() const {
   return all;
 }
 
-void MarkerAdapter::showForce(const Eigen::Vector3d& force) {
+void MarkerAdapter::displayForce(const Eigen::Vector3d& force) {
   const auto arrow = forceArrow(handle_, force, config_.arrow_scale);
   const MarkerName arrow_name{kFrame, "force on the hand", 0}, text_name{kFrame, "words", 0};
   const Colour orange{1.0F, 0.45F, 0.1F, 1.0F}, white{1.0F, 1.0F, 1.0F, 1.0F};

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "nodes/haptic/haptic_adapter.h"
-#include "nodes/haptic/session_news.h"
-#include "operation/teleoperation/guided_hand.h"
+#include "nodes/haptic/session_state.h"
+#include "operation/teleoperation/goal_hand.h"
 
 namespace microinjection {
 
@@ -44,15 +44,15 @@ class MarkerAdapter : public HapticAdapter {
   using Feedback = visualization_msgs::InteractiveMarkerFeedbackConstPtr;
   void onFeedback(const Feedback& feedback);
   void takeHold();
-  void letGo();
+  void release();
   void pull(const Cycle::Tick& tick);
   std::string why() const;
   void followNeedle();
-  void showForce(const Eigen::Vector3d& force);
+  void displayForce(const Eigen::Vector3d& force);
 
   MarkerConfig config_;
-  GuidedHand hand_;
-  SessionNews news_;
+  GoalHand hand_;
+  SessionState news_;
   Input<geometry_msgs::PoseStamped>&needle_, &target_;
   interactive_markers::InteractiveMarkerServer server_{"hand_marker"};
   interactive_markers::MenuHandler menu_;
@@ -64,7 +64,7 @@ class MarkerAdapter : public HapticAdapter {
   Eigen::Vector3d drag_from_ = Eigen::Vector3d::Zero();  ///< m, `world`, of the handle
   Eigen::Vector3d hand_from_ = Eigen::Vector3d::Zero();  ///< m, of the hand
   bool dragged_ = false;
-  bool led_ = false;              ///< in this drag
+  bool was_controlling_ = false;  ///< in this drag
   double held_ = 0;               ///< s, since the hand led the needle or the drag began
   std::string lost_because_;      ///< why a drag was ended while the mouse button was down; empty: it was not
   std::string controller_state_;  ///< empty: it follows, as far as it has said

@@ -26,7 +26,7 @@ OmniConfig OmniConfig::read(ConfigReader& reader) {
 
 OmniAdapter::OmniAdapter(Cycle& cycle, const OmniConfig& config)
     : config_(config),
-      state_(cycle.input<OmniState>(config.device + "/state", Phase::kSameTick, config.timeout)),
+      state_(cycle.input<OmniState>(config.device + "/state", InputPhase::kThisTick, config.timeout)),
       force_(cycle.node().advertise<OmniFeedback>(config.device + "/force_feedback", 10)),
       receiver_(force_, !cycle.lockstep()) {
   receiver_.watch(state_);

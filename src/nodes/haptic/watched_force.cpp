@@ -4,10 +4,10 @@
 
 #include <utility>
 
-#include "nodes/runtime/conversions.h"
 #include "nodes/haptic/device_settings.h"
 #include "nodes/haptic/geomagic_messages.h"
 #include "nodes/haptic/omni_messages.h"
+#include "nodes/runtime/conversions.h"
 
 namespace microinjection {
 namespace {
@@ -27,14 +27,14 @@ class TopicForce : public WatchedForce {
       : heard_(std::move(heard)),
         publisher_(node.advertise<Message>(topic, 10)),
         subscriber_(node.subscribe<Message, const Event&>(
-            topic, 100, [this](const Event& event) { hear(event); }, {}, ros::TransportHints().tcpNoDelay())) {}
+            topic, 100, [this](const Event& event) { process(event); }, {}, ros::TransportHints().tcpNoDelay())) {}
 
-  void sayZero(const ros::Time& now) override { publisher_.publish(zeroLike(last_, now)); }
+  void publishZeroForce(const ros::Time& now) override { publisher_.publish(zeroLike(last_, now)); }
 
  private:
   using Event = ros::MessageEvent<const Message>;
 
-  void hear(const Event& event) {
+  void process(const Event& event) {
     if (event.getPublisherName() == ros::this_node::getName()) return;
     last_ = *event.getConstMessage();
     heard_();

@@ -19,7 +19,7 @@ class WatchedForce {
   static std::unique_ptr<WatchedForce> make(const std::string& kind, const std::string& device,
                                             const std::string& force, ros::NodeHandle node, Heard heard);
   virtual ~WatchedForce() = default;
-  virtual void sayZero(const ros::Time& now) = 0;
+  virtual void publishZeroForce(const ros::Time& now) = 0;
 };
 
 }  // namespace microinjection

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "cell_microinjection/InjectAction.h"
-#include "operation/control/injection_controller.h"
 #include "nodes/injection/inject_server.h"
+#include "operation/control/injection_controller.h"
 
 namespace microinjection {
 

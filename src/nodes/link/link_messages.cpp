@@ -50,7 +50,7 @@ cell_microinjection::LinkPacket toMessage(const LinkPacket& packet) {
   message.energy = packet.wave.energy;
   message.position_scale = packet.position_scale;
   message.force_gain = packet.force_gain;
-  message.trusted = packet.trusted;
+  message.valid = packet.valid;
   assign(message.needle, packet.needle);
   return message;
 }
@@ -66,7 +66,7 @@ LinkPacket toPacket(const cell_microinjection::LinkPacket& message) {
   packet.wave.energy = message.energy;
   packet.position_scale = message.position_scale;
   packet.force_gain = message.force_gain;
-  packet.trusted = message.trusted;
+  packet.valid = message.valid;
   packet.needle = {message.needle.x, message.needle.y, message.needle.z};
   return packet;
 }

@@ -25,14 +25,14 @@ SimulatedForceSource::SimulatedForceSource(Cycle& cycle, double timeout, const F
       range_(config.range),
       frame_(std::move(frame)),
       sensor_from_tip_(tip_from_sensor.linear().transpose()),
-      force_(cycle.input<geometry_msgs::WrenchStamped>("cell/predicted_cf", Phase::kSameTick, timeout)),
-      needle_(cycle.input<geometry_msgs::PoseStamped>("needle/measured_cp", Phase::kTickBefore, timeout)) {}
+      force_(cycle.input<geometry_msgs::WrenchStamped>("cell/predicted_cf", InputPhase::kThisTick, timeout)),
+      needle_(cycle.input<geometry_msgs::PoseStamped>("needle/measured_cp", InputPhase::kPreviousTick, timeout)) {}
 
 std::optional<ForceSource::Signal> SimulatedForceSource::read(const Cycle::Tick& tick) {
-  const auto pose = trustedPose(needle_.get(tick.now));
+  const auto pose = validPose(needle_.get(tick.now));
   const auto* message = force_.get(tick.now);
-  const auto force = pose ? trustedForce(message, pose->linear()) : std::nullopt;
-  untrusted_ = force ? "" : pose ? "no trusted force" : "no trusted needle pose";
+  const auto force = pose ? validForce(message, pose->linear()) : std::nullopt;
+  invalid_reason_ = force ? "" : pose ? "no valid force" : "no valid needle pose";
   if (!force) return std::nullopt;
   const Eigen::Vector3d felt = sensor_from_tip_ * (pose->linear().transpose() * *force);
   const Eigen::Vector2d reading = model_.sample({felt.z(), felt.x()}, tick.dt);
@@ -50,7 +50,7 @@ std::optional<ForceSource::Signal> SerialForceSource::read(const Cycle::Tick& ti
   device_.step(tick.now.toSec());
   const auto& reading = device_.reading();
   const bool fresh = reading && tick.now.toSec() - reading->time <= timeout_;
-  untrusted_ = fresh ? "" : device_.trouble().empty() ? "no good line from the sensor" : device_.trouble();
+  invalid_reason_ = fresh ? "" : device_.trouble().empty() ? "no good line from the sensor" : device_.trouble();
   if (!fresh || std::exchange(seen_, device_.goodLines()) == device_.goodLines()) return std::nullopt;
   overload_.check(reading->force);
   return Signal{reading->force, tick.now, twoAxes(reading->force, tick.now, frame_)};
@@ -64,18 +64,18 @@ void SerialForceSource::report(diagnostic_updater::DiagnosticStatusWrapper& stat
 TopicForceSource::TopicForceSource(Cycle& cycle, double timeout, const Eigen::Vector2d& overload)
     : frames_(cycle.node()),
       overload_(overload),
-      wrench_(cycle.input<geometry_msgs::WrenchStamped>("force_sensor/device_cf", Phase::kSameTick, timeout)) {}
+      wrench_(cycle.input<geometry_msgs::WrenchStamped>("force_sensor/device_cf", InputPhase::kThisTick, timeout)) {}
 
 std::optional<ForceSource::Signal> TopicForceSource::read(const Cycle::Tick& tick) {
-  const auto news = wrench_.takeNews();
+  const auto news = wrench_.takeUpdates();
   const auto force = finiteForce(wrench_.get(tick.now));
   if (!force || !isWithin(torqueOf(*wrench_.get(tick.now)), kLargestForce)) {
-    untrusted_ = "no trusted wrench on force_sensor/device_cf";
+    invalid_reason_ = "no valid wrench on force_sensor/device_cf";
     return std::nullopt;
   }
   if (!news) return std::nullopt;
   const auto pose = frames_.find(kTipFrame, news->header.frame_id);
-  untrusted_ = pose ? "" : "tf has no way from frame '" + news->header.frame_id + "' to " + kTipFrame;
+  invalid_reason_ = pose ? "" : "tf has no way from frame '" + news->header.frame_id + "' to " + kTipFrame;
   if (!pose) return std::nullopt;
   // The same force about another point: the torque gains arm x force.
   Signal signal{Eigen::VectorXd(6), news->header.stamp, *news};

@@ -28,10 +28,10 @@ NeedleCommands::NeedleCommands(Cycle& cycle, const MicromanipulatorConfig& confi
       config_(config),
       rig_(rig),
       model_(model),
-      servo_(cycle.input<geometry_msgs::PoseStamped>("needle/servo_cp", Phase::kSameTick, config.command_timeout)),
+      servo_(cycle.input<geometry_msgs::PoseStamped>("needle/servo_cp", InputPhase::kThisTick, config.command_timeout)),
       trace_(cycle.output<sensor_msgs::TimeReference>("needle/setpoint_trace")),
       repeated_(cycle.node().resolveName(kStateTopic)) {
-  if (!rig.inject && !allow_network) network_ = std::make_unique<NetworkWatch>();
+  if (!rig.inject && !allow_network) network_ = std::make_unique<NetworkMonitor>();
   subscribe();
 }
 
@@ -78,12 +78,12 @@ double NeedleCommands::age(const ros::Time& stamp) const {
   return since.isZero() ? 0 : secondsBetween(since, std::max(now_, ros::Time::now()));
 }
 
-/// A motion command that can be trusted: whether its sender may command, and what becomes of it.
+/// A motion command that can be valid: whether its sender may command, and what becomes of it.
 template <typename Obey>
-void NeedleCommands::command(const std::string& name, const std::string& sender, const Obey& obey) {
-  std::string why = unable();
+void NeedleCommands::command(const std::string& name, const std::string& sender, const Obey& execute) {
+  std::string why = unavailableReason();
   const bool moved = model_.busy();
-  if (why.empty()) why = obey();
+  if (why.empty()) why = execute();
   log_.answered(name, why);
   if (why.empty() && moved) log_.overridden("move_cp of " + mover_, "by " + name + " of " + sender);
 }
@@ -92,7 +92,7 @@ void NeedleCommands::onVelocity(const geometry_msgs::TwistStamped& message, cons
   if (source.unstamped && source.latched) return log_.answered("servo_cv", kUnstampedLatched);
   geometry_msgs::TwistStamped stamped = message;
   if (source.unstamped) stamped.header.stamp = ros::Time::now();
-  const auto velocity = trustedVelocity(&stamped);
+  const auto velocity = validVelocity(&stamped);
   if (!velocity) return log_.answered("servo_cv", "not a valid velocity in world");
   const double old = std::max(0.0, age(message.header.stamp));
   if (old > config_.velocity_command_timeout) return log_.answered("servo_cv", "it is stale");
@@ -104,7 +104,7 @@ void NeedleCommands::onMove(const geometry_msgs::PoseStamped& message, const Com
   if (source.unstamped && source.latched) return log_.answered("move_cp", kUnstampedLatched);
   geometry_msgs::PoseStamped stamped = message;
   if (source.unstamped) stamped.header.stamp = ros::Time::now();
-  const auto pose = trustedPose(&stamped);
+  const auto pose = validPose(&stamped);
   if (!pose) return log_.answered("move_cp", "not a valid pose in world");
   if (age(message.header.stamp) > kOldestMove) return log_.answered("move_cp", "it is stale");
   authorize(source.sender);
@@ -116,11 +116,11 @@ void NeedleCommands::onMove(const geometry_msgs::PoseStamped& message, const Com
   if (log_.refusal().empty()) mover_ = source.sender;
 }
 
-void NeedleCommands::obeyServo(const Cycle::Tick& tick) {
-  const auto message = servo_.takeNews();
+void NeedleCommands::executeServo(const Cycle::Tick& tick) {
+  const auto message = servo_.takeUpdates();
   if (!message) return;
-  if (!servo_.fresh(tick.now)) return log_.answered("servo_cp", master_lost_ ? unable() : "it is stale");
-  const auto pose = trustedPose(message.get());
+  if (!servo_.fresh(tick.now)) return log_.answered("servo_cp", master_lost_ ? unavailableReason() : "it is stale");
+  const auto pose = validPose(message.get());
   if (!pose) return log_.answered("servo_cp", "not a valid pose in world");
   command("servo_cp", servo_.sender, [&] { return model_.servoPosition(*pose); });
   if (isTraced(tick.now)) trace_.publish(toTrace(tick.now, message->header.stamp, "hand"));
@@ -129,13 +129,14 @@ void NeedleCommands::obeyServo(const Cycle::Tick& tick) {
 void NeedleCommands::onState(const cell_microinjection::StringStamped& message, const CommandSource& source) {
   answer_ = true;
   const bool moved = model_.busy();
-  const std::string refusal = obeyState(message, source);
+  const std::string refusal = executeState(message, source);
   log_.answered("state_command " + message.string, refusal);
   if (moved && stops(message.string))
     log_.overridden("move_cp of " + mover_, "by " + message.string + " of " + source.sender);
 }
 
-std::string NeedleCommands::obeyState(const cell_microinjection::StringStamped& message, const CommandSource& source) {
+std::string NeedleCommands::executeState(const cell_microinjection::StringStamped& message,
+                                         const CommandSource& source) {
   const bool old = repeated_.mayBe(source);
   const std::string& word = message.string;
   if (stops(word)) model_.stop();
@@ -181,8 +182,8 @@ void NeedleCommands::change(StateCommand command, bool fault) {
 }
 
 void NeedleCommands::authorize(const std::string& sender) {
-  if (!unable().empty()) return;
-  if (authority_.admit(sender, time(), moves())) return;
+  if (!unavailableReason().empty()) return;
+  if (authority_.authorize(sender, time(), moves())) return;
   model_.stop();
   state_.surround(surroundings());
   ROS_ERROR_STREAM(authority_.fault());
@@ -195,7 +196,7 @@ bool NeedleCommands::moves() const {
 }
 
 /// Decides whether the rig may be enabled. A needle that may be in a cell keeps its way out when an interface comes up.
-void NeedleCommands::lookAtNetwork() {
+void NeedleCommands::checkNetwork() {
   if (!network_) return;
   const bool reachable = network_->reachable();
   if (state_.disabledByCommand()) admitted_ = false;
@@ -211,7 +212,9 @@ NeedleState::Surroundings NeedleCommands::surroundings() const {
   return surroundings;
 }
 
-std::string NeedleCommands::unable() const { return master_lost_ ? "the ROS master is lost" : state_.unable(); }
+std::string NeedleCommands::unavailableReason() const {
+  return master_lost_ ? "the ROS master is lost" : state_.unavailableReason();
+}
 
 void NeedleCommands::step(const Cycle::Tick& tick) {
   if (tick.now < now_) set_back_ += secondsBetween(tick.now, now_);
@@ -219,9 +222,9 @@ void NeedleCommands::step(const Cycle::Tick& tick) {
   // What goes on by itself, too: nobody new could stop it.
   if (cycle_.masterLost() && !master_lost_) model_.stop();
   master_lost_ = cycle_.masterLost();
-  lookAtNetwork();
+  checkNetwork();
   state_.surround(surroundings());
-  obeyServo(tick);
+  executeServo(tick);
 }
 
 bool NeedleCommands::isBusy(const Cycle::Tick& tick) {
@@ -235,10 +238,10 @@ bool NeedleCommands::takeAnswer() { return std::exchange(answer_, false); }
 
 void NeedleCommands::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   using diagnostic_msgs::DiagnosticStatus;
-  std::string problem = log_.takeNews();
+  std::string problem = log_.takeUpdates();
   if (problem.empty()) problem = model_.ended();
   const bool held = exposed_ || !authority_.fault().empty();
-  const std::string why = model_.why().empty() && held ? unable() : model_.why();
+  const std::string why = model_.why().empty() && held ? unavailableReason() : model_.why();
   if (!why.empty() && problem != why) problem = why + (problem.empty() ? "" : "; ") + problem;
   const auto level = !why.empty()      ? DiagnosticStatus::ERROR
                      : problem.empty() ? DiagnosticStatus::OK

@@ -11,14 +11,14 @@
 
 #include "base/busy_report.h"
 #include "cell_microinjection/StringStamped.h"
-#include "rig/manipulator/command_authority.h"
-#include "rig/manipulator/micromanipulator.h"
-#include "rig/manipulator/needle_state.h"
+#include "nodes/needle/rig_device.h"
 #include "nodes/runtime/command_log.h"
 #include "nodes/runtime/command_source.h"
 #include "nodes/runtime/cycle.h"
-#include "nodes/runtime/network_watch.h"
-#include "nodes/needle/rig_device.h"
+#include "nodes/runtime/network_monitor.h"
+#include "rig/manipulator/command_authority.h"
+#include "rig/manipulator/micromanipulator.h"
+#include "rig/manipulator/needle_state.h"
 
 namespace microinjection {
 
@@ -43,7 +43,7 @@ class NeedleCommands {
   bool moves() const;
   /// Whether a state command or a fault was heard since the last call: they are answered.
   bool takeAnswer();
-  std::string unable() const;  ///< why motion commands are refused here; else empty
+  std::string unavailableReason() const;  ///< why motion commands are refused here; else empty
   void report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
  private:
@@ -53,14 +53,14 @@ class NeedleCommands {
   void onMove(const geometry_msgs::PoseStamped& message, const CommandSource& source);
   void onState(const cell_microinjection::StringStamped& message, const CommandSource& source);
   void onFault(const std::string& fault);
-  std::string obeyState(const cell_microinjection::StringStamped& message, const CommandSource& source);
+  std::string executeState(const cell_microinjection::StringStamped& message, const CommandSource& source);
   void change(StateCommand command, bool fault);
-  void obeyServo(const Cycle::Tick& tick);
+  void executeServo(const Cycle::Tick& tick);
   double age(const ros::Time& stamp) const;
   template <typename Obey>
-  void command(const std::string& name, const std::string& sender, const Obey& obey);
+  void command(const std::string& name, const std::string& sender, const Obey& execute);
   void authorize(const std::string& sender);
-  void lookAtNetwork();
+  void checkNetwork();
   NeedleState::Surroundings surroundings() const;
 
   Cycle& cycle_;
@@ -75,11 +75,11 @@ class NeedleCommands {
   CommandAuthority authority_;
   CommandLog log_;
   BusyReport busy_;
-  std::string mover_;                      ///< node that commanded the move under way
-  std::string ended_;                      ///< of the model's motion, as logged
-  std::unique_ptr<NetworkWatch> network_;  ///< null where it does not matter who can reach this machine
-  bool exposed_ = false;                   ///< a real rig, and others can reach this machine
-  bool admitted_ = false;                  ///< enabled while nobody else could reach this machine
+  std::string mover_;                        ///< node that commanded the move under way
+  std::string ended_;                        ///< of the model's motion, as logged
+  std::unique_ptr<NetworkMonitor> network_;  ///< null where it does not matter who can reach this machine
+  bool exposed_ = false;                     ///< a real rig, and others can reach this machine
+  bool admitted_ = false;                    ///< enabled while nobody else could reach this machine
   bool master_lost_ = false;
   bool answer_ = false;
   ros::Time now_;

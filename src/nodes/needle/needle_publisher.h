@@ -7,9 +7,9 @@
 
 #include "cell_microinjection/ManipulatorAbilities.h"
 #include "cell_microinjection/OperatingState.h"
-#include "rig/manipulator/micromanipulator.h"
-#include "nodes/runtime/cycle.h"
 #include "nodes/needle/rig_device.h"
+#include "nodes/runtime/cycle.h"
+#include "rig/manipulator/micromanipulator.h"
 
 namespace microinjection {
 

@@ -3,8 +3,8 @@
 #include <limits>
 
 #include "base/errors.h"
-#include "rig/manipulator/simulated_manipulator.h"
 #include "rig/devices/rig_registry.h"
+#include "rig/manipulator/simulated_manipulator.h"
 #include "rig/serial/emulated_wire.h"
 #include "rig/serial/fault.h"
 

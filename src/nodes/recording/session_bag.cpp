@@ -13,7 +13,7 @@ SessionBag::SessionBag(const std::string& path) : path_(path), bag_(std::make_un
   bag_->setCompression(rosbag::compression::LZ4);
 }
 
-void SessionBag::giveUp(const std::string& what, int reason) {
+void SessionBag::abort(const std::string& what, int reason) {
   trouble_ = path_ + ".active: cannot be written: " + what;
   if (reason != 0) trouble_ += std::string(": ") + std::strerror(reason);
   ROS_ERROR_STREAM(trouble_ << "; the bag ends here, the session goes on");
@@ -28,7 +28,7 @@ std::string SessionBag::close() {
     bag_->close();
   } catch (const std::exception& error) {
     const int reason = errno;
-    giveUp(error.what(), reason);
+    abort(error.what(), reason);
     return trouble_;
   }
   bag_.reset();

@@ -54,10 +54,10 @@ class SessionBag {
       bag_->write(topic, now, message);
     } catch (const std::exception& error) {  // a full disk must not take the session with it
       const int reason = errno;
-      giveUp(error.what(), reason);
+      abort(error.what(), reason);
     }
   }
-  void giveUp(const std::string& what, int reason);
+  void abort(const std::string& what, int reason);
 
   std::string path_;
   std::unique_ptr<rosbag::Bag> bag_;  ///< null when it is closed

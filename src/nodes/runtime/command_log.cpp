@@ -25,7 +25,7 @@ void CommandLog::overridden(const std::string& motion, const std::string& why) {
   ROS_WARN_STREAM(overridden_news_);
 }
 
-std::string CommandLog::takeNews() {
+std::string CommandLog::takeUpdates() {
   std::string news = std::exchange(refused_news_, refusal_);
   const std::string overridden = std::exchange(overridden_news_, "");
   if (!overridden.empty()) news += (news.empty() ? "" : "; ") + overridden;

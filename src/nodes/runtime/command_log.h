@@ -19,7 +19,7 @@ class CommandLog {
   const std::string& refusal() const { return refusal_; }
   /// The last refusal and the last overridden motion since the call before, or a refusal that lasts; empty: none. A
   /// report comes once a second, and many commands in between.
-  std::string takeNews();
+  std::string takeUpdates();
   void addCounts(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
  private:

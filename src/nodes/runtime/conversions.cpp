@@ -22,16 +22,16 @@ bool isWithin(const Eigen::Vector3d& vector, double largest) {
   return vector.allFinite() && vector.cwiseAbs().maxCoeff() <= largest;
 }
 
-std::optional<Eigen::Vector3d> trustedPosition(const geometry_msgs::PoseStamped* message, const std::string& frame,
-                                               double largest) {
+std::optional<Eigen::Vector3d> validPosition(const geometry_msgs::PoseStamped* message, const std::string& frame,
+                                             double largest) {
   if (!message || message->header.stamp.isZero() || !isIn(message->header.frame_id, frame)) return std::nullopt;
   const Eigen::Vector3d position = toEigen(message->pose.position);
   if (!isWithin(position, largest)) return std::nullopt;
   return position;
 }
 
-std::optional<Eigen::Isometry3d> trustedPose(const geometry_msgs::PoseStamped* message) {
-  const auto position = trustedPosition(message, kWorldFrame);
+std::optional<Eigen::Isometry3d> validPose(const geometry_msgs::PoseStamped* message) {
+  const auto position = validPosition(message, kWorldFrame);
   if (!position) return std::nullopt;
   const auto& q = message->pose.orientation;
   const Eigen::Quaterniond orientation(q.w, q.x, q.y, q.z);
@@ -42,7 +42,7 @@ std::optional<Eigen::Isometry3d> trustedPose(const geometry_msgs::PoseStamped* m
   return pose;
 }
 
-std::optional<Eigen::Vector3d> trustedVelocity(const geometry_msgs::TwistStamped* message) {
+std::optional<Eigen::Vector3d> validVelocity(const geometry_msgs::TwistStamped* message) {
   if (message->header.stamp.isZero() || !isIn(message->header.frame_id, kWorldFrame)) return std::nullopt;
   const auto& v = message->twist.linear;
   const Eigen::Vector3d velocity(v.x, v.y, v.z);
@@ -58,7 +58,7 @@ std::optional<Eigen::Vector3d> finiteForce(const geometry_msgs::WrenchStamped* m
   return force;
 }
 
-std::optional<Eigen::Vector3d> trustedForce(const geometry_msgs::WrenchStamped* message, const Eigen::Matrix3d& tip) {
+std::optional<Eigen::Vector3d> validForce(const geometry_msgs::WrenchStamped* message, const Eigen::Matrix3d& tip) {
   auto force = finiteForce(message);
   if (!force || isIn(message->header.frame_id, kWorldFrame)) return force;
   if (message->header.frame_id == kTipFrame) return Eigen::Vector3d(tip * *force);

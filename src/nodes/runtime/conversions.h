@@ -14,7 +14,7 @@ constexpr char kWorldFrame[] = "world";
 constexpr char kTipFrame[] = "needle_tip";
 
 // Finite numbers can be wild, too: squared, 1e160 is not finite any more. What no rig, hand or sensor reaches is not
-// trusted.
+// valid.
 constexpr double kLargestNeedleDistance = 1;  ///< m from the origin of `world`, which is in the dish
 constexpr double kLargestHandDistance = 10;   ///< m from the origin of the device's frame
 constexpr double kLargestSpeed = 10;          ///< m/s
@@ -25,19 +25,19 @@ bool isWithin(const Eigen::Vector3d& vector, double largest);
 
 /// A pose in `world`; empty when the message is null, has stamp 0, is in another frame (an empty frame_id counts as
 /// world), not finite or beyond kLargestNeedleDistance, or its quaternion is not of unit length within 1e-3.
-std::optional<Eigen::Isometry3d> trustedPose(const geometry_msgs::PoseStamped* message);
+std::optional<Eigen::Isometry3d> validPose(const geometry_msgs::PoseStamped* message);
 
 /// A velocity (m/s) in `world`; empty in the same cases, or beyond kLargestSpeed.
-std::optional<Eigen::Vector3d> trustedVelocity(const geometry_msgs::TwistStamped* message);
+std::optional<Eigen::Vector3d> validVelocity(const geometry_msgs::TwistStamped* message);
 
-/// As trustedPose, the position alone (m) and without looking at the orientation, in `frame`, up to `largest` (m) from
+/// As validPose, the position alone (m) and without looking at the orientation, in `frame`, up to `largest` (m) from
 /// its origin.
-std::optional<Eigen::Vector3d> trustedPosition(const geometry_msgs::PoseStamped* message, const std::string& frame,
-                                               double largest = kLargestNeedleDistance);
+std::optional<Eigen::Vector3d> validPosition(const geometry_msgs::PoseStamped* message, const std::string& frame,
+                                             double largest = kLargestNeedleDistance);
 
 /// A force (N) in `world`, from a message in `world` (or without frame) or in `needle_tip`, whose orientation in world
 /// is `tip`. Empty when the message is null, in another frame, not finite or beyond kLargestForce.
-std::optional<Eigen::Vector3d> trustedForce(const geometry_msgs::WrenchStamped* message, const Eigen::Matrix3d& tip);
+std::optional<Eigen::Vector3d> validForce(const geometry_msgs::WrenchStamped* message, const Eigen::Matrix3d& tip);
 
 /// A force (N) in the message's own frame, whichever that is: for the haptic device, whose frame only its driver knows.
 /// Empty when the message is null, not finite or beyond kLargestForce.

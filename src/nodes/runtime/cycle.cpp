@@ -19,12 +19,12 @@ Cycle::Cycle(const ros::NodeHandle& node, double rate)
   sampled_node_.setCallbackQueue(&sampled_queue_);
 }
 
-bool Cycle::goesOn() {
-  if (master_.orphaned() && !busy_) {
+bool Cycle::shouldContinue() {
+  if (master_.masterLostForLong() && !busy_) {
     ROS_ERROR("the ROS master has been away for too long, and nothing moves: this node ends");
     stopped_ = true;
   }
-  if (lockstep_ && hasLeft(ros::this_node::getName())) {
+  if (lockstep_ && hasDeparted(ros::this_node::getName())) {
     ROS_ERROR("the lock step goes on without this node, which was frozen: it ends");
     stopped_ = true;
   }
@@ -46,24 +46,24 @@ void Cycle::step(const ros::Time& now) {
   sampled_queue_.callAvailable();
   stalls_.step(now);
   if (now.isZero()) return;  // a simulated clock that has not begun
-  if (now < last_step_) {    // a clock set back: nothing that was received before can be trusted
+  if (now < last_step_) {    // a clock set back: nothing that was received before can be valid
     for (auto& input : inputs_) input->invalidate();
     last_step_ = now;
   }
   const double dt = last_step_.isZero() ? period_ : secondsBetween(last_step_, now);
   if (dt <= 0) return;  // a simulated clock that stands still
-  lookForMaster();
+  checkMaster();
   diagnostics_.beginStep();
   step_({now, std::min(dt, 10 * period_)});
   diagnostics_.endStep(now);
   last_step_ = now;
 }
 
-void Cycle::lookForMaster() {
+void Cycle::checkMaster() {
   const bool lost = master_.lost();
   if (lost == master_lost_) return;
   master_lost_ = lost;
-  for (auto& input : inputs_) input->cut_off = lost;
+  for (auto& input : inputs_) input->disconnected = lost;
   if (lost) {
     ROS_ERROR("the ROS master is lost, or a new one that does not know this node: no input counts");
   } else {
@@ -72,10 +72,10 @@ void Cycle::lookForMaster() {
 }
 
 void Cycle::runLive() {
-  const bool driven =
-      std::any_of(inputs_.begin(), inputs_.end(), [](const auto& input) { return input->phase == Phase::kSameTick; });
+  const bool driven = std::any_of(inputs_.begin(), inputs_.end(),
+                                  [](const auto& input) { return input->phase == InputPhase::kThisTick; });
   ros::SteadyTime deadline = ros::SteadyTime::now();
-  while (goesOn()) {
+  while (shouldContinue()) {
     const ros::WallDuration wait(secondsBetween(ros::SteadyTime::now(), deadline));
     queue_.callAvailable(std::clamp(wait, ros::WallDuration(0), ros::WallDuration(0.1)));
     const ros::SteadyTime now = ros::SteadyTime::now();
@@ -89,19 +89,19 @@ void Cycle::runLive() {
   }
 }
 
-bool Cycle::answered(Phase phase, const ros::Time& stamp) const {
+bool Cycle::answered(InputPhase phase, const ros::Time& stamp) const {
   return std::all_of(inputs_.begin(), inputs_.end(), [&](const auto& input) {
-    return input->phase != phase || hasLeft(input->feeder) || input->answered(stamp);
+    return input->phase != phase || hasDeparted(input->publisher_name) || input->answered(stamp);
   });
 }
 
 bool Cycle::readyFor(const ros::Time& tick) const {
   const bool first = stepped_tick_.isZero();  // nothing was published before it
-  return answered(Phase::kSameTick, tick) && (first || answered(Phase::kTickBefore, stepped_tick_));
+  return answered(InputPhase::kThisTick, tick) && (first || answered(InputPhase::kPreviousTick, stepped_tick_));
 }
 
-bool Cycle::hasLeft(const std::string& participant) const {
-  return !left_.empty() && (' ' + left_).find(' ' + participant + ' ') != std::string::npos;
+bool Cycle::hasDeparted(const std::string& participant) const {
+  return !departed_.empty() && (' ' + departed_).find(' ' + participant + ' ') != std::string::npos;
 }
 
 void Cycle::runLockstep() {
@@ -109,21 +109,21 @@ void Cycle::runLockstep() {
       "/clock", 10, [this](const rosgraph_msgs::ClockConstPtr& message) { tick_ = message->clock; }, {},
       ros::TransportHints().tcpNoDelay());
   const ros::Subscriber left = node_.subscribe<std_msgs::String>(
-      kLeftTopic, 10, [this](const std_msgs::StringConstPtr& message) { left_ = message->data; });
+      kLeftTopic, 10, [this](const std_msgs::StringConstPtr& message) { departed_ = message->data; });
   acknowledgement_ = node_.advertise<std_msgs::Header>(kAcknowledgementTopic, 10, true);
-  for (auto& output : outputs_) output->greet();
-  const auto connected = [](const auto& input) { return !input->feeder.empty(); };
-  while (goesOn() && !std::all_of(inputs_.begin(), inputs_.end(), connected)) {
+  for (auto& output : outputs_) output->announce();
+  const auto connected = [](const auto& input) { return !input->publisher_name.empty(); };
+  while (shouldContinue() && !std::all_of(inputs_.begin(), inputs_.end(), connected)) {
     queue_.callAvailable(ros::WallDuration(0.1));
   }
   acknowledge(ros::Time());  // ready for the first tick
-  while (goesOn()) {
+  while (shouldContinue()) {
     queue_.callAvailable(ros::WallDuration(0.1));
     if (tick_ == stepped_tick_ || !readyFor(tick_)) continue;
     const ros::Time now = tick_;
     const bool first = stepped_tick_.isZero();
     for (auto& input : inputs_) {
-      runGuarded(input->topic, [&] { input->take(input->phase == Phase::kSameTick ? now : stepped_tick_, now); });
+      runGuarded(input->topic, [&] { input->take(input->phase == InputPhase::kThisTick ? now : stepped_tick_, now); });
     }
     for (auto& output : outputs_) output->beginTick(now);
     step(now);
@@ -131,7 +131,8 @@ void Cycle::runLockstep() {
     stepped_tick_ = now;
     // A topic may connect later than its greeting did. Nobody goes on, and latches what comes next, before this node
     // has the first answer of each.
-    while (first && goesOn() && !answered(Phase::kTickBefore, now)) queue_.callAvailable(ros::WallDuration(0.1));
+    while (first && shouldContinue() && !answered(InputPhase::kPreviousTick, now))
+      queue_.callAvailable(ros::WallDuration(0.1));
     acknowledge(now);
   }
 }

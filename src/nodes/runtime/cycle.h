@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "nodes/runtime/cycle_diagnostics.h"
-#include "nodes/runtime/master_watch.h"
+#include "nodes/runtime/master_monitor.h"
 #include "nodes/runtime/ports.h"
 #include "nodes/runtime/stall_watch.h"
 
@@ -23,14 +23,15 @@ constexpr int kBacklog = 5000;
 
 /// When a node steps, and with which inputs. All callbacks and steps run in the one thread that calls run().
 ///
-/// Live, a step follows the arrival of a kSameTick input, so that a hand's motion runs through the whole chain at once;
+/// Live, a step follows the arrival of a kThisTick input, so that a hand's motion runs through the whole chain at once;
 /// without such an input, or when it fails to come, the node steps at its own rate. In lock step (the parameter
 /// /lockstep/participants names this node) it steps once for each tick of /clock, when each input has brought that
-/// tick's message or said that it has none, and tells the clock; see nodes/lockstep_clock_node.h. An input whose feeder
-/// has left the lock step is not waited for: it is silent, and grows stale.
+/// tick's message or said that it has none, and tells the clock; see nodes/lockstep_clock_node.h. An input whose
+/// publisher_name has left the lock step is not waited for: it is silent, and grows stale.
 ///
-/// While the master is lost (nodes/runtime/master_watch.h) no input counts as fresh: a node then does what it does without
-/// input. When the master has been away for long (MasterWatch::orphaned) and the node is at rest, run() ends.
+/// While the master is lost (nodes/runtime/master_monitor.h) no input counts as fresh: a node then does what it does
+/// without input. When the master has been away for long (MasterMonitor::masterLostForLong) and the node is at rest,
+/// run() ends.
 class Cycle {
  public:
   struct Tick {
@@ -44,7 +45,7 @@ class Cycle {
 
   /// References stay good for the life of the cycle. `timeout`: age in s past which the input is stale.
   template <typename Message>
-  Input<Message>& input(const std::string& topic, Phase phase, double timeout);
+  Input<Message>& input(const std::string& topic, InputPhase phase, double timeout);
   template <typename Message>
   Output<Message>& output(const std::string& topic, bool latch = false);
 
@@ -70,16 +71,16 @@ class Cycle {
     return {received, earliest.isZero() ? received : std::min(received, earliest), event.getPublisherName(),
             isLatched(event)};
   }
-  bool goesOn();
+  bool shouldContinue();
   void runLive();
   void runLockstep();
   /// Lock step: has each input of that phase its answer for the tick `stamp`?
-  bool answered(Phase phase, const ros::Time& stamp) const;
+  bool answered(InputPhase phase, const ros::Time& stamp) const;
   bool readyFor(const ros::Time& tick) const;
-  bool hasLeft(const std::string& participant) const;
+  bool hasDeparted(const std::string& participant) const;
   /// It goes where the topic is remapped to.
-  std::string silentTopic(const std::string& topic) const { return node_.resolveName(topic) + kSilentSuffix; }
-  void lookForMaster();
+  std::string silentTopic(const std::string& topic) const { return node_.resolveName(topic) + kNoMessageSuffix; }
+  void checkMaster();
   void step(const ros::Time& now);
   void acknowledge(const ros::Time& now);
 
@@ -98,21 +99,21 @@ class Cycle {
   std::vector<ros::Subscriber> subscribers_;
   ros::Time last_step_;
   StallWatch stalls_;
-  bool triggered_ = false;  // live: a kSameTick input has come
+  bool triggered_ = false;  // live: a kThisTick input has come
   ros::Time tick_;          // lock step: the clock's newest
   ros::Time stepped_tick_;  // lock step: the last one answered
-  std::string left_;        // lock step: as on kLeftTopic
+  std::string departed_;    // lock step: as on kLeftTopic
   bool master_lost_ = false;
-  MasterWatch master_;
+  MasterMonitor master_;
   ros::Publisher acknowledgement_;
 };
 
 template <typename Message>
-Input<Message>& Cycle::input(const std::string& topic, Phase phase, double timeout) {
+Input<Message>& Cycle::input(const std::string& topic, InputPhase phase, double timeout) {
   auto owned = std::make_unique<Input<Message>>(topic, phase, timeout);
   Input<Message>& port = *owned;
   inputs_.push_back(std::move(owned));
-  diagnostics_.watch(port);
+  diagnostics_.monitor(port);
   const auto hints = ros::TransportHints().tcpNoDelay();
   using Event = ros::MessageEvent<const Message>;
   if (lockstep_) {
@@ -126,7 +127,7 @@ Input<Message>& Cycle::input(const std::string& topic, Phase phase, double timeo
     };
     subscribers_.push_back(node_.subscribe<std_msgs::Header, const Silence&>(silentTopic(topic), 10, hear, {}, hints));
   } else {
-    const bool trigger = phase == Phase::kSameTick;
+    const bool trigger = phase == InputPhase::kThisTick;
     const auto receive = [this, &port, trigger](const Event& event) {
       // Listeners are the node's own code.
       runGuarded(port.topic, [&] { port.receive(event.getConstMessage(), arrivalOf(event)); });
@@ -143,7 +144,7 @@ Output<Message>& Cycle::output(const std::string& topic, bool latch) {
   auto owned = std::make_unique<Output<Message>>(topic);
   Output<Message>& port = *owned;
   outputs_.push_back(std::move(owned));
-  diagnostics_.watch(port);
+  diagnostics_.monitor(port);
   // In lock step every topic is latched: whoever connects late still gets the message of the tick that waits for it.
   port.publisher = node_.advertise<Message>(topic, 10, latch || lockstep_);
   if (lockstep_) port.silent_publisher = node_.advertise<std_msgs::Header>(silentTopic(topic), 10, true);

@@ -90,8 +90,8 @@ void CycleDiagnostics::reportIntervals(const IntervalHistogram& intervals, Diagn
 
 void CycleDiagnostics::reportInputs(DiagnosticStatusWrapper& status) {
   status.summary(DiagnosticStatus::OK, "all inputs are fresh");
-  const auto cut_off = [](const InputPort* input) { return input->cut_off; };
-  if (std::any_of(inputs_.begin(), inputs_.end(), cut_off)) {
+  const auto disconnected = [](const InputPort* input) { return input->disconnected; };
+  if (std::any_of(inputs_.begin(), inputs_.end(), disconnected)) {
     return status.summary(DiagnosticStatus::ERROR, "the ROS master is lost: no input counts");
   }
   for (const InputPort* input : inputs_) {

@@ -19,8 +19,8 @@ class CycleDiagnostics {
  public:
   explicit CycleDiagnostics(double rate) : rate_(rate), intervals_(2 / rate) {}
 
-  void watch(const InputPort& port) { inputs_.push_back(&port); }
-  void watch(const OutputPort& port) { outputs_.push_back(&port); }
+  void monitor(const InputPort& port) { inputs_.push_back(&port); }
+  void monitor(const OutputPort& port) { outputs_.push_back(&port); }
 
   /// The node's own state: fills in level, message and values.
   void add(const std::string& name, const std::function<void(diagnostic_updater::DiagnosticStatusWrapper&)>& report);

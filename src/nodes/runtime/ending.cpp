@@ -29,6 +29,6 @@ void endInGoodOrder() {
   ros::XMLRPCManager::instance()->bind("shutdown", onShutdownCall);
 }
 
-bool askedToEnd() { return asked != 0; }
+bool shutdownRequested() { return asked != 0; }
 
 }  // namespace microinjection

@@ -9,6 +9,6 @@ namespace microinjection {
 void endInGoodOrder();
 
 /// Whether the node was asked to end.
-bool askedToEnd();
+bool shutdownRequested();
 
 }  // namespace microinjection

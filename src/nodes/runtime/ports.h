@@ -22,18 +22,18 @@
 namespace microinjection {
 
 /// Which message an input waits for in lock step: that of the same tick (from a node upstream) or that of the tick
-/// before (feedback). Live, kSameTick means that an arrival sets off a step.
-enum class Phase { kSameTick, kTickBefore };
+/// before (feedback). Live, kThisTick means that an arrival sets off a step.
+enum class InputPhase { kThisTick, kPreviousTick };
 
-/// Beside each topic T that takes part in lock step runs T + kSilentSuffix, on which the publisher says in every tick
-/// without a message that there is none, so that nobody waits for it. frame_id "invalid" also withdraws the last one.
-/// Silence with stamp 0 is the publisher's greeting: nobody begins before all its publishers have greeted it.
-constexpr char kSilentSuffix[] = "/silent";
+/// Beside each topic T that takes part in lock step runs T + kNoMessageSuffix, on which the publisher says in every
+/// tick without a message that there is none, so that nobody waits for it. frame_id "invalid" also withdraws the last
+/// one. Silence with stamp 0 is the publisher's greeting: nobody begins before all its publishers have greeted it.
+constexpr char kNoMessageSuffix[] = "/silent";
 
 /// One subscribed topic as a Cycle sees it.
 class InputPort {
  public:
-  InputPort(const std::string& name, Phase input_phase, double input_timeout)
+  InputPort(const std::string& name, InputPhase input_phase, double input_timeout)
       : topic(name), phase(input_phase), timeout(input_timeout) {}
   virtual ~InputPort() = default;
 
@@ -49,15 +49,15 @@ class InputPort {
   /// first.
   double age(const ros::Time& now) const { return received.isZero() ? INFINITY : secondsBetween(received, now); }
   /// The last message is there, valid and not older than `timeout`.
-  bool fresh(const ros::Time& now) const { return !cut_off && valid() && age(now) >= 0 && age(now) <= timeout; }
+  bool fresh(const ros::Time& now) const { return !disconnected && valid() && age(now) >= 0 && age(now) <= timeout; }
 
   const std::string topic;
-  const Phase phase;
-  const double timeout;  ///< s of ROS time
-  ros::Time received;    ///< of the last message
-  std::string sender;    ///< node that the last message came from, whether it was taken or not
-  std::string feeder;    ///< lock step: the node whose greeting is here, silence with stamp 0; empty: none yet
-  bool cut_off = false;  ///< nothing counts as fresh; see Cycle
+  const InputPhase phase;
+  const double timeout;        ///< s of ROS time
+  ros::Time received;          ///< of the last message
+  std::string sender;          ///< node that the last message came from, whether it was taken or not
+  std::string publisher_name;  ///< lock step: the node whose greeting is here, silence with stamp 0; empty: none yet
+  bool disconnected = false;   ///< nothing counts as fresh; see Cycle
   /// kAny: listeners hear also what is stamped ahead; it is never fresh. kCommand: live, what has no stamp is taken as
   /// of its arrival, unless its publisher latches.
   StampRule stamp_rule = StampRule::kTimely;
@@ -114,13 +114,13 @@ class Input : public InputPort {
     accept(message->header.stamp.isZero() ? nullptr : message, arrival.time);
   }
   void invalidate() override { newest_.reset(); }
-  /// Lock step; see kSilentSuffix.
+  /// Lock step; see kNoMessageSuffix.
   void queue(const Pointer& message, const ros::Time& tick, const std::string& from) {
     if (message->header.stamp.isZero() || refuses(*message, tick)) return;
     waiting_.push_back({message, from});
   }
   void queueSilence(const std_msgs::Header& header, const std::string& publisher) {
-    feeder = publisher;
+    publisher_name = publisher;
     if (!header.stamp.isZero()) silence_.push_back(header);
   }
 
@@ -132,7 +132,7 @@ class Input : public InputPort {
   /// The newest message if fresh(now), else null.
   const Message* get(const ros::Time& now) const { return fresh(now) ? newest_.get() : nullptr; }
   /// The newest message if it came since the last call of this function, else null: for commands.
-  Pointer takeNews() { return std::exchange(news_, false) ? newest_ : nullptr; }
+  Pointer takeUpdates() { return std::exchange(news_, false) ? newest_ : nullptr; }
 
  private:
   struct Waiting {
@@ -176,8 +176,8 @@ class OutputPort {
   explicit OutputPort(const std::string& name) : topic(name) {}
   virtual ~OutputPort() = default;
 
-  /// Lock step: see kSilentSuffix.
-  void greet() { silent_publisher.publish(std_msgs::Header()); }
+  /// Lock step: see kNoMessageSuffix.
+  void announce() { silent_publisher.publish(std_msgs::Header()); }
 
   /// Lock step: every message is stamped with the tick that it was sent in.
   void beginTick(const ros::Time& now) { tick_ = now; }

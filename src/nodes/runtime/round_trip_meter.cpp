@@ -12,7 +12,7 @@ const ros::Duration kMemory(2);
 constexpr double kSame = 1e-9;  // of a force: what units and axes may do to its last bits
 
 template <typename Value>
-void forgetBefore(std::map<ros::Time, Value>& entries, const ros::Time& time) {
+void discardBefore(std::map<ros::Time, Value>& entries, const ros::Time& time) {
   entries.erase(entries.begin(), entries.lower_bound(time));
 }
 
@@ -42,9 +42,9 @@ void RoundTripMeter::step(const ros::Time& now) {
     needle_of_force_.erase(needle_of_force_.begin());
   }
   if (now.toSec() < kMemory.toSec()) return;
-  forgetBefore(hand_of_needle_, now - kMemory);
-  forgetBefore(rendered_, now - kMemory);
-  forgetBefore(felt_, now - kMemory);
+  discardBefore(hand_of_needle_, now - kMemory);
+  discardBefore(rendered_, now - kMemory);
+  discardBefore(felt_, now - kMemory);
 }
 
 void RoundTripMeter::count(const ros::Time& rendered, const ros::Time& needle) {

@@ -45,12 +45,12 @@ ContactDetector::ContactDetector(const ForceNoise& noise, double force, double f
   creep_ = allowance_ * deviation_ / (1 / kFollow + kLate) / kSoftest;
 }
 
-bool ContactDetector::creeps() const { return advance_ > kRests && advance_ < creep_; }
+bool ContactDetector::isCreeping() const { return advance_ > kRests && advance_ < creep_; }
 
 bool ContactDetector::step(double force, double advance) {
   advance_ += (advance - advance_) / kLate;
   double& oldest = late_[static_cast<std::size_t>(count_ % kLate)];
-  if (count_++ >= kLate && !creeps()) {
+  if (count_++ >= kLate && !isCreeping()) {
     offset_ = std::clamp(offset_ + kFollow * (oldest - offset_), rest_ - farthest_, rest_ + farthest_);
   }
   oldest = force;

@@ -30,7 +30,7 @@ class ContactDetector {
   double limit() const { return limit_; }          ///< h
 
  private:
-  bool creeps() const;
+  bool isCreeping() const;
 
   double offset_ = 0, deviation_ = 1;  ///< N
   double rest_, farthest_;             ///< N, offset at the start, and how far it may go from there

@@ -43,7 +43,7 @@ double NeedleSpeed::step(const Eigen::Vector3d& position, double dt) {
   return speed;
 }
 
-double leash(const GuardConfig& config, double lag) {
+double followingErrorLimit(const GuardConfig& config, double lag) {
   return 2 * std::min(config.lag_limit, config.speed_limit * lag) + kSlack;
 }
 

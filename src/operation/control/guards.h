@@ -41,7 +41,7 @@ class NeedleSpeed {
 
 /// How far (m) a set-point may go ahead of a needle that follows it with a lag (s): twice what the lag makes at the
 /// speed limit, so that a needle that stands still, for whatever reason, does not leap when it is let go.
-double leash(const GuardConfig& config, double lag);
+double followingErrorLimit(const GuardConfig& config, double lag);
 
 /// Why the rig is at fault, by its needle, set-point (m) and speed (m/s); empty when it is not.
 std::string rigFault(const GuardConfig& config, const Eigen::Vector3d& needle, const Eigen::Vector3d& setpoint,

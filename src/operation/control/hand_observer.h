@@ -11,7 +11,7 @@ namespace microinjection {
 /// Names what a hand does with the needle: it sees, and moves nothing.
 class HandObserver {
  public:
-  /// After a step in `state`; the monitor has seen its force and needle. `injector` empty: nothing trusted is known.
+  /// After a step in `state`; the monitor has seen its force and needle. `injector` empty: nothing valid is known.
   std::optional<InjectionEvent> step(InjectionState state, const NeedleMonitor& monitor,
                                      const std::optional<InjectorReport>& injector);
 

@@ -8,20 +8,20 @@
 namespace microinjection {
 
 std::string InjectionController::command(const std::string& command) {
-  std::string refusal = heed(command);
+  std::string refusal = execute(command);
   notice_ = refusal.empty() ? "" : command + " refused: " + refusal;
   return refusal;
 }
 
-std::string InjectionController::heed(const std::string& command) {
+std::string InjectionController::execute(const std::string& command) {
   if (command == "approach") return start(config_.goal);
-  if (command == "indent") return takeWord(InjectionEvent::kIndent);
-  if (command == "inject") return takeWord(InjectionEvent::kInject);
+  if (command == "indent") return applyOperatorCommand(InjectionEvent::kIndent);
+  if (command == "inject") return applyOperatorCommand(InjectionEvent::kInject);
   if (command == "withdraw") return withdraw();
-  return obey(command);
+  return applyCommand(command);
 }
 
-std::string InjectionController::obey(const std::string& word) {
+std::string InjectionController::applyCommand(const std::string& word) {
   const auto command = stateCommandOf(word);
   if (!command) {
     return "\"" + word +
@@ -44,17 +44,17 @@ std::string InjectionController::change(StateCommand command) {
   const OperatingState before = std::exchange(state_, *next);
   switch (command) {
     case StateCommand::kDisable:
-      held_because_ = "DISABLED";
+      hold_reason_ = "DISABLED";
       setpoint_.reset();
       run_.end(InjectionOutcome::kDisabled, "disabled");
-      happen(InjectionEvent::kReset);
+      apply(InjectionEvent::kReset);
       break;
     case StateCommand::kEnable:
       if (before != OperatingState::kEnabled) setpoint_.reset();
-      if (before == OperatingState::kFault) happen(InjectionEvent::kReset);
+      if (before == OperatingState::kFault) apply(InjectionEvent::kReset);
       break;
     case StateCommand::kPause:
-      held_because_ = "PAUSED";
+      hold_reason_ = "PAUSED";
       break;
     case StateCommand::kResume:
       run_.rested();
@@ -76,7 +76,7 @@ std::string InjectionController::goHome() {
   if (!setpoint_) return "the needle's position is not known yet";
   state_ = OperatingState::kEnabled;
   run_.end(InjectionOutcome::kPreempted, "home");
-  happen(InjectionEvent::kWithdraw);
+  apply(InjectionEvent::kWithdraw);
   return "";
 }
 
@@ -99,22 +99,22 @@ std::string InjectionController::start(const InjectionGoal& goal) {
   }
   run_.start(goal, *setpoint_);
   monitor_.reset();
-  happen(InjectionEvent::kStart);
+  apply(InjectionEvent::kStart);
   return "";
 }
 
-std::string InjectionController::takeWord(InjectionEvent event) {
+std::string InjectionController::applyOperatorCommand(InjectionEvent event) {
   if (state_ != OperatingState::kEnabled)
     return std::string("state is ") + toText(state_) + ", it is allowed in ENABLED";
   if (unhomed_) return kNotHomed;
   if (!byHand()) return run_.confirm(event, injection_);
   if (event != InjectionEvent::kInject) return "mode is manual: the hand moves the needle";
   if (injection_ != InjectionState::kPunctured) return std::string("it is no step from ") + toText(injection_);
-  if (!held_because_.empty() && held_because_ != kNoTarget) return "the needle is held: " + held_because_;
+  if (!hold_reason_.empty() && hold_reason_ != kNoTarget) return "the needle is held: " + hold_reason_;
   if (config_.goal.pulse.duration <= 0) return "the goal has no pulse";
-  hand_pulse_.start(config_.goal.pulse, config_.motion.injector_patience);
+  hand_pulse_.start(config_.goal.pulse, config_.motion.injector_timeout);
   pulse_by_hand_ = true;
-  happen(InjectionEvent::kInject);
+  apply(InjectionEvent::kInject);
   return "";
 }
 
@@ -124,13 +124,13 @@ std::string InjectionController::withdraw() {
   if (!held) return std::string("state is ") + toText(state_) + ", withdraw is allowed in ENABLED and PAUSED";
   if (!setpoint_) return "the needle's position is not known yet";
   // Left in the cell by an injection that was disabled: it is known where it came from.
-  if (injection_ == InjectionState::kIdle && monitor_.touched() && !homing_) return obey("home");
+  if (injection_ == InjectionState::kIdle && monitor_.touched() && !homing_) return applyCommand("home");
   if (homing_ || !after(injection_, InjectionEvent::kWithdraw)) {
     return std::string("there is nothing to withdraw from in ") + (homing_ ? "homing" : toText(injection_));
   }
   state_ = OperatingState::kEnabled;
   run_.withdraw();
-  happen(InjectionEvent::kWithdraw);
+  apply(InjectionEvent::kWithdraw);
   return "";
 }
 

@@ -15,7 +15,7 @@ constexpr double kSlowestRig = 1e-6;  ///< m/s: a slower one would hold the need
 constexpr double kFastestRig = 1;     ///< m/s
 constexpr double kLatestRig = 10;     ///< s
 
-bool trusted(const std::optional<Eigen::Vector3d>& value) { return value && value->allFinite(); }
+bool valid(const std::optional<Eigen::Vector3d>& value) { return value && value->allFinite(); }
 
 }  // namespace
 
@@ -23,7 +23,7 @@ InjectionController::InjectionController(const InjectionControllerConfig& config
     : config_(config),
       monitor_(config.detection),
       run_(config.motion, config.guards, config.mode == "automatic"),
-      leash_(leash(config.guards, std::numeric_limits<double>::infinity())) {}
+      following_error_limit_(followingErrorLimit(config.guards, std::numeric_limits<double>::infinity())) {}
 
 std::string InjectionController::adaptTo(double speed, double lag) {
   const Range speeds = Range::closed(kSlowestRig, kFastestRig), lags = Range::closed(0, kLatestRig);
@@ -35,7 +35,7 @@ std::string InjectionController::adaptTo(double speed, double lag) {
   }
   if (refusal.tellp() > 0) return refusal.str();
   rig_speed_ = std::min(speed, lag > 0 ? config_.guards.lag_limit / lag : speed);
-  leash_ = leash(config_.guards, lag);
+  following_error_limit_ = followingErrorLimit(config_.guards, lag);
   run_.limitSpeed(rig_speed_);
   return "";
 }
@@ -52,7 +52,7 @@ InjectionFeedback InjectionController::feedback() const {
   return {injection_, layer, layers, monitor_.force(), monitor_.depth(), run_.result().duration};
 }
 
-void InjectionController::happen(InjectionEvent event) {
+void InjectionController::apply(InjectionEvent event) {
   const auto next = after(injection_, event);
   if (!next) return;
   injection_ = *next;
@@ -62,7 +62,7 @@ void InjectionController::happen(InjectionEvent event) {
     hand_pulse_ = {};
   }
   if (injection_ != InjectionState::kInject) {
-    if (pulse_by_hand_ && event == InjectionEvent::kFail) notice_ = "the pulse was ended: " + held_because_;
+    if (pulse_by_hand_ && event == InjectionEvent::kFail) notice_ = "the pulse was ended: " + hold_reason_;
     if (pulse_by_hand_ && event == InjectionEvent::kWithdraw) notice_ = "the pulse was ended: the needle is withdrawn";
     pulse_by_hand_ = false;
   }
@@ -74,7 +74,7 @@ bool InjectionController::isInside(const Eigen::Vector3d& needle, const Eigen::V
   return monitor_.touched() && monitor_.depthOf(needle, axis) > -kOut;
 }
 
-void InjectionController::takeHold(const Eigen::Vector3d& needle, const Eigen::Vector3d& axis) {
+void InjectionController::engage(const Eigen::Vector3d& needle, const Eigen::Vector3d& axis) {
   setpoint_ = needle;
   needle_speed_.reset();
   // In the cell the way out, the touch and the force at rest stay what they were when it set out.
@@ -86,22 +86,22 @@ void InjectionController::takeHold(const Eigen::Vector3d& needle, const Eigen::V
 }
 
 std::optional<Eigen::Vector3d> InjectionController::step(const Input& input, double dt) {
-  const bool known = trusted(input.needle);
-  needle_known_ = needle_known_ || known;
+  const bool known = valid(input.needle);
+  needle_valid_ = needle_valid_ || known;
   if (state_ == OperatingState::kDisabled || state_ == OperatingState::kFault) {
     // Taken out by somebody else it is out.
     if (known && monitor_.touched() && !isInside(*input.needle, input.axis)) monitor_.reset();
     return std::nullopt;
   }
   if (!known) {
-    loseNeedle(dt);
+    invalidateNeedle(dt);
     return setpoint_;  // before the first pose there is nothing to hold yet
   }
-  if (!setpoint_) takeHold(*input.needle, input.axis);
+  if (!setpoint_) engage(*input.needle, input.axis);
   if (rigIsAtFault(*input.needle, dt)) return std::nullopt;
-  observe(input, trusted(input.force), dt);
+  observe(input, valid(input.force), dt);
   if (state_ == OperatingState::kPaused) {
-    watchPulse(input, dt);
+    monitorPulse(input, dt);
   } else if (homing_) {
     stepHome(input, dt);
   } else if (unhomed_ && injection_ != InjectionState::kWithdraw) {
@@ -114,14 +114,14 @@ std::optional<Eigen::Vector3d> InjectionController::step(const Input& input, dou
   return setpoint_;
 }
 
-void InjectionController::loseNeedle(double dt) {
-  held_because_ = "no trusted needle position";
+void InjectionController::invalidateNeedle(double dt) {
+  hold_reason_ = "no valid needle position";
   target_offset_.reset();
   monitor_.skip();
   needle_speed_.reset();
-  endPulse(held_because_);
+  endPulse(hold_reason_);
   if (byHand() || !run_.active() || state_ != OperatingState::kEnabled) return;
-  if (injection_ == InjectionState::kIndent) stop(InjectionOutcome::kGuard, held_because_ + " while it indents");
+  if (injection_ == InjectionState::kIndent) stop(InjectionOutcome::kGuard, hold_reason_ + " while it indents");
   const std::string late = run_.wait(injection_, dt);
   if (!late.empty()) stop(InjectionOutcome::kGuard, late);
 }
@@ -129,10 +129,10 @@ void InjectionController::loseNeedle(double dt) {
 bool InjectionController::rigIsAtFault(const Eigen::Vector3d& needle, double dt) {
   const std::string fault = rigFault(config_.guards, needle, *setpoint_, needle_speed_.step(needle, dt));
   if (fault.empty()) return false;
-  held_because_ = fault;
+  hold_reason_ = fault;
   state_ = OperatingState::kFault;
   run_.end(InjectionOutcome::kFault, fault);
-  happen(InjectionEvent::kFail);
+  apply(InjectionEvent::kFail);
   return true;
 }
 
@@ -143,26 +143,26 @@ void InjectionController::observe(const Input& input, bool force_trusted, double
     monitor_.skip();
   }
   if (!byHand()) return;
-  watchHandPulse(input, dt);
+  monitorManualPulse(input, dt);
   if (!force_trusted) return;
   const auto event = observer_.step(injection_, monitor_, pulse_by_hand_ ? std::nullopt : input.injector);
-  if (event) happen(*event);
+  if (event) apply(*event);
 }
 
 /// A pulse goes on while the needle is PAUSED, but not past its volume.
-void InjectionController::watchPulse(const Input& input, double dt) {
+void InjectionController::monitorPulse(const Input& input, double dt) {
   if (!run_.active() || injection_ != InjectionState::kInject) return;
-  if (!trusted(input.force)) return endPulse("no trusted force");
+  if (!valid(input.force)) return endPulse("no valid force");
   take(run_.step(injection_, monitor_, input.injector, *setpoint_, input.axis, dt));
 }
 
 std::optional<Eigen::Vector3d> InjectionController::handTarget(const Input& input) {
-  held_because_.clear();
-  if (!trusted(input.target)) held_because_ = kNoTarget;
-  if (!trusted(input.force)) held_because_ = "no trusted force";
-  if (!held_because_.empty()) {
+  hold_reason_.clear();
+  if (!valid(input.target)) hold_reason_ = kNoTarget;
+  if (!valid(input.force)) hold_reason_ = "no valid force";
+  if (!hold_reason_.empty()) {
     target_offset_.reset();
-    if (!trusted(input.force)) endPulse(held_because_);
+    if (!valid(input.force)) endPulse(hold_reason_);
     return std::nullopt;
   }
   // The hand may have gone anywhere while the needle was held: the target counts from where it is now.
@@ -178,7 +178,7 @@ std::string InjectionController::guard(const Input& input) const {
 
 void InjectionController::hold(const std::string& reason) {
   state_ = OperatingState::kPaused;
-  held_because_ = reason;
+  hold_reason_ = reason;
 }
 
 void InjectionController::stop(InjectionOutcome outcome, const std::string& reason) {
@@ -194,19 +194,19 @@ void InjectionController::stopNeedle(const Input& input) {
 
 std::optional<Eigen::Vector3d> InjectionController::ownTarget(const Input& input, double dt) {
   const bool out = injection_ == InjectionState::kWithdraw;
-  held_because_.clear();
+  hold_reason_.clear();
   if (!run_.active() && !out) {
-    held_because_ = "no injection is under way";
+    hold_reason_ = "no injection is under way";
     return std::nullopt;
   }
-  if (!out && !trusted(input.force)) {
-    held_because_ = "no trusted force";
+  if (!out && !valid(input.force)) {
+    hold_reason_ = "no valid force";
     // What the membrane does meanwhile is not known.
     if (injection_ == InjectionState::kIndent) {
-      stop(InjectionOutcome::kGuard, "no trusted force while it indents");
+      stop(InjectionOutcome::kGuard, "no valid force while it indents");
       stopNeedle(input);
     }
-    endPulse(held_because_);
+    endPulse(hold_reason_);
     return std::nullopt;
   }
   const std::string beyond = out ? "" : guard(input);
@@ -223,14 +223,14 @@ std::optional<Eigen::Vector3d> InjectionController::ownTarget(const Input& input
 
 /// What a step of the injection brings; whether it goes on.
 bool InjectionController::take(const InjectionRun::Step& step) {
-  if (step.event) happen(*step.event);
+  if (step.event) apply(*step.event);
   if (step.stop) stop(*step.stop, step.reason);
   return !step.stop;
 }
 
 void InjectionController::stepHome(const Input& input, double dt) {
   const Eigen::Vector3d& axis = input.axis;
-  held_because_ = "homing";
+  hold_reason_ = "homing";
   const Eigen::Vector3d way = home_ - *setpoint_;
   const double out = way.dot(axis);
   // First out of the cell along the pipette, then across, for a needle that goes sideways tears; never deeper.
@@ -240,14 +240,14 @@ void InjectionController::stepHome(const Input& input, double dt) {
   homing_ = unhomed_ = false;
   hold("PAUSED");
   if (byHand()) return;
-  happen(InjectionEvent::kOut);
+  apply(InjectionEvent::kOut);
   monitor_.rearm();
 }
 
 void InjectionController::holdUnhomed() {
-  held_because_ = kNotHomed;
+  hold_reason_ = kNotHomed;
   target_offset_.reset();
-  endPulse(held_because_);
+  endPulse(hold_reason_);
 }
 
 void InjectionController::follow(const Eigen::Vector3d& target, const Input& input, double dt) {
@@ -256,13 +256,13 @@ void InjectionController::follow(const Eigen::Vector3d& target, const Input& inp
     std::ostringstream text;
     text << "target is " << motion.norm() << " m away, allowed " << config_.guards.jump_limit
          << " m; press the clutch to take hold afresh";
-    held_because_ = text.str();
+    hold_reason_ = text.str();
     return;
   }
   const std::string beyond = guard(input);
   if (!beyond.empty()) {
     if (!limited_) stopNeedle(input);
-    held_because_ = beyond + ": the needle may only be withdrawn";
+    hold_reason_ = beyond + ": the needle may only be withdrawn";
     motion = input.axis * std::max(0.0, (target - *setpoint_).dot(input.axis));
     // What was refused is forgotten: when the force falls, as in a puncture, the needle must not catch up with it.
     refuse(target - *setpoint_ - motion);
@@ -280,8 +280,8 @@ bool InjectionController::move(const Eigen::Vector3d& motion, const Input& input
   const Eigen::Vector3d next =
       *setpoint_ + (motion.norm() > largest ? Eigen::Vector3d(motion * (largest / motion.norm())) : motion);
   const double ahead = (next - *input.needle).norm();
-  if (ahead > leash_ && ahead > (*setpoint_ - *input.needle).norm()) {
-    held_because_ = "the needle does not follow its set-point";
+  if (ahead > following_error_limit_ && ahead > (*setpoint_ - *input.needle).norm()) {
+    hold_reason_ = "the needle does not follow its set-point";
     return false;
   }
   *setpoint_ = next;

@@ -32,7 +32,7 @@ struct InjectionControllerConfig {
 
 /// Decides where the needle goes: takes the hand's target or moves it by itself, and lets through only what is safe.
 ///
-/// Without a trusted target, force or needle pose it holds the needle where its set-point is. It moves the needle in
+/// Without a valid target, force or needle pose it holds the needle where its set-point is. It moves the needle in
 /// no operating state but ENABLED; a hand's targets count from where the needle was when it was enabled, resumed or
 /// held. Where the injection is (injection()) is told in every mode. What guards do:
 ///
@@ -40,12 +40,12 @@ struct InjectionControllerConfig {
 ///     force, depth         may only be withdrawn, as long     PAUSED, the injection ends (outcome guard); what is left
 ///                          as it is beyond                    is withdraw, home and disable. Not while it withdraws
 ///     time in a state      -                                  same, while it withdraws as well
-///     no trusted force     held while it lasts                same while it indents or injects; else held while it
+///     no valid force     held while it lasts                same while it indents or injects; else held while it
 ///                                                             lasts. It is not needed to withdraw
-///     no trusted needle    held while it lasts, a pulse ends  same while it indents or injects; else held while it
+///     no valid needle    held while it lasts, a pulse ends  same while it indents or injects; else held while it
 ///                                                             lasts, for the time guard at the most
 ///     needle stands still  the set-point waits for it (leash) same; what a hand did meanwhile is forgotten
-///     silent injector      its pulse counts as over           PAUSED, when the pulse and injector_patience are over
+///     silent injector      its pulse counts as over           PAUSED, when the pulse and injector_timeout are over
 ///     tracking, speed      FAULT: no set-point, until disable or enable
 ///     speed of set-point   never above the limit
 class InjectionController {
@@ -63,7 +63,7 @@ class InjectionController {
 
   /// enable, disable, pause, resume, home, unhome (CRTK state_command; base/operating_state.h has the table, and home
   /// is allowed in PAUSED, too). home withdraws the needle along the pipette and takes it over where it was enabled,
-  /// never deeper than it is, also without a trusted force; then pauses: the way out when the needle is held. unhome
+  /// never deeper than it is, also without a valid force; then pauses: the way out when the needle is held. unhome
   /// ends what the controller does by itself and holds the needle until it is home. approach (starts the configured
   /// goal), indent, inject and withdraw are the operator's words to an injection: withdraw gives up (preempts) what the
   /// controller does by itself, in any state of it, and takes the needle back to where it set out, also after a guard
@@ -89,9 +89,9 @@ class InjectionController {
   bool busy() const;                           ///< moves of its own accord
   bool waits() const { return run_.waits(); }  ///< for the operator's word
   /// As soon as the needle's pose is known, since axes are absolute; after unhome when it is home again.
-  bool homed() const { return needle_known_ && !unhomed_; }
-  const std::string& heldBecause() const { return held_because_; }  ///< empty while the needle follows
-  bool followsTarget() const { return state_ == OperatingState::kEnabled && held_because_.empty(); }
+  bool homed() const { return needle_valid_ && !unhomed_; }
+  const std::string& holdReason() const { return hold_reason_; }  ///< empty while the needle follows
+  bool followsTarget() const { return state_ == OperatingState::kEnabled && hold_reason_.empty(); }
   /// Why the last command was refused, or the pulse by hand that it asked for is over too early; else empty.
   const std::string& notice() const { return notice_; }
   const NeedleMonitor& monitor() const { return monitor_; }
@@ -107,22 +107,22 @@ class InjectionController {
  private:
   bool byHand() const { return config_.mode == "manual"; }
   /// By hand: nobody leads the needle. Its operator may have let go to say something.
-  static constexpr const char* kNoTarget = "no trusted target";
+  static constexpr const char* kNoTarget = "no valid target";
   static constexpr const char* kNotHomed = "not homed; allowed after home";
 
-  std::string heed(const std::string& command);
-  std::string obey(const std::string& word);
+  std::string execute(const std::string& command);
+  std::string applyCommand(const std::string& word);
   std::string change(StateCommand command);
   std::string goHome();
-  std::string takeWord(InjectionEvent event);
-  void happen(InjectionEvent event);
+  std::string applyOperatorCommand(InjectionEvent event);
+  void apply(InjectionEvent event);
   bool isInside(const Eigen::Vector3d& needle, const Eigen::Vector3d& axis) const;
-  void takeHold(const Eigen::Vector3d& needle, const Eigen::Vector3d& axis);
-  void loseNeedle(double dt);
+  void engage(const Eigen::Vector3d& needle, const Eigen::Vector3d& axis);
+  void invalidateNeedle(double dt);
   bool rigIsAtFault(const Eigen::Vector3d& needle, double dt);
-  void watchHandPulse(const Input& input, double dt);
+  void monitorManualPulse(const Input& input, double dt);
   void observe(const Input& input, bool force_trusted, double dt);
-  void watchPulse(const Input& input, double dt);
+  void monitorPulse(const Input& input, double dt);
   std::optional<Eigen::Vector3d> handTarget(const Input& input);
   std::optional<Eigen::Vector3d> ownTarget(const Input& input, double dt);
   bool take(const InjectionRun::Step& step);
@@ -151,13 +151,13 @@ class InjectionController {
   std::optional<Eigen::Vector3d> target_offset_;    ///< m, added to targets; taken with the first one once enabled
   Eigen::Vector3d home_ = Eigen::Vector3d::Zero();  ///< m, where the needle was enabled out of the cell
   double rig_speed_ = std::numeric_limits<double>::infinity();  ///< m/s
-  double leash_;                                                ///< m, that the set-point may be ahead of the needle
+  double following_error_limit_;                                ///< m, that the set-point may be ahead of the needle
   bool limited_ = false;  ///< by hand: a guard was past its limit in the last step
   bool paused_ = false;   ///< by a person, not by a guard
   bool homing_ = false;
   bool unhomed_ = false;  ///< by command, until the needle is home again
-  bool needle_known_ = false;
-  std::string held_because_ = "DISABLED";
+  bool needle_valid_ = false;
+  std::string hold_reason_ = "DISABLED";
   std::string notice_;
 };
 

@@ -19,8 +19,8 @@ struct Number {
 };
 
 const Number kNumbers[] = {
-    {false, "depth", "m", {0, Limits::kWay, true, false}, [](InjectionGoal& g) -> double& { return g.depth; }},
-    {false, "margin", "m", Range::closed(0, Limits::kWay), [](InjectionGoal& g) -> double& { return g.margin; }},
+    {false, "depth", "m", {0, Limits::kDistance, true, false}, [](InjectionGoal& g) -> double& { return g.depth; }},
+    {false, "margin", "m", Range::closed(0, Limits::kDistance), [](InjectionGoal& g) -> double& { return g.margin; }},
     {false, "hold_time", "s", Range::closed(0, Limits::kHoldTime),
      [](InjectionGoal& g) -> double& { return g.hold_time; }},
     {true, "pressure", "Pa", Range::closed(0, Limits::kPressure),

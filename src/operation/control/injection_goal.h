@@ -24,12 +24,12 @@ struct InjectorReport {
 
 /// What no injection of a cell is meant to exceed: a goal that does is refused, whatever the guards of the rig allow.
 struct InjectionGoalLimits {
-  static constexpr int kLayers = 10;        ///< membranes; cells have one or two, stacks of them a few
-  static constexpr double kWay = 1e-3;      ///< m, depth and margin; the largest cells that are injected are 1 mm wide
-  static constexpr double kHoldTime = 600;  ///< s; a needle that rests longer in a cell was forgotten there
-  static constexpr double kPressure = 1e6;  ///< Pa, gauge; above what injectors of cells deliver (some 0.6 MPa)
-  static constexpr double kDuration = 60;   ///< s, as the duration_range of config/injector.yaml
-  static constexpr double kVolume = 1e-9;   ///< m^3, as much as such a cell itself
+  static constexpr int kLayers = 10;         ///< membranes; cells have one or two, stacks of them a few
+  static constexpr double kDistance = 1e-3;  ///< m, depth and margin; the largest cells that are injected are 1 mm wide
+  static constexpr double kHoldTime = 600;   ///< s; a needle that rests longer in a cell was forgotten there
+  static constexpr double kPressure = 1e6;   ///< Pa, gauge; above what injectors of cells deliver (some 0.6 MPa)
+  static constexpr double kDuration = 60;    ///< s, as the duration_range of config/injector.yaml
+  static constexpr double kVolume = 1e-9;    ///< m^3, as much as such a cell itself
 };
 
 /// One injection of the controller's own: what for and how far. How fast is the rig's and the cell's, see

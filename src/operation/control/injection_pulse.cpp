@@ -10,13 +10,13 @@ std::optional<PulseGoal> InjectionController::pulse() const {
   return pulse_by_hand_ ? std::optional(config_.goal.pulse) : std::nullopt;
 }
 
-void InjectionController::watchHandPulse(const Input& input, double dt) {
+void InjectionController::monitorManualPulse(const Input& input, double dt) {
   if (!pulse_by_hand_) return;
   const InjectorWait::Status status = hand_pulse_.step(input.injector, dt);
   if (status == InjectorWait::Status::kWaiting) return;
   if (status == InjectorWait::Status::kBroken) notice_ = "the injector ended the pulse too early";
   if (status == InjectorWait::Status::kTimeOut) notice_ = "the injector does not say that the pulse is over";
-  happen(InjectionEvent::kInjected);
+  apply(InjectionEvent::kInjected);
 }
 
 /// Where it is not known what is injected into. By hand only the pulse is over.
@@ -24,7 +24,7 @@ void InjectionController::endPulse(const std::string& why) {
   if (!pulse()) return;
   if (byHand()) {
     notice_ = "the pulse was ended: " + why;
-    return happen(InjectionEvent::kInjected);
+    return apply(InjectionEvent::kInjected);
   }
   stop(InjectionOutcome::kGuard, why + " while it injects");
 }

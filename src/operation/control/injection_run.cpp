@@ -21,7 +21,7 @@ InjectionMotionConfig InjectionMotionConfig::read(ConfigReader& reader) {
   reader.number("overshoot", config.overshoot, Range::positive());
   reader.number("stop_time", config.stop_time, Range::nonNegative());
   reader.number("retract_speed", config.retract_speed, Range::positive());
-  reader.number("injector_patience", config.injector_patience, Range::positive());
+  reader.number("injector_timeout", config.injector_timeout, Range::positive());
   if (config.stab_speed < config.indent_speed) reader.error("stab_speed", "must not be below indent_speed");
   return config;
 }
@@ -46,7 +46,8 @@ std::string InjectionRun::confirm(InjectionEvent event, InjectionState state) {
   }
   const bool fits = state == state_ && (event == InjectionEvent::kIndent ? state == InjectionState::kContact
                                                                          : state == InjectionState::kPunctured);
-  if (!waits_ || !fits) return std::string("it is no step from ") + toText(state) + (waits_ ? "" : " yet");
+  if (!awaits_command_ || !fits)
+    return std::string("it is no step from ") + toText(state) + (awaits_command_ ? "" : " yet");
   confirmed_ = event;
   return "";
 }
@@ -55,7 +56,7 @@ InjectionOutcome InjectionRun::done() const {
   if (injected_) return InjectionOutcome::kInjected;
   const bool through = result_.punctures >= goal_.layers;
   if (goal_.puncture && through && goal_.pulse.duration <= 0) return InjectionOutcome::kPunctured;
-  if (!goal_.puncture && state_ == InjectionState::kIndent && waits_) return InjectionOutcome::kIndented;
+  if (!goal_.puncture && state_ == InjectionState::kIndent && awaits_command_) return InjectionOutcome::kIndented;
   return InjectionOutcome::kPreempted;
 }
 
@@ -67,7 +68,7 @@ void InjectionRun::withdraw() {
 
 void InjectionRun::end(InjectionOutcome outcome, const std::string& reason) {
   if (!active_) return;
-  active_ = waits_ = false;
+  active_ = awaits_command_ = false;
   result_.outcome = outcome;
   result_.reason = reason;
 }
@@ -80,11 +81,11 @@ void InjectionRun::leave(InjectionOutcome outcome, const std::string& reason, St
 
 /// Whether the step that `event` begins may be done now.
 bool InjectionRun::goOn(InjectionEvent event) {
-  waits_ = !automatic_;
+  awaits_command_ = !automatic_;
   if (automatic_) return true;
   if (confirmed_ != event) return false;
   confirmed_.reset();
-  waits_ = false;
+  awaits_command_ = false;
   return true;
 }
 
@@ -97,7 +98,7 @@ InjectionRun::Step InjectionRun::step(InjectionState state, const NeedleMonitor&
                                       const std::optional<InjectorReport>& injector, const Eigen::Vector3d& setpoint,
                                       const Eigen::Vector3d& axis, double dt) {
   if (state != state_) enter(state, monitor);
-  in_state_ += waits_ ? 0 : dt;
+  in_state_ += awaits_command_ ? 0 : dt;
   if (active_) {
     result_.duration += dt;
     result_.peak_force = std::max(result_.peak_force, monitor.peakForce());
@@ -106,7 +107,7 @@ InjectionRun::Step InjectionRun::step(InjectionState state, const NeedleMonitor&
   // From where the set-point is: it may have waited for the needle, or been taken back to it.
   travel_ = std::min(travel_, (start_ - setpoint).dot(axis));
   Step step;
-  waits_ = false;
+  awaits_command_ = false;
   if (state == InjectionState::kApproach) approach(monitor, dt, step);
   if (state == InjectionState::kContact) contact(monitor, step);
   if (state == InjectionState::kIndent) indent(monitor, dt, step);
@@ -123,7 +124,7 @@ InjectionRun::Step InjectionRun::step(InjectionState state, const NeedleMonitor&
 void InjectionRun::enter(InjectionState state, const NeedleMonitor& monitor) {
   state_ = state;
   in_state_ = rested_ = speed_ = 0;
-  waits_ = false;
+  awaits_command_ = false;
   confirmed_.reset();
   if (state == InjectionState::kContact) touch_travel_ = travel_;
   if (state == InjectionState::kIndent) end_travel_ = touch_travel_ + std::min(goal_.depth, guards_.depth_limit);
@@ -131,7 +132,7 @@ void InjectionRun::enter(InjectionState state, const NeedleMonitor& monitor) {
     const double deep = std::min(monitor.depth() + goal_.margin, guards_.depth_limit);
     end_travel_ = std::max(travel_, touch_travel_ + deep);
   }
-  if (state == InjectionState::kInject) wait_.start(goal_.pulse, config_.injector_patience);
+  if (state == InjectionState::kInject) wait_.start(goal_.pulse, config_.injector_timeout);
 }
 
 void InjectionRun::approach(const NeedleMonitor& monitor, double dt, Step& step) {
@@ -180,7 +181,7 @@ void InjectionRun::indent(const NeedleMonitor& monitor, double dt, Step& step) {
     step.reason = "the membrane has not given way at the goal's depth";
   }
   if (!goal_.puncture && rested_ >= goal_.hold_time) {
-    waits_ = !automatic_;
+    awaits_command_ = !automatic_;
     if (automatic_) leave(InjectionOutcome::kIndented, "", step);
   }
 }
@@ -205,7 +206,7 @@ void InjectionRun::through(const NeedleMonitor& monitor, double dt, Step& step) 
     if (goOn(InjectionEvent::kInject)) step.event = InjectionEvent::kInject;
     return;
   }
-  waits_ = !automatic_;
+  awaits_command_ = !automatic_;
   rested_ += dt;
   if (automatic_ && rested_ >= goal_.hold_time) leave(done(), "", step);
 }
@@ -223,7 +224,7 @@ void InjectionRun::inject(const std::optional<InjectorReport>& injector, double 
   if (status != InjectorWait::Status::kTimeOut) return;
   if (injector) return leave(InjectionOutcome::kInjectorTimeOut, "the injector has not finished", step);
   step.stop = InjectionOutcome::kInjectorTimeOut;
-  step.reason = "no trusted word of the injector";
+  step.reason = "no valid word of the injector";
 }
 
 void InjectionRun::retract(double dt, Step& step) {

@@ -30,7 +30,7 @@ struct InjectionMotionConfig {
   double overshoot = 3e-6;          ///< m that the needle may go on when it is through; half with a membrane behind
   double stop_time = 10e-3;         ///< s, from a set-point that rests to a needle that rests (the rig's)
   double retract_speed = 20e-6;     ///< m/s, back to the start
-  double injector_patience = 1;     ///< s beyond its pulse that the injector may take
+  double injector_timeout = 1;      ///< s beyond its pulse that the injector may take
 
   static InjectionMotionConfig read(ConfigReader& reader);
 };
@@ -67,7 +67,7 @@ class InjectionRun {
   std::string wait(InjectionState state, double dt);
 
   bool active() const { return active_; }
-  bool waits() const { return waits_; }  ///< for the operator
+  bool waits() const { return awaits_command_; }  ///< for the operator
   const InjectionGoal& goal() const { return goal_; }
   const InjectionResult& result() const { return result_; }
 
@@ -91,7 +91,7 @@ class InjectionRun {
   bool automatic_;
   InjectionGoal goal_;
   InjectionResult result_;
-  bool active_ = false, waits_ = false;
+  bool active_ = false, awaits_command_ = false;
   InjectionState state_ = InjectionState::kIdle;
   double in_state_ = 0;                                       ///< s
   Eigen::Vector3d start_ = Eigen::Vector3d::Zero();           ///< m

@@ -19,7 +19,7 @@ class InjectorWait {
     patience_ = patience;
   }
 
-  /// After another dt (s); `report` empty: nothing trusted is known of the injector.
+  /// After another dt (s); `report` empty: nothing valid is known of the injector.
   Status step(const std::optional<InjectorReport>& report, double dt) {
     waited_ += dt;
     if (report) {

@@ -37,7 +37,7 @@ void NeedleMonitor::rearm() {
   touched_at_.reset();
   confirmed_.reset();
   looked_ = 0;
-  looked_sum_ = depth_ = max_depth_ = peak_ = crest_ = force_before_ = 0;
+  confirmation_sum_ = depth_ = max_depth_ = peak_ = peak_mean_force_ = force_before_ = 0;
   punctured_ = false;
 }
 
@@ -59,7 +59,7 @@ void NeedleMonitor::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis
     return;
   }
   peak_ = std::max(peak_, std::abs(axial - offset()));
-  crest_ = std::max(crest_, puncture_->meanForce(kBriefly));
+  peak_mean_force_ = std::max(peak_mean_force_, puncture_->meanForce(kBriefly));
   const double travel = -tip.dot(axis);
   const bool fell = puncture_->step(axial - offset(), travel);
   if (!touched_at_) {
@@ -70,18 +70,18 @@ void NeedleMonitor::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis
   }
   depth_ = depthOf(tip, axis);
   max_depth_ = std::max(max_depth_, depth_);
-  if (!confirmed_) lookAgain(axial);
+  if (!confirmed_) confirmContact(axial);
   punctured_ = fell;
   if (!fell) return;
-  force_before_ = crest_;
-  crest_ = 0;
+  force_before_ = peak_mean_force_;
+  peak_mean_force_ = 0;
 }
 
-void NeedleMonitor::lookAgain(double axial) {
-  looked_sum_ += axial - offset();
+void NeedleMonitor::confirmContact(double axial) {
+  confirmation_sum_ += axial - offset();
   if (++looked_ < config_.confirm_samples) return;
   const double uncertainty = noise_.deviation() * std::sqrt(1.0 / looked_ + 1.0 / config_.noise_samples);
-  confirmed_ = looked_sum_ / looked_ > normalQuantile(kFalselyConfirmed) * uncertainty;
+  confirmed_ = confirmation_sum_ / looked_ > normalQuantile(kFalselyConfirmed) * uncertainty;
 }
 
 }  // namespace microinjection

@@ -57,7 +57,7 @@ class NeedleMonitor {
   double latency() const { return puncture_ ? puncture_->latency(force()) : 0; }
 
  private:
-  void lookAgain(double axial);
+  void confirmContact(double axial);
 
   DetectionConfig config_;
   ForceNoise noise_;
@@ -67,9 +67,9 @@ class NeedleMonitor {
   std::optional<double> travel_;               ///< m, of the tip into the cell, at the last sample
   std::optional<bool> confirmed_;
   int looked_ = 0;
-  double looked_sum_ = 0;  ///< N
+  double confirmation_sum_ = 0;  ///< N
   double depth_ = 0, max_depth_ = 0;
-  double peak_ = 0, crest_ = 0, force_before_ = 0;
+  double peak_ = 0, peak_mean_force_ = 0, force_before_ = 0;
   bool punctured_ = false;
 };
 

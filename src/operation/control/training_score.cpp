@@ -55,7 +55,7 @@ TrainingTask TrainingTask::read(ConfigReader& reader) {
 }
 
 const char* toText(TrainingOutcome outcome) {
-  constexpr const char* kWords[] = {"complete", "aborted", "untrusted", "untouched"};
+  constexpr const char* kWords[] = {"complete", "aborted", "invalid", "untouched"};
   return kWords[static_cast<int>(outcome)];
 }
 
@@ -110,7 +110,7 @@ void TrainingSession::measureDepth(const TrainingSample& sample) {
   measured_.lateral_error = std::max(measured_.lateral_error, (way - way.dot(sample.axis) * sample.axis).norm());
 }
 
-void TrainingSession::judge(TrainingScore& score) const {
+void TrainingSession::computeScore(TrainingScore& score) const {
   const bool out = state_ == InjectionState::kIdle || state_ == InjectionState::kApproach;
   score.outcome = TrainingOutcome::kComplete;
   if (fault_ || !out) {
@@ -119,7 +119,7 @@ void TrainingSession::judge(TrainingScore& score) const {
   }
   if (left_out_ > kGaps * (used_ + left_out_)) {
     score.outcome = TrainingOutcome::kUntrusted;
-    score.reason = "needle or force was not trusted in " + std::to_string(left_out_) + " of " +
+    score.reason = "needle or force was not valid in " + std::to_string(left_out_) + " of " +
                    std::to_string(used_ + left_out_) + " moments";
   }
   if (!touched_) {
@@ -130,7 +130,7 @@ void TrainingSession::judge(TrainingScore& score) const {
 
 TrainingScore TrainingSession::score(const TrainingTask& task) const {
   TrainingScore score = measured_;
-  judge(score);
+  computeScore(score);
   if (score.outcome != TrainingOutcome::kComplete) return score;
   score.points.force = kTrainingPoints.force * within(score.peak_force, task.peak_force);
   score.points.deformation = kTrainingPoints.deformation * within(score.deformation, task.deformation);

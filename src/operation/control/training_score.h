@@ -38,7 +38,7 @@ struct TrainingSample {
 enum class TrainingOutcome {
   kComplete,   ///< touched, and the needle was out again at the end
   kAborted,    ///< ended in the cell, or the rig was at fault: measured, no points
-  kUntrusted,  ///< too many moments in which needle or force was not trusted: measured, no points
+  kUntrusted,  ///< too many moments in which needle or force was not valid: measured, no points
   kUntouched   ///< no cell was touched: nothing to score
 };
 const char* toText(TrainingOutcome outcome);
@@ -69,7 +69,7 @@ class TrainingSession {
  public:
   /// What is not finite is left out, and counted.
   void add(const TrainingSample& sample);
-  /// A moment in which needle or force was not trusted.
+  /// A moment in which needle or force was not valid.
   void addGap();
   TrainingScore score(const TrainingTask& task) const;
 
@@ -79,7 +79,7 @@ class TrainingSession {
   void count(const TrainingSample& sample);
   void follow(const TrainingSample& sample);
   void measureDepth(const TrainingSample& sample);
-  void judge(TrainingScore& score) const;
+  void computeScore(TrainingScore& score) const;
 
   TrainingScore measured_;
   InjectionState state_ = InjectionState::kIdle;

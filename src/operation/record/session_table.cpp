@@ -47,7 +47,7 @@ void SessionTable::skipTo(Nanoseconds now) {
   if (now > seen_) {
     advanceTo(seen_);
   } else {
-    forgetAll();
+    clear();
   }
   const Nanoseconds due = std::max(*began_, now - patience_);
   next_ = *began_ + (due - *began_ + period_ - 1) / period_ * period_;
@@ -59,7 +59,7 @@ void SessionTable::finish() {
 
 void SessionTable::advanceTo(Nanoseconds end) {
   // What comes after the end is not wanted, and must not pile up.
-  if (done_) return forgetBefore(end);
+  if (done_) return discardBefore(end);
   for (; next_ <= end; next_ += period_) {
     const auto* said = phase.at(next_, kForever);
     done_ = said && *said->value == "done";
@@ -67,7 +67,7 @@ void SessionTable::advanceTo(Nanoseconds end) {
     const Row now = row(next_);
     write(now);
     if (listener_) listener_(now);
-    forgetBefore(next_);
+    discardBefore(next_);
   }
 }
 
@@ -95,12 +95,12 @@ SessionTable::Row SessionTable::row(Nanoseconds time) {
 
 std::optional<double> SessionTable::depth(Nanoseconds time, const Pose& pose, bool in_contact) {
   const auto* state = cell.at(time, kForever);
-  if (state && state->value->touched_at) {
-    touched_at_ = state->value->touched_at;
+  if (state && state->value->contact_point) {
+    touched_at_ = state->value->contact_point;
   } else if (in_contact) {
     // The cell speaks less often than there are rows: it was touched since it last did.
-    const auto* next = cell.firstAfter(time, [](const Cell& later) { return later.touched_at.has_value(); });
-    touched_at_ = next ? next->value->touched_at : std::nullopt;
+    const auto* next = cell.firstAfter(time, [](const Cell& later) { return later.contact_point.has_value(); });
+    touched_at_ = next ? next->value->contact_point : std::nullopt;
   }
   if (!touched_at_) return std::nullopt;
   return (*touched_at_ - pose.tip).dot(pose.axis);
@@ -126,19 +126,19 @@ void SessionTable::write(const Row& row) {
   sink_(line_.str());
 }
 
-void SessionTable::forgetBefore(Nanoseconds time) {
+void SessionTable::discardBefore(Nanoseconds time) {
   // A row's pose has the stamp of its force, which may be older than the row by kStale.
-  needle.forgetBefore(time - 2 * kStale);
-  predicted.forgetBefore(time);
-  measured.forgetBefore(time);
-  hand_force.forgetBefore(time);
-  phase.forgetBefore(time);
-  cell.forgetBefore(time);
-  injection.forgetBefore(time);
-  volume.forgetBefore(time);
+  needle.discardBefore(time - 2 * kStale);
+  predicted.discardBefore(time);
+  measured.discardBefore(time);
+  hand_force.discardBefore(time);
+  phase.discardBefore(time);
+  cell.discardBefore(time);
+  injection.discardBefore(time);
+  volume.discardBefore(time);
 }
 
-void SessionTable::forgetAll() {
+void SessionTable::clear() {
   needle = {};
   predicted = {};
   measured = {};

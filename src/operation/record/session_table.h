@@ -30,7 +30,7 @@ class SessionTable {
     double axial = 0, lateral = 0;  ///< N
   };
   struct Cell {
-    std::optional<Eigen::Vector3d> touched_at;  ///< m, where the tip met the surface; empty without contact
+    std::optional<Eigen::Vector3d> contact_point;  ///< m, where the tip met the surface; empty without contact
     bool punctured = false;
     unsigned layers_punctured = 0;  ///< where the needle is or was last
     std::size_t holes = 0;          ///< in the outermost layer
@@ -41,7 +41,7 @@ class SessionTable {
     std::string state;
     int punctures = 0;  ///< felt since the needle set out
   };
-  /// A row; what was not trusted at its time is empty.
+  /// A row; what was not valid at its time is empty.
   struct Row {
     double time = 0;  ///< s, of the table
     std::optional<Pose> needle;
@@ -94,8 +94,8 @@ class SessionTable {
   Row row(Nanoseconds time);
   std::optional<double> depth(Nanoseconds time, const Pose& pose, bool in_contact);
   void write(const Row& row);
-  void forgetBefore(Nanoseconds time);
-  void forgetAll();
+  void discardBefore(Nanoseconds time);
+  void clear();
 
   Nanoseconds period_, patience_;
   std::optional<Nanoseconds> began_;

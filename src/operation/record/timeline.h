@@ -30,14 +30,13 @@ class Timeline {
   /// ignored once something was forgotten.
   void put(Nanoseconds stamp, std::optional<Value> value) {
     const bool holds = value.has_value();
-    if (insert(stamp, std::move(value))) withdrawable_ = holds ? std::optional(stamp) : std::nullopt;
+    if (insert(stamp, std::move(value))) removable_ = holds ? std::optional(stamp) : std::nullopt;
   }
 
   /// The source takes back what it said, as from right after the last stamp that arrived.
   void withdraw() {
-    if (withdrawable_ && *withdrawable_ < std::numeric_limits<Nanoseconds>::max())
-      insert(*withdrawable_ + 1, std::nullopt);
-    withdrawable_.reset();
+    if (removable_ && *removable_ < std::numeric_limits<Nanoseconds>::max()) insert(*removable_ + 1, std::nullopt);
+    removable_.reset();
   }
 
   /// The last entry that was said at `time` or before, when it has a value and is not older than `timeout`; else null.
@@ -58,7 +57,7 @@ class Timeline {
   }
 
   /// Forgets what at(time) and later ones do not need.
-  void forgetBefore(Nanoseconds time) {
+  void discardBefore(Nanoseconds time) {
     for (; entries_.size() > 1 && entries_[1].stamp <= time; entries_.pop_front()) forgot_ = true;
   }
 
@@ -87,8 +86,8 @@ class Timeline {
   }
 
   std::deque<Entry> entries_;
-  bool forgot_ = false;                      ///< the oldest entry is not the first that there was
-  std::optional<Nanoseconds> withdrawable_;  ///< stamp that arrived last, where its value holds
+  bool forgot_ = false;                   ///< the oldest entry is not the first that there was
+  std::optional<Nanoseconds> removable_;  ///< stamp that arrived last, where its value holds
 };
 
 }  // namespace microinjection

@@ -15,31 +15,31 @@ EnergyGateConfig EnergyGateConfig::read(ConfigReader& reader) {
   return config;
 }
 
-double EnergyGate::damping(double owed, const Eigen::Vector3d& velocity) const {
+double EnergyGate::damping(double energy_deficit, const Eigen::Vector3d& velocity) const {
   const double square = std::max(velocity.squaredNorm(), config_.velocity_floor * config_.velocity_floor);
-  return std::min(config_.damping_limit, owed / (square * config_.recovery_time));
+  return std::min(config_.damping_limit, energy_deficit / (square * config_.recovery_time));
 }
 
-void EnergyGate::changeShare(double work, bool absorbs, double spare, double dt) {
+void EnergyGate::changeShare(double work, bool absorbs, double energy_margin, double dt) {
   constexpr double kMostPatience = 256;
-  if (share_ < 1 && (spare > 0 || absorbs)) {
+  if (share_ < 1 && (energy_margin > 0 || absorbs)) {
     share_ = std::min(1.0, share_ + dt / (patience_ * config_.return_time));
     rising_ = true;
   }
   if (work <= 0) return;
   // A share that falls with what is left lets the force fade over millimetres instead of dropping when nothing is left.
-  const double most = std::max(0.0, spare) / std::max(work, config_.fade);
+  const double most = std::max(0.0, energy_margin) / std::max(work, config_.fade);
   if (share_ <= most) return;
   share_ = most;
   if (rising_) patience_ = std::min(kMostPatience, 2 * patience_);
   rising_ = false;
 }
 
-Eigen::Vector3d EnergyGate::step(const Eigen::Vector3d& wanted, const Eigen::Vector3d& velocity, double spare,
+Eigen::Vector3d EnergyGate::step(const Eigen::Vector3d& wanted, const Eigen::Vector3d& velocity, double energy_margin,
                                  double dt) {
   const double work = wanted.dot(velocity) * dt;  // J, on the hand, of the whole force
-  changeShare(work, work < 0 && velocity.norm() > config_.velocity_floor, spare, dt);
-  const double added = damping(std::max(0.0, -spare), velocity);
+  changeShare(work, work < 0 && velocity.norm() > config_.velocity_floor, energy_margin, dt);
+  const double added = damping(std::max(0.0, -energy_margin), velocity);
   acting_ = share_ < 1 || added > 0;
   // Exactly the wanted force where nothing is to be done.
   return acting_ ? Eigen::Vector3d(share_ * wanted - added * velocity) : wanted;

@@ -28,8 +28,8 @@ bool Engagement::tooFast(const Input& input) {
 }
 
 Engagement::State Engagement::step(const Input& input) {
-  why_.clear();
-  if (input.clutch) anchored_ = false;
+  reason_.clear();
+  if (input.clutch) has_reference_ = false;
   const bool followed = state_ == State::kFollow;
   const bool lost = followed && tooFast(input);
   if (lost) rest_ = config_.rest_time;
@@ -46,16 +46,16 @@ Engagement::State Engagement::step(const Input& input) {
   const bool fast = input.speed > (goes_on ? config_.speed_limit : config_.speed);
   if (rest_ > 0) rest_ = fast ? config_.rest_time : std::max(0.0, rest_ - input.dt);
   if (fast) {
-    why_ = "the hand is fast";
+    reason_ = "the hand is fast";
   } else if (rest_ > 0) {
-    why_ = "the hand was too fast to be one that holds the device: rest";
-  } else if (!input.let_go) {
-    why_ = "the hand would set a speed: let go of the device first";
-  } else if (anchored_ && config_.alignment == "agree" && input.disagreement > config_.tolerance) {
-    why_ = "the hand is not where it left the needle: go back there, or press and release the clutch";
+    reason_ = "the hand was too fast to be one that holds the device: rest";
+  } else if (!input.released) {
+    reason_ = "the hand would set a speed: let go of the device first";
+  } else if (has_reference_ && config_.alignment == "agree" && input.misalignment > config_.tolerance) {
+    reason_ = "the hand is not where it left the needle: go back there, or press and release the clutch";
   } else {
     state_ = State::kFollow;
-    anchored_ = true;
+    has_reference_ = true;
   }
   return state_;
 }

@@ -23,14 +23,14 @@ struct EngagementConfig {
 /// When the needle follows the hand: held -> align -> follow, as teleoperation does it (dVRK: ALIGNING, ENABLED;
 /// franka_ros: ALIGN, TRACK).
 ///
-/// held: an input is not to be trusted, the operator is not there, or the clutch is pressed. align: all is well again,
+/// held: an input is not to be valid, the operator is not there, or the clutch is pressed. align: all is well again,
 /// but the needle is still held until the hand is slow and, with `agree`, is back where it left the needle, or the
 /// operator has pressed and released the clutch, which is to say: from here. A device that sets a speed must be let go,
 /// clutch or not. A hand that is too fast in follow has let go of the device, or nearly: back to align, until it has
 /// rested.
 ///
 /// A hand that is taken up while it moves pushes a needle that its operator may take for held; so it must be slow
-/// first. But when needle or force were not to be trusted for a moment only, within one stroke of the hand, the
+/// first. But when needle or force were not to be valid for a moment only, within one stroke of the hand, the
 /// operator cannot have noticed, and would lose the rest of the stroke: then it goes on, as fast as it may be followed,
 /// from where the needle is. Not so after a clutch, a dead-man or a hand that was lost, however short.
 class Engagement {
@@ -41,10 +41,10 @@ class Engagement {
     bool held = false;         ///< for any reason
     bool clutch = false;       ///< pressed
     double speed = 0;          ///< m/s, of the hand; 0 where it says nothing (rate mode)
-    double disagreement = 0;   ///< m, of the hand (MotionMapping)
+    double misalignment = 0;   ///< m, of the hand (MotionMapping)
     bool interrupted = false;  ///< held for want of needle or force alone
     double dt = 1e-3;          ///< s
-    bool let_go = true;        ///< a hand taken up here leaves the needle at rest (MotionMapping)
+    bool released = true;      ///< a hand taken up here leaves the needle at rest (MotionMapping)
   };
 
   explicit Engagement(const EngagementConfig& config) : config_(config) {}
@@ -54,7 +54,7 @@ class Engagement {
   /// "held", "align" or "follow".
   static std::string name(State state);
   /// What the operator has to do in align.
-  std::string why() const { return why_; }
+  std::string why() const { return reason_; }
 
  private:
   bool tooFast(const Input& input);
@@ -65,8 +65,8 @@ class Engagement {
   double rest_ = 0;             ///< s, for which it still has to rest
   double held_time_ = std::numeric_limits<double>::infinity();  ///< s, that what followed has been interrupted;
                                                                 ///< infinite: it is no interruption
-  bool anchored_ = false;  ///< hand and needle belonged together before and must agree again
-  std::string why_;
+  bool has_reference_ = false;  ///< hand and needle belonged together before and must agree again
+  std::string reason_;
 };
 
 }  // namespace microinjection

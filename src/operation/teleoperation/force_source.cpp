@@ -3,7 +3,7 @@
 namespace microinjection {
 namespace {
 
-bool trusted(const std::optional<Eigen::Vector3d>& value) { return value && value->allFinite(); }
+bool valid(const std::optional<Eigen::Vector3d>& value) { return value && value->allFinite(); }
 
 }  // namespace
 
@@ -15,8 +15,8 @@ ForceSourceConfig ForceSourceConfig::read(ConfigReader& reader) {
 }
 
 std::optional<Eigen::Vector3d> chooseForce(const ForceSourceConfig& config, const TipForces& forces) {
-  if (config.usesPredicted() && !trusted(forces.predicted)) return std::nullopt;
-  if (config.usesMeasured() && !trusted(forces.measured)) return std::nullopt;
+  if (config.usesPredicted() && !valid(forces.predicted)) return std::nullopt;
+  if (config.usesMeasured() && !valid(forces.measured)) return std::nullopt;
   if (!config.usesMeasured()) return forces.predicted;
   if (!config.usesPredicted()) return forces.measured;
   return Eigen::Vector3d(*forces.predicted + config.measured_share * (*forces.measured - *forces.predicted));

@@ -18,7 +18,8 @@ class HandMotion {
 
   /// Of a .yaml file: synthetic, see generated_motion.h. Of any other: samples `time_s,x_m,y_m,z_m,clutch,phase` with a
   /// header line; lines that begin with # are comments.
-  /// @throws ConfigError naming file and key or line: wrong header, not a number, not finite, time that does not increase.
+  /// @throws ConfigError naming file and key or line: wrong header, not a number, not finite, time that does not
+  /// increase.
   static HandMotion load(const std::string& path);
 
   /// @throws ConfigError without two samples, or when time does not increase.

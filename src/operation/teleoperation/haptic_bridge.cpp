@@ -5,7 +5,7 @@
 namespace microinjection {
 namespace {
 
-bool trusted(const std::optional<Eigen::Vector3d>& value) { return value && value->allFinite(); }
+bool valid(const std::optional<Eigen::Vector3d>& value) { return value && value->allFinite(); }
 
 }  // namespace
 
@@ -45,20 +45,20 @@ HapticBridge::HapticBridge(const HapticBridgeConfig& config)
       passivity_(config.passivity),
       limiter_(config.limits) {}
 
-std::string HapticBridge::whyHeld(const Input& input, const std::optional<Eigen::Vector3d>& force) const {
-  if (!trusted(input.hand)) return "no trusted hand position";
+std::string HapticBridge::holdReason(const Input& input, const std::optional<Eigen::Vector3d>& force) const {
+  if (!valid(input.hand)) return "no valid hand position";
   if (!input.unfelt.empty()) return input.unfelt;
-  if (!trusted(input.needle)) return "no trusted needle position";
-  if (!force) return "no trusted force";
+  if (!valid(input.needle)) return "no valid needle position";
+  if (!force) return "no valid force";
   if (config_.require_operator && !input.operator_present) return "the operator is not present";
   return input.clutch ? "clutch is pressed" : "";
 }
 
 void HapticBridge::begin(const Eigen::Vector3d& hand, const Eigen::Vector3d& needle, const Eigen::Vector3d& force) {
-  motion_.anchor(hand, needle);
+  motion_.setReference(hand, needle);
   tremor_.reset(hand);
   coupling_.reset(force);
-  yield_start_ = coupling_.yield();
+  proxy_offset_start_ = coupling_.proxyOffset();
   ramp_ = 0;
 }
 
@@ -71,8 +71,8 @@ Eigen::Vector3d HapticBridge::render(const Eigen::Vector3d& wanted, double dt) {
 HapticBridge::Output HapticBridge::step(const Input& input, double dt) {
   const std::optional<Eigen::Vector3d> tip_force = chooseForce(config_.force, input.force);
   Output output;
-  output.held_because = whyHeld(input, tip_force);
-  if (!trusted(input.hand)) {
+  output.hold_reason = holdReason(input, tip_force);
+  if (!valid(input.hand)) {
     engagement_.step({true, input.clutch});
     limiter_.release();
     passivity_.reset();
@@ -83,14 +83,14 @@ HapticBridge::Output HapticBridge::step(const Input& input, double dt) {
   if (!followed) passivity_.pause();
   passivity_.observe(hand, dt);
 
-  const bool held = !output.held_because.empty();
+  const bool held = !output.hold_reason.empty();
   const bool interrupted =
       held && input.unfelt.empty() && !input.clutch && (!config_.require_operator || input.operator_present);
   const double speed = motion_.isRate() ? 0 : passivity_.velocity().norm();  // a stick may spring back
-  output.state = engagement_.step({held, input.clutch, speed, held ? 0 : motion_.disagreement(hand, *input.needle),
-                                   interrupted, dt, motion_.letGo(hand)});
+  output.state = engagement_.step({held, input.clutch, speed, held ? 0 : motion_.misalignment(hand, *input.needle),
+                                   interrupted, dt, motion_.release(hand)});
   if (output.state != Engagement::State::kFollow) {
-    if (!held) output.held_because = engagement_.why();
+    if (!held) output.hold_reason = engagement_.why();
     output.hand_force = render(Eigen::Vector3d::Zero(), dt);
     return output;
   }
@@ -98,11 +98,11 @@ HapticBridge::Output HapticBridge::step(const Input& input, double dt) {
   const Eigen::Vector3d touched = config_.force_gain * *tip_force;
   if (!followed) begin(hand, *input.needle, touched);
   ramp_ = config_.ramp_time > 0 ? std::min(1.0, ramp_ + dt / config_.ramp_time) : 1.0;
-  // A deflection that sets a speed has nothing to yield. The first step is exactly where the needle is.
+  // A deflection that sets a speed has nothing to proxyOffset. The first step is exactly where the needle is.
   const bool yields = followed && !motion_.isRate();
-  const Eigen::Vector3d yield =
-      yields ? Eigen::Vector3d(coupling_.step(touched, dt) - yield_start_) : Eigen::Vector3d::Zero();
-  const VirtualFixtures::Result fixed = fixtures_.apply(motion_.step(tremor_.step(hand, dt) + yield, dt));
+  const Eigen::Vector3d proxyOffset =
+      yields ? Eigen::Vector3d(coupling_.step(touched, dt) - proxy_offset_start_) : Eigen::Vector3d::Zero();
+  const VirtualFixtures::Result fixed = fixtures_.apply(motion_.step(tremor_.step(hand, dt) + proxyOffset, dt));
   motion_.limitTo(fixed.target);
   output.needle = fixed.target;
   const Eigen::Vector3d met = touched + fixed.hand_force;

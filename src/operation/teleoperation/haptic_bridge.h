@@ -43,7 +43,7 @@ struct HapticBridgeConfig {
 ///     hand <- frame <- passivity, limits <- gain, ramp <- force source <- tip forces
 ///
 /// While the clutch is pressed the leader floats and the follower holds; hand and needle belong together anew on
-/// release, and (see EngagementConfig) whenever the loop was open for want of a trusted input. In a hold the force
+/// release, and (see EngagementConfig) whenever the loop was open for want of a valid input. In a hold the force
 /// falls to zero, as it does when the hand that is followed gets too fast to be one that holds the device (position
 /// mode): by the limiter's rate while the hand is known, so that it is not dropped, at once where it is not.
 class HapticBridge {
@@ -61,7 +61,7 @@ class HapticBridge {
     std::optional<Eigen::Vector3d> needle;                 ///< m, where the tip shall go; empty: hold
     Eigen::Vector3d hand_force = Eigen::Vector3d::Zero();  ///< N, on the hand, the device's axes
     Engagement::State state = Engagement::State::kHeld;
-    std::string held_because;  ///< empty while the loop is closed
+    std::string hold_reason;  ///< empty while the loop is closed
   };
 
   /// @throws ConfigError on axes that are no rotation or fixtures without direction.
@@ -77,7 +77,7 @@ class HapticBridge {
   bool passivityActing() const { return passivity_.acting(); }  ///< the controller changed the last force
 
  private:
-  std::string whyHeld(const Input& input, const std::optional<Eigen::Vector3d>& force) const;
+  std::string holdReason(const Input& input, const std::optional<Eigen::Vector3d>& force) const;
   void begin(const Eigen::Vector3d& hand, const Eigen::Vector3d& needle, const Eigen::Vector3d& force);
   /// Force (N, `world`, at the hand) for the next period.
   Eigen::Vector3d render(const Eigen::Vector3d& wanted, double dt);
@@ -91,8 +91,8 @@ class HapticBridge {
   VirtualCoupling coupling_;
   PassivityController passivity_;
   ForceLimiter limiter_;
-  double ramp_ = 0;                                        ///< 0..1, share of the force that is rendered
-  Eigen::Vector3d yield_start_ = Eigen::Vector3d::Zero();  ///< m, of the coupling at the start
+  double ramp_ = 0;                                               ///< 0..1, share of the force that is rendered
+  Eigen::Vector3d proxy_offset_start_ = Eigen::Vector3d::Zero();  ///< m, of the coupling at the start
 };
 
 }  // namespace microinjection

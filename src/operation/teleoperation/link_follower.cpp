@@ -9,7 +9,7 @@ namespace {
 // The packet of an epoch past which one cannot begin with it.
 constexpr std::uint64_t kBeginning = 1000;
 
-bool trusted(const std::optional<Eigen::Vector3d>& value) { return value && value->allFinite(); }
+bool valid(const std::optional<Eigen::Vector3d>& value) { return value && value->allFinite(); }
 
 }  // namespace
 
@@ -34,10 +34,10 @@ void LinkFollower::receive(const LinkPacket& packet) {
   age_ = 0;
 }
 
-std::string LinkFollower::whyHeld(const Input& input) const {
+std::string LinkFollower::holdReason(const Input& input) const {
   if (age_ > config_.timeout) return "the hand's side is not heard";
-  if (!trusted(input.needle)) return "no trusted needle position";
-  if (!trusted(input.force)) return "no trusted force";
+  if (!valid(input.needle)) return "no valid needle position";
+  if (!valid(input.force)) return "no valid force";
   if (!input.controller) return "the controller is silent";
   if (!heard_.follows) return "the hand's side holds";
   return heard_.epoch == over_ ? "the hand has to be taken up again" : "";
@@ -46,10 +46,10 @@ std::string LinkFollower::whyHeld(const Input& input) const {
 std::optional<Eigen::Vector3d> LinkFollower::step(const Input& input, double dt) {
   age_ += dt;
   outgoing_.epoch = heard_.epoch;
-  outgoing_.trusted = input.controller && trusted(input.needle) && trusted(input.force);
-  if (outgoing_.trusted) outgoing_.needle = *input.needle;
-  held_because_ = whyHeld(input);
-  if (!held_because_.empty()) {
+  outgoing_.valid = input.controller && valid(input.needle) && valid(input.force);
+  if (outgoing_.valid) outgoing_.needle = *input.needle;
+  hold_reason_ = holdReason(input);
+  if (!hold_reason_.empty()) {
     if (outgoing_.follows) over_ = heard_.epoch;
     outgoing_.follows = false;
     return std::nullopt;

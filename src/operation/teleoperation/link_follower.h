@@ -11,7 +11,7 @@ namespace microinjection {
 
 /// The rig's end of the link: where the needle shall go, from the hand's waves and the tip's force. It begins with each
 /// epoch where the needle is, and holds when the hand's side has not been heard for the time-out, wants it to hold, or
-/// needle, force or controller are not to be trusted; an epoch that it has let go is over.
+/// needle, force or controller are not to be valid; an epoch that it has let go is over.
 class LinkFollower {
  public:
   struct Input {
@@ -27,19 +27,19 @@ class LinkFollower {
   std::optional<Eigen::Vector3d> step(const Input& input, double dt);
   LinkPacket packet();  ///< to send after each step
   /// Why the last step held; empty: it did not.
-  const std::string& heldBecause() const { return held_because_; }
+  const std::string& holdReason() const { return hold_reason_; }
   double margin() const { return wave_.margin(); }  ///< J
   double age() const { return age_; }               ///< s, since the hand's side was heard
 
  private:
-  std::string whyHeld(const Input& input) const;
+  std::string holdReason(const Input& input) const;
 
   LinkConfig config_;
   WaveFollower wave_;
   LinkPacket heard_, outgoing_;
   std::uint64_t over_ = 0;  // the newest epoch that was let go
   double age_;              // s
-  std::string held_because_;
+  std::string hold_reason_;
 };
 
 }  // namespace microinjection

@@ -22,7 +22,7 @@ void LinkLeader::receive(const LinkPacket& packet) {
 }
 
 std::optional<Eigen::Vector3d> LinkLeader::needle() const {
-  if (age_ > config_.timeout || !heard_.trusted || lost_) return std::nullopt;
+  if (age_ > config_.timeout || !heard_.valid || lost_) return std::nullopt;
   return heard_.needle;
 }
 

@@ -18,11 +18,11 @@ class LinkLeader {
 
   void receive(const LinkPacket& packet);
   /// One period of dt (s), before the bridge's step. Returns the force (N, at the hand) to feed back; zero while
-  /// nothing follows; empty: no trusted link.
+  /// nothing follows; empty: no valid link.
   std::optional<Eigen::Vector3d> step(double dt);
   /// Where the bridge wants the needle (m, `world`), after its step; empty: hold.
   void setTarget(const std::optional<Eigen::Vector3d>& target);
-  /// The tip as the rig told it last (m, `world`); empty: no trusted link.
+  /// The tip as the rig told it last (m, `world`); empty: no valid link.
   std::optional<Eigen::Vector3d> needle() const;
   LinkPacket packet();  ///< to send after setTarget
 

@@ -16,7 +16,7 @@ struct LinkPacket {
   TeleoperationPacket wave;   ///< of the epoch
   double position_scale = 0;  ///< 1, hand's side: metres of needle per metre of hand
   double force_gain = 0;      ///< 1, hand's side: newtons at the hand per newton at the tip
-  bool trusted = false;       ///< rig's side: it knows needle and force
+  bool valid = false;         ///< rig's side: it knows needle and force
   Eigen::Vector3d needle = Eigen::Vector3d::Zero();  ///< m, rig's side: the tip in `world`
 };
 

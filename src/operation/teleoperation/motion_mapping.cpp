@@ -15,7 +15,7 @@ MotionMappingConfig MotionMappingConfig::read(ConfigReader& reader) {
   return config;
 }
 
-void MotionMapping::anchor(const Eigen::Vector3d& hand, const Eigen::Vector3d& needle) {
+void MotionMapping::setReference(const Eigen::Vector3d& hand, const Eigen::Vector3d& needle) {
   hand_ = hand;
   needle_ = target_ = needle;
 }
@@ -25,17 +25,17 @@ const Eigen::Vector3d& MotionMapping::step(const Eigen::Vector3d& hand, double d
     target_ = needle_ + config_.position_scale * (hand - hand_);
     return target_;
   }
-  if (letGo(hand)) return target_;
+  if (release(hand)) return target_;
   const double size = hand.norm();
   const double speed = std::min(config_.rate_limit, config_.rate_gain * (size - config_.dead_zone));
   target_ += speed * dt / size * hand;
   return target_;
 }
 
-double MotionMapping::disagreement(const Eigen::Vector3d& hand, const Eigen::Vector3d& needle) const {
+double MotionMapping::misalignment(const Eigen::Vector3d& hand, const Eigen::Vector3d& needle) const {
   return isRate() ? 0 : (hand - hand_ - (needle - needle_) / config_.position_scale).norm();
 }
 
-bool MotionMapping::letGo(const Eigen::Vector3d& hand) const { return !isRate() || hand.norm() <= config_.dead_zone; }
+bool MotionMapping::release(const Eigen::Vector3d& hand) const { return !isRate() || hand.norm() <= config_.dead_zone; }
 
 }  // namespace microinjection

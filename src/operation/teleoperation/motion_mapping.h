@@ -29,17 +29,17 @@ class MotionMapping {
   explicit MotionMapping(const MotionMappingConfig& config) : config_(config) {}
 
   /// The hand (m) and the needle (m) belong together from here on.
-  void anchor(const Eigen::Vector3d& hand, const Eigen::Vector3d& needle);
+  void setReference(const Eigen::Vector3d& hand, const Eigen::Vector3d& needle);
   /// The target (m, `world`) for the hand (m, axes as `world`), dt (s) after the one before.
   const Eigen::Vector3d& step(const Eigen::Vector3d& hand, double dt);
   /// In rate mode goes on from here (m): the target has met a limit.
   void limitTo(const Eigen::Vector3d& target) { target_ = target; }
   /// How far (m of the hand) the hand is from where it would leave the needle at `needle` (m). Rate mode: 0, the hand's
   /// place says nothing of the needle's.
-  double disagreement(const Eigen::Vector3d& hand, const Eigen::Vector3d& needle) const;
+  double misalignment(const Eigen::Vector3d& hand, const Eigen::Vector3d& needle) const;
   /// Whether a hand here (m) leaves the needle at rest wherever that is: position mode always, rate mode in the dead
   /// zone.
-  bool letGo(const Eigen::Vector3d& hand) const;
+  bool release(const Eigen::Vector3d& hand) const;
   bool isRate() const { return config_.mode == "rate"; }
 
  private:

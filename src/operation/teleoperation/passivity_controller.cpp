@@ -69,8 +69,8 @@ Eigen::Vector3d PassivityController::control(const Eigen::Vector3d& wanted, cons
   followContact(touched, dt);
   if (!config_.enabled) return wanted;
   if (config_.behind_channel) return gate_.step(wanted, velocity_.value(), balance_, dt);
-  return gate_.step(wanted - gate_.damping(ripple_.owed(), ripple_.velocity()) * ripple_.velocity(), velocity_.value(),
-                    balance_ - config_.storage_floor * contact_.pressed(), dt);
+  return gate_.step(wanted - gate_.damping(ripple_.energy_deficit(), ripple_.velocity()) * ripple_.velocity(),
+                    velocity_.value(), balance_ - config_.storage_floor * contact_.pressed(), dt);
 }
 
 }  // namespace microinjection

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 
 #include "base/config_reader.h"
-#include "operation/teleoperation/contact_way.h"
+#include "operation/teleoperation/contact_displacement.h"
 #include "operation/teleoperation/energy_gate.h"
 #include "operation/teleoperation/ripple_observer.h"
 #include "operation/teleoperation/velocity_estimate.h"
@@ -85,7 +85,7 @@ class PassivityController {
   VelocityEstimate velocity_;
   double balance_ = 0;  ///< J, reserve included, ceiling applied
   double total_ = 0;    ///< J
-  ContactWay contact_;
+  ContactDisplacement contact_;
   Eigen::Vector3d last_ = Eigen::Vector3d::Zero();      ///< m
   Eigen::Vector3d rendered_ = Eigen::Vector3d::Zero();  ///< N
   double free_ = 0;                                     ///< s, without a touch

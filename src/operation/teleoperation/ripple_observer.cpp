@@ -33,6 +33,6 @@ void RippleObserver::observe(const Eigen::Vector3d& force, const Eigen::Vector3d
   balance_ = std::min((1 - std::min(1.0, dt / config_.memory)) * balance_ + taken - held, config_.tolerance);
 }
 
-double RippleObserver::owed() const { return std::max(0.0, -balance_ - config_.tolerance); }
+double RippleObserver::energy_deficit() const { return std::max(0.0, -balance_ - config_.tolerance); }
 
 }  // namespace microinjection

@@ -21,7 +21,7 @@ struct RippleConfig {
 /// What is touched is a rising function of depth, so about any depth it is passive for itself: with force and position
 /// high-passed alike, a spring has f~ = -K x~, and the energy -f~ . dx~ taken from the hand less the half of -f~ . x~
 /// that a spring holds is constant: 0. Damping lets it rise, force that comes late lets it fall in every period of an
-/// oscillation. What has fallen is owed as damping of the ripple.
+/// oscillation. What has fallen is energy_deficit as damping of the ripple.
 class RippleObserver {
  public:
   explicit RippleObserver(const RippleConfig& config) : config_(config) {}
@@ -29,7 +29,7 @@ class RippleObserver {
   void reset() { *this = RippleObserver(config_); }
   /// The period of dt (s) that has passed: `force` (N) as rendered in it, `position` (m) of the hand at its end.
   void observe(const Eigen::Vector3d& force, const Eigen::Vector3d& position, double dt);
-  double owed() const;                                           ///< J, past the tolerance
+  double energy_deficit() const;                                 ///< J, past the tolerance
   const Eigen::Vector3d& velocity() const { return velocity_; }  ///< m/s, of the ripple
 
  private:

@@ -19,11 +19,11 @@ double VirtualCoupling::contactDamping(double stiffness) const {
 }
 
 const Eigen::Vector3d& VirtualCoupling::step(const Eigen::Vector3d& force, double dt) {
-  if (!config_.enabled) return yield_;
+  if (!config_.enabled) return proxy_offset_;
   // Exact for a force that is constant within the step.
   const double left = std::exp(-dt * config_.stiffness / config_.damping);
-  yield_ = left * yield_ + (1 - left) / config_.stiffness * force;
-  return yield_;
+  proxy_offset_ = left * proxy_offset_ + (1 - left) / config_.stiffness * force;
+  return proxy_offset_;
 }
 
 }  // namespace microinjection

@@ -47,15 +47,15 @@ class VirtualCoupling {
 
   /// Begins with this force (N, at the hand), at rest.
   void reset(const Eigen::Vector3d& force) {
-    yield_ = config_.enabled ? Eigen::Vector3d(force / config_.stiffness) : Eigen::Vector3d::Zero();
+    proxy_offset_ = config_.enabled ? Eigen::Vector3d(force / config_.stiffness) : Eigen::Vector3d::Zero();
   }
   /// Advances by dt (s); returns by how much the proxy is off the hand (m).
   const Eigen::Vector3d& step(const Eigen::Vector3d& force, double dt);
-  const Eigen::Vector3d& yield() const { return yield_; }  ///< m
+  const Eigen::Vector3d& proxyOffset() const { return proxy_offset_; }  ///< m
 
  private:
   VirtualCouplingConfig config_;
-  Eigen::Vector3d yield_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d proxy_offset_ = Eigen::Vector3d::Zero();
 };
 
 }  // namespace microinjection

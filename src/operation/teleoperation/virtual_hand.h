@@ -21,7 +21,7 @@ struct VirtualHandConfig {
 class VirtualHand {
  public:
   VirtualHand(const VirtualHandConfig& config, const Eigen::Vector3d& start)
-      : config_(config), position_(start), meant_(start) {}
+      : config_(config), position_(start), intended_(start) {}
 
   /// Advances by dt (s) with the device's force (N) on the hand; returns the device's position (m).
   const Eigen::Vector3d& step(const Eigen::Vector3d& meant, const Eigen::Vector3d& force, double dt);
@@ -32,7 +32,7 @@ class VirtualHand {
   VirtualHandConfig config_;
   Eigen::Vector3d position_;                            ///< m
   Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();  ///< m/s
-  Eigen::Vector3d meant_;                               ///< m, of the step before
+  Eigen::Vector3d intended_;                            ///< m, of the step before
 };
 
 }  // namespace microinjection

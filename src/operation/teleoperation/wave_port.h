@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 
 #include "base/config_reader.h"
-#include "operation/teleoperation/contact_way.h"
+#include "operation/teleoperation/contact_displacement.h"
 #include "operation/teleoperation/teleoperation_packet.h"
 #include "operation/teleoperation/wave_receiver.h"
 
@@ -95,7 +95,7 @@ class WaveFollower {
   WaveReceiver receiver_;
   RoundTrip round_trip_;
   TeleoperationPacket outgoing_;
-  ContactWay contact_;
+  ContactDisplacement contact_;
   Eigen::Vector3d position_ = Eigen::Vector3d::Zero();  ///< m
 };
 

@@ -18,7 +18,7 @@ void WavePlayout::receive(const TeleoperationPacket& packet) {
   const std::uint64_t sequence = packet.sequence;
   if (sequence == 0 || !packet.value.allFinite() || !std::isfinite(packet.energy)) return;
   if (newest_ == 0 && sequence >= kLength) return;  // too late to begin
-  if (static_cast<double>(sequence) < played_ || sequence + kLength <= newest_) return;
+  if (static_cast<double>(sequence) < playout_position_ || sequence + kLength <= newest_) return;
   sent_[sequence % kLength] = {sequence, packet.value, packet.energy};
   newest_ = std::max(newest_, sequence);
 }
@@ -29,8 +29,8 @@ WavePlayout::Sent WavePlayout::at(double sequence) const {
   while (sent_[after % kLength].sequence != after) ++after;
   const Sent& end = sent_[after % kLength];
   Sent start = last_;
-  double from = played_;
-  for (auto before = static_cast<std::uint64_t>(std::floor(sequence)); static_cast<double>(before) > played_;
+  double from = playout_position_;
+  for (auto before = static_cast<std::uint64_t>(std::floor(sequence)); static_cast<double>(before) > playout_position_;
        --before) {
     if (sent_[before % kLength].sequence != before) continue;
     start = sent_[before % kLength];
@@ -51,7 +51,7 @@ std::optional<WavePlayout::Advance> WavePlayout::advance() {
     observed_ = 0;
     least_ = kLength;
   }
-  double next = played_ + 1 + faster_;
+  double next = playout_position_ + 1 + faster_;
   // Far behind, after a burst, what cannot be kept is skipped over as if it were lost.
   next = std::max(next, static_cast<double>(newest_) - (kLength - 2));
   if (next > static_cast<double>(newest_)) {
@@ -62,14 +62,14 @@ std::optional<WavePlayout::Advance> WavePlayout::advance() {
   const Sent now = at(next);
   const Advance advance{now.integral - last_.integral, now.energy - last_.energy, false};
   last_ = now;
-  played_ = next;
+  playout_position_ = next;
   return advance;
 }
 
 WaveReceiverConfig WaveReceiverConfig::read(ConfigReader& reader) {
   WaveReceiverConfig config;
   reader.number("filter_time", config.filter_time, Range::positive());
-  reader.number("shelf", config.shelf, Range::closed(0, 0.5));
+  reader.number("highpass_loss", config.highpass_loss, Range::closed(0, 0.5));
   reader.number("correction_time", config.correction_time, Range::positive());
   reader.number("reserve", config.reserve, Range::positive());
   return config;
@@ -77,7 +77,7 @@ WaveReceiverConfig WaveReceiverConfig::read(ConfigReader& reader) {
 
 void WaveReceiver::reset() {
   playout_.reset();
-  for (Eigen::Vector3d* zero : {&slow_, &filtered_, &wave_, &wanted_, &let_out_}) zero->setZero();
+  for (Eigen::Vector3d* zero : {&slow_, &filtered_, &wave_, &wanted_, &emitted_integral_}) zero->setZero();
   in_ = out_ = 0;
   credit_ = config_.reserve;
 }
@@ -90,23 +90,23 @@ const Eigen::Vector3d& WaveReceiver::step(double round_trip, double dt) {
     const Eigen::Vector3d wave = advance->integral / dt;
     wanted_ += advance->integral;
     slow_ += (1 - std::exp(-dt / slowness)) * (wave - slow_);
-    const Eigen::Vector3d shelved = wave + config_.shelf * (slow_ - wave);
+    const Eigen::Vector3d shelved = wave + config_.highpass_loss * (slow_ - wave);
     filtered_ += (1 - std::exp(-dt / config_.filter_time)) * (shelved - filtered_);
     in_ += advance->energy;
     credit_ += advance->energy;
   }
   // The filters' own lag of the integral: time constant times output.
   const Eigen::Vector3d missing =
-      wanted_ - let_out_ - config_.filter_time * filtered_ - config_.shelf * slowness * slow_;
+      wanted_ - emitted_integral_ - config_.filter_time * filtered_ - config_.highpass_loss * slowness * slow_;
   wave_ = filtered_ + missing / config_.correction_time;
   // What the filters hold will come out of them; what they have taken out is gone.
   const double held =
-      0.5 * (config_.filter_time * filtered_.squaredNorm() + config_.shelf * slowness * slow_.squaredNorm());
-  const double spare = std::max(0.0, credit_ - (advance->waits ? held + kKept * config_.reserve : 0));
+      0.5 * (config_.filter_time * filtered_.squaredNorm() + config_.highpass_loss * slowness * slow_.squaredNorm());
+  const double energy_margin = std::max(0.0, credit_ - (advance->waits ? held + kKept * config_.reserve : 0));
   const double energy = 0.5 * wave_.squaredNorm() * dt;
-  if (energy > spare) wave_ *= std::sqrt(spare / energy);
-  const double spent = std::min(energy, spare);
-  let_out_ += dt * wave_;
+  if (energy > energy_margin) wave_ *= std::sqrt(energy_margin / energy);
+  const double spent = std::min(energy, energy_margin);
+  emitted_integral_ += dt * wave_;
   out_ += spent;
   credit_ = std::min(credit_ - spent, config_.reserve + held);
   return wave_;

@@ -28,8 +28,10 @@ class WavePlayout {
   void receive(const TeleoperationPacket& packet);
   /// Empty before the first packet.
   std::optional<Advance> advance();
-  std::uint64_t newest() const { return newest_; }                            ///< sequence
-  double buffered() const { return static_cast<double>(newest_) - played_; }  ///< periods that wait to be played
+  std::uint64_t newest() const { return newest_; }  ///< sequence
+  double buffered() const {
+    return static_cast<double>(newest_) - playout_position_;
+  }  ///< periods that wait to be played
 
  private:
   static constexpr int kLength = 2048;    // periods
@@ -43,7 +45,7 @@ class WavePlayout {
 
   std::array<Sent, kLength> sent_;
   std::uint64_t newest_ = 0;
-  double played_ = 0;
+  double playout_position_ = 0;
   Sent last_;
   int observed_ = 0;        // periods
   double least_ = kLength;  // periods, buffered
@@ -52,7 +54,7 @@ class WavePlayout {
 
 struct WaveReceiverConfig {
   double filter_time = 10e-3;    ///< s, of the low-pass that takes the ripple of the network off a wave
-  double shelf = 0.1;            ///< 1, share of a wave that passes a low-pass of one round trip's time
+  double highpass_loss = 0.1;    ///< 1, share of a wave that passes a low-pass of one round trip's time
   double correction_time = 0.1;  ///< s, within which the integral is brought back to that of the sender
   double reserve = 2.5e-4;       ///< J, what may come out before anything went in
 
@@ -62,10 +64,10 @@ struct WaveReceiverConfig {
 
 /// A wave as it comes out of the channel: played, filtered, its integral kept, and never with more energy than came in
 /// plus the reserve. The filter's gain is one at rest and nowhere more, so a force that is held passes undiminished and
-/// the filter takes energy out only. Between a hand that stands and a stiff thing waves would go to and fro: the shelf
-/// takes its share of every change off in each pass, at the price of that share of a round trip as delay. While packets
-/// are late the wave is held, which half of the reserve pays for; the other half is for giving back what was too much
-/// of its integral, also when nothing more comes.
+/// the filter takes energy out only. Between a hand that stands and a stiff thing waves would go to and fro: the
+/// highpass_loss takes its share of every change off in each pass, at the price of that share of a round trip as delay.
+/// While packets are late the wave is held, which half of the reserve pays for; the other half is for giving back what
+/// was too much of its integral, also when nothing more comes.
 class WaveReceiver {
  public:
   explicit WaveReceiver(const WaveReceiverConfig& config) : config_(config) { reset(); }
@@ -81,9 +83,9 @@ class WaveReceiver {
  private:
   WaveReceiverConfig config_;
   WavePlayout playout_;
-  Eigen::Vector3d slow_, filtered_, wave_;  // sqrt(W)
-  Eigen::Vector3d wanted_, let_out_;        // sqrt(W) s
-  double in_ = 0, out_ = 0, credit_ = 0;    // J
+  Eigen::Vector3d slow_, filtered_, wave_;     // sqrt(W)
+  Eigen::Vector3d wanted_, emitted_integral_;  // sqrt(W) s
+  double in_ = 0, out_ = 0, credit_ = 0;       // J
 };
 
 }  // namespace microinjection

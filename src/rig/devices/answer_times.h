@@ -10,7 +10,7 @@ namespace microinjection {
 /// latency timer may hold back each answer for 16 ms.
 class AnswerTimes {
  public:
-  void forget() { times_.clear(); }
+  void clear() { times_.clear(); }
   /// s, from the last byte of a command to the first of its answer.
   void add(double time) { times_.push_back(std::max(0.0, time)); }
   /// Within which nine of ten answers came (s), so that a machine that was held up once does not count. Empty: too few

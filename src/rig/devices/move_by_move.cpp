@@ -50,7 +50,7 @@ void MoveByMove::measure(double sent, std::size_t answer_bytes) {
   answer_time_ = std::max(common_.answer_time, answers_.measured().value_or(0));
 }
 
-Eigen::Vector3d MoveByMove::carriedOn(double at) const {
+Eigen::Vector3d MoveByMove::extrapolatedPosition(double at) const {
   if (!move_) return *position_;
   const double gone = std::max(0.0, at - move_->begin);
   if (gone >= move_->duration) return move_->to;
@@ -63,8 +63,9 @@ std::optional<ManipulatorDevice::Reading> MoveByMove::reading() const {
   if (timeLeft() > 0 && time() > move_->begin) {
     velocity = (move_->to - move_->from).cwiseProduct(counts()) / move_->duration;
   }
-  return Reading{common_.joints.toJoints(common_.axes.inJointOrder(carriedOn(time()).cwiseProduct(counts()))),
-                 common_.joints.directions.cwiseProduct(common_.axes.inJointOrder(velocity))};
+  return Reading{
+      common_.joints.toJoints(common_.axes.inJointOrder(extrapolatedPosition(time()).cwiseProduct(counts()))),
+      common_.joints.directions.cwiseProduct(common_.axes.inJointOrder(velocity))};
 }
 
 Eigen::Vector3d MoveByMove::goalPlace() const {
@@ -105,16 +106,16 @@ bool MoveByMove::isOutdated() const {
 }
 
 void MoveByMove::begin(bool /*lost*/) {
-  filter_.forget();
+  filter_.clear();
   settled_ = false;
   begun_anew_ = begun_anew_ && !clearing();
 }
 
-void MoveByMove::stopSaid() {
-  if (position_) position_ = carriedOn(time() + stop_bytes_ * common_.byteTime());
+void MoveByMove::onStopSent() {
+  if (position_) position_ = extrapolatedPosition(time() + stop_bytes_ * common_.byteTime());
   move_.reset();
   settled_ = false;
-  trustAtMost(common_.reply_timeout + longest_move_ * common_.byteTime() + recoveryTime());
+  maxValidityTime(common_.reply_timeout + longest_move_ * common_.byteTime() + recoveryTime());
 }
 
 void MoveByMove::corrected(const Eigen::Vector3d& place, const Eigen::Vector3d& expected) {
@@ -129,7 +130,7 @@ void MoveByMove::rest(const Eigen::Vector3d& place) {
   watch_.stands(place);
   settings_lost_ = false;
   next_rest_reading_ = time() + common_.rest_reading_interval;
-  trustFor(std::numeric_limits<double>::infinity());
+  validityTime(std::numeric_limits<double>::infinity());
 }
 
 /// Whether a place is exactly 0, where a device begins to count, although this one was elsewhere. One that has lost its
@@ -138,7 +139,7 @@ bool MoveByMove::isNewZero(const Eigen::Vector3d& place, double margin) const {
   if (!place.isZero(kSame)) return false;
   if (settings_lost_) return !watch_.remainsAt(place, counts(), margin);
   if (watch_.mayStandAt(place, counts(), margin)) return false;
-  return !position_ || length(carriedOn(time()) - place) > margin;
+  return !position_ || length(extrapolatedPosition(time()) - place) > margin;
 }
 
 /// Whether the device counts anew: what was known of it is void then. `outside` (m): by how much it tells a place where
@@ -146,9 +147,9 @@ bool MoveByMove::isNewZero(const Eigen::Vector3d& place, double margin) const {
 bool MoveByMove::beginsAnew(const Eigen::Vector3d& place, double outside, bool new_zero, double margin) {
   if (begun_anew_) return true;
   if (outside <= margin && !new_zero) return false;
-  const double way = position_ ? length(place - carriedOn(time())) : outside;
+  const double way = position_ ? length(place - extrapolatedPosition(time())) : outside;
   position_.reset();
-  watch_.forget();
+  watch_.clear();
   begun_anew_ = true;  // and so no position is told
   raiseFault("it tells a place " + std::to_string(std::lround(way * 1e6)) +
              " um from where it must be: if it was switched off its coordinates began anew; check them, then enable");

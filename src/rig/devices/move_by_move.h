@@ -63,9 +63,9 @@ class MoveByMove : public SerialManipulator {
   virtual double arrival() const { return kSame; }  ///< counts from its goal at which an axis has arrived
   virtual double recoveryTime() const = 0;          ///< s, from an exchange that went wrong to a true position
 
-  void connected() final { answers_.forget(); }
+  void connected() final { answers_.clear(); }
   void begin(bool lost) override;
-  void stopSaid() override;
+  void onStopSent() override;
   void goalChanged() final { tries_ = 0; }
 
   /// Those that depend on how long a turn takes: a move is said, goes, and is seen to have arrived (s).
@@ -77,7 +77,7 @@ class MoveByMove : public SerialManipulator {
   double length(const Eigen::Vector3d& way) const { return way.cwiseProduct(counts()).norm(); }  ///< m, of counts
   double askedSpeed(const Eigen::Vector3d& way) const;    ///< m/s, for the goal, at the end of a way (counts)
   double fastestAlong(const Eigen::Vector3d& way) const;  ///< m/s, at which no axis is faster than it may be
-  Eigen::Vector3d carriedOn(double time) const;
+  Eigen::Vector3d extrapolatedPosition(double time) const;
   double timeLeft() const { return move_ ? move_->begin + move_->duration - time() : 0; }
   bool isOutdated() const;
   void corrected(const Eigen::Vector3d& place, const Eigen::Vector3d& expected);

@@ -19,8 +19,8 @@ class OriginWatch {
     if (ends_) ends_->to = place;
     left_ = false;
   }
-  void hasLeft() { left_ = true; }  ///< the device has confirmed the move
-  void forget() { ends_.reset(); }  ///< any place is believed
+  void hasDeparted() { left_ = true; }  ///< the device has confirmed the move
+  void clear() { ends_.reset(); }       ///< any place is believed
 
   /// Distance (m) of a place from the box; `count`: m of a count of each axis. 0 when nothing is known.
   double outside(const Eigen::Vector3d& place, const Eigen::Vector3d& count) const {

@@ -63,7 +63,7 @@ void PolledManipulator::begin(bool lost) {
   MoveByMove::begin(lost);
   exchange_.reset();
   lines_.clear(false);
-  asked_stop_ = asked_motion_ = false;
+  stop_requested_ = asked_motion_ = false;
   ask_kept_ = lost && !confirmed_.empty();
   not_kept_ = 0;
   if (lost) forgetSettings();
@@ -76,16 +76,16 @@ void PolledManipulator::forgetSettings() {
   setting_.clear();
 }
 
-void PolledManipulator::stopSaid() {
-  MoveByMove::stopSaid();
+void PolledManipulator::onStopSent() {
+  MoveByMove::onStopSent();
   next_move_ = 0;
 }
 
-void PolledManipulator::talk(const std::string& bytes) {
+void PolledManipulator::exchange(const std::string& bytes) {
   for (const std::string& line : lines_.feed(bytes)) {
     const std::string answer = !line.empty() && line[0] == '\n' ? line.substr(1) : line;
     handle(answer);
-    if (!talking()) return;
+    if (!exchanging()) return;
   }
   if (exchange_ && listened() > exchange_->due) return lostStep("no answer to \"" + exchange_->line + "\"");
   if (!exchange_) next();
@@ -117,9 +117,9 @@ void PolledManipulator::handle(const std::string& answer) {
     case Kind::kMove:
       if (!acknowledges(exchange_->line, answer)) return notUnderstood(answer);
       understood();
-      if (exchange_->kind == Kind::kStop) asked_stop_ = true;
+      if (exchange_->kind == Kind::kStop) stop_requested_ = true;
       if (exchange_->line == setting_) confirmed_ = setting_;
-      if (exchange_->kind == Kind::kMove && progress_.move.empty()) watch_.hasLeft();
+      if (exchange_->kind == Kind::kMove && progress_.move.empty()) watch_.hasDeparted();
       exchange_.reset();
   }
 }
@@ -171,7 +171,7 @@ void PolledManipulator::takePosition(const std::string& answer) {
 
 void PolledManipulator::takePlace(const Eigen::Vector3d& place) {
   const Eigen::Vector3d nowhere = Eigen::Vector3d::Constant(std::nan(""));
-  const Eigen::Vector3d expected = position_ && settled_ ? carriedOn(time()) : nowhere;
+  const Eigen::Vector3d expected = position_ && settled_ ? extrapolatedPosition(time()) : nowhere;
   const double speed = move_ ? (move_->to - move_->from).norm() / std::max(move_->duration, 1e-3) : 0;  // counts/s
   const double under_way = reading_margin_ / count() + kLongestGuess * speed;
   // At rest, and until it is known to be, only what is told four times can be another place than before.
@@ -199,15 +199,15 @@ void PolledManipulator::ask(Kind kind, const std::string& line) {
   const bool may_stop = kind == Kind::kKept || kind == Kind::kStop || kind == Kind::kSetup;
   const double more = may_stop ? dialect_.stop_duration : 0;
   exchange_ = Exchange{kind, line, sent + wire + common_.reply_timeout + more, sent};
-  if (settled_ && !filter_.doubts()) trustFor(exchange_->due - listened() + recoveryTime());
+  if (settled_ && !filter_.isImplausible()) validityTime(exchange_->due - listened() + recoveryTime());
   say(line + "\r");
 }
 
 void PolledManipulator::next() {
   if (ask_kept_) return ask(Kind::kKept, askKept(confirmed_));
   if (const std::string line = setup(setup_step_); !line.empty()) return ask(Kind::kSetup, line);
-  if (!asked_stop_) return ask(Kind::kStop, dialect_.stop);
-  if (!settled_ || filter_.doubts()) return ask(Kind::kPosition, dialect_.position);
+  if (!stop_requested_) return ask(Kind::kStop, dialect_.stop);
+  if (!settled_ || filter_.isImplausible()) return ask(Kind::kPosition, dialect_.position);
   if (move_) return nextOfMove();
   if (goal() && mayMove() && time() >= next_move_ && !isThere(*position_, goalPlace())) {
     return nextTowardsGoal();

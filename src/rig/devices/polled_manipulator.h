@@ -74,8 +74,8 @@ class PolledManipulator : public MoveByMove {
   Eigen::Vector3d counts() const final { return Eigen::Vector3d::Constant(count()); }
   double recoveryTime() const final;
   void begin(bool lost) final;
-  void stopSaid() final;
-  void talk(const std::string& bytes) final;
+  void onStopSent() final;
+  void exchange(const std::string& bytes) final;
 
  private:
   enum class Kind { kKept, kSetup, kStop, kPosition, kMotion, kMove };
@@ -128,7 +128,7 @@ class PolledManipulator : public MoveByMove {
   std::string setting_;    // of the last move that had one; empty: not known
   std::string confirmed_;  // setting, not forgotten with a lost session
   int not_kept_ = 0;       // answers in a row, that it is not kept
-  bool ask_kept_ = false, asked_stop_ = false, asked_motion_ = false;
+  bool ask_kept_ = false, stop_requested_ = false, asked_motion_ = false;
   double next_move_ = 0;  // s
   Progress progress_;
   std::optional<Line> line_;  // the last one

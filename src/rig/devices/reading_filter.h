@@ -21,8 +21,8 @@ class ReadingFilter {
     last_ = reading;
     return doubtful_ == 0;
   }
-  bool doubts() const { return doubtful_ > 0; }
-  void forget() { doubtful_ = 0; }
+  bool isImplausible() const { return doubtful_ > 0; }
+  void clear() { doubtful_ = 0; }
 
  private:
   static constexpr int kAgreeing = 4;

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "base/config_reader.h"
-#include "rig/manipulator/manipulator_device.h"
 #include "rig/devices/manipulator_emulator.h"
+#include "rig/manipulator/manipulator_device.h"
 #include "rig/serial/serial_port.h"
 
 namespace microinjection {

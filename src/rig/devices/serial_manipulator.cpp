@@ -62,17 +62,17 @@ void SerialManipulator::clearFault() {
 
 void SerialManipulator::beginSession(double quiet) {
   wire_->write(link_.stop, time_);
-  stopSaid();
+  onStopSent();
   stopped_ = !goal_;
-  talking_ = false;
+  exchanging_ = false;
   drain_since_ = last_byte_ = listened_;
   quiet_ = quiet;
 }
 
 void SerialManipulator::stopFirst() { beginSession(link_.quiet_in_step); }
 
-void SerialManipulator::lineLost() {
-  was_open_ = talking_ = ready_ = sure_ = stop_wanted_ = false;
+void SerialManipulator::connectionLost() {
+  was_open_ = exchanging_ = ready_ = positions_valid_ = stop_wanted_ = false;
   next_open_ = time_ + kOpenInterval;
   why_ = link_.device + ": the line broke; trying again";
   dropGoal();
@@ -81,13 +81,13 @@ void SerialManipulator::lineLost() {
 /// Whether the device may go on. After an intervention the session begins anew, and the stop is sent once more: the
 /// guard may have been lost before it sent one.
 bool SerialManipulator::guarded() {
-  const Wire::GuardReport guard = wire_->beat();
+  const Wire::GuardReport guard = wire_->heartbeat();
   const bool missing = !guard.missing.empty();
   if (!missing && guard.intervention.empty()) return true;
   why_ = link_.device + ": " + (missing ? "no stop guard: " + guard.missing : guard.intervention);
   if (guard.intervention.empty() && time_ < next_stop_) return false;
   next_stop_ = time_ + kStopInterval;
-  ready_ = sure_ = stop_wanted_ = false;
+  ready_ = positions_valid_ = stop_wanted_ = false;
   lost_ = true;
   dropGoal();
   guardIntervened();
@@ -106,8 +106,8 @@ void SerialManipulator::lostStep(const std::string& reason) {
 }
 
 /// Nobody knows where it is: it is as good as not connected. It is told to rest, and no command waits for it to answer.
-void SerialManipulator::loseTouch() {
-  sure_ = ready_ = false;
+void SerialManipulator::disconnect() {
+  positions_valid_ = ready_ = false;
   why_ = link_.device + ": it has told no position for too long; trying again";
   dropGoal();
   lostStep("no answer that tells its position");
@@ -116,14 +116,14 @@ void SerialManipulator::loseTouch() {
 void SerialManipulator::raiseFault(const std::string& reason) {
   const bool again = !fault_.empty() && !clearing_;
   fault_ = link_.device + ": " + reason;
-  clearing_ = sure_ = false;
+  clearing_ = positions_valid_ = false;
   lost_ = true;
   dropGoal();
   beginSession(again ? std::max(kPauseInFault, link_.quiet_after_loss) : link_.quiet_after_loss);
 }
 
 void SerialManipulator::known() {
-  ready_ = sure_ = true;
+  ready_ = positions_valid_ = true;
   if (clearing_) fault_.clear();
   clearing_ = false;
 }
@@ -133,7 +133,7 @@ void SerialManipulator::understood() {
 }
 
 /// A goal that was reached is over: a person who turns the device's own hand wheel or knob must not be worked against.
-void SerialManipulator::letGoOfReachedGoal() {
+void SerialManipulator::clearReachedGoal() {
   const bool goes_on = goal_ && goal_->follows && time_ - goal_->time < kStreamEnds;
   if (goal_ && !goes_on && mayMove() && !moving()) dropGoal();
 }
@@ -142,7 +142,7 @@ void SerialManipulator::step(double time) {
   listened_ += std::min(time - time_, kLongestGap);
   time_ = time;
   if (!wire_->isOpen()) {
-    if (was_open_) lineLost();
+    if (was_open_) connectionLost();
     if (time < next_open_) return;
     next_open_ = time + kOpenInterval;
     why_ = wire_->open();
@@ -153,24 +153,24 @@ void SerialManipulator::step(double time) {
     beginSession(link_.quiet_after_loss);
   }
   std::string bytes = wire_->read(time);
-  if (!wire_->isOpen()) return lineLost();
+  if (!wire_->isOpen()) return connectionLost();
   if (!guarded()) return;
-  if (sure_ && listened_ > trusted_until_) return loseTouch();
+  if (positions_valid_ && listened_ > valid_until_) return disconnect();
   if (stop_wanted_) {
     stop_wanted_ = false;
-    beginSession(talking_ && !clearing_ ? link_.quiet_in_step : std::max(quiet_, link_.quiet_in_step));
+    beginSession(exchanging_ && !clearing_ ? link_.quiet_in_step : std::max(quiet_, link_.quiet_in_step));
   }
-  if (!talking_) {
+  if (!exchanging_) {
     if (!bytes.empty()) last_byte_ = listened_;
     if (listened_ - drain_since_ > kLongestDrain) return lostStep("the line is never silent; is it the right port?");
     if (listened_ - last_byte_ < quiet_) return;
     bytes.clear();
-    talking_ = true;
+    exchanging_ = true;
     begin(lost_);
     lost_ = false;
   }
-  talk(bytes);
-  letGoOfReachedGoal();
+  exchange(bytes);
+  clearReachedGoal();
 }
 
 ManipulatorDevice::State SerialManipulator::state() const {

@@ -58,21 +58,21 @@ class SerialManipulator : public ManipulatorDevice {
   /// went wrong or the line is new, so that nothing is known of the device; otherwise it was just stopped.
   virtual void begin(bool lost) = 0;
   /// The device has been told to stop and will stand in a moment; what it says is not heard until `begin`.
-  virtual void stopSaid() {}
+  virtual void onStopSent() {}
   virtual void stopAsked() {}  ///< by stop(), at once and each time
   /// The program or its stop guard stood still: not even what moves without a goal may go on by itself.
   virtual void guardIntervened() {}
   /// Goes on with the conversation: with what came, and with what is to be said.
-  virtual void talk(const std::string& bytes) = 0;
+  virtual void exchange(const std::string& bytes) = 0;
   /// A new goal (goal() is set) came or the goal went.
   virtual void goalChanged() = 0;
 
   double time() const { return time_; }  ///< s, of this step
   const std::optional<Goal>& goal() const { return goal_; }
   const Eigen::Vector3d& speedLimits() const { return speed_limits_; }  ///< m/s, of the joints
-  bool talking() const { return talking_; }
+  bool exchanging() const { return exchanging_; }
   /// Whether positions may be told: not before the first session has settled, and from a fault until one has again.
-  bool sure() const { return sure_ && state() != State::kDisconnected; }
+  bool sure() const { return positions_valid_ && state() != State::kDisconnected; }
   bool mayMove() const { return ready_ && fault_.empty(); }
   bool clearing() const { return clearing_; }  ///< clearFault() was called and this session tries
   void say(const std::string& bytes) { wire_->write(bytes, time_); }
@@ -80,10 +80,10 @@ class SerialManipulator : public ManipulatorDevice {
   void movesByItself() { stopped_ = false; }  ///< without a goal, so that a stop has something to stop
 
   double listened() const { return listened_; }  ///< s, a clock that does not run while nobody steps
-  /// The last true position, carried on, may be told for so long (s); trustAtMost only shortens that. Then it is as
+  /// The last true position, carried on, may be told for so long (s); maxValidityTime only shortens that. Then it is as
   /// if the line were broken: no position, no goal, a stop, until the driver says known() again.
-  void trustFor(double duration) { trusted_until_ = listened_ + duration; }
-  void trustAtMost(double duration) { trusted_until_ = std::min(trusted_until_, listened_ + duration); }
+  void validityTime(double duration) { valid_until_ = listened_ + duration; }
+  void maxValidityTime(double duration) { valid_until_ = std::min(valid_until_, listened_ + duration); }
   /// From the next session on: s of silence, as in Link, on a line that turned out to be slow.
   void waitForSilence(double in_step, double after_loss) {
     link_.quiet_in_step = in_step;
@@ -97,25 +97,25 @@ class SerialManipulator : public ManipulatorDevice {
 
  private:
   void beginSession(double quiet);
-  void lineLost();
+  void connectionLost();
   bool guarded();
-  void loseTouch();
-  void letGoOfReachedGoal();
+  void disconnect();
+  void clearReachedGoal();
 
   std::unique_ptr<Wire> wire_;
   Link link_;
-  double time_ = 0;           // s
-  double listened_ = 0;       // s
-  double trusted_until_ = 0;  // s of `listened_`
-  double next_open_ = -1;     // s
-  double next_stop_ = 0;      // s, while there is no guard
-  double last_byte_ = 0;      // s of listened_, since the stop
-  double drain_since_ = 0;    // s of listened_
-  double quiet_ = 0;          // s, of silence to wait for
-  bool was_open_ = false, talking_ = false, ready_ = false, clearing_ = false, stop_wanted_ = false;
-  bool sure_ = false;     // where everything is
-  bool lost_ = true;      // before this session
-  bool stopped_ = false;  // told to stop, and to do nothing since
+  double time_ = 0;         // s
+  double listened_ = 0;     // s
+  double valid_until_ = 0;  // s of `listened_`
+  double next_open_ = -1;   // s
+  double next_stop_ = 0;    // s, while there is no guard
+  double last_byte_ = 0;    // s of listened_, since the stop
+  double drain_since_ = 0;  // s of listened_
+  double quiet_ = 0;        // s, of silence to wait for
+  bool was_open_ = false, exchanging_ = false, ready_ = false, clearing_ = false, stop_wanted_ = false;
+  bool positions_valid_ = false;  // where everything is
+  bool lost_ = true;              // before this session
+  bool stopped_ = false;          // told to stop, and to do nothing since
   int failures_ = 0, successes_ = 0;
   Eigen::Vector3d speed_limits_ = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
   std::string why_;    // it is not ready

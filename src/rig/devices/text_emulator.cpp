@@ -21,7 +21,7 @@ void TextEmulator::advance(double time) {
   if (moving_ && dt > 0) move(time, dt);
 }
 
-void TextEmulator::hear(const std::string& bytes, double time) {
+void TextEmulator::process(const std::string& bytes, double time) {
   advance(time);
   for (const char each : bytes) {
     if (each != '\r' && each != '\n') {
@@ -33,7 +33,7 @@ void TextEmulator::hear(const std::string& bytes, double time) {
     if (error_ >= 0) {
       answer(error(std::exchange(error_, -1)), time);
     } else {
-      obey(command, time);
+      handleCommand(command, time);
     }
   }
 }

@@ -18,14 +18,14 @@ class TextEmulator : public ManipulatorEmulator {
   explicit TextEmulator(double answer_time) : answer_time_(answer_time) {}
 
   /// Obeys a command, which is never empty, and says what it says to it.
-  virtual void obey(const std::string& command, double time) = 0;
+  virtual void handleCommand(const std::string& command, double time) = 0;
   /// Moves on to `time` (s), `dt` s since the last call; only called while it moves.
   virtual void move(double time, double dt) = 0;
   virtual std::string error(int code) const = 0;
   /// Position and settings become those after it has been switched on. It stands, and what it was told is forgotten.
   virtual void switchOn() = 0;
 
-  void hear(const std::string& bytes, double time) final;
+  void process(const std::string& bytes, double time) final;
   std::string say(double time) final;
   void checkError(const std::string& code) const final;
   void failNextCommand(const std::string& code) final;

@@ -23,7 +23,7 @@ std::string parameter(double value) {
 
 }  // namespace
 
-void FemtojetEmulator::hear(const std::string& bytes, double time) {
+void FemtojetEmulator::process(const std::string& bytes, double time) {
   time_ = std::max(time, time_);
   for (const char each : bytes) {
     if (each != '\r' && each != '\n') {
@@ -33,13 +33,13 @@ void FemtojetEmulator::hear(const std::string& bytes, double time) {
     if (command_.empty()) continue;  // the line feed behind a carriage return
     const std::string first = config_.echo == FemtojetEmulatorConfig::Echo::kCommand ? command_ : "";
     const bool two_lines = config_.echo != FemtojetEmulatorConfig::Echo::kNone;
-    const std::string answer = (two_lines ? first + config_.line_end : "") + obey(command_) + config_.line_end;
+    const std::string answer = (two_lines ? first + config_.line_end : "") + handleCommand(command_) + config_.line_end;
     answers_.add(answer, time_ + config_.answer_time);
     command_.clear();
   }
 }
 
-std::string FemtojetEmulator::obey(const std::string& line) {
+std::string FemtojetEmulator::handleCommand(const std::string& line) {
   if (!error_.empty()) return "ERR=" + std::exchange(error_, "");
   static const std::regex form("[Cc]([0-9]{3})(?:=(.{1,10}))?");
   std::smatch groups;

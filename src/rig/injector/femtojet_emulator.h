@@ -37,14 +37,14 @@ class FemtojetEmulator : public InjectorEmulator {
   double pressure() const override { return time_ < injects_until_ ? injection_ : compensation_; }
 
  protected:
-  void hear(const std::string& bytes, double time) override;
+  void process(const std::string& bytes, double time) override;
   std::string say(double time) override;
   void checkError(const std::string& code) const override;
   void failNextCommand(const std::string& code) override { error_ = code; }
   void interrupt(double time) override { injects_until_ = time; }
 
  private:
-  std::string obey(const std::string& line);
+  std::string handleCommand(const std::string& line);
   std::string execute(const std::string& number);
   std::string enter(const std::string& number, const std::string& parameter);
 

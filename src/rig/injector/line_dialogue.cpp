@@ -25,7 +25,7 @@ void LineDialogue::send(const std::string& line, double timeout, double time) {
   wire_.write(line + framing_.send_end, time);
 }
 
-LineDialogue::Answer LineDialogue::listen(double time) {
+LineDialogue::Answer LineDialogue::receive(double time) {
   const std::string bytes = wire_.read(time);
   if (!bytes.empty()) heard_ = time;
   if (!in_step_) {

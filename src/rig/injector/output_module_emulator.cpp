@@ -19,18 +19,18 @@ double OutputModuleEmulator::pressure() const {
   return relays_ & 1u ? config_.supply : config_.balance;
 }
 
-void OutputModuleEmulator::hear(const std::string& bytes, double time) {
+void OutputModuleEmulator::process(const std::string& bytes, double time) {
   for (const char each : bytes) {
     if (each != '\r') {
       command_ += each;
       continue;
     }
-    const std::string answer = obey(std::exchange(command_, ""));
+    const std::string answer = handleCommand(std::exchange(command_, ""));
     if (!answer.empty()) answers_.add(answer + "\r", time + config_.answer_time);
   }
 }
 
-std::string OutputModuleEmulator::obey(const std::string& command) {
+std::string OutputModuleEmulator::handleCommand(const std::string& command) {
   const bool known = command.size() > 3 && (command[0] == '#' || command[0] == '$');
   if (!known || command.substr(1, 2) != config_.address) return "";
   const std::string invalid = "?" + config_.address, data = command.substr(3);

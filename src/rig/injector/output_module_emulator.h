@@ -37,14 +37,14 @@ class OutputModuleEmulator : public InjectorEmulator {
   double pressure() const override;
 
  protected:
-  void hear(const std::string& bytes, double time) override;
+  void process(const std::string& bytes, double time) override;
   std::string say(double time) override { return answers_.take(time); }
   void checkError(const std::string& code) const override;
   void failNextCommand(const std::string&) override { fails_ = true; }
   void interrupt(double) override { relays_ = 0, volts_ = 0; }
 
  private:
-  std::string obey(const std::string& command);
+  std::string handleCommand(const std::string& command);
   bool setRelays(const std::string& data);
   bool setVoltage(const std::string& data);
   std::string readBack() const;

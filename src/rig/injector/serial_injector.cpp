@@ -124,7 +124,7 @@ void SerialInjector::step(double time) {
   model_.step(time);
   if (flowed && !model_.reading().busy) pressureChanges();  // by the device's own clock
   if (keepOpen(time)) {
-    listen(time);
+    receive(time);
     keepStopped(time);
     if (wire_->isOpen()) talk(time);
   }
@@ -134,7 +134,7 @@ void SerialInjector::step(double time) {
 bool SerialInjector::keepOpen(double time) {
   if (wire_->isOpen()) return true;
   const bool flows = protocol_.timed && model_.reading().busy;
-  if (task_ != Task::kNone) giveUp("the line broke");
+  if (task_ != Task::kNone) abort("the line broke");
   if (flows && stopped_) fail("the line broke during a pulse, which may go on");
   if (waiting_pulse_) fail("the line broke");
   stopped_ = balance_known_ = false;
@@ -155,13 +155,13 @@ bool SerialInjector::keepOpen(double time) {
 /// The guard's stop has ended a pulse, or a guard that was lost cannot: either way the device is told to stop. What it
 /// answered the guard is passed over as a late reply is.
 void SerialInjector::checkGuard(double time) {
-  const Wire::GuardReport guard = wire_->beat();
+  const Wire::GuardReport guard = wire_->heartbeat();
   unguarded_ = guard.missing.empty() ? "" : "no stop guard: " + guard.missing;
   if (guard.intervention.empty()) return;
   const bool flows = mayFlow();
   if (model_.reading().busy) fail("the pulse was broken off: " + guard.intervention);
   model_.stop();
-  if (task_ != Task::kNone) giveUp(guard.intervention);
+  if (task_ != Task::kNone) abort(guard.intervention);
   if (waiting_pulse_) fail(guard.intervention);
   if (flows && !protocol_.stop.empty()) waiting_stop_ = true;
   over_ = false;
@@ -179,14 +179,14 @@ void SerialInjector::keepStopped(double time) {
   tries_ = 0;
 }
 
-void SerialInjector::listen(double time) {
-  switch (dialogue_.listen(time)) {
+void SerialInjector::receive(double time) {
+  switch (dialogue_.receive(time)) {
     case LineDialogue::Answer::kReply:
       return take(dialogue_.reply());
     case LineDialogue::Answer::kLate:
-      return giveUp("no good reply in time");
+      return abort("no good reply in time");
     case LineDialogue::Answer::kUnclear:
-      return giveUp("more than one reply");
+      return abort("more than one reply");
     case LineDialogue::Answer::kNone:
       return;
   }
@@ -194,7 +194,7 @@ void SerialInjector::listen(double time) {
 
 void SerialInjector::take(const std::string& reply) {
   if (task_ != Task::kBegin && std::regex_match(reply, protocol_.refuse)) {
-    return giveUp("refused: " + reply, Refusal::kYes);
+    return abort("refused: " + reply, Refusal::kYes);
   }
   const InjectorProtocol::Exchange& exchange = exchanges(task_)[step_];
   std::smatch groups;
@@ -210,7 +210,7 @@ void SerialInjector::take(const std::string& reply) {
   }
   if (!wrong.empty()) {
     dialogue_.distrust(time_);
-    return giveUp(wrong);
+    return abort(wrong);
   }
   if (++step_ == exchanges(task_).size()) complete();
 }

@@ -55,10 +55,10 @@ class SerialInjector : public InjectorDevice {
   void checkGuard(double time);
   bool keepOpen(double time);
   void keepStopped(double time);
-  void listen(double time);
+  void receive(double time);
   void take(const std::string& reply);
   void complete();
-  void giveUp(const std::string& why, Refusal refusal = Refusal::kNo);
+  void abort(const std::string& why, Refusal refusal = Refusal::kNo);
   void giveUpPulse(const std::string& why, bool was_triggered, Refusal refusal);
   void fail(const std::string& why);
   void talk(double time);

@@ -28,7 +28,7 @@ void SerialInjector::giveUpPulse(const std::string& why, bool was_triggered, Ref
   fail(what);
 }
 
-void SerialInjector::giveUp(const std::string& why, Refusal refusal) {
+void SerialInjector::abort(const std::string& why, Refusal refusal) {
   const bool said_no = refusal == Refusal::kYes;
   bad_replies_ += said_no ? 0 : 1;
   ++tries_;

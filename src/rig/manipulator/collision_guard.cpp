@@ -96,12 +96,12 @@ std::string CollisionGuard::blocks(const Eigen::Vector3d& joints) const {
   return "";
 }
 
-std::string CollisionGuard::blocksWay(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const {
+std::string CollisionGuard::blocksPath(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const {
   for (const Mover& mover : movers_) {
     const Eigen::Vector3d start = mover.directions * from;
     const Eigen::Vector3d end = mover.directions * to;
     for (const Obstacle& obstacle : obstacles_) {
-      const double nearest = distanceOnWay(mover.capsule, start, end, obstacle.solid, margin_);
+      const double nearest = distanceAlongPath(mover.capsule, start, end, obstacle.solid, margin_);
       if (nearest >= margin_ - kSlack) continue;
       const double at_start = distance(mover.capsule, start, obstacle.solid);
       if (nearest < std::min(margin_, at_start) - kSlack) return reason(mover, obstacle, nearest);

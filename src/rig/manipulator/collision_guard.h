@@ -28,7 +28,7 @@ class CollisionGuard {
 
   /// The same for the whole straight way, exactly: solids are convex, so that their distance is a convex function of
   /// the way. Who starts within the margin may leave, but not come nearer.
-  std::string blocksWay(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
+  std::string blocksPath(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
 
   /// Smallest distance (m) between a moving and a standing shape; infinite without such a pair, 0 where they overlap.
   double clearance(const Eigen::Vector3d& joints) const;

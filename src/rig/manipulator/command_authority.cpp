@@ -2,21 +2,21 @@
 
 namespace microinjection {
 
-bool CommandAuthority::admit(const std::string& source, double time, bool moving) {
+bool CommandAuthority::authorize(const std::string& source, double time, bool moving) {
   if (!fault_.empty()) return false;
-  const bool free = holder_.empty() || (!moving && time > commanded_);
-  if (source != holder_ && !free) {
-    fault_ = "two nodes command the needle: " + holder_ + " and " + source;
+  const bool free = authorized_source_.empty() || (!moving && time > commanded_);
+  if (source != authorized_source_ && !free) {
+    fault_ = "two nodes command the needle: " + authorized_source_ + " and " + source;
     return false;
   }
-  holder_ = source;
+  authorized_source_ = source;
   commanded_ = time;
   return true;
 }
 
 void CommandAuthority::clear() {
   fault_.clear();
-  holder_.clear();
+  authorized_source_.clear();
 }
 
 }  // namespace microinjection

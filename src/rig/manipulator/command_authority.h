@@ -12,14 +12,14 @@ class CommandAuthority {
  public:
   /// A command of `source` at `time` (s), the same for all commands of a step. `moving`: the needle still does what it
   /// was told before. Whether the command may be obeyed: without a fault.
-  bool admit(const std::string& source, double time, bool moving);
+  bool authorize(const std::string& source, double time, bool moving);
 
   /// Who commands beside whom; empty without a fault.
   const std::string& fault() const { return fault_; }
   void clear();
 
  private:
-  std::string holder_;                                           ///< empty: none yet
+  std::string authorized_source_;                                ///< empty: none yet
   double commanded_ = -std::numeric_limits<double>::infinity();  ///< s, the holder's last command
   std::string fault_;
 };

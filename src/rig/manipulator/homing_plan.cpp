@@ -38,7 +38,7 @@ std::string blocksAxis(const CollisionGuard& guard, const Places& places, int jo
         if (!guard.blocks(from).empty()) continue;
         Eigen::Vector3d to = from;
         to[joint] = end;
-        if (std::string why = guard.blocksWay(from, to); !why.empty()) return why;
+        if (std::string why = guard.blocksPath(from, to); !why.empty()) return why;
       }
     }
   }

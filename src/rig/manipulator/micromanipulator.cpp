@@ -19,7 +19,11 @@ MicromanipulatorConfig MicromanipulatorConfig::read(ConfigReader& reader) {
 
 Micromanipulator::Micromanipulator(const ManipulatorGeometry& geometry, const CollisionGuard& guard,
                                    const MicromanipulatorConfig& config, ManipulatorDevice& device)
-    : geometry_(geometry), guard_(guard), config_(config), device_(&device), follows_(device.abilities().follows) {
+    : geometry_(geometry),
+      guard_(guard),
+      config_(config),
+      device_(&device),
+      accepts_setpoints_while_moving_(device.abilities().follows) {
   adapt();
   device.limitSpeed({geometry.axes[0].velocity, geometry.axes[1].velocity, geometry.axes[2].velocity});
   if (const auto ends = device.homingEnds()) device.planHoming(planHoming(geometry, guard, *ends));
@@ -28,10 +32,10 @@ Micromanipulator::Micromanipulator(const ManipulatorGeometry& geometry, const Co
 /// A device behind a slow line turns out to be slower when it has been asked.
 void Micromanipulator::adapt() {
   const ManipulatorAbilities abilities = device_->abilities();
-  lag_ = follows_ ? abilities.latency + abilities.command_interval : 0;
+  lag_ = accepts_setpoints_while_moving_ ? abilities.latency + abilities.command_interval : 0;
 }
 
-std::string Micromanipulator::unable() const {
+std::string Micromanipulator::unavailableReason() const {
   if (device_->state() != ManipulatorDevice::State::kReady) {
     return device_->why().empty() ? "the device is not ready" : device_->why();
   }
@@ -82,7 +86,7 @@ void Micromanipulator::begin(Mode mode, const AxesMotion& from) {
 /// Why nothing may be moved by a stream, of which one command is here; else empty.
 std::string Micromanipulator::streamRefusal() {
   const bool begins = std::exchange(stream_pause_, 0) > config_.command_timeout;
-  if (std::string why = unable(); !why.empty()) return why;
+  if (std::string why = unavailableReason(); !why.empty()) return why;
   if (begins) held_off_ = false;
   if (!held_off_) return "";
   return "the needle was stopped; a stream moves it again after a pause of " + std::to_string(config_.command_timeout) +
@@ -94,7 +98,7 @@ std::string Micromanipulator::servoPosition(const Eigen::Isometry3d& tip_pose) {
   const Commanded commanded = checkPose(tip_pose);
   if (!commanded.refusal.empty()) return commanded.refusal;
   const AxesMotion from = start();
-  if (std::string why = guard_.blocksWay(from.position, commanded.joints); !why.empty()) return why;
+  if (std::string why = guard_.blocksPath(from.position, commanded.joints); !why.empty()) return why;
   if (mode_ != Mode::kServo) {
     goal_ = from.position;
     goal_age_ = 0;
@@ -108,15 +112,15 @@ std::string Micromanipulator::servoPosition(const Eigen::Isometry3d& tip_pose) {
 }
 
 std::string Micromanipulator::movePosition(const Eigen::Isometry3d& tip_pose) {
-  if (std::string why = unable(); !why.empty()) return why;
+  if (std::string why = unavailableReason(); !why.empty()) return why;
   const Commanded commanded = checkPose(tip_pose);
   if (!commanded.refusal.empty()) return commanded.refusal;
   const AxesMotion from = start();
-  const Eigen::Vector3d turn = follows_ ? restAfter(from) : device_->reading()->joints;
-  if (std::string why = guard_.blocksWay(turn, commanded.joints); !why.empty()) return why;
+  const Eigen::Vector3d turn = accepts_setpoints_while_moving_ ? restAfter(from) : device_->reading()->joints;
+  if (std::string why = guard_.blocksPath(turn, commanded.joints); !why.empty()) return why;
   goal_ = commanded.joints;
   begin(Mode::kMove, from);
-  if (follows_) return "";
+  if (accepts_setpoints_while_moving_) return "";
   setpoint_.reset();
   const Eigen::Vector3d way = goal_ - turn;
   if (way.norm() > 0) device_->moveTo(goal_, straightSpeed(geometry_, way.normalized()));
@@ -138,7 +142,7 @@ std::string Micromanipulator::servoVelocity(const Eigen::Vector3d& velocity, dou
   const Eigen::Vector3d rest = reachOf({from.position + joint_velocity * last_dt_, joint_velocity});
   if (!joint_velocity.isZero()) {
     if (std::string why = geometry_.leavesTravel(from.position, rest); !why.empty()) return why;
-    if (std::string why = guard_.blocksWay(from.position, rest); !why.empty()) return why;
+    if (std::string why = guard_.blocksPath(from.position, rest); !why.empty()) return why;
   }
   velocity_command_ = joint_velocity;
   velocity_command_time_ = time;
@@ -172,7 +176,7 @@ void Micromanipulator::step(double time, double dt) {
   if (last_dt_ == 0) device_->step(time - dt);  // sets its clock
   last_dt_ = dt;
   stream_pause_ += dt;
-  if (const std::string why = unable(); !why.empty()) {
+  if (const std::string why = unavailableReason(); !why.empty()) {
     if (mode_ != Mode::kHold) ended_ = why;
     rest();
     under_way_ = false;
@@ -191,7 +195,7 @@ void Micromanipulator::step(double time, double dt) {
 }
 
 std::optional<Eigen::Isometry3d> Micromanipulator::setpointPose() const {
-  if (!unable().empty() || mode_ == Mode::kVelocity) return std::nullopt;
+  if (!unavailableReason().empty() || mode_ == Mode::kVelocity) return std::nullopt;
   const bool by_itself = mode_ == Mode::kMove && !setpoint_;
   return geometry_.tipPose(by_itself ? goal_ : start().position);
 }

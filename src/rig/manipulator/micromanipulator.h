@@ -73,7 +73,7 @@ class Micromanipulator {
     std::string refusal;
   };
   void adapt();
-  std::string unable() const;
+  std::string unavailableReason() const;
   std::string streamRefusal();
   Commanded checkPose(const Eigen::Isometry3d& tip_pose) const;
   AxesMotion start() const;
@@ -90,14 +90,14 @@ class Micromanipulator {
   void stepServo(double dt);
   void stepMove(double dt);
   void stepVelocity(double time, double dt);
-  void endEarly(const std::string& why);
+  void abortMotion(const std::string& why);
   void arrive();
 
   ManipulatorGeometry geometry_;
   CollisionGuard guard_;
   MicromanipulatorConfig config_;
   ManipulatorDevice* device_;
-  bool follows_;    ///< the device, set-points while it moves
+  bool accepts_setpoints_while_moving_;  ///< the device, set-points while it moves
   double lag_ = 0;  ///< s, that a device which follows may go on with a velocity that is no longer the set-point's
   Mode mode_ = Mode::kHold;
   std::optional<AxesMotion> setpoint_;

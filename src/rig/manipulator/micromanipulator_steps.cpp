@@ -9,7 +9,7 @@
 
 namespace microinjection {
 
-void Micromanipulator::endEarly(const std::string& why) {
+void Micromanipulator::abortMotion(const std::string& why) {
   ended_ = why;
   mode_ = Mode::kBrake;
 }
@@ -24,7 +24,7 @@ void Micromanipulator::arrive() {
 std::string Micromanipulator::blocksDevice(const Eigen::Vector3d& target) const {
   const Eigen::Vector3d measured = device_->reading()->joints;
   const bool near = setpoint_ && (measured - setpoint_->position).norm() <= config_.collision_margin;
-  return follows_ && near ? "" : guard_.blocksWay(measured, target);
+  return accepts_setpoints_while_moving_ && near ? "" : guard_.blocksPath(measured, target);
 }
 
 /// Something brought the device elsewhere, and an obstacle between itself and where it was sent.
@@ -42,7 +42,7 @@ std::string Micromanipulator::advance(const Eigen::Vector3d& velocity, double dt
   AxesMotion next{setpoint_->position + velocity * dt, velocity};
   const Eigen::Vector3d rest = reachOf(next);
   std::string why = geometry_.leavesTravel(setpoint_->position, rest);
-  if (why.empty()) why = guard_.blocksWay(setpoint_->position, rest);
+  if (why.empty()) why = guard_.blocksPath(setpoint_->position, rest);
   if (!why.empty() || !blocksDevice(rest).empty()) {  // of the device: it waits until that has come nearer
     next = *setpoint_;
     brake(geometry_, next, dt);
@@ -107,7 +107,7 @@ void Micromanipulator::stepMove(double dt) {
                      device_->abilities().resolution / lag_);
   }
   const std::string why = advance(straightVelocity(geometry_, *setpoint_, goal_, speed, dt), dt);
-  if (!why.empty()) return endEarly(why);
+  if (!why.empty()) return abortMotion(why);
   if (!atRest(geometry_, *setpoint_, goal_, dt)) return;
   setpoint_->position = goal_;
   arrive();
@@ -122,7 +122,7 @@ void Micromanipulator::stepVelocity(double time, double dt) {
   const Eigen::Vector3d velocity =
       time_needed > dt ? Eigen::Vector3d(setpoint_->velocity + change * (dt / time_needed)) : wanted;
   const std::string why = advance(velocity, dt);
-  if (!why.empty()) return endEarly(why);
+  if (!why.empty()) return abortMotion(why);
   if (stale && setpoint_->velocity.isZero(0)) arrive();
 }
 

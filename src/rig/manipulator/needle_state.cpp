@@ -24,7 +24,7 @@ std::string NeedleState::command(StateCommand command) {
   return "";
 }
 
-std::string NeedleState::unable() const {
+std::string NeedleState::unavailableReason() const {
   if (!surroundings_.fault.empty()) return surroundings_.fault + "; allowed after enable";
   if (!surroundings_.barrier.empty()) return surroundings_.barrier;
   if (commanded_ == OperatingState::kDisabled) return "DISABLED; allowed after enable";

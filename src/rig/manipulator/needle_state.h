@@ -31,7 +31,7 @@ class NeedleState {
   bool homed() const { return homed_ && surroundings_.position_known; }
   bool disabledByCommand() const { return commanded_ == OperatingState::kDisabled; }
   /// Why motion commands are refused, the device's own reasons apart; else empty.
-  std::string unable() const;
+  std::string unavailableReason() const;
 
  private:
   Surroundings surroundings_;

@@ -49,8 +49,8 @@ double distance(const Capsule& capsule, const Eigen::Vector3d& offset, const Sol
   return nearestOfSegment(capsule, offset, solid, enough + capsule.radius).distance - capsule.radius;
 }
 
-double distanceOnWay(const Capsule& capsule, const Eigen::Vector3d& from, const Eigen::Vector3d& to, const Solid& solid,
-                     double enough) {
+double distanceAlongPath(const Capsule& capsule, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                         const Solid& solid, double enough) {
   const Eigen::Vector3d way = to - from;
   const double at_start = distance(capsule, from, solid, enough + way.norm());
   if (at_start > enough + way.norm()) return at_start - way.norm();  // too short a way to come near

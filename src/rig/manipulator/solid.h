@@ -34,7 +34,7 @@ double distance(const Capsule& capsule, const Eigen::Vector3d& offset, const Sol
                 double enough = std::numeric_limits<double>::infinity());
 
 /// The smallest such distance on the straight way from one offset to the other.
-double distanceOnWay(const Capsule& capsule, const Eigen::Vector3d& from, const Eigen::Vector3d& to, const Solid& solid,
-                     double enough = std::numeric_limits<double>::infinity());
+double distanceAlongPath(const Capsule& capsule, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                         const Solid& solid, double enough = std::numeric_limits<double>::infinity());
 
 }  // namespace microinjection

@@ -97,7 +97,7 @@ std::string ForceReadout::beginPoint(const Eigen::VectorXd& force) {
 
 void ForceReadout::interrupt() {
   if (!averaging()) return;
-  outcome_ = "the average was given up: no trusted reading all the time";
+  outcome_ = "the average was given up: no valid reading all the time";
   purpose_ = Purpose::kNone;
 }
 

@@ -21,7 +21,7 @@ class ForceReadout {
   std::string beginTare();
   /// Begins to average under a known force (N), of the reading's size: finite, not zero and within the range.
   std::string beginPoint(const Eigen::VectorXd& force);
-  /// There is nothing trusted to average: gives up the average under way.
+  /// There is nothing valid to average: gives up the average under way.
   void interrupt();
 
   /// The gain that fits force = gain (mean - tare) to the points in the least-squares sense. Points that span all axes

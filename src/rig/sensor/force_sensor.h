@@ -37,7 +37,7 @@ class ForceSensor {
 
   /// Advances by dt (s) under a constant tip force (N) given as (axial, lateral); returns the newest reading (N).
   /// Exact for any dt, whatever its ratio to the sample period.
-  /// @pre finite force; the caller keeps a reading of an untrusted force from being published.
+  /// @pre finite force; the caller keeps a reading of an invalid force from being published.
   Eigen::Vector2d sample(const Eigen::Vector2d& force, double dt);
 
   /// True when the last reading was cut off at the range of an axis.

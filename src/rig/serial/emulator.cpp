@@ -45,7 +45,7 @@ void DeviceEmulator::receive(const std::string& bytes, double time) {
   beginFaults(time);
   const std::size_t missed = std::min<std::size_t>(bytes.size(), to_miss_);
   to_miss_ -= static_cast<int>(missed);
-  if (time >= silent_until_ && missed < bytes.size()) hear(bytes.substr(missed), time);
+  if (time >= silent_until_ && missed < bytes.size()) process(bytes.substr(missed), time);
 }
 
 std::string DeviceEmulator::send(double time) {

@@ -21,7 +21,7 @@ class DeviceEmulator {
   void inject(const Fault& fault);
 
  protected:
-  virtual void hear(const std::string& bytes, double time) = 0;
+  virtual void process(const std::string& bytes, double time) = 0;
   virtual std::string say(double time) = 0;
   /// An error (its code) for the next command; throws ConfigError when the device does not know it.
   virtual void checkError(const std::string& code) const = 0;

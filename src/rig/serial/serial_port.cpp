@@ -67,17 +67,17 @@ struct SerialPort::Line {
       return config.path + ": " + std::to_string(config.baud) + " baud, " + config.frame() + ": " + error.message();
     requestLowLatency(port.native_handle());
     tcflush(port.native_handle(), TCIFLUSH);
-    listen();
+    receive();
     return "";
   }
 
-  void listen() {
+  void receive() {
     port.async_read_some(asio::buffer(buffer), [this](const error_code& error, std::size_t size) {
       received.append(buffer.data(), size);
       if (error) {
         broken = true;
       } else {
-        listen();
+        receive();
       }
     });
   }
@@ -116,9 +116,9 @@ bool SerialPort::isOpen() const { return line_ != nullptr; }
 
 pid_t SerialPort::guardProcess() const { return line_ ? line_->stop_guard.process() : -1; }
 
-Wire::GuardReport SerialPort::beat() {
+Wire::GuardReport SerialPort::heartbeat() {
   if (!line_ || guarded_stop_.empty()) return {};
-  GuardReport report = line_->stop_guard.beat();
+  GuardReport report = line_->stop_guard.heartbeat();
   if (!report.intervention.empty()) line_->unsent.clear();  // what is half sent goes on, so that the stop is understood
   return report;
 }

@@ -34,7 +34,7 @@ class SerialPort : public Wire {
   ~SerialPort() override;
 
   void setGuardedStop(const std::string& bytes) override { guarded_stop_ = bytes; }
-  GuardReport beat() override;
+  GuardReport heartbeat() override;
   std::string open() override;  ///< what came while nobody listened is thrown away
   bool isOpen() const override;
   std::string read(double time) override;

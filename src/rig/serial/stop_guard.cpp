@@ -33,7 +33,7 @@ std::string StopGuard::begin(int line, const std::string& stop) {
 }
 
 std::string StopGuard::start() {
-  last_start_ = last_beat_ = Clock::now();
+  last_start_ = last_heartbeat_ = Clock::now();
   silence_ = 0;
   int ends[2];
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) return std::strerror(errno);
@@ -50,7 +50,7 @@ std::string StopGuard::start() {
   return why;
 }
 
-void StopGuard::listen() {
+void StopGuard::receive() {
   char messages[64];
   while (socket_ >= 0) {
     const ssize_t size = recv(socket_, messages, sizeof(messages), MSG_DONTWAIT);
@@ -82,22 +82,22 @@ void StopGuard::reap() {
 }
 
 bool StopGuard::intervened() {
-  listen();
+  receive();
   return !intervention_.empty();
 }
 
-Wire::GuardReport StopGuard::beat() {
+Wire::GuardReport StopGuard::heartbeat() {
   reap();
-  listen();
+  receive();
   const Clock::time_point now = Clock::now();
   if (socket_ >= 0) {
-    silence_ += std::min(seconds(now - last_beat_), kLongestStep);
+    silence_ += std::min(seconds(now - last_heartbeat_), kLongestStep);
     // A socket that is full belongs to a guard that does not listen, and is found by its silence.
     const bool gone = send(socket_, &kStopGuardBeat, 1, MSG_DONTWAIT | MSG_NOSIGNAL) < 0 && errno == EPIPE;
     if (gone) lose("ended");
     if (silence_ > kStopGuardSilence) lose("stood still for more than 0.2 s");
   }
-  last_beat_ = now;
+  last_heartbeat_ = now;
   if (line_ >= 0 && socket_ < 0 && seconds(now - last_start_) > kStartInterval) missing_ = start();
   return {std::exchange(intervention_, ""), missing_};
 }

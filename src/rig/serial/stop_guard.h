@@ -23,8 +23,8 @@ class StopGuard {
   /// `line`: descriptor of the open line, non-blocking, that outlives this. Empty, or why there is no guard.
   std::string begin(int line, const std::string& stop);
   /// To be called at every step of the driver; says what happened since the last call.
-  Wire::GuardReport beat();
-  /// Whether the next beat() has an intervention to say: until then nothing may be sent but a stop.
+  Wire::GuardReport heartbeat();
+  /// Whether the next heartbeat() has an intervention to say: until then nothing may be sent but a stop.
   bool intervened();
   void end();
 
@@ -34,7 +34,7 @@ class StopGuard {
   using Clock = std::chrono::steady_clock;
 
   std::string start();
-  void listen();
+  void receive();
   void lose(const std::string& what);
   void endProcess();
   void reap();
@@ -44,7 +44,7 @@ class StopGuard {
   pid_t process_ = -1;
   std::vector<pid_t> lost_;  // guards that were killed and have not ended yet
   int socket_ = -1;          // this end is closed when the program is gone
-  Clock::time_point last_beat_, last_start_;
+  Clock::time_point last_heartbeat_, last_start_;
   double silence_ = 0;  // s, of the guard
   std::string intervention_, missing_;
 };

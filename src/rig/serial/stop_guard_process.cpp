@@ -63,7 +63,7 @@ class Guard {
   Guard(const char* stop, std::size_t size) : stop_(stop), size_(size), written_(size), last_tick_(now()) {}
 
   void guardUntilDriverIsGone() {
-    while (hear()) {
+    while (process()) {
       countSilence();
       report();  // before the stop is on the line: a driver that wakes up in between must not write behind it
       write();
@@ -77,7 +77,7 @@ class Guard {
 
  private:
   /// Reads all beats. False: the driver is gone.
-  bool hear() {
+  bool process() {
     char beats[64];
     heard_ = false;
     for (;;) {

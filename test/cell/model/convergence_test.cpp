@@ -23,7 +23,7 @@ double stiffness(const MaterialConfig& material, const Mesh& mesh) {
   scene.mesh.size = mesh.size;
   scene.mesh.refinement.density = mesh.density;
   scene.mesh.refinement.zone = mesh.zone;
-  const auto cell = std::make_shared<const CellModel>(scene);
+  const auto cell = std::make_shared<const P1Cell>(scene);
   Indentation indentation(cell, cell->patchAt({0, 0, scene.radius()}, Eigen::Vector3d::UnitZ()));
   return indentation.solve(Eigen::Vector3d::Zero()).stiffness(2, 2);
 }
@@ -74,7 +74,7 @@ TEST(Convergence, ForceScalesWithModulusAndSize) {
     scene.holding_pipette.contact_radius *= scale;
     scene.needle.tip.radius *= scale;
     scene.mesh.size = scale * 20e-6;
-    const auto cell = std::make_shared<const CellModel>(scene);
+    const auto cell = std::make_shared<const P1Cell>(scene);
     Indentation indentation(cell, cell->patchAt({0, 0, scene.radius()}, Eigen::Vector3d::UnitZ()));
     const IndentationSolution solution = indentation.solve({0, 0, -3e-6 * scale});
     EXPECT_TRUE(solution.converged) << solution.reason;

@@ -17,15 +17,15 @@ using Eigen::Vector3d;
 /// The mouse oocyte (Table I) on a coarse mesh.
 class IndentationTest : public testing::Test {
  protected:
-  static std::shared_ptr<const CellModel> makeCell(const std::string& model, double size = 20e-6) {
+  static std::shared_ptr<const P1Cell> makeCell(const std::string& model, double size = 20e-6) {
     Scene scene;
     scene.cell.material().model = model;
     scene.mesh.size = size;
-    return std::make_shared<const CellModel>(scene);
+    return std::make_shared<const P1Cell>(scene);
   }
 
   static Indentation makeIndentation(const std::string& model, double size = 20e-6) {
-    const std::shared_ptr<const CellModel> cell = makeCell(model, size);
+    const std::shared_ptr<const P1Cell> cell = makeCell(model, size);
     return Indentation(cell, cell->patchAt({0, 0, cell->scene().radius()}, Vector3d::UnitZ()));
   }
 };
@@ -80,7 +80,7 @@ TEST_F(IndentationTest, StiffnessIsTheDerivativeOfTheForceWhenDeep) {
 }
 
 TEST_F(IndentationTest, PatchMovesByTheTipAndTheHeldVerticesStay) {
-  const std::shared_ptr<const CellModel> cell = makeCell("neo_hookean");
+  const std::shared_ptr<const P1Cell> cell = makeCell("neo_hookean");
   const TipPatch patch = cell->patchAt({0, 0, 28e-6}, Vector3d::UnitZ());
   Indentation indentation(cell, patch);
   const Vector3d tip(0.5e-6, 0, -4e-6);
@@ -154,7 +154,7 @@ TEST_F(IndentationTest, ASofterCoreMakesTheCellSofter) {
     scene.cell.layers.back().name = "core";
     scene.cell.layers.back().outer_radius = 20e-6;
     scene.cell.layers.back().material.young_modulus = core_modulus;
-    const auto cell = std::make_shared<const CellModel>(scene);
+    const auto cell = std::make_shared<const P1Cell>(scene);
     const IndentationSolution solution =
         Indentation(cell, cell->patchAt({0, 0, 28e-6}, Vector3d::UnitZ())).solve({0, 0, -3e-6});
     EXPECT_TRUE(solution.converged) << solution.reason;
@@ -166,7 +166,7 @@ TEST_F(IndentationTest, ASofterCoreMakesTheCellSofter) {
 }
 
 TEST_F(IndentationTest, ThreadsShareACell) {
-  const std::shared_ptr<const CellModel> cell = makeCell("neo_hookean");
+  const std::shared_ptr<const P1Cell> cell = makeCell("neo_hookean");
   const TipPatch patch = cell->patchAt({0, 0, 28e-6}, Vector3d::UnitZ());
   const auto push = [&](IndentationSolution& solution) {
     Indentation indentation(cell, patch);
@@ -185,7 +185,7 @@ TEST_F(IndentationTest, ThreadsShareACell) {
 }
 
 TEST_F(IndentationTest, RefusesAPatchOnTheHeldVertices) {
-  const std::shared_ptr<const CellModel> cell = makeCell("linear");
+  const std::shared_ptr<const P1Cell> cell = makeCell("linear");
   TipPatch patch;
   patch.vertices = {cell->heldVertices().front()};
   EXPECT_THROW(Indentation(cell, patch), std::invalid_argument);

@@ -4,10 +4,10 @@
 
 #include <vector>
 
+#include "cell/mesh/cell_mesher.h"
 #include "cell/model/cell_problem.h"
 #include "cell/model/converged_force.h"
 #include "cell/model/scene_mesh.h"
-#include "cell/mesh/cell_mesher.h"
 
 namespace microinjection {
 namespace {

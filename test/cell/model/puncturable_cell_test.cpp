@@ -7,8 +7,8 @@
 #include <memory>
 #include <vector>
 
-#include "cell/model/cell_model.h"
-#include "cell/model/cell_tracker.h"
+#include "cell/model/online_cell_model.h"
+#include "cell/model/p1_cell.h"
 #include "cell/model/puncture_drive.h"
 
 namespace microinjection {
@@ -22,7 +22,7 @@ TEST(PuncturableCell, IsTheInnerCellUntilALayerFails) {
   EXPECT_FALSE(whole.cell->insertion().inside);
   EXPECT_EQ(whole.layers(), 0);
   EXPECT_EQ(whole.cell->insertion().depth, 0);
-  EXPECT_TRUE(whole.cell->picture().holes.empty());
+  EXPECT_TRUE(whole.cell->deformedSurface().holes.empty());
   EXPECT_EQ(whole.cell->layers(), std::vector<std::string>{"zona"});
 }
 
@@ -43,8 +43,8 @@ TEST(PuncturableCell, TheZonaFailsByForceDepthOrStrain) {
     EXPECT_NEAR(drive.cell->insertion().depth, 8.03e-6, 1e-12);
     EXPECT_EQ(drive.spring->released, 1);
     EXPECT_NEAR(drive.largest, 0.8e-6, 0.003e-6);
-    ASSERT_EQ(drive.cell->picture().holes.size(), 1u);
-    EXPECT_TRUE(drive.cell->picture().holes[0].isApprox(Eigen::Vector3d(0, 0, kTop)));
+    ASSERT_EQ(drive.cell->deformedSurface().holes.size(), 1u);
+    EXPECT_TRUE(drive.cell->deformedSurface().holes[0].isApprox(Eigen::Vector3d(0, 0, kTop)));
   }
 }
 
@@ -55,7 +55,7 @@ TEST(PuncturableCell, ServesALiveCell) {
   scene.mesh.size = 20e-6;
   CellTrackerConfig config;
   config.fixed_period = true;
-  PuncturableCell cell(scene, std::make_unique<CellTracker>(std::make_shared<const CellModel>(scene), config));
+  PuncturableCell cell(scene, std::make_unique<OnlineCellModel>(std::make_shared<const P1Cell>(scene), config));
   Eigen::Vector3d tip(0, 0, 32e-6);
   double time = 0, largest = 0;
   const auto to = [&](double height) {
@@ -67,7 +67,7 @@ TEST(PuncturableCell, ServesALiveCell) {
   EXPECT_EQ(cell.insertion().layers_punctured, 1);
   EXPECT_DOUBLE_EQ(largest, 0.5e-6);
   EXPECT_TRUE(cell.step(tip, kAxis, time + 0.1).force.isZero(0));
-  const CellUnderNeedle::Picture picture = cell.picture();
+  const CellModel::DeformedSurface picture = cell.deformedSurface();
   EXPECT_EQ(picture.holes.size(), 1u);
   EXPECT_EQ(*std::max_element(picture.displacement.begin(), picture.displacement.end()), 0);
   to(32e-6);
@@ -85,10 +85,10 @@ TEST(PuncturableCell, ServesALiveCell) {
 TEST(PuncturableCell, AnUntrustedForcePuncturesNothing) {
   PunctureConfig config = PunctureConfig::atForce(1e-6);
   PunctureDrive drive(config);
-  drive.spring->trusted = false;
+  drive.spring->valid = false;
   drive.toDepth(15e-6);
   EXPECT_EQ(drive.layers(), 0);
-  EXPECT_FALSE(drive.cell->step(drive.tip, kAxis, drive.time + 1e-3).trusted);
+  EXPECT_FALSE(drive.cell->step(drive.tip, kAxis, drive.time + 1e-3).valid);
 }
 
 /// The tip rests where the zona fails: the force falls to 1/e in the relaxation time, and to exactly nothing.
@@ -146,12 +146,12 @@ TEST(PuncturableCell, APoseThatIsNotFiniteChangesNothing) {
   PunctureDrive drive(oocyte()), same(oocyte());
   for (PunctureDrive* each : {&drive, &same}) each->toDepth(14e-6);
   const TipForce bad = drive.cell->step({0, NAN, 0}, kAxis, drive.time);
-  EXPECT_FALSE(bad.trusted);
+  EXPECT_FALSE(bad.valid);
   EXPECT_TRUE(bad.force.isZero(0));
-  EXPECT_NE(drive.cell->distrust(), "");
-  EXPECT_FALSE(drive.cell->step(drive.tip, kAxis, NAN).trusted);
+  EXPECT_NE(drive.cell->invalidReason(), "");
+  EXPECT_FALSE(drive.cell->step(drive.tip, kAxis, NAN).valid);
   EXPECT_EQ(drive.toDepth(13e-6), same.toDepth(13e-6));
-  EXPECT_EQ(drive.cell->distrust(), "");
+  EXPECT_EQ(drive.cell->invalidReason(), "");
 }
 
 TEST(PuncturableCell, SamePathSameBitsAndNearlySameAtAnyRate) {

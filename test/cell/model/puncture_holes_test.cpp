@@ -28,10 +28,10 @@ TEST(PunctureHoles, RemembersItsHoles) {
   drive.moveTo({-4e-6, 0, kTop + 5e-6});
   drive.toDepth(9e-6);
   EXPECT_GT(drive.force.z(), 0.8e-6);
-  EXPECT_EQ(drive.cell->picture().holes.size(), 1u);
+  EXPECT_EQ(drive.cell->deformedSurface().holes.size(), 1u);
   drive.toDepth(12e-6);
   EXPECT_EQ(drive.layers(), 1);
-  EXPECT_EQ(drive.cell->picture().holes.size(), 2u);
+  EXPECT_EQ(drive.cell->deformedSurface().holes.size(), 2u);
 }
 
 /// However often: the oldest of very many holes are forgotten, the newest never.
@@ -50,7 +50,7 @@ TEST(PunctureHoles, ManyHolesAreBounded) {
     return largest;
   };
   for (int i = 0; i < 70; ++i) EXPECT_GT(punch(0.3e-6 * (i - 35)), 0.09e-6);
-  EXPECT_EQ(cell.picture().holes.size(), static_cast<std::size_t>(PunctureHoles::kMost));
+  EXPECT_EQ(cell.deformedSurface().holes.size(), static_cast<std::size_t>(PunctureHoles::kMost));
   EXPECT_EQ(punch(0.3e-6 * 34), 0);
   EXPECT_GT(punch(0.3e-6 * -35), 0.09e-6);
 }

@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "cell/model/cell_under_needle.h"
+#include "cell/model/cell_model.h"
 
 namespace microinjection {
 
 /// A ball that a point-like tip from above meets as a spring, the same in all directions, from where it touched.
-class SpringCell : public CellUnderNeedle {
+class SpringCell : public CellModel {
  public:
   SpringCell(double radius, double stiffness) : radius_(radius), stiffness_(stiffness) {}  ///< m, N/m
 
@@ -20,9 +20,9 @@ class SpringCell : public CellUnderNeedle {
     if (tip.z() >= height || aside >= radius_) contact_.reset();
     if (tip.z() >= height || aside >= radius_) return {};
     if (!contact_) contact_ = Contact{{tip.x(), tip.y(), height}, Eigen::Vector3d::Zero(), 0};
-    contact_->displacement = tip - contact_->touched_at;
+    contact_->displacement = tip - contact_->contact_point;
     contact_->indentation = -contact_->displacement.dot(axis);
-    return {trusted, trusted ? Eigen::Vector3d(-stiffness_ * contact_->displacement) : Eigen::Vector3d::Zero()};
+    return {valid, valid ? Eigen::Vector3d(-stiffness_ * contact_->displacement) : Eigen::Vector3d::Zero()};
   }
   void release() override {
     contact_.reset();
@@ -30,19 +30,19 @@ class SpringCell : public CellUnderNeedle {
   }
 
   const std::optional<Contact>& contact() const override { return contact_; }
-  const std::string& distrust() const override { return distrust_; }
+  const std::string& invalidReason() const override { return invalid_reason_; }
   std::optional<Solution> solution(double /*time*/) const override { return std::nullopt; }
   std::vector<std::array<int, 3>> triangles() const override { return {}; }
   std::vector<std::uint32_t> held() const override { return {}; }
-  Picture picture() override { return {}; }
+  DeformedSurface deformedSurface() override { return {}; }
 
-  bool trusted = true;
+  bool valid = true;
   int released = 0;
 
  private:
   double radius_, stiffness_;
   std::optional<Contact> contact_;
-  std::string distrust_;
+  std::string invalid_reason_;
 };
 
 }  // namespace microinjection

@@ -7,11 +7,11 @@
 #include <memory>
 
 #include "base/errors.h"
-#include "cell/model/cell_model.h"
-#include "cell/model/cell_tracker.h"
 #include "cell/model/converged_force.h"
+#include "cell/model/online_cell_model.h"
+#include "cell/model/online_fem_cell.h"
+#include "cell/model/p1_cell.h"
 #include "cell/model/scene_texts.h"
-#include "cell/model/swept_cell.h"
 
 namespace microinjection {
 namespace {
@@ -70,8 +70,8 @@ TEST(TensegrityScene, ErrorsNameKeyAndWhatIsAllowed) {
 }
 
 TEST(TensegrityScene, IsRefusedByModelsOfTheContinuum) {
-  EXPECT_THROW(CellModel cell(scene()), ConfigError);
-  EXPECT_THROW(SweptCell cell(scene()), ConfigError);
+  EXPECT_THROW(P1Cell cell(scene()), ConfigError);
+  EXPECT_THROW(OnlineFemCell cell(scene()), ConfigError);
   EXPECT_THROW(ConvergedForce(scene(), {}, {}), ConfigError);
   EXPECT_THROW(TensegrityCell cell(parseScene(YAML::Load(kGood), "scene.yaml")), ConfigError);
 }
@@ -109,24 +109,24 @@ TEST(TensegrityCell, ServesAMovingNeedle) {
   ASSERT_TRUE(cell);
   CellTrackerConfig config;
   config.fixed_period = true;
-  CellTracker tracker(cell, config);
+  OnlineCellModel tracker(cell, config);
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ(), end = cell->structure().geometry().ends[3];
   double time = 0;
   const auto step = [&](double height) { return tracker.step({end.x(), end.y(), end.z() + height}, up, time += 1e-3); };
-  EXPECT_EQ(tracker.picture().members.size(), cell->membersAtRest().size());
+  EXPECT_EQ(tracker.deformedSurface().members.size(), cell->undeformedMembers().size());
   for (double height = 5e-6; height > -2e-6; height -= 2e-8) step(height);
   TipForce force;
   for (int i = 0; i < 100; ++i) force = step(-2e-6);
-  ASSERT_TRUE(force.trusted) << tracker.distrust();
+  ASSERT_TRUE(force.valid) << tracker.invalidReason();
   const auto alone = cell->indentation(tracker.patch());
   const IndentationSolution expected = alone->solve(tracker.contact()->displacement);
   ASSERT_TRUE(expected.converged);
   EXPECT_NEAR(force.force.z() / expected.force.z(), 1, 1e-3);
   double largest = 0;
-  for (const auto& member : tracker.picture().members) largest = std::max(largest, member.force);
+  for (const auto& member : tracker.deformedSurface().members) largest = std::max(largest, member.force);
   EXPECT_GT(largest, 1.05 * cell->structure().form().prestress);
-  for (const auto& member : cell->membersAtRest()) {
-    const bool strut = member.kind == CellUnderNeedle::Member::Kind::kStrut;
+  for (const auto& member : cell->undeformedMembers()) {
+    const bool strut = member.kind == CellModel::Member::Kind::kStrut;
     EXPECT_EQ(member.force < 0, strut);
   }
 }
@@ -137,7 +137,7 @@ TEST(TensegrityCell, ViscousCablesFeelTheTipsSpeed) {
   viscous.cell.tensegrity->actin.retardation_time = viscous.cell.tensegrity->intermediate.retardation_time = 1;
   const TensegrityCell cell(viscous), elastic(scene());
   const Eigen::Vector3d end = cell.structure().geometry().ends[3], way(0, 0, -1e-6), none = Eigen::Vector3d::Zero();
-  const TipPlace place = cell.placeAt(end, Eigen::Vector3d::UnitZ());
+  const ContactPoint place = cell.contactAt(end, Eigen::Vector3d::UnitZ());
   const double rested = elastic.path(place)->follow({way, 0, 0.0, 1.0}).force.z();
   const auto path = cell.path(place);
   ASSERT_TRUE(path->follow({none, 0, std::nullopt, 6.0}).converged);
@@ -164,11 +164,11 @@ TEST(TensegrityCell, ViscousCablesAreNotStifferBetweenSolutions) {
   for (int i = 1; i <= 20; ++i) solved = path->solve({0, 0, -kDeepest * i / 20}, kDeepest / kSpeed / 20).force.z();
   CellTrackerConfig config;
   config.fixed_period = true;
-  CellTracker tracker(cell, config);
+  OnlineCellModel tracker(cell, config);
   double largest = 0, last = 0;
   for (int i = 0; 1e-3 * i * kSpeed < 5e-6 + kDeepest; ++i) {
     const TipForce force = tracker.step(end + (5e-6 - 1e-3 * i * kSpeed) * up, up, 1e-3 * i);
-    EXPECT_TRUE(force.trusted) << tracker.distrust();
+    EXPECT_TRUE(force.valid) << tracker.invalidReason();
     last = force.force.z();
     largest = std::max(largest, last);
   }
@@ -182,17 +182,17 @@ TEST(TensegrityCell, ViscousCablesAreNotStifferBetweenSolutions) {
 TEST(TensegrityCell, PictureMovesWithTheTip) {
   const TensegrityCell cell(scene());
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ(), way(0, 0, -2e-6);
-  const TipPlace place = cell.placeAt({0, 0, 28e-6}, up);
+  const ContactPoint place = cell.contactAt({0, 0, 28e-6}, up);
   const auto path = cell.path(place);
   ASSERT_TRUE(path->follow({way, 0, 0.0, 1.0}).converged);
-  const LiveCell::Surface rest = cell.surfaceAtRest();
+  const OnlineCell::Surface rest = cell.undeformedSurface();
   const Eigen::VectorXd moved = path->surfaceDisplacement();
   ASSERT_EQ(moved.size(), 3 * static_cast<Eigen::Index>(rest.vertices.size()));
   EXPECT_EQ(cell.onSurface(place.patch).size(), place.patch.vertices.size());
   for (const auto i : cell.onSurface(place.patch)) EXPECT_LT((moved.segment<3>(3 * i) - way).norm(), 1e-15);
   EXPECT_EQ(rest.held.size(), 3u);
   for (const auto i : rest.held) EXPECT_EQ(moved.segment<3>(3 * i).norm(), 0);
-  EXPECT_EQ(path->members().size(), cell.membersAtRest().size());
+  EXPECT_EQ(path->members().size(), cell.undeformedMembers().size());
 }
 
 }  // namespace

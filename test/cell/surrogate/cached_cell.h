@@ -11,8 +11,8 @@
 namespace microinjection {
 
 /// Springs with a field and a surface of one triangle, as can be stored.
-inline PreparedCell smallCell(const Scene& scene) {
-  PreparedCell cell = *fieldOfSprings(scene, 0);
+inline SurrogateData smallCell(const Scene& scene) {
+  SurrogateData cell = *fieldOfSprings(scene, 0);
   TrainingSurface surface;
   surface.nodes = Eigen::VectorXd::LinSpaced(9, 0, 1e-5);
   surface.triangles = {{0, 1, 2}};

@@ -10,7 +10,7 @@
 namespace microinjection {
 namespace {
 
-TEST(PreparedCell, IsKnownByItsScene) {
+TEST(SurrogateData, IsKnownByItsScene) {
   const Scene scene = pipette();
   const PreparationRange range = PreparationRange::standard(scene);
   Scene other = scene, same = scene;

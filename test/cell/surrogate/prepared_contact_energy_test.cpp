@@ -3,8 +3,8 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "cell/surrogate/prepared_contact.h"
 #include "cell/surrogate/spring_cells.h"
+#include "cell/surrogate/surrogate_contact.h"
 
 namespace microinjection {
 namespace {
@@ -18,7 +18,7 @@ TEST(PreparedContactEnergy, ClosedPathsCreateNoEnergy) {
     coefficients[i] = 0.02 * std::sin(7.0 * static_cast<double>(i));
   rough->energy.setCoefficients(coefficients);
   for (const auto& cell : {rough, fieldOfSprings(scene, 0.3), fieldOfSprings(scene, -0.3)}) {
-    PreparedContact contact(scene, cell);
+    SurrogateContact contact(scene, cell);
     for (unsigned seed = 1; seed <= 20; ++seed) {
       std::srand(seed);
       Eigen::Vector3d tip(0, 0, 29e-6), force = Eigen::Vector3d::Zero();
@@ -49,7 +49,7 @@ TEST(PreparedContactEnergy, ALoopIsNoEngine) {
   const Scene scene = pipette();
   for (const double more : {0.3, -0.3}) {
     for (const double sense : {1.0, -1.0}) {
-      PreparedContact contact(scene, fieldOfSprings(scene, more));
+      SurrogateContact contact(scene, fieldOfSprings(scene, more));
       contact.step({0, 0, 27.99e-6});
       double work = 0, round = 0;
       Eigen::Vector3d tip(0, 0, 20e-6), force = contact.step(tip).force;

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "cell/surrogate/prepared_cell.h"
+#include "cell/surrogate/surrogate_data.h"
 
 namespace microinjection {
 
@@ -15,8 +15,8 @@ inline Scene pipette() {
 }
 
 /// A cell with an energy of t^2 alone: isotropic springs in the scaled coordinates.
-inline std::shared_ptr<PreparedCell> springs(const Scene& scene) {
-  auto cell = std::make_shared<PreparedCell>();
+inline std::shared_ptr<SurrogateData> springs(const Scene& scene) {
+  auto cell = std::make_shared<SurrogateData>();
   cell->range = PreparationRange::standard(scene);
   const Preparation plan = Preparation::plan(scene, cell->range);
   cell->energy = EnergyExpansion(plan.scales, plan.degrees);
@@ -27,7 +27,7 @@ inline std::shared_ptr<PreparedCell> springs(const Scene& scene) {
 }
 
 /// The same with a force field that differs from the energy's: more sideways by `more`, and so no gradient.
-inline std::shared_ptr<PreparedCell> fieldOfSprings(const Scene& scene, double more) {
+inline std::shared_ptr<SurrogateData> fieldOfSprings(const Scene& scene, double more) {
   auto cell = springs(scene);
   const Preparation plan = Preparation::plan(scene, cell->range);
   std::vector<TrainingSample> samples;

@@ -102,7 +102,7 @@ TEST_F(InjectionControllerTest, UnhomedItHoldsTheNeedleUntilItIsHome) {
   EXPECT_EQ(controller_.state(), OperatingState::kEnabled);
   *input_.target += Eigen::Vector3d(0, 0, -5e-6);
   EXPECT_EQ(*run(100), kStart);
-  EXPECT_EQ(controller_.heldBecause(), "not homed; allowed after home");
+  EXPECT_EQ(controller_.holdReason(), "not homed; allowed after home");
   EXPECT_EQ(controller_.command("home"), "");
   run(10);
   EXPECT_TRUE(controller_.homed());
@@ -137,7 +137,7 @@ TEST_F(InjectionControllerTest, HoldsWithoutATrustedInput) {
       *inputs[which - 3] = nan;
     }
     EXPECT_EQ(*controller_.step(input_, kStep), kStart) << which;
-    EXPECT_FALSE(controller_.heldBecause().empty()) << which;
+    EXPECT_FALSE(controller_.holdReason().empty()) << which;
     EXPECT_EQ(controller_.state(), OperatingState::kEnabled) << which;
   }
 }
@@ -160,7 +160,7 @@ TEST_F(InjectionControllerTest, DoesNotFollowATargetThatLeaps) {
   run(1);
   input_.target = kStart + Eigen::Vector3d(0, 0, 1.01 * config_.guards.jump_limit);
   EXPECT_EQ(*run(10), kStart);
-  EXPECT_NE(controller_.heldBecause().find("away, allowed"), std::string::npos);
+  EXPECT_NE(controller_.holdReason().find("away, allowed"), std::string::npos);
 }
 
 TEST_F(InjectionControllerTest, PastTheForceLimitOnlyWithdraws) {
@@ -226,7 +226,7 @@ TEST_F(InjectionControllerTest, NeedleThatRunsAwayIsAFault) {
   EXPECT_EQ(controller_.state(), OperatingState::kFault);
   EXPECT_EQ(controller_.injection(), InjectionState::kFault);
   EXPECT_LE(steps, 25);
-  EXPECT_NE(controller_.heldBecause().find("m/s, allowed 0.001 m/s"), std::string::npos) << controller_.heldBecause();
+  EXPECT_NE(controller_.holdReason().find("m/s, allowed 0.001 m/s"), std::string::npos) << controller_.holdReason();
 }
 
 TEST_F(InjectionControllerTest, DoesNotCatchUpWithWhatTheForceLimitRefused) {

@@ -117,7 +117,7 @@ TEST_F(InjectionModesTest, APulseByHandThatEndsEarlyIsTold) {
   }
   rig_.input.target.reset();  // whose operator has let go for a menu or another key
   steps(1000);
-  EXPECT_EQ(controller_.heldBecause(), "no trusted target");
+  EXPECT_EQ(controller_.holdReason(), "no valid target");
   ASSERT_EQ(controller_.command("inject"), "");
   ASSERT_EQ(controller_.injection(), InjectionState::kInject);
   EXPECT_EQ(controller_.notice(), "");
@@ -125,7 +125,7 @@ TEST_F(InjectionModesTest, APulseByHandThatEndsEarlyIsTold) {
   rig_.force_tells = false;
   steps(2);
   EXPECT_FALSE(controller_.pulse());
-  EXPECT_EQ(controller_.notice(), "the pulse was ended: no trusted force");
+  EXPECT_EQ(controller_.notice(), "the pulse was ended: no valid force");
   rig_.force_tells = true;
   steps(100);
   ASSERT_EQ(controller_.command("inject"), "");
@@ -135,7 +135,7 @@ TEST_F(InjectionModesTest, APulseByHandThatEndsEarlyIsTold) {
   EXPECT_EQ(controller_.injection(), InjectionState::kPunctured);
   rig_.force_tells = false;
   steps(2);
-  EXPECT_EQ(controller_.command("inject"), "the needle is held: no trusted force");
+  EXPECT_EQ(controller_.command("inject"), "the needle is held: no valid force");
   rig_.force_tells = true;
   steps(100);
   ASSERT_EQ(controller_.command("inject"), "");
@@ -159,7 +159,7 @@ TEST_F(InjectionModesTest, HandIsStoppedAtTheDepthLimit) {
     rig_.step(controller_);
   }
   EXPECT_NEAR(rig_.depth(), 5e-6, 1.0e-6);
-  EXPECT_NE(controller_.heldBecause().find("only be withdrawn"), std::string::npos);
+  EXPECT_NE(controller_.holdReason().find("only be withdrawn"), std::string::npos);
 }
 
 }  // namespace

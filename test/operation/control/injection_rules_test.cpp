@@ -144,7 +144,7 @@ TEST_F(InjectionRulesTest, AHandsPulseEndsWithTheInjectorsPatienceOrTheNeedlesWa
     steps(50);
     ASSERT_TRUE(controller_.pulse());
     if (withdrawn) go(17e-6, 100e-6);
-    if (!withdrawn) steps(static_cast<int>(1e3 * (config_.goal.pulse.duration + config_.motion.injector_patience)));
+    if (!withdrawn) steps(static_cast<int>(1e3 * (config_.goal.pulse.duration + config_.motion.injector_timeout)));
     EXPECT_FALSE(controller_.pulse()) << withdrawn;
     EXPECT_EQ(controller_.injection(), withdrawn ? InjectionState::kWithdraw : InjectionState::kPunctured);
   }

@@ -45,7 +45,7 @@ TEST_F(InjectionSafetyTest, TheSetPointWaitsForANeedleThatStandsStill) {
     rig_.lag = 1e9;
     by_hand ? press(40e-6) : steps(4000);
     EXPECT_LT(rig_.tip.z() - rig_.setpoint->z(), 2 * 200e-6 * lag + 1.1e-6);
-    EXPECT_EQ(controller_.heldBecause(), "the needle does not follow its set-point");
+    EXPECT_EQ(controller_.holdReason(), "the needle does not follow its set-point");
     rig_.lag = lag;
     steps(10);
     EXPECT_LT(rig_.depth(), before + 2 * 200e-6 * lag + 1.1e-6 + 10 * 0.2e-6) << by_hand;
@@ -133,7 +133,7 @@ TEST_F(InjectionSafetyTest, TheHandsDepthOutlastsDisable) {
   again();
   press(30e-6);
   EXPECT_NEAR(rig_.depth(), 30e-6, 1.5e-6);
-  EXPECT_NE(controller_.heldBecause().find("depth past the touch"), std::string::npos);
+  EXPECT_NE(controller_.holdReason().find("depth past the touch"), std::string::npos);
   EXPECT_EQ(controller_.command("home"), "");
   for (int i = 0; i < 20000 && controller_.busy(); ++i) rig_.step(controller_);
   EXPECT_EQ(rig_.depth(), 0);
@@ -240,7 +240,7 @@ TEST_F(InjectionSafetyTest, InjectNeedsATrustedNeedle) {
   ASSERT_EQ(controller_.injection(), InjectionState::kPunctured);
   rig_.needle_tells = false;
   steps(5);
-  EXPECT_NE(controller_.command("inject").find("held: no trusted needle"), std::string::npos);
+  EXPECT_NE(controller_.command("inject").find("held: no valid needle"), std::string::npos);
   rig_.needle_tells = true;
   steps(5);
   EXPECT_EQ(controller_.command("inject"), "");

@@ -42,7 +42,7 @@ std::vector<Message> session() {
     messages.push_back({2, t, [=](SessionTable& table) { table.measured.put(t, {{force, 0}}); }});
     messages.push_back({3, t, [=](SessionTable& table) { table.hand_force.put(t, 2e5 * force); }});
     SessionTable::Cell cell;
-    if (z <= kSurface) cell.touched_at = Eigen::Vector3d(0, 0, kSurface);
+    if (z <= kSurface) cell.contact_point = Eigen::Vector3d(0, 0, kSurface);
     if (i % 17 == 0) messages.push_back({4, t, [=](SessionTable& table) { table.cell.put(t, cell); }});
   }
   return messages;

@@ -35,7 +35,7 @@ TEST(Timeline, AStampAheadDoesNotHideWhatComesAfter) {
   line.put(4000000000000000000, 9);
   line.put(20, 2);
   EXPECT_EQ(*line.at(30, kLong)->value, 2);
-  line.forgetBefore(30);
+  line.discardBefore(30);
   line.put(40, 4);
   EXPECT_EQ(*line.at(50, kLong)->value, 4);
 }
@@ -43,7 +43,7 @@ TEST(Timeline, AStampAheadDoesNotHideWhatComesAfter) {
 TEST(Timeline, WhatIsOlderThanWhatWasForgottenIsIgnored) {
   Timeline<int> line;
   for (int i = 1; i <= 3; ++i) line.put(10 * i, i);
-  line.forgetBefore(25);
+  line.discardBefore(25);
   line.put(15, 9);
   EXPECT_EQ(line.at(19, kLong), nullptr);
   EXPECT_EQ(*line.at(25, kLong)->value, 2);
@@ -93,7 +93,7 @@ TEST(Timeline, FindsWhatComesAfter) {
 TEST(Timeline, ForgetsOnlyWhatNobodyAsksForAgain) {
   Timeline<int> line;
   for (int i = 1; i <= 5; ++i) line.put(10 * i, i);
-  line.forgetBefore(35);
+  line.discardBefore(35);
   EXPECT_EQ(line.at(29, kLong), nullptr);
   EXPECT_EQ(*line.at(35, kLong)->value, 3);
   EXPECT_EQ(*line.at(50, kLong)->value, 5);

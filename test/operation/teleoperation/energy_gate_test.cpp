@@ -20,9 +20,9 @@ TEST(EnergyGate, DoesNoMoreWorkThanThereIsEnergy) {
   EnergyGateConfig config;
   config.fade = 0;
   EnergyGate gate(config);
-  const double spare = 2e-5;  // of the 5e-5 J that the whole force would do
-  const Eigen::Vector3d force = gate.step(kForce, kWith, spare, kStep);
-  EXPECT_NEAR(force.dot(kWith) * kStep, spare, 1e-18);
+  const double energy_margin = 2e-5;  // of the 5e-5 J that the whole force would do
+  const Eigen::Vector3d force = gate.step(kForce, kWith, energy_margin, kStep);
+  EXPECT_NEAR(force.dot(kWith) * kStep, energy_margin, 1e-18);
   EXPECT_TRUE(gate.acting());
   EXPECT_EQ(EnergyGate(config).step(kForce, kWith, 0, kStep), Eigen::Vector3d::Zero().eval());
 }
@@ -37,10 +37,10 @@ TEST(EnergyGate, DampsWhatIsOwedWithinTheDevicesLimit) {
   EnergyGateConfig config;
   EnergyGate gate(config);
   const Eigen::Vector3d none = Eigen::Vector3d::Zero();
-  const double owed = 1e-5;
-  const double expected = owed / (0.05 * 0.05 * config.recovery_time) * 0.05;
-  EXPECT_NEAR(gate.step(none, kWith, -owed, kStep).z(), -expected, 1e-12);
-  EXPECT_NEAR(gate.step(none, kAgainst, -owed, kStep).z(), expected, 1e-12);
+  const double energy_deficit = 1e-5;
+  const double expected = energy_deficit / (0.05 * 0.05 * config.recovery_time) * 0.05;
+  EXPECT_NEAR(gate.step(none, kWith, -energy_deficit, kStep).z(), -expected, 1e-12);
+  EXPECT_NEAR(gate.step(none, kAgainst, -energy_deficit, kStep).z(), expected, 1e-12);
   EXPECT_NEAR(gate.step(none, kWith, -1, kStep).z(), -config.damping_limit * 0.05, 1e-12);
   // Noise at rest: the force goes to zero with the velocity, it is not divided by it.
   const Eigen::Vector3d creep(0, 0, 1e-5);

@@ -69,7 +69,7 @@ TEST(FastHand, TheForceOfAHandThatIsTooFastFallsByTheLimitersRate) {
     before = output.hand_force.z();
   }
   EXPECT_FALSE(output.needle);
-  EXPECT_EQ(output.held_because, "the hand is fast");
+  EXPECT_EQ(output.hold_reason, "the hand is fast");
   EXPECT_EQ(output.hand_force, Eigen::Vector3d::Zero().eval());
 }
 

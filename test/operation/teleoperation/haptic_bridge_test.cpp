@@ -89,7 +89,7 @@ TEST_F(HapticBridgeTest, UntrustedInputHoldsTheNeedleAndRendersNothing) {
     }
     auto output = run(input, 1);
     EXPECT_FALSE(output.needle) << which;
-    EXPECT_FALSE(output.held_because.empty()) << which;
+    EXPECT_FALSE(output.hold_reason.empty()) << which;
     EXPECT_EQ(output.state, Engagement::State::kHeld) << which;
     if (which % 3 != 0) {  // the hand is known: its force falls by the limiter's rate, 0.2 N at 100 N/s
       EXPECT_NEAR(output.hand_force.norm(), 0.1, 1e-9) << which;
@@ -115,7 +115,7 @@ TEST_F(HapticBridgeTest, HoldsUnlessTheOperatorIsPresent) {
   auto output = run(trustedInput(), 200);
   EXPECT_FALSE(output.needle);
   EXPECT_EQ(output.hand_force, Eigen::Vector3d::Zero().eval());
-  EXPECT_EQ(output.held_because, "the operator is not present");
+  EXPECT_EQ(output.hold_reason, "the operator is not present");
   HapticBridge::Input input = trustedInput();
   input.operator_present = true;
   output = run(input, 200);
@@ -148,7 +148,7 @@ TEST_F(HapticBridgeTest, AgreeHoldsUntilTheHandIsBack) {
   EXPECT_EQ(output.state, Engagement::State::kAlign);
   EXPECT_FALSE(output.needle);
   EXPECT_EQ(output.hand_force, Eigen::Vector3d::Zero().eval());
-  EXPECT_FALSE(output.held_because.empty());
+  EXPECT_FALSE(output.hold_reason.empty());
   output = run(trustedInput(), 100);
   EXPECT_EQ(output.state, Engagement::State::kFollow);
   EXPECT_LT((*output.needle - kNeedle).norm(), 1e-12);

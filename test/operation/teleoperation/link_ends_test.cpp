@@ -45,7 +45,7 @@ TEST_F(LinkEnds, NothingMovesBeforeTheHandIsTakenUp) {
   EXPECT_FALSE(goal_);
   EXPECT_EQ(*leader_.needle(), kNeedle);
   EXPECT_EQ(*force_, Eigen::Vector3d::Zero());
-  EXPECT_EQ(follower_.heldBecause(), "the hand's side holds");
+  EXPECT_EQ(follower_.holdReason(), "the hand's side holds");
 }
 
 TEST_F(LinkEnds, BeginsWhereTheNeedleIsAndGoesWhereTheHandWants) {
@@ -81,7 +81,7 @@ TEST_F(LinkEnds, ADeadLinkHoldsAndRendersNothingWithinItsTimeOut) {
   EXPECT_FALSE(goal_);
   EXPECT_FALSE(force_);
   EXPECT_FALSE(leader_.needle());
-  EXPECT_EQ(follower_.heldBecause(), "the hand's side is not heard");
+  EXPECT_EQ(follower_.holdReason(), "the hand's side is not heard");
   plugged_ = true;
   const Eigen::Vector3d held = *needle_;
   run(kMoved, 1);
@@ -114,7 +114,7 @@ TEST_F(LinkEnds, ADeadControllerEndsTheEpochForBothSides) {
   EXPECT_FALSE(goal_);
   EXPECT_FALSE(force_);
   EXPECT_FALSE(leader_.needle());
-  EXPECT_EQ(follower_.heldBecause(), "the controller is silent");
+  EXPECT_EQ(follower_.holdReason(), "the controller is silent");
 }
 
 TEST_F(LinkEnds, ARigThatWasStartedAgainDoesNotJumpIntoAnEpoch) {

@@ -96,7 +96,7 @@ TEST_P(LinkNetwork, AHeldForceIsTheNeedlesAndTheChannelYieldsAsASpring) {
   // Waves are as old as packets that come late, which overtaking ones and not the latest decide, and the filters add
   // their time.
   const WaveConfig& wave = config_.wave;
-  const double filters = wave.receiver.filter_time + wave.receiver.shelf * leader_.roundTrip() * kStep;
+  const double filters = wave.receiver.filter_time + wave.receiver.highpass_loss * leader_.roundTrip() * kStep;
   const auto behind = [&](double delay) {
     return touched() * (1 / wave.stiffness + (delay + filters) / wave.impedance);
   };

@@ -12,12 +12,12 @@ const Eigen::Vector3d kHand(0.1, 0, 0.05), kNeedle(1e-6, 2e-6, 60e-6);
 
 TEST(MotionMapping, PositionModeScalesFromTheAnchor) {
   MotionMapping mapping{{}};
-  mapping.anchor(kHand, kNeedle);
+  mapping.setReference(kHand, kNeedle);
   EXPECT_EQ(mapping.step(kHand, 1e-3), kNeedle);
   const Eigen::Vector3d target = mapping.step(kHand + Eigen::Vector3d(0.01, 0, -0.02), 1e-3);
   EXPECT_LT((target - kNeedle - Eigen::Vector3d(10e-6, 0, -20e-6)).norm(), 1e-17);
-  EXPECT_NEAR(mapping.disagreement(kHand + Eigen::Vector3d(0.01, 0, -0.02), target), 0, 1e-12);
-  EXPECT_NEAR(mapping.disagreement(kHand, target), std::hypot(0.01, 0.02), 1e-12);
+  EXPECT_NEAR(mapping.misalignment(kHand + Eigen::Vector3d(0.01, 0, -0.02), target), 0, 1e-12);
+  EXPECT_NEAR(mapping.misalignment(kHand, target), std::hypot(0.01, 0.02), 1e-12);
 }
 
 class RateMode : public testing::Test {
@@ -25,7 +25,7 @@ class RateMode : public testing::Test {
   RateMode() {
     config_.mode = "rate";
     mapping_ = std::make_unique<MotionMapping>(config_);
-    mapping_->anchor(kHand, kNeedle);  // a hand that was deflected is no other zero
+    mapping_->setReference(kHand, kNeedle);  // a hand that was deflected is no other zero
   }
   Eigen::Vector3d after(const Eigen::Vector3d& deflection, int steps) {
     Eigen::Vector3d target;
@@ -41,10 +41,10 @@ TEST_F(RateMode, MovesNothingWithinTheDeadZone) {
 }
 
 TEST_F(RateMode, IsLetGoWithinTheDeadZoneOfTheDevicesZero) {
-  EXPECT_TRUE(mapping_->letGo({0, 0, 0.99 * config_.dead_zone}));
-  EXPECT_FALSE(mapping_->letGo({0, 0, -1.01 * config_.dead_zone}));
-  EXPECT_FALSE(mapping_->letGo(kHand));
-  EXPECT_EQ(mapping_->disagreement({0, 0, 1}, kNeedle + Eigen::Vector3d::UnitX()), 0);
+  EXPECT_TRUE(mapping_->release({0, 0, 0.99 * config_.dead_zone}));
+  EXPECT_FALSE(mapping_->release({0, 0, -1.01 * config_.dead_zone}));
+  EXPECT_FALSE(mapping_->release(kHand));
+  EXPECT_EQ(mapping_->misalignment({0, 0, 1}, kNeedle + Eigen::Vector3d::UnitX()), 0);
 }
 
 TEST_F(RateMode, SpeedGrowsFromTheDeadZonesBorder) {

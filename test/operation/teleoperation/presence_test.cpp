@@ -16,10 +16,10 @@ struct Case {
   bool no_hand, no_needle, no_force, absent, clutch, unfelt;
 
   std::string why() const {
-    if (no_hand) return "no trusted hand position";
+    if (no_hand) return "no valid hand position";
     if (unfelt) return kUnfelt;
-    if (no_needle) return "no trusted needle position";
-    if (no_force) return "no trusted force";
+    if (no_needle) return "no valid needle position";
+    if (no_force) return "no valid force";
     if (absent) return "the operator is not present";
     return clutch ? "clutch is pressed" : "";
   }
@@ -64,10 +64,10 @@ void check(const HapticBridgeConfig& config, const Case& wrong) {
   const Case counts{wrong.no_hand, wrong.no_needle, wrong.no_force, wrong.absent && config.require_operator,
                     wrong.clutch,  wrong.unfelt};
   output = bridge.step(input, kStep);
-  EXPECT_EQ(output.held_because, counts.why());
+  EXPECT_EQ(output.hold_reason, counts.why());
   EXPECT_EQ(output.needle.has_value(), counts.why().empty()) << "at once";
   for (int i = 0; i < 100; ++i) output = bridge.step(input, kStep);
-  EXPECT_EQ(output.held_because, counts.why());
+  EXPECT_EQ(output.hold_reason, counts.why());
   EXPECT_EQ(output.needle.has_value(), counts.why().empty());
   if (counts.why().empty()) return;
   EXPECT_EQ(output.state, Engagement::State::kHeld);
@@ -75,7 +75,7 @@ void check(const HapticBridgeConfig& config, const Case& wrong) {
 
   // All well again, and the hand within the tolerance and the dead zone: from here, and the force from nothing.
   output = bridge.step(good(1e-3), kStep);
-  ASSERT_EQ(output.state, Engagement::State::kFollow) << output.held_because;
+  ASSERT_EQ(output.state, Engagement::State::kFollow) << output.hold_reason;
   EXPECT_EQ(*output.needle, kNeedle);
   EXPECT_LT(output.hand_force.norm(), 0.01 * 0.2 + 1e-9);
 }
@@ -111,7 +111,7 @@ TEST(Presence, AHoldLastsUntilItsLastReasonIsGone) {
         if (wrong.unfelt) input.unfelt = kUnfelt;
         const auto output = bridge.step(input, kStep);
         EXPECT_FALSE(output.needle) << first << " then " << second;
-        EXPECT_EQ(output.held_because, wrong.why());
+        EXPECT_EQ(output.hold_reason, wrong.why());
       }
     }
   }

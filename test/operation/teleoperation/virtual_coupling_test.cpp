@@ -13,7 +13,7 @@ double felt(const VirtualCouplingConfig& config, double k) {
   coupling.reset(Eigen::Vector3d::Zero());
   double force = 0;
   for (int i = 0; i < 20000; ++i) {
-    const double proxy = -1e-3 + coupling.yield().z();
+    const double proxy = -1e-3 + coupling.proxyOffset().z();
     force = k * std::max(0.0, -proxy);
     coupling.step({0, 0, force}, 1e-3);
   }
@@ -38,7 +38,7 @@ TEST(VirtualCoupling, YieldsWithItsTimeConstantWhateverTheStep) {
     VirtualCoupling coupling(config);
     coupling.reset(Eigen::Vector3d::Zero());
     for (int i = 0; i < steps; ++i) coupling.step({1, 0, 0}, tau / steps);
-    EXPECT_NEAR(coupling.yield().x(), (1 - std::exp(-1)) / config.stiffness, 1e-15) << steps;
+    EXPECT_NEAR(coupling.proxyOffset().x(), (1 - std::exp(-1)) / config.stiffness, 1e-15) << steps;
   }
 }
 

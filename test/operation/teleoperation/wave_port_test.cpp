@@ -119,12 +119,12 @@ Held press(const LinkConditions& conditions, double stiffness, double depth) {
 
 TEST(WavePort, AHeldForcePassesAndTheChannelIsASpring) {
   // At rest the needle is behind by f T / b, T from one side's wave to the other's: delay, two periods, and the filters
-  // (their time constant; the shelf's share of a round trip).
+  // (their time constant; the highpass_loss's share of a round trip).
   const WaveConfig config;
   for (const double delay : {0.0, 0.02, 0.1, 0.2}) {
     const Held held = press({delay, 0, 0, 1}, 60, 0.02);
     EXPECT_NEAR(held.force / held.needle_force, 1, 2e-3) << delay;
-    const double lag = delay + config.receiver.filter_time + config.receiver.shelf * 2 * (delay + kStep);
+    const double lag = delay + config.receiver.filter_time + config.receiver.highpass_loss * 2 * (delay + kStep);
     const double expected = 0.02 / (1 / 60.0 + lag / config.impedance + 1 / config.stiffness);
     EXPECT_NEAR(held.force / expected, 1, 0.02) << delay;
   }

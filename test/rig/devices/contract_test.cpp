@@ -10,8 +10,8 @@
 #include <string>
 
 #include "../manipulator/rig_file.h"
-#include "rig/manipulator/micromanipulator.h"
 #include "rig/devices/rig_registry.h"
+#include "rig/manipulator/micromanipulator.h"
 #include "rig/serial/emulated_wire.h"
 
 namespace microinjection {

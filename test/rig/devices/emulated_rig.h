@@ -7,8 +7,8 @@
 #include <memory>
 #include <utility>
 
-#include "rig/manipulator/manipulator_device.h"
 #include "rig/devices/manipulator_emulator.h"
+#include "rig/manipulator/manipulator_device.h"
 #include "rig/serial/emulated_wire.h"
 
 namespace microinjection {

@@ -14,11 +14,11 @@ class LineClient {
 
   /// Says something after `pause` (s) and listens for `patience` (s).
   std::string answers(const std::string& command, double patience = 0.2, double pause = 10e-3) {
-    std::string said = listen(pause);
+    std::string said = receive(pause);
     line_.send(command, time_);
-    return said + listen(patience);
+    return said + receive(patience);
   }
-  std::string listen(double duration) {
+  std::string receive(double duration) {
     std::string said;
     for (const double end = time_ + duration; time_ < end;) said += line_.receive(time_ += 0.1e-3);
     return said;

@@ -21,7 +21,7 @@ TEST(OriginWatch, MeasuresFromThePlaceAtRestInMetres) {
   watch.stands(kHere);
   EXPECT_EQ(watch.outside(kHere, kCount), 0);
   EXPECT_DOUBLE_EQ(watch.outside(kHere + Eigen::Vector3d(3, 0, 2), kCount), 5e-6);
-  watch.forget();
+  watch.clear();
   EXPECT_EQ(watch.outside(kThere, kCount), 0);
 }
 
@@ -46,7 +46,7 @@ TEST(OriginWatch, AMoveThatWasNotConfirmedMayNotHaveBegun) {
   EXPECT_TRUE(watch.mayStandAt(kZero, kCount, 1e-6));
   EXPECT_TRUE(watch.mayStandAt(kThere, kCount, 1e-6));
   EXPECT_FALSE(watch.mayStandAt(kHere, kCount, 1e-6));
-  watch.hasLeft();
+  watch.hasDeparted();
   EXPECT_FALSE(watch.mayStandAt(kZero, kCount, 1e-6));
   EXPECT_TRUE(watch.mayStandAt(kThere, kCount, 1e-6));
   EXPECT_FALSE(watch.remainsAt(kThere, kCount, 1e-6));

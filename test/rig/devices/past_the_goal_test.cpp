@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "../manipulator/rig_file.h"
-#include "rig/manipulator/micromanipulator.h"
 #include "rig/devices/zaber/zaber_driver.h"
 #include "rig/devices/zaber/zaber_emulator.h"
+#include "rig/manipulator/micromanipulator.h"
 #include "rig/serial/emulated_wire.h"
 
 namespace microinjection {

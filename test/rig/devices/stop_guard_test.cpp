@@ -11,8 +11,8 @@
 #include <thread>
 
 #include "../manipulator/rig_file.h"
-#include "rig/manipulator/micromanipulator.h"
 #include "rig/devices/driver_fixture.h"
+#include "rig/manipulator/micromanipulator.h"
 #include "rig/serial/emulator_host.h"
 #include "rig/serial/serial_port.h"
 
@@ -136,7 +136,7 @@ TYPED_TEST(GuardedRigTest, AFrozenGuardIsReplacedAndTheDeviceStopped) {
 /// An emulated line whose guard reports what the test says.
 struct GuardedWire : EmulatedWire {
   using EmulatedWire::EmulatedWire;
-  GuardReport beat() override { return {std::exchange(report.intervention, ""), report.missing}; }
+  GuardReport heartbeat() override { return {std::exchange(report.intervention, ""), report.missing}; }
   GuardReport report;
 };
 

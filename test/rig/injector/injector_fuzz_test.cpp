@@ -25,7 +25,7 @@ class DamagedLine : public DeviceEmulator {
   int damaged() const { return damaged_; }
 
  protected:
-  void hear(const std::string& bytes, double time) override { device_->receive(bytes, time); }
+  void process(const std::string& bytes, double time) override { device_->receive(bytes, time); }
   std::string say(double time) override {
     const std::string reply = device_->send(time);
     if (reply.empty() || !damaging_ || damage_.below(4) != 0) return reply;

@@ -31,7 +31,7 @@ class RigGuard : public testing::Test {
 
 TEST_F(RigGuard, TheCellIsNoObstacle) {
   EXPECT_EQ(guard_.blocks(at(0, 0, 0)), "");
-  EXPECT_EQ(guard_.blocksWay(at(0, 0, 60), at(0, 0, -25)), "");
+  EXPECT_EQ(guard_.blocksPath(at(0, 0, 60), at(0, 0, -25)), "");
 }
 
 TEST_F(RigGuard, DistancesAreThoseOfTheFile) {
@@ -58,17 +58,17 @@ TEST_F(RigGuard, NamesBothLinksAndTheDistance) {
 TEST_F(RigGuard, AWayIsBlockedThoughItsEndsAreFree) {
   EXPECT_EQ(guard_.blocks(at(60, 0, -40)), "");
   EXPECT_EQ(guard_.blocks(at(-60, 0, -40)), "");
-  expectBlocked(guard_.blocksWay(at(60, 0, -40), at(-60, 0, -40)), "needle_tip", "holding_pipette");
-  EXPECT_EQ(guard_.blocksWay(at(60, 0, -40), at(60, 0, -20)), "");
-  EXPECT_EQ(guard_.blocksWay(at(60, 0, -20), at(-60, 0, -20)), "");
-  EXPECT_EQ(guard_.blocksWay(at(0, 0, 60), at(0, 0, 60)), "");
+  expectBlocked(guard_.blocksPath(at(60, 0, -40), at(-60, 0, -40)), "needle_tip", "holding_pipette");
+  EXPECT_EQ(guard_.blocksPath(at(60, 0, -40), at(60, 0, -20)), "");
+  EXPECT_EQ(guard_.blocksPath(at(60, 0, -20), at(-60, 0, -20)), "");
+  EXPECT_EQ(guard_.blocksPath(at(0, 0, 60), at(0, 0, 60)), "");
 }
 
 TEST_F(RigGuard, WhoIsTooNearMayLeaveOnly) {
-  EXPECT_EQ(guard_.blocksWay(at(0, 0, -27), at(0, 0, 0)), "");
-  EXPECT_NE(guard_.blocksWay(at(0, 0, -27), at(0, 0, -27.5)), "");
-  EXPECT_NE(guard_.blocksWay(at(0, 0, -27), at(100, 0, -40)), "");  // it would cut through the rim
-  EXPECT_EQ(guard_.blocksWay(at(0, 0, -27), at(10, 0, -27)), "");
+  EXPECT_EQ(guard_.blocksPath(at(0, 0, -27), at(0, 0, 0)), "");
+  EXPECT_NE(guard_.blocksPath(at(0, 0, -27), at(0, 0, -27.5)), "");
+  EXPECT_NE(guard_.blocksPath(at(0, 0, -27), at(100, 0, -40)), "");  // it would cut through the rim
+  EXPECT_EQ(guard_.blocksPath(at(0, 0, -27), at(10, 0, -27)), "");
 }
 
 TEST_F(RigGuard, SeesTheTiltedPipette) {
@@ -111,11 +111,11 @@ TEST_F(RigGuard, PrintsWhatAStepCosts) {
   const double place = time([&](int i) { blocked += !guard_.blocks(at(i % 100, 0, 60 - i % 80)).empty(); }, 10000);
   const double step = time(
       [&](int i) {
-        blocked += !guard_.blocksWay(at(i % 100, 0, 60 - i % 80), at(i % 100 + 1, 0, 60 - i % 80)).empty();
+        blocked += !guard_.blocksPath(at(i % 100, 0, 60 - i % 80), at(i % 100 + 1, 0, 60 - i % 80)).empty();
       },
       10000);
   const double across = time(
-      [&](int i) { blocked += !guard_.blocksWay(at(-12e3, 300 + i % 100, -56), at(12e3, 0, 60 - i % 80)).empty(); },
+      [&](int i) { blocked += !guard_.blocksPath(at(-12e3, 300 + i % 100, -56), at(12e3, 0, 60 - i % 80)).empty(); },
       1000);
   std::printf("a place %.1f us, a way of 1 um %.1f us, a way through the dish %.1f us\n", place, step, across);
   EXPECT_EQ(blocked, 0);

@@ -20,7 +20,7 @@ class HomingPlanTest : public testing::Test {
     for (const int axis : plan.order) {
       Eigen::Vector3d next = place;
       next[axis] = ends[axis];
-      if (std::string why = guard_.blocksWay(place, next); !why.empty()) return why;
+      if (std::string why = guard_.blocksPath(place, next); !why.empty()) return why;
       place = next;
     }
     return "";

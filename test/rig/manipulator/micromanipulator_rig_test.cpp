@@ -184,7 +184,7 @@ void checkASetPointWaits(bool follows) {
   stream(-200, -10, 500);
   const Eigen::Vector3d waits = rig.device.followed.back();
   const CollisionGuard guard(rigUrdf(), rig.geometry, kMargin);
-  EXPECT_EQ(guard.blocksWay(rig.device.position->joints, waits), "");
+  EXPECT_EQ(guard.blocksPath(rig.device.position->joints, waits), "");
   EXPECT_GT(waits.x(), -30e-6);
   rig.device.position->joints = waits;  // it has come
   stream(-200, -10, 500);
@@ -198,7 +198,7 @@ TEST(MicromanipulatorRig, ASetPointWaitsForADeviceThatWouldCutThroughAnObstacle)
 }
 
 TEST(MicromanipulatorRig, ADeviceThatAnObstacleCutsOffFromItsSetPointIsStopped) {
-  const Eigen::Vector3d cut_off = 1e-6 * Eigen::Vector3d(-200, 0, -100);  // on the holding pipette's other side
+  const Eigen::Vector3d disconnected = 1e-6 * Eigen::Vector3d(-200, 0, -100);  // on the holding pipette's other side
   for (const bool follows : {false, true}) {
     for (const bool by_stream : {false, true}) {
       SCOPED_TRACE(std::string(follows ? "follows" : "goes by moves") + (by_stream ? ", stream" : ", move"));
@@ -208,7 +208,7 @@ TEST(MicromanipulatorRig, ADeviceThatAnObstacleCutsOffFromItsSetPointIsStopped) 
       ASSERT_EQ(by_stream ? rig.micromanipulator.servoPosition(goal) : rig.micromanipulator.movePosition(goal), "");
       rig.run(0.05);
       EXPECT_EQ(rig.device.stops, 0);
-      rig.device.position->joints = cut_off;
+      rig.device.position->joints = disconnected;
       const std::size_t told = rig.device.followed.size();
       rig.run(0.05);
       EXPECT_EQ(rig.device.stops, 1);

@@ -156,17 +156,17 @@ TEST_F(MicromanipulatorTest, AfterAStopItStartsFromWhereItIs) {
 TEST_F(MicromanipulatorTest, AStreamThatGoesOnAfterAStopMovesNothingBeforeItHasPaused) {
   double x = 0;
   const auto stream = [&] { return rig_.servoPosition(at(x += 1e-7, 0, 0)); };
-  const auto goesOn = [&](double duration) {
+  const auto shouldContinue = [&](double duration) {
     for (const double end = time_ + duration; time_ < end; run(kStep)) stream();
   };
-  goesOn(0.3);
+  shouldContinue(0.3);
   for (const bool enabled : {false, true}) {
     rig_.stop();
     run(0.06);
     const Eigen::Vector3d rested = rig_.tipPose()->translation();
     EXPECT_NE(stream().find("stopped"), std::string::npos);
     EXPECT_NE(rig_.servoVelocity({1e-4, 0, 0}, time_).find("stopped"), std::string::npos);
-    goesOn(0.3);
+    shouldContinue(0.3);
     EXPECT_LT((rig_.tipPose()->translation() - rested).norm(), 1e-12);
     if (enabled) {
       rig_.clearFault();
@@ -174,7 +174,7 @@ TEST_F(MicromanipulatorTest, AStreamThatGoesOnAfterAStopMovesNothingBeforeItHasP
       run(0.15);
     }
     EXPECT_EQ(stream(), "");
-    goesOn(0.3);
+    shouldContinue(0.3);
     EXPECT_NEAR(rig_.tipPose()->translation().x(), x, 1e-6);
   }
   rig_.stop();

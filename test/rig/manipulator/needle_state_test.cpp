@@ -17,10 +17,10 @@ class NeedleStateTest : public testing::Test {
 
 TEST_F(NeedleStateTest, PausesAndResumes) {
   EXPECT_EQ(state_.state(), State::kEnabled);
-  EXPECT_EQ(state_.unable(), "");
+  EXPECT_EQ(state_.unavailableReason(), "");
   EXPECT_EQ(state_.command(Command::kPause), "");
   EXPECT_EQ(state_.state(), State::kPaused);
-  EXPECT_EQ(state_.unable(), "PAUSED; allowed after resume");
+  EXPECT_EQ(state_.unavailableReason(), "PAUSED; allowed after resume");
   EXPECT_NE(state_.command(Command::kEnable), "");  // the convention's table: invalid
   EXPECT_EQ(state_.state(), State::kPaused);
   EXPECT_EQ(state_.command(Command::kResume), "");
@@ -32,7 +32,7 @@ TEST_F(NeedleStateTest, IsDisabledUntilSomebodyEnables) {
   EXPECT_EQ(state_.command(Command::kDisable), "");
   EXPECT_EQ(state_.state(), State::kDisabled);
   EXPECT_NE(state_.command(Command::kPause), "");
-  EXPECT_EQ(state_.unable(), "DISABLED; allowed after enable");
+  EXPECT_EQ(state_.unavailableReason(), "DISABLED; allowed after enable");
   EXPECT_EQ(state_.command(Command::kEnable), "");
   EXPECT_EQ(state_.state(), State::kEnabled);
 }
@@ -61,7 +61,7 @@ TEST_F(NeedleStateTest, WithoutADeviceOrBehindABarrierItIsDisabled) {
   EXPECT_FALSE(state_.homed());
   state_.surround({Device::kReady, true, "", "others can reach it"});
   EXPECT_EQ(state_.state(), State::kDisabled);
-  EXPECT_EQ(state_.unable(), "others can reach it");
+  EXPECT_EQ(state_.unavailableReason(), "others can reach it");
   state_.surround({Device::kReady, true, "", ""});
   EXPECT_EQ(state_.state(), State::kEnabled);
 }
@@ -71,13 +71,13 @@ TEST_F(NeedleStateTest, UnhomedItIsHeldUntilItIsHome) {
   EXPECT_EQ(state_.command(Command::kUnhome), "");
   EXPECT_EQ(state_.state(), State::kEnabled);
   EXPECT_FALSE(state_.homed());
-  EXPECT_EQ(state_.unable(), "the needle is not homed; allowed after home");
+  EXPECT_EQ(state_.unavailableReason(), "the needle is not homed; allowed after home");
   state_.surround({Device::kReady, false, "", ""});
   EXPECT_NE(state_.command(Command::kHome), "");
   state_.surround({Device::kReady, true, "", ""});
   EXPECT_EQ(state_.command(Command::kHome), "");
   EXPECT_TRUE(state_.homed());
-  EXPECT_EQ(state_.unable(), "");
+  EXPECT_EQ(state_.unavailableReason(), "");
 }
 
 }  // namespace

@@ -106,10 +106,10 @@ TEST_F(RandomSolids, DistanceOnAWayIsTheSmallestOnIt) {
     double smallest = 1e9;
     const int n = 1000;
     for (int j = 0; j <= n; ++j) smallest = std::min(smallest, distance(capsule, from + (to - from) * j / n, body));
-    const double found = distanceOnWay(capsule, from, to, body);
+    const double found = distanceAlongPath(capsule, from, to, body);
     EXPECT_LE(found, smallest + 1e-8);
     EXPECT_GE(found, smallest - (to - from).norm() / (2 * n));
-    const double bound = distanceOnWay(capsule, from, to, body, 0.2);
+    const double bound = distanceAlongPath(capsule, from, to, body, 0.2);
     EXPECT_LE(bound, found + 1e-8);
     if (found > 0.2 + 1e-8) EXPECT_GT(bound, 0.2);
   }

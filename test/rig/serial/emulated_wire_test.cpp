@@ -10,7 +10,7 @@ namespace {
 /// Answers each byte with the next of the alphabet.
 class Next : public DeviceEmulator {
  protected:
-  void hear(const std::string& bytes, double) override {
+  void process(const std::string& bytes, double) override {
     for (const char each : bytes) said_ += static_cast<char>(each + 1);
   }
   std::string say(double) override { return std::exchange(said_, ""); }

@@ -30,7 +30,7 @@ TEST(Fault, RefusesWhatIsNone) {
 /// Says back what it hears.
 class Echo : public DeviceEmulator {
  protected:
-  void hear(const std::string& bytes, double) override { said_ += bytes; }
+  void process(const std::string& bytes, double) override { said_ += bytes; }
   std::string say(double) override { return std::exchange(said_, ""); }
   void checkError(const std::string&) const override {}
   void failNextCommand(const std::string&) override {}

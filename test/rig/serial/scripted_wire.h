@@ -24,7 +24,7 @@ class ScriptedWire : public Wire {
  public:
   explicit ScriptedWire(WireScript& script) : script_(script) {}
   void setGuardedStop(const std::string& bytes) override { script_.guarded_stop = bytes; }
-  GuardReport beat() override {
+  GuardReport heartbeat() override {
     ++script_.beats;
     return {std::exchange(script_.guard.intervention, ""), script_.guard.missing};
   }

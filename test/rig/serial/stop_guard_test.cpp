@@ -45,7 +45,7 @@ class StopGuardTest : public testing::Test {
     const auto last = std::chrono::steady_clock::now();
     sleepFor(1);
     held_up_ = held_up_ || std::chrono::steady_clock::now() - last > std::chrono::milliseconds(100);
-    Wire::GuardReport report = guard_.beat();
+    Wire::GuardReport report = guard_.heartbeat();
     if (!report.intervention.empty()) interventions_ += report.intervention + ".";
     heard_ += terminal_.read();
     return report;
@@ -215,7 +215,7 @@ pid_t startDriver(const std::string& link) {
   port.write("begun", 0);
   for (;;) {
     for (int i = 0; i < 10; ++i) port.write(".", 0);
-    const std::string why = port.beat().intervention;
+    const std::string why = port.heartbeat().intervention;
     if (!why.empty()) port.write(why, 0);
     port.read(0);
     sleepFor(1);

@@ -33,7 +33,7 @@ std::string EppendorfEmulator::error(int code) const {
   return text;
 }
 
-void EppendorfEmulator::obey(const std::string& command, double time) {
+void EppendorfEmulator::handleCommand(const std::string& command, double time) {
   const std::string name = command.substr(0, 4);
   const auto numbers = numbersIn(command.substr(std::min<std::size_t>(4, command.size())));
   const bool goes = name == "C007" || name == "C012";

@@ -30,7 +30,7 @@ class EppendorfEmulator : public TextEmulator {
   bool isRemote() const { return remote_; }
 
  protected:
-  void obey(const std::string& command, double time) override;
+  void handleCommand(const std::string& command, double time) override;
   void move(double time, double dt) override;
   std::string error(int code) const override;
   void interrupt(double time) override;

@@ -44,10 +44,10 @@ double Mp285Driver::recoveryTime() const {
 void Mp285Driver::begin(bool lost) {
   MoveByMove::begin(lost);
   exchange_.reset();
-  asked_stop_ = false;
+  stop_requested_ = false;
   reading_due_ = true;
   if (!lost) return;
-  asked_status_ = false;
+  status_requested_ = false;
   told_status_.reset();
   forgetSettings();
 }
@@ -58,7 +58,7 @@ void Mp285Driver::forgetSettings() {
   speed_.reset();
 }
 
-void Mp285Driver::talk(const std::string& bytes) {
+void Mp285Driver::exchange(const std::string& bytes) {
   if (!bytes.empty()) last_byte_ = listened();
   if (exchange_) {
     const bool silent = parser_.begun() && listened() - last_byte_ > kBytePause;
@@ -73,7 +73,7 @@ void Mp285Driver::talk(const std::string& bytes) {
     ++malformed_;  // nobody asked: what is under way cannot be told from an answer any more
     return lostStep("it talks without being asked");
   }
-  if (talking() && !exchange_ && listened() >= next_command_) next();
+  if (exchanging() && !exchange_ && listened() >= next_command_) next();
 }
 
 void Mp285Driver::ask(Kind kind, const std::string& bytes, double more_time) {
@@ -86,8 +86,8 @@ void Mp285Driver::ask(Kind kind, const std::string& bytes, double more_time) {
   const double sent = listened() + static_cast<double>(bytes.size()) * config_.byteTime();
   exchange_ = Exchange{kind, sent + answer_bytes * config_.byteTime() + config_.reply_timeout + more_time, sent};
   // It says nothing while it moves, nor unasked at rest: what it was asked last must be answered, or else, once, what
-  // it is asked after that. Readings that are doubted are asked for again, but not trusted for longer.
-  if (settled_ && !filter_.doubts()) trustFor(exchange_->due - listened() + recoveryTime());
+  // it is asked after that. Readings that are doubted are asked for again, but not valid for longer.
+  if (settled_ && !filter_.isImplausible()) validityTime(exchange_->due - listened() + recoveryTime());
   say(bytes);
 }
 
@@ -112,7 +112,7 @@ void Mp285Driver::handle(const Mp285Answer& answer) {
   understood();
   switch (kind) {
     case Kind::kStop:
-      asked_stop_ = true;
+      stop_requested_ = true;
       break;
     case Kind::kStatus:
       takeStatus(answer.status);
@@ -146,21 +146,21 @@ void Mp285Driver::takeStatus(const Mp285Status& status) {
                       " and STEP_MUL = " + std::to_string(status.step_mul) + " of its status (" + status.bytes +
                       ") are no known size of a microstep; measure it and set microsteps");
   }
-  asked_status_ = true;
+  status_requested_ = true;
   if (confirmed_ && !(*confirmed_ == Speed{status.speed, status.fine})) settings_lost_ = true;
   nominal_microstep_ = known.value_or(config_.microsteps.minCoeff());
   Eigen::Vector3d microsteps;
   for (int i = 0; i < 3; ++i) microsteps[i] = config_.microsteps[i] > 0 ? config_.microsteps[i] : *known;
   if (microsteps != microsteps_) {
     position_.reset();
-    watch_.forget();
+    watch_.clear();
   }
   microsteps_ = microsteps;
 }
 
 void Mp285Driver::handleError(int error) {
   if (error == 8 && move_) {
-    position_ = carriedOn(time());
+    position_ = extrapolatedPosition(time());
     reading_due_ = true;  // how far did it come?
     return;
   }
@@ -169,7 +169,7 @@ void Mp285Driver::handleError(int error) {
 
 void Mp285Driver::takePosition(const Mp285Position& told) {
   const Eigen::Vector3d place(told[0], told[1], told[2]);
-  const Eigen::Vector3d expected = position_ ? carriedOn(time()) : Eigen::Vector3d::Constant(std::nan(""));
+  const Eigen::Vector3d expected = position_ ? extrapolatedPosition(time()) : Eigen::Vector3d::Constant(std::nan(""));
   // What stands does not change by a microstep, and a fine move ends where it was sent: else four must agree.
   const double tolerance = move_ && coarse_ ? kCoarseStep + 1 : 0.5;
   if (!filter_.accept(place, expected, tolerance, 0.5) || !answers_.measured()) return;  // asked again
@@ -193,8 +193,8 @@ void Mp285Driver::takePosition(const Mp285Position& told) {
 }
 
 void Mp285Driver::next() {
-  if (!asked_stop_) return ask(Kind::kStop, std::string(1, kMp285Stop));
-  if (!asked_status_) return ask(Kind::kStatus, mp285AskStatus());
+  if (!stop_requested_) return ask(Kind::kStop, std::string(1, kMp285Stop));
+  if (!status_requested_) return ask(Kind::kStatus, mp285AskStatus());
   if (!absolute_) return ask(Kind::kAbsolute, mp285AbsoluteMode());
   if (reading_due_) return ask(Kind::kPosition, mp285AskPosition());
   if (goal() && mayMove() && !isThere(*position_, goalPlace())) return nextTowardsGoal();
@@ -206,12 +206,12 @@ double Mp285Driver::metresPerSaidMetre(const Eigen::Vector3d& way) const {
   return length(way) / (way.norm() * nominal_microstep_);
 }
 
-Mp285Driver::Speed Mp285Driver::speedFor(const Eigen::Vector3d& whole_way) const {
-  const double way = whole_way.norm();
-  const double per_said = metresPerSaidMetre(whole_way);
-  int um_per_s = static_cast<int>(std::lround(std::min(askedSpeed(whole_way), config_.speed) / per_said * 1e6));
+Mp285Driver::Speed Mp285Driver::speedFor(const Eigen::Vector3d& full_path) const {
+  const double way = full_path.norm();
+  const double per_said = metresPerSaidMetre(full_path);
+  int um_per_s = static_cast<int>(std::lround(std::min(askedSpeed(full_path), config_.speed) / per_said * 1e6));
   um_per_s = std::max(um_per_s, goal()->follows ? kSlowest : 1);
-  int fastest = std::max(1, static_cast<int>(fastestAlong(whole_way) / per_said * 1e6 + 1e-6));  // as it is said
+  int fastest = std::max(1, static_cast<int>(fastestAlong(full_path) / per_said * 1e6 + 1e-6));  // as it is said
   const bool fine =
       std::min(um_per_s, fastest) <= kFineLimit || way < 10 * kCoarseStep;  // the rest of a coarse move is a fine one
   if (fine) fastest = std::min(fastest, static_cast<int>(kFineLimit));

@@ -26,7 +26,7 @@ class Mp285Driver : public MoveByMove {
   Eigen::Vector3d counts() const override { return microsteps_; }
   double recoveryTime() const override;
   void begin(bool lost) override;
-  void talk(const std::string& bytes) override;
+  void exchange(const std::string& bytes) override;
 
  private:
   enum class Kind { kStop, kStatus, kAbsolute, kPosition, kVelocity, kMove };
@@ -61,7 +61,7 @@ class Mp285Driver : public MoveByMove {
   Eigen::Vector3d microsteps_ = Eigen::Vector3d::Constant(0.04e-6);
   double nominal_microstep_ = 0.04e-6;
   std::optional<Mp285Status> told_status_;  // the last one
-  bool asked_stop_ = false, asked_status_ = false, absolute_ = false;
+  bool stop_requested_ = false, status_requested_ = false, absolute_ = false;
   bool reading_due_ = true;         // the position is to be read
   bool coarse_ = false;             // the move under way
   std::optional<Speed> speed_;      // that the device was told

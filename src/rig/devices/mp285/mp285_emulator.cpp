@@ -101,12 +101,12 @@ void Mp285Emulator::stop(double time) {
   fails_at_ = -1;
 }
 
-void Mp285Emulator::hear(const std::string& bytes, double time) {
+void Mp285Emulator::process(const std::string& bytes, double time) {
   advance(time);
-  for (const char each : bytes) hearByte(static_cast<unsigned char>(each), time);
+  for (const char each : bytes) receiveByte(static_cast<unsigned char>(each), time);
 }
 
-void Mp285Emulator::hearByte(unsigned char byte, double time) {
+void Mp285Emulator::receiveByte(unsigned char byte, double time) {
   if (time - last_byte_ > config_.half_command_time && (!config_.locks_up || byte == 0x03)) command_.clear();
   last_byte_ = time;
   if (moving_ && byte != 0x03) return;
@@ -122,13 +122,13 @@ void Mp285Emulator::hearByte(unsigned char byte, double time) {
   if (byte != 0x0d) {
     answerError(4, time);
   } else {
-    obey(time);
+    handleCommand(time);
   }
   command_.clear();
 }
 
-void Mp285Emulator::obey(double time) {
-  const bool fails_under_way = error_ >= 8 && command_[0] == 'm';
+void Mp285Emulator::handleCommand(double time) {
+  const bool fails_on_path = error_ >= 8 && command_[0] == 'm';
   if (error_ >= 0 && error_ < 8) {
     answerError(error_, time);
     error_ = -1;
@@ -147,7 +147,7 @@ void Mp285Emulator::obey(double time) {
     }
     case 'm':
       beginMove();
-      if (!fails_under_way) return;
+      if (!fails_on_path) return;
       fails_at_ = (end_ - place_).norm() / 2;
       fails_with_ = std::exchange(error_, -1);
       return;

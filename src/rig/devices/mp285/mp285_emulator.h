@@ -40,7 +40,7 @@ class Mp285Emulator : public ManipulatorEmulator {
   }
 
  protected:
-  void hear(const std::string& bytes, double time) override;
+  void process(const std::string& bytes, double time) override;
   std::string say(double time) override;
   void checkError(const std::string& code) const override;
   void failNextCommand(const std::string& code) override;
@@ -54,9 +54,9 @@ class Mp285Emulator : public ManipulatorEmulator {
 
   void switchOn();
   void advance(double time);
-  void hearByte(unsigned char byte, double time);
+  void receiveByte(unsigned char byte, double time);
   void stop(double time);
-  void obey(double time);
+  void handleCommand(double time);
   void beginMove();
   void answer(const std::string& bytes, double time) { answers_.push_back({time + config_.answer_time, bytes}); }
   void answerError(int code, double time);

@@ -32,7 +32,7 @@ double ScientificaEmulator::stepsPerSecond(int top) const {
 
 double ScientificaEmulator::acceleration() const { return (isOld() ? 250 * acc_ / 6.4 : acc_) * 1e-6 * kStepsPerMetre; }
 
-void ScientificaEmulator::obey(const std::string& command, double time) {
+void ScientificaEmulator::handleCommand(const std::string& command, double time) {
   const std::vector<std::string> words = capitalWords(command);
   if (words.empty()) return;
   if (words[0] == "STOP") {

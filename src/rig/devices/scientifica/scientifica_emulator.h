@@ -29,7 +29,7 @@ class ScientificaEmulator : public TextEmulator {
   void shiftByHand(const Eigen::Vector3d& way) override { place_ = (place_ + way * kStepsPerMetre).array().round(); }
 
  protected:
-  void obey(const std::string& command, double time) override;
+  void handleCommand(const std::string& command, double time) override;
   void move(double time, double dt) override;
   std::string error(int code) const override { return "E," + std::to_string(code); }
   void interrupt(double time) override;

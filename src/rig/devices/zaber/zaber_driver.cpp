@@ -121,7 +121,7 @@ bool ZaberDriver::moving() const {
   for (int i = 0; i < 3; ++i) {
     const double away = std::abs(wanted[i] - axes_[i].position.value_or(wanted[i]));
     if (axes_[i].told.value_or(1) != 0 || away > 1 / config_.microsteps_per_metre[i]) return true;
-    if (axes_[i].busy || !axes_[i].read_since_told || axes_[i].filter.doubts()) return true;
+    if (axes_[i].busy || !axes_[i].read_since_report || axes_[i].filter.isImplausible()) return true;
   }
   return false;
 }
@@ -131,13 +131,13 @@ void ZaberDriver::goalChanged() {
   move_done_ = false;
 }
 
-void ZaberDriver::talk(const std::string& bytes) {
+void ZaberDriver::exchange(const std::string& bytes) {
   for (const ZaberMessage& message : parser_.feed(bytes)) {
     handle(message);
-    if (!talking()) return;
+    if (!exchanging()) return;
   }
   if (exchange_ && listened() > exchange_->due) exchange_->sent ? missedReply() : sendExchange();
-  if (!exchange_ && talking()) next();
+  if (!exchange_ && exchanging()) next();
 }
 
 int ZaberDriver::axisOf(const ZaberAddress& address) const {

@@ -50,7 +50,7 @@ class ZaberDriver : public SerialManipulator {
  protected:
   void connected() override;
   void begin(bool lost) override;
-  void talk(const std::string& bytes) override;
+  void exchange(const std::string& bytes) override;
   void goalChanged() override;
   void guardIntervened() override { may_home_ = false; }
   void stopAsked() override;
@@ -79,8 +79,8 @@ class ZaberDriver : public SerialManipulator {
     double end = 0;                  // m, where a move ends; NaN: it does not
     std::optional<long long> told;   // units of speed, of the velocity that the device follows
     bool busy = true;
-    double move_speed = 0;                                   // m/s, set for the move
-    bool read_since_begin = false, read_since_told = false;  // to move
+    double move_speed = 0;                                     // m/s, set for the move
+    bool read_since_begin = false, read_since_report = false;  // to move
     bool cleared = true, homed = false;
     bool still_moves = false;  // it said so after it was told to stop
     int stalls = 0;

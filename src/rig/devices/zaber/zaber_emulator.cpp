@@ -128,13 +128,13 @@ void ZaberEmulator::advance(double time) {
   }
 }
 
-void ZaberEmulator::hear(const std::string& bytes, double time) {
+void ZaberEmulator::process(const std::string& bytes, double time) {
   advance(time);
   for (const char each : bytes) {
     if (each == '/') {
       line_ = "/";
     } else if (each == '\n' || each == '\r') {
-      if (!line_.empty()) obey(line_.substr(1));
+      if (!line_.empty()) handleCommand(line_.substr(1));
       line_.clear();
     } else if (!line_.empty() && line_.size() < kLongestLine) {
       line_ += each;
@@ -142,7 +142,7 @@ void ZaberEmulator::hear(const std::string& bytes, double time) {
   }
 }
 
-void ZaberEmulator::obey(const std::string& line) {
+void ZaberEmulator::handleCommand(const std::string& line) {
   std::string text = line;
   if (!checkSum(text)) return;  // not heard
   std::istringstream stream(text);
@@ -155,12 +155,12 @@ void ZaberEmulator::obey(const std::string& line) {
     command.words.erase(command.words.begin());
   }
   for (auto& [number, device] : devices_) {
-    if (command.device == 0 || command.device == number) obey(number, device, command);
+    if (command.device == 0 || command.device == number) handleCommand(number, device, command);
   }
 }
 
 /// One reply of one device.
-void ZaberEmulator::obey(int number, Device& device, const Command& command) {
+void ZaberEmulator::handleCommand(int number, Device& device, const Command& command) {
   const bool there = command.axis == 0 || device.axes.count(command.axis) > 0;
   std::string said = !there ? "RJ BADAXIS" : "RJ " + std::exchange(rejection_, "");
   if (said == "RJ ") said = perform(number, device, command);

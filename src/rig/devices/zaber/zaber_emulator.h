@@ -50,7 +50,7 @@ class ZaberEmulator : public ManipulatorEmulator {
   void configure(ConfigReader& reader) override;
 
  protected:
-  void hear(const std::string& bytes, double time) override;
+  void process(const std::string& bytes, double time) override;
   std::string say(double time) override;
   void checkError(const std::string& code) const override;
   void failNextCommand(const std::string& code) override;
@@ -74,8 +74,8 @@ class ZaberEmulator : public ManipulatorEmulator {
 
   void build();
   void advance(double time);
-  void obey(const std::string& line);
-  void obey(int number, Device& device, const Command& command);
+  void handleCommand(const std::string& line);
+  void handleCommand(int number, Device& device, const Command& command);
   std::string perform(int number, Device& device, const Command& command);
   std::string performOnAxes(Device& device, const Command& command);
   std::string get(int number, const Device& device, const std::string& name) const;

@@ -61,7 +61,7 @@ class ZaberParser {
   explicit ZaberParser(bool checksum) : checksum_(checksum) {}
 
   std::vector<ZaberMessage> feed(const std::string& bytes);
-  void forget() { line_.clear(); }  ///< a message that has begun
+  void clear() { line_.clear(); }  ///< a message that has begun
   int malformed() const { return malformed_; }
   int unchecked() const { return unchecked_; }  ///< of these, that had no checksum and would have needed one
 

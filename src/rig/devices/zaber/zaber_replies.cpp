@@ -78,7 +78,7 @@ void ZaberDriver::takeWarnings(const Exchange& asked, const ZaberMessage& reply)
     referenced = referenced && flag != kZaberNoReference;
     if (!isZaberFault(flag)) continue;
     takeFlag(flag, asked.axis);
-    if (!talking()) return;
+    if (!exchanging()) return;
   }
   if (!referenced) return loseReference(asked.axis);
   axis.has_reference = true;
@@ -98,7 +98,7 @@ void ZaberDriver::handleReply(const ZaberMessage& reply) {
   if (done.kind == Kind::kSetting) return takeSetting(done, reply.data);
   if (done.kind == Kind::kWarnings) return takeWarnings(done, reply);
   if (done.kind != Kind::kClear) takeFlag(reply.flag, done.axis);
-  if (talking()) takeReply(done, reply);
+  if (exchanging()) takeReply(done, reply);
 }
 
 void ZaberDriver::takeReply(const Exchange& done, const ZaberMessage& reply) {
@@ -118,7 +118,7 @@ void ZaberDriver::takeReply(const Exchange& done, const ZaberMessage& reply) {
       axis.velocity = done.value / speed_unit;
       axis.end = done.end;
       axis.told = done.value;
-      axis.read_since_told = false;
+      axis.read_since_report = false;
       break;
     case Kind::kMove:
       axis.position = expected(done.axis, time());
@@ -126,7 +126,7 @@ void ZaberDriver::takeReply(const Exchange& done, const ZaberMessage& reply) {
       axis.end = done.value / config_.microsteps_per_metre[done.axis];
       axis.velocity = std::copysign(axis.move_speed, axis.end - *axis.position);
       axis.told.reset();
-      axis.read_since_told = false;
+      axis.read_since_report = false;
       ++move_stage_;
       break;
     case Kind::kSpeed:
@@ -151,7 +151,7 @@ void ZaberDriver::takeReply(const Exchange& done, const ZaberMessage& reply) {
 void ZaberDriver::handleRejection(const ZaberMessage& reply) {
   const Exchange refused = *exchange_;
   if (reply.from == refused.to && refused.kind != Kind::kSetting) takeFlag(reply.flag, refused.axis);
-  if (!talking()) return;
+  if (!exchanging()) return;
   // It is busy, or the command reached it damaged. A rejected command has done nothing and may be said again.
   const bool later = reply.data == "AGAIN" || reply.data == "STATUSBUSY" || reply.data == "FULL";
   const bool damaged = reply.data == "BADCOMMAND";
@@ -190,8 +190,8 @@ void ZaberDriver::takePosition(const Exchange& asked, const ZaberMessage& reply)
   axis.position = place;
   axis.position_time = then;
   axis.heard = listened();
-  trustFor(std::min({axes_[0].heard, axes_[1].heard, axes_[2].heard}) + longestAge() - listened());
-  axis.read_since_begin = axis.read_since_told = true;
+  validityTime(std::min({axes_[0].heard, axes_[1].heard, axes_[2].heard}) + longestAge() - listened());
+  axis.read_since_begin = axis.read_since_report = true;
   if (!reply.busy && axis.told.value_or(0) != 0) return checkStall(i, stands);
   axis.stalls = 0;
 }

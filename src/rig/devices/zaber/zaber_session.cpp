@@ -24,22 +24,22 @@ std::string text(double value) {
 }  // namespace
 
 void ZaberDriver::connected() {
-  for (Axis& axis : axes_) axis.settings.forget();
+  for (Axis& axis : axes_) axis.settings.clear();
   answer_time_ = config_.answer_time;
   acceleration_ = config_.acceleration;
 }
 
 void ZaberDriver::begin(bool lost) {
   exchange_.reset();
-  parser_.forget();
-  answers_.forget();
+  parser_.clear();
+  answers_.clear();
   begun_ = listened();
   lost_ = lost;
   settled_ = false;
   turn_ = move_stage_ = setting_tries_ = 0;
   for (int i = 0; i < 3; ++i) {
     Axis& axis = axes_[i];
-    axis.filter.forget();
+    axis.filter.clear();
     axis.told.reset();
     axis.coasting = lost || axis.velocity == 0 ? 0 : config_.reading_margin;
     if (axis.position) axis.position = expected(i, time());
@@ -52,7 +52,7 @@ void ZaberDriver::begin(bool lost) {
     axis.stalls = axis.lists = 0;
     axis.listed.clear();
     if (lost) axis.lists_due = 2;
-    if (clearing()) axis.settings.forget();  // they may have been what was wrong
+    if (clearing()) axis.settings.clear();  // they may have been what was wrong
   }
 }
 
@@ -84,7 +84,7 @@ bool ZaberDriver::nextOfAxis(int i) {
   // Braking, or the session's stop did not reach it.
   if (axis.still_moves && !axis.homed) return ask(Kind::kStop, i, "stop"), true;
   if (!axis.busy && !axis.has_reference) return false;  // its position means nothing; see nextOfHoming
-  if (axis.read_since_begin && !axis.busy && !axis.filter.doubts()) return false;
+  if (axis.read_since_begin && !axis.busy && !axis.filter.isImplausible()) return false;
   if (listened() - begun_ > (axis.homed ? kLongestHoming : kLongestBraking)) {
     lostStep(axisName(i) + (axis.busy ? " does not come to rest" : " has no steady position"));
   } else {

@@ -22,7 +22,7 @@ class ZaberSettings {
   std::optional<Name> missing() const;  ///< the next to be asked; empty: all are known
   void take(Name name, const std::string& data);
   void takeUnknown(Name name);  ///< the device does not know it
-  void forget() { *this = {}; }
+  void clear() { *this = {}; }
 
   bool movesHaveSpeeds() const { return moves_have_speeds_.value_or(false); }  ///< of their own
   bool oldFirmware() const { return moves_have_speeds_ == false; }

@@ -137,7 +137,7 @@ bool ZaberDriver::nextOfMove() {
   }
   if (move_stage_ >= 6) {
     checkMove();
-    return !talking();
+    return !exchanging();
   }
   const int i = move_stage_ - 3;
   const double scale = config_.microsteps_per_metre[i];
@@ -152,7 +152,7 @@ bool ZaberDriver::nextOfMove() {
 
 void ZaberDriver::checkMove() {
   for (const Axis& axis : axes_) {
-    if (axis.busy || !axis.read_since_told || axis.filter.doubts()) return;
+    if (axis.busy || !axis.read_since_report || axis.filter.isImplausible()) return;
   }
   const Eigen::Vector3d wanted = config_.joints.toDevice(goal()->joints);
   for (int i = 0; i < 3; ++i) {

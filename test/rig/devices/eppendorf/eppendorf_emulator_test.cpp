@@ -44,9 +44,9 @@ TEST(EppendorfEmulator, AnswersAGoToAtItsBeginOrAtItsEnd) {
   EXPECT_TRUE(client.device->moves());
   EXPECT_EQ(client.answers("C012 0 0 0 1000 0 0\r").substr(0, 4), "ERR=");
   EXPECT_EQ(client.answers("C013\r", 0.1), "");
-  EXPECT_EQ(client.listen(1), "A013\r");
+  EXPECT_EQ(client.receive(1), "A013\r");
   EXPECT_EQ(client.answers("C007 0 500 0 1000 1000 0\r", 0.8), "");
-  EXPECT_EQ(client.listen(1), "A007 0\r");
+  EXPECT_EQ(client.receive(1), "A007 0\r");
 }
 
 TEST(EppendorfEmulator, AnAxisWithoutSpeedRests) {

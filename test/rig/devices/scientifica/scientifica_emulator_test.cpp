@@ -48,7 +48,7 @@ TEST(ScientificaEmulator, MovesAndTellsItsMotion) {
     EXPECT_EQ(client.answers("ABS " + std::to_string(1000 * per_um) + " 0 0\r"), "A\r");
     EXPECT_NE(client.answers("s\r", 0.05), "0\r");
     EXPECT_EQ(client.answers("ABS 0 0 0\r"), "");  // acq4: it is not answered
-    client.listen(2);
+    client.receive(2);
     EXPECT_EQ(client.answers("S\r"), "0\r");
     EXPECT_EQ(client.answers("P\r"), std::to_string(1000 * per_um) + "\t0\t0\r");
     EXPECT_EQ(client.answers("POS\r"), std::to_string(1000 * per_um) + "\t0\t0\r");
@@ -72,9 +72,9 @@ TEST(ScientificaEmulator, MovesAtItsSpeedWithItsRamps) {
   client.answers("TOP 12800\r");
   client.answers("FIRST 1000\r");
   client.answers("ABS 20000 0 0\r", 0);
-  client.listen(1);
+  client.receive(1);
   const double before = client.device->position().x();
-  client.listen(0.5);
+  client.receive(0.5);
   EXPECT_NEAR((client.device->position().x() - before) / 0.5, 1e-3, 0.01e-3);
   const double told = client.device->position().x(), wire = 5 * 10.0 / 9600;  // s
   EXPECT_EQ(client.answers("STOP\r", 1, 0), "A\r");

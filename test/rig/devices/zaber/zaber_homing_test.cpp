@@ -1,9 +1,9 @@
 // Axes that look for their reference positions, below the rig's own map of obstacles.
 
+#include "rig/devices/driver_fixture.h"
 #include "rig/manipulator/collision_guard.h"
 #include "rig/manipulator/micromanipulator.h"
 #include "rig/manipulator/rig_file.h"
-#include "rig/devices/driver_fixture.h"
 
 namespace microinjection {
 namespace {
@@ -33,7 +33,7 @@ TEST_F(ZaberHoming, EndsWhereTheRigsMapAllowsAndKeepsClearOnItsWay) {
   Eigen::Vector3d last = joints();
   ASSERT_EQ(guard_.blocks(last), "");
   const auto keepsClear = [&] {
-    ASSERT_EQ(guard_.blocksWay(last, joints()), "") << joints().transpose();
+    ASSERT_EQ(guard_.blocksPath(last, joints()), "") << joints().transpose();
     last = joints();
   };
   rig_->run(45, keepsClear);

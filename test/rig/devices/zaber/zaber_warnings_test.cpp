@@ -12,11 +12,11 @@ class FlickeringZaber : public ZaberEmulator {
   bool flickers = false;
 
  protected:
-  void hear(const std::string& bytes, double time) override {
-    ZaberEmulator::hear(bytes, time);
+  void process(const std::string& bytes, double time) override {
+    ZaberEmulator::process(bytes, time);
     if (!flickers || bytes.find('\n') == std::string::npos) return;
     if (std::exchange(warns_, !warns_)) {
-      ZaberEmulator::hear("/1 0 warnings clear\n", time);
+      ZaberEmulator::process("/1 0 warnings clear\n", time);
     } else {
       failNextCommand("WV");
     }

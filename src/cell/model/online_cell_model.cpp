@@ -1,0 +1,169 @@
+#include "cell/model/online_cell_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+
+namespace microinjection {
+
+CellTrackerConfig CellTrackerConfig::read(ConfigReader& reader) {
+  CellTrackerConfig config;
+  reader.number("prepare_distance", config.prepare_distance, Range::positive());
+  reader.number("extrapolation_limit", config.extrapolation_limit, Range::positive());
+  reader.number("solution_period", config.solution_period, Range::positive());
+  return config;
+}
+
+OnlineCellModel::OnlineCellModel(std::shared_ptr<const OnlineCell> cell, const CellTrackerConfig& config)
+    : cell_(std::move(cell)),
+      rest_(cell_->undeformedSurface()),
+      members_at_rest_(cell_->undeformedMembers()),
+      config_(config),
+      thread_(cell_) {
+  invalid_reason_.reserve(200);
+}
+
+void OnlineCellModel::request(double time, const Eigen::Vector3d& displacement) {
+  TipMotion move{displacement, contacts_, std::nullopt, time};
+  if (contact_) move.touched = touched_;
+  bool asked = thread_.request(place_, move);
+  while (!asked && config_.fixed_period) asked = thread_.request(place_, move);
+  if (!asked) return;  // with the next step, then
+  asked_ = true;
+  requested_at_ = time;
+  contact_requested_ = true;
+}
+
+void OnlineCellModel::takeSolution(double time) {
+  if (!asked_) return;
+  std::shared_ptr<const CellSolution> solution;
+  try {
+    if (!config_.fixed_period) {
+      solution = thread_.take();
+    } else if (time - requested_at_ >= config_.solution_period - 1e-9) {
+      solution = thread_.wait();
+    }
+  } catch (const std::exception& error) {  // a contact that the solver refuses, as on the held vertices
+    failure_ = error.what();
+    asked_ = false;
+    solution_.reset();
+    return;
+  }
+  if (!solution) return;
+  failure_.clear();
+  asked_ = false;
+  if (!solution->place.sameAs(*place_)) return;  // the needle has moved on to another place
+  solution_ = std::move(solution);
+  solution_time_ = requested_at_;
+}
+
+void OnlineCellModel::prepare(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, const Eigen::Vector3d& touch,
+                              double time) {
+  if ((tip - touch).dot(axis) > config_.prepare_distance) return;
+  // A hand trembles: a tenth of the tip's radius makes no other contact, and near the scene's line, where the mesh has
+  // the tip's circle, that circle is meant.
+  const Scene::Needle& needle = cell_->scene().needle;
+  const double tremble = 0.1 * needle.tip.radius;
+  Eigen::Vector3d point = touch;
+  if ((point.head<2>() - needle.offset).norm() < tremble) point.head<2>() = needle.offset;
+  if (!contact_prepared_at_ || (point - *contact_prepared_at_).norm() > tremble) {
+    place_ = std::make_shared<ContactPoint>(cell_->contactAt(point, axis));
+    contact_prepared_at_ = point;
+    contact_requested_ = false;
+    solution_.reset();
+  }
+  if (!contact_requested_ && !asked_) request(time, cell_->preparedDisplacement());
+}
+
+TipForce OnlineCellModel::invalidForce(const char* reason) {
+  invalid_reason_ = reason;
+  return {false, Eigen::Vector3d::Zero()};
+}
+
+void OnlineCellModel::release() {
+  contact_.reset();
+  ++contacts_;
+  contact_requested_ = false;  // prepares the contact before the next touch
+  invalid_reason_.clear();
+  shape_.write({});
+}
+
+TipForce OnlineCellModel::touchForce(double time) {
+  if (!asked_) request(time, contact_->displacement);
+  if (!failure_.empty()) return invalidForce(failure_.c_str());
+  if (!solution_) return invalidForce("the contact is still being prepared");
+  const IndentationSolution& solved = solution_->indentation;
+  if (!solved.converged) return invalidForce(solved.reason.c_str());
+  const Eigen::Vector3d ahead = contact_->displacement - solved.tip_displacement;
+  if (ahead.norm() > config_.extrapolation_limit) {
+    char text[120];
+    std::snprintf(text, sizeof(text), "the tip is %.6g m ahead of the last solution, allowed %.6g", ahead.norm(),
+                  config_.extrapolation_limit);
+    return invalidForce(text);
+  }
+  TipForce result;
+  result.force = solved.force - solved.stiffness * ahead;
+  return result;
+}
+
+TipForce OnlineCellModel::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time) {
+  const bool known = tip.allFinite() && axis.allFinite() && std::isfinite(time);
+  TipForce force = known ? computeForce(tip, axis, time) : invalidForce("the needle's pose is not finite");
+  shape_.write(contact_ ? Shape{solution_, place_} : Shape{});
+  return force;
+}
+
+TipForce OnlineCellModel::computeForce(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time) {
+  invalid_reason_.clear();
+  takeSolution(time);
+  if (!contact_) {
+    const auto touch = cell_->touch(tip, axis, hint_);
+    if (!touch) return {};
+    prepare(tip, axis, *touch, time);
+    if (cell_->isClear(tip, axis, *touch)) return {};
+    contact_ = Contact{};
+    contact_->contact_point = *touch;
+    touched_ = time;
+  }
+  contact_->displacement = tip - contact_->contact_point;
+  contact_->indentation = -contact_->displacement.dot(axis);
+  const char* refusal = cell_->refusal(axis);
+  TipForce result = refusal != nullptr ? invalidForce(refusal) : touchForce(time);
+  const double push = result.force.dot(axis);
+  if ((push <= 0 || !result.valid) && cell_->isClear(tip, axis, contact_->contact_point)) {
+    release();
+    return {};
+  }
+  if (push < 0) return {};  // there is no adhesion; what pulls is the extrapolation
+  return result;
+}
+
+std::optional<CellModel::Solution> OnlineCellModel::solution(double time) const {
+  if (!solution_) return std::nullopt;
+  const IndentationSolution& solved = solution_->indentation;
+  return Solution{solved.stiffness, solved.newton_iterations, solved.cpu_time, time - solution_time_,
+                  solved.smallest_jacobian};
+}
+
+std::vector<std::array<int, 3>> OnlineCellModel::triangles() const { return rest_.triangles; }
+
+std::vector<std::uint32_t> OnlineCellModel::held() const { return rest_.held; }
+
+CellModel::DeformedSurface OnlineCellModel::deformedSurface() {
+  shape_.update();
+  const Shape& shape = shape_.value();
+  DeformedSurface picture;
+  for (std::size_t i = 0; i < rest_.vertices.size(); ++i) {
+    Eigen::Vector3d moved = Eigen::Vector3d::Zero();
+    if (shape.solution) moved = shape.solution->displacement.segment<3>(3 * i);
+    const bool own = shape.solution && shape.solution->rest;
+    picture.vertices.emplace_back((own ? (*shape.solution->rest)[i] : rest_.vertices[i]) + moved);
+    picture.displacement.push_back(moved.norm());
+  }
+  picture.members = shape.solution ? shape.solution->members : members_at_rest_;
+  if (shape.touched) picture.touched = cell_->onSurface(shape.touched->patch);
+  return picture;
+}
+
+}  // namespace microinjection

@@ -1,0 +1,149 @@
+#include "cell/model/online_fem_cell.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include "base/errors.h"
+#include "cell/mechanics/symmetric_solver.h"
+#include "cell/mesh/outer_surface.h"
+#include "cell/model/cell_problem.h"
+#include "cell/model/contact_frame.h"
+#include "cell/model/contact_time.h"
+#include "cell/model/scene_mesh.h"
+
+namespace microinjection {
+namespace {
+
+/// Of the tip's radius: way of the tip for one answer. Shorter ones cost as many iterations.
+constexpr double kPiece = 0.25;
+/// Of a rounded tip's radius, at which a contact is prepared: at the touch itself the cell has no stiffness yet.
+constexpr double kPrepared = 0.1;
+constexpr double kUpright = 0.999;   ///< cosine: within 2.5 degrees
+constexpr double kTremble = 0.1;     ///< of the tip's radius: no other place
+constexpr double kOnCircle = 1.001;  ///< of the holding circle's radius
+
+bool isViscoelastic(const Scene& scene) {
+  const auto& layers = scene.cell.layers;
+  return std::any_of(layers.begin(), layers.end(),
+                     [](const Scene::Layer& layer) { return !layer.material.viscoelasticity.empty(); });
+}
+
+class SweptPath : public TipPath {
+ public:
+  SweptPath(const Scene& scene, const QuadraticMesh<2>& section)
+      : piece_(kPiece * scene.needle.tip.radius),
+        clock_(isViscoelastic(scene)),
+        problem_(scene, sweepScene(scene, section, OnlineFemCell::kLevel), ElementKind::kP2P0),
+        nodes_(outerNodes(problem_.body().mesh())) {
+    auto rest = std::make_shared<std::vector<Eigen::Vector3d>>();
+    for (int node : nodes_) rest->push_back(problem_.body().mesh().nodes[node]);
+    rest_ = std::move(rest);
+  }
+
+  IndentationSolution follow(const TipMotion& move) override {
+    if (clock_.startsAgain(move)) problem_.reset();
+    const Eigen::Vector3d way = move.displacement - problem_.tipDisplacement();
+    const double share = std::min(1.0, piece_ / std::max(way.norm(), 1e-3 * piece_));
+    const Eigen::Vector3d target =
+        share < 1 ? Eigen::Vector3d(problem_.tipDisplacement() + share * way) : move.displacement;
+    return problem_.solve(target, clock_.pass(move, share));
+  }
+
+  std::shared_ptr<const std::vector<Eigen::Vector3d>> rest() const override { return rest_; }
+
+  Eigen::VectorXd surfaceDisplacement() const override {
+    Eigen::VectorXd result(3 * nodes_.size());
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      result.segment<3>(3 * i) = problem_.state().segment<3>(3 * nodes_[i]);
+    }
+    return result;
+  }
+
+  const CellProblem<3>& problem() const { return problem_; }
+
+ private:
+  double piece_;  ///< m
+  ContactTime clock_;
+  CellProblem<3> problem_;
+  std::vector<int> nodes_;  ///< of the outer surface
+  std::shared_ptr<const std::vector<Eigen::Vector3d>> rest_;
+};
+
+}  // namespace
+
+OnlineFemCell::OnlineFemCell(const Scene& scene) : scene_(scene) {
+  scene.validate();
+  scene.requireContinuum("elements of the cell's inside");
+  if (scene.needle.contact.adhesion_energy > 0) {  // what pulls would be taken for the extrapolation's
+    throw ConfigError("needle/contact/adhesion: must be left out: a live cell lets the tip go (indent can do it)");
+  }
+  SymmetricSolver::useOneThread();
+  const Scene::Tip& tip = scene.needle.tip;
+  if (tip.rounded()) tip_ = RoundedTip::make(tip.shape, tip.radius, tip.edge_radius);
+  section_ = makeSceneMesh<2>(scene, kLevel);
+  try {
+    const SweptPath path(scene, section_);
+    surface_.vertices = *path.rest();
+    const QuadraticMesh<3>& mesh = path.problem().body().mesh();
+    for (const Eigen::Vector3i& t : outerTriangles(mesh)) surface_.triangles.push_back({t[0], t[1], t[2]});
+    elements_ = static_cast<int>(mesh.elements.size());
+    unknowns_ = path.problem().unknowns();
+  } catch (const std::invalid_argument& error) {
+    throw ConfigError(std::string("the cell cannot be solved live: ") + error.what());
+  }
+  const double held = kOnCircle * scene.holding_pipette.contact_radius;
+  for (std::size_t i = 0; i < surface_.vertices.size(); ++i) {
+    const Eigen::Vector3d& x = surface_.vertices[i];
+    if (x.z() < 0 && x.head<2>().norm() <= held) surface_.held.push_back(static_cast<std::uint32_t>(i));
+  }
+}
+
+std::string OnlineFemCell::description() const {
+  std::ostringstream text;
+  text << "P2-P0 elements on a coarse mesh, whose force is some per cent too large and follows a slow tip only; "
+       << elements_ << " tetrahedra, " << unknowns_ << " unknowns";
+  return text.str();
+}
+
+const char* OnlineFemCell::refusal(const Eigen::Vector3d& axis) const {
+  return axis.z() < kUpright ? "the needle is not upright, and the live cell under this tip needs it so" : nullptr;
+}
+
+std::optional<Eigen::Vector3d> OnlineFemCell::touch(const Eigen::Vector3d& tip, const Eigen::Vector3d& /*upright*/,
+                                                    int& /*hint*/) const {
+  const auto place = ContactFrame::at(scene_.radius(), tip_, tip.head<2>());
+  if (!place) return std::nullopt;
+  return place->origin;
+}
+
+bool OnlineFemCell::isClear(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis,
+                            const Eigen::Vector3d& contact_point) const {
+  if (tip_) return tip_->distance(-tip) > scene_.radius();
+  if ((tip - contact_point).dot(axis) > 0) return true;
+  const auto now = ContactFrame::at(scene_.radius(), tip_, tip.head<2>());  // it may have gone sideways
+  return !now || tip.z() > now->origin.z();
+}
+
+ContactPoint OnlineFemCell::contactAt(const Eigen::Vector3d& contact_point, const Eigen::Vector3d& /*upright*/) const {
+  Eigen::Vector2d line = contact_point.head<2>();
+  if (line.norm() < kTremble * scene_.needle.tip.radius) line.setZero();
+  return {ContactFrame::at(scene_.radius(), tip_, line)->origin, {}};
+}
+
+Eigen::Vector3d OnlineFemCell::preparedDisplacement() const {
+  return tip_ ? Eigen::Vector3d(0, 0, -kPrepared * tip_->radius()) : Eigen::Vector3d::Zero();
+}
+
+std::unique_ptr<TipPath> OnlineFemCell::path(const ContactPoint& place) const {
+  Scene there = scene_;
+  there.needle.offset = place.point.head<2>();
+  try {
+    return std::make_unique<SweptPath>(there, section_);
+  } catch (const InvertedElement&) {
+    throw std::runtime_error("the live cell's mesh cannot be ordered around a needle so far out");
+  }
+}
+
+}  // namespace microinjection

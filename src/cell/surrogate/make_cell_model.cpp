@@ -1,0 +1,91 @@
+#include "cell/surrogate/make_cell_model.h"
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "base/errors.h"
+#include "cell/model/online_cell.h"
+#include "cell/model/puncturable_cell.h"
+#include "cell/surrogate/model_choice.h"
+#include "cell/surrogate/surrogate_cell_model.h"
+
+namespace microinjection {
+namespace {
+
+ChosenCellModel live(const Scene& scene, const CellTrackerConfig& config, const std::string& said, bool as_required) {
+  const auto cell = makeLiveCell(scene);
+  auto tracker = std::make_unique<OnlineCellModel>(cell, config);
+  return {std::make_unique<PuncturableCell>(scene, std::move(tracker)), said + ": " + cell->description(), as_required};
+}
+
+ChosenCellModel unprepared(const Scene& scene, const CellTrackerConfig& config, const std::string& why) {
+  try {
+    return live(scene, config, why + "; so it is live", false);
+  } catch (const ConfigError& error) {
+    throw ConfigError(why + "; and the live model cannot serve it: " + error.what());
+  }
+}
+
+/// What is the matter with a scene's prepared data, and what to do; `call` makes them.
+std::string whyNotPrepared(const CacheRead<SurrogateData>& read, const std::string& call) {
+  switch (read.state) {
+    case CacheState::kDamaged:
+      return "the prepared data are damaged (" + read.reason + "); to make them anew, run: " + call;
+    case CacheState::kNotRegular:
+      return "the prepared data are not used (" + read.reason + "); to make them, remove it and run: " + call;
+    case CacheState::kUnreadable:
+      return "the prepared data cannot be used (" + read.reason + "); make it readable, or remove it and run: " + call;
+    case CacheState::kOther:
+      return "the prepared data are not of this program and cell (" + read.reason + "); run: " + call;
+    default:
+      return "the cell is not prepared; run: " + call;
+  }
+}
+
+/// Why a scene cannot be prepared; empty when it can.
+std::string cannotBePrepared(const Scene& scene) {
+  try {
+    Preparation::check(scene);
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+ChosenCellModel makeCellModel(const Scene& scene, const std::string& model, const CellTrackerConfig& config,
+                              const std::string& path) {
+  if (scene.cell.tensegrity && model != "prepared") {
+    return live(scene, config, "the cell is a tensegrity, solved live", true);  // its scene requires nothing
+  }
+  if (model == "live") return live(scene, config, "the cell is live, as asked for", true);
+  const std::string refused = cannotBePrepared(scene);
+  if (!refused.empty()) {
+    if (model == "prepared") throw ConfigError("model = prepared: " + refused);
+    return unprepared(scene, config, "the cell cannot be prepared (" + refused + ")");
+  }
+  const PreparationRange range = PreparationRange::standard(scene);
+  const std::string call = "rosrun cell_microinjection prepare --scene " + path;
+  auto loaded = SurrogateData::load(scene, range, preparedFile(scene, Preparation::plan(scene, range)));
+  const std::string why = loaded ? "" : whyNotPrepared(loaded, call);
+  if (!loaded && model == "prepared") throw ConfigError("model = prepared: " + why);
+  if (!loaded) return unprepared(scene, config, why);
+  const auto cell = std::make_shared<const SurrogateData>(std::move(*loaded.content));
+  std::vector<ModelFigures> figures = {measurePreparedCell(scene, cell)};
+  std::string note;
+  if (model != "prepared") {
+    const CacheRead<ModelFigures> other = loadFigures(scene, "live");
+    if (other) figures.push_back(*other.content);
+    if (!other && other.state != CacheState::kMissing)
+      note = "; figures of the live model: " + other.reason + "; run: " + call;
+  }
+  const ModelChoice choice = chooseModel(scene.requirements, figures);
+  const std::string said = "model " + model + ": " + choice.reason + note;
+  if (choice.name == "live") return live(scene, config, said + "; it is", choice.meets);
+  auto tracker = std::make_unique<SurrogateCellModel>(scene, cell);
+  return {std::make_unique<PuncturableCell>(scene, std::move(tracker)), said, choice.meets};
+}
+
+}  // namespace microinjection

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "cell/model/cell_model.h"
+#include "cell/model/online_cell_model.h"
+
+namespace microinjection {
+
+struct ChosenCellModel {
+  std::unique_ptr<CellModel> cell;
+  std::string said;         ///< which model it is, and why, for people
+  bool as_required = true;  ///< else `said` is a warning
+};
+
+/// A scene's cell for a moving needle. `model`: prepared (what `prepare` left), live (see makeLiveCell) or auto (chosen
+/// by the scene's requirements, see chooseModel; live where nothing is prepared). Never another than was asked for.
+/// `path` of the scene, for messages. Throws ConfigError when the model cannot serve the scene.
+ChosenCellModel makeCellModel(const Scene& scene, const std::string& model, const CellTrackerConfig& config,
+                              const std::string& path);
+
+}  // namespace microinjection

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "base/latest_value.h"
+#include "cell/model/cell_model.h"
+#include "cell/surrogate/force_memory.h"
+#include "cell/surrogate/surrogate_contact.h"
+
+namespace microinjection {
+
+/// The prepared cell under a moving needle: converged force at every step, in microseconds. Beside the prepared
+/// range it says so while the force fades. It trusts nothing with a needle that is not upright, or that touches
+/// too far from the pole, nor with one that goes on below the range, where the fading force would be felt as a
+/// puncture; one that has come to rest there may be withdrawn. A viscoelastic cell's force relaxes, and never pulls
+/// along the pipette. A step allocates nothing and takes no lock.
+class SurrogateCellModel : public CellModel {
+ public:
+  SurrogateCellModel(const Scene& scene, std::shared_ptr<const SurrogateData> cell);
+
+  TipForce step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time) override;
+
+  void release() override;
+
+  const std::optional<Contact>& contact() const override { return contact_; }
+  const std::string& invalidReason() const override { return invalid_reason_; }
+  std::optional<Solution> solution(double time) const override;
+  std::vector<std::array<int, 3>> triangles() const override;
+  std::vector<std::uint32_t> held() const override;
+  DeformedSurface deformedSurface() override;
+
+ private:
+  TipForce computeForce(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double duration);
+  TipForce invalidForce(const char* reason);
+  bool continuesBelow(bool too_deep, double duration);
+
+  Scene scene_;
+  std::shared_ptr<const SurrogateData> cell_;
+  SurrogateContact needle_;
+  ForceMemory memory_;
+  double time_ = 0;  ///< s, of the last step
+  std::optional<Contact> contact_;
+  double deepest_ = 0;                                   ///< m, indentation, below the range
+  double rested_ = 0;                                    ///< s, without going deeper there
+  Eigen::Matrix3d stiffness_ = Eigen::Matrix3d::Zero();  ///< N/m
+  std::string invalid_reason_;
+  LatestValue<SurrogateContact::Shape> shape_;  ///< from the thread that steps to the one that draws
+};
+
+}  // namespace microinjection

@@ -1,0 +1,131 @@
+#include "cell/surrogate/surrogate_contact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "cell/surrogate/range_border.h"
+
+namespace microinjection {
+namespace {
+
+constexpr double kOnAxis = 0.035;  ///< rad, of the place of contact: there the range goes deeper
+/// Overlap of the tip with the cell at rest, over the tip's displacement, at which a contact ends: what sticks follows
+/// the tip a little beyond the cell's surface.
+constexpr double kEnd = -0.05;
+constexpr double kFading = 0.03;  ///< same, in which the energy falls to nothing, so that the force ends continuously
+
+/// 0 below 0, 1 above 1, smooth.
+Jet smoothStep(const Jet& x) {
+  const double q = x.value;
+  if (q <= 0) return {};
+  if (q < 1) return chain(x, q * q * (3 - 2 * q), 6 * q * (1 - q), 6 - 12 * q);
+  Jet one;
+  one.value = 1;
+  return one;
+}
+
+}  // namespace
+
+SurrogateContact::SurrogateContact(const Scene& scene, std::shared_ptr<const SurrogateData> cell)
+    : scene_(scene), cell_(std::move(cell)) {
+  const Scene::Tip& tip = scene.needle.tip;
+  if (tip.rounded()) shape_ = RoundedTip::make(tip.shape, tip.radius, tip.edge_radius);
+  cell_->energy.makeLocal(0, local_energy_);
+  if (!cell_->field.empty()) cell_->field.makeLocal(0, local_field_);
+}
+
+Jet SurrogateContact::overlap(const Eigen::Vector3d& tip) const {
+  if (shape_) {
+    const Gap gap = shape_->gap(-tip);
+    return {scene_.radius() - gap.distance, gap.normal, -gap.curvature};
+  }
+  const Jet x = Jet::coordinate(0, tip.x()), y = Jet::coordinate(1, tip.y());
+  Jet squared = -1.0 * (x * x + y * y);
+  squared.value += scene_.radius() * scene_.radius();
+  constexpr double kRim = 0.05;  // of the radius, from the cell's silhouette, where the needle passes by
+  if (!(squared.value > kRim * kRim * scene_.radius() * scene_.radius())) {
+    return {-scene_.radius(), Eigen::Vector3d::UnitZ(), {}};
+  }
+  return sqrt(squared) - Jet::coordinate(2, tip.z());
+}
+
+SurrogateContact::Local SurrogateContact::evaluate(const Jet& overlap) {
+  const CountedDisplacement counted(cell_->range, contact_frame_->angle < kOnAxis, displacement_);
+  prepared_ = counted.inside && contact_frame_->angle <= 1.001 * cell_->range.angle;
+  too_deep_ = counted.too_deep;
+  const Eigen::Vector3d u = counted.value();
+  Local local;
+  local.energy = counted.compose(local_energy_.evaluate(u));
+  local.force = -local.energy.gradient;
+  local.stiffness = local.energy.hessian;
+  if (!cell_->field.empty()) {
+    Eigen::Matrix3d jacobian;
+    const Eigen::Vector3d force = local_field_.evaluate(u, jacobian);
+    const Jet turned = counted.compose({0, force, jacobian});  // as a gradient is
+    local.force = turned.gradient;
+    local.stiffness = -0.5 * (turned.hessian + turned.hessian.transpose());
+  }
+  const double length = displacement_.norm();
+  if (overlap.value >= (kEnd + kFading) * length) return local;
+  const Eigen::Matrix3d& turn = contact_frame_->rotation;
+  const Jet there{overlap.value, turn.transpose() * overlap.gradient, turn.transpose() * overlap.hessian * turn};
+  Jet squared;
+  for (int k = 0; k < 3; ++k) {
+    const Jet x = Jet::coordinate(k, displacement_[k]);
+    squared = squared + x * x;
+  }
+  Jet left = there * inverse(sqrt(squared));
+  left.value -= kEnd;
+  const Jet fade = smoothStep((1 / kFading) * left);
+  local.energy = local.energy * fade;
+  local.force *= fade.value;
+  local.stiffness *= fade.value;
+  return local;
+}
+
+SurrogateContact::Result SurrogateContact::step(const Eigen::Vector3d& tip) {
+  Result answer;
+  energy_ = 0;
+  const Jet overlap = this->overlap(tip);
+  if (contact_frame_) displacement_ = contact_frame_->rotation.transpose() * (tip - contact_frame_->origin);
+  if (overlap.value < (contact_frame_ ? kEnd * displacement_.norm() : 0)) contact_frame_.reset();
+  if (!contact_frame_) {
+    if (overlap.value < 0) return answer;
+    contact_frame_ = ContactFrame::at(scene_.radius(), shape_, tip.head<2>());
+    if (!contact_frame_) return answer;
+    const double angle = std::min(contact_frame_->angle, cell_->range.angle);
+    cell_->energy.makeLocal(angle, local_energy_);
+    if (!cell_->field.empty()) cell_->field.makeLocal(angle, local_field_);
+    correction_.reset();
+    displacement_ = contact_frame_->rotation.transpose() * (tip - contact_frame_->origin);
+  }
+  const Local local = evaluate(overlap);
+  Eigen::Vector3d force = -local.energy.gradient;
+  energy_ = local.energy.value;
+  if (!cell_->field.empty()) {
+    force *= 1 - PassiveCorrection::kReserve;
+    force += correction_.step(displacement_, local.force - force, energy_);
+    energy_ = (1 - PassiveCorrection::kReserve) * energy_ + correction_.stored();
+  }
+  answer.prepared = prepared_;
+  answer.too_deep = too_deep_;
+  answer.force = contact_frame_->rotation * force;
+  answer.stiffness = contact_frame_->rotation * local.stiffness * contact_frame_->rotation.transpose();
+  return answer;
+}
+
+SurrogateContact::Shape SurrogateContact::shape() const {
+  if (!contact_frame_) return {};
+  return {std::min(contact_frame_->angle, cell_->range.angle), contact_frame_->rotation,
+          CountedDisplacement(cell_->range, contact_frame_->angle < kOnAxis, displacement_).value()};
+}
+
+void SurrogateContact::surface(const Shape& shape, Eigen::Matrix3Xd& at_rest, Eigen::Matrix3Xd& displaced) const {
+  Eigen::VectorXd rest, moved;
+  cell_->surface.evaluate(shape.angle, shape.displacement, rest, moved);
+  at_rest = shape.rotation * Eigen::Map<const Eigen::Matrix3Xd>(rest.data(), 3, rest.size() / 3);
+  displaced = shape.rotation * Eigen::Map<const Eigen::Matrix3Xd>(moved.data(), 3, moved.size() / 3);
+}
+
+}  // namespace microinjection

@@ -1,0 +1,148 @@
+#include "cell/surrogate/make_cell_model.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <limits>
+#include <string>
+
+#include "base/errors.h"
+#include "cell/surrogate/cached_cell.h"
+#include "cell/surrogate/model_choice.h"
+
+namespace microinjection {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// With a cache of its own, in which nothing was prepared.
+class ServeNeedle : public testing::Test {
+ protected:
+  void SetUp() override {
+    fs::remove_all(cache_);
+    setenv("XDG_CACHE_HOME", cache_.c_str(), 1);
+  }
+  void TearDown() override { fs::remove_all(cache_); }
+
+  static std::string file(const Scene& scene) {
+    return preparedFile(scene, Preparation::plan(scene, PreparationRange::standard(scene)));
+  }
+
+  static std::string refusal(const Scene& scene, const std::string& model) {
+    try {
+      makeCellModel(scene, model, {}, "a.yaml");
+    } catch (const ConfigError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  const std::string cache_ = testing::TempDir() + "serve_needle_cache";
+};
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+TEST_F(ServeNeedle, AnUnpreparedRoundedTipIsLiveWithAWarning) {
+  CellTrackerConfig config;
+  config.fixed_period = true;
+  const ChosenCellModel served = makeCellModel(pipette(), "auto", config, "a.yaml");
+  EXPECT_FALSE(served.as_required);
+  EXPECT_TRUE(has(served.said, "not prepared; run: rosrun cell_microinjection prepare --scene a.yaml")) << served.said;
+  EXPECT_TRUE(has(served.said, "live: P2-P0")) << served.said;
+  EXPECT_TRUE(has(served.said, "too large")) << served.said;
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  for (int i = 0; i < 200; ++i) served.cell->step({0, 0, 27.5e-6}, up, 1e-3 * i);
+  const TipForce force = served.cell->step({0, 0, 27.5e-6}, up, 0.2);
+  EXPECT_TRUE(force.valid) << served.cell->invalidReason();
+  EXPECT_GT(force.force.z(), 0);
+}
+
+TEST_F(ServeNeedle, AnUnpreparedDiscIsLiveOnLinearTetrahedra) {
+  Scene disc;
+  disc.mesh.size = 20e-6;
+  const ChosenCellModel served = makeCellModel(disc, "auto", {}, "a.yaml");
+  EXPECT_FALSE(served.as_required);
+  EXPECT_TRUE(has(served.said, "live: P1 tetrahedra, whose force is too large")) << served.said;
+}
+
+TEST_F(ServeNeedle, PreparedRefusesWhatIsNot) {
+  EXPECT_TRUE(has(refusal(pipette(), "prepared"), "not prepared; run: rosrun")) << refusal(pipette(), "prepared");
+  Scene rubbing = pipette();
+  rubbing.needle.contact = {"sliding", 0.2};
+  EXPECT_TRUE(has(refusal(rubbing, "prepared"), "friction = 0.2")) << refusal(rubbing, "prepared");
+}
+
+/// An operator who reads "not prepared" would not look for a disk that fails.
+TEST_F(ServeNeedle, DamagedDataAreNamedAndHowToMakeThemAnew) {
+  Scene disc;
+  disc.mesh.size = 20e-6;
+  const std::string path = file(disc);
+  smallCell(disc).save(disc, PreparationRange::standard(disc), path);
+  EXPECT_EQ(refusal(disc, "prepared"), "");
+  fs::resize_file(path, fs::file_size(path) - 1);
+  const std::string damaged = "the prepared data are damaged (" + path + ": is damaged: ";
+  const std::string call = "run: rosrun cell_microinjection prepare --scene a.yaml";
+  const std::string refused = refusal(disc, "prepared");
+  EXPECT_TRUE(has(refused, damaged) && has(refused, call)) << refused;
+  const ChosenCellModel served = makeCellModel(disc, "auto", {}, "a.yaml");
+  EXPECT_FALSE(served.as_required);
+  EXPECT_TRUE(has(served.said, damaged) && has(served.said, call)) << served.said;
+  EXPECT_TRUE(has(served.said, "live: P1 tetrahedra")) << served.said;
+}
+
+TEST_F(ServeNeedle, WhatIsNoFileOrOfAnotherVersionIsNotCalledUnprepared) {
+  const Scene scene = pipette();
+  const std::string path = file(scene);
+  writeCacheFile(path, "another version", "body");
+  EXPECT_TRUE(has(refusal(scene, "prepared"), path + ": was written by another version")) << refusal(scene, "prepared");
+  fs::remove(path);
+  ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);  // nobody writes to it
+  const std::string pipe = refusal(scene, "prepared");
+  EXPECT_TRUE(has(pipe, path + ": is not a regular file") && has(pipe, "remove it and run: rosrun")) << pipe;
+  fs::remove(path);
+  fs::create_symlink(path, path);
+  const std::string loop = refusal(scene, "prepared");
+  EXPECT_TRUE(has(loop, path + ": cannot be read: ") && has(loop, "run: rosrun")) << loop;
+}
+
+TEST_F(ServeNeedle, DamagedFiguresOfTheLiveModelAreNamed) {
+  const Scene scene = pipette();
+  smallCell(scene).save(scene, PreparationRange::standard(scene), file(scene));
+  saveFigures(scene, {"live", std::numeric_limits<double>::quiet_NaN(), 1e-3});
+  const ChosenCellModel served = makeCellModel(scene, "auto", {}, "a.yaml");
+  EXPECT_TRUE(has(served.said, "figures of the live model: ") && has(served.said, "is damaged: ")) << served.said;
+}
+
+TEST_F(ServeNeedle, LiveIsServedAsAskedFor) {
+  const ChosenCellModel served = makeCellModel(pipette(), "live", {}, "a.yaml");
+  EXPECT_TRUE(served.as_required);
+  EXPECT_TRUE(has(served.said, "as asked for: P2-P0")) << served.said;
+}
+
+TEST_F(ServeNeedle, ATensegrityIsServedLiveWithoutAWarning) {
+  const Scene scene = loadScene(MICROINJECTION_SOURCE_DIR "/config/cells/mouse_oocyte_tensegrity.yaml");
+  const ChosenCellModel served = makeCellModel(scene, "auto", {}, "a.yaml");
+  EXPECT_TRUE(served.as_required);
+  EXPECT_TRUE(has(served.said, "solved live: tensegrity of ")) << served.said;
+  EXPECT_FALSE(served.cell->deformedSurface().members.empty());
+  EXPECT_TRUE(has(refusal(scene, "prepared"), "cell/model = tensegrity")) << refusal(scene, "prepared");
+}
+
+/// What has a memory of its own, or rubs, is no prepared cell.
+TEST_F(ServeNeedle, WhatCannotBePreparedIsLive) {
+  Scene viscous = pipette();
+  viscous.cell.material().viscoelasticity.viscosity = 20;
+  Scene rubbing = pipette();
+  rubbing.needle.contact = {"sliding", 0.2};
+  for (const Scene& scene : {viscous, rubbing}) {
+    const ChosenCellModel served = makeCellModel(scene, "auto", {}, "a.yaml");
+    EXPECT_FALSE(served.as_required);
+    EXPECT_TRUE(has(served.said, "cannot be prepared (")) << served.said;
+    EXPECT_TRUE(has(served.said, "so it is live: P2-P0")) << served.said;
+  }
+}
+
+}  // namespace
+}  // namespace microinjection

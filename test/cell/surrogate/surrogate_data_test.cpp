@@ -1,0 +1,82 @@
+#include "cell/surrogate/surrogate_data.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <limits>
+
+#include "cell/surrogate/cached_cell.h"
+
+namespace microinjection {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+class StoredCell : public testing::Test {
+ protected:
+  void SetUp() override { cell_.save(scene_, cell_.range, path_); }
+  void TearDown() override { std::filesystem::remove(path_); }
+
+  CacheRead<SurrogateData> load() const {
+    return SurrogateData::load(scene_, PreparationRange::standard(scene_), path_);
+  }
+
+  const Scene scene_ = pipette();
+  const SurrogateData cell_ = smallCell(scene_);
+  const std::string path_ = testing::TempDir() + "microinjection_prepared.cell";
+};
+
+TEST_F(StoredCell, IsReadAsItWasWritten) {
+  const CacheRead<SurrogateData> read = load();
+  ASSERT_TRUE(read) << read.reason;
+  EXPECT_EQ(read.content->range.axis_depth, cell_.range.axis_depth);
+  EXPECT_EQ(read.content->energy.coefficients(), cell_.energy.coefficients());
+  EXPECT_EQ(read.content->field.coefficients(), cell_.field.coefficients());
+  Eigen::VectorXd rest[2], displaced[2];
+  const Eigen::Vector3d u(1e-6, 0, -2e-6);
+  cell_.surface.evaluate(0.2, u, rest[0], displaced[0]);
+  read.content->surface.evaluate(0.2, u, rest[1], displaced[1]);
+  EXPECT_EQ(rest[0], rest[1]);
+  EXPECT_EQ(displaced[0], displaced[1]);
+}
+
+/// What no checksum can tell: a program that stored nonsense. A force that is no number must not reach a hand.
+TEST_F(StoredCell, WhatCannotBeIsDamagedWhateverItsChecksum) {
+  const std::size_t energy = 7 * sizeof(double) + 3 * sizeof(std::int32_t);  // its size, then its coefficients
+  const std::size_t field = energy + sizeof(std::uint64_t) + sizeof(double) * cell_.energy.coefficients().size();
+  const std::size_t surface = field + sizeof(std::uint64_t) + sizeof(double) * cell_.field.coefficients().size();
+  const std::size_t nodes = surface + 4 * sizeof(double), corners = nodes + 2 * sizeof(std::int64_t);
+  const std::vector<std::pair<const char*, std::function<void(std::string&)>>> changes = {
+      {"empty", [](std::string& body) { body.clear(); }},
+      {"short", [](std::string& body) { body.pop_back(); }},
+      {"long", [](std::string& body) { body += 'x'; }},
+      {"depth", [](std::string& body) { overwrite(body, 0, kNan); }},
+      {"deeper than was asked for", [](std::string& body) { overwrite(body, 0, 1.0); }},
+      {"scale", [](std::string& body) { overwrite(body, sizeof(double), 0.0); }},
+      {"error", [](std::string& body) { overwrite(body, 5 * sizeof(double), kNan); }},
+      {"degree", [](std::string& body) { overwrite<std::int32_t>(body, 7 * sizeof(double), -1); }},
+      {"huge size", [=](std::string& body) { overwrite(body, energy, ~std::uint64_t{0}); }},
+      {"energy", [=](std::string& body) { overwrite(body, energy + 2 * sizeof(double), kNan); }},
+      {"force", [=](std::string& body) { overwrite(body, field + 2 * sizeof(double), kNan); }},
+      {"surface's range", [=](std::string& body) { overwrite(body, surface, 0.0); }},
+      {"number of nodes", [=](std::string& body) { overwrite<std::int64_t>(body, nodes, 4); }},
+      {"corner", [=](std::string& body) { overwrite<std::int32_t>(body, corners, 3); }},
+      {"mirrored", [=](std::string& body) { overwrite<std::int32_t>(body, corners + 12 + sizeof(std::uint64_t), -1); }},
+      {"mode", [](std::string& body) { overwrite(body, body.size() - sizeof(double), kNan); }}};
+  for (const auto& [what, change] : changes) {
+    cell_.save(scene_, cell_.range, path_);
+    changeBody(path_, change);
+    const CacheRead<SurrogateData> read = load();
+    EXPECT_FALSE(read) << what;
+    EXPECT_EQ(read.state, CacheState::kDamaged) << what;
+    EXPECT_EQ(read.reason.find(path_ + ": is damaged: "), 0u) << what << ": " << read.reason;
+  }
+}
+
+TEST_F(StoredCell, OfAnotherVersionIsNotCalledDamaged) {
+  writeCacheFile(path_, "prepared cell 0", "body");
+  EXPECT_EQ(load().state, CacheState::kOther);
+}
+
+}  // namespace
+}  // namespace microinjection
