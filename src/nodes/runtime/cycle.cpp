@@ -7,6 +7,11 @@
 #include "nodes/runtime/lockstep.h"
 
 namespace microinjection {
+namespace {
+
+constexpr double kWarnPeriod = 5;  // s
+
+}  // namespace
 
 Cycle::Cycle(const ros::NodeHandle& node, double rate)
     : period_(1 / rate),
@@ -100,6 +105,14 @@ bool Cycle::readyFor(const ros::Time& tick) const {
   return answered(InputPhase::kThisTick, tick) && (first || answered(InputPhase::kPreviousTick, stepped_tick_));
 }
 
+std::string Cycle::inputsWithoutPublisher() const {
+  std::string topics;
+  for (const auto& input : inputs_) {
+    if (input->publisher_name.empty()) topics += " " + input->topic;
+  }
+  return topics;
+}
+
 bool Cycle::hasDeparted(const std::string& participant) const {
   return !departed_.empty() && (' ' + departed_).find(' ' + participant + ' ') != std::string::npos;
 }
@@ -112,9 +125,13 @@ void Cycle::runLockstep() {
       kLeftTopic, 10, [this](const std_msgs::StringConstPtr& message) { departed_ = message->data; });
   acknowledgement_ = node_.advertise<std_msgs::Header>(kAcknowledgementTopic, 10, true);
   for (auto& output : outputs_) output->announce();
-  const auto connected = [](const auto& input) { return !input->publisher_name.empty(); };
-  while (shouldContinue() && !std::all_of(inputs_.begin(), inputs_.end(), connected)) {
+  ros::SteadyTime warned = ros::SteadyTime::now();
+  std::string missing;
+  while (shouldContinue() && !(missing = inputsWithoutPublisher()).empty()) {
     queue_.callAvailable(ros::WallDuration(0.1));
+    if (secondsBetween(warned, ros::SteadyTime::now()) < kWarnPeriod) continue;
+    warned = ros::SteadyTime::now();
+    ROS_WARN_STREAM("waits for the publishers of:" << missing);
   }
   acknowledge(ros::Time());  // ready for the first tick
   while (shouldContinue()) {

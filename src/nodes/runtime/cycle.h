@@ -78,6 +78,8 @@ class Cycle {
   bool answered(InputPhase phase, const ros::Time& stamp) const;
   bool readyFor(const ros::Time& tick) const;
   bool hasDeparted(const std::string& participant) const;
+  /// Topics whose publishers have not announced themselves yet, each with a space before it.
+  std::string inputsWithoutPublisher() const;
   /// It goes where the topic is remapped to.
   std::string silentTopic(const std::string& topic) const { return node_.resolveName(topic) + kNoMessageSuffix; }
   void checkMaster();

@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "base/errors.h"
+#include "nodes/runtime/lost_publishers.h"
 #include "nodes/runtime/real_time.h"
 
 namespace microinjection {
@@ -24,6 +25,7 @@ constexpr Seconds kPeriod(0.5);  ///< from an answer to the next question
 /// Without an answer. Long, since this thread and the master come last where nodes that run in real time need all of
 /// the processor; one that has died refuses at once.
 constexpr Seconds kPatience(5);
+constexpr unsigned kAnswersALinkCheck = 2;  ///< 1 s from one look for lost publishers to the next
 
 bool masterKnowsUs() {
   XmlRpc::XmlRpcValue request, response, uri;
@@ -42,6 +44,8 @@ struct MasterMonitor::Shared {
   double orphan_timeout = 60;      // s
   std::mutex mutex;                // of what follows, which a step does not look at
   std::condition_variable changed;
+  unsigned answers = 0;            // the thread's
+  LostPublishers lost_publishers;  // the thread's
   bool ending = false;
   bool ended = false;
 
@@ -53,6 +57,7 @@ struct MasterMonitor::Shared {
       refused = !known;
       if (known) answered = Clock::now();
       away = known ? 0 : away + kPeriod.count();
+      if (known && ++answers % kAnswersALinkCheck == 0) lost_publishers.check();
       if (away > orphan_timeout && !asked) ros::requestShutdown();
       lock.lock();
     }
