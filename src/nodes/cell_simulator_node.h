@@ -58,7 +58,7 @@ class CellSimulatorNode {
   Input<geometry_msgs::PoseStamped>& needle_;
   Output<geometry_msgs::WrenchStamped>& force_;
   Output<cell_microinjection::CellState>& state_;
-  std::string invalid_reason_;                           ///< why the last force was not to be valid; else empty
+  std::string invalid_reason_;                           ///< why the last force was not valid; else empty
   std::unique_ptr<CellStatePublisher> state_publisher_;  ///< last: it uses cell and output in a thread of its own
 };
 

@@ -30,7 +30,7 @@ bool moves(const std::string& command) { return command == "home" || command == 
 }  // namespace
 
 const char* const InjectionControllerNode::kHelp =
-    "injection_controller: decides where the needle goes and holds it when an input cannot be valid.\n"
+    "injection_controller: decides where the needle goes and holds it when an input is not valid.\n"
     "In: /teleop/servo_cp /needle/measured_cp, /cell/predicted_cf or /force_sensor/measured_cf, /injector/state,\n"
     "/needle/abilities, /controller/state_command (enable, disable, pause, resume, home, unhome, approach, indent,\n"
     "inject, withdraw). Action: /controller/inject. Out: /needle/servo_cp /controller/operating_state\n"

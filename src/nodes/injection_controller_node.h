@@ -22,7 +22,7 @@
 
 namespace microinjection {
 
-/// The one that moves the needle, simulated or real. Holds it when an input cannot be valid.
+/// The one that moves the needle, simulated or real. Holds it when an input is not valid.
 ///
 /// In:  /teleop/servo_cp (PoseStamped, `world`; with mode manual), /needle/measured_cp (PoseStamped),
 ///      /cell/predicted_cf or /force_sensor/measured_cf (WrenchStamped), /controller/state_command (StringStamped),

@@ -70,7 +70,7 @@ struct LevelReport {
 /// needle's edge are refined from mesh to mesh by a factor (2 in the section, sqrt 2 in space) and the error is of
 /// first order in their size, or better, so that the finer mesh's error is at most the change over (factor - 1). A
 /// depth is converged when there is an equilibrium on two meshes at least, the second the finest that was needed; where
-/// finer meshes lose the solution before a depth that a single coarse one reaches, there is none to be valid, and the
+/// finer meshes lose the solution before a depth that a single coarse one reaches, there is none to trust, and the
 /// point says so.
 class ConvergedForce {
  public:

@@ -14,7 +14,7 @@
 
 namespace microinjection {
 
-/// What is known of the scene, SI units; absent is what is not known or cannot be valid.
+/// What is known of the scene, SI units; absent is what is not known or not valid.
 struct DisplayedState {
   std::optional<CellSurface> surface;
   CellMembers members;

@@ -24,7 +24,7 @@ class InjectorLink {
   /// `timeout`: s, past which the injector's state is stale.
   InjectorLink(Cycle& cycle, double timeout);
 
-  /// What the injector says; empty where it says nothing that can be valid, or is at fault. From the moment it was
+  /// What the injector says; empty where it says nothing valid, or is in FAULT. From the moment it was
   /// sent until it is over a pulse counts as under way, however short it is.
   std::optional<InjectorReport> report(const ros::Time& now);
 

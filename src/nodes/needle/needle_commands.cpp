@@ -78,7 +78,7 @@ double NeedleCommands::age(const ros::Time& stamp) const {
   return since.isZero() ? 0 : secondsBetween(since, std::max(now_, ros::Time::now()));
 }
 
-/// A motion command that can be valid: whether its sender may command, and what becomes of it.
+/// A valid motion command: whether its sender may command, and what becomes of it.
 template <typename Obey>
 void NeedleCommands::command(const std::string& name, const std::string& sender, const Obey& execute) {
   std::string why = unavailableReason();

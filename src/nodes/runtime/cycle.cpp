@@ -51,7 +51,7 @@ void Cycle::step(const ros::Time& now) {
   sampled_queue_.callAvailable();
   stalls_.step(now);
   if (now.isZero()) return;  // a simulated clock that has not begun
-  if (now < last_step_) {    // a clock set back: nothing that was received before can be valid
+  if (now < last_step_) {    // a clock set back: nothing that was received before is valid
     for (auto& input : inputs_) input->invalidate();
     last_step_ = now;
   }

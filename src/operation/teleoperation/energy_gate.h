@@ -19,11 +19,11 @@ struct EnergyGateConfig {
 };
 
 /// The controller's half of time-domain passivity in impedance causality: lets a force do no more work on the hand than
-/// there is energy to energy_margin.
+/// there is energy to spare.
 ///
 /// It withholds and it damps. Withholding (a share of the force) is at once, and what was withheld comes back slowly
 /// and only while there is energy: at rest a force that came back at once would push the hand by a step of its encoder,
-/// be withheld, and come back again, a limit cycle that leaks energy unseen. Damping makes good what is energy_deficit,
+/// be withheld, and come back again, a limit cycle that leaks energy unseen. Damping makes good what is owed,
 /// no stronger than the device can.
 class EnergyGate {
  public:
@@ -32,9 +32,9 @@ class EnergyGate {
   void reset() { *this = EnergyGate(config_); }
   /// After a while in free motion: what is withheld next comes back within return_time again.
   void trust() { patience_ = 1, rising_ = false; }
-  /// Damping (N s/m) to dissipate what is `energy_deficit` (J) at a velocity (m/s).
+  /// Damping (N s/m) to dissipate `energy_deficit` (J) at a velocity (m/s).
   double damping(double energy_deficit, const Eigen::Vector3d& velocity) const;
-  /// `wanted` (N, on the hand), its `velocity` (m/s), what there is to `energy_margin` (J, negative: energy_deficit),
+  /// `wanted` (N, on the hand), its `velocity` (m/s), the `energy_margin` (J, negative: a deficit),
   /// dt (s) ahead.
   Eigen::Vector3d step(const Eigen::Vector3d& wanted, const Eigen::Vector3d& velocity, double energy_margin, double dt);
   bool acting() const { return acting_; }  ///< the last force was not the one that was wanted

@@ -23,14 +23,14 @@ struct EngagementConfig {
 /// When the needle follows the hand: held -> align -> follow, as teleoperation does it (dVRK: ALIGNING, ENABLED;
 /// franka_ros: ALIGN, TRACK).
 ///
-/// held: an input is not to be valid, the operator is not there, or the clutch is pressed. align: all is well again,
+/// held: an input is not valid, the operator is not there, or the clutch is pressed. align: all is well again,
 /// but the needle is still held until the hand is slow and, with `agree`, is back where it left the needle, or the
 /// operator has pressed and released the clutch, which is to say: from here. A device that sets a speed must be let go,
 /// clutch or not. A hand that is too fast in follow has let go of the device, or nearly: back to align, until it has
 /// rested.
 ///
 /// A hand that is taken up while it moves pushes a needle that its operator may take for held; so it must be slow
-/// first. But when needle or force were not to be valid for a moment only, within one stroke of the hand, the
+/// first. But when needle or force were not valid for a moment only, within one stroke of the hand, the
 /// operator cannot have noticed, and would lose the rest of the stroke: then it goes on, as fast as it may be followed,
 /// from where the needle is. Not so after a clutch, a dead-man or a hand that was lost, however short.
 class Engagement {

@@ -98,7 +98,7 @@ HapticBridge::Output HapticBridge::step(const Input& input, double dt) {
   const Eigen::Vector3d touched = config_.force_gain * *tip_force;
   if (!followed) begin(hand, *input.needle, touched);
   ramp_ = config_.ramp_time > 0 ? std::min(1.0, ramp_ + dt / config_.ramp_time) : 1.0;
-  // A deflection that sets a speed has nothing to proxyOffset. The first step is exactly where the needle is.
+  // A deflection that sets a speed has no proxy that could yield. The first step is exactly where the needle is.
   const bool yields = followed && !motion_.isRate();
   const Eigen::Vector3d proxyOffset =
       yields ? Eigen::Vector3d(coupling_.step(touched, dt) - proxy_offset_start_) : Eigen::Vector3d::Zero();

@@ -11,7 +11,7 @@ namespace microinjection {
 
 /// The rig's end of the link: where the needle shall go, from the hand's waves and the tip's force. It begins with each
 /// epoch where the needle is, and holds when the hand's side has not been heard for the time-out, wants it to hold, or
-/// needle, force or controller are not to be valid; an epoch that it has let go is over.
+/// needle, force or controller are not valid; an epoch that it has released is over.
 class LinkFollower {
  public:
   struct Input {

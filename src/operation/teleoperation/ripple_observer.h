@@ -21,7 +21,7 @@ struct RippleConfig {
 /// What is touched is a rising function of depth, so about any depth it is passive for itself: with force and position
 /// high-passed alike, a spring has f~ = -K x~, and the energy -f~ . dx~ taken from the hand less the half of -f~ . x~
 /// that a spring holds is constant: 0. Damping lets it rise, force that comes late lets it fall in every period of an
-/// oscillation. What has fallen is energy_deficit as damping of the ripple.
+/// oscillation. What has fallen is owed as damping of the ripple.
 class RippleObserver {
  public:
   explicit RippleObserver(const RippleConfig& config) : config_(config) {}
