@@ -65,9 +65,9 @@ struct WaveReceiverConfig {
 /// A wave as it comes out of the channel: played, filtered, its integral kept, and never with more energy than came in
 /// plus the reserve. The filter's gain is one at rest and nowhere more, so a force that is held passes undiminished and
 /// the filter takes energy out only. Between a hand that stands and a stiff thing waves would go to and fro: the
-/// `highpass_loss` takes its share of every change off in each pass, at the price of that share of a round trip as delay.
-/// While packets are late the wave is held, which half of the reserve pays for; the other half is for giving back what
-/// was too much of its integral, also when nothing more comes.
+/// `highpass_loss` takes its share of every change off in each pass, at the price of that share of a round trip as
+/// delay. While packets are late the wave is held, which half of the reserve pays for; the other half is for giving
+/// back what was too much of its integral, also when nothing more comes.
 class WaveReceiver {
  public:
   explicit WaveReceiver(const WaveReceiverConfig& config) : config_(config) { reset(); }
