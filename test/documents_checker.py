@@ -4,7 +4,7 @@ import re
 import shlex
 from pathlib import Path
 
-HISTORY = {'CHANGELOG.md'}  # names what once was, and is wrapped as its entries came
+HISTORY = {'CHANGELOG.md'}  # names what once was
 README_LINES, COLUMNS, SENTENCE = 150, 100, 30
 
 
@@ -77,9 +77,9 @@ class Checker:
         for path in self.project.documents:
             text = self.project.text(path)
             self.check_links(path, text)
+            self.check_form(path, text)
             if path in HISTORY:
                 continue
-            self.check_form(path, text)
             for number, line in enumerate(text.splitlines(), 1):
                 self.place = f'{path}:{number}'
                 if not line.startswith('    ') or '`' in line:
