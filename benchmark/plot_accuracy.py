@@ -1,4 +1,4 @@
-"""DeformedSurface of the accuracy benchmark: error of the force against time, for every element and model. Usage: CSV PNG."""
+"""Picture of the accuracy benchmark: error of the force against time, for every element and model. Usage: CSV PNG."""
 import csv
 import sys
 

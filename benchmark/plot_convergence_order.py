@@ -1,4 +1,4 @@
-"""DeformedSurface of the convergence_order benchmark: error of the displacement gradient against size. Usage: CSV PNG."""
+"""Picture of the convergence_order benchmark: error of the displacement gradient against size. Usage: CSV PNG."""
 import csv
 import sys
 

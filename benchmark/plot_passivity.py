@@ -1,4 +1,4 @@
-"""DeformedSurface of the passivity benchmark: least energy and late oscillation of the hand's port. Usage: CSV PNG."""
+"""Picture of the passivity benchmark: least energy and late oscillation of the hand's port. Usage: CSV PNG."""
 import csv
 import sys
 

@@ -1,4 +1,4 @@
-"""DeformedSurface of the real-time benchmark: how late periods were, cell simulator and bare loop. Usage: CSV PNG."""
+"""Picture of the real-time benchmark: how late periods were, cell simulator and bare loop. Usage: CSV PNG."""
 import csv
 import sys
 

@@ -1,4 +1,4 @@
-"""DeformedSurface of the speed_error benchmark: error of the force against the time of one on-line force. Usage: CSV PNG."""
+"""Picture of the speed_error benchmark: error of the force against the time of one on-line force. Usage: CSV PNG."""
 import csv
 import sys
 

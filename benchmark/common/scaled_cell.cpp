@@ -38,7 +38,7 @@ ScaledCell::ScaledCell(const Scene& scene, std::shared_ptr<const SurrogateData> 
 
 Eigen::Vector3d ScaledCell::step(const Eigen::Vector3d& tip, double time) {
   const TipForce answer = cell_->step(tip / length_, Eigen::Vector3d::UnitZ(), time);
-  trusted_ = answer.valid;
+  valid_ = answer.valid;
   return force_ * answer.force;
 }
 

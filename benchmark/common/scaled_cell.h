@@ -30,14 +30,14 @@ class ScaledCell {
 
   int layersPunctured() const { return cell_->insertion().layers_punctured; }
   bool touched() const { return cell_->contact().has_value(); }
-  bool valid() const { return trusted_; }  ///< the last force
+  bool valid() const { return valid_; }  ///< the last force
   /// E R^2 (N): the size of its forces.
   double forceScale() const { return force_scale_; }
 
  private:
   double length_, force_;  ///< of the wanted cell over the prepared one
   double force_scale_;     ///< N
-  bool trusted_ = true;
+  bool valid_ = true;
   std::unique_ptr<PuncturableCell> cell_;
 };
 

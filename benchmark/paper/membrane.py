@@ -92,7 +92,7 @@ def section(data_dir, out_dir):
     return '\n\n'.join((
         '## The biomembrane point-load model',
         'Sun, Wan, Roberts and Nelson (2003): a membrane with pressure behind it, F = k depth^3 '
-        '(`cell/biomembrane.h` has the derivation; `indent --model membrane`). It takes nanoseconds. Thickness of '
+        '(`src/cell/model/biomembrane.h` has the derivation; `indent --model membrane`). It takes nanoseconds. Thickness of '
         'the zona '
         f'({1e6 * THICKNESS:.0f} um) and radius of the dimple ({1e6 * DIMPLE:.0f} um, the widest there can be) are '
         'its inputs, '

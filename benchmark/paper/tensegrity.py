@@ -49,7 +49,7 @@ def items_of_mesh(data_dir):
         return [missing('Figure 3', 'mesh of the struts', '1014 / 1798', '', 'the tensegrity program')]
     relative = found['residual_N'] / found['prestress_N']
     same_size = all(verdict(found[f'strut_{key}'], count, SIZE) == REPRODUCED for key, count in MESH.items())
-    served = found['force_99_s'] < 1e-3 and found['untrusted_share'] == 0
+    served = found['force_99_s'] < 1e-3 and found['invalid_share'] == 0
     return [
         item('Figure 3', 'vertices and tetrahedra of the struts', '1014 / 1798',
              f'{found["strut_vertices"]:.0f} / {found["strut_tetrahedra"]:.0f}', '',
@@ -64,7 +64,7 @@ def items_of_mesh(data_dir):
              f'{1e3 * found["force_median_s"]:.2g}, {1e3 * found["force_99_s"]:.2g}', 'ms',
              REPRODUCED if served else DIFFERENCE,
              f'extrapolated from the last solution, which a thread of its own makes in {1e3 * found["solution_median_s"]:.0f} ms '
-             f'(median) of processor time; {100 * found["untrusted_share"]:.2g} % of the forces could not be valid')]
+             f'(median) of processor time; {100 * found["invalid_share"]:.2g} % of the forces were not valid')]
 
 
 def items_of_loads(data_dir):

@@ -48,7 +48,7 @@ double stableStep(const TensegrityStructure& structure) {
 template <typename Add>
 void serve(const std::shared_ptr<const TensegrityCell>& cell, const Add& add) {
   constexpr int kSteps = 4000;
-  CellTrackerConfig config;
+  OnlineCellModelConfig config;
   config.fixed_period = true;
   config.solution_period = 0.1;
   OnlineCellModel tracker(cell, config);
@@ -69,7 +69,7 @@ void serve(const std::shared_ptr<const TensegrityCell>& cell, const Add& add) {
   add("force_longest_s", quantile(times, 1));
   add("solution_median_s", quantile(solutions, 0.5));
   add("solution_longest_s", quantile(solutions, 1));
-  add("untrusted_share", static_cast<double>(invalid) / kSteps);
+  add("invalid_share", static_cast<double>(invalid) / kSteps);
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ CellSimulatorNode::Parameters CellSimulatorNode::Parameters::read(const ros::Nod
   reader.number("rate", parameters.rate, Range::closed(50, 5000));
   reader.number("state_rate", parameters.state_rate, {0, 100, true, false});
   reader.number("needle_timeout", parameters.needle_timeout, Range::positive());
-  parameters.tracker = CellTrackerConfig::read(reader);
+  parameters.tracker = OnlineCellModelConfig::read(reader);
   reader.finish();
   return parameters;
 }

@@ -15,13 +15,13 @@
 
 namespace microinjection {
 
-/// The cell under the needle: a prepared one (see SurrogateData) or a live one (see makeLiveCell). Where it has no
+/// The cell under the needle: a prepared one (see SurrogateData) or a live one (see makeOnlineCell). Where it has no
 /// trustworthy force it says so: the wrench then has stamp 0.
 ///
 /// In:  /needle/measured_cp or /needle/true_cp (PoseStamped, tip in `world`)
 /// Out: /cell/predicted_cf (WrenchStamped, of the cell on the tip, in `world`), /cell/state (CellState)
 ///
-/// Parameters (private): those of CellTrackerConfig and
+/// Parameters (private): those of OnlineCellModelConfig and
 ///   scene           path of the scene file; required
 ///   model           prepared, live, or auto (default): prepared where `prepare` has left data for the scene, else live
 ///   needle          measured (default): what the micromanipulator tells; true: where a simulated one's tip truly is
@@ -43,7 +43,7 @@ class CellSimulatorNode {
     double rate = 1000;
     double state_rate = 60;
     double needle_timeout = 0.05;
-    CellTrackerConfig tracker;
+    OnlineCellModelConfig tracker;
     static Parameters read(const ros::NodeHandle& private_node);
   };
 

@@ -114,7 +114,7 @@ std::string ForceSensorNode::act(const cell_microinjection::CalibrateForce::Requ
 
 std::string ForceSensorNode::notReadyReason() const {
   if (source_->overloaded()) return "the sensor is overloaded: reset it first";
-  return source_->invalid();
+  return source_->invalidReason();
 }
 
 void ForceSensorNode::run() {
@@ -123,7 +123,7 @@ void ForceSensorNode::run() {
 
 void ForceSensorNode::step(const Cycle::Tick& tick) {
   const auto signal = source_->read(tick);
-  if (!source_->invalid().empty() || source_->overloaded()) return publishInvalid(tick);
+  if (!source_->invalidReason().empty() || source_->overloaded()) return publishInvalid(tick);
   if (!signal) return;
   raw_.publish(signal->raw);
   measured_.publish(atTip(readout_.read(signal->values, tick.now.toSec()), signal->stamp));
@@ -150,8 +150,8 @@ void ForceSensorNode::report(diagnostic_updater::DiagnosticStatusWrapper& status
   using diagnostic_msgs::DiagnosticStatus;
   if (source_->overloaded()) {
     status.summary(DiagnosticStatus::ERROR, "overloaded; wants the service ~reset");
-  } else if (!source_->invalid().empty()) {
-    status.summary(DiagnosticStatus::WARN, source_->invalid());
+  } else if (!source_->invalidReason().empty()) {
+    status.summary(DiagnosticStatus::WARN, source_->invalidReason());
   } else {
     status.summary(source_->saturated() ? DiagnosticStatus::WARN : DiagnosticStatus::OK,
                    source_->saturated() ? "saturated" : "measures");

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Hand to needle to cell to hand: touch is felt with the right sign and size, and what cannot be valid holds the needle."""
+"""Hand to needle to cell to hand: touch is felt with the right sign and size, and what is not valid holds the needle."""
 
 import csv
 import math

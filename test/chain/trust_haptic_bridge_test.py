@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The bridge renders zero force and withdraws its target while hand, needle or force cannot be valid."""
+"""The bridge renders zero force and withdraws its target while hand, needle or force is not valid."""
 
 import math
 import unittest

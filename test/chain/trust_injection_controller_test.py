@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The controller holds the needle while target, needle or force cannot be valid, and says so."""
+"""The controller holds the needle while target, needle or force is not valid, and says so."""
 
 import math
 import unittest

@@ -6,7 +6,7 @@
 
 namespace microinjection {
 
-std::shared_ptr<const OnlineCell> makeLiveCell(const Scene& scene) {
+std::shared_ptr<const OnlineCell> makeOnlineCell(const Scene& scene) {
   if (scene.cell.tensegrity) return std::make_shared<const TensegrityCell>(scene);
   if (P1Cell::refusals(scene).empty()) return std::make_shared<const P1Cell>(scene);
   return std::make_shared<const OnlineFemCell>(scene);

@@ -93,6 +93,6 @@ class OnlineCell {
 /// The cell that serves a needle where nothing is prepared: TensegrityCell for a scene of that model, else P1Cell
 /// where that can, which is quick, else OnlineFemCell. Throws ConfigError for a bad scene, std::runtime_error as they
 /// do.
-std::shared_ptr<const OnlineCell> makeLiveCell(const Scene& scene);
+std::shared_ptr<const OnlineCell> makeOnlineCell(const Scene& scene);
 
 }  // namespace microinjection

@@ -7,15 +7,15 @@
 
 namespace microinjection {
 
-CellTrackerConfig CellTrackerConfig::read(ConfigReader& reader) {
-  CellTrackerConfig config;
+OnlineCellModelConfig OnlineCellModelConfig::read(ConfigReader& reader) {
+  OnlineCellModelConfig config;
   reader.number("prepare_distance", config.prepare_distance, Range::positive());
   reader.number("extrapolation_limit", config.extrapolation_limit, Range::positive());
   reader.number("solution_period", config.solution_period, Range::positive());
   return config;
 }
 
-OnlineCellModel::OnlineCellModel(std::shared_ptr<const OnlineCell> cell, const CellTrackerConfig& config)
+OnlineCellModel::OnlineCellModel(std::shared_ptr<const OnlineCell> cell, const OnlineCellModelConfig& config)
     : cell_(std::move(cell)),
       rest_(cell_->undeformedSurface()),
       members_at_rest_(cell_->undeformedMembers()),

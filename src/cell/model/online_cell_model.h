@@ -14,14 +14,14 @@
 
 namespace microinjection {
 
-struct CellTrackerConfig {
+struct OnlineCellModelConfig {
   double prepare_distance = 25e-6;    ///< m before the surface at which the contact is prepared
   double extrapolation_limit = 3e-6;  ///< m of tip travel from the last solution past which force is not valid
   double solution_period = 0.03;      ///< s between solutions when `fixed_period`
   bool fixed_period = false;          ///< take every solution exactly solution_period after it was asked for, waiting
                                       ///< for it if need be: same answers on any machine (lock step)
 
-  static CellTrackerConfig read(ConfigReader& reader);
+  static OnlineCellModelConfig read(ConfigReader& reader);
 };
 
 /// The live finite-element cell.
@@ -31,7 +31,7 @@ struct CellTrackerConfig {
 /// undeformed cell and the pull would be adhesive.
 class OnlineCellModel : public CellModel {
  public:
-  OnlineCellModel(std::shared_ptr<const OnlineCell> cell, const CellTrackerConfig& config);
+  OnlineCellModel(std::shared_ptr<const OnlineCell> cell, const OnlineCellModelConfig& config);
 
   TipForce step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time) override;
 
@@ -63,7 +63,7 @@ class OnlineCellModel : public CellModel {
   std::shared_ptr<const OnlineCell> cell_;
   OnlineCell::Surface rest_;
   std::vector<Member> members_at_rest_;
-  CellTrackerConfig config_;
+  OnlineCellModelConfig config_;
   SolutionThread thread_;
   int hint_ = 0;  ///< see OnlineCell::touch
   std::shared_ptr<const ContactPoint> place_ = std::make_shared<ContactPoint>();

@@ -13,13 +13,14 @@
 namespace microinjection {
 namespace {
 
-ChosenCellModel live(const Scene& scene, const CellTrackerConfig& config, const std::string& said, bool as_required) {
-  const auto cell = makeLiveCell(scene);
+ChosenCellModel live(const Scene& scene, const OnlineCellModelConfig& config, const std::string& said,
+                     bool as_required) {
+  const auto cell = makeOnlineCell(scene);
   auto tracker = std::make_unique<OnlineCellModel>(cell, config);
   return {std::make_unique<PuncturableCell>(scene, std::move(tracker)), said + ": " + cell->description(), as_required};
 }
 
-ChosenCellModel unprepared(const Scene& scene, const CellTrackerConfig& config, const std::string& why) {
+ChosenCellModel unprepared(const Scene& scene, const OnlineCellModelConfig& config, const std::string& why) {
   try {
     return live(scene, config, why + "; so it is live", false);
   } catch (const ConfigError& error) {
@@ -55,7 +56,7 @@ std::string cannotBePrepared(const Scene& scene) {
 
 }  // namespace
 
-ChosenCellModel makeCellModel(const Scene& scene, const std::string& model, const CellTrackerConfig& config,
+ChosenCellModel makeCellModel(const Scene& scene, const std::string& model, const OnlineCellModelConfig& config,
                               const std::string& path) {
   if (scene.cell.tensegrity && model != "prepared") {
     return live(scene, config, "the cell is a tensegrity, solved live", true);  // its scene requires nothing

@@ -14,10 +14,10 @@ struct ChosenCellModel {
   bool as_required = true;  ///< else `said` is a warning
 };
 
-/// A scene's cell for a moving needle. `model`: prepared (what `prepare` left), live (see makeLiveCell) or auto (chosen
-/// by the scene's requirements, see chooseModel; live where nothing is prepared). Never another than was asked for.
-/// `path` of the scene, for messages. Throws ConfigError when the model cannot serve the scene.
-ChosenCellModel makeCellModel(const Scene& scene, const std::string& model, const CellTrackerConfig& config,
+/// A scene's cell for a moving needle. `model`: prepared (what `prepare` left), live (see makeOnlineCell) or auto
+/// (chosen by the scene's requirements, see chooseModel; live where nothing is prepared). Never another than was asked
+/// for. `path` of the scene, for messages. Throws ConfigError when the model cannot serve the scene.
+ChosenCellModel makeCellModel(const Scene& scene, const std::string& model, const OnlineCellModelConfig& config,
                               const std::string& path);
 
 }  // namespace microinjection

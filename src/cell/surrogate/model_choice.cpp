@@ -32,7 +32,7 @@ std::string describe(const ModelFigures& model) {
 }
 
 /// They depend on the live cell too, which prepared data do not: on its mesh, and on which it is, where the same
-/// elastic cell is solved on other elements because it relaxes (see makeLiveCell).
+/// elastic cell is solved on other elements because it relaxes (see makeOnlineCell).
 std::string figuresDescription(const Scene& scene, const std::string& name) {
   const Preparation plan = Preparation::plan(scene, PreparationRange::standard(scene));
   std::ostringstream out;
@@ -76,7 +76,7 @@ ModelChoice chooseModel(const Scene::Requirements& requirements, std::vector<Mod
 ModelFigures measureLiveCell(const Scene& scene) {
   Scene axial = scene;
   axial.needle.offset.setZero();
-  const auto cell = makeLiveCell(axial);  // throws when it cannot serve the scene
+  const auto cell = makeOnlineCell(axial);  // throws when it cannot serve the scene
   Indenting indenting;
   for (double depth : kDepths) indenting.depths.push_back(depth * scene.cell.diameter());
   ConvergedForceConfig config;

@@ -28,8 +28,8 @@ struct ModelChoice {
 /// the smallest error; else the quickest. `models` must not be empty.
 ModelChoice chooseModel(const Scene::Requirements& requirements, std::vector<ModelFigures> models);
 
-/// Solves the live cell (see makeLiveCell) to a few depths on the axis and compares with the converging section, where
-/// that has a solution. Takes seconds to a minute. Throws ConfigError when there is no live cell for the scene.
+/// Solves the live cell (see makeOnlineCell) to a few depths on the axis and compares with the converging section,
+/// where that has a solution. Takes seconds to a minute. Throws ConfigError when there is no live cell for the scene.
 ModelFigures measureLiveCell(const Scene& scene);
 
 /// Error as found when it was fitted (nine of ten equilibria have less), time (99 of 100 steps take less) measured now.

@@ -80,7 +80,7 @@ void DisplayScene::drawCell(const DisplayedState& state, visualization_msgs::Mar
     const double range = niceCeiling(std::max(kSmallestRange, surface.largestDisplacement()));
     if (range > colour_range_) {
       colour_range_ = range;
-      still_changed_ = true;
+      fixed_changed_ = true;
     }
   }
   const std::string frame = "viz/" + state.cell_frame;
@@ -137,7 +137,7 @@ void DisplayScene::drawFixed(const DisplayedState& state, visualization_msgs::Ma
   markers.markers.push_back(state.tip ? triangleMarker(injection, glass(config_.injection_pipette), {1, 1, 1, 1})
                                       : noMarker(injection));
   drawLegend(markers);
-  still_changed_ = false;
+  fixed_changed_ = false;
 }
 
 }  // namespace microinjection

@@ -40,7 +40,7 @@ class DisplayScene {
   /// What stays: pipettes and legend.
   void drawFixed(const DisplayedState& state, visualization_msgs::MarkerArray& markers);
   /// Since drawFixed the colours' scale has.
-  bool fixedChanged() const { return still_changed_; }
+  bool fixedChanged() const { return fixed_changed_; }
 
  private:
   void drawForce(const std::string& name, const DisplayedState& state, const std::optional<Eigen::Vector3d>& force,
@@ -54,7 +54,7 @@ class DisplayScene {
   double tension_range_ = 0;  ///< N, largest tension seen
   double colour_range_;       ///< m, displacement at the end of the colour scale
   HoldingPipette holding_;    ///< as configured, with the mouth where the cell touches it
-  bool still_changed_ = false;
+  bool fixed_changed_ = false;
   double holding_height_ = 0;  ///< m, of the mouth along the z axis of holding_pipette
 };
 

@@ -6,7 +6,7 @@ JoyConfig JoyConfig::read(ConfigReader& reader) {
   JoyConfig config;
   reader.text("topic", config.topic);
   reader.number("timeout", config.timeout, Range::positive());
-  config.stick = StickHandConfig::read(reader);
+  config.stick = RateInputConfig::read(reader);
   ConfigReader commands = reader.section("commands");
   for (const char* command : {"enable", "disable", "inject", "home"}) {
     int button = -1;

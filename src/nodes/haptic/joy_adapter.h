@@ -14,7 +14,7 @@ namespace microinjection {
 struct JoyConfig {
   std::string topic = "joy";
   double timeout = 0.2;  ///< s, past which the joystick is silent: its driver must repeat what it told
-  StickHandConfig stick;
+  RateInputConfig stick;
   std::vector<std::pair<std::string, int>> commands;  ///< state command and the button that sends it
 
   static JoyConfig read(ConfigReader& reader);

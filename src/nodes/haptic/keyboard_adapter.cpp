@@ -30,7 +30,7 @@ const std::map<std::string, std::string>& words() {
 
 KeyboardConfig KeyboardConfig::read(ConfigReader& reader) {
   KeyboardConfig config;
-  config.hand = GuidedHandConfig::read(reader);
+  config.hand = GoalHandConfig::read(reader);
   reader.number("lead", config.hand.lead, Range::positive());
   reader.number("step", config.step, Range::positive());
   return config;

@@ -13,7 +13,7 @@
 namespace microinjection {
 
 struct KeyboardConfig {
-  GuidedHandConfig hand;
+  GoalHandConfig hand;
   double step = 1e-3;  ///< m of the hand per key
 
   static KeyboardConfig read(ConfigReader& reader);

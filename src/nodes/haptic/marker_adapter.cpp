@@ -31,7 +31,7 @@ geometry_msgs::Pose toPoseInDisplay(const Eigen::Vector3d& position) {
 
 MarkerConfig MarkerConfig::read(ConfigReader& reader) {
   MarkerConfig config;
-  config.hand = GuidedHandConfig::read(reader);
+  config.hand = GoalHandConfig::read(reader);
   reader.number("hand_scale", config.hand_scale, Range::positive());
   reader.vector("handle_offset", config.handle_offset, Range::closed(-1e-3, 1e-3));
   reader.number("arrow_scale", config.arrow_scale, Range::positive());

@@ -15,7 +15,7 @@
 namespace microinjection {
 
 struct MarkerConfig {
-  GuidedHandConfig hand;
+  GoalHandConfig hand;
   double hand_scale = 1e3;                        ///< m of the hand per m that the marker is dragged in `world`
   Eigen::Vector3d handle_offset = {36e-6, 0, 0};  ///< m, of the handle from the tip, `world`
   double arrow_scale = 20e-6;                     ///< m/N, length of the force's arrow, before x 1e4

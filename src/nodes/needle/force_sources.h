@@ -32,7 +32,7 @@ class ForceSource {
   virtual int size() const = 0;  ///< of Signal::values
   /// The largest of Signal::values that the sensor may be put under on purpose.
   virtual Eigen::VectorXd range() const = 0;
-  /// The reading that is new in this step. Empty: there is none, and invalid() tells whether something is wrong.
+  /// The reading that is new in this step. Empty: there is none, and invalidReason() tells whether something is wrong.
   virtual std::optional<Signal> read(const Cycle::Tick& tick) = 0;
   virtual bool overloaded() const = 0;
   virtual void reset() = 0;
@@ -40,7 +40,7 @@ class ForceSource {
   virtual void report(diagnostic_updater::DiagnosticStatusWrapper&) const {}
 
   /// Why there is no reading to trust; empty when there is one.
-  const std::string& invalid() const { return invalid_reason_; }
+  const std::string& invalidReason() const { return invalid_reason_; }
 
  protected:
   std::string invalid_reason_;

@@ -9,15 +9,14 @@
 #include <xmlrpcpp/XmlRpcClient.h>
 #include <xmlrpcpp/XmlRpcException.h>
 
-#include <algorithm>
 #include <cstdint>
+#include <utility>
 
 namespace microinjection {
 namespace {
 
 constexpr bool kWait = false;  ///< for a master that is not there
-/// A publisher that was killed stays at the master: it is not looked for for ever.
-constexpr int kFirstTry = 2, kLastTry = 4;
+constexpr int kMostTries = 3;  ///< a publisher that was killed stays at the master
 
 }  // namespace
 
@@ -37,23 +36,25 @@ LostPublishers::Topics LostPublishers::publishersAtMaster() {
   return result;
 }
 
-void LostPublishers::connect(const std::string& topic, const std::vector<std::string>& publishers) {
+bool LostPublishers::connect(const std::string& topic, const std::vector<std::string>& publishers) {
   XmlRpc::XmlRpcValue update, response, uris;
   uris.setSize(0);
   for (const std::string& name : publishers) {
     XmlRpc::XmlRpcValue request, answer, uri;
     request[0] = ros::this_node::getName();
     request[1] = name;
-    if (ros::master::execute("lookupNode", request, answer, uri, kWait)) uris[uris.size()] = uri;
+    // Never a part of the list: roscpp drops the connections to all that are not in it.
+    if (!ros::master::execute("lookupNode", request, answer, uri, kWait)) return false;
+    uris[uris.size()] = uri;
   }
   update[0] = "/master";
   update[1] = topic;
   update[2] = uris;
   std::string host;
   std::uint32_t port = 0;
-  if (!ros::network::splitURI(ros::XMLRPCManager::instance()->getServerURI(), host, port)) return;
+  if (!ros::network::splitURI(ros::XMLRPCManager::instance()->getServerURI(), host, port)) return false;
   XmlRpc::XmlRpcClient self(host.c_str(), static_cast<int>(port), "/");
-  self.execute("publisherUpdate", update, response);
+  return self.execute("publisherUpdate", update, response);
 }
 
 void LostPublishers::check() {
@@ -76,8 +77,10 @@ void LostPublishers::compare() {
       continue;
     }
     Missing& missing = missing_[topic];
-    if (missing.publishers != known->second) missing = {known->second, 0};
-    if (++missing.checks >= kFirstTry && missing.checks <= kLastTry) connect(topic, known->second);
+    if (missing.publishers != known->second) missing = {known->second, false, 0};
+    // At the second look only: at the first the connection may be on its way.
+    if (!std::exchange(missing.seen, true) || missing.tries == kMostTries) continue;
+    if (connect(topic, known->second)) ++missing.tries;
   }
 }
 

@@ -19,11 +19,12 @@ class LostPublishers {
   using Topics = std::map<std::string, std::vector<std::string>>;  ///< {topic: names of publishers}
   void compare();
   static Topics publishersAtMaster();
-  static void connect(const std::string& topic, const std::vector<std::string>& publishers);
+  static bool connect(const std::string& topic, const std::vector<std::string>& publishers);
 
   struct Missing {
     std::vector<std::string> publishers;  ///< all of the topic
-    int checks = 0;                       ///< in a row in which one of them was missing
+    bool seen = false;                    ///< by an earlier check
+    int tries = 0;
   };
   std::map<std::string, Missing> missing_;  ///< by topic
 };

@@ -57,7 +57,10 @@ struct MasterMonitor::Shared {
       refused = !known;
       if (known) answered = Clock::now();
       away = known ? 0 : away + kPeriod.count();
-      if (known && ++answers % kAnswersALinkCheck == 0) lost_publishers.check();
+      if (known && ++answers % kAnswersALinkCheck == 0) {
+        lost_publishers.check();
+        answered = Clock::now();  // it asked the master more, which took its time and answered
+      }
       if (away > orphan_timeout && !asked) ros::requestShutdown();
       lock.lock();
     }

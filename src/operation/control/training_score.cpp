@@ -118,7 +118,7 @@ void TrainingSession::computeScore(TrainingScore& score) const {
     score.reason = fault_ ? "the rig was at fault" : std::string("it ended in ") + toText(state_);
   }
   if (left_out_ > kGaps * (used_ + left_out_)) {
-    score.outcome = TrainingOutcome::kUntrusted;
+    score.outcome = TrainingOutcome::kInvalid;
     score.reason = "needle or force was not valid in " + std::to_string(left_out_) + " of " +
                    std::to_string(used_ + left_out_) + " moments";
   }

@@ -36,10 +36,10 @@ struct TrainingSample {
 
 /// What a session is worth as one to be compared with others.
 enum class TrainingOutcome {
-  kComplete,   ///< touched, and the needle was out again at the end
-  kAborted,    ///< ended in the cell, or the rig was at fault: measured, no points
-  kUntrusted,  ///< too many moments in which needle or force was not valid: measured, no points
-  kUntouched   ///< no cell was touched: nothing to score
+  kComplete,  ///< touched, and the needle was out again at the end
+  kAborted,   ///< ended in the cell, or the rig was at fault: measured, no points
+  kInvalid,   ///< too many moments in which needle or force was not valid: measured, no points
+  kUntouched  ///< no cell was touched: nothing to score
 };
 const char* toText(TrainingOutcome outcome);
 

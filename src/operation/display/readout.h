@@ -7,7 +7,7 @@
 
 namespace microinjection {
 
-/// What the text beside the cell says; an absent value was never received or could not be valid.
+/// What the text beside the cell says; an absent value was never received or was not valid.
 struct Readout {
   std::optional<double> indentation;    ///< m
   std::optional<double> predicted;      ///< N, magnitude

@@ -2,8 +2,8 @@
 
 namespace microinjection {
 
-GuidedHandConfig GuidedHandConfig::read(ConfigReader& reader) {
-  GuidedHandConfig config;
+GoalHandConfig GoalHandConfig::read(ConfigReader& reader) {
+  GoalHandConfig config;
   reader.number("hand_speed", config.speed, Range::positive());
   reader.number("present_timeout", config.present_timeout, Range::positive());
   return config;

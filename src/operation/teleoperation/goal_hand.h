@@ -6,14 +6,14 @@
 
 namespace microinjection {
 
-struct GuidedHandConfig {
+struct GoalHandConfig {
   double speed = 0.02;  ///< m/s, of the hand at the most
   double lead = 5e-3;   ///< m that steps may be ahead of the hand: it stops soon after the last one
   double present_timeout =
       0.75;  ///< s after the last sign of the operator; a keyboard repeats a key after 0.2 to 0.6 s
 
   /// Keys hand_speed and present_timeout.
-  static GuidedHandConfig read(ConfigReader& reader);
+  static GoalHandConfig read(ConfigReader& reader);
 };
 
 /// A hand for inputs that have none: keys that ask for steps, a mouse that drags to a place. It goes to its goal at a
@@ -21,7 +21,7 @@ struct GuidedHandConfig {
 /// the hand rests where it is and its goal is forgotten.
 class GoalHand {
  public:
-  explicit GoalHand(const GuidedHandConfig& config) : config_(config), time_since_input_(config.present_timeout) {}
+  explicit GoalHand(const GoalHandConfig& config) : config_(config), time_since_input_(config.present_timeout) {}
 
   /// A step (m) from the goal; cut to `lead` ahead of the hand. A sign of the operator.
   void moveBy(const Eigen::Vector3d& step);
@@ -39,7 +39,7 @@ class GoalHand {
   bool present() const { return time_since_input_ < config_.present_timeout; }
 
  private:
-  GuidedHandConfig config_;
+  GoalHandConfig config_;
   Eigen::Vector3d position_ = Eigen::Vector3d::Zero();  ///< m
   Eigen::Vector3d goal_ = Eigen::Vector3d::Zero();      ///< m
   double time_since_input_;                             ///< s since the operator's last sign

@@ -44,8 +44,8 @@ HandMotion::Sample toSample(const std::string& line, const std::string& where) {
 }  // namespace
 
 HandMotion HandMotion::load(const std::string& path) {
-  const std::string ending = ".yaml";
-  if (path.size() > ending.size() && path.compare(path.size() - ending.size(), ending.size(), ending) == 0) {
+  const std::string ending = path.substr(std::min(path.find_last_of('.'), path.size()));
+  if (ending == ".yaml" || ending == ".yml") {
     return HandMotion(generateMotion(ConfigReader(loadYamlMap(path), path)));
   }
   std::ifstream file(path);

@@ -4,8 +4,8 @@
 
 namespace microinjection {
 
-StickHandConfig StickHandConfig::read(ConfigReader& reader) {
-  StickHandConfig config;
+RateInputConfig RateInputConfig::read(ConfigReader& reader) {
+  RateInputConfig config;
   reader.vector("axes", config.axes, Range::closed(0, 31));
   reader.vector("deflection", config.deflection, Range::closed(-1, 1));
   reader.number("centre", config.centre, Range::open(0, 1));

@@ -9,13 +9,13 @@
 namespace microinjection {
 
 /// Which of a joystick's axes and buttons mean what. Numbers count from 0 as in sensor_msgs/Joy.
-struct StickHandConfig {
+struct RateInputConfig {
   Eigen::Vector3d axes = {0, 1, 2};                    ///< axes of the joystick along the hand's x, y, z
   Eigen::Vector3d deflection = {0.015, 0.015, 0.015};  ///< m of the hand at an axis' 1; negative: the other way round
   double centre = 0.1;                                 ///< 1, share of an axis within which it counts as let go
   int dead_man = -1;                                   ///< button to be held down; -1: none
 
-  static StickHandConfig read(ConfigReader& reader);
+  static RateInputConfig read(ConfigReader& reader);
 };
 
 /// A hand whose place is a joystick's deflection, for rate mode: let go, it is at 0.
@@ -24,7 +24,7 @@ struct StickHandConfig {
 /// when the stick was let go first: the dead-man's button does not set a deflected stick off.
 class RateInput {
  public:
-  explicit RateInput(const StickHandConfig& config) : config_(config) {}
+  explicit RateInput(const RateInputConfig& config) : config_(config) {}
 
   struct Reading {
     Eigen::Vector3d position;  ///< m
@@ -36,7 +36,7 @@ class RateInput {
   void lose() { released_ = false; }
 
  private:
-  StickHandConfig config_;
+  RateInputConfig config_;
   bool released_ = false;  ///< was let go since the dead-man's button is held
 };
 

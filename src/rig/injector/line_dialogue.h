@@ -17,7 +17,7 @@ class LineDialogue {
     std::string reply_end = "\r";  ///< of the device's lines; with a line feed alone, a carriage return before it too
     std::string send_end = "\r";   ///< of ours
     bool echo = false;             ///< before its reply the device may repeat the line, or send an empty one
-    double quiet = 0.1;            ///< s without a byte until the line is valid again
+    double quiet = 0.1;            ///< s without a byte until the line is in step again
   };
   enum class Answer { kNone, kReply, kLate, kUnclear };
 
@@ -25,7 +25,7 @@ class LineDialogue {
 
   /// Nothing that comes is believed, and nothing can be sent, until the line has been quiet from `time` (s) on.
   void distrust(double time);
-  /// No reply is owed, and the line is valid.
+  /// No reply is owed, and the line is in step.
   bool free() const { return in_step_ && !waiting_; }
   bool waiting() const { return waiting_; }
   /// Nothing has come for a while, so that no reply is on its way that nobody waits for.

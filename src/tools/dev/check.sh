@@ -35,7 +35,7 @@ command_lint() {
 
 check_python() {
   say "lint: Python syntax"
-  find "$ROOT"/{src,benchmark,test} -name '*.py' -print0 |
+  find "$ROOT"/{src,benchmark,launch,test} -name '*.py' -print0 |
     PYTHONPYCACHEPREFIX="$ROOT/out/pycache" xargs -0r /usr/bin/python3 -m py_compile
 }
 
@@ -54,8 +54,8 @@ check_package() {
 }
 
 run_clang_tidy() {
-  local pattern="^$WORKSPACE/src/cell_microinjection/src/.*$1" database="$WORKSPACE/build"
-  say "lint: clang-tidy of the files below src/ that match '$1' (takes long for all)"
+  local pattern="^$WORKSPACE/src/cell_microinjection/(src|benchmark)/.*$1" database="$WORKSPACE/build"
+  say "lint: clang-tidy of the files below src/ and benchmark/ that match '$1' (takes long for all)"
   # Without this, a mistyped pattern would pass. Not grep -q, which ends before sed has written all.
   grep -E '"file":' "$database/compile_commands.json" | sed -e 's/.*: "//' | grep -E "$pattern" >/dev/null ||
     { echo "no file matches"; return 1; }

@@ -28,8 +28,8 @@ class Driver {
  public:
   explicit Driver(const Scene& scene) : cell(std::make_shared<const P1Cell>(scene)), tracker(cell, config()) {}
 
-  static CellTrackerConfig config() {
-    CellTrackerConfig config;
+  static OnlineCellModelConfig config() {
+    OnlineCellModelConfig config;
     config.fixed_period = true;
     return config;
   }

@@ -37,8 +37,8 @@ class Driver {
     force = tracker.step(tip, kUp, 0);
   }
 
-  static CellTrackerConfig config() {
-    CellTrackerConfig config;
+  static OnlineCellModelConfig config() {
+    OnlineCellModelConfig config;
     config.fixed_period = true;
     return config;
   }
@@ -267,7 +267,7 @@ TEST(OnlineFemCell, RefusesAdhesionWhichItWouldNotShow) {
   scene.needle.contact.adhesion_range = 0.5e-6;
   scene.validate();  // it is a good scene
   try {
-    makeLiveCell(scene);
+    makeOnlineCell(scene);
     FAIL() << "was served without adhesion";
   } catch (const ConfigError& error) {
     EXPECT_NE(std::string(error.what()).find("needle/contact/adhesion"), std::string::npos) << error.what();
@@ -277,11 +277,11 @@ TEST(OnlineFemCell, RefusesAdhesionWhichItWouldNotShow) {
 TEST(OnlineCell, IsOfLinearTetrahedraOnlyWhereThoseCan) {
   Scene disc;
   disc.mesh.size = 20e-6;
-  EXPECT_NE(makeLiveCell(disc)->description().find("P1"), std::string::npos);
-  EXPECT_NE(makeLiveCell(pipette())->description().find("P2-P0"), std::string::npos);
+  EXPECT_NE(makeOnlineCell(disc)->description().find("P1"), std::string::npos);
+  EXPECT_NE(makeOnlineCell(pipette())->description().find("P2-P0"), std::string::npos);
   Scene relaxing = disc;
   relaxing.cell.material().viscoelasticity.viscosity = 10;
-  EXPECT_NE(makeLiveCell(relaxing)->description().find("P2-P0"), std::string::npos);
+  EXPECT_NE(makeOnlineCell(relaxing)->description().find("P2-P0"), std::string::npos);
 }
 
 }  // namespace

@@ -53,7 +53,7 @@ TEST(PuncturableCell, ServesALiveCell) {
   Scene scene = sceneOf(PunctureConfig::atForce(0.5e-6));
   scene.cell.material() = {"linear", 17.9e3, 0.45};
   scene.mesh.size = 20e-6;
-  CellTrackerConfig config;
+  OnlineCellModelConfig config;
   config.fixed_period = true;
   PuncturableCell cell(scene, std::make_unique<OnlineCellModel>(std::make_shared<const P1Cell>(scene), config));
   Eigen::Vector3d tip(0, 0, 32e-6);

@@ -105,9 +105,9 @@ TEST(TensegrityCell, NeedleMeetsTheMembraneAnywhere) {
 
 /// In lock step: a needle on a strut's end, with the tracker that serves every live cell.
 TEST(TensegrityCell, ServesAMovingNeedle) {
-  const auto cell = std::dynamic_pointer_cast<const TensegrityCell>(makeLiveCell(scene()));
+  const auto cell = std::dynamic_pointer_cast<const TensegrityCell>(makeOnlineCell(scene()));
   ASSERT_TRUE(cell);
-  CellTrackerConfig config;
+  OnlineCellModelConfig config;
   config.fixed_period = true;
   OnlineCellModel tracker(cell, config);
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ(), end = cell->structure().geometry().ends[3];
@@ -162,7 +162,7 @@ TEST(TensegrityCell, ViscousCablesAreNotStifferBetweenSolutions) {
   const auto path = cell->indentation(cell->patchAt(end, up));
   double solved = 0;
   for (int i = 1; i <= 20; ++i) solved = path->solve({0, 0, -kDeepest * i / 20}, kDeepest / kSpeed / 20).force.z();
-  CellTrackerConfig config;
+  OnlineCellModelConfig config;
   config.fixed_period = true;
   OnlineCellModel tracker(cell, config);
   double largest = 0, last = 0;

@@ -45,7 +45,7 @@ class ServeNeedle : public testing::Test {
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 TEST_F(ServeNeedle, AnUnpreparedRoundedTipIsLiveWithAWarning) {
-  CellTrackerConfig config;
+  OnlineCellModelConfig config;
   config.fixed_period = true;
   const ChosenCellModel served = makeCellModel(pipette(), "auto", config, "a.yaml");
   EXPECT_FALSE(served.as_required);

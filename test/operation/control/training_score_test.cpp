@@ -120,7 +120,7 @@ TEST(TrainingScore, WhatIsNotANumberIsLeftOutAndCounted) {
     EXPECT_EQ(session.leftOut(), 2);
     EXPECT_DOUBLE_EQ(score.peak_force, 1e-6);
     EXPECT_DOUBLE_EQ(score.deformation, 15e-6);
-    EXPECT_EQ(score.outcome, long_session ? TrainingOutcome::kComplete : TrainingOutcome::kUntrusted);
+    EXPECT_EQ(score.outcome, long_session ? TrainingOutcome::kComplete : TrainingOutcome::kInvalid);
     EXPECT_DOUBLE_EQ(score.score(), long_session ? 100 : 0);
     EXPECT_EQ(score.reason, long_session ? "" : "needle or force was not valid in 2 of 10 moments");
   }

@@ -151,7 +151,7 @@ TEST_F(TrainingLogTest, RowsWithoutNeedleOrForceAreGaps) {
   log.add(gap);
   const auto result = log.finish(folder_, "now");
   EXPECT_TRUE(result.in_history);
-  EXPECT_EQ(result.score.outcome, TrainingOutcome::kUntrusted);
+  EXPECT_EQ(result.score.outcome, TrainingOutcome::kInvalid);
   EXPECT_DOUBLE_EQ(result.score.peak_force, 1e-6);
   EXPECT_NE(result.text.find("invalid, no points: needle or force was not valid in 2 of 8 moments"), std::string::npos)
       << result.text;

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kPeriod = 1e-3;  // s
 
-GuidedHandConfig config() { return {0.02, 5e-3, 0.5}; }  // m/s, m, s
+GoalHandConfig config() { return {0.02, 5e-3, 0.5}; }  // m/s, m, s
 
 /// Steps of kPeriod for a time (s).
 void rest(GoalHand& hand, double time) {

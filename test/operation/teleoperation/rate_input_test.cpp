@@ -9,8 +9,8 @@
 namespace microinjection {
 namespace {
 
-StickHandConfig config() {
-  StickHandConfig config;
+RateInputConfig config() {
+  RateInputConfig config;
   config.axes = {1, 0, 3};
   config.deflection = {-0.01, 0.02, 0.03};
   config.dead_man = 1;
@@ -41,7 +41,7 @@ TEST(RateInput, TheOperatorIsPresentOnlyOnceTheHeldStickWasLetGo) {
 }
 
 TEST(RateInput, WithoutADeadManTheStickMustStillHaveBeenLetGo) {
-  StickHandConfig loose = config();
+  RateInputConfig loose = config();
   loose.dead_man = -1;
   RateInput stick(loose);
   EXPECT_FALSE(stick.read({0, 0, 0, 1}, {})->operator_present);
@@ -58,9 +58,9 @@ TEST(RateInput, WhatIsMissingOrNoNumberIsNoReading) {
   EXPECT_TRUE(stick.read({0, 0, std::nanf(""), 0}, kHeld));  // an axis that nobody asked for
 }
 
-TEST(StickHandConfig, NamesAnAxisThatIsNoNumberOfOne) {
+TEST(RateInputConfig, NamesAnAxisThatIsNoNumberOfOne) {
   ConfigReader reader(YAML::Load("axes: [0, 1.5, 2]"), "test");
-  StickHandConfig::read(reader);
+  RateInputConfig::read(reader);
   try {
     reader.finish();
     FAIL();

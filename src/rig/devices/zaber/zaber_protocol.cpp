@@ -22,7 +22,7 @@ std::string checksum(const std::string& text) {
 }
 
 /// Takes "<word> " off the front of `text`.
-std::string applyOperatorCommand(std::string& text) {
+std::string popWord(std::string& text) {
   const std::size_t space = text.find(' ');
   std::string word = text.substr(0, space);
   text = space == std::string::npos ? "" : text.substr(space + 1);
@@ -63,9 +63,9 @@ std::optional<std::int64_t> ZaberMessage::position() const { return zaberWholeNu
 
 std::optional<std::vector<std::string>> ZaberMessage::flags() const {
   std::string text = data;
-  const std::string count = applyOperatorCommand(text);
+  const std::string count = popWord(text);
   std::vector<std::string> up;
-  while (!text.empty()) up.push_back(applyOperatorCommand(text));
+  while (!text.empty()) up.push_back(popWord(text));
   const bool all_flags =
       std::all_of(up.begin(), up.end(), [](const auto& each) { return isFlag(each) && each != "--"; });
   const auto announced = zaberWholeNumber(count);
@@ -135,19 +135,19 @@ std::optional<ZaberMessage> ZaberParser::parse(std::string line) {
     ++unchecked_;
     return std::nullopt;
   }
-  const std::optional<int> device = number(applyOperatorCommand(line), 2), axis = number(applyOperatorCommand(line), 1);
+  const std::optional<int> device = number(popWord(line), 2), axis = number(popWord(line), 1);
   if (!device || !axis) return std::nullopt;
   message.from = {*device, *axis};
   if (message.kind == ZaberMessage::Kind::kReply) {
-    std::string verdict = applyOperatorCommand(line);
+    std::string verdict = popWord(line);
     message.number = number(verdict, 2);
-    if (message.number) verdict = applyOperatorCommand(line);
+    if (message.number) verdict = popWord(line);
     if (verdict != "OK" && verdict != "RJ") return std::nullopt;
     message.rejected = verdict == "RJ";
   }
   if (message.kind != ZaberMessage::Kind::kInfo) {
-    const std::string motion = applyOperatorCommand(line);
-    message.flag = applyOperatorCommand(line);
+    const std::string motion = popWord(line);
+    message.flag = popWord(line);
     if ((motion != "BUSY" && motion != "IDLE") || !isFlag(message.flag)) return std::nullopt;
     message.busy = motion == "BUSY";
   }
