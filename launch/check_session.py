@@ -52,7 +52,7 @@ def problems(arguments):
     if arguments["mode"] != "manual" and arguments["haptic"] != "none":
         found.append(f"mode = '{arguments['mode']}': must be with haptic:=none")
     if arguments["operator"] and not arguments["record"]:
-        found.append(f"operator = '{arguments['operator']}': must be with record:=FOLDER, which the score is of")
+        found.append("operator: must be with record:=FOLDER, which the score is of")
     return found
 
 

@@ -25,7 +25,7 @@ MESHES = '''paper_vertices,paper_tetrahedra,vertices,tetrahedra,tip_vertices,lin
 
 TENSEGRITY = {'strut_vertices': 1002, 'strut_tetrahedra': 1764, 'residual_N': 1e-18, 'prestress_N': 2e-7,
               'step_s': 7e-10, 'single_filament_step_s': 1e-11, 'force_median_s': 1e-6, 'force_99_s': 4e-6,
-              'solution_median_s': 0.1, 'untrusted_share': 0}
+              'solution_median_s': 0.1, 'invalid_share': 0}
 
 
 class ReportTest(unittest.TestCase):
@@ -98,7 +98,7 @@ class ReportTest(unittest.TestCase):
         good = [REPRODUCED, REPRODUCED, DIFFERENCE, REPRODUCED]  # mesh, balance, explicit step, force update
         self.assertEqual(self.verdicts_of_tensegrity(), good)
         for place, changed in ((0, {'strut_vertices': 900}), (1, {'residual_N': 1e-15}), (3, {'force_99_s': 2e-3}),
-                               (3, {'untrusted_share': 0.1})):
+                               (3, {'invalid_share': 0.1})):
             with self.subTest(changed):
                 self.assertEqual(self.verdicts_of_tensegrity(**changed),
                                  good[:place] + [DIFFERENCE] + good[place + 1:])
