@@ -161,6 +161,7 @@ void SerialInjector::checkGuard(double time) {
   const bool flows = mayFlow();
   if (model_.reading().busy) fail("the pulse was broken off: " + guard.intervention);
   model_.stop();
+  pressureChanges();
   if (task_ != Task::kNone) abort(guard.intervention);
   if (waiting_pulse_) fail(guard.intervention);
   if (flows && !protocol_.stop.empty()) waiting_stop_ = true;

@@ -23,6 +23,7 @@ void SerialInjector::giveUpPulse(const std::string& why, bool was_triggered, Ref
   if (was_triggered && refusal == Refusal::kNo) {
     what += "; it may have been done, and is not sent again";
     unsure_until_ = last_sent_ + protocol_.asSent(*sent_pulse_).duration + protocol_.framing.quiet;
+    pressureChanges();
   }
   sent_pulse_.reset();
   fail(what);
@@ -42,6 +43,7 @@ void SerialInjector::abort(const std::string& why, Refusal refusal) {
     if (last) tries_ = 0;  // a device that knows no such line is stopped all the same
   } else if (given_up == Task::kBalance) {
     balance_known_ = false;
+    pressureChanges();
     if (last) return fail("balance pressure: " + why);
     if (!waiting_balance_) waiting_balance_ = sent_balance_;
   } else if (given_up == Task::kStop) {

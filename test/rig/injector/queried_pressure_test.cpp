@@ -82,6 +82,34 @@ TEST_F(QueriedPressureTest, ThatWasAskedForBeforeAChangeIsNotShownAfterIt) {
   EXPECT_NEAR(pressure(), 1000, 1);
 }
 
+TEST_F(QueriedPressureTest, OfTheBalanceIsNotShownAfterAPulseThatMayBeUnderWay) {
+  run(1);
+  answers.erase("G");
+  injector.pulse({5, 12300, 30});
+  while (injector.fault().empty()) run(0.01);
+  EXPECT_NEAR(pressure(), 1000, 1);
+}
+
+TEST_F(QueriedPressureTest, OfTheBalanceBeforeIsNotShownAfterANewOneWithoutAReply) {
+  run(1);
+  answers.erase("C20.0");
+  answers.erase("C");
+  injector.setBalance(2000);
+  while (injector.fault().empty()) run(0.01);
+  EXPECT_NEAR(pressure(), 1000, 1);
+}
+
+TEST_F(QueriedPressureTest, OfThePulseIsNotShownAfterTheGuardHasEndedIt) {
+  run(1);
+  injector.pulse({5, 12300, 30});
+  answers["?"] = "=122.0";
+  run(1);
+  ASSERT_NEAR(pressure(), 12200, 1);
+  script.guard.intervention = "the program stood still";
+  run(0.01);
+  EXPECT_LT(pressure(), 5000) << "it falls to the balance pressure";
+}
+
 class TimedQueryTest : public QueriedPressureTest {
  protected:
   TimedQueryTest() : QueriedPressureTest(kTimed) { answers["N"] = answers["F"] = "OK"; }
