@@ -22,7 +22,7 @@ def choices():
     flags = ("allow_network", "require_operator", "inject", "link_emulated", "auto_enable", "display", "rviz", "bag",
              "end_when_done", "wait_for_go")
     return {
-        "model": ["auto", "prepared", "live"],
+        "model": ["auto", "prepared", "live", "explicit"],
         "rig": ["sim", *rigs, *(f"emulated_{name}" for name in rigs)],
         "sensor": ["simulated", "serial", "topic", "none"],
         "injector": ["simulated", *injectors, *(f"emulated_{name}" for name in injectors), "serial", "none"],

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "base/errors.h"
-#include "cell/surrogate/make_cell_model.h"
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/node_parameters.h"
 #include "nodes/runtime/run_node.h"
@@ -14,22 +13,22 @@ namespace microinjection {
 const char* const CellSimulatorNode::kHelp =
     "cell_simulator: the finite-element cell under the needle.\n"
     "In: /needle/measured_cp or /needle/true_cp. Out: /cell/predicted_cf, /cell/state.\n"
-    "Parameters: ~scene (file, required), ~model (auto|prepared|live), ~needle (measured|true), ~rate (Hz), "
-    "~state_rate "
-    "(Hz),\n"
-    "~needle_timeout (s), ~prepare_distance (m), ~extrapolation_limit (m), ~solution_period (s, in lock step);\n"
+    "Parameters: ~scene (file, required), ~model (auto|prepared|live|explicit), ~needle (measured|true),\n"
+    "~rate (Hz), ~state_rate (Hz), ~needle_timeout (s), ~prepare_distance (m), ~extrapolation_limit (m),\n"
+    "~solution_period (s, in lock step), ~time_step (s, of model explicit);\n"
     "see config/cell_simulator.yaml.\n";
 
 CellSimulatorNode::Parameters CellSimulatorNode::Parameters::read(const ros::NodeHandle& private_node) {
   Parameters parameters;
   ConfigReader reader = parameterReader(private_node);
   reader.text("scene", parameters.scene, ConfigReader::kRequired);
-  reader.choice("model", parameters.model, {"auto", "prepared", "live"});
+  reader.choice("model", parameters.model, {"auto", "prepared", "live", "explicit"});
   reader.choice("needle", parameters.needle, {"measured", "true"});
   reader.number("rate", parameters.rate, Range::closed(50, 5000));
   reader.number("state_rate", parameters.state_rate, {0, 100, true, false});
   reader.number("needle_timeout", parameters.needle_timeout, Range::positive());
-  parameters.tracker = OnlineCellModelConfig::read(reader);
+  parameters.models.online = OnlineCellModelConfig::read(reader);
+  parameters.models.explicit_dynamics = ExplicitCellModelConfig::read(reader);
   reader.finish();
   return parameters;
 }
@@ -41,7 +40,7 @@ CellSimulatorNode::CellSimulatorNode(ros::NodeHandle node, ros::NodeHandle priva
                                                        parameters_.needle_timeout)),
       force_(cycle_.output<geometry_msgs::WrenchStamped>("cell/predicted_cf")),
       state_(cycle_.output<cell_microinjection::CellState>("cell/state", true)) {
-  parameters_.tracker.fixed_period = cycle_.lockstep();
+  parameters_.models.online.fixed_period = cycle_.lockstep();
   cell_ = makeCell();
   invalid_reason_.reserve(200);  // no step has to find memory for it
   using Thread = CellStatePublisher::Thread;
@@ -52,7 +51,7 @@ CellSimulatorNode::CellSimulatorNode(ros::NodeHandle node, ros::NodeHandle priva
 
 std::unique_ptr<CellModel> CellSimulatorNode::makeCell() const {
   const Scene scene = loadScene(parameters_.scene);
-  ChosenCellModel served = makeCellModel(scene, parameters_.model, parameters_.tracker, parameters_.scene);
+  ChosenCellModel served = makeCellModel(scene, parameters_.model, parameters_.models, parameters_.scene);
   if (served.as_required) {
     ROS_INFO_STREAM(served.said);
   } else {

@@ -8,26 +8,25 @@
 #include <string>
 
 #include "cell/model/cell_model.h"
-#include "cell/model/online_cell_model.h"
+#include "cell/surrogate/make_cell_model.h"
 #include "cell_microinjection/CellState.h"
 #include "nodes/cell/cell_state_publisher.h"
 #include "nodes/runtime/cycle.h"
 
 namespace microinjection {
 
-/// The cell under the needle: a prepared one (see SurrogateData) or a live one (see makeOnlineCell). Where it has no
+/// The cell under the needle: see makeCellModel. Where it has no
 /// trustworthy force it says so: the wrench then has stamp 0.
 ///
 /// In:  /needle/measured_cp or /needle/true_cp (PoseStamped, tip in `world`)
 /// Out: /cell/predicted_cf (WrenchStamped, of the cell on the tip, in `world`), /cell/state (CellState)
 ///
-/// Parameters (private): those of OnlineCellModelConfig and
+/// Parameters (private): those of OnlineCellModelConfig, ExplicitCellModelConfig and
 ///   scene           path of the scene file; required
-///   model           prepared, live, or auto (default): prepared where `prepare` has left data for the scene, else live
-///   needle          measured (default): what the micromanipulator tells; true: where a simulated one's tip truly is
-///   rate            Hz; default 1000, in [50, 5000]
-///   state_rate      Hz of /cell/state; default 60, in (0, 100]
-///   needle_timeout  s, a needle pose older than this is stale; default 0.05, in (0, inf)
+///   model           prepared, live, explicit, or auto (default): prepared where `prepare` has left data for the scene,
+///   else live needle          measured (default): what the micromanipulator tells; true: where a simulated one's tip
+///   truly is rate            Hz; default 1000, in [50, 5000] state_rate      Hz of /cell/state; default 60, in (0,
+///   100] needle_timeout  s, a needle pose older than this is stale; default 0.05, in (0, inf)
 class CellSimulatorNode {
  public:
   static const char* const kHelp;
@@ -43,7 +42,7 @@ class CellSimulatorNode {
     double rate = 1000;
     double state_rate = 60;
     double needle_timeout = 0.05;
-    OnlineCellModelConfig tracker;
+    CellModelConfig models;
     static Parameters read(const ros::NodeHandle& private_node);
   };
 

@@ -46,7 +46,7 @@ def parse_arguments():
     parser.add_argument('--out', type=Path, default=ROOT / 'out' / 'demo', help='folder of the results (%(default)s)')
     parser.add_argument('--cell', default=CELL,
                         help='name in config/cells, or path of a scene file (%(default)s)')
-    parser.add_argument('--model', choices=('auto', 'prepared', 'live'), default='auto',
+    parser.add_argument('--model', choices=('auto', 'prepared', 'live', 'explicit'), default='auto',
                         help='prepared: converged force, made ready first (minutes, once); live: P1 tetrahedra, at once; '
                         'auto: prepared where the cell can be')
     parser.add_argument('--clock', choices=('wall', 'lockstep'), default='wall',

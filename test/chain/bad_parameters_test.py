@@ -36,7 +36,7 @@ GOOD = {  # what each node cannot do without
 BAD = [  # node, wrong parameters, what the message must say
     ("cell_simulator", {"scene": "/nowhere.yaml"}, ["/nowhere.yaml"]),
     ("cell_simulator", {"model": "prepared"}, ["model = prepared", "prepare --scene"]),
-    ("cell_simulator", {"model": "guessed"}, ["model = guessed", "auto, prepared, live"]),
+    ("cell_simulator", {"model": "guessed"}, ["model = guessed", "auto, prepared, live, explicit"]),
     ("cell_simulator", {"rate": 1e6}, ["rate = 1e+06", "[50, 5000]"]),
     ("cell_simulator", {"extrapolation_limit": 0.0}, ["extrapolation_limit = 0", "(0, inf)"]),
     ("display", {"rate": -1}, ["rate = -1"]),

@@ -63,20 +63,44 @@ ExplicitStep::ExplicitStep(const TetMesh& mesh, const ExplicitStepConfig& config
   velocities_.assign(rest_.size(), 0);
   forces_.assign(rest_.size(), 0);
   displacements_.assign(rest_.size(), 0);
-  const std::vector<double> masses = lumpedMasses(mesh, config.density);
-  for (std::size_t v = 0; v < masses.size(); ++v) {
-    if (!(masses[v] > 0)) throw std::invalid_argument("vertex " + std::to_string(v) + " is of no tetrahedron");
-    inverse_masses_.insert(inverse_masses_.end(), 3, 1 / masses[v]);
+  masses_ = lumpedMasses(mesh, config.density);
+  for (std::size_t v = 0; v < masses_.size(); ++v) {
+    if (!(masses_[v] > 0)) throw std::invalid_argument("vertex " + std::to_string(v) + " is of no tetrahedron");
+    inverse_masses_.insert(inverse_masses_.end(), 3, 1 / masses_[v]);
   }
-  for (const std::vector<int>* vertices : {&config_.held, &config_.tip}) {
-    for (int vertex : *vertices) std::fill_n(inverse_masses_.begin() + 3 * vertex, 3, 0.0);
-  }
+  for (int vertex : config_.held) std::fill_n(inverse_masses_.begin() + 3 * vertex, 3, 0.0);
+  holdTip();
   if (config.time_step) {
     time_step_ = *config.time_step;
     return;
   }
   highest_frequency_ = findHighestFrequency();
   time_step_ = highest_frequency_ > 0 ? config.safety * 2 / highest_frequency_ : 0;
+}
+
+void ExplicitStep::setTip(const std::vector<int>& vertices) {
+  ExplicitStepConfig changed = config_;
+  changed.tip = vertices;
+  changed.validate(masses_.size());
+  for (int vertex : config_.tip) std::fill_n(inverse_masses_.begin() + 3 * vertex, 3, 1 / masses_[vertex]);
+  config_ = changed;
+  holdTip();
+}
+
+void ExplicitStep::holdTip() {
+  tip_start_.clear();
+  for (int vertex : config_.tip) {
+    tip_start_.emplace_back(Eigen::Vector3d::Map(&positions_[3 * vertex]));
+    std::fill_n(inverse_masses_.begin() + 3 * vertex, 3, 0.0);
+    std::fill_n(velocities_.begin() + 3 * vertex, 3, 0.0);
+  }
+}
+
+void ExplicitStep::reset() {
+  positions_ = rest_;
+  std::fill(velocities_.begin(), velocities_.end(), 0.0);
+  force_.setZero();
+  holdTip();
 }
 
 /// K by central differences of the force. `safety` covers what is missing after an iteration that changes little.
@@ -114,11 +138,10 @@ void ExplicitStep::step(const Eigen::Vector3d& tip_displacement) {
     positions_[i] += time_step_ * velocities_[i];
   }
   force_.setZero();
-  for (int vertex : config_.tip) {
-    for (int k = 0; k < 3; ++k) {
-      force_[k] += forces_[3 * vertex + k];
-      positions_[3 * vertex + k] = rest_[3 * vertex + k] + tip_displacement[k];
-    }
+  for (std::size_t i = 0; i < config_.tip.size(); ++i) {
+    const int entry = 3 * config_.tip[i];
+    force_ += Eigen::Vector3d::Map(&forces_[entry]);
+    Eigen::Vector3d::Map(&positions_[entry]) = tip_start_[i] + tip_displacement;
   }
 }
 

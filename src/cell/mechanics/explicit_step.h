@@ -45,7 +45,13 @@ class ExplicitStep {
   /// Throws ConfigError, and std::invalid_argument as StVenantKirchhoffForce does or for a vertex without mass.
   ExplicitStep(const TetMesh& mesh, const ExplicitStepConfig& config);
 
-  /// One time step, at whose end the tip is displaced by this (m). Allocates nothing.
+  /// Makes these vertices move with the tip from where they are now, instead of those before.
+  /// Throws ConfigError, as the constructor does, and then changes nothing.
+  void setTip(const std::vector<int>& vertices);
+  /// Undeformed and at rest.
+  void reset();
+
+  /// One time step, at whose end the tip is displaced by this (m) from where it was set. Allocates nothing.
   void step(const Eigen::Vector3d& tip_displacement);
 
   /// Of the body on the needle, N, at the positions from which the last step set out.
@@ -57,6 +63,7 @@ class ExplicitStep {
   const std::vector<double>& positions() const { return positions_; }  ///< m, xyz per vertex
 
  private:
+  void holdTip();
   double findHighestFrequency();
   void evaluate(const std::vector<double>& positions, std::vector<double>& forces);
 
@@ -64,7 +71,9 @@ class ExplicitStep {
   std::optional<TensorMassForce> tensors_;
   ExplicitStepConfig config_;
   std::vector<double> rest_, positions_, velocities_, forces_, displacements_;  ///< xyz per vertex
-  std::vector<double> inverse_masses_;  ///< 1/kg, xyz per vertex; 0 where the motion is given
+  std::vector<double> masses_;                                                  ///< kg, of each vertex
+  std::vector<double> inverse_masses_;      ///< 1/kg, xyz per vertex; 0 where the motion is given
+  std::vector<Eigen::Vector3d> tip_start_;  ///< m, of each vertex of the tip where its displacement is zero
   double highest_frequency_ = 0;
   double time_step_ = 0;
   Eigen::Vector3d force_ = Eigen::Vector3d::Zero();

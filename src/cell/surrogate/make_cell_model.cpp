@@ -56,23 +56,28 @@ std::string cannotBePrepared(const Scene& scene) {
 
 }  // namespace
 
-ChosenCellModel makeCellModel(const Scene& scene, const std::string& model, const OnlineCellModelConfig& config,
+ChosenCellModel makeCellModel(const Scene& scene, const std::string& model, const CellModelConfig& config,
                               const std::string& path) {
-  if (scene.cell.tensegrity && model != "prepared") {
-    return live(scene, config, "the cell is a tensegrity, solved live", true);  // its scene requires nothing
+  if (model == "explicit") {
+    auto tracker = std::make_unique<ExplicitCellModel>(scene, config.explicit_dynamics);
+    const std::string said = "the cell is the paper's explicit dynamics, as asked for: " + tracker->description();
+    return {std::make_unique<PuncturableCell>(scene, std::move(tracker)), said, false};
   }
-  if (model == "live") return live(scene, config, "the cell is live, as asked for", true);
+  if (scene.cell.tensegrity && model != "prepared") {
+    return live(scene, config.online, "the cell is a tensegrity, solved live", true);  // its scene requires nothing
+  }
+  if (model == "live") return live(scene, config.online, "the cell is live, as asked for", true);
   const std::string refused = cannotBePrepared(scene);
   if (!refused.empty()) {
     if (model == "prepared") throw ConfigError("model = prepared: " + refused);
-    return unprepared(scene, config, "the cell cannot be prepared (" + refused + ")");
+    return unprepared(scene, config.online, "the cell cannot be prepared (" + refused + ")");
   }
   const PreparationRange range = PreparationRange::standard(scene);
   const std::string call = "rosrun cell_microinjection prepare --scene " + path;
   auto loaded = SurrogateData::load(scene, range, preparedFile(scene, Preparation::plan(scene, range)));
   const std::string why = loaded ? "" : whyNotPrepared(loaded, call);
   if (!loaded && model == "prepared") throw ConfigError("model = prepared: " + why);
-  if (!loaded) return unprepared(scene, config, why);
+  if (!loaded) return unprepared(scene, config.online, why);
   const auto cell = std::make_shared<const SurrogateData>(std::move(*loaded.content));
   std::vector<ModelFigures> figures = {measurePreparedCell(scene, cell)};
   std::string note;
@@ -84,7 +89,7 @@ ChosenCellModel makeCellModel(const Scene& scene, const std::string& model, cons
   }
   const ModelChoice choice = chooseModel(scene.requirements, figures);
   const std::string said = "model " + model + ": " + choice.reason + note;
-  if (choice.name == "live") return live(scene, config, said + "; it is", choice.meets);
+  if (choice.name == "live") return live(scene, config.online, said + "; it is", choice.meets);
   auto tracker = std::make_unique<SurrogateCellModel>(scene, cell);
   return {std::make_unique<PuncturableCell>(scene, std::move(tracker)), said, choice.meets};
 }

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "cell/model/cell_model.h"
+#include "cell/model/explicit_cell_model.h"
 #include "cell/model/online_cell_model.h"
 
 namespace microinjection {
@@ -14,10 +15,16 @@ struct ChosenCellModel {
   bool as_required = true;  ///< else `said` is a warning
 };
 
-/// A scene's cell for a moving needle. `model`: prepared (what `prepare` left), live (see makeOnlineCell) or auto
-/// (chosen by the scene's requirements, see chooseModel; live where nothing is prepared). Never another than was asked
-/// for. `path` of the scene, for messages. Throws ConfigError when the model cannot serve the scene.
-ChosenCellModel makeCellModel(const Scene& scene, const std::string& model, const OnlineCellModelConfig& config,
+struct CellModelConfig {
+  OnlineCellModelConfig online;
+  ExplicitCellModelConfig explicit_dynamics;
+};
+
+/// A scene's cell for a moving needle. `model`: prepared (what `prepare` left), live (see makeOnlineCell), explicit
+/// (ExplicitCellModel) or auto (chosen by the scene's requirements, see chooseModel; live where nothing is prepared).
+/// Never another than was asked for. `path` of the scene, for messages. Throws ConfigError when the model cannot serve
+/// the scene.
+ChosenCellModel makeCellModel(const Scene& scene, const std::string& model, const CellModelConfig& config,
                               const std::string& path);
 
 }  // namespace microinjection

@@ -39,8 +39,9 @@ std::string StopGuard::start() {
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) return std::strerror(errno);
   // 0 and 1 are where the guard puts its own.
   const int driver = fcntl(ends[1], F_DUPFD_CLOEXEC, 3), line = fcntl(line_, F_DUPFD_CLOEXEC, 3);
+  const CommandLine program = findCommandLine();
   process_ = driver < 0 || line < 0 ? -1 : fork();
-  if (process_ == 0) runStopGuard(line, driver, stop_.data(), stop_.size());
+  if (process_ == 0) runStopGuard(line, driver, stop_.data(), stop_.size(), program);
   std::string why = process_ < 0 ? std::strerror(errno) : "";
   for (const int each : {ends[1], driver, line}) {
     if (each >= 0) close(each);

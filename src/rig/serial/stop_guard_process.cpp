@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/syscall.h>
@@ -11,14 +12,19 @@
 #include <csignal>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <ctime>
+#include <fstream>
 #include <initializer_list>
+#include <sstream>
+#include <string>
 
 namespace microinjection {
 namespace {
 
 constexpr int kLine = 0, kDriver = 1;  // the guard's descriptors
 constexpr int kTick = 20;              // ms
+constexpr char kName[] = "stop_guard";
 
 /// Closes every descriptor from `first` on, without what may not be called here: close_range() is not in every libc.
 void closeAllFrom(int first) {
@@ -142,10 +148,27 @@ class Guard {
 
 }  // namespace
 
-void runStopGuard(int line, int driver, const char* stop, std::size_t size) {
+CommandLine findCommandLine() {
+  std::ifstream file("/proc/self/stat");
+  std::string stat;
+  std::getline(file, stat);
+  std::istringstream fields(stat.substr(stat.rfind(')') + 1));  // the name before it may have spaces
+  std::string skipped;
+  std::uintptr_t begin = 0, end = 0;
+  for (int field = 3; field < 48; ++field) fields >> skipped;  // 48 and 49 are arg_start and arg_end, see proc(5)
+  if (!(fields >> begin >> end) || begin == 0 || end <= begin) return {};
+  return {reinterpret_cast<char*>(begin), end - begin};
+}
+
+void runStopGuard(int line, int driver, const char* stop, std::size_t size, CommandLine program) {
   setsid();  // what ends the program's whole group must not end this one
   for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) signal(number, SIG_IGN);
-  prctl(PR_SET_NAME, "stop_guard");  // nor what ends programs by their name
+  prctl(PR_SET_NAME, kName);  // nor what ends programs by their name
+  if (program.size > sizeof(kName)) {
+    std::memset(program.text, 0, program.size);
+    std::memcpy(program.text, kName, sizeof(kName));
+  }
+  mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT);  // what it uses, not all that the program has
   // Nothing else may be kept open: neither connections nor the socket's other end.
   dup2(line, kLine);
   dup2(driver, kDriver);

@@ -45,8 +45,8 @@ class ServeNeedle : public testing::Test {
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 TEST_F(ServeNeedle, AnUnpreparedRoundedTipIsLiveWithAWarning) {
-  OnlineCellModelConfig config;
-  config.fixed_period = true;
+  CellModelConfig config;
+  config.online.fixed_period = true;
   const ChosenCellModel served = makeCellModel(pipette(), "auto", config, "a.yaml");
   EXPECT_FALSE(served.as_required);
   EXPECT_TRUE(has(served.said, "not prepared; run: rosrun cell_microinjection prepare --scene a.yaml")) << served.said;
@@ -142,6 +142,14 @@ TEST_F(ServeNeedle, WhatCannotBePreparedIsLive) {
     EXPECT_TRUE(has(served.said, "cannot be prepared (")) << served.said;
     EXPECT_TRUE(has(served.said, "so it is live: P2-P0")) << served.said;
   }
+}
+
+TEST_F(ServeNeedle, ExplicitDynamicsIsServedWithAWarningWhereItIsAskedForByName) {
+  const Scene scene = loadScene(MICROINJECTION_SOURCE_DIR "/config/cells/mouse_oocyte_st_venant_kirchhoff.yaml");
+  const ChosenCellModel served = makeCellModel(scene, "explicit", {}, "a.yaml");
+  EXPECT_FALSE(served.as_required);
+  EXPECT_TRUE(has(served.said, "too large") && has(served.said, "mass times")) << served.said;
+  EXPECT_TRUE(has(refusal(pipette(), "explicit"), "needle/tip/shape = ")) << refusal(pipette(), "explicit");
 }
 
 }  // namespace

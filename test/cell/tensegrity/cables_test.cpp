@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "cell/tensegrity/term_derivatives.h"
+#include "cell/mechanics/term_derivatives.h"
 
 namespace microinjection {
 namespace {

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "cell/tensegrity/tensegrity_loading.h"
-#include "cell/tensegrity/term_derivatives.h"
+#include "cell/mechanics/term_derivatives.h"
 
 namespace microinjection {
 namespace {

@@ -10,7 +10,10 @@
 
 #include <chrono>
 #include <csignal>
+#include <fstream>
 #include <functional>
+#include <iterator>
+#include <string>
 #include <thread>
 
 #include "rig/serial/pseudo_terminal.h"
@@ -177,6 +180,32 @@ TEST_F(StopGuardTest, AGuardThatADebuggerHoldsOnToDoesNotHoldTheDriver) {
   kill(debugger, SIGKILL);
   waitpid(debugger, nullptr, 0);
   EXPECT_TRUE(stepUntil([&] { return step(), !lives(first); }));
+}
+
+std::string contents(const std::string& file) {
+  std::ifstream stream(file);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+TEST_F(StopGuardTest, IsNotEndedByTheNameOfItsProgram) {
+  const std::string folder = "/proc/" + std::to_string(guard_.process());
+  EXPECT_TRUE(stepUntil([&] { return std::string(contents(folder + "/cmdline").c_str()) == "stop_guard"; }));
+  EXPECT_EQ(contents(folder + "/comm"), "stop_guard\n");
+}
+
+TEST_F(StopGuardTest, LocksItsMemory) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "a sanitizer locks no memory";
+#endif
+  rlimit limit{};
+  getrlimit(RLIMIT_MEMLOCK, &limit);
+  if (limit.rlim_cur != RLIM_INFINITY && geteuid() != 0) GTEST_SKIP() << "this user may not lock enough memory";
+  const std::string file = "/proc/" + std::to_string(guard_.process()) + "/status";
+  EXPECT_TRUE(stepUntil([&] {
+    const std::string status = contents(file);
+    const auto at = status.find("VmLck:");
+    return at != std::string::npos && std::stol(status.substr(at + 6)) > 0;
+  }));
 }
 
 TEST_F(StopGuardTest, GuardsThatCannotBeStartedAreReported) {

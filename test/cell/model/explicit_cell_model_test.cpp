@@ -1,0 +1,143 @@
+#include "cell/model/explicit_cell_model.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "base/errors.h"
+
+namespace microinjection {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kStep = 1e-3;    // s
+constexpr double kTouch = 28e-6;  // m, z of the pole
+const Vector3d kAxis = Vector3d::UnitZ();
+
+Scene coarseScene(const std::string& model = "st_venant_kirchhoff") {
+  Scene scene;
+  scene.cell.material() = {model, 17.9e3, 0.45};
+  scene.mesh.size = 20e-6;
+  return scene;
+}
+
+class ExplicitCellModelTest : public testing::TestWithParam<const char*> {
+ protected:
+  TipForce moveTo(double depth, double duration) {
+    const int steps = std::max(1, static_cast<int>(std::lround(duration / kStep)));
+    const double start = depth_;
+    for (int i = 1; i <= steps; ++i) step(start + (depth - start) * i / steps);
+    return force_;
+  }
+  TipForce rest(double duration) { return moveTo(depth_, duration); }
+
+  void step(double depth) {
+    depth_ = depth;
+    force_ = cell_.step({0, 0, kTouch - depth}, kAxis, time_ += kStep);
+    if (!force_.valid) ++invalid_;
+    smallest_push_ = std::min(smallest_push_, force_.force.dot(kAxis));
+  }
+
+  Scene scene_ = coarseScene();
+  ExplicitCellModel cell_{scene_, {}};
+  double depth_ = -2e-6, time_ = 0, smallest_push_ = 0;
+  int invalid_ = 0;
+  TipForce force_;
+};
+
+double equilibriumForce(const Scene& scene, const Vector3d& displacement) {
+  const auto cell = std::make_shared<const P1Cell>(scene);
+  int hint = 0;
+  const auto path = cell->path(cell->contactAt(*cell->touch({0, 0, 30e-6}, kAxis, hint), kAxis));
+  IndentationSolution solution;
+  do {
+    solution = path->follow({displacement, 0, std::nullopt, 0});
+  } while (solution.converged && solution.tip_displacement != displacement);
+  EXPECT_TRUE(solution.converged) << solution.reason;
+  return solution.force.z();
+}
+
+TEST_P(ExplicitCellModelTest, ComesToRestAtTheEquilibriumOfTheSameMesh) {
+  const Scene scene = coarseScene(GetParam());
+  ExplicitCellModel cell(scene, {});
+  TipForce force;
+  double time = 0;
+  for (; time < 1; time += kStep) force = cell.step({0, 0, kTouch - 3e-6 * time}, kAxis, time);
+  for (; time < 8; time += kStep) force = cell.step({0, 0, kTouch - 3e-6}, kAxis, time);
+  ASSERT_TRUE(force.valid) << cell.invalidReason();
+  ASSERT_TRUE(cell.contact());
+  const double expected = equilibriumForce(scene, cell.contact()->displacement);
+  EXPECT_NEAR(force.force.z(), expected, 0.005 * expected) << cell.description();
+}
+INSTANTIATE_TEST_SUITE_P(Materials, ExplicitCellModelTest, testing::Values("st_venant_kirchhoff", "linear"));
+
+TEST_F(ExplicitCellModelTest, ScaledMassMakesAFastNeedleFeelMore) {
+  const double fast = moveTo(3e-6, 0.02).force.z(), settled = rest(8).force.z();
+  EXPECT_GT(fast, 1.5 * settled);
+  EXPECT_EQ(invalid_, 0);
+}
+
+TEST_F(ExplicitCellModelTest, NeitherPullsNorStaysDeformedWhenTheNeedleLeaves) {
+  moveTo(3e-6, 0.5);
+  moveTo(-3e-6, 0.1);
+  EXPECT_FALSE(cell_.contact());
+  EXPECT_EQ(force_.force, Vector3d::Zero().eval());
+  rest(8);
+  EXPECT_GE(smallest_push_, 0);
+  const CellModel::DeformedSurface surface = cell_.deformedSurface();
+  EXPECT_LT(*std::max_element(surface.displacement.begin(), surface.displacement.end()), 1e-9);
+  EXPECT_TRUE(surface.touched.empty());
+}
+
+TEST_F(ExplicitCellModelTest, DrawsTheDeformationUnderTheTip) {
+  moveTo(3e-6, 0.5);
+  const CellModel::DeformedSurface surface = cell_.deformedSurface();
+  ASSERT_FALSE(surface.touched.empty());
+  for (const std::uint32_t vertex : surface.touched) EXPECT_NEAR(surface.displacement[vertex], 3e-6, 0.3e-6);
+  for (const std::uint32_t vertex : cell_.held()) EXPECT_EQ(surface.displacement[vertex], 0);
+}
+
+TEST_F(ExplicitCellModelTest, AnUnstableForceIsInvalidAndTheCellIsWholeAfterTheNeedleHasLeft) {
+  moveTo(0, 0.1);
+  moveTo(25e-6, 0.05);
+  rest(1);
+  EXPECT_GT(invalid_, 0);
+  EXPECT_NE(cell_.invalidReason().find("unstable"), std::string::npos) << cell_.invalidReason();
+  moveTo(-3e-6, 0.1);
+  EXPECT_EQ(cell_.invalidReason(), "");
+  invalid_ = 0;
+  moveTo(2e-6, 0.5);
+  rest(4);
+  EXPECT_EQ(invalid_, 0);
+  EXPECT_GT(force_.force.z(), 0);
+}
+
+TEST_F(ExplicitCellModelTest, TimeThatIsMissingIsLeftOut) {
+  moveTo(2e-6, 0.5);
+  const double settled = rest(8).force.z();
+  time_ += 1e6;
+  EXPECT_NEAR(rest(0.01).force.z(), settled, 0.01 * settled);
+  cell_.step({0, 0, std::numeric_limits<double>::quiet_NaN()}, kAxis, time_);
+  EXPECT_NE(cell_.invalidReason(), "");
+  EXPECT_NEAR(rest(0.01).force.z(), settled, 0.01 * settled);
+}
+
+TEST_F(ExplicitCellModelTest, WhatTheHoldingPipetteHoldsIsNotPushed) {
+  const TipForce force = cell_.step({0, 0, -kTouch + 1e-6}, -kAxis, 0);
+  EXPECT_FALSE(force.valid);
+  EXPECT_NE(cell_.invalidReason().find("holding pipette"), std::string::npos) << cell_.invalidReason();
+}
+
+TEST_F(ExplicitCellModelTest, RefusesWhatTheDynamicsDoesNotHave) {
+  EXPECT_THROW(ExplicitCellModel(coarseScene("neo_hookean"), {}), ConfigError);
+  Scene layered = scene_;
+  layered.cell.layers.push_back(layered.cell.layers.front());
+  EXPECT_THROW(ExplicitCellModel(layered, {}), ConfigError);
+}
+
+}  // namespace
+}  // namespace microinjection
