@@ -1,5 +1,6 @@
 #include "cell/mechanics/explicit_step.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -49,7 +50,8 @@ void ExplicitStepConfig::validate(std::size_t vertices) const {
   if (!errors.empty()) throw ConfigError(errors);
 }
 
-ExplicitStep::ExplicitStep(const TetMesh& mesh, const ExplicitStepConfig& config) : config_(config) {
+ExplicitStep::ExplicitStep(const TetMesh& mesh, const ExplicitStepConfig& config)
+    : tetrahedra_(mesh.tetrahedra), config_(config) {
   using Force = ExplicitStepConfig::Force;
   using Kind = TensorMassForce::Kind;
   config.validate(mesh.vertices.size());
@@ -143,6 +145,17 @@ void ExplicitStep::step(const Eigen::Vector3d& tip_displacement) {
     force_ += Eigen::Vector3d::Map(&forces_[entry]);
     Eigen::Vector3d::Map(&positions_[entry]) = tip_start_[i] + tip_displacement;
   }
+}
+
+bool ExplicitStep::hasInvertedElement() const {
+  return std::any_of(tetrahedra_.begin(), tetrahedra_.end(), [this](const std::array<int, 4>& corners) {
+    Eigen::Matrix3d edges;
+    for (int k = 0; k < 3; ++k) {
+      edges.col(k) =
+          Eigen::Vector3d::Map(&positions_[3 * corners[k + 1]]) - Eigen::Vector3d::Map(&positions_[3 * corners[0]]);
+    }
+    return !(edges.determinant() > 0);
+  });
 }
 
 double ExplicitStep::kineticEnergy() const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -60,6 +61,7 @@ class ExplicitStep {
   double timeStep() const { return time_step_; }                  ///< s
   double highestFrequency() const { return highest_frequency_; }  ///< rad/s, of the undeformed body; 0 if not asked for
   double kineticEnergy() const;                                   ///< J
+  bool hasInvertedElement() const;                                ///< or a flat one
   const std::vector<double>& positions() const { return positions_; }  ///< m, xyz per vertex
 
  private:
@@ -67,6 +69,7 @@ class ExplicitStep {
   double findHighestFrequency();
   void evaluate(const std::vector<double>& positions, std::vector<double>& forces);
 
+  std::vector<std::array<int, 4>> tetrahedra_;
   std::optional<StVenantKirchhoffForce> kernel_;  ///< this, or the tensors
   std::optional<TensorMassForce> tensors_;
   ExplicitStepConfig config_;

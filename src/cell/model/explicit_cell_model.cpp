@@ -42,7 +42,8 @@ ExplicitCellModel::ExplicitCellModel(const Scene& scene, const ExplicitCellModel
   const MaterialConfig& material = scene.cell.layers.front().material;
   ExplicitStepConfig dynamics;
   dynamics.lame = Lame::from(material.young_modulus, material.poisson_ratio);
-  if (material.model == "linear") dynamics.force = ExplicitStepConfig::Force::kLinearTensors;
+  may_invert_ = material.model == "linear";  // small strain has no inversion
+  if (may_invert_) dynamics.force = ExplicitStepConfig::Force::kLinearTensors;
   const double stable = 2 * kShare / frequencyBound(cell_->mesh(), dynamics.lame, kDensity);
   mass_scale_ = std::max(1.0, std::pow(config.time_step / stable, 2));
   dynamics.density = mass_scale_ * kDensity;
@@ -85,18 +86,17 @@ TipForce ExplicitCellModel::computeForce(const Eigen::Vector3d& tip, const Eigen
   }
   advance(contact_ ? contact_->displacement : Eigen::Vector3d::Zero(), time);
   unstable_ = unstable_ || !isStable();
+  inverted_ = !may_invert_ && dynamics_->hasInvertedElement();
   if (!contact_) {
-    if (unstable_) release();
+    if (unstable_ || inverted_) release();
     return {};
   }
   const double push = dynamics_->force().dot(axis);
-  const bool invalid = touches_held_ || unstable_;
-  if ((invalid || push <= 0) && cell_->isClear(tip, axis, contact_->contact_point)) {
+  if ((defect() != nullptr || push <= 0) && cell_->isClear(tip, axis, contact_->contact_point)) {
     release();
     return {};
   }
-  if (touches_held_) return invalidForce("the tip touches what the holding pipette holds");
-  if (unstable_) return invalidForce("the explicit time steps are unstable at this indentation; withdraw the needle");
+  if (defect() != nullptr) return invalidForce(defect());
   if (push < 0) return {};  // there is no adhesion
   return {true, dynamics_->force()};
 }
@@ -133,16 +133,24 @@ bool ExplicitCellModel::isStable() const {
   return dynamics_->kineticEnergy() < 2 * std::max(0.0, work_) + negligible_energy_;
 }
 
+/// Null where the force is valid.
+const char* ExplicitCellModel::defect() const {
+  if (touches_held_) return "the tip touches what the holding pipette holds";
+  if (unstable_) return "the explicit time steps are unstable at this indentation; withdraw the needle";
+  if (inverted_) return "an element is inverted: the needle is too deep or too fast; withdraw it";
+  return nullptr;
+}
+
 void ExplicitCellModel::release() {
   contact_.reset();
   drawn_.touched.clear();
   invalid_reason_.clear();
   touches_held_ = false;
   dynamics_->setTip({});
-  if (!unstable_) return;
+  if (!unstable_ && !inverted_) return;
   dynamics_->reset();
   work_ = 0;
-  unstable_ = false;
+  unstable_ = inverted_ = false;
 }
 
 TipForce ExplicitCellModel::invalidForce(const char* reason) {

@@ -16,7 +16,7 @@
 namespace microinjection {
 
 struct ExplicitCellModelConfig {
-  double time_step = 1e-4;  ///< s, of the dynamics; the mass is scaled until this step is stable
+  double time_step = 2e-4;  ///< s, of the dynamics; the mass is scaled until this step is stable
 
   static ExplicitCellModelConfig read(ConfigReader& reader);
 };
@@ -57,6 +57,7 @@ class ExplicitCellModel : public CellModel {
   void engage(const Eigen::Vector3d& touch, const Eigen::Vector3d& axis);
   void advance(const Eigen::Vector3d& displacement, double time);
   bool isStable() const;
+  const char* defect() const;
   TipForce invalidForce(const char* reason);
   void writeShape();
 
@@ -69,7 +70,7 @@ class ExplicitCellModel : public CellModel {
   Eigen::Vector3d applied_ = Eigen::Vector3d::Zero();  ///< m, displacement of the tip in the last time step
   double work_ = 0;                                    ///< J, of the needle on the cell
   double negligible_energy_;                           ///< J
-  bool touches_held_ = false, unstable_ = false;
+  bool may_invert_ = false, touches_held_ = false, unstable_ = false, inverted_ = false;
   Shape drawn_;
   std::string invalid_reason_;
   int hint_ = 0;  ///< see OnlineCell::touch
