@@ -38,7 +38,7 @@ class ByteReader {
   template <typename T>
   T number() {
     T value;
-    std::memcpy(&value, take(sizeof(T)), sizeof(T));
+    std::memcpy(&value, consume(sizeof(T)), sizeof(T));
     return value;
   }
   /// Resizes `values` to the stored size.
@@ -48,12 +48,12 @@ class ByteReader {
     if (size > bytes_.size()) throw std::runtime_error("there is less than was written");
     values.resize(size);
     const std::size_t length = size * sizeof(*values.data());
-    std::memcpy(static_cast<void*>(values.data()), take(length), length);
+    std::memcpy(static_cast<void*>(values.data()), consume(length), length);
   }
   bool atEnd() const { return at_ == bytes_.size(); }
 
  private:
-  const char* take(std::size_t length) {
+  const char* consume(std::size_t length) {
     if (length > bytes_.size() - at_) throw std::runtime_error("there is less than was written");
     const char* result = bytes_.data() + at_;
     at_ += length;

@@ -27,7 +27,7 @@ std::unique_ptr<TensegrityIndentation> TensegrityCell::indentation(const TipPatc
 
 std::string TensegrityCell::description() const {
   std::ostringstream text;
-  text << "tensegrity of " << structure_->nodePlaces().size() << " nodes, " << structure_->struts().elementCount()
+  text << "tensegrity of " << structure_->nodePositions().size() << " nodes, " << structure_->struts().elementCount()
        << " tetrahedra; prestress " << structure_->form().prestress << " N, unbalanced " << structure_->form().residual
        << " N";
   return text.str();
