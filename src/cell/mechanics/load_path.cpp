@@ -132,7 +132,7 @@ bool LoadPath::balance(State& trial, int& iterations, std::string& reason) {
     if (norm <= std::max(kTolerance * trial.reaction.norm(), force_floor_)) return true;
     const bool far = i == 0 && norm > kFar * trial.reaction.norm();  // contact started, which it does not include
     if ((!factorised_ || far || norm > kSlow * last) && !refactorise(trial)) {
-      reason = "no stable equilibrium: the tangent on the way is not positive definite";
+      reason = "no stable equilibrium: the tangent along the step is not positive definite";
       return false;
     }
     last = norm;

@@ -33,7 +33,9 @@ std::string TensegrityCell::description() const {
   return text.str();
 }
 
-std::unique_ptr<TipPath> TensegrityCell::path(const ContactPoint& place) const { return indentation(place.patch); }
+std::unique_ptr<TipPath> TensegrityCell::path(const ContactPoint& contact_point) const {
+  return indentation(contact_point.patch);
+}
 
 std::vector<CellModel::Member> TensegrityCell::undeformedMembers() const {
   return tensegrityMembers(*structure_, *structure_->makeParts().cables, structure_->start());

@@ -15,7 +15,7 @@ using NodePositions = std::vector<Eigen::Vector3d>;
 /// Straight cables between nodes, which bear tension only: equations (9) and (10) of Ladjal, Hanus,
 /// Ferreira,
 ///
-///     tension = max(0, E S (l - l0) / l0 + eta S (dl/dt) / l0),  eta = E times the retardation time.
+///     tension = max(0, E S (l - l0) / l0 + eta S (dl/dt) / l0), eta = E times the retardation time.
 ///
 /// The viscous term of the printed (10) lacks the section S and so is a stress, not a force; (9)
 /// times S has it. In (10) l is the present length and l0 the one without load (the text has them
