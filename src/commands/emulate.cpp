@@ -27,8 +27,8 @@ constexpr char kHelp[] = R"(usage: emulate RIG [OPTION...]
 
 Emulates a micromanipulator on a pseudo-terminal, to test its driver without a device.
 
-The emulator has the real device's baud rate, reply time, speed and acceleration. It runs until it is interrupted (Ctrl-C).
-Drivers may connect and disconnect. Lines on standard input inject further faults, in the form of --fault.
+The emulator has the real device's baud rate, reply time, speed and acceleration. It runs until it is interrupted
+(Ctrl-C). Drivers may connect and disconnect. Lines on standard input inject further faults, in the form of --fault.
 
 Faults: KIND[:VALUE][@TIME]; TIME in s since the start, default 0
   silence:S    for S s the device neither receives nor sends (a motion continues)

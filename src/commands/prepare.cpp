@@ -32,8 +32,8 @@ namespace po = boost::program_options;
 constexpr int kDone = 0, kBadUsage = 2, kFailed = 3;
 
 constexpr char kHelp[] =
-    R"(prepare: the off-line stage. Solves a scene's cell at many contact points and displacements, and stores the data with
-which a live session evaluates a converged force in microseconds.
+    R"(prepare: the off-line stage. Solves a scene's cell at many contact points and displacements, and stores the data
+with which a live session evaluates a converged force in microseconds.
 
 Usage: prepare --scene FILE [--jobs N] [...]
 
@@ -43,10 +43,10 @@ the program's version; another cell or tip needs its own, another needle offset 
 
 Data that are damaged, or of another version, are reported and replaced.
 
-Exit status: 0 prepared (or was already); 2 bad usage, a scene that cannot be prepared (friction, adhesion, a viscosity that
-does not relax, tensegrity: the message names it), or data or output that cannot be written (the message names the path and
-the reason; the folder is checked first); 3 the cell has no solution in a part of the range, as under a sharp disc where the
-surface folds: nothing is stored.
+Exit status: 0 prepared (or was already); 2 bad usage, a scene that cannot be prepared (friction, adhesion, a viscosity
+that does not relax, tensegrity: the message names it), or data or output that cannot be written (the message names the
+path and the reason; the folder is checked first); 3 the cell has no solution in a part of the range, as under a sharp
+disc where the surface folds: nothing is stored.
 
 Options)";
 

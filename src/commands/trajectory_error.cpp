@@ -25,9 +25,9 @@ namespace po = boost::program_options;
 
 constexpr int kBadUsage = 2, kFailed = 3;
 constexpr char kHelp[] =
-    R"(trajectory_error: difference between a session's predicted force and the full solution. Reads the indentation of a
-recorded session (force_depth.csv), moves the tip of the converging model (P2-P0 tetrahedra in space) along the same path,
-and prints the force of both. Takes a minute.
+    R"(trajectory_error: difference between a session's predicted force and the full solution. Reads the indentation of
+a recorded session (force_depth.csv), moves the tip of the converging model (P2-P0 tetrahedra in space) along the same
+path, and prints the force of both. Takes a minute.
 
 Usage: trajectory_error --scene FILE --session CSV [--points N] [--level L] [--csv FILE]
 
