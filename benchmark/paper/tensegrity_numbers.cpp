@@ -20,7 +20,7 @@ constexpr double kDensity = 1000;  ///< kg/m^3
 /// is left out, which would count for nothing).
 double stableStep(const TensegrityStructure& structure) {
   const LayeredBody<3>& struts = structure.struts();
-  Eigen::VectorXd mass = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(structure.nodePlaces().size()));
+  Eigen::VectorXd mass = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(structure.nodePositions().size()));
   for (int e = 0; e < struts.elementCount(); ++e) {
     for (int corner = 0; corner < 4; ++corner)
       mass[struts.mesh().elements[e][corner]] += kDensity * struts.weight(e, 0) / 4;

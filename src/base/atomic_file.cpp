@@ -25,8 +25,8 @@ bool writeAll(int file, const std::string& content) {
   return true;
 }
 
-/// `good`: so far; else errno has the reason. Closes the file and throws WriteError when that or what was before
-/// failed.
+/// Closes the file. Throws WriteError when that fails, or when an earlier step failed (not `good`),
+/// whose reason errno holds.
 void finish(int file, bool good, const std::string& path) {
   int reason = errno;
   if (::close(file) != 0 && good) good = false, reason = errno;
@@ -39,12 +39,14 @@ void makeFolder(const std::filesystem::path& folder, const std::string& path) {
   if (error) throw WriteError(path, error.message());
 }
 
-/// A complete new file beside `path`; its name. Nothing is left when it throws WriteError, which names `path`.
+/// Writes a complete new file beside `path` and returns its name. Throws WriteError, which names
+/// `path`, and then leaves no file.
 std::string writeTemporary(const std::string& path, const std::string& content) {
   std::string temporary = path + ".XXXXXX";
   const int file = ::mkstemp(temporary.data());
   if (file < 0) throw WriteError(path, std::strerror(errno));
-  // mkstemp keeps the file to its owner; a result is for everybody that the umask allows.
+  // mkstemp makes a file that only its owner can read. The result gets the permissions of the
+  // umask.
   const mode_t mask = ::umask(0);
   ::umask(mask);
   try {
@@ -79,7 +81,7 @@ void replaceFileAtomically(const std::string& path, const std::string& content) 
 }
 
 void requireWritableFolder(const std::string& folder) {
-  constexpr std::size_t kBlock = 4096;  // of a file system: an empty file would fit on a full one
+  constexpr std::size_t kBlock = 4096;  // an empty file would fit on a full file system, so a block of it is written
   makeFolder(folder, folder);
   ::unlink(writeTemporary(folder + "/writable", std::string(kBlock, ' ')).c_str());
 }

@@ -4,15 +4,17 @@
 
 namespace microinjection {
 
-/// Writes a whole file so that no reader ever sees half of it: into a temporary file beside it, renamed when complete.
-/// Missing directories are made. A device or a pipe at `path` is written to, not replaced. Throws WriteError; a file
-/// that was there before is then untouched.
+/// Writes a whole file through a temporary file beside it that is renamed when complete, so that no
+/// reader sees a part of it. Creates missing directories. Writes into a device or a pipe at `path`
+/// without replacing it. Throws WriteError and then leaves an existing file as it was.
 void writeFileAtomically(const std::string& path, const std::string& content);
 
-/// Same, but replaces whatever is at `path` except a directory: opening a pipe that nobody reads would wait for ever.
+/// Same, but replaces whatever is at `path` except a directory. A pipe without a reader would
+/// block.
 void replaceFileAtomically(const std::string& path, const std::string& content);
 
-/// Makes the folder if it is missing, then writes and removes a small file in it. Throws WriteError when it cannot.
+/// Creates the folder if it is missing, then writes and removes a small file in it. Throws
+/// WriteError when that fails.
 void requireWritableFolder(const std::string& folder);
 
 }  // namespace microinjection

@@ -4,9 +4,9 @@
 
 namespace microinjection {
 
-/// What is_busy of CRTK's operating_state says from step to step, so that each accepted motion brings one true and then
-/// one false: also a motion of no length, and one that takes over from another. The released CRTK client waits for a
-/// true whose stamp is later than its command, and for a false after it.
+/// Sequence of is_busy in CRTK's operating_state. Each accepted motion publishes one true and then
+/// one false, also a motion of zero length and one that replaces another. The released CRTK client
+/// waits for a true with a stamp later than its command, and then for a false.
 class BusyReport {
  public:
   /// A motion was accepted at `time` (ns).
@@ -15,27 +15,28 @@ class BusyReport {
     accepted_ = time;
   }
 
-  /// A motion was accepted whose true is still to be said. What else has changed by it waits for that.
+  /// A motion was accepted and its true was not published yet. Other changes that the motion causes
+  /// are published with it.
   bool pending() const { return pending_; }
 
-  /// What to say at `time` (ns), when motions are (`busy`) or are not under way.
+  /// Value to publish at `time` (ns). `busy`: a motion is under way.
   bool step(bool busy, std::int64_t time) {
-    if (time < last_) accepted_ = time - 1;  // a clock that was set back
+    if (time < last_) accepted_ = time - 1;  // the clock was set back
     last_ = time;
     if (!pending_) {
-      said_ = busy;
-    } else if (said_) {
-      said_ = false;  // the end of the motion before
+      busy_ = busy;
+    } else if (busy_) {
+      busy_ = false;  // ends the previous motion
     } else if (time > accepted_) {
-      said_ = true;
+      busy_ = true;
       pending_ = false;
     }
-    return said_;
+    return busy_;
   }
 
  private:
-  bool pending_ = false;  ///< a motion was accepted, and no true was said since
-  bool said_ = false;
+  bool pending_ = false;  ///< a motion was accepted and no true was published since
+  bool busy_ = false;
   std::int64_t accepted_ = 0;  ///< ns
   std::int64_t last_ = 0;      ///< ns
 };

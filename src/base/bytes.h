@@ -9,7 +9,7 @@
 
 namespace microinjection {
 
-/// Numbers as they lie in memory, one after the other. For caches on the machine that wrote them.
+/// Appends numbers in the machine's own format, for caches on the machine that wrote them.
 class ByteWriter {
  public:
   template <typename T>
@@ -17,7 +17,7 @@ class ByteWriter {
     static_assert(std::is_arithmetic_v<T>);
     bytes_.append(reinterpret_cast<const char*>(&value), sizeof(T));
   }
-  /// Of anything with data() and size(): its size first.
+  /// Appends the size and the elements of anything with data() and size().
   template <typename Array>
   void array(const Array& values) {
     number<std::uint64_t>(values.size());
@@ -29,7 +29,8 @@ class ByteWriter {
   std::string bytes_;
 };
 
-/// Reads what ByteWriter wrote, which must outlive it. Throws std::runtime_error when there is less.
+/// Reads what ByteWriter wrote. The bytes must outlive the reader. Throws std::runtime_error at
+/// their end.
 class ByteReader {
  public:
   explicit ByteReader(std::string_view bytes) : bytes_(bytes) {}
@@ -37,22 +38,22 @@ class ByteReader {
   template <typename T>
   T number() {
     T value;
-    std::memcpy(&value, take(sizeof(T)), sizeof(T));
+    std::memcpy(&value, consume(sizeof(T)), sizeof(T));
     return value;
   }
-  /// Resized to what was written.
+  /// Resizes `values` to the stored size.
   template <typename Array>
   void array(Array& values) {
     const auto size = number<std::uint64_t>();
     if (size > bytes_.size()) throw std::runtime_error("there is less than was written");
     values.resize(size);
     const std::size_t length = size * sizeof(*values.data());
-    std::memcpy(static_cast<void*>(values.data()), take(length), length);
+    std::memcpy(static_cast<void*>(values.data()), consume(length), length);
   }
   bool atEnd() const { return at_ == bytes_.size(); }
 
  private:
-  const char* take(std::size_t length) {
+  const char* consume(std::size_t length) {
     if (length > bytes_.size() - at_) throw std::runtime_error("there is less than was written");
     const char* result = bytes_.data() + at_;
     at_ += length;

@@ -21,7 +21,7 @@ std::string header(const std::string& description, const std::string& body) {
   return description + kChecksum + contentHash(body) + '\n';
 }
 
-/// Of open(); -1 for none.
+/// Owns the descriptor that open() returned; -1 for none.
 class Descriptor {
  public:
   explicit Descriptor(int number) : number_(number) {}
@@ -36,7 +36,7 @@ class Descriptor {
   int number_;
 };
 
-/// Empty when the whole file was read.
+/// Returns errno when reading fails, nothing when the whole file was read.
 std::optional<int> readAll(int file, std::string& content) {
   char block[65536];
   for (;;) {
@@ -54,7 +54,7 @@ CacheRead<std::string> failed(CacheState state, const std::string& path, const s
 
 CacheRead<std::string> unreadable(const std::string& path, int error) {
   if (error == ENOENT) return failed(CacheState::kMissing, path, "does not exist");
-  // What open() says of a socket.
+  // open() fails with ENXIO on a socket.
   if (error == ENXIO) return failed(CacheState::kNotRegular, path, "is not a regular file");
   return failed(CacheState::kUnreadable, path, std::string("cannot be read: ") + std::strerror(error));
 }
@@ -65,7 +65,7 @@ std::string cacheDirectory(const std::string& below) {
   const char* cache = std::getenv("XDG_CACHE_HOME");
   const char* home = std::getenv("HOME");
   const std::string folder = "cell_microinjection/" + below;
-  if (cache != nullptr && cache[0] == '/') return std::string(cache) + "/" + folder;  // the standard ignores others
+  if (cache != nullptr && cache[0] == '/') return std::string(cache) + "/" + folder;  // XDG ignores relative paths
   if (home != nullptr && home[0] != '\0') return std::string(home) + "/.cache/" + folder;
   return "";
 }

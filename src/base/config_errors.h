@@ -10,13 +10,15 @@
 
 namespace microinjection {
 
-/// Collects what is wrong with a configuration, to report it all at once: key, value and what is allowed.
+/// Collects the errors of a configuration and reports them all at once: key, value and what is
+/// allowed.
 class ConfigErrors {
  public:
   /// `subject` begins each message; it may be empty.
   explicit ConfigErrors(const std::string& subject = "") : prefix_(subject.empty() ? "" : subject + ": ") {}
 
-  /// "KEY = VALUE UNIT: must be ALLOWED" unless `good`. `unit` begins with a space, or is empty.
+  /// Adds "KEY = VALUE UNIT: must be ALLOWED" unless `good`. `unit` begins with a space, or is
+  /// empty.
   template <typename Value>
   void require(bool good, const std::string& key, const Value& value, const std::string& unit,
                const std::string& allowed) {
@@ -38,7 +40,7 @@ class ConfigErrors {
 
   bool good() const { return messages_.empty(); }
   const std::vector<std::string>& messages() const { return messages_; }
-  /// Throws ConfigError when there are some.
+  /// Throws ConfigError when there are errors.
   void throwAny() const {
     if (!good()) throw ConfigError(messages_);
   }

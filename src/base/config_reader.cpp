@@ -11,7 +11,8 @@ namespace microinjection {
 
 namespace {
 
-/// Control characters by their codes: a carriage return would hide what is before it on a terminal.
+/// Replaces control characters by their codes. A carriage return would hide the text before it on a
+/// terminal.
 std::string visible(const std::string& text) {
   std::string shown;
   for (const char each : text) {

@@ -13,13 +13,14 @@
 
 namespace microinjection {
 
-/// Strict reader of one YAML map. Collects every error (missing, wrong type, out of range, unknown key) with the full
-/// key path, its value and what is allowed; finish() throws them all at once as ConfigError.
+/// Strict reader of one YAML map. It collects every error (missing, wrong type, out of range,
+/// unknown key) with the full key path, the value and what is allowed. finish() throws them all at
+/// once as ConfigError.
 ///
 ///     ConfigReader reader(YAML::LoadFile(path), path);
-///     reader.number("diameter", config.diameter, Range::positive());        // optional: keeps the default
-///     ConfigReader cell = reader.section("cell");                            // nested map, shares the error list
-///     reader.finish();                                                       // unknown keys anywhere are errors
+///     reader.number("diameter", config.diameter, Range::positive());  // optional: keeps the default
+///     ConfigReader cell = reader.section("cell");  // nested map, shares the error list
+///     reader.finish();  // unknown keys anywhere are errors
 class ConfigReader {
  public:
   enum class Presence { kOptional, kRequired };
@@ -40,16 +41,16 @@ class ConfigReader {
   /// A list of exactly value.size() numbers, each in `range`.
   void vector(const std::string& key, Eigen::Ref<Eigen::VectorXd> value, const Range& range = Range::finite(),
               Presence = kOptional);
-  /// The map under `key`; an empty map when it is absent and optional.
+  /// The map under `key`; an empty map when it is optional and absent.
   ConfigReader section(const std::string& key, Presence = kOptional);
-  /// The maps in the list under `key`, one reader each; none when it is absent and optional. Messages name them key/0,
-  /// key/1 and so on.
+  /// The maps in the list under `key`, one reader each; none when it is optional and absent.
+  /// Messages name them key/0, key/1 and so on.
   std::vector<ConfigReader> sections(const std::string& key, Presence = kOptional);
 
   /// Adds an error about `key`: "origin: cell/diameter = 3: MESSAGE".
   void error(const std::string& key, const std::string& message);
 
-  /// Throws ConfigError when there was any error here or in a section, or a key that nobody asked for.
+  /// Throws ConfigError when there was an error here or in a section, or a key that was never read.
   void finish();
 
  private:
@@ -65,7 +66,8 @@ class ConfigReader {
   std::shared_ptr<Level> level_;
 };
 
-/// Loads a YAML map; ConfigError names the file when it is absent, malformed (with line) or not a map.
+/// Loads a YAML map; ConfigError names the file when it is absent, malformed (with line) or not a
+/// map.
 YAML::Node loadYamlMap(const std::string& path);
 
 }  // namespace microinjection

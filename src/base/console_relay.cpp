@@ -23,9 +23,10 @@ namespace microinjection {
 namespace {
 
 constexpr std::size_t kMostWaiting = 1 << 20;  // bytes
-constexpr std::chrono::milliseconds kPatience(500);
+constexpr std::chrono::milliseconds kWriteTimeout(500);
 
-// What a crash has to say must not be lost in a pipe that nobody empties any more.
+// A crash restores these outputs, because its message would be lost in a pipe that nobody reads any
+// more.
 std::array<int, 2> real_outputs{-1, -1};
 std::terminate_handler terminate_before = nullptr;
 
@@ -51,11 +52,11 @@ void writeAll(int file, const std::string& text) {
   std::size_t done = 0;
   while (done < text.size()) {
     const ssize_t count = write(file, text.data() + done, text.size() - done);
-    if (count < 0 && errno == EAGAIN) {  // a terminal that somebody else has set to O_NONBLOCK
+    if (count < 0 && errno == EAGAIN) {  // another process has set the terminal to O_NONBLOCK
       pollfd terminal{file, POLLOUT, 0};
       poll(&terminal, 1, -1);
     } else if (count < 0 && errno != EINTR) {
-      return;  // nobody is there to read it
+      return;  // there is no reader any more
     } else if (count > 0) {
       done += static_cast<std::size_t>(count);
     }
@@ -70,13 +71,13 @@ struct ConsoleRelay::Shared {
     std::string text;
   };
 
-  std::array<int, 2> pipes{-1, -1};  // the ends that are read
-  std::mutex mutex;                  // of what follows
+  std::array<int, 2> pipes{-1, -1};  // the ends that this process reads
+  std::mutex mutex;                  // protects the members below
   std::condition_variable changed;
   std::deque<Chunk> waiting;
   std::size_t waiting_bytes = 0;
   std::uint64_t dropped_unreported = 0;  // lines
-  bool ended = false;                    // nothing more is read
+  bool ended = false;                    // nothing more will be read
   bool written = false;                  // the writing thread has ended
   std::atomic<std::uint64_t> dropped{0};
 
@@ -88,7 +89,7 @@ struct ConsoleRelay::Shared {
 
 bool ConsoleRelay::Shared::open() {
   std::fflush(nullptr);
-  // One pipe where both go to the same place, so that lines keep their order.
+  // Both streams share one pipe if they have the same destination, so that lines keep their order.
   const bool same = isSameFile(STDOUT_FILENO, STDERR_FILENO);
   int input = -1;
   for (int i = 0; i < 2; ++i) {
@@ -101,7 +102,7 @@ bool ConsoleRelay::Shared::open() {
       pipes[i] = ends[0];
       input = ends[1];
       fcntl(input, F_SETPIPE_SZ, static_cast<int>(kMostWaiting));
-      fcntl(input, F_SETFL, O_NONBLOCK);  // where even the reading thread gets no processor, a line is lost
+      fcntl(input, F_SETFL, O_NONBLOCK);  // if even the reading thread gets no processor time, a line is lost
     }
     if (dup2(input, stream) < 0) return false;
     if (i == 1 || !same) close(input);
@@ -176,9 +177,9 @@ ConsoleRelay::~ConsoleRelay() {
   if (!shared_) return;
   std::fflush(nullptr);
   std::set_terminate(terminate_before);
-  restoreOutputs();  // which closes the pipes' other ends, where no child process has them
+  restoreOutputs();  // closes the pipes' write ends, unless child processes hold them
   std::unique_lock<std::mutex> lock(shared_->mutex);
-  shared_->changed.wait_for(lock, kPatience, [this] { return shared_->written; });
+  shared_->changed.wait_for(lock, kWriteTimeout, [this] { return shared_->written; });
 }
 
 std::uint64_t ConsoleRelay::droppedLines() const { return shared_ ? shared_->dropped.load() : 0; }

@@ -5,16 +5,18 @@
 
 namespace microinjection {
 
-/// Stands between this process and its terminal. What is written to standard output and standard error goes into a
-/// pipe, and a thread of its own writes it on: a terminal that is stopped (Ctrl-S, a hung ssh) or a disk that hangs
-/// never makes a loop wait in a write. At most 1 MiB waits for the terminal. What does not fit is dropped, and the
-/// number of lines that were dropped is written when the terminal takes output again.
+/// Decouples this process from its terminal. Standard output and standard error go into a pipe, and
+/// a separate thread writes them on. A stopped terminal (Ctrl-S, a hung ssh) or a hanging disk
+/// therefore never blocks a control loop in a write. The buffer holds at most 1 MiB. Output beyond
+/// that is dropped, and the number of dropped lines is written when the terminal accepts output
+/// again.
 ///
-/// One of them in a process, before there are other threads. Where there are no pipes left, output stays as it is.
+/// Create at most one in a process, before other threads start. If no pipe can be made, output
+/// stays as it is.
 class ConsoleRelay {
  public:
   ConsoleRelay();
-  /// Standard output and error are as they were before. Waits half a second at the most for a terminal that is stopped.
+  /// Restores standard output and error. Waits at most half a second for a stopped terminal.
   ~ConsoleRelay();
   ConsoleRelay(const ConsoleRelay&) = delete;
   ConsoleRelay& operator=(const ConsoleRelay&) = delete;
@@ -23,7 +25,7 @@ class ConsoleRelay {
 
  private:
   struct Shared;
-  std::shared_ptr<Shared> shared_;  // the threads', too: a terminal that is stopped keeps one of them waiting
+  std::shared_ptr<Shared> shared_;  // shared with the threads, because a stopped terminal can block one of them
 };
 
 }  // namespace microinjection

@@ -4,7 +4,7 @@
 
 namespace microinjection {
 
-/// s of processor time that the calling thread has had: stalls of the machine do not count.
+/// Processor time (s) of the calling thread. It does not include time in which other processes ran.
 inline double threadCpuTime() {
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);

@@ -5,10 +5,10 @@
 
 namespace microinjection {
 
-/// Largest difference between `derivative` (rows: outputs, columns: inputs) and central differences of `function` about
-/// `point`, relative to the largest entry of either; 0 when both vanish. The one checker of derivatives: a right one
-/// gives about 1e-8 for `step` = 1e-5 of the size over which the function changes, a wrong one of order 1.
-/// `function` maps an Eigen vector to an Eigen vector.
+/// Largest difference between `derivative` (rows: outputs, columns: inputs) and central differences
+/// of `function` about `point`, relative to the largest entry of either; 0 when both vanish. A
+/// correct derivative gives about 1e-8 for `step` = 1e-5 of the scale on which the function
+/// changes, a wrong one of order 1. `function` maps an Eigen vector to an Eigen vector.
 template <typename Function>
 double derivativeError(const Function& function, const Eigen::VectorXd& point, const Eigen::MatrixXd& derivative,
                        double step) {

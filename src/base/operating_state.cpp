@@ -10,26 +10,26 @@ using State = OperatingState;
 using Next = std::optional<OperatingState>;
 
 constexpr std::array<State, 4> kStates{State::kDisabled, State::kEnabled, State::kPaused, State::kFault};
-constexpr std::array<const char*, 4> kStateWords{"DISABLED", "ENABLED", "PAUSED", "FAULT"};
+constexpr std::array<const char*, 4> kStateNames{"DISABLED", "ENABLED", "PAUSED", "FAULT"};
 constexpr std::array<StateCommand, 6> kCommands{StateCommand::kEnable, StateCommand::kDisable, StateCommand::kPause,
                                                 StateCommand::kResume, StateCommand::kHome,    StateCommand::kUnhome};
-constexpr std::array<const char*, 6> kCommandWords{"enable", "disable", "pause", "resume", "home", "unhome"};
+constexpr std::array<const char*, 6> kCommandNames{"enable", "disable", "pause", "resume", "home", "unhome"};
 
 }  // namespace
 
-const char* toText(OperatingState state) { return kStateWords[static_cast<std::size_t>(state)]; }
+const char* toText(OperatingState state) { return kStateNames[static_cast<std::size_t>(state)]; }
 
-const char* toText(StateCommand command) { return kCommandWords[static_cast<std::size_t>(command)]; }
+const char* toText(StateCommand command) { return kCommandNames[static_cast<std::size_t>(command)]; }
 
-std::optional<StateCommand> stateCommandOf(const std::string& word) {
+std::optional<StateCommand> stateCommandOf(const std::string& text) {
   for (const StateCommand command : kCommands) {
-    if (word == toText(command)) return command;
+    if (text == toText(command)) return command;
   }
   return std::nullopt;
 }
 
-/// PAUSED and enable: "PAUSED (invalid)" in the convention's table, since who has paused the robot must end that
-/// explicitly, by resume or disable. cisst's prmOperatingState refuses it as well.
+/// The convention's table has "PAUSED (invalid)" for `enable` in PAUSED: a pause ends explicitly,
+/// by `resume` or `disable`. cisst's prmOperatingState refuses `enable` there, too.
 std::optional<OperatingState> after(OperatingState state, StateCommand command) {
   static const Next kTable[4][6] = {
       {State::kEnabled, State::kDisabled, {}, {}, {}, State::kDisabled},

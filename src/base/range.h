@@ -5,7 +5,7 @@
 
 namespace microinjection {
 
-/// Closed, half-open or open interval of allowed values, and how to say it.
+/// Closed, half-open or open interval of allowed values, and its text in messages.
 struct Range {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();

@@ -15,7 +15,7 @@ void flushStandardOutput() {
   const bool flushed = std::fflush(stdout) == 0;
   const int reason = errno;
   if (flushed && std::ferror(stdout) == 0 && std::cout) return;
-  // Without a reason it failed before, when there was more than a buffer holds.
+  // errno is 0 when an earlier write failed, because the output exceeded the buffer.
   throw WriteError("the standard output", reason != 0 ? std::strerror(reason) : "an earlier write failed");
 }
 

@@ -16,7 +16,7 @@ extern char** environ;
 namespace microinjection {
 namespace {
 
-/// Children that are killed when it goes.
+/// Child processes. The destructor ends those that still run.
 class Children {
  public:
   ~Children() {
@@ -28,7 +28,7 @@ class Children {
 
   void start(std::size_t index, const std::vector<std::string>& command) {
     std::vector<char*> arguments, variables;
-    for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
+    for (const std::string& argument : command) arguments.push_back(const_cast<char*>(argument.c_str()));
     arguments.push_back(nullptr);
     std::string blas = "OPENBLAS_NUM_THREADS=1", openmp = "OMP_NUM_THREADS=1";
     variables = {blas.data(), openmp.data()};

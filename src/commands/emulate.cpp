@@ -25,22 +25,22 @@ namespace {
 
 constexpr char kHelp[] = R"(usage: emulate RIG [OPTION...]
 
-An emulated micromanipulator on a pseudo-terminal, for its driver to be tried without a device.
+Emulates a micromanipulator on a pseudo-terminal, to test its driver without a device.
 
-It is timed as the real one: the line's baud rate, the time to answer, speed and acceleration. It runs until it is interrupted
-(Ctrl-C); the driver may come and go. Lines on standard input are further faults, of the same form as --fault.
+The emulator has the real device's baud rate, reply time, speed and acceleration. It runs until it is interrupted
+(Ctrl-C). Drivers may connect and disconnect. Lines on standard input inject further faults, in the form of --fault.
 
-Faults: KIND[:VALUE][@TIME]; TIME in s since the start, at once without it
-  silence:S    for S s it neither hears nor says anything (what moves goes on moving)
-  drop:N       the next N bytes that it says are lost
-  deaf:N       the next N bytes said to it are lost
-  garble:N     the next N bytes that it says arrive with all bits turned over
-  error:CODE   its next command is answered with this error: MP-285: 0, or a sum of 1, 2, 4, 8;
+Faults: KIND[:VALUE][@TIME]; TIME in s since the start, default 0
+  silence:S    for S s the device neither receives nor sends (a motion continues)
+  drop:N       the next N bytes from the device are lost
+  deaf:N       the next N bytes to the device are lost
+  garble:N     the next N bytes from the device arrive with all bits inverted
+  error:CODE   the reply to the next command is this error: MP-285: 0, or a sum of 1, 2, 4, 8;
                Eppendorf, Scientifica: a number from 0 to 999;
                Zaber: BADDATA, AGAIN, ... (rejection), FS, WT, ... (a warning flag, until it is cleared);
-               all: RESET (it was switched off and on: it counts from 0 where it stands, without a reference position,
-               with the settings of delivery)
-  interrupt    what moves is stopped as if by hand
+               all: RESET (switched off and on: it counts from 0 at its position, without a reference position,
+               with the factory settings)
+  interrupt    stops a motion, as an operator at the device would
 
 Exit status: 0 interrupted; 2 bad usage, a terminal or link that cannot be made, or output that cannot be written.
 )";
@@ -63,14 +63,15 @@ std::string rigNames() {
   return names;
 }
 
-/// Nothing when help was asked for and given. What roslaunch adds (__name:=..., FROM:=TO) is left out.
+/// Returns nothing after printing the help. Ignores the arguments that roslaunch adds (__name:=...,
+/// FROM:=TO).
 std::optional<Arguments> parse(int argc, char** argv) {
   namespace po = boost::program_options;
   Arguments arguments;
   std::string rig;
-  std::vector<std::string> words, faults;
+  std::vector<std::string> own_arguments, faults;
   for (int i = 1; i < argc; ++i) {
-    if (std::string(argv[i]).find(":=") == std::string::npos) words.emplace_back(argv[i]);
+    if (std::string(argv[i]).find(":=") == std::string::npos) own_arguments.emplace_back(argv[i]);
   }
   po::options_description options("Options");
   auto add = options.add_options();
@@ -78,17 +79,17 @@ std::optional<Arguments> parse(int argc, char** argv) {
   add("rig", po::value(&rig)->value_name("NAME"), (rigNames() + "; the option's name may be left out").c_str());
   add("link", po::value(&arguments.link)->value_name("PATH"),
       "link to the terminal: the port of the driver's configuration (/tmp/emulated_RIG)");
-  add("baud", po::value(&arguments.baud)->value_name("N"), "bit/s (as the device is delivered)");
+  add("baud", po::value(&arguments.baud)->value_name("N"), "bit/s (default: the factory setting)");
   add("fault", po::value(&faults)->composing()->value_name("SPEC"), "a fault, as above; may be repeated");
   add("positions", po::value(&arguments.positions)->value_name("FILE"),
-      "writes time_s,x_m,y_m,z_m there: where the axes truly are, whenever that changes; time since the start");
+      "writes time_s,x_m,y_m,z_m: the true position of the axes after each motion; time since the start");
   add("firmware", po::value(&arguments.firmware)->value_name("VERSION"),
-      "the version of its firmware, e.g. 6.28, where the device tells one");
-  add("verbose,v", po::bool_switch(&arguments.verbose), "prints what is heard (>) and said (<)");
+      "firmware version that the device reports, e.g. 6.28");
+  add("verbose,v", po::bool_switch(&arguments.verbose), "prints the bytes received (>) and sent (<)");
   po::variables_map given;
   try {
     po::positional_options_description first;
-    po::store(po::command_line_parser(words).options(options).positional(first.add("rig", 1)).run(), given);
+    po::store(po::command_line_parser(own_arguments).options(options).positional(first.add("rig", 1)).run(), given);
     po::notify(given);
   } catch (const po::error& error) {
     throw ConfigError(error.what());
@@ -107,7 +108,7 @@ std::optional<Arguments> parse(int argc, char** argv) {
   return arguments;
 }
 
-/// Bytes as they are where they can be read, otherwise as \xNN.
+/// Replaces bytes that are not printable by \xNN.
 std::string visible(const std::string& bytes) {
   std::string text;
   for (const char each : bytes) {
@@ -119,7 +120,7 @@ std::string visible(const std::string& bytes) {
   return text;
 }
 
-/// Complete lines that have come on standard input; does not wait.
+/// Complete lines from standard input. Does not block.
 class Lines {
  public:
   std::vector<std::string> read() {
@@ -143,7 +144,7 @@ class Lines {
   std::string text_;
 };
 
-/// What went over the line, a row a direction; bytes that follow each other closely are one row.
+/// Bytes on the line, one row a direction. Bytes that follow each other within 20 ms share a row.
 class Transcript {
  public:
   void add(char direction, const std::string& bytes, double time) {
@@ -166,10 +167,10 @@ class Transcript {
   std::string text_;
 };
 
-/// Where the device truly is, a row each time that it has moved.
+/// Table of the device's true position, with a row after each motion.
 class Positions {
  public:
-  /// No `path`: writes nothing. @throws ConfigError when the file cannot be written.
+  /// Writes nothing when `path` is empty. @throws ConfigError when the file cannot be written.
   explicit Positions(const std::string& path) {
     if (path.empty()) return;
     file_.open(path);
@@ -177,12 +178,12 @@ class Positions {
       throw ConfigError("--positions = " + path + ": must be a file that can be written");
     }
   }
-  void add(const Eigen::Vector3d& place, double time) {
-    if (!file_.is_open() || place == last_) return;
-    last_ = place;
+  void add(const Eigen::Vector3d& position, double time) {
+    if (!file_.is_open() || position == last_) return;
+    last_ = position;
     char row[128];
-    std::snprintf(row, sizeof(row), "%.4f,%.9f,%.9f,%.9f", time, place.x(), place.y(), place.z());
-    file_ << row << std::endl;  // at once, so that it may be read while the device moves
+    std::snprintf(row, sizeof(row), "%.4f,%.9f,%.9f,%.9f", time, position.x(), position.y(), position.z());
+    file_ << row << std::endl;  // flushes each row, so that others can read it while the device moves
   }
 
  private:
@@ -190,8 +191,8 @@ class Positions {
   Eigen::Vector3d last_ = Eigen::Vector3d::Constant(std::nan(""));  // m
 };
 
-/// A device does not wait for the processor, as its driver's node in real time would have it do. Where the system does
-/// not allow it nothing changes.
+/// A real device does not wait for a processor, so the emulator asks for real-time scheduling. If
+/// the system refuses it, nothing changes.
 void runInRealTime() {
   sched_param parameters{};
   parameters.sched_priority = sched_get_priority_min(SCHED_RR) + 1;

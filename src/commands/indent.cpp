@@ -26,8 +26,8 @@ namespace {
 
 constexpr int kConverged = 0, kBadUsage = 2, kNotConverged = 3, kNotAccurate = 4;
 
-/// Pushed straight down, a deeper point continues from the last one, which lies on its way; any other starts afresh.
-/// `solve` takes a Path to the displacement (m).
+/// A deeper point straight below the last one continues from it. Any other point starts from rest.
+/// `solve` moves `path` to a displacement (m).
 template <typename Path, typename Solve>
 ForcePoint solveLive(Path& path, double depth, const Eigen::Vector2d& lateral, const Solve& solve) {
   const auto start = std::chrono::steady_clock::now();
@@ -73,14 +73,16 @@ std::vector<ForcePoint> tensegrity(const Scene& scene, const IndentArguments& ar
   const auto cell = std::make_shared<const TensegrityCell>(scene);
   const std::unique_ptr<TensegrityIndentation> path = cell->indentation(tipPatch(*cell));
   const auto solve = [&](const Eigen::Vector3d& target) {
-    constexpr double kEver = std::numeric_limits<double>::infinity();
-    const double way = (target - path->tipDisplacement()).norm();
-    const IndentationSolution moved = path->solve(target, way > 0 && indenting.speed ? way / *indenting.speed : kEver);
+    constexpr double kUntilRelaxed = std::numeric_limits<double>::infinity();
+    const double distance = (target - path->tipDisplacement()).norm();
+    const IndentationSolution moved =
+        path->solve(target, distance > 0 && indenting.speed ? distance / *indenting.speed : kUntilRelaxed);
     return moved.converged && indenting.hold > 0 ? path->solve(target, indenting.hold) : moved;
   };
   std::vector<ForcePoint> points;
   for (double depth : indenting.depths) {
-    // Where the way down has ended, a search for more takes seconds; it ends there for deeper points, too.
+    // After the straight path has ended, each further search takes seconds. It ends at the same
+    // point for deeper points.
     const bool straight = indenting.lateral.isZero(0) && !points.empty();
     if (straight && !points.back().converged && depth >= points.back().depth) {
       points.push_back(points.back());
@@ -93,20 +95,20 @@ std::vector<ForcePoint> tensegrity(const Scene& scene, const IndentArguments& ar
   return points;
 }
 
-void refuseWhatIsNoMembrane(const Scene& scene, const Indenting& indenting) {
+void requireMembraneScene(const Scene& scene, const Indenting& indenting) {
   scene.requireContinuum("--model membrane");
   std::vector<std::string> errors;
   if (!scene.cell.biomembrane) errors.push_back("cell/biomembrane is missing: thickness and dimple_radius, m");
   if (!scene.needle.offset.isZero(0)) errors.push_back("needle/offset: must be 0 with --model membrane");
   if (!indenting.lateral.isZero(0)) errors.push_back("--lateral: must be 0 with --model membrane");
   if (indenting.speed || indenting.hold > 0) {
-    errors.push_back("--speed, --hold: must be left out with --model membrane, which knows no time");
+    errors.push_back("--speed, --hold: must be left out with --model membrane, which has no time");
   }
   if (!errors.empty()) throw ConfigError(errors);
 }
 
 std::vector<ForcePoint> membrane(const Scene& scene, const Indenting& indenting) {
-  refuseWhatIsNoMembrane(scene, indenting);
+  requireMembraneScene(scene, indenting);
   const MaterialConfig& material = scene.cell.material();
   const Biomembrane model(material.young_modulus, material.poisson_ratio, scene.needle.tip.radius,
                           *scene.cell.biomembrane);
@@ -138,7 +140,7 @@ std::vector<ForcePoint> converged(const Scene& scene, const IndentArguments& arg
   });
 }
 
-void tell(const ForcePoint& point, double tolerance) {
+void report(const ForcePoint& point, double tolerance) {
   if (!point.converged) {
     std::fprintf(stderr, "indent: depth %.4g um: not converged: %s\n", 1e6 * point.depth, point.reason.c_str());
     return;
@@ -147,8 +149,7 @@ void tell(const ForcePoint& point, double tolerance) {
                1e6 * point.force.y(), 1e6 * point.force.z());
   if (std::isfinite(point.error_estimate)) {
     const bool missed = point.error_estimate > tolerance;
-    std::fprintf(stderr, ", error about %.2g %%%s", 100 * point.error_estimate,
-                 missed ? ": not the tolerance that is asked for" : "");
+    std::fprintf(stderr, ", error about %.2g %%%s", 100 * point.error_estimate, missed ? ": above the tolerance" : "");
   }
   std::fprintf(stderr, "\n");
 }
@@ -164,8 +165,8 @@ std::string csvRow(const ForcePoint& point) {
 
 std::vector<ForcePoint> solve(const Scene& scene, const IndentArguments& arguments) {
   if (arguments.membrane) return membrane(scene, arguments.indenting);
-  const bool its_own = arguments.live || arguments.converged.model == ConvergedForceConfig::Model::kAuto;
-  if (scene.cell.tensegrity && its_own) return tensegrity(scene, arguments);
+  const bool default_model = arguments.live || arguments.converged.model == ConvergedForceConfig::Model::kAuto;
+  if (scene.cell.tensegrity && default_model) return tensegrity(scene, arguments);
   return arguments.live ? live(scene, arguments.indenting) : converged(scene, arguments);
 }
 
@@ -181,7 +182,7 @@ int run(int argc, char** argv) {
   std::string table = "depth_m,force_x_N,force_y_N,force_z_N,wall_s,converged,error_estimate\n";
   int status = kConverged;
   for (const ForcePoint& point : points) {
-    tell(point, arguments.converged.tolerance);
+    report(point, arguments.converged.tolerance);
     table += csvRow(point);
     const bool missed = arguments.tolerance_given && std::isfinite(point.error_estimate) &&
                         point.error_estimate > arguments.converged.tolerance;

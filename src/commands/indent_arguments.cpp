@@ -12,16 +12,16 @@
 namespace microinjection {
 namespace {
 
-constexpr char kHelp[] = R"(indent: quasi-static force on a needle tip pushed into a cell, as converged as you ask for.
+constexpr char kHelp[] = R"(indent: quasi-static force on a needle tip pushed into a cell, solved to a given tolerance.
 
 Usage: indent --scene FILE --depths D1,D2,... [--tolerance T] [--lateral X,Y] [--csv FILE] [...]
 
-The tip goes down along -z from where it touches the undeformed cell at the scene's needle/offset (a disc: its centre).
-With --withdraw it is then drawn back: the table goes on with those depths, where friction, adhesion and viscosity show.
-The scene is solved on finer and finer meshes until two of them agree. One CSV row a depth, in the order given:
+The tip moves along -z from its contact with the undeformed cell at the scene's needle/offset (a disc: its centre).
+With --withdraw it is then withdrawn, and the table continues with those depths: friction, adhesion, viscosity show there.
+The scene is solved on successively finer meshes until two of them agree. One CSV row a depth, in the order given:
   depth_m,force_x_N,force_y_N,force_z_N,wall_s,converged,error_estimate
-force: of the cell on the needle, so force_z is positive when the cell is indented; nan where there is no solution.
-wall_s: time of that row's solutions. converged: 1, or 0 where finer meshes have no solution, for a reason that stderr tells.
+force: of the cell on the needle, so force_z is positive when the cell is indented; nan without a solution.
+wall_s: time of that row's solutions. converged: 1, or 0 if finer meshes have no solution; stderr has the reason.
 error_estimate: relative error of the force, from the last two meshes; nan for the live model, whose error is unknown
 (about 1 to 3, see doc/reference/benchmarks.md), and for the membrane.
 
@@ -31,7 +31,7 @@ Models:
   spatial       in space
   live          the P1 tetrahedra of a live session (the scene's mesh keys), which lock; discs only
   membrane      an analytic point-load model of the zona pellucida (cell/biomembrane in the scene, with the modulus of the
-                outermost material): F = k depth^3; neither the inside's elasticity nor withdrawal are in it
+                outermost material): F = k depth^3; it includes neither the inside's elasticity nor withdrawal
 A scene of cell/model tensegrity has one model, its own (auto), and no error estimate: --tolerance, --element and --time
 must be left out.
 
@@ -87,7 +87,7 @@ double parsePositive(const std::string& option, const std::string& text, const s
   return numbers[0];
 }
 
-/// Position of a name; ConfigError tells all names.
+/// Index of a name. Throws ConfigError that lists all names.
 std::size_t parseChoice(const std::string& option, const std::string& name, const std::vector<std::string>& names) {
   const auto found = std::find(names.begin(), names.end(), name);
   if (found != names.end()) return found - names.begin();
@@ -96,11 +96,11 @@ std::size_t parseChoice(const std::string& option, const std::string& name, cons
   throw ConfigError("--" + option + " = " + name + ": must be one of: " + all);
 }
 
-struct Texts {
+struct OptionTexts {
   std::string depths, withdraw, lateral, model, element, tolerance, speed, hold, time;
 };
 
-void interpret(const Texts& texts, IndentArguments& arguments) {
+void interpret(const OptionTexts& texts, IndentArguments& arguments) {
   using Model = ConvergedForceConfig::Model;
   arguments.indenting.depths = parseDepths(texts.depths);
   if (!texts.withdraw.empty()) {
@@ -134,26 +134,27 @@ void interpret(const Texts& texts, IndentArguments& arguments) {
 std::optional<IndentArguments> parseIndentArguments(int argc, char** argv) {
   namespace po = boost::program_options;
   IndentArguments arguments;
-  Texts texts;
+  OptionTexts texts;
   po::options_description options(kHelp, 118);
   options.add_options()("help", "this text")("scene", po::value(&arguments.scene),
                                              "scene file (YAML, SI units), for example config/cells/mouse_oocyte.yaml")(
       "depths", po::value(&texts.depths), "depths of the tip, m, separated by commas; each >= 0")(
       "withdraw", po::value(&texts.withdraw),
-      "ever smaller depths, m, to which the tip is drawn back after the deepest; below 0: above where it touched")(
+      "decreasing depths, m, for the withdrawal after the deepest; below 0: above the contact point")(
       "lateral", po::value(&texts.lateral)->default_value("0,0"),
       "X,Y: at every depth the tip has also moved by (X, Y), m, along a straight line to (X, Y, -depth)")(
       "model", po::value(&texts.model)->default_value("auto"),
       "auto, axisymmetric, spatial, live or membrane: see above")(
       "tolerance", po::value(&texts.tolerance),
-      "relative error of the force that is asked for; default 0.005 on the axis, 0.03 in space")(
+      "largest relative error of the force; default 0.005 on the axis, 0.03 in space")(
       "element", po::value(&texts.element)->default_value("p2_p0"), "p1, mini, p1_p1, p2, p2_p0 or p2_p1")(
-      "speed", po::value(&texts.speed), "of the tip, m/s, for viscoelastic cells; default: so slow that they relax")(
+      "speed", po::value(&texts.speed),
+      "of the tip, m/s, for viscoelastic cells; default: slow enough that they relax")(
       "hold", po::value(&texts.hold)->default_value("0"),
-      "s that the tip rests at each depth before the force is taken")(
-      "time", po::value(&texts.time)->default_value("600"), "s after which no third or finer mesh is begun")(
+      "s that the tip rests at each depth before its force is computed")(
+      "time", po::value(&texts.time)->default_value("600"), "s after which no third or finer mesh is started")(
       "csv", po::value(&arguments.csv)->default_value("-"), "file to write; - is the standard output");
-  // No short options, so that -1e-6 is a value.
+  // Short options are off, so that -1e-6 is a value.
   using Style = po::command_line_style::style_t;
   const int style = Style::allow_long | Style::long_allow_adjacent | Style::long_allow_next;
   po::variables_map values;

@@ -1,4 +1,4 @@
-// Prepares a cell for the hand: trains the on-line model from the converging one; see --help.
+// Prepares the surrogate cell of a scene from converged solutions; see --help.
 
 #include <sys/prctl.h>
 
@@ -32,21 +32,21 @@ namespace po = boost::program_options;
 constexpr int kDone = 0, kBadUsage = 2, kFailed = 3;
 
 constexpr char kHelp[] =
-    R"(prepare: the off-line stage. Solves a scene's cell under its tip at many places and displacements, and stores what
-a live session needs for a converged force in microseconds.
+    R"(prepare: the off-line stage. Solves a scene's cell at many contact points and displacements, and stores the data
+with which a live session evaluates a converged force in microseconds.
 
 Usage: prepare --scene FILE [--jobs N] [...]
 
-Takes minutes, shows its progress, and may be interrupted: what is done is kept and taken up by the next call. The data
-lie in $XDG_CACHE_HOME (else ~/.cache) under cell_microinjection/prepared, in a folder named after the cell, the tip and
-the program's version; another cell or tip is prepared anew, the needle's offset does not matter.
+Takes minutes, shows its progress, and may be interrupted: the next call continues from the finished paths. The data are
+in $XDG_CACHE_HOME (else ~/.cache) under cell_microinjection/prepared, in a folder named after the cell, the tip and
+the program's version; another cell or tip needs its own, another needle offset does not.
 
-Data that are damaged, or of another version, are named and made anew.
+Data that are damaged, or of another version, are reported and replaced.
 
-Exit status: 0 prepared (or was already); 2 bad usage, a scene that cannot be prepared (friction, adhesion, a viscosity that
-does not relax, tensegrity: the message names it), or data or output that cannot be written (the message names the path and
-the reason; the folder is tried before anything is solved); 3 the cell has no solution in all of the range, as under a sharp
-disc that folds: nothing is stored.
+Exit status: 0 prepared (or was already); 2 bad usage, a scene that cannot be prepared (friction, adhesion, a viscosity
+that does not relax, tensegrity: the message names it), or data or output that cannot be written (the message names the
+path and the reason; the folder is checked first); 3 the cell has no solution in a part of the range, as under a sharp
+disc where the surface folds: nothing is stored.
 
 Options)";
 
@@ -65,9 +65,9 @@ Arguments parse(int argc, char** argv) {
   po::options_description visible, all;
   visible.add_options()("help", "this text")("scene", po::value(&arguments.scene), "scene file (YAML, SI units)")(
       "jobs", po::value(&arguments.jobs)->default_value(processors), "paths solved at a time, each on one core")(
-      "again", po::bool_switch(&arguments.again), "also when it was prepared before");
+      "again", po::bool_switch(&arguments.again), "replaces data that were prepared before");
   po::options_description hidden;
-  hidden.add_options()("ray", po::value(&arguments.ray), "solves this path only: a worker");
+  hidden.add_options()("ray", po::value(&arguments.ray), "solves only this path, as a worker process");
   all.add(visible).add(hidden);
   po::variables_map values;
   po::store(po::command_line_parser(argc, argv).options(all).positional({}).run(), values);
@@ -90,16 +90,16 @@ class Preparing {
         plan_(Preparation::plan(scene_, PreparationRange::standard(scene_))),
         folder_(preparedFolder(scene_, plan_)) {
     Preparation::check(scene_);
-    if (folder_.empty()) throw ConfigError("neither XDG_CACHE_HOME nor HOME is set: nowhere to keep the data");
+    if (folder_.empty()) throw ConfigError("neither XDG_CACHE_HOME nor HOME is set: no folder for the data");
   }
 
   int work() {
-    prctl(PR_SET_PDEATHSIG, SIGKILL);  // whoever ends the preparation ends its workers
+    prctl(PR_SET_PDEATHSIG, SIGKILL);  // the workers end when the preparation is killed
     const TrainingRay& ray = plan_.rays.at(arguments_.ray);
     try {
       writeCacheFile(file(arguments_.ray), description(arguments_.ray), encode(solveRay(scene_, ray)));
     } catch (const std::exception&) {
-      std::fputc('\n', stderr);  // the preparation's progress is a line without an end
+      std::fputc('\n', stderr);  // ends the progress line of the preparation
       throw;
     }
     return kDone;
@@ -111,9 +111,9 @@ class Preparing {
       std::printf("prepare: was prepared before: %s\n", path.c_str());
       const auto figures = loadFigures(scene_, "live");
       if (figures) return kDone;
-      tellDamage(figures.state, figures.reason);
+      reportDamage(figures.state, figures.reason);
       requireWritable(path);
-      measureOthers();  // of another live mesh, or interrupted
+      measureLiveModel();  // figures of another live mesh, or of an interrupted run
       return kDone;
     }
     requireWritable(path);
@@ -133,13 +133,13 @@ class Preparing {
         path.c_str(), 100 * cell.median_error, 100 * cell.common_error, 100 * cell.largest_error);
     std::printf("prepare: of an energy alone: median %.2g %%, nine of ten below %.2g %%\n",
                 100 * cell.energy_median_error, 100 * cell.energy_common_error);
-    measureOthers();
+    measureLiveModel();
     return kDone;
   }
 
  private:
-  /// So that a choice among the models goes by figures.
-  void measureOthers() const {
+  /// Stores the live model's error and time, which `model:=auto` compares.
+  void measureLiveModel() const {
     try {
       const ModelFigures live = measureLiveCell(scene_);
       saveFigures(scene_, live);
@@ -153,17 +153,17 @@ class Preparing {
   bool wasPrepared(const std::string& path) const {
     if (arguments_.again) return false;
     const auto prepared = SurrogateData::load(scene_, plan_.range, path);
-    tellDamage(prepared.state, prepared.reason);
+    reportDamage(prepared.state, prepared.reason);
     return static_cast<bool>(prepared);
   }
 
-  /// What is there and cannot be used is not passed over in silence.
-  static void tellDamage(CacheState state, const std::string& reason) {
+  /// Reports a cache file that exists and cannot be used.
+  static void reportDamage(CacheState state, const std::string& reason) {
     if (state == CacheState::kRead || state == CacheState::kMissing) return;
-    std::fprintf(stderr, "prepare: %s; it is made anew\n", reason.c_str());
+    std::fprintf(stderr, "prepare: %s; it is replaced\n", reason.c_str());
   }
 
-  /// Before minutes of work: that its results can be kept.
+  /// Checks before minutes of work that the results can be written.
   void requireWritable(const std::string& prepared) const {
     requireWritableFolder(folder_);
     std::vector<std::string> paths = {prepared};
@@ -178,7 +178,7 @@ class Preparing {
     return loadTraining(file(ray), description(ray), plan_.rays[ray], surface_size_);
   }
 
-  /// Of all paths. Throws std::runtime_error when one that must go on to its end does not.
+  /// Results of all paths. Throws std::runtime_error when a path ended early that must be complete.
   std::vector<TrainingResult> loadAll() const {
     std::vector<TrainingResult> results;
     bool complete = true;
@@ -187,8 +187,8 @@ class Preparing {
       if (!read) throw std::runtime_error(read.reason);
       results.push_back(*read.content);
       if (results.back().reason.empty()) continue;
-      tell(plan_.rays[i], results.back());
-      complete = complete && plan_.rays[i].level != kCoarseLevel;  // where the fine mesh ends the coarse one goes on
+      reportEarlyEnd(plan_.rays[i], results.back());
+      complete = complete && plan_.rays[i].level != kCoarseLevel;  // the coarse mesh continues beyond the fine one
     }
     if (!complete) throw std::runtime_error("the cell has no solution in all of the range (see above): not prepared");
     return results;
@@ -203,7 +203,7 @@ class Preparing {
       if (!arguments_.again) {
         const CacheRead<TrainingResult> read = load(i);
         if (read) continue;
-        tellDamage(read.state, read.reason);
+        reportDamage(read.state, read.reason);
       }
       missing.push_back(i);
     }
@@ -239,7 +239,7 @@ class Preparing {
     std::fflush(stderr);
   }
 
-  static void tell(const TrainingRay& ray, const TrainingResult& result) {
+  static void reportEarlyEnd(const TrainingRay& ray, const TrainingResult& result) {
     const double reached = result.samples.empty() ? 0 : result.samples.back().displacement.norm();
     std::fprintf(stderr, "prepare: a path at %.0f degrees ends at %.3g of %.3g um: %s\n", ray.angle * 57.2958,
                  1e6 * reached, 1e6 * ray.target.norm(), result.reason.c_str());
@@ -249,7 +249,7 @@ class Preparing {
   Scene scene_;
   Preparation plan_;
   std::string folder_;
-  Eigen::Index surface_size_ = 0;  ///< numbers of a path's surface; known when paths are solved
+  Eigen::Index surface_size_ = 0;  ///< numbers of a path's surface; set before paths are solved
 };
 
 int run(int argc, char** argv) {

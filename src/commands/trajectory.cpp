@@ -18,7 +18,7 @@ std::vector<std::string> split(const std::string& line) {
   return cells;
 }
 
-/// The columns that are needed, by their place in the table.
+/// Indices of the columns that are used.
 struct Columns {
   std::size_t x, y, z, force, in_contact;
   std::optional<std::size_t> punctured;
@@ -42,26 +42,26 @@ struct Columns {
 double number(const std::string& cell, const std::string& path) {
   std::istringstream stream(cell);
   double value = 0;
-  if (!(stream >> value) || !stream.eof()) throw ConfigError(path + ": '" + cell + "' is no number");
+  if (!(stream >> value) || !stream.eof()) throw ConfigError(path + ": '" + cell + "' is not a number");
   return value;
 }
 
-/// From its start to its deepest place.
+/// Ends the contact at its deepest point.
 void cutAtDeepest(std::vector<ContactSample>& contact) {
   const auto deepest = std::min_element(contact.begin(), contact.end(),
                                         [](const auto& a, const auto& b) { return a.tip.z() < b.tip.z(); });
   if (deepest != contact.end()) contact.erase(deepest + 1, contact.end());
 }
 
-/// From its start to its largest force.
+/// Ends the contact at its largest force.
 void cutAtPuncture(std::vector<ContactSample>& contact) {
   const auto largest = std::max_element(contact.begin(), contact.end(),
                                         [](const auto& a, const auto& b) { return a.axial_force < b.axial_force; });
   if (largest != contact.end()) contact.erase(largest + 1, contact.end());
 }
 
-double depth(const std::vector<ContactSample>& way) {
-  return way.empty() ? 0 : way.front().tip.z() - way.back().tip.z();
+double depth(const std::vector<ContactSample>& path) {
+  return path.empty() ? 0 : path.front().tip.z() - path.back().tip.z();
 }
 
 }  // namespace
@@ -82,7 +82,7 @@ std::vector<ContactSample> readIndentationPath(const std::string& path) {
     const std::size_t flag = columns.punctured.value_or(0);
     if (columns.punctured && cells.size() > flag && cells[flag] == "1") {
       cutAtPuncture(contact);
-      break;  // it stays punctured
+      break;  // the cell stays punctured
     }
     const bool touching = cells.size() > columns.last() && cells[columns.in_contact] == "1";
     if (!touching) {
@@ -90,23 +90,23 @@ std::vector<ContactSample> readIndentationPath(const std::string& path) {
       continue;
     }
     if (cells[columns.force].empty() || cells[columns.z].empty()) continue;
-    ContactSample moment;
-    moment.tip = {number(cells[columns.x], path), number(cells[columns.y], path), number(cells[columns.z], path)};
-    moment.axial_force = number(cells[columns.force], path);
-    contact.push_back(moment);
+    ContactSample sample;
+    sample.tip = {number(cells[columns.x], path), number(cells[columns.y], path), number(cells[columns.z], path)};
+    sample.axial_force = number(cells[columns.force], path);
+    contact.push_back(sample);
   }
   end();
   if (longest.size() < 2) throw ConfigError(path + ": the tip never went into the cell");
   return longest;
 }
 
-std::vector<ContactSample> thinOut(const std::vector<ContactSample>& way, int count) {
+std::vector<ContactSample> thinOut(const std::vector<ContactSample>& path, int count) {
   std::vector<ContactSample> result;
-  const double top = way.front().tip.z(), all = depth(way);
-  for (const ContactSample& moment : way) {
+  const double top = path.front().tip.z(), all = depth(path);
+  for (const ContactSample& sample : path) {
     const double wanted = all * static_cast<double>(result.size() + 1) / count;
-    if (static_cast<int>(result.size()) < count && top - moment.tip.z() >= wanted * (1 - 1e-12)) {
-      result.push_back(moment);
+    if (static_cast<int>(result.size()) < count && top - sample.tip.z() >= wanted * (1 - 1e-12)) {
+      result.push_back(sample);
     }
   }
   return result;

@@ -6,19 +6,20 @@
 
 namespace microinjection {
 
-/// A moment of a recorded session in which the tip touched the cell.
+/// Sample of a recorded session in which the tip touched the cell.
 struct ContactSample {
   Eigen::Vector3d tip = Eigen::Vector3d::Zero();  ///< m, in the world
   double axial_force = 0;                         ///< N, predicted, along the pipette
 };
 
-/// The longest way in of a session's table (force_depth.csv of the session recorder): from the first touch to the
-/// deepest place before the contact ended, or to where a layer gave way (column punctured, where there is one: the
-/// cell says so some milliseconds late, hence the largest force before). Throws ConfigError when the file cannot be
-/// read, lacks a column or has no contact.
+/// The longest indentation in a session's table (force_depth.csv of the session recorder), from
+/// first contact to the deepest point of that contact. When a layer fails (optional column
+/// `punctured`), the path ends at the largest force before, because the cell reports a puncture
+/// some milliseconds late. Throws ConfigError when the file cannot be read, lacks a column or has
+/// no contact.
 std::vector<ContactSample> readIndentationPath(const std::string& path);
 
-/// `count` moments of a way in, evenly in depth, the deepest the last.
-std::vector<ContactSample> thinOut(const std::vector<ContactSample>& way, int count);
+/// `count` samples of an indentation, evenly in depth; the last is the deepest.
+std::vector<ContactSample> thinOut(const std::vector<ContactSample>& path, int count);
 
 }  // namespace microinjection

@@ -1,4 +1,5 @@
-// Force of a recorded session against the full solution along its own way into the cell; see --help.
+// Compares the predicted force of a recorded session with the full solution along the same path;
+// see --help.
 
 #include <algorithm>
 #include <boost/program_options.hpp>
@@ -24,14 +25,14 @@ namespace po = boost::program_options;
 
 constexpr int kBadUsage = 2, kFailed = 3;
 constexpr char kHelp[] =
-    R"(trajectory_error: how far a session's predicted force was from the full solution. Takes the way in of a recorded
-session (force_depth.csv), moves the tip of the converging model (P2-P0 tetrahedra in space) along it, and prints the
-force of both. Takes a minute.
+    R"(trajectory_error: difference between a session's predicted force and the full solution. Reads the indentation of
+a recorded session (force_depth.csv), moves the tip of the converging model (P2-P0 tetrahedra in space) along the same
+path, and prints the force of both. Takes a minute.
 
 Usage: trajectory_error --scene FILE --session CSV [--points N] [--level L] [--csv FILE]
 
-Exit status: 0 done; 2 bad usage, scene or session, or output that cannot be written; 3 the full solution was lost on the
-way.
+Exit status: 0 done; 2 bad usage, scene or session, or output that cannot be written; 3 the full solution did
+not converge.
 
 Options)";
 
@@ -52,25 +53,25 @@ int compare(const Arguments& arguments) {
   for (const Scene::Layer& layer : scene.cell.layers) {
     if (layer.material.viscoelasticity.empty()) continue;
     throw ConfigError("viscoelasticity of layer " + layer.name +
-                      ": must be left out: the session's times are not known here");
+                      ": must be left out: the session's times are not used here");
   }
-  const std::vector<ContactSample> way = readIndentationPath(arguments.session);
-  scene.needle.offset = way.front().tip.head<2>();
-  const auto place = ContactFrame::at(scene, scene.needle.offset);
-  if (!place) throw ConfigError(arguments.session + ": the tip is beside the cell of " + arguments.scene);
+  const std::vector<ContactSample> path = readIndentationPath(arguments.session);
+  scene.needle.offset = path.front().tip.head<2>();
+  const auto contact = ContactFrame::at(scene, scene.needle.offset);
+  if (!contact) throw ConfigError(arguments.session + ": the tip is beside the cell of " + arguments.scene);
   CellProblem<3> problem(scene, makeSceneMesh<3>(scene, arguments.level), ElementKind::kP2P0);
   std::string table = "depth_m,session_N,full_N,error\n";
   std::cout << table;
   flushStandardOutput();
   std::vector<double> errors;
-  for (const ContactSample& moment : thinOut(way, arguments.points)) {
-    const IndentationSolution full = problem.solve(moment.tip - place->origin);
+  for (const ContactSample& sample : thinOut(path, arguments.points)) {
+    const IndentationSolution full = problem.solve(sample.tip - contact->origin);
     if (!full.converged) throw std::runtime_error("the full solution is lost: " + full.reason);
     if (!(full.force.z() > 0)) continue;  // still above the mesh's first point of contact
-    errors.push_back(std::abs(moment.axial_force / full.force.z() - 1));
+    errors.push_back(std::abs(sample.axial_force / full.force.z() - 1));
     char row[160];
-    std::snprintf(row, sizeof(row), "%.4g,%.5g,%.5g,%.4f\n", place->origin.z() - moment.tip.z(), moment.axial_force,
-                  full.force.z(), moment.axial_force / full.force.z() - 1);
+    std::snprintf(row, sizeof(row), "%.4g,%.5g,%.5g,%.4f\n", contact->origin.z() - sample.tip.z(), sample.axial_force,
+                  full.force.z(), sample.axial_force / full.force.z() - 1);
     std::cout << row;
     flushStandardOutput();
     table += row;
@@ -93,7 +94,7 @@ int run(int argc, char** argv) {
     options.add_options()("help", "this text")("scene", po::value(&arguments.scene),
                                                "scene file of the session (YAML)")(
         "session", po::value(&arguments.session), "force_depth.csv of the session")(
-        "points", po::value(&arguments.points)->default_value(arguments.points), "places compared, evenly in depth")(
+        "points", po::value(&arguments.points)->default_value(arguments.points), "points compared, evenly in depth")(
         "level", po::value(&arguments.level)->default_value(arguments.level),
         "refinement of the full solution's mesh; -1 is that of `prepare`, finer ones are larger")(
         "csv", po::value(&arguments.csv), "file to write the table to as well");

@@ -53,9 +53,9 @@ std::unique_ptr<CellModel> CellSimulatorNode::makeCell() const {
   const Scene scene = loadScene(parameters_.scene);
   ChosenCellModel served = makeCellModel(scene, parameters_.model, parameters_.models, parameters_.scene);
   if (served.as_required) {
-    ROS_INFO_STREAM(served.said);
+    ROS_INFO_STREAM(served.description);
   } else {
-    ROS_WARN_STREAM(served.said);
+    ROS_WARN_STREAM(served.description);
   }
   return std::move(served.cell);
 }

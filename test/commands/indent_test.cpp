@@ -103,7 +103,7 @@ TEST_F(IndentCommand, MeetsTheToleranceThatIsAskedFor) {
 TEST_F(IndentCommand, SaysSoWhenTheToleranceCannotBeMet) {
   const Outcome result = run("--scene st_vk.yaml --depths 0.9e-6 --tolerance 1e-4");
   EXPECT_EQ(result.status, 4) << result.err;
-  EXPECT_NE(result.err.find("not the tolerance"), std::string::npos);
+  EXPECT_NE(result.err.find("above the tolerance"), std::string::npos);
   EXPECT_GT(table(result.out).at(0)[6], 1e-4);
 }
 

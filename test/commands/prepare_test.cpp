@@ -83,7 +83,7 @@ TEST_F(PrepareCommand, DamagedDataAreNamedAndMadeAnew) {
   fs::resize_file(preparedPath(), fs::file_size(preparedPath()) - 1);
   EXPECT_EQ(prepare(full_disk_, scene_), 2) << said_;
   EXPECT_TRUE(said(preparedPath() + ": is damaged: ")) << said_;
-  EXPECT_TRUE(said("it is made anew")) << said_;
+  EXPECT_TRUE(said("it is replaced")) << said_;
 }
 
 TEST_F(PrepareCommand, ItsHelpNeedsAnOutput) {

@@ -6,11 +6,12 @@
 namespace microinjection {
 namespace {
 
-/// Relative tolerance of barycentric coordinates: an edge belongs to both of its triangles.
+/// Relative tolerance of barycentric coordinates, so that an edge belongs to both of its triangles.
 constexpr double kEdge = 1e-12;
 
-/// Walks over triangles that face the ray, across an edge that the ray passes outside of, to the one that it goes
-/// through; -1 when it leaves those that face the ray or loses its way.
+/// Walks over triangles that face the ray, each time across an edge outside of which the ray
+/// passes, to the triangle that it hits. Returns -1 when it reaches a triangle that does not face
+/// the ray, or does not end.
 int walk(const SurfaceMesh& surface, int start, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
   int triangle = start, previous = -1;
   for (size_t steps = 0; steps <= surface.triangles.size(); ++steps) {
@@ -21,7 +22,8 @@ int walk(const SurfaceMesh& surface, int start, const Eigen::Vector3d& origin, c
     for (int i = 0; i < 3; ++i) {
       const Eigen::Vector3d a = surface.vertices[corners[i]] - origin;
       const Eigen::Vector3d b = surface.vertices[corners[(i + 1) % 3]] - origin;
-      // Six times the signed volume of (ray, edge): positive when the ray passes on the far side of the edge.
+      // Six times the signed volume of (ray, edge): positive when the ray passes on the far side of
+      // the edge.
       const double outside = direction.dot(a.cross(b));
       if (outside > furthest && surface.neighbours[triangle][i] != previous) {
         furthest = outside;

@@ -11,14 +11,14 @@
 namespace microinjection {
 namespace {
 
-/// Directions at a point: away from the axis, around it, and along it.
+/// Unit vectors at a point: away from the axis, around it, and along it.
 struct Cylindrical {
   explicit Cylindrical(const Eigen::Vector3d& point) : rho(std::hypot(point.x(), point.y())) {
     if (rho > 0) outward = Eigen::Vector3d(point.x() / rho, point.y() / rho, 0);
     around = Eigen::Vector3d(-outward.y(), outward.x(), 0);
   }
   double rho;                                          ///< m, from the axis
-  Eigen::Vector3d outward = Eigen::Vector3d::UnitX();  ///< on the axis any direction is as good
+  Eigen::Vector3d outward = Eigen::Vector3d::UnitX();  ///< arbitrary on the axis
   Eigen::Vector3d around;
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
 };
@@ -38,7 +38,8 @@ Gap shaftGap(const Cylindrical& at, double radius, double smallest) {
   return gap;
 }
 
-/// @pre beyond >= 0 and below >= 0: how far the point is beyond the core's corner, away from the axis and down, m.
+/// @pre beyond >= 0 and below >= 0: distances of the point from the core's corner, away from the
+/// axis and down, m.
 Gap edgeGap(const Cylindrical& at, double beyond, double below, double edge_radius, double smallest) {
   const double reach = std::hypot(beyond, below);
   const double sine = reach > 0 ? beyond / reach : 0, cosine = reach > 0 ? below / reach : 1;
@@ -46,7 +47,8 @@ Gap edgeGap(const Cylindrical& at, double beyond, double below, double edge_radi
   gap.distance = reach - edge_radius;
   gap.normal = sine * at.outward - cosine * at.up;
   const Eigen::Vector3d along = cosine * at.outward + sine * at.up;
-  // Around the axis: sine / rho, which for a core without width is 1 / reach on the axis too.
+  // Curvature around the axis: sine / rho. For a core without width it is 1 / reach, also on the
+  // axis.
   const double hoop = beyond == at.rho ? 1 / std::max(reach, smallest) : sine / at.rho;
   gap.curvature = along * along.transpose() / std::max(reach, smallest) + hoop * at.around * at.around.transpose();
   return gap;

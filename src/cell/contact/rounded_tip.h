@@ -5,45 +5,49 @@
 
 namespace microinjection {
 
-/// Where a point is from the surface of a tip, and how the surface bends there.
+/// Distance of a point from the surface of a tip, with its derivatives.
 struct Gap {
   double distance = 0;                                  ///< m, > 0 outside of the tip
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();     ///< gradient of the distance: unit, out of the tip
   Eigen::Matrix3d curvature = Eigen::Matrix3d::Zero();  ///< its Hessian, 1/m; symmetric, curvature * normal = 0
 };
 
-/// Rigid axisymmetric pipette with a rounded end: everything within `edge_radius` e of a solid core, which is a
-/// cylinder of radius c = radius - e about the axis without an upper end. That is a flat end of radius c, a toroidal
-/// edge of radius e and a straight shaft. Where e is the whole radius the core is a ray and the end a hemisphere. Frame
-/// of all points: origin at the tip's lowest point on its axis, z along the shaft (out of the cell); metres.
+/// Rigid axisymmetric pipette with a rounded end: all points within `edge_radius` e of a solid
+/// core. The core is a cylinder of radius c = radius - e about the axis without an upper end. The
+/// pipette then has a flat end of radius c, a toroidal edge of radius e and a straight shaft. If e
+/// is the whole radius, the core is a ray and the end a hemisphere. Frame of all points: origin at
+/// the tip's lowest point on its axis, z along the shaft (out of the cell); metres.
 class RoundedTip {
  public:
   /// 0 < edge_radius <= radius, m; throws ConfigError otherwise.
   RoundedTip(double radius, double edge_radius);
 
-  /// `shape` hemisphere (edge_radius does not count) or rounded_flat. Throws ConfigError for any other shape (a disc
-  /// has a sharp edge) or a bad radius.
+  /// `shape` is hemisphere (which ignores edge_radius) or rounded_flat. Throws ConfigError for any
+  /// other shape (a disc has a sharp edge) or a bad radius.
   static RoundedTip make(const std::string& shape, double radius, double edge_radius = 0);
 
   double radius() const { return core_radius_ + edge_radius_; }  ///< m, of the shaft
   double edgeRadius() const { return edge_radius_; }             ///< m
   double coreRadius() const { return core_radius_; }             ///< m, of the flat end; 0 for a hemisphere
 
-  /// Signed distance to the surface, m. Exact everywhere. Once continuously differentiable outside and inside down to
-  /// the depth of e; deeper, inside of the core, there are kinks where two faces are equally near.
+  /// Signed distance to the surface, m, exact everywhere. Once continuously differentiable outside,
+  /// and inside down to the depth e. Deeper, inside of the core, it has kinks where two faces are
+  /// equally near.
   double distance(const Eigen::Vector3d& point) const;
 
-  /// distance() with its derivatives. In the core the normal points out through the nearest face. Finite everywhere:
-  /// where the curvature is not defined (on the core's corner, on the axis deep in the shaft) it is some large one, and
-  /// the normal one of the possible ones. Between the regions the curvature jumps.
+  /// distance() with its derivatives. In the core the normal points out through the nearest face.
+  /// All values are finite: where the curvature is not defined (on the core's corner, on the axis
+  /// deep in the shaft) it is large, and the normal is one of the possible ones. The curvature
+  /// jumps between regions.
   Gap gap(const Eigen::Vector3d& point) const;
 
-  /// Height, m, of the tip's lowest point where the tip, coming down along z with its axis through (x, y) = `offset`,
-  /// touches a sphere of `cell_radius` about the origin. NaN when it passes by: |offset| >= cell_radius + radius().
+  /// Height, m, of the tip's lowest point when the tip, moving down along z with its axis through
+  /// (x, y) = `offset`, first touches a sphere of `cell_radius` about the origin. NaN when it
+  /// passes the sphere: |offset| >= cell_radius + radius().
   double touchHeight(double cell_radius, const Eigen::Vector2d& offset) const;
 
-  /// The point of the sphere that is touched first, m, in the frame of the sphere; on the axis of the sphere where the
-  /// flat end touches. NaN when the tip passes by.
+  /// The first contact point on the sphere, m, in the frame of the sphere; on the axis of the
+  /// sphere if the flat end touches. NaN when the tip passes the sphere.
   Eigen::Vector3d touchPoint(double cell_radius, const Eigen::Vector2d& offset) const;
 
  private:

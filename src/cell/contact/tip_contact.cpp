@@ -9,14 +9,16 @@
 namespace microinjection {
 namespace {
 
-/// Penetration that the next equilibrium may have: times the present one, and of the tip's radius.
+/// Largest penetration expected at the next equilibrium: factor on the present one, and share of
+/// the tip's radius.
 constexpr double kDeeper = 1.5;
 constexpr double kDeepestFirst = 1e-4;
 
-/// Gap over adhesion's range at which a point is free: the traction is then 1e-7 of the largest.
+/// Gap over the range of adhesion at which a point is released. The traction is then 1e-7 of the
+/// largest.
 constexpr double kFree = 20;
 
-/// A section's (r, z) lies at (r, 0, z).
+/// A section's (r, z) is the point (r, 0, z) in space.
 Eigen::Vector3d inSpace(const Eigen::Vector2d& v) { return {v[0], 0, v[1]}; }
 Eigen::Vector3d inSpace(const Eigen::Vector3d& v) { return v; }
 
@@ -29,7 +31,7 @@ Eigen::Matrix<double, Dim, 1> fromSpace(const Eigen::Vector3d& v) {
   }
 }
 
-/// Area of the deformed body's surface that a unit of the reference facet stands for.
+/// Area of the body's surface per unit of the reference facet.
 double areaDensity(const Eigen::Matrix<double, 2, 1>& tangent, const Eigen::Vector2d& x) {
   constexpr double kTurn = 2 * 3.14159265358979323846;
   return kTurn * x[0] * tangent.norm();
@@ -65,7 +67,7 @@ void TipContact<Dim>::addFacet(const LayeredBody<Dim>& body, const typename Quad
       x += at.shape[a] * body.mesh().nodes[facet.nodes[a]];
       tangents += body.mesh().nodes[facet.nodes[a]] * at.gradient.row(a);
     }
-    if (!quadratic) {  // a straight facet: its displacement is linear, and so is its shape
+    if (!quadratic) {  // a straight facet: displacement and geometry are linear
       x.setZero();
       for (int a = 0; a < Dim; ++a) x += at.barycentric[a] * body.mesh().nodes[facet.nodes[a]];
     }
@@ -111,22 +113,23 @@ bool TipContact<Dim>::contribution(const Point& point, const Vector& at, Local& 
     return true;
   }
   const double distance = tip_.distance(inSpace(at));
-  const bool rubbing = config_.friction > 0 && point.memory.touching;
-  const bool held = distance > 0 && point.memory.bonded;
-  if (distance >= 0 && !rubbing && !held) return false;
+  const bool with_friction = config_.friction > 0 && point.memory.touching;
+  const bool adhering = distance > 0 && point.memory.bonded;
+  if (distance >= 0 && !with_friction && !adhering) return false;
   local = Local();
-  if (held) addAdhesion(point, at, local);
+  if (adhering) addAdhesion(point, at, local);
   if (distance < 0) {
     Vector normal;
     Matrix curvature;
     gap(at, normal, curvature);
     local.energy = 0.5 * stiffness * distance * distance;
     local.gradient = stiffness * distance * normal;
-    // On the way to equilibrium a point may lie far inside, where the true second derivative is that of a maximum.
+    // During the iterations a point may be so far inside that the true second derivative is
+    // negative.
     const double bending = std::max(distance, -kDeeper * deepest_ - kDeepestFirst * tip_.radius());
     local.hessian = stiffness * (normal * normal.transpose() + bending * curvature);
   }
-  if (rubbing) addFriction(point, at, local);
+  if (with_friction) addFriction(point, at, local);
   return true;
 }
 
@@ -178,7 +181,7 @@ bool TipContact<Dim>::evaluate(int index, const Eigen::VectorXd& state, Order or
     }
     result.energy += local.energy;
     if (order == Order::kEnergy) continue;
-    // The relative position moves with the nodes' shape functions, and against the tip.
+    // The relative position moves with the nodes' shape functions, and opposite to the tip.
     const auto share = [&](int a) { return a < nodes ? point.shape[a] : -1.0; };
     for (int a = 0; a <= nodes; ++a) {
       result.gradient.template segment<Dim>(Dim * a) += share(a) * local.gradient;
@@ -195,11 +198,11 @@ bool TipContact<Dim>::settle(Memory& memory, const Vector& at) const {
   Vector normal;
   Matrix curvature;
   const double distance = gap(at, normal, curvature);
-  const bool touched = memory.touching;
+  const bool was_touching = memory.touching;
   if (config_.mode == TipContactConfig::Mode::kSticking) {
-    if (touched && (at - memory.anchor).dot(normal) > 0) {  // the tip would pull
+    if (was_touching && (at - memory.anchor).dot(normal) > 0) {  // the traction would be tensile
       memory.touching = false;
-    } else if (!touched && distance < 0) {
+    } else if (!was_touching && distance < 0) {
       const double before = tip_.distance(inSpace(memory.last));
       const double share = before > 0 ? before / (before - distance) : 0;
       const Vector met = memory.last + share * (at - memory.last);
@@ -207,11 +210,11 @@ bool TipContact<Dim>::settle(Memory& memory, const Vector& at) const {
       memory.anchor = met - off * normal;
       memory.touching = true;
     }
-    return touched != memory.touching;
+    return was_touching != memory.touching;
   }
   if (config_.friction == 0) return false;
   const double stiffness = config_.penalty, bound = config_.friction * memory.traction;
-  if (touched) {
+  if (was_touching) {
     const Vector slip = (at - memory.anchor) - memory.normal * memory.normal.dot(at - memory.anchor);
     const double excess = stiffness * slip.norm() / bound;
     memory.anchor = at - (excess > 1 ? Vector(slip / excess) : slip);
@@ -221,7 +224,7 @@ bool TipContact<Dim>::settle(Memory& memory, const Vector& at) const {
   memory.touching = distance < 0;
   memory.traction = stiffness * std::max(0.0, -distance);
   memory.normal = normal;
-  return touched || memory.touching;
+  return was_touching || memory.touching;
 }
 
 template <int Dim>

@@ -14,23 +14,26 @@ struct TipContactConfig {
   enum class Mode { kSticking, kSliding };
   Mode mode = Mode::kSticking;
   double friction = 0;                               ///< Coulomb's coefficient, >= 0, of kSliding
-  double adhesion = 0;                               ///< J/m^2, >= 0, to part what has touched
-  double adhesion_range = 0;                         ///< m, > 0 with adhesion: the gap at which it pulls most
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< m, lowest point of the tip's axis where it touches the cell
+  double adhesion = 0;                               ///< J/m^2, >= 0, energy of separation per area
+  double adhesion_range = 0;                         ///< m, > 0 with adhesion: gap of the largest traction
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< m, lowest point of the tip's axis at first contact
   double penalty = 0;                                ///< Pa/m, traction per penetration, > 0
 };
 
-/// Unilateral contact of a body's outer surface with a rounded tip and its shaft, by penalty at the surface's
-/// quadrature points (Wriggers, "Computational contact mechanics", ch. 6); tractions are per undeformed area.
+/// Unilateral contact of a body's outer surface with a rounded tip and its shaft, by penalty at the
+/// surface's quadrature points (Wriggers, "Computational contact mechanics", ch. 6); tractions are
+/// per undeformed area.
 ///
-/// Sliding: energy penalty/2 gap^2 where the gap is negative. Coulomb's friction has an incremental potential too, with
-/// the normal traction of the step before as its bound. Sticking: a point sticks where it first touched, as long as the
-/// tip does not pull it; within the step of its touch it slides, and is then put back to where its path met the tip.
+/// Sliding: energy penalty/2 gap^2 where the gap is negative. Coulomb's friction also has an
+/// incremental potential, bounded by the normal traction of the previous step. Sticking: a point
+/// sticks to its first contact point until its traction is tensile. Within the step of first
+/// contact it slides; afterwards it is moved back to where its path met the tip.
 ///
-/// Adhesion: what has touched before is pulled back over a gap g > 0 by the traction G/d^2 g exp(-g/d) along the tip's
-/// normal, with the energy G = `adhesion` of parting and d = `adhesion_range` (Xu and Needleman, "Numerical simulations
-/// of fast crack growth in brittle solids", 1994, normal part); at most G/(e d). Where points stick, it takes over when
-/// they part. It is forgotten far out, where nothing of it is left.
+/// Adhesion: points that were in contact are pulled back over a gap g > 0 by the traction G/d^2 g
+/// exp(-g/d) along the tip's normal, with the separation energy G = `adhesion` and d =
+/// `adhesion_range` (Xu and Needleman, "Numerical simulations of fast crack growth in brittle
+/// solids", 1994, normal part); at most G/(e d). With sticking, it begins when a point is released.
+/// It ends at a large gap, where its traction is negligible.
 template <int Dim>
 class TipContact : public EnergyTerm {
  public:
@@ -46,7 +49,8 @@ class TipContact : public EnergyTerm {
 
   int touchingPoints() const;  ///< quadrature points in contact at the last accepted state
 
-  /// m, by how much the tip enters the surface at the last equilibrium: to be small against its radius.
+  /// Largest penetration of the tip into the surface at the last equilibrium, m. It should be small
+  /// against the tip's radius.
   double penetration() const { return deepest_; }
 
  private:
@@ -54,18 +58,18 @@ class TipContact : public EnergyTerm {
   using Matrix = Eigen::Matrix<double, Dim, Dim>;
   struct Memory {
     Vector last = Vector::Zero();  ///< m, relative to the tip, at the end of the last step
-    bool touching = false;         ///< then `anchor` holds
-    Vector anchor =
-        Vector::Zero();  ///< m, relative to the tip: where the tangential (sticking: the whole) spring rests
-    Vector normal = Vector::Zero();  ///< out of the tip, where it settled last
-    double traction = 0;             ///< Pa, normal, where it settled last
-    bool bonded = false;             ///< has touched and not gone far: adhesion holds it
+    bool touching = false;         ///< `anchor` is valid
+    /// m, relative to the tip: position without tangential (sticking: any) spring force.
+    Vector anchor = Vector::Zero();
+    Vector normal = Vector::Zero();  ///< out of the tip, at the last settle()
+    double traction = 0;             ///< Pa, normal, at the last settle()
+    bool bonded = false;             ///< was in contact and is within the range of adhesion
   };
   struct Point {
     Vector undeformed = Vector::Zero();  ///< m, relative to the tip's origin
     double weight = 0;                   ///< m^2
     Eigen::VectorXd shape;               ///< of the facet's nodes
-    Memory memory, accepted;             ///< in this step, and of the last one that was accepted
+    Memory memory, accepted;             ///< of this step, and of the last accepted one
   };
   struct Facet {
     std::vector<int> entries;  ///< node by node, then the tip's

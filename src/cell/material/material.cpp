@@ -9,7 +9,8 @@ namespace microinjection {
 
 namespace {
 
-/// What is left without it must stay stable, or a mixed element is not: its bulk modulus must not be negative.
+/// The energy without this penalty must stay stable, or a mixed element is not stable: its bulk
+/// modulus must not be negative.
 double mixedModulus(double lambda, const Lame& lame) {
   const double bulk = lame.lambda + 2 * lame.mu / 3;
   return std::max(lambda, std::min(lame.mu, 0.5 * bulk));

@@ -10,31 +10,32 @@
 
 namespace microinjection {
 
-/// Hyperelastic material: everything is a function of the deformation gradient F = dx/dX. Its energy has two parts,
+/// Hyperelastic material: all results are functions of the deformation gradient F = dx/dX. Its
+/// energy has two parts,
 ///
 ///     W = Wd + kappa/2 g^2,
 ///
-/// the distortional part Wd and a penalty on the dilatation g. An element with a pressure p of its own takes
-/// p g - p^2 / (2 kappa) instead of the penalty, which is the same where p = kappa g. Wd is not free of volume changes:
-/// it is what the model leaves beside the penalty.
+/// the distortional part Wd and a penalty on the dilatation g. An element with its own pressure p
+/// uses p g - p^2 / (2 kappa) instead of the penalty, which is the same for p = kappa g. Wd is the
+/// rest of the model's energy and also depends on volume changes.
 ///
-/// Matrices of 9 x 9: row and column i + 3 J stand for component (i, J), the column-major order of Eigen; symmetric.
-/// Stresses and tangents: @pre energyDensity(F) is finite.
+/// Matrices of 9 x 9: row and column i + 3 J stand for component (i, J), the column-major order of
+/// Eigen; symmetric. Stresses and tangents: @pre energyDensity(F) is finite.
 ///
-/// Each function of F computes kinematics(F) first; who needs several at one F computes it once and takes the
-/// functions of Kinematics.
+/// Each function of F computes kinematics(F) first. To evaluate several at one F, compute it once
+/// and call the functions of Kinematics.
 class Material {
  public:
   using Matrix9d = Eigen::Matrix<double, 9, 9>;
 
-  /// What a material derives from F before anything else.
+  /// Quantities that a material derives from F first.
   struct Kinematics {
     Eigen::Matrix3d deformation_gradient;  ///< F
-    double dilatation;                     ///< g(F); -infinity for det F <= 0 of a material that resists inversion
-    Eigen::Matrix3d dilatation_gradient;   ///< dg/dF; the identity when undeformed
+    double dilatation;                     ///< g(F); -infinity for det F <= 0 if the material resists inversion
+    Eigen::Matrix3d dilatation_gradient;   ///< dg/dF; the identity in the undeformed state
   };
 
-  /// The sum distortional Wd + pressure g + modulus/2 g^2, with numbers that do not depend on F.
+  /// Weights, independent of F, of the sum distortional Wd + pressure g + modulus/2 g^2.
   struct Weights {
     double distortional;
     double pressure;  ///< Pa
@@ -45,26 +46,27 @@ class Material {
 
   virtual Kinematics kinematics(const Eigen::Matrix3d& F) const = 0;
 
-  /// Strain energy W per undeformed volume, J/m^3; zero when undeformed, +infinity where it is not defined (det F <= 0
-  /// of a material that resists inversion).
+  /// Strain energy W per undeformed volume, J/m^3; zero in the undeformed state, +infinity where it
+  /// is not defined (det F <= 0 if the material resists inversion).
   double energyDensity(const Eigen::Matrix3d& F) const { return energyDensity(kinematics(F), whole()); }
   /// First Piola-Kirchhoff stress P = dW/dF, Pa.
   Eigen::Matrix3d stress(const Eigen::Matrix3d& F) const { return stress(kinematics(F), whole()); }
   /// dP/dF, Pa.
   Matrix9d tangent(const Eigen::Matrix3d& F) const { return tangent(kinematics(F), whole()); }
 
-  /// Wd, J/m^3, zero when undeformed, +infinity where W is; its first and second derivative, Pa.
+  /// Wd, J/m^3, zero in the undeformed state, +infinity where W is; its first and second
+  /// derivative, Pa.
   double distortionalEnergy(const Eigen::Matrix3d& F) const { return energyDensity(kinematics(F), distortional()); }
   Eigen::Matrix3d distortionalStress(const Eigen::Matrix3d& F) const { return stress(kinematics(F), distortional()); }
   Matrix9d distortionalTangent(const Eigen::Matrix3d& F) const { return tangent(kinematics(F), distortional()); }
 
-  /// g, zero when undeformed; dg/dF, the identity when undeformed; and the second derivative.
+  /// g, zero in the undeformed state; dg/dF, the identity there; and the second derivative.
   double dilatation(const Eigen::Matrix3d& F) const { return kinematics(F).dilatation; }
   Eigen::Matrix3d dilatationGradient(const Eigen::Matrix3d& F) const { return kinematics(F).dilatation_gradient; }
   Matrix9d dilatationHessian(const Eigen::Matrix3d& F) const { return tangent(kinematics(F), mixed(0, 1)); }
 
-  /// kappa, Pa, > 0: the model's lambda, or more where that is small or negative: at most its bulk modulus, so that Wd,
-  /// which takes (lambda - kappa)/2 g^2, stays stable.
+  /// kappa, Pa, > 0: the model's lambda, or more when lambda is small or negative. It is at most
+  /// the model's bulk modulus, so that Wd, which contains (lambda - kappa)/2 g^2, stays stable.
   double dilatationalModulus() const { return kappa_; }
 
   /// The weighted sum of the parts, J/m^3, with its first and second derivative, Pa.
@@ -74,21 +76,22 @@ class Material {
 
   Weights whole() const { return {1, 0, kappa_}; }     ///< W
   static Weights distortional() { return {1, 0, 0}; }  ///< Wd
-  /// distortional Wd + p g at a fixed pressure p (Pa): what a mixed element differentiates with respect to F.
+  /// distortional Wd + p g at a fixed pressure p (Pa): mixed elements differentiate it with respect
+  /// to F.
   static Weights mixed(double distortional, double pressure) { return {distortional, pressure, 0}; }
-  /// W - lambda/2 g^2, the part that relaxes in viscoelasticity: Wd unless kappa had to exceed the model's lambda. Wd
-  /// alone would not do there, since it is then negative in a change of volume.
+  /// W - lambda/2 g^2, the part that relaxes in viscoelasticity. It differs from Wd if kappa
+  /// exceeds the model's lambda: Wd is then negative in a change of volume.
   Weights relaxing() const { return {1, 0, -lambda_excess_}; }
 
-  /// The stress is a linear function of the displacement gradient: small strain, one solution at any load, and no
-  /// meaning in det F.
+  /// The stress is a linear function of the displacement gradient: small strain, one solution at
+  /// any load. det F has no meaning then.
   virtual bool isLinear() const { return false; }
   /// The energy is infinite for det F <= 0.
   virtual bool resistsInversion() const { return false; }
 
  protected:
-  /// A model's W is modelEnergy + lambda/2 g^2. @param lambda of the model, which need not be
-  /// Hooke's, as `lame` is
+  /// A model's W is modelEnergy + lambda/2 g^2. @param lambda of the model; it may differ from
+  /// Hooke's, which is in `lame`
   Material(double lambda, const Lame& lame);
 
   virtual double modelEnergy(const Kinematics& kinematics) const = 0;
@@ -99,10 +102,10 @@ class Material {
 
  private:
   double kappa_;          ///< Pa
-  double lambda_excess_;  ///< Pa, lambda - kappa, <= 0; 0 for all that is nearly incompressible
+  double lambda_excess_;  ///< Pa, lambda - kappa, <= 0; 0 for nearly incompressible materials
 };
 
-/// Which material, its two elastic constants (those of a load for ever), and what relaxes in between.
+/// Material model, its two long-term elastic constants, and its viscoelasticity.
 struct MaterialConfig {
   std::string model = "neo_hookean";  ///< one of materialModels()
   double young_modulus = 17.9e3;      ///< Pa, > 0

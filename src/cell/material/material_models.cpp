@@ -21,8 +21,8 @@ Eigen::Matrix3d greenStrain(const Eigen::Matrix3d& F) {
   return 0.5 * (F.transpose() * F - Eigen::Matrix3d::Identity());
 }
 
-/// The rotation R that maximises tr(R^T F): from the singular value decomposition with the smallest singular value
-/// taken negative when F is inverted.
+/// The rotation R that maximises tr(R^T F), from the singular value decomposition. The smallest
+/// singular value is taken negative when F is inverted.
 Matrix3d rotationFromSingularValues(const Matrix3d& F) {
   const Eigen::JacobiSVD<Matrix3d> svd(F, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Matrix3d U = svd.matrixU();
@@ -30,7 +30,8 @@ Matrix3d rotationFromSingularValues(const Matrix3d& F) {
   return U * svd.matrixV().transpose();
 }
 
-/// The same; by Newton's iteration for the polar decomposition (Higham 1986), several times faster, for ordinary F.
+/// Same rotation by Newton's iteration for the polar decomposition (Higham 1986), which is several
+/// times faster unless F is nearly singular or inverted.
 Matrix3d nearestRotation(const Matrix3d& F) {
   Matrix3d X = F;
   for (int i = 0; i < 8; ++i) {
@@ -131,7 +132,7 @@ double MooneyRivlin::modelEnergy(const Kinematics& kinematics) const {
 }
 
 Matrix3d MooneyRivlin::modelStress(const Kinematics& kinematics) const {
-  // dI1 = 2 F : dF, dI2 = 2 (I1 F - F C) : dF, and each takes its share of d(ln J) = F^-T : dF.
+  // dI1 = 2 F : dF, dI2 = 2 (I1 F - F C) : dF. Each gets its part of d(ln J) = F^-T : dF.
   const Matrix3d &F = kinematics.deformation_gradient, &F_inverse_transposed = kinematics.dilatation_gradient;
   Matrix3d S = -F.transpose() * F;
   S.diagonal().array() += F.squaredNorm();
@@ -207,14 +208,14 @@ Matrix3d Corotated::modelStress(const Kinematics& kinematics) const {
 
 void Corotated::addModelTangent(const Kinematics& kinematics, double energy_weight, double dilatation_weight,
                                 Matrix9d& result) const {
-  // With S = R^T F: dR = R [w]x and (tr(S) I - S) w = axial(R^T dF - dF^T R). The eigenvalues of the matrix are s_i +
-  // s_j: the twist modes of F.
+  // With S = R^T F: dR = R [w]x and (tr(S) I - S) w = axial(R^T dF - dF^T R). The eigenvalues of
+  // the matrix are s_i + s_j, those of the twist modes of F.
   const Matrix3d& R = kinematics.dilatation_gradient;
   const Matrix3d S = R.transpose() * kinematics.deformation_gradient;
   Matrix3d twist = -0.5 * (S + S.transpose());
   twist.diagonal().array() += S.trace();
   const Matrix3d cofactor = cofactors(twist);
-  // At a reflection, s_i + s_j = 0, R is not differentiable: the guard keeps the tangent finite.
+  // At a reflection (s_i + s_j = 0) R is not differentiable. The guard keeps the tangent finite.
   const double scale = std::max(twist.trace() / 3, 1e-6), guard = 1e-6 * scale * scale * scale;
   const double weight = (dilatation_weight - 2 * energy_weight * mu_) / std::max(twist.determinant(), guard);
   Eigen::Matrix<double, 3, 9> axial;

@@ -43,7 +43,8 @@ Matrix3d ViscoelasticStep::stress(const ViscoelasticMemory& memory, const Materi
 Material::Matrix9d ViscoelasticStep::tangent(const ViscoelasticMemory& memory,
                                              const Material::Kinematics& kinematics) const {
   Material::Matrix9d result = material_.tangent(kinematics, relaxing());
-  // d(F S) = dF S + F dS, dS = eta/dt (dF^T F + F^T dF); without F where the material is linear.
+  // d(F S) = dF S + F dS, dS = eta/dt (dF^T F + F^T dF); without the factor F if the material is
+  // linear.
   const Matrix3d F = material_.isLinear() ? Matrix3d::Identity() : kinematics.deformation_gradient;
   addTransposingProduct(viscosity_rate_, F, result);
   addLeftProduct(viscosity_rate_ * F * F.transpose(), result);
@@ -69,7 +70,7 @@ Material::Weights ViscoelasticStep::relaxing() const {
   return {gain_ * weights.distortional, gain_ * weights.pressure, gain_ * weights.modulus};
 }
 
-/// C, of a linear material I + 2 e: in both the stress 1/2 S : dC is work.
+/// C, or I + 2 e of a linear material. In both cases 1/2 S : dC is the work.
 Matrix3d ViscoelasticStep::metric(const Matrix3d& F) const {
   if (material_.isLinear()) return F + F.transpose() - Matrix3d::Identity();
   return F.transpose() * F;

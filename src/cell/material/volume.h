@@ -10,7 +10,8 @@
 
 namespace microinjection {
 
-/// Cofactors of F, det F F^-T: its columns are cross products of those of F, so that it exists for any F.
+/// Cofactors of F, det F F^-T. The columns are cross products of those of F, so that they exist for
+/// any F.
 inline Eigen::Matrix3d cofactors(const Eigen::Matrix3d& F) {
   Eigen::Matrix3d result;
   result.col(0) = F.col(1).cross(F.col(2));
@@ -19,7 +20,7 @@ inline Eigen::Matrix3d cofactors(const Eigen::Matrix3d& F) {
   return result;
 }
 
-/// Of a material with the dilatation g = ln det F, hence dg/dF = F^-T.
+/// Kinematics of a material with the dilatation g = ln det F, hence dg/dF = F^-T.
 inline Material::Kinematics logarithmicDilatation(const Eigen::Matrix3d& F) {
   const Eigen::Matrix3d cofactor = cofactors(F);
   const double J = F.determinant();

@@ -8,13 +8,14 @@
 
 namespace microinjection {
 
-/// How a displacement deforms a body in space (Dim = 3: components x, y, z) or, without twist, a body of revolution
-/// (Dim = 2: components r, z; F in the directions r, theta, z). A node's row of derivatives makes up the gradient of
-/// each displacement component: its shape function by x, y, z, or by r and z with the shape function over r for the
-/// hoop's stretch; 1/m.
+/// Deformation gradient F of displacements, in space (Dim = 3: components x, y, z) or of a body of
+/// revolution without twist (Dim = 2: components r, z; F in the directions r, theta, z). A node's
+/// row of derivatives has its shape function's derivatives by x, y, z, or by r and z and the shape
+/// function over r for the hoop strain; 1/m.
 template <int Dim>
 struct Strain {
-  /// Component of F (column-major, i + 3 J) to which derivative m of displacement component k goes; -1: to none.
+  /// Component of F (column-major, i + 3 J) to which derivative m of displacement component k
+  /// contributes; -1: none.
   static constexpr int component(int k, int m) {
     constexpr int kSpace[3][3] = {{0, 3, 6}, {1, 4, 7}, {2, 5, 8}};
     constexpr int kSection[2][3] = {{0, 6, 4}, {2, 8, -1}};
@@ -40,7 +41,7 @@ struct Strain {
     return result;
   }
 
-  /// F of the nodes' displacements (nodes x Dim).
+  /// F from the nodes' displacements (nodes x Dim).
   template <typename Nodal, typename Derivatives>
   static Eigen::Matrix3d deformationGradient(const Nodal& displacement, const Derivatives& derivatives) {
     const Eigen::Matrix<double, 3, Dim> gradient = derivatives.transpose().lazyProduct(displacement);
@@ -83,7 +84,8 @@ class ElementSum {
         [&] { return material_.tangent(kinematics, parts); }, derivatives, weight);
   }
 
-  /// Of any energy density, J/m^3, with its derivatives by F: functions of nothing, called as far as the order needs.
+  /// Adds an energy density, J/m^3, with its derivatives by F. The functions have no arguments and
+  /// are called only up to the derivative that `order` needs.
   template <typename Energy, typename Stress, typename Tangent>
   void add(const Energy& energy, const Stress& stress, const Tangent& tangent_of, const Derivatives& derivatives,
            double weight) {
@@ -110,7 +112,7 @@ class ElementSum {
     return result;
   }
 
-  /// Writes what was summed to the head of the result's derivatives, which have room for `size` entries.
+  /// Writes the sums to the head of the result's derivatives, which get `size` entries.
   void finish(int size) {
     if (order_ == Order::kEnergy) return;
     result_.gradient.setZero(size);

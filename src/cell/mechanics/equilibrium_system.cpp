@@ -7,10 +7,11 @@
 namespace microinjection {
 namespace {
 
-/// Component of the tip that an entry follows.
+/// Component of the tip that a constrained entry follows.
 int tipComponent(int unknown) { return -2 - unknown; }
 
-/// Number of a pair of places a, b in an element's `size` entries, in any order: column by column of a lower triangle.
+/// Index of the pair (a, b) of an element's `size` entries, in either order, in a lower triangle
+/// stored by columns.
 int pairIndex(int a, int b, int size) {
   const int row = std::max(a, b), column = std::min(a, b);
   return column * size - column * (column - 1) / 2 + row - column;
@@ -45,14 +46,14 @@ void EquilibriumSystem::number(const Constraints& constraints) {
   if (matrix_size_ == 0) throw std::invalid_argument("nothing is free to move");
 }
 
-/// Place of an unknown in an element's entries.
+/// Occurrence of an unknown among an element's entries.
 struct EquilibriumSystem::Occurrence {
   const std::vector<int>* entries;
-  int place;
-  int first_slot;  ///< of the element's pairs
+  int index;       ///< among the entries
+  int first_slot;  ///< slot of the element's first pair
 };
 
-/// Of each unknown. Makes room for the slots.
+/// Occurrences of each unknown. Also allocates the slots.
 std::vector<std::vector<EquilibriumSystem::Occurrence>> EquilibriumSystem::occurrences() {
   std::vector<std::vector<Occurrence>> result(matrix_size_);
   int next = 0;
@@ -92,7 +93,7 @@ void EquilibriumSystem::buildPattern() {
       for (int a = 0; a < size; ++a) {
         const int row = unknown_[(*occurrence.entries)[a]];
         if (row >= column && inMatrix(row))
-          slots_[occurrence.first_slot + pairIndex(a, occurrence.place, size)] = position[row];
+          slots_[occurrence.first_slot + pairIndex(a, occurrence.index, size)] = position[row];
       }
     }
   }
@@ -145,7 +146,7 @@ bool EquilibriumSystem::residual(const Eigen::VectorXd& state, Eigen::VectorXd& 
   return free.allFinite() && reaction.allFinite();
 }
 
-/// Adds what belongs to a constrained entry to K_ft and K_tt.
+/// Adds the stiffness of a constrained entry to K_ft and K_tt.
 void EquilibriumSystem::addConstrained(int row, int column, double value, bool diagonal) {
   const auto without = [&](int unknown) { return unknown == Constraints::kFixed || unknown >= matrix_size_; };
   if (without(row) || without(column)) return;
@@ -238,7 +239,7 @@ Eigen::VectorXd EquilibriumSystem::solve(const Eigen::VectorXd& right_hand_side)
   return result;
 }
 
-/// How everything follows the tip.
+/// Computes the sensitivity of all free entries to the tip's translation.
 void EquilibriumSystem::condenseTip() {
   sensitivity_.topRows(matrix_size_) = -solver_.solve(coupling_);
   for (std::size_t i = 0; i < internal_.size(); ++i) {

@@ -10,13 +10,14 @@
 
 namespace microinjection {
 
-/// What becomes of each entry of the state.
+/// Constraint of each entry of the state.
 struct Constraints {
   static constexpr int kFixed = -1;  ///< stays zero
-  /// Follows component k of the tip's translation: a patch that sticks to the tip, and the tip's own entries.
+  /// Follows component k of the tip's translation: vertices that stick to the tip, and the tip's
+  /// own entries.
   static constexpr int tip(int k) { return -2 - k; }
   static constexpr int kFree = 0;
-  /// Free, and of one element only, whose last entry it is: eliminated before the factorisation.
+  /// Free, and the last entry of one element only: eliminated before the factorisation.
   static constexpr int kInternal = 1;
 
   std::vector<int> entries;  ///< kFree, kInternal, kFixed or tip(k) of each entry of the state
@@ -28,7 +29,7 @@ struct Constraints {
 ///     [ K_ff  K_ft ] [ df ]   [ -r_f ]        r: derivative of the energy
 ///     [ K_tf  K_tt ] [ dt ] = [  dR  ]        R = r_t: the force on the tip that holds it there, N
 ///
-/// The pattern of K_ff and its symbolic factorisation are made once.
+/// The pattern of K_ff and its symbolic factorisation are computed once.
 class EquilibriumSystem {
  public:
   using Terms = std::vector<std::shared_ptr<EnergyTerm>>;
@@ -50,22 +51,24 @@ class EquilibriumSystem {
   /// r_f and R; false when the state is not admissible.
   bool residual(const Eigen::VectorXd& state, Eigen::VectorXd& free, Eigen::Vector3d& reaction);
 
-  /// Moves the internal entries to where the energy is stationary in them, if it is quadratic in each, as in a
-  /// pressure.
-  /// @pre assemble() returned true once. False when the state is not admissible.
+  /// Moves the internal entries to their stationary values, if the energy is quadratic in each of
+  /// them, as it is in a pressure. @pre assemble() returned true once. False when the state is not
+  /// admissible.
   bool settleInternal(Eigen::VectorXd& state);
 
   /// The tangent K_ff, K_ft and K_tt; false when the state is not admissible.
   bool assemble(const Eigen::VectorXd& state);
 
-  /// Assembles the tangent and factorises K_ff. False when `state` is not stable (K_ff, its pressures eliminated, is
-  /// not positive definite) or not admissible: then solve() and stiffness() must not be called.
+  /// Assembles the tangent and factorises K_ff. False when `state` is not stable (K_ff, its
+  /// pressures eliminated, is not positive definite) or not admissible: then solve() and
+  /// stiffness() must not be called.
   bool factorise(const Eigen::VectorXd& state);
 
   /// K_ff^-1 right_hand_side, with the last factorisation.
   Eigen::VectorXd solve(const Eigen::VectorXd& right_hand_side);
 
-  /// -K_ff^-1 K_ft: how the free entries follow the translation at equilibrium (free size x 3).
+  /// -K_ff^-1 K_ft: derivative of the free entries by the translation at equilibrium (free size x
+  /// 3).
   const Eigen::MatrixXd& sensitivity() const { return sensitivity_; }
 
   /// dR/dt at equilibrium, K_tt - K_tf K_ff^-1 K_ft, N/m; symmetric.
@@ -97,7 +100,7 @@ class EquilibriumSystem {
   int pressures_ = 0;
   std::vector<int> unknown_;  ///< of each entry of the state: free unknown, or as in Constraints
   Eigen::SparseMatrix<double> matrix_;
-  std::vector<int> slots_;  ///< where in matrix_'s values the pairs of each element's entries go: see pairIndex
+  std::vector<int> slots_;  ///< index in matrix_'s values of each pair of each element's entries: see pairIndex
   std::vector<Internal> internal_;
   SymmetricSolver solver_;
   Eigen::MatrixXd coupling_;  ///< K_ft

@@ -105,7 +105,8 @@ void ExplicitStep::reset() {
   holdTip();
 }
 
-/// K by central differences of the force. `safety` covers what is missing after an iteration that changes little.
+/// Applies K by central differences of the force. `safety` covers the error that remains when the
+/// power iteration stops.
 double ExplicitStep::findHighestFrequency() {
   constexpr PowerIteration kIteration = {1e-6, 300};
   constexpr double kAmplitude = 1e-6;  ///< of the body's size

@@ -15,13 +15,13 @@ namespace {
 
 constexpr std::size_t kMostPoints = 14;
 
-/// mu, Pa: stress per simple shear of the undeformed material.
+/// mu, Pa: derivative of the stress by simple shear in the undeformed material.
 double shearModulus(const Material& material) {
   return material.distortionalTangent(Eigen::Matrix3d::Identity())(3, 3);
 }
 
-/// A linear displacement has one F in all of a tetrahedron, so that one point does; the hoop's stretch in a section
-/// varies.
+/// A linear displacement has a constant F in a tetrahedron, so that one point suffices. In a
+/// section the hoop strain varies.
 template <int Dim>
 std::vector<ReferenceElement::Point> quadrature(ElementKind kind) {
   std::vector<ReferenceElement::Point> points = referenceElement<Dim>(kind).points;
@@ -145,7 +145,7 @@ bool LayeredBody<Dim>::evaluateNodes(int element, const Eigen::VectorXd& state, 
   return std::isfinite(result.energy);
 }
 
-/// With pressures as unknowns: M = 1 of the element, or of its corners.
+/// Adds the terms of a mixed element: M = 1 pressure of the element, or one of each corner.
 template <int Dim>
 template <int N, int M>
 void LayeredBody<Dim>::addPressure(int element, const Material::Kinematics* at, const Eigen::VectorXd& state,

@@ -16,41 +16,42 @@ namespace microinjection {
 template <int Dim, int N>
 class ElementSum;
 
-/// What becomes of a state with inverted elements (det F <= 0 at a quadrature point). Small strain ignores it always,
-/// and materials that resist inversion refuse it always.
+/// Treatment of states with inverted elements (det F <= 0 at a quadrature point). Small strain
+/// always allows them, and materials that resist inversion never do.
 enum class Inversion {
   kRefused,  ///< such a state is not admissible
-  kAllowed   ///< its energy is what the material says
+  kAllowed   ///< the material's formulas give the energy
 };
 
-/// A mesh with an element that is not positively oriented.
+/// Thrown for a mesh with an element that is not positively oriented.
 class InvertedElement : public std::invalid_argument {
  public:
   using std::invalid_argument::invalid_argument;
 };
 
-/// Strain energy of a body of layers on finite elements: in space (Dim = 3, displacements x, y, z) or, for a body of
-/// revolution deformed without twist, in its section (Dim = 2, displacements r, z; volumes are those of the whole
-/// body).
+/// Strain energy of a body of layers on finite elements: in space (Dim = 3, displacements x, y, z)
+/// or, for a body of revolution deformed without twist, in its section (Dim = 2, displacements r,
+/// z; volumes are those of the whole body).
 ///
-/// With a pressure p per element or vertex the dilatational energy kappa/2 g^2 of the material becomes
-/// p g - p^2 / (2 kappa), stationary in p: the same solution, without volumetric locking. The state's layout:
-/// displacement of node n, component k at Dim n + k; then pressures in units of pressureUnit(); then the tip's three.
-/// It remembers nothing (beginStep, accept and reset do nothing): immutable, safe to share between threads and systems.
+/// With a pressure p per element or vertex the dilatational energy kappa/2 g^2 of the material
+/// becomes p g - p^2 / (2 kappa), stationary in p: the same solution, without volumetric locking.
+/// The state's layout: displacement of node n, component k at Dim n + k; then pressures in units of
+/// pressureUnit(); then the tip's three. The body has no history (beginStep, accept and reset do
+/// nothing). It is immutable and can be shared between threads and systems.
 template <int Dim>
 class LayeredBody : public EnergyTerm {
  public:
   using Materials = std::vector<std::shared_ptr<const Material>>;  ///< of each layer
 
-  /// Throws InvertedElement when an element is not positively oriented, std::invalid_argument when a layer has no
-  /// material.
+  /// Throws InvertedElement when an element is not positively oriented, std::invalid_argument when
+  /// a layer has no material.
   LayeredBody(QuadraticMesh<Dim> mesh, ElementKind kind, Materials materials,
               Inversion inversion = Inversion::kRefused);
 
   const QuadraticMesh<Dim>& mesh() const { return mesh_; }
   const Materials& materials() const { return materials_; }
   ElementKind kind() const { return kind_; }
-  int nodeCount() const { return node_count_; }  ///< of displacement, bubbles at the end
+  int nodeCount() const { return node_count_; }  ///< nodes of displacement, bubbles at the end
   int pressureCount() const { return pressure_count_; }
   int stateSize() const { return Dim * node_count_ + pressure_count_ + 3; }
   int tipEntry() const { return stateSize() - 3; }
@@ -64,7 +65,7 @@ class LayeredBody : public EnergyTerm {
 
   /// Deformation gradient F at a quadrature point; of a section in the directions (r, theta, z).
   Eigen::Matrix3d deformationGradient(int element, int point, const Eigen::VectorXd& state) const;
-  int pointCount() const { return point_count_; }  ///< of an element
+  int pointCount() const { return point_count_; }  ///< per element
 
   /// Smallest det F of all quadrature points.
   double smallestJacobian(const Eigen::VectorXd& state) const;
@@ -72,12 +73,13 @@ class LayeredBody : public EnergyTerm {
   /// Undeformed volume of the body, m^3.
   double volume() const;
 
-  /// For terms on the same elements: function(N) with the number of an element's nodes as a constant.
+  /// Calls function(N) with the number of nodes of an element as a constant, for terms on the same
+  /// elements.
   template <typename Function>
   auto withNodes(Function&& function) const;
   template <int N>
   using Derivatives = Eigen::Map<const Eigen::Matrix<double, N, 3>>;
-  /// Of the shape functions, 1/m: see Strain.
+  /// Derivatives of the shape functions, 1/m: see Strain.
   template <int N>
   Derivatives<N> derivatives(int element, int point) const;
   double weight(int element, int point) const { return weights_[element * point_count_ + point]; }  ///< m^3

@@ -11,9 +11,9 @@ namespace {
 constexpr double kTolerance = 1e-8;     ///< of the residual, relative to the reaction
 constexpr double kRounding = 1e-13;     ///< of the residual, relative to stiffness times length
 constexpr double kWorkMismatch = 1e-3;  ///< of the energy, relative to the work of the step
-constexpr double kSlow = 0.2;           ///< contraction that is too slow to keep an old factorisation
-constexpr double kFar = 0.05;           ///< residual, relative to the reaction, at which an old one is not tried
-constexpr int kMaximumIterations = 15;  ///< a step that needs more is too long
+constexpr double kSlow = 0.2;           ///< contraction above which an old factorisation is discarded
+constexpr double kFar = 0.05;           ///< residual, relative to the reaction, above which an old one is not tried
+constexpr int kMaximumIterations = 15;  ///< a step that needs more is shortened
 constexpr int kMaximumHalvings = 8;     ///< of a line search
 
 }  // namespace
@@ -41,7 +41,7 @@ void LoadPath::reset() {
   state_ = undeformed_;
   viscous_ = false;
   load_step_ = config_.first_step;
-  refactorise(undeformed_);  // so that what follows is the same, to the bit, as for a new path
+  refactorise(undeformed_);  // so that later results are identical to those of a new path
 }
 
 bool LoadPath::refactorise(const State& state) {
@@ -56,7 +56,7 @@ LoadPath::Result LoadPath::advance(const Eigen::Vector3d& target, double duratio
   while (waiting || target != state_.translation) {
     const Eigen::Vector3d remaining = target - state_.translation;
     const double distance = remaining.norm();
-    const bool whole = load_step_ > (1 - 1e-6) * distance || config_.linear;  // no crumb for the next step
+    const bool whole = load_step_ > (1 - 1e-6) * distance || config_.linear;  // leaves no tiny last step
     const double share = whole ? 1 : load_step_ / distance;
     const Eigen::Vector3d increment = whole ? remaining : Eigen::Vector3d(share * remaining);
     const int before = result.newton_iterations;
@@ -83,7 +83,7 @@ bool LoadPath::step(const Eigen::Vector3d& increment, double duration, int& iter
   bool viscous = false;
   for (const auto& term : system_.terms()) viscous = term->beginStep(duration) || viscous;
   const bool other = viscous || viscous_;
-  if (other) {  // the energy is that of this step now
+  if (other) {  // the energy function is now that of this step
     factorised_ = false;
     system_.energy(state_.x, state_.energy);
   }
@@ -100,7 +100,8 @@ bool LoadPath::step(const Eigen::Vector3d& increment, double duration, int& iter
     trial_.stiffness = system_.stiffness();
     trial_.sensitivity = system_.sensitivity();
   }
-  // A viscous step dissipates, and its energy's derivative at the start is not the force at the end of the last one.
+  // A viscous step dissipates. Its energy's derivative at the start is not the force at the end of
+  // the last step.
   if (config_.smooth && !other && !workMatches(trial_)) {
     reason = "the branch of stable equilibria ends: the next one is not reached continuously";
     factorised_ = false;
@@ -129,9 +130,9 @@ bool LoadPath::balance(State& trial, int& iterations, std::string& reason) {
   for (int i = 0; i < kMaximumIterations; ++i) {
     const double norm = residual_.norm();
     if (norm <= std::max(kTolerance * trial.reaction.norm(), force_floor_)) return true;
-    const bool far = i == 0 && norm > kFar * trial.reaction.norm();  // contact came on the way, which it does not know
+    const bool far = i == 0 && norm > kFar * trial.reaction.norm();  // contact started, which it does not include
     if ((!factorised_ || far || norm > kSlow * last) && !refactorise(trial)) {
-      reason = "no stable equilibrium: the tangent on the way is not positive definite";
+      reason = "no stable equilibrium: the tangent along the step is not positive definite";
       return false;
     }
     last = norm;
@@ -147,7 +148,7 @@ bool LoadPath::balance(State& trial, int& iterations, std::string& reason) {
   return false;
 }
 
-/// The residual may grow where points come into contact, as long as the energy falls.
+/// The residual may grow when points come into contact, as long as the energy falls.
 bool LoadPath::correct(State& trial) {
   const Eigen::VectorXd direction = -system_.solve(residual_);
   const double norm = residual_.norm();

@@ -9,7 +9,8 @@
 namespace microinjection {
 namespace {
 
-/// Of a volume to the cube of the longest edge, below which a tetrahedron is flat: its force would be all rounding.
+/// Ratio of a volume to the cube of the longest edge below which a tetrahedron is flat. Its force
+/// would be rounding error.
 constexpr double kFlat = 1e-12;
 
 void checkTetrahedron(const TetMesh& mesh, std::size_t tetrahedron) {

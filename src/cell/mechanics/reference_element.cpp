@@ -14,7 +14,7 @@ struct Rule {
   std::vector<Eigen::VectorXd> barycentric;
   std::vector<double> weights;  ///< sum to 1
 
-  /// All permutations of a barycentric point, each with this weight.
+  /// Adds all permutations of a barycentric point, each with this weight.
   void add(std::vector<double> point, double weight) {
     std::sort(point.begin(), point.end());
     do {

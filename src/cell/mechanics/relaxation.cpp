@@ -7,10 +7,10 @@
 namespace microinjection {
 namespace {
 
-constexpr double kSmallestShift = 1e-4;  ///< other than none
+constexpr double kSmallestShift = 1e-4;  ///< larger than zero
 constexpr double kLargestShift = 1e10;
 constexpr double kShiftFactor = 4;
-constexpr double kDecrease = 1e-4;    ///< of the energy, relative to what the slope promises
+constexpr double kDecrease = 1e-4;    ///< of the energy, relative to the decrease that the slope predicts
 constexpr int kMaximumHalvings = 20;  ///< of a line search
 constexpr int kInverseIterations = 20;
 
@@ -42,7 +42,7 @@ Relaxation::Result Relaxation::relax(Eigen::VectorXd& state) {
   result.reason = "the iterations allowed were not enough";
   while (!result.converged && result.iterations < config_.maximum_iterations) {
     const bool stationary = isStationary();
-    if (stationary) shift_ = 0;  // is it stable?
+    if (stationary) shift_ = 0;  // checks stability
     if (!system_.assemble(state) || !factorise(result)) break;
     Eigen::VectorXd direction = -solver_.solve(gradient_);
     result.converged = shift_ == 0 && direction.cwiseAbs().maxCoeff() <= config_.tolerance * config_.length;
@@ -60,7 +60,7 @@ Relaxation::Result Relaxation::relax(Eigen::VectorXd& state) {
   return result;
 }
 
-/// Energy as a function of the displacements alone.
+/// Energy as a function of the displacements alone: pressures are eliminated.
 bool Relaxation::evaluate(Eigen::VectorXd& state, double& energy) {
   return system_.settleInternal(state) && system_.energy(state, energy) && std::isfinite(energy);
 }
@@ -68,7 +68,7 @@ bool Relaxation::evaluate(Eigen::VectorXd& state, double& energy) {
 bool Relaxation::differentiate(const Eigen::VectorXd& state, Eigen::VectorXd& gradient) {
   Eigen::Vector3d reaction;
   if (!system_.residual(state, gradient, reaction)) return false;
-  gradient.conservativeResize(diagonal_.size());  // those by internal entries, at the end, vanish
+  gradient.conservativeResize(diagonal_.size());  // the derivatives by internal entries, at the end, vanish
   return true;
 }
 
@@ -76,7 +76,7 @@ bool Relaxation::differentiate(const Eigen::VectorXd& state, Eigen::VectorXd& gr
 bool Relaxation::factorise(Result& result) {
   for (; shift_ <= kLargestShift; shift_ = raised(shift_)) {
     shifted_ = system_.matrix();
-    for (int i = 0; i < diagonal_.size(); ++i) {  // which leads each column
+    for (int i = 0; i < diagonal_.size(); ++i) {  // the first entry of each column
       shifted_.valuePtr()[shifted_.outerIndexPtr()[i]] += shift_ * diagonal_[i];
     }
     ++result.iterations;
@@ -86,15 +86,16 @@ bool Relaxation::factorise(Result& result) {
   return false;
 }
 
-/// No force to speak of.
+/// Whether the residual is negligible.
 bool Relaxation::isStationary() const {
   return gradient_.cwiseQuotient(diagonal_).cwiseAbs().maxCoeff() <= config_.tolerance * config_.length;
 }
 
-/// In which the energy falls most, away from a stationary state that is not stable: by inverse iteration.
+/// Direction of the fastest decrease of the energy from a stationary state that is not stable, by
+/// inverse iteration.
 Eigen::VectorXd Relaxation::softestDirection() {
   Eigen::VectorXd direction(diagonal_.size());
-  for (int i = 0; i < direction.size(); ++i) direction[i] = std::sin(1.0 + i);  // any that is nothing special
+  for (int i = 0; i < direction.size(); ++i) direction[i] = std::sin(1.0 + i);  // a start without symmetry
   for (int i = 0; i < kInverseIterations; ++i) {
     direction = solver_.solve(diagonal_.cwiseProduct(direction));
     direction *= config_.length / direction.cwiseAbs().maxCoeff();
@@ -102,7 +103,8 @@ Eigen::VectorXd Relaxation::softestDirection() {
   return gradient_.dot(direction) > 0 ? Eigen::VectorXd(-direction) : direction;
 }
 
-/// Whether the energy falls enough: by a part of what the slope promises, or, where rounding hides it, with the force.
+/// Whether the energy falls enough: by a part of the predicted decrease or, below rounding error,
+/// with a smaller residual.
 bool Relaxation::isLower(Eigen::VectorXd& candidate, double promise, double& energy) {
   if (!evaluate(candidate, energy)) return false;
   const bool falls = energy < energy_ + kDecrease * promise - rounding_;
@@ -111,7 +113,7 @@ bool Relaxation::isLower(Eigen::VectorXd& candidate, double promise, double& ene
   return falls || candidate_gradient_.norm() < gradient_.norm();
 }
 
-/// Share of the direction that was gone; 0: the state stays.
+/// Applies a line search. Returns the share of the direction that was applied; 0: the state stays.
 double Relaxation::descend(Eigen::VectorXd& state, const Eigen::VectorXd& direction) {
   double share = std::min(1.0, config_.length / direction.cwiseAbs().maxCoeff());
   const double slope = std::min(0.0, gradient_.dot(direction));

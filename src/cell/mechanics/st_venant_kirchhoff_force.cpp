@@ -14,7 +14,7 @@ namespace {
 
 using Edges = Eigen::Matrix3d;
 
-/// Bits of 0..2^21 - 1, two zeros put between each and the next.
+/// Inserts two zeros between neighbouring bits of a number in 0..2^21 - 1.
 std::uint64_t spread(std::uint64_t bits) {
   bits = (bits | bits << 32) & 0x1f00000000ffff;
   bits = (bits | bits << 16) & 0x1f0000ff0000ff;
@@ -24,33 +24,33 @@ std::uint64_t spread(std::uint64_t bits) {
 }
 
 /// Tetrahedra in the order of their centres on Morton's curve.
-std::vector<int> alongCurve(const TetMesh& mesh) {
+std::vector<int> alongMortonCurve(const TetMesh& mesh) {
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& vertex : mesh.vertices) box.extend(vertex);
   const double scale = 0.25 * ((1 << 21) - 1) / box.sizes().maxCoeff();
-  std::vector<std::uint64_t> place;
+  std::vector<std::uint64_t> code;
   for (const auto& corners : mesh.tetrahedra) {
     Eigen::Vector3d sum = -4 * box.min();
     for (int vertex : corners) sum += mesh.vertices[vertex];
     const auto bits = (scale * sum).cast<std::uint64_t>();
-    place.push_back(spread(bits[0]) | spread(bits[1]) << 1 | spread(bits[2]) << 2);
+    code.push_back(spread(bits[0]) | spread(bits[1]) << 1 | spread(bits[2]) << 2);
   }
   std::vector<int> order(mesh.tetrahedra.size());
   std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return place[a] < place[b]; });
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return code[a] < code[b]; });
   return order;
 }
 
-/// The mesh's numbers of the vertices in the order in which the sorted tetrahedra first name them.
-std::vector<int> firstNamed(const TetMesh& mesh, const std::vector<int>& tetrahedra) {
+/// The mesh's vertices in the order in which the sorted tetrahedra first use them.
+std::vector<int> inOrderOfUse(const TetMesh& mesh, const std::vector<int>& tetrahedra) {
   std::vector<int> order;
   std::vector<char> seen(mesh.vertices.size(), 0);
-  const auto name = [&](int vertex) {
+  const auto use = [&](int vertex) {
     if (!seen[vertex]) order.push_back(vertex);
     seen[vertex] = 1;
   };
-  for (int t : tetrahedra) std::for_each(mesh.tetrahedra[t].begin(), mesh.tetrahedra[t].end(), name);
-  for (int vertex = 0; vertex < static_cast<int>(mesh.vertices.size()); ++vertex) name(vertex);
+  for (int t : tetrahedra) std::for_each(mesh.tetrahedra[t].begin(), mesh.tetrahedra[t].end(), use);
+  for (int vertex = 0; vertex < static_cast<int>(mesh.vertices.size()); ++vertex) use(vertex);
   return order;
 }
 
@@ -83,8 +83,8 @@ StVenantKirchhoffForce::StVenantKirchhoffForce(const TetMesh& mesh, const Lame& 
   if (std::find(supported.begin(), supported.end(), set) == supported.end()) {
     throw std::invalid_argument("this machine has no " + instructionSetName(set));
   }
-  const std::vector<int> tetrahedra = alongCurve(mesh);
-  order_ = firstNamed(mesh, tetrahedra);
+  const std::vector<int> tetrahedra = alongMortonCurve(mesh);
+  order_ = inOrderOfUse(mesh, tetrahedra);
   std::vector<std::uint32_t> number(order_.size());
   for (std::size_t i = 0; i < order_.size(); ++i) number[order_[i]] = static_cast<std::uint32_t>(i);
   constexpr std::size_t kSize = TetrahedronBlock::kSize;
@@ -109,7 +109,7 @@ void StVenantKirchhoffForce::evaluate(const double* positions, double* forces) {
   kernel_(blocks_.data(), blocks_.size(), ratio_, positions_.data(), forces_.data());
   for (std::size_t i = 0; i < count; ++i) {
     double* to = forces + 3 * static_cast<std::size_t>(order_[i]);
-    for (int k = 0; k < 3; ++k) to[k] = forces_[i].value[k];  // a copy of 24 bytes may become a call
+    for (int k = 0; k < 3; ++k) to[k] = forces_[i].value[k];  // copying 24 bytes at once may become a call
   }
 }
 

@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// tension times area less pressure times volume, of a unit of the reference facet: a function of the position and the
-/// tangents there, in this order (Dim^2 numbers).
+/// tension times area minus pressure times volume per unit of the reference facet, as a function of
+/// the position and the tangents there, in this order (Dim^2 numbers).
 template <int Dim>
 struct Density {
   double value = 0;
@@ -48,7 +48,7 @@ bool addArea(const Eigen::Matrix3d& at, double tension, Density<3>& density) {
   return true;
 }
 
-/// Volume 1/3 x . (a1 x a2), of the cone from the origin.
+/// Volume 1/3 x . (a1 x a2) of the cone from the origin.
 void addVolume(const Eigen::Matrix3d& at, double pressure, Density<3>& density) {
   const Eigen::Vector3d x = at.col(0), a1 = at.col(1), a2 = at.col(2);
   const double factor = -pressure / 3;
@@ -77,7 +77,7 @@ bool addArea(const Eigen::Matrix2d& at, double tension, Density<2>& density) {
   return true;
 }
 
-/// Volume pi r^2 dz, of the slice.
+/// Volume pi r^2 dz of a slice.
 void addVolume(const Eigen::Matrix2d& at, double pressure, Density<2>& density) {
   const double r = at(0, 0), dz = at(1, 1), factor = -pressure * kPi;
   density.value += factor * r * r * dz;

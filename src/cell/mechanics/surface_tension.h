@@ -8,24 +8,28 @@
 
 namespace microinjection {
 
-/// Membrane tension of one layer's outer surface, a sphere of radius R in the reference configuration, which is the one
-/// under tension and at rest: Laplace's pressure p0 = 2 gamma / R inside balances the tension gamma. Energy, J,
+/// Membrane tension of one layer's outer surface. The reference configuration is a sphere of radius
+/// R, at rest under the tension: Laplace's pressure p0 = 2 gamma / R inside balances the tension
+/// gamma. Energy, J,
 ///
-///     gamma A(x) - p0 V(x) - G0 . u,  less its undeformed value,
+///     gamma A(x) - p0 V(x) - G0 . u,  minus its undeformed value,
 ///
-/// with A the deformed area of the surface and V the volume that it encloses. Gamma and p0 stay what they are, whatever
-/// the deformation. The tension resists every change of shape, but alone not of size: a homogeneous ball needs a bulk
-/// modulus above 2 gamma / (3 R). The mesh's surface is not exactly a sphere, so its undeformed forces
-/// G0 = gamma dA/dx - p0 dV/dx do not quite vanish; they are taken off as a dead load, so that the undeformed state is
-/// at equilibrium exactly. They vanish with the size of the facets.
+/// with A the deformed area of the surface and V the enclosed volume. Gamma and p0 do not depend on
+/// the deformation. The tension resists changes of shape. Alone it does not resist changes of size:
+/// a homogeneous ball needs a bulk modulus above 2 gamma / (3 R). The mesh's surface is not exactly
+/// a sphere, so that its undeformed forces G0 = gamma dA/dx - p0 dV/dx are not exactly zero. They
+/// are subtracted as a dead load, which makes the undeformed state an exact equilibrium, and vanish
+/// with the size of the facets.
 ///
-/// In a section (Dim = 2) area and volume are those of the whole surface of revolution. The surface is as the body's
-/// displacement: quadratic (curved facets) or linear (flat ones between vertices).
+/// In a section (Dim = 2) area and volume are those of the whole surface of revolution. The surface
+/// has the order of the body's displacement: quadratic (curved facets) or linear (flat ones between
+/// vertices).
 template <int Dim>
 class SurfaceTension : public EnergyTerm {
  public:
-  /// @param radius of the layer's outer surface, m, > 0 @param tension gamma, N/m, >= 0.
-  /// Throws std::invalid_argument when they are not, or when the body has no surface of this layer.
+  /// @param radius of the layer's outer surface, m, > 0
+  /// @param tension gamma, N/m, >= 0
+  /// @throws std::invalid_argument when they are not, or when the body has no surface of this layer
   SurfaceTension(const LayeredBody<Dim>& body, int layer, double radius, double tension);
 
   double pressure() const { return pressure_; }               ///< p0, Pa
@@ -35,7 +39,7 @@ class SurfaceTension : public EnergyTerm {
   int elementCount() const override { return static_cast<int>(facets_.size()); }
   const std::vector<int>& entries(int facet) const override { return facets_[facet].entries; }
 
-  /// False where a facet has no area, or has crossed the axis (section).
+  /// False when a facet has no area, or has crossed the axis (section).
   bool evaluate(int facet, const Eigen::VectorXd& state, Order order, LocalEnergy& result) const override;
 
  private:
@@ -43,7 +47,7 @@ class SurfaceTension : public EnergyTerm {
   using Positions = Eigen::Matrix<double, Dim, Eigen::Dynamic, Eigen::ColMajor, Dim, kMostNodes>;  ///< m, node by node
   struct Point {
     double weight;
-    /// Row of a node: its shape function and that one's derivatives by the reference coordinates.
+    /// Row of a node: its shape function and its derivatives by the reference coordinates.
     Eigen::Matrix<double, Eigen::Dynamic, Dim> shape;
   };
   struct Facet {

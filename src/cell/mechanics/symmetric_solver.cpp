@@ -9,7 +9,7 @@
 namespace microinjection {
 namespace {
 
-/// CHOLMOD's view of a lower triangle; it only reads what the pointers lead to.
+/// CHOLMOD's view of a lower triangle, for reading only.
 cholmod_sparse view(const Eigen::SparseMatrix<double>& lower) {
   cholmod_sparse matrix{};
   matrix.nrow = lower.rows();
@@ -27,8 +27,8 @@ cholmod_sparse view(const Eigen::SparseMatrix<double>& lower) {
   return matrix;
 }
 
-/// While it lives this thread's OpenMP regions have one thread. CHOLMOD asks for four whatever the machine has, for
-/// loops so short that to wake the threads takes longer than to factorise.
+/// During its lifetime OpenMP regions of this thread have one thread. CHOLMOD requests four threads
+/// for loops so short that waking them takes longer than the factorisation.
 class WithoutOpenMp {
  public:
   WithoutOpenMp() : before_(omp_get_max_active_levels()) { omp_set_max_active_levels(0); }
@@ -43,14 +43,14 @@ class WithoutOpenMp {
 }  // namespace
 
 void SymmetricSolver::useOneThread() {
-  // By its name, since which BLAS there is the system decides when the program is loaded.
+  // Looked up at run time, because the system chooses the BLAS when the program is loaded.
   const auto set = reinterpret_cast<void (*)(int)>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"));
   if (set != nullptr) set(1);
 }
 
 SymmetricSolver::SymmetricSolver(Method method) : method_(method) {
   cholmod_start(&common_);
-  common_.print = 0;  // a matrix that is not positive definite is an answer, not a warning
+  common_.print = 0;  // a matrix that is not positive definite is a result, not a warning
   common_.nmethods = 1;
   common_.method[0].ordering = CHOLMOD_NESDIS;
   common_.supernodal = method == Method::kSupernodal ? CHOLMOD_SUPERNODAL : CHOLMOD_SIMPLICIAL;
@@ -66,7 +66,8 @@ SymmetricSolver::~SymmetricSolver() {
 void SymmetricSolver::analyse(const Eigen::SparseMatrix<double>& lower) {
   cholmod_free_factor(&factor_, &common_);
   cholmod_sparse matrix = view(lower);
-  // METIS draws from the process's one random sequence, which it seeds anew: one thread at a time gets the same order.
+  // METIS seeds and uses the process's only random sequence. One thread at a time gets the same
+  // order in every run.
   static std::mutex metis;
   const std::lock_guard<std::mutex> lock(metis);
   factor_ = cholmod_analyze(&matrix, &common_);
@@ -86,7 +87,7 @@ bool SymmetricSolver::inertiaIs(int negative) const {
   const int* columns = static_cast<const int*>(factor_->p);
   const double* values = static_cast<const double*>(factor_->x);
   int found = 0;
-  for (std::size_t j = 0; j < factor_->n; ++j) found += values[columns[j]] < 0;  // D leads each column
+  for (std::size_t j = 0; j < factor_->n; ++j) found += values[columns[j]] < 0;  // D is the first entry of each column
   return found == negative;
 }
 

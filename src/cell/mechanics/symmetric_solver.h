@@ -7,20 +7,20 @@
 
 namespace microinjection {
 
-/// Sparse direct factorisation of a symmetric matrix given by its lower triangle, with CHOLMOD (SuiteSparse) after
-/// nested dissection.
+/// Sparse direct factorisation of a symmetric matrix, given by its lower triangle, with CHOLMOD
+/// (SuiteSparse) and nested dissection.
 class SymmetricSolver {
  public:
   enum class Method {
-    kSimplicial,  ///< L L^T without BLAS: the same bits on every machine, fastest for small systems (live sessions)
+    kSimplicial,  ///< L L^T without BLAS: identical results on every machine, fastest for small systems (live sessions)
     kSupernodal,  ///< L L^T with BLAS: fastest for large systems
-    kIndefinite   ///< L D L^T: mixed elements, whose pressures make as many negative pivots
+    kIndefinite   ///< L D L^T: mixed elements, with one negative pivot for each pressure
   };
 
   explicit SymmetricSolver(Method method);
 
-  /// From now on BLAS uses one thread in all of this process, if it is OpenBLAS: the same bits in every run, and the
-  /// other processors left to other threads.
+  /// Limits BLAS to one thread in the whole process, if it is OpenBLAS. Results are then the same
+  /// in every run, and the other processors stay free for other threads.
   static void useOneThread();
 
   ~SymmetricSolver();
@@ -30,8 +30,8 @@ class SymmetricSolver {
   /// Symbolic analysis; the pattern must not change afterwards.
   void analyse(const Eigen::SparseMatrix<double>& lower);
 
-  /// False when the matrix has another number of negative eigenvalues than `negative` (0 but for kIndefinite), or is
-  /// singular.
+  /// False when the matrix is singular or the number of its negative eigenvalues is not `negative`
+  /// (0 except for kIndefinite).
   bool factorise(const Eigen::SparseMatrix<double>& lower, int negative = 0);
 
   /// @pre factorise() returned true. A vector or the columns of a matrix.

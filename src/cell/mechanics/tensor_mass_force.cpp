@@ -84,8 +84,8 @@ void TensorMassForce::addLinear(const Linear& tensors, const double (*d)[3], dou
   }
 }
 
-/// f_i += 1/2 C_ijk s_jk + (C_jki . d_j + 2 D_jkli s_jl) d_k with s_jk = d_j . d_k: the second bracket is a scalar for
-/// each pair of corners.
+/// f_i += 1/2 C_ijk s_jk + (C_jki . d_j + 2 D_jkli s_jl) d_k with s_jk = d_j . d_k. The second
+/// bracket is a scalar for each pair of corners.
 void TensorMassForce::addHigher(const Higher& tensors, const double (*d)[3], double (*f)[3]) {
   double s[kPairs], weighted[kPairs], along[kPairs];
   for (int p = 0; p < kPairs; ++p) {

@@ -14,18 +14,20 @@ namespace microinjection {
 ///
 ///     W = 1/2 u_i . K_ij u_j + 1/2 (C_ijk . u_i) (u_j . u_k) + 1/2 D_ijkl (u_i . u_j) (u_k . u_l)
 ///
-/// (summed over all corners) of a St-Venant-Kirchhoff body, whose first term alone is the linear body's. With the
-/// gradients g_i of the shape functions and the undeformed volume V
+/// (summed over all corners) of a St-Venant-Kirchhoff body; a linear body has the first term only.
+/// With the gradients g_i of the shape functions and the undeformed volume V
 ///
 ///     K_ij   = V (lambda g_i g_j^T + mu g_j g_i^T + mu (g_i . g_j) I)
 ///     C_ijk  = V (lambda g_i (g_j . g_k) + mu g_j (g_i . g_k) + mu g_k (g_i . g_j))
-///     D_ijkl = V/4 (lambda (g_i . g_j) (g_k . g_l) + mu (g_i . g_k) (g_j . g_l) + mu (g_i . g_l) (g_j . g_k))
+///     D_ijkl = V/4 (lambda (g_i . g_j) (g_k . g_l) + mu (g_i . g_k) (g_j . g_l)
+///                    + mu (g_i . g_l) (g_j . g_k))
 ///
-/// Equation (7) of Ladjal, Hanus, Ferreira, "Micro-to-nano biomechanical modeling for assisted biological cell
-/// injection", was meant to be this K: with m_i = -6 V g_i, the outward normal of the face opposite to corner i, of
-/// *twice its area* (printed: "unit"), K_ij = (lambda m_i m_j^T + mu m_j m_i^T + mu (m_i . m_j) I) / (36 V). It is
-/// printed twice over: its first line has the end of the second, which is one term of mu too many and closes what goes
-/// on. C and D the paper does not give; these are those with which its equation (11) is the energy's derivative.
+/// K is equation (7) of Ladjal, Hanus, Ferreira, "Micro-to-nano biomechanical modeling for assisted
+/// biological cell injection", after correction: with m_i = -6 V g_i, the outward normal of the
+/// face opposite to corner i, of *twice its area* (printed: "unit"), K_ij = (lambda m_i m_j^T + mu
+/// m_j m_i^T + mu (m_i . m_j) I) / (36 V). The printed first line ends with the end of the second,
+/// which is one term of mu too many and closes the bracket too early. The paper does not give C and
+/// D; with these its equation (11) is the energy's derivative.
 struct TetrahedronTensors {
   Eigen::Matrix<double, 3, 4> gradients;  ///< g_i in the columns, 1/m
   double volume;                          ///< m^3
@@ -39,18 +41,18 @@ struct TetrahedronTensors {
   double D(int i, int j, int k, int l) const;    ///< N/m^3; D_ijkl = D_jikl = D_klij
 };
 
-/// Internal force of P1 tetrahedra from tensors that were computed before: equations (6), (8), (11) and (12) of the
-/// paper,
+/// Internal force of P1 tetrahedra from precomputed tensors: equations (6), (8), (11) and (12) of
+/// the paper,
 ///
 ///     f_i = K_ij u_j + (C_jki . u_j) u_k + 1/2 C_ijk (u_j . u_k) + 2 D_jkli (u_j . u_k) u_l,
 ///
-/// over all corners j, k, l of each tetrahedron (printed: from 1 to 4 in two sums, from 0 to 3 in the third); a linear
-/// body has the first term only. Tensors summed over one index vanish (a translation gives no force), so that
-/// displacements relative to the first corner do, and the tensors of the other three: 144 numbers a tetrahedron
-/// (linear: 54).
+/// over all corners j, k, l of each tetrahedron (printed: from 1 to 4 in two sums, from 0 to 3 in
+/// the third); a linear body has the first term only. Tensors summed over one index vanish, because
+/// a translation gives no force. Displacements relative to the first corner and the tensors of the
+/// other three therefore suffice: 144 numbers a tetrahedron (linear: 54).
 ///
-/// It is the same force as StVenantKirchhoffForce's, multiplied out. That one is quicker (`./dev paper` shows by how
-/// much): it reads 7 numbers a tetrahedron.
+/// The force is that of StVenantKirchhoffForce in expanded form. That class is faster (`./dev
+/// paper` measures by how much): it reads 7 numbers a tetrahedron.
 class TensorMassForce {
  public:
   enum class Kind { kLinear, kStVenantKirchhoff };
@@ -58,21 +60,22 @@ class TensorMassForce {
   /// Throws as checkP1Body.
   TensorMassForce(const TetMesh& mesh, const Lame& lame, Kind kind);
 
-  /// `displacements`, m, xyz per vertex; `forces` of the body on its vertices, -dW/du, N, in the same order (the
-  /// paper's F_int has the other sign). They may not overlap. Allocates nothing.
+  /// `displacements`, m, xyz per vertex; `forces` of the body on its vertices, -dW/du, N, in the
+  /// same order (the paper's F_int has the opposite sign). They must not overlap. Does not
+  /// allocate.
   void evaluate(const double* displacements, double* forces) const;
 
   std::size_t vertexCount() const { return vertex_count_; }
   std::size_t tensorBytes() const;  ///< of all tensors
 
  private:
-  static constexpr int kPairs = 6;  ///< of corners 1 to 3, either order: 11, 22, 33, 12, 13, 23
+  static constexpr int kPairs = 6;  ///< of corners 1 to 3, in either order: 11, 22, 33, 12, 13, 23
   struct Linear {
-    double K[kPairs][9];  ///< column by column; K_ji is the transpose of K_ij
+    double K[kPairs][9];  ///< by columns; K_ji is the transpose of K_ij
   };
   struct Higher {
     double C[3][kPairs][3];    ///< C_ijk of corner i and pair jk
-    double D[kPairs][kPairs];  ///< 2 D_ijkl of pairs ij and kl; twice that where k and l differ
+    double D[kPairs][kPairs];  ///< 2 D_ijkl of pairs ij and kl; twice that if k and l differ
   };
   static Linear linear(const TetrahedronTensors& tensors);
   static Higher higher(const TetrahedronTensors& tensors);

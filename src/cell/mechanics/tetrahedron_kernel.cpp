@@ -1,8 +1,9 @@
 #include "cell/mechanics/tetrahedron_kernel.h"
 
-// Compiled with -O3 -ffp-contract=fast (src/CMakeLists.txt). Everything in this file that is not one of the functions
-// at its end is inlined into them and so compiled for their instruction set; nothing of the standard library is, since
-// the linker might then take such a copy for the whole program.
+// Compiled with -O3 -ffp-contract=fast (src/CMakeLists.txt). All code here is inlined into the
+// functions at the end of the file and compiled for their instruction sets. It must not use the
+// standard library: the linker might keep a copy of an inline function that was compiled for a
+// newer processor.
 #define MICROINJECTION_INLINE static inline __attribute__((always_inline))
 
 #if defined(__clang__) || __GNUC__ >= 12
@@ -14,7 +15,7 @@
 namespace microinjection {
 namespace {
 
-/// Columns of V P from those of F. Value: one of one element, or of each of four.
+/// Columns of V P from those of F. Value: a number of one element, or of each of four.
 template <typename Value>
 MICROINJECTION_INLINE void stress(const Value (*F)[3], const Value& weight, double ratio, Value (*P)[3]) {
   Value s11 = F[0][0] * F[0][0] + F[0][1] * F[0][1] + F[0][2] * F[0][2] - 1;
@@ -34,7 +35,8 @@ MICROINJECTION_INLINE void stress(const Value (*F)[3], const Value& weight, doub
   }
 }
 
-/// h[a]: x, y, z of V P U^T of edge a, from the edges d[a]. Stored: a value of a block's arrays.
+/// h[a]: x, y, z of V P U^T of edge a, from the edges d[a]. Stored: type of Value in a block's
+/// arrays.
 template <typename Value, typename Stored>
 MICROINJECTION_INLINE void edgeForces(const TetrahedronBlock& block, int first, double ratio, const Value (*d)[3],
                                       Value (*h)[3]) {
@@ -54,7 +56,7 @@ MICROINJECTION_INLINE void edgeForces(const TetrahedronBlock& block, int first, 
   }
 }
 
-/// One element after the other, for any processor.
+/// Handles one element at a time, for any processor.
 void addBaseline(const TetrahedronBlock* __restrict blocks, std::size_t count, double ratio,
                  const PaddedVector* __restrict positions, PaddedVector* __restrict forces) {
   const double* x = reinterpret_cast<const double*>(positions);
@@ -76,7 +78,7 @@ void addBaseline(const TetrahedronBlock* __restrict blocks, std::size_t count, d
 }
 
 #ifdef __x86_64__
-/// One value of four tetrahedra, or the coordinates of one vertex. The compilers' vectors, on any processor.
+/// One number of four tetrahedra, or the coordinates of one vertex, in the compilers' vector type.
 using Four = double __attribute__((vector_size(32)));
 using FourInMemory = double __attribute__((vector_size(32), aligned(32), may_alias));
 using Lanes = long long __attribute__((vector_size(32)));
@@ -110,8 +112,8 @@ MICROINJECTION_INLINE void fromLanes(const Four* x, Four* vectors) {
   vectors[3] = MICROINJECTION_MIX(high, high2, 2, 3, 6, 7);
 }
 
-/// Adds straight to the vertices: against all elements' forces stored and gathered by vertex, a fifth faster at 400 to
-/// 25 k tetrahedra and twice as fast at 100 k.
+/// Adds the forces directly to the vertices. Storing all elements' forces and gathering them by
+/// vertex was slower: by a fifth at 400 to 25 k tetrahedra, and twice as slow at 100 k.
 MICROINJECTION_INLINE void addFour(const TetrahedronBlock& block, int first, double ratio, const double* __restrict x,
                                    double* __restrict f) {
   const auto& vertex = block.vertex;
@@ -164,7 +166,8 @@ std::vector<InstructionSet> supportedInstructionSets() {
   std::vector<InstructionSet> sets = {InstructionSet::kBaseline};
   __builtin_cpu_init();
   const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-  // Before AVX2: on an AMD EPYC that has both it takes nearly twice as long (`bench speed_error`).
+  // AVX2 comes last: on an AMD EPYC that has both, AVX-512 takes nearly twice as long (`bench
+  // speed_error`).
   if (avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
       __builtin_cpu_supports("avx512dq")) {
     sets.push_back(InstructionSet::kAvx512);

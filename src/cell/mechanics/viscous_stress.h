@@ -11,24 +11,27 @@
 
 namespace microinjection {
 
-/// What a body's viscoelastic layers add to its strain energy in a load step: the incremental potential of
-/// ViscoelasticStep, integrated over the elements of those layers at the body's own quadrature points. Only the
-/// derivatives mean something: the energy, J, is defined but for a constant, another one for each step.
+/// Viscoelastic part of a body's energy in a load step: the incremental potential of
+/// ViscoelasticStep, integrated over the elements of the viscoelastic layers at the body's own
+/// quadrature points. Only its derivatives have a meaning: the energy, J, is defined up to a
+/// constant that differs between steps.
 ///
-/// In an infinite duration all relaxes and nothing is added; so it is before the first beginStep, too. Each point
-/// remembers the last accepted step. Beginning a step once more, or with another duration, forgets the try.
+/// In an infinite duration everything relaxes and the term vanishes, as it does before the first
+/// beginStep. Each point stores the last accepted step. Repeating a step, also with another
+/// duration, starts from there.
 template <int Dim>
 class ViscousStress : public EnergyTerm {
  public:
-  /// @param layers of each layer of the body; where empty, that layer stays elastic. Throws std::invalid_argument when
-  /// their number is not that of the body's materials, ConfigError when one is not valid.
+  /// @param layers of each layer of the body; an empty one leaves its layer elastic
+  /// @throws std::invalid_argument when their number is not that of the body's materials,
+  ///   ConfigError when one is not valid
   ViscousStress(std::shared_ptr<const LayeredBody<Dim>> body, std::vector<ViscoelasticityConfig> layers);
 
   int elementCount() const override { return static_cast<int>(elements_.size()); }
   /// The displacements of the body's entries, without pressures.
   const std::vector<int>& entries(int element) const override { return elements_[element].entries; }
 
-  /// False where the material's energy is not defined.
+  /// False when the material's energy is not defined.
   bool evaluate(int element, const Eigen::VectorXd& state, Order order, LocalEnergy& result) const override;
 
   /// True when `duration` is finite. Throws std::invalid_argument when it is not positive.

@@ -14,14 +14,15 @@ constexpr double kPi = 3.14159265358979323846;
 
 constexpr int kSurfaceLoop = -2;  ///< gmsh's dimension of surface loops
 
-/// Radius of the sphere's caps around +-y over the sphere's: imprinted circles, within 0.95 of the z axis, cannot reach
-/// them.
+/// Radius of the sphere's caps around +-y, over the sphere's radius. Imprinted circles are within
+/// 0.95 of the z axis and cannot reach the caps.
 constexpr double kCapRadius = 0.29;
 
-/// How near to its circle an imprinted curve is, over the sphere's radius: OpenCASCADE and its spline are good to 1e-6.
+/// Largest distance of a curve from its imprinted circle, over the sphere's radius. OpenCASCADE's
+/// spline is accurate to 1e-6.
 constexpr double kOnCurve = 1e-5;
 
-/// Takes a solid apart and keeps its faces that are spheres.
+/// Removes a solid and keeps its spherical faces.
 gmsh::vectorpair sphericalFaces(const gmsh::vectorpair& solid) {
   namespace occ = gmsh::model::occ;
   occ::synchronize();
@@ -37,8 +38,9 @@ gmsh::vectorpair sphericalFaces(const gmsh::vectorpair& solid) {
   return spherical;
 }
 
-/// The pieces of a sphere about the origin, a zone around the y axis and its two caps. Triangles degenerate at the
-/// poles of a parametrisation; the zone has none, and those of the caps are on the z axis, outside of them.
+/// Pieces of a sphere about the origin: a zone around the y axis and its two caps. Triangles
+/// degenerate at the poles of a parametrisation. The zone has no pole, and the poles of the caps
+/// are on the z axis, outside of the caps.
 gmsh::vectorpair addSphere(double radius) {
   namespace occ = gmsh::model::occ;
   const double latitude = std::acos(kCapRadius), height = std::sin(latitude) * radius;
@@ -56,7 +58,7 @@ gmsh::vectorpair addSphere(double radius) {
   return pieces;
 }
 
-/// A vertical cylinder that cuts the unit sphere in the circle only.
+/// A vertical cylinder that intersects the unit sphere in the circle only.
 gmsh::vectorpair addCylinder(const CircleOnSphere& circle) {
   namespace occ = gmsh::model::occ;
   const int rim = occ::addCircle(circle.centre().x(), circle.centre().y(), 0, circle.radius());
@@ -66,7 +68,8 @@ gmsh::vectorpair addCylinder(const CircleOnSphere& circle) {
   return cylinder;
 }
 
-/// OpenCASCADE leaves copies of surfaces behind, which would be meshed, too.
+/// Removes the copies of surfaces that OpenCASCADE leaves behind, because gmsh would mesh them,
+/// too.
 void removeLooseSurfaces() {
   gmsh::vectorpair surfaces, loose;
   gmsh::model::getEntities(surfaces, 2);
@@ -108,7 +111,7 @@ std::vector<int> buildCellGeometry(const std::vector<double>& radii, const std::
   for (const gmsh::vectorpair& sphere : spheres) {
     std::vector<int> surfaces;
     for (const auto& surface : sphere) surfaces.push_back(surface.second);
-    loops.push_back(occ::getMaxTag(kSurfaceLoop) + 1);  // named: gmsh 4.8 does not return a number that it gives
+    loops.push_back(occ::getMaxTag(kSurfaceLoop) + 1);  // explicit: gmsh 4.8 does not return it
     occ::addSurfaceLoop(surfaces, loops.back());
   }
   for (std::size_t i = 0; i < loops.size(); ++i) {

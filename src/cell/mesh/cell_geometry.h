@@ -6,9 +6,10 @@
 
 namespace microinjection {
 
-/// Builds a ball of concentric layers in the current gmsh session, in units of its radius. `radii`: of the layers,
-/// outermost first, 1. `circles`: curves of the surface that become edges of the geometry, within 0.95 of the z axis.
-/// `flattening`: all heights (z) are divided by it. Returns gmsh's volumes, outermost first.
+/// Builds a ball of concentric layers in the current gmsh session, in units of its radius. `radii`:
+/// of the layers, outermost first; the first is 1. `circles`: curves on the surface that become
+/// edges of the geometry, within 0.95 of the z axis. `flattening`: divides all heights (z). Returns
+/// gmsh's volumes, outermost first.
 std::vector<int> buildCellGeometry(const std::vector<double>& radii, const std::vector<CircleOnSphere>& circles,
                                    double flattening);
 

@@ -9,16 +9,17 @@
 namespace microinjection {
 namespace {
 
-/// The thinnest layer over the radius of the cell: thinner ones take millions of elements.
+/// The thinnest layer over the radius of the cell. Thinner ones need millions of elements.
 constexpr double kThinnestLayer = 1.0 / 100;
 
 /// The smallest element over the radius of the cell: OpenCASCADE's tolerance is 1e-7.
 constexpr double kSmallestSize = 1e-5;
 
-/// Further stretched, the cell that gmsh meshes would be a pancake.
+/// Largest stretch. Beyond it gmsh would mesh a nearly flat disc.
 constexpr double kMostStretched = 4;
 
-/// Circles end here, in radii of the cell: further out the surface is too steep.
+/// Largest distance of circles from the axis, over the cell's radius. Further out the surface is
+/// too steep.
 constexpr double kSteep = 0.95;
 
 /// The narrowest gap between two circles, over the radius of the smaller one.
@@ -33,7 +34,7 @@ bool touch(const CellMeshConfig::Circle& one, const CellMeshConfig::Circle& othe
 
 bool isSide(double side) { return side == 1 || side == -1; }
 
-/// @pre the radii are good
+/// @pre the radii are valid
 void checkRefinement(ConfigErrors& errors, const CellMeshConfig& config, std::size_t i) {
   const CellMeshConfig::Refinement& refinement = config.refinements[i];
   const auto key = [i](const std::string& field) { return keyOf("refinements", i, field); };
@@ -53,7 +54,7 @@ void checkRefinement(ConfigErrors& errors, const CellMeshConfig& config, std::si
                  refinement.size, "", "at least 1e-5 of the cell's radius");
 }
 
-/// @pre the radii are good
+/// @pre the radii are valid
 void checkImprint(ConfigErrors& errors, const CellMeshConfig& config, std::size_t i) {
   const CellMeshConfig::Circle& circle = config.imprints[i];
   const double reach = circle.centre.norm() + circle.radius;

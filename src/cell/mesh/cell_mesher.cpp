@@ -19,18 +19,20 @@
 namespace microinjection {
 namespace {
 
-/// Raise it when the same configuration gives another mesh than before.
+/// Increase it when the same configuration gives another mesh than before.
 constexpr int kMesherVersion = 3;
 
-/// radiusRatio of a tetrahedron that is worth moving vertices for, and of one that is worth another attempt.
+/// Vertices of tetrahedra with a radiusRatio below kPoor are moved. Below kBad the mesher tries
+/// again.
 constexpr double kPoor = 0.25, kBad = 0.15;
 
-/// Of the wanted sizes, one attempt after the other: a few meshes in a hundred have a sliver between two triangles of
-/// an interface, or gmsh finds no mesh at all; a slightly finer one then has other triangles.
+/// Factors on the element size for successive attempts. A few meshes in a hundred have a sliver
+/// between two triangles of an interface, or gmsh fails. A slightly finer mesh then has other
+/// triangles.
 constexpr double kScales[] = {1, 0.98, 0.96, 0.94, 0.92};
 
-// Within gmsh, lengths are in units of the cell's radius, and heights are divided by the elements' stretch: there the
-// elements are as high as wide.
+// Within gmsh, lengths are in units of the cell's radius, and heights are divided by the elements'
+// stretch, so that elements are as high as wide.
 
 struct Vertex {
   Eigen::Vector3d point;
@@ -38,7 +40,8 @@ struct Vertex {
 };
 using Vertices = std::map<std::size_t, Vertex>;  // by gmsh's tag
 
-/// Adds the vertices of the closed entities of a dimension, stretched; entity -1: of all of them.
+/// Adds the vertices of the closed entities of a dimension, with heights multiplied by `stretch`;
+/// entity -1: of all of them.
 void addVertices(int dimension, int entity, double stretch, Vertices& vertices) {
   std::vector<std::size_t> tags;
   std::vector<double> coordinates, parameters;
@@ -49,7 +52,7 @@ void addVertices(int dimension, int entity, double stretch, Vertices& vertices) 
   }
 }
 
-/// All vertices; those of spheres and circles moved the last bit onto them.
+/// All vertices; those of spheres and circles are projected onto them to the last bit.
 Vertices exactVertices(const std::vector<double>& radii, const std::vector<CircleOnSphere>& circles, double stretch) {
   Vertices vertices, on_sphere;
   addVertices(3, -1, stretch, vertices);
@@ -125,7 +128,8 @@ struct UnitCell {
   }
 };
 
-/// `size`: wanted at a point of the cell, of an element as high as wide; one that is stretched has the same volume.
+/// `size`: wanted size at a point of the cell, of an element as high as wide. Stretched elements
+/// have the same volume.
 template <typename Size>
 TetMesh makeUnitMesh(const UnitCell& cell, const Size& size) {
   TetMesh mesh;

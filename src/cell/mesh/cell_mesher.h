@@ -7,14 +7,15 @@
 
 namespace microinjection {
 
-/// Makes the mesh with gmsh: concentric layers whose interfaces are spheres, a conforming mesh across them, sizes as
-/// SizeField (cell/mesh/size_field.h) wants them, or up to 8 % smaller where that avoids bad elements. Edges follow
-/// each imprinted circle, 8 at least. All vertices of the surface and of the interfaces lie on their sphere, and those
-/// of the circles on them, to rounding. The same configuration gives the same mesh. Throws ConfigError on a bad
-/// configuration, std::runtime_error when gmsh fails. Serialised: gmsh is global.
+/// Makes a mesh of concentric layers with gmsh. It conforms across the spherical interfaces.
+/// Element sizes are those of SizeField (cell/mesh/size_field.h), or up to 8 % smaller where that
+/// avoids bad elements. Each imprinted circle has at least 8 edges. Vertices on spheres and
+/// imprinted circles are exact to rounding. The same configuration gives the same mesh. Throws
+/// ConfigError on a bad configuration, std::runtime_error when gmsh fails. Calls are serialised,
+/// because gmsh has global state.
 TetMesh makeCellMesh(const CellMeshConfig& config);
 
-/// Version of gmsh and of this mesher: a mesh is a function of this and of its configuration.
+/// Version of gmsh and of this mesher. A mesh depends on it and on its configuration only.
 std::string mesherVersion();
 
 }  // namespace microinjection

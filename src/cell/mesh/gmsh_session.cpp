@@ -38,7 +38,7 @@ void inGmshSession(const std::string& subject, const std::function<void()>& work
   try {
     const GmshSession session;
     work();
-  } catch (const std::string& message) {  // what gmsh's C++ interface throws
+  } catch (const std::string& message) {  // gmsh's C++ interface throws strings
     throw std::runtime_error("gmsh could not mesh the " + subject + ": " + message);
   }
 }

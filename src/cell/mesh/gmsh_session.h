@@ -6,8 +6,9 @@
 
 namespace microinjection {
 
-/// gmsh keeps one global state: one session at a time, with a model of its own, closed on every way out. Silent and
-/// deterministic: one thread, fixed seed, errors as exceptions; sizes come from the size callback only.
+/// gmsh has one global state, so only one session exists at a time. It has a model of its own, and
+/// the destructor closes it. It is silent and deterministic: one thread, fixed seed, errors as
+/// exceptions, sizes from the size callback only.
 class GmshSession {
  public:
   GmshSession();
@@ -19,7 +20,7 @@ class GmshSession {
   std::lock_guard<std::mutex> lock_;
 };
 
-/// Runs `work` in a session. What gmsh throws becomes a std::runtime_error that says which `subject` failed.
+/// Runs `work` in a session. An error of gmsh becomes a std::runtime_error that names `subject`.
 void inGmshSession(const std::string& subject, const std::function<void()>& work);
 
 /// Version of gmsh, as its header names it.

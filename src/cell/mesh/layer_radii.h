@@ -7,8 +7,9 @@
 
 namespace microinjection {
 
-/// Requires radii of concentric layers, outermost first: positive, descending, and no layer (nor the innermost ball)
-/// thinner than `thinnest` times the first. False when they are not, and nothing should be held against them.
+/// Requires radii of concentric layers, outermost first: positive, descending, and no layer (nor
+/// the innermost ball) thinner than `thinnest` times the first. Returns false when they are not;
+/// the caller must not use them then.
 bool requireLayerRadii(const std::vector<double>& radii, double thinnest, ConfigErrors& errors);
 
 /// "key[index].field"

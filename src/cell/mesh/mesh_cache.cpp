@@ -11,7 +11,7 @@
 namespace microinjection {
 namespace {
 
-/// Everything that determines a mesh, exactly.
+/// Exact text of everything that determines a mesh.
 std::string describe(const CellMeshConfig& config) {
   std::ostringstream out;
   out << mesherVersion() << std::hexfloat << " size " << config.size << " growth " << config.growth << " radii";
@@ -43,26 +43,26 @@ std::string encodeBody(const TetMesh& mesh) {
 }
 
 template <typename T>
-const char* take(const char* bytes, std::vector<T>& values, std::uint64_t count) {
+const char* readArray(const char* bytes, std::vector<T>& values, std::uint64_t count) {
   values.resize(count);
   std::memcpy(static_cast<void*>(values.data()), bytes, count * sizeof(T));
   return bytes + count * sizeof(T);
 }
 
-/// Empty when the sizes do not fit the bytes.
+/// Returns nothing when the sizes do not fit the number of bytes.
 std::optional<TetMesh> decodeBody(const std::string& body) {
   std::uint64_t counts[2];
   if (body.size() < sizeof(counts)) return std::nullopt;
   std::memcpy(counts, body.data(), sizeof(counts));
   constexpr std::size_t kVertex = sizeof(Eigen::Vector3d), kTetrahedron = sizeof(std::array<int, 4>) + sizeof(int);
   const std::size_t rest = body.size() - sizeof(counts);
-  // Divided, because a product of what a damaged file says may overflow.
+  // Division, because the product may overflow with the counts of a damaged file.
   if (counts[0] > rest / kVertex || counts[1] > rest / kTetrahedron) return std::nullopt;
   if (counts[0] * kVertex + counts[1] * kTetrahedron != rest) return std::nullopt;
   TetMesh mesh;
-  const char* bytes = take(body.data() + sizeof(counts), mesh.vertices, counts[0]);
-  bytes = take(bytes, mesh.tetrahedra, counts[1]);
-  take(bytes, mesh.layers, counts[1]);
+  const char* bytes = readArray(body.data() + sizeof(counts), mesh.vertices, counts[0]);
+  bytes = readArray(bytes, mesh.tetrahedra, counts[1]);
+  readArray(bytes, mesh.layers, counts[1]);
   return mesh;
 }
 
@@ -90,7 +90,7 @@ TetMesh MeshCache::get(const CellMeshConfig& config) const {
   try {
     if (!file.empty()) writeCacheFile(file, description, encodeBody(mesh));
   } catch (const std::runtime_error&) {
-    // The cache saves time and nothing else.
+    // A mesh that is not stored only costs time.
   }
   return mesh;
 }

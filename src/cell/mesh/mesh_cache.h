@@ -7,21 +7,22 @@
 
 namespace microinjection {
 
-/// Meshes on disk, each in a file named after the hash of everything that determines it: the whole configuration and
-/// mesherVersion(). A file that is torn, damaged or made for something else is noticed and made anew.
+/// Meshes on disk, each in a file named after the hash of the configuration and mesherVersion(). A
+/// file that is truncated, damaged or of another mesh is replaced.
 class MeshCache {
  public:
-  /// In `directory`; an empty one keeps nothing.
+  /// Stores in `directory`; an empty one disables the cache.
   explicit MeshCache(std::string directory = defaultDirectory());
 
-  /// $XDG_CACHE_HOME or else ~/.cache, and there cell_microinjection/meshes; empty when neither variable is set.
+  /// cell_microinjection/meshes in $XDG_CACHE_HOME or else ~/.cache; empty when neither variable is
+  /// set.
   static std::string defaultDirectory();
 
-  /// The mesh, from the disk or from makeCellMesh, whose exceptions it passes on. A mesh that cannot be stored (a full
-  /// or read-only disk) is returned all the same.
+  /// The mesh, from the disk or from makeCellMesh, with its exceptions. A mesh that cannot be
+  /// stored (a full or read-only disk) is returned, too.
   TetMesh get(const CellMeshConfig& config) const;
 
-  /// The file of a configuration; empty when nothing is kept.
+  /// The file of a configuration; empty when the cache is disabled.
   std::string path(const CellMeshConfig& config) const;
 
  private:

@@ -10,7 +10,8 @@ namespace microinjection {
 /// Nodes of a mesh's outermost surface, ascending.
 std::vector<int> outerNodes(const QuadraticMesh<3>& mesh);
 
-/// That surface in triangles, each facet cut into four, counter-clockwise seen from outside; indices into outerNodes().
+/// The outermost surface in triangles, four for each facet, counter-clockwise seen from outside;
+/// indices into outerNodes().
 std::vector<Eigen::Vector3i> outerTriangles(const QuadraticMesh<3>& mesh);
 
 }  // namespace microinjection

@@ -10,7 +10,8 @@ namespace {
 template <int Dim>
 using Simplices = std::vector<std::array<int, Dim + 1>>;
 
-/// Nodes of a facet's edges after its corners: (0, 1) on a section's arc, (0, 1), (1, 2), (0, 2) in space.
+/// Edges whose midpoints follow the corners of a facet: (0, 1) on a section's arc, (0, 1), (1, 2),
+/// (0, 2) in space.
 template <int Dim>
 const std::vector<std::array<int, 2>>& facetEdges() {
   static const std::vector<std::array<int, 2>> edges =
@@ -18,7 +19,7 @@ const std::vector<std::array<int, 2>>& facetEdges() {
   return edges;
 }
 
-/// Gives each edge its midpoint once.
+/// Creates the midpoint of each edge once.
 template <int Dim>
 class Midpoints {
  public:

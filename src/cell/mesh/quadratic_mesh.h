@@ -10,9 +10,10 @@
 
 namespace microinjection {
 
-/// Second-order mesh of a ball of concentric layers: tetrahedra in space (Dim = 3), or triangles of its section r >= 0
-/// in the (r, z) plane (Dim = 2). Nodes are the vertices of the linear mesh it was made from, then the midpoints of its
-/// edges; midpoints of edges on a layer's surface lie on its sphere, so that those elements are curved.
+/// Second-order mesh of a ball of concentric layers: tetrahedra in space (Dim = 3), or triangles of
+/// its section r >= 0 in the (r, z) plane (Dim = 2). Nodes are the vertices of the linear mesh,
+/// then the midpoints of its edges. Midpoints on a layer's surface lie on its sphere, so that those
+/// elements are curved.
 template <int Dim>
 struct QuadraticMesh {
   static constexpr int kCorners = Dim + 1;
@@ -20,8 +21,8 @@ struct QuadraticMesh {
   static constexpr int kFacetNodes = Dim == 2 ? 3 : 6;
   using Point = Eigen::Matrix<double, Dim, 1>;
 
-  /// Piece of a layer's outer surface: corners in the order of elementEdges' first Dim, then midpoints. Seen from
-  /// outside its corners go round counter-clockwise (space); along a section's arc they go from -z to +z.
+  /// Piece of a layer's outer surface: corners, then midpoints. Seen from outside, its corners are
+  /// counter-clockwise (in space); along a section's arc they go from -z to +z.
   struct Facet {
     std::array<int, kFacetNodes> nodes;
     int layer;
@@ -34,16 +35,16 @@ struct QuadraticMesh {
   std::vector<Facet> facets;
 };
 
-/// Corners of the edge on whose middle each further node of an element lies.
+/// Corners of the edge on whose middle each midpoint of an element lies.
 template <int Dim>
 const std::vector<std::array<int, 2>>& elementEdges();
 
-/// `radii`: outer radius of each layer, m, outermost first. A facet is a face between elements of two layers, or of one
-/// element only and off the axis.
+/// `radii`: outer radius of each layer, m, outermost first. A facet is a face between elements of
+/// two layers, or a face of one element only that is not on the axis.
 QuadraticMesh<3> makeQuadratic(const TetMesh& mesh, const std::vector<double>& radii);
 QuadraticMesh<2> makeQuadratic(const TriangleMesh& mesh, const std::vector<double>& radii);
 
-/// With midpoints of one's own: where the middle of the edge between two vertices lies, m.
+/// With given midpoints: `middle` returns the midpoint (m) of the edge between two vertices.
 QuadraticMesh<3> makeQuadratic(const TetMesh& mesh, const std::function<Eigen::Vector3d(int, int)>& middle);
 
 }  // namespace microinjection

@@ -10,11 +10,11 @@
 namespace microinjection {
 namespace {
 
-/// The thinnest layer and the smallest element over the radius of the cell.
+/// Thickness of the thinnest layer and size of the smallest element, over the radius of the cell.
 constexpr double kThinnestLayer = 1.0 / 1000;
 constexpr double kSmallestSize = 1e-6;
 
-/// Points of an arc nearer to each other than this are one, rad.
+/// Points of an arc within this angle are the same point, rad.
 constexpr double kSamePoint = 1e-9;
 
 void checkPoint(ConfigErrors& errors, const std::string& key, double r, double side, double radius) {
@@ -22,7 +22,7 @@ void checkPoint(ConfigErrors& errors, const std::string& key, double r, double s
   errors.require(side == 1 || side == -1, key + ".side", side, "", "+1 or -1");
 }
 
-/// @pre the points are good
+/// @pre the points are valid
 void checkGaps(ConfigErrors& errors, const SectionMeshConfig& config) {
   const std::vector<Eigen::Vector2d> points = namedPoints(config, 0);
   for (std::size_t i = 1; i < points.size(); ++i) {

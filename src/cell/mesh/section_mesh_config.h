@@ -5,15 +5,15 @@
 
 namespace microinjection {
 
-/// What determines the axisymmetric mesh of a cell: half a disc r >= 0 about the origin, made of concentric layers.
-/// Places on the outer arc are given by their distance from the axis and the side: +1 the upper quarter, -1 the lower
-/// one. Metres.
+/// Configuration of a cell's axisymmetric mesh: half a disc r >= 0 about the origin, made of
+/// concentric layers. A point on the outer arc is given by its distance from the axis and its side:
+/// +1 on the upper quarter, -1 on the lower one. Metres.
 struct SectionMeshConfig {
-  /// Where elements are smaller, about a point of the outer arc, which becomes a vertex.
+  /// A region with smaller elements about a point of the outer arc, which becomes a vertex.
   struct Refinement {
     double r = 0;      ///< m, distance of the point from the axis
     double side = 1;   ///< +1 upper, -1 lower quarter
-    double reach = 0;  ///< m, the size holds up to this distance from the point
+    double reach = 0;  ///< m, the size applies up to this distance from the point
     double size = 0;   ///< m
   };
 
@@ -25,7 +25,7 @@ struct SectionMeshConfig {
 
   std::vector<double> radii = {28e-6};  ///< m, outer radius of each layer, outermost first; the first is the cell's
   double size = 4e-6;                   ///< m, of the largest elements
-  double growth = 0.3;                  ///< the size grows by this times the distance from what is finer, in (0, 1]
+  double growth = 0.3;                  ///< growth of the size per distance from finer regions, in (0, 1]
   std::vector<Refinement> refinements;
   std::vector<Point> vertices;
 
@@ -36,8 +36,8 @@ struct SectionMeshConfig {
 /// The point (r, z) of a circle about the origin, m. @pre 0 <= r <= radius
 Eigen::Vector2d pointOnArc(double r, double side, double radius);
 
-/// The ends of a layer's arc on the axis and, of the outer one, the named points and the refinements' centres: (r, z)
-/// in m, from top to bottom, each once. @pre the configuration is good
+/// Points (r, z) of a layer's arc, m, from top to bottom, each once: its ends on the axis and, of
+/// the outer arc, the named points and the centres of refinements. @pre the configuration is valid
 std::vector<Eigen::Vector2d> namedPoints(const SectionMeshConfig& config, std::size_t layer);
 
 }  // namespace microinjection

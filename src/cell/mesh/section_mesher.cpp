@@ -18,14 +18,15 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// Elements along each arc; one of them is for rounding.
+/// Elements along each arc. One of the nine is a margin for rounding.
 constexpr int kSegments = 9;
 
-/// gmsh's arcs are shorter than half a circle, rad.
+/// Longest arc, rad: gmsh's arcs are shorter than half a circle.
 constexpr double kLongestArc = 2.5;
 
-/// Wanted size of elements, m: the smallest of `size`, of what the layers need, of a ninth of each arc, of the
-/// refinements, and of the distance between neighbouring named points; each but the first grows with the distance.
+/// Wanted element size, m: the smallest of `size`, the sizes of the layers, a ninth of each arc,
+/// the refinements, and the distances between neighbouring named points. All but the first grow
+/// with the distance.
 class SectionSizes {
  public:
   explicit SectionSizes(const SectionMeshConfig& config) : config_(config), layers_(config.radii, config.growth) {
@@ -63,20 +64,20 @@ class SectionSizes {
   std::vector<Zone> zones_;
 };
 
-/// Half a circle from the upper to the lower end of the axis. gmsh's tags.
+/// Half a circle from the upper to the lower end of the axis, in gmsh's tags.
 struct Arc {
   double radius;  // m
   std::vector<int> points, curves;
 };
 
-/// Half the section in gmsh, in units of the cell's radius, (r, z) as (x, y).
+/// The section in gmsh, in units of the cell's radius, (r, z) as (x, y).
 struct Section {
   std::vector<Arc> arcs;                    // outermost first
   std::vector<int> axis, surfaces;          // surfaces: of the layers, outermost first
-  std::map<int, Eigen::Vector2d> vertices;  // where gmsh's points are, m
+  std::map<int, Eigen::Vector2d> vertices;  // positions of gmsh's points, m
 };
 
-/// Halves what is too long for one arc of gmsh.
+/// Halves arcs that are too long for gmsh.
 void divideLongArcs(std::vector<Eigen::Vector2d>& points) {
   for (std::size_t i = 1; i < points.size(); ++i) {
     const double one = std::atan2(points[i - 1].x(), points[i - 1].y()),
@@ -132,18 +133,20 @@ Section buildSection(const SectionMeshConfig& config) {
 
 using Vertices = std::map<std::size_t, Eigen::Vector2d>;  // by gmsh's tag, m
 
-/// Adds the vertices in the open entities of a dimension, each through `place`; entity -1: of all of them.
+/// Adds the vertices in the open entities of a dimension, each moved by `project`; entity -1: of
+/// all of them.
 void addVertices(int dimension, int entity, double unit, Vertices& vertices,
-                 const std::function<Eigen::Vector2d(const Eigen::Vector2d&)>& place) {
+                 const std::function<Eigen::Vector2d(const Eigen::Vector2d&)>& project) {
   std::vector<std::size_t> tags;
   std::vector<double> coordinates, parameters;
   gmsh::model::mesh::getNodes(tags, coordinates, parameters, dimension, entity, false, false);
   for (std::size_t i = 0; i < tags.size(); ++i) {
-    vertices[tags[i]] = place(unit * Eigen::Vector2d(coordinates[3 * i], coordinates[3 * i + 1]));
+    vertices[tags[i]] = project(unit * Eigen::Vector2d(coordinates[3 * i], coordinates[3 * i + 1]));
   }
 }
 
-/// All vertices; those of the axis, the arcs and the points moved the last bit onto them.
+/// All vertices; those of the axis, the arcs and the points are projected onto them to the last
+/// bit.
 Vertices exactVertices(const Section& section) {
   const double unit = section.arcs.front().radius;
   Vertices vertices;

@@ -12,7 +12,7 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double kSizeOverThickness = 1.25;
 constexpr double kSizeOverRadius = 2.0 / 3;
 
-/// Elements along an imprinted circle; one of them is for rounding.
+/// Elements along an imprinted circle. One of the nine is a margin for rounding.
 constexpr int kSegments = 9;
 
 }  // namespace

@@ -9,14 +9,15 @@
 
 namespace microinjection {
 
-/// Element size that concentric layers need, of the distance from their centre: in a layer about its thickness, in
-/// the innermost ball, if it has a layer around it, two thirds of its radius; growing with the distance from it.
+/// Element size for concentric layers, as a function of the distance from their centre. In a layer
+/// it is about the thickness; in the innermost ball below other layers it is two thirds of its
+/// radius. It grows with the distance from the layer.
 class LayerSizes {
  public:
-  /// `radii`: m, outermost first. `growth`: of the size with distance.
+  /// `radii`: m, outermost first. `growth`: of the size per distance.
   LayerSizes(const std::vector<double>& radii, double growth);
 
-  /// Size at a distance from the centre, m; infinity when nothing is asked for.
+  /// Size at a distance from the centre, m; infinity for a single layer.
   double at(double from_centre) const;
 
  private:
@@ -27,8 +28,9 @@ class LayerSizes {
   double growth_;
 };
 
-/// Wanted element size in a cell: the smallest of `size`, of what the layers need, of the refinements and, along
-/// imprinted circles, of a ninth of their length; each but the first grows with the distance. In metres.
+/// Wanted element size in a cell, m: the smallest of `size`, the sizes of the layers, the
+/// refinements and, along imprinted circles, a ninth of their length. All but the first grow with
+/// the distance.
 class SizeField {
  public:
   explicit SizeField(const CellMeshConfig& config);
@@ -43,7 +45,7 @@ class SizeField {
   double size_, growth_;
   LayerSizes layers_;
   std::vector<Ball> balls_;
-  std::vector<std::pair<CircleOnSphere, double>> circles_;  // and the size along it
+  std::vector<std::pair<CircleOnSphere, double>> circles_;  // with the size along it
 };
 
 }  // namespace microinjection

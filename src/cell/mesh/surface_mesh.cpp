@@ -15,7 +15,7 @@ using Triangle = std::array<int, 3>;
 constexpr int kFaces[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
 
 std::vector<Triangle> boundaryTriangles(const TetMesh& mesh) {
-  std::map<Triangle, std::pair<int, Triangle>> faces;  // sorted corners: how often, and as oriented
+  std::map<Triangle, std::pair<int, Triangle>> faces;  // by sorted corners: number of tetrahedra, oriented corners
   for (const std::array<int, 4>& tetrahedron : mesh.tetrahedra) {
     for (const int* face : kFaces) {
       const Triangle oriented = {tetrahedron[face[0]], tetrahedron[face[1]], tetrahedron[face[2]]};

@@ -13,11 +13,11 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// 1 below `from`, 0 above `to`, linear between: as gentle as can be.
+/// 1 below `from`, 0 above `to`, linear between, which has the smallest slope.
 double fade(double x, double from, double to) { return 1 - std::clamp((x - from) / (to - from), 0.0, 1.0); }
 
-/// Moves the pole of a ball turned about the z axis; points are given by their distance from the centre, their angle
-/// from the pole and their azimuth.
+/// Map that tilts the pole of a ball. Points are given by their distance from the centre, their
+/// angle from the pole and their azimuth about the z axis.
 class PoleMap {
  public:
   PoleMap(double radius, const SweepConfig& config)
@@ -29,7 +29,7 @@ class PoleMap {
         far_(kPi - std::asin(std::min(1.0, config.holding_radius / radius)) * 1.02) {}
 
   Eigen::Vector3d operator()(double distance, double angle, double turn) const {
-    const double beta = turn;  // from the direction in which the pole moves
+    const double beta = turn;  // measured from the direction in which the pole moves
     const double alpha = disc_ > 0 && tilt_ > 0 ? angle * discStretch(angle, beta) : angle;
     const Eigen::Vector3d turned(std::sin(alpha) * std::cos(beta), std::sin(alpha) * std::sin(beta), std::cos(alpha));
     const Eigen::AngleAxisd bend(tilt_ * fade(angle, near_, far_), Eigen::Vector3d::UnitY());
@@ -37,12 +37,13 @@ class PoleMap {
   }
 
  private:
-  /// A vertical disc's edge is no circle about a tilted pole.
+  /// Stretches angles, because a vertical disc's edge is not a circle about a tilted pole.
   double discStretch(double angle, double beta) const {
     return 1 + (discAngle(beta) / disc_angle_ - 1) * fade(angle, 1.2 * disc_angle_, near_);
   }
 
-  /// Angle from the pole at which the vertical cylinder of the disc's radius cuts the unit sphere.
+  /// Angle from the pole at which the vertical cylinder of the disc's radius intersects the unit
+  /// sphere.
   double discAngle(double beta) const {
     const auto outside = [&](double alpha) {
       const double x = std::sin(alpha) * std::cos(beta) * std::cos(tilt_) - (1 - std::cos(alpha)) * std::sin(tilt_);
@@ -58,7 +59,7 @@ class PoleMap {
   double azimuth_, tilt_, disc_, disc_angle_, near_, far_;
 };
 
-/// Turns a section into vertices and tetrahedra.
+/// Sweeps a section into vertices and tetrahedra.
 class Sweep {
  public:
   Sweep(const QuadraticMesh<2>& section, const SweepConfig& config)
@@ -70,7 +71,7 @@ class Sweep {
       for (std::size_t i = 0; i < edges.size(); ++i) {
         middles_[std::minmax(corners[edges[i][0]], corners[edges[i][1]])] = section.elements[e][3 + i];
       }
-      std::sort(corners.begin(), corners.end());  // so that neighbours cut their common face alike
+      std::sort(corners.begin(), corners.end());  // so that neighbouring prisms cut their common face alike
       for (int k = 0; k < segments_; ++k) addPrism(corners, k, section.layers[e]);
     }
   }
@@ -90,16 +91,17 @@ class Sweep {
 
   bool onAxis(int node) const { return section_.nodes[node][0] == 0; }
 
-  /// A node of the section, turned by a number of segments.
-  Eigen::Vector3d place(int node, double turn) const {
+  /// Position of a section's node, m, swept by a number of segments.
+  Eigen::Vector3d position(int node, double turn) const {
     const Eigen::Vector2d& rz = section_.nodes[node];
     const double whole = half_ ? kPi : 2 * kPi;
     Eigen::Vector3d x = map_(rz.norm(), rz.norm() == 0 ? 0 : std::atan2(rz[0], rz[1]), whole * turn / segments_);
-    if (half_ && (turn == 0 || turn == segments_)) x.y() = 0;  // not just nearly
+    if (half_ && (turn == 0 || turn == segments_)) x.y() = 0;  // exactly in the plane
     return x;
   }
 
-  /// Takes the faces in the plane of symmetry out of the facets: they are no surface.
+  /// Removes the faces in the plane of symmetry from the facets, because they are not on the
+  /// surface.
   static void dropCut(QuadraticMesh<3>& mesh) {
     const auto cut = [&](const QuadraticMesh<3>::Facet& facet) {
       return std::all_of(facet.nodes.begin(), facet.nodes.begin() + 3,
@@ -112,7 +114,7 @@ class Sweep {
     const std::pair<int, int> key(node, onAxis(node) ? 0 : half_ ? turn : turn % segments_);
     const auto [entry, added] = index_.try_emplace(key, static_cast<int>(mesh_.vertices.size()));
     if (added) {
-      mesh_.vertices.push_back(place(node, key.second));
+      mesh_.vertices.push_back(position(node, key.second));
       origin_.push_back(key);
     }
     return entry->second;
@@ -136,19 +138,19 @@ class Sweep {
     const auto& [node_a, turn_a] = origin_[a];
     const auto& [node_b, turn_b] = origin_[b];
     const int node = node_a == node_b ? node_a : middles_.at(std::minmax(node_a, node_b));
-    if (onAxis(node_a)) return place(node, turn_b);
-    if (onAxis(node_b)) return place(node, turn_a);
-    const bool round = !half_ && std::abs(turn_a - turn_b) > 1;  // across the seam
-    return place(node, 0.5 * (turn_a + turn_b + (round ? segments_ : 0)));
+    if (onAxis(node_a)) return position(node, turn_b);
+    if (onAxis(node_b)) return position(node, turn_a);
+    const bool across_seam = !half_ && std::abs(turn_a - turn_b) > 1;
+    return position(node, 0.5 * (turn_a + turn_b + (across_seam ? segments_ : 0)));
   }
 
   const QuadraticMesh<2>& section_;
   int segments_;
   bool half_;
   PoleMap map_;
-  std::map<std::pair<int, int>, int> middles_;  ///< the section's node between two of its vertices
+  std::map<std::pair<int, int>, int> middles_;  ///< midpoint node between two vertices of the section
   TetMesh mesh_;
-  std::map<std::pair<int, int>, int> index_;  ///< of the vertex made from a node and a turn
+  std::map<std::pair<int, int>, int> index_;  ///< vertex by node and turn
   std::vector<std::pair<int, int>> origin_;   ///< node and turn of each vertex
 };
 

@@ -10,7 +10,8 @@ namespace {
 
 constexpr int kSweeps = 5;
 
-/// First and last step of the search, and how far a vertex may go in all, over the shortest edge at the vertex.
+/// First and last step of the search, and the largest displacement of a vertex, over the shortest
+/// edge at the vertex.
 constexpr double kFirstStep = 0.4, kLastStep = 0.01, kFarthest = 0.8;
 
 class Improver {
@@ -25,8 +26,9 @@ class Improver {
     std::sort(bad_.begin(), bad_.end());
   }
 
-  /// One pass over the tetrahedra that were bad at first, worst first, and none else: chasing those that suffer from it
-  /// would spread the damage of a sliver that cannot be helped. True when a vertex moved.
+  /// One pass over the tetrahedra that were bad at the start, worst first. Tetrahedra that became
+  /// bad later are not treated, because that would spread the damage of a sliver that cannot be
+  /// improved. True when a vertex moved.
   bool sweep() {
     bool moved = false;
     for (const auto& [quality, tetrahedron] : bad_) {
@@ -55,7 +57,7 @@ class Improver {
     return shortest;
   }
 
-  /// Searches along axes and diagonals with shorter and shorter steps. True when the vertex moved.
+  /// Searches along axes and diagonals with decreasing steps. True when the vertex moved.
   bool improve(int vertex) {
     if (mobility_[vertex].kind == Mobility::Kind::kFixed) return false;
     const double edge = shortestEdge(vertex), before = worstAround(vertex);
@@ -68,14 +70,15 @@ class Improver {
     return best > before;
   }
 
-  /// Moves by `length` to where the worst tetrahedron around is best, no farther than `farthest` from the start; stays
-  /// where nothing beats `worst`. Returns the new worst.
+  /// Moves the vertex by `length` in the direction in which the worst tetrahedron around it becomes
+  /// best, at most to the distance `farthest` from its start. It stays if no direction improves on
+  /// `worst`. Returns the new worst.
   double stepToBest(int vertex, double length, double farthest, double worst) {
     const Eigen::Vector3d from = mesh_.vertices[vertex];
     Eigen::Vector3d best = from;
     for (int code = 0; code < 27; ++code) {
       const Eigen::Vector3d direction = Eigen::Vector3i(code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1).cast<double>();
-      mesh_.vertices[vertex] = place(vertex, from + length * direction.normalized());
+      mesh_.vertices[vertex] = constrain(vertex, from + length * direction.normalized());
       if ((mesh_.vertices[vertex] - start_[vertex]).norm() > farthest) continue;
       const double quality = worstAround(vertex);
       if (quality > worst) {
@@ -87,7 +90,7 @@ class Improver {
     return worst;
   }
 
-  Eigen::Vector3d place(int vertex, const Eigen::Vector3d& point) const {
+  Eigen::Vector3d constrain(int vertex, const Eigen::Vector3d& point) const {
     const Mobility& mobility = mobility_[vertex];
     return mobility.kind == Mobility::Kind::kOnSphere ? mobility.radius * point.normalized() : point;
   }
@@ -97,7 +100,7 @@ class Improver {
   const double target_;
   const std::vector<Eigen::Vector3d> start_;
   std::vector<std::vector<int>> around_;     // tetrahedra of each vertex
-  std::vector<std::pair<double, int>> bad_;  // quality at first, tetrahedron
+  std::vector<std::pair<double, int>> bad_;  // quality at the start, tetrahedron
 };
 
 }  // namespace

@@ -6,18 +6,20 @@
 
 namespace microinjection {
 
-/// Mesh of linear (P1) triangles of half a section through a body of revolution: coordinates (r, z) in metres, r >= 0
-/// the distance from the axis and exactly 0 on it. Corners of a triangle are counter-clockwise in (r, z).
+/// Mesh of linear (P1) triangles of half a section through a body of revolution: coordinates (r, z)
+/// in metres, r >= 0 the distance from the axis and exactly 0 on it. Corners of a triangle are
+/// counter-clockwise in (r, z).
 struct TriangleMesh {
   std::vector<Eigen::Vector2d> vertices;
   std::vector<std::array<int, 3>> triangles;
-  std::vector<int> layers;  ///< of each triangle, 0 the outermost; made by a mesher it is never empty
+  std::vector<int> layers;  ///< of each triangle, 0 the outermost; meshers always fill it
 };
 
 /// Signed area of one triangle, m^2.
 double triangleArea(const TriangleMesh& mesh, int triangle);
 
-/// Volume of what one triangle sweeps around the axis, m^3: 2 pi times its area times its centroid's r (Pappus).
+/// Volume that one triangle sweeps around the axis, m^3: 2 pi times its area times its centroid's r
+/// (Pappus).
 double sweptVolume(const TriangleMesh& mesh, int triangle);
 
 /// Smallest angle of one triangle, rad.

@@ -14,12 +14,12 @@
 namespace microinjection {
 namespace {
 
-/// Contact's stiffness, times the stiffest layer's modulus over the tip's radius. The tip then enters the surface by a
-/// thousandth of its radius where the pressure is that modulus.
+/// Contact stiffness, in units of the stiffest layer's modulus over the tip's radius. At a pressure
+/// equal to that modulus the tip then enters the surface by a thousandth of its radius.
 constexpr double kPenalty = 1000;
-constexpr double kDeepest = 0.03;  ///< of the tip's radius, that it may enter the surface
+constexpr double kDeepest = 0.03;  ///< largest allowed penetration, over the tip's radius
 
-/// Pa, of the layer that resists most, before anything relaxes.
+/// Young's modulus, Pa, of the stiffest layer, unrelaxed.
 double largestModulus(const Scene& scene) {
   double result = 0;
   for (const Scene::Layer& layer : scene.cell.layers) {
@@ -46,7 +46,7 @@ SymmetricSolver::Method method(ElementKind element, int dimension) {
 double distanceFromLine(const Eigen::Vector2d& rz, const Eigen::Vector2d& /*on the axis*/) { return rz[0]; }
 double distanceFromLine(const Eigen::Vector3d& x, const Eigen::Vector2d& line) { return (x.head<2>() - line).norm(); }
 
-/// Nodes of the mesh that the body's elements displace: all, or the vertices.
+/// Number of the mesh's nodes that the elements displace: all nodes, or the vertices.
 template <int Dim>
 int displacedNodes(const LayeredBody<Dim>& body) {
   return isQuadratic(body.kind()) ? static_cast<int>(body.mesh().nodes.size()) : body.mesh().vertex_count;
@@ -72,7 +72,7 @@ std::vector<int> nodesWithin(const LayeredBody<Dim>& body, const Eigen::Vector2d
   return nodes;
 }
 
-/// Throws std::invalid_argument when the mesh is not the half that is mirrored: its forces are doubled.
+/// Throws std::invalid_argument when the mesh is not the half y >= 0, whose forces are doubled.
 template <int Dim>
 void checkMirror(const Scene& scene, const QuadraticMesh<Dim>& mesh) {
   const auto beyond = [](const auto& x) { return x[1] < 0; };
@@ -169,12 +169,12 @@ LoadPathConfig CellProblem<Dim>::pathConfig(const Scene& scene, bool linear) {
   config.first_step = config.largest_step = diameter / 16;
   config.smallest_step = 1e-3 * tip;
   config.linear = linear;
-  if (scene.needle.tip.rounded()) {  // points stick where they first touch: the path must be followed closely
+  if (scene.needle.tip.rounded()) {  // points stick where they first touch, so the path needs small steps
     config.smooth = false;
     config.first_step = tip / (Dim == 2 ? 40 : 20);  // steps in space cost seconds
     config.largest_step = tip / (Dim == 2 ? 8 : 4);
     config.smallest_step = 1e-5 * tip;
-    if (Dim == 3) config.easy = 10;  // points that come into contact take iterations at any length
+    if (Dim == 3) config.easy = 10;  // new contact points need iterations in steps of any length
   }
   return config;
 }

@@ -15,27 +15,28 @@ namespace microinjection {
 template <int Dim>
 class TipContact;
 
-/// Of a scene in space and its loads. kMirror: the mesh is the half y >= 0 (makeHalfSceneMesh), the tip moves in the
-/// plane y = 0; forces and stiffness are still those of the whole cell (zero across the
-/// plane). States that break the symmetry are not seen.
+/// Symmetry of a scene in space and its loads. kMirror: the mesh is the half y >= 0
+/// (makeHalfSceneMesh) and the tip moves in the plane y = 0; forces and stiffness are those of the
+/// whole cell (zero across the plane). It does not find states that break the symmetry.
 enum class Symmetry { kNone, kMirror };
 
-/// A scene on a mesh: everything in it, in space (Dim 3) or, on the axis, in its section (Dim 2). Keeps its state and
+/// A scene on a mesh, in space (Dim 3) or, on the axis, in its section (Dim 2). Keeps its state and
 /// continues from it. One thread at a time.
 template <int Dim>
 class CellProblem {
  public:
-  /// Throws std::invalid_argument when the needle's disc and the holding pipette overlap, or when what is to be
-  /// mirrored is not the half y >= 0 of a mesh in space with the needle's place in y = 0.
+  /// Throws std::invalid_argument when the needle's disc and the holding pipette overlap, or when
+  /// kMirror is used without the half y >= 0 of a mesh in space and a contact point in y = 0.
   CellProblem(const Scene& scene, QuadraticMesh<Dim> mesh, ElementKind element, Symmetry symmetry = Symmetry::kNone);
 
-  /// Equilibrium with the tip displaced by this (m) from where it touches the undeformed cell, reached along the
-  /// straight line from the present one at constant speed in `duration` (s; infinite: nothing viscous resists). On
-  /// failure the state stays at the last equilibrium that was found. A section takes displacements along z only.
+  /// Equilibrium with the tip displaced by this (m) from first contact with the undeformed cell.
+  /// The tip moves along the straight line from its present position at constant speed in
+  /// `duration` (s; infinite: viscous stresses have relaxed). On failure the state stays at the
+  /// last equilibrium. A section takes displacements along z only.
   IndentationSolution solve(const Eigen::Vector3d& tip_displacement,
                             double duration = std::numeric_limits<double>::infinity());
 
-  /// Back to the undeformed state.
+  /// Returns to the undeformed state.
   void reset() { path_->reset(); }
 
   const LayeredBody<Dim>& body() const { return *body_; }
@@ -51,7 +52,7 @@ class CellProblem {
   Symmetry symmetry_;
   std::shared_ptr<LayeredBody<Dim>> body_;
   std::shared_ptr<TipContact<Dim>> contact_;  ///< of a rounded tip
-  double deepest_ = 0;                        ///< m, that it may enter the surface
+  double deepest_ = 0;                        ///< m, largest allowed penetration
   std::unique_ptr<EquilibriumSystem> system_;
   std::unique_ptr<LoadPath> path_;
 };

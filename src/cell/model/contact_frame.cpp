@@ -15,28 +15,28 @@ std::optional<ContactFrame> ContactFrame::at(const Scene& scene, const Eigen::Ve
 std::optional<ContactFrame> ContactFrame::at(double radius, const std::optional<RoundedTip>& tip,
                                              const Eigen::Vector2d& offset) {
   const double distance = offset.norm();
-  ContactFrame place;
-  Eigen::Vector3d touched;
+  ContactFrame frame;
+  Eigen::Vector3d contact_point;
   if (tip) {
     if (!(distance < radius + tip->radius())) return std::nullopt;
-    place.origin << offset, tip->touchHeight(radius, offset);
-    touched = tip->touchPoint(radius, offset);
+    frame.origin << offset, tip->touchHeight(radius, offset);
+    contact_point = tip->touchPoint(radius, offset);
   } else {
     if (!(distance < radius)) return std::nullopt;
-    place.origin << offset, std::sqrt(radius * radius - distance * distance);
-    touched = place.origin;
+    frame.origin << offset, std::sqrt(radius * radius - distance * distance);
+    contact_point = frame.origin;
   }
-  place.angle = std::atan2(touched.head<2>().norm(), touched.z());
+  frame.angle = std::atan2(contact_point.head<2>().norm(), contact_point.z());
   if (distance > 0) {
-    place.rotation = Eigen::AngleAxisd(std::atan2(offset.y(), offset.x()), Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    frame.rotation = Eigen::AngleAxisd(std::atan2(offset.y(), offset.x()), Eigen::Vector3d::UnitZ()).toRotationMatrix();
   }
-  return place;
+  return frame;
 }
 
 Eigen::Vector2d ContactFrame::offsetFor(const Scene& scene, double angle) {
   const Scene::Tip& tip = scene.needle.tip;
   if (!tip.rounded()) return {scene.radius() * std::sin(angle), 0};
-  const double core = tip.radius - tip.edgeRadius();  // a flat end meets the cell with its edge
+  const double core = tip.radius - tip.edgeRadius();  // the edge of a flat end touches first
   return {angle > 0 ? core + (scene.radius() + tip.edgeRadius()) * std::sin(angle) : 0, 0};
 }
 

@@ -8,39 +8,41 @@
 
 namespace microinjection {
 
-/// The time that a TipPath has come to in one contact, from the questions that it is asked.
+/// Time that a TipPath has simulated within one contact.
 class ContactTime {
  public:
-  /// @param viscous whether the path takes time at all
-  /// @param lead s, before the touch from which the first way in a contact is counted. The tangent of a short way is
-  /// the stiffer the more viscous the cell is, and that of the first one has to serve until the next solution.
+  /// @param viscous whether the path depends on time
+  /// @param lead s, time before first contact at which the first step of a contact begins. The
+  ///   tangent of a short step of a viscous cell is stiff, and that of the first one is used until
+  ///   the next solution.
   explicit ContactTime(bool viscous, double lead = 0) : viscous_(viscous), start_offset_(lead) {}
 
-  /// Whether the path has to start again, from the cell without the needle, before it follows: what stuck, and what
-  /// relaxed, was of another contact, or of the time before the touch.
-  bool startsAgain(const TipMotion& move) {
-    if (move.contact == contact_ && (!viscous_ || move.touched == touched_)) return false;
+  /// Whether the path must restart from the undeformed cell before this move, because its state
+  /// belongs to another contact or to the time before first contact.
+  bool mustRestart(const TipMotion& move) {
+    if (move.contact == contact_ && (!viscous_ || move.contact_start == contact_start_)) return false;
     contact_ = move.contact;
-    touched_ = move.touched;
-    time_ = move.touched.value_or(move.time) - start_offset_;
+    contact_start_ = move.contact_start;
+    time_ = move.contact_start.value_or(move.time) - start_offset_;
     return true;
   }
 
-  /// s, that going `share` of the way to the tip takes; infinite where nothing viscous resists, as before the touch.
-  double pass(const TipMotion& move, double share = 1) {
+  /// Duration (s) of moving by `share` of the distance to the tip; infinite when the path does not
+  /// depend on time, or before first contact.
+  double advance(const TipMotion& move, double share = 1) {
     const double duration = std::max(share * (move.time - time_), kShortest);
     time_ += duration;
-    return viscous_ && move.touched ? duration : std::numeric_limits<double>::infinity();
+    return viscous_ && move.contact_start ? duration : std::numeric_limits<double>::infinity();
   }
 
  private:
-  static constexpr double kShortest = 1e-3;  ///< s: a clock may stand
+  static constexpr double kShortest = 1e-3;  ///< s: the clock may not advance
 
   bool viscous_;
   double start_offset_;  ///< s
   unsigned contact_ = 0;
-  std::optional<double> touched_;  ///< s
-  double time_ = 0;                ///< s, that the state has come to
+  std::optional<double> contact_start_;  ///< s
+  double time_ = 0;                      ///< s, of the state
 };
 
 }  // namespace microinjection

@@ -21,17 +21,17 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kEver = std::numeric_limits<double>::infinity();  ///< s
+constexpr double kInfinite = std::numeric_limits<double>::infinity();  ///< s
 
-/// Meshes to try.
+/// Series of meshes.
 struct Refinement {
   double first;  ///< level
   double step;   ///< from one level to the next
-  double cost;   ///< the next one takes about this many times longer
-  double last;   ///< the first level that may be the last
+  double cost;   ///< ratio of the times of successive meshes
+  double last;   ///< first level that may be the last
 };
-// A sharp edge asks for more; and in the section, where it costs nothing, two meshes that agree by chance are not
-// believed.
+// A sharp edge needs finer meshes. In the section, where meshes cost little, two meshes that agree
+// by chance do not suffice.
 constexpr Refinement kDiscInSection = {0, 1, 3, 2}, kRoundedInSection = {0, 1, 3, 1};
 constexpr Refinement kDiscInSpace = {-0.5, 0.5, 3, 0}, kRoundedInSpace = {-1, 0.5, 3, -0.5};
 
@@ -72,7 +72,7 @@ struct ConvergedForce::Level {
   Forces forces;
   std::vector<double> wall_times;  ///< s
   double reached = 0;              ///< m, deepest equilibrium
-  std::string reason;              ///< why no deeper
+  std::string reason;              ///< why it ended there
 };
 
 ConvergedForce::ConvergedForce(const Scene& scene, const Indenting& indenting, const ConvergedForceConfig& config)
@@ -87,7 +87,7 @@ ConvergedForce::ConvergedForce(const Scene& scene, const Indenting& indenting, c
   axisymmetric_ = possible && config.model != ConvergedForceConfig::Model::kSpatial;
 }
 
-/// The swept mesh is bent towards the needle's place, and not without end.
+/// A swept mesh can be bent towards the contact point only up to a limit.
 template <int Dim>
 CellProblem<Dim> ConvergedForce::makeProblem(double level) const {
   try {
@@ -102,7 +102,7 @@ CellProblem<Dim> ConvergedForce::makeProblem(double level) const {
   }
 }
 
-/// In which the forces are found: in, then out.
+/// Order of the solutions: indentation, then withdrawal.
 std::vector<std::size_t> ConvergedForce::order() const {
   std::vector<std::size_t> result(indenting_.count());
   std::iota(result.begin(), result.end(), 0);
@@ -125,23 +125,23 @@ ConvergedForce::Level ConvergedForce::solveLevel(double number) const {
   level.wall_times.assign(count, 0);
   level.report.forces.assign(count, kNan);
   Clock::time_point mark = start;
-  const bool straight = indenting_.lateral.isZero(0);  // all depths lie on one line
+  const bool straight = indenting_.lateral.isZero(0);  // all depths are on one line
   std::optional<IndentationSolution> last;
   for (std::size_t i : order()) {
     const Eigen::Vector3d target(indenting_.lateral.x(), indenting_.lateral.y(), -indenting_.depth(i));
     if (!straight) problem.reset();
-    const double way = (target - problem.tipDisplacement()).norm();
+    const double distance = (target - problem.tipDisplacement()).norm();
     IndentationSolution solution;
-    if (straight && last && way == 0) {
-      solution = *last;  // the same depth once more
+    if (straight && last && distance == 0) {
+      solution = *last;  // the same depth again
     } else {
-      solution = problem.solve(target, way > 0 && indenting_.speed ? way / *indenting_.speed : kEver);
+      solution = problem.solve(target, distance > 0 && indenting_.speed ? distance / *indenting_.speed : kInfinite);
       if (solution.converged && indenting_.hold > 0) solution = problem.solve(target, indenting_.hold);
     }
     last = solution;
     if (solution.converged && solution.force.isZero(0) && !resolves(target)) {
       solution.converged = false;
-      solution.reason = "so small a contact falls between the mesh's points";
+      solution.reason = "the contact is smaller than the mesh's elements";
     }
     level.wall_times[i] = secondsSince(mark);
     mark = Clock::now();
@@ -158,7 +158,8 @@ ConvergedForce::Level ConvergedForce::solveLevel(double number) const {
   return level;
 }
 
-/// Whether a force of zero there may be true: a disc's depth is 0, or a rounded tip is beside the undeformed cell.
+/// Whether a zero force is plausible: the disc's depth is 0, or a rounded tip is beside the
+/// undeformed cell.
 bool ConvergedForce::resolves(const Eigen::Vector3d& displacement) const {
   const Scene::Needle& needle = scene_.needle;
   if (!needle.tip.rounded()) return true;
@@ -175,12 +176,12 @@ bool ConvergedForce::done(const ForcePoint& point) const {
   return point.converged && point.error_estimate <= config_.tolerance && point.level >= last;
 }
 
-/// Takes what a level tells.
+/// Updates the points with the results of a level.
 void ConvergedForce::adopt(const Level& level, Before& before, std::vector<ForcePoint>& points) const {
   const Refinement refinement = refinementOf(axisymmetric_, scene_.needle.tip);
   double largest = 0;
   for (const auto& force : level.forces) largest = force ? std::max(largest, force->norm()) : largest;
-  const bool doubting = refinement.last > refinement.first + refinement.step;
+  const bool use_last_change = refinement.last > refinement.first + refinement.step;
   for (std::size_t i = 0; i < points.size(); ++i) {
     ForcePoint& point = points[i];
     const std::optional<Eigen::Vector3d> coarser = before.forces[i];
@@ -190,7 +191,7 @@ void ConvergedForce::adopt(const Level& level, Before& before, std::vector<Force
     if (!level.forces[i]) {
       const bool lost = coarser.has_value();
       if (lost || point.reason.empty()) {
-        point.reason = (lost ? "finer meshes lose the solution before: " : "") + level.reason + "; the tip came to " +
+        point.reason = (lost ? "finer meshes lose the solution before: " : "") + level.reason + "; the tip reached " +
                        micrometres(level.reached);
       }
       continue;
@@ -199,28 +200,29 @@ void ConvergedForce::adopt(const Level& level, Before& before, std::vector<Force
     const bool in = i < indenting_.depths.size();
     const double size = in ? level.forces[i]->norm() : largest;
     const double change = size > 0 ? (*level.forces[i] - *coarser).norm() / size : 0;
-    const double doubt = doubting ? std::max(change, before.changes[i]) : change;
+    const double largest_change = use_last_change ? std::max(change, before.changes[i]) : change;
     before.changes[i] = change;
     point.converged = true;
     point.reason.clear();
     point.force = *level.forces[i];
-    point.error_estimate = doubt / (std::pow(2, refinement.step) - 1);
+    point.error_estimate = largest_change / (std::pow(2, refinement.step) - 1);
     point.level = level.report.level;
   }
 }
 
-/// No finer mesh; what was found stays.
-void ConvergedForce::abort(const std::string& why, std::vector<ForcePoint>& points) const {
+/// Ends the refinement after an error; earlier results stay.
+void ConvergedForce::abort(const std::string& error, std::vector<ForcePoint>& points) const {
   for (ForcePoint& point : points) {
-    if (!done(point) && point.reason.empty()) point.reason = "a finer mesh failed: " + why;
+    if (!done(point) && point.reason.empty()) point.reason = "a finer mesh failed: " + error;
   }
 }
 
-/// Whether a finer level may help some depth.
+/// Whether a finer level may improve a point.
 bool ConvergedForce::continuePath(const std::vector<ForcePoint>& points, const Level& level) const {
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const bool may = level.forces[i] || level.report.level < 1;  // the coarsest meshes are not the last word
-    if (!done(points[i]) && may) return true;
+    const bool solvable =
+        level.forces[i] || level.report.level < 1;  // the coarsest meshes may fail where finer ones do not
+    if (!done(points[i]) && solvable) return true;
   }
   return false;
 }

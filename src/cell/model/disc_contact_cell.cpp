@@ -16,7 +16,7 @@ TipPatch DiscContactCell::patchAt(const Eigen::Vector3d& point, const Eigen::Vec
 std::optional<Eigen::Vector3d> DiscContactCell::touch(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis,
                                                       int& hint) const {
   const double outside = 2 * scene_.cell.diameter();
-  const Eigen::Vector3d origin = tip + (outside + tip.norm()) * axis;  // from outside, wherever the tip is
+  const Eigen::Vector3d origin = tip + (outside + tip.norm()) * axis;  // outside of the cell for any tip position
   const auto found = hit(origin, -axis, hint);
   if (!found) return std::nullopt;
   hint = found->triangle;
@@ -27,7 +27,7 @@ bool DiscContactCell::isClear(const Eigen::Vector3d& tip, const Eigen::Vector3d&
                               const Eigen::Vector3d& contact_point) const {
   if ((tip - contact_point).dot(axis) > 0) return true;
   int hint = 0;
-  const auto now = touch(tip, axis, hint);  // where its line is now: it may have gone sideways
+  const auto now = touch(tip, axis, hint);  // at its present line: it may have moved sideways
   return !now || (tip - *now).dot(axis) > 0;
 }
 

@@ -13,20 +13,22 @@
 
 namespace microinjection {
 
-/// A live cell that a disc meets on a surface of triangles: what is under the disc sticks to it.
+/// A live cell with a surface of triangles and a disc tip. Vertices under the disc stick to it.
 class DiscContactCell : public OnlineCell {
  public:
   const Scene& scene() const override { return scene_; }
   const SurfaceMesh& surface() const { return surface_; }  ///< at rest; mesh_vertices ascend
 
-  /// Vertices of the mesh that are held, numbered as SurfaceMesh::mesh_vertices and TipPatch::vertices.
+  /// Vertices of the mesh that are held, numbered as SurfaceMesh::mesh_vertices and
+  /// TipPatch::vertices.
   const std::vector<int>& heldVertices() const { return held_vertices_; }
 
-  /// First intersection of a ray with the surface at rest. `start`, a triangle hit before, makes the search local.
+  /// First intersection of a ray with the surface at rest. `start`, a triangle of an earlier hit,
+  /// makes the search local.
   std::optional<SurfaceHit> hit(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, int start = 0) const;
 
-  /// What sticks to the tip of a needle whose line goes through `point` along `axis`, which points out of the cell;
-  /// see findTipPatch.
+  /// Vertices that stick to a tip whose line passes through `point` along `axis`, which points out
+  /// of the cell; see findTipPatch.
   TipPatch patchAt(const Eigen::Vector3d& point, const Eigen::Vector3d& axis) const;
 
   const char* refusal(const Eigen::Vector3d& /*axis*/) const override { return nullptr; }
@@ -40,7 +42,7 @@ class DiscContactCell : public OnlineCell {
   std::vector<std::uint32_t> onSurface(const TipPatch& patch) const override;
 
  protected:
-  /// The surface and what is held are the heirs' to make.
+  /// Derived classes fill the surface and the held vertices.
   explicit DiscContactCell(const Scene& scene) : scene_(scene) {}
 
   Scene scene_;

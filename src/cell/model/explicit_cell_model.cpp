@@ -107,7 +107,7 @@ void ExplicitCellModel::engage(const Eigen::Vector3d& touch, const Eigen::Vector
   const auto is_held = [&](int vertex) { return std::find(held.begin(), held.end(), vertex) != held.end(); };
   touches_held_ = std::any_of(patch.vertices.begin(), patch.vertices.end(), is_held);
   if (!touches_held_) dynamics_->setTip(patch.vertices);
-  drawn_.touched = cell_->onSurface(patch);
+  drawn_.contact_vertices = cell_->onSurface(patch);
   contact_ = Contact{};
   contact_->contact_point = touch;
   applied_.setZero();
@@ -143,7 +143,7 @@ const char* ExplicitCellModel::defect() const {
 
 void ExplicitCellModel::release() {
   contact_.reset();
-  drawn_.touched.clear();
+  drawn_.contact_vertices.clear();
   invalid_reason_.clear();
   touches_held_ = false;
   dynamics_->setTip({});
@@ -178,7 +178,7 @@ CellModel::DeformedSurface ExplicitCellModel::deformedSurface() {
     picture.vertices[i] += shape.displacement[i];
     picture.displacement[i] = shape.displacement[i].norm();
   }
-  picture.touched = shape.touched;
+  picture.contact_vertices = shape.contact_vertices;
   return picture;
 }
 

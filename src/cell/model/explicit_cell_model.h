@@ -49,8 +49,8 @@ class ExplicitCellModel : public CellModel {
 
  private:
   struct Shape {
-    std::vector<Eigen::Vector3d> displacement;  ///< m, of each vertex of the surface
-    std::vector<std::uint32_t> touched;         ///< vertices of the surface
+    std::vector<Eigen::Vector3d> displacement;    ///< m, of each vertex of the surface
+    std::vector<std::uint32_t> contact_vertices;  ///< vertices of the surface
   };
 
   TipForce computeForce(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time);

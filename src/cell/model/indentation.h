@@ -12,17 +12,19 @@
 
 namespace microinjection {
 
-/// Quasi-static deformation of a cell under one sticking patch: every vertex of the patch moves by the displacement of
-/// the tip. Keeps its state and continues from it, so a needle that moves little costs little. One thread at a time.
+/// Quasi-static deformation of a cell under one sticking patch: every vertex of the patch moves by
+/// the displacement of the tip. It keeps its state and continues from it, so that small motions are
+/// fast. One thread at a time.
 class Indentation : public TipPath {
  public:
-  /// Throws std::invalid_argument when the patch and the held vertices overlap or leave nothing free.
+  /// Throws std::invalid_argument when the patch and the held vertices overlap or leave nothing
+  /// free.
   Indentation(std::shared_ptr<const P1Cell> cell, const TipPatch& patch);
   Indentation(const Indentation&) = delete;  // the path refers to the system
   Indentation& operator=(const Indentation&) = delete;
 
-  /// Equilibrium at `tip_displacement` (m), reached along the straight line from the present one in adaptive load
-  /// steps. On failure the state stays at the last equilibrium that was found.
+  /// Equilibrium at `tip_displacement` (m). The tip moves along the straight line from its present
+  /// position in adaptive load steps. On failure the state stays at the last equilibrium.
   IndentationSolution solve(const Eigen::Vector3d& tip_displacement);
 
   /// Displacement of the mesh's vertices, m, xyz per vertex.
@@ -35,7 +37,7 @@ class Indentation : public TipPath {
   /// Displacement of the tip in the present state, m.
   const Eigen::Vector3d& tipDisplacement() const { return path_.translation(); }
 
-  /// Back to the undeformed state.
+  /// Returns to the undeformed state.
   void reset() { path_.reset(); }
 
  private:

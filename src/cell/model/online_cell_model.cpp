@@ -26,34 +26,34 @@ OnlineCellModel::OnlineCellModel(std::shared_ptr<const OnlineCell> cell, const O
 
 void OnlineCellModel::request(double time, const Eigen::Vector3d& displacement) {
   TipMotion move{displacement, contacts_, std::nullopt, time};
-  if (contact_) move.touched = touched_;
-  bool asked = thread_.request(place_, move);
-  while (!asked && config_.fixed_period) asked = thread_.request(place_, move);
-  if (!asked) return;  // with the next step, then
-  asked_ = true;
+  if (contact_) move.contact_start = contact_start_;
+  bool accepted = thread_.request(contact_point_, move);
+  while (!accepted && config_.fixed_period) accepted = thread_.request(contact_point_, move);
+  if (!accepted) return;  // the next step requests it again
+  request_pending_ = true;
   requested_at_ = time;
   contact_requested_ = true;
 }
 
-void OnlineCellModel::takeSolution(double time) {
-  if (!asked_) return;
+void OnlineCellModel::receiveSolution(double time) {
+  if (!request_pending_) return;
   std::shared_ptr<const CellSolution> solution;
   try {
     if (!config_.fixed_period) {
-      solution = thread_.take();
+      solution = thread_.poll();
     } else if (time - requested_at_ >= config_.solution_period - 1e-9) {
       solution = thread_.wait();
     }
-  } catch (const std::exception& error) {  // a contact that the solver refuses, as on the held vertices
+  } catch (const std::exception& error) {  // a contact that the solver refuses, for example on held vertices
     failure_ = error.what();
-    asked_ = false;
+    request_pending_ = false;
     solution_.reset();
     return;
   }
   if (!solution) return;
   failure_.clear();
-  asked_ = false;
-  if (!solution->place.sameAs(*place_)) return;  // the needle has moved on to another place
+  request_pending_ = false;
+  if (!solution->contact_point.sameAs(*contact_point_)) return;  // of an earlier contact point
   solution_ = std::move(solution);
   solution_time_ = requested_at_;
 }
@@ -61,19 +61,19 @@ void OnlineCellModel::takeSolution(double time) {
 void OnlineCellModel::prepare(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, const Eigen::Vector3d& touch,
                               double time) {
   if ((tip - touch).dot(axis) > config_.prepare_distance) return;
-  // A hand trembles: a tenth of the tip's radius makes no other contact, and near the scene's line, where the mesh has
-  // the tip's circle, that circle is meant.
+  // A hand trembles: a shift below a tenth of the tip's radius is no new contact point. Close to
+  // the scene's offset, where the mesh has the tip's circle, the offset itself is used.
   const Scene::Needle& needle = cell_->scene().needle;
   const double tremble = 0.1 * needle.tip.radius;
   Eigen::Vector3d point = touch;
   if ((point.head<2>() - needle.offset).norm() < tremble) point.head<2>() = needle.offset;
   if (!contact_prepared_at_ || (point - *contact_prepared_at_).norm() > tremble) {
-    place_ = std::make_shared<ContactPoint>(cell_->contactAt(point, axis));
+    contact_point_ = std::make_shared<ContactPoint>(cell_->contactAt(point, axis));
     contact_prepared_at_ = point;
     contact_requested_ = false;
     solution_.reset();
   }
-  if (!contact_requested_ && !asked_) request(time, cell_->preparedDisplacement());
+  if (!contact_requested_ && !request_pending_) request(time, cell_->preparedDisplacement());
 }
 
 TipForce OnlineCellModel::invalidForce(const char* reason) {
@@ -84,13 +84,13 @@ TipForce OnlineCellModel::invalidForce(const char* reason) {
 void OnlineCellModel::release() {
   contact_.reset();
   ++contacts_;
-  contact_requested_ = false;  // prepares the contact before the next touch
+  contact_requested_ = false;  // prepares the next contact in advance
   invalid_reason_.clear();
   shape_.write({});
 }
 
-TipForce OnlineCellModel::touchForce(double time) {
-  if (!asked_) request(time, contact_->displacement);
+TipForce OnlineCellModel::contactForce(double time) {
+  if (!request_pending_) request(time, contact_->displacement);
   if (!failure_.empty()) return invalidForce(failure_.c_str());
   if (!solution_) return invalidForce("the contact is still being prepared");
   const IndentationSolution& solved = solution_->indentation;
@@ -108,15 +108,15 @@ TipForce OnlineCellModel::touchForce(double time) {
 }
 
 TipForce OnlineCellModel::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time) {
-  const bool known = tip.allFinite() && axis.allFinite() && std::isfinite(time);
-  TipForce force = known ? computeForce(tip, axis, time) : invalidForce("the needle's pose is not finite");
-  shape_.write(contact_ ? Shape{solution_, place_} : Shape{});
+  const bool finite = tip.allFinite() && axis.allFinite() && std::isfinite(time);
+  TipForce force = finite ? computeForce(tip, axis, time) : invalidForce("the needle's pose is not finite");
+  shape_.write(contact_ ? Shape{solution_, contact_point_} : Shape{});
   return force;
 }
 
 TipForce OnlineCellModel::computeForce(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time) {
   invalid_reason_.clear();
-  takeSolution(time);
+  receiveSolution(time);
   if (!contact_) {
     const auto touch = cell_->touch(tip, axis, hint_);
     if (!touch) return {};
@@ -124,18 +124,18 @@ TipForce OnlineCellModel::computeForce(const Eigen::Vector3d& tip, const Eigen::
     if (cell_->isClear(tip, axis, *touch)) return {};
     contact_ = Contact{};
     contact_->contact_point = *touch;
-    touched_ = time;
+    contact_start_ = time;
   }
   contact_->displacement = tip - contact_->contact_point;
   contact_->indentation = -contact_->displacement.dot(axis);
   const char* refusal = cell_->refusal(axis);
-  TipForce result = refusal != nullptr ? invalidForce(refusal) : touchForce(time);
+  TipForce result = refusal != nullptr ? invalidForce(refusal) : contactForce(time);
   const double push = result.force.dot(axis);
   if ((push <= 0 || !result.valid) && cell_->isClear(tip, axis, contact_->contact_point)) {
     release();
     return {};
   }
-  if (push < 0) return {};  // there is no adhesion; what pulls is the extrapolation
+  if (push < 0) return {};  // there is no adhesion; the extrapolation pulls
   return result;
 }
 
@@ -153,17 +153,17 @@ std::vector<std::uint32_t> OnlineCellModel::held() const { return rest_.held; }
 CellModel::DeformedSurface OnlineCellModel::deformedSurface() {
   shape_.update();
   const Shape& shape = shape_.value();
-  DeformedSurface picture;
+  DeformedSurface surface;
   for (std::size_t i = 0; i < rest_.vertices.size(); ++i) {
     Eigen::Vector3d moved = Eigen::Vector3d::Zero();
     if (shape.solution) moved = shape.solution->displacement.segment<3>(3 * i);
-    const bool own = shape.solution && shape.solution->rest;
-    picture.vertices.emplace_back((own ? (*shape.solution->rest)[i] : rest_.vertices[i]) + moved);
-    picture.displacement.push_back(moved.norm());
+    const bool own_rest = shape.solution && shape.solution->rest;
+    surface.vertices.emplace_back((own_rest ? (*shape.solution->rest)[i] : rest_.vertices[i]) + moved);
+    surface.displacement.push_back(moved.norm());
   }
-  picture.members = shape.solution ? shape.solution->members : members_at_rest_;
-  if (shape.touched) picture.touched = cell_->onSurface(shape.touched->patch);
-  return picture;
+  surface.members = shape.solution ? shape.solution->members : members_at_rest_;
+  if (shape.contact_point) surface.contact_vertices = cell_->onSurface(shape.contact_point->patch);
+  return surface;
 }
 
 }  // namespace microinjection

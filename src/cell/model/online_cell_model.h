@@ -15,20 +15,21 @@
 namespace microinjection {
 
 struct OnlineCellModelConfig {
-  double prepare_distance = 25e-6;    ///< m before the surface at which the contact is prepared
-  double extrapolation_limit = 3e-6;  ///< m of tip travel from the last solution past which force is not valid
+  double prepare_distance = 25e-6;    ///< m above the surface at which the contact is prepared
+  double extrapolation_limit = 3e-6;  ///< m of tip travel from the last solution beyond which the force is invalid
   double solution_period = 0.03;      ///< s between solutions when `fixed_period`
-  bool fixed_period = false;          ///< take every solution exactly solution_period after it was asked for, waiting
-                                      ///< for it if need be: same answers on any machine (lock step)
+  /// Uses every solution exactly solution_period after its request, and waits for it if necessary:
+  /// the results are the same on any machine (lock step).
+  bool fixed_period = false;
 
   static OnlineCellModelConfig read(ConfigReader& reader);
 };
 
 /// The live finite-element cell.
 ///
-/// A thread of its own follows the newest tip pose with the cell's equilibrium; between solutions step() extrapolates
-/// with the condensed contact stiffness, f = f_s - K (x - x_s). A contact lasts from the touch until the tip is off the
-/// undeformed cell and the pull would be adhesive.
+/// A separate thread follows the newest tip pose with the cell's equilibrium. Between solutions
+/// step() extrapolates with the condensed contact stiffness, f = f_s - K (x - x_s). A contact lasts
+/// from first contact until the tip is off the undeformed cell and the force would be adhesive.
 class OnlineCellModel : public CellModel {
  public:
   OnlineCellModel(std::shared_ptr<const OnlineCell> cell, const OnlineCellModelConfig& config);
@@ -44,20 +45,22 @@ class OnlineCellModel : public CellModel {
   std::vector<std::uint32_t> held() const override;
   DeformedSurface deformedSurface() override;
 
-  const TipPatch& patch() const { return place_->patch; }  ///< that sticks to the tip, or will on touch
+  const TipPatch& patch() const {
+    return contact_point_->patch;
+  }  ///< vertices that stick to the tip, or will at first contact
 
  private:
-  /// All that the picture depends on.
+  /// All data that the surface depends on.
   struct Shape {
-    std::shared_ptr<const CellSolution> solution;  ///< null where nothing is deformed
-    std::shared_ptr<const ContactPoint> touched;   ///< null without contact
+    std::shared_ptr<const CellSolution> solution;       ///< null if undeformed
+    std::shared_ptr<const ContactPoint> contact_point;  ///< null without contact
   };
 
   TipForce computeForce(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time);
-  void takeSolution(double time);
+  void receiveSolution(double time);
   void request(double time, const Eigen::Vector3d& displacement);
   void prepare(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, const Eigen::Vector3d& touch, double time);
-  TipForce touchForce(double time);
+  TipForce contactForce(double time);
   TipForce invalidForce(const char* reason);
 
   std::shared_ptr<const OnlineCell> cell_;
@@ -66,18 +69,18 @@ class OnlineCellModel : public CellModel {
   OnlineCellModelConfig config_;
   SolutionThread thread_;
   int hint_ = 0;  ///< see OnlineCell::touch
-  std::shared_ptr<const ContactPoint> place_ = std::make_shared<ContactPoint>();
-  std::optional<Eigen::Vector3d> contact_prepared_at_;  ///< m, what place_ was made for; none until a needle was near
-  unsigned contacts_ = 0;                               ///< that have ended
-  double touched_ = 0;                                  ///< s, when the tip touched
-  bool asked_ = false;                                  ///< a solution is under way
+  std::shared_ptr<const ContactPoint> contact_point_ = std::make_shared<ContactPoint>();
+  std::optional<Eigen::Vector3d> contact_prepared_at_;  ///< m, basis of contact_point_; none before the first
+  unsigned contacts_ = 0;                               ///< number of contacts that have ended
+  double contact_start_ = 0;                            ///< s, of first contact
+  bool request_pending_ = false;                        ///< a solution was requested and not received yet
   double requested_at_ = 0;                             ///< s
-  double solution_time_ = 0;                            ///< s, when the solution at hand was asked for
-  bool contact_requested_ = false;                      ///< the thread works on place_, not on an older one
+  double solution_time_ = 0;                            ///< s, at which the present solution was requested
+  bool contact_requested_ = false;                      ///< the thread solves contact_point_, not an earlier one
   std::shared_ptr<const CellSolution> solution_;
   std::optional<Contact> contact_;
   std::string invalid_reason_;
-  std::string failure_;       ///< what the solver threw at the last question; else empty
+  std::string failure_;       ///< error of the solver's last request; else empty
   LatestValue<Shape> shape_;  ///< from the thread that steps to the one that draws
 };
 

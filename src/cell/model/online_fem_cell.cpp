@@ -16,13 +16,15 @@
 namespace microinjection {
 namespace {
 
-/// Of the tip's radius: way of the tip for one answer. Shorter ones cost as many iterations.
+/// Largest tip displacement for one solution, over the tip's radius. Shorter ones need as many
+/// iterations.
 constexpr double kPiece = 0.25;
-/// Of a rounded tip's radius, at which a contact is prepared: at the touch itself the cell has no stiffness yet.
+/// Displacement, over a rounded tip's radius, for which a contact is prepared: at first contact the
+/// cell has no stiffness yet.
 constexpr double kPrepared = 0.1;
 constexpr double kUpright = 0.999;   ///< cosine: within 2.5 degrees
-constexpr double kTremble = 0.1;     ///< of the tip's radius: no other place
-constexpr double kOnCircle = 1.001;  ///< of the holding circle's radius
+constexpr double kSamePoint = 0.1;   ///< over the tip's radius: the same contact point
+constexpr double kOnCircle = 1.001;  ///< over the holding circle's radius
 
 bool isViscoelastic(const Scene& scene) {
   const auto& layers = scene.cell.layers;
@@ -43,12 +45,12 @@ class SweptPath : public TipPath {
   }
 
   IndentationSolution follow(const TipMotion& move) override {
-    if (clock_.startsAgain(move)) problem_.reset();
-    const Eigen::Vector3d way = move.displacement - problem_.tipDisplacement();
-    const double share = std::min(1.0, piece_ / std::max(way.norm(), 1e-3 * piece_));
+    if (clock_.mustRestart(move)) problem_.reset();
+    const Eigen::Vector3d remaining = move.displacement - problem_.tipDisplacement();
+    const double share = std::min(1.0, piece_ / std::max(remaining.norm(), 1e-3 * piece_));
     const Eigen::Vector3d target =
-        share < 1 ? Eigen::Vector3d(problem_.tipDisplacement() + share * way) : move.displacement;
-    return problem_.solve(target, clock_.pass(move, share));
+        share < 1 ? Eigen::Vector3d(problem_.tipDisplacement() + share * remaining) : move.displacement;
+    return problem_.solve(target, clock_.advance(move, share));
   }
 
   std::shared_ptr<const std::vector<Eigen::Vector3d>> rest() const override { return rest_; }
@@ -76,8 +78,8 @@ class SweptPath : public TipPath {
 OnlineFemCell::OnlineFemCell(const Scene& scene) : scene_(scene) {
   scene.validate();
   scene.requireContinuum("elements of the cell's inside");
-  if (scene.needle.contact.adhesion_energy > 0) {  // what pulls would be taken for the extrapolation's
-    throw ConfigError("needle/contact/adhesion: must be left out: a live cell lets the tip go (indent can do it)");
+  if (scene.needle.contact.adhesion_energy > 0) {  // the extrapolation would be mistaken for adhesion
+    throw ConfigError("needle/contact/adhesion: must be left out: a live cell has no adhesion (use indent)");
   }
   SymmetricSolver::useOneThread();
   const Scene::Tip& tip = scene.needle.tip;
@@ -113,22 +115,22 @@ const char* OnlineFemCell::refusal(const Eigen::Vector3d& axis) const {
 
 std::optional<Eigen::Vector3d> OnlineFemCell::touch(const Eigen::Vector3d& tip, const Eigen::Vector3d& /*upright*/,
                                                     int& /*hint*/) const {
-  const auto place = ContactFrame::at(scene_.radius(), tip_, tip.head<2>());
-  if (!place) return std::nullopt;
-  return place->origin;
+  const auto frame = ContactFrame::at(scene_.radius(), tip_, tip.head<2>());
+  if (!frame) return std::nullopt;
+  return frame->origin;
 }
 
 bool OnlineFemCell::isClear(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis,
                             const Eigen::Vector3d& contact_point) const {
   if (tip_) return tip_->distance(-tip) > scene_.radius();
   if ((tip - contact_point).dot(axis) > 0) return true;
-  const auto now = ContactFrame::at(scene_.radius(), tip_, tip.head<2>());  // it may have gone sideways
+  const auto now = ContactFrame::at(scene_.radius(), tip_, tip.head<2>());  // it may have moved sideways
   return !now || tip.z() > now->origin.z();
 }
 
 ContactPoint OnlineFemCell::contactAt(const Eigen::Vector3d& contact_point, const Eigen::Vector3d& /*upright*/) const {
   Eigen::Vector2d line = contact_point.head<2>();
-  if (line.norm() < kTremble * scene_.needle.tip.radius) line.setZero();
+  if (line.norm() < kSamePoint * scene_.needle.tip.radius) line.setZero();
   return {ContactFrame::at(scene_.radius(), tip_, line)->origin, {}};
 }
 
@@ -136,11 +138,11 @@ Eigen::Vector3d OnlineFemCell::preparedDisplacement() const {
   return tip_ ? Eigen::Vector3d(0, 0, -kPrepared * tip_->radius()) : Eigen::Vector3d::Zero();
 }
 
-std::unique_ptr<TipPath> OnlineFemCell::path(const ContactPoint& place) const {
-  Scene there = scene_;
-  there.needle.offset = place.point.head<2>();
+std::unique_ptr<TipPath> OnlineFemCell::path(const ContactPoint& contact_point) const {
+  Scene local = scene_;
+  local.needle.offset = contact_point.point.head<2>();
   try {
-    return std::make_unique<SweptPath>(there, section_);
+    return std::make_unique<SweptPath>(local, section_);
   } catch (const InvertedElement&) {
     throw std::runtime_error("the live cell's mesh cannot be ordered around a needle so far out");
   }

@@ -41,7 +41,7 @@ LayeredBody<3>::Materials makeMaterials(const Scene& scene) {
 }  // namespace
 
 std::vector<std::string> P1Cell::refusals(const Scene& scene) {
-  constexpr char kNotLinear[] = " (linear tetrahedra do not do it)";
+  constexpr char kNotLinear[] = " (not possible with linear tetrahedra)";
   std::vector<std::string> errors;
   if (scene.cell.tensegrity) errors.push_back(std::string("cell/model = tensegrity: must be continuum") + kNotLinear);
   if (scene.needle.tip.shape != "disc") {
@@ -68,7 +68,7 @@ P1Cell::P1Cell(const Scene& scene)
       body_(std::make_shared<LayeredBody<3>>(makeQuadratic(mesh_, outerRadii(scene)), ElementKind::kP1,
                                              makeMaterials(scene))) {
   surface_ = extractSurface(mesh_);
-  // The same rule as under the needle: the pipette's mouth is a disc below, along -z.
+  // Same rule as under the needle: the pipette's mouth is a disc below, along -z.
   const Eigen::Vector3d down = -Eigen::Vector3d::UnitZ();
   held_vertices_ = findTipPatch(surface_, scene.radius() * down, down, scene.holding_pipette.contact_radius).vertices;
 }
@@ -80,8 +80,8 @@ std::string P1Cell::description() const {
   return text.str();
 }
 
-std::unique_ptr<TipPath> P1Cell::path(const ContactPoint& place) const {
-  return std::make_unique<Indentation>(shared_from_this(), place.patch);
+std::unique_ptr<TipPath> P1Cell::path(const ContactPoint& contact_point) const {
+  return std::make_unique<Indentation>(shared_from_this(), contact_point.patch);
 }
 
 }  // namespace microinjection

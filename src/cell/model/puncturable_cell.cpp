@@ -46,7 +46,7 @@ TipForce PuncturableCell::computeForce(const Pose& pose) {
       enter(*hole, pose);
     }
   }
-  if (!hole_) return touch(pose);
+  if (!hole_) return contactForce(pose);
   if (isOut(*hole_, pose)) {
     leave(pose);
     return {true, fading_.at(pose.tip, pose.time)};
@@ -54,13 +54,13 @@ TipForce PuncturableCell::computeForce(const Pose& pose) {
   return {true, forceInside(pose)};
 }
 
-TipForce PuncturableCell::touch(const Pose& pose) {
-  const bool touched = cell_->contact().has_value();
+TipForce PuncturableCell::contactForce(const Pose& pose) {
+  const bool was_in_contact = cell_->contact().has_value();
   inner_force_used_ = true;
   TipForce result = cell_->step(pose.tip, pose.axis, pose.time);
   if (!result.valid) return result;
   const auto& contact = cell_->contact();
-  if (!touched && contact) work_ = 0;
+  if (!was_in_contact && contact) work_ = 0;
   const double push = result.force.dot(pose.axis);
   const bool failed =
       contact && !config_.layers.empty() && config_.layers.front().fails(push, contact->indentation, tip_.radius);
@@ -69,7 +69,7 @@ TipForce PuncturableCell::touch(const Pose& pose) {
   if (!failed) return result;
   fading_.start(result.force, pose.tip, workTo(result.force, pose.tip), pose.time);
   const int hole = holes_.add({contact->contact_point, 0});
-  shown_.write(holes_);
+  published_holes_.write(holes_);
   cell_->release();
   inner_force_used_ = false;
   enter(hole, pose);
@@ -121,12 +121,12 @@ void PuncturableCell::failLayer(const Pose& pose) {
 }
 
 void PuncturableCell::updateDepth(const Pose& pose) {
-  insertion_.depth = (holes_[*hole_].place - pose.tip).dot(pose.axis);
-  in_contact_ = Contact{holes_[*hole_].place, pose.tip - holes_[*hole_].place, insertion_.depth};
+  insertion_.depth = (holes_[*hole_].position - pose.tip).dot(pose.axis);
+  in_contact_ = Contact{holes_[*hole_].position, pose.tip - holes_[*hole_].position, insertion_.depth};
 }
 
 bool PuncturableCell::isOut(int hole, const Pose& pose) const {
-  return clearance(pose.tip, pose.axis) >= clearance(holes_[hole].place, pose.axis);
+  return clearance(pose.tip, pose.axis) >= clearance(holes_[hole].position, pose.axis);
 }
 
 double PuncturableCell::clearance(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis) const {
@@ -161,10 +161,11 @@ std::optional<CellModel::Solution> PuncturableCell::solution(double time) const 
 }
 
 CellModel::DeformedSurface PuncturableCell::deformedSurface() {
-  DeformedSurface picture = cell_->deformedSurface();
-  shown_.update();
-  for (int i = 0; i < shown_.value().count(); ++i) picture.holes.push_back(shown_.value()[i].place);
-  return picture;
+  DeformedSurface surface = cell_->deformedSurface();
+  published_holes_.update();
+  for (int i = 0; i < published_holes_.value().count(); ++i)
+    surface.holes.push_back(published_holes_.value()[i].position);
+  return surface;
 }
 
 }  // namespace microinjection

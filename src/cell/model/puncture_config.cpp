@@ -54,12 +54,13 @@ void checkLayer(const PunctureConfig::Layer& layer, const std::string& path, boo
 
 }  // namespace
 
-double PunctureConfig::Layer::strainAt(double pushed, double tip_radius) const {
-  return std::hypot(1, pushed / (dimple_radius - tip_radius)) - 1;
+double PunctureConfig::Layer::strainAt(double indentation, double tip_radius) const {
+  return std::hypot(1, indentation / (dimple_radius - tip_radius)) - 1;
 }
 
-bool PunctureConfig::Layer::fails(double push, double pushed, double tip_radius) const {
-  return push >= force || pushed >= depth || (std::isfinite(strain) && strainAt(pushed, tip_radius) >= strain);
+bool PunctureConfig::Layer::fails(double push, double indentation, double tip_radius) const {
+  return push >= force || indentation >= depth ||
+         (std::isfinite(strain) && strainAt(indentation, tip_radius) >= strain);
 }
 
 PunctureConfig PunctureConfig::atForce(double force) {

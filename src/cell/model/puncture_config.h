@@ -10,45 +10,48 @@
 
 namespace microinjection {
 
-/// How a cell's membranes fail under the needle, and what holds its shaft afterwards: a scene's cell/puncture.
+/// Failure of a cell's membranes under the needle, and the resistance of its shaft afterwards: a
+/// scene's cell/puncture.
 struct PunctureConfig {
-  /// What the needle has to pierce. It fails once one of the three is reached; the others are infinite.
+  /// A membrane. It fails when one of the three limits is reached; the others are infinite.
   struct Layer {
     std::string name = "zona";
     double force = std::numeric_limits<double>::infinity();   ///< N along the pipette
-    double depth = std::numeric_limits<double>::infinity();   ///< m that the tip has pushed it in
+    double depth = std::numeric_limits<double>::infinity();   ///< m, indentation by the tip
     double strain = std::numeric_limits<double>::infinity();  ///< nominal, see strainAt()
-    double dimple_radius = 0;  ///< m, with strain: where the dent ends, from the pipette's axis
-    double stiffness = 0;      ///< N/m along the pipette; 0 of the outermost layer, whose force is the cell's
-    double gap = 0;            ///< m before the tip when the layer before it fails; 0 of the outermost layer
+    double dimple_radius = 0;  ///< m, with strain: outer radius of the dent, from the pipette's axis
+    double stiffness = 0;      ///< N/m along the pipette; 0 for the outermost layer, whose force is the cell's
+    double gap = 0;            ///< m ahead of the tip when the previous layer fails; 0 for the outermost layer
 
-    /// Meridional stretch, less 1, of a membrane that is straight from the rim of a tip of `tip_radius` c, m, `depth`
-    /// w, m, deep to where the dent ends: sqrt((a - c)^2 + w^2) / (a - c) - 1. A cone, as of a taut membrane with no
-    /// pressure behind it; for small w its w^2 / (2 (a - c)^2) is the strain in the derivation of Biomembrane with the
-    /// slope taken even. Not of the solid underneath: nominal.
-    double strainAt(double depth, double tip_radius) const;
-    /// Whether it fails where the tip has pushed it `depth` in, m, with `push` along the pipette, N.
-    bool fails(double push, double depth, double tip_radius) const;
+    /// Meridional strain of a membrane that is straight from the rim of a tip of `tip_radius` c, m,
+    /// at `indentation` w, m, to the outer radius of the dent: sqrt((a - c)^2 + w^2) / (a - c) - 1.
+    /// This is the cone of a taut membrane without pressure behind it. For small w its
+    /// w^2/(2(a-c)^2) is the strain in the derivation of Biomembrane with a uniform slope. It is
+    /// nominal, not that of the solid underneath.
+    double strainAt(double indentation, double tip_radius) const;
+    /// Whether the layer fails at this `indentation`, m, with the force `push` along the
+    /// pipette, N.
+    bool fails(double push, double indentation, double tip_radius) const;
   };
-  /// Of the part of the pipette that is in the cell.
+  /// Forces on the part of the pipette in the cell.
   struct Shaft {
-    double friction = 0;           ///< N, that the hole's rim resists sliding with at the most
-    double adhesion = 0;           ///< N/m of shaft in the cytoplasm, added to friction
-    double stiffness = 0.3;        ///< N/m along the pipette, of what sticks to the shaft until it slides
+    double friction = 0;           ///< N, largest resistance of the hole's rim to sliding
+    double adhesion = 0;           ///< N/m of shaft in the cytoplasm, in addition to friction
+    double stiffness = 0.3;        ///< N/m along the pipette, before the shaft slides
     double damping = 0;            ///< N s/m per m of shaft in the cytoplasm (Pa s), against its motion
     double lateral_stiffness = 0;  ///< N/m, of the hole's rim, against motion across the pipette
   };
 
-  std::vector<Layer> layers;  ///< outermost first; none: is never punctured
+  std::vector<Layer> layers;  ///< outermost first; none: the cell cannot be punctured
   Shaft shaft;
-  double relaxation_time = 2e-3;  ///< s, in which the force that a failure leaves falls to 1/e
+  double relaxation_time = 2e-3;  ///< s, in which the force after a failure falls to 1/e
 
   /// One layer, which fails at `force`, N.
   static PunctureConfig atForce(double force);
 
-  /// Of the map under `puncture` in a scene.
+  /// Reads the map under `puncture` of a scene.
   void read(ConfigReader reader);
-  /// @param tip_radius m
+  /// Adds the errors of this configuration. @param tip_radius m
   void check(double tip_radius, ConfigErrors& errors) const;
 };
 

@@ -6,16 +6,16 @@
 
 namespace microinjection {
 
-/// Where a needle was through the outermost layer: a hole a puncture. Of more than kMost the oldest are forgotten.
+/// Holes of a needle in the outermost layer, one for each puncture. The newest kMost are kept.
 class PunctureHoles {
  public:
   static constexpr int kMost = 64;
   struct Hole {
-    Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< m, of the tip as it touched there
-    int layers = 0;                                   ///< that have failed there, outermost first
+    Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m, of the tip at first contact
+    int layers = 0;                                      ///< number of failed layers there, outermost first
   };
 
-  /// Its index, valid until the next add().
+  /// Returns the hole's index, valid until the next add().
   int add(const Hole& hole) {
     const int index = made_ % kMost;
     holes_[index] = hole;
@@ -27,8 +27,8 @@ class PunctureHoles {
   Hole& operator[](int index) { return holes_[index]; }
   const Hole& operator[](int index) const { return holes_[index]; }
 
-  /// The nearest to the line through `tip` (m) along `axis` (unit, out of the cell) that is within `radius`, m, of it,
-  /// on the side of the cell that the needle comes from; none if none is.
+  /// The hole nearest to the line through `tip` (m) along `axis` (unit, out of the cell), within
+  /// `radius`, m, of it and on the needle's side of the cell; empty if there is none.
   std::optional<int> under(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double radius) const {
     std::optional<int> nearest;
     for (int i = 0; i < count(); ++i) {
@@ -39,13 +39,13 @@ class PunctureHoles {
     return nearest;
   }
   bool isOnNeedleLine(int index, const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double radius) const {
-    return distance(index, tip, axis) <= radius && holes_[index].place.dot(axis) > 0;
+    return distance(index, tip, axis) <= radius && holes_[index].position.dot(axis) > 0;
   }
 
  private:
   double distance(int index, const Eigen::Vector3d& tip, const Eigen::Vector3d& axis) const {
-    const Eigen::Vector3d way = holes_[index].place - tip;
-    return (way - way.dot(axis) * axis).norm();
+    const Eigen::Vector3d offset = holes_[index].position - tip;
+    return (offset - offset.dot(axis) * axis).norm();
   }
 
   std::array<Hole, kMost> holes_;

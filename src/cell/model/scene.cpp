@@ -15,7 +15,7 @@ namespace microinjection {
 namespace {
 
 constexpr char kContinuum[] = "continuum", kTensegrity[] = "tensegrity";
-constexpr double kAgreement = 1e-6;  // of a diameter that is given twice, relative
+constexpr double kAgreement = 1e-6;  // largest relative difference of a diameter that is given twice
 
 void readViscoelasticity(ConfigReader reader, ViscoelasticityConfig& value) {
   for (ConfigReader& term_reader : reader.sections("prony")) {
@@ -27,7 +27,7 @@ void readViscoelasticity(ConfigReader reader, ViscoelasticityConfig& value) {
 }
 
 void readMaterial(ConfigReader reader, MaterialConfig& value) {
-  value.model.clear();  // unless it is read
+  value.model.clear();  // empty unless it is read
   reader.choice("model", value.model, materialModels(), ConfigReader::kRequired);
   readQuantity(reader, "young_modulus", value.young_modulus, Range::positive(), "Pa", ConfigReader::kRequired);
   readQuantity(reader, "poisson_ratio", value.poisson_ratio, Range::open(-1, 0.5), "", ConfigReader::kRequired);
@@ -46,7 +46,7 @@ void readLayers(ConfigReader cell, std::vector<Scene::Layer>& layers) {
   layers.clear();
   for (ConfigReader& reader : cell.sections("layers", ConfigReader::kRequired)) {
     Scene::Layer& layer = layers.emplace_back();
-    layer.outer_radius = std::numeric_limits<double>::quiet_NaN();  // unless it is read
+    layer.outer_radius = std::numeric_limits<double>::quiet_NaN();  // NaN unless it is read
     reader.text("name", layer.name, ConfigReader::kRequired);
     readQuantity(reader, "outer_radius", layer.outer_radius, Range::positive(), "m", ConfigReader::kRequired);
     readMaterial(reader.section("material", ConfigReader::kRequired), layer.material);
@@ -113,7 +113,7 @@ void readAdhesion(ConfigReader contact, Scene::Contact& value) {
 
 void readNeedle(ConfigReader needle, Scene::Needle& value) {
   ConfigReader tip = needle.section("tip", ConfigReader::kRequired);
-  value.tip.shape.clear();  // unless it is read
+  value.tip.shape.clear();  // empty unless it is read
   tip.choice("shape", value.tip.shape, tipShapes(), ConfigReader::kRequired);
   readQuantity(tip, "radius", value.tip.radius, Range::positive(), "m", ConfigReader::kRequired);
   const bool has_edge = value.tip.shape == "rounded_flat";
@@ -123,7 +123,7 @@ void readNeedle(ConfigReader needle, Scene::Needle& value) {
     tip.error("edge_radius", "must be left out: it belongs to shape rounded_flat only");
   }
   ConfigReader contact = needle.section("contact");
-  if (contact.has("mode")) value.contact.mode.clear();  // unless it is read
+  if (contact.has("mode")) value.contact.mode.clear();  // empty unless it is read
   contact.choice("mode", value.contact.mode, {"sticking", "sliding"});
   readQuantity(contact, "friction", value.contact.friction, Range::nonNegative(), "");
   if (value.contact.mode == "sliding" && value.tip.shape == "disc") {

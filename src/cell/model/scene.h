@@ -15,9 +15,10 @@
 namespace microinjection {
 
 /// One cell, the pipette that holds it and the needle that enters it: the contents of a scene file
-/// (config/cells/*.yaml), SI units. The cell's centre is the origin; the needle comes along -z.
+/// (config/cells/*.yaml), SI units. The cell's centre is the origin; the needle comes from above
+/// along -z.
 struct Scene {
-  /// A ball or, with another layer inside of it, a spherical shell, bonded to its neighbours.
+  /// A ball or, around another layer, a spherical shell, bonded to its neighbours.
   struct Layer {
     std::string name = "cell";
     double outer_radius = 28e-6;  ///< m; the inner one is that of the next layer, or 0
@@ -26,19 +27,19 @@ struct Scene {
   };
   struct Cell {
     std::vector<Layer> layers = {Layer()};  ///< outermost first; a homogeneous cell is one layer named "cell"
-    /// Of a cell of model tensegrity: it has nothing of the layer but its radius.
+    /// Set for a tensegrity cell, which uses only the radius of its layer.
     std::optional<TensegrityConfig> tensegrity;
     PunctureConfig puncture;
-    std::optional<BiomembraneConfig> biomembrane;  ///< of the membrane model only
+    std::optional<BiomembraneConfig> biomembrane;  ///< for the membrane model only
 
-    /// Of the outermost layer: of the whole cell when it is homogeneous.
+    /// Material of the outermost layer: of the whole cell when it is homogeneous.
     MaterialConfig& material() { return layers.front().material; }
     const MaterialConfig& material() const { return layers.front().material; }
     double radius() const { return layers.front().outer_radius; }  ///< m
     double diameter() const { return 2 * radius(); }               ///< m
   };
   struct HoldingPipette {
-    double contact_radius = 10e-6;  ///< m, of the circle of the surface that sticks to the mouth
+    double contact_radius = 10e-6;  ///< m, of the circle on the surface that sticks to the mouth
   };
   struct Tip {
     std::string shape = "disc";  ///< one of tipShapes()
@@ -49,10 +50,10 @@ struct Scene {
     double edgeRadius() const { return shape == "hemisphere" ? radius : edge_radius; }  ///< m, of any shape; disc: 0
   };
   struct Contact {
-    std::string mode = "sticking";  ///< what touches sticks; or sliding, for rounded tips
+    std::string mode = "sticking";  ///< sticking, or sliding for rounded tips
     double friction = 0;            ///< Coulomb's coefficient, of sliding only, >= 0
-    double adhesion_energy = 0;     ///< J/m^2, to part what has touched, of rounded tips only, >= 0
-    double adhesion_range = 0;      ///< m, gap of the strongest pull, > 0 with adhesion; see cell/contact/tip_contact.h
+    double adhesion_energy = 0;     ///< J/m^2, energy of separation, for rounded tips only, >= 0
+    double adhesion_range = 0;      ///< m, gap of the largest traction, > 0 with adhesion; see TipContact
   };
   struct Needle {
     Tip tip;
@@ -61,7 +62,7 @@ struct Scene {
   };
   struct Refinement {
     double zone = 5;     ///< diameter of the puncture zone in needle diameters
-    double density = 5;  ///< how many times smaller elements are in the zone than elsewhere
+    double density = 5;  ///< ratio of the element sizes outside and inside of the zone
   };
   struct Mesh {
     std::optional<double> size;  ///< m, of the elements outside of the puncture zone; see meshSize()
@@ -69,9 +70,9 @@ struct Scene {
     double stretch = 1;  ///< of the elements along z, see CellMeshConfig
   };
 
-  /// Of a model that serves a needle, for the choice among those that could. A tensegrity scene has none.
+  /// Requirements by which `model:=auto` chooses a model. A tensegrity scene has none.
   struct Requirements {
-    double force_error = 0.02;  ///< relative, that is allowed
+    double force_error = 0.02;  ///< relative, allowed
     double rate = 1000;         ///< Hz, of forces
   };
 
@@ -83,13 +84,14 @@ struct Scene {
 
   double radius() const { return cell.radius(); }  ///< m
 
-  /// mesh.size, or by default what puts elements of one tip radius into the puncture zone, but from 1/20 to 0.3 of the
-  /// diameter (a finer tip in a large cell wants a higher density); m.
+  /// mesh.size. Its default gives elements of one tip radius in the puncture zone, within 1/20 to
+  /// 0.3 of the diameter (a finer tip in a large cell needs a higher density); m.
   double meshSize() const;
 
   /// Throws ConfigError with all errors at once.
   void validate() const;
-  /// Throws ConfigError, naming the purpose, for a tensegrity cell: what meshes the cell's inside has nothing of it.
+  /// Throws ConfigError that names the purpose for a tensegrity cell, which has no mesh of its
+  /// inside.
   void requireContinuum(const std::string& purpose) const;
 };
 

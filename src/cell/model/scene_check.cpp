@@ -12,11 +12,12 @@ namespace {
 
 constexpr double kRounding = 1e-9;  // relative
 
-/// A circle nearer to the equator than this lies on so steep a surface that it cannot be meshed well.
-constexpr double kSharpest = 0.05;  // rounded edge, of the tip's radius
-constexpr double kReach = 0.95;     // of the cell's radius
+/// Largest distance of circles from the axis, over the cell's radius. Further out the surface is
+/// too steep for a good mesh.
+constexpr double kSharpest = 0.05;  // radius of the rounded edge, over the tip's radius
+constexpr double kReach = 0.95;
 
-constexpr double kThinnestLayer = 1.0 / 500;  // of the cell's radius
+constexpr double kThinnestLayer = 1.0 / 500;  // over the cell's radius
 
 bool positive(double value) { return std::isfinite(value) && value > 0; }
 

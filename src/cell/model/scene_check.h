@@ -4,11 +4,11 @@
 
 namespace microinjection {
 
-/// What is allowed for needle/contact/mode under a disc, for messages.
+/// Allowed needle/contact/mode of a disc, for messages.
 inline constexpr char kDiscSticks[] =
     "sticking: the disc's sharp edge is the paper's nodal contact, which sticks; rounded_flat slides";
 
-/// The work of Scene::validate().
+/// Implementation of Scene::validate().
 void checkScene(const Scene& scene);
 
 }  // namespace microinjection

@@ -11,14 +11,15 @@
 namespace microinjection {
 namespace {
 
-constexpr double kGrowth = 0.25;  ///< of the elements' size with the distance from the needle's edge
+constexpr double kGrowth = 0.25;  ///< of the elements' size per distance from the needle's edge
 constexpr int kSegments = 8;      ///< around the needle, level 0
 constexpr int kFewestSegments = 6;
 
-/// m, of the elements far from the needle: they matter less, and shrink more slowly.
+/// Size of the elements far from the needle, m. They matter less and are refined more slowly.
 double farSize(const Scene& scene, double level) { return scene.radius() / 6 * std::pow(2, -0.5 * level); }
 
-/// m, at the edge of the holding pipette, where the stress is singular, too, but far from the needle.
+/// Element size at the edge of the holding pipette, m. The stress is singular there, too, but far
+/// from the needle.
 double holdingSize(const Scene& scene, double level) {
   return 0.25 * scene.holding_pipette.contact_radius * std::pow(2, -level);
 }
@@ -29,7 +30,7 @@ std::vector<double> radii(const Scene& scene) {
   return result;
 }
 
-/// Radius about the point of touch within which the surface may come to lie on the tip's end or on its shaft, m.
+/// Radius about the contact point within which the surface may touch the tip's end or its shaft, m.
 double contactReach(const Scene& scene) { return 1.4 * scene.needle.tip.radius; }
 
 SectionMeshConfig sectionConfig(const Scene& scene, double level) {
@@ -49,7 +50,7 @@ SectionMeshConfig sectionConfig(const Scene& scene, double level) {
   return config;
 }
 
-/// Place on the cell's surface about which the mesh is ordered, (x, y), m.
+/// Position (x, y) on the cell's surface about which the mesh is ordered, m.
 Eigen::Vector2d pole(const Scene& scene) {
   const Scene::Needle& needle = scene.needle;
   if (!needle.tip.rounded()) return needle.offset;
@@ -76,12 +77,12 @@ QuadraticMesh<2> makeSceneMesh<2>(const Scene& scene, double level) {
 namespace {
 
 QuadraticMesh<3> sweep(const Scene& scene, const QuadraticMesh<2>& section, double level, bool half) {
-  const Eigen::Vector2d place = pole(scene);
+  const Eigen::Vector2d contact_point = pole(scene);
   SweepConfig config;
   config.half = half;
   config.segments = std::max(kFewestSegments, static_cast<int>(std::lround(kSegments + 4 * level)));
-  config.pole_offset = place.norm();
-  config.pole_azimuth = place.isZero(0) ? 0 : std::atan2(place.y(), place.x());
+  config.pole_offset = contact_point.norm();
+  config.pole_azimuth = contact_point.isZero(0) ? 0 : std::atan2(contact_point.y(), contact_point.x());
   config.disc_radius = scene.needle.tip.rounded() ? 0 : scene.needle.tip.radius;
   config.holding_radius = scene.holding_pipette.contact_radius;
   if (half) config.segments = (config.segments + 1) / 2;

@@ -11,13 +11,13 @@ void ShaftResistance::enter(const Eigen::Vector3d& tip) {
 
 Eigen::Vector3d ShaftResistance::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double length,
                                       double duration) {
-  const Eigen::Vector3d move = tip - last_, way = tip - entered_at_;
+  const Eigen::Vector3d move = tip - last_, displacement = tip - entered_at_;
   last_ = tip;
   const double inside = std::max(length, 0.0);
   const double longest = (config_.friction + config_.adhesion * inside) / config_.stiffness;
   spring_origin_ = std::clamp(spring_origin_ + move.dot(axis), -longest, longest);
   Eigen::Vector3d force = -config_.stiffness * spring_origin_ * axis;
-  force -= config_.lateral_stiffness * (way - way.dot(axis) * axis);
+  force -= config_.lateral_stiffness * (displacement - displacement.dot(axis) * axis);
   if (duration > 0) force -= config_.damping * inside / duration * move;
   return force;
 }

@@ -20,19 +20,19 @@ SolutionThread::~SolutionThread() {
   thread_.join();
 }
 
-// The solving thread has the lock for the exchange of a pointer, but may lose the processor while it does.
+// The solving thread holds the lock only to exchange a pointer, but may be suspended while it does.
 
-bool SolutionThread::request(const std::shared_ptr<const ContactPoint>& place, const TipMotion& move) {
+bool SolutionThread::request(const std::shared_ptr<const ContactPoint>& contact_point, const TipMotion& move) {
   {
     const std::unique_lock<std::mutex> lock(mutex_, std::try_to_lock);
     if (!lock) return false;
-    request_ = Request{place, move};
+    request_ = Request{contact_point, move};
   }
   changed_.notify_all();
   return true;
 }
 
-std::shared_ptr<const CellSolution> SolutionThread::take() {
+std::shared_ptr<const CellSolution> SolutionThread::poll() {
   const std::unique_lock<std::mutex> lock(mutex_, std::try_to_lock);
   if (!lock) return nullptr;
   if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
@@ -47,9 +47,10 @@ std::shared_ptr<const CellSolution> SolutionThread::wait() {
 }
 
 void SolutionThread::run() {
-  // A solution takes tens of milliseconds; the threads that step the chain every millisecond come first. Where those
-  // run in real time, and this one inherits it, it need only come before the rest of the machine. On Linux these calls
-  // concern the calling thread alone, and they may fail without harm.
+  // A solution takes tens of milliseconds. The threads that step every millisecond have priority.
+  // If those run in real time, which this thread inherits, it only needs priority over the rest of
+  // the machine. On Linux these calls affect only the calling thread, and their failure does no
+  // harm.
   const bool real_time = sched_getscheduler(0) != SCHED_OTHER;
   const sched_param ordinary{};
   sched_setscheduler(0, SCHED_OTHER, &ordinary);
@@ -58,30 +59,30 @@ void SolutionThread::run() {
   while (true) {
     changed_.wait(lock, [this] { return stop_ || request_; });
     if (stop_) return;
-    const Request question = std::move(*std::exchange(request_, std::nullopt));
+    const Request request = std::move(*std::exchange(request_, std::nullopt));
     lock.unlock();
-    std::shared_ptr<const CellSolution> answer;
+    std::shared_ptr<const CellSolution> solution;
     std::exception_ptr failure;
     try {
-      answer = solve(question);
+      solution = solve(request);
     } catch (...) {
       failure = std::current_exception();
     }
     lock.lock();
-    solution_ = std::move(answer);
+    solution_ = std::move(solution);
     failure_ = failure;
     changed_.notify_all();
   }
 }
 
-std::shared_ptr<const CellSolution> SolutionThread::solve(const Request& question) {
-  if (!path_ || !question.place->sameAs(place_)) {
-    path_ = cell_->path(*question.place);
-    place_ = *question.place;
+std::shared_ptr<const CellSolution> SolutionThread::solve(const Request& request) {
+  if (!path_ || !request.contact_point->sameAs(contact_point_)) {
+    path_ = cell_->path(*request.contact_point);
+    contact_point_ = *request.contact_point;
   }
   auto solution = std::make_shared<CellSolution>();
-  solution->place = *question.place;
-  solution->indentation = path_->follow(question.move);
+  solution->contact_point = *request.contact_point;
+  solution->indentation = path_->follow(request.move);
   solution->rest = path_->rest();
   solution->displacement = path_->surfaceDisplacement();
   solution->members = path_->members();

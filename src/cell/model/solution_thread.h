@@ -13,17 +13,17 @@
 
 namespace microinjection {
 
-/// An equilibrium and the deformation that goes with it.
+/// An equilibrium with its deformation.
 struct CellSolution {
-  ContactPoint place;
+  ContactPoint contact_point;
   IndentationSolution indentation;
   std::shared_ptr<const std::vector<Eigen::Vector3d>> rest;  ///< see TipPath
-  Eigen::VectorXd displacement;                              ///< m, xyz of each vertex of the picture
+  Eigen::VectorXd displacement;                              ///< m, xyz of each vertex of the surface
   std::vector<CellModel::Member> members;
 };
 
-/// Follows a tip in a thread of its own, which makes the equations for each place, too. The asking thread never waits,
-/// unless it calls wait(), and never has to free a solution.
+/// Follows a tip in a separate thread, which also makes the equations of each contact point. The
+/// requesting thread never blocks, except in wait(), and never frees a solution.
 class SolutionThread {
  public:
   explicit SolutionThread(std::shared_ptr<const OnlineCell> cell);
@@ -31,38 +31,38 @@ class SolutionThread {
   SolutionThread(const SolutionThread&) = delete;
   SolutionThread& operator=(const SolutionThread&) = delete;
 
-  /// Asks for the equilibrium of a tip that moved from `place`. Returns false, and asks nothing, while the solving
-  /// thread is at the exchange. @pre the answer before was taken.
-  bool request(const std::shared_ptr<const ContactPoint>& place, const TipMotion& move);
-  /// The answer when it is there, else, or while the solving thread is at the exchange, null. Rethrows what the solver
-  /// threw.
-  std::shared_ptr<const CellSolution> take();
-  /// As take(), but waits for the answer. @pre an answer is due.
+  /// Requests the equilibrium of a tip with this contact point. Returns false without a request
+  /// while the solving thread holds the lock. @pre the previous solution was received.
+  bool request(const std::shared_ptr<const ContactPoint>& contact_point, const TipMotion& move);
+  /// Returns the solution if it is ready, else null, also while the solving thread holds the lock.
+  /// Rethrows an exception of the solver.
+  std::shared_ptr<const CellSolution> poll();
+  /// As poll(), but waits for the solution. @pre a solution was requested.
   std::shared_ptr<const CellSolution> wait();
 
  private:
   struct Request {
-    std::shared_ptr<const ContactPoint> place;
+    std::shared_ptr<const ContactPoint> contact_point;
     TipMotion move;
   };
   void run();
-  std::shared_ptr<const CellSolution> solve(const Request& question);
+  std::shared_ptr<const CellSolution> solve(const Request& request);
 
   std::shared_ptr<const OnlineCell> cell_;
-  std::unique_ptr<TipPath> path_;  ///< of the solving thread only
-  ContactPoint place_;             ///< of the solving thread only
-  /// Of the solving thread only: all that others may still have. It drops them when nobody has, so that freeing their
-  /// memory is never left to the thread that asks.
+  std::unique_ptr<TipPath> path_;  ///< used by the solving thread only
+  ContactPoint contact_point_;     ///< used by the solving thread only
+  /// Used by the solving thread only: all solutions that others may still use. It drops those that
+  /// nobody uses, so that the requesting thread never frees their memory.
   std::vector<std::shared_ptr<const CellSolution>> published_;
 
-  std::mutex mutex_;  ///< guards what follows
+  std::mutex mutex_;  ///< guards the members below
   std::condition_variable changed_;
   bool stop_ = false;
   std::optional<Request> request_;
   std::shared_ptr<const CellSolution> solution_;
   std::exception_ptr failure_;
 
-  std::thread thread_;  ///< last: starts when all else is there
+  std::thread thread_;  ///< last, so that it starts after the other members
 };
 
 }  // namespace microinjection

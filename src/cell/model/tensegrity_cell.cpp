@@ -27,13 +27,15 @@ std::unique_ptr<TensegrityIndentation> TensegrityCell::indentation(const TipPatc
 
 std::string TensegrityCell::description() const {
   std::ostringstream text;
-  text << "tensegrity of " << structure_->nodePlaces().size() << " nodes, " << structure_->struts().elementCount()
+  text << "tensegrity of " << structure_->nodePositions().size() << " nodes, " << structure_->struts().elementCount()
        << " tetrahedra; prestress " << structure_->form().prestress << " N, unbalanced " << structure_->form().residual
        << " N";
   return text.str();
 }
 
-std::unique_ptr<TipPath> TensegrityCell::path(const ContactPoint& place) const { return indentation(place.patch); }
+std::unique_ptr<TipPath> TensegrityCell::path(const ContactPoint& contact_point) const {
+  return indentation(contact_point.patch);
+}
 
 std::vector<CellModel::Member> TensegrityCell::undeformedMembers() const {
   return tensegrityMembers(*structure_, *structure_->makeParts().cables, structure_->start());

@@ -10,18 +10,19 @@
 
 namespace microinjection {
 
-/// The cell of a scene of model tensegrity: the needle meets its membrane anywhere, strut ends being vertices of it.
-/// A strut or cable inside is not met by the needle.
+/// The cell of a tensegrity scene. The needle touches its membrane at any point; strut ends are
+/// vertices of it. The needle does not touch struts or cables inside.
 class TensegrityCell : public DiscContactCell {
  public:
-  /// Throws ConfigError when the scene is not valid or of another model, std::runtime_error as TensegrityStructure.
+  /// Throws ConfigError when the scene is not valid or of another model, std::runtime_error as
+  /// TensegrityStructure.
   explicit TensegrityCell(const Scene& scene);
 
   const TensegrityStructure& structure() const { return *structure_; }
   /// Throws std::invalid_argument when the patch and the held strut ends overlap.
   std::unique_ptr<TensegrityIndentation> indentation(const TipPatch& patch) const;
   std::string description() const override;
-  std::unique_ptr<TipPath> path(const ContactPoint& place) const override;
+  std::unique_ptr<TipPath> path(const ContactPoint& contact_point) const override;
   std::vector<CellModel::Member> undeformedMembers() const override;
 
  private:

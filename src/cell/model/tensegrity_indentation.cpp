@@ -8,7 +8,7 @@
 namespace microinjection {
 namespace {
 
-constexpr double kLead = 0.03;  ///< s, about what a solution takes
+constexpr double kLead = 0.03;  ///< s, about the duration of a solution
 
 }  // namespace
 
@@ -55,8 +55,8 @@ IndentationSolution TensegrityIndentation::solve(const Eigen::Vector3d& tip_disp
 }
 
 IndentationSolution TensegrityIndentation::follow(const TipMotion& move) {
-  if (clock_.startsAgain(move)) reset();
-  return solve(move.displacement, clock_.pass(move));
+  if (clock_.mustRestart(move)) reset();
+  return solve(move.displacement, clock_.advance(move));
 }
 
 Eigen::VectorXd TensegrityIndentation::surfaceDisplacement() const {

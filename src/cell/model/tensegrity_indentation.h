@@ -13,19 +13,20 @@
 
 namespace microinjection {
 
-/// A tensegrity cell under one sticking patch of its membrane: every vertex of the patch moves by the displacement of
-/// the tip. Keeps its state and continues from it. One thread at a time.
+/// A tensegrity cell under one sticking patch of its membrane: every vertex of the patch moves by
+/// the displacement of the tip. Keeps its state and continues from it. One thread at a time.
 class TensegrityIndentation : public TipPath {
  public:
   /// Throws std::invalid_argument when the patch and the held strut ends overlap.
   TensegrityIndentation(std::shared_ptr<const TensegrityStructure> structure, const TipPatch& patch);
 
-  /// Equilibrium at `tip_displacement` (m), reached along the straight line from the present one in `duration` (s;
-  /// infinite: nothing viscous resists). On failure the state stays at the last equilibrium that was found.
+  /// Equilibrium at `tip_displacement` (m). The tip moves along the straight line from its present
+  /// position in `duration` (s; infinite: viscous stresses have relaxed). On failure the state
+  /// stays at the last equilibrium.
   IndentationSolution solve(const Eigen::Vector3d& tip_displacement,
                             double duration = std::numeric_limits<double>::infinity());
   Eigen::Vector3d tipDisplacement() const { return loading_.displacement(); }  ///< m, in the present state
-  void reset() { loading_.reset(); }                                           ///< back to the cell without the needle
+  void reset() { loading_.reset(); }                                           ///< removes the needle
 
   IndentationSolution follow(const TipMotion& move) override;
   std::shared_ptr<const std::vector<Eigen::Vector3d>> rest() const override { return nullptr; }
@@ -37,7 +38,8 @@ class TensegrityIndentation : public TipPath {
   ContactTime clock_;
 };
 
-/// Struts, each in some pieces, and then cables, of a state; `cables` as TensegrityStructure::makeParts() made them.
+/// Struts, each in several pieces, then cables, in a state. `cables` must be from
+/// TensegrityStructure::makeParts().
 std::vector<CellModel::Member> tensegrityMembers(const TensegrityStructure& structure, const Cables& cables,
                                                  const Eigen::VectorXd& state);
 

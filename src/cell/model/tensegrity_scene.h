@@ -5,8 +5,8 @@
 
 namespace microinjection {
 
-/// Reads `cell: {model: tensegrity, ...}` of a scene file. What a member is made of and how it is prestressed must be
-/// given: counts and prestrains have no default, the figures of Table II do.
+/// Reads `cell: {model: tensegrity, ...}` of a scene file. Filament counts and prestrains are
+/// required; the values of Table II are defaults.
 void readTensegrity(ConfigReader& cell, TensegrityConfig& value);
 
 }  // namespace microinjection

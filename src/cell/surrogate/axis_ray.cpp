@@ -12,7 +12,8 @@ namespace {
 
 constexpr double kLevels[] = {-1, 0, 1};
 
-/// Displacement (m; away from the axis, along it) of the section's outline by the angle (rad) from the pole.
+/// Displacement (m; away from the axis, along it) of the section's outline as a function of the
+/// angle (rad) from the pole.
 using Outline = std::map<double, Eigen::Vector2d>;
 
 Outline outline(const CellProblem<2>& problem) {

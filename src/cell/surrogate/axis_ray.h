@@ -8,10 +8,10 @@
 
 namespace microinjection {
 
-/// Equilibria of the cell's section for a tip that comes down on the axis to `depths` (m, ascending): converged, and
-/// deeper than in space, where the cell can give way to a side. Of each depth that of the finest of a few meshes that
-/// reaches it; none for depths that no mesh does. `surface`: nodes (m, xyz) at rest whose displacement is wanted, on
-/// the cell's sphere.
+/// Converged equilibria of the cell's section for a tip that moves down on the axis to `depths` (m,
+/// ascending). They go deeper than in space, where the cell can buckle sideways. Each depth has the
+/// result of the finest mesh that reaches it; depths that no mesh reaches are left out. `surface`:
+/// nodes (m, xyz) at rest on the cell's sphere, whose displacements are added to the samples.
 std::vector<TrainingSample> solveAxis(const Scene& scene, const std::vector<double>& depths,
                                       const Eigen::VectorXd& surface);
 

@@ -9,9 +9,9 @@
 namespace microinjection {
 namespace {
 
-constexpr int kMost = 16;              ///< terms of a polynomial in one variable, at most
-constexpr double kLargestRoot = 1.05;  ///< s of the longest displacement, with some room
-constexpr double kNothing = 1e-9;      ///< t of no displacement
+constexpr int kMost = 16;              ///< largest number of terms of a polynomial in one variable
+constexpr double kLargestRoot = 1.05;  ///< s of the longest displacement, with a margin
+constexpr double kNothing = 1e-9;      ///< t below which the displacement is zero
 
 using Series = std::array<double, kMost>;
 
@@ -43,7 +43,7 @@ void chebyshev(double s, int degree, Values& values) {
   }
 }
 
-/// The variables of the sum, as functions of the displacement.
+/// The variables of the expansion, as functions of the displacement.
 struct Variables {
   Jet a, w, s;
   Jet factor;  ///< energy t^2
@@ -100,13 +100,13 @@ Jet compose(const Sum& sum, const Variables& at) {
 
 EnergyExpansion::EnergyExpansion(const EnergyScales& scales, const EnergyDegrees& degrees)
     : scales_(scales), degrees_(degrees) {
-  if (degrees.place >= kMost || degrees.direction >= kMost || degrees.distance < 1 || degrees.distance >= kMost ||
+  if (degrees.angle >= kMost || degrees.direction >= kMost || degrees.distance < 1 || degrees.distance >= kMost ||
       degrees.root < 1 || degrees.root > 2) {
     throw std::invalid_argument("EnergyExpansion: degrees must be in [1, 15], root 1 or 2");
   }
-  for (int j = 0; j <= std::min(degrees.place, degrees.direction); ++j) {
+  for (int j = 0; j <= std::min(degrees.angle, degrees.direction); ++j) {
     for (int k = 0; j + k <= degrees.direction; ++k) {
-      for (int i = 0; 2 * i + j <= degrees.place; ++i) terms_.push_back({i, j, k, static_cast<int>(powers_.size())});
+      for (int i = 0; 2 * i + j <= degrees.angle; ++i) terms_.push_back({i, j, k, static_cast<int>(powers_.size())});
       powers_.emplace_back(j, k);
     }
   }
@@ -125,16 +125,16 @@ void EnergyExpansion::basis(double angle, const Eigen::Vector3d& displacement, E
   Variables at;
   if (!variables(scales_, degrees_.root, displacement, at)) return;
   Values c, a, w, s;
-  powers(angle / scales_.angle, degrees_.place, c);
+  powers(angle / scales_.angle, degrees_.angle, c);
   powers(at.a.value, degrees_.direction, a);
   powers(at.w.value, degrees_.direction, w);
   chebyshev(at.s.value, degrees_.distance, s);
   int index = 0;
   for (const Term& term : terms_) {
-    const double place = c.f[2 * term.i + term.j];
+    const double angle_factor = c.f[2 * term.i + term.j];
     for (int n = 0; n <= degrees_.distance; ++n, ++index) {
       Sum sum;
-      add(sum, a, term.j, w, term.k, place * s.f[n], place * s.f1[n], place * s.f2[n]);
+      add(sum, a, term.j, w, term.k, angle_factor * s.f[n], angle_factor * s.f1[n], angle_factor * s.f2[n]);
       const Jet jet = compose(sum, at);
       energy[index] = jet.value;
       gradient.col(index) = jet.gradient;
@@ -144,7 +144,7 @@ void EnergyExpansion::basis(double angle, const Eigen::Vector3d& displacement, E
 
 void EnergyExpansion::makeLocal(double angle, Local& local) const {
   Values c;
-  powers(angle / scales_.angle, degrees_.place, c);
+  powers(angle / scales_.angle, degrees_.angle, c);
   local.scales_ = scales_;
   local.powers_ = powers_;
   local.highest_ = degrees_.direction;
@@ -152,9 +152,9 @@ void EnergyExpansion::makeLocal(double angle, Local& local) const {
   local.coefficients_.setZero(degrees_.distance + 1, powers_.size());
   int index = 0;
   for (const Term& term : terms_) {
-    const double place = c.f[2 * term.i + term.j];
+    const double angle_factor = c.f[2 * term.i + term.j];
     for (int n = 0; n <= degrees_.distance; ++n, ++index) {
-      local.coefficients_(n, term.column) += place * coefficients_[index];
+      local.coefficients_(n, term.column) += angle_factor * coefficients_[index];
     }
   }
 }

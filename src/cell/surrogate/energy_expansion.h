@@ -7,31 +7,33 @@
 
 namespace microinjection {
 
-/// What a unit of the expansion's variables is.
+/// Units of the expansion's variables.
 struct EnergyScales {
-  double angle = 1.0471975511965976;  ///< rad, of the place of contact from the pole
+  double angle = 1.0471975511965976;  ///< rad, of the contact point from the pole
   double length = 20e-6;              ///< m, longest displacement of the tip
   double energy = 1e-12;              ///< J
 };
 
 struct EnergyDegrees {
-  int place = 4;      ///< in the contact angle, even
+  int angle = 4;      ///< in the contact angle, even
   int direction = 6;  ///< in the displacement's direction
   int distance = 7;   ///< in the square root of its length
   int root = 2;       ///< power of the length in every term: 2 for an energy, 1 for a force
 };
 
-/// Stored energy of a cell of revolution as a function of where the tip touched it and of how it moved since.
+/// Stored energy of a cell of revolution as a function of the contact point and of the tip's
+/// displacement since.
 ///
-/// The tip's displacement u is in the frame of the place: x away from the axis of the cell, z along the needle, out of
-/// the cell. With t = |u| / length, s = sqrt(t), a = u_x / |u|, w = 1 + u_z / |u| and c = angle / scale:
+/// The tip's displacement u is in the contact frame: x away from the axis of the cell, z along the
+/// needle, out of the cell. With t = |u| / length, s = sqrt(t), a = u_x / |u|, w = 1 + u_z / |u|
+/// and c = angle / scale:
 ///
 ///     E = energy t^2 sum_(i, j, k, n) C_ijkn (c^2)^i (c a)^j w^k T_n(2 s / s_max - 1)
 ///
-/// These are all smooth functions of two plane vectors, the place and the lateral displacement, that do not change when
-/// both are turned or mirrored together; polynomials in a and w are the spherical harmonics. t^2 and powers of s hold
-/// both a patch that sticks (E ~ t^2 at first) and a round tip (t^(5/2), Hertz). For a function that is a force, t
-/// instead of t^2 and N instead of J.
+/// These are all smooth functions of two plane vectors, the contact point and the lateral
+/// displacement, that are invariant when both are rotated or mirrored together; polynomials in a
+/// and w are the spherical harmonics. t^2 and powers of s represent both a sticking patch (E ~ t^2
+/// at first) and a round tip (t^(5/2), Hertz). For a force, t replaces t^2 and N replaces J.
 class EnergyExpansion {
  public:
   EnergyExpansion() = default;
@@ -41,7 +43,7 @@ class EnergyExpansion {
   const EnergyDegrees& degrees() const { return degrees_; }
   int size() const { return static_cast<int>(terms_.size()) * (degrees_.distance + 1); }
 
-  /// Of each coefficient: energy (J) and its gradient (N) by the displacement, per unit. (3 x size)
+  /// Energy (J) and its gradient (N) by the displacement for a unit of each coefficient (3 x size).
   void basis(double angle, const Eigen::Vector3d& displacement, Eigen::VectorXd& energy,
              Eigen::Matrix3Xd& gradient) const;
 
@@ -49,17 +51,17 @@ class EnergyExpansion {
   void setCoefficients(Eigen::VectorXd coefficients);
   const Eigen::VectorXd& coefficients() const { return coefficients_; }
 
-  /// The expansion at one place: of 3 variables only, and quick. Allocates once.
+  /// The expansion at one contact point: a fast function of 3 variables. Allocates once.
   class Local {
    public:
-    /// J, N, N/m; zero at no displacement. Allocates nothing.
+    /// J, N, N/m; zero at zero displacement. Does not allocate.
     Jet evaluate(const Eigen::Vector3d& displacement) const;
 
    private:
     friend class EnergyExpansion;
     EnergyScales scales_;
     int root_ = 2;
-    int highest_ = 0;                          ///< of powers_
+    int highest_ = 0;                          ///< power of powers_
     std::vector<std::pair<int, int>> powers_;  ///< of a and w, for each column
     Eigen::MatrixXd coefficients_;             ///< of T_n (row) in each column
   };

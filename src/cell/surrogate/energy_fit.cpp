@@ -20,7 +20,7 @@ void fitEnergy(EnergyExpansion& expansion, const std::vector<TrainingSample>& sa
   Eigen::VectorXd right = Eigen::VectorXd::Zero(rows + unknowns), energy;
   Eigen::Matrix3Xd gradient;
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (samples[i].force.isZero(0)) continue;  // has lost the cell
+    if (samples[i].force.isZero(0)) continue;  // the tip has lost the cell
     const double weight = 1 / (samples[i].force.norm() + config.floor * largest);
     expansion.basis(samples[i].angle, samples[i].displacement, energy, gradient);
     matrix.middleRows<3>(3 * i) = weight * gradient;

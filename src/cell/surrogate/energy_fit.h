@@ -8,14 +8,15 @@
 namespace microinjection {
 
 struct EnergyFitConfig {
-  double floor = 0.0025;         ///< of the largest force: smaller ones count as if they were larger by it
-  double regularisation = 1e-4;  ///< of each coefficient, relative to what it does to the forces
+  double floor = 0.0025;         ///< share of the largest force that is added to the magnitude in a sample's weight
+  double regularisation = 1e-4;  ///< of each coefficient, relative to its effect on the forces
 };
 
-/// N, size.
+/// Largest magnitude of the samples' forces, N.
 double largestForce(const std::vector<TrainingSample>& samples);
 
-/// Coefficients by which -dE/du is nearest to the samples' forces, each relative to its size.
+/// Least-squares fit of the coefficients: -dE/du to the samples' forces, with errors relative to
+/// each force.
 void fitEnergy(EnergyExpansion& expansion, const std::vector<TrainingSample>& samples,
                const EnergyFitConfig& config = {});
 

@@ -13,7 +13,7 @@ EnergyScales forceScales(EnergyScales scales) {
   return scales;
 }
 
-/// Least squares with each coefficient held back by `regularisation`, relative to what it does.
+/// Least squares with a penalty on each coefficient: `regularisation` relative to its effect.
 Eigen::VectorXd solve(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right, double regularisation) {
   const Eigen::Index rows = matrix.rows(), unknowns = matrix.cols();
   Eigen::MatrixXd all = Eigen::MatrixXd::Zero(rows + unknowns, unknowns);
@@ -42,7 +42,7 @@ void ForceField::fit(const std::vector<TrainingSample>& samples, const EnergyFit
   const double largest = largestForce(samples);
   for (Eigen::Index i = 0; i < count; ++i) {
     const TrainingSample& sample = samples[i];
-    if (sample.force.isZero(0)) continue;  // has lost the cell
+    if (sample.force.isZero(0)) continue;  // the tip has lost the cell
     const double weight = 1 / (sample.force.norm() + config.floor * largest), c = sample.angle / scales_.angle;
     const Eigen::Vector3d direction = sample.displacement.normalized();
     away_.basis(sample.angle, sample.displacement, values, gradients);
@@ -62,7 +62,7 @@ void ForceField::fit(const std::vector<TrainingSample>& samples, const EnergyFit
 }
 
 void ForceField::makeLocal(double angle, Local& local) const {
-  local.contact_frame_ = angle / scales_.angle;
+  local.scaled_angle_ = angle / scales_.angle;
   away_.makeLocal(angle, local.away_);
   lateral_.makeLocal(angle, local.lateral_);
   axial_.makeLocal(angle, local.axial_);
@@ -77,7 +77,7 @@ Eigen::Vector3d ForceField::Local::evaluate(const Eigen::Vector3d& u, Eigen::Mat
   }
   if (!(squared.value > 0)) return Eigen::Vector3d::Zero();
   const Jet scale = inverse(sqrt(squared)), across = lateral_.evaluate(u);
-  const Jet x = contact_frame_ * away_.evaluate(u) + Jet::coordinate(0, u.x()) * scale * across;
+  const Jet x = scaled_angle_ * away_.evaluate(u) + Jet::coordinate(0, u.x()) * scale * across;
   const Jet y = Jet::coordinate(1, u.y()) * scale * across, z = axial_.evaluate(u);
   jacobian << x.gradient.transpose(), y.gradient.transpose(), z.gradient.transpose();
   return {x.value, y.value, z.value};

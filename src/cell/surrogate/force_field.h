@@ -8,13 +8,15 @@
 
 namespace microinjection {
 
-/// Force on the tip as a function of where it touched and how it moved since, without the demand that it be the
-/// gradient of an energy: where points stick as they touch, the force at the end of a straight path is none. In the
-/// frame of the place, with a = u_x / |u|, b = u_y / |u|, c as in EnergyExpansion and three such expansions A, B, Z:
+/// Force on the tip as a function of the contact point and the displacement since, without the
+/// condition that it is the gradient of an energy: with sticking, the force at the end of a
+/// straight path is none. In the contact frame, with a = u_x / |u|, b = u_y / |u|, c as in
+/// EnergyExpansion and three such expansions A, B, Z:
 ///
 ///     F = (c A + a B, b B, Z)
 ///
-/// which is the form of any smooth vector that turns and is mirrored with place and displacement.
+/// This is the form of any smooth vector that is rotated and mirrored together with contact point
+/// and displacement.
 class ForceField {
  public:
   ForceField() = default;
@@ -22,23 +24,23 @@ class ForceField {
 
   bool empty() const { return axial_.size() == 0; }
 
-  /// Nearest to the samples' forces, each relative to its size.
+  /// Least-squares fit to the samples' forces, with errors relative to each force.
   void fit(const std::vector<TrainingSample>& samples, const EnergyFitConfig& config = {});
 
-  /// At one place. Allocates in makeLocal of the first place only.
+  /// The field at one contact point. Only the first makeLocal allocates.
   class Local {
    public:
-    /// N, and its derivative by the displacement, N/m. Zero at no displacement.
+    /// N, and its derivative by the displacement, N/m. Zero at zero displacement.
     Eigen::Vector3d evaluate(const Eigen::Vector3d& displacement, Eigen::Matrix3d& jacobian) const;
 
    private:
     friend class ForceField;
-    double contact_frame_ = 0;
+    double scaled_angle_ = 0;
     EnergyExpansion::Local away_, lateral_, axial_;
   };
   void makeLocal(double angle, Local& local) const;
 
-  /// Coefficients of the three, one after another: to be stored.
+  /// Coefficients of the three expansions in sequence, for storage.
   Eigen::VectorXd coefficients() const;
   void setCoefficients(const Eigen::VectorXd& coefficients);
 

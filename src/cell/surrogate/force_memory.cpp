@@ -14,7 +14,7 @@ Eigen::Vector3d ForceMemory::step(const Eigen::Vector3d& elastic, double duratio
   elastic_ = elastic;
   for (Branch& branch : branches_) {
     const double ratio = duration / branch.term.relaxation_time;
-    const double share = ratio > 0 ? -std::expm1(-ratio) / ratio : 1;  // of the change that is not relaxed yet
+    const double share = ratio > 0 ? -std::expm1(-ratio) / ratio : 1;  // share of the change that has not relaxed yet
     branch.force = std::exp(-ratio) * branch.force + branch.term.modulus_ratio * share * change;
     sum += branch.force;
   }

@@ -7,14 +7,16 @@
 
 namespace microinjection {
 
-/// Viscoelastic memory of a force (quasi-linear viscoelasticity, Fung, "Biomechanics", 7.6): each Prony term adds q to
-/// the elastic force F, dq/dt + q/tau = beta dF/dt, integrated exactly for an F that changes evenly within the step.
-/// Where all of a nearly incompressible cell relaxes alike, this is what its force does at small strain.
+/// Viscoelastic memory of a force (quasi-linear viscoelasticity, Fung, "Biomechanics", 7.6): each
+/// Prony term adds q to the elastic force F, dq/dt + q/tau = beta dF/dt, integrated exactly for an
+/// F that changes linearly within the step. At small strain it is the force of a nearly
+/// incompressible cell whose layers relax alike.
 class ForceMemory {
  public:
   explicit ForceMemory(const std::vector<PronyTerm>& terms);
 
-  /// N, to be added to the elastic force (N), which was the last one `duration` (s, >= 0) ago. Allocates nothing.
+  /// Viscous force (N) that is added to `elastic` (N), `duration` (s, >= 0) after the last step.
+  /// Does not allocate.
   Eigen::Vector3d step(const Eigen::Vector3d& elastic, double duration);
   void reset();
 

@@ -5,7 +5,8 @@
 
 namespace microinjection {
 
-/// A function's value, gradient and Hessian at a point of space: forward differentiation to second order.
+/// A function's value, gradient and Hessian at a point of space: forward differentiation to second
+/// order.
 struct Jet {
   double value = 0;
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
@@ -20,7 +21,7 @@ struct Jet {
   }
 };
 
-/// f(jet), with f and its first two derivatives there.
+/// f(jet), given f and its first two derivatives at jet.value.
 inline Jet chain(const Jet& jet, double f, double f1, double f2) {
   return {f, f1 * jet.gradient, f1 * jet.hessian + f2 * jet.gradient * jet.gradient.transpose()};
 }

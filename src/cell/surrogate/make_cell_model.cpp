@@ -13,23 +13,24 @@
 namespace microinjection {
 namespace {
 
-ChosenCellModel live(const Scene& scene, const OnlineCellModelConfig& config, const std::string& said,
+ChosenCellModel live(const Scene& scene, const OnlineCellModelConfig& config, const std::string& description,
                      bool as_required) {
   const auto cell = makeOnlineCell(scene);
   auto tracker = std::make_unique<OnlineCellModel>(cell, config);
-  return {std::make_unique<PuncturableCell>(scene, std::move(tracker)), said + ": " + cell->description(), as_required};
+  return {std::make_unique<PuncturableCell>(scene, std::move(tracker)), description + ": " + cell->description(),
+          as_required};
 }
 
-ChosenCellModel unprepared(const Scene& scene, const OnlineCellModelConfig& config, const std::string& why) {
+ChosenCellModel unprepared(const Scene& scene, const OnlineCellModelConfig& config, const std::string& reason) {
   try {
-    return live(scene, config, why + "; so it is live", false);
+    return live(scene, config, reason + "; so it is live", false);
   } catch (const ConfigError& error) {
-    throw ConfigError(why + "; and the live model cannot serve it: " + error.what());
+    throw ConfigError(reason + "; and the live model cannot serve it: " + error.what());
   }
 }
 
-/// What is the matter with a scene's prepared data, and what to do; `call` makes them.
-std::string whyNotPrepared(const CacheRead<SurrogateData>& read, const std::string& call) {
+/// Why a scene's prepared data cannot be used, and what to do; `call` prepares them.
+std::string notPreparedReason(const CacheRead<SurrogateData>& read, const std::string& call) {
   switch (read.state) {
     case CacheState::kDamaged:
       return "the prepared data are damaged (" + read.reason + "); to make them anew, run: " + call;
@@ -44,8 +45,8 @@ std::string whyNotPrepared(const CacheRead<SurrogateData>& read, const std::stri
   }
 }
 
-/// Why a scene cannot be prepared; empty when it can.
-std::string cannotBePrepared(const Scene& scene) {
+/// Reason why a scene cannot be prepared; empty when it can.
+std::string preparationRefusal(const Scene& scene) {
   try {
     Preparation::check(scene);
   } catch (const ConfigError& error) {
@@ -60,14 +61,14 @@ ChosenCellModel makeCellModel(const Scene& scene, const std::string& model, cons
                               const std::string& path) {
   if (model == "explicit") {
     auto tracker = std::make_unique<ExplicitCellModel>(scene, config.explicit_dynamics);
-    const std::string said = "the cell is the paper's explicit dynamics, as asked for: " + tracker->description();
-    return {std::make_unique<PuncturableCell>(scene, std::move(tracker)), said, false};
+    const std::string description = "the cell is the paper's explicit dynamics, as asked for: " + tracker->description();
+    return {std::make_unique<PuncturableCell>(scene, std::move(tracker)), description, false};
   }
   if (scene.cell.tensegrity && model != "prepared") {
-    return live(scene, config.online, "the cell is a tensegrity, solved live", true);  // its scene requires nothing
+    return live(scene, config.online, "the cell is a tensegrity, solved live", true);  // its scene has no requirements
   }
   if (model == "live") return live(scene, config.online, "the cell is live, as asked for", true);
-  const std::string refused = cannotBePrepared(scene);
+  const std::string refused = preparationRefusal(scene);
   if (!refused.empty()) {
     if (model == "prepared") throw ConfigError("model = prepared: " + refused);
     return unprepared(scene, config.online, "the cell cannot be prepared (" + refused + ")");
@@ -75,9 +76,9 @@ ChosenCellModel makeCellModel(const Scene& scene, const std::string& model, cons
   const PreparationRange range = PreparationRange::standard(scene);
   const std::string call = "rosrun cell_microinjection prepare --scene " + path;
   auto loaded = SurrogateData::load(scene, range, preparedFile(scene, Preparation::plan(scene, range)));
-  const std::string why = loaded ? "" : whyNotPrepared(loaded, call);
-  if (!loaded && model == "prepared") throw ConfigError("model = prepared: " + why);
-  if (!loaded) return unprepared(scene, config.online, why);
+  const std::string reason = loaded ? "" : notPreparedReason(loaded, call);
+  if (!loaded && model == "prepared") throw ConfigError("model = prepared: " + reason);
+  if (!loaded) return unprepared(scene, config.online, reason);
   const auto cell = std::make_shared<const SurrogateData>(std::move(*loaded.content));
   std::vector<ModelFigures> figures = {measurePreparedCell(scene, cell)};
   std::string note;
@@ -88,10 +89,10 @@ ChosenCellModel makeCellModel(const Scene& scene, const std::string& model, cons
       note = "; figures of the live model: " + other.reason + "; run: " + call;
   }
   const ModelChoice choice = chooseModel(scene.requirements, figures);
-  const std::string said = "model " + model + ": " + choice.reason + note;
-  if (choice.name == "live") return live(scene, config.online, said + "; it is", choice.meets);
+  const std::string description = "model " + model + ": " + choice.reason + note;
+  if (choice.name == "live") return live(scene, config.online, description + "; it is", choice.meets);
   auto tracker = std::make_unique<SurrogateCellModel>(scene, cell);
-  return {std::make_unique<PuncturableCell>(scene, std::move(tracker)), said, choice.meets};
+  return {std::make_unique<PuncturableCell>(scene, std::move(tracker)), description, choice.meets};
 }
 
 }  // namespace microinjection

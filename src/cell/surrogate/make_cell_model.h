@@ -11,8 +11,8 @@ namespace microinjection {
 
 struct ChosenCellModel {
   std::unique_ptr<CellModel> cell;
-  std::string said;         ///< which model it is, and why, for people
-  bool as_required = true;  ///< else `said` is a warning
+  std::string description;  ///< user-readable: the model and why it was chosen
+  bool as_required = true;  ///< else `description` is a warning
 };
 
 struct CellModelConfig {
@@ -20,10 +20,10 @@ struct CellModelConfig {
   ExplicitCellModelConfig explicit_dynamics;
 };
 
-/// A scene's cell for a moving needle. `model`: prepared (what `prepare` left), live (see makeOnlineCell), explicit
-/// (ExplicitCellModel) or auto (chosen by the scene's requirements, see chooseModel; live where nothing is prepared).
-/// Never another than was asked for. `path` of the scene, for messages. Throws ConfigError when the model cannot serve
-/// the scene.
+/// A scene's cell for a moving needle. `model`: prepared (data of `prepare`), live (see
+/// makeOnlineCell), explicit (ExplicitCellModel) or auto (chosen by the scene's requirements, see chooseModel; live
+/// without prepared data). It never replaces a model that was requested by name. `path`: of the scene, for messages.
+/// Throws ConfigError when the model cannot serve the scene.
 ChosenCellModel makeCellModel(const Scene& scene, const std::string& model, const CellModelConfig& config,
                               const std::string& path);
 

@@ -7,9 +7,9 @@
 namespace microinjection {
 namespace {
 
-constexpr double kNear = 0.02;      ///< of the longest displacement, within which a contact is a few points of the mesh
+constexpr double kNear = 0.02;      ///< over the longest displacement: a shorter contact has few points of the mesh
 constexpr double kScatter = 0.01;   ///< relative, of coarse forces
-constexpr double kExpected = 0.05;  ///< size of a coefficient: what the pairs do not tell stays small
+constexpr double kExpected = 0.05;  ///< size of a coefficient: those that the pairs do not determine stay small
 
 bool samePath(const TrainingRay& a, const TrainingRay& b) { return a.angle == b.angle && a.target == b.target; }
 
@@ -24,7 +24,7 @@ MeshCorrection::MeshCorrection(const EnergyScales& scales, const std::vector<Pai
       const TrainingSample &coarse = (*pair.coarse)[i], &fine = (*pair.fine)[i];
       if (coarse.force.isZero(0) || fine.force.isZero(0)) continue;
       const double length = coarse.displacement.norm() / scales_.length;
-      const double weight = std::pow(length / (length + kNear), 2);  // nearer to the touch it scatters more
+      const double weight = std::pow(length / (length + kNear), 2);  // scatter is larger near first contact
       const Terms terms = this->terms(coarse.angle, coarse.displacement);
       normal += weight * terms * terms.transpose();
       right += weight * std::log(fine.force.norm() / coarse.force.norm()) * terms;
@@ -38,10 +38,10 @@ double MeshCorrection::factor(double angle, const Eigen::Vector3d& displacement)
 }
 
 MeshCorrection::Terms MeshCorrection::terms(double angle, const Eigen::Vector3d& displacement) const {
-  const double length = displacement.norm(), place = angle / scales_.angle;
+  const double length = displacement.norm(), scaled_angle = angle / scales_.angle;
   const double away = length > 0 ? displacement.x() / length : 0, flat = length > 0 ? 1 + displacement.z() / length : 0;
   const double near = kNear / (kNear + length / scales_.length);
-  const Eigen::Vector4d smooth(1, place * place, place * away, flat);
+  const Eigen::Vector4d smooth(1, scaled_angle * scaled_angle, scaled_angle * away, flat);
   Terms result;
   result << smooth, near * smooth;
   return result;
@@ -49,7 +49,7 @@ MeshCorrection::Terms MeshCorrection::terms(double angle, const Eigen::Vector3d&
 
 std::vector<std::vector<TrainingSample>> betterForces(const EnergyScales& scales, const std::vector<TrainingRay>& rays,
                                                       const std::vector<TrainingResult>& results) {
-  std::vector<const std::vector<TrainingSample>*> fine(rays.size(), nullptr);  // of a coarse path
+  std::vector<const std::vector<TrainingSample>*> fine(rays.size(), nullptr);  // of the fine path with the same target
   std::vector<MeshCorrection::Pair> pairs;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     for (std::size_t j = 0; rays[i].level == kCoarseLevel && j < rays.size(); ++j) {

@@ -8,18 +8,19 @@
 
 namespace microinjection {
 
-/// By what the coarse mesh's forces are too large or too small: a smooth function of place, direction and length of the
-/// tip's displacement, from paths that were solved on a finer mesh as well.
+/// Ratio of fine to coarse meshes' forces: a smooth function of contact point, direction and length
+/// of the tip's displacement, from paths that were solved on both meshes.
 class MeshCorrection {
  public:
-  /// Two meshes' samples at the same places and displacements, as far as both got.
+  /// Samples of two meshes at the same contact points and displacements, as far as both were
+  /// solved.
   struct Pair {
     const std::vector<TrainingSample>* coarse;
     const std::vector<TrainingSample>* fine;
   };
   MeshCorrection(const EnergyScales& scales, const std::vector<Pair>& pairs);
 
-  /// To multiply a coarse force with; 1 when there were no pairs.
+  /// Factor for a coarse force; 1 without pairs.
   double factor(double angle, const Eigen::Vector3d& displacement) const;
 
  private:
@@ -31,8 +32,8 @@ class MeshCorrection {
   Terms coefficients_ = Terms::Zero();  ///< of the factor's logarithm
 };
 
-/// Of each coarse path its samples, with the force of the same path on the fine mesh as far as that was solved, else
-/// corrected; of each fine path nothing. `results` as `rays`.
+/// Samples of each coarse path with forces of the same path on the fine mesh, or corrected ones
+/// where there are none; fine paths give no samples. `results` belong to `rays`.
 std::vector<std::vector<TrainingSample>> betterForces(const EnergyScales& scales, const std::vector<TrainingRay>& rays,
                                                       const std::vector<TrainingResult>& results);
 

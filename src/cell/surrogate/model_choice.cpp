@@ -18,11 +18,11 @@
 namespace microinjection {
 namespace {
 
-constexpr double kDepths[] = {0.02, 0.05, 0.1, 0.15};  ///< of the diameter, where a live cell is judged
+constexpr double kDepths[] = {0.02, 0.05, 0.1, 0.15};  ///< over the diameter, at which a live cell is compared
 constexpr double kFinestSection = 1;                   ///< level
-constexpr int kFigures = 2;  ///< to be raised when a live cell, or how it is measured, changes
+constexpr int kFigures = 2;                            ///< increase it when a live cell or its measurement changes
 constexpr int kTimedSteps = 2000;
-constexpr double kSmallMove = 0.01;  ///< of the depth, whose solution is timed
+constexpr double kSmallMove = 0.01;  ///< over the depth, of the timed solution
 
 std::string describe(const ModelFigures& model) {
   char text[160];
@@ -31,8 +31,8 @@ std::string describe(const ModelFigures& model) {
   return text;
 }
 
-/// They depend on the live cell too, which prepared data do not: on its mesh, and on which it is, where the same
-/// elastic cell is solved on other elements because it relaxes (see makeOnlineCell).
+/// The figures also depend on the live cell, unlike prepared data: on its mesh, and on its model,
+/// which differs if the same elastic cell is viscoelastic (see makeOnlineCell).
 std::string figuresDescription(const Scene& scene, const std::string& name) {
   const Preparation plan = Preparation::plan(scene, PreparationRange::standard(scene));
   std::ostringstream out;
@@ -42,7 +42,7 @@ std::string figuresDescription(const Scene& scene, const std::string& name) {
   return out.str();
 }
 
-/// A file for each live cell of the same prepared one.
+/// A file for each live cell of the same prepared cell.
 std::string figuresFile(const Scene& scene, const std::string& name) {
   const Preparation plan = Preparation::plan(scene, PreparationRange::standard(scene));
   const std::string folder = preparedFolder(scene, plan);
@@ -76,7 +76,7 @@ ModelChoice chooseModel(const Scene::Requirements& requirements, std::vector<Mod
 ModelFigures measureLiveCell(const Scene& scene) {
   Scene axial = scene;
   axial.needle.offset.setZero();
-  const auto cell = makeOnlineCell(axial);  // throws when it cannot serve the scene
+  const auto cell = makeOnlineCell(axial);  // throws if no live cell can serve the scene
   Indenting indenting;
   for (double depth : kDepths) indenting.depths.push_back(depth * scene.cell.diameter());
   ConvergedForceConfig config;
@@ -119,9 +119,9 @@ ModelFigures measurePreparedCell(const Scene& scene, const std::shared_ptr<const
   std::vector<double> times(kTimedSteps);
   const Eigen::Vector3d touch = ContactFrame::at(scene, ContactFrame::offsetFor(scene, 0.4))->origin;
   for (int i = 0; i < kTimedSteps; ++i) {
-    const double way = 0.01 * i, depth = 0.5 * cell->range.depth * (1 - std::cos(way));
+    const double phase = 0.01 * i, depth = 0.5 * cell->range.depth * (1 - std::cos(phase));
     const double start = threadCpuTime();
-    contact.step(touch + Eigen::Vector3d(0, 0.5 * cell->range.lateral * std::sin(3 * way), -depth));
+    contact.step(touch + Eigen::Vector3d(0, 0.5 * cell->range.lateral * std::sin(3 * phase), -depth));
     times[i] = threadCpuTime() - start;
   }
   std::sort(times.begin(), times.end());
@@ -147,7 +147,7 @@ CacheRead<ModelFigures> loadFigures(const Scene& scene, const std::string& name)
   figures.name = name;
   figures.force_error = reader.number<double>();
   figures.time = reader.number<double>();
-  // An infinite error is that of a model without a solution.
+  // An infinite error belongs to a model without a solution.
   if (!(figures.force_error >= 0 && figures.time >= 0 && std::isfinite(figures.time))) {
     return damagedCache<ModelFigures>(path, "a figure of the model cannot be");
   }

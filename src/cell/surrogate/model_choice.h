@@ -11,31 +11,33 @@
 
 namespace microinjection {
 
-/// What was measured of a model that can serve a needle with one scene.
+/// Measured accuracy and speed of a model with one scene.
 struct ModelFigures {
   std::string name;                                              ///< prepared or live
   double force_error = std::numeric_limits<double>::infinity();  ///< relative, against the converged force
-  double time = 0;                                               ///< s of CPU for one force of its own
+  double time = 0;                                               ///< s of CPU time for one force
 };
 
 struct ModelChoice {
   std::string name;
   bool meets = false;  ///< both requirements
-  std::string reason;  ///< one line, with the figures of all
+  std::string reason;  ///< one line, with the figures of all models
 };
 
-/// The cheapest of the models that meet both requirements. Where none does: of those that are quick enough the one with
-/// the smallest error; else the quickest. `models` must not be empty.
+/// The fastest of the models that meet both requirements. If none does, the most accurate of those
+/// that are fast enough, else the fastest. `models` must not be empty.
 ModelChoice chooseModel(const Scene::Requirements& requirements, std::vector<ModelFigures> models);
 
-/// Solves the live cell (see makeOnlineCell) to a few depths on the axis and compares with the converging section,
-/// where that has a solution. Takes seconds to a minute. Throws ConfigError when there is no live cell for the scene.
+/// Solves the live cell (see makeOnlineCell) at a few depths on the axis and compares it with the
+/// converged section, where that has a solution. Takes seconds to a minute. Throws ConfigError when
+/// there is no live cell for the scene.
 ModelFigures measureLiveCell(const Scene& scene);
 
-/// Error as found when it was fitted (nine of ten equilibria have less), time (99 of 100 steps take less) measured now.
+/// Error of the fit (nine of ten equilibria have less), and time measured now (99 of 100 steps take
+/// less).
 ModelFigures measurePreparedCell(const Scene& scene, const std::shared_ptr<const SurrogateData>& cell);
 
-/// Kept where the scene's prepared data lie, for a choice that must not take a minute.
+/// Stores figures with the scene's prepared data, because a choice must not take a minute.
 void saveFigures(const Scene& scene, const ModelFigures& figures);
 CacheRead<ModelFigures> loadFigures(const Scene& scene, const std::string& name);
 

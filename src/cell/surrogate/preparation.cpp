@@ -10,27 +10,28 @@
 namespace microinjection {
 namespace {
 
-/// Of what the data mean and how they are computed: to be raised when that changes.
+/// Version of the data and their computation: increase it when these change.
 constexpr int kVersion = 3;
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kDegree = kPi / 180;
 constexpr int kAngles = 4;
 constexpr int kPoints = 12;  ///< along a path as long as the range is deep
 constexpr int kFewest = 8;
-constexpr double kOverlap =
-    0.012;  ///< of the cell's radius, that a path's end overlaps with the cell: less only grazes
+/// Smallest overlap of a path's end with the cell, over the cell's radius: less only grazes it.
+constexpr double kOverlap = 0.012;
 
-/// Where a direction leaves the cylinder of the range. `tilt` from the needle's axis and `turn` about it, degrees.
+/// Point at which a direction leaves the cylinder of the range. `tilt` from the needle's axis and
+/// `turn` about it, degrees.
 Eigen::Vector3d border(const PreparationRange& range, double tilt, double turn) {
   const double side = std::sin(tilt * kDegree), down = std::cos(tilt * kDegree);
   const double length = 1 / std::max(side / range.lateral, down / range.depth);
-  const double across = turn == 180 ? 0 : std::sin(turn * kDegree);  // exactly, for the sake of symmetry
+  const double across = turn == 180 ? 0 : std::sin(turn * kDegree);  // exactly zero, for symmetry
   return length * Eigen::Vector3d(side * std::cos(turn * kDegree), side * across, -down);
 }
 
 struct Target {
   Eigen::Vector3d end;  ///< m
-  bool fine;            ///< solved on the fine mesh as well, if in the plane of symmetry
+  bool fine;            ///< also solved on the fine mesh, if in the plane of symmetry
 };
 
 std::vector<Target> targets(const PreparationRange& range, bool on_axis) {
@@ -49,20 +50,20 @@ std::vector<Target> targets(const PreparationRange& range, bool on_axis) {
     for (double turn : cone.turns) {
       const Eigen::Vector3d end = border(range, cone.tilt, on_axis ? 0 : turn);
       result.push_back({end, cone.fine && end.y() == 0});
-      if (on_axis) break;  // there all turns are the same
+      if (on_axis) break;  // all turns are equal there
     }
   }
   return result;
 }
 
-/// A tip that moves out of the cell from where it touched loses it.
+/// Whether the target still overlaps with the cell.
 bool keepsContact(const Scene& scene, double angle, const Eigen::Vector3d& target) {
   const double reach = scene.radius() + (scene.needle.tip.rounded() ? scene.needle.tip.radius : 0);
   const Eigen::Vector3d centre = reach * Eigen::Vector3d(std::sin(angle), 0, std::cos(angle)) + target;
   return reach - centre.norm() > kOverlap * scene.radius() || centre.z() < 0;
 }
 
-/// What a path costs, roughly: in time per length of the coarse mesh's half.
+/// Approximate cost of a path, in units of the coarse mesh's half per point.
 double cost(const TrainingRay& ray) {
   const double whole = ray.target.y() == 0 ? 1 : 4.5, fine = ray.level == kFineLevel ? 5 : 1;
   return whole * fine * ray.points;
@@ -100,11 +101,11 @@ void Preparation::check(const Scene& scene) {
   if (scene.needle.contact.friction > 0) {
     std::ostringstream message;
     message << "needle/contact/friction = " << scene.needle.contact.friction
-            << ": must be 0, or the mode sticking: friction takes energy, and a prepared cell has none to give";
+            << ": must be 0, or the mode sticking: friction dissipates energy, which a prepared cell cannot";
     throw ConfigError(message.str());
   }
   if (scene.needle.contact.adhesion_energy > 0) {
-    throw ConfigError("needle/contact/adhesion: must be left out: a prepared cell does not remember what has touched");
+    throw ConfigError("needle/contact/adhesion: must be left out: a prepared cell has no contact history");
   }
 }
 

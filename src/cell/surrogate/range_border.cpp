@@ -5,20 +5,20 @@
 namespace microinjection {
 namespace {
 
-constexpr double kMargin = 0.1;         ///< of the range, in which displacements saturate
-constexpr double kFlattest = 0.3;       ///< depth over lateral motion, of the flattest paths that were prepared
+constexpr double kMargin = 0.1;         ///< over the range, in which displacements saturate
+constexpr double kFlattest = 0.3;       ///< depth over lateral motion of the flattest prepared paths
 constexpr double kFlatMargin = 0.15;    ///< same, in which flatter ones saturate
-constexpr double kAxisLateral = 0.2;    ///< lateral range on the axis, below the depth of the rest, over that above
+constexpr double kAxisLateral = 0.2;    ///< lateral range on the axis, below the depth elsewhere, over that above
 constexpr double kAxisNarrowing = 0.2;  ///< of the depth, over which the lateral range narrows
 
-/// x up to 1, then 1 and less than kMargin more.
+/// x up to 1; beyond, at most kMargin more.
 Jet saturate(const Jet& x) {
   if (x.value <= 1) return x;
   const double slope = std::exp((1 - x.value) / kMargin);
   return chain(x, 1 + kMargin * (1 - slope), slope, -slope / kMargin);
 }
 
-/// m, as a function of the depth.
+/// Lateral range, m, as a function of the depth.
 Jet lateralRange(const PreparationRange& range, const Jet& depth) {
   Jet result;
   result.value = range.lateral;
@@ -34,8 +34,8 @@ Jet lateralRange(const PreparationRange& range, const Jet& depth) {
   return narrowing;
 }
 
-/// The depth over the lateral motion: what it is down to kFlattest, then that and less than kFlatMargin less. Paths
-/// that are flatter, or rise, were not prepared, and hardly touch.
+/// Ratio of depth to lateral motion, limited smoothly from kFlattest to kFlattest - kFlatMargin.
+/// Flatter or rising paths were not prepared, and hardly touch the cell.
 Jet steepen(const Jet& slope) {
   const double below = kFlattest - slope.value;
   if (below <= 0) return slope;
@@ -45,7 +45,7 @@ Jet steepen(const Jet& slope) {
 
 }  // namespace
 
-CountedDisplacement::CountedDisplacement(const PreparationRange& range, bool on_axis,
+LimitedDisplacement::LimitedDisplacement(const PreparationRange& range, bool on_axis,
                                          const Eigen::Vector3d& displacement)
     : coordinates{Jet::coordinate(0, displacement.x()), Jet::coordinate(1, displacement.y()),
                   Jet::coordinate(2, displacement.z())} {
@@ -71,11 +71,11 @@ CountedDisplacement::CountedDisplacement(const PreparationRange& range, bool on_
   }
 }
 
-Eigen::Vector3d CountedDisplacement::value() const {
+Eigen::Vector3d LimitedDisplacement::value() const {
   return {coordinates[0].value, coordinates[1].value, coordinates[2].value};
 }
 
-Jet CountedDisplacement::compose(const Jet& function) const {
+Jet LimitedDisplacement::compose(const Jet& function) const {
   if (inside) return function;
   Eigen::Matrix3d jacobian;
   Jet result;

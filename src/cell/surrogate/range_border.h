@@ -8,19 +8,19 @@
 
 namespace microinjection {
 
-/// A tip's displacement as it counts for a prepared cell: itself in the prepared range; further out, and where it is
-/// flatter than what was prepared or rises, it saturates smoothly. An energy of this is smooth everywhere, so that
-/// beyond the range the force fades, continuously, and still creates no energy.
-struct CountedDisplacement {
+/// A tip's displacement limited to the prepared range. Within the range it is unchanged; outside,
+/// and for paths flatter than the prepared ones, it saturates smoothly. An energy of it is smooth
+/// everywhere, so that the force fades continuously beyond the range without creating energy.
+struct LimitedDisplacement {
   std::array<Jet, 3> coordinates;  ///< m, with derivatives by the displacement
-  bool inside = true;              ///< in the range: nothing was changed
+  bool inside = true;              ///< in the range: unchanged
   bool too_deep = false;           ///< deeper than the range
 
-  /// `on_axis`: the tip touched on the cell's axis, where the range is deeper.
-  CountedDisplacement(const PreparationRange& range, bool on_axis, const Eigen::Vector3d& displacement);
+  /// `on_axis`: the contact point is on the cell's axis, where the range is deeper.
+  LimitedDisplacement(const PreparationRange& range, bool on_axis, const Eigen::Vector3d& displacement);
 
   Eigen::Vector3d value() const;
-  /// A function of the coordinates, with derivatives by them, as a function of the displacement.
+  /// Turns a function of the coordinates, with derivatives by them, into one of the displacement.
   Jet compose(const Jet& function) const;
 };
 

@@ -12,18 +12,18 @@ namespace microinjection {
 namespace {
 
 constexpr Eigen::Index kModes = 40;
-constexpr double kNegligible = 1e-10;  ///< eigenvalue, relative to the largest: a hundred-thousandth of the motion
+constexpr double kNegligible = 1e-10;  ///< eigenvalue, relative to the largest: 1e-5 of the motion
 
 double cube(double x) { return x * x * x; }
 
-/// Node whose place is that of each node, mirrored in y.
+/// For each node, the node at its mirror image in y.
 std::vector<int> mirror(const Eigen::VectorXd& nodes) {
   const int count = static_cast<int>(nodes.size() / 3);
   std::vector<int> result(count);
-  const Eigen::Map<const Eigen::Matrix3Xd> places(nodes.data(), 3, count);
+  const Eigen::Map<const Eigen::Matrix3Xd> positions(nodes.data(), 3, count);
   for (int i = 0; i < count; ++i) {
-    const Eigen::Vector3d image(places(0, i), -places(1, i), places(2, i));
-    (places.colwise() - image).colwise().squaredNorm().minCoeff(&result[i]);
+    const Eigen::Vector3d image(positions(0, i), -positions(1, i), positions(2, i));
+    (positions.colwise() - image).colwise().squaredNorm().minCoeff(&result[i]);
   }
   return result;
 }
@@ -111,8 +111,8 @@ void SurfaceShape::evaluate(double angle, const Eigen::Vector3d& displacement, E
     at_rest += weight * rest_.col(i);
   }
   const bool turned = displacement.y() < 0;
-  const Eigen::Vector3d known(displacement.x(), std::abs(displacement.y()), displacement.z());
-  const Eigen::VectorXd field = (modes_ * amplitudes(variables(angle, known)).cast<float>()).cast<double>();
+  const Eigen::Vector3d in_half(displacement.x(), std::abs(displacement.y()), displacement.z());
+  const Eigen::VectorXd field = (modes_ * amplitudes(variables(angle, in_half)).cast<float>()).cast<double>();
   displaced = field;
   for (std::int64_t n = 0; turned && n < node_count_; ++n) {
     displaced.segment<3>(3 * n) = field.segment<3>(3 * mirrored_[n]);
@@ -170,7 +170,7 @@ bool SurfaceShape::consistent() const {
 bool SurfaceShape::finite() const {
   const double sizes[] = {range_.angle, range_.depth, range_.axis_depth, range_.lateral};
   const auto positive = [](double size) { return std::isfinite(size) && size > 0; };
-  // Two angles alike would divide by zero.
+  // Equal angles would divide by zero.
   const double *first = angles_.data(), *last = first + angles_.size();
   const bool ascending = std::adjacent_find(first, last, std::greater_equal<double>()) == last;
   return std::all_of(std::begin(sizes), std::end(sizes), positive) && angles_.allFinite() && ascending &&

@@ -10,7 +10,7 @@ namespace {
 constexpr char kBeside[] = "the tip is beside the range that the cell was prepared for: the force fades";
 constexpr char kTooDeep[] = "the tip is deeper than the cell was prepared for: withdraw it";
 constexpr char kTooFarOut[] = "the tip touched the cell further from its pole than what was prepared";
-constexpr double kTrembling = 0.1e-6;  ///< m, that a needle at rest may be deeper
+constexpr double kTrembling = 0.1e-6;  ///< m, by which a needle at rest may move deeper
 constexpr double kRest = 0.1;          ///< s
 constexpr double kUpright = 0.999;     ///< cosine: within 2.5 degrees of the prepared direction
 
@@ -47,7 +47,8 @@ TipForce SurrogateCellModel::step(const Eigen::Vector3d& tip, const Eigen::Vecto
   return force;
 }
 
-/// An invalid force holds the needle; when it rests a hand may take it out again, but not push it on.
+/// An invalid force holds the needle. After a rest, the hand may withdraw it, but not push it
+/// further.
 bool SurrogateCellModel::continuesBelow(bool too_deep, double duration) {
   if (!too_deep) {
     deepest_ = rested_ = 0;
@@ -64,20 +65,20 @@ TipForce SurrogateCellModel::computeForce(const Eigen::Vector3d& tip, const Eige
   invalid_reason_.clear();
   const SurrogateContact::Result prepared = needle_.step(tip);
   stiffness_ = prepared.stiffness;
-  if (!needle_.place()) {
+  if (!needle_.contactFrame()) {
     contact_.reset();
     memory_.reset();
     return {};
   }
-  const Eigen::Vector3d more = memory_.step(prepared.force, duration);
-  Eigen::Vector3d force = prepared.force + more;
-  if (!more.isZero(0)) force -= std::min(0.0, force.dot(axis)) * axis;  // relaxed so far that the cell hangs back
+  const Eigen::Vector3d viscous = memory_.step(prepared.force, duration);
+  Eigen::Vector3d force = prepared.force + viscous;
+  if (!viscous.isZero(0)) force -= std::min(0.0, force.dot(axis)) * axis;  // relaxed so far that the cell would pull
   if (!contact_) contact_ = Contact{};
-  contact_->contact_point = needle_.place()->origin;
+  contact_->contact_point = needle_.contactFrame()->origin;
   contact_->displacement = tip - contact_->contact_point;
   contact_->indentation = -contact_->displacement.dot(axis);
   if (axis.z() < kUpright) return invalidForce("the needle is not upright, and the cell was prepared for that only");
-  if (needle_.place()->angle > 1.001 * cell_->range.angle) return invalidForce(kTooFarOut);
+  if (needle_.contactFrame()->angle > 1.001 * cell_->range.angle) return invalidForce(kTooFarOut);
   if (continuesBelow(prepared.too_deep, duration)) return invalidForce(kTooDeep);
   if (prepared.too_deep) invalid_reason_ = kTooDeep;
   if (!prepared.prepared && invalid_reason_.empty()) invalid_reason_ = kBeside;
@@ -112,12 +113,12 @@ CellModel::DeformedSurface SurrogateCellModel::deformedSurface() {
   Eigen::Matrix3Xd rest, displaced;
   shape_.update();
   needle_.surface(shape_.value(), rest, displaced);
-  DeformedSurface picture;
+  DeformedSurface surface;
   for (Eigen::Index i = 0; i < rest.cols(); ++i) {
-    picture.vertices.emplace_back(rest.col(i) + displaced.col(i));
-    picture.displacement.push_back(displaced.col(i).norm());
+    surface.vertices.emplace_back(rest.col(i) + displaced.col(i));
+    surface.displacement.push_back(displaced.col(i).norm());
   }
-  return picture;
+  return surface;
 }
 
 }  // namespace microinjection

@@ -10,11 +10,12 @@
 
 namespace microinjection {
 
-/// The prepared cell under a moving needle: converged force at every step, in microseconds. Beside the prepared
-/// range it says so while the force fades. It trusts nothing with a needle that is not upright, or that touches
-/// too far from the pole, nor with one that goes on below the range, where the fading force would be felt as a
-/// puncture; one that has come to rest there may be withdrawn. A viscoelastic cell's force relaxes, and never pulls
-/// along the pipette. A step allocates nothing and takes no lock.
+/// The prepared cell under a moving needle: converged force at every step, in microseconds. Beside
+/// the prepared range the force fades, which is reported. The force is invalid for a needle that is
+/// not upright, that touches too far from the pole, or that moves deeper below the range, where a
+/// fading force would feel like a puncture; a needle that has rested there may be withdrawn. A
+/// viscoelastic cell's force relaxes, and never pulls along the pipette. A step does not allocate
+/// or lock.
 class SurrogateCellModel : public CellModel {
  public:
   SurrogateCellModel(const Scene& scene, std::shared_ptr<const SurrogateData> cell);
@@ -41,8 +42,8 @@ class SurrogateCellModel : public CellModel {
   ForceMemory memory_;
   double time_ = 0;  ///< s, of the last step
   std::optional<Contact> contact_;
-  double deepest_ = 0;                                   ///< m, indentation, below the range
-  double rested_ = 0;                                    ///< s, without going deeper there
+  double deepest_ = 0;                                   ///< m, deepest indentation below the range
+  double rested_ = 0;                                    ///< s, without moving deeper there
   Eigen::Matrix3d stiffness_ = Eigen::Matrix3d::Zero();  ///< N/m
   std::string invalid_reason_;
   LatestValue<SurrogateContact::Shape> shape_;  ///< from the thread that steps to the one that draws

@@ -9,11 +9,11 @@
 namespace microinjection {
 namespace {
 
-constexpr double kOnAxis = 0.035;  ///< rad, of the place of contact: there the range goes deeper
-/// Overlap of the tip with the cell at rest, over the tip's displacement, at which a contact ends: what sticks follows
-/// the tip a little beyond the cell's surface.
+constexpr double kOnAxis = 0.035;  ///< rad, of the contact point: there the range is deeper
+/// Overlap of the tip with the cell at rest, over the tip's displacement, at which a contact ends:
+/// a sticking surface follows the tip a little beyond its rest position.
 constexpr double kEnd = -0.05;
-constexpr double kFading = 0.03;  ///< same, in which the energy falls to nothing, so that the force ends continuously
+constexpr double kFading = 0.03;  ///< same, over which the energy falls to zero, so that the force ends continuously
 
 /// 0 below 0, 1 above 1, smooth.
 Jet smoothStep(const Jet& x) {
@@ -43,7 +43,7 @@ Jet SurrogateContact::overlap(const Eigen::Vector3d& tip) const {
   const Jet x = Jet::coordinate(0, tip.x()), y = Jet::coordinate(1, tip.y());
   Jet squared = -1.0 * (x * x + y * y);
   squared.value += scene_.radius() * scene_.radius();
-  constexpr double kRim = 0.05;  // of the radius, from the cell's silhouette, where the needle passes by
+  constexpr double kRim = 0.05;  // over the radius, from the cell's silhouette, where the needle passes the cell
   if (!(squared.value > kRim * kRim * scene_.radius() * scene_.radius())) {
     return {-scene_.radius(), Eigen::Vector3d::UnitZ(), {}};
   }
@@ -51,31 +51,31 @@ Jet SurrogateContact::overlap(const Eigen::Vector3d& tip) const {
 }
 
 SurrogateContact::Local SurrogateContact::evaluate(const Jet& overlap) {
-  const CountedDisplacement counted(cell_->range, contact_frame_->angle < kOnAxis, displacement_);
-  prepared_ = counted.inside && contact_frame_->angle <= 1.001 * cell_->range.angle;
-  too_deep_ = counted.too_deep;
-  const Eigen::Vector3d u = counted.value();
+  const LimitedDisplacement limited(cell_->range, contact_frame_->angle < kOnAxis, displacement_);
+  prepared_ = limited.inside && contact_frame_->angle <= 1.001 * cell_->range.angle;
+  too_deep_ = limited.too_deep;
+  const Eigen::Vector3d u = limited.value();
   Local local;
-  local.energy = counted.compose(local_energy_.evaluate(u));
+  local.energy = limited.compose(local_energy_.evaluate(u));
   local.force = -local.energy.gradient;
   local.stiffness = local.energy.hessian;
   if (!cell_->field.empty()) {
     Eigen::Matrix3d jacobian;
     const Eigen::Vector3d force = local_field_.evaluate(u, jacobian);
-    const Jet turned = counted.compose({0, force, jacobian});  // as a gradient is
+    const Jet turned = limited.compose({0, force, jacobian});  // transformed like a gradient
     local.force = turned.gradient;
     local.stiffness = -0.5 * (turned.hessian + turned.hessian.transpose());
   }
   const double length = displacement_.norm();
   if (overlap.value >= (kEnd + kFading) * length) return local;
   const Eigen::Matrix3d& turn = contact_frame_->rotation;
-  const Jet there{overlap.value, turn.transpose() * overlap.gradient, turn.transpose() * overlap.hessian * turn};
+  const Jet in_frame{overlap.value, turn.transpose() * overlap.gradient, turn.transpose() * overlap.hessian * turn};
   Jet squared;
   for (int k = 0; k < 3; ++k) {
     const Jet x = Jet::coordinate(k, displacement_[k]);
     squared = squared + x * x;
   }
-  Jet left = there * inverse(sqrt(squared));
+  Jet left = in_frame * inverse(sqrt(squared));
   left.value -= kEnd;
   const Jet fade = smoothStep((1 / kFading) * left);
   local.energy = local.energy * fade;
@@ -85,15 +85,15 @@ SurrogateContact::Local SurrogateContact::evaluate(const Jet& overlap) {
 }
 
 SurrogateContact::Result SurrogateContact::step(const Eigen::Vector3d& tip) {
-  Result answer;
+  Result result;
   energy_ = 0;
   const Jet overlap = this->overlap(tip);
   if (contact_frame_) displacement_ = contact_frame_->rotation.transpose() * (tip - contact_frame_->origin);
   if (overlap.value < (contact_frame_ ? kEnd * displacement_.norm() : 0)) contact_frame_.reset();
   if (!contact_frame_) {
-    if (overlap.value < 0) return answer;
+    if (overlap.value < 0) return result;
     contact_frame_ = ContactFrame::at(scene_.radius(), shape_, tip.head<2>());
-    if (!contact_frame_) return answer;
+    if (!contact_frame_) return result;
     const double angle = std::min(contact_frame_->angle, cell_->range.angle);
     cell_->energy.makeLocal(angle, local_energy_);
     if (!cell_->field.empty()) cell_->field.makeLocal(angle, local_field_);
@@ -108,17 +108,17 @@ SurrogateContact::Result SurrogateContact::step(const Eigen::Vector3d& tip) {
     force += correction_.step(displacement_, local.force - force, energy_);
     energy_ = (1 - PassiveCorrection::kReserve) * energy_ + correction_.stored();
   }
-  answer.prepared = prepared_;
-  answer.too_deep = too_deep_;
-  answer.force = contact_frame_->rotation * force;
-  answer.stiffness = contact_frame_->rotation * local.stiffness * contact_frame_->rotation.transpose();
-  return answer;
+  result.prepared = prepared_;
+  result.too_deep = too_deep_;
+  result.force = contact_frame_->rotation * force;
+  result.stiffness = contact_frame_->rotation * local.stiffness * contact_frame_->rotation.transpose();
+  return result;
 }
 
 SurrogateContact::Shape SurrogateContact::shape() const {
   if (!contact_frame_) return {};
   return {std::min(contact_frame_->angle, cell_->range.angle), contact_frame_->rotation,
-          CountedDisplacement(cell_->range, contact_frame_->angle < kOnAxis, displacement_).value()};
+          LimitedDisplacement(cell_->range, contact_frame_->angle < kOnAxis, displacement_).value()};
 }
 
 void SurrogateContact::surface(const Shape& shape, Eigen::Matrix3Xd& at_rest, Eigen::Matrix3Xd& displaced) const {

@@ -11,39 +11,39 @@
 
 namespace microinjection {
 
-/// The on-line stage: what a prepared cell does to a moving needle. Keeps where the tip touched; allocates nothing
-/// after its making. The needle's axis is vertical.
+/// On-line contact of a prepared cell with a moving needle. Stores the contact point; does not
+/// allocate after its construction. The needle's axis is vertical.
 class SurrogateContact {
  public:
   struct Result {
     Eigen::Vector3d force = Eigen::Vector3d::Zero();      ///< N, of the cell on the needle
     Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();  ///< N/m, d(force)/d(tip) = -stiffness
-    bool prepared = true;                                 ///< false: out of the prepared range, where the force fades
+    bool prepared = true;                                 ///< false: outside of the prepared range; the force fades
     bool too_deep = false;                                ///< deeper than the prepared range
   };
 
-  /// All that the surface depends on.
+  /// All data that the surface depends on.
   struct Shape {
-    double angle = 0;                                        ///< rad, of the place
-    Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< from the frame of the place to the cell's
-    Eigen::Vector3d displacement = Eigen::Vector3d::Zero();  ///< m, of the tip, in the frame of the place
+    double angle = 0;                                        ///< rad, of the contact point
+    Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< from the contact frame to the cell's
+    Eigen::Vector3d displacement = Eigen::Vector3d::Zero();  ///< m, of the tip, in the contact frame
   };
 
   SurrogateContact(const Scene& scene, std::shared_ptr<const SurrogateData> cell);
 
-  /// For the tip (its lowest point, or the disc's centre) at `tip`, m, the cell's centre being the origin.
+  /// `tip` (its lowest point, or the disc's centre): m, relative to the cell's centre.
   Result step(const Eigen::Vector3d& tip);
 
-  /// Not touched.
+  /// Removes the contact.
   void reset() { contact_frame_.reset(); }
 
-  const std::optional<ContactFrame>& place() const { return contact_frame_; }
-  Eigen::Vector3d displacement() const { return displacement_; }  ///< m, of the tip, in the frame of the place
+  const std::optional<ContactFrame>& contactFrame() const { return contact_frame_; }
+  Eigen::Vector3d displacement() const { return displacement_; }  ///< m, of the tip, in the contact frame
   double storedEnergy() const { return energy_; }                 ///< J
 
   Shape shape() const;
-  /// Surface for people: places of its nodes at rest and their displacement, m, in the frame of the cell. Allocates.
-  /// Any thread may call it at any time: it depends on nothing that changes.
+  /// Surface for display: positions of its nodes at rest and their displacement, m, in the frame of
+  /// the cell. Allocates. Any thread may call it at any time, because it only uses constant data.
   void surface(const Shape& shape, Eigen::Matrix3Xd& at_rest, Eigen::Matrix3Xd& displaced) const;
   void surface(Eigen::Matrix3Xd& at_rest, Eigen::Matrix3Xd& displaced) const { surface(shape(), at_rest, displaced); }
 
@@ -54,7 +54,7 @@ class SurrogateContact {
     Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();  ///< N/m, of the field
   };
   Jet overlap(const Eigen::Vector3d& tip) const;  ///< m, of the tip with the cell at rest
-  Local evaluate(const Jet& overlap);             ///< in the frame of the place; sets prepared_
+  Local evaluate(const Jet& overlap);             ///< in the contact frame; sets prepared_
 
   Scene scene_;
   std::optional<RoundedTip> shape_;

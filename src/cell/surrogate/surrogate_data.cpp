@@ -14,14 +14,14 @@
 namespace microinjection {
 namespace {
 
-constexpr char kFit[] = " fit 8";  ///< to be changed with what is fitted, and how
-constexpr double kSmall = 0.0025;  ///< of the largest force: smaller ones are not judged
-constexpr int kDeepSamples = 14;   ///< on the axis, below the range of the rest
+constexpr char kFit[] = " fit 8";  ///< change it when the fit changes
+constexpr double kSmall = 0.0025;  ///< over the largest force: smaller ones are excluded from the errors
+constexpr int kDeepSamples = 14;   ///< on the axis, below the depth of the range elsewhere
 
 bool straightOnAxis(const TrainingRay& ray) { return ray.angle == 0 && ray.target.head<2>().isZero(0); }
 
-/// Samples to fit: `forces` as converged as they are known, `surfaces` on the coarse mesh and, deep on the axis, of the
-/// section.
+/// Samples to fit: `forces` as converged as possible, `surfaces` on the coarse mesh and, deep on
+/// the axis, of the section.
 struct Samples {
   std::vector<TrainingSample> forces, surfaces;
   double axis_depth = 0;  ///< m, reached on the axis
@@ -32,7 +32,8 @@ struct Samples {
   }
 };
 
-/// Straight down on the axis the section knows better, and further.
+/// Adds the section's results, which are more accurate and deeper, for the straight path on the
+/// axis.
 void addAxis(const Scene& scene, const PreparationRange& range, const std::vector<TrainingSample>& coarse,
              const Eigen::VectorXd& surface, Samples& samples) {
   std::vector<double> depths;
@@ -63,7 +64,8 @@ Samples gather(const Scene& scene, const Preparation& preparation, const std::ve
   return samples;
 }
 
-/// Relative errors of a force (angle, displacement -> N), ascending, of the samples whose force is not small.
+/// Relative errors of a force (angle, displacement -> N), ascending, without samples of small
+/// force.
 template <typename Force>
 std::vector<double> forceErrors(const std::vector<TrainingSample>& samples, const Force& force) {
   std::vector<double> errors;
@@ -87,7 +89,7 @@ Eigen::VectorXd readCoefficients(ByteReader& reader) {
   return coefficients;
 }
 
-/// Throws std::runtime_error or std::invalid_argument when what is read cannot be a cell of the plan.
+/// Throws std::runtime_error or std::invalid_argument when the data are not of a cell of the plan.
 SurrogateData decode(const Preparation& plan, ByteReader& reader) {
   SurrogateData cell;
   cell.range = plan.range;
@@ -98,10 +100,10 @@ SurrogateData decode(const Preparation& plan, ByteReader& reader) {
                     &cell.largest_error}) {
     *x = reader.number<double>();
   }
-  for (int* x : {&degrees.place, &degrees.direction, &degrees.distance}) *x = reader.number<std::int32_t>();
+  for (int* x : {&degrees.angle, &degrees.direction, &degrees.distance}) *x = reader.number<std::int32_t>();
   if (!(reached > 0 && reached <= plan.range.axis_depth)) throw std::runtime_error("its range cannot be");
   if (scales.angle != plan.scales.angle || scales.length != plan.scales.length || scales.energy != plan.scales.energy ||
-      degrees.place != plan.degrees.place || degrees.direction != plan.degrees.direction ||
+      degrees.angle != plan.degrees.angle || degrees.direction != plan.degrees.direction ||
       degrees.distance != plan.degrees.distance) {
     throw std::runtime_error("its scales or degrees are not those of this cell");
   }
@@ -132,7 +134,7 @@ SurrogateData SurrogateData::fit(const Scene& scene, const Preparation& preparat
   const std::vector<TrainingSample>& samples = all.forces;
   SurrogateData cell;
   cell.range = preparation.range;
-  cell.range.axis_depth = all.axis_depth;  // the section may end before
+  cell.range.axis_depth = all.axis_depth;  // the section may end earlier
   cell.energy = EnergyExpansion(preparation.scales, preparation.degrees);
   fitEnergy(cell.energy, samples);
   cell.field = ForceField(preparation.scales);
@@ -167,7 +169,7 @@ std::string preparedFile(const Scene& scene, const Preparation& preparation) {
   return folder.empty() ? "" : folder + "/prepared.cell";
 }
 
-void SurrogateData::save(const Scene& scene, const PreparationRange& asked, const std::string& path) const {
+void SurrogateData::save(const Scene& scene, const PreparationRange& planned, const std::string& path) const {
   ByteWriter writer;
   const EnergyScales& scales = energy.scales();
   const EnergyDegrees& degrees = energy.degrees();
@@ -175,11 +177,11 @@ void SurrogateData::save(const Scene& scene, const PreparationRange& asked, cons
        {range.axis_depth, scales.angle, scales.length, scales.energy, median_error, common_error, largest_error}) {
     writer.number(x);
   }
-  for (int x : {degrees.place, degrees.direction, degrees.distance}) writer.number<std::int32_t>(x);
+  for (int x : {degrees.angle, degrees.direction, degrees.distance}) writer.number<std::int32_t>(x);
   writer.array(energy.coefficients());
   writer.array(field.coefficients());
   surface.write(writer);
-  writeCacheFile(path, Preparation::plan(scene, asked).description(scene) + kFit, writer.bytes());
+  writeCacheFile(path, Preparation::plan(scene, planned).description(scene) + kFit, writer.bytes());
 }
 
 CacheRead<SurrogateData> SurrogateData::load(const Scene& scene, const PreparationRange& range,
@@ -192,7 +194,7 @@ CacheRead<SurrogateData> SurrogateData::load(const Scene& scene, const Preparati
     SurrogateData cell = decode(plan, reader);
     if (!reader.atEnd()) throw std::runtime_error("there is more than was written");
     return {std::move(cell), CacheState::kRead, ""};
-  } catch (const std::exception& error) {  // std::invalid_argument of an expansion, too
+  } catch (const std::exception& error) {  // an expansion throws std::invalid_argument
     return damagedCache<SurrogateData>(path, error.what());
   }
 }

@@ -24,14 +24,16 @@ Scene at(const Scene& scene, double angle) {
   return result;
 }
 
-/// A ray in the plane of the place and the cell's axis leaves the scene its mirror symmetry.
+/// Whether the ray is in the plane of contact point and cell axis, so that the scene has its mirror
+/// symmetry.
 bool inPlane(const TrainingRay& ray) { return ray.target.y() == 0; }
 
-/// Displacement of the whole coarse mesh's surface, whether all of it or the half y >= 0 is solved.
+/// Displacement of the whole coarse mesh's surface, from a solution of the whole or of the half y
+/// >= 0.
 class SurfaceOfState {
  public:
-  SurfaceOfState(const Scene& there, const QuadraticMesh<3>& mesh, bool half) {
-    const QuadraticMesh<3> whole = makeSceneMesh<3>(there, kCoarseLevel);
+  SurfaceOfState(const Scene& scene, const QuadraticMesh<3>& mesh, bool half) {
+    const QuadraticMesh<3> whole = makeSceneMesh<3>(scene, kCoarseLevel);
     const std::vector<int> candidates = outerNodes(mesh);
     for (int node : outerNodes(whole)) {
       Eigen::Vector3d x = whole.nodes[node];
@@ -55,16 +57,16 @@ class SurfaceOfState {
   }
 
  private:
-  std::vector<int> nodes_;    ///< of the state, for each of the whole surface
-  std::vector<float> sides_;  ///< -1 where that is its mirror image
+  std::vector<int> nodes_;    ///< node of the state for each node of the whole surface
+  std::vector<float> sides_;  ///< -1 for mirror images
 };
 
-/// Share of a ray's target at its place `index`, from 0.
+/// Share of a ray's target at its point `index`, from 0.
 double share(const TrainingRay& ray, int index) {
   return static_cast<double>((index + 1) * (index + 1)) / (ray.points * ray.points);
 }
 
-/// Empty when the result can be of the ray.
+/// Difference between a result and its ray; empty when they fit.
 std::string mismatch(const TrainingResult& result, const TrainingRay& ray, Eigen::Index surface_size) {
   const int count = static_cast<int>(result.samples.size());
   if (count > ray.points || (count < ray.points && result.reason.empty()))
@@ -81,12 +83,12 @@ std::string mismatch(const TrainingResult& result, const TrainingRay& ray, Eigen
 }  // namespace
 
 TrainingResult solveRay(const Scene& scene, const TrainingRay& ray) {
-  const Scene there = at(scene, ray.angle);
+  const Scene local = at(scene, ray.angle);
   const bool half = inPlane(ray);
-  CellProblem<3> problem(there, half ? makeHalfSceneMesh(there, ray.level) : makeSceneMesh<3>(there, ray.level),
+  CellProblem<3> problem(local, half ? makeHalfSceneMesh(local, ray.level) : makeSceneMesh<3>(local, ray.level),
                          kElement, half ? Symmetry::kMirror : Symmetry::kNone);
   std::optional<SurfaceOfState> surface;
-  if (ray.level == kCoarseLevel) surface.emplace(there, problem.body().mesh(), half);
+  if (ray.level == kCoarseLevel) surface.emplace(local, problem.body().mesh(), half);
   TrainingResult result;
   for (int i = 0; i < ray.points; ++i) {
     const Eigen::Vector3d displacement = share(ray, i) * ray.target;
@@ -141,8 +143,8 @@ CacheRead<TrainingResult> loadTraining(const std::string& path, const std::strin
   if (!read) return read.failure<TrainingResult>();
   try {
     TrainingResult result = decodeTraining(*read.content);
-    const std::string why = mismatch(result, ray, surface_size);
-    if (!why.empty()) return damagedCache<TrainingResult>(path, why);
+    const std::string difference = mismatch(result, ray, surface_size);
+    if (!difference.empty()) return damagedCache<TrainingResult>(path, difference);
     return {std::move(result), CacheState::kRead, ""};
   } catch (const std::runtime_error& error) {
     return damagedCache<TrainingResult>(path, error.what());

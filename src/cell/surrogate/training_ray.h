@@ -9,10 +9,10 @@
 
 namespace microinjection {
 
-/// An equilibrium of the converging model, in the frame of the place of contact.
+/// An equilibrium of the converging model, in the contact frame.
 struct TrainingSample {
-  double angle = 0;                                        ///< rad, of the place
-  Eigen::Vector3d displacement = Eigen::Vector3d::Zero();  ///< m, of the tip since it touched
+  double angle = 0;                                        ///< rad, of the contact point
+  Eigen::Vector3d displacement = Eigen::Vector3d::Zero();  ///< m, of the tip since first contact
   Eigen::Vector3d force = Eigen::Vector3d::Zero();         ///< N, of the cell on the needle
   Eigen::VectorXf surface;  ///< m, xyz of each node of the outer surface; coarse mesh only
 };
@@ -22,20 +22,22 @@ struct TrainingResult {
   std::string reason;                   ///< why the ray ended before its target; else empty
 };
 
-/// Solves along a ray, on P2-P0 elements in space. Throws as CellProblem.
+/// Solves along a ray, on P2-P0 elements in space. Throws as CellProblem does.
 TrainingResult solveRay(const Scene& scene, const TrainingRay& ray);
 
 std::string encode(const TrainingResult& result);
-/// Throws std::runtime_error when the bytes are not whole or hold a value that is not finite.
+/// Throws std::runtime_error when the bytes are incomplete or a value is not finite.
 TrainingResult decodeTraining(const std::string& bytes);
 
-/// The stored result of `ray`. Damaged as well when it is not of this ray, or when its surfaces are not of
-/// `surface_size` numbers (trainingSurface().nodes.size()), as those of another mesh.
+/// The stored result of `ray`. The state is kDamaged, too, when it belongs to another ray, or when
+/// its surfaces do not have `surface_size` numbers (trainingSurface().nodes.size()), as those of
+/// another mesh.
 CacheRead<TrainingResult> loadTraining(const std::string& path, const std::string& description, const TrainingRay& ray,
                                        Eigen::Index surface_size);
 
-/// The outer surface of the coarse meshes of solveRay with the needle's place at `angle`: all nodes, and triangles,
-/// each facet cut into four, counter-clockwise seen from outside. Nodes of different angles correspond.
+/// The outer surface of the coarse meshes of solveRay with the contact point at `angle`: all nodes,
+/// and triangles, four for each facet, counter-clockwise seen from outside. Nodes of different
+/// angles correspond.
 struct TrainingSurface {
   Eigen::VectorXd nodes;  ///< m, xyz of each
   std::vector<Eigen::Vector3i> triangles;

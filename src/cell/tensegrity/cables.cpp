@@ -10,12 +10,13 @@
 namespace microinjection {
 namespace {
 
-constexpr double kEver = std::numeric_limits<double>::infinity();
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-Cables::Cables(std::shared_ptr<const NodePlaces> places, std::vector<Cable> cables, const Eigen::VectorXd& start)
-    : places_(std::move(places)), cables_(std::move(cables)), duration_(kEver) {
+Cables::Cables(std::shared_ptr<const NodePositions> node_positions, std::vector<Cable> cables,
+               const Eigen::VectorXd& start)
+    : node_positions_(std::move(node_positions)), cables_(std::move(cables)), duration_(kInfinite) {
   for (std::size_t i = 0; i < cables_.size(); ++i) {
     const Cable& cable = cables_[i];
     if (!(cable.rest_length > 0) || !(cable.axial_stiffness >= 0) || !(cable.retardation_time >= 0)) {
@@ -41,8 +42,8 @@ Cables::Spring Cables::spring(int index) const {
 
 double Cables::length(int index, const Eigen::VectorXd& state) const {
   const Cable& cable = cables_[index];
-  const Eigen::Vector3d from = (*places_)[cable.a] + state.segment<3>(3 * cable.a);
-  const Eigen::Vector3d to = (*places_)[cable.b] + state.segment<3>(3 * cable.b);
+  const Eigen::Vector3d from = (*node_positions_)[cable.a] + state.segment<3>(3 * cable.a);
+  const Eigen::Vector3d to = (*node_positions_)[cable.b] + state.segment<3>(3 * cable.b);
   return (to - from).norm();
 }
 
@@ -53,8 +54,8 @@ double Cables::tension(int index, const Eigen::VectorXd& state) const {
 
 bool Cables::evaluate(int index, const Eigen::VectorXd& state, Order order, LocalEnergy& result) const {
   const Cable& cable = cables_[index];
-  const Eigen::Vector3d from = (*places_)[cable.a] + state.segment<3>(3 * cable.a);
-  const Eigen::Vector3d span = (*places_)[cable.b] + state.segment<3>(3 * cable.b) - from;
+  const Eigen::Vector3d from = (*node_positions_)[cable.a] + state.segment<3>(3 * cable.a);
+  const Eigen::Vector3d span = (*node_positions_)[cable.b] + state.segment<3>(3 * cable.b) - from;
   const double length = span.norm();
   if (!(length > 0)) return false;
   const Spring spring = this->spring(index);
@@ -92,7 +93,7 @@ void Cables::accept(const Eigen::VectorXd& state) {
 
 void Cables::reset() {
   lengths_ = accepted_ = start_lengths_;
-  duration_ = kEver;
+  duration_ = kInfinite;
 }
 
 }  // namespace microinjection

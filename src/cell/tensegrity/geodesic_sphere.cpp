@@ -8,7 +8,8 @@ namespace microinjection {
 GeodesicSphere::GeodesicSphere(const std::vector<Eigen::Vector3d>& corners,
                                const std::vector<std::array<int, 3>>& faces, int divisions)
     : vertices(corners) {
-  // A point of a face by its share (in divisions-ths) of each corner that it has a share of: faces that meet agree.
+  // Key of a point: its weights (in 1/divisions) on the corners of its face, without zeros.
+  // Adjacent faces share keys.
   std::map<std::vector<std::array<int, 2>>, int> numbers;
   const double radius = corners.front().norm();
   const auto vertex = [&](const std::array<int, 3>& face, int i, int j) {

@@ -11,8 +11,9 @@ struct GeodesicSphere {
   std::vector<Eigen::Vector3d> vertices;  ///< m, the given corners first
   std::vector<std::array<int, 3>> triangles;
 
-  /// Cuts each of the `faces` of a convex polyhedron, whose corners lie on the sphere, into divisions^2 triangles and
-  /// puts their vertices on the sphere: of 12 corners and 20 faces 10 divisions^2 + 2 vertices.
+  /// Divides each of the `faces` of a convex polyhedron, whose corners lie on the sphere, into
+  /// divisions^2 triangles and projects their vertices onto the sphere: 12 corners and 20 faces
+  /// give 10 divisions^2 + 2 vertices.
   GeodesicSphere(const std::vector<Eigen::Vector3d>& corners, const std::vector<std::array<int, 3>>& faces,
                  int divisions);
 };

@@ -26,9 +26,9 @@ Eigen::Matrix3d planeStress(const MembraneConfig& config) {
 
 }  // namespace
 
-Membrane::Membrane(std::shared_ptr<const NodePlaces> places, const Geometry& geometry, const MembraneConfig& config,
-                   const Eigen::VectorXd& start)
-    : places_(std::move(places)),
+Membrane::Membrane(std::shared_ptr<const NodePositions> node_positions, const Geometry& geometry,
+                   const MembraneConfig& config, const Eigen::VectorXd& start)
+    : node_positions_(std::move(node_positions)),
       stiffness_(planeStress(config)),
       tension_(config.tension),
       pressure_(2 * config.tension / geometry.radius),
@@ -55,7 +55,7 @@ Membrane::Membrane(std::shared_ptr<const NodePlaces> places, const Geometry& geo
 
 Eigen::Matrix3d Membrane::positions(const Facet& facet, const Eigen::VectorXd& state) const {
   Eigen::Matrix3d x;
-  for (int a = 0; a < 3; ++a) x.col(a) = (*places_)[facet.nodes[a]] + state.segment<3>(3 * facet.nodes[a]);
+  for (int a = 0; a < 3; ++a) x.col(a) = (*node_positions_)[facet.nodes[a]] + state.segment<3>(3 * facet.nodes[a]);
   return x;
 }
 
@@ -75,7 +75,7 @@ bool Membrane::evaluate(int index, const Eigen::VectorXd& state, Order order, Lo
                   pressure_ / 6 * x1.dot(x2.cross(x3));
   if (order == Order::kEnergy) return true;
   const Eigen::Vector3d stress = elastic + viscous + Eigen::Vector3d(tension_, tension_, 0);  // N/m
-  Eigen::Matrix<double, 3, 9> B;                                                              // change of the strain
+  Eigen::Matrix<double, 3, 9> B;                                                              // strain derivative
   for (int a = 0; a < 3; ++a) {
     const double g1 = facet.gradients(a, 0), g2 = facet.gradients(a, 1);
     B.middleCols<3>(3 * a) << g1 * F.col(0).transpose(), g2 * F.col(1).transpose(),

@@ -11,15 +11,16 @@
 
 namespace microinjection {
 
-/// A closed thin membrane on linear triangles under a constant pressure inside. Energy, J, of area A0 at rest
+/// A closed thin membrane on linear triangles under a constant internal pressure. Energy, J, with
+/// the area A0 at rest
 ///
-///     sum A0 (h/2 E : C : E + gamma tr E + h retardation / (2 dt) (E - E_n) : C : (E - E_n)) - p V,
+///     sum A0 (h/2 E : C : E + gamma tr E + h retardation/(2 dt) (E - E_n) : C : (E - E_n)) - p V,
 ///
-/// E the Green-Lagrange strain in the triangle's plane against `rest`, C plane stress (St-Venant-Kirchhoff), h the
-/// thickness, gamma the tension at rest, p = 2 gamma / radius (Laplace), V the enclosed volume. The last part of the
-/// sum is Kelvin-Voigt's in a load step of finite duration dt that begins at E_n (implicit Euler). The pressure stays
-/// what it is: what is inside flows without resistance in and out of a reservoir; the true cell's volume is nearly
-/// constant.
+/// E the Green-Lagrange strain in the triangle's plane relative to `rest`, C plane stress
+/// (St-Venant-Kirchhoff), h the thickness, gamma the tension at rest, p = 2 gamma / radius
+/// (Laplace), V the enclosed volume. The last term of the sum is Kelvin-Voigt's in a load step of
+/// finite duration dt that begins at E_n (implicit Euler). The pressure is constant, as if the
+/// content could flow into a reservoir without resistance; a real cell's volume is nearly constant.
 class Membrane : public EnergyTerm {
  public:
   struct Geometry {
@@ -29,8 +30,8 @@ class Membrane : public EnergyTerm {
     double radius = 0;                          ///< m
   };
 
-  /// `start`: state that the memory begins with, as if held for ever.
-  Membrane(std::shared_ptr<const NodePlaces> places, const Geometry& geometry, const MembraneConfig& config,
+  /// `start`: initial state of the memory, as if held for an infinite time.
+  Membrane(std::shared_ptr<const NodePositions> node_positions, const Geometry& geometry, const MembraneConfig& config,
            const Eigen::VectorXd& start);
 
   int elementCount() const override { return static_cast<int>(facets_.size()); }
@@ -52,7 +53,7 @@ class Membrane : public EnergyTerm {
   Eigen::Matrix3d positions(const Facet& facet, const Eigen::VectorXd& state) const;
   static Eigen::Vector3d strain(const Eigen::Matrix<double, 3, 2>& F);
 
-  std::shared_ptr<const NodePlaces> places_;
+  std::shared_ptr<const NodePositions> node_positions_;
   std::vector<Facet> facets_;
   Eigen::Matrix3d stiffness_;  ///< h C, N/m
   double tension_, pressure_, retardation_time_;

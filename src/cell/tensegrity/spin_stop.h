@@ -7,9 +7,10 @@
 
 namespace microinjection {
 
-/// Keeps struts from spinning about the line through their hinges, which nothing else resists: for each pair of nodes
-/// (two corners of a strut's middle section) the energy k/2 |u_a - u_b - start|^2. It is a regularisation: k is to be
-/// so small that the moment is nothing beside the strut's bending stiffness.
+/// Resists spinning of struts about the line through their hinges, which no other term does. For
+/// each pair of nodes (two corners of a strut's middle section) the energy is k/2 |u_a - u_b -
+/// start|^2. This is a regularisation: k must be so small that the moment is negligible against the
+/// strut's bending stiffness.
 class SpinStop : public EnergyTerm {
  public:
   /// @param stiffness k, N/m
@@ -26,12 +27,12 @@ class SpinStop : public EnergyTerm {
 
   bool evaluate(int pair, const Eigen::VectorXd& state, Order order, LocalEnergy& result) const override {
     const std::vector<int>& at = entries_[pair];
-    const Eigen::Vector3d way = state.segment<3>(at[0]) - state.segment<3>(at[3]) - starts_[pair];
+    const Eigen::Vector3d stretch = state.segment<3>(at[0]) - state.segment<3>(at[3]) - starts_[pair];
     result.zero = false;
-    result.energy = 0.5 * stiffness_ * way.squaredNorm();
+    result.energy = 0.5 * stiffness_ * stretch.squaredNorm();
     if (order == Order::kEnergy) return true;
     result.gradient.resize(6);
-    result.gradient << stiffness_ * way, -stiffness_ * way;
+    result.gradient << stiffness_ * stretch, -stiffness_ * stretch;
     if (order == Order::kGradient) return true;
     const Eigen::Matrix3d block = stiffness_ * Eigen::Matrix3d::Identity();
     result.hessian.resize(6, 6);

@@ -32,8 +32,8 @@ StrutMesh::StrutMesh(const StrutMeshConfig& config, const Eigen::Vector3d& from,
   const Eigen::Vector3d along = direction.normalized();
   const Eigen::Vector3d u = (bow_direction - bow_direction.dot(along) * along).normalized(), v = along.cross(u);
   const double radius = circumradius(config.section), cap = kCapHeight * radius;
-  const auto line = [&](double way) -> Eigen::Vector3d {
-    return from + way * along + config.bow * config.length * std::sin(kPi * way / config.length) * u;
+  const auto line = [&](double distance) -> Eigen::Vector3d {
+    return from + distance * along + config.bow * config.length * std::sin(kPi * distance / config.length) * u;
   };
   mesh.vertices.push_back(from);
   for (int section = 0; section <= config.slices; ++section) {
@@ -47,7 +47,7 @@ StrutMesh::StrutMesh(const StrutMeshConfig& config, const Eigen::Vector3d& from,
   for (const auto& [a, b, c] : kTriangles) {
     addTetrahedron(mesh, {firstApex(), vertex(0, a), vertex(0, b), vertex(0, c)});
     for (int slice = 0; slice < config.slices; ++slice) {
-      // The diagonals of the prisms' sides turn one way in one slice, the other way in the next.
+      // The diagonals of the prisms' sides alternate their direction from slice to slice.
       int low = slice, high = slice + 1;
       if (slice % 2 == 1) std::swap(low, high);
       addTetrahedron(mesh, {vertex(low, a), vertex(low, b), vertex(low, c), vertex(high, c)});

@@ -10,15 +10,16 @@ namespace microinjection {
 
 struct StrutMeshConfig {
   double length = 50e-6;  ///< m, between the apexes
-  double section = 0;     ///< m^2
+  double section = 0;     ///< m^2, of the strut
   int slices = 32;        ///< along the length
-  double bow = 0;         ///< of the middle, of the length, towards `bow_direction`: a half wave of a sine
+  double bow = 0;         ///< of the middle towards `bow_direction`, over the length: half a sine wave
 };
 
-/// Tetrahedra of one strut. Its section is a regular pentagon of the given area, whose second moment is 1.7 % above
-/// that of the circle; all along it is cut into slices of nine tetrahedra without a vertex inside of the section. At
-/// either end the five corners meet, over half a circumradius of the section, in one apex, to which cables and membrane
-/// are tied: a hinge. Six struts of 32 slices have 1002 vertices and 1764 tetrahedra (the paper: 1014, 1798).
+/// Tetrahedra of one strut. Its section is a regular pentagon of the given area, whose second
+/// moment is 1.7 % above that of the circle. Along the length it is divided into slices of nine
+/// tetrahedra without a vertex inside of the section. At either end the five corners converge, over
+/// half a circumradius of the section, to one apex. The apex is a hinge for cables and membrane.
+/// Six struts of 32 slices have 1002 vertices and 1764 tetrahedra (the paper: 1014, 1798).
 struct StrutMesh {
   static constexpr int kCorners = 5;
   TetMesh mesh;  ///< of this strut alone

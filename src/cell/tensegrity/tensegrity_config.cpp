@@ -74,7 +74,7 @@ std::vector<std::string> TensegrityConfig::errors() const {
   for (const int cable : cut) {
     errors.require(cable >= 0 && cable < kCables, "cut", cable, "", "numbers of cables, 0 to 35");
   }
-  // Otherwise the pairs of struts close up, see TensegrityGeometry.
+  // Otherwise the pairs of struts collapse, see TensegrityGeometry.
   const bool balanced = intermediate.tension() == 0 || intermediate.tension() < 1.4 * actin.tension();
   errors.require(balanced, "intermediate_filaments/prestrain", intermediate.prestrain, "",
                  "such that the tension is below 1.4 times that of the actin cables, which alone keep parallel struts "

@@ -5,11 +5,12 @@
 
 namespace microinjection {
 
-/// Filaments of one kind, bundled into each member of the structure: Table II of Ladjal, Hanus, Ferreira,
-/// "Micro-to-nano biomechanical modeling for assisted biological cell injection". A filament is a solid circular
-/// cylinder whose second moment is that of its bending stiffness, I = BS / E; `count` of them side by side and bonded
-/// to each other make a circular bundle of count times the section, and so count^2 times the second moment. (Where they
-/// slide on each other it is count times: see looseBendingStiffness.)
+/// Filaments of one kind, bundled into each member of the structure: Table II of Ladjal, Hanus,
+/// Ferreira, "Micro-to-nano biomechanical modeling for assisted biological cell injection". A
+/// filament is a solid circular cylinder whose second moment follows from its bending stiffness, I
+/// = BS / E. `count` filaments bonded side by side make a circular bundle of count times the
+/// section, and so count^2 times the second moment. (If they slide on each other it is count times:
+/// see looseBendingStiffness.)
 struct FilamentConfig {
   double young_modulus = 0;      ///< E, Pa, > 0
   double bending_stiffness = 0;  ///< BS, N m^2, of one filament, > 0
@@ -21,12 +22,13 @@ struct FilamentConfig {
   double radius() const;                                                      ///< of a member, m
   double axialStiffness() const { return young_modulus * section(); }         ///< E S of a member, N
   double bendingStiffness() const;                                            ///< E I of a member, bonded, N m^2
-  double looseBendingStiffness() const { return count * bending_stiffness; }  ///< N m^2, filaments that slide
-  /// Of a member hinged at both ends, `length` m: pi^2 E I / length^2, N.
+  double looseBendingStiffness() const { return count * bending_stiffness; }  ///< N m^2, sliding filaments
+  /// Euler's buckling load of a member hinged at both ends, `length` m: pi^2 E I / length^2, N.
   double eulerLoad(double length) const;
 };
 
-/// A prestressed cable. Kelvin-Voigt, equation (9): stress = E strain + eta rate, eta = E times the retardation time.
+/// A prestressed cable. Kelvin-Voigt, equation (9): stress = E strain + eta rate, eta = E times the
+/// retardation time.
 struct CableConfig {
   FilamentConfig filaments;
   double prestrain = 0.05;      ///< l / l0 - 1 in the structure at rest, >= 0
@@ -39,12 +41,12 @@ struct StrutConfig {
   FilamentConfig filaments;
   double poisson_ratio = 0.3;       ///< in (-1, 0.5)
   std::string model = "corotated";  ///< linear (the paper's; wrong under rotation), st_venant_kirchhoff, corotated
-  std::string element = "p1";       ///< p1 (the paper's; too stiff in bending where slender), p2
+  std::string element = "p1";       ///< p1 (the paper's; too stiff in bending when slender), p2
   int slices = 32;                  ///< of a strut along its length, even, >= 2
-  double bow = 0.002;  ///< of its middle, of its length: no strut is straight, and a perfect one bifurcates
+  double bow = 0.002;  ///< of its middle, over its length: no strut is straight, and a perfect one bifurcates
 };
 
-/// The viscoelastic biomembrane, of which the paper says that it is there. All figures are ours.
+/// The viscoelastic biomembrane, which the paper mentions without data. All values are ours.
 struct MembraneConfig {
   double young_modulus = 1e4;   ///< Pa, > 0
   double poisson_ratio = 0.3;   ///< in (-1, 0.5]
@@ -54,20 +56,21 @@ struct MembraneConfig {
   int divisions = 8;            ///< of each edge between neighbouring strut ends, >= 1
 };
 
-/// The paper's cytoskeleton (section III.A): six struts, 24 actin and 12 intermediate-filament cables, in a membrane.
+/// The paper's cytoskeleton (section III.A): six struts, 24 actin and 12 intermediate-filament
+/// cables, in a membrane.
 struct TensegrityConfig {
-  double radius = 28e-6;             ///< m, of the sphere through all strut ends, the membrane's
+  double radius = 28e-6;             ///< orientation of the needle's axis, see TensegrityGeometry
   std::string orientation = "face";  ///< what the needle's axis meets on top, see TensegrityGeometry
   CableConfig actin, intermediate;
   StrutConfig microtubules;
   MembraneConfig membrane;
   std::vector<int> cut;  ///< numbers of the cables that are cut, see TensegrityGeometry
 
-  TensegrityConfig();  ///< Table II, middle of its ranges, one filament a member
+  TensegrityConfig();  ///< Table II, middle of its ranges, one filament in a member
 
-  /// Whether cables or membrane resist by how fast they stretch.
+  /// Whether cables or membrane are viscous.
   bool viscous() const;
-  /// All that is wrong, each "KEY = VALUE UNIT: must be ALLOWED"; empty when nothing is.
+  /// All errors, each "KEY = VALUE UNIT: must be ALLOWED"; empty when there are none.
   std::vector<std::string> errors() const;
   /// Throws ConfigError with all errors at once.
   void validate() const;

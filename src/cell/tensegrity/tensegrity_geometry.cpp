@@ -15,7 +15,8 @@ using Kind = TensegrityGeometry::Kind;
 double actinLength(double ratio) { return std::sqrt(0.25 + 0.25 * (1 - ratio) * (1 - ratio) + 0.25 * ratio * ratio); }
 double diagonalLength(double ratio) { return std::sqrt(1 + ratio * ratio); }
 
-/// s/L in equilibrium, by bisection of L/s - 2 - (q_side + q_diagonal) / q_actin, which falls with it.
+/// s/L in equilibrium, by bisection of L/s - 2 - (q_side + q_diagonal) / q_actin, which decreases
+/// with s/L.
 double equilibriumRatio(const TensegrityConfig& config) {
   const double actin = config.actin.tension(), intermediate = config.intermediate.tension();
   if (intermediate == 0) return 0.5;
@@ -28,14 +29,14 @@ double equilibriumRatio(const TensegrityConfig& config) {
   return 0.5 * (low + high);
 }
 
-struct Place {
+struct EndIndex {
   int axis, side, end;
-  explicit Place(int number) : axis(number / 4), side(number / 2 % 2), end(number % 2) {}
+  explicit EndIndex(int number) : axis(number / 4), side(number / 2 % 2), end(number % 2) {}
 };
 
-/// Whether two ends have a cable between them, and which. @pre a != b.
+/// Whether a cable connects two ends, and its kind. @pre a != b.
 bool connection(int a, int b, Kind& kind) {
-  Place p(a), q(b);
+  EndIndex p(a), q(b);
   if (p.axis == q.axis) {
     if (p.side == q.side) return false;  // a strut
     kind = p.end == q.end ? Kind::kSide : Kind::kDiagonal;
@@ -73,7 +74,7 @@ std::vector<std::array<int, 3>> neighbourTriangles(const std::array<Eigen::Vecto
 std::array<int, 3> lowest(const std::array<Eigen::Vector3d, 12>& ends, double radius) {
   std::array<int, 12> order;
   std::iota(order.begin(), order.end(), 0);
-  const auto height = [&](int end) { return std::llround(1e9 * ends[end].z() / radius); };  // rounding makes no order
+  const auto height = [&](int end) { return std::llround(1e9 * ends[end].z() / radius); };  // ignores rounding
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return height(a) < height(b); });
   return {order[0], order[1], order[2]};
 }
@@ -85,10 +86,10 @@ TensegrityGeometry::TensegrityGeometry(const TensegrityConfig& config) {
   strut_length = 2 * config.radius / diagonalLength(ratio);
   strut_distance = ratio * strut_length;
   for (int i = 0; i < 12; ++i) {
-    const Place place(i);
+    const EndIndex index(i);
     ends[i].setZero();
-    ends[i][place.axis] = (place.end - 0.5) * strut_length;
-    ends[i][(place.axis + 1) % 3] = (place.side - 0.5) * strut_distance;
+    ends[i][index.axis] = (index.end - 0.5) * strut_length;
+    ends[i][(index.axis + 1) % 3] = (index.side - 0.5) * strut_distance;
   }
   const auto turn = Eigen::Quaterniond::FromTwoVectors(top(config.orientation, ends[11]), Eigen::Vector3d::UnitZ());
   for (Eigen::Vector3d& end : ends) end = turn * end;

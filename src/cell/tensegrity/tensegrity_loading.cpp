@@ -10,10 +10,10 @@ namespace microinjection {
 namespace {
 
 constexpr double kFirstStep = 1.0 / 128, kLargestStep = 1.0 / 32, kSmallestStep = 1e-4;  ///< of the diameter
-constexpr int kEasy = 8;                  ///< iterations: cables that go slack take some at any length
-constexpr int kMostFactorisations = 300;  ///< of a snap
+constexpr int kEasy = 8;                  ///< iterations: cables that become slack need some in steps of any length
+constexpr int kMostFactorisations = 300;  ///< in a snap
 constexpr double kSnapStep = 2e-3;        ///< of the diameter
-constexpr int kMostSnaps = 8;             ///< of one way: more is no path
+constexpr int kMostSnaps = 8;             ///< of one call; more indicates that there is no path
 
 }  // namespace
 
@@ -31,22 +31,24 @@ LoadPathConfig TensegrityLoading::pathConfig() const {
   config.largest_step = kLargestStep * config.length;
   config.smallest_step = kSmallestStep * config.length;
   config.easy = kEasy;
-  config.smooth = false;  // cables go slack and taut
+  config.smooth = false;  // cables become slack and taut
   return config;
 }
 
 LoadPath::Result TensegrityLoading::advance(const Eigen::Vector3d& target, double duration) {
   const double whole = (target - displacement()).norm();
-  double waiting = duration;  // where there is no way to go
-  const auto timeFor = [&](const Eigen::Vector3d& way) { return whole > 0 ? way.norm() / whole * duration : waiting; };
+  double waiting = duration;  // duration at a zero distance
+  const auto timeFor = [&](const Eigen::Vector3d& path) {
+    return whole > 0 ? path.norm() / whole * duration : waiting;
+  };
   int iterations = 0;
   for (int snaps = 0;; ++snaps) {
     LoadPath::Result result = path_->advance(target - origin_, timeFor(target - displacement()));
     iterations += result.newton_iterations;
     result.newton_iterations = iterations;
     if (result.converged) return result;
-    const Eigen::Vector3d way = target - displacement();
-    const double share = snaps < kMostSnaps ? snap(way, timeFor(way)) : 0;
+    const Eigen::Vector3d remaining = target - displacement();
+    const double share = snaps < kMostSnaps ? snap(remaining, timeFor(remaining)) : 0;
     if (share == 0) {
       result.reason += "; no stable equilibrium was found beyond it either";
       if (structure_->config().membrane.tension == 0) result.reason += ": a membrane without tension crumples";
@@ -57,28 +59,29 @@ LoadPath::Result TensegrityLoading::advance(const Eigen::Vector3d& target, doubl
   }
 }
 
-/// A little further along `way` (m, in `duration`, s) than stable equilibria go, and down in energy from there, in one
-/// implicit step of the time that this little takes; where that finds no rest, a shorter one, in which what is viscous
-/// gives way less. Share of the way and time that is gone, 0 on failure.
-double TensegrityLoading::snap(const Eigen::Vector3d& way, double duration) {
-  const double furthest = std::min(1.0, kSnapStep * 2 * structure_->config().radius / way.norm());
+/// Moves a little along `path` (m, in `duration`, s) beyond the last stable equilibrium and
+/// minimises the energy from there, in one implicit step of the corresponding time. If that finds
+/// no rest, it tries shorter steps, in which viscous parts resist more. Returns the share of the
+/// path and time that was covered, 0 on failure.
+double TensegrityLoading::snap(const Eigen::Vector3d& path, double duration) {
+  const double furthest = std::min(1.0, kSnapStep * 2 * structure_->config().radius / path.norm());
   for (const double part : {1.0, 0.1, 0.01}) {
     const double share = part * furthest;
     bool viscous = false;
     for (const auto& term : parts_.terms) viscous = term->beginStep(share * duration) || viscous;
-    if (fall(share * way, viscous)) return share;
+    if (relax(share * path, viscous)) return share;
     if (!viscous) break;
   }
   return 0;
 }
 
-/// To rest with the following nodes moved by `way`, m, in the step that the terms have begun.
-bool TensegrityLoading::fall(const Eigen::Vector3d& way, bool viscous) {
+/// Relaxes with the following nodes moved by `increment`, m, in the step that the terms have begun.
+bool TensegrityLoading::relax(const Eigen::Vector3d& increment, bool viscous) {
   RelaxationConfig config;
   config.length = 2 * structure_->config().radius;
   config.maximum_iterations = kMostFactorisations;
   Eigen::VectorXd state = path_->state();
-  system_.addTo(state, Eigen::VectorXd::Zero(system_.freeSize()), way);
+  system_.addTo(state, Eigen::VectorXd::Zero(system_.freeSize()), increment);
   if (!Relaxation(system_, config).relax(state).converged) return false;
   try {
     path_ = std::make_unique<LoadPath>(system_, pathConfig(), state, viscous);

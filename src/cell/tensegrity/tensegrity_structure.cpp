@@ -16,14 +16,14 @@
 namespace microinjection {
 namespace {
 
-constexpr double kSpin = 1e-4;       ///< moment against spinning, of the strut's bending stiffness over its length
-constexpr double kEnough = 1e-9;     ///< residual, of the prestress
-constexpr double kRounding = 2e-15;  ///< of a strut's stress, of Young's modulus
-constexpr int kFactorisations = 80;  ///< of a relaxation, before the cables are tightened in smaller steps
-constexpr int kPatience = 6;         ///< steps of Newton's method after it that make nothing better
+constexpr double kSpin = 1e-4;              ///< moment against spinning, over the strut's bending stiffness per length
+constexpr double kTolerance = 1e-9;         ///< residual, over the prestress
+constexpr double kRounding = 2e-15;         ///< of a strut's stress, over Young's modulus
+constexpr int kFactorisations = 80;         ///< of a relaxation, before the prestress is applied in smaller steps
+constexpr int kMostWorseSteps = 6;          ///< successive Newton steps without improvement before it stops
 constexpr double kSmallestStep = 1.0 / 64;  ///< of the prestress
 
-/// The same mesh with straight edges.
+/// The same mesh with straight quadratic elements.
 QuadraticMesh<3> straight(const TetMesh& mesh) {
   return makeQuadratic(mesh,
                        [&](int a, int b) -> Eigen::Vector3d { return 0.5 * (mesh.vertices[a] + mesh.vertices[b]); });
@@ -32,17 +32,18 @@ QuadraticMesh<3> straight(const TetMesh& mesh) {
 }  // namespace
 
 TensegrityStructure::TensegrityStructure(const TensegrityConfig& config)
-    : config_((config.validate(), config)), geometry_(config), places_(std::make_shared<NodePlaces>()) {
+    : config_((config.validate(), config)), geometry_(config), node_positions_(std::make_shared<NodePositions>()) {
   const Eigen::VectorXd displacement = makeStruts();
   makeMembrane();
-  start_ = Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(places_->size()) + 3);
+  start_ = Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(node_positions_->size()) + 3);
   start_.head(displacement.size()) = displacement;
-  placed_ = start_;
+  initial_ = start_;
   findForm();
   makeSurface();
 }
 
-/// Struts without load, longer than in the structure; returns the displacement that shortens them to it.
+/// Makes the struts without load, longer than in the structure. Returns the displacement that
+/// shortens them to it.
 Eigen::VectorXd TensegrityStructure::makeStruts() {
   const FilamentConfig& filaments = config_.microtubules.filaments;
   const double strain = geometry_.strut_force / filaments.axialStiffness();
@@ -90,7 +91,7 @@ Eigen::VectorXd TensegrityStructure::makeStruts() {
   struts_ = std::make_shared<LayeredBody<3>>(
       straight(all), kind, LayeredBody<3>::Materials{std::shared_ptr(makeMaterial(material))}, Inversion::kAllowed);
   const std::vector<Eigen::Vector3d>& nodes = struts_->mesh().nodes;
-  places_->assign(nodes.begin(), nodes.begin() + struts_->nodeCount());
+  node_positions_->assign(nodes.begin(), nodes.begin() + struts_->nodeCount());
   Eigen::VectorXd displacement = Eigen::VectorXd::Zero(3 * struts_->nodeCount());
   const auto shorten = [&](int node, int vertex) {
     const Eigen::Vector3d& n = along[vertex];
@@ -111,8 +112,8 @@ void TensegrityStructure::makeMembrane() {
     if (i < corners.size()) {
       membrane_.nodes.push_back(ends_[i]);
     } else {
-      membrane_.nodes.push_back(static_cast<int>(places_->size()));
-      places_->push_back(sphere.vertices[i]);
+      membrane_.nodes.push_back(static_cast<int>(node_positions_->size()));
+      node_positions_->push_back(sphere.vertices[i]);
     }
   }
   membrane_.rest = std::move(sphere.vertices);
@@ -137,9 +138,9 @@ TensegrityStructure::Parts TensegrityStructure::makeParts(const Eigen::VectorXd&
   std::vector<std::array<int, 2>> pairs;
   for (const std::vector<int>& middle : middles_) pairs.push_back({middle[0], middle[2]});
   Parts parts;
-  parts.cables = std::make_shared<Cables>(places_, std::move(cables), start);
-  parts.terms = {struts_, parts.cables, std::make_shared<Membrane>(places_, membrane_, config_.membrane, start),
-                 std::make_shared<SpinStop>(pairs, spin, placed_)};
+  parts.cables = std::make_shared<Cables>(node_positions_, std::move(cables), start);
+  parts.terms = {struts_, parts.cables, std::make_shared<Membrane>(node_positions_, membrane_, config_.membrane, start),
+                 std::make_shared<SpinStop>(pairs, spin, initial_)};
   return parts;
 }
 
@@ -166,7 +167,7 @@ std::vector<Eigen::Vector3d> TensegrityStructure::strutLine(int strut, const Eig
 double TensegrityStructure::strutForce(int strut, const Eigen::VectorXd& state) const {
   const auto& [a, b] = geometry_.struts[strut];
   const Eigen::Vector3d axis = (position(ends_[b], state) - position(ends_[a], state)).normalized();
-  const Eigen::Vector3d unloaded = (*places_)[ends_[b]] - (*places_)[ends_[a]];
+  const Eigen::Vector3d unloaded = (*node_positions_)[ends_[b]] - (*node_positions_)[ends_[a]];
   const Material& material = *struts_->materials().front();
   const int elements = struts_->elementCount() / 6;
   double sum = 0;
@@ -204,7 +205,7 @@ Constraints TensegrityStructure::constraints(const std::vector<int>& following) 
   return result;
 }
 
-/// Each strut by itself between its ends, where these were placed: its caps and its bow give way.
+/// Relaxes the caps and the bow of each strut alone, with all strut ends held.
 void TensegrityStructure::settleStruts() {
   Parts parts = makeParts(start_, 1);
   Constraints held = constraints({});
@@ -214,7 +215,7 @@ void TensegrityStructure::settleStruts() {
   EquilibriumSystem system(parts.terms, held, SymmetricSolver::Method::kSimplicial);
   RelaxationConfig config;
   config.length = 2 * config_.radius;
-  config.maximum_iterations = kFactorisations;  // near is enough: under much prestress the last digits take for ever
+  config.maximum_iterations = kFactorisations;  // an approximation suffices: the last digits may take very long
   form_.iterations += Relaxation(system, config).relax(start_).iterations;
 }
 
@@ -239,14 +240,15 @@ void TensegrityStructure::findForm() {
   }
 }
 
-/// Full steps of Newton's method, also where one makes it worse (cables that go slack and taut by turns), as long as
-/// some of the last ones made it better. False when the state that it ends in is not stable.
+/// Full steps of Newton's method, also when a step makes the residual larger (cables that alternate
+/// between slack and taut), as long as one of the last steps improved it. False when the final
+/// state is not stable.
 bool TensegrityStructure::refine(EquilibriumSystem& system, Eigen::VectorXd& state) {
   Eigen::VectorXd at = state, residual;
   Eigen::Vector3d reaction;
   form_.residual = std::numeric_limits<double>::infinity();
   bool stable = false;
-  for (int i = 0, worse = 0; worse < kPatience; ++i, ++form_.iterations) {
+  for (int i = 0, worse = 0; worse < kMostWorseSteps; ++i, ++form_.iterations) {
     if (!system.residual(at, residual, reaction)) break;
     const double size = residual.lpNorm<Eigen::Infinity>();
     const bool better = size < form_.residual;
@@ -262,8 +264,8 @@ bool TensegrityStructure::refine(EquilibriumSystem& system, Eigen::VectorXd& sta
   return stable;
 }
 
-/// Relaxation comes near whatever happens (struts that bend, a cable that is cut); Newton's method then goes to
-/// rounding.
+/// Relaxation approaches the equilibrium from any state (bent struts, a cut cable). Newton's method
+/// then converges to rounding.
 bool TensegrityStructure::balance(Eigen::VectorXd& state, double tightness) {
   Parts parts = makeParts(state, tightness);
   EquilibriumSystem system(parts.terms, constraints({}), SymmetricSolver::Method::kSimplicial);
@@ -280,12 +282,12 @@ bool TensegrityStructure::balance(Eigen::VectorXd& state, double tightness) {
   const FilamentConfig& filaments = config_.microtubules.filaments;
   const double face = geometry_.strut_length / config_.microtubules.slices * 2 * filaments.radius();
   const double rounding = kRounding * filaments.young_modulus * face;
-  return stable && form_.residual <= std::max(kEnough * form_.prestress, rounding);
+  return stable && form_.residual <= std::max(kTolerance * form_.prestress, rounding);
 }
 
 void TensegrityStructure::makeSurface() {
-  TetMesh fan;  // its boundary is the membrane: neighbours and all come from there
-  for (std::size_t node = 0; node < places_->size(); ++node) {
+  TetMesh fan;  // its boundary is the membrane, with neighbours
+  for (std::size_t node = 0; node < node_positions_->size(); ++node) {
     fan.vertices.push_back(position(static_cast<int>(node), start_));
   }
   const int centre = static_cast<int>(fan.vertices.size());

@@ -15,34 +15,35 @@
 
 namespace microinjection {
 
-/// The paper's cytoskeleton as finite elements, at rest under its own prestress: struts of tetrahedra, cables,
-/// membrane.
+/// The paper's cytoskeleton as finite elements, at rest under its own prestress: struts of
+/// tetrahedra, cables, membrane.
 ///
-/// Nodes of a state: those of the struts' mesh, then the membrane's that are not strut ends; 3 n + k is component k of
-/// node n's displacement from nodePlaces(), where struts are without load. The state's last three entries are the
-/// tip's. Immutable after construction, safe to share between threads.
+/// Nodes of a state: those of the struts' mesh, then the membrane's that are not strut ends; 3 n +
+/// k is component k of node n's displacement from nodePositions(), in which struts are without
+/// load. The state's last three entries are the tip's. Immutable after construction, safe to share
+/// between threads.
 class TensegrityStructure {
  public:
-  /// How well the structure stands before the needle comes.
+  /// Accuracy of the equilibrium at rest.
   struct Form {
-    double residual = 0;   ///< N, largest force that is not balanced, of any free node's component
+    double residual = 0;   ///< N, largest unbalanced force, of any component of a free node
     double prestress = 0;  ///< N, largest tension of a cable
-    int iterations = 0;    ///< of Newton's method, relaxation's factorisations among them
+    int iterations = 0;    ///< of Newton's method, including the relaxation's factorisations
     double energy = 0;     ///< J
   };
 
-  /// Finds the form: places the struts, cables and membrane where TensegrityGeometry has them in equilibrium, lets go
-  /// of all but the three held ends and solves, tightening the cables step by step where that does not succeed at once
-  /// (struts near their Euler load). What is not balanced in the end is less than 1e-9 of the prestress, or where that
-  /// is weaker than rounding in the struts' stress, rounding. Throws ConfigError when the configuration is not valid,
-  /// std::runtime_error when no stable equilibrium is found.
+  /// Finds the form. It starts from the equilibrium of TensegrityGeometry, releases all but the
+  /// three held ends and solves. If that fails (struts near their Euler load), it applies the
+  /// prestress step by step. The final residual is less than 1e-9 of the prestress, or at rounding
+  /// of the struts' stress if that is larger. Throws ConfigError when the configuration is not
+  /// valid, std::runtime_error when no stable equilibrium is found.
   explicit TensegrityStructure(const TensegrityConfig& config);
 
   const TensegrityConfig& config() const { return config_; }
   const TensegrityGeometry& geometry() const { return geometry_; }
   const LayeredBody<3>& struts() const { return *struts_; }
-  const NodePlaces& nodePlaces() const { return *places_; }  ///< m
-  const Eigen::VectorXd& start() const { return start_; }    ///< state at rest
+  const NodePositions& nodePositions() const { return *node_positions_; }  ///< m
+  const Eigen::VectorXd& start() const { return start_; }                  ///< state at rest
   const Form& form() const { return form_; }
 
   int endNode(int end) const { return ends_[end]; }
@@ -51,29 +52,30 @@ class TensegrityStructure {
   std::vector<int> middleNodes(int strut) const;
   /// Middle of a strut's sections from one end to the other, m.
   std::vector<Eigen::Vector3d> strutLine(int strut, const Eigen::VectorXd& state) const;
-  /// Mean axial force in a strut, N, compression negative: the integral of its stress along the line through its ends
-  /// over its length.
+  /// Mean axial force in a strut, N, compression negative: the integral of its stress along the
+  /// line through its ends, divided by its length.
   double strutForce(int strut, const Eigen::VectorXd& state) const;
-  /// Whether a cable of makeParts() is one of actin: of the numbers in TensegrityGeometry those cut are left out.
+  /// Whether a cable of makeParts() is of actin. Its numbers are those of TensegrityGeometry
+  /// without the cut cables.
   bool isActin(int cable) const;
 
-  /// The membrane at rest; mesh_vertices are nodes.
+  /// The membrane at rest; its mesh_vertices are nodes.
   const SurfaceMesh& surface() const { return surface_; }
 
-  /// All energies, with a memory of their own that begins at start().
+  /// All energies, with separate memory that begins at start().
   struct Parts {
     std::shared_ptr<Cables> cables;
-    EquilibriumSystem::Terms terms;  ///< struts, cables, membrane, what keeps the struts from spinning
+    EquilibriumSystem::Terms terms;  ///< struts, cables, membrane, SpinStop
   };
   Parts makeParts() const { return makeParts(start_, 1); }
 
-  /// What is held at the three ends, the tip's own entries, and nodes that follow the tip.
-  /// Throws std::invalid_argument when one of these is held.
+  /// Constraints: the three held ends, the tip's own entries, and nodes that follow the tip. Throws
+  /// std::invalid_argument when a following node is held.
   Constraints constraints(const std::vector<int>& following) const;
 
   /// Position of a node in a state, m.
   Eigen::Vector3d position(int node, const Eigen::VectorXd& state) const {
-    return (*places_)[node] + state.segment<3>(3 * node);
+    return (*node_positions_)[node] + state.segment<3>(3 * node);
   }
 
  private:
@@ -89,12 +91,12 @@ class TensegrityStructure {
   TensegrityConfig config_;
   TensegrityGeometry geometry_;
   std::shared_ptr<LayeredBody<3>> struts_;
-  std::shared_ptr<NodePlaces> places_;
-  std::vector<int> ends_;  ///< node of each strut end
-  std::vector<std::vector<int>> sections_,
-      middles_;  ///< of each strut: first corner of each section; corners of its middle
+  std::shared_ptr<NodePositions> node_positions_;
+  std::vector<int> ends_;                   ///< node of each strut end
+  std::vector<std::vector<int>> sections_;  ///< of each strut: first corner of each section
+  std::vector<std::vector<int>> middles_;   ///< of each strut: corners of its middle section
   Membrane::Geometry membrane_;
-  Eigen::VectorXd placed_, start_;  ///< states: as first placed, and at rest
+  Eigen::VectorXd initial_, start_;  ///< states: initial, and at rest
   Form form_;
   SurfaceMesh surface_;
 };

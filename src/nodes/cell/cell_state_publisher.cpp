@@ -72,7 +72,7 @@ void CellStatePublisher::fillSurface(cell_microinjection::CellState& state) {
   std::transform(picture.vertices.begin(), picture.vertices.end(), state.vertices.begin(),
                  [](const Eigen::Vector3d& vertex) { return toMessage<geometry_msgs::Point32>(vertex); });
   state.displacement.assign(picture.displacement.begin(), picture.displacement.end());
-  state.contact_vertices = picture.touched;
+  state.contact_vertices = picture.contact_vertices;
   for (const Eigen::Vector3d& hole : picture.holes) state.holes.push_back(toMessage<geometry_msgs::Point>(hole));
   for (const CellModel::Member& member : picture.members) {
     state.member_points.push_back(toMessage<geometry_msgs::Point32>(member.from));

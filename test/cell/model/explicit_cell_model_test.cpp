@@ -95,14 +95,14 @@ TEST_F(ExplicitCellModelTest, NeitherPullsNorStaysDeformedWhenTheNeedleLeaves) {
   EXPECT_GE(smallest_push_, 0);
   const CellModel::DeformedSurface surface = cell_.deformedSurface();
   EXPECT_LT(*std::max_element(surface.displacement.begin(), surface.displacement.end()), 1e-9);
-  EXPECT_TRUE(surface.touched.empty());
+  EXPECT_TRUE(surface.contact_vertices.empty());
 }
 
 TEST_F(ExplicitCellModelTest, DrawsTheDeformationUnderTheTip) {
   moveTo(3e-6, 0.5);
   const CellModel::DeformedSurface surface = cell_.deformedSurface();
-  ASSERT_FALSE(surface.touched.empty());
-  for (const std::uint32_t vertex : surface.touched) EXPECT_NEAR(surface.displacement[vertex], 3e-6, 0.3e-6);
+  ASSERT_FALSE(surface.contact_vertices.empty());
+  for (const std::uint32_t vertex : surface.contact_vertices) EXPECT_NEAR(surface.displacement[vertex], 3e-6, 0.3e-6);
   for (const std::uint32_t vertex : cell_.held()) EXPECT_EQ(surface.displacement[vertex], 0);
 }
 

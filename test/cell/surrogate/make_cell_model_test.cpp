@@ -49,9 +49,10 @@ TEST_F(ServeNeedle, AnUnpreparedRoundedTipIsLiveWithAWarning) {
   config.online.fixed_period = true;
   const ChosenCellModel served = makeCellModel(pipette(), "auto", config, "a.yaml");
   EXPECT_FALSE(served.as_required);
-  EXPECT_TRUE(has(served.said, "not prepared; run: rosrun cell_microinjection prepare --scene a.yaml")) << served.said;
-  EXPECT_TRUE(has(served.said, "live: P2-P0")) << served.said;
-  EXPECT_TRUE(has(served.said, "too large")) << served.said;
+  EXPECT_TRUE(has(served.description, "not prepared; run: rosrun cell_microinjection prepare --scene a.yaml"))
+      << served.description;
+  EXPECT_TRUE(has(served.description, "live: P2-P0")) << served.description;
+  EXPECT_TRUE(has(served.description, "too large")) << served.description;
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   for (int i = 0; i < 200; ++i) served.cell->step({0, 0, 27.5e-6}, up, 1e-3 * i);
   const TipForce force = served.cell->step({0, 0, 27.5e-6}, up, 0.2);
@@ -64,7 +65,7 @@ TEST_F(ServeNeedle, AnUnpreparedDiscIsLiveOnLinearTetrahedra) {
   disc.mesh.size = 20e-6;
   const ChosenCellModel served = makeCellModel(disc, "auto", {}, "a.yaml");
   EXPECT_FALSE(served.as_required);
-  EXPECT_TRUE(has(served.said, "live: P1 tetrahedra, whose force is too large")) << served.said;
+  EXPECT_TRUE(has(served.description, "live: P1 tetrahedra, whose force is too large")) << served.description;
 }
 
 TEST_F(ServeNeedle, PreparedRefusesWhatIsNot) {
@@ -88,8 +89,8 @@ TEST_F(ServeNeedle, DamagedDataAreNamedAndHowToMakeThemAnew) {
   EXPECT_TRUE(has(refused, damaged) && has(refused, call)) << refused;
   const ChosenCellModel served = makeCellModel(disc, "auto", {}, "a.yaml");
   EXPECT_FALSE(served.as_required);
-  EXPECT_TRUE(has(served.said, damaged) && has(served.said, call)) << served.said;
-  EXPECT_TRUE(has(served.said, "live: P1 tetrahedra")) << served.said;
+  EXPECT_TRUE(has(served.description, damaged) && has(served.description, call)) << served.description;
+  EXPECT_TRUE(has(served.description, "live: P1 tetrahedra")) << served.description;
 }
 
 TEST_F(ServeNeedle, WhatIsNoFileOrOfAnotherVersionIsNotCalledUnprepared) {
@@ -112,20 +113,21 @@ TEST_F(ServeNeedle, DamagedFiguresOfTheLiveModelAreNamed) {
   smallCell(scene).save(scene, PreparationRange::standard(scene), file(scene));
   saveFigures(scene, {"live", std::numeric_limits<double>::quiet_NaN(), 1e-3});
   const ChosenCellModel served = makeCellModel(scene, "auto", {}, "a.yaml");
-  EXPECT_TRUE(has(served.said, "figures of the live model: ") && has(served.said, "is damaged: ")) << served.said;
+  EXPECT_TRUE(has(served.description, "figures of the live model: ") && has(served.description, "is damaged: "))
+      << served.description;
 }
 
 TEST_F(ServeNeedle, LiveIsServedAsAskedFor) {
   const ChosenCellModel served = makeCellModel(pipette(), "live", {}, "a.yaml");
   EXPECT_TRUE(served.as_required);
-  EXPECT_TRUE(has(served.said, "as asked for: P2-P0")) << served.said;
+  EXPECT_TRUE(has(served.description, "as asked for: P2-P0")) << served.description;
 }
 
 TEST_F(ServeNeedle, ATensegrityIsServedLiveWithoutAWarning) {
   const Scene scene = loadScene(MICROINJECTION_SOURCE_DIR "/config/cells/mouse_oocyte_tensegrity.yaml");
   const ChosenCellModel served = makeCellModel(scene, "auto", {}, "a.yaml");
   EXPECT_TRUE(served.as_required);
-  EXPECT_TRUE(has(served.said, "solved live: tensegrity of ")) << served.said;
+  EXPECT_TRUE(has(served.description, "solved live: tensegrity of ")) << served.description;
   EXPECT_FALSE(served.cell->deformedSurface().members.empty());
   EXPECT_TRUE(has(refusal(scene, "prepared"), "cell/model = tensegrity")) << refusal(scene, "prepared");
 }
@@ -139,8 +141,8 @@ TEST_F(ServeNeedle, WhatCannotBePreparedIsLive) {
   for (const Scene& scene : {viscous, rubbing}) {
     const ChosenCellModel served = makeCellModel(scene, "auto", {}, "a.yaml");
     EXPECT_FALSE(served.as_required);
-    EXPECT_TRUE(has(served.said, "cannot be prepared (")) << served.said;
-    EXPECT_TRUE(has(served.said, "so it is live: P2-P0")) << served.said;
+    EXPECT_TRUE(has(served.description, "cannot be prepared (")) << served.description;
+    EXPECT_TRUE(has(served.description, "so it is live: P2-P0")) << served.description;
   }
 }
 
@@ -148,7 +150,7 @@ TEST_F(ServeNeedle, ExplicitDynamicsIsServedWithAWarningWhereItIsAskedForByName)
   const Scene scene = loadScene(MICROINJECTION_SOURCE_DIR "/config/cells/mouse_oocyte_st_venant_kirchhoff.yaml");
   const ChosenCellModel served = makeCellModel(scene, "explicit", {}, "a.yaml");
   EXPECT_FALSE(served.as_required);
-  EXPECT_TRUE(has(served.said, "too large") && has(served.said, "mass times")) << served.said;
+  EXPECT_TRUE(has(served.description, "too large") && has(served.description, "mass times")) << served.description;
   EXPECT_TRUE(has(refusal(pipette(), "explicit"), "needle/tip/shape = ")) << refusal(pipette(), "explicit");
 }
 

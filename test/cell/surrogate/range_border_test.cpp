@@ -9,19 +9,19 @@ const PreparationRange kRange{1.0, 20e-6, 45e-6, 5e-6};
 
 TEST(RangeBorder, ChangesNothingInside) {
   for (const Eigen::Vector3d& u : {Eigen::Vector3d(1e-6, -4e-6, -19e-6), Eigen::Vector3d(0, 0, -1e-9)}) {
-    const CountedDisplacement counted(kRange, false, u);
-    EXPECT_TRUE(counted.inside);
-    EXPECT_EQ(counted.value(), u);
+    const LimitedDisplacement limited(kRange, false, u);
+    EXPECT_TRUE(limited.inside);
+    EXPECT_EQ(limited.value(), u);
   }
-  EXPECT_TRUE(CountedDisplacement(kRange, true, {0.5e-6, 0, -44e-6}).inside);
-  EXPECT_FALSE(CountedDisplacement(kRange, true, {3e-6, 0, -44e-6}).inside);
-  EXPECT_FALSE(CountedDisplacement(kRange, false, {0, 0, -21e-6}).inside);
-  EXPECT_TRUE(CountedDisplacement(kRange, false, {0, 0, -21e-6}).too_deep);
-  EXPECT_FALSE(CountedDisplacement(kRange, true, {3e-6, 0, -44e-6}).too_deep);
+  EXPECT_TRUE(LimitedDisplacement(kRange, true, {0.5e-6, 0, -44e-6}).inside);
+  EXPECT_FALSE(LimitedDisplacement(kRange, true, {3e-6, 0, -44e-6}).inside);
+  EXPECT_FALSE(LimitedDisplacement(kRange, false, {0, 0, -21e-6}).inside);
+  EXPECT_TRUE(LimitedDisplacement(kRange, false, {0, 0, -21e-6}).too_deep);
+  EXPECT_FALSE(LimitedDisplacement(kRange, true, {3e-6, 0, -44e-6}).too_deep);
 }
 
 TEST(RangeBorder, SaturatesWithinATenth) {
-  const CountedDisplacement far(kRange, false, {30e-6, 40e-6, -100e-6});
+  const LimitedDisplacement far(kRange, false, {30e-6, 40e-6, -100e-6});
   EXPECT_FALSE(far.inside);
   EXPECT_LE(-far.value().z(), 1.1 * 20e-6);
   EXPECT_LE(far.value().head<2>().norm(), 1.1 * 5e-6);
@@ -31,14 +31,14 @@ TEST(RangeBorder, SaturatesWithinATenth) {
 /// A tip that goes flat, or up, counts as one on the flattest path that was prepared, or a little flatter.
 TEST(RangeBorder, DoesNotRise) {
   for (const double rise : {-0.5e-6, 0.0, 3e-6}) {
-    const CountedDisplacement flat(kRange, false, {-4e-6, 0, rise});
+    const LimitedDisplacement flat(kRange, false, {-4e-6, 0, rise});
     EXPECT_FALSE(flat.inside);
     EXPECT_GT(-flat.value().z(), 0.15 * 4e-6);
     EXPECT_LT(-flat.value().z(), 0.3 * 4e-6);
   }
 }
 
-/// First and second derivatives of a quadratic function of the counted displacement, inside, over each border and over
+/// First and second derivatives of a quadratic function of the limited displacement, inside, over each border and over
 /// both, by central differences.
 TEST(RangeBorder, DerivativesAreThoseOfItsValues) {
   const auto function = [](const Eigen::Vector3d& s) {
@@ -56,8 +56,8 @@ TEST(RangeBorder, DerivativesAreThoseOfItsValues) {
                                      Eigen::Vector3d(1e-6, 1.5e-6, -46e-6), Eigen::Vector3d(4e-6, -2e-6, -0.5e-6),
                                      Eigen::Vector3d(-4e-6, 1e-6, 2e-6), Eigen::Vector3d(5e-6, -3e-6, 1e-6)}) {
       const auto at = [&](const Eigen::Vector3d& place) {
-        const CountedDisplacement counted(kRange, on_axis, place);
-        return counted.compose(function(counted.value()));
+        const LimitedDisplacement limited(kRange, on_axis, place);
+        return limited.compose(function(limited.value()));
       };
       const Jet jet = at(u);
       for (int k = 0; k < 3; ++k) {

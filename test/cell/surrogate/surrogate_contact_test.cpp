@@ -13,9 +13,9 @@ TEST(SurrogateContact, TouchesFollowsAndLoses) {
   const Scene scene = pipette();
   SurrogateContact contact(scene, springs(scene));
   EXPECT_TRUE(contact.step({0, 0, 28.1e-6}).force.isZero(0));
-  EXPECT_FALSE(contact.place());
+  EXPECT_FALSE(contact.contactFrame());
   const auto touched = contact.step({0, 0, 27e-6});
-  ASSERT_TRUE(contact.place());
+  ASSERT_TRUE(contact.contactFrame());
   EXPECT_GT(touched.force.z(), 0);
   EXPECT_TRUE(touched.prepared);
   const auto aside = contact.step({1e-6, 2e-6, 26e-6});
@@ -23,7 +23,7 @@ TEST(SurrogateContact, TouchesFollowsAndLoses) {
   EXPECT_NEAR(aside.force.y() / aside.force.x(), 2, 1e-9);
   EXPECT_NEAR(contact.displacement().z(), -2e-6, 1e-15);
   contact.step({1e-6, 2e-6, 28.2e-6});
-  EXPECT_FALSE(contact.place());
+  EXPECT_FALSE(contact.contactFrame());
 }
 
 /// Beside the axis the same happens in a turned frame.
@@ -98,7 +98,7 @@ TEST(SurrogateContact, NoMotionMakesTheForceLeap) {
     const Eigen::Vector3d force = contact.step(tip).force;
     ASSERT_TRUE(force.allFinite());
     ASSERT_LT(force.norm(), largest);
-    if (contact.place()) ++touched;
+    if (contact.contactFrame()) ++touched;
   }
   EXPECT_GT(touched, 30000);
   EXPECT_LT(touched, 90000);

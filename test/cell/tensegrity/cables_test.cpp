@@ -16,7 +16,7 @@ constexpr double kEver = std::numeric_limits<double>::infinity();
 /// One cable along x from the origin, whose other end moves.
 struct OneCable {
   explicit OneCable(double retardation_time = 0)
-      : cables(std::make_shared<NodePlaces>(NodePlaces{Eigen::Vector3d::Zero(), {kLength, 0, 0}}),
+      : cables(std::make_shared<NodePositions>(NodePositions{Eigen::Vector3d::Zero(), {kLength, 0, 0}}),
                {{0, 1, kLength, kStiffness, retardation_time}}, Eigen::VectorXd::Zero(9)) {}
 
   Eigen::VectorXd at(double stretch) const {
@@ -99,7 +99,7 @@ TEST(Cables, ATryThatIsNotAcceptedIsForgotten) {
 }
 
 TEST(Cables, RefusesWhatIsNoCable) {
-  const auto places = std::make_shared<NodePlaces>(NodePlaces(2, Eigen::Vector3d::Zero()));
+  const auto places = std::make_shared<NodePositions>(NodePositions(2, Eigen::Vector3d::Zero()));
   const Eigen::VectorXd start = Eigen::VectorXd::Zero(9);
   EXPECT_THROW(Cables(places, {{0, 1, 0, kStiffness, 0}}, start), std::invalid_argument);
   EXPECT_THROW(Cables(places, {{0, 1, kLength, -1, 0}}, start), std::invalid_argument);

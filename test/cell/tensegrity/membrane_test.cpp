@@ -19,7 +19,7 @@ constexpr double kRadius = 28e-6;
 struct Ball {
   explicit Ball(int divisions, const MembraneConfig& config)
       : geometry(makeGeometry(divisions)),
-        places(std::make_shared<NodePlaces>(geometry.rest)),
+        places(std::make_shared<NodePositions>(geometry.rest)),
         zero(Eigen::VectorXd::Zero(3 * geometry.rest.size() + 3)),
         membrane(places, geometry, config, zero) {}
 
@@ -49,7 +49,7 @@ struct Ball {
   }
 
   Membrane::Geometry geometry;
-  std::shared_ptr<NodePlaces> places;
+  std::shared_ptr<NodePositions> places;
   Eigen::VectorXd zero;
   Membrane membrane;
 };

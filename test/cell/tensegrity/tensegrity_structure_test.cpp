@@ -86,7 +86,8 @@ TEST(TensegrityStructure, StrutsBearWhatTheAnalyticFormSays) {
       force_length -= struts.weight(e, q) * axis.dot(stress * axis);
     }
   }
-  length = (structure->nodePlaces()[structure->endNode(1)] - structure->nodePlaces()[structure->endNode(0)]).norm();
+  length =
+      (structure->nodePositions()[structure->endNode(1)] - structure->nodePositions()[structure->endNode(0)]).norm();
   EXPECT_NEAR(force_length / length / tension / std::sqrt(6.0), 1, 2e-3);  // virial: the integral of stress is P L
   EXPECT_NEAR(-structure->strutForce(0, structure->start()) / tension / std::sqrt(6.0), 1, 2e-3);
 }
