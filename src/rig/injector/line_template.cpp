@@ -10,7 +10,7 @@
 namespace microinjection {
 namespace {
 
-/// Adding 0 turns -0, which is no number of a device, into 0.
+/// Adding 0 turns -0, which devices do not accept, into 0.
 double toDecimals(double value, int decimals) {
   const double unit = std::pow(10.0, decimals);
   return std::round(value * unit) / unit + 0.0;

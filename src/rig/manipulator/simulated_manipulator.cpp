@@ -34,7 +34,7 @@ ManipulatorAbilities SimulatedManipulator::abilities() const {
     abilities.speed = std::max(abilities.speed, axis.velocity);
     slowest_stop = std::max(slowest_stop, axis.velocity / axis.acceleration);
   }
-  abilities.stop_time = slowest_stop + 5 * config_.servo_time_constant;  // within 1 % of the lag
+  abilities.stop_time = slowest_stop + 5 * config_.servo_time_constant;  // until 1 % of the lag remains
   return abilities;
 }
 
@@ -53,8 +53,8 @@ void SimulatedManipulator::moveTo(const Eigen::Vector3d& joints, double speed) {
 
 void SimulatedManipulator::stop() { mode_ = Mode::kStop; }
 
-void SimulatedManipulator::injectFault(const std::string& why) {
-  fault_ = why;
+void SimulatedManipulator::injectFault(const std::string& reason) {
+  fault_ = reason;
   stop();
 }
 

@@ -17,8 +17,8 @@ namespace microinjection {
 namespace {
 
 constexpr double kStartInterval = 0.5;  // s, between attempts to start a guard
-constexpr int kMostWaits = 1000;        // ms, for the end of a guard that was killed: a debugger may hold on to it
-constexpr double kLongestStep = 0.05;   // s: in a longer one this program stood still, and not its guard
+constexpr int kMostWaits = 1000;        // ms, to wait for the end of a killed guard, which a debugger may delay
+constexpr double kLongestStep = 0.05;   // s; a longer step means that this program was frozen, not its guard
 
 double seconds(std::chrono::steady_clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
 
@@ -37,17 +37,17 @@ std::string StopGuard::start() {
   silence_ = 0;
   int ends[2];
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) return std::strerror(errno);
-  // 0 and 1 are where the guard puts its own.
+  // The guard uses descriptors 0 and 1 for its own purposes.
   const int driver = fcntl(ends[1], F_DUPFD_CLOEXEC, 3), line = fcntl(line_, F_DUPFD_CLOEXEC, 3);
   process_ = driver < 0 || line < 0 ? -1 : fork();
   if (process_ == 0) runStopGuard(line, driver, stop_.data(), stop_.size());
-  std::string why = process_ < 0 ? std::strerror(errno) : "";
+  std::string reason = process_ < 0 ? std::strerror(errno) : "";
   for (const int each : {ends[1], driver, line}) {
     if (each >= 0) close(each);
   }
   socket_ = ends[0];
-  if (!why.empty()) endProcess();
-  return why;
+  if (!reason.empty()) endProcess();
+  return reason;
 }
 
 void StopGuard::receive() {
@@ -64,8 +64,8 @@ void StopGuard::receive() {
   }
 }
 
-/// Does not wait for its end: a guard that a debugger holds on to has none until the debugger lets go. What it may
-/// still send is the stop, which the driver sends as well.
+/// Does not wait for the guard's end, which a debugger can delay. The guard may still send the
+/// stop, but the driver sends it as well.
 void StopGuard::lose(const std::string& what) {
   if (process_ > 0) {
     kill(process_, SIGKILL);
@@ -92,7 +92,7 @@ Wire::GuardReport StopGuard::heartbeat() {
   const Clock::time_point now = Clock::now();
   if (socket_ >= 0) {
     silence_ += std::min(seconds(now - last_heartbeat_), kLongestStep);
-    // A socket that is full belongs to a guard that does not listen, and is found by its silence.
+    // A full socket belongs to a frozen guard, which its silence reveals.
     const bool gone = send(socket_, &kStopGuardBeat, 1, MSG_DONTWAIT | MSG_NOSIGNAL) < 0 && errno == EPIPE;
     if (gone) lose("ended");
     if (silence_ > kStopGuardSilence) lose("stood still for more than 0.2 s");
@@ -102,7 +102,7 @@ Wire::GuardReport StopGuard::heartbeat() {
   return {std::exchange(intervention_, ""), missing_};
 }
 
-/// Killed it sends nothing, wherever it is in its work; a closed socket alone would have it send the stop.
+/// A killed guard sends nothing. If only the socket were closed, it would send the stop.
 void StopGuard::endProcess() {
   if (process_ > 0 && waitpid(process_, nullptr, WNOHANG) == 0) {
     kill(process_, SIGKILL);

@@ -4,17 +4,20 @@
 
 namespace microinjection {
 
-/// Bytes between the driver and its stop guard, one a message.
+/// Messages between the driver and its stop guard, one byte each.
 constexpr char kStopGuardBeat = 'b';     ///< to the guard: the driver was stepped
-constexpr char kStopGuardEcho = 'e';     ///< from it: beats have come since the last one
-constexpr char kStopGuardStopped = 's';  ///< from it: no beat came for kStopGuardSilence; the stop has been sent
+constexpr char kStopGuardEcho = 'e';     ///< from the guard: it received heartbeats since the last echo
+constexpr char kStopGuardStopped = 's';  ///< from the guard: no heartbeat for kStopGuardSilence, the stop has been sent
 
-constexpr double kStopGuardSilence = 0.2;  ///< s without a beat after which a driver stands still, or without an echo
+constexpr double kStopGuardSilence =
+    0.2;  ///< s without a heartbeat after which a driver, or without an echo after which a guard, is frozen
 
-/// The guard's life, in a process of its own: sends `stop` on `line` when the driver at the other end of the socket
-/// `driver` is gone, and again and again while it sends no beat. `line` must be non-blocking; both descriptors > 2.
+/// Main loop of the guard process. Sends `stop` on `line` when the driver at the other end of the
+/// socket `driver` has terminated, and repeatedly while the driver sends no heartbeat. `line` must
+/// be non-blocking; both descriptors must be > 2.
 ///
-/// It is the child of a fork in a program with threads: only what is safe in a signal handler may be called.
+/// It runs in the child of a fork of a multi-threaded program, so it may only call
+/// async-signal-safe functions.
 [[noreturn]] void runStopGuard(int line, int driver, const char* stop, std::size_t size);
 
 }  // namespace microinjection

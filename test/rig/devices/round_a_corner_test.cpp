@@ -26,7 +26,7 @@ class Needle {
     for (int i = 0; i < std::lround(duration / kStep); ++i) {
       needle_->step(time_ += kStep, kStep);
       nearest_ = std::min(nearest_, guard_.clearance(joints()));
-      if (ended_.empty()) ended_ = needle_->ended();
+      if (ended_.empty()) ended_ = needle_->abortReason();
     }
   }
   void moveTo(const Eigen::Vector3d& place) {
@@ -82,7 +82,7 @@ TEST(RoundACorner, NormalFollowingIsNotRefused) {
     needle.streamTo(kCorner, speed);
     needle.run(0.09);
     EXPECT_EQ(needle.refused(), 0) << speed;
-    EXPECT_EQ(needle.ended(), "") << speed;
+    EXPECT_EQ(needle.abortReason(), "") << speed;
     EXPECT_GT(needle.nearest(), kMargin) << speed;
   }
 }
