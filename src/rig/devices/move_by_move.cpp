@@ -155,8 +155,8 @@ bool MoveByMove::detectNewOrigin(const Eigen::Vector3d& position, double outside
   position_.reset();
   origin_monitor_.clear();
   origin_lost_ = true;  // so that no position is reported
-  raiseFault("it tells a place " + std::to_string(std::lround(distance * 1e6)) +
-             " um from where it must be: if it was switched off its coordinates began anew; check them, then enable");
+  raiseFault("it reports a position " + std::to_string(std::lround(distance * 1e6)) +
+             " um from the possible ones: if it was switched off, its coordinates began anew; check them, then enable");
   return true;
 }
 

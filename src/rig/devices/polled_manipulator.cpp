@@ -94,7 +94,7 @@ void PolledManipulator::exchange(const std::string& bytes) {
 void PolledManipulator::notUnderstood(const std::string& reply) {
   ++malformed_;
   exchangeFailed(exchange_ ? "answers \"" + printable(reply) + "\" to \"" + exchange_->line + "\""
-                           : "says \"" + printable(reply) + "\" without being asked");
+                           : "sends \"" + printable(reply) + "\" without a request");
 }
 
 void PolledManipulator::handle(const std::string& reply) {

@@ -61,7 +61,7 @@ Eigen::Vector3d PolledManipulator::pointOnPath(const Eigen::Vector3d& from, doub
 /// starts before the line is left.
 void PolledManipulator::nextTowardsGoal() {
   const Eigen::Vector3d from = *position_, goal_position = goalPosition(), displacement = goal_position - from;
-  if (goal_position.cwiseAbs().maxCoeff() > 2e9) return raiseFault("the goal is too far away to be said");
+  if (goal_position.cwiseAbs().maxCoeff() > 2e9) return raiseFault("the goal exceeds the range of the protocol");
   const Eigen::Vector3d fastest = common_.axes.inDeviceOrder(speedLimits());
   const double wanted = std::min(requestedSpeed(displacement), fastestAlong(displacement));
   Plan chosen = plan(from, goal_position, wanted, fastest);

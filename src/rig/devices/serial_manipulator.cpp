@@ -108,9 +108,9 @@ void SerialManipulator::exchangeFailed(const std::string& reason) {
 /// for it.
 void SerialManipulator::disconnect() {
   positions_valid_ = ready_ = false;
-  reason_ = link_.device + ": it has told no position for too long; trying again";
+  reason_ = link_.device + ": no valid position for too long; trying again";
   dropGoal();
-  exchangeFailed("no answer that tells its position");
+  exchangeFailed("no reply with its position");
 }
 
 void SerialManipulator::raiseFault(const std::string& reason) {

@@ -103,7 +103,7 @@ bool usesPlaceholder(const Exchanges& exchanges, const std::vector<Placeholder>&
 std::optional<double> readFixed(ConfigReader& reader, const std::string& key, bool in_lines, const Range& range) {
   double value = 0;
   if (in_lines) {
-    if (reader.has(key)) reader.error(key, "a line of pulse says it: leave the key out");
+    if (reader.has(key)) reader.error(key, "a line of pulse contains it: omit the key");
     reader.number(key, value);  // marks the key as read
     return std::nullopt;
   }

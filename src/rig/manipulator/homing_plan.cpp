@@ -52,7 +52,7 @@ std::string blocksOrder(const ManipulatorGeometry& geometry, const CollisionGuar
   for (int i = 0; i < 3; ++i) positions[i] = positionsOf(geometry.axes[i]);
   for (const int joint : order) {
     const std::string reason = blocksAxis(guard, positions, joint, ends[joint]);
-    if (!reason.empty()) return geometry.axes[joint].joint + " on its way to its reference position: " + reason;
+    if (!reason.empty()) return geometry.axes[joint].joint + " on its path to its reference position: " + reason;
     positions[joint] = {ends[joint]};
   }
   return "";

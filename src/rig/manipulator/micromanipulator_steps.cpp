@@ -34,7 +34,7 @@ void Micromanipulator::haltIfBlocked() {
   const std::string reason = blocksDevice(setpoint_ ? setpoint_->position : goal_);
   if (reason.empty()) return;
   halt();
-  abort_reason_ = "on the straight way from where the device is: " + reason;
+  abort_reason_ = "on the straight path from the measured position: " + reason;
 }
 
 /// Advances the set-point by one step with this velocity (m/s). If it could not brake in time

@@ -81,7 +81,7 @@ std::string ForceReadout::beginTare() {
 
 std::string ForceReadout::beginPoint(const Eigen::VectorXd& force) {
   if (force.size() != tare_.size() || !force.allFinite()) return "the known force is not finite";
-  if (force.isZero(0)) return "the known force is zero: that is what tare is for";
+  if (force.isZero(0)) return "the known force is zero: use tare instead";
   for (int axis = 0; axis < force.size(); ++axis) {
     if (std::abs(force[axis]) <= range_[axis]) continue;
     std::ostringstream text;
@@ -98,7 +98,7 @@ std::string ForceReadout::beginPoint(const Eigen::VectorXd& force) {
 
 void ForceReadout::interrupt() {
   if (!averaging()) return;
-  outcome_ = "the average was given up: no valid reading all the time";
+  outcome_ = "the average was aborted: not every reading was valid";
   purpose_ = Purpose::kNone;
 }
 
@@ -137,7 +137,7 @@ std::string ForceReadout::solve() {
 
 std::string ForceReadout::solveMatrix(const Eigen::MatrixXd& raw, const Eigen::MatrixXd& force,
                                       Eigen::MatrixXd& gain) const {
-  if (rankOf(raw) < tare_.size()) return "the readings do not tell the known forces apart";
+  if (rankOf(raw) < tare_.size()) return "the readings do not distinguish the known forces";
   gain = raw.transpose().colPivHouseholderQr().solve(force.transpose()).transpose();
   return "";
 }

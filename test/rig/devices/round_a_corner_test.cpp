@@ -82,7 +82,7 @@ TEST(RoundACorner, NormalFollowingIsNotRefused) {
     needle.streamTo(kCorner, speed);
     needle.run(0.09);
     EXPECT_EQ(needle.refused(), 0) << speed;
-    EXPECT_EQ(needle.abortReason(), "") << speed;
+    EXPECT_EQ(needle.ended(), "") << speed;
     EXPECT_GT(needle.nearest(), kMargin) << speed;
   }
 }

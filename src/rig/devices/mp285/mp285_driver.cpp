@@ -66,13 +66,13 @@ void Mp285Driver::exchange(const std::string& bytes) {
     if (const auto reply = parser_.feed(bytes, silent)) {
       handle(*reply);
     } else if (activeTime() > exchange_->due) {
-      exchangeFailed("no answer, or half of one");
+      exchangeFailed("no reply, or an incomplete one");
     } else if (exchange_->kind == Kind::kMove && isOutdated()) {
       stopFirst();
     }
   } else if (!bytes.empty()) {
     ++malformed_;  // without a request, later bytes cannot be assigned to a reply
-    return exchangeFailed("it talks without being asked");
+    return exchangeFailed("it sends bytes without a request");
   }
   if (exchanging() && !exchange_ && activeTime() >= next_command_) next();
 }
@@ -108,7 +108,7 @@ void Mp285Driver::handle(const Mp285Reply& reply) {
                     (reply.kind == Reply::kStopped && kind == Kind::kStop);
   if (!fits) {
     ++malformed_;
-    return exchangeFailed("an answer that is none");
+    return exchangeFailed("a malformed reply");
   }
   exchangeSucceeded();
   switch (kind) {
@@ -245,7 +245,7 @@ void Mp285Driver::nextTowardsGoal() {
   move.duration = (move.to - move.from).norm() / rate;
   Mp285Position position;
   for (int i = 0; i < 3; ++i) {
-    if (std::abs(move.to[i]) > 2e9) return raiseFault("the goal is too far away to be said");
+    if (std::abs(move.to[i]) > 2e9) return raiseFault("the goal exceeds the range of the protocol");
     position[i] = static_cast<std::int32_t>(move.to[i]);
   }
   move.begin = time() + 14 * config_.byteTime();

@@ -207,7 +207,7 @@ void ZaberDriver::checkStall(int i, bool stands) {
   axis.sent_velocity.reset();
   axis.velocity = 0;
   axis.stalls = stands ? axis.stalls + 1 : 0;
-  if (axis.stalls >= kStalls) raiseFault(axisName(i) + " does not move although it is told to; is it at its end?");
+  if (axis.stalls >= kStalls) raiseFault(axisName(i) + " does not move at the commanded velocity; is it at its end?");
 }
 
 void ZaberDriver::missedReply() {

@@ -100,7 +100,7 @@ bool ZaberDriver::nextOfSettings() {
     if (!missing) continue;
     const std::string command = ZaberSettings::command(*missing);
     if (++setting_tries_ > kSettingTries) {
-      exchangeFailed(axisName(i) + " gives no answer to \"" + command + "\" that is one");
+      exchangeFailed(axisName(i) + " gives no valid reply to \"" + command + "\"");
     } else {
       request(Kind::kSetting, i, command, *missing);
     }
