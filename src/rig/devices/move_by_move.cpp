@@ -73,13 +73,13 @@ Eigen::Vector3d MoveByMove::goalPosition() const {
   return device.cwiseQuotient(counts()).array().round();
 }
 
-bool MoveByMove::isThere(const Eigen::Vector3d& position, const Eigen::Vector3d& goal) const {
+bool MoveByMove::isAt(const Eigen::Vector3d& position, const Eigen::Vector3d& goal) const {
   return (position - goal).cwiseAbs().maxCoeff() <= arrival();
 }
 
 bool MoveByMove::moving() const {
   if (!goal()) return !settled_;
-  return move_ || !settled_ || !position_ || !isThere(*position_, goalPosition());
+  return move_ || !settled_ || !position_ || !isAt(*position_, goalPosition());
 }
 
 double MoveByMove::requestedSpeed(const Eigen::Vector3d& displacement) const {
@@ -104,7 +104,7 @@ double MoveByMove::fastestAlong(const Eigen::Vector3d& displacement) const {
 bool MoveByMove::isOutdated() const {
   if (!goal() || timeLeft() <= kWorthStopping) return false;
   if (move_->follows || goal()->follows) return move_->follows != goal()->follows;
-  return !isThere(move_->goal, goalPosition());
+  return !isAt(move_->goal, goalPosition());
 }
 
 void MoveByMove::begin(bool /*lost*/) {
@@ -120,7 +120,7 @@ void MoveByMove::onStopSent() {
   maxValidityTime(common_.reply_timeout + longest_move_ * common_.byteTime() + recoveryTime());
 }
 
-void MoveByMove::corrected(const Eigen::Vector3d& position, const Eigen::Vector3d& expected) {
+void MoveByMove::recordCorrection(const Eigen::Vector3d& position, const Eigen::Vector3d& expected) {
   const Eigen::Vector3d by = (position - expected).cwiseProduct(counts());
   largest_correction_ = std::max(largest_correction_, by.cwiseAbs().maxCoeff());
 }

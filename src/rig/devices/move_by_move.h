@@ -76,17 +76,16 @@ class MoveByMove : public SerialManipulator {
   /// Measures the reply time. A slow adapter makes every turn longer, which the abilities report.
   void measure(double sent, std::size_t reply_bytes);
   Eigen::Vector3d goalPosition() const;  ///< counts
-  bool isThere(const Eigen::Vector3d& position, const Eigen::Vector3d& goal) const;
-  double length(const Eigen::Vector3d& displacement) const {
-    return displacement.cwiseProduct(counts()).norm();
-  }  ///< m, from counts
-  double requestedSpeed(
-      const Eigen::Vector3d& displacement) const;                  ///< m/s, for the goal, over a displacement (counts)
-  double fastestAlong(const Eigen::Vector3d& displacement) const;  ///< m/s, at which no axis exceeds its limit
+  bool isAt(const Eigen::Vector3d& position, const Eigen::Vector3d& goal) const;
+  /// Of a displacement (counts): length (m), speed (m/s) for the goal, and largest speed (m/s) at
+  /// which no axis exceeds its limit.
+  double length(const Eigen::Vector3d& displacement) const { return displacement.cwiseProduct(counts()).norm(); }
+  double requestedSpeed(const Eigen::Vector3d& displacement) const;
+  double fastestAlong(const Eigen::Vector3d& displacement) const;
   Eigen::Vector3d extrapolatedPosition(double time) const;
   double timeLeft() const { return move_ ? move_->begin + move_->duration - time() : 0; }
   bool isOutdated() const;
-  void corrected(const Eigen::Vector3d& position, const Eigen::Vector3d& expected);
+  void recordCorrection(const Eigen::Vector3d& position, const Eigen::Vector3d& expected);
   void rest(const Eigen::Vector3d& position);
   bool isNewZero(const Eigen::Vector3d& position, double margin) const;
   bool detectNewOrigin(const Eigen::Vector3d& position, double outside, bool new_zero, double margin);

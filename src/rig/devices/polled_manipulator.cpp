@@ -8,9 +8,9 @@
 namespace microinjection {
 namespace {
 
-constexpr double kLongestGuess = 0.1;  // s, of motion by which an extrapolated position may be wrong
-constexpr double kHeldReply = 0.02;    // s, for which a USB adapter may delay a reply
-constexpr int kSetupTries = 6;         // for a setup line, which needs two equal replies
+constexpr double kLongestExtrapolation = 0.1;  // s, of motion by which an extrapolated position may be wrong
+constexpr double kHeldReply = 0.02;            // s, for which a USB adapter may delay a reply
+constexpr int kSetupTries = 6;                 // for a setup line, which needs two equal replies
 constexpr std::size_t kLongestLine = 80;
 
 std::string printable(const std::string& text) {
@@ -65,7 +65,7 @@ void PolledManipulator::begin(bool lost) {
   lines_.clear(false);
   stop_requested_ = motion_requested_ = false;
   check_setting_ = lost && !confirmed_.empty();
-  not_kept_ = 0;
+  lost_setting_replies_ = 0;
   if (lost) forgetSettings();
 }
 
@@ -91,14 +91,14 @@ void PolledManipulator::exchange(const std::string& bytes) {
   if (!exchange_) next();
 }
 
-void PolledManipulator::notUnderstood(const std::string& reply) {
+void PolledManipulator::handleMalformedReply(const std::string& reply) {
   ++malformed_;
   exchangeFailed(exchange_ ? "answers \"" + printable(reply) + "\" to \"" + exchange_->line + "\""
                            : "sends \"" + printable(reply) + "\" without a request");
 }
 
 void PolledManipulator::handle(const std::string& reply) {
-  if (!exchange_) return notUnderstood(reply);
+  if (!exchange_) return handleMalformedReply(reply);
   measure(exchange_->sent, reply.size() + 1);
   switch (exchange_->kind) {
     case Kind::kSetup:
@@ -115,7 +115,7 @@ void PolledManipulator::handle(const std::string& reply) {
       return;
     case Kind::kStop:
     case Kind::kMove:
-      if (!acknowledges(exchange_->line, reply)) return notUnderstood(reply);
+      if (!acknowledges(exchange_->line, reply)) return handleMalformedReply(reply);
       exchangeSucceeded();
       if (exchange_->kind == Kind::kStop) stop_requested_ = true;
       if (exchange_->line == setting_) confirmed_ = setting_;
@@ -126,7 +126,7 @@ void PolledManipulator::handle(const std::string& reply) {
 
 void PolledManipulator::handleSetupReply(const std::string& reply) {
   const bool twice = setup_reply_ == reply;
-  if (!twice && ++setup_tries_ > kSetupTries) return notUnderstood(reply);
+  if (!twice && ++setup_tries_ > kSetupTries) return handleMalformedReply(reply);
   if (!twice && setup_reply_) ++malformed_;
   exchange_.reset();
   setup_reply_ = reply;
@@ -141,28 +141,28 @@ void PolledManipulator::handleSetupReply(const std::string& reply) {
 
 /// Needs two such replies, since one may be damaged.
 void PolledManipulator::handleLostSetting() {
-  if (++not_kept_ < 2) return;
+  if (++lost_setting_replies_ < 2) return;
   check_setting_ = false;
   settings_lost_ = true;
 }
 
 void PolledManipulator::handleMotion(const std::string& reply) {
   const std::optional<bool> moves = readMotion(reply);
-  if (!moves) return notUnderstood(reply);
+  if (!moves) return handleMalformedReply(reply);
   exchange_.reset();
   exchangeSucceeded();
   motion_requested_ = true;
   if (!move_) return;
   if (*moves) {
-    progress_.stood.reset();
-  } else if (!progress_.stood) {
-    progress_.stood = activeTime();
+    progress_.at_rest_since.reset();
+  } else if (!progress_.at_rest_since) {
+    progress_.at_rest_since = activeTime();
   }
 }
 
 void PolledManipulator::handlePosition(const std::string& reply) {
   const std::optional<Eigen::Vector3d> position = readPosition(reply);
-  if (!position) return notUnderstood(reply);
+  if (!position) return handleMalformedReply(reply);
   exchange_.reset();
   motion_requested_ = false;
   exchangeSucceeded();
@@ -173,7 +173,7 @@ void PolledManipulator::updatePosition(const Eigen::Vector3d& position) {
   const Eigen::Vector3d nowhere = Eigen::Vector3d::Constant(std::nan(""));
   const Eigen::Vector3d expected = position_ && settled_ ? extrapolatedPosition(time()) : nowhere;
   const double speed = move_ ? (move_->to - move_->from).norm() / std::max(move_->duration, 1e-3) : 0;  // counts/s
-  const double under_way = reading_margin_ / count() + kLongestGuess * speed;
+  const double under_way = reading_margin_ / count() + kLongestExtrapolation * speed;
   // At rest, or before rest is confirmed, only four equal readings can change the position.
   const double tolerance = move_ ? under_way : kSame;
   if (!filter_.accept(position, expected, tolerance, tolerance) || !reply_times_.measured()) return;  // requested again
@@ -185,7 +185,7 @@ void PolledManipulator::updatePosition(const Eigen::Vector3d& position) {
     return;
   if (move_) return checkMove(position);
   if (settled_) {
-    corrected(position, expected);
+    recordCorrection(position, expected);
     if (elsewhere) forgetSettings();
     return rest(position);
   }
@@ -210,7 +210,7 @@ void PolledManipulator::next() {
   if (!stop_requested_) return request(Kind::kStop, dialect_.stop);
   if (!settled_ || filter_.isImplausible()) return request(Kind::kPosition, dialect_.position);
   if (move_) return nextOfMove();
-  if (goal() && mayMove() && time() >= next_move_ && !isThere(*position_, goalPosition())) {
+  if (goal() && mayMove() && time() >= next_move_ && !isAt(*position_, goalPosition())) {
     return nextTowardsGoal();
   }
   if (time() >= next_rest_reading_) request(Kind::kPosition, dialect_.position);

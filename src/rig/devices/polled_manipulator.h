@@ -64,7 +64,7 @@ class PolledManipulator : public MoveByMove {
   /// A request that shows after a failure whether `setting`, the last confirmed one, is still set.
   virtual std::string settingQuery(const std::string& setting) const = 0;
   virtual bool isKept(const std::string& setting, const std::string& reply) const = 0;
-  virtual std::optional<bool> readMotion(const std::string& /*answer*/) const { return std::nullopt; }
+  virtual std::optional<bool> readMotion(const std::string& /*reply*/) const { return std::nullopt; }
   virtual bool acknowledges(const std::string& line, const std::string& reply) const = 0;
   /// Plans a straight move between positions (whole counts) at `speed` (m/s), with no axis faster
   /// than `fastest` (m/s) if the device can do that.
@@ -89,13 +89,13 @@ class PolledManipulator : public MoveByMove {
   };
   /// The move in progress.
   struct Progress {
-    std::string setting, move;    // lines that are still to be sent
-    double end = 0;               // s, end of the move
-    double overdue = 0;           // s of activeTime(), latest arrival
-    double next = 0;              // s, earliest start of the next move, for a speed below the device's
-    int at_goal = 0;              // successive readings
-    bool zero_checked = false;    // settings were checked because it reads 0 at its goal
-    std::optional<double> stood;  // s of activeTime(), since the device reports rest
+    std::string setting, move;            // lines that are still to be sent
+    double end = 0;                       // s, end of the move
+    double overdue = 0;                   // s of activeTime(), latest arrival
+    double next = 0;                      // s, earliest start of the next move, for a speed below the device's
+    int at_goal = 0;                      // successive readings
+    bool zero_checked = false;            // settings were checked because it reads 0 at its goal
+    std::optional<double> at_rest_since;  // s of activeTime(), since the device reports rest
   };
 
   /// A path that may be travelled in parts, and the start of its next part.
@@ -112,7 +112,7 @@ class PolledManipulator : public MoveByMove {
   Eigen::Vector3d pointOnPath(const Eigen::Vector3d& from, double share) const;
   void checkMove(const Eigen::Vector3d& position);
   void handleMissedGoal(const Eigen::Vector3d& position);
-  void notUnderstood(const std::string& reply);
+  void handleMalformedReply(const std::string& reply);
   void forgetSettings();
   void request(Kind kind, const std::string& line);
   void next();
@@ -127,9 +127,9 @@ class PolledManipulator : public MoveByMove {
   int setup_step_ = 0;
   std::optional<std::string> setup_reply_;  // the last reply to this step
   int setup_tries_ = 0;
-  std::string setting_;    // of the last move with one; empty: unknown
-  std::string confirmed_;  // last confirmed setting; survives a failed session
-  int not_kept_ = 0;       // successive replies without the setting
+  std::string setting_;           // of the last move with one; empty: unknown
+  std::string confirmed_;         // last confirmed setting; survives a failed session
+  int lost_setting_replies_ = 0;  // successive replies without the setting
   bool check_setting_ = false, stop_requested_ = false, motion_requested_ = false;
   double next_move_ = 0;  // s
   Progress progress_;

@@ -65,7 +65,7 @@ void PolledManipulator::nextTowardsGoal() {
   const Eigen::Vector3d fastest = common_.axes.inDeviceOrder(speedLimits());
   const double wanted = std::min(requestedSpeed(displacement), fastestAlong(displacement));
   Plan chosen = plan(from, goal_position, wanted, fastest);
-  if (!line_ || goal()->follows || line_->goal != goal_position || !isThere(from, line_->next)) {
+  if (!line_ || goal()->follows || line_->goal != goal_position || !isAt(from, line_->next)) {
     line_ = Line{from, goal_position, from};
   }
   const bool in_steps = chosen.speed > 1.01 * wanted;
@@ -75,7 +75,7 @@ void PolledManipulator::nextTowardsGoal() {
   Eigen::Vector3d to = goal_position;
   for (int i = 0; i < kShorter && part < 1; ++i) {
     to = pointOnPath(from, part);
-    if (isThere(from, to)) to = goal_position;
+    if (isAt(from, to)) to = goal_position;
     chosen = plan(from, to, wanted, fastest);
     if (chosen.deviation <= 1) break;
     part /= chosen.deviation;
@@ -92,27 +92,27 @@ void PolledManipulator::nextTowardsGoal() {
 
 /// Handles a reading during a move: it continues, has arrived, or has missed its goal.
 void PolledManipulator::checkMove(const Eigen::Vector3d& position) {
-  const bool there = isThere(position, move_->to);
-  const bool reports_rest = dialect_.motion.empty() || progress_.stood;
+  const bool there = isAt(position, move_->to);
+  const bool reports_rest = dialect_.motion.empty() || progress_.at_rest_since;
   progress_.at_goal = there && reports_rest ? progress_.at_goal + 1 : 0;
   // A device that does not report rest may still move the last count, so its move ends after its
   // duration.
-  const bool stands = dialect_.motion.empty()
-                          ? progress_.at_goal > 0 && time() >= progress_.end
-                          : progress_.at_goal >= kSteady || (progress_.at_goal > 0 && timeLeft() <= 0);
-  if (stands && position.isZero(kSame) && !progress_.zero_checked && !confirmed_.empty()) {
-    not_kept_ = 0;
+  const bool at_rest = dialect_.motion.empty()
+                           ? progress_.at_goal > 0 && time() >= progress_.end
+                           : progress_.at_goal >= kSteady || (progress_.at_goal > 0 && timeLeft() <= 0);
+  if (at_rest && position.isZero(kSame) && !progress_.zero_checked && !confirmed_.empty()) {
+    lost_setting_replies_ = 0;
     progress_.zero_checked = check_setting_ =
         true;  // a device that was switched off just before its goal also reads 0 at rest there
     return;
   }
-  if (stands) {
+  if (at_rest) {
     next_move_ = progress_.next;
     tries_ = 0;
     return rest(position);
   }
-  const bool stands_elsewhere = progress_.stood && activeTime() > *progress_.stood + kSettleTime;
-  if (activeTime() > progress_.overdue || stands_elsewhere) return handleMissedGoal(position);
+  const bool rests_elsewhere = progress_.at_rest_since && activeTime() > *progress_.at_rest_since + kSettleTime;
+  if (activeTime() > progress_.overdue || rests_elsewhere) return handleMissedGoal(position);
   // The reading was taken half its transmission time ago.
   const double then = time() - 0.5 * dialect_.longest_reading * common_.byteTime();
   const double whole = (move_->to - move_->from).norm(), left = (move_->to - position).norm();

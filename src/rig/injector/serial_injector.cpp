@@ -73,8 +73,8 @@ bool SerialInjector::mayFlow() const {
 std::string SerialInjector::pulse(const InjectionPulse& pulse) {
   if (!fault().empty()) return fault();
   if (waiting_pulse_ || sent_pulse_ || model_.reading().busy) return "a pulse is under way";
-  std::string requested = limits_.check(pulse);
-  if (!requested.empty()) return requested;
+  std::string out_of_limits = limits_.check(pulse);
+  if (!out_of_limits.empty()) return out_of_limits;
   // Checks the rounded values: 0.4 ms is no pulse if the line has whole milliseconds.
   const std::string sent = limits_.check(protocol_.asSent(pulse));
   if (!sent.empty()) return "in the digits of the device's line, " + sent;

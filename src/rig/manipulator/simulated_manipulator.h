@@ -71,7 +71,7 @@ class SimulatedManipulator : public ManipulatorDevice {
   double speed_ = 0;                                          ///< m/s, of moveTo
   Eigen::Vector3d motors_ = Eigen::Vector3d::Zero();          ///< m
   Eigen::Vector3d motor_velocity_ = Eigen::Vector3d::Zero();  ///< m/s
-  Eigen::Vector3d played_ = Eigen::Vector3d::Zero();          ///< m, after the backlash
+  Eigen::Vector3d after_backlash_ = Eigen::Vector3d::Zero();          ///< m, after the backlash
   std::array<Hysteresis, 3> hysteresis_;
   Eigen::Vector3d drift_ = Eigen::Vector3d::Zero();         ///< m
   Eigen::Vector3d tip_ = Eigen::Vector3d::Zero();           ///< m

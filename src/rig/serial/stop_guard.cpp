@@ -56,7 +56,7 @@ void StopGuard::receive() {
     const ssize_t size = recv(socket_, messages, sizeof(messages), MSG_DONTWAIT);
     if (size < 0 && errno == EINTR) continue;
     if (size < 0 && errno == EAGAIN) return;
-    if (size <= 0) return lose("ended");
+    if (size <= 0) return markLost("ended");
     silence_ = 0;
     if (std::memchr(messages, kStopGuardStopped, static_cast<std::size_t>(size)) != nullptr) {
       intervention_ = "the program stood still for more than 0.2 s; the stop guard stopped the device";
@@ -66,7 +66,7 @@ void StopGuard::receive() {
 
 /// Does not wait for the guard's end, which a debugger can delay. The guard may still send the
 /// stop, but the driver sends it as well.
-void StopGuard::lose(const std::string& what) {
+void StopGuard::markLost(const std::string& what) {
   if (process_ > 0) {
     kill(process_, SIGKILL);
     lost_.push_back(process_);
@@ -94,8 +94,8 @@ Wire::GuardReport StopGuard::heartbeat() {
     silence_ += std::min(seconds(now - last_heartbeat_), kLongestStep);
     // A full socket belongs to a frozen guard, which its silence reveals.
     const bool gone = send(socket_, &kStopGuardBeat, 1, MSG_DONTWAIT | MSG_NOSIGNAL) < 0 && errno == EPIPE;
-    if (gone) lose("ended");
-    if (silence_ > kStopGuardSilence) lose("stood still for more than 0.2 s");
+    if (gone) markLost("ended");
+    if (silence_ > kStopGuardSilence) markLost("stood still for more than 0.2 s");
   }
   last_heartbeat_ = now;
   if (line_ >= 0 && socket_ < 0 && seconds(now - last_start_) > kStartInterval) missing_ = start();

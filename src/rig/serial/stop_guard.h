@@ -37,7 +37,7 @@ class StopGuard {
 
   std::string start();
   void receive();
-  void lose(const std::string& what);
+  void markLost(const std::string& what);
   void endProcess();
   void reap();
 

@@ -62,7 +62,7 @@ class Guard {
  public:
   Guard(const char* stop, std::size_t size) : stop_(stop), size_(size), written_(size), last_tick_(now()) {}
 
-  void guardUntilDriverIsGone() {
+  void guardUntilDriverTerminates() {
     while (process()) {
       countSilence();
       report();  // before the stop is written: a driver that resumes in between must not write after it
@@ -154,7 +154,7 @@ void runStopGuard(int line, int driver, const char* stop, std::size_t size) {
   closeAllFrom(3);
   close(2);
   Guard guard(stop, size);
-  guard.guardUntilDriverIsGone();
+  guard.guardUntilDriverTerminates();
   guard.stopDevice();
   _exit(0);
 }

@@ -43,7 +43,7 @@ void EppendorfEmulator::handleCommand(const std::string& command, double time) {
   if (name == "C010") return reply(positionText(), time);
   if (name == "C013") {
     at_end_ = "A013";
-    return moves() ? void() : stand(time);
+    return moves() ? void() : comeToRest(time);
   }
   if (goes) {
     if (moves()) return reply(error(kBusy), time);
@@ -75,10 +75,10 @@ void EppendorfEmulator::move(double time, double dt) {
     const double left = end_[i] - position_[i], step = speeds_[i] * dt;
     position_[i] = std::abs(left) <= step ? end_[i] : position_[i] + std::copysign(step, left);
   }
-  if (position_ == end_) stand(time);
+  if (position_ == end_) comeToRest(time);
 }
 
-void EppendorfEmulator::stand(double time) {
+void EppendorfEmulator::comeToRest(double time) {
   endMoving();
   if (!at_end_.empty()) reply(at_end_ == "A007" ? "A007 " + std::to_string(limits()) : at_end_, time);
   at_end_.clear();

@@ -39,7 +39,7 @@ class EppendorfEmulator : public TextEmulator {
 
  private:
   void goTo(const std::array<long, 6>& numbers, const std::string& reply_at_end);
-  void stand(double time);
+  void comeToRest(double time);
   void stop();
   int limits() const;
   std::string positionText() const;

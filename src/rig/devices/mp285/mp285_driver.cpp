@@ -178,7 +178,7 @@ void Mp285Driver::handlePosition(const Mp285Position& reading) {
   const bool elsewhere = !((position - expected).cwiseAbs().maxCoeff() <= tolerance);
   const double outside = move_ ? origin_monitor_.outside(position, counts()) : 0;
   if (detectNewOrigin(position, outside, isNewZero(position, kMargin), kMargin)) return;
-  if (position_ && settled_) corrected(position, expected);
+  if (position_ && settled_) recordCorrection(position, expected);
   if (settled_ && !move_ && elsewhere) forgetSettings();
   const bool missed = move_ && (position - move_->to).cwiseAbs().maxCoeff() > tolerance;
   rest(position);
@@ -199,7 +199,7 @@ void Mp285Driver::next() {
   if (!status_requested_) return request(Kind::kStatus, mp285RequestStatus());
   if (!absolute_) return request(Kind::kAbsolute, mp285AbsoluteMode());
   if (reading_due_) return request(Kind::kPosition, mp285RequestPosition());
-  if (goal() && mayMove() && !isThere(*position_, goalPosition())) return nextTowardsGoal();
+  if (goal() && mayMove() && !isAt(*position_, goalPosition())) return nextTowardsGoal();
   if (config_.rest_reading_interval > 0 && time() >= next_rest_reading_) reading_due_ = true;
 }
 
@@ -215,8 +215,7 @@ Mp285Driver::Speed Mp285Driver::speedFor(const Eigen::Vector3d& displacement) co
   int um_per_s =
       static_cast<int>(std::lround(std::min(requestedSpeed(displacement), config_.speed) / per_nominal * 1e6));
   um_per_s = std::max(um_per_s, goal()->follows ? kSlowest : 1);
-  int fastest =
-      std::max(1, static_cast<int>(fastestAlong(displacement) / per_nominal * 1e6 + 1e-6));  // in the device's um/s
+  int fastest = std::max(1, static_cast<int>(fastestAlong(displacement) / per_nominal * 1e6 + 1e-6));  // um/s
   const bool fine = std::min(um_per_s, fastest) <= kFineLimit ||
                     distance < 10 * kCoarseStep;  // the rest of a coarse move is a fine move
   if (fine) fastest = std::min(fastest, static_cast<int>(kFineLimit));

@@ -6,8 +6,8 @@
 namespace microinjection {
 namespace {
 
-constexpr double kLongestGuess = 0.2;  // s, for which an extrapolated position is meaningful
-constexpr double kSlowReplies = 2;     // times the expected time, from which slow replies are reported
+constexpr double kLongestExtrapolation = 0.2;  // s, for which an extrapolated position is meaningful
+constexpr double kSlowReplies = 2;             // times the expected time, from which slow replies are reported
 
 std::string stopAll(const ZaberConfig& config) {
   std::string bytes;
@@ -40,7 +40,7 @@ double ZaberDriver::horizon() const {
 
 /// Includes one exchange for the list of an axis with a warning.
 double ZaberDriver::turnTime() const {
-  const bool warns = std::any_of(axes_.begin(), axes_.end(), [](const Axis& axis) { return !axis.shown.empty(); });
+  const bool warns = std::any_of(axes_.begin(), axes_.end(), [](const Axis& axis) { return !axis.shown_flag.empty(); });
   return (kZaberTurn + (warns ? 1 : 0)) * exchangeTime();
 }
 
@@ -50,7 +50,7 @@ double ZaberDriver::longestAge() const {
   return 2 * turnTime() + config_.reply_timeout + answer_time_ + config_.speed / acceleration_;
 }
 
-double ZaberDriver::longestGuess() const { return std::max(kLongestGuess, 1.3 * turnTime()); }
+double ZaberDriver::longestExtrapolation() const { return std::max(kLongestExtrapolation, 1.3 * turnTime()); }
 
 /// Limited to the speed from which the axis can brake in the distance at which it is slowed down.
 double ZaberDriver::fastest(int i) const { return std::min({config_.speed, speedLimits()[i], acceleration_ / gain()}); }
@@ -91,8 +91,8 @@ std::string ZaberDriver::axesNote() const {
 std::string ZaberDriver::note() const {
   std::string note;
   for (int i = 0; i < 3; ++i) {
-    if (axes_[i].shown.empty()) continue;
-    note += (note.empty() ? "" : ", ") + axisName(i) + " warns " + axes_[i].shown;
+    if (axes_[i].shown_flag.empty()) continue;
+    note += (note.empty() ? "" : ", ") + axisName(i) + " warns " + axes_[i].shown_flag;
   }
   return note;
 }
@@ -123,7 +123,7 @@ bool ZaberDriver::moving() const {
   for (int i = 0; i < 3; ++i) {
     const double away = std::abs(wanted[i] - axes_[i].position.value_or(wanted[i]));
     if (axes_[i].sent_velocity.value_or(1) != 0 || away > 1 / config_.microsteps_per_metre[i]) return true;
-    if (axes_[i].busy || !axes_[i].read_since_report || axes_[i].filter.isImplausible()) return true;
+    if (axes_[i].busy || !axes_[i].read_since_command || axes_[i].filter.isImplausible()) return true;
   }
   return false;
 }

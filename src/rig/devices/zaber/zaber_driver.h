@@ -82,16 +82,17 @@ class ZaberDriver : public SerialManipulator {
     double end = 0;                          // m, end of a move; NaN: none
     std::optional<long long> sent_velocity;  // units of speed, of the velocity that the device follows
     bool busy = true;
-    double move_speed = 0;                                     // m/s, set for the move
-    bool read_since_begin = false, read_since_report = false;  // since the last move command
+    double move_speed = 0;  // m/s, set for the move
+    bool read_since_begin = false,
+         read_since_command = false;  // since the start of the session, the last motion command
     bool cleared = true, homed = false;
-    bool still_moves = false;  // reported after a stop
+    bool reports_motion = false;  // reported after a stop
     int stalls = 0;
     bool has_reference = true;
-    std::string shown;   // the flag in the last list of warnings that may hide WR; empty: none
-    int lists_due = 0;   // lists of its warnings that are required before any other reply
-    std::string listed;  // the list that must be repeated
-    int lists = 0;       // received since the last position
+    std::string shown_flag;  // the flag in the last list of warnings that may hide WR; empty: none
+    int lists_required = 0;  // lists of its warnings that are required before any other reply
+    std::string last_list;   // the list that must be repeated
+    int lists = 0;           // received since the last position
     ZaberSettings settings;
   };
 
@@ -100,7 +101,7 @@ class ZaberDriver : public SerialManipulator {
   double exchangeTime() const { return config_.exchangeTime(answer_time_); }
   double turnTime() const;
   double longestAge() const;
-  double longestGuess() const;
+  double longestExtrapolation() const;
   double fastest(int axis) const;
   long long speedData(int axis, double speed) const;
   double expected(int axis, double time) const;
@@ -118,7 +119,7 @@ class ZaberDriver : public SerialManipulator {
   void handleWarnings(const Exchange& request, const ZaberMessage& reply);
   void loseReference(int axis);
   void handlePosition(const Exchange& request, const ZaberMessage& reply);
-  void checkStall(int axis, bool stands);
+  void checkStall(int axis, bool unchanged);
   void missedReply();
 
   // Start of a session (zaber_session.cpp).
@@ -128,7 +129,7 @@ class ZaberDriver : public SerialManipulator {
   void home(int axis);
   bool nextOfSettings();
   void handleSetting(const Exchange& request, const std::string& data);
-  std::string contradiction(int axis) const;
+  std::string settingsMismatch(int axis) const;
   std::string checkSettings();
   void adaptToReplyTime();
 
@@ -143,7 +144,7 @@ class ZaberDriver : public SerialManipulator {
   void sendExchange();
   long long velocityData(int axis) const;
   bool nextVelocity(int axis);
-  bool goalStands() const;
+  bool goalAtRest() const;
   std::optional<long long> arrivalPosition(int axis) const;
   bool canGoTo(int axis, long long position) const;
   std::optional<long long> endOfVelocity(int axis, long long data) const;

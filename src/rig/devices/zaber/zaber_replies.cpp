@@ -43,9 +43,9 @@ void ZaberDriver::handleFlag(const std::string& flag, int i) {
   Axis& axis = axes_[i];
   if (!mayHideZaberReference(flag)) {
     axis.has_reference = true;  // WR would be shown
-    axis.shown.clear();
-  } else if (flag != axis.shown) {
-    axis.lists_due = std::max(axis.lists_due, 1);
+    axis.shown_flag.clear();
+  } else if (flag != axis.shown_flag) {
+    axis.lists_required = std::max(axis.lists_required, 1);
   }
 }
 
@@ -64,15 +64,15 @@ void ZaberDriver::handleWarnings(const Exchange& request, const ZaberMessage& re
     return raiseFault(axisName(request.axis) + ": its warnings do not stay the same, the last are \"" + reply.data +
                       "\": behind them a lost reference position could hide");
   }
-  const bool twice = axis.listed == reply.data;
-  axis.listed = reply.data;
-  if (axis.lists_due > 1 || (!twice && !settled_)) {
-    axis.lists_due = 1;  // a damaged list could let a needle without reference move
+  const bool twice = axis.last_list == reply.data;
+  axis.last_list = reply.data;
+  if (axis.lists_required > 1 || (!twice && !settled_)) {
+    axis.lists_required = 1;  // a damaged list could let a needle without reference move
     return;
   }
-  axis.lists_due = 0;
-  axis.listed.clear();
-  axis.shown = mayHideZaberReference(reply.flag) ? reply.flag : "";
+  axis.lists_required = 0;
+  axis.last_list.clear();
+  axis.shown_flag = mayHideZaberReference(reply.flag) ? reply.flag : "";
   bool referenced = reply.flag != kZaberNoReference;
   const std::vector<std::string> flags = reply.flags().value_or(std::vector<std::string>());
   for (const std::string& flag : flags) {
@@ -108,8 +108,8 @@ void ZaberDriver::applyReply(const Exchange& done, const ZaberMessage& reply) {
   const double speed_unit = config_.microsteps_per_metre[done.axis] * kZaberSpeedUnit;  // for 1 m/s
   switch (done.kind) {
     case Kind::kPosition:
-      axis.still_moves = reply.busy;
-      if (!axis.has_reference || axis.lists_due > 0) break;
+      axis.reports_motion = reply.busy;
+      if (!axis.has_reference || axis.lists_required > 0) break;
       axis.lists = 0;
       handlePosition(done, reply);
       break;
@@ -119,7 +119,7 @@ void ZaberDriver::applyReply(const Exchange& done, const ZaberMessage& reply) {
       axis.velocity = done.value / speed_unit;
       axis.end = done.end;
       axis.sent_velocity = done.value;
-      axis.read_since_report = false;
+      axis.read_since_command = false;
       break;
     case Kind::kMove:
       axis.position = expected(done.axis, time());
@@ -127,7 +127,7 @@ void ZaberDriver::applyReply(const Exchange& done, const ZaberMessage& reply) {
       axis.end = done.value / config_.microsteps_per_metre[done.axis];
       axis.velocity = std::copysign(axis.move_speed, axis.end - *axis.position);
       axis.sent_velocity.reset();
-      axis.read_since_report = false;
+      axis.read_since_command = false;
       ++move_stage_;
       break;
     case Kind::kSpeed:
@@ -138,7 +138,7 @@ void ZaberDriver::applyReply(const Exchange& done, const ZaberMessage& reply) {
       axis.cleared = true;
       break;
     case Kind::kStop:
-      axis.still_moves = false;  // until it reports motion
+      axis.reports_motion = false;  // until it reports motion
       break;
     case Kind::kHome:
       axis.homed = axis.busy = true;
@@ -178,35 +178,36 @@ void ZaberDriver::handlePosition(const Exchange& request, const ZaberMessage& re
   // the reply.
   const double then = std::min(request.delivered_time + config_.answer_time / 2,
                                time() - static_cast<double>(reply.size) * config_.byteTime());
-  const double guess = expected(i, then);
+  const double extrapolated = expected(i, then);
   const double step = 1 / config_.microsteps_per_metre[i];
-  const double since = std::clamp(time() - axis.position_time, 0.0, longestGuess()) + exchangeTime();
+  const double since = std::clamp(time() - axis.position_time, 0.0, longestExtrapolation()) + exchangeTime();
   const bool rests = !reply.busy && axis.velocity == 0;
   const double tolerance =
       rests ? std::max(2.5 * step, axis.coasting) : config_.reading_margin + std::abs(axis.velocity) * since;
   const double agreement = reply.busy ? config_.reading_margin / 2 + config_.speed * turnTime() : 2.5 * step;
   using Coordinate = Eigen::VectorXd;
-  if (!axis.filter.accept(Coordinate::Constant(1, position), Coordinate::Constant(1, guess), tolerance, agreement))
+  if (!axis.filter.accept(Coordinate::Constant(1, position), Coordinate::Constant(1, extrapolated), tolerance,
+                          agreement))
     return;
-  if (axis.read_since_begin) largest_correction_ = std::max(largest_correction_, std::abs(position - guess));
-  const bool stands = axis.position && std::abs(position - *axis.position) < 0.5 * step;
+  if (axis.read_since_begin) largest_correction_ = std::max(largest_correction_, std::abs(position - extrapolated));
+  const bool unchanged = axis.position && std::abs(position - *axis.position) < 0.5 * step;
   if (!reply.busy) axis.coasting = 0;
   axis.position = position;
   axis.position_time = then;
   axis.last_read = activeTime();
   validityTime(std::min({axes_[0].last_read, axes_[1].last_read, axes_[2].last_read}) + longestAge() - activeTime());
-  axis.read_since_begin = axis.read_since_report = true;
-  if (!reply.busy && axis.sent_velocity.value_or(0) != 0) return checkStall(i, stands);
+  axis.read_since_begin = axis.read_since_command = true;
+  if (!reply.busy && axis.sent_velocity.value_or(0) != 0) return checkStall(i, unchanged);
   axis.stalls = 0;
 }
 
 /// An axis that rests despite a velocity has stopped by itself or was stopped by hand. The velocity
 /// is repeated a few times.
-void ZaberDriver::checkStall(int i, bool stands) {
+void ZaberDriver::checkStall(int i, bool unchanged) {
   Axis& axis = axes_[i];
   axis.sent_velocity.reset();
   axis.velocity = 0;
-  axis.stalls = stands ? axis.stalls + 1 : 0;
+  axis.stalls = unchanged ? axis.stalls + 1 : 0;
   if (axis.stalls >= kStalls) raiseFault(axisName(i) + " does not move at the commanded velocity; is it at its end?");
 }
 

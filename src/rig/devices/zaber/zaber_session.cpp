@@ -46,12 +46,12 @@ void ZaberDriver::begin(bool lost) {
     axis.position_time = time();
     axis.velocity = 0;
     axis.end = std::nan("");
-    axis.read_since_begin = axis.homed = axis.still_moves = false;
+    axis.read_since_begin = axis.homed = axis.reports_motion = false;
     axis.busy = true;
     axis.cleared = !clearing();
     axis.stalls = axis.lists = 0;
-    axis.listed.clear();
-    if (lost) axis.lists_due = 2;
+    axis.last_list.clear();
+    if (lost) axis.lists_required = 2;
     if (clearing()) axis.settings.clear();  // they may have been the cause
   }
 }
@@ -80,9 +80,9 @@ bool ZaberDriver::nextOfAxis(int i) {
   Axis& axis = axes_[i];
   if (!axis.cleared) return request(Kind::kClear, i, "warnings clear"), true;
   // While homing it has no reference yet; the list must be read afterwards.
-  if (axis.lists_due > 0 && !(axis.homed && axis.busy)) return request(Kind::kWarnings, i, "warnings"), true;
+  if (axis.lists_required > 0 && !(axis.homed && axis.busy)) return request(Kind::kWarnings, i, "warnings"), true;
   // It is braking, or did not receive the session's stop.
-  if (axis.still_moves && !axis.homed) return request(Kind::kStop, i, "stop"), true;
+  if (axis.reports_motion && !axis.homed) return request(Kind::kStop, i, "stop"), true;
   if (!axis.busy && !axis.has_reference) return false;  // its position is invalid; see nextOfHoming
   if (axis.read_since_begin && !axis.busy && !axis.filter.isImplausible()) return false;
   if (activeTime() - begun_ > (axis.homed ? kLongestHoming : kLongestBraking)) {
@@ -118,7 +118,7 @@ void ZaberDriver::handleSetting(const Exchange& request, const std::string& data
 }
 
 /// Returns the reason why the device differs from the file's description, else an empty text.
-std::string ZaberDriver::contradiction(int i) const {
+std::string ZaberDriver::settingsMismatch(int i) const {
   const ZaberSettings& settings = axes_[i].settings;
   const double unit = config_.microsteps_per_metre[i] * kAccelUnit;  // for 1 m/s^2
   for (const auto name : {ZaberSettings::kAcceleration, ZaberSettings::kDeceleration}) {
@@ -142,7 +142,7 @@ std::string ZaberDriver::contradiction(int i) const {
 std::string ZaberDriver::checkSettings() {
   double slowest = config_.acceleration * (1 + kAgreement);  // m/s^2
   for (int i = 0; i < 3; ++i) {
-    const std::string wrong = contradiction(i);
+    const std::string wrong = settingsMismatch(i);
     if (!wrong.empty()) return wrong;
     for (const auto name : {ZaberSettings::kAcceleration, ZaberSettings::kDeceleration}) {
       const auto data = axes_[i].settings.number(name);
@@ -202,7 +202,7 @@ void ZaberDriver::home(int i) {
   movesByItself();
   axis.position.reset();  // its counts begin anew
   axis.read_since_begin = false;
-  axis.lists_due = 1;
+  axis.lists_required = 1;
   begun_ = activeTime();
   request(Kind::kHome, i, "home");
 }

@@ -26,20 +26,20 @@ void ZaberDriver::next() {
 /// Lists the warnings of an axis whose flag may hide a lost reference position.
 bool ZaberDriver::nextOfWarnings() {
   for (int i = 0; i < 3; ++i) {
-    if (settled_ && axes_[i].lists_due > 0) return request(Kind::kWarnings, i, "warnings"), true;
+    if (settled_ && axes_[i].lists_required > 0) return request(Kind::kWarnings, i, "warnings"), true;
   }
   return false;
 }
 
-bool ZaberDriver::goalStands() const { return goal()->velocity.isZero(0) || time() - goal()->time >= kVelocityHolds; }
+bool ZaberDriver::goalAtRest() const { return goal()->velocity.isZero(0) || time() - goal()->time >= kVelocityHolds; }
 
 long long ZaberDriver::velocityData(int i) const {
   const Eigen::Vector3d wanted = config_.joints.toDevice(goal()->joints);
-  Eigen::Vector3d velocity = config_.joints.directions.cwiseProduct(goal()->velocity) * (goalStands() ? 0 : 1);
+  Eigen::Vector3d velocity = config_.joints.directions.cwiseProduct(goal()->velocity) * (goalAtRest() ? 0 : 1);
   const double away = wanted[i] - expected(i, time());
   if (velocity[i] == 0 && std::abs(away) * config_.microsteps_per_metre[i] < 0.75) return 0;
   // A move to a position ends there by itself. Control by velocities alone must not oscillate.
-  const double rate = goalStands() && axes_[i].settings.movesHaveSpeeds() ? 1 / turnTime() : gain();
+  const double rate = goalAtRest() && axes_[i].settings.movesHaveSpeeds() ? 1 / turnTime() : gain();
   double share = 1;  // all axes are slowed down together, so that a long path stays straight
   for (int k = 0; k < 3; ++k) {
     velocity[k] += rate * (wanted[k] - expected(k, time()));
@@ -62,7 +62,7 @@ std::optional<long long> ZaberDriver::endOfVelocity(int i, long long data) const
 /// without renewal, which prevents overshoot. Empty if the set-point moves or is far, the device
 /// cannot do it, or the position is outside.
 std::optional<long long> ZaberDriver::arrivalPosition(int i) const {
-  if (!goalStands()) return std::nullopt;
+  if (!goalAtRest()) return std::nullopt;
   const double wanted = config_.joints.toDevice(goal()->joints)[i];
   const long long position = std::llround(wanted * config_.microsteps_per_metre[i]);
   const bool near = std::abs(wanted - expected(i, time())) <= fastest(i) * horizon();
@@ -112,8 +112,8 @@ void ZaberDriver::nextInTurn() {
 void ZaberDriver::requestWarningsAgain() {
   for (int k = 0; k < 3; ++k) {
     last_listed_ = (last_listed_ + 1) % 3;
-    if (axes_[last_listed_].shown.empty()) continue;
-    axes_[last_listed_].lists_due = 1;
+    if (axes_[last_listed_].shown_flag.empty()) continue;
+    axes_[last_listed_].lists_required = 1;
     return;
   }
 }
@@ -154,7 +154,7 @@ bool ZaberDriver::nextOfMove() {
 
 void ZaberDriver::checkMove() {
   for (const Axis& axis : axes_) {
-    if (axis.busy || !axis.read_since_report || axis.filter.isImplausible()) return;
+    if (axis.busy || !axis.read_since_command || axis.filter.isImplausible()) return;
   }
   const Eigen::Vector3d wanted = config_.joints.toDevice(goal()->joints);
   for (int i = 0; i < 3; ++i) {
