@@ -102,8 +102,8 @@ void PolledManipulator::checkMove(const Eigen::Vector3d& position) {
                            : progress_.at_goal >= kSteady || (progress_.at_goal > 0 && timeLeft() <= 0);
   if (at_rest && position.isZero(kSame) && !progress_.zero_checked && !confirmed_.empty()) {
     lost_setting_replies_ = 0;
-    progress_.zero_checked = check_setting_ =
-        true;  // a device that was switched off just before its goal also reads 0 at rest there
+    // A device that was switched off just before its goal also reads 0 at rest there.
+    progress_.zero_checked = check_setting_ = true;
     return;
   }
   if (at_rest) {

@@ -11,10 +11,9 @@ namespace microinjection {
 /// pressure regulator.
 struct InjectorLimits {
   // Limits of the configured ranges.
-  static constexpr double kVacuum = -101325;  ///< Pa, gauge
-  static constexpr double kHighestPressure =
-      1e6;                                       ///< Pa, gauge; above what injectors for cells deliver (about 0.6 MPa)
-  static constexpr double kLongestPulse = 3600;  ///< s
+  static constexpr double kVacuum = -101325;       ///< Pa, gauge
+  static constexpr double kHighestPressure = 1e6;  ///< Pa, gauge; injectors for cells deliver about 0.6 MPa
+  static constexpr double kLongestPulse = 3600;    ///< s
 
   Eigen::Vector2d pressure_range{-50e3, 50e3};  ///< Pa, gauge, lowest and highest
   Eigen::Vector2d duration_range{1e-3, 60};     ///< s, shortest and longest pulse

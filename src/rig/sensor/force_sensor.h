@@ -57,8 +57,7 @@ class ForceSensor {
   StandardNormal normal_;
   std::array<Noise, 2> noise_;
   OverloadLatch overload_;
-  Eigen::Matrix2d state_ =
-      Eigen::Matrix2d::Zero();  ///< one column per axis: deflection as force (N) and its rate (N/s)
+  Eigen::Matrix2d state_ = Eigen::Matrix2d::Zero();       ///< column per axis: deflection as force (N), its rate (N/s)
   Eigen::Matrix2d transition_ = Eigen::Matrix2d::Zero();  ///< of the deviation from equilibrium over transition_dt_
   double transition_dt_ = 0;                              ///< s
   double to_sample_;                                      ///< s, until the converter's next sample

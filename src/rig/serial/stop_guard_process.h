@@ -9,8 +9,8 @@ constexpr char kStopGuardBeat = 'b';     ///< to the guard: the driver was stepp
 constexpr char kStopGuardEcho = 'e';     ///< from the guard: it received heartbeats since the last echo
 constexpr char kStopGuardStopped = 's';  ///< from the guard: no heartbeat for kStopGuardSilence, the stop has been sent
 
-constexpr double kStopGuardSilence =
-    0.2;  ///< s without a heartbeat after which a driver, or without an echo after which a guard, is frozen
+/// s without a heartbeat after which a driver, or without an echo after which a guard, is frozen
+constexpr double kStopGuardSilence = 0.2;
 
 /// Main loop of the guard process. Sends `stop` on `line` when the driver at the other end of the
 /// socket `driver` has terminated, and repeatedly while the driver sends no heartbeat. `line` must

@@ -7,8 +7,8 @@
 
 namespace microinjection {
 
-/// Zaber's ASCII protocol: the reply to "/<device> <axis> <command>\n" is "@<device> <axis> OK IDLE
-/// -- <data>\r\n". Device and axis 0 mean all of them.
+/// Zaber's ASCII protocol: the reply to "/<device> <axis> <command>\n" is
+/// "@<device> <axis> OK IDLE -- <data>\r\n". Device and axis 0 mean all of them.
 struct ZaberAddress {
   int device = 0, axis = 0;
   bool operator==(const ZaberAddress& other) const { return device == other.device && axis == other.axis; }
