@@ -215,8 +215,8 @@ void serve(const Arguments& arguments) {
     const double time = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const EmulatorHost::Exchange exchange = host.step(time);
     if (arguments.verbose) {
-      if (!exchange.heard.empty()) transcript.add('>', exchange.heard, time);
-      transcript.add('<', exchange.said, time);
+      if (!exchange.received.empty()) transcript.add('>', exchange.received, time);
+      transcript.add('<', exchange.sent, time);
     }
     positions.add(device->position(), time);
     for (const std::string& line : lines.read()) {

@@ -80,7 +80,7 @@ void MicromanipulatorNode::publishState(const Cycle::Tick& tick) {
   state.state = toText(commands_.state().state());
   state.is_homed = commands_.state().homed();
   if (!publisher_.publishState(state, tick.now, commands_.takeAnswer())) return;
-  const std::string why = model_.why().empty() ? commands_.unavailableReason() : model_.why();
+  const std::string why = model_.reason().empty() ? commands_.unavailableReason() : model_.reason();
   ROS_INFO_STREAM(state.state << (why.empty() ? "" : ": ") << why);
 }
 

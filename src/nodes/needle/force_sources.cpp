@@ -50,7 +50,7 @@ std::optional<ForceSource::Signal> SerialForceSource::read(const Cycle::Tick& ti
   device_.step(tick.now.toSec());
   const auto& reading = device_.reading();
   const bool fresh = reading && tick.now.toSec() - reading->time <= timeout_;
-  invalid_reason_ = fresh ? "" : device_.trouble().empty() ? "no good line from the sensor" : device_.trouble();
+  invalid_reason_ = fresh ? "" : device_.errorText().empty() ? "no good line from the sensor" : device_.errorText();
   if (!fresh || std::exchange(seen_, device_.goodLines()) == device_.goodLines()) return std::nullopt;
   overload_.check(reading->force);
   return Signal{reading->force, tick.now, twoAxes(reading->force, tick.now, frame_)};

@@ -150,7 +150,7 @@ std::string NeedleCommands::executeState(const cell_microinjection::StringStampe
     if (!source.unstamped && age(message.header.stamp) > kOldestMove) return "it is stale";
     if (old) return std::string(kUnstampedLatched) + "; send it again";
   }
-  state_.surround(surroundings());
+  state_.setConditions(conditions());
   const bool fault = state_.state() == OperatingState::kFault;
   std::string refusal = state_.command(*command);
   if (refusal.empty()) change(*command, fault);
@@ -168,24 +168,24 @@ void NeedleCommands::change(StateCommand command, bool fault) {
       model_.clearFault();
       break;
     case StateCommand::kResume:
-      model_.letStreamGoOn();
+      model_.allowStreams();
       break;
     case StateCommand::kHome:  // its axes have their reference: there is nothing to look for
       busy_.accept(static_cast<std::int64_t>(ros::Time::now().toNSec()));
-      model_.letStreamGoOn();
+      model_.allowStreams();
       break;
     case StateCommand::kPause:
     case StateCommand::kUnhome:
       break;
   }
-  state_.surround(surroundings());
+  state_.setConditions(conditions());
 }
 
 void NeedleCommands::authorize(const std::string& sender) {
   if (!unavailableReason().empty()) return;
   if (authority_.authorize(sender, time(), moves())) return;
   model_.stop();
-  state_.surround(surroundings());
+  state_.setConditions(conditions());
   ROS_ERROR_STREAM(authority_.fault());
 }
 
@@ -204,12 +204,12 @@ void NeedleCommands::checkNetwork() {
   exposed_ = reachable && !admitted_;
 }
 
-NeedleState::Surroundings NeedleCommands::surroundings() const {
-  NeedleState::Surroundings surroundings{model_.state(), model_.joints().has_value(), authority_.fault(), ""};
-  if (!exposed_) return surroundings;
-  surroundings.barrier = "others can reach this machine's nodes through " + network_->interfaces() +
-                         "; allowed without these interfaces (./dev shell --isolated), or with allow_network = true";
-  return surroundings;
+NeedleState::Conditions NeedleCommands::conditions() const {
+  NeedleState::Conditions conditions{model_.state(), model_.joints().has_value(), authority_.fault(), ""};
+  if (!exposed_) return conditions;
+  conditions.barrier = "others can reach this machine's nodes through " + network_->interfaces() +
+                       "; allowed without these interfaces (./dev shell --isolated), or with allow_network = true";
+  return conditions;
 }
 
 std::string NeedleCommands::unavailableReason() const {
@@ -223,14 +223,15 @@ void NeedleCommands::step(const Cycle::Tick& tick) {
   if (cycle_.masterLost() && !master_lost_) model_.stop();
   master_lost_ = cycle_.masterLost();
   checkNetwork();
-  state_.surround(surroundings());
+  state_.setConditions(conditions());
   executeServo(tick);
 }
 
 bool NeedleCommands::isBusy(const Cycle::Tick& tick) {
-  state_.surround(surroundings());
-  if (model_.ended() != ended_ && !model_.ended().empty()) ROS_WARN_STREAM("the motion ended: " << model_.ended());
-  ended_ = model_.ended();
+  state_.setConditions(conditions());
+  if (model_.abortReason() != logged_abort_ && !model_.abortReason().empty())
+    ROS_WARN_STREAM("the motion ended: " << model_.abortReason());
+  logged_abort_ = model_.abortReason();
   return busy_.step(model_.busy(), static_cast<std::int64_t>(tick.now.toNSec()));
 }
 
@@ -239,9 +240,9 @@ bool NeedleCommands::takeAnswer() { return std::exchange(answer_, false); }
 void NeedleCommands::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   using diagnostic_msgs::DiagnosticStatus;
   std::string problem = log_.takeUpdates();
-  if (problem.empty()) problem = model_.ended();
+  if (problem.empty()) problem = model_.abortReason();
   const bool held = exposed_ || !authority_.fault().empty();
-  const std::string why = model_.why().empty() && held ? unavailableReason() : model_.why();
+  const std::string why = model_.reason().empty() && held ? unavailableReason() : model_.reason();
   if (!why.empty() && problem != why) problem = why + (problem.empty() ? "" : "; ") + problem;
   const auto level = !why.empty()      ? DiagnosticStatus::ERROR
                      : problem.empty() ? DiagnosticStatus::OK

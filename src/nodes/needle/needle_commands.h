@@ -61,7 +61,7 @@ class NeedleCommands {
   void command(const std::string& name, const std::string& sender, const Obey& execute);
   void authorize(const std::string& sender);
   void checkNetwork();
-  NeedleState::Surroundings surroundings() const;
+  NeedleState::Conditions conditions() const;
 
   Cycle& cycle_;
   const MicromanipulatorConfig& config_;
@@ -76,7 +76,7 @@ class NeedleCommands {
   CommandLog log_;
   BusyReport busy_;
   std::string mover_;                        ///< node that commanded the move under way
-  std::string ended_;                        ///< of the model's motion, as logged
+  std::string logged_abort_;                 ///< of the model's motion, as logged
   std::unique_ptr<NetworkMonitor> network_;  ///< null where it does not matter who can reach this machine
   bool exposed_ = false;                     ///< a real rig, and others can reach this machine
   bool admitted_ = false;                    ///< enabled while nobody else could reach this machine

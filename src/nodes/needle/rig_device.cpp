@@ -32,13 +32,13 @@ RigDevice makeSimulated(const ManipulatorGeometry& geometry, ConfigReader& reade
 class Cable {
  public:
   explicit Cable(EmulatedWire& wire) : wire_(wire) {}
-  void pull(double until) {
-    wire_.pull();
+  void disconnect(double until) {
+    wire_.disconnectCable();
     until_ = until;
   }
   void step(double time) {
     if (time < until_) return;
-    wire_.plug();
+    wire_.connectCable();
     until_ = std::numeric_limits<double>::infinity();
   }
 
@@ -72,7 +72,7 @@ RigDevice makeEmulated(const Rig& rig, ConfigReader& reader, ConfigReader& emula
   result.device = rig.make_driver(reader, std::move(wire));
   result.before_step = [cable](double time) { cable->step(time); };
   result.inject = [cable, emulator](const std::string& text, double time) {
-    if (text.rfind("pull:", 0) == 0) return cable->pull(time + pullDuration(text));
+    if (text.rfind("pull:", 0) == 0) return cable->disconnect(time + pullDuration(text));
     emulator->inject(parseFault(text));
   };
   return result;

@@ -7,13 +7,13 @@
 
 namespace microinjection {
 
-/// Which axis of a three-axis device moves each joint; the file's key `axes` counts them from 1.
+/// Maps the axes of a three-axis device to the joints. The file's key `axes` counts them from 1.
 struct AxisOrder {
   std::array<int, 3> of_joint{0, 1, 2};  ///< 0: the device's X
 
   static AxisOrder read(ConfigReader& reader);
 
-  /// From the device's order of axes to the joints', and back; any unit.
+  /// Converts from the device's order of axes to the joints', and back; any unit.
   Eigen::Vector3d inJointOrder(const Eigen::Vector3d& device) const {
     return {device[of_joint[0]], device[of_joint[1]], device[of_joint[2]]};
   }

@@ -6,8 +6,8 @@
 
 namespace microinjection {
 
-/// How a device's axes lie to the URDF's joints: joint i is at origin[i] (m) where its axis reads 0, and moves with it
-/// (direction 1) or against it (-1).
+/// Maps a device's axes to the URDF's joints: joint i is at origin[i] (m) when its axis reads 0,
+/// and moves in the same direction (1) or the opposite one (-1).
 struct JointAxes {
   Eigen::Vector3d directions = Eigen::Vector3d::Ones();
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< m

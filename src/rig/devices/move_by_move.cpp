@@ -7,7 +7,7 @@
 namespace microinjection {
 namespace {
 
-constexpr double kWorthStopping = 0.15;  // s left of a move: to break it off and to begin another takes as long
+constexpr double kWorthStopping = 0.15;  // s left of a move; to abort it and start another takes as long
 
 }  // namespace
 
@@ -38,27 +38,27 @@ ManipulatorAbilities MoveByMove::abilitiesWith(double turn) const {
   abilities.command_interval = abilities.reading_interval = turn;
   abilities.resolution = counts().maxCoeff() * std::max(1.0, arrival());
   abilities.speed = std::min(common_.speed, speedLimits().maxCoeff());
-  // A set-point waits for the move under way, and is then said.
+  // A set-point waits for the move in progress before it is sent.
   abilities.latency = turn + longest_move_ * common_.byteTime() + answer_time_;
   abilities.stop_time = stop_bytes_ * common_.byteTime() + common_.answer_time;
   return abilities;
 }
 
-void MoveByMove::measure(double sent, std::size_t answer_bytes) {
-  if (answers_.measured()) return;
-  answers_.add(listened() - sent - static_cast<double>(answer_bytes) * common_.byteTime());
-  answer_time_ = std::max(common_.answer_time, answers_.measured().value_or(0));
+void MoveByMove::measure(double sent, std::size_t reply_bytes) {
+  if (reply_times_.measured()) return;
+  reply_times_.add(activeTime() - sent - static_cast<double>(reply_bytes) * common_.byteTime());
+  answer_time_ = std::max(common_.answer_time, reply_times_.measured().value_or(0));
 }
 
 Eigen::Vector3d MoveByMove::extrapolatedPosition(double at) const {
   if (!move_) return *position_;
-  const double gone = std::max(0.0, at - move_->begin);
-  if (gone >= move_->duration) return move_->to;
-  return move_->from + (move_->to - move_->from) * (gone / move_->duration);
+  const double elapsed = std::max(0.0, at - move_->begin);
+  if (elapsed >= move_->duration) return move_->to;
+  return move_->from + (move_->to - move_->from) * (elapsed / move_->duration);
 }
 
 std::optional<ManipulatorDevice::Reading> MoveByMove::reading() const {
-  if (!position_ || !sure()) return std::nullopt;
+  if (!position_ || !positionsValid()) return std::nullopt;
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
   if (timeLeft() > 0 && time() > move_->begin) {
     velocity = (move_->to - move_->from).cwiseProduct(counts()) / move_->duration;
@@ -68,27 +68,28 @@ std::optional<ManipulatorDevice::Reading> MoveByMove::reading() const {
       common_.joints.directions.cwiseProduct(common_.axes.inJointOrder(velocity))};
 }
 
-Eigen::Vector3d MoveByMove::goalPlace() const {
+Eigen::Vector3d MoveByMove::goalPosition() const {
   const Eigen::Vector3d device = common_.axes.inDeviceOrder(common_.joints.toDevice(goal()->joints));
   return device.cwiseQuotient(counts()).array().round();
 }
 
-bool MoveByMove::isThere(const Eigen::Vector3d& place, const Eigen::Vector3d& goal) const {
-  return (place - goal).cwiseAbs().maxCoeff() <= arrival();
+bool MoveByMove::isAt(const Eigen::Vector3d& position, const Eigen::Vector3d& goal) const {
+  return (position - goal).cwiseAbs().maxCoeff() <= arrival();
 }
 
 bool MoveByMove::moving() const {
   if (!goal()) return !settled_;
-  return move_ || !settled_ || !position_ || !isThere(*position_, goalPlace());
+  return move_ || !settled_ || !position_ || !isAt(*position_, goalPosition());
 }
 
-double MoveByMove::askedSpeed(const Eigen::Vector3d& way) const {
+double MoveByMove::requestedSpeed(const Eigen::Vector3d& displacement) const {
   if (!goal()->follows) return goal()->speed;
-  return std::max(1.2 * goal()->velocity.norm(), length(way) / common_.segment_time);
+  return std::max(1.2 * goal()->velocity.norm(), length(displacement) / common_.segment_time);
 }
 
-double MoveByMove::fastestAlong(const Eigen::Vector3d& way) const {
-  const Eigen::Vector3d direction = common_.axes.inJointOrder(way.cwiseProduct(counts()).normalized()).cwiseAbs();
+double MoveByMove::fastestAlong(const Eigen::Vector3d& displacement) const {
+  const Eigen::Vector3d direction =
+      common_.axes.inJointOrder(displacement.cwiseProduct(counts()).normalized()).cwiseAbs();
   double speed = common_.speed;
   for (int i = 0; i < 3; ++i) {
     if (direction[i] > 0) speed = std::min(speed, speedLimits()[i] / direction[i]);
@@ -96,19 +97,20 @@ double MoveByMove::fastestAlong(const Eigen::Vector3d& way) const {
   return speed;
 }
 
-/// Whether the move under way is to be broken off for the goal: the newest wins. A short move towards a set-point is
-/// not broken off for another set-point. It takes about segment_time, and a stream has a newer set-point at each step:
-/// with any limit below segment_time each move would be broken off and the needle would stand most of the time.
+/// Returns whether to abort the move in progress for a newer goal. A short move towards a set-point
+/// is not aborted for another set-point. It takes about segment_time, and a stream has a newer
+/// set-point in each step. With any limit below segment_time each move would be aborted and the
+/// needle would rest most of the time.
 bool MoveByMove::isOutdated() const {
   if (!goal() || timeLeft() <= kWorthStopping) return false;
   if (move_->follows || goal()->follows) return move_->follows != goal()->follows;
-  return !isThere(move_->goal, goalPlace());
+  return !isAt(move_->goal, goalPosition());
 }
 
 void MoveByMove::begin(bool /*lost*/) {
   filter_.clear();
   settled_ = false;
-  begun_anew_ = begun_anew_ && !clearing();
+  origin_lost_ = origin_lost_ && !clearing();
 }
 
 void MoveByMove::onStopSent() {
@@ -118,41 +120,43 @@ void MoveByMove::onStopSent() {
   maxValidityTime(common_.reply_timeout + longest_move_ * common_.byteTime() + recoveryTime());
 }
 
-void MoveByMove::corrected(const Eigen::Vector3d& place, const Eigen::Vector3d& expected) {
-  const Eigen::Vector3d by = (place - expected).cwiseProduct(counts());
+void MoveByMove::recordCorrection(const Eigen::Vector3d& position, const Eigen::Vector3d& expected) {
+  const Eigen::Vector3d by = (position - expected).cwiseProduct(counts());
   largest_correction_ = std::max(largest_correction_, by.cwiseAbs().maxCoeff());
 }
 
-/// It stands there, until it is asked again.
-void MoveByMove::rest(const Eigen::Vector3d& place) {
-  position_ = place;
+/// Records the position at rest until the next reading.
+void MoveByMove::rest(const Eigen::Vector3d& position) {
+  position_ = position;
   move_.reset();
-  watch_.stands(place);
+  origin_monitor_.setAtRest(position);
   settings_lost_ = false;
   next_rest_reading_ = time() + common_.rest_reading_interval;
   validityTime(std::numeric_limits<double>::infinity());
 }
 
-/// Whether a place is exactly 0, where a device begins to count, although this one was elsewhere. One that has lost its
-/// settings was switched off, also where 0 is an end of its move.
-bool MoveByMove::isNewZero(const Eigen::Vector3d& place, double margin) const {
-  if (!place.isZero(kSame)) return false;
-  if (settings_lost_) return !watch_.remainsAt(place, counts(), margin);
-  if (watch_.mayStandAt(place, counts(), margin)) return false;
-  return !position_ || length(extrapolatedPosition(time()) - place) > margin;
+/// Returns whether a position is exactly 0, where a device begins to count, although this device
+/// was elsewhere. A device that has lost its settings was switched off, also if 0 is an end of its
+/// move.
+bool MoveByMove::isNewZero(const Eigen::Vector3d& position, double margin) const {
+  if (!position.isZero(kSame)) return false;
+  if (settings_lost_) return !origin_monitor_.remainsAt(position, counts(), margin);
+  if (origin_monitor_.mayStandAt(position, counts(), margin)) return false;
+  return !position_ || length(extrapolatedPosition(time()) - position) > margin;
 }
 
-/// Whether the device counts anew: what was known of it is void then. `outside` (m): by how much it tells a place where
-/// it cannot be; `new_zero`: it tells the place at which a device begins to count.
-bool MoveByMove::beginsAnew(const Eigen::Vector3d& place, double outside, bool new_zero, double margin) {
-  if (begun_anew_) return true;
+/// Detects that the device's coordinates have begun anew; earlier positions are then void.
+/// `outside` (m): distance of the reading from the possible positions. `new_zero`: the reading is
+/// the position at which a device begins to count.
+bool MoveByMove::detectNewOrigin(const Eigen::Vector3d& position, double outside, bool new_zero, double margin) {
+  if (origin_lost_) return true;
   if (outside <= margin && !new_zero) return false;
-  const double way = position_ ? length(place - extrapolatedPosition(time())) : outside;
+  const double distance = position_ ? length(position - extrapolatedPosition(time())) : outside;
   position_.reset();
-  watch_.clear();
-  begun_anew_ = true;  // and so no position is told
-  raiseFault("it tells a place " + std::to_string(std::lround(way * 1e6)) +
-             " um from where it must be: if it was switched off its coordinates began anew; check them, then enable");
+  origin_monitor_.clear();
+  origin_lost_ = true;  // so that no position is reported
+  raiseFault("it reports a position " + std::to_string(std::lround(distance * 1e6)) +
+             " um from the possible ones: if it was switched off, its coordinates began anew; check them, then enable");
   return true;
 }
 

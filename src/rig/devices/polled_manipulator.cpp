@@ -8,9 +8,9 @@
 namespace microinjection {
 namespace {
 
-constexpr double kLongestGuess = 0.1;  // s, of motion by which a position that is carried on may be off
-constexpr double kHeldAnswer = 0.02;   // s, for which a USB adapter may hold an answer back
-constexpr int kSetupTries = 6;         // of a line at the begin, which must be answered twice alike
+constexpr double kLongestExtrapolation = 0.1;  // s, of motion by which an extrapolated position may be wrong
+constexpr double kHeldReply = 0.02;            // s, for which a USB adapter may delay a reply
+constexpr int kSetupTries = 6;                 // for a setup line, which needs two equal replies
 constexpr std::size_t kLongestLine = 80;
 
 std::string printable(const std::string& text) {
@@ -32,7 +32,7 @@ PolledManipulator::PolledManipulator(const PolledManipulatorConfig& config, std:
                                      const Dialect& dialect)
     : MoveByMove(config, std::move(wire),
                  {dialect.short_name, dialect.guarded_stop,
-                  std::max(config.answer_time, kHeldAnswer) + dialect.stop_duration + 20 * config.byteTime() + 5e-3,
+                  std::max(config.answer_time, kHeldReply) + dialect.stop_duration + 20 * config.byteTime() + 5e-3,
                   config.reply_timeout + dialect.longest_move * config.byteTime(), dialect.farewell},
                  dialect.longest_move),
       reading_margin_(config.reading_margin),
@@ -49,13 +49,13 @@ ManipulatorAbilities PolledManipulator::abilities() const {
   return abilities;
 }
 
-/// Silence after an exchange that went wrong, what a new session says, and as much as a turn to spare.
+/// Silence after a failed exchange, the setup of a new session, and one turn as reserve.
 double PolledManipulator::recoveryTime() const {
-  constexpr int kLineAndAnswer = 20, kReadings = 4;  // bytes of a line at the begin; readings until it stands
+  constexpr int kLineAndReply = 20, kReadings = 4;  // bytes of a setup line; readings until it rests
   int lines = 2;
   for (int i = 0; !setup(i).empty(); ++i) lines += 2;
   return common_.reply_timeout + dialect_.longest_move * common_.byteTime() + dialect_.stop_duration +
-         lines * (kLineAndAnswer * common_.byteTime() + answer_time_) +
+         lines * (kLineAndReply * common_.byteTime() + answer_time_) +
          kReadings * (dialect_.longest_reading * common_.byteTime() + answer_time_) + abilities().reading_interval;
 }
 
@@ -63,16 +63,16 @@ void PolledManipulator::begin(bool lost) {
   MoveByMove::begin(lost);
   exchange_.reset();
   lines_.clear(false);
-  stop_requested_ = asked_motion_ = false;
-  ask_kept_ = lost && !confirmed_.empty();
-  not_kept_ = 0;
+  stop_requested_ = motion_requested_ = false;
+  check_setting_ = lost && !confirmed_.empty();
+  lost_setting_replies_ = 0;
   if (lost) forgetSettings();
 }
 
-/// Whatever was set in the device may be lost.
+/// The device may have lost its settings.
 void PolledManipulator::forgetSettings() {
   setup_step_ = setup_tries_ = 0;
-  setup_answer_.reset();
+  setup_reply_.reset();
   setting_.clear();
 }
 
@@ -83,136 +83,137 @@ void PolledManipulator::onStopSent() {
 
 void PolledManipulator::exchange(const std::string& bytes) {
   for (const std::string& line : lines_.feed(bytes)) {
-    const std::string answer = !line.empty() && line[0] == '\n' ? line.substr(1) : line;
-    handle(answer);
+    const std::string reply = !line.empty() && line[0] == '\n' ? line.substr(1) : line;
+    handle(reply);
     if (!exchanging()) return;
   }
-  if (exchange_ && listened() > exchange_->due) return lostStep("no answer to \"" + exchange_->line + "\"");
+  if (exchange_ && activeTime() > exchange_->due) return exchangeFailed("no answer to \"" + exchange_->line + "\"");
   if (!exchange_) next();
 }
 
-void PolledManipulator::notUnderstood(const std::string& answer) {
+void PolledManipulator::handleMalformedReply(const std::string& reply) {
   ++malformed_;
-  lostStep(exchange_ ? "answers \"" + printable(answer) + "\" to \"" + exchange_->line + "\""
-                     : "says \"" + printable(answer) + "\" without being asked");
+  exchangeFailed(exchange_ ? "answers \"" + printable(reply) + "\" to \"" + exchange_->line + "\""
+                           : "sends \"" + printable(reply) + "\" without a request");
 }
 
-void PolledManipulator::handle(const std::string& answer) {
-  if (!exchange_) return notUnderstood(answer);
-  measure(exchange_->sent, answer.size() + 1);
+void PolledManipulator::handle(const std::string& reply) {
+  if (!exchange_) return handleMalformedReply(reply);
+  measure(exchange_->sent, reply.size() + 1);
   switch (exchange_->kind) {
     case Kind::kSetup:
-      return takeSetupAnswer(answer);
+      return handleSetupReply(reply);
     case Kind::kPosition:
-      return takePosition(answer);
+      return handlePosition(reply);
     case Kind::kMotion:
-      return takeMotion(answer);
-    case Kind::kKept:
-      understood();
+      return handleMotion(reply);
+    case Kind::kSettingCheck:
+      exchangeSucceeded();
       exchange_.reset();
-      if (!isKept(confirmed_, answer)) return takeNotKept();
-      ask_kept_ = false;
+      if (!isKept(confirmed_, reply)) return handleLostSetting();
+      check_setting_ = false;
       return;
     case Kind::kStop:
     case Kind::kMove:
-      if (!acknowledges(exchange_->line, answer)) return notUnderstood(answer);
-      understood();
+      if (!acknowledges(exchange_->line, reply)) return handleMalformedReply(reply);
+      exchangeSucceeded();
       if (exchange_->kind == Kind::kStop) stop_requested_ = true;
       if (exchange_->line == setting_) confirmed_ = setting_;
-      if (exchange_->kind == Kind::kMove && progress_.move.empty()) watch_.hasDeparted();
+      if (exchange_->kind == Kind::kMove && progress_.move.empty()) origin_monitor_.confirmMove();
       exchange_.reset();
   }
 }
 
-void PolledManipulator::takeSetupAnswer(const std::string& answer) {
-  const bool twice = setup_answer_ == answer;
-  if (!twice && ++setup_tries_ > kSetupTries) return notUnderstood(answer);
-  if (!twice && setup_answer_) ++malformed_;
+void PolledManipulator::handleSetupReply(const std::string& reply) {
+  const bool twice = setup_reply_ == reply;
+  if (!twice && ++setup_tries_ > kSetupTries) return handleMalformedReply(reply);
+  if (!twice && setup_reply_) ++malformed_;
   exchange_.reset();
-  setup_answer_ = answer;
+  setup_reply_ = reply;
   if (!twice) return;
-  setup_answer_.reset();
+  setup_reply_.reset();
   setup_tries_ = 0;
-  const std::string line = setup(setup_step_), refusal = takeSetup(setup_step_++, answer);
-  if (!refusal.empty()) return raiseFault("answers \"" + printable(answer) + "\" to \"" + line + "\": " + refusal);
-  if (setup(setup_step_).empty()) confirmed_ = line;  // what is asked before sets nothing
-  understood();
+  const std::string line = setup(setup_step_), refusal = handleSetup(setup_step_++, reply);
+  if (!refusal.empty()) return raiseFault("answers \"" + printable(reply) + "\" to \"" + line + "\": " + refusal);
+  if (setup(setup_step_).empty()) confirmed_ = line;  // the requests before it set nothing
+  exchangeSucceeded();
 }
 
-/// Said twice: the answer may be a damaged one.
-void PolledManipulator::takeNotKept() {
-  if (++not_kept_ < 2) return;
-  ask_kept_ = false;
+/// Needs two such replies, since one may be damaged.
+void PolledManipulator::handleLostSetting() {
+  if (++lost_setting_replies_ < 2) return;
+  check_setting_ = false;
   settings_lost_ = true;
 }
 
-void PolledManipulator::takeMotion(const std::string& answer) {
-  const std::optional<bool> moves = readMotion(answer);
-  if (!moves) return notUnderstood(answer);
+void PolledManipulator::handleMotion(const std::string& reply) {
+  const std::optional<bool> moves = readMotion(reply);
+  if (!moves) return handleMalformedReply(reply);
   exchange_.reset();
-  understood();
-  asked_motion_ = true;
+  exchangeSucceeded();
+  motion_requested_ = true;
   if (!move_) return;
   if (*moves) {
-    progress_.stood.reset();
-  } else if (!progress_.stood) {
-    progress_.stood = listened();
+    progress_.at_rest_since.reset();
+  } else if (!progress_.at_rest_since) {
+    progress_.at_rest_since = activeTime();
   }
 }
 
-void PolledManipulator::takePosition(const std::string& answer) {
-  const std::optional<Eigen::Vector3d> place = readPosition(answer);
-  if (!place) return notUnderstood(answer);
+void PolledManipulator::handlePosition(const std::string& reply) {
+  const std::optional<Eigen::Vector3d> position = readPosition(reply);
+  if (!position) return handleMalformedReply(reply);
   exchange_.reset();
-  asked_motion_ = false;
-  understood();
-  takePlace(*place);
+  motion_requested_ = false;
+  exchangeSucceeded();
+  updatePosition(*position);
 }
 
-void PolledManipulator::takePlace(const Eigen::Vector3d& place) {
+void PolledManipulator::updatePosition(const Eigen::Vector3d& position) {
   const Eigen::Vector3d nowhere = Eigen::Vector3d::Constant(std::nan(""));
   const Eigen::Vector3d expected = position_ && settled_ ? extrapolatedPosition(time()) : nowhere;
   const double speed = move_ ? (move_->to - move_->from).norm() / std::max(move_->duration, 1e-3) : 0;  // counts/s
-  const double under_way = reading_margin_ / count() + kLongestGuess * speed;
-  // At rest, and until it is known to be, only what is told four times can be another place than before.
+  const double under_way = reading_margin_ / count() + kLongestExtrapolation * speed;
+  // At rest, or before rest is confirmed, only four equal readings can change the position.
   const double tolerance = move_ ? under_way : kSame;
-  if (!filter_.accept(place, expected, tolerance, tolerance) || !answers_.measured()) return;  // asked again
-  const bool elsewhere = !((place - expected).cwiseAbs().maxCoeff() <= tolerance);
-  const bool jumped = move_ && elsewhere && place.isZero(kSame);
-  const bool new_zero = jumped || ((!move_ || settings_lost_) && isNewZero(place, reading_margin_));
+  if (!filter_.accept(position, expected, tolerance, tolerance) || !reply_times_.measured()) return;  // requested again
+  const bool elsewhere = !((position - expected).cwiseAbs().maxCoeff() <= tolerance);
+  const bool jumped = move_ && elsewhere && position.isZero(kSame);
+  const bool new_zero = jumped || ((!move_ || settings_lost_) && isNewZero(position, reading_margin_));
   const bool by_hand = dialect_.moved_by_hand && settled_ && !move_;
-  if (beginsAnew(place, by_hand ? 0 : watch_.outside(place, counts()), new_zero, reading_margin_)) return;
-  if (move_) return checkMove(place);
+  if (detectNewOrigin(position, by_hand ? 0 : origin_monitor_.outside(position, counts()), new_zero, reading_margin_))
+    return;
+  if (move_) return checkMove(position);
   if (settled_) {
-    corrected(place, expected);
+    recordCorrection(position, expected);
     if (elsewhere) forgetSettings();
-    return rest(place);
+    return rest(position);
   }
   settled_ = true;
-  rest(place);
-  known();
+  rest(position);
+  confirmPositions();
 }
 
-void PolledManipulator::ask(Kind kind, const std::string& line) {
-  const double sent = listened() + static_cast<double>(line.size() + 1) * common_.byteTime();
+void PolledManipulator::request(Kind kind, const std::string& line) {
+  const double sent = activeTime() + static_cast<double>(line.size() + 1) * common_.byteTime();
   const double wire = static_cast<double>(std::max(dialect_.longest_reading, line.size())) * common_.byteTime();
-  const bool may_stop = kind == Kind::kKept || kind == Kind::kStop || kind == Kind::kSetup;
+  const bool may_stop = kind == Kind::kSettingCheck || kind == Kind::kStop || kind == Kind::kSetup;
   const double more = may_stop ? dialect_.stop_duration : 0;
   exchange_ = Exchange{kind, line, sent + wire + common_.reply_timeout + more, sent};
-  if (settled_ && !filter_.isImplausible()) validityTime(exchange_->due - listened() + recoveryTime());
-  say(line + "\r");
+  if (settled_ && !filter_.isImplausible()) validityTime(exchange_->due - activeTime() + recoveryTime());
+  send(line + "\r");
 }
 
 void PolledManipulator::next() {
-  if (ask_kept_) return ask(Kind::kKept, askKept(confirmed_));
-  if (const std::string line = setup(setup_step_); !line.empty()) return ask(Kind::kSetup, line);
-  if (!stop_requested_) return ask(Kind::kStop, dialect_.stop);
-  if (!settled_ || filter_.isImplausible()) return ask(Kind::kPosition, dialect_.position);
+  if (check_setting_) return request(Kind::kSettingCheck, settingQuery(confirmed_));
+  if (const std::string line = setup(setup_step_); !line.empty()) return request(Kind::kSetup, line);
+  if (!stop_requested_) return request(Kind::kStop, dialect_.stop);
+  if (!settled_ || filter_.isImplausible()) return request(Kind::kPosition, dialect_.position);
   if (move_) return nextOfMove();
-  if (goal() && mayMove() && time() >= next_move_ && !isThere(*position_, goalPlace())) {
+  if (goal() && mayMove() && time() >= next_move_ && !isAt(*position_, goalPosition())) {
     return nextTowardsGoal();
   }
-  if (time() >= next_rest_reading_) ask(Kind::kPosition, dialect_.position);
+  if (time() >= next_rest_reading_) request(Kind::kPosition, dialect_.position);
 }
 
 }  // namespace microinjection

@@ -10,41 +10,42 @@
 
 namespace microinjection {
 
-/// Keys that every device below has in its file.
+/// Keys of every device of this kind.
 struct PolledManipulatorConfig : MoveByMoveConfig {
-  double reading_margin = 5e-6;  ///< m, by which a reading under way may be off, besides 0.1 s of motion
+  double reading_margin = 5e-6;  ///< m, tolerance of a reading while moving, in addition to 0.1 s of motion
 
  protected:
   void readCommon(ConfigReader& reader, int default_baud, const Range& speeds);  ///< m/s
 };
 
-/// A manipulator behind lines of text that goes from one move to the next and tells its position while it moves. A
-/// move is never said while another may be under way, nor on suspicion: after anything that went wrong the device is
-/// stopped and stands before it is sent on. Its dialect is the deriving class' business.
+/// A manipulator with a text protocol that executes one move after another and reports its position
+/// while moving. A move is never sent while another may be in progress: after any failure the
+/// device is stopped and at rest before the next move. A derived class implements the dialect.
 ///
-/// A position counts when it is where it may be (at rest: where it was), or when four in a row agree. Another place at
-/// rest, with the line sound, is that of a hand, if the device can be moved by hand. What was set in it is then said
-/// again: it may have been switched off and on before.
+/// A position is accepted if it is possible (at rest: unchanged), or if four successive readings
+/// agree. A new position at rest, on an intact line, means a manual displacement if the device
+/// allows it. Then the settings are sent again, since the device may have been switched off and on
+/// before.
 class PolledManipulator : public MoveByMove {
  public:
   struct Dialect {
-    std::string device;            ///< its name, e.g. "Eppendorf PatchMan NP 2"
-    std::string short_name;        ///< in messages
-    std::string guarded_stop;      ///< bytes that stop it, whatever was half said before
-    std::string farewell;          ///< bytes that give it back when the program ends, after the stop
-    std::string stop;              ///< a line, answered when it stops
-    std::string position, motion;  ///< lines that ask; no motion: the position tells when it stands
-    std::size_t longest_move;      ///< bytes of what a move takes, answers included
-    std::size_t longest_reading;   ///< bytes of a question for the position and its answer
-    double stop_duration;          ///< s, that it takes to come to rest
-    bool moved_by_hand;            ///< somebody else may move it while this program has it
+    std::string device;            ///< name, e.g. "Eppendorf PatchMan NP 2"
+    std::string short_name;        ///< name in messages
+    std::string guarded_stop;      ///< bytes that stop it, also after an incomplete command
+    std::string farewell;          ///< bytes after the stop that return control to the operator when the program ends
+    std::string stop;              ///< a line, acknowledged when the device stops
+    std::string position, motion;  ///< request lines; without `motion` the position shows when it rests
+    std::size_t longest_move;      ///< bytes for a move, including replies
+    std::size_t longest_reading;   ///< bytes of a position request and its reply
+    double stop_duration;          ///< s, to come to rest
+    bool moved_by_hand;            ///< the operator may move it while this program controls it
   };
   struct Plan {
-    std::string setting;  ///< a line that is said before, unless it was the last one; empty: none
-    std::string move;     ///< the line that moves; both have an acknowledgement
-    double duration = 0;  ///< s, that the move takes
-    double speed = 0;     ///< m/s, along it; may be more than was asked for, where the device cannot go that slowly
-    double aside = 0;     ///< counts, by which it leaves the straight line
+    std::string setting;   ///< a line sent before, unless it was the last one; empty: none
+    std::string move;      ///< the line of the move; both are acknowledged
+    double duration = 0;   ///< s, of the move
+    double speed = 0;      ///< m/s, along the path; exceeds the requested one if the device cannot move that slowly
+    double deviation = 0;  ///< counts, from the straight line
   };
 
   ManipulatorAbilities abilities() const override;
@@ -52,24 +53,25 @@ class PolledManipulator : public MoveByMove {
  protected:
   PolledManipulator(const PolledManipulatorConfig& config, std::unique_ptr<Wire> wire, const Dialect& dialect);
 
-  /// The line to be said at a session's begin, in order from 0; empty: all is said. Each is said until it was answered
-  /// twice alike: a damaged answer would last.
+  /// The line to send at the start of a session, in order from 0; empty: no more. Each is repeated
+  /// until two replies agree, since the effect of a damaged reply would last.
   virtual std::string setup(int step) const = 0;
-  /// The answer to setup(step). Returns why the device must not be used; empty when it may.
-  virtual std::string takeSetup(int step, const std::string& answer) = 0;
-  /// Counts of the device's axes; empty when the line is none.
-  virtual std::optional<Eigen::Vector3d> readPosition(const std::string& answer) = 0;
-  /// A line that tells after a lost session whether a setting, the last one that the device has confirmed, is kept.
-  virtual std::string askKept(const std::string& setting) const = 0;
-  virtual bool isKept(const std::string& setting, const std::string& answer) const = 0;
-  virtual std::optional<bool> readMotion(const std::string& /*answer*/) const { return std::nullopt; }
-  virtual bool acknowledges(const std::string& line, const std::string& answer) const = 0;
-  /// A straight move between places (counts, whole) at `speed` (m/s), with no axis faster than `fastest` (m/s) where
-  /// the device can do that.
+  /// Handles the reply to setup(step). Returns the reason why the device must not be used, or an
+  /// empty text.
+  virtual std::string handleSetup(int step, const std::string& reply) = 0;
+  /// Counts of the device's axes; empty for a malformed line.
+  virtual std::optional<Eigen::Vector3d> readPosition(const std::string& reply) = 0;
+  /// A request that shows after a failure whether `setting`, the last confirmed one, is still set.
+  virtual std::string settingQuery(const std::string& setting) const = 0;
+  virtual bool isKept(const std::string& setting, const std::string& reply) const = 0;
+  virtual std::optional<bool> readMotion(const std::string& /*reply*/) const { return std::nullopt; }
+  virtual bool acknowledges(const std::string& line, const std::string& reply) const = 0;
+  /// Plans a straight move between positions (whole counts) at `speed` (m/s), with no axis faster
+  /// than `fastest` (m/s) if the device can do that.
   virtual Plan plan(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double speed,
                     const Eigen::Vector3d& fastest) const = 0;
-  virtual double count() const = 0;                         ///< m
-  virtual std::string whyNotArrived() const { return ""; }  ///< what the device tells of it
+  virtual double count() const = 0;                            ///< m
+  virtual std::string notArrivedReason() const { return ""; }  ///< as reported by the device
 
   Eigen::Vector3d counts() const final { return Eigen::Vector3d::Constant(count()); }
   double recoveryTime() const final;
@@ -78,43 +80,43 @@ class PolledManipulator : public MoveByMove {
   void exchange(const std::string& bytes) final;
 
  private:
-  enum class Kind { kKept, kSetup, kStop, kPosition, kMotion, kMove };
+  enum class Kind { kSettingCheck, kSetup, kStop, kPosition, kMotion, kMove };
   struct Exchange {
     Kind kind;
     std::string line;
-    double due;   // s of listened()
-    double sent;  // s of listened(), when its last byte has gone
+    double due;   // s of activeTime()
+    double sent;  // s of activeTime(), when its last byte was sent
   };
-  /// Of the move under way.
+  /// The move in progress.
   struct Progress {
-    std::string setting, move;    // lines, as long as they are not said
-    double end = 0;               // s, of all of it
-    double overdue = 0;           // s of listened(), by when it has arrived
-    double next = 0;              // s, before which no further one begins: it goes slower than the device can
-    int at_goal = 0;              // readings in a row
-    bool zero_asked = false;      // whether its settings are kept, when it reads 0 at its goal
-    std::optional<double> stood;  // s of listened(), since when the device says that it stands
+    std::string setting, move;            // lines that are still to be sent
+    double end = 0;                       // s, end of the move
+    double overdue = 0;                   // s of activeTime(), latest arrival
+    double next = 0;                      // s, earliest start of the next move, for a speed below the device's
+    int at_goal = 0;                      // successive readings
+    bool zero_checked = false;            // settings were checked because it reads 0 at its goal
+    std::optional<double> at_rest_since;  // s of activeTime(), since the device reports rest
   };
 
-  /// A way that may be gone in parts, and where its next part begins.
+  /// A path that may be travelled in parts, and the start of its next part.
   struct Line {
     Eigen::Vector3d begin, goal, next;  // counts
   };
 
-  void handle(const std::string& answer);
-  void takeSetupAnswer(const std::string& answer);
-  void takeNotKept();
-  void takeMotion(const std::string& answer);
-  void takePosition(const std::string& answer);
-  void takePlace(const Eigen::Vector3d& place);
-  Eigen::Vector3d onTheWay(const Eigen::Vector3d& from, double share) const;
-  void checkMove(const Eigen::Vector3d& place);
-  void endedElsewhere(const Eigen::Vector3d& place);
-  void notUnderstood(const std::string& answer);
+  void handle(const std::string& reply);
+  void handleSetupReply(const std::string& reply);
+  void handleLostSetting();
+  void handleMotion(const std::string& reply);
+  void handlePosition(const std::string& reply);
+  void updatePosition(const Eigen::Vector3d& position);
+  Eigen::Vector3d pointOnPath(const Eigen::Vector3d& from, double share) const;
+  void checkMove(const Eigen::Vector3d& position);
+  void handleMissedGoal(const Eigen::Vector3d& position);
+  void handleMalformedReply(const std::string& reply);
   void forgetSettings();
-  void ask(Kind kind, const std::string& line);
+  void request(Kind kind, const std::string& line);
   void next();
-  void sayMove();
+  void sendMove();
   void nextOfMove();
   void nextTowardsGoal();
 
@@ -123,15 +125,15 @@ class PolledManipulator : public MoveByMove {
   LineSplitter lines_;
   std::optional<Exchange> exchange_;
   int setup_step_ = 0;
-  std::optional<std::string> setup_answer_;  // the last one to this step
+  std::optional<std::string> setup_reply_;  // the last reply to this step
   int setup_tries_ = 0;
-  std::string setting_;    // of the last move that had one; empty: not known
-  std::string confirmed_;  // setting, not forgotten with a lost session
-  int not_kept_ = 0;       // answers in a row, that it is not kept
-  bool ask_kept_ = false, stop_requested_ = false, asked_motion_ = false;
+  std::string setting_;           // of the last move with one; empty: unknown
+  std::string confirmed_;         // last confirmed setting; survives a failed session
+  int lost_setting_replies_ = 0;  // successive replies without the setting
+  bool check_setting_ = false, stop_requested_ = false, motion_requested_ = false;
   double next_move_ = 0;  // s
   Progress progress_;
-  std::optional<Line> line_;  // the last one
+  std::optional<Line> line_;
 };
 
 }  // namespace microinjection

@@ -4,16 +4,18 @@
 
 namespace microinjection {
 
-/// Takes a position for true when it is where it may be, or when four readings in a row say the same: a reply that was
-/// damaged on the line moves nothing. Fewer would not do: a digit that is lost thrice makes the same wrong number.
+/// Accepts a position if it is near the expected one, or if four successive readings agree. So a
+/// reply damaged on the line moves nothing. Four are needed, because a digit lost three times makes
+/// the same wrong number.
 class ReadingFilter {
  public:
-  /// Whether `reading` is taken. `tolerance`: the largest difference of any coordinate from `expected`, `agreement`:
-  /// from the doubtful reading before (all in one unit). No expectation: NaN.
+  /// Returns whether `reading` is accepted. `tolerance`: largest difference of any coordinate from
+  /// `expected`. `agreement`: largest difference from the previous doubtful reading. All in one
+  /// unit. Without expectation: NaN.
   bool accept(const Eigen::VectorXd& reading, const Eigen::VectorXd& expected, double tolerance, double agreement) {
     if (!reading.allFinite()) return false;
-    const auto near = [&](const Eigen::VectorXd& place, double distance) {
-      return ((reading - place).array().abs() <= distance).all();
+    const auto near = [&](const Eigen::VectorXd& position, double distance) {
+      return ((reading - position).array().abs() <= distance).all();
     };
     const bool agrees = doubtful_ > 0 && near(last_, agreement);
     doubtful_ = near(expected, tolerance) ? 0 : agrees ? doubtful_ + 1 : 1;
@@ -27,7 +29,7 @@ class ReadingFilter {
  private:
   static constexpr int kAgreeing = 4;
   Eigen::VectorXd last_;
-  int doubtful_ = 0;  // readings in a row that agree with each other and not with what was expected
+  int doubtful_ = 0;  // successive readings that agree with each other but not with the expected one
 };
 
 }  // namespace microinjection

@@ -6,20 +6,19 @@ namespace microinjection {
 namespace {
 
 constexpr double kOpenInterval = 0.5;   // s, between attempts to open the line
-constexpr double kStopInterval = 0.5;   // s, between stops while nobody guards the line
-constexpr double kLongestDrain = 2;     // s: a line that is never silent is not the device's
-constexpr double kLongestGap = 0.02;    // s between two steps: what is heard in a longer one comes late for no fault
-                                        // of the device's
-constexpr double kPauseInFault = 0.5;   // s, between attempts while nothing may move anyway
-constexpr int kAttempts = 3;            // failures in a row that make a fault
-constexpr double kStreamEnds = 0.1;     // s: set-points that pause for longer have ended
-constexpr int kSuccessesToForget = 12;  // exchanges after which a failure is no longer in a row with the next
+constexpr double kStopInterval = 0.5;   // s, between stops without a guard
+constexpr double kLongestDrain = 2;     // s; a line that is never silent is not the device's
+constexpr double kLongestGap = 0.02;    // s between two steps; in a longer gap a late reply is not the device's fault
+constexpr double kPauseInFault = 0.5;   // s, between attempts in a fault
+constexpr int kAttempts = 3;            // successive failures that cause a fault
+constexpr double kStreamEnds = 0.1;     // s; a longer pause ends a stream of set-points
+constexpr int kSuccessesToForget = 12;  // successful exchanges that reset the count of failures
 
 }  // namespace
 
 SerialManipulator::SerialManipulator(std::unique_ptr<Wire> wire, const Link& link)
-    : wire_(std::move(wire)), link_(link), why_(link.device + ": not connected yet") {
-  wire_->setGuardedStop(link_.stop);  // a node that is killed or stands still must not leave a device in motion
+    : wire_(std::move(wire)), link_(link), reason_(link.device + ": not connected yet") {
+  wire_->setGuardedStop(link_.stop);  // a node that is killed or frozen must not leave a device in motion
 }
 
 SerialManipulator::~SerialManipulator() {
@@ -48,9 +47,9 @@ void SerialManipulator::dropGoal() {
 }
 
 void SerialManipulator::stop() {
-  stopAsked();
+  onStopCommand();
   dropGoal();
-  if (!stopped_) stop_wanted_ = true;  // said again and again it must not keep the device from being asked
+  if (!stopped_) stop_wanted_ = true;  // repeated stops must not prevent readings
 }
 
 void SerialManipulator::clearFault() {
@@ -65,7 +64,7 @@ void SerialManipulator::beginSession(double quiet) {
   onStopSent();
   stopped_ = !goal_;
   exchanging_ = false;
-  drain_since_ = last_byte_ = listened_;
+  drain_since_ = last_byte_ = active_time_;
   quiet_ = quiet;
 }
 
@@ -74,17 +73,17 @@ void SerialManipulator::stopFirst() { beginSession(link_.quiet_in_step); }
 void SerialManipulator::connectionLost() {
   was_open_ = exchanging_ = ready_ = positions_valid_ = stop_wanted_ = false;
   next_open_ = time_ + kOpenInterval;
-  why_ = link_.device + ": the line broke; trying again";
+  reason_ = link_.device + ": the line broke; trying again";
   dropGoal();
 }
 
-/// Whether the device may go on. After an intervention the session begins anew, and the stop is sent once more: the
-/// guard may have been lost before it sent one.
+/// Returns whether the device may continue. After an intervention a new session begins with another
+/// stop, since the guard may have been lost before it sent one.
 bool SerialManipulator::guarded() {
   const Wire::GuardReport guard = wire_->heartbeat();
   const bool missing = !guard.missing.empty();
   if (!missing && guard.intervention.empty()) return true;
-  why_ = link_.device + ": " + (missing ? "no stop guard: " + guard.missing : guard.intervention);
+  reason_ = link_.device + ": " + (missing ? "no stop guard: " + guard.missing : guard.intervention);
   if (guard.intervention.empty() && time_ < next_stop_) return false;
   next_stop_ = time_ + kStopInterval;
   ready_ = positions_valid_ = stop_wanted_ = false;
@@ -95,7 +94,7 @@ bool SerialManipulator::guarded() {
   return false;
 }
 
-void SerialManipulator::lostStep(const std::string& reason) {
+void SerialManipulator::exchangeFailed(const std::string& reason) {
   successes_ = 0;
   lost_ = true;
   if (++failures_ >= kAttempts) {
@@ -105,12 +104,13 @@ void SerialManipulator::lostStep(const std::string& reason) {
   }
 }
 
-/// Nobody knows where it is: it is as good as not connected. It is told to rest, and no command waits for it to answer.
+/// Without a valid position the device counts as disconnected. It is stopped, and no command waits
+/// for it.
 void SerialManipulator::disconnect() {
   positions_valid_ = ready_ = false;
-  why_ = link_.device + ": it has told no position for too long; trying again";
+  reason_ = link_.device + ": no valid position for too long; trying again";
   dropGoal();
-  lostStep("no answer that tells its position");
+  exchangeFailed("no reply with its position");
 }
 
 void SerialManipulator::raiseFault(const std::string& reason) {
@@ -122,48 +122,50 @@ void SerialManipulator::raiseFault(const std::string& reason) {
   beginSession(again ? std::max(kPauseInFault, link_.quiet_after_loss) : link_.quiet_after_loss);
 }
 
-void SerialManipulator::known() {
+void SerialManipulator::confirmPositions() {
   ready_ = positions_valid_ = true;
   if (clearing_) fault_.clear();
   clearing_ = false;
 }
 
-void SerialManipulator::understood() {
+void SerialManipulator::exchangeSucceeded() {
   if (++successes_ >= kSuccessesToForget) failures_ = 0;
 }
 
-/// A goal that was reached is over: a person who turns the device's own hand wheel or knob must not be worked against.
+/// Removes a reached goal, so that the driver does not work against an operator who turns the
+/// device's hand wheel or knob.
 void SerialManipulator::clearReachedGoal() {
   const bool goes_on = goal_ && goal_->follows && time_ - goal_->time < kStreamEnds;
   if (goal_ && !goes_on && mayMove() && !moving()) dropGoal();
 }
 
 void SerialManipulator::step(double time) {
-  listened_ += std::min(time - time_, kLongestGap);
+  active_time_ += std::min(time - time_, kLongestGap);
   time_ = time;
   if (!wire_->isOpen()) {
     if (was_open_) connectionLost();
     if (time < next_open_) return;
     next_open_ = time + kOpenInterval;
-    why_ = wire_->open();
-    if (!why_.empty()) return;
+    reason_ = wire_->open();
+    if (!reason_.empty()) return;
     was_open_ = lost_ = true;
-    why_ = link_.device + ": connected, no answer yet";
+    reason_ = link_.device + ": connected, no answer yet";
     connected();
     beginSession(link_.quiet_after_loss);
   }
   std::string bytes = wire_->read(time);
   if (!wire_->isOpen()) return connectionLost();
   if (!guarded()) return;
-  if (positions_valid_ && listened_ > valid_until_) return disconnect();
+  if (positions_valid_ && active_time_ > valid_until_) return disconnect();
   if (stop_wanted_) {
     stop_wanted_ = false;
     beginSession(exchanging_ && !clearing_ ? link_.quiet_in_step : std::max(quiet_, link_.quiet_in_step));
   }
   if (!exchanging_) {
-    if (!bytes.empty()) last_byte_ = listened_;
-    if (listened_ - drain_since_ > kLongestDrain) return lostStep("the line is never silent; is it the right port?");
-    if (listened_ - last_byte_ < quiet_) return;
+    if (!bytes.empty()) last_byte_ = active_time_;
+    if (active_time_ - drain_since_ > kLongestDrain)
+      return exchangeFailed("the line is never silent; is it the right port?");
+    if (active_time_ - last_byte_ < quiet_) return;
     bytes.clear();
     exchanging_ = true;
     begin(lost_);
@@ -179,14 +181,14 @@ ManipulatorDevice::State SerialManipulator::state() const {
   return ready_ ? State::kReady : State::kDisconnected;
 }
 
-std::string SerialManipulator::why() const {
+std::string SerialManipulator::reason() const {
   switch (state()) {
     case State::kReady:
       return "";
     case State::kFault:
       return fault_;
     default:
-      return why_;
+      return reason_;
   }
 }
 

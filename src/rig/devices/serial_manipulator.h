@@ -12,16 +12,17 @@
 
 namespace microinjection {
 
-/// What all manipulators behind a serial line have in common: the line that may break, the stop that comes first, an
-/// exchange that went wrong, faults. A device's driver adds the conversation.
+/// Common part of all drivers on a serial line: connection, stop, failed exchanges, faults. A
+/// derived class implements the device's protocol.
 ///
-/// A session begins, after the line has been opened and after anything went wrong, with a stop; then what comes belated
-/// is thrown away until the line has been silent; then the driver asks where everything is. Only when it knows may
-/// anything move. A device that tells no true position for longer than an exchange that went wrong explains counts as
-/// not connected, and rests until the next command. When it fails a few times in a row, the reason becomes a fault, and
-/// motion waits for clearFault(). Commands that come while the device is not kReady are not kept, and neither is one
-/// that has been carried out. When the program stood still and its stop guard stopped the device, or the guard was
-/// lost, the session begins anew and the device rests until the next command; while there is no guard nothing moves.
+/// A session begins after the line was opened and after every failure. It starts with a stop. Late
+/// bytes are discarded until the line has been silent. Then the driver reads all positions. Only
+/// when they are valid may the device move. A device without a valid position for longer than a
+/// failed exchange takes counts as disconnected, and rests until the next command. After several
+/// successive failures the reason becomes a fault, and motion requires clearFault(). Commands that
+/// arrive while the device is not kReady are dropped; a completed command is not repeated. If the
+/// program was frozen and its stop guard stopped the device, or if the guard was lost, a new
+/// session begins and the device rests until the next command. Without a guard nothing moves.
 class SerialManipulator : public ManipulatorDevice {
  public:
   void limitSpeed(const Eigen::Vector3d& axes) final { speed_limits_ = axes; }
@@ -31,69 +32,72 @@ class SerialManipulator : public ManipulatorDevice {
   void clearFault() final;
   void step(double time) final;
   State state() const final;
-  std::string why() const final;
+  std::string reason() const final;
 
  protected:
   struct Link {
-    std::string device;           ///< its name in messages
-    std::string stop;             ///< bytes that stop it, whatever it is doing
-    double quiet_in_step = 0;     ///< s of silence that end what follows a stop
-    double quiet_after_loss = 0;  ///< s of silence after which nothing belated comes and no half command is left
-    std::string farewell{};       ///< bytes after the last stop, which give the device back
+    std::string device;           ///< name in messages
+    std::string stop;             ///< bytes that stop the device in any state
+    double quiet_in_step = 0;     ///< s of silence after which no reply to a stop is pending
+    double quiet_after_loss = 0;  ///< s of silence after which neither late replies nor an incomplete command remain
+    std::string farewell{};       ///< bytes after the last stop, to return control to the operator
   };
   struct Goal {
     bool follows = false;                                ///< a set-point, otherwise a move
     Eigen::Vector3d joints = Eigen::Vector3d::Zero();    ///< m
     Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< m/s, of a set-point
     double speed = 0;                                    ///< m/s, of a move
-    double time = 0;                                     ///< s, when it came
+    double time = 0;                                     ///< s, of the command
   };
 
   SerialManipulator(std::unique_ptr<Wire> wire, const Link& link);
   ~SerialManipulator() override;  ///< sends a stop and the farewell
 
-  /// The line has been opened: there may be another device at its end.
+  /// Called after the line was opened. There may be another device now.
   virtual void connected() {}
-  /// Begins the conversation anew: whatever was asked is void, and the device has been told to stop. `lost`: something
-  /// went wrong or the line is new, so that nothing is known of the device; otherwise it was just stopped.
+  /// Starts a session: pending requests are void, and a stop was sent. `lost`: after a failure or
+  /// on a new line, so nothing is valid; otherwise the device was only stopped.
   virtual void begin(bool lost) = 0;
-  /// The device has been told to stop and will stand in a moment; what it says is not heard until `begin`.
+  /// Called after a stop was sent. The device's replies are discarded until `begin`.
   virtual void onStopSent() {}
-  virtual void stopAsked() {}  ///< by stop(), at once and each time
-  /// The program or its stop guard stood still: not even what moves without a goal may go on by itself.
+  virtual void onStopCommand() {}  ///< called by every stop()
+  /// Called after the program or its stop guard was frozen: motions without a goal must end, too.
   virtual void guardIntervened() {}
-  /// Goes on with the conversation: with what came, and with what is to be said.
+  /// Handles received bytes and sends requests.
   virtual void exchange(const std::string& bytes) = 0;
-  /// A new goal (goal() is set) came or the goal went.
+  /// Called for a new goal (goal() is set) and after the goal was removed.
   virtual void goalChanged() = 0;
 
   double time() const { return time_; }  ///< s, of this step
   const std::optional<Goal>& goal() const { return goal_; }
   const Eigen::Vector3d& speedLimits() const { return speed_limits_; }  ///< m/s, of the joints
   bool exchanging() const { return exchanging_; }
-  /// Whether positions may be told: not before the first session has settled, and from a fault until one has again.
-  bool sure() const { return positions_valid_ && state() != State::kDisconnected; }
+  /// Whether positions are valid: after the first session has settled, and after a fault when a new
+  /// session has.
+  bool positionsValid() const { return positions_valid_ && state() != State::kDisconnected; }
   bool mayMove() const { return ready_ && fault_.empty(); }
-  bool clearing() const { return clearing_; }  ///< clearFault() was called and this session tries
-  void say(const std::string& bytes) { wire_->write(bytes, time_); }
+  bool clearing() const { return clearing_; }  ///< this session tries to clear the fault
+  void send(const std::string& bytes) { wire_->write(bytes, time_); }
   void dropGoal();
-  void movesByItself() { stopped_ = false; }  ///< without a goal, so that a stop has something to stop
+  void movesByItself() { stopped_ = false; }  ///< registers a motion without a goal, so that a stop is sent
 
-  double listened() const { return listened_; }  ///< s, a clock that does not run while nobody steps
-  /// The last true position, carried on, may be told for so long (s); maxValidityTime only shortens that. Then it is as
-  /// if the line were broken: no position, no goal, a stop, until the driver says known() again.
-  void validityTime(double duration) { valid_until_ = listened_ + duration; }
-  void maxValidityTime(double duration) { valid_until_ = std::min(valid_until_, listened_ + duration); }
-  /// From the next session on: s of silence, as in Link, on a line that turned out to be slow.
+  double activeTime() const { return active_time_; }  ///< s, of a clock that pauses while step() is not called
+  /// The last valid position may be extrapolated for `duration` (s). maxValidityTime() can only
+  /// shorten that. Afterwards the device counts as disconnected: no position, no goal, a stop,
+  /// until confirmPositions().
+  void validityTime(double duration) { valid_until_ = active_time_ + duration; }
+  void maxValidityTime(double duration) { valid_until_ = std::min(valid_until_, active_time_ + duration); }
+  /// Sets the silence (s) of Link from the next session on, for a line that is slower than
+  /// expected.
   void waitForSilence(double in_step, double after_loss) {
     link_.quiet_in_step = in_step;
     link_.quiet_after_loss = after_loss;
   }
-  void known();                                ///< the driver knows where everything is, and everything is at rest
-  void understood();                           ///< an exchange has succeeded
-  void stopFirst();                            ///< begins anew, and goes on to the goal
-  void lostStep(const std::string& reason);    ///< an exchange has failed: stops and begins anew
-  void raiseFault(const std::string& reason);  ///< stops and lets nothing move until clearFault()
+  void confirmPositions();                         ///< all positions are valid, and all axes at rest
+  void exchangeSucceeded();                        ///< an exchange has succeeded
+  void stopFirst();                                ///< starts a new session and continues to the goal
+  void exchangeFailed(const std::string& reason);  ///< an exchange has failed: stops and starts a new session
+  void raiseFault(const std::string& reason);      ///< stops; nothing moves until clearFault()
 
  private:
   void beginSession(double quiet);
@@ -105,21 +109,21 @@ class SerialManipulator : public ManipulatorDevice {
   std::unique_ptr<Wire> wire_;
   Link link_;
   double time_ = 0;         // s
-  double listened_ = 0;     // s
-  double valid_until_ = 0;  // s of `listened_`
+  double active_time_ = 0;  // s
+  double valid_until_ = 0;  // s of `active_time_`
   double next_open_ = -1;   // s
   double next_stop_ = 0;    // s, while there is no guard
-  double last_byte_ = 0;    // s of listened_, since the stop
-  double drain_since_ = 0;  // s of listened_
+  double last_byte_ = 0;    // s of active_time_, since the stop
+  double drain_since_ = 0;  // s of active_time_
   double quiet_ = 0;        // s, of silence to wait for
   bool was_open_ = false, exchanging_ = false, ready_ = false, clearing_ = false, stop_wanted_ = false;
-  bool positions_valid_ = false;  // where everything is
-  bool lost_ = true;              // before this session
-  bool stopped_ = false;          // told to stop, and to do nothing since
+  bool positions_valid_ = false;
+  bool lost_ = true;      // nothing was valid before this session
+  bool stopped_ = false;  // a stop was sent, and no motion since
   int failures_ = 0, successes_ = 0;
   Eigen::Vector3d speed_limits_ = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
-  std::string why_;    // it is not ready
-  std::string fault_;  // empty: none
+  std::string reason_;  // why the device is not ready
+  std::string fault_;   // empty: none
   std::optional<Goal> goal_;
 };
 

@@ -31,21 +31,21 @@ void TextEmulator::process(const std::string& bytes, double time) {
     const std::string command = std::exchange(command_, "");
     if (command.empty()) continue;
     if (error_ >= 0) {
-      answer(error(std::exchange(error_, -1)), time);
+      reply(error(std::exchange(error_, -1)), time);
     } else {
       handleCommand(command, time);
     }
   }
 }
 
-std::string TextEmulator::say(double time) {
+std::string TextEmulator::produce(double time) {
   advance(time);
-  std::string said;
-  while (!answers_.empty() && answers_.front().due <= time) {
-    said += answers_.front().bytes;
-    answers_.erase(answers_.begin());
+  std::string output;
+  while (!replies_.empty() && replies_.front().due <= time) {
+    output += replies_.front().bytes;
+    replies_.erase(replies_.begin());
   }
-  return said;
+  return output;
 }
 
 void TextEmulator::checkError(const std::string& code) const {
@@ -60,7 +60,7 @@ void TextEmulator::failNextCommand(const std::string& code) {
     return;
   }
   command_.clear();
-  answers_.clear();
+  replies_.clear();
   error_ = -1;
   moving_ = false;
   switchOn();

@@ -14,7 +14,7 @@ namespace {
 constexpr char kFaulty[] = "ERR=001";
 constexpr double kHectopascal = 100;  // Pa
 
-/// "=" and ten characters, the number at their end.
+/// "=" and ten characters with the number right-aligned.
 std::string parameter(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "=%10.10g", value);
@@ -30,11 +30,11 @@ void FemtojetEmulator::process(const std::string& bytes, double time) {
       command_ += each;
       continue;
     }
-    if (command_.empty()) continue;  // the line feed behind a carriage return
+    if (command_.empty()) continue;  // the line feed after a carriage return
     const std::string first = config_.echo == FemtojetEmulatorConfig::Echo::kCommand ? command_ : "";
     const bool two_lines = config_.echo != FemtojetEmulatorConfig::Echo::kNone;
-    const std::string answer = (two_lines ? first + config_.line_end : "") + handleCommand(command_) + config_.line_end;
-    answers_.add(answer, time_ + config_.answer_time);
+    const std::string reply = (two_lines ? first + config_.line_end : "") + handleCommand(command_) + config_.line_end;
+    replies_.add(reply, time_ + config_.answer_time);
     command_.clear();
   }
 }
@@ -48,13 +48,13 @@ std::string FemtojetEmulator::handleCommand(const std::string& line) {
 }
 
 std::string FemtojetEmulator::execute(const std::string& number) {
-  const std::string answer = "A" + number;
-  if (number == "152") return answer + parameter(injection_time_);
-  if (number == "153") return answer + parameter(compensation_ / kHectopascal);
-  if (number == "154") return answer + parameter(injection_ / kHectopascal);
+  const std::string reply = "A" + number;
+  if (number == "152") return reply + parameter(injection_time_);
+  if (number == "153") return reply + parameter(compensation_ / kHectopascal);
+  if (number == "154") return reply + parameter(injection_ / kHectopascal);
   if (number != config_.inject || time_ < injects_until_) return kFaulty;
   injects_until_ = time_ + injection_time_;
-  return answer;
+  return reply;
 }
 
 std::string FemtojetEmulator::enter(const std::string& number, const std::string& text) {
@@ -75,9 +75,9 @@ std::string FemtojetEmulator::enter(const std::string& number, const std::string
   return "A" + number;
 }
 
-std::string FemtojetEmulator::say(double time) {
+std::string FemtojetEmulator::produce(double time) {
   time_ = std::max(time, time_);
-  return answers_.take(time);
+  return replies_.popDue(time);
 }
 
 void FemtojetEmulator::checkError(const std::string& code) const {

@@ -5,9 +5,9 @@
 
 namespace microinjection {
 
-/// A pressure on the pipette for a time, instead of the balance pressure.
+/// A pressure on the pipette for a limited time, instead of the balance pressure.
 struct InjectionPulse {
-  std::uint64_t id = 0;  ///< of this pulse alone
+  std::uint64_t id = 0;  ///< unique for each pulse
   double pressure = 0;   ///< Pa, gauge
   double duration = 0;   ///< s
 };
@@ -15,33 +15,36 @@ struct InjectionPulse {
 struct InjectorReading {
   double pressure = 0;        ///< Pa, gauge, behind the liquid
   double flow = 0;            ///< m^3/s, out of the tip
-  double volume = 0;          ///< m^3, left the tip since the last reset; what was drawn in counts negative
-  bool busy = false;          ///< a pulse is on its way or under way
-  std::uint64_t last_id = 0;  ///< of the last pulse that was done; 0: none
-  unsigned pulses = 0;        ///< done since the start
+  double volume = 0;          ///< m^3, out of the tip since the last reset; liquid drawn in counts negative
+  bool busy = false;          ///< a pulse is pending or in progress
+  std::uint64_t last_id = 0;  ///< of the last completed pulse; 0: none
+  unsigned pulses = 0;        ///< completed since the start
 };
 
-/// What pushes liquid through the injection pipette: a model, or a real device behind its protocol. Nothing here waits:
-/// commands are noted and carried out by `step`. A command is refused with a reason, or done once.
+/// Interface of the pressure source of the injection pipette: a model, or the driver of a real
+/// device. No function blocks: a command is stored, and `step` executes it. A command is either
+/// refused with a reason, or executed once.
 class InjectorDevice {
  public:
   virtual ~InjectorDevice() = default;
 
-  /// Empty, or why it is refused.
+  /// Returns an empty text, or the reason for the refusal.
   virtual std::string pulse(const InjectionPulse& pulse) = 0;
-  /// The pressure between pulses (Pa, gauge). Empty, or why it is refused.
+  /// Sets the pressure between pulses (Pa, gauge). Returns an empty text, or the reason for the
+  /// refusal.
   virtual std::string setBalance(double pressure) = 0;
-  /// Ends the pulse that is on its way or under way: back to the balance pressure. Such a pulse does not count as done.
-  /// Without a pulse nothing happens. Empty, or why it is refused: the pulse then goes on.
+  /// Ends a pending or current pulse and returns to the balance pressure. Such a pulse does not
+  /// count as completed. Without a pulse it has no effect. Returns an empty text, or the reason for
+  /// the refusal; the pulse then continues.
   virtual std::string stop() = 0;
   /// Clears a fault and the volume.
   virtual void reset() = 0;
 
-  /// `time` (s) never goes back.
+  /// `time` (s) never decreases.
   virtual void step(double time) = 0;
 
   virtual const InjectorReading& reading() const = 0;
-  /// Why nothing can be injected; empty when it can.
+  /// The reason why injection is impossible; empty if it is possible.
   virtual std::string fault() const = 0;
 };
 

@@ -4,10 +4,10 @@
 
 namespace microinjection {
 
-/// An emulated injector, which can say what it truly does.
+/// An emulated injector with its true output.
 class InjectorEmulator : public DeviceEmulator {
  public:
-  /// Pa, gauge, at the pipette, as of the last time that it heard or was asked something.
+  /// Pa, gauge, at the pipette, at the last call with a time.
   virtual double pressure() const = 0;
 };
 

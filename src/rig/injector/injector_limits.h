@@ -7,11 +7,12 @@
 
 namespace microinjection {
 
-/// What an injector may be asked for. Defaults are illustrative, of the class of an acq4-type pressure regulator.
+/// Limits of the commands of an injector. Defaults are illustrative, of the class of an acq4-type
+/// pressure regulator.
 struct InjectorLimits {
-  // What the ranges themselves may be.
+  // Limits of the configured ranges.
   static constexpr double kVacuum = -101325;       ///< Pa, gauge
-  static constexpr double kHighestPressure = 1e6;  ///< Pa, gauge; above what injectors of cells deliver (some 0.6 MPa)
+  static constexpr double kHighestPressure = 1e6;  ///< Pa, gauge; injectors for cells deliver about 0.6 MPa
   static constexpr double kLongestPulse = 3600;    ///< s
 
   Eigen::Vector2d pressure_range{-50e3, 50e3};  ///< Pa, gauge, lowest and highest
@@ -19,7 +20,8 @@ struct InjectorLimits {
 
   static InjectorLimits read(ConfigReader& reader);
 
-  /// Empty, or why the device cannot do it, with the value and what is allowed; what is not finite is never allowed.
+  /// Returns an empty text, or the value and the allowed range. Values that are not finite are
+  /// never allowed.
   std::string check(const InjectionPulse& pulse) const;
   std::string checkPressure(const std::string& what, double pressure) const;
 };

@@ -61,7 +61,8 @@ std::string InjectorModel::stop() {
 void InjectorModel::reset() { reading_.volume = 0; }
 
 void InjectorModel::advance(double target, double dt) {
-  // p = target + (p0 - target) exp(-t / tau), and its integral: the flow is linear in p, so this is the exact volume.
+  // p = target + (p0 - target) exp(-t / tau), and its integral: the flow is linear in p, so this is
+  // the exact volume.
   const double tau = config_.rise_time, decay = std::exp(-dt / tau), deviation = reading_.pressure - target;
   const double mean = target + deviation * tau * -std::expm1(-dt / tau) / dt;
   reading_.volume += flow_.flow(mean, clogging_) * dt;
@@ -77,7 +78,7 @@ void InjectorModel::step(double time) {
     advance(pulse_->pressure, part);
     left_ -= part;
     dt -= part;
-    if (left_ <= 1e-9) finish();  // s: less is the rounding of the steps' sum
+    if (left_ <= 1e-9) finish();  // s; the rounding error of the sum of steps is smaller
   }
   if (dt > 0) advance(balance_, dt);
   reading_.flow = flow_.flow(reading_.pressure, clogging_);

@@ -14,12 +14,13 @@ struct InjectorModelConfig {
   PipetteConfig pipette;
   InjectorLimits limits;
 
-  /// Keys of its own, the section `pipette`, and the limits.
+  /// Reads its own keys, the section `pipette`, and the limits.
   static InjectorModelConfig read(ConfigReader& reader);
 };
 
-/// A pressure regulator behind a pipette: p' = (target - p) / rise_time, flow by PipetteFlow. Pressure and volume are
-/// integrated exactly, also where a pulse ends within a step, so that nothing depends on the steps.
+/// A pressure regulator with a pipette: p' = (target - p) / rise_time, flow by PipetteFlow.
+/// Pressure and volume are integrated exactly, also if a pulse ends within a step, so results do
+/// not depend on the step.
 class InjectorModel : public InjectorDevice {
  public:
   explicit InjectorModel(const InjectorModelConfig& config);
@@ -32,12 +33,14 @@ class InjectorModel : public InjectorDevice {
   const InjectorReading& reading() const override { return reading_; }
   std::string fault() const override { return ""; }
 
-  /// A pulse whose end somebody else decides, by finish() or stop(); its duration does not count, nor do the limits.
+  /// Starts a pulse that the caller ends by finish() or stop(). Its duration and the limits do not
+  /// apply.
   void open(const InjectionPulse& pulse);
-  /// Ends the pulse that is under way now, as done.
+  /// Ends the current pulse as completed.
   void finish();
 
-  /// A fault on request: the tip resists `factor` times as much as when it is clean. @pre factor >= 1
+  /// Injects a fault: the tip's flow resistance is `factor` times that of a clean tip. @pre factor
+  /// >= 1
   void clog(double factor) { clogging_ = factor; }
 
  private:
@@ -48,7 +51,7 @@ class InjectorModel : public InjectorDevice {
   double balance_;  ///< Pa
   double clogging_ = 1;
   std::optional<InjectionPulse> pulse_;
-  double left_ = 0;  ///< s, of the pulse
+  double left_ = 0;  ///< s, remaining time of the pulse
   double time_ = 0;  ///< s
   bool begun_ = false;
   InjectorReading reading_;

@@ -5,38 +5,39 @@
 #include <cstdlib>
 #include <sstream>
 
-#include "rig/injector/protocol_places.h"
+#include "rig/injector/protocol_placeholders.h"
 
 namespace microinjection {
 namespace {
 
-constexpr double kDigits = 0.1;  // share of a number that the digits of a line may take away or add
+constexpr double kDigits = 0.1;  // largest relative error by the limited digits of a line
 
 bool near(double value, double wanted, double share) { return std::abs(value - wanted) <= share * std::abs(wanted); }
 
-/// `value` (in units.size) as the first of the lines with a place for it says it; empty: none has one.
-std::optional<double> asWritten(const InjectorProtocol::Exchanges& exchanges, const std::vector<Place>& places,
-                                double value) {
+/// `value` as written by the first line with one of the placeholders; empty: no line has one.
+std::optional<double> asWritten(const InjectorProtocol::Exchanges& exchanges,
+                                const std::vector<Placeholder>& placeholders, double value) {
   for (const auto& exchange : exchanges) {
-    for (const Place& place : places) {
-      if (!exchange.send.has(place.name)) continue;
-      return exchange.send.rounded(place.name, place.toUnit(value)) * place.unit + place.zero;
+    for (const Placeholder& placeholder : placeholders) {
+      if (!exchange.send.has(placeholder.name)) continue;
+      return exchange.send.rounded(placeholder.name, placeholder.toUnit(value)) * placeholder.unit + placeholder.zero;
     }
   }
   return std::nullopt;
 }
 
-std::string tooCoarse(const std::string& what, double asked, double sent, const std::string& unit) {
-  if (near(sent, asked, kDigits)) return "";
+std::string tooCoarse(const std::string& what, double requested, double sent, const std::string& unit) {
+  if (near(sent, requested, kDigits)) return "";
   std::ostringstream out;
-  out << what << " = " << asked << ' ' << unit << ": the digits of the device's line make it " << sent << ' ' << unit;
+  out << what << " = " << requested << ' ' << unit << ": the digits of the device's line make it " << sent << ' '
+      << unit;
   return out.str();
 }
 
-std::string other(const std::string& what, double asked, double set, const std::string& unit) {
-  if (near(asked, set, 1e-6)) return "";
+std::string other(const std::string& what, double requested, double set, const std::string& unit) {
+  if (near(requested, set, 1e-6)) return "";
   std::ostringstream out;
-  out << what << " = " << asked << ' ' << unit << ": set by hand at the device, must be " << set << ' ' << unit;
+  out << what << " = " << requested << ' ' << unit << ": set by hand at the device, must be " << set << ' ' << unit;
   return out.str();
 }
 
@@ -49,31 +50,31 @@ std::optional<double> toNumber(const std::string& text) {
 
 }  // namespace
 
-InjectionPulse InjectorProtocol::asSent(const InjectionPulse& asked) const {
-  InjectionPulse sent = asked;
-  const auto pressure = asWritten(pulse, pressurePlaces(pressure_unit, pressure_zero), asked.pressure);
-  const auto duration = asWritten(pulse, durationPlaces(), asked.duration);
-  sent.pressure = pressure.value_or(pulse_pressure.value_or(asked.pressure));
-  sent.duration = timed ? asked.duration : duration.value_or(pulse_duration.value_or(asked.duration));
+InjectionPulse InjectorProtocol::asSent(const InjectionPulse& requested) const {
+  InjectionPulse sent = requested;
+  const auto pressure = asWritten(pulse, pressurePlaceholders(pressure_unit, pressure_zero), requested.pressure);
+  const auto duration = asWritten(pulse, durationPlaceholders(), requested.duration);
+  sent.pressure = pressure.value_or(pulse_pressure.value_or(requested.pressure));
+  sent.duration = timed ? requested.duration : duration.value_or(pulse_duration.value_or(requested.duration));
   return sent;
 }
 
 double InjectorProtocol::balanceAsSent(double pressure) const {
-  return asWritten(balance, pressurePlaces(pressure_unit, pressure_zero), pressure).value_or(pressure);
+  return asWritten(balance, pressurePlaceholders(pressure_unit, pressure_zero), pressure).value_or(pressure);
 }
 
-std::string InjectorProtocol::refusal(const InjectionPulse& asked) const {
+std::string InjectorProtocol::refusal(const InjectionPulse& requested) const {
   if (pulse_pressure) {
-    const std::string set = other("pulse pressure", asked.pressure, *pulse_pressure, "Pa");
+    const std::string set = other("pulse pressure", requested.pressure, *pulse_pressure, "Pa");
     if (!set.empty()) return set;
   }
   if (pulse_duration) {
-    const std::string set = other("pulse duration", asked.duration, *pulse_duration, "s");
+    const std::string set = other("pulse duration", requested.duration, *pulse_duration, "s");
     if (!set.empty()) return set;
   }
-  const InjectionPulse sent = asSent(asked);
-  const std::string coarse = tooCoarse("pulse pressure", asked.pressure, sent.pressure, "Pa");
-  return coarse.empty() ? tooCoarse("pulse duration", asked.duration, sent.duration, "s") : coarse;
+  const InjectionPulse sent = asSent(requested);
+  const std::string coarse = tooCoarse("pulse pressure", requested.pressure, sent.pressure, "Pa");
+  return coarse.empty() ? tooCoarse("pulse duration", requested.duration, sent.duration, "s") : coarse;
 }
 
 std::string InjectorProtocol::balanceRefusal(double pressure) const {
@@ -81,15 +82,17 @@ std::string InjectorProtocol::balanceRefusal(double pressure) const {
   return tooCoarse("balance pressure", pressure, balanceAsSent(pressure), "Pa");
 }
 
-InjectorProtocol::Values InjectorProtocol::pulseValues(const InjectionPulse& asked) const {
-  Values values = balanceValues(asked.pressure);
-  for (const Place& place : durationPlaces()) values[place.name] = place.toUnit(asked.duration);
+InjectorProtocol::Values InjectorProtocol::pulseValues(const InjectionPulse& requested) const {
+  Values values = balanceValues(requested.pressure);
+  for (const Placeholder& placeholder : durationPlaceholders())
+    values[placeholder.name] = placeholder.toUnit(requested.duration);
   return values;
 }
 
 InjectorProtocol::Values InjectorProtocol::balanceValues(double pressure) const {
   Values values;
-  for (const Place& place : pressurePlaces(pressure_unit, pressure_zero)) values[place.name] = place.toUnit(pressure);
+  for (const Placeholder& placeholder : pressurePlaceholders(pressure_unit, pressure_zero))
+    values[placeholder.name] = placeholder.toUnit(pressure);
   return values;
 }
 
@@ -109,7 +112,7 @@ std::optional<double> InjectorProtocol::queriedPressure(const std::smatch& group
   return *read * pressure_unit + pressure_zero;
 }
 
-double InjectorProtocol::patience(const Exchanges& exchanges) {
+double InjectorProtocol::totalTimeout(const Exchanges& exchanges) {
   double sum = 0;
   for (const Exchange& exchange : exchanges) sum += exchange.timeout;
   return sum;

@@ -13,24 +13,27 @@
 
 namespace microinjection {
 
-/// How a real injector is talked to over a serial line: what is sent for each command, and what it answers.
+/// Protocol of a real injector on a serial line: the lines for each command and the expected
+/// replies.
 ///
-/// A command is a list of exchanges, a line sent and its reply each; the next line is sent when the reply to the one
-/// before is as expected. The last line of `pulse` triggers it: those before it set it up, and inject nothing.
+/// A command is a list of exchanges, each a line and its reply. The next line is sent when the
+/// reply to the previous one is as expected. The last line of `pulse` triggers the pulse; the lines
+/// before it only set it up.
 ///
-/// Places for numbers in a line: {pressure_Pa}, {pressure_hPa}, {pressure_kPa}, {pressure_psi}, and {pressure} in the
-/// device's own unit (`pressure_unit`, `pressure_zero`); in `pulse` also {duration_s} and {duration_ms}. In `pulse`
-/// they are the pulse's, elsewhere the balance pressure's. Places for what only the user knows, such as a command's
-/// number that its maker has not published: {NAME}, or {NAME:LENGTH}, from codes/NAME. Regular expressions (ECMAScript)
+/// Placeholders for numbers in a line: {pressure_Pa}, {pressure_hPa}, {pressure_kPa},
+/// {pressure_psi}, and {pressure} in the device's own unit (`pressure_unit`, `pressure_zero`); in
+/// `pulse` also {duration_s} and {duration_ms}. In `pulse` they have the pulse's values, elsewhere
+/// the balance pressure. Placeholders for data that only the user has, such as the unpublished
+/// number of a command: {NAME}, or {NAME:LENGTH}, from codes/NAME. Regular expressions (ECMAScript)
 /// must match a whole reply.
 class InjectorProtocol {
  public:
-  using Values = std::map<std::string, double>;  ///< numbers by the names of their places
+  using Values = std::map<std::string, double>;  ///< numbers by the names of their placeholders
 
   struct Exchange {
     LineTemplate send;
     std::regex expect;
-    std::string confirm;   ///< name of the number that the first group of `expect` must be; empty: none
+    std::string confirm;   ///< name of the number that the first group of `expect` must equal; empty: none
     double timeout = 0.5;  ///< s, for the reply
   };
   using Exchanges = std::vector<Exchange>;
@@ -38,35 +41,36 @@ class InjectorProtocol {
   static InjectorProtocol read(ConfigReader& reader);
 
   LineDialogue::Framing framing;
-  Exchanges begin;            ///< first, after the line was opened; a refusal there is passed over
+  Exchanges begin;            ///< sent after the line was opened; a refusal is ignored
   Exchanges pulse;            ///< the last one triggers it
-  Exchanges balance;          ///< none: the device's balance pressure is set by hand
-  Exchanges stop;             ///< ends a pulse, back to balance; the first line alone must. None: it cannot be ended
-  Exchanges query;            ///< at most one; the first group of `expect`, if there is one, is the pressure
+  Exchanges balance;          ///< empty: the balance pressure is set by hand at the device
+  Exchanges stop;             ///< ends a pulse; the first line alone must do so; empty: a pulse cannot be ended
+  Exchanges query;            ///< at most one; the first group of `expect`, if any, is the pressure
   double query_period = 0.2;  ///< s
-  bool timed = false;         ///< a pulse lasts until `stop`, which is sent when its time is over
+  bool timed = false;         ///< a pulse lasts until `stop`, which is sent when its duration is over
   double pressure_unit = 1;   ///< Pa, of {pressure} and of a queried pressure
-  double pressure_zero = 0;   ///< Pa, gauge, where those are 0
-  std::optional<double> pulse_pressure;  ///< Pa, gauge, where no line has a place for it
-  std::optional<double> pulse_duration;  ///< s, likewise
-  std::regex refuse;                     ///< a reply that says no
+  double pressure_zero = 0;   ///< Pa, gauge, at which those are 0
+  std::optional<double> pulse_pressure;  ///< Pa, gauge, if no line has a placeholder for it
+  std::optional<double> pulse_duration;  ///< s, if no line has a placeholder for it
+  std::regex refuse;                     ///< a reply that refuses the command
 
-  /// Empty, or why the device cannot do this pulse: what it does by its lines is not what was asked for.
+  /// Returns an empty text, or the reason why the device cannot execute this pulse as commanded.
   std::string refusal(const InjectionPulse& pulse) const;
   std::string balanceRefusal(double pressure) const;
-  /// As the device understands its lines, which have a limited number of digits.
+  /// The values as the device receives them, with the limited digits of its lines.
   InjectionPulse asSent(const InjectionPulse& pulse) const;
   double balanceAsSent(double pressure) const;
 
   Values pulseValues(const InjectionPulse& pulse) const;
   Values balanceValues(double pressure) const;
 
-  /// Of an exchange that confirms: empty, or what the device reads back instead of `values`, which are as sent.
+  /// For an exchange with `confirm`: returns an empty text, or the value that the device reads back
+  /// instead of that of `values`, which are as sent.
   static std::string misread(const Exchange& exchange, const std::smatch& groups, const Values& values);
   /// Pa; empty unless the group is a finite number.
   std::optional<double> queriedPressure(const std::smatch& groups) const;
-  /// s, until all replies have come or are late.
-  static double patience(const Exchanges& exchanges);
+  /// s, sum of the replies' time-outs.
+  static double totalTimeout(const Exchanges& exchanges);
 };
 
 }  // namespace microinjection

@@ -4,7 +4,7 @@
 
 #include "base/errors.h"
 #include "rig/injector/injector_protocol.h"
-#include "rig/injector/protocol_places.h"
+#include "rig/injector/protocol_placeholders.h"
 #include "rig/serial/line_ending.h"
 
 namespace microinjection {
@@ -14,17 +14,17 @@ using Exchange = InjectorProtocol::Exchange;
 using Exchanges = InjectorProtocol::Exchanges;
 using Names = std::vector<std::string>;
 
-/// The texts that stand for {NAME} in lines and expressions: what only the user knows of the device.
+/// Texts that replace {NAME} in lines and expressions: data of the device that only the user has.
 class Codes {
  public:
   explicit Codes(ConfigReader reader) : reader_(std::move(reader)) {}
 
-  /// The text with its codes in place; {NAME} that is none stays, for others to judge.
+  /// Replaces the codes in a text. A {NAME} without a code stays; LineTemplate checks it.
   std::string replace(const std::string& text) {
-    static const std::regex place("\\{([A-Za-z_]+)(?::([0-9]+))?\\}");
+    static const std::regex placeholder("\\{([A-Za-z_]+)(?::([0-9]+))?\\}");
     std::string replaced;
     auto from = text.cbegin();
-    for (std::sregex_iterator at(text.cbegin(), text.cend(), place), end; at != end; ++at) {
+    for (std::sregex_iterator at(text.cbegin(), text.cend(), placeholder), end; at != end; ++at) {
       const std::smatch& found = *at;
       replaced.append(from, found[0].first);
       from = found[0].second;
@@ -40,7 +40,7 @@ class Codes {
     const bool plain = std::all_of(code.begin(), code.end(), [](unsigned char c) { return std::isalnum(c); });
     const bool fits = length.empty() ? !code.empty() : std::to_string(code.size()) == length;
     if (plain && fits) return code;
-    // A code as wrong as this is named once, however often the lines need it.
+    // Reports a wrong code once, however many lines use it.
     if (std::find(wrong_.begin(), wrong_.end(), name) == wrong_.end()) {
       reader_.error(name, "must be " + (length.empty() ? "" : length + " ") +
                               "letters or digits, in quotes, from your device's manual");
@@ -64,18 +64,18 @@ std::regex readRegex(ConfigReader& reader, const std::string& key, Codes& codes)
   }
 }
 
-Exchange readExchange(ConfigReader& reader, Codes& codes, const Names& places) {
+Exchange readExchange(ConfigReader& reader, Codes& codes, const Names& placeholders) {
   Exchange exchange;
   std::string line;
   readPlainText(reader, "send", line, ConfigReader::kRequired);
   if (reader.has("send") && line.empty()) reader.error("send", "must not be empty");
   try {
-    exchange.send = LineTemplate(codes.replace(line), places);
+    exchange.send = LineTemplate(codes.replace(line), placeholders);
   } catch (const ConfigError& error) {
     reader.error("send", error.what());
   }
   exchange.expect = readRegex(reader, "expect", codes);
-  reader.choice("confirm", exchange.confirm, places);
+  reader.choice("confirm", exchange.confirm, placeholders);
   if (!exchange.confirm.empty() && exchange.expect.mark_count() < 1) {
     reader.error("expect", "must have a group for the number that is to be confirmed");
   }
@@ -83,26 +83,28 @@ Exchange readExchange(ConfigReader& reader, Codes& codes, const Names& places) {
   return exchange;
 }
 
-Exchanges readExchanges(ConfigReader& reader, const std::string& key, Codes& codes, const Names& places,
+Exchanges readExchanges(ConfigReader& reader, const std::string& key, Codes& codes, const Names& placeholders,
                         ConfigReader::Presence presence = ConfigReader::kOptional) {
   Exchanges exchanges;
-  for (ConfigReader& each : reader.sections(key, presence)) exchanges.push_back(readExchange(each, codes, places));
+  for (ConfigReader& each : reader.sections(key, presence))
+    exchanges.push_back(readExchange(each, codes, placeholders));
   if (reader.has(key) && exchanges.empty()) reader.error(key, "must have at least one exchange");
   return exchanges;
 }
 
-bool say(const Exchanges& exchanges, const std::vector<Place>& places) {
+bool usesPlaceholder(const Exchanges& exchanges, const std::vector<Placeholder>& placeholders) {
   return std::any_of(exchanges.begin(), exchanges.end(), [&](const Exchange& exchange) {
-    return std::any_of(places.begin(), places.end(), [&](const Place& place) { return exchange.send.has(place.name); });
+    return std::any_of(placeholders.begin(), placeholders.end(),
+                       [&](const Placeholder& placeholder) { return exchange.send.has(placeholder.name); });
   });
 }
 
-/// A number that no line says is the device's own, and must be known.
-std::optional<double> readFixed(ConfigReader& reader, const std::string& key, bool said, const Range& range) {
+/// A number without a placeholder is set at the device, so the file must have it.
+std::optional<double> readFixed(ConfigReader& reader, const std::string& key, bool in_lines, const Range& range) {
   double value = 0;
-  if (said) {
-    if (reader.has(key)) reader.error(key, "a line of pulse says it: leave the key out");
-    reader.number(key, value);  // a known key
+  if (in_lines) {
+    if (reader.has(key)) reader.error(key, "a line of pulse contains it: omit the key");
+    reader.number(key, value);  // marks the key as read
     return std::nullopt;
   }
   reader.number(key, value, range, ConfigReader::kRequired);
@@ -127,11 +129,11 @@ InjectorProtocol InjectorProtocol::read(ConfigReader& reader) {
   reader.number("pressure_unit", protocol.pressure_unit, Range::positive());
   reader.number("pressure_zero", protocol.pressure_zero);
   Codes codes(reader.section("codes"));
-  const std::vector<Place> pressures = pressurePlaces(protocol.pressure_unit, protocol.pressure_zero);
-  const std::vector<Place> durations = durationPlaces();
+  const std::vector<Placeholder> pressures = pressurePlaceholders(protocol.pressure_unit, protocol.pressure_zero);
+  const std::vector<Placeholder> durations = durationPlaceholders();
   const Names pressure_names = names(pressures);
   Names all = pressure_names;
-  for (const Place& place : durations) all.push_back(place.name);
+  for (const Placeholder& placeholder : durations) all.push_back(placeholder.name);
   protocol.begin = readExchanges(reader, "begin", codes, {});
   protocol.pulse = readExchanges(reader, "pulse", codes, all, ConfigReader::kRequired);
   protocol.balance = readExchanges(reader, "balance", codes, pressure_names);
@@ -143,9 +145,10 @@ InjectorProtocol InjectorProtocol::read(ConfigReader& reader) {
   reader.number("query_period", protocol.query_period, Range::positive());
   reader.boolean("timed", protocol.timed);
   if (protocol.timed && protocol.stop.empty()) reader.error("timed", "needs stop, which ends the pulse");
-  protocol.pulse_pressure = readFixed(reader, "pulse_pressure", say(protocol.pulse, pressures), Range::finite());
-  protocol.pulse_duration =
-      readFixed(reader, "pulse_duration", protocol.timed || say(protocol.pulse, durations), Range::positive());
+  protocol.pulse_pressure =
+      readFixed(reader, "pulse_pressure", usesPlaceholder(protocol.pulse, pressures), Range::finite());
+  protocol.pulse_duration = readFixed(reader, "pulse_duration",
+                                      protocol.timed || usesPlaceholder(protocol.pulse, durations), Range::positive());
   protocol.refuse = readRegex(reader, "refuse", codes);
   return protocol;
 }

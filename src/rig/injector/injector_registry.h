@@ -9,11 +9,11 @@
 
 namespace microinjection {
 
-/// An injector that comes with a file of its line protocol, config/injectors/NAME.yaml, and with an emulator. To add
-/// one: the file, the emulator, and a line in injector_registry.cpp.
+/// An injector with a protocol file, config/injectors/NAME.yaml, and an emulator. To add one, add
+/// the file, the emulator, and a line in injector_registry.cpp.
 struct Injector {
   std::string name;
-  int default_baud;  ///< bit/s, of the device as delivered
+  int default_baud;  ///< bit/s, as delivered
   std::function<std::shared_ptr<InjectorEmulator>()> make_emulator;
 };
 

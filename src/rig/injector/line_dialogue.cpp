@@ -12,9 +12,9 @@ constexpr std::size_t kLongestLine = 256;  // bytes
 LineDialogue::LineDialogue(Wire& wire, const Framing& framing)
     : wire_(wire), framing_(framing), lines_(framing.reply_end, kLongestLine) {}
 
-void LineDialogue::distrust(double time) {
+void LineDialogue::resynchronize(double time) {
   in_step_ = waiting_ = false;
-  heard_ = time;
+  last_received_ = time;
 }
 
 void LineDialogue::send(const std::string& line, double timeout, double time) {
@@ -25,14 +25,14 @@ void LineDialogue::send(const std::string& line, double timeout, double time) {
   wire_.write(line + framing_.send_end, time);
 }
 
-LineDialogue::Answer LineDialogue::receive(double time) {
+LineDialogue::Result LineDialogue::receive(double time) {
   const std::string bytes = wire_.read(time);
-  if (!bytes.empty()) heard_ = time;
+  if (!bytes.empty()) last_received_ = time;
   if (!in_step_) {
-    if (!quiet(time)) return Answer::kNone;
+    if (!quiet(time)) return Result::kNone;
     lines_.clear(false);
     in_step_ = true;
-    return Answer::kNone;
+    return Result::kNone;
   }
   int replies = 0;
   const unsigned too_long = lines_.tooLong();
@@ -42,19 +42,19 @@ LineDialogue::Answer LineDialogue::receive(double time) {
     reply_ = std::move(line);
     ++replies;
   }
-  const bool waited = waiting_;
-  if (replies > (waited ? 1 : 0) || lines_.tooLong() > too_long) {
+  const bool was_waiting = waiting_;
+  if (replies > (was_waiting ? 1 : 0) || lines_.tooLong() > too_long) {
     bad_ += static_cast<unsigned>(replies);
-    distrust(time);
-    return waited ? Answer::kUnclear : Answer::kNone;
+    resynchronize(time);
+    return was_waiting ? Result::kUnclear : Result::kNone;
   }
   if (replies == 1) {
     waiting_ = false;
-    return Answer::kReply;
+    return Result::kReply;
   }
-  if (!waited || time <= deadline_) return Answer::kNone;
-  distrust(time);
-  return Answer::kLate;
+  if (!was_waiting || time <= deadline_) return Result::kNone;
+  resynchronize(time);
+  return Result::kLate;
 }
 
 bool LineDialogue::echoes(const std::string& line) {

@@ -10,7 +10,7 @@
 namespace microinjection {
 namespace {
 
-/// Adding 0 turns -0, which is no number of a device, into 0.
+/// Adding 0 turns -0, which devices do not accept, into 0.
 double toDecimals(double value, int decimals) {
   const double unit = std::pow(10.0, decimals);
   return std::round(value * unit) / unit + 0.0;
@@ -28,7 +28,7 @@ void LineTemplate::readFormat(const std::string& line, const std::string& format
   static const std::regex allowed("(?:0([1-9][0-9]?)\\.)?([0-9])");
   std::smatch groups;
   if (!std::regex_match(format, groups, allowed)) {
-    throw ConfigError("\"" + line + "\": behind a colon stand the digits behind the point, 0 to 9, or 0WIDTH.DIGITS " +
+    throw ConfigError("\"" + line + "\": after a colon stand the decimals, 0 to 9, or 0WIDTH.DIGITS " +
                       "for leading zeros, not \"" + format + "\"");
   }
   if (groups[1].matched) piece.width = std::stoi(groups[1]);

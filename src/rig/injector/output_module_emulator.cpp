@@ -25,14 +25,14 @@ void OutputModuleEmulator::process(const std::string& bytes, double time) {
       command_ += each;
       continue;
     }
-    const std::string answer = handleCommand(std::exchange(command_, ""));
-    if (!answer.empty()) answers_.add(answer + "\r", time + config_.answer_time);
+    const std::string reply = handleCommand(std::exchange(command_, ""));
+    if (!reply.empty()) replies_.add(reply + "\r", time + config_.answer_time);
   }
 }
 
 std::string OutputModuleEmulator::handleCommand(const std::string& command) {
-  const bool known = command.size() > 3 && (command[0] == '#' || command[0] == '$');
-  if (!known || command.substr(1, 2) != config_.address) return "";
+  const bool well_formed = command.size() > 3 && (command[0] == '#' || command[0] == '$');
+  if (!well_formed || command.substr(1, 2) != config_.address) return "";
   const std::string invalid = "?" + config_.address, data = command.substr(3);
   if (std::exchange(fails_, false)) return invalid;
   if (command[0] == '$') return data == "6" ? readBack() : invalid;

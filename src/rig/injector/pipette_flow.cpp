@@ -23,7 +23,8 @@ PipetteConfig PipetteConfig::read(ConfigReader& reader) {
 }
 
 double coneResistanceIntegral(double from_radius, double to_radius, double length) {
-  // With r linear in z: (r1^-3 - r2^-3) / (3 slope), without the division by a slope that may be zero.
+  // With r linear in z: (r1^-3 - r2^-3) / (3 slope), without the division by a slope that may be
+  // zero.
   const double a = from_radius, b = to_radius, product = a * b;
   return length * (a * a + product + b * b) / (3 * product * product * product);
 }

@@ -7,10 +7,10 @@
 
 namespace microinjection {
 
-/// Which pulses have been heard of: a message that comes twice must not inject twice.
+/// The pulses received so far. A repeated message must not inject twice.
 class PulseIds {
  public:
-  /// True when the id is new; it is known from then on, among the last thousand.
+  /// Returns true if the id is new, and stores it among the last thousand.
   bool isNew(std::uint64_t id) {
     if (std::find(seen_.begin(), seen_.end(), id) != seen_.end()) return false;
     seen_.push_back(id);

@@ -6,7 +6,7 @@ namespace microinjection {
 namespace {
 
 constexpr double kRetry = 1;      // s, between attempts to open the line, and to stop a timed pulse
-constexpr double kRiseTimes = 5;  // after which 0.7 % of a change of pressure are left
+constexpr double kRiseTimes = 5;  // time constants, after which 0.7 % of a pressure change remain
 
 }  // namespace
 
@@ -22,7 +22,7 @@ SerialInjector::SerialInjector(std::unique_ptr<Wire> wire, const InjectorProtoco
   if (!protocol_.balance.empty()) waiting_balance_ = model.balance;
   if (protocol_.stop.empty()) return;
   first_stop_ = protocol_.stop.front().send.fill(protocol_.balanceValues(model.balance)) + protocol_.framing.send_end;
-  wire_->setGuardedStop(first_stop_);  // a pulse must not outlive its node
+  wire_->setGuardedStop(first_stop_);  // a pulse must end with its node
 }
 
 SerialInjector::~SerialInjector() {
@@ -51,37 +51,37 @@ bool SerialInjector::triggered() const {
   return task_ == Task::kPulse && step_ + 1 == protocol_.pulse.size() && dialogue_.waiting();
 }
 
-/// Why the pressure is not what reading() says, for all that is known.
-std::string SerialInjector::unsure() const {
+/// Why the actual pressure may differ from reading(); empty if it cannot.
+std::string SerialInjector::unconfirmedReason() const {
   if (protocol_.timed && !stopped_) return "the device has not said that its output is off";
-  if (time_ < unsure_until_) return "a pulse may be under way";
-  return balance_known_ || protocol_.balance.empty() ? "" : "the device has not accepted the balance pressure";
+  if (time_ < unconfirmed_until_) return "a pulse may be under way";
+  return balance_confirmed_ || protocol_.balance.empty() ? "" : "the device has not accepted the balance pressure";
 }
 
 std::string SerialInjector::fault() const {
   if (!fault_.empty()) return fault_;
   if (!unguarded_.empty()) return unguarded_;
-  return trouble_.empty() ? unsure() : trouble_;
+  return error_text_.empty() ? unconfirmedReason() : error_text_;
 }
 
-/// A pulse whose reply went wrong may be under way as well.
+/// Includes a pulse whose reply failed.
 bool SerialInjector::mayFlow() const {
   return triggered() || model_.reading().busy || !fault_.empty() || (protocol_.timed && !stopped_) ||
-         time_ < unsure_until_;
+         time_ < unconfirmed_until_;
 }
 
 std::string SerialInjector::pulse(const InjectionPulse& pulse) {
   if (!fault().empty()) return fault();
   if (waiting_pulse_ || sent_pulse_ || model_.reading().busy) return "a pulse is under way";
-  std::string asked = limits_.check(pulse);
-  if (!asked.empty()) return asked;
-  // What the device makes of it counts: a pulse of 0.4 ms is none at all where the line has whole milliseconds.
+  std::string out_of_limits = limits_.check(pulse);
+  if (!out_of_limits.empty()) return out_of_limits;
+  // Checks the rounded values: 0.4 ms is no pulse if the line has whole milliseconds.
   const std::string sent = limits_.check(protocol_.asSent(pulse));
   if (!sent.empty()) return "in the digits of the device's line, " + sent;
   const std::string refusal = protocol_.refusal(pulse);
   if (!refusal.empty()) return refusal;
   waiting_pulse_ = pulse;
-  waits_since_ = time_;
+  pulse_wait_start_ = time_;
   report();
   return "";
 }
@@ -98,7 +98,7 @@ std::string SerialInjector::setBalance(double pressure) {
 
 std::string SerialInjector::stop() {
   waiting_pulse_.reset();
-  if (!triggered()) sent_pulse_.reset();  // what was only set up is dropped before its next line
+  if (!triggered()) sent_pulse_.reset();  // a pulse that was only set up is dropped before its next line
   const bool can = !protocol_.stop.empty();
   if (can && mayFlow() && !stopping()) {
     waiting_stop_ = true;
@@ -112,21 +112,21 @@ std::string SerialInjector::stop() {
 void SerialInjector::reset() {
   fault_.clear();
   tries_ = 0;
-  if (!balance_known_ && !waiting_balance_ && !protocol_.balance.empty()) waiting_balance_ = sent_balance_;
+  if (!balance_confirmed_ && !waiting_balance_ && !protocol_.balance.empty()) waiting_balance_ = sent_balance_;
   model_.reset();
   report();
 }
 
 void SerialInjector::step(double time) {
   time_ = time;
-  checkGuard(time);  // before the model lets a pulse go on that the guard has ended
+  checkGuard(time);  // before the model continues a pulse that the guard has ended
   const bool flowed = model_.reading().busy;
   model_.step(time);
-  if (flowed && !model_.reading().busy) pressureChanges();  // by the device's own clock
+  if (flowed && !model_.reading().busy) pressureChanges();  // ended by the device's own timer
   if (keepOpen(time)) {
     receive(time);
     keepStopped(time);
-    if (wire_->isOpen()) talk(time);
+    if (wire_->isOpen()) sendNext(time);
   }
   report();
 }
@@ -137,23 +137,23 @@ bool SerialInjector::keepOpen(double time) {
   if (task_ != Task::kNone) abort("the line broke");
   if (flows && stopped_) fail("the line broke during a pulse, which may go on");
   if (waiting_pulse_) fail("the line broke");
-  stopped_ = balance_known_ = false;
+  stopped_ = balance_confirmed_ = false;
   pressure_.reset();
-  if (trouble_.empty()) trouble_ = "the line broke";
-  if (time - tried_ < kRetry) return false;
-  tried_ = time;
-  trouble_ = wire_->open();
-  if (!trouble_.empty()) return false;
-  // The device may have been switched off meanwhile.
+  if (error_text_.empty()) error_text_ = "the line broke";
+  if (time - last_attempt_ < kRetry) return false;
+  last_attempt_ = time;
+  error_text_ = wire_->open();
+  if (!error_text_.empty()) return false;
+  // The device may have been switched off.
   if (!waiting_balance_ && !protocol_.balance.empty()) waiting_balance_ = sent_balance_;
   waiting_begin_ = !protocol_.begin.empty();
   tries_ = 0;
-  dialogue_.distrust(time);
+  dialogue_.resynchronize(time);
   return true;
 }
 
-/// The guard's stop has ended a pulse, or a guard that was lost cannot: either way the device is told to stop. What it
-/// answered the guard is passed over as a late reply is.
+/// The guard's stop has ended a pulse, or the guard was lost before it could. Either way the device
+/// gets a stop. Its reply to the guard is ignored as a late reply.
 void SerialInjector::checkGuard(double time) {
   const Wire::GuardReport guard = wire_->heartbeat();
   unguarded_ = guard.missing.empty() ? "" : "no stop guard: " + guard.missing;
@@ -166,11 +166,12 @@ void SerialInjector::checkGuard(double time) {
   if (waiting_pulse_) fail(guard.intervention);
   if (flows && !protocol_.stop.empty()) waiting_stop_ = true;
   over_ = false;
-  dialogue_.distrust(time);
+  dialogue_.resynchronize(time);
   tries_ = 0;
 }
 
-/// Of pulses that are timed from here: a stop when the time is over, and as long as an output may be on.
+/// For pulses timed by this driver: requests a stop when the duration is over, and while an output
+/// may be on.
 void SerialInjector::keepStopped(double time) {
   if (!protocol_.timed || stopping() || triggered() || time - stop_failed_ < kRetry) return;
   const bool over = model_.reading().busy && stopped_ && time >= ends_;
@@ -182,35 +183,35 @@ void SerialInjector::keepStopped(double time) {
 
 void SerialInjector::receive(double time) {
   switch (dialogue_.receive(time)) {
-    case LineDialogue::Answer::kReply:
-      return take(dialogue_.reply());
-    case LineDialogue::Answer::kLate:
+    case LineDialogue::Result::kReply:
+      return handleReply(dialogue_.reply());
+    case LineDialogue::Result::kLate:
       return abort("no good reply in time");
-    case LineDialogue::Answer::kUnclear:
+    case LineDialogue::Result::kUnclear:
       return abort("more than one reply");
-    case LineDialogue::Answer::kNone:
+    case LineDialogue::Result::kNone:
       return;
   }
 }
 
-void SerialInjector::take(const std::string& reply) {
+void SerialInjector::handleReply(const std::string& reply) {
   if (task_ != Task::kBegin && std::regex_match(reply, protocol_.refuse)) {
     return abort("refused: " + reply, Refusal::kYes);
   }
   const InjectorProtocol::Exchange& exchange = exchanges(task_)[step_];
   std::smatch groups;
   std::string wrong = std::regex_match(reply, groups, exchange.expect) ? "" : "a wrong reply";
-  if (wrong.empty()) wrong = InjectorProtocol::misread(exchange, groups, say_);
+  if (wrong.empty()) wrong = InjectorProtocol::misread(exchange, groups, values_);
   if (wrong.empty() && task_ == Task::kQuery && groups.size() > 1 && exchange.confirm.empty()) {
     const auto pressure = protocol_.queriedPressure(groups);
     if (pressure && limits_.checkPressure("", *pressure).empty()) {
-      takePressure(*pressure);
+      updatePressure(*pressure);
     } else {
       wrong = "a wrong reply";
     }
   }
   if (!wrong.empty()) {
-    dialogue_.distrust(time_);
+    dialogue_.resynchronize(time_);
     return abort(wrong);
   }
   if (++step_ == exchanges(task_).size()) complete();
@@ -226,34 +227,34 @@ void SerialInjector::complete() {
     sent_pulse_.reset();
   } else if (done == Task::kBalance) {
     model_.setBalance(sent_balance_);
-    balance_known_ = true;
+    balance_confirmed_ = true;
   } else if (done == Task::kStop) {
     stopped_ = true;
-    unsure_until_ = time_;
+    unconfirmed_until_ = time_;
     const bool late = over_ && tries_ > 0;
     over_ && !late ? model_.finish() : static_cast<void>(model_.stop());
     if (late) fail("the pulse lasted longer than was asked for: its end was heard at the second time only");
     over_ = false;
   }
   tries_ = 0;
-  trouble_.clear();
+  error_text_.clear();
 }
 
-/// What went wrong first stays; the same again adds nothing.
-void SerialInjector::fail(const std::string& why) {
-  if (fault_.find(why) == std::string::npos) fault_ += (fault_.empty() ? "" : "; ") + why;
+/// Keeps the first reason, and adds others only once.
+void SerialInjector::fail(const std::string& reason) {
+  if (fault_.find(reason) == std::string::npos) fault_ += (fault_.empty() ? "" : "; ") + reason;
   if (waiting_pulse_) fault_ += "; pulse " + std::to_string(waiting_pulse_->id) + " was not sent";
   waiting_pulse_.reset();
 }
 
-/// What was queried before is not so any more.
+/// Discards the queried pressure.
 void SerialInjector::pressureChanges() {
   pressure_.reset();
   changed_ = time_;
 }
 
-/// A pressure that was asked for before it had settled is of before the change, or on its way.
-void SerialInjector::takePressure(double queried) {
+/// A pressure queried before it has settled belongs to the time before or during the change.
+void SerialInjector::updatePressure(double queried) {
   if (last_sent_ >= changed_ + settling_) pressure_ = queried;
 }
 

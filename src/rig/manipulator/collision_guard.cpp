@@ -11,31 +11,31 @@
 namespace microinjection {
 namespace {
 
-constexpr double kSlack = 1e-9;  // m, so that what just keeps the margin may start and arrive there
+constexpr double kSlack = 1e-9;  // m, so that a pose exactly at the margin can start and end a path
 
-struct Placed {
+struct LinkPose {
   Eigen::Isometry3d pose;      ///< of the link in `world`, all three joints at 0
-  Eigen::Matrix3d directions;  ///< m of its motion in `world` per m of each joint
+  Eigen::Matrix3d directions;  ///< displacement in `world` per displacement of each joint
 };
 
-Placed place(const urdf::ModelInterface& model, const std::string& link, const ManipulatorGeometry& geometry) {
-  Placed placed{Eigen::Isometry3d::Identity(), Eigen::Matrix3d::Zero()};
+LinkPose linkPose(const urdf::ModelInterface& model, const std::string& link, const ManipulatorGeometry& geometry) {
+  LinkPose link_pose{Eigen::Isometry3d::Identity(), Eigen::Matrix3d::Zero()};
   for (const auto& joint : chainTo(model, link)) {
-    placed.pose = placed.pose * toEigen(joint->parent_to_joint_origin_transform);
-    bool known = joint->type == urdf::Joint::FIXED;
+    link_pose.pose = link_pose.pose * toEigen(joint->parent_to_joint_origin_transform);
+    bool supported = joint->type == urdf::Joint::FIXED;
     for (int i = 0; i < 3; ++i) {
       if (joint->name != geometry.axes[i].joint) continue;
-      placed.directions.col(i) = geometry.directions.col(i);
-      known = true;
+      link_pose.directions.col(i) = geometry.directions.col(i);
+      supported = true;
     }
     if (joint->name == geometry.tilt.joint) {
-      placed.pose.rotate(Eigen::AngleAxisd(geometry.tilt.angle, unitAxis(*joint)));
-    } else if (!known) {
+      link_pose.pose.rotate(Eigen::AngleAxisd(geometry.tilt.angle, unitAxis(*joint)));
+    } else if (!supported) {
       throw ConfigError("URDF: link " + link + ": its <collision> moves with " + joint->name +
                         ", which is no axis of the manipulator");
     }
   }
-  return placed;
+  return link_pose;
 }
 
 Solid toSolid(const urdf::Geometry& shape, const Eigen::Isometry3d& pose, const std::string& link) {
@@ -63,12 +63,12 @@ CollisionGuard::CollisionGuard(const std::string& xml, const ManipulatorGeometry
   for (const auto& [name, link] : model->links_) {
     for (const auto& collision : link->collision_array) {
       if (!collision->geometry) throw ConfigError("URDF: link " + name + ": <collision> has no geometry");
-      const Placed placed = place(*model, name, geometry);
-      const Solid solid = toSolid(*collision->geometry, placed.pose * toEigen(collision->origin), name);
-      if (placed.directions.isZero()) {
+      const LinkPose link_pose = linkPose(*model, name, geometry);
+      const Solid solid = toSolid(*collision->geometry, link_pose.pose * toEigen(collision->origin), name);
+      if (link_pose.directions.isZero()) {
         obstacles_.push_back({name, solid});
       } else {
-        movers_.push_back({name, placed.directions, toCapsule(solid, name)});
+        movers_.push_back({name, link_pose.directions, toCapsule(solid, name)});
       }
     }
   }

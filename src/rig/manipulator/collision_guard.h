@@ -9,28 +9,31 @@
 
 namespace microinjection {
 
-/// Keeps what the manipulator carries away from what stands still, by the <collision> shapes of the rig's URDF.
+/// Keeps a margin between the links that the manipulator moves and the fixed links, by the
+/// <collision> shapes of the rig's URDF.
 ///
-/// Shapes that stand still may be boxes, cylinders and spheres; those that move, cylinders (taken with a half sphere on
-/// each end, which only adds to them) and spheres. A link without a <collision>, as the cell, is no obstacle.
-/// Positions are those of the three joints (m).
+/// Fixed shapes may be boxes, cylinders and spheres. Moving shapes may be spheres and cylinders; a
+/// cylinder is enlarged by a hemisphere at each end. A link without a <collision>, such as the
+/// cell, is no obstacle. Joint positions are in m.
 class CollisionGuard {
  public:
-  CollisionGuard() = default;  ///< of a rig without obstacles
+  CollisionGuard() = default;  ///< for a rig without obstacles
 
-  /// @param geometry  of the same URDF, tilted as the pipette is
-  /// @param margin    m, that must stay between a moving and a standing shape
-  /// @throws ConfigError for shapes that are not as said.
+  /// @param geometry  of the same URDF, with the pipette's tilt
+  /// @param margin    m, between moving and fixed shapes
+  /// @throws ConfigError for other shapes.
   CollisionGuard(const std::string& xml, const ManipulatorGeometry& geometry, double margin);
 
-  /// Empty when the margin is kept there, otherwise which links come how near.
+  /// Returns an empty text when the margin is kept, otherwise the links and their distance.
   std::string blocks(const Eigen::Vector3d& joints) const;
 
-  /// The same for the whole straight way, exactly: solids are convex, so that their distance is a convex function of
-  /// the way. Who starts within the margin may leave, but not come nearer.
+  /// The same check for a whole straight path. It is exact: the solids are convex, so their
+  /// distance is a convex function along the path. A path that starts within the margin may leave
+  /// it, but not come closer.
   std::string blocksPath(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
 
-  /// Smallest distance (m) between a moving and a standing shape; infinite without such a pair, 0 where they overlap.
+  /// Smallest distance (m) between a moving and a fixed shape; infinite without such a pair, 0 for
+  /// overlap.
   double clearance(const Eigen::Vector3d& joints) const;
 
  private:
@@ -40,7 +43,7 @@ class CollisionGuard {
   };
   struct Mover {
     std::string link;
-    Eigen::Matrix3d directions;  ///< m of its motion in `world` per m of each joint
+    Eigen::Matrix3d directions;  ///< displacement in `world` per displacement of each joint
     Capsule capsule;             ///< with all joints at 0
   };
   std::string reason(const Mover& mover, const Obstacle& obstacle, double distance) const;

@@ -10,9 +10,10 @@ struct ValueSlope {
   double slope = 0;
 };
 
-/// Smallest value of a convex function `f(x) -> ValueSlope` over [0, 1], to `accuracy`; or, as soon as it is certain
-/// that the smallest value is above `enough`, some value above `enough` that is not above the smallest. Two tangents
-/// enclose the minimum from below; where they meet is tried next, else the middle (Kelley's cutting planes).
+/// Minimum of a convex function `f(x) -> ValueSlope` over [0, 1], to `accuracy`. If the minimum is
+/// certainly above `enough`, some lower bound above `enough` is returned early. Two tangents bound
+/// the minimum from below. Their intersection is the next trial point, or the middle of the
+/// interval if that shrinks it too slowly (Kelley's cutting planes).
 template <typename Function>
 double convexMinimum(const Function& f, double accuracy, double enough) {
   double left = 0, right = 1;

@@ -9,15 +9,16 @@ namespace microinjection {
 class CollisionGuard;
 struct ManipulatorGeometry;
 
-/// How a device's axes look for their reference positions without meeting an obstacle.
+/// How a device's axes can search for their reference positions without a collision.
 struct HomingPlan {
-  std::array<int, 3> order{0, 1, 2};  ///< of the joints, one after the other, all of them
-  std::string refusal;                ///< why the axes must not home by themselves; empty: they may, in that order
+  std::array<int, 3> order{0, 1, 2};  ///< of the joints, all of them, one after the other
+  std::string refusal;                ///< why the axes must not home; empty: they may, in that order
 };
 
-/// Looks for an order in which each axis gets to its reference position `ends` (m, of the joints) without coming nearer
-/// to an obstacle than the guard's margin, wherever within its travel each axis is at the begin: without a reference
-/// nobody knows. Places are 1 mm apart, closer near 0 where the needle works; the way from each is tried exactly.
+/// Searches an order in which each axis reaches its reference position `ends` (m, of the joints)
+/// and keeps the guard's margin. The start may be anywhere within the travel, because an axis
+/// without a reference has no known position. The start positions are 1 mm apart, and closer near 0
+/// where the needle works. The path from each of them is checked exactly.
 HomingPlan planHoming(const ManipulatorGeometry& geometry, const CollisionGuard& guard, const Eigen::Vector3d& ends);
 
 }  // namespace microinjection

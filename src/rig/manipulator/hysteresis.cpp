@@ -8,13 +8,14 @@ HysteresisConfig HysteresisConfig::read(ConfigReader& reader) {
   HysteresisConfig config;
   reader.number("width", config.width, Range::nonNegative());
   reader.number("range", config.range, Range::positive());
-  // The weights add up to width kStops / (range (kStops + 1)): from 1 on the output would run against the input.
+  // The sum of the weights is width kStops / (range (kStops + 1)). From 1 on the output would move
+  // against the input.
   if (!(config.width < config.range)) reader.error("width", "must be below range");
   return config;
 }
 
 Hysteresis::Hysteresis(const HysteresisConfig& config) : config_(config) {
-  // Saturated, the stops hold width / 2: the sum of weight times threshold.
+  // In saturation the sum of weight times threshold is width / 2.
   weight_ = config.width / (config.range * (kStops + 1));
 }
 

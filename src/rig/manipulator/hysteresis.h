@@ -7,16 +7,16 @@
 namespace microinjection {
 
 struct HysteresisConfig {
-  double width = 0;     ///< m, between the way there and the way back once the loop is saturated
-  double range = 5e-6;  ///< m, of motion from rest until it is
+  double width = 0;     ///< m, between forward and return path of the saturated loop
+  double range = 5e-6;  ///< m, of motion from rest to saturation
 
   static HysteresisConfig read(ConfigReader& reader);
 };
 
-/// Hysteresis of a piezo or of a flexure with friction, which does not depend on speed: a Prandtl-Ishlinskii model,
-/// the input less a sum of stop operators (elastic up to a threshold, then sliding) of equal weight with thresholds
-/// spread evenly over `range`.
-/// K. Kuhnen, Modeling, Identification and Compensation of Complex Hysteretic Nonlinearities: A Modified
+/// Rate-independent hysteresis of a piezo or of a flexure with friction: a Prandtl-Ishlinskii
+/// model. The output is the input minus a sum of stop operators of equal weight, elastic up to a
+/// threshold and sliding beyond. The thresholds are spread evenly over `range`. K. Kuhnen,
+/// Modeling, Identification and Compensation of Complex Hysteretic Nonlinearities: A Modified
 /// Prandtl-Ishlinskii Approach, European Journal of Control 9 (2003) 407-418.
 class Hysteresis {
  public:
@@ -24,7 +24,7 @@ class Hysteresis {
 
   explicit Hysteresis(const HysteresisConfig& config = {});
 
-  /// The output (m) after the input has gone straight from where it was to `input` (m).
+  /// Output (m) after the input has moved monotonically to `input` (m).
   double follow(double input);
 
  private:

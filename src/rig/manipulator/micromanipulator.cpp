@@ -29,7 +29,7 @@ Micromanipulator::Micromanipulator(const ManipulatorGeometry& geometry, const Co
   if (const auto ends = device.homingEnds()) device.planHoming(planHoming(geometry, guard, *ends));
 }
 
-/// A device behind a slow line turns out to be slower when it has been asked.
+/// A driver measures the latency of its line after connecting, so the abilities can change.
 void Micromanipulator::adapt() {
   const ManipulatorAbilities abilities = device_->abilities();
   lag_ = accepts_setpoints_while_moving_ ? abilities.latency + abilities.command_interval : 0;
@@ -37,7 +37,7 @@ void Micromanipulator::adapt() {
 
 std::string Micromanipulator::unavailableReason() const {
   if (device_->state() != ManipulatorDevice::State::kReady) {
-    return device_->why().empty() ? "the device is not ready" : device_->why();
+    return device_->reason().empty() ? "the device is not ready" : device_->reason();
   }
   return device_->reading() ? "" : "the device does not know its position yet";
 }
@@ -52,7 +52,8 @@ Micromanipulator::Commanded Micromanipulator::checkPose(const Eigen::Isometry3d&
   return {joints, outside.empty() ? guard_.blocks(joints) : outside};
 }
 
-/// From where and how fast the next command takes over: on from the set-point, or from what the device measures.
+/// Where and how fast the next command starts: at the set-point, or at the measured position when
+/// at rest.
 AxesMotion Micromanipulator::start() const {
   const bool resting = mode_ == Mode::kHold && !device_->moving();
   if (setpoint_ && !resting) return *setpoint_;
@@ -71,34 +72,35 @@ Eigen::Vector3d Micromanipulator::restAfter(const AxesMotion& motion) const {
   return motion.position + motion.velocity * brakingTime(geometry_, motion.velocity) / 2;
 }
 
-/// Where the device may get to when it is told to rest now.
+/// Where the device may come to rest if it is stopped now.
 Eigen::Vector3d Micromanipulator::reachOf(const AxesMotion& motion) const {
   return restAfter(motion) + motion.velocity * lag_;
 }
 
 void Micromanipulator::begin(Mode mode, const AxesMotion& from) {
   mode_ = mode;
-  under_way_ = mode == Mode::kMove;
+  move_active_ = mode == Mode::kMove;
   setpoint_ = from;
-  ended_.clear();
+  abort_reason_.clear();
 }
 
-/// Why nothing may be moved by a stream, of which one command is here; else empty.
+/// Registers one command of a stream. Returns the reason why streams may not move the needle, else
+/// an empty text.
 std::string Micromanipulator::streamRefusal() {
   const bool begins = std::exchange(stream_pause_, 0) > config_.command_timeout;
-  if (std::string why = unavailableReason(); !why.empty()) return why;
-  if (begins) held_off_ = false;
-  if (!held_off_) return "";
+  if (std::string reason = unavailableReason(); !reason.empty()) return reason;
+  if (begins) streams_blocked_ = false;
+  if (!streams_blocked_) return "";
   return "the needle was stopped; a stream moves it again after a pause of " + std::to_string(config_.command_timeout) +
          " s or after enable";
 }
 
 std::string Micromanipulator::servoPosition(const Eigen::Isometry3d& tip_pose) {
-  if (std::string why = streamRefusal(); !why.empty()) return why;
+  if (std::string reason = streamRefusal(); !reason.empty()) return reason;
   const Commanded commanded = checkPose(tip_pose);
   if (!commanded.refusal.empty()) return commanded.refusal;
   const AxesMotion from = start();
-  if (std::string why = guard_.blocksPath(from.position, commanded.joints); !why.empty()) return why;
+  if (std::string reason = guard_.blocksPath(from.position, commanded.joints); !reason.empty()) return reason;
   if (mode_ != Mode::kServo) {
     goal_ = from.position;
     goal_age_ = 0;
@@ -112,37 +114,39 @@ std::string Micromanipulator::servoPosition(const Eigen::Isometry3d& tip_pose) {
 }
 
 std::string Micromanipulator::movePosition(const Eigen::Isometry3d& tip_pose) {
-  if (std::string why = unavailableReason(); !why.empty()) return why;
+  if (std::string reason = unavailableReason(); !reason.empty()) return reason;
   const Commanded commanded = checkPose(tip_pose);
   if (!commanded.refusal.empty()) return commanded.refusal;
   const AxesMotion from = start();
   const Eigen::Vector3d turn = accepts_setpoints_while_moving_ ? restAfter(from) : device_->reading()->joints;
-  if (std::string why = guard_.blocksPath(turn, commanded.joints); !why.empty()) return why;
+  if (std::string reason = guard_.blocksPath(turn, commanded.joints); !reason.empty()) return reason;
   goal_ = commanded.joints;
   begin(Mode::kMove, from);
   if (accepts_setpoints_while_moving_) return "";
   setpoint_.reset();
-  const Eigen::Vector3d way = goal_ - turn;
-  if (way.norm() > 0) device_->moveTo(goal_, straightSpeed(geometry_, way.normalized()));
+  const Eigen::Vector3d displacement = goal_ - turn;
+  if (displacement.norm() > 0) device_->moveTo(goal_, straightSpeed(geometry_, displacement.normalized()));
   return "";
 }
 
 std::string Micromanipulator::servoVelocity(const Eigen::Vector3d& velocity, double time) {
   if (!velocity.allFinite()) return "velocity is not finite";
-  if (std::string why = streamRefusal(); !why.empty()) return why;
+  if (std::string reason = streamRefusal(); !reason.empty()) return reason;
   const Eigen::Vector3d joint_velocity = geometry_.directions.inverse() * velocity;
-  if (std::string why = geometry_.tooFast(joint_velocity); !why.empty()) return why;
+  if (std::string reason = geometry_.tooFast(joint_velocity); !reason.empty()) return reason;
   if (velocity.norm() > config_.servo_speed_limit * (1 + 1e-9)) {
-    std::ostringstream why;
-    why << "speed = " << velocity.norm() << " m/s, allowed at most servo_speed_limit = " << config_.servo_speed_limit;
-    return why.str();
+    std::ostringstream reason;
+    reason << "speed = " << velocity.norm()
+           << " m/s, allowed at most servo_speed_limit = " << config_.servo_speed_limit;
+    return reason.str();
   }
-  // Too near to an end of its travel or to an obstacle to go that way for a step and come to rest before it?
+  // After one step at this velocity the needle must still be able to brake before obstacles and the
+  // ends of travel.
   const AxesMotion from = start();
   const Eigen::Vector3d rest = reachOf({from.position + joint_velocity * last_dt_, joint_velocity});
   if (!joint_velocity.isZero()) {
-    if (std::string why = geometry_.leavesTravel(from.position, rest); !why.empty()) return why;
-    if (std::string why = guard_.blocksPath(from.position, rest); !why.empty()) return why;
+    if (std::string reason = geometry_.leavesTravel(from.position, rest); !reason.empty()) return reason;
+    if (std::string reason = guard_.blocksPath(from.position, rest); !reason.empty()) return reason;
   }
   velocity_command_ = joint_velocity;
   velocity_command_time_ = time;
@@ -150,7 +154,7 @@ std::string Micromanipulator::servoVelocity(const Eigen::Vector3d& velocity, dou
   return "";
 }
 
-/// Forgets the set-point: the next command starts from what the device measures.
+/// Deletes the set-point. The next command starts at the measured position.
 void Micromanipulator::rest() {
   mode_ = Mode::kHold;
   setpoint_.reset();
@@ -163,26 +167,26 @@ void Micromanipulator::halt() {
 
 void Micromanipulator::stop() {
   halt();
-  held_off_ = true;
+  streams_blocked_ = true;
 }
 
 void Micromanipulator::clearFault() {
-  if (device_->state() == ManipulatorDevice::State::kReady) held_off_ = false;
+  if (device_->state() == ManipulatorDevice::State::kReady) streams_blocked_ = false;
   rest();
   device_->clearFault();
 }
 
 void Micromanipulator::step(double time, double dt) {
-  if (last_dt_ == 0) device_->step(time - dt);  // sets its clock
+  if (last_dt_ == 0) device_->step(time - dt);  // initializes the device's clock
   last_dt_ = dt;
   stream_pause_ += dt;
-  if (const std::string why = unavailableReason(); !why.empty()) {
-    if (mode_ != Mode::kHold) ended_ = why;
+  if (const std::string reason = unavailableReason(); !reason.empty()) {
+    if (mode_ != Mode::kHold) abort_reason_ = reason;
     rest();
-    under_way_ = false;
-    held_off_ = true;
+    move_active_ = false;
+    streams_blocked_ = true;
   } else {
-    haltIfCutOff();
+    haltIfBlocked();
   }
   if (mode_ != Mode::kHold) {
     stepMode(time, dt);
@@ -191,7 +195,7 @@ void Micromanipulator::step(double time, double dt) {
   const bool was_ready = device_->state() == ManipulatorDevice::State::kReady;
   device_->step(time);
   if (!was_ready) adapt();
-  if (mode_ == Mode::kHold && !device_->moving()) under_way_ = false;
+  if (mode_ == Mode::kHold && !device_->moving()) move_active_ = false;
 }
 
 std::optional<Eigen::Isometry3d> Micromanipulator::setpointPose() const {

@@ -7,34 +7,35 @@
 
 namespace microinjection {
 
-/// CRTK's operating state of the needle: what was commanded, as far as the device and the guards around it allow.
+/// CRTK operating state of the needle: the commanded state, restricted by the device and the
+/// guards.
 ///
-/// FAULT while the device or a guard is at fault; DISABLED while the device is not there, a barrier stands or nobody
-/// has enabled; else what was commanded. A needle starts enabled and homed: its axes count from a reference. Unhomed it
-/// is held until it is homed again.
+/// FAULT: the device or a guard has a fault. DISABLED: the device is not connected, a barrier
+/// exists, or DISABLED was commanded. Otherwise the commanded state. A needle starts enabled and
+/// homed, since its axes have a reference. While it is not homed, it is held.
 class NeedleState {
  public:
-  /// What no command decides.
-  struct Surroundings {
+  /// Conditions that do not depend on commands.
+  struct Conditions {
     ManipulatorDevice::State device = ManipulatorDevice::State::kDisconnected;
-    bool position_known = false;  ///< by the device
-    std::string fault;            ///< of a guard, besides the device's own; empty: none
-    std::string barrier;          ///< why the needle may not be enabled now; empty: it may
+    bool position_valid = false;  ///< by the device
+    std::string fault;            ///< of a guard, in addition to the device's; empty: none
+    std::string barrier;          ///< why the needle may not be enabled; empty: it may
   };
-  /// To be called at each step.
-  void surround(const Surroundings& surroundings) { surroundings_ = surroundings; }
+  /// Must be called in each step.
+  void setConditions(const Conditions& conditions) { conditions_ = conditions; }
 
-  /// Empty when obeyed, otherwise why not: the state is then as before.
+  /// Returns an empty text if executed, otherwise the reason; the state is then unchanged.
   std::string command(StateCommand command);
 
   OperatingState state() const;
-  bool homed() const { return homed_ && surroundings_.position_known; }
+  bool homed() const { return homed_ && conditions_.position_valid; }
   bool disabledByCommand() const { return commanded_ == OperatingState::kDisabled; }
-  /// Why motion commands are refused, the device's own reasons apart; else empty.
+  /// The reason why motion commands are refused, except for the device's own reasons; else empty.
   std::string unavailableReason() const;
 
  private:
-  Surroundings surroundings_;
+  Conditions conditions_;
   OperatingState commanded_ = OperatingState::kEnabled;
   bool homed_ = true;
 };

@@ -34,7 +34,8 @@ std::vector<urdf::JointConstSharedPtr> chainTo(const urdf::ModelInterface& model
     chain.push_back(link->parent_joint);
     link = link->getParent();
   }
-  if (link->name != "world") throw ConfigError("URDF: " + name + " hangs on " + link->name + ", must hang on world");
+  if (link->name != "world")
+    throw ConfigError("URDF: " + name + " is connected to " + link->name + ", must be connected to world");
   std::reverse(chain.begin(), chain.end());
   return chain;
 }

@@ -9,20 +9,21 @@
 
 namespace microinjection {
 
-/// The rig's file as a tree of links. @throws ConfigError when the text is no URDF.
+/// Parses the rig's URDF. @throws ConfigError if the text is no URDF.
 urdf::ModelInterfaceSharedPtr parseRig(const std::string& xml);
 
 Eigen::Isometry3d toEigen(const urdf::Pose& pose);
 
-/// Joints from `world` down to a link, those nearest to `world` first.
-/// @throws ConfigError when the link is missing or does not hang on `world`.
+/// Joints from `world` to a link, starting at `world`.
+/// @throws ConfigError if the link is missing or not connected to `world`.
 std::vector<urdf::JointConstSharedPtr> chainTo(const urdf::ModelInterface& model, const std::string& link);
 
-/// The joint axis as a unit vector in the joint's frame. @throws ConfigError when it is none.
+/// The joint axis as a unit vector in the joint's frame. @throws ConfigError for a zero axis.
 Eigen::Vector3d unitAxis(const urdf::Joint& joint);
 
-/// Attribute `acceleration` (m/s^2) of a joint's <limit>, which the URDF reader of Debian 12 passes over.
-/// @throws ConfigError naming joint and attribute when it is missing or not above 0.
+/// Attribute `acceleration` (m/s^2) of a joint's <limit>, which the URDF parser of Debian 12
+/// ignores.
+/// @throws ConfigError with joint and attribute if it is missing or not above 0.
 double accelerationLimit(const std::string& xml, const std::string& joint);
 
 }  // namespace microinjection

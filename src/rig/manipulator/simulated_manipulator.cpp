@@ -34,7 +34,7 @@ ManipulatorAbilities SimulatedManipulator::abilities() const {
     abilities.speed = std::max(abilities.speed, axis.velocity);
     slowest_stop = std::max(slowest_stop, axis.velocity / axis.acceleration);
   }
-  abilities.stop_time = slowest_stop + 5 * config_.servo_time_constant;  // within 1 % of the lag
+  abilities.stop_time = slowest_stop + 5 * config_.servo_time_constant;  // until 1 % of the lag remains
   return abilities;
 }
 
@@ -53,8 +53,8 @@ void SimulatedManipulator::moveTo(const Eigen::Vector3d& joints, double speed) {
 
 void SimulatedManipulator::stop() { mode_ = Mode::kStop; }
 
-void SimulatedManipulator::injectFault(const std::string& why) {
-  fault_ = why;
+void SimulatedManipulator::injectFault(const std::string& reason) {
+  fault_ = reason;
   stop();
 }
 
@@ -92,9 +92,9 @@ void SimulatedManipulator::stepTip(double dt) {
   const Eigen::Vector3d before = tip_;
   std::normal_distribution<double> normal;
   for (int i = 0; i < 3; ++i) {
-    played_[i] = std::clamp(played_[i], motors_[i] - config_.backlash / 2, motors_[i] + config_.backlash / 2);
+    after_backlash_[i] = std::clamp(after_backlash_[i], motors_[i] - config_.backlash / 2, motors_[i] + config_.backlash / 2);
     drift_[i] += config_.drift_rate[i] * dt + config_.drift_walk * std::sqrt(dt) * normal(random_);
-    tip_[i] = hysteresis_[i].follow(played_[i]) + drift_[i];
+    tip_[i] = hysteresis_[i].follow(after_backlash_[i]) + drift_[i];
   }
   tip_velocity_ = (tip_ - before) / dt;
 }

@@ -14,42 +14,44 @@
 
 namespace microinjection {
 
-/// The defaults are an ideal device with a servo lag; config/rigs/imperfect.yaml has figures of a real one.
+/// The defaults describe an ideal device with a servo lag. config/rigs/imperfect.yaml has the
+/// figures of a real one.
 struct SimulatedManipulatorConfig {
   double servo_time_constant = 2e-3;                     ///< s, first-order lag of a motor behind its set-point
   double resolution = 1e-9;                              ///< m, of a set-point
   double backlash = 0;                                   ///< m, lost at each reversal
-  HysteresisConfig hysteresis;                           ///< of the way from motor to tip, behind the backlash
+  HysteresisConfig hysteresis;                           ///< between motor and tip, after the backlash
   Eigen::Vector3d drift_rate = Eigen::Vector3d::Zero();  ///< m/s, of the tip away from its axes, each axis
-  double drift_walk = 0;                                 ///< m/sqrt(s), of a random walk on top, each axis
+  double drift_walk = 0;                                 ///< of an additional random walk, each axis
   int seed = 1;                                          ///< of the random walk
 
   static SimulatedManipulatorConfig read(ConfigReader& reader);
 };
 
-/// A micromanipulator that is not there. Like a real one it measures its motors (`reading`), not its tip: backlash,
-/// hysteresis and drift are between the two, and only `trueJoints` has them, which is where the cell feels the needle.
+/// A simulated micromanipulator. Like a real one, it measures its motors (`reading`), not its tip.
+/// Backlash, hysteresis and drift act between the two and affect only `trueJoints`, which
+/// determines the contact with the cell.
 class SimulatedManipulator : public ManipulatorDevice {
  public:
   SimulatedManipulator(const ManipulatorGeometry& geometry, const SimulatedManipulatorConfig& config);
 
   ManipulatorAbilities abilities() const override;
-  void limitSpeed(const Eigen::Vector3d&) override {}  ///< its geometry has them
+  void limitSpeed(const Eigen::Vector3d&) override {}  ///< the geometry contains the limits
   void follow(const Eigen::Vector3d& joints, const Eigen::Vector3d& velocity) override;
   void moveTo(const Eigen::Vector3d& joints, double speed) override;
   void stop() override;  ///< brakes with the axes' acceleration
   void clearFault() override;
-  void step(double time) override;  ///< the first one only sets the clock
+  void step(double time) override;  ///< the first call only initializes the clock
   State state() const override { return fault_.empty() ? State::kReady : State::kFault; }
-  std::string why() const override { return fault_; }
+  std::string reason() const override { return fault_; }
   std::optional<Reading> reading() const override { return Reading{motors_, motor_velocity_}; }
   bool moving() const override;
 
-  /// Brakes, and obeys nothing until clearFault. @pre `why` is not empty
-  void injectFault(const std::string& why);
+  /// Brakes and ignores commands until clearFault().
+  /// @pre `reason` is not empty
+  void injectFault(const std::string& reason);
 
-  /// Where the tip is, as positions (m) of the three joints that would bring an ideal one there, and its velocity
-  /// (m/s).
+  /// True tip position, as joint positions (m) of an ideal device, and its velocity (m/s).
   const Eigen::Vector3d& trueJoints() const { return tip_; }
   const Eigen::Vector3d& trueJointVelocity() const { return tip_velocity_; }
 
@@ -69,7 +71,7 @@ class SimulatedManipulator : public ManipulatorDevice {
   double speed_ = 0;                                          ///< m/s, of moveTo
   Eigen::Vector3d motors_ = Eigen::Vector3d::Zero();          ///< m
   Eigen::Vector3d motor_velocity_ = Eigen::Vector3d::Zero();  ///< m/s
-  Eigen::Vector3d played_ = Eigen::Vector3d::Zero();          ///< m, behind the backlash
+  Eigen::Vector3d after_backlash_ = Eigen::Vector3d::Zero();          ///< m, after the backlash
   std::array<Hysteresis, 3> hysteresis_;
   Eigen::Vector3d drift_ = Eigen::Vector3d::Zero();         ///< m
   Eigen::Vector3d tip_ = Eigen::Vector3d::Zero();           ///< m

@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kAccuracy = 1e-10;  // m
 
-/// From the nearest point of the solid, in its own frame, to a point (m) there.
+/// Vector from the nearest point of the solid to a point (m), both in the solid's frame.
 Eigen::Vector3d outOf(const Solid& solid, const Eigen::Vector3d& point) {
   const Eigen::Vector3d& half = solid.half;
   Eigen::Vector3d out = point;
@@ -19,7 +19,7 @@ Eigen::Vector3d outOf(const Solid& solid, const Eigen::Vector3d& point) {
   return out;
 }
 
-/// The nearest point of a capsule's segment to a solid: distance and its gradient.
+/// Smallest distance between a capsule's segment and a solid, and its gradient.
 Solid::Nearest nearestOfSegment(const Capsule& capsule, const Eigen::Vector3d& offset, const Solid& solid,
                                 double enough) {
   const Eigen::Vector3d start = capsule.start + offset;
@@ -51,13 +51,14 @@ double distance(const Capsule& capsule, const Eigen::Vector3d& offset, const Sol
 
 double distanceAlongPath(const Capsule& capsule, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
                          const Solid& solid, double enough) {
-  const Eigen::Vector3d way = to - from;
-  const double at_start = distance(capsule, from, solid, enough + way.norm());
-  if (at_start > enough + way.norm()) return at_start - way.norm();  // too short a way to come near
+  const Eigen::Vector3d displacement = to - from;
+  const double at_start = distance(capsule, from, solid, enough + displacement.norm());
+  if (at_start > enough + displacement.norm())
+    return at_start - displacement.norm();  // the path is too short to come within `enough`
   const auto at = [&](double x) {
     const Solid::Nearest here =
-        nearestOfSegment(capsule, from + x * way, solid, std::numeric_limits<double>::infinity());
-    return ValueSlope{here.distance - capsule.radius, here.away.dot(way)};
+        nearestOfSegment(capsule, from + x * displacement, solid, std::numeric_limits<double>::infinity());
+    return ValueSlope{here.distance - capsule.radius, here.away.dot(displacement)};
   };
   return convexMinimum(at, kAccuracy, enough);
 }

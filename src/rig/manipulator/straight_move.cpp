@@ -49,15 +49,15 @@ double straightSpeed(const ManipulatorGeometry& geometry, const Eigen::Vector3d&
 
 Eigen::Vector3d straightVelocity(const ManipulatorGeometry& geometry, const AxesMotion& motion,
                                  const Eigen::Vector3d& goal, double speed, double dt) {
-  const Eigen::Vector3d way = goal - motion.position;
-  const double distance = way.norm();
+  const Eigen::Vector3d displacement = goal - motion.position;
+  const double distance = displacement.norm();
   if (distance == 0) return braked(geometry, motion.velocity, dt);
-  const Eigen::Vector3d direction = way / distance;
+  const Eigen::Vector3d direction = displacement / distance;
   const double forward = motion.velocity.dot(direction);
   const double acceleration = straightAcceleration(geometry, direction);
-  const bool aside = (motion.velocity - forward * direction).norm() > 1e-6 * motion.velocity.norm();
+  const bool off_line = (motion.velocity - forward * direction).norm() > 1e-6 * motion.velocity.norm();
   const bool past = forward > acceleration * dt + approachSpeed(distance, acceleration, dt);
-  if (forward < 0 || aside || past) return braked(geometry, motion.velocity, dt);
+  if (forward < 0 || off_line || past) return braked(geometry, motion.velocity, dt);
   return direction * std::min({speed, straightSpeed(geometry, direction), approachSpeed(distance, acceleration, dt),
                                forward + acceleration * dt});
 }

@@ -6,29 +6,31 @@
 
 namespace microinjection {
 
-/// Set-point of the three axes that can start, go straight and brake, within the axes' accelerations.
+/// Set-point of the three axes, which starts, moves straight and brakes within the axes'
+/// accelerations.
 struct AxesMotion {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< m/s
 };
 
-/// As near to a goal (m) as makes no difference to any device.
+/// m, from a goal; no device resolves less.
 constexpr double kArrived = 1e-10;
 
-/// Time (s) in which a motion comes to rest along its straight line: that of the axis that needs longest.
+/// Time (s) in which a straight motion comes to rest: that of the slowest axis.
 double brakingTime(const ManipulatorGeometry& geometry, const Eigen::Vector3d& velocity);
 
-/// One step (s) of braking straight ahead. From velocity v it ends at the most v brakingTime / 2 farther.
+/// One step (s) of braking without a change of direction. From velocity v it travels at most v
+/// brakingTime / 2.
 void brake(const ManipulatorGeometry& geometry, AxesMotion& motion, double dt);
 
-/// At its goal (m), and slow enough to rest there within a step (s).
+/// At its goal (m), and slow enough to stop within one step (s).
 bool atRest(const ManipulatorGeometry& geometry, const AxesMotion& motion, const Eigen::Vector3d& goal, double dt);
 
 /// The largest speed (m/s) along a unit direction.
 double straightSpeed(const ManipulatorGeometry& geometry, const Eigen::Vector3d& direction);
 
-/// Velocity (m/s) of the next step (s) of a straight move to `goal` (m) at `speed` (m/s) or the axes' limits, to be
-/// taken for that step; brakes first where the motion is not on that line.
+/// Velocity (m/s) for the next step (s) of a straight move to `goal` (m) at `speed` (m/s) or the
+/// axes' limits. A motion that is not on that line brakes first.
 Eigen::Vector3d straightVelocity(const ManipulatorGeometry& geometry, const AxesMotion& motion,
                                  const Eigen::Vector3d& goal, double speed, double dt);
 

@@ -8,23 +8,24 @@
 namespace microinjection {
 namespace {
 
-// Forces along nearly one line say nothing certain across it: the smallest pivot must be this share of the largest.
+// Forces along nearly one line do not determine the gain across it. The smallest pivot must be at
+// least this share of the largest.
 constexpr double kIndependent = 0.05;
 
-// A force along one axis has that share of the others when it is turned into the sensor's frame.
+// Transformation into the sensor's frame leaves this share of an axial force on the other axes.
 constexpr double kRounding = 1e-6;
 
-// A sensor that needs more than that is not wired or not set up as it is configured.
+// A sensor outside this range is not wired or not configured as in the file.
 constexpr double kLargestGain = 100;  // of a force's size, and its inverse the smallest
-// Points that all fit alike leave some percent; a gain of zero leaves 1.
+// A usable fit leaves a few percent; a gain of zero leaves 1.
 constexpr double kLargestResidual = 0.5;  // of the known forces, rms
 
 double rmsOf(const Eigen::MatrixXd& forces) {
   return std::sqrt(forces.squaredNorm() / static_cast<double>(forces.size()));
 }
 
-/// Empty, or why no sensor has this gain.
-std::string absurd(const Eigen::MatrixXd& gain, double residual, double known) {
+/// Returns an empty text, or the reason why no sensor has this gain.
+std::string gainRefusal(const Eigen::MatrixXd& gain, double residual, double known) {
   if (!gain.allFinite() || !std::isfinite(residual)) return "the gain that fits the points is not finite";
   const Eigen::VectorXd factors = Eigen::JacobiSVD<Eigen::MatrixXd>(gain).singularValues();
   std::ostringstream text;
@@ -80,7 +81,7 @@ std::string ForceReadout::beginTare() {
 
 std::string ForceReadout::beginPoint(const Eigen::VectorXd& force) {
   if (force.size() != tare_.size() || !force.allFinite()) return "the known force is not finite";
-  if (force.isZero(0)) return "the known force is zero: that is what tare is for";
+  if (force.isZero(0)) return "the known force is zero: use tare instead";
   for (int axis = 0; axis < force.size(); ++axis) {
     if (std::abs(force[axis]) <= range_[axis]) continue;
     std::ostringstream text;
@@ -90,14 +91,14 @@ std::string ForceReadout::beginPoint(const Eigen::VectorXd& force) {
   }
   std::string refusal = begin(Purpose::kPoint);
   if (!refusal.empty()) return refusal;
-  known_ = force;
+  known_force_ = force;
   outcome_ = "averaging under the known force";
   return "";
 }
 
 void ForceReadout::interrupt() {
   if (!averaging()) return;
-  outcome_ = "the average was given up: no valid reading all the time";
+  outcome_ = "the average was aborted: not every reading was valid";
   purpose_ = Purpose::kNone;
 }
 
@@ -108,7 +109,7 @@ void ForceReadout::finishAverage() {
     tare_ = mean;
     outcome_ = "tared";
   } else {
-    points_.push_back({mean, known_});
+    points_.push_back({mean, known_force_});
     outcome_ = "has " + std::to_string(points()) + " calibration points";
   }
   purpose_ = Purpose::kNone;
@@ -126,7 +127,7 @@ std::string ForceReadout::solve() {
   Eigen::MatrixXd gain = gain_;
   std::string refusal = whole ? solveMatrix(raw, force, gain) : solveAxes(raw, force, gain);
   const double residual = rmsOf(gain * raw - force);
-  if (refusal.empty()) refusal = absurd(gain, residual, rmsOf(force));
+  if (refusal.empty()) refusal = gainRefusal(gain, residual, rmsOf(force));
   if (!refusal.empty()) return refusal;
   gain_ = gain;
   residual_ = residual;
@@ -136,7 +137,7 @@ std::string ForceReadout::solve() {
 
 std::string ForceReadout::solveMatrix(const Eigen::MatrixXd& raw, const Eigen::MatrixXd& force,
                                       Eigen::MatrixXd& gain) const {
-  if (rankOf(raw) < tare_.size()) return "the readings do not tell the known forces apart";
+  if (rankOf(raw) < tare_.size()) return "the readings do not distinguish the known forces";
   gain = raw.transpose().colPivHouseholderQr().solve(force.transpose()).transpose();
   return "";
 }

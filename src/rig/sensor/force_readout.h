@@ -6,35 +6,40 @@
 
 namespace microinjection {
 
-/// Makes forces of a sensor's raw readings: force = gain (raw - tare). Both are found from averages of raw readings
-/// over a time, the tare with nothing at the tip, the gain with known forces on it.
+/// Converts a sensor's raw readings to forces: force = gain (raw - tare). Tare and gain come from
+/// averages of raw readings: the tare without load, the gain under known forces.
 class ForceReadout {
  public:
-  /// `range`: the largest force (N) of each axis of a reading, (axial, lateral) or more, that may be known in a
-  /// calibration. The gain begins as 1 and the tare as 0. `averaging` in s.
+  /// `range` (N): the largest known force that a calibration accepts, for each axis of a reading:
+  /// (axial, lateral) or more. `averaging` (s): duration of an average. The gain starts as the
+  /// identity and the tare as 0.
   ForceReadout(const Eigen::VectorXd& range, double averaging);
 
-  /// Takes a raw reading (N) at `time` (s), for the average that is under way, and returns the force (N).
+  /// Returns the force (N) of a raw reading (N) at `time` (s). Adds the reading to an average that
+  /// is under way.
   Eigen::VectorXd read(const Eigen::VectorXd& raw, double time);
 
-  /// Begins to average; empty, or why not. The tare in force stays until the new one is there.
+  /// Starts averaging for a new tare. Returns an empty text, or the reason for a refusal. The
+  /// previous tare applies until the average is complete.
   std::string beginTare();
-  /// Begins to average under a known force (N), of the reading's size: finite, not zero and within the range.
+  /// Starts averaging under a known force (N). The force has the size of a reading, is finite, not
+  /// zero and within the range.
   std::string beginPoint(const Eigen::VectorXd& force);
-  /// There is nothing valid to average: gives up the average under way.
+  /// Aborts the average under way because no reading is valid.
   void interrupt();
 
-  /// The gain that fits force = gain (mean - tare) to the points in the least-squares sense. Points that span all axes
-  /// give the whole matrix, with the coupling of the axes; otherwise each axis that has a force gets a gain of its own,
-  /// times its row of the present matrix. Refused are points that do not determine that, a gain that changes the size
-  /// of a force more than a hundredfold, and a residual of more than half of the known forces (rms). Empty, or why
+  /// Fits force = gain (mean - tare) to the calibration points by least squares. Points that span
+  /// all axes give the whole matrix, including the coupling between axes. Otherwise each axis with
+  /// a known force gets a factor for its row of the present matrix. Refuses points that do not
+  /// determine the gain, a gain that changes the size of a force more than a hundredfold, and a
+  /// residual above half of the known forces (rms). Returns an empty text, or the reason why
   /// nothing changed.
   std::string solve();
-  /// Forgets points and gain: 1 again. The tare stays.
+  /// Deletes the points and resets the gain to the identity. The tare stays.
   void clear();
 
   bool averaging() const { return purpose_ != Purpose::kNone; }
-  /// What became of the last average or calibration.
+  /// Result of the last average or calibration.
   const std::string& outcome() const { return outcome_; }
   const Eigen::MatrixXd& gain() const { return gain_; }
   const Eigen::VectorXd& tare() const { return tare_; }  ///< N
@@ -57,10 +62,10 @@ class ForceReadout {
   Eigen::VectorXd tare_;
   Eigen::MatrixXd gain_;
   Purpose purpose_ = Purpose::kNone;
-  double began_ = -1;  ///< s; negative before the average's first reading
+  double began_ = -1;  ///< s, time of the average's first reading; negative before it
   int count_ = 0;
   Eigen::VectorXd sum_;
-  Eigen::VectorXd known_;  ///< N, of the point under way
+  Eigen::VectorXd known_force_;  ///< N, of the point that is being averaged
   std::vector<Point> points_;
   double residual_ = 0;
   std::string outcome_;

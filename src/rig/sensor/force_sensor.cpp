@@ -58,7 +58,8 @@ void ForceSensor::respond(const Eigen::Vector2d& force, double dt) {
     transition_ = Eigen::Matrix2d(rate * dt).exp();
     transition_dt_ = dt;
   }
-  // Exact for a force that is constant over the step: the deviation from the new rest decays.
+  // Exact for a force that is constant over the step: the deviation from the new equilibrium
+  // decays.
   Eigen::Matrix2d rest = Eigen::Matrix2d::Zero();
   rest.row(0) = force.transpose();
   state_ = rest + transition_ * (state_ - rest);
@@ -67,10 +68,11 @@ void ForceSensor::respond(const Eigen::Vector2d& force, double dt) {
 
 Eigen::Vector2d ForceSensor::sample(const Eigen::Vector2d& force, double dt) {
   const double period = 1 / config_.sample_rate;
-  // A sample that is due within the rounding of dt belongs to this step; without that, steps of a period would drift.
+  // A sample that is due within the rounding error of dt belongs to this step. Otherwise steps of
+  // one period would drift against the samples.
   const double rounding = 1e-6 * period;
   while (dt >= to_sample_ - rounding) {
-    // Within rounding of a period the same transition serves again, instead of a new exponential for each sample.
+    // Reuses the transition for a full period instead of computing an exponential for each sample.
     respond(force, std::abs(to_sample_ - period) < rounding ? period : to_sample_);
     convert();
     dt -= to_sample_;

@@ -6,7 +6,7 @@ namespace microinjection {
 namespace {
 
 constexpr double kLowestCorner = 1e-3;                  // Hz
-constexpr double kCornerRatio = 3.1622776601683793320;  // two a decade: the sum's ripple is below 2 %
+constexpr double kCornerRatio = 3.1622776601683793320;  // two per decade: the ripple of the sum is below 2 %
 
 }  // namespace
 

@@ -6,7 +6,8 @@
 
 namespace microinjection {
 
-/// Standard normal deviates by Box and Muller: unlike those of std::normal_distribution, the same in every library.
+/// Standard normal deviates by the Box-Muller method. Unlike std::normal_distribution, it gives the
+/// same values with every standard library.
 class StandardNormal {
  public:
   explicit StandardNormal(std::uint64_t seed) : random_(seed) {}
@@ -16,20 +17,21 @@ class StandardNormal {
   std::mt19937_64 random_;
 };
 
-/// What electronics add to a signal, sampled at fs (Hz): one-sided density S^2 (1 + fc / f), a random walk of k per
-/// root second, and a steady drift of r per second.
+/// Noise of electronics on a signal sampled at fs (Hz): one-sided density S^2 (1 + fc / f), a
+/// random walk of k per root second, and a steady drift of r per second.
 struct NoiseConfig {
   double density = 0;         ///< S, unit/sqrt(Hz), one-sided
-  double flicker_corner = 0;  ///< fc, Hz, in [0, fs / 10]: below it 1/f noise is larger than the white one
+  double flicker_corner = 0;  ///< fc, Hz, in [0, fs / 10]: below it 1/f noise exceeds white noise
   double random_walk = 0;     ///< k, unit/sqrt(s)
   double drift_rate = 0;      ///< r, unit/s
 };
 
-/// The noise of one axis, from sample to sample.
+/// The noise of one axis, sample by sample.
 ///
-/// White noise is band-limited to fs / 2 before the sampling, so a sample's variance is S^2 fs / 2. 1/f noise is a sum
-/// of first-order low-pass processes whose corners lie a factor rho apart: each of variance v has the one-sided density
-/// (2 v / (pi f_k)) / (1 + (f / f_k)^2), which sums up to v / (f ln rho), so v = S^2 fc ln rho. It ends at 1 mHz.
+/// White noise is band-limited to fs / 2 before sampling, so the variance of a sample is S^2 fs /
+/// 2. 1/f noise is a sum of first-order low-pass processes with corners a factor rho apart. Each of
+/// variance v has the one-sided density (2 v / (pi f_k)) / (1 + (f / f_k)^2). The sum is v / (f ln
+/// rho), so v = S^2 fc ln rho. It ends at 1 mHz.
 class Noise {
  public:
   Noise(const NoiseConfig& config, double sample_rate, StandardNormal& normal);
@@ -38,8 +40,8 @@ class Noise {
 
  private:
   struct LowPass {
-    double keep;    ///< share of the value that is left after a sample
-    double spread;  ///< standard deviation of what is new in a sample
+    double keep;    ///< share of the value that remains after a sample
+    double spread;  ///< standard deviation of the new part of a sample
     double value;
   };
 

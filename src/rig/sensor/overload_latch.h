@@ -4,10 +4,10 @@
 
 namespace microinjection {
 
-/// Remembers that a load on a sensor was too large for it, until it is reset.
+/// Latches when a load exceeds the limit of a sensor, until it is reset.
 class OverloadLatch {
  public:
-  /// `limit` (N): of (axial, lateral).
+  /// `limit` (N): (axial, lateral).
   explicit OverloadLatch(const Eigen::Vector2d& limit) : limit_(limit) {}
 
   void check(const Eigen::Vector2d& load) { latched_ = latched_ || (load.cwiseAbs().array() > limit_.array()).any(); }

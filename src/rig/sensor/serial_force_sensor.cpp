@@ -16,17 +16,17 @@ SerialForceSensor::SerialForceSensor(std::unique_ptr<Wire> wire, const VoltReadi
 void SerialForceSensor::step(double time) {
   if (!wire_->isOpen()) {
     reading_.reset();
-    if (trouble_.empty()) trouble_ = "the line broke";
-    if (time - tried_ < kRetry) return;
-    tried_ = time;
-    trouble_ = wire_->open();
-    if (!trouble_.empty()) return;
-    lines_.clear(true);  // whoever starts to listen hears the end of a line first, which may look like a whole one
+    if (error_text_.empty()) error_text_ = "the line broke";
+    if (time - last_attempt_ < kRetry) return;
+    last_attempt_ = time;
+    error_text_ = wire_->open();
+    if (!error_text_.empty()) return;
+    lines_.clear(true);  // The first line may be incomplete and still look valid.
   }
-  for (const std::string& line : lines_.feed(wire_->read(time))) take(line, time);
+  for (const std::string& line : lines_.feed(wire_->read(time))) parseLine(line, time);
 }
 
-void SerialForceSensor::take(const std::string& line, double time) {
+void SerialForceSensor::parseLine(const std::string& line, double time) {
   const auto voltages = parseVoltages(line, config_);
   if (!voltages) {
     ++bad_lines_;

@@ -11,37 +11,37 @@
 
 namespace microinjection {
 
-/// A real force sensor that sends its voltages over a serial line without being asked. Opens the line, and again after
-/// it broke; skips and counts lines that are not as described.
+/// Driver of a force sensor that streams its voltages over a serial line. Opens the line, and
+/// reopens it after a failure. Skips and counts lines that do not match the configured format.
 class SerialForceSensor {
  public:
   SerialForceSensor(std::unique_ptr<Wire> wire, const VoltReadingConfig& config);
 
-  /// Reads what has come; never waits. `time` in s.
+  /// Reads the received bytes without blocking. `time` in s.
   void step(double time);
 
   struct Reading {
     Eigen::Vector2d force;   ///< N, (axial, lateral)
-    double time = 0;         ///< s, when its line was read
+    double time = 0;         ///< s, when its line was received
     bool saturated = false;  ///< a voltage is at the end of its range
   };
-  /// The newest; empty before the first and after the line broke.
+  /// The newest reading; empty before the first one and after the line failed.
   const std::optional<Reading>& reading() const { return reading_; }
 
   unsigned goodLines() const { return good_lines_; }
   unsigned badLines() const { return bad_lines_ + lines_.tooLong(); }
-  /// Why the line is not open; empty when it is.
-  const std::string& trouble() const { return trouble_; }
+  /// The reason why the line is not open; empty when it is open.
+  const std::string& errorText() const { return error_text_; }
 
  private:
-  void take(const std::string& line, double time);
+  void parseLine(const std::string& line, double time);
 
   std::unique_ptr<Wire> wire_;
   VoltReadingConfig config_;
   LineSplitter lines_;
   std::optional<Reading> reading_;
-  std::string trouble_ = "the line is not open yet";
-  double tried_ = -1e9;  ///< s, when the line was last tried
+  std::string error_text_ = "the line is not open yet";
+  double last_attempt_ = -1e9;  ///< s, of the last attempt to open the line
   unsigned good_lines_ = 0;
   unsigned bad_lines_ = 0;
 };

@@ -10,7 +10,7 @@
 namespace microinjection {
 namespace {
 
-/// Part of a response, relative to its first sample, below which noise would spoil the fit.
+/// Share of a response's first sample below which noise would distort the fit.
 constexpr double kStandsOut = 1e-3;
 
 Eigen::VectorXd hann(int size) {
@@ -29,9 +29,9 @@ double noiseDensity(const Eigen::VectorXd& stream, double sample_rate, int segme
   long count = 0;
   for (Eigen::Index at = 0; at + segment <= stream.size(); at += segment / 2) {
     const Eigen::VectorXd part = stream.segment(at, segment);
-    const Eigen::VectorXd seen = (part.array() - part.mean()) * window.array();
+    const Eigen::VectorXd windowed = (part.array() - part.mean()) * window.array();
     Eigen::VectorXcd spectrum;
-    transform.fwd(spectrum, seen);
+    transform.fwd(spectrum, windowed);
     for (int k = first; k <= last; ++k, ++count) sum += scale * std::norm(spectrum[k]);
   }
   return std::sqrt(sum / static_cast<double>(count));

@@ -12,8 +12,9 @@ namespace {
 
 bool isDigit(char c) { return c >= '0' && c <= '9'; }
 
-/// A plain decimal number with a digit before the point, perhaps with an exponent, and blanks around it. Nothing else:
-/// what libraries take for a number may be "inf", "0x1" and, under some locales, a decimal comma.
+/// Parses a plain decimal number with a digit before the point, an optional exponent and
+/// surrounding blanks. Library functions also accept "inf", "0x1" and, in some locales, a decimal
+/// comma.
 std::optional<double> plainNumber(const std::string& field, int decimals) {
   std::size_t at = field.find_first_not_of(' '), end = field.find_last_not_of(' ');
   if (at == std::string::npos) return std::nullopt;
@@ -41,7 +42,7 @@ std::optional<double> plainNumber(const std::string& field, int decimals) {
   return in >> value ? std::optional<double>(value) : std::nullopt;
 }
 
-/// Takes the checksum off the line; false when it is wrong.
+/// Removes the checksum from the line. Returns false if it is wrong.
 bool checkedBody(std::string& line) {
   const std::size_t star = line.rfind('*');
   if (star == std::string::npos || line.size() != star + 3) return false;
@@ -93,7 +94,7 @@ VoltReadingConfig VoltReadingConfig::read(ConfigReader& reader) {
 
 std::optional<Eigen::VectorXd> parseVoltages(const std::string& text, const VoltReadingConfig& config) {
   std::string line = text;
-  // A device that ends lines with \r\n where \n is awaited leaves the \r here.
+  // If a device ends lines with \r\n and the terminator is \n, the \r remains here.
   if (config.terminator == "\n" && !line.empty() && line.back() == '\r') line.pop_back();
   if (config.checksum == "nmea" && !checkedBody(line)) return std::nullopt;
   const std::vector<std::string> fields = split(line, config.separator[0]);

@@ -8,22 +8,24 @@
 
 namespace microinjection {
 
-/// An emulated device at the end of a line that takes its time, in virtual time (s) that never goes back.
+/// An emulated device behind a serial line with transmission times. Time (s) is virtual and never
+/// decreases.
 class EmulatedLine {
  public:
-  /// `held` (s): what the device says arrives later by that, as through a USB adapter with a latency timer.
-  EmulatedLine(std::shared_ptr<DeviceEmulator> device, double baud, double held = 0);
+  /// `delay` (s) is added to everything that the device sends, like the latency timer of a USB
+  /// adapter.
+  EmulatedLine(std::shared_ptr<DeviceEmulator> device, double baud, double delay = 0);
 
   void send(const std::string& bytes, double time) { to_device_.put(bytes, time); }
-  /// Lets time pass and returns what has arrived from the device.
+  /// Advances to `time` and returns the bytes that have arrived from the device.
   std::string receive(double time);
-  /// Everything on its way is lost, and what the device says from now until `time` of the next call, too.
+  /// Drops all bytes in transit, and what the device sends from now until `time` of the next call.
   void cut();
 
  private:
   std::shared_ptr<DeviceEmulator> device_;
   LineTiming to_device_, from_device_;
-  double held_;  // s
+  double delay_;  // s
   bool was_cut_ = false;
 };
 

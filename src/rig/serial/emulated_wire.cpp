@@ -3,7 +3,7 @@
 namespace microinjection {
 
 std::string EmulatedWire::open() {
-  if (!plugged_) return "emulated line: the cable is pulled";
+  if (!cable_connected_) return "emulated line: the cable is pulled";
   open_ = true;
   return "";
 }
@@ -14,8 +14,8 @@ void EmulatedWire::write(const std::string& bytes, double time) {
   if (open_) line_.send(bytes, time);
 }
 
-void EmulatedWire::pull() {
-  plugged_ = false;
+void EmulatedWire::disconnectCable() {
+  cable_connected_ = false;
   open_ = false;
   line_.cut();
 }

@@ -8,25 +8,25 @@
 
 namespace microinjection {
 
-/// A line whose other end is an emulated device in the same process, timed in the driver's own time: the same on every
-/// run, however the machine is loaded.
+/// A line to an emulated device in the same process, timed in the driver's own time. Every run is
+/// the same, whatever the load of the machine.
 class EmulatedWire : public Wire {
  public:
-  /// `baud` in bit/s; `held` (s) as EmulatedLine's.
-  EmulatedWire(std::shared_ptr<DeviceEmulator> device, double baud, double held = 0)
-      : line_(std::move(device), baud, held) {}
+  /// `baud` in bit/s; `delay` (s) as in EmulatedLine.
+  EmulatedWire(std::shared_ptr<DeviceEmulator> device, double baud, double delay = 0)
+      : line_(std::move(device), baud, delay) {}
 
   std::string open() override;
   bool isOpen() const override { return open_; }
   std::string read(double time) override;
   void write(const std::string& bytes, double time) override;
 
-  void pull();                      ///< the cable: what is on its way is lost, and the driver finds the line closed
-  void plug() { plugged_ = true; }  ///< the cable again: open() succeeds
+  void disconnectCable();                           ///< drops the bytes in transit and closes the line
+  void connectCable() { cable_connected_ = true; }  ///< allows open() to succeed again
 
  private:
   EmulatedLine line_;
-  bool plugged_ = true;
+  bool cable_connected_ = true;
   bool open_ = false;
 };
 

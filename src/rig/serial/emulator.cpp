@@ -6,12 +6,12 @@ namespace microinjection {
 
 void DeviceEmulator::inject(const Fault& fault) {
   if (fault.kind == Fault::Kind::kError) checkError(fault.code);
-  awaited_.push_back(fault);
+  pending_.push_back(fault);
 }
 
 void DeviceEmulator::beginFaults(double time) {
   std::vector<Fault> later;
-  for (const Fault& fault : awaited_) {
+  for (const Fault& fault : pending_) {
     if (fault.time > time) {
       later.push_back(fault);
       continue;
@@ -38,7 +38,7 @@ void DeviceEmulator::beginFaults(double time) {
         break;
     }
   }
-  awaited_.swap(later);
+  pending_.swap(later);
 }
 
 void DeviceEmulator::receive(const std::string& bytes, double time) {
@@ -50,17 +50,17 @@ void DeviceEmulator::receive(const std::string& bytes, double time) {
 
 std::string DeviceEmulator::send(double time) {
   beginFaults(time);
-  std::string said = say(time);
+  std::string output = produce(time);
   if (time < silent_until_) return "";
-  const std::size_t dropped = std::min<std::size_t>(said.size(), to_drop_);
+  const std::size_t dropped = std::min<std::size_t>(output.size(), to_drop_);
   to_drop_ -= static_cast<int>(dropped);
-  said.erase(0, dropped);
-  for (char& byte : said) {
+  output.erase(0, dropped);
+  for (char& byte : output) {
     if (to_garble_ == 0) break;
     byte = static_cast<char>(~byte);
     --to_garble_;
   }
-  return said;
+  return output;
 }
 
 }  // namespace microinjection

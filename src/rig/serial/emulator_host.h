@@ -8,27 +8,29 @@
 
 namespace microinjection {
 
-/// An emulated device on a pseudo-terminal, for drivers in other programs: step it often, with the real time.
+/// An emulated device on a pseudo-terminal, for drivers in other programs. Must be stepped often,
+/// with the real time.
 class EmulatorHost {
  public:
-  /// `link`: path at which the driver finds it; `baud` in bit/s. @throws ConfigError when the link cannot be made.
+  /// `link`: path that the driver opens; `baud` in bit/s. @throws ConfigError if the link cannot be
+  /// made.
   EmulatorHost(std::shared_ptr<DeviceEmulator> device, double baud, const std::string& link)
       : line_(std::move(device), baud), terminal_(link) {}
 
   struct Exchange {
-    std::string heard, said;  ///< bytes since the last step, as they entered the line and as they left it
+    std::string received, sent;  ///< bytes since the last step, received from and sent to the driver
   };
-  /// `time` in s, never goes back.
+  /// `time` (s) never decreases.
   Exchange step(double time) {
     Exchange exchange;
-    exchange.heard = terminal_.read();
-    line_.send(exchange.heard, time);
-    exchange.said = line_.receive(time);
-    terminal_.write(exchange.said);
+    exchange.received = terminal_.read();
+    line_.send(exchange.received, time);
+    exchange.sent = line_.receive(time);
+    terminal_.write(exchange.sent);
     return exchange;
   }
-  void pull() { terminal_.unplug(), line_.cut(); }  ///< the cable
-  void plug() { terminal_.plug(); }
+  void disconnectCable() { terminal_.disconnect(), line_.cut(); }
+  void connectCable() { terminal_.connect(); }
 
  private:
   EmulatedLine line_;

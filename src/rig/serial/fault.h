@@ -4,23 +4,24 @@
 
 namespace microinjection {
 
-/// A fault that an emulator is asked for: KIND[:VALUE][@TIME], for example "silence:2.0", "drop:1@5.5", "interrupt".
+/// A fault to be injected into an emulator: KIND[:VALUE][@TIME], for example "silence:2.0",
+/// "drop:1@5.5", "interrupt".
 ///
-///     silence:S   for S s it neither hears nor says anything (what moves goes on moving)
-///     drop:N      the next N bytes that it says are lost
-///     deaf:N      the next N bytes said to it are lost
-///     garble:N    the next N bytes that it says arrive with all bits turned over
-///     error:CODE  it answers the next command with this error of the device
-///     interrupt   what moves is stopped as if by hand
+///     silence:S   for S s the device neither receives nor sends (motions continue)
+///     drop:N      the next N bytes from the device are lost
+///     deaf:N      the next N bytes to the device are lost
+///     garble:N    the next N bytes from the device have all bits inverted
+///     error:CODE  the device answers the next command with this error
+///     interrupt   all motion is stopped as if by hand
 struct Fault {
   enum class Kind { kSilence, kDrop, kDeaf, kGarble, kError, kInterrupt };
   Kind kind = Kind::kInterrupt;
   double amount = 0;  ///< s of silence, or number of bytes
-  std::string code;   ///< of the error
-  double time = 0;    ///< s, at which it begins
+  std::string code;   ///< error code
+  double time = 0;    ///< s, start
 };
 
-/// @throws ConfigError when `text` is none, saying what is allowed.
+/// @throws ConfigError for an invalid `text`, with the allowed form.
 Fault parseFault(const std::string& text);
 
 }  // namespace microinjection

@@ -6,13 +6,12 @@
 
 namespace microinjection {
 
-/// The end of a device's lines, by its name: CR, LF or CRLF. A name, because a parameter server is no place for the
-/// characters themselves: on their way through it both \r\n and \r become \n.
-/// Keeps `bytes` where the key is absent.
+/// Reads a line ending by its name: CR, LF or CRLF. The file has the name, because a parameter
+/// server changes both \r\n and \r to \n. Keeps `bytes` if the key is absent.
 void readLineEnding(ConfigReader& reader, const std::string& key, std::string& bytes);
 
-/// Reads a text of visible characters and blanks. Others are an error of the key, which names the character and says
-/// how a line's end is written instead.
+/// Reads a text of printable characters and blanks. Reports any other character as an error of the
+/// key, and how a line ending is written instead.
 void readPlainText(ConfigReader& reader, const std::string& key, std::string& text,
                    ConfigReader::Presence presence = ConfigReader::kOptional);
 

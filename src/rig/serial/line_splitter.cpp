@@ -20,7 +20,7 @@ std::vector<std::string> LineSplitter::feed(const std::string& bytes) {
     }
   }
   begun_.erase(0, from);
-  // The end of what is dropped may be the terminator's begin.
+  // The dropped bytes may end with the beginning of a terminator.
   if (begun_.size() > longest_ + terminator_.size()) {
     too_long_ += skipping_ ? 0 : 1;
     skipping_ = true;

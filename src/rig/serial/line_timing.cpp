@@ -12,7 +12,7 @@ void LineTiming::put(const std::string& bytes, double time) {
   }
 }
 
-std::vector<LineTiming::Byte> LineTiming::take(double time) {
+std::vector<LineTiming::Byte> LineTiming::receive(double time) {
   const auto end = std::find_if(bytes_.begin(), bytes_.end(), [&](const Byte& byte) { return byte.time > time; });
   std::vector<Byte> arrived(bytes_.begin(), end);
   bytes_.erase(bytes_.begin(), end);

@@ -4,10 +4,11 @@
 
 namespace microinjection {
 
-/// Asks the driver of the serial port `fd` to hand over at once what has come (ASYNC_LOW_LATENCY of Linux). The driver
-/// of FTDI's USB adapters then lowers the adapter's latency timer from 16 ms to 1 ms; other drivers, and
-/// pseudo-terminals, may know no such flag, and are left as they are.
-/// @param control  of the system, ::ioctl; for tests
+/// Requests that the driver of the serial port `fd` delivers received bytes at once
+/// (ASYNC_LOW_LATENCY of Linux). The driver of FTDI's USB adapters then lowers the adapter's
+/// latency timer from 16 ms to 1 ms. Other drivers and pseudo-terminals may not support the flag
+/// and stay unchanged.
+/// @param control  system call, ::ioctl; replaceable for tests
 /// @returns whether the flag is set now
 bool requestLowLatency(int fd,
                        const std::function<int(int fd, unsigned long request, void* argument)>& control = nullptr);

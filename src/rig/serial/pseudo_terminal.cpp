@@ -19,11 +19,11 @@ namespace {
 
 }  // namespace
 
-PseudoTerminal::PseudoTerminal(const std::string& link) : link_(link) { plug(); }
-PseudoTerminal::~PseudoTerminal() { unplug(); }
+PseudoTerminal::PseudoTerminal(const std::string& link) : link_(link) { connect(); }
+PseudoTerminal::~PseudoTerminal() { disconnect(); }
 
-void PseudoTerminal::plug() {
-  unplug();
+void PseudoTerminal::connect() {
+  disconnect();
   master_ = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   if (master_ < 0 || grantpt(master_) != 0 || unlockpt(master_) != 0) fail("pseudo-terminal");
   std::array<char, 256> name{};
@@ -32,20 +32,20 @@ void PseudoTerminal::plug() {
   kept_open_ = ::open(slave_.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
   termios mode{};
   if (kept_open_ < 0 || tcgetattr(kept_open_, &mode) != 0) fail(slave_);
-  cfmakeraw(&mode);  // bytes as they are: no echo, no line ends
+  cfmakeraw(&mode);  // bytes unchanged: no echo, no conversion of line ends
   if (tcsetattr(kept_open_, TCSANOW, &mode) != 0) fail(slave_);
   std::error_code error;
   const std::filesystem::file_status there = std::filesystem::symlink_status(link_, error);
   if (std::filesystem::exists(there) && !std::filesystem::is_symlink(there)) {
     throw ConfigError("link = " + link_ + ": must be free, or a link; there is a file");
   }
-  // Renamed over an old link, so that there is never none.
+  // Renaming replaces an old link without a moment in which there is none.
   const std::string fresh = link_ + "." + std::to_string(getpid());
   if (symlink(slave_.c_str(), fresh.c_str()) != 0) fail("link = " + link_);
   if (rename(fresh.c_str(), link_.c_str()) != 0) fail("link = " + link_);
 }
 
-void PseudoTerminal::unplug() {
+void PseudoTerminal::disconnect() {
   if (master_ < 0) return;
   std::error_code error;
   if (std::filesystem::read_symlink(link_, error) == slave_) std::filesystem::remove(link_, error);

@@ -4,29 +4,30 @@
 
 namespace microinjection {
 
-/// The emulator's side of a pseudo-terminal, with a link to the driver's side at a path of its own. The driver may
-/// close and open its side as often as it likes.
+/// The emulator's end of a pseudo-terminal, with a link to the driver's end. The driver may close
+/// and open its end at any time.
 class PseudoTerminal {
  public:
-  /// Plugs it in. @throws ConfigError when the link cannot be made, e.g. because there is a file that is no link.
+  /// Connects. @throws ConfigError if the link cannot be made, e.g. because a file that is no link
+  /// has its name.
   explicit PseudoTerminal(const std::string& link);
   ~PseudoTerminal();
   PseudoTerminal(const PseudoTerminal&) = delete;
   PseudoTerminal& operator=(const PseudoTerminal&) = delete;
 
-  /// Bytes that the driver has written, perhaps none; does not wait.
+  /// Bytes that the driver has written, possibly none. Does not block.
   std::string read();
-  /// What does not fit because nobody reads is lost, as it is on a serial line.
+  /// Bytes that do not fit because nobody reads are lost, as on a serial line.
   void write(const std::string& bytes);
 
-  void unplug();  ///< the driver's side hangs up, and the link is gone
-  void plug();    ///< a new terminal behind the same link
+  void disconnect();  ///< the driver sees a hang-up, and the link is removed
+  void connect();     ///< creates a new terminal at the same link
 
  private:
   std::string link_;
-  std::string slave_;  // path of the driver's side
+  std::string slave_;  // path of the driver's end
   int master_ = -1;
-  int kept_open_ = -1;  // the driver's side, so that its closing is no hang-up here
+  int kept_open_ = -1;  // the driver's end, so that a driver that closes it causes no hang-up here
 };
 
 }  // namespace microinjection

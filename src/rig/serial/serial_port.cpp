@@ -32,16 +32,16 @@ std::string SerialPortConfig::frame() const {
   return std::string("8") + (parity == "even" ? "E" : parity == "odd" ? "O" : "N") + std::to_string(stop_bits);
 }
 
-/// Its handlers run in `context.poll()` only, so that everything happens in the caller's thread.
+/// Handlers run only in `context.poll()`, and so in the caller's thread.
 struct SerialPort::Line {
-  static constexpr std::size_t kMostUnsent = 1 << 16;  // bytes: a device that takes none for so long is gone
+  static constexpr std::size_t kMostUnsent = 1 << 16;  // bytes; a device that accepts none for so long is lost
 
   asio::io_context context{1};
   asio::serial_port port{context};
   std::array<char, 4096> buffer;
   std::string received;
-  std::string unsent;   // handed over, and not yet given to the system
-  std::string sending;  // must stay where it is while it is sent
+  std::string unsent;   // not yet passed to the system
+  std::string sending;  // must not move while it is being sent
   bool broken = false;
   StopGuard stop_guard;
 
@@ -49,7 +49,8 @@ struct SerialPort::Line {
     error_code error;
     port.open(config.path, error);
     if (error) return config.path + ": " + error.message();
-    // Two programs on one line would garble each other; unlike TIOCEXCL this ends with the program.
+    // Two programs on one line would corrupt each other's messages. Unlike TIOCEXCL, the lock ends
+    // with the program.
     if (flock(port.native_handle(), LOCK_EX | LOCK_NB) != 0) return config.path + ": in use by another program";
     using Port = asio::serial_port_base;
     const auto set = [&](const auto& option) {
@@ -119,7 +120,8 @@ pid_t SerialPort::guardProcess() const { return line_ ? line_->stop_guard.proces
 Wire::GuardReport SerialPort::heartbeat() {
   if (!line_ || guarded_stop_.empty()) return {};
   GuardReport report = line_->stop_guard.heartbeat();
-  if (!report.intervention.empty()) line_->unsent.clear();  // what is half sent goes on, so that the stop is understood
+  if (!report.intervention.empty())
+    line_->unsent.clear();  // a partly sent message is completed, so that the device understands the stop
   return report;
 }
 
@@ -134,7 +136,8 @@ std::string SerialPort::read(double /*time*/) {
 
 void SerialPort::write(const std::string& bytes, double /*time*/) {
   if (!line_) return;
-  // A program that comes alive in the middle of a step must not set a device in motion that was stopped.
+  // A program that resumes in the middle of a step must not restart a device that the guard has
+  // stopped.
   if (!guarded_stop_.empty() && bytes != guarded_stop_ && line_->stop_guard.intervened()) return;
   line_->unsent += bytes;
   line_->send();

@@ -11,23 +11,25 @@
 namespace microinjection {
 
 struct SerialPortConfig {
-  std::string path;             ///< of the serial device, or of a link to one, e.g. /dev/ttyUSB0
+  std::string path;             ///< of the serial device or a link to it, e.g. /dev/ttyUSB0
   int baud = 9600;              ///< bit/s; 8 data bits
   std::string parity = "none";  ///< none, even or odd
   int stop_bits = 1;            ///< 1 or 2
-  /// none; rts_cts: RTS and CTS hold the sender back, so without the wires in the cable nothing is sent, not even a
-  /// stop
+  /// none or rts_cts. With rts_cts nothing is sent without these wires in the cable, not even a
+  /// stop.
   std::string handshake = "none";
 
-  std::string frame() const;  ///< as data sheets write it, e.g. 8N1
+  std::string frame() const;  ///< as in data sheets, e.g. 8N1
 
   /// Requires `path`; the others are optional.
   static SerialPortConfig read(ConfigReader& reader, int default_baud);
 };
 
-/// A serial device, or a pseudo-terminal, without waiting. A pulled cable (hang-up, input/output error) closes it.
+/// A serial device or pseudo-terminal, non-blocking. A disconnected cable (hang-up, input/output
+/// error) closes it.
 ///
-/// Boost.Asio does the work: libserialport 0.1.1 looks ports up in /sys and so refuses pseudo-terminals and links.
+/// It uses Boost.Asio, because libserialport 0.1.1 searches ports in /sys and so rejects
+/// pseudo-terminals and links.
 class SerialPort : public Wire {
  public:
   explicit SerialPort(const SerialPortConfig& config);
@@ -35,18 +37,18 @@ class SerialPort : public Wire {
 
   void setGuardedStop(const std::string& bytes) override { guarded_stop_ = bytes; }
   GuardReport heartbeat() override;
-  std::string open() override;  ///< what came while nobody listened is thrown away
+  std::string open() override;  ///< discards bytes received before
   bool isOpen() const override;
   std::string read(double time) override;
   void write(const std::string& bytes, double time) override;
 
-  pid_t guardProcess() const;  ///< of the stop guard; -1: there is none
+  pid_t guardProcess() const;  ///< of the stop guard; -1: none
 
  private:
-  struct Line;  // Asio's headers are heavy
+  struct Line;  // hides Asio's large headers
   SerialPortConfig config_;
   std::string guarded_stop_;
-  std::unique_ptr<Line> line_;  // none: closed
+  std::unique_ptr<Line> line_;  // null: closed
 };
 
 }  // namespace microinjection

@@ -17,8 +17,8 @@ namespace microinjection {
 namespace {
 
 constexpr double kStartInterval = 0.5;  // s, between attempts to start a guard
-constexpr int kMostWaits = 1000;        // ms, for the end of a guard that was killed: a debugger may hold on to it
-constexpr double kLongestStep = 0.05;   // s: in a longer one this program stood still, and not its guard
+constexpr int kMostWaits = 1000;        // ms, to wait for the end of a killed guard, which a debugger may delay
+constexpr double kLongestStep = 0.05;   // s; a longer step means that this program was frozen, not its guard
 
 double seconds(std::chrono::steady_clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
 
@@ -37,18 +37,18 @@ std::string StopGuard::start() {
   silence_ = 0;
   int ends[2];
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) return std::strerror(errno);
-  // 0 and 1 are where the guard puts its own.
+  // The guard uses descriptors 0 and 1 for its own purposes.
   const int driver = fcntl(ends[1], F_DUPFD_CLOEXEC, 3), line = fcntl(line_, F_DUPFD_CLOEXEC, 3);
   const CommandLine program = findCommandLine();
   process_ = driver < 0 || line < 0 ? -1 : fork();
   if (process_ == 0) runStopGuard(line, driver, stop_.data(), stop_.size(), program);
-  std::string why = process_ < 0 ? std::strerror(errno) : "";
+  std::string reason = process_ < 0 ? std::strerror(errno) : "";
   for (const int each : {ends[1], driver, line}) {
     if (each >= 0) close(each);
   }
   socket_ = ends[0];
-  if (!why.empty()) endProcess();
-  return why;
+  if (!reason.empty()) endProcess();
+  return reason;
 }
 
 void StopGuard::receive() {
@@ -57,7 +57,7 @@ void StopGuard::receive() {
     const ssize_t size = recv(socket_, messages, sizeof(messages), MSG_DONTWAIT);
     if (size < 0 && errno == EINTR) continue;
     if (size < 0 && errno == EAGAIN) return;
-    if (size <= 0) return lose("ended");
+    if (size <= 0) return markLost("ended");
     silence_ = 0;
     if (std::memchr(messages, kStopGuardStopped, static_cast<std::size_t>(size)) != nullptr) {
       intervention_ = "the program stood still for more than 0.2 s; the stop guard stopped the device";
@@ -65,9 +65,9 @@ void StopGuard::receive() {
   }
 }
 
-/// Does not wait for its end: a guard that a debugger holds on to has none until the debugger lets go. What it may
-/// still send is the stop, which the driver sends as well.
-void StopGuard::lose(const std::string& what) {
+/// Does not wait for the guard's end, which a debugger can delay. The guard may still send the
+/// stop, but the driver sends it as well.
+void StopGuard::markLost(const std::string& what) {
   if (process_ > 0) {
     kill(process_, SIGKILL);
     lost_.push_back(process_);
@@ -93,17 +93,17 @@ Wire::GuardReport StopGuard::heartbeat() {
   const Clock::time_point now = Clock::now();
   if (socket_ >= 0) {
     silence_ += std::min(seconds(now - last_heartbeat_), kLongestStep);
-    // A socket that is full belongs to a guard that does not listen, and is found by its silence.
+    // A full socket belongs to a frozen guard, which its silence reveals.
     const bool gone = send(socket_, &kStopGuardBeat, 1, MSG_DONTWAIT | MSG_NOSIGNAL) < 0 && errno == EPIPE;
-    if (gone) lose("ended");
-    if (silence_ > kStopGuardSilence) lose("stood still for more than 0.2 s");
+    if (gone) markLost("ended");
+    if (silence_ > kStopGuardSilence) markLost("stood still for more than 0.2 s");
   }
   last_heartbeat_ = now;
   if (line_ >= 0 && socket_ < 0 && seconds(now - last_start_) > kStartInterval) missing_ = start();
   return {std::exchange(intervention_, ""), missing_};
 }
 
-/// Killed it sends nothing, wherever it is in its work; a closed socket alone would have it send the stop.
+/// A killed guard sends nothing. If only the socket were closed, it would send the stop.
 void StopGuard::endProcess() {
   if (process_ > 0 && waitpid(process_, nullptr, WNOHANG) == 0) {
     kill(process_, SIGKILL);

@@ -10,9 +10,10 @@
 
 namespace microinjection {
 
-/// Sends a device's stop for a program that cannot: one that has died without having closed the line (kill -9, SIGTERM,
-/// a crash), or that stands still (SIGSTOP, a debugger, a swap storm) and so sends no beat for 0.2 s. It is a process
-/// of its own that holds the line open. One that dies or stands still itself is replaced. end() sends nothing.
+/// Sends a device's stop when the program cannot: when it died without closing the line (kill -9,
+/// SIGTERM, a crash), or when it is frozen (SIGSTOP, a debugger, swapping) and sends no heartbeat
+/// for 0.2 s. The guard is a process of its own that holds the line open. A guard that dies or
+/// freezes is replaced. end() sends nothing.
 class StopGuard {
  public:
   StopGuard() = default;
@@ -20,11 +21,12 @@ class StopGuard {
   StopGuard(const StopGuard&) = delete;
   StopGuard& operator=(const StopGuard&) = delete;
 
-  /// `line`: descriptor of the open line, non-blocking, that outlives this. Empty, or why there is no guard.
+  /// `line`: non-blocking descriptor of the open line, which must outlive this object. Returns an
+  /// empty text, or the reason why there is no guard.
   std::string begin(int line, const std::string& stop);
-  /// To be called at every step of the driver; says what happened since the last call.
+  /// Must be called in every step of the driver. Reports what occurred since the last call.
   Wire::GuardReport heartbeat();
-  /// Whether the next heartbeat() has an intervention to say: until then nothing may be sent but a stop.
+  /// True if the next heartbeat() will report an intervention. Until then only a stop may be sent.
   bool intervened();
   void end();
 
@@ -35,17 +37,17 @@ class StopGuard {
 
   std::string start();
   void receive();
-  void lose(const std::string& what);
+  void markLost(const std::string& what);
   void endProcess();
   void reap();
 
   int line_ = -1;
   std::string stop_;
   pid_t process_ = -1;
-  std::vector<pid_t> lost_;  // guards that were killed and have not ended yet
-  int socket_ = -1;          // this end is closed when the program is gone
+  std::vector<pid_t> lost_;  // killed guards that have not terminated yet
+  int socket_ = -1;          // the system closes this end when the program terminates
   Clock::time_point last_heartbeat_, last_start_;
-  double silence_ = 0;  // s, of the guard
+  double silence_ = 0;  // s, since the guard's last message
   std::string intervention_, missing_;
 };
 

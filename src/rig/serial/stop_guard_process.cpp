@@ -26,7 +26,7 @@ constexpr int kLine = 0, kDriver = 1;  // the guard's descriptors
 constexpr int kTick = 20;              // ms
 constexpr char kName[] = "stop_guard";
 
-/// Closes every descriptor from `first` on, without what may not be called here: close_range() is not in every libc.
+/// Closes every descriptor from `first` on. close_range() is not in every libc.
 void closeAllFrom(int first) {
   struct Entry {  // linux_dirent64
     std::uint64_t inode;
@@ -38,7 +38,7 @@ void closeAllFrom(int first) {
   alignas(Entry) char entries[2048];
   const int list = open("/proc/self/fd", O_RDONLY | O_DIRECTORY);
   bool found = list >= 0;
-  while (found) {  // from the start again, since what is closed leaves the list
+  while (found) {  // restarts, since closed descriptors leave the list
     found = false;
     lseek(list, 0, SEEK_SET);
     const long size = syscall(SYS_getdents64, list, entries, sizeof(entries));
@@ -68,50 +68,51 @@ class Guard {
  public:
   Guard(const char* stop, std::size_t size) : stop_(stop), size_(size), written_(size), last_tick_(now()) {}
 
-  void guardUntilDriverIsGone() {
+  void guardUntilDriverTerminates() {
     while (process()) {
       countSilence();
-      report();  // before the stop is on the line: a driver that wakes up in between must not write behind it
+      report();  // before the stop is written: a driver that resumes in between must not write after it
       write();
       wait(kTick);
     }
   }
   void stopDevice() {
-    if (written_ == size_) written_ = 0;  // one that was begun is sent to its end
+    if (written_ == size_) written_ = 0;  // a partly written stop is completed
     for (write(); written_ < size_; write()) wait(-1);
   }
 
  private:
-  /// Reads all beats. False: the driver is gone.
+  /// Reads all heartbeats. Returns false if the driver has terminated.
   bool process() {
     char beats[64];
-    heard_ = false;
+    received_ = false;
     for (;;) {
       const ssize_t size = recv(kDriver, beats, sizeof(beats), MSG_DONTWAIT);
       if (size > 0) {
-        heard_ = true;
+        received_ = true;
       } else if (size == 0 || errno != EINTR) {
         return size < 0 && errno == EAGAIN;
       }
     }
   }
 
-  /// A tick that took much longer than it should counts as one: the machine stood still, and the driver with it.
+  /// A tick that took much longer counts as one tick: the machine was frozen, and the driver with
+  /// it.
   void countSilence() {
     const double time = now(), passed = time - last_tick_;
     last_tick_ = time;
-    silence_ = heard_ ? 0 : silence_ + (passed < 2e-3 * kTick ? passed : 1e-3 * kTick);
-    if (heard_) {
+    silence_ = received_ ? 0 : silence_ + (passed < 2e-3 * kTick ? passed : 1e-3 * kTick);
+    if (received_) {
       reported_ = false;
       send(kStopGuardEcho);
     }
     if (silence_ < kStopGuardSilence) return;
-    silence_ = 0;  // sent again after as much silence: the line may lose a byte
+    silence_ = 0;  // repeats the stop after the same time, since the line may lose a byte
     stopping_ = true;
     if (written_ == size_) written_ = 0;
   }
 
-  /// The open file is the driver's as well, so that it must stay non-blocking.
+  /// The file description is shared with the driver, so it must stay non-blocking.
   void write() {
     while (written_ < size_) {
       const ssize_t written = ::write(kLine, stop_ + written_, size_ - written_);
@@ -133,7 +134,8 @@ class Guard {
 
   static bool send(char message) { return ::send(kDriver, &message, 1, MSG_DONTWAIT | MSG_NOSIGNAL) == 1; }
 
-  /// Does not wake at every beat, but at once when the driver is gone or the line takes the rest of a stop.
+  /// Ignores heartbeats, but returns at once when the driver terminates or the line accepts the
+  /// rest of a stop.
   void wait(int duration) {
     pollfd ends[2] = {{written_ < size_ ? kLine : -1, POLLOUT, 0}, {duration < 0 ? -1 : kDriver, POLLRDHUP, 0}};
     poll(ends, 2, duration);
@@ -142,8 +144,8 @@ class Guard {
   const char* stop_;
   std::size_t size_, written_;
   double last_tick_;    // s
-  double silence_ = 0;  // s, of the driver
-  bool heard_ = false, stopping_ = false, reported_ = false;
+  double silence_ = 0;  // s, since the driver's last heartbeat
+  bool received_ = false, stopping_ = false, reported_ = false;
 };
 
 }  // namespace
@@ -161,21 +163,21 @@ CommandLine findCommandLine() {
 }
 
 void runStopGuard(int line, int driver, const char* stop, std::size_t size, CommandLine program) {
-  setsid();  // what ends the program's whole group must not end this one
+  setsid();  // a signal to the program's group must not end the guard
   for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) signal(number, SIG_IGN);
-  prctl(PR_SET_NAME, kName);  // nor what ends programs by their name
+  prctl(PR_SET_NAME, kName);  // nor must a kill by the program's name
   if (program.size > sizeof(kName)) {
     std::memset(program.text, 0, program.size);
     std::memcpy(program.text, kName, sizeof(kName));
   }
-  mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT);  // what it uses, not all that the program has
-  // Nothing else may be kept open: neither connections nor the socket's other end.
+  mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT);  // only the pages that the guard uses
+  // The guard must keep nothing else open: neither connections nor the socket's other end.
   dup2(line, kLine);
   dup2(driver, kDriver);
   closeAllFrom(3);
   close(2);
   Guard guard(stop, size);
-  guard.guardUntilDriverIsGone();
+  guard.guardUntilDriverTerminates();
   guard.stopDevice();
   _exit(0);
 }

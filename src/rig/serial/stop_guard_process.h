@@ -4,27 +4,31 @@
 
 namespace microinjection {
 
-/// Bytes between the driver and its stop guard, one a message.
+/// Messages between the driver and its stop guard, one byte each.
 constexpr char kStopGuardBeat = 'b';     ///< to the guard: the driver was stepped
-constexpr char kStopGuardEcho = 'e';     ///< from it: beats have come since the last one
-constexpr char kStopGuardStopped = 's';  ///< from it: no beat came for kStopGuardSilence; the stop has been sent
+constexpr char kStopGuardEcho = 'e';     ///< from the guard: it received heartbeats since the last echo
+constexpr char kStopGuardStopped = 's';  ///< from the guard: no heartbeat for kStopGuardSilence, the stop has been sent
 
-constexpr double kStopGuardSilence = 0.2;  ///< s without a beat after which a driver stands still, or without an echo
+/// s without a heartbeat after which a driver, or without an echo after which a guard, is frozen
+constexpr double kStopGuardSilence = 0.2;
 
-/// Where the kernel reads a process's command line; null when it was not found.
+/// Where the kernel reads a process's command line; null if it was not found.
 struct CommandLine {
   char* text = nullptr;
   std::size_t size = 0;
 };
-/// Of this process. To be called before the fork.
+/// Command line of this process. Call it before the fork.
 CommandLine findCommandLine();
 
-/// The guard's life, in a process of its own: sends `stop` on `line` when the driver at the other end of the socket
-/// `driver` is gone, and again and again while it sends no beat. `line` must be non-blocking; both descriptors > 2.
-/// It overwrites `program` with a name of its own, so that `pkill -f` with the driver's name does not end it as well,
-/// and locks its memory where the limits allow that, so that it runs while the machine swaps.
+/// Main loop of the guard process. Sends `stop` on `line` when the driver at the other end of the
+/// socket `driver` has terminated, and repeatedly while the driver sends no heartbeat. `line` must
+/// be non-blocking; both descriptors must be > 2.
 ///
-/// It is the child of a fork in a program with threads: only what is safe in a signal handler may be called.
+/// It overwrites `program` with a name of its own, so that `pkill -f` with the driver's name does
+/// not kill it. It locks its memory if the limits allow it, so that it runs while the machine swaps.
+///
+/// It runs in the child of a fork of a multi-threaded program, so it may only call
+/// async-signal-safe functions.
 [[noreturn]] void runStopGuard(int line, int driver, const char* stop, std::size_t size, CommandLine program);
 
 }  // namespace microinjection

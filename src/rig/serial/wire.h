@@ -4,30 +4,34 @@
 
 namespace microinjection {
 
-/// A line of bytes to a device, as its driver sees it. Nothing here waits: a driver is stepped at its node's rate.
+/// A byte stream to a device, as used by its driver. No function blocks, since a driver is stepped
+/// at its node's rate.
 class Wire {
  public:
   virtual ~Wire() = default;
 
-  /// Bytes that stop the device. From the next open() on a guard sends them when this program dies without having
-  /// closed the line, or when heartbeat() is not called for 0.2 s. None: the line needs no guard.
+  /// Sets the bytes that stop the device. From the next open() on, a guard sends them when this
+  /// program dies without closing the line, or when heartbeat() is not called for 0.2 s. Without
+  /// bytes the line needs no guard.
   virtual void setGuardedStop(const std::string& /*bytes*/) {}
 
   struct GuardReport {
-    std::string intervention;  ///< since the last beat: why the device was stopped or must be; what was asked is void
-    std::string missing;       ///< why there is no guard: nothing may move. Empty: there is one, or none is needed
+    std::string intervention;  ///< why the device was or must be stopped since the last heartbeat; no reply is pending
+    std::string missing;  ///< why there is no guard, so that nothing may move; empty: there is one, or none is needed
   };
-  /// Shows the guard that this program goes on; to be called at every step.
+  /// Signals the guard that this program is running. Must be called in every step.
   virtual GuardReport heartbeat() { return {}; }
 
-  /// Opens the line, or tries again after it broke. Empty when it is open, otherwise the reason.
+  /// Opens the line, or reopens it after a failure. Returns an empty text if it is open, otherwise
+  /// the reason.
   virtual std::string open() = 0;
   virtual bool isOpen() const = 0;
 
-  /// Bytes that have come since the last call, perhaps none. A broken line closes itself; `time` in s.
+  /// Bytes received since the last call, possibly none. A broken line closes itself. `time` in s.
   virtual std::string read(double time) = 0;
-  /// Hands over all bytes for sending, or closes the line when that fails; `time` in s. After an intervention of the
-  /// guard that no heartbeat() has told yet, nothing is sent but the stop.
+  /// Queues all bytes for sending, or closes the line if that fails. `time` in s. After an
+  /// intervention of the guard only the stop is sent, until heartbeat() has reported the
+  /// intervention.
   virtual void write(const std::string& bytes, double time) = 0;
 };
 

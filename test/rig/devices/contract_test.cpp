@@ -56,7 +56,7 @@ class ContractTest : public testing::TestWithParam<Variant> {
     device_ = rig.make_driver(reader, std::move(wire));
     needle_ = std::make_unique<Micromanipulator>(geometry_, CollisionGuard(rigUrdf(), geometry_, 2e-6),
                                                  MicromanipulatorConfig(), *device_);
-    ASSERT_TRUE(until([&] { return ready(); })) << device_->why();
+    ASSERT_TRUE(until([&] { return ready(); })) << device_->reason();
     near_ = 1.5 * std::max(device_->abilities().resolution, 1e-9) + 1e-9;
     goTo(kStart);
   }
@@ -91,7 +91,7 @@ class ContractTest : public testing::TestWithParam<Variant> {
   }
   void goTo(const Eigen::Vector3d& target) {
     ASSERT_EQ(needle_->movePosition(pose(target)), "");
-    ASSERT_TRUE(until([&] { return isAt(target) && !busy(); })) << device_->why() << needle_->ended();
+    ASSERT_TRUE(until([&] { return isAt(target) && !busy(); })) << device_->reason() << needle_->abortReason();
   }
   void expectStands(double duration = 0.5) {
     const Eigen::Vector3d held = place();
@@ -187,12 +187,12 @@ TEST_P(ContractTest, StaleCommandsHold) {
 TEST_P(ContractTest, APulledCableEndsInARest) {
   needle_->movePosition(pose({500e-6, 0, 60e-6}));
   ASSERT_TRUE(until([&] { return needle_->tipPose() && place().x() > 5e-6; }));
-  wire_->pull();
+  wire_->disconnectCable();
   ASSERT_TRUE(until([&] { return device_->state() == ManipulatorDevice::State::kDisconnected; }));
   run(2);
   EXPECT_FALSE(needle_->tipPose());
-  wire_->plug();
-  ASSERT_TRUE(until([&] { return ready(); })) << device_->why();
+  wire_->connectCable();
+  ASSERT_TRUE(until([&] { return ready(); })) << device_->reason();
   expectStands(1);
   goTo({10e-6, 0, 70e-6});
 }

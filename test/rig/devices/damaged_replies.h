@@ -30,7 +30,7 @@ class DamagedReplies : public ManipulatorEmulator {
 
  protected:
   void process(const std::string& bytes, double time) override { device_->receive(bytes, time); }
-  std::string say(double time) override {
+  std::string produce(double time) override {
     const std::string reply = device_->send(time);
     if (reply.empty() || !damaging_) return reply;
     if (!damage_.holds() && damage_.below(2) == 0) return reply;

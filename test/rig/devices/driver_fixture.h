@@ -169,7 +169,7 @@ class DriverTest : public testing::Test {
   }
   void moveAndCheck(const Eigen::Vector3d& place = kPlace) {
     rig_->driver().moveTo(place, 1e-3);
-    ASSERT_TRUE(rig_->runUntilArrived()) << rig_->driver().why();
+    ASSERT_TRUE(rig_->runUntilArrived()) << rig_->driver().reason();
     expectNear(rig_->place(), place, kStep);
     expectNear(rig_->read(), rig_->place(), Tested::kTold);
   }

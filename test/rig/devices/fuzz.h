@@ -104,10 +104,10 @@ class Fuzz {
     rig_.driver().stop();
     rig_.run(1);
     rig_.driver().clearFault();
-    ASSERT_TRUE(rig_.runUntilReady()) << rig_.driver().why();
+    ASSERT_TRUE(rig_.runUntilReady()) << rig_.driver().reason();
     const Eigen::Vector3d goal = somewhere();
     rig_.driver().moveTo(goal, kSpeed);
-    ASSERT_TRUE(rig_.runUntilArrived(5)) << rig_.driver().why();
+    ASSERT_TRUE(rig_.runUntilArrived(5)) << rig_.driver().reason();
     expectNear(rig_.place(), goal, near_);
     expectNear(rig_.read(), rig_.place(), told_);
   }

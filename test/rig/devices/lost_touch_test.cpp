@@ -35,7 +35,7 @@ TYPED_TEST(LostTouchTest, ASilentDevicesPositionIsNotToldForLong) {
   while (rig.driver().reading() && rig.time() < from + 5) this->stream(1e-3);
   EXPECT_LT(rig.time() - from, TypeParam::kLongestBlind);
   EXPECT_EQ(rig.driver().state(), ManipulatorDevice::State::kDisconnected);
-  EXPECT_NE(rig.driver().why().find("position"), std::string::npos) << rig.driver().why();
+  EXPECT_NE(rig.driver().reason().find("position"), std::string::npos) << rig.driver().reason();
   this->stream(5, [&] { EXPECT_FALSE(rig.driver().reading()); });
   EXPECT_EQ(rig.driver().state(), ManipulatorDevice::State::kFault);
 }
@@ -58,7 +58,7 @@ TYPED_TEST(LostTouchTest, OneLostAnswerIsGotOver) {
   this->followUntil(TypeParam::kLostReply);
   auto& rig = *this->rig_;
   this->stream(2, [&] {
-    ASSERT_EQ(rig.driver().state(), ManipulatorDevice::State::kReady) << rig.driver().why();
+    ASSERT_EQ(rig.driver().state(), ManipulatorDevice::State::kReady) << rig.driver().reason();
     ASSERT_TRUE(rig.driver().reading());
   });
   ASSERT_TRUE(rig.runUntilArrived());
@@ -72,7 +72,7 @@ TYPED_TEST(LostTouchTest, ADriverThatWasHeldUpBlamesNotTheDevice) {
   for (int i = 0; i < 20; ++i) {
     rig.run(0.31);
     rig.driver().step(rig.time() + 0.3);  // a step that comes late
-    ASSERT_EQ(rig.driver().state(), ManipulatorDevice::State::kReady) << rig.driver().why();
+    ASSERT_EQ(rig.driver().state(), ManipulatorDevice::State::kReady) << rig.driver().reason();
     rig.run(0.3);
   }
 }

@@ -87,7 +87,7 @@ TYPED_TEST(MoveByMoveTest, RecoversFromFaultsOfTheLineAndLosesNoMove) {
       rig.run(0.8 - rig.time());
       rig.inject(fault);
       rig.driver().moveTo(kPlace, 0.2e-3);
-      ASSERT_TRUE(rig.runUntilArrived()) << rig.driver().why();
+      ASSERT_TRUE(rig.runUntilArrived()) << rig.driver().reason();
       expectNear(rig.place(), kPlace, TypeParam::kStep);
       expectNear(rig.read(), rig.place(), TypeParam::kTold);
       EXPECT_LE(rig.device().movesBegun(), TypeParam::kMovesAtMost);
@@ -107,7 +107,7 @@ TYPED_TEST(MoveByMoveTest, AMoveThatIsInterruptedTwiceIsAFault) {
   }
   ASSERT_TRUE(rig.runUntil([&] { return rig.driver().state() == ManipulatorDevice::State::kFault; },
                            1 + TypeParam::kEndIsSeen));
-  EXPECT_NE(rig.driver().why().find("interrupted"), std::string::npos) << rig.driver().why();
+  EXPECT_NE(rig.driver().reason().find("interrupted"), std::string::npos) << rig.driver().reason();
   rig.driver().clearFault();
   ASSERT_TRUE(rig.runUntilReady());
   this->moveAndCheck();
@@ -118,9 +118,9 @@ TYPED_TEST(MoveByMoveTest, ASlowMachineMovesIt) {
     SCOPED_TRACE(step);
     EmulatedRig<typename TypeParam::Driver, typename TypeParam::Config> rig(
         TypeParam::config(), std::make_shared<typename TypeParam::Emulator>(), step);
-    ASSERT_TRUE(rig.runUntilReady(30)) << rig.driver().why();
+    ASSERT_TRUE(rig.runUntilReady(30)) << rig.driver().reason();
     rig.driver().moveTo(kPlace, 1e-3);
-    ASSERT_TRUE(rig.runUntilArrived(30)) << rig.driver().why();
+    ASSERT_TRUE(rig.runUntilArrived(30)) << rig.driver().reason();
     expectNear(rig.read(), kPlace, TypeParam::kStep);
   }
 }

@@ -12,7 +12,7 @@ class ResetTest : public DriverTest<Tested> {
   bool toldOfIt() const {
     const auto& driver = this->rig_->driver();
     return driver.state() == ManipulatorDevice::State::kFault &&
-           driver.why().find("coordinates began anew") != std::string::npos;
+           driver.reason().find("coordinates began anew") != std::string::npos;
   }
   void startAt(const Eigen::Vector3d& place) {
     this->rig_.reset();
@@ -29,10 +29,10 @@ class ResetTest : public DriverTest<Tested> {
       told = told || toldOfIt();
       EXPECT_FALSE(told && rig.driver().reading());
     });
-    ASSERT_TRUE(toldOfIt()) << rig.driver().why();
+    ASSERT_TRUE(toldOfIt()) << rig.driver().reason();
     EXPECT_EQ(rig.device().movesBegun(), moves);
     rig.driver().clearFault();
-    ASSERT_TRUE(rig.runUntilReady()) << rig.driver().why();
+    ASSERT_TRUE(rig.runUntilReady()) << rig.driver().reason();
     expectNear(rig.read(), rig.place(), Tested::kTold);
     rig.run(0.5);
     EXPECT_EQ(rig.device().movesBegun(), moves);
@@ -50,10 +50,10 @@ TYPED_TEST(ResetTest, AtRestItIsAFault) {
 
 TYPED_TEST(ResetTest, WithThePulledCableItIsAFault) {
   this->startAt(kPlace);
-  this->rig_->wire().pull();
+  this->rig_->wire().disconnectCable();
   this->rig_->run(0.2);
   this->rig_->inject("error:RESET");
-  this->rig_->wire().plug();
+  this->rig_->wire().connectCable();
   this->expectNotBelieved();
 }
 
@@ -122,7 +122,7 @@ TYPED_TEST(ResetTest, WhatIsSetIsSaidAgainAfterAJump) {
     EXPECT_TRUE(this->toldOfIt());
     return;
   }
-  ASSERT_EQ(rig.driver().state(), ManipulatorDevice::State::kReady) << rig.driver().why();
+  ASSERT_EQ(rig.driver().state(), ManipulatorDevice::State::kReady) << rig.driver().reason();
   expectNear(rig.read(), rig.place(), TypeParam::kTold);
   const Eigen::Vector3d from = rig.place(), way = 0.5 * kPlace;
   rig.driver().moveTo(from + way, 0.05e-3);
@@ -145,7 +145,7 @@ TYPED_TEST(ResetTest, ZeroIsAPlaceLikeOthers) {
     if (i % 3 == 0) rig.driver().stop();
     if (i % 3 == 1) rig.inject("silence:0.1");
     rig.run(2);
-    ASSERT_EQ(rig.driver().state(), ManipulatorDevice::State::kReady) << rig.driver().why();
+    ASSERT_EQ(rig.driver().state(), ManipulatorDevice::State::kReady) << rig.driver().reason();
     rig.inject(i % 2 == 0 ? "drop:1" : "deaf:4");
     this->moveAndCheck(this->zero());
   }
@@ -160,9 +160,9 @@ TYPED_TEST(ResetTest, ASessionThatIsLostTwiceOnTheWayToZeroIsNone) {
     rig.run(0.1);
     rig.inject("drop:1");
     rig.inject("drop:1@" + std::to_string(rig.time() + later));
-    ASSERT_TRUE(rig.runUntilArrived()) << rig.driver().why();
+    ASSERT_TRUE(rig.runUntilArrived()) << rig.driver().reason();
     rig.run(2);
-    ASSERT_EQ(rig.driver().state(), ManipulatorDevice::State::kReady) << rig.driver().why();
+    ASSERT_EQ(rig.driver().state(), ManipulatorDevice::State::kReady) << rig.driver().reason();
     expectNear(rig.place(), this->zero(), TypeParam::kStep);
   }
 }

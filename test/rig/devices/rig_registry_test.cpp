@@ -43,7 +43,7 @@ TEST(RigRegistry, EveryDeliveredConfigurationIsReadAndWrongOnesAreRefused) {
     SCOPED_TRACE(rig.name);
     const auto driver = make(rig, delivered(rig));
     EXPECT_EQ(driver->state(), State::kDisconnected);
-    EXPECT_NE(driver->why(), "");
+    EXPECT_NE(driver->reason(), "");
     EXPECT_GT(driver->abilities().speed, 0);
     EXPECT_GT(driver->abilities().reading_interval, 0);
     YAML::Node wrong = delivered(rig);
@@ -77,19 +77,19 @@ class HostedPort : public Wire {
     std::string said, read;
     await([&] {
       const EmulatorHost::Exchange exchange = host_.step(time);
-      to_device_ -= exchange.heard.size();
-      said += exchange.said;
+      to_device_ -= exchange.received.size();
+      said += exchange.sent;
       return to_device_ == 0;
     });
     await([&] { return (read += port_.read(time)).size() >= said.size(); });
     return read;
   }
-  void pull() {
-    host_.pull();
+  void disconnectCable() {
+    host_.disconnectCable();
     await([&] { return port_.read(0).empty() && !port_.isOpen(); });
     to_device_ = 0;
   }
-  void plug() { host_.plug(); }
+  void connectCable() { host_.connectCable(); }
 
  private:
   /// Only what hangs takes so long.
@@ -126,13 +126,13 @@ TEST(RigRegistry, DriverAndEmulatorMeetOnAPseudoTerminal) {
     const auto arrived = [&] {
       return ready() && (driver->reading()->joints - goal).norm() < 2 * driver->abilities().resolution;
     };
-    ASSERT_TRUE(step_until(ready)) << driver->why();
+    ASSERT_TRUE(step_until(ready)) << driver->reason();
     driver->moveTo(goal, 1e-3);
-    ASSERT_TRUE(step_until(arrived)) << driver->why();
-    port.pull();
+    ASSERT_TRUE(step_until(arrived)) << driver->reason();
+    port.disconnectCable();
     ASSERT_TRUE(step_until([&] { return driver->state() == State::kDisconnected; }));
-    port.plug();
-    ASSERT_TRUE(step_until(ready)) << driver->why();
+    port.connectCable();
+    ASSERT_TRUE(step_until(ready)) << driver->reason();
     EXPECT_TRUE(arrived());
   }
 }

@@ -26,7 +26,7 @@ class Needle {
     for (int i = 0; i < std::lround(duration / kStep); ++i) {
       needle_->step(time_ += kStep, kStep);
       nearest_ = std::min(nearest_, guard_.clearance(joints()));
-      if (ended_.empty()) ended_ = needle_->ended();
+      if (ended_.empty()) ended_ = needle_->abortReason();
     }
   }
   void moveTo(const Eigen::Vector3d& place) {

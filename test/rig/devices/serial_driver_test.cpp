@@ -60,7 +60,7 @@ void checkLongSilence(Test& test, bool follows) {
   double waited = 0;  // s
   for (; rig.driver().state() != ManipulatorDevice::State::kFault && waited < 7; waited += 1e-3) rig.run(1e-3, command);
   ASSERT_LT(waited, 7);
-  EXPECT_NE(rig.driver().why().find("no answer"), std::string::npos) << rig.driver().why();
+  EXPECT_NE(rig.driver().reason().find("no answer"), std::string::npos) << rig.driver().reason();
   EXPECT_FALSE(rig.driver().reading());     // nobody knows where a device is that does not answer
   rig.run(8, follows ? command : nullptr);  // a stream that goes on moves nothing
   expectNear(rig.read(), rig.place(), Tested::kTold);
@@ -100,7 +100,7 @@ TYPED_TEST(SerialDriverTest, AHandWheelIsNotWorkedAgainst) {
       EXPECT_EQ(rig.driver().state(), ManipulatorDevice::State::kFault);
       EXPECT_FALSE(rig.driver().reading());
       rig.driver().clearFault();
-      ASSERT_TRUE(rig.runUntilReady()) << rig.driver().why();
+      ASSERT_TRUE(rig.runUntilReady()) << rig.driver().reason();
     }
     expectNear(rig.read(), there, TypeParam::kTold);  // but it is seen
     EXPECT_FALSE(rig.driver().moving());
@@ -112,12 +112,12 @@ TYPED_TEST(SerialDriverTest, ConnectsAgainByItselfAndRests) {
   auto& rig = *this->rig_;
   rig.driver().moveTo(kPlace + Eigen::Vector3d(5e-3, 0, 0), 1e-3);
   rig.run(0.2);
-  rig.wire().pull();
+  rig.wire().disconnectCable();
   rig.run(1);
   EXPECT_EQ(rig.driver().state(), ManipulatorDevice::State::kDisconnected);
   EXPECT_FALSE(rig.driver().reading());
-  EXPECT_NE(rig.driver().why().find("pulled"), std::string::npos) << rig.driver().why();
-  rig.wire().plug();
+  EXPECT_NE(rig.driver().reason().find("pulled"), std::string::npos) << rig.driver().reason();
+  rig.wire().connectCable();
   ASSERT_TRUE(rig.runUntilReady());
   EXPECT_FALSE(rig.device().moves());  // the first thing it heard was a stop
   EXPECT_LT(rig.place().x(), 4e-3);
@@ -143,9 +143,9 @@ TYPED_TEST(SerialDriverTest, AMachineThatStallsMissesNoAnswer) {
       }
       return done();
     };
-    ASSERT_TRUE(run_until(ready)) << rig.driver().why();
+    ASSERT_TRUE(run_until(ready)) << rig.driver().reason();
     rig.driver().moveTo(kPlace, 1e-3);
-    ASSERT_TRUE(run_until([&] { return ready() && !rig.driver().moving(); })) << rig.driver().why();
+    ASSERT_TRUE(run_until([&] { return ready() && !rig.driver().moving(); })) << rig.driver().reason();
     expectNear(rig.place(), kPlace, TypeParam::kStep);
     expectNear(rig.read(), rig.place(), TypeParam::kTold);
   }

@@ -67,7 +67,7 @@ class GuardedRigTest : public testing::Test {
       bench_->step();
       if (!steps) continue;
       driver_->step(bench_->time());
-      if (driver_->state() != State::kReady) reasons_ += driver_->why() + "\n";
+      if (driver_->state() != State::kReady) reasons_ += driver_->reason() + "\n";
     }
     return done();
   }
@@ -76,7 +76,7 @@ class GuardedRigTest : public testing::Test {
   }
   bool moves() { return bench_->device().moves(); }
   void beginMove(const Eigen::Vector3d& place) {
-    ASSERT_TRUE(until([&] { return driver_->state() == State::kReady; })) << driver_->why();
+    ASSERT_TRUE(until([&] { return driver_->state() == State::kReady; })) << driver_->reason();
     // Commanded again where the machine held this program up so long that the guard was right.
     int moving = 0;  // steps
     ASSERT_TRUE(until([&] {
@@ -90,7 +90,7 @@ class GuardedRigTest : public testing::Test {
   void expectRestUntilCommanded(
       const std::string& why, const std::function<void()>& at_rest = [] {}) {
     ASSERT_TRUE(until([&] { return reasons_.find(why) != std::string::npos; })) << reasons_;
-    ASSERT_TRUE(until([&] { return driver_->state() == State::kReady; })) << driver_->why();
+    ASSERT_TRUE(until([&] { return driver_->state() == State::kReady; })) << driver_->reason();
     EXPECT_FALSE(moves());
     EXPECT_FALSE(driver_->moving());
     at_rest();
@@ -153,7 +153,7 @@ TEST(GuardedRig, NothingMovesWhileThereIsNoGuard) {
     }
   };
   run(0.5);
-  ASSERT_TRUE(device->moves()) << driver.why();
+  ASSERT_TRUE(device->moves()) << driver.reason();
   wire.report.missing = "it ended";
   device->inject(parseFault("deaf:39"));  // the first three stops
   run(0.7);
@@ -162,7 +162,7 @@ TEST(GuardedRig, NothingMovesWhileThereIsNoGuard) {
   run(3);
   expectNear(device->position(), place, 0);
   EXPECT_EQ(driver.state(), State::kDisconnected);
-  EXPECT_EQ(driver.why(), "Zaber: no stop guard: it ended");
+  EXPECT_EQ(driver.reason(), "Zaber: no stop guard: it ended");
   EXPECT_FALSE(driver.reading());
   wire.report.missing.clear();
   run(1);
@@ -192,7 +192,7 @@ volatile std::sig_atomic_t pauses = 0;
     wall = wallTime();
     if (pause == 0) needle.servoVelocity({0.2e-3, 0, 0}, time);
     needle.step(time, 1e-3);
-    const std::string report = (needle.why().empty() ? "ready" : needle.why()) + "\n";
+    const std::string report = (needle.reason().empty() ? "ready" : needle.reason()) + "\n";
     if (report != said && write(reports, report.data(), report.size()) < 0) _exit(1);
     said = report;
   }

@@ -175,9 +175,9 @@ TEST_P(InjectorTroubles, BytesThatAreLostOrGarbled) {
 
 TEST_P(InjectorTroubles, ACableThatIsPulledAndPlugged) {
   tryHarmAtAllTimes([&] {
-    bench.wire().pull();
+    bench.wire().disconnectCable();
     bench.run(2);
-    bench.wire().plug();
+    bench.wire().connectCable();
   });
 }
 

@@ -26,7 +26,7 @@ class DamagedLine : public DeviceEmulator {
 
  protected:
   void process(const std::string& bytes, double time) override { device_->receive(bytes, time); }
-  std::string say(double time) override {
+  std::string produce(double time) override {
     const std::string reply = device_->send(time);
     if (reply.empty() || !damaging_ || damage_.below(4) != 0) return reply;
     const std::string arrives = damage_(reply);

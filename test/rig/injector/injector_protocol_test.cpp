@@ -24,8 +24,8 @@ TEST(InjectorProtocol, ConfigurationIsStrict) {
             "codes/inject = 10: must be 3 letters"},
            {"{codes: {inject: '1.'}, pulse: [{send: 'P{inject:2}', expect: OK}]}", "must be 2 letters or digits"},
            {"{codes: {inject: ''}, pulse: [{send: P, expect: 'A{inject}'}]}", "codes/inject = \"\": must be letters"},
-           {"{pulse: [{send: 'P{pressure_Pa:x}', expect: OK}]}", "the digits behind the point, 0 to 9"},
-           {"{pulse: [{send: 'P{pressure_Pa:12}', expect: OK}]}", "the digits behind the point, 0 to 9"},
+           {"{pulse: [{send: 'P{pressure_Pa:x}', expect: OK}]}", "the decimals, 0 to 9"},
+           {"{pulse: [{send: 'P{pressure_Pa:12}', expect: OK}]}", "the decimals, 0 to 9"},
            {"{pulse: [{send: 'P{pressure_Pa', expect: OK}]}", "a { without its }"},
            {"{balance: [{send: '{duration_s}', expect: OK}]}", "{duration_s} is not one of"},
            {"{balance: [{send: 'P', expect: '('}]}", "is no regular expression"},
@@ -34,7 +34,7 @@ TEST(InjectorProtocol, ConfigurationIsStrict) {
            {"{timed: true, pulse: [{send: P, expect: OK}]}", "needs stop"},
            {"{pulse: [{send: 'P{duration_s}', expect: OK}]}", "pulse_pressure is missing"},
            {"{pulse: [{send: 'P{pressure_Pa}', expect: OK}]}", "pulse_duration is missing"},
-           {"{pulse_pressure: 1, pulse: [{send: 'P{pressure_Pa}', expect: OK}]}", "a line of pulse says it"}}) {
+           {"{pulse_pressure: 1, pulse: [{send: 'P{pressure_Pa}', expect: OK}]}", "a line of pulse contains it"}}) {
     try {
       testProtocol(text);
       ADD_FAILURE() << text;

@@ -35,7 +35,7 @@ class NotedDevice : public ManipulatorDevice {
   void clearFault() override { now = State::kReady; }
   void step(double) override {}
   State state() const override { return now; }
-  std::string why() const override { return now == State::kReady ? "" : "the cable is out"; }
+  std::string reason() const override { return now == State::kReady ? "" : "the cable is out"; }
   std::optional<Reading> reading() const override { return position; }
   bool moving() const override { return is_moving; }
 
@@ -109,7 +109,7 @@ TEST(MicromanipulatorRig, AVelocityStopsBeforeTheDishAndSaysSo) {
       refusal = rig.micromanipulator.servoVelocity({0, 0, -speed}, rig.time);
       rig.run(kStep);
       lowest = std::min(lowest, rig.geometry.tip(rig.device.trueJoints()).z());
-      if (ended.empty()) ended = rig.micromanipulator.ended();
+      if (ended.empty()) ended = rig.micromanipulator.abortReason();
     }
     EXPECT_NE(ended.find("of dish"), std::string::npos) << ended;
     EXPECT_NE(refusal.find("dish"), std::string::npos) << refusal;
@@ -214,7 +214,7 @@ TEST(MicromanipulatorRig, ADeviceThatAnObstacleCutsOffFromItsSetPointIsStopped) 
       EXPECT_EQ(rig.device.stops, 1);
       EXPECT_EQ(rig.device.followed.size(), told);
       EXPECT_FALSE(rig.micromanipulator.moving());
-      EXPECT_NE(rig.micromanipulator.ended().find("holding_pipette"), std::string::npos);
+      EXPECT_NE(rig.micromanipulator.abortReason().find("holding_pipette"), std::string::npos);
       EXPECT_NE(rig.micromanipulator.servoPosition(goal).find("holding_pipette"), std::string::npos);
     }
   }
@@ -250,7 +250,7 @@ TEST(MicromanipulatorRig, AStaleStreamStopsADeviceThatIsStillUnderWay) {
   rig.device.is_moving = true;
   rig.run(0.1);
   EXPECT_EQ(rig.device.stops, 1);
-  EXPECT_EQ(rig.micromanipulator.ended(), "servo_cp is stale");
+  EXPECT_EQ(rig.micromanipulator.abortReason(), "servo_cp is stale");
 }
 
 TEST(MicromanipulatorRig, ADeviceThatIsGoneIsCommandedNothing) {

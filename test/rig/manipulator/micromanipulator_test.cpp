@@ -119,7 +119,7 @@ TEST_F(MicromanipulatorTest, AStaleServoStreamStopsTheDevice) {
   EXPECT_GT(rig_.tipVelocity()->norm(), 1.9e-3);
   run(0.1);  // 0.1 s of time-out; braking takes 40 ms, the lag dies away
   EXPECT_LT(rig_.tipVelocity()->norm(), 1e-5);
-  EXPECT_EQ(rig_.ended(), "servo_cp is stale");
+  EXPECT_EQ(rig_.abortReason(), "servo_cp is stale");
   EXPECT_FALSE(rig_.setpoint());
   run(0.1);
   const double held = rig_.tipPose()->translation().z();
@@ -134,7 +134,7 @@ TEST_F(MicromanipulatorTest, AStreamThatRestsMayPause) {
     run(kStep);
   }
   run(1);
-  EXPECT_EQ(rig_.ended(), "");
+  EXPECT_EQ(rig_.abortReason(), "");
   EXPECT_NEAR(rig_.tipPose()->translation().x(), 1e-5, 1e-12);
 }
 

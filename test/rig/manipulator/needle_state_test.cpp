@@ -11,7 +11,7 @@ using Device = ManipulatorDevice::State;
 
 class NeedleStateTest : public testing::Test {
  protected:
-  NeedleStateTest() { state_.surround({Device::kReady, true, "", ""}); }
+  NeedleStateTest() { state_.setConditions({Device::kReady, true, "", ""}); }
   NeedleState state_;
 };
 
@@ -39,30 +39,30 @@ TEST_F(NeedleStateTest, IsDisabledUntilSomebodyEnables) {
 
 TEST_F(NeedleStateTest, AFaultEndsWhereItsCommandLeads) {
   EXPECT_EQ(state_.command(Command::kPause), "");
-  state_.surround({Device::kFault, true, "", ""});
+  state_.setConditions({Device::kFault, true, "", ""});
   EXPECT_EQ(state_.state(), State::kFault);
   EXPECT_NE(state_.command(Command::kPause), "");
   EXPECT_NE(state_.command(Command::kResume), "");
   EXPECT_NE(state_.command(Command::kHome), "");
   EXPECT_EQ(state_.command(Command::kEnable), "");
   EXPECT_EQ(state_.state(), State::kFault);  // its cause is not gone yet
-  state_.surround({Device::kReady, true, "", ""});
+  state_.setConditions({Device::kReady, true, "", ""});
   EXPECT_EQ(state_.state(), State::kEnabled);
-  state_.surround({Device::kReady, true, "two nodes", ""});
+  state_.setConditions({Device::kReady, true, "two nodes", ""});
   EXPECT_EQ(state_.state(), State::kFault);
   EXPECT_EQ(state_.command(Command::kDisable), "");
-  state_.surround({Device::kReady, true, "", ""});
+  state_.setConditions({Device::kReady, true, "", ""});
   EXPECT_EQ(state_.state(), State::kDisabled);
 }
 
 TEST_F(NeedleStateTest, WithoutADeviceOrBehindABarrierItIsDisabled) {
-  state_.surround({Device::kDisconnected, false, "", ""});
+  state_.setConditions({Device::kDisconnected, false, "", ""});
   EXPECT_EQ(state_.state(), State::kDisabled);
   EXPECT_FALSE(state_.homed());
-  state_.surround({Device::kReady, true, "", "others can reach it"});
+  state_.setConditions({Device::kReady, true, "", "others can reach it"});
   EXPECT_EQ(state_.state(), State::kDisabled);
   EXPECT_EQ(state_.unavailableReason(), "others can reach it");
-  state_.surround({Device::kReady, true, "", ""});
+  state_.setConditions({Device::kReady, true, "", ""});
   EXPECT_EQ(state_.state(), State::kEnabled);
 }
 
@@ -72,9 +72,9 @@ TEST_F(NeedleStateTest, UnhomedItIsHeldUntilItIsHome) {
   EXPECT_EQ(state_.state(), State::kEnabled);
   EXPECT_FALSE(state_.homed());
   EXPECT_EQ(state_.unavailableReason(), "the needle is not homed; allowed after home");
-  state_.surround({Device::kReady, false, "", ""});
+  state_.setConditions({Device::kReady, false, "", ""});
   EXPECT_NE(state_.command(Command::kHome), "");
-  state_.surround({Device::kReady, true, "", ""});
+  state_.setConditions({Device::kReady, true, "", ""});
   EXPECT_EQ(state_.command(Command::kHome), "");
   EXPECT_TRUE(state_.homed());
   EXPECT_EQ(state_.unavailableReason(), "");

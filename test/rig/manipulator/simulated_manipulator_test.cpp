@@ -167,14 +167,14 @@ TEST(SimulatedManipulator, AFaultStopsItUntilItIsCleared) {
   rig.at(1e-4);
   rig.device.injectFault("motor is hot");
   EXPECT_EQ(rig.device.state(), ManipulatorDevice::State::kFault);
-  EXPECT_EQ(rig.device.why(), "motor is hot");
+  EXPECT_EQ(rig.device.reason(), "motor is hot");
   EXPECT_EQ(rig.at(2e-4), 1e-4);
   rig.device.moveTo({2e-4, 0, 0}, 1e-3);
   rig.run(100);
   EXPECT_EQ(rig.device.trueJoints().x(), 1e-4);
   rig.device.clearFault();
   EXPECT_EQ(rig.device.state(), ManipulatorDevice::State::kReady);
-  EXPECT_EQ(rig.device.why(), "");
+  EXPECT_EQ(rig.device.reason(), "");
   rig.run(100);
   EXPECT_EQ(rig.device.trueJoints().x(), 1e-4) << "rests until the next command";
   EXPECT_EQ(rig.at(2e-4), 2e-4);

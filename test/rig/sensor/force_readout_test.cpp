@@ -106,7 +106,7 @@ TEST_F(ForceReadoutTest, RefusesWhatCannotBeCalibrated) {
     readUnder(force);
   }
   sensor.setZero();
-  EXPECT_EQ(readout.solve(), "the readings do not tell the known forces apart");
+  EXPECT_EQ(readout.solve(), "the readings do not distinguish the known forces");
   EXPECT_TRUE(readout.gain().isIdentity());
 }
 

@@ -189,18 +189,18 @@ TEST_F(SerialForceSensorTest, OpensAgainAfterTheLineBroke) {
   script.refusal = "no such device";
   SerialForceSensor sensor = make();
   sensor.step(0);
-  EXPECT_EQ(sensor.trouble(), "no such device");
+  EXPECT_EQ(sensor.errorText(), "no such device");
   script.refusal.clear();
   sensor.step(0.5);
   EXPECT_EQ(script.opened, 0);  // once a second
   script.incoming = "\n3.5,2.25\n";
   sensor.step(1.5);
-  EXPECT_EQ(sensor.trouble(), "");
+  EXPECT_EQ(sensor.errorText(), "");
   EXPECT_TRUE(sensor.reading());
   script.open = false;
   sensor.step(1.6);
   EXPECT_FALSE(sensor.reading());
-  EXPECT_EQ(sensor.trouble(), "the line broke");
+  EXPECT_EQ(sensor.errorText(), "the line broke");
   script.incoming = "5,2.25\n3.5,5\n";  // the rest of 2.5,2.25
   sensor.step(3);
   EXPECT_EQ(sensor.goodLines(), 2U);

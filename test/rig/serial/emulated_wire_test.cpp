@@ -13,7 +13,7 @@ class Next : public DeviceEmulator {
   void process(const std::string& bytes, double) override {
     for (const char each : bytes) said_ += static_cast<char>(each + 1);
   }
-  std::string say(double) override { return std::exchange(said_, ""); }
+  std::string produce(double) override { return std::exchange(said_, ""); }
   void checkError(const std::string&) const override {}
   void failNextCommand(const std::string&) override {}
   void interrupt(double) override {}
@@ -34,12 +34,12 @@ TEST(EmulatedWire, APulledCableLosesWhatIsOnItsWay) {
   EXPECT_EQ(wire.open(), "");
   wire.write("a", 0);
   EXPECT_EQ(wire.read(0.012), "");
-  wire.pull();
+  wire.disconnectCable();
   EXPECT_FALSE(wire.isOpen());
   EXPECT_NE(wire.open(), "");
   wire.write("b", 0.02);
   EXPECT_EQ(wire.read(0.1), "");
-  wire.plug();
+  wire.connectCable();
   EXPECT_EQ(wire.open(), "");
   EXPECT_EQ(wire.read(1), "");
   wire.write("c", 1);

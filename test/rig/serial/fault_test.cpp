@@ -31,7 +31,7 @@ TEST(Fault, RefusesWhatIsNone) {
 class Echo : public DeviceEmulator {
  protected:
   void process(const std::string& bytes, double) override { said_ += bytes; }
-  std::string say(double) override { return std::exchange(said_, ""); }
+  std::string produce(double) override { return std::exchange(said_, ""); }
   void checkError(const std::string&) const override {}
   void failNextCommand(const std::string&) override {}
   void interrupt(double) override {}

@@ -9,9 +9,9 @@ TEST(LineTiming, AByteTakesTenBitTimes) {
   // 13 bytes at 9600 baud: 13.54 ms.
   LineTiming line(9600);
   line.put(std::string(13, 'x'), 1);
-  EXPECT_EQ(line.take(1 + 1.04e-3).size(), 0u);
-  EXPECT_EQ(line.take(1 + 1.05e-3).size(), 1u);
-  const auto rest = line.take(1 + 13.55e-3);
+  EXPECT_EQ(line.receive(1 + 1.04e-3).size(), 0u);
+  EXPECT_EQ(line.receive(1 + 1.05e-3).size(), 1u);
+  const auto rest = line.receive(1 + 13.55e-3);
   ASSERT_EQ(rest.size(), 12u);
   EXPECT_NEAR(rest.back().time, 1 + 13.0 * 10 / 9600, 1e-12);
 }
@@ -20,10 +20,10 @@ TEST(LineTiming, BytesQueueBehindThoseOnTheirWay) {
   LineTiming line(1000);  // 10 ms a byte
   line.put("ab", 0);
   line.put("c", 5e-3);
-  EXPECT_EQ(line.take(29e-3).size(), 2u);
-  ASSERT_EQ(line.take(31e-3).size(), 1u);
+  EXPECT_EQ(line.receive(29e-3).size(), 2u);
+  ASSERT_EQ(line.receive(31e-3).size(), 1u);
   line.put("d", 1);  // after a pause it begins at once
-  EXPECT_EQ(line.take(1.011).size(), 1u);
+  EXPECT_EQ(line.receive(1.011).size(), 1u);
 }
 
 }  // namespace

@@ -100,10 +100,10 @@ TEST_F(SerialPortTest, SaysWhyItDoesNotOpen) {
 TEST_F(SerialPortTest, NoticesAPulledCableAndOpensAgain) {
   PseudoTerminal terminal(link_);
   ASSERT_EQ(port_.open(), "");
-  terminal.unplug();
+  terminal.disconnect();
   EXPECT_TRUE(eventually([&] { return port_.read(0), !port_.isOpen(); }));
   EXPECT_NE(port_.open(), "");
-  terminal.plug();
+  terminal.connect();
   ASSERT_EQ(port_.open(), "");
   terminal.write("here again");
   EXPECT_TRUE(portReads("here again"));

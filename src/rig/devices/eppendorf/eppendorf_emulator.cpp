@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kUnknown = 1, kNotRemote = 2, kParameters = 3, kBusy = 4;  // assumed
 
-/// Whole numbers, separated by spaces or by their signs; nothing else may be there.
+/// Whole numbers, separated by spaces or by their signs; empty for any other text.
 std::optional<std::vector<long>> numbersIn(const std::string& text) {
   static const std::regex form(R"(( *[ +-]\d+)* *)"), number(R"([+-]?\d+)");
   if (!std::regex_match(text, form)) return std::nullopt;
@@ -37,55 +37,55 @@ void EppendorfEmulator::handleCommand(const std::string& command, double time) {
   const std::string name = command.substr(0, 4);
   const auto numbers = numbersIn(command.substr(std::min<std::size_t>(4, command.size())));
   const bool goes = name == "C007" || name == "C012";
-  if (!numbers || numbers->size() != (goes ? 6u : 0u)) return answer(error(kParameters), time);
-  if ((goes || name == "C008") && !remote_) return answer(error(kNotRemote), time);
-  if (name == "C001") return answer("A001 5181 V1.08", time);
-  if (name == "C010") return answer(positionText(), time);
+  if (!numbers || numbers->size() != (goes ? 6u : 0u)) return reply(error(kParameters), time);
+  if ((goes || name == "C008") && !remote_) return reply(error(kNotRemote), time);
+  if (name == "C001") return reply("A001 5181 V1.08", time);
+  if (name == "C010") return reply(positionText(), time);
   if (name == "C013") {
     at_end_ = "A013";
-    return moves() ? void() : stand(time);
+    return moves() ? void() : comeToRest(time);
   }
   if (goes) {
-    if (moves()) return answer(error(kBusy), time);
+    if (moves()) return reply(error(kBusy), time);
     std::array<long, 6> six{};
     std::copy(numbers->begin(), numbers->end(), six.begin());
     goTo(six, name == "C007" ? "A007" : "");
-    return name == "C012" ? answer("A012", time) : void();
+    return name == "C012" ? reply("A012", time) : void();
   }
-  if (name != "C003" && name != "C004" && name != "C005" && name != "C008") return answer(error(kUnknown), time);
+  if (name != "C003" && name != "C004" && name != "C005" && name != "C008") return reply(error(kUnknown), time);
   if (name != "C005" || config_.manual_stops) stop();
-  if (name == "C003") place_.setZero();
+  if (name == "C003") position_.setZero();
   remote_ = name == "C004" || (remote_ && name != "C005");
-  answer("A" + name.substr(1), time);
+  reply("A" + name.substr(1), time);
 }
 
-void EppendorfEmulator::goTo(const std::array<long, 6>& numbers, const std::string& answer_at_end) {
+void EppendorfEmulator::goTo(const std::array<long, 6>& numbers, const std::string& reply_at_end) {
   const double furthest = std::round(config_.travel / config_.microstep);
   for (int i = 0; i < 3; ++i) {
     speeds_[i] = static_cast<double>(std::abs(numbers[i + 3])) * 1e-6 / config_.microstep;
     const double goal = std::round(static_cast<double>(numbers[i]) * 1e-6 / config_.microstep);
-    end_[i] = speeds_[i] == 0 ? place_[i] : std::clamp(goal, -furthest, furthest);
+    end_[i] = speeds_[i] == 0 ? position_[i] : std::clamp(goal, -furthest, furthest);
   }
-  at_end_ = answer_at_end;
+  at_end_ = reply_at_end;
   beginMoving();
 }
 
 void EppendorfEmulator::move(double time, double dt) {
   for (int i = 0; i < 3; ++i) {
-    const double left = end_[i] - place_[i], step = speeds_[i] * dt;
-    place_[i] = std::abs(left) <= step ? end_[i] : place_[i] + std::copysign(step, left);
+    const double left = end_[i] - position_[i], step = speeds_[i] * dt;
+    position_[i] = std::abs(left) <= step ? end_[i] : position_[i] + std::copysign(step, left);
   }
-  if (place_ == end_) stand(time);
+  if (position_ == end_) comeToRest(time);
 }
 
-void EppendorfEmulator::stand(double time) {
+void EppendorfEmulator::comeToRest(double time) {
   endMoving();
-  if (!at_end_.empty()) answer(at_end_ == "A007" ? "A007 " + std::to_string(limits()) : at_end_, time);
+  if (!at_end_.empty()) reply(at_end_ == "A007" ? "A007 " + std::to_string(limits()) : at_end_, time);
   at_end_.clear();
 }
 
 void EppendorfEmulator::stop() {
-  place_ = place_.array().round();
+  position_ = position_.array().round();
   endMoving();
   at_end_.clear();
 }
@@ -94,20 +94,20 @@ void EppendorfEmulator::interrupt(double /*time*/) { stop(); }
 
 void EppendorfEmulator::switchOn() {
   at_end_.clear();
-  place_.setZero();
+  position_.setZero();
   remote_ = false;
 }
 
-void EppendorfEmulator::shiftByHand(const Eigen::Vector3d& way) {
-  place_ = (place_ + way / config_.microstep).array().round();
+void EppendorfEmulator::shiftByHand(const Eigen::Vector3d& displacement) {
+  position_ = (position_ + displacement / config_.microstep).array().round();
 }
 
 int EppendorfEmulator::limits() const {
   const double furthest = std::round(config_.travel / config_.microstep);
   int bits = 0;
   for (int i = 0; i < 3; ++i) {
-    if (place_[i] <= -furthest) bits |= 1 << (2 * i);
-    if (place_[i] >= furthest) bits |= 2 << (2 * i);
+    if (position_[i] <= -furthest) bits |= 1 << (2 * i);
+    if (position_[i] >= furthest) bits |= 2 << (2 * i);
   }
   return bits;
 }
@@ -115,7 +115,7 @@ int EppendorfEmulator::limits() const {
 std::string EppendorfEmulator::positionText() const {
   std::string text = "A010";
   for (int i = 0; i < 3; ++i) {
-    const double um = place_[i] * config_.microstep * 1e6;
+    const double um = position_[i] * config_.microstep * 1e6;
     char number[24];
     std::snprintf(number, sizeof(number), config_.signs_separate && i > 0 ? "%+.*f" : " %.*f", config_.decimals ? 2 : 0,
                   std::abs(um) < 0.005 ? 0.0 : um);

@@ -10,12 +10,12 @@
 
 namespace microinjection {
 
-/// Sutter MP-285. After each move the position is read; while it moves it says nothing, and the position is carried on
-/// with the set speed.
+/// Driver of the Sutter MP-285. The position is read after each move. While moving the device does
+/// not reply, and the position is extrapolated with the set speed.
 ///
-/// A move is never sent on suspicion: after anything that went wrong the position is read first, and what is left of
-/// the way, if anything, is a move of its own. Another place at rest is that of its hand wheel; what is set in it is
-/// then said again: it may have been switched off and on before.
+/// After any failure the position is read before the next move; the rest of the path, if any, is a
+/// move of its own. Another position at rest is due to the hand wheel. Then the settings are sent
+/// again, since the device may have been switched off and on before.
 class Mp285Driver : public MoveByMove {
  public:
   Mp285Driver(const Mp285Config& config, std::unique_ptr<Wire> wire);
@@ -32,8 +32,8 @@ class Mp285Driver : public MoveByMove {
   enum class Kind { kStop, kStatus, kAbsolute, kPosition, kVelocity, kMove };
   struct Exchange {
     Kind kind;
-    double due;   // s of listened(), to be answered
-    double sent;  // s of listened(), when its last byte has gone
+    double due;   // s of activeTime(), deadline of the reply
+    double sent;  // s of activeTime(), when its last byte was sent
   };
   struct Speed {
     int um_per_s = 0;
@@ -41,31 +41,31 @@ class Mp285Driver : public MoveByMove {
     bool operator==(const Speed& other) const { return um_per_s == other.um_per_s && fine == other.fine; }
   };
 
-  void ask(Kind kind, const std::string& bytes, double more_time = 0);
-  void handle(const Mp285Answer& answer);
+  void request(Kind kind, const std::string& bytes, double more_time = 0);
+  void handle(const Mp285Reply& reply);
   void handleError(int error);
-  void takeStatus(const Mp285Status& status);
-  void takePosition(const Mp285Position& position);
+  void handleStatus(const Mp285Status& status);
+  void handlePosition(const Mp285Position& position);
   void forgetSettings();
   void next();
   void nextTowardsGoal();
-  double metresPerSaidMetre(const Eigen::Vector3d& way) const;
-  Speed speedFor(const Eigen::Vector3d& way) const;
+  double metresPerNominalMetre(const Eigen::Vector3d& displacement) const;
+  Speed speedFor(const Eigen::Vector3d& displacement) const;
 
   const Mp285Config config_;
   Mp285Parser parser_;
   std::optional<Exchange> exchange_;
-  double last_byte_ = 0;     // s of listened()
-  double next_command_ = 0;  // s of listened(), at the earliest
-  /// m, a microstep of the device's axes as they are, and as the device's own um/s count them.
+  double last_byte_ = 0;     // s of activeTime()
+  double next_command_ = 0;  // s of activeTime(), at the earliest
+  /// m per microstep: true values of the axes, and the one that the device's um/s assume.
   Eigen::Vector3d microsteps_ = Eigen::Vector3d::Constant(0.04e-6);
   double nominal_microstep_ = 0.04e-6;
-  std::optional<Mp285Status> told_status_;  // the last one
+  std::optional<Mp285Status> last_status_;
   bool stop_requested_ = false, status_requested_ = false, absolute_ = false;
-  bool reading_due_ = true;         // the position is to be read
-  bool coarse_ = false;             // the move under way
-  std::optional<Speed> speed_;      // that the device was told
-  std::optional<Speed> confirmed_;  // that the device has confirmed, not forgotten with a lost session
+  bool reading_due_ = true;         // the position must be read
+  bool coarse_ = false;             // of the move in progress
+  std::optional<Speed> speed_;      // sent to the device
+  std::optional<Speed> confirmed_;  // confirmed by the device; survives a failed session
 };
 
 }  // namespace microinjection

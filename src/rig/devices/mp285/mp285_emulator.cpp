@@ -10,7 +10,7 @@
 namespace microinjection {
 namespace {
 
-constexpr double kMicrostepsPerMicrometre = 25;  // as its speed counts them
+constexpr double kMicrostepsPerMicrometre = 25;  // of its speed unit
 
 std::string fourBytes(double value) {
   const auto number = static_cast<std::int32_t>(std::lround(value));
@@ -27,7 +27,7 @@ double fromFourBytes(const unsigned char* bytes) {
   return static_cast<std::int32_t>(number);
 }
 
-/// Length of a command with its carriage return; 0: there is no such command.
+/// Length of a command with its carriage return; 0: unknown command.
 std::size_t commandLength(unsigned char letter) {
   switch (letter) {
     case 'c':
@@ -50,14 +50,14 @@ std::size_t commandLength(unsigned char letter) {
 }  // namespace
 
 void Mp285Emulator::switchOn() {
-  place_.setZero();
+  position_.setZero();
   speed_ = config_.speed;
   fine_ = config_.fine;
   moving_ = false;
   absolute_ = true;
   fails_at_ = error_ = -1;
   command_.clear();
-  answers_.clear();
+  replies_.clear();
 }
 
 void Mp285Emulator::failNextCommand(const std::string& code) {
@@ -68,17 +68,17 @@ void Mp285Emulator::advance(double time) {
   const double dt = time - time_;
   time_ = std::max(time, time_);
   if (!moving_ || dt <= 0) return;
-  const Eigen::Vector3d way = end_ - place_;
+  const Eigen::Vector3d displacement = end_ - position_;
   const double step = speed_ * kMicrostepsPerMicrometre * dt;  // microsteps
-  const double left = way.norm() - step;
+  const double left = displacement.norm() - step;
   if (fails_at_ >= 0 && left <= fails_at_) return interrupt(time);
   if (left > 0) {
-    place_ += way.normalized() * step;
+    position_ += displacement.normalized() * step;
     return;
   }
-  place_ = end_;
+  position_ = end_;
   moving_ = false;
-  answer("\r", time);
+  reply("\r", time);
 }
 
 void Mp285Emulator::interrupt(double time) {
@@ -86,17 +86,17 @@ void Mp285Emulator::interrupt(double time) {
   fails_at_ = -1;
   if (!moving_) return;
   moving_ = false;
-  place_ = place_.array().round();
-  answerError(std::exchange(fails_with_, 8), time);
+  position_ = position_.array().round();
+  replyError(std::exchange(fails_with_, 8), time);
 }
 
-void Mp285Emulator::answerError(int code, double time) {
-  answer(std::string(1, static_cast<char>(config_.ascii_errors ? '0' + code : code)) + '\r', time);
+void Mp285Emulator::replyError(int code, double time) {
+  reply(std::string(1, static_cast<char>(config_.ascii_errors ? '0' + code : code)) + '\r', time);
 }
 
 void Mp285Emulator::stop(double time) {
-  answer(moving_ ? "=\r" : "\r", time);
-  place_ = place_.array().round();
+  reply(moving_ ? "=\r" : "\r", time);
+  position_ = position_.array().round();
   moving_ = false;
   fails_at_ = -1;
 }
@@ -112,15 +112,15 @@ void Mp285Emulator::receiveByte(unsigned char byte, double time) {
   if (moving_ && byte != 0x03) return;
   if (command_.empty() && byte == 0x03) return stop(time);
   if (command_.empty() && time < deaf_until_) return;
-  if (command_.empty() && byte == 0x0a) return answer("\r", time);
+  if (command_.empty() && byte == 0x0a) return reply("\r", time);
   if (command_.empty() && commandLength(byte) == 0) {
-    if (byte != 0x0d) answerError(4, time);
+    if (byte != 0x0d) replyError(4, time);
     return;
   }
   command_.push_back(byte);
   if (command_.size() < commandLength(command_[0])) return;
   if (byte != 0x0d) {
-    answerError(4, time);
+    replyError(4, time);
   } else {
     handleCommand(time);
   }
@@ -130,51 +130,53 @@ void Mp285Emulator::receiveByte(unsigned char byte, double time) {
 void Mp285Emulator::handleCommand(double time) {
   const bool fails_on_path = error_ >= 8 && command_[0] == 'm';
   if (error_ >= 0 && error_ < 8) {
-    answerError(error_, time);
+    replyError(error_, time);
     error_ = -1;
     return;
   }
   switch (command_[0]) {
     case 'c':
-      return answer(fourBytes(place_.x()) + fourBytes(place_.y()) + fourBytes(place_.z()) + '\r', time);
+      return reply(fourBytes(position_.x()) + fourBytes(position_.y()) + fourBytes(position_.z()) + '\r', time);
     case 's':
-      return answer(status(), time);
+      return reply(status(), time);
     case 'V': {
-      const int word = command_[1] + 256 * command_[2];
-      fine_ = word >= 0x8000;
-      speed_ = std::clamp(word & 0x7fff, 1, fine_ ? 1310 : 6550);
-      return answer("\r", time);
+      const int setting = command_[1] + 256 * command_[2];
+      fine_ = setting >= 0x8000;
+      speed_ = std::clamp(setting & 0x7fff, 1, fine_ ? 1310 : 6550);
+      return reply("\r", time);
     }
     case 'm':
       beginMove();
       if (!fails_on_path) return;
-      fails_at_ = (end_ - place_).norm() / 2;
+      fails_at_ = (end_ - position_).norm() / 2;
       fails_with_ = std::exchange(error_, -1);
       return;
     case 'o':
-      place_.setZero();
-      return answer("\r", time);
+      position_.setZero();
+      return reply("\r", time);
     case 'r':
-      return;  // it says nothing to a reset
+      return;  // a reset has no reply
     default:
       absolute_ = command_[0] == 'b' ? false : command_[0] == 'a' ? true : absolute_;
-      answer("\r", time);
+      reply("\r", time);
   }
 }
 
 void Mp285Emulator::beginMove() {
   const double grid = fine_ ? 1 : 5;
   for (int i = 0; i < 3; ++i) {
-    const double said = fromFourBytes(&command_[1 + 4 * static_cast<std::size_t>(i)]) + (absolute_ ? 0 : place_[i]);
+    const double commanded =
+        fromFourBytes(&command_[1 + 4 * static_cast<std::size_t>(i)]) + (absolute_ ? 0 : position_[i]);
     const double furthest = config_.travel / config_.microsteps[i];
-    end_[i] = std::clamp(std::round(said / grid) * grid, -furthest, furthest);
+    end_[i] = std::clamp(std::round(commanded / grid) * grid, -furthest, furthest);
   }
   moving_ = true;
   ++moves_begun_;
 }
 
-/// 32 bytes as a client printed them of a real one, and a carriage return, with what it can change: STEP_DIV at 24,
-/// STEP_MUL at 26, speed at 28. FLAGS stays 64: clients disagree on which of its bits tells the mode of moves.
+/// 32 bytes as a client printed them from a real device, and a carriage return. Its variable values
+/// are STEP_DIV at 24, STEP_MUL at 26 and speed at 28. FLAGS stays 64, since clients disagree on
+/// the bit for the mode of moves.
 std::string Mp285Emulator::status() const {
   constexpr unsigned char kReal[] = {64,  0,  2,  4,  7,  0, 99, 0, 99, 0, 20, 0, 136, 19, 1,  120,
                                      112, 23, 16, 39, 80, 0, 0,  0, 25, 0, 4,  0, 200, 0,  84, 1};
@@ -189,17 +191,17 @@ std::string Mp285Emulator::status() const {
   return bytes + '\r';
 }
 
-std::string Mp285Emulator::say(double time) {
+std::string Mp285Emulator::produce(double time) {
   advance(time);
-  std::string said;
-  while (!answers_.empty() && answers_.front().due <= time) {
-    said += answers_.front().bytes;
-    answers_.erase(answers_.begin());
+  std::string output;
+  while (!replies_.empty() && replies_.front().due <= time) {
+    output += replies_.front().bytes;
+    replies_.erase(replies_.begin());
   }
-  if (!said.empty()) {
-    deaf_until_ = time + static_cast<double>(said.size()) * 10 / config_.baud + config_.command_pause;
+  if (!output.empty()) {
+    deaf_until_ = time + static_cast<double>(output.size()) * 10 / config_.baud + config_.command_pause;
   }
-  return said;
+  return output;
 }
 
 void Mp285Emulator::checkError(const std::string& code) const {

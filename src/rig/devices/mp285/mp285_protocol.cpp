@@ -13,36 +13,37 @@ void append(std::string& bytes, std::uint32_t number, int size) {
   for (int i = 0; i < size; ++i) bytes += static_cast<char>((number >> (8 * i)) & 0xff);
 }
 
-std::uint32_t take(const std::string& bytes, std::size_t at, int size) {
+std::uint32_t readNumber(const std::string& bytes, std::size_t at, int size) {
   std::uint32_t number = 0;
   for (int i = size; i-- > 0;) number = number << 8 | static_cast<unsigned char>(bytes[at + i]);
   return number;
 }
 
-Mp285Answer readPosition(const std::string& bytes) {
-  Mp285Answer answer;
-  answer.kind = Mp285Answer::Kind::kPosition;
-  for (int i = 0; i < 3; ++i) answer.position[i] = static_cast<std::int32_t>(take(bytes, 4 * i, 4));
-  return answer;
+Mp285Reply readPosition(const std::string& bytes) {
+  Mp285Reply reply;
+  reply.kind = Mp285Reply::Kind::kPosition;
+  for (int i = 0; i < 3; ++i) reply.position[i] = static_cast<std::int32_t>(readNumber(bytes, 4 * i, 4));
+  return reply;
 }
 
-Mp285Answer readStatus(const std::string& bytes) {
-  Mp285Answer answer;
-  answer.kind = Mp285Answer::Kind::kStatus;
-  answer.status.step_div = static_cast<int>(take(bytes, kStepDiv, 2));
-  answer.status.step_mul = static_cast<int>(take(bytes, kStepMul, 2));
-  const std::uint32_t speed = take(bytes, kSpeed, 2);
-  answer.status.fine = (speed & 0x8000) != 0;
-  answer.status.speed = static_cast<int>(speed & 0x7fff);
+Mp285Reply readStatus(const std::string& bytes) {
+  Mp285Reply reply;
+  reply.kind = Mp285Reply::Kind::kStatus;
+  reply.status.step_div = static_cast<int>(readNumber(bytes, kStepDiv, 2));
+  reply.status.step_mul = static_cast<int>(readNumber(bytes, kStepMul, 2));
+  const std::uint32_t speed = readNumber(bytes, kSpeed, 2);
+  reply.status.fine = (speed & 0x8000) != 0;
+  reply.status.speed = static_cast<int>(speed & 0x7fff);
   for (std::size_t i = 0; i + 1 < bytes.size(); ++i) {
     char text[4];
     std::snprintf(text, sizeof(text), i == 0 ? "%02x" : " %02x", static_cast<unsigned char>(bytes[i]));
-    answer.status.bytes += text;
+    reply.status.bytes += text;
   }
-  return answer;
+  return reply;
 }
 
-/// The error's bits; -1: the byte is none. Micro-Manager's form is ASCII, '0' to '?'; acq4 reads the bits alone.
+/// The error's bits; -1: the byte is no error. Micro-Manager's form is ASCII, '0' to '?'; acq4
+/// reads the bits alone.
 int errorBits(char byte) {
   const int value = static_cast<unsigned char>(byte);
   const bool bare = value <= kErrorBits && byte != '\r';
@@ -51,9 +52,9 @@ int errorBits(char byte) {
 
 }  // namespace
 
-std::string mp285Move(const Mp285Position& place) {
+std::string mp285Move(const Mp285Position& position) {
   std::string bytes = "m";
-  for (const std::int32_t each : place) append(bytes, static_cast<std::uint32_t>(each), 4);
+  for (const std::int32_t each : position) append(bytes, static_cast<std::uint32_t>(each), 4);
   return bytes + '\r';
 }
 
@@ -86,40 +87,40 @@ void Mp285Parser::expect(Expected expected) {
   bytes_.clear();
 }
 
-/// Of one or two bytes: done, stopped or an error.
-std::optional<Mp285Answer> Mp285Parser::shortAnswer() const {
-  Mp285Answer answer;
+/// A reply of one or two bytes: done, stopped or an error.
+std::optional<Mp285Reply> Mp285Parser::shortReply() const {
+  Mp285Reply reply;
   if (bytes_ == "\r") {
-    answer.kind = Mp285Answer::Kind::kDone;
-    return answer;
+    reply.kind = Mp285Reply::Kind::kDone;
+    return reply;
   }
   if (bytes_.size() != 2 || bytes_[1] != '\r') return std::nullopt;
-  if (bytes_[0] == '=' && expected_ == Expected::kStop) {  // to anything else it is three errors at once
-    answer.kind = Mp285Answer::Kind::kStopped;
-    return answer;
+  if (bytes_[0] == '=' && expected_ == Expected::kStop) {  // otherwise this byte is three errors at once
+    reply.kind = Mp285Reply::Kind::kStopped;
+    return reply;
   }
-  answer.error = errorBits(bytes_[0]);
-  if (answer.error < 0) return std::nullopt;
-  answer.kind = Mp285Answer::Kind::kError;
-  return answer;
+  reply.error = errorBits(bytes_[0]);
+  if (reply.error < 0) return std::nullopt;
+  reply.kind = Mp285Reply::Kind::kError;
+  return reply;
 }
 
-std::optional<Mp285Answer> Mp285Parser::feed(const std::string& bytes, bool silent) {
+std::optional<Mp285Reply> Mp285Parser::feed(const std::string& bytes, bool silent) {
   bytes_ += bytes;
-  std::optional<Mp285Answer> answer;
+  std::optional<Mp285Reply> reply;
   const bool is_short = expected_ == Expected::kDone || expected_ == Expected::kStop;
   const std::size_t whole = is_short ? 2 : expected_ == Expected::kPosition ? kPositionBytes : kStatusBytes;
   if (is_short) {
-    answer = shortAnswer();
+    reply = shortReply();
   } else if (bytes_.size() == whole && bytes_.back() == '\r') {
-    answer = expected_ == Expected::kPosition ? readPosition(bytes_) : readStatus(bytes_);
+    reply = expected_ == Expected::kPosition ? readPosition(bytes_) : readStatus(bytes_);
   } else if (silent) {
-    answer = shortAnswer();
-    if (answer && answer->kind != Mp285Answer::Kind::kError) answer->kind = Mp285Answer::Kind::kMalformed;
+    reply = shortReply();
+    if (reply && reply->kind != Mp285Reply::Kind::kError) reply->kind = Mp285Reply::Kind::kMalformed;
   }
-  if (!answer && (bytes_.size() >= whole || (silent && !bytes_.empty()))) answer = Mp285Answer();
-  if (answer) bytes_.clear();
-  return answer;
+  if (!reply && (bytes_.size() >= whole || (silent && !bytes_.empty()))) reply = Mp285Reply();
+  if (reply) bytes_.clear();
+  return reply;
 }
 
 }  // namespace microinjection

@@ -8,34 +8,39 @@
 
 namespace microinjection {
 
-/// Sutter MP-285's and MP-285A's protocol: a letter, little-endian numbers, a carriage return; answers end with a
-/// carriage return, too. Sources: the clients of acq4, navigate and Micro-Manager, instrulink's of the MP-285A, and the
-/// status that a MATLAB and Python client prints of a real MP-285. Not verified on a device:
-/// - which of STEP_DIV and STEP_MUL counts: clients disagree, so only pairs of known size are taken;
-/// - the order of V's two bytes: low first here, as most clients have it; Micro-Manager's has the high one first;
-/// - the answers' errors: ASCII '0' and bits in Micro-Manager, the bits alone in acq4; both are read.
+/// Protocol of Sutter's MP-285 and MP-285A: a letter, little-endian numbers, a carriage return;
+/// replies also end with a carriage return. Sources: the clients of acq4, navigate and
+/// Micro-Manager, instrulink's of the MP-285A, and the status of a real MP-285 as printed by a
+/// MATLAB and Python client. Not verified on a device:
+/// - which of STEP_DIV and STEP_MUL applies: clients disagree, so only pairs of known size are
+///   accepted;
+/// - the order of V's two bytes: low first here, as in most clients; Micro-Manager sends the high
+///   one first;
+/// - the errors in replies: ASCII '0' and bits in Micro-Manager, the bits alone in acq4; both are
+///   read.
 using Mp285Position = std::array<std::int32_t, 3>;  ///< microsteps
 
-constexpr char kMp285Stop = '\x03';  ///< alone, without a carriage return
-inline std::string mp285AskPosition() { return "c\r"; }
-inline std::string mp285AskStatus() { return "s\r"; }
+constexpr char kMp285Stop = '\x03';  ///< without a carriage return
+inline std::string mp285RequestPosition() { return "c\r"; }
+inline std::string mp285RequestStatus() { return "s\r"; }
 inline std::string mp285AbsoluteMode() { return "a\r"; }
-std::string mp285Move(const Mp285Position& place);  ///< answered when the move is over
-/// `speed` in um/s, 1..32767; fine: 50 microsteps a step, otherwise 10.
+std::string mp285Move(const Mp285Position& position);  ///< the reply comes at the end of the move
+/// `speed` in um/s, 1..32767; fine: 50 microsteps per step, otherwise 10.
 std::string mp285SetVelocity(int speed, bool fine);
 
 struct Mp285Status {
-  int step_div = 0, step_mul = 0;  ///< as told; what they mean is known of some pairs only
-  bool fine = false;               ///< resolution under way
+  int step_div = 0, step_mul = 0;  ///< as reported; known for some pairs only
+  bool fine = false;               ///< resolution while moving
   int speed = 0;                   ///< um/s
   std::string bytes;               ///< all 32, hexadecimal, for messages
 };
 
-/// Size (m) of a microstep by STEP_DIV and STEP_MUL of the status. Known are (25, 4), of an MP-285, and (400, 400), of
-/// an MP-285A. Empty for any other pair: a formula that fits one of them is wrong by 16 for the other.
+/// Size (m) of a microstep from STEP_DIV and STEP_MUL of the status. Known pairs are (25, 4), of an
+/// MP-285, and (400, 400), of an MP-285A. Empty for any other pair: a formula that fits one of them
+/// is wrong by a factor of 16 for the other.
 std::optional<double> mp285Microstep(int step_div, int step_mul);
 
-struct Mp285Answer {
+struct Mp285Reply {
   enum class Kind { kDone, kStopped, kPosition, kStatus, kError, kMalformed };
   Kind kind = Kind::kMalformed;
   Mp285Position position{};
@@ -45,20 +50,20 @@ struct Mp285Answer {
 
 std::string mp285ErrorName(int error);  ///< names each bit
 
-/// Puts the answer to one command together. There are no marks in the bytes, so it must know what was asked, and an
-/// error in place of a longer answer shows by the silence after it.
+/// Assembles the reply to one command. The bytes have no delimiters, so the parser needs the kind
+/// of the request. An error in place of a longer reply shows by the silence after it.
 class Mp285Parser {
  public:
   enum class Expected { kDone, kStop, kPosition, kStatus };
 
   void expect(Expected expected);
-  /// What has come; `silent`: nothing has followed for longer than there may be between two bytes. Empty: not all is
-  /// there.
-  std::optional<Mp285Answer> feed(const std::string& bytes, bool silent);
+  /// Adds received bytes. `silent`: the longest pause within a reply has passed. Empty: the reply
+  /// is incomplete.
+  std::optional<Mp285Reply> feed(const std::string& bytes, bool silent);
   bool begun() const { return !bytes_.empty(); }
 
  private:
-  std::optional<Mp285Answer> shortAnswer() const;
+  std::optional<Mp285Reply> shortReply() const;
 
   Expected expected_ = Expected::kDone;
   std::string bytes_;

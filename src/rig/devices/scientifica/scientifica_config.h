@@ -10,8 +10,8 @@ struct ScientificaConfig : PolledManipulatorConfig {
     reply_timeout = 0.35;
   }
 
-  int version = 3;             ///< of the motion card: 2 or 3; another one is refused
-  double acceleration = 0.03;  ///< m/s^2, set in the device at the begin
+  int version = 3;             ///< of the motion card: 2 or 3; others are refused
+  double acceleration = 0.03;  ///< m/s^2, set in the device at the start
 
   static ScientificaConfig read(ConfigReader& reader);
 };

@@ -5,22 +5,23 @@
 
 namespace microinjection {
 
-/// Scientifica PatchStar, and other manipulators on the same motion cards whose steps are as long. At the begin the
-/// card must say what it is: that it is Scientifica's, the version that the file names, and the scale at which that
-/// version's positions have their known unit. Anything else is a fault that tells the answer, and nothing moves. Then
-/// its acceleration is set, and its start speed to the smallest.
+/// Driver of the Scientifica PatchStar, and of other manipulators with the same motion cards and
+/// step size. At the start the card must confirm the maker Scientifica, the version in the file,
+/// and the scale at which that version's positions have their known unit. Anything else is a fault
+/// with the reply, and nothing moves. Then the driver sets the acceleration, and the smallest start
+/// speed.
 class ScientificaDriver : public PolledManipulator {
  public:
   ScientificaDriver(const ScientificaConfig& config, std::unique_ptr<Wire> wire);
 
  protected:
   std::string setup(int step) const override;
-  std::string takeSetup(int step, const std::string& answer) override;
-  std::optional<Eigen::Vector3d> readPosition(const std::string& answer) override;
-  std::optional<bool> readMotion(const std::string& answer) const override;
-  std::string askKept(const std::string& setting) const override;
-  bool isKept(const std::string& setting, const std::string& answer) const override;
-  bool acknowledges(const std::string& line, const std::string& answer) const override;
+  std::string handleSetup(int step, const std::string& reply) override;
+  std::optional<Eigen::Vector3d> readPosition(const std::string& reply) override;
+  std::optional<bool> readMotion(const std::string& reply) const override;
+  std::string settingQuery(const std::string& setting) const override;
+  bool isKept(const std::string& setting, const std::string& reply) const override;
+  bool acknowledges(const std::string& line, const std::string& reply) const override;
   Plan plan(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double speed,
             const Eigen::Vector3d& fastest) const override;
   double count() const override;

@@ -17,9 +17,10 @@ ScientificaEmulator::ScientificaEmulator(const ScientificaEmulatorConfig& config
   switchOn();
 }
 
-/// Settings of a card as it is delivered (ScanImage, Micro-Manager); those of version 3 are the same motion.
+/// Settings of a card as delivered (ScanImage, Micro-Manager); those of version 3 give the same
+/// motion.
 void ScientificaEmulator::switchOn() {
-  place_.setZero();
+  position_.setZero();
   stopping_ = false;
   top_ = isOld() ? 30000 : 2344;
   first_ = isOld() ? 5000 : 391;
@@ -37,18 +38,18 @@ void ScientificaEmulator::handleCommand(const std::string& command, double time)
   if (words.empty()) return;
   if (words[0] == "STOP") {
     stopping_ = true;
-    return answer("A", time);
+    return reply("A", time);
   }
   if (words[0] == "ABS" || words[0] == "REL") return goTo(words, words[0] == "REL", time);
   if (words[0] == "ZERO") {
-    if (moves()) return answer("E", time);
-    place_.setZero();
-    return answer("A", time);
+    if (moves()) return reply("E", time);
+    position_.setZero();
+    return reply("A", time);
   }
-  if (!tell(words, time) && !set(words, time)) answer(error(kUnknown), time);
+  if (!replyToQuery(words, time) && !set(words, time)) reply(error(kUnknown), time);
 }
 
-bool ScientificaEmulator::tell(const std::vector<std::string>& words, double time) {
+bool ScientificaEmulator::replyToQuery(const std::vector<std::string>& words, double time) {
   const std::string& word = words[0];
   char text[64] = "";
   if (words.size() == 2 && word == "USTEP" && !isOld() && std::string("XYZ").find(words[1]) != std::string::npos) {
@@ -64,15 +65,15 @@ bool ScientificaEmulator::tell(const std::vector<std::string>& words, double tim
   } else if (word == "LIMITS") {
     std::snprintf(text, sizeof(text), "0");
   }
-  std::string told = text;
-  if (word == "SCIENTIFICA") told = config_.maker;
-  if (word == "VER") told = config_.version;
-  if (word == "DATE") told = "Scientifica " + config_.version + "\tJan 01 2020\t12:00:00";
-  if (word == "TYPE") told = isOld() ? "1.05" : "3.05";
-  if (word == "DESC") told = "PatchStar";
-  if (word == "P" || word == "POS") told = positionText();
-  if (told.empty()) return false;
-  answer(told, time);
+  std::string output = text;
+  if (word == "SCIENTIFICA") output = config_.maker;
+  if (word == "VER") output = config_.version;
+  if (word == "DATE") output = "Scientifica " + config_.version + "\tJan 01 2020\t12:00:00";
+  if (word == "TYPE") output = isOld() ? "1.05" : "3.05";
+  if (word == "DESC") output = "PatchStar";
+  if (word == "P" || word == "POS") output = positionText();
+  if (output.empty()) return false;
+  reply(output, time);
   return true;
 }
 
@@ -83,48 +84,48 @@ bool ScientificaEmulator::set(const std::vector<std::string>& words, double time
   if (!speed && words[0] != "ACC") return false;
   const long least = !isOld() ? 1 : speed ? 1000 : 10, most = isOld() && !speed ? 1000 : isOld() ? 50000 : 1000000;
   if (number < least || number > most) {
-    answer("E", time);
+    reply("E", time);
     return true;
   }
   (words[0] == "TOP" ? top_ : words[0] == "FIRST" ? first_ : acc_) = static_cast<int>(number);
-  answer("A", time);
+  reply("A", time);
   return true;
 }
 
 /// Two numbers are x and y, three are all axes.
 void ScientificaEmulator::goTo(const std::vector<std::string>& words, bool relative, double time) {
-  Eigen::Vector3d end = place_;
+  Eigen::Vector3d end = position_;
   for (std::size_t i = 1; i < words.size(); ++i) {
     long number = 0;
-    if (i > 3 || !isWhole(words[i], number)) return answer(error(kUnknown), time);
+    if (i > 3 || !isWhole(words[i], number)) return reply(error(kUnknown), time);
     end[static_cast<Eigen::Index>(i) - 1] =
-        (relative ? place_[static_cast<Eigen::Index>(i) - 1] : 0) + static_cast<double>(number) * stepsPerCount();
+        (relative ? position_[static_cast<Eigen::Index>(i) - 1] : 0) + static_cast<double>(number) * stepsPerCount();
   }
-  if (words.size() < 3) return answer(error(kUnknown), time);
+  if (words.size() < 3) return reply(error(kUnknown), time);
   if (moves()) return;
   const double furthest = config_.travel * kStepsPerMetre;
   end_ = end.array().round().max(-furthest).min(furthest);
-  answer("A", time);
+  reply("A", time);
   stopping_ = false;
   speed_ = std::min(stepsPerSecond(first_), stepsPerSecond(top_));
   beginMoving();
 }
 
 void ScientificaEmulator::move(double /*time*/, double dt) {
-  // Small steps, so that the ramps do not depend on how often it is asked.
+  // Small steps, so that the ramps do not depend on the calling rate.
   const double a = acceleration(), least = std::min(stepsPerSecond(first_), stepsPerSecond(top_));
   for (double left = dt; left > 0 && moves(); left -= 0.2e-3) {
-    const double h = std::min(left, 0.2e-3), way = (end_ - place_).norm();
-    const bool brakes = stopping_ || speed_ * speed_ / (2 * a) >= way;
+    const double h = std::min(left, 0.2e-3), distance = (end_ - position_).norm();
+    const bool brakes = stopping_ || speed_ * speed_ / (2 * a) >= distance;
     speed_ = brakes ? std::max(speed_ - a * h, least) : std::min(speed_ + a * h, stepsPerSecond(top_));
-    if (speed_ * h >= way) {
-      place_ = end_;
+    if (speed_ * h >= distance) {
+      position_ = end_;
       endMoving();
     } else {
-      place_ += (end_ - place_) * (speed_ * h / way);
+      position_ += (end_ - position_) * (speed_ * h / distance);
     }
     if (stopping_ && speed_ <= least) {
-      place_ = place_.array().round();
+      position_ = position_.array().round();
       endMoving();
     }
   }
@@ -132,14 +133,14 @@ void ScientificaEmulator::move(double /*time*/, double dt) {
 }
 
 void ScientificaEmulator::interrupt(double /*time*/) {
-  place_ = place_.array().round();
+  position_ = position_.array().round();
   endMoving();
   stopping_ = false;
 }
 
 std::string ScientificaEmulator::positionText() const {
   std::string text;
-  for (int i = 0; i < 3; ++i) text += (i > 0 ? "\t" : "") + std::to_string(std::lround(place_[i] / stepsPerCount()));
+  for (int i = 0; i < 3; ++i) text += (i > 0 ? "\t" : "") + std::to_string(std::lround(position_[i] / stepsPerCount()));
   return text;
 }
 

@@ -15,32 +15,32 @@ double scientificaCount(int version) { return version == 2 ? 0.1e-6 : 0.01e-6; }
 
 double scientificaScale(int version) { return version == 2 ? kScale2 : 10240 / kScale2; }
 
-std::optional<double> readScientificaNumber(const std::string& answer) {
+std::optional<double> readScientificaNumber(const std::string& reply) {
   static const std::regex form(R"([ \t]*([+-]?\d{1,9}(\.\d{1,9})?)[ \t]*)");
   std::smatch found;
-  if (!std::regex_match(answer, found, form)) return std::nullopt;
+  if (!std::regex_match(reply, found, form)) return std::nullopt;
   return std::stod(found[1]);
 }
 
-std::optional<Eigen::Vector3d> readScientificaPosition(const std::string& answer) {
+std::optional<Eigen::Vector3d> readScientificaPosition(const std::string& reply) {
   static const std::regex form(R"(([+-]?\d{1,9})\t([+-]?\d{1,9})\t([+-]?\d{1,9})\t?)");
   std::smatch found;
-  if (!std::regex_match(answer, found, form)) return std::nullopt;
+  if (!std::regex_match(reply, found, form)) return std::nullopt;
   return Eigen::Vector3d(std::stod(found[1]), std::stod(found[2]), std::stod(found[3]));
 }
 
-std::optional<bool> readScientificaMotion(const std::string& answer) {
-  if (answer.size() != 1 || answer[0] < '0' || answer[0] > '7') return std::nullopt;
-  return answer[0] != '0';
+std::optional<bool> readScientificaMotion(const std::string& reply) {
+  if (reply.size() != 1 || reply[0] < '0' || reply[0] > '7') return std::nullopt;
+  return reply[0] != '0';
 }
 
-std::string scientificaGoTo(const std::array<long, 3>& place) {
+std::string scientificaGoTo(const std::array<long, 3>& position) {
   std::string line = "ABS";
-  for (const long each : place) line += " " + std::to_string(each);
+  for (const long each : position) line += " " + std::to_string(each);
   return line;
 }
 
-std::string scientificaAskScale(int version, int axis) {
+std::string scientificaRequestScale(int version, int axis) {
   const std::string letter(1, "XYZ"[axis]);
   return version == 2 ? "UU" + letter : "USTEP " + letter;
 }

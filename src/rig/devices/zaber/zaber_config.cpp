@@ -2,8 +2,8 @@
 
 namespace microinjection {
 
-double ZaberConfig::exchangeTime(double answer) const {
-  return (kZaberCommandBytes + kZaberReplyBytes) * byteTime() + answer;
+double ZaberConfig::exchangeTime(double reply) const {
+  return (kZaberCommandBytes + kZaberReplyBytes) * byteTime() + reply;
 }
 
 ZaberConfig ZaberConfig::read(ConfigReader& reader) {

@@ -6,8 +6,8 @@
 namespace microinjection {
 namespace {
 
-constexpr double kLongestGuess = 0.2;  // s, that a position carried on says where an axis may be
-constexpr double kSlowAnswers = 2;     // times the expected time: that is said
+constexpr double kLongestExtrapolation = 0.2;  // s, for which an extrapolated position is meaningful
+constexpr double kSlowReplies = 2;             // times the expected time, from which slow replies are reported
 
 std::string stopAll(const ZaberConfig& config) {
   std::string bytes;
@@ -28,32 +28,34 @@ ZaberDriver::ZaberDriver(const ZaberConfig& config, std::unique_ptr<Wire> wire)
       may_home_(config.home) {}
 
 double ZaberDriver::gain() const {
-  // A loop with a dead time T is well damped up to a gain of about 0.4 / T; a turn is six exchanges.
+  // A loop with a dead time T is well damped up to a gain of about 0.4 / T; a turn has six
+  // exchanges.
   return config_.gain > 0 ? config_.gain : 0.3 / (7 * exchangeTime());
 }
 
-/// s, after which a motion ends that is not renewed: longer than in the file where the line turned out to be slow.
+/// Time (s) after which a motion ends unless renewed; longer than in the file if the line is slow.
 double ZaberDriver::horizon() const {
   return std::max(config_.move_horizon, 1.1 * config_.leastHorizon(turnTime(), acceleration_));
 }
 
-/// An axis that shows a warning is asked for all of them, one in a turn.
+/// Includes one exchange for the list of an axis with a warning.
 double ZaberDriver::turnTime() const {
-  const bool warns = std::any_of(axes_.begin(), axes_.end(), [](const Axis& axis) { return !axis.shown.empty(); });
+  const bool warns = std::any_of(axes_.begin(), axes_.end(), [](const Axis& axis) { return !axis.shown_flag.empty(); });
   return (kZaberTurn + (warns ? 1 : 0)) * exchangeTime();
 }
 
-/// How old (s) a position may be: two turns, one answer that is missed, and a stop, in which an axis is asked alone.
+/// Maximum age (s) of a position: two turns, one missing reply, and a stop, in which an axis is
+/// polled alone.
 double ZaberDriver::longestAge() const {
   return 2 * turnTime() + config_.reply_timeout + answer_time_ + config_.speed / acceleration_;
 }
 
-double ZaberDriver::longestGuess() const { return std::max(kLongestGuess, 1.3 * turnTime()); }
+double ZaberDriver::longestExtrapolation() const { return std::max(kLongestExtrapolation, 1.3 * turnTime()); }
 
-/// No faster than it can brake in the distance from which it is slowed down.
+/// Limited to the speed from which the axis can brake in the distance at which it is slowed down.
 double ZaberDriver::fastest(int i) const { return std::min({config_.speed, speedLimits()[i], acceleration_ / gain()}); }
 
-/// Of a speed (m/s), never rounded beyond the axis' fastest.
+/// Device data of a speed (m/s), never above the axis' fastest.
 long long ZaberDriver::speedData(int i, double speed) const {
   const double unit = config_.microsteps_per_metre[i] * kZaberSpeedUnit;
   const auto most = static_cast<long long>(fastest(i) * unit);
@@ -67,19 +69,19 @@ ManipulatorAbilities ZaberDriver::abilities() const {
   abilities.command_interval = abilities.reading_interval = turnTime();
   abilities.resolution = 1 / config_.microsteps_per_metre.minCoeff();
   abilities.speed = std::min(config_.speed, speedLimits().maxCoeff());
-  abilities.latency = 4 * exchangeTime();  // half a turn to wait, and its own way
+  abilities.latency = 4 * exchangeTime();  // half a turn of waiting, and its own transmission
   const double wire = stopAll(config_).size() * config_.byteTime();
   abilities.stop_time = wire + answer_time_ + abilities.speed / acceleration_;
   return abilities;
 }
 
-/// What the devices turned out to be that an operator should know.
+/// Properties of the connected devices that concern an operator.
 std::string ZaberDriver::axesNote() const {
   std::string note;
   if (std::any_of(axes_.begin(), axes_.end(), [](const Axis& axis) { return axis.settings.oldFirmware(); })) {
     note += "; firmware before 7.25, a velocity does not end by itself";
   }
-  if (answer_time_ > kSlowAnswers * config_.answer_time) {
+  if (answer_time_ > kSlowReplies * config_.answer_time) {
     note += "; answers take " + std::to_string(std::lround(1e3 * answer_time_)) +
             " ms: lower the latency timer of the serial adapter";
   }
@@ -89,8 +91,8 @@ std::string ZaberDriver::axesNote() const {
 std::string ZaberDriver::note() const {
   std::string note;
   for (int i = 0; i < 3; ++i) {
-    if (axes_[i].shown.empty()) continue;
-    note += (note.empty() ? "" : ", ") + axisName(i) + " warns " + axes_[i].shown;
+    if (axes_[i].shown_flag.empty()) continue;
+    note += (note.empty() ? "" : ", ") + axisName(i) + " warns " + axes_[i].shown_flag;
   }
   return note;
 }
@@ -98,16 +100,16 @@ std::string ZaberDriver::note() const {
 double ZaberDriver::expected(int i, double at) const {
   const Axis& axis = axes_[i];
   if (!axis.position) return std::nan("");
-  const double way = axis.velocity * std::max(0.0, at - axis.position_time);
-  if (std::isnan(axis.end)) return *axis.position + way;
+  const double travel = axis.velocity * std::max(0.0, at - axis.position_time);
+  if (std::isnan(axis.end)) return *axis.position + travel;
   const double left = axis.end - *axis.position;
-  return *axis.position + (std::abs(way) < std::abs(left) ? way : left);  // never past the end of the move
+  return *axis.position + (std::abs(travel) < std::abs(left) ? travel : left);  // never past the end of the move
 }
 
 std::optional<ManipulatorDevice::Reading> ZaberDriver::reading() const {
   Eigen::Vector3d device, velocity;
   for (int i = 0; i < 3; ++i) {
-    if (!axes_[i].position || !axes_[i].has_reference || !sure()) return std::nullopt;
+    if (!axes_[i].position || !axes_[i].has_reference || !positionsValid()) return std::nullopt;
     device[i] = expected(i, time());
     velocity[i] = !std::isnan(axes_[i].end) && device[i] == axes_[i].end ? 0 : axes_[i].velocity;
   }
@@ -120,8 +122,8 @@ bool ZaberDriver::moving() const {
   const Eigen::Vector3d wanted = config_.joints.toDevice(goal()->joints);
   for (int i = 0; i < 3; ++i) {
     const double away = std::abs(wanted[i] - axes_[i].position.value_or(wanted[i]));
-    if (axes_[i].told.value_or(1) != 0 || away > 1 / config_.microsteps_per_metre[i]) return true;
-    if (axes_[i].busy || !axes_[i].read_since_report || axes_[i].filter.isImplausible()) return true;
+    if (axes_[i].sent_velocity.value_or(1) != 0 || away > 1 / config_.microsteps_per_metre[i]) return true;
+    if (axes_[i].busy || !axes_[i].read_since_command || axes_[i].filter.isImplausible()) return true;
   }
   return false;
 }
@@ -136,7 +138,7 @@ void ZaberDriver::exchange(const std::string& bytes) {
     handle(message);
     if (!exchanging()) return;
   }
-  if (exchange_ && listened() > exchange_->due) exchange_->sent ? missedReply() : sendExchange();
+  if (exchange_ && activeTime() > exchange_->due) exchange_->sent ? missedReply() : sendExchange();
   if (!exchange_ && exchanging()) next();
 }
 

@@ -20,7 +20,7 @@ const std::vector<std::string>& importance() {
   return flags;
 }
 
-/// Small: important. A flag that the manual of 2018 does not have yet comes behind those of its kind.
+/// Lower is more important. A flag that is not in the manual of 2018 follows those of its kind.
 std::pair<int, std::ptrdiff_t> rank(const std::string& flag) {
   const auto& order = importance();
   const int kind = flag[0] == 'F' ? 0 : flag[0] == 'W' ? 1 : 2;
@@ -58,7 +58,7 @@ std::string listOfZaberFlags(const std::vector<std::string>& flags) {
 
 ZaberEmulatedAxis::ZaberEmulatedAxis(const Config& config)
     : config_(config),
-      place_(std::round(config.start)),
+      position_(std::round(config.start)),
       max_speed_(std::llround(config.speed * kSpeedData)),
       acceleration_(std::llround(config.acceleration * kAccelData)),
       deceleration_(acceleration_) {
@@ -84,28 +84,28 @@ void ZaberEmulatedAxis::advance(double time) {
 void ZaberEmulatedAxis::step(double dt) {
   const double faster = move_acceleration_ * dt, slower = move_braking_ * dt;  // microsteps/s
   double wanted = target_velocity_;
-  if (to_place_) {
-    const double left = target_ - place_;
-    // The speed from which it can still brake in time, with the steps of the integration allowed for.
+  if (to_position_) {
+    const double left = target_ - position_;
+    // The speed from which it can brake in time, with an allowance for the integration step.
     const double braking = std::sqrt(2 * move_braking_ * std::abs(left) + slower * slower / 4) - slower / 2;
     wanted = std::copysign(std::min(move_speed_, braking), left);
     if (std::abs(left) < 0.5 && std::abs(velocity_) <= 2 * slower) {
-      place_ = target_;
+      position_ = target_;
       velocity_ = 0;
-      to_place_ = false;
+      to_position_ = false;
       return;
     }
   }
   const bool speeds_up = std::abs(wanted) > std::abs(velocity_) && wanted * velocity_ >= 0;
   const double change = speeds_up ? faster : slower;
   velocity_ += std::clamp(wanted - velocity_, -change, change);
-  place_ += velocity_ * dt;
-  if (!homing_ && (place_ < 0 || place_ > config_.travel)) {
-    place_ = std::clamp(place_, 0.0, config_.travel);
+  position_ += velocity_ * dt;
+  if (!homing_ && (position_ < 0 || position_ > config_.travel)) {
+    position_ = std::clamp(position_, 0.0, config_.travel);
     velocity_ = target_velocity_ = 0;
-    to_place_ = false;
+    to_position_ = false;
   }
-  if (!busy()) place_ = std::round(place_);
+  if (!busy()) position_ = std::round(position_);
 }
 
 std::string ZaberEmulatedAxis::perform(const std::vector<std::string>& words) {
@@ -148,7 +148,7 @@ std::string ZaberEmulatedAxis::set(const std::string& name, const std::string& d
   } else if (name == "pos") {
     if (busy()) return "RJ STATUSBUSY";
     if (!within(-kLargestData, kLargestData)) return "RJ BADDATA";
-    zero_ = place_ - static_cast<double>(*value);
+    zero_ = position_ - static_cast<double>(*value);
     referenced_ = true;
   } else {
     return "RJ BADCOMMAND";
@@ -164,7 +164,7 @@ std::string ZaberEmulatedAxis::warnings(bool clear) {
 
 std::string ZaberEmulatedAxis::stop(bool at_once) {
   if (busy()) raised_.insert("NI");
-  to_place_ = homing_ = false;
+  to_position_ = homing_ = false;
   target_velocity_ = 0;
   move_braking_ = static_cast<double>(deceleration_) / kAccelData;
   if (at_once) velocity_ = 0;
@@ -173,7 +173,7 @@ std::string ZaberEmulatedAxis::stop(bool at_once) {
 
 std::string ZaberEmulatedAxis::home() {
   if (busy()) raised_.insert("NI");
-  homing_ = to_place_ = true;
+  homing_ = to_position_ = true;
   target_ = 0;
   move_speed_ = static_cast<double>(max_speed_) / kSpeedData;
   move_acceleration_ = static_cast<double>(acceleration_) / kAccelData;
@@ -181,8 +181,8 @@ std::string ZaberEmulatedAxis::home() {
   return "OK 0";
 }
 
-/// `data`: place or velocity, and from firmware 7.25 on speed (not of a velocity) and acceleration, where they are
-/// given.
+/// `data`: position or velocity, and from firmware 7.25 on optionally speed (not for a velocity)
+/// and acceleration.
 std::string ZaberEmulatedAxis::move(const std::string& how, const std::vector<std::string>& data) {
   if (how != "abs" && how != "rel" && how != "vel" && how != "min" && how != "max") return "RJ BADCOMMAND";
   if (!raised_.empty() && sortedZaberFlags({raised_.begin(), raised_.end()})[0][0] == 'F') return "RJ STATUSBUSY";
@@ -204,9 +204,9 @@ std::string ZaberEmulatedAxis::move(const std::string& how, const std::vector<st
     return "RJ BADDATA";
   }
   if (acceleration && *acceleration < 1) return "RJ BADDATA";
-  double target = how == "max" ? std::floor(config_.travel) : 0;  // a place
+  double target = how == "max" ? std::floor(config_.travel) : 0;  // microsteps from the home position
   if (!to_end && !at_velocity) {
-    target = static_cast<double>(values[0]) + (how == "abs" ? zero_ : std::round(place_));
+    target = static_cast<double>(values[0]) + (how == "abs" ? zero_ : std::round(position_));
     if (target < 0 || target > config_.travel || (!referenced_ && how == "abs")) return "RJ BADDATA";
   }
   if (busy()) {
@@ -219,17 +219,17 @@ std::string ZaberEmulatedAxis::move(const std::string& how, const std::vector<st
   move_acceleration_ = static_cast<double>(acceleration.value_or(acceleration_)) / kAccelData;
   move_braking_ = static_cast<double>(acceleration.value_or(deceleration_)) / kAccelData;
   homing_ = false;
-  to_place_ = !at_velocity;
+  to_position_ = !at_velocity;
   target_velocity_ = at_velocity ? static_cast<double>(values[0]) / kSpeedData : 0;
-  if (to_place_) ++moves_begun_;
+  if (to_position_) ++moves_begun_;
   return "OK 0";
 }
 
-void ZaberEmulatedAxis::shift(double way) { place_ = std::round(place_ + way); }
+void ZaberEmulatedAxis::shift(double displacement) { position_ = std::round(position_ + displacement); }
 
 void ZaberEmulatedAxis::interrupt() {
   if (busy()) raised_.insert("NI");
-  to_place_ = homing_ = false;
+  to_position_ = homing_ = false;
   target_velocity_ = 0;
 }
 
@@ -240,15 +240,15 @@ void ZaberEmulatedAxis::raise(const std::string& flag) {
   }
   raised_.insert(flag);
   if (flag[0] != 'F') return;
-  to_place_ = homing_ = false;
+  to_position_ = homing_ = false;
   velocity_ = target_velocity_ = 0;
 }
 
 void ZaberEmulatedAxis::restart() {
   raised_.clear();
-  to_place_ = homing_ = referenced_ = false;
+  to_position_ = homing_ = referenced_ = false;
   velocity_ = target_velocity_ = 0;
-  place_ = zero_ = std::round(place_);
+  position_ = zero_ = std::round(position_);
 }
 
 }  // namespace microinjection

@@ -12,7 +12,7 @@
 namespace microinjection {
 namespace {
 
-constexpr double kLongestStep = 0.5e-3;   // s, between two looks whether an axis came to rest
+constexpr double kLongestStep = 0.5e-3;   // s, between two checks whether an axis came to rest
 constexpr std::size_t kLongestLine = 80;  // characters
 
 const std::vector<std::string>& rejections() {
@@ -46,13 +46,13 @@ std::string digits(const char* format, int number) {
   return text;
 }
 
-/// Takes the checksum off the end; whether the line may be obeyed.
+/// Removes the checksum. Returns whether the line is valid.
 bool checkSum(std::string& text) {
   const std::size_t colon = text.find(':');
   if (colon == std::string::npos) return true;
-  const int said = static_cast<int>(std::strtol(text.c_str() + colon + 1, nullptr, 16));
+  const int received = static_cast<int>(std::strtol(text.c_str() + colon + 1, nullptr, 16));
   text.erase(colon);
-  return (sumOf(text) + said) % 256 == 0;
+  return (sumOf(text) + received) % 256 == 0;
 }
 
 }  // namespace
@@ -100,7 +100,7 @@ void ZaberEmulator::setFirmware(const std::string& version) {
 }
 
 Eigen::Vector3d ZaberEmulator::position() const {
-  return config_.microstep * Eigen::Vector3d(axes_[0].place(), axes_[1].place(), axes_[2].place());
+  return config_.microstep * Eigen::Vector3d(axes_[0].position(), axes_[1].position(), axes_[2].position());
 }
 
 int ZaberEmulator::movesBegun() const { return axes_[0].movesBegun() + axes_[1].movesBegun() + axes_[2].movesBegun(); }
@@ -109,8 +109,8 @@ bool ZaberEmulator::moves() const {
   return std::any_of(axes_.begin(), axes_.end(), [](const ZaberEmulatedAxis& axis) { return axis.busy(); });
 }
 
-void ZaberEmulator::shiftByHand(const Eigen::Vector3d& way) {
-  for (int i = 0; i < 3; ++i) axes_[i].shift(way[i] / config_.microstep);
+void ZaberEmulator::shiftByHand(const Eigen::Vector3d& displacement) {
+  for (int i = 0; i < 3; ++i) axes_[i].shift(displacement[i] / config_.microstep);
 }
 
 void ZaberEmulator::advance(double time) {
@@ -122,7 +122,8 @@ void ZaberEmulator::advance(double time) {
         const bool moved = axis->busy();
         axis->advance(dt);
         if (!moved || axis->busy() || !device.alerts) continue;
-        say('!', device, digits("%02d ", number) + digits("%d IDLE ", axis_number) + zaberFlagShown(axis->flags()), 0);
+        queueLine('!', device,
+                  digits("%02d ", number) + digits("%d IDLE ", axis_number) + zaberFlagShown(axis->flags()), 0);
       }
     }
   }
@@ -144,7 +145,7 @@ void ZaberEmulator::process(const std::string& bytes, double time) {
 
 void ZaberEmulator::handleCommand(const std::string& line) {
   std::string text = line;
-  if (!checkSum(text)) return;  // not heard
+  if (!checkSum(text)) return;  // ignored
   std::istringstream stream(text);
   Command command;
   stream >> command.device >> command.axis;
@@ -159,26 +160,27 @@ void ZaberEmulator::handleCommand(const std::string& line) {
   }
 }
 
-/// One reply of one device.
+/// Sends the reply of one device.
 void ZaberEmulator::handleCommand(int number, Device& device, const Command& command) {
   const bool there = command.axis == 0 || device.axes.count(command.axis) > 0;
-  std::string said = !there ? "RJ BADAXIS" : "RJ " + std::exchange(rejection_, "");
-  if (said == "RJ ") said = perform(number, device, command);
+  std::string output = !there ? "RJ BADAXIS" : "RJ " + std::exchange(rejection_, "");
+  if (output == "RJ ") output = perform(number, device, command);
   const int axis = there ? command.axis : 0;
   bool busy = false;
   for (const auto& [axis_number, each] : device.axes) {
     busy = busy || ((axis == 0 || axis == axis_number) && each->busy());
   }
   const std::string address = digits("%02d ", number) + digits("%d ", axis) + command.id;
-  say('@', device,
-      address + said.substr(0, 3) + (busy ? "BUSY " : "IDLE ") + zaberFlagShown(flags(device, axis)) + said.substr(2),
-      config_.answer_time);
+  queueLine('@', device,
+            address + output.substr(0, 3) + (busy ? "BUSY " : "IDLE ") + zaberFlagShown(flags(device, axis)) +
+                output.substr(2),
+            config_.answer_time);
   const bool help = !command.words.empty() && command.words[0] == "help";
-  const bool in_turn = config_.info_every > 0 && ++answers_ % config_.info_every == 0;
-  if (help || in_turn) say('#', device, address + "see the ASCII protocol manual", config_.answer_time);
+  const bool in_turn = config_.info_every > 0 && ++replies_ % config_.info_every == 0;
+  if (help || in_turn) queueLine('#', device, address + "see the ASCII protocol manual", config_.answer_time);
 }
 
-/// Of the axis, or of all axes that the command goes to. Returns "OK <data>" or "RJ <reason>".
+/// Executes a command for a device or its axes. Returns "OK <data>" or "RJ <reason>".
 std::string ZaberEmulator::perform(int number, Device& device, const Command& command) {
   const std::vector<std::string>& words = command.words;
   if (words.empty()) return "OK 0";
@@ -190,24 +192,24 @@ std::string ZaberEmulator::perform(int number, Device& device, const Command& co
     for (auto& [axis_number, axis] : device.axes) axis->restart();
     return "OK 0";
   }
-  std::string said;
-  if (words[0] == "get" && words.size() == 2) said = get(number, device, words[1]);
-  if (words[0] == "set" && words.size() == 3 && said.empty()) said = set(device, words[1], words[2]);
-  if (said.empty()) return performOnAxes(device, command);
-  return command.axis == 0 ? said : "RJ DEVICEONLY";
+  std::string output;
+  if (words[0] == "get" && words.size() == 2) output = get(number, device, words[1]);
+  if (words[0] == "set" && words.size() == 3 && output.empty()) output = set(device, words[1], words[2]);
+  if (output.empty()) return performOnAxes(device, command);
+  return command.axis == 0 ? output : "RJ DEVICEONLY";
 }
 
-/// What each axis says is put together; `warnings` lists each flag once.
+/// Joins the replies of the axes; `warnings` lists each flag once.
 std::string ZaberEmulator::performOnAxes(Device& device, const Command& command) {
   const std::vector<std::string> before = flags(device, command.axis);
   std::string data;
   bool none = true;
   for (auto& [number, axis] : device.axes) {
     if (command.axis != 0 && command.axis != number) continue;
-    const std::string said = axis->perform(command.words);
-    if (said.substr(0, 2) == "RJ") return said;
-    none = none && said == "OK 0";
-    data += said.substr(2);
+    const std::string output = axis->perform(command.words);
+    if (output.substr(0, 2) == "RJ") return output;
+    none = none && output == "OK 0";
+    data += output.substr(2);
   }
   if (command.words[0] == "warnings") return "OK " + listOfZaberFlags(before);
   return none && command.words[0] != "get" ? "OK 0" : "OK" + data;
@@ -222,7 +224,7 @@ std::vector<std::string> ZaberEmulator::flags(const Device& device, int axis) {
   return sortedZaberFlags(all);
 }
 
-/// Empty: that is no setting of a device.
+/// Empty: no setting of a device.
 std::string ZaberEmulator::get(int number, const Device& device, const std::string& name) const {
   if (name == "version") return "OK " + config_.firmware;
   if (name == "deviceid") return "OK 50000";
@@ -237,7 +239,7 @@ std::string ZaberEmulator::get(int number, const Device& device, const std::stri
   return "";
 }
 
-/// Empty: that is no setting of a device, or none that can be written.
+/// Empty: no writable setting of a device.
 std::string ZaberEmulator::set(Device& device, const std::string& name, const std::string& data) {
   if (name == "comm.alert" || name == "comm.checksum") {
     if (data != "0" && data != "1") return "RJ BADDATA";
@@ -252,21 +254,21 @@ std::string ZaberEmulator::set(Device& device, const std::string& name, const st
   return "";
 }
 
-void ZaberEmulator::say(char kind, const Device& device, const std::string& text, double delay) {
+void ZaberEmulator::queueLine(char kind, const Device& device, const std::string& text, double delay) {
   const std::string sum = device.checksum ? digits(":%02X", (256 - sumOf(text)) % 256) : "";
   const Line line{time_ + delay, kind + text + sum + "\r\n"};
   const auto later = [](const Line& a, const Line& b) { return a.due < b.due; };
   lines_.insert(std::upper_bound(lines_.begin(), lines_.end(), line, later), line);
 }
 
-std::string ZaberEmulator::say(double time) {
+std::string ZaberEmulator::produce(double time) {
   advance(time);
-  std::string said;
+  std::string output;
   while (!lines_.empty() && lines_.front().due <= time) {
-    said += lines_.front().text;
+    output += lines_.front().text;
     lines_.erase(lines_.begin());
   }
-  return said;
+  return output;
 }
 
 void ZaberEmulator::checkError(const std::string& code) const {

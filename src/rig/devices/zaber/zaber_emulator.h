@@ -12,30 +12,32 @@ namespace microinjection {
 
 struct ZaberEmulatorConfig {
   std::array<int, 3> devices{1, 1, 1};  ///< device number of each axis; three chained devices: 1, 2, 3
-  std::array<int, 3> axes{1, 2, 3};     ///< its number in its device; three chained devices: 1, 1, 1
+  std::array<int, 3> axes{1, 2, 3};     ///< number of each axis in its device; three chained devices: 1, 1, 1
   double microstep = 0.047625e-6;       ///< m
   double travel = 25e-3;                ///< m, from 0
   double start = 12.5e-3;               ///< m, of every axis
-  double acceleration = 0.2;            ///< m/s^2, its settings at the start, up and down
-  double speed = 5e-3;                  ///< m/s, its setting maxspeed at the start
-  double answer_time = 1e-3;            ///< s, from a command's end to its answer's begin
-  std::string firmware = "7.25";        ///< MAJOR.MINOR, as `get version` says it
-  bool referenced = true;               ///< false: axes warn WR until they have been homed, and refuse moves to a place
-  bool alerts = false;                  ///< its setting comm.alert: an axis that comes to rest says so
-  bool checksum = false;                ///< its setting comm.checksum: what it says has one
-  std::vector<std::string> without;     ///< settings that its firmware does not know
-  int info_every = 0;                   ///< an info line behind each so many answers; 0: behind that to `help` only
+  double acceleration = 0.2;            ///< m/s^2, initial settings, up and down
+  double speed = 5e-3;                  ///< m/s, initial setting maxspeed
+  double answer_time = 1e-3;            ///< s, from the end of a command to the start of its reply
+  std::string firmware = "7.25";        ///< MAJOR.MINOR, reply to `get version`
+  bool referenced = true;               ///< false: axes warn WR and refuse absolute moves until homed
+  bool alerts = false;                  ///< setting comm.alert: an axis that comes to rest sends an alert
+  bool checksum = false;                ///< setting comm.checksum: messages have one
+  std::vector<std::string> without;     ///< settings that its firmware does not have
+  int info_every = 0;                   ///< an info line after every n-th reply; 0: only after that to `help`
 };
 
-/// Zaber devices with the ASCII protocol, written from the protocol's manuals and from public clients and not from the
-/// driver: which ones, and what is unverified, is in doc/reference/devices.md.
+/// Emulates Zaber devices with the ASCII protocol. It is based on the protocol's manuals and on
+/// public clients, not on the driver. Sources and unverified points: doc/reference/devices.md.
 ///
-/// Axis 0 is all axes of a device, which answers once, with the data of all of them; device 0 is all devices. A reply
-/// shows only its most important flag; `warnings` lists all. From firmware 7.25 on a move may have a speed and an
-/// acceleration of its own, in the data of maxspeed and accel; before, such a move is refused.
+/// Axis 0 is all axes of a device, which replies once, with the data of all of them; device 0 is
+/// all devices. A reply shows only its most important flag; `warnings` lists all. From firmware
+/// 7.25 on a move may have its own speed and acceleration, in the data of maxspeed and accel;
+/// earlier firmware refuses such a move.
 ///
-/// Errors that can be asked for: a reason of rejection (BADDATA, AGAIN, ...) of the next command; a flag of two
-/// characters (FS: stalled), which stays on all axes until `warnings clear`; RESET: it was switched off and on.
+/// Errors that can be injected: a reason of rejection (BADDATA, AGAIN, ...) for the next command; a
+/// flag of two characters (FS: stalled), which stays on all axes until `warnings clear`; RESET: the
+/// devices were switched off and on.
 class ZaberEmulator : public ManipulatorEmulator {
  public:
   explicit ZaberEmulator(const ZaberEmulatorConfig& config = {});
@@ -45,13 +47,13 @@ class ZaberEmulator : public ManipulatorEmulator {
   Eigen::Vector3d position() const override;
   int movesBegun() const override;
   bool moves() const override;
-  void shiftByHand(const Eigen::Vector3d& way) override;
+  void shiftByHand(const Eigen::Vector3d& displacement) override;
   void setFirmware(const std::string& version) override;
   void configure(ConfigReader& reader) override;
 
  protected:
   void process(const std::string& bytes, double time) override;
-  std::string say(double time) override;
+  std::string produce(double time) override;
   void checkError(const std::string& code) const override;
   void failNextCommand(const std::string& code) override;
   void interrupt(double time) override;
@@ -59,12 +61,12 @@ class ZaberEmulator : public ManipulatorEmulator {
  private:
   struct Device {
     std::map<int, ZaberEmulatedAxis*> axes;  // by number
-    int access = 1;                          // its setting system.access
+    int access = 1;                          // setting system.access
     bool alerts = false, checksum = false;
   };
   struct Command {
     int device = 0, axis = 0;
-    std::string id;  // a number of its own and a blank, or nothing
+    std::string id;  // message ID and a blank, or nothing
     std::vector<std::string> words;
   };
   struct Line {
@@ -81,16 +83,16 @@ class ZaberEmulator : public ManipulatorEmulator {
   std::string get(int number, const Device& device, const std::string& name) const;
   std::string set(Device& device, const std::string& name, const std::string& data);
   static std::vector<std::string> flags(const Device& device, int axis);
-  void say(char kind, const Device& device, const std::string& text, double delay);
+  void queueLine(char kind, const Device& device, const std::string& text, double delay);
 
   ZaberEmulatorConfig config_;
   std::vector<ZaberEmulatedAxis> axes_;
   std::map<int, Device> devices_;  // by number
   std::vector<Line> lines_;
   std::string line_;
-  std::string rejection_;  // of the next command; empty: none
+  std::string rejection_;  // for the next command; empty: none
   double time_ = 0;        // s
-  int answers_ = 0;
+  int replies_ = 0;
 };
 
 }  // namespace microinjection

@@ -21,8 +21,8 @@ std::string checksum(const std::string& text) {
   return digits;
 }
 
-/// Takes "<word> " off the front of `text`.
-std::string popWord(std::string& text) {
+/// Removes "<word> " from the front of `text` and returns the word.
+std::string popToken(std::string& text) {
   const std::size_t space = text.find(' ');
   std::string word = text.substr(0, space);
   text = space == std::string::npos ? "" : text.substr(space + 1);
@@ -63,9 +63,9 @@ std::optional<std::int64_t> ZaberMessage::position() const { return zaberWholeNu
 
 std::optional<std::vector<std::string>> ZaberMessage::flags() const {
   std::string text = data;
-  const std::string count = popWord(text);
+  const std::string count = popToken(text);
   std::vector<std::string> up;
-  while (!text.empty()) up.push_back(popWord(text));
+  while (!text.empty()) up.push_back(popToken(text));
   const bool all_flags =
       std::all_of(up.begin(), up.end(), [](const auto& each) { return isFlag(each) && each != "--"; });
   const auto announced = zaberWholeNumber(count);
@@ -95,7 +95,7 @@ std::vector<ZaberMessage> ZaberParser::feed(const std::string& bytes) {
   std::vector<ZaberMessage> messages;
   for (const char each : bytes) {
     if (each == '@' || each == '#' || each == '!') {
-      if (!line_.empty()) ++malformed_;  // one that was cut off
+      if (!line_.empty()) ++malformed_;  // incomplete message
       line_ = each;
     } else if (line_.empty()) {
       continue;
@@ -128,26 +128,26 @@ std::optional<ZaberMessage> ZaberParser::parse(std::string line) {
   if (!printable(line)) return std::nullopt;
   const bool has_checksum = line.size() > 3 && line[line.size() - 3] == ':';
   if (has_checksum) {
-    const std::string said = line.substr(line.size() - 2);
+    const std::string received = line.substr(line.size() - 2);
     line.erase(line.size() - 3);
-    if (said != checksum(line)) return std::nullopt;
+    if (received != checksum(line)) return std::nullopt;
   } else if (checksum_) {
     ++unchecked_;
     return std::nullopt;
   }
-  const std::optional<int> device = number(popWord(line), 2), axis = number(popWord(line), 1);
+  const std::optional<int> device = number(popToken(line), 2), axis = number(popToken(line), 1);
   if (!device || !axis) return std::nullopt;
   message.from = {*device, *axis};
   if (message.kind == ZaberMessage::Kind::kReply) {
-    std::string verdict = popWord(line);
+    std::string verdict = popToken(line);
     message.number = number(verdict, 2);
-    if (message.number) verdict = popWord(line);
+    if (message.number) verdict = popToken(line);
     if (verdict != "OK" && verdict != "RJ") return std::nullopt;
     message.rejected = verdict == "RJ";
   }
   if (message.kind != ZaberMessage::Kind::kInfo) {
-    const std::string motion = popWord(line);
-    message.flag = popWord(line);
+    const std::string motion = popToken(line);
+    message.flag = popToken(line);
     if ((motion != "BUSY" && motion != "IDLE") || !isFlag(message.flag)) return std::nullopt;
     message.busy = motion == "BUSY";
   }

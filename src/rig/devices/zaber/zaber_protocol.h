@@ -7,16 +7,16 @@
 
 namespace microinjection {
 
-/// Zaber's ASCII protocol: "/<device> <axis> <command>\n" is answered by "@<device> <axis> OK IDLE -- <data>\r\n".
-/// Device and axis 0 mean all of them.
+/// Zaber's ASCII protocol: the reply to "/<device> <axis> <command>\n" is
+/// "@<device> <axis> OK IDLE -- <data>\r\n". Device and axis 0 mean all of them.
 struct ZaberAddress {
   int device = 0, axis = 0;
   bool operator==(const ZaberAddress& other) const { return device == other.device && axis == other.axis; }
 };
 
-/// `checksum`: ":XX" is put at the end, the two's complement of the sum of the characters after the first. `number` (0
-/// to 99) stands before the command, and in the answer before OK or RJ (message ID of Zaber's manual): a belated answer
-/// shows.
+/// `checksum`: appends ":XX", the two's complement of the sum of the characters after the first.
+/// `number` (0 to 99) precedes the command, and OK or RJ in the reply (message ID in Zaber's
+/// manual), which identifies late replies.
 std::string zaberCommand(const ZaberAddress& to, const std::string& command, bool checksum,
                          std::optional<int> number = std::nullopt);
 
@@ -24,46 +24,46 @@ struct ZaberMessage {
   enum class Kind { kReply, kInfo, kAlert };  ///< begin with @, # and !
   Kind kind = Kind::kReply;
   ZaberAddress from;
-  std::optional<int> number;  ///< of the command that it answers, when that had one
-  bool rejected = false;      ///< of a reply: RJ; data has the reason
+  std::optional<int> number;  ///< of the answered command, if it had one
+  bool rejected = false;      ///< of a reply: RJ, with the reason in data
   bool busy = false;          ///< of a reply or an alert
   std::string flag = "--";    ///< the warning of the highest priority; F.: fault, W.: warning, N.: note
   std::string data;
-  std::size_t size = 0;  ///< characters on the line, with the first and the line's end
+  std::size_t size = 0;  ///< characters on the line, including the first and the line's end
 
-  /// The data as a position in microsteps: one whole number of less than 2^31 in size.
+  /// The data as a position in microsteps: a whole number below 2^31 in size.
   std::optional<std::int64_t> position() const;
-  /// The data of an answer to `warnings`: the flags that are up. Empty: it is no such answer.
+  /// The data of a reply to `warnings`: the active flags. Empty for other replies.
   std::optional<std::vector<std::string>> flags() const;
 };
 
 constexpr char kZaberNoReference[] = "WR";  ///< the flag of an axis without reference position
 
-/// One whole number of less than 2^31 in size and nothing else.
+/// A whole number below 2^31 in size and nothing else.
 std::optional<std::int64_t> zaberWholeNumber(const std::string& data);
 
-/// Whether firmware of this version (MAJOR.MINOR, as `get version` tells it) takes moves to a place with a speed of
-/// their own: from 7.25 on. Empty: that is no version.
+/// Whether firmware of this version (MAJOR.MINOR, from `get version`) supports absolute moves with
+/// their own speed: from 7.25 on. Empty for an invalid version.
 std::optional<bool> zaberMovesHaveSpeeds(const std::string& version);
 
 /// Whether the device's flag is a fault: the device has stopped and needs attention.
 inline bool isZaberFault(const std::string& flag) { return !flag.empty() && flag[0] == 'F'; }
-/// Whether the flag, shown in a reply, may stand before WR: a reply shows only the most important one. Notes (N.) are
-/// less important than WR.
+/// Whether the flag in a reply may precede WR, since a reply shows only the most important one.
+/// Notes (N.) are less important than WR.
 inline bool mayHideZaberReference(const std::string& flag) {
   return flag != kZaberNoReference && flag != "--" && flag[0] != 'N';
 }
 
-/// Finds messages in a stream of bytes. What is none is passed over; it is in step again with the next message.
+/// Extracts messages from a stream of bytes. Other bytes are skipped until the next message.
 class ZaberParser {
  public:
-  /// `checksum`: a message without one is none. One that has a checksum must have the right one in any case.
+  /// `checksum`: rejects messages without a checksum. A wrong checksum is always rejected.
   explicit ZaberParser(bool checksum) : checksum_(checksum) {}
 
   std::vector<ZaberMessage> feed(const std::string& bytes);
-  void clear() { line_.clear(); }  ///< a message that has begun
+  void clear() { line_.clear(); }  ///< drops an incomplete message
   int malformed() const { return malformed_; }
-  int unchecked() const { return unchecked_; }  ///< of these, that had no checksum and would have needed one
+  int unchecked() const { return unchecked_; }  ///< of these, without a required checksum
 
  private:
   std::optional<ZaberMessage> parse(std::string line);

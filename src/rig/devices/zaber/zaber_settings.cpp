@@ -12,22 +12,22 @@ std::string ZaberSettings::command(Name name) {
 
 std::optional<ZaberSettings::Name> ZaberSettings::missing() const {
   for (int name = 0; name < kNames; ++name) {
-    if (!known_[name]) return static_cast<Name>(name);
+    if (!confirmed_[name]) return static_cast<Name>(name);
   }
   return std::nullopt;
 }
 
-void ZaberSettings::take(Name name, const std::string& data) {
+void ZaberSettings::add(Name name, const std::string& data) {
   if (std::exchange(last_[name], data) != data) return;
   if (name == kVersion) {
     moves_have_speeds_ = zaberMovesHaveSpeeds(data);
-    known_[name] = moves_have_speeds_.has_value();
+    confirmed_[name] = moves_have_speeds_.has_value();
   } else {
     numbers_[name] = zaberWholeNumber(data);
-    known_[name] = numbers_[name].has_value();
+    confirmed_[name] = numbers_[name].has_value();
   }
 }
 
-void ZaberSettings::takeUnknown(Name name) { known_[name] = true; }
+void ZaberSettings::setUnsupported(Name name) { confirmed_[name] = true; }
 
 }  // namespace microinjection

@@ -8,20 +8,20 @@
 
 namespace microinjection {
 
-/// What an axis tells of itself, asked once for a connection. An answer counts when it was given twice alike: a damaged
-/// one would last.
+/// Settings of an axis, read once per connection. A value needs two equal replies, since the effect
+/// of a damaged one would last.
 class ZaberSettings {
  public:
   enum Name { kVersion, kLowest, kHighest, kAcceleration, kDeceleration, kResolution, kNames };
 
   static std::string command(Name name);
-  static bool ofDevice(Name name) { return name == kVersion; }  ///< to be asked of axis 0
-  /// Older firmware and direct drives do not know all of them.
+  static bool ofDevice(Name name) { return name == kVersion; }  ///< to be requested from axis 0
+  /// Older firmware and direct drives do not have all of them.
   static bool mayBeUnknown(Name name) { return name == kDeceleration || name == kResolution; }
 
-  std::optional<Name> missing() const;  ///< the next to be asked; empty: all are known
-  void take(Name name, const std::string& data);
-  void takeUnknown(Name name);  ///< the device does not know it
+  std::optional<Name> missing() const;  ///< the next to be read; empty: all are valid
+  void add(Name name, const std::string& data);
+  void setUnsupported(Name name);  ///< the device does not have it
   void clear() { *this = {}; }
 
   bool movesHaveSpeeds() const { return moves_have_speeds_.value_or(false); }  ///< of their own
@@ -30,7 +30,7 @@ class ZaberSettings {
 
  private:
   std::array<std::string, kNames> last_;
-  std::array<bool, kNames> known_{};
+  std::array<bool, kNames> confirmed_{};
   std::array<std::optional<std::int64_t>, kNames> numbers_;
   std::optional<bool> moves_have_speeds_;
 };

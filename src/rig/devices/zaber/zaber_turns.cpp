@@ -1,4 +1,4 @@
-// What ZaberDriver says next, for a move and in turn.
+// ZaberDriver: sends the next command, for a move and in turn.
 
 #include <algorithm>
 #include <cmath>
@@ -9,11 +9,11 @@
 namespace microinjection {
 namespace {
 
-constexpr double kVelocityHolds = 0.1;  // s: a set-point's velocity is not followed for longer
+constexpr double kVelocityHolds = 0.1;  // s, for which the velocity of a set-point is followed
 constexpr int kMoveTries = 2;
-constexpr long long kSlowestArrival = 16;  // units of speed, some 10 microsteps/s
-constexpr double kSlowest = 10;            // microsteps/s, of an axis of a move
-constexpr double kShortestWay = 3;  // microsteps, of a velocity: a shorter one may be none for an axis that is ahead
+constexpr long long kSlowestArrival = 16;  // units of speed, about 10 microsteps/s
+constexpr double kSlowest = 10;            // microsteps/s, of an axis in a move
+constexpr double kShortestMove = 3;  // microsteps, of a velocity; for an axis that is ahead a shorter one may be none
 
 }  // namespace
 
@@ -23,24 +23,24 @@ void ZaberDriver::next() {
   nextInTurn();
 }
 
-/// Of an axis that shows a flag which may hide that it has lost its reference position.
+/// Lists the warnings of an axis whose flag may hide a lost reference position.
 bool ZaberDriver::nextOfWarnings() {
   for (int i = 0; i < 3; ++i) {
-    if (settled_ && axes_[i].lists_due > 0) return ask(Kind::kWarnings, i, "warnings"), true;
+    if (settled_ && axes_[i].lists_required > 0) return request(Kind::kWarnings, i, "warnings"), true;
   }
   return false;
 }
 
-bool ZaberDriver::goalStands() const { return goal()->velocity.isZero(0) || time() - goal()->time >= kVelocityHolds; }
+bool ZaberDriver::goalAtRest() const { return goal()->velocity.isZero(0) || time() - goal()->time >= kVelocityHolds; }
 
 long long ZaberDriver::velocityData(int i) const {
   const Eigen::Vector3d wanted = config_.joints.toDevice(goal()->joints);
-  Eigen::Vector3d velocity = config_.joints.directions.cwiseProduct(goal()->velocity) * (goalStands() ? 0 : 1);
+  Eigen::Vector3d velocity = config_.joints.directions.cwiseProduct(goal()->velocity) * (goalAtRest() ? 0 : 1);
   const double away = wanted[i] - expected(i, time());
   if (velocity[i] == 0 && std::abs(away) * config_.microsteps_per_metre[i] < 0.75) return 0;
-  // Who goes to a place stops there by himself; who is driven by velocities alone must not swing.
-  const double rate = goalStands() && axes_[i].settings.movesHaveSpeeds() ? 1 / turnTime() : gain();
-  double share = 1;  // all axes are slowed down together, so that a long way stays straight
+  // A move to a position ends there by itself. Control by velocities alone must not oscillate.
+  const double rate = goalAtRest() && axes_[i].settings.movesHaveSpeeds() ? 1 / turnTime() : gain();
+  double share = 1;  // all axes are slowed down together, so that a long path stays straight
   for (int k = 0; k < 3; ++k) {
     velocity[k] += rate * (wanted[k] - expected(k, time()));
     if (std::abs(velocity[k]) > fastest(k)) share = std::min(share, fastest(k) / std::abs(velocity[k]));
@@ -48,50 +48,51 @@ long long ZaberDriver::velocityData(int i) const {
   return speedData(i, share * velocity[i]);
 }
 
-/// Where (microsteps) a velocity ends unless it is renewed. Empty: the axis is to stand, the device cannot, or the end
-/// of its travel is nearer.
+/// End (microsteps) of a velocity unless it is renewed. Empty if the axis must rest, the device
+/// cannot do it, or the end of travel is nearer.
 std::optional<long long> ZaberDriver::endOfVelocity(int i, long long data) const {
   if (data == 0) return std::nullopt;
-  const double way = std::max(std::abs(data / kZaberSpeedUnit) * horizon(), kShortestWay);
+  const double distance = std::max(std::abs(data / kZaberSpeedUnit) * horizon(), kShortestMove);
   const double from = expected(i, time()) * config_.microsteps_per_metre[i];
-  const long long end = std::llround(from + std::copysign(way, static_cast<double>(data)));
+  const long long end = std::llround(from + std::copysign(distance, static_cast<double>(data)));
   return canGoTo(i, end) ? std::optional(end) : std::nullopt;
 }
 
-/// The set-point's place (microsteps) where it stands and is so near that the device may go there without renewal: it
-/// ends there by itself and does not pass it. Empty: it does not, the device cannot, or the place is outside.
-std::optional<long long> ZaberDriver::placeOfArrival(int i) const {
-  if (!goalStands()) return std::nullopt;
+/// Position (microsteps) of a resting set-point that is so near that the device may move there
+/// without renewal, which prevents overshoot. Empty if the set-point moves or is far, the device
+/// cannot do it, or the position is outside.
+std::optional<long long> ZaberDriver::arrivalPosition(int i) const {
+  if (!goalAtRest()) return std::nullopt;
   const double wanted = config_.joints.toDevice(goal()->joints)[i];
-  const long long place = std::llround(wanted * config_.microsteps_per_metre[i]);
+  const long long position = std::llround(wanted * config_.microsteps_per_metre[i]);
   const bool near = std::abs(wanted - expected(i, time())) <= fastest(i) * horizon();
-  return near && canGoTo(i, place) ? std::optional(place) : std::nullopt;
+  return near && canGoTo(i, position) ? std::optional(position) : std::nullopt;
 }
 
-bool ZaberDriver::canGoTo(int i, long long place) const {
+bool ZaberDriver::canGoTo(int i, long long position) const {
   const ZaberSettings& settings = axes_[i].settings;
   const auto lowest = settings.number(ZaberSettings::kLowest), highest = settings.number(ZaberSettings::kHighest);
-  return settings.movesHaveSpeeds() && lowest && highest && place >= *lowest && place <= *highest;
+  return settings.movesHaveSpeeds() && lowest && highest && position >= *lowest && position <= *highest;
 }
 
-/// A velocity that is new, or that has to be renewed.
+/// Sends a velocity that is new or must be renewed.
 bool ZaberDriver::nextVelocity(int i) {
   if (!goal() || !goal()->follows || !mayMove() || !axes_[i].position) return false;
   long long data = velocityData(i);
-  std::optional<long long> end = placeOfArrival(i);
-  if (end && axes_[i].told.value_or(0) != 0 &&
+  std::optional<long long> end = arrivalPosition(i);
+  if (end && axes_[i].sent_velocity.value_or(0) != 0 &&
       axes_[i].end == static_cast<double>(*end) / config_.microsteps_per_metre[i]) {
-    return false;  // it is on its way there
+    return false;  // already moving there
   }
   if (end && data != 0) data = std::copysign(std::max(std::llabs(data), kSlowestArrival), data);
   if (!end) end = endOfVelocity(i, data);
   if (end && data != 0) {
-    ask(Kind::kVelocity, i, "move abs " + std::to_string(*end) + " " + std::to_string(std::abs(data)), data,
-        static_cast<double>(*end) / config_.microsteps_per_metre[i]);
+    request(Kind::kVelocity, i, "move abs " + std::to_string(*end) + " " + std::to_string(std::abs(data)), data,
+            static_cast<double>(*end) / config_.microsteps_per_metre[i]);
     return true;
   }
-  if (axes_[i].told == data && std::isnan(axes_[i].end)) return false;
-  ask(Kind::kVelocity, i, "move vel " + std::to_string(data), data);
+  if (axes_[i].sent_velocity == data && std::isnan(axes_[i].end)) return false;
+  request(Kind::kVelocity, i, "move vel " + std::to_string(data), data);
   return true;
 }
 
@@ -102,37 +103,38 @@ void ZaberDriver::nextInTurn() {
     if (nextVelocity(i)) return;
   }
   turn_ = (turn_ + 1) % 6;
-  if (turn_ == 0) askAgain();
-  ask(Kind::kPosition, i, "get pos");
+  if (turn_ == 0) requestWarningsAgain();
+  request(Kind::kPosition, i, "get pos");
 }
 
-/// A warning that stays may hide one that comes: once in a turn an axis that shows one is asked for all.
-void ZaberDriver::askAgain() {
+/// A persistent warning may hide a new one. Once per turn an axis with a warning is asked for all
+/// of them.
+void ZaberDriver::requestWarningsAgain() {
   for (int k = 0; k < 3; ++k) {
-    asked_again_ = (asked_again_ + 1) % 3;
-    if (axes_[asked_again_].shown.empty()) continue;
-    axes_[asked_again_].lists_due = 1;
+    last_listed_ = (last_listed_ + 1) % 3;
+    if (axes_[last_listed_].shown_flag.empty()) continue;
+    axes_[last_listed_].lists_required = 1;
     return;
   }
 }
 
 long long ZaberDriver::moveSpeedData(int i) const {
   const Eigen::Vector3d end = config_.joints.toDevice(goal()->joints);
-  Eigen::Vector3d way;
-  for (int k = 0; k < 3; ++k) way[k] = end[k] - expected(k, time());
-  const double share = way.norm() > 0 ? std::abs(way[i]) / way.norm() : 1;
+  Eigen::Vector3d displacement;
+  for (int k = 0; k < 3; ++k) displacement[k] = end[k] - expected(k, time());
+  const double share = displacement.norm() > 0 ? std::abs(displacement[i]) / displacement.norm() : 1;
   return std::max(1LL, speedData(i, std::max(goal()->speed * share, kSlowest / config_.microsteps_per_metre[i])));
 }
 
-/// A move's speeds and ends, one after the other; then it is watched. A speed of the move's own is not written to the
-/// device's memory, as its setting is.
+/// Sends the speeds and ends of a move one by one, then monitors it. A move's own speed is not
+/// written to the device's memory, unlike its setting.
 bool ZaberDriver::nextOfMove() {
   if (move_done_ || !mayMove()) return false;
   for (; move_stage_ < 3; ++move_stage_) {
     const int i = move_stage_;
     const long long data = moveSpeedData(i);
     if (!axes_[i].settings.movesHaveSpeeds())
-      return ask(Kind::kSpeed, i, "set maxspeed " + std::to_string(data), data), true;
+      return request(Kind::kSpeed, i, "set maxspeed " + std::to_string(data), data), true;
     axes_[i].move_speed = static_cast<double>(data) / (config_.microsteps_per_metre[i] * kZaberSpeedUnit);
   }
   if (move_stage_ >= 6) {
@@ -146,46 +148,46 @@ bool ZaberDriver::nextOfMove() {
   if (axes_[i].settings.movesHaveSpeeds()) {
     command += " " + std::to_string(std::llround(axes_[i].move_speed * scale * kZaberSpeedUnit));
   }
-  ask(Kind::kMove, i, command, end);
+  request(Kind::kMove, i, command, end);
   return true;
 }
 
 void ZaberDriver::checkMove() {
   for (const Axis& axis : axes_) {
-    if (axis.busy || !axis.read_since_report || axis.filter.isImplausible()) return;
+    if (axis.busy || !axis.read_since_command || axis.filter.isImplausible()) return;
   }
   const Eigen::Vector3d wanted = config_.joints.toDevice(goal()->joints);
   for (int i = 0; i < 3; ++i) {
     if (std::abs(wanted[i] - *axes_[i].position) * config_.microsteps_per_metre[i] < 1.5) continue;
     if (++move_tries_ >= kMoveTries) return raiseFault(axisName(i) + " does not arrive: the move was interrupted");
-    move_stage_ = 0;  // to the same place: what has been done is not done twice
+    move_stage_ = 0;  // to the same position; completed parts are not repeated
     return;
   }
   move_done_ = true;
   for (Axis& axis : axes_) axis.velocity = 0;
 }
 
-void ZaberDriver::ask(Kind kind, int axis, const std::string& command, long long value, double end) {
+void ZaberDriver::request(Kind kind, int axis, const std::string& command, long long value, double end) {
   ZaberAddress to = config_.addresses[axis];
   if (kind == Kind::kSetting && ZaberSettings::ofDevice(static_cast<ZaberSettings::Name>(value))) to.axis = 0;
   exchange_ = Exchange{kind, axis, to, value, end, command, 0, 0, false, 0, 0};
   sendExchange();
 }
 
-/// A line whose answers take longer than was expected is waited for longer at each try, until that was measured.
+/// Until the reply time is measured, each try waits longer.
 void ZaberDriver::sendExchange() {
   std::optional<int> number;
   if (config_.numbers) number = number_ = (number_ + 1) % 100;
   const std::string bytes = zaberCommand(exchange_->to, exchange_->text, config_.checksum, number);
   const double wire = static_cast<double>(bytes.size()) * config_.byteTime();
-  const double patience = std::max(config_.reply_timeout, 3 * answer_time_);
+  const double timeout = std::max(config_.reply_timeout, 3 * answer_time_);
   ++exchange_->tries;
   exchange_->sent = true;
-  exchange_->heard_at = time() + wire;
-  exchange_->heard_from = listened() + wire;
-  exchange_->due =
-      exchange_->heard_from + kZaberReplyBytes * config_.byteTime() + patience * (settled_ ? 1 : exchange_->tries);
-  say(bytes);
+  exchange_->delivered_time = time() + wire;
+  exchange_->delivered_active_time = activeTime() + wire;
+  exchange_->due = exchange_->delivered_active_time + kZaberReplyBytes * config_.byteTime() +
+                   timeout * (settled_ ? 1 : exchange_->tries);
+  send(bytes);
 }
 
 }  // namespace microinjection

@@ -32,7 +32,7 @@ TEST_F(EppendorfTest, IsUnderRemoteControlAndGivesItBackAtRest) {
       for (const double end = time + duration; time < end;) driver.step(time += 1e-3);
     };
     run(2);
-    ASSERT_EQ(driver.state(), State::kReady) << driver.why();
+    ASSERT_EQ(driver.state(), State::kReady) << driver.reason();
     EXPECT_TRUE(device->isRemote());
     driver.moveTo(kPlace, 0.1e-3);
     run(0.3);
@@ -62,7 +62,7 @@ TEST_F(EppendorfTest, AnErrorIsToldAsItIsSaid) {
     rig_->run(1.5);
   }
   ASSERT_EQ(rig_->driver().state(), State::kFault);
-  EXPECT_NE(rig_->driver().why().find("ERR=017"), std::string::npos) << rig_->driver().why();
+  EXPECT_NE(rig_->driver().reason().find("ERR=017"), std::string::npos) << rig_->driver().reason();
   rig_->driver().clearFault();
   ASSERT_TRUE(rig_->runUntilReady());
   moveAndCheck();
@@ -75,7 +75,7 @@ TEST_F(EppendorfTest, ALimitSwitchEndsAMoveByName) {
   start();
   rig_->driver().moveTo(kPlace, 1e-3);
   ASSERT_TRUE(rig_->runUntil([&] { return rig_->driver().state() == State::kFault; }, 5));
-  EXPECT_NE(rig_->driver().why().find("a limit switch is reached"), std::string::npos) << rig_->driver().why();
+  EXPECT_NE(rig_->driver().reason().find("a limit switch is reached"), std::string::npos) << rig_->driver().reason();
 }
 
 }  // namespace

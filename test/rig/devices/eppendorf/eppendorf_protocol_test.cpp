@@ -14,10 +14,10 @@ TEST(EppendorfProtocol, SaysCommandsAsTheManualPrintsThem) {
 }
 
 TEST(EppendorfProtocol, KnowsTheAnswerToACommand) {
-  EXPECT_TRUE(isEppendorfAnswer("A004", eppendorfRemote()));
-  EXPECT_TRUE(isEppendorfAnswer("A012", eppendorfGoTo({1, 2, 3}, {4, 5, 6})));
+  EXPECT_TRUE(isEppendorfReply("A004", eppendorfRemote()));
+  EXPECT_TRUE(isEppendorfReply("A012", eppendorfGoTo({1, 2, 3}, {4, 5, 6})));
   for (const char* answer : {"A005", "A0040", "A004 ", "a004", "C004", ""}) {
-    EXPECT_FALSE(isEppendorfAnswer(answer, eppendorfRemote())) << answer;
+    EXPECT_FALSE(isEppendorfReply(answer, eppendorfRemote())) << answer;
   }
 }
 
@@ -26,11 +26,11 @@ TEST(EppendorfProtocol, ReadsPositionsSeparatedBySpacesOrSigns) {
                              "A010  100  -200  300  0", "A010 100.0 -200.00 300.000 0"}) {
     const auto position = readEppendorfPosition(answer);
     ASSERT_TRUE(position) << answer;
-    EXPECT_EQ(position->place, Eigen::Vector3d(100, -200, 300)) << answer;
+    EXPECT_EQ(position->coordinates, Eigen::Vector3d(100, -200, 300)) << answer;
     EXPECT_EQ(position->limits, 0);
   }
   EXPECT_EQ(readEppendorfPosition("A010 1 2 3 34")->limits, 34);
-  EXPECT_EQ(readEppendorfPosition("A010 -0.25 2 3 0")->place.x(), -0.25);
+  EXPECT_EQ(readEppendorfPosition("A010 -0.25 2 3 0")->coordinates.x(), -0.25);
 }
 
 TEST(EppendorfProtocol, RefusesWhatIsNoPosition) {

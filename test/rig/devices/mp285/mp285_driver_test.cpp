@@ -48,7 +48,7 @@ TEST_F(Mp285Test, AnUnknownMicrostepIsRefusedWithTheBytesAndMovesNothing) {
     });
     EXPECT_EQ(rig_->driver().state(), State::kFault);
     EXPECT_EQ(rig_->device().movesBegun(), 0);
-    const std::string why = rig_->driver().why();
+    const std::string why = rig_->driver().reason();
     EXPECT_NE(why.find("STEP_DIV = " + std::to_string(step_div) + " and STEP_MUL = " + std::to_string(step_mul)),
               std::string::npos)
         << why;
@@ -102,7 +102,7 @@ TEST_F(Mp285Test, LeavesTheDeviceAPauseAfterEachAnswer) {
   Mp285EmulatorConfig device;
   device.answer_time = 1.7e-3;  // s, so that answers come at any time of a step
   make(device);
-  ASSERT_TRUE(rig_->runUntilReady(0.7)) << rig_->driver().why();  // nothing was said twice
+  ASSERT_TRUE(rig_->runUntilReady(0.7)) << rig_->driver().reason();  // nothing was said twice
   moveAndCheck();
   // A device that needs none is asked sooner; one that needs more would not hear.
   auto hasty = TestedMp285::config();
@@ -125,7 +125,7 @@ TEST_F(Mp285Test, SeveralErrorsAtOnceAreToldAndNoNoise) {
     }
     EXPECT_EQ(rig_->driver().malformed(), malformed);
     ASSERT_EQ(rig_->driver().state(), State::kFault);
-    EXPECT_EQ(rig_->driver().why(), "MP-285: its buffer is full, bad command");
+    EXPECT_EQ(rig_->driver().reason(), "MP-285: its buffer is full, bad command");
     rig_->driver().clearFault();
     ASSERT_TRUE(rig_->runUntilReady());
     rig_->inject("error:9");  // of a move, half way

@@ -5,7 +5,7 @@
 namespace microinjection {
 namespace {
 
-using Kind = Mp285Answer::Kind;
+using Kind = Mp285Reply::Kind;
 using Expected = Mp285Parser::Expected;
 
 std::string bytes(std::initializer_list<int> values) {
@@ -15,8 +15,8 @@ std::string bytes(std::initializer_list<int> values) {
 }
 
 TEST(Mp285Protocol, EncodesCommands) {
-  EXPECT_EQ(mp285AskPosition(), bytes({0x63, 0x0d}));
-  EXPECT_EQ(mp285AskStatus(), bytes({0x73, 0x0d}));
+  EXPECT_EQ(mp285RequestPosition(), bytes({0x63, 0x0d}));
+  EXPECT_EQ(mp285RequestStatus(), bytes({0x73, 0x0d}));
   EXPECT_EQ(mp285AbsoluteMode(), bytes({0x61, 0x0d}));
   EXPECT_EQ(kMp285Stop, 0x03);
   // 1000 = 0x3e8; -2 = 0xfffffffe; 16909060 = 0x01020304: the low byte first.
@@ -26,10 +26,10 @@ TEST(Mp285Protocol, EncodesCommands) {
   EXPECT_EQ(mp285SetVelocity(1000, true), bytes({0x56, 0xe8, 0x83, 0x0d}));
 }
 
-std::optional<Mp285Answer> answer(Expected expected, const std::string& text, bool silent = false) {
+std::optional<Mp285Reply> answer(Expected expected, const std::string& text, bool silent = false) {
   Mp285Parser parser;
   parser.expect(expected);
-  std::optional<Mp285Answer> result;
+  std::optional<Mp285Reply> result;
   for (std::size_t i = 0; i < text.size() && !result; ++i) result = parser.feed(text.substr(i, 1), false);
   return result || !silent ? result : parser.feed("", true);
 }

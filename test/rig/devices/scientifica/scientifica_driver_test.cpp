@@ -21,7 +21,7 @@ TEST_F(ScientificaTest, ACardOfVersion2CountsTenths) {
   make(oldDevice(), oldCard());
   start();
   rig_->driver().moveTo(kPlace, 0.5e-3);
-  ASSERT_TRUE(rig_->runUntilArrived()) << rig_->driver().why();
+  ASSERT_TRUE(rig_->runUntilArrived()) << rig_->driver().reason();
   expectNear(rig_->place(), kPlace, 0.1e-6);
   EXPECT_DOUBLE_EQ(rig_->driver().abilities().resolution, 0.1e-6);
 }
@@ -88,7 +88,7 @@ TEST_F(ScientificaTest, ACardWithOtherUnitsIsRefusedWithItsAnswerAndMovesNothing
       EXPECT_FALSE(rig_->driver().reading());
     });
     EXPECT_EQ(rig_->driver().state(), State::kFault);
-    EXPECT_NE(rig_->driver().why().find(each.why), std::string::npos) << rig_->driver().why();
+    EXPECT_NE(rig_->driver().reason().find(each.why), std::string::npos) << rig_->driver().reason();
     EXPECT_EQ(rig_->device().movesBegun(), 0);
   }
 }

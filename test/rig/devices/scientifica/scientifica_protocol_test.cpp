@@ -10,8 +10,8 @@ TEST(ScientificaProtocol, CountsAsTheCardsVersionDoes) {
   EXPECT_DOUBLE_EQ(scientificaCount(3), 0.01e-6);
   EXPECT_DOUBLE_EQ(scientificaScale(2), 6.4);
   EXPECT_DOUBLE_EQ(scientificaScale(3), 1600);
-  EXPECT_EQ(scientificaAskScale(2, 1), "UUY");
-  EXPECT_EQ(scientificaAskScale(3, 2), "USTEP Z");
+  EXPECT_EQ(scientificaRequestScale(2, 1), "UUY");
+  EXPECT_EQ(scientificaRequestScale(3, 2), "USTEP Z");
 }
 
 /// As the card's command list is quoted by ScanImage: TOP is um/s * 2 * UU, ACC is um/s^2 * UU / 250.

@@ -98,13 +98,13 @@ TEST_F(ZaberTest, RecoversFromFaultsOfTheLineAndLosesNoMove) {
       start();
       const auto command = [&] {
         if (follows) rig_->driver().follow(kPlace, Eigen::Vector3d::Zero());
-        ASSERT_EQ(rig_->driver().state(), State::kReady) << rig_->driver().why();
+        ASSERT_EQ(rig_->driver().state(), State::kReady) << rig_->driver().reason();
       };
       if (!follows) rig_->driver().moveTo(kPlace, 0.2e-3);
       rig_->run(0.05, command);
       rig_->inject(fault);
       rig_->run(1.5, command);
-      ASSERT_TRUE(rig_->runUntilArrived()) << rig_->driver().why();
+      ASSERT_TRUE(rig_->runUntilArrived()) << rig_->driver().reason();
       expectNear(rig_->place(), kPlace, kStep);
       expectNear(rig_->read(), rig_->place(), 0.1 * kStep);
     }
@@ -145,7 +145,7 @@ TEST_F(ZaberTest, RefusalsAndFaultFlagsStopItAndSayWhy) {
     rig_->run(0.02);
     rig_->inject(fault);
     ASSERT_TRUE(rig_->runUntil([&] { return rig_->driver().state() == State::kFault; }, 1));
-    EXPECT_NE(rig_->driver().why().find(word), std::string::npos) << rig_->driver().why();
+    EXPECT_NE(rig_->driver().reason().find(word), std::string::npos) << rig_->driver().reason();
     rig_->run(0.3);
     EXPECT_FALSE(rig_->device().moves());
     rig_->driver().follow(kPlace, Eigen::Vector3d::Zero());  // not heard
@@ -162,7 +162,7 @@ TEST_F(ZaberTest, MovesNothingWithoutAReferencePosition) {
   device.referenced = false;
   make(device);
   ASSERT_TRUE(rig_->runUntil([&] { return rig_->driver().state() == State::kFault; }, 2));
-  EXPECT_NE(rig_->driver().why().find("home"), std::string::npos) << rig_->driver().why();
+  EXPECT_NE(rig_->driver().reason().find("home"), std::string::npos) << rig_->driver().reason();
   rig_->driver().clearFault();
   rig_->run(2);
   EXPECT_EQ(rig_->driver().state(), State::kFault);
@@ -175,10 +175,10 @@ TEST_F(ZaberTest, HomesWhenItsConfigurationSaysSo) {
   ZaberConfig driver = TestedZaber::config();
   driver.home = true;
   make(device, driver);
-  ASSERT_TRUE(rig_->runUntilReady(30)) << rig_->driver().why();
+  ASSERT_TRUE(rig_->runUntilReady(30)) << rig_->driver().reason();
   expectNear(rig_->device().position(), Eigen::Vector3d::Zero(), kStep);
   expectNear(rig_->read(), rig_->place(), 0.1 * kStep);
-  rig_->run(1, [&] { ASSERT_EQ(rig_->driver().state(), ManipulatorDevice::State::kReady) << rig_->driver().why(); });
+  rig_->run(1, [&] { ASSERT_EQ(rig_->driver().state(), ManipulatorDevice::State::kReady) << rig_->driver().reason(); });
 }
 
 TEST_F(ZaberTest, AStopThatTheLineLostIsSaidAgain) {
@@ -202,13 +202,13 @@ TEST_F(ZaberTest, ADeviceThatWasSwitchedOffAndOnDoesNotHomeByItself) {
   driver.home = true;
   make({}, driver);
   start();
-  rig_->wire().pull();
+  rig_->wire().disconnectCable();
   rig_->run(0.1);
   rig_->inject("error:WR");  // it has lost its reference position
-  rig_->wire().plug();
+  rig_->wire().connectCable();
   const Eigen::Vector3d there = rig_->place();
   ASSERT_TRUE(rig_->runUntil([&] { return rig_->driver().state() == State::kFault; }, 3));
-  EXPECT_NE(rig_->driver().why().find("home"), std::string::npos) << rig_->driver().why();
+  EXPECT_NE(rig_->driver().reason().find("home"), std::string::npos) << rig_->driver().reason();
   rig_->run(1);
   expectNear(rig_->place(), there, 0);
 }
@@ -218,11 +218,11 @@ TEST_F(ZaberTest, ItsEndIsToldAndNotHiddenByTryingForEver) {
   const Eigen::Vector3d outside = rig_->place() + Eigen::Vector3d(0, 0, 13e-3);
   rig_->driver().moveTo(outside, 2e-3);
   ASSERT_TRUE(rig_->runUntil([&] { return rig_->driver().state() == State::kFault; }, 2));
-  EXPECT_NE(rig_->driver().why().find("BADDATA"), std::string::npos) << rig_->driver().why();
+  EXPECT_NE(rig_->driver().reason().find("BADDATA"), std::string::npos) << rig_->driver().reason();
   rig_->driver().clearFault();
   ASSERT_TRUE(rig_->runUntilReady());
   rig_->run(10, [&] { rig_->driver().follow(outside, Eigen::Vector3d::Zero()); });
-  EXPECT_NE(rig_->driver().why().find("end"), std::string::npos) << rig_->driver().why();
+  EXPECT_NE(rig_->driver().reason().find("end"), std::string::npos) << rig_->driver().reason();
 }
 
 TEST_F(ZaberTest, StopsWhenItIsDestroyed) {

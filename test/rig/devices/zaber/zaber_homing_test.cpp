@@ -37,7 +37,7 @@ TEST_F(ZaberHoming, EndsWhereTheRigsMapAllowsAndKeepsClearOnItsWay) {
     last = joints();
   };
   rig_->run(45, keepsClear);
-  EXPECT_EQ(rig_->driver().state(), ManipulatorDevice::State::kReady) << rig_->driver().why();
+  EXPECT_EQ(rig_->driver().state(), ManipulatorDevice::State::kReady) << rig_->driver().reason();
   expectNear(joints(), *rig_->driver().homingEnds(), kStep);
   EXPECT_EQ(guard_.blocks(joints()), "");
 }
@@ -51,7 +51,8 @@ TEST_F(ZaberHoming, IsRefusedWhereItWouldEndInTheDish) {
   rig_->run(30);
   EXPECT_EQ(joints(), begin);
   EXPECT_EQ(rig_->driver().state(), ManipulatorDevice::State::kFault);
-  EXPECT_NE(rig_->driver().why().find("manipulator_z = -0.0125 m, allowed"), std::string::npos) << rig_->driver().why();
+  EXPECT_NE(rig_->driver().reason().find("manipulator_z = -0.0125 m, allowed"), std::string::npos)
+      << rig_->driver().reason();
   rig_->driver().clearFault();
   rig_->run(5);
   EXPECT_EQ(joints(), begin);
@@ -69,7 +70,7 @@ TEST_F(ZaberHoming, IsDoneInThePlansOrder) {
     for (int i = homed + 1; i < 3; ++i) ASSERT_EQ(now[order[i]], begin[order[i]]) << "joint " << order[i];
   });
   EXPECT_EQ(homed, 3);
-  EXPECT_EQ(rig_->driver().state(), ManipulatorDevice::State::kReady) << rig_->driver().why();
+  EXPECT_EQ(rig_->driver().state(), ManipulatorDevice::State::kReady) << rig_->driver().reason();
 }
 
 TEST_F(ZaberHoming, IsNotTakenUpAgainAfterAStop) {
@@ -83,13 +84,13 @@ TEST_F(ZaberHoming, IsNotTakenUpAgainAfterAStop) {
   rig_->run(20);
   EXPECT_EQ(rig_->device().position(), stopped);
   EXPECT_EQ(rig_->driver().state(), ManipulatorDevice::State::kFault);
-  EXPECT_NE(rig_->driver().why().find("no reference position"), std::string::npos) << rig_->driver().why();
+  EXPECT_NE(rig_->driver().reason().find("no reference position"), std::string::npos) << rig_->driver().reason();
 }
 
 TEST_F(ZaberHoming, EndsReadyAlsoBehindAMoreImportantWarning) {
   makeUnreferenced(config_);
   rig_->inject("error:WV");
-  EXPECT_TRUE(rig_->runUntilReady(60)) << rig_->driver().why();
+  EXPECT_TRUE(rig_->runUntilReady(60)) << rig_->driver().reason();
 }
 
 }  // namespace

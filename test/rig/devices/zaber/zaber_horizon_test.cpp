@@ -30,7 +30,7 @@ class ZaberHorizonTest : public DriverTest<TestedZaber> {
 TEST_F(ZaberHorizonTest, APulledCableEndsTheMotion) {
   start();
   follow(0.7);
-  rig_->wire().pull();
+  rig_->wire().disconnectCable();
   const Eigen::Vector3d from = rig_->place();
   rig_->run(2);
   letDeviceLive();
@@ -60,7 +60,7 @@ TEST_F(ZaberHorizonTest, OlderFirmwareFollowsByVelocitiesAndSaysThatTheyDoNotEnd
     follow(1);
     EXPECT_LT((rig_->place() - goal_).norm(), kSpeed * rig_->driver().abilities().latency);
     EXPECT_EQ(rig_->device().movesBegun() > 0, ends);
-    rig_->wire().pull();
+    rig_->wire().disconnectCable();
     rig_->run(1);
     letDeviceLive();
     EXPECT_EQ(rig_->device().moves(), !ends);
@@ -69,15 +69,15 @@ TEST_F(ZaberHorizonTest, OlderFirmwareFollowsByVelocitiesAndSaysThatTheyDoNotEnd
 
 TEST_F(ZaberHorizonTest, ADeviceThatIsChangedForAnotherIsAskedAgain) {
   start();
-  rig_->wire().pull();
+  rig_->wire().disconnectCable();
   dynamic_cast<ZaberEmulator&>(rig_->device()).setFirmware("6.28");
   rig_->run(0.1);
-  rig_->wire().plug();
+  rig_->wire().connectCable();
   ASSERT_TRUE(rig_->runUntilReady());
   goal_ = rig_->place();
   follow(1);
   EXPECT_EQ(rig_->device().movesBegun(), 0);
-  EXPECT_EQ(rig_->driver().state(), State::kReady) << rig_->driver().why();
+  EXPECT_EQ(rig_->driver().state(), State::kReady) << rig_->driver().reason();
 }
 
 /// As the rigs' contract has it (test/chain/rig_contract_test.py), for what is told and for the truth.
@@ -113,7 +113,7 @@ TEST_F(ZaberHorizonTest, FollowsOneMicrostepASecondWithoutTakingItForAStall) {
   start();
   const Eigen::Vector3d slow(kStep, 0, 0);
   follow(30, slow);
-  EXPECT_EQ(rig_->driver().state(), State::kReady) << rig_->driver().why();
+  EXPECT_EQ(rig_->driver().state(), State::kReady) << rig_->driver().reason();
   expectNear(rig_->place(), goal_, 2 * kStep);
 }
 
@@ -125,7 +125,7 @@ TEST_F(ZaberHorizonTest, FollowsToTheEndOfItsTravel) {
   goal_ = rig_->place();
   follow(0.2);  // 40 um, less than its way in the horizon
   rig_->driver().follow(goal_, Eigen::Vector3d::Zero());
-  ASSERT_TRUE(rig_->runUntilArrived()) << rig_->driver().why();
+  ASSERT_TRUE(rig_->runUntilArrived()) << rig_->driver().reason();
   expectNear(rig_->place(), goal_, kStep);
 }
 

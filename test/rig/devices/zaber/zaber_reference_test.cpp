@@ -11,7 +11,7 @@ class ZaberReferenceTest : public DriverTest<TestedZaber> {
  protected:
   void expectFault(double within) {
     ASSERT_TRUE(rig_->runUntil([&] { return rig_->driver().state() == State::kFault; }, within));
-    EXPECT_NE(rig_->driver().why().find("reference"), std::string::npos) << rig_->driver().why();
+    EXPECT_NE(rig_->driver().reason().find("reference"), std::string::npos) << rig_->driver().reason();
   }
   /// Nothing is told from here on, whatever is asked.
   void expectNothingTold(double duration) {
@@ -47,7 +47,7 @@ TEST_F(ZaberReferenceTest, WarningsThatHideNothingLetItWork) {
     EXPECT_EQ(rig_->driver().note().find(warning) != std::string::npos, warning[0] == 'W') << rig_->driver().note();
     rig_->run(2, [&] {
       rig_->driver().follow(kPlace + Eigen::Vector3d(20e-6, 0, 0), Eigen::Vector3d::Zero());
-      ASSERT_EQ(rig_->driver().state(), State::kReady) << rig_->driver().why();
+      ASSERT_EQ(rig_->driver().state(), State::kReady) << rig_->driver().reason();
     });
     expectNear(rig_->place(), kPlace + Eigen::Vector3d(20e-6, 0, 0), kStep);
   }
@@ -71,7 +71,7 @@ TEST_F(ZaberReferenceTest, ThatIsLostInTheSessionIsAFaultAtOnceAndNoPosition) {
       if (rig_->driver().reading()) expectNear(rig_->read(), rig_->place(), 10e-6);
     }
     EXPECT_LE(rig_->time() - from, rig_->driver().abilities().reading_interval);
-    EXPECT_NE(rig_->driver().why().find("reference"), std::string::npos) << rig_->driver().why();
+    EXPECT_NE(rig_->driver().reason().find("reference"), std::string::npos) << rig_->driver().reason();
     expectNothingTold(3);
     rig_->driver().clearFault();
     expectNothingTold(3);

@@ -37,7 +37,7 @@ TEST_F(ZaberSessionTest, RefusesADeviceWhoseAccelerationIsNotTheFiles) {
     SCOPED_TRACE(of_device);
     makeWith(of_device, of_file);
     ASSERT_TRUE(rig_->runUntil([&] { return rig_->driver().state() == State::kFault; }, 3));
-    const std::string why = rig_->driver().why();
+    const std::string why = rig_->driver().reason();
     for (const char* word : {"axis 1 of device 1", "acceleration", "within a tenth", "get accel"}) {
       EXPECT_NE(why.find(word), std::string::npos) << why;
     }
@@ -60,8 +60,8 @@ TEST_F(ZaberSessionTest, TheWeakerOfAccelerationAndBrakingCounts) {
   makeWith(0.2, 0.2);
   tell("1 2 set motion.decelonly 100");  // 0.03 m/s^2
   ASSERT_TRUE(rig_->runUntil([&] { return rig_->driver().state() == State::kFault; }, 3));
-  EXPECT_NE(rig_->driver().why().find("axis 2 of device 1"), std::string::npos) << rig_->driver().why();
-  EXPECT_NE(rig_->driver().why().find("motion.decelonly"), std::string::npos) << rig_->driver().why();
+  EXPECT_NE(rig_->driver().reason().find("axis 2 of device 1"), std::string::npos) << rig_->driver().reason();
+  EXPECT_NE(rig_->driver().reason().find("motion.decelonly"), std::string::npos) << rig_->driver().reason();
 }
 
 TEST_F(ZaberSessionTest, StopsInTheTimeThatTheDevicesOwnAccelerationGives) {
@@ -75,7 +75,7 @@ TEST_F(ZaberSessionTest, RefusesADeviceThatCountsOtherMicrosteps) {
   make();
   tell("1 3 set resolution 128");
   ASSERT_TRUE(rig_->runUntil([&] { return rig_->driver().state() == State::kFault; }, 3));
-  EXPECT_NE(rig_->driver().why().find("128 microsteps a full step"), std::string::npos) << rig_->driver().why();
+  EXPECT_NE(rig_->driver().reason().find("128 microsteps a full step"), std::string::npos) << rig_->driver().reason();
   rig_->run(2, [&] { EXPECT_FALSE(rig_->driver().reading()); });
 }
 
@@ -92,8 +92,8 @@ TEST_F(ZaberSessionTest, ADeviceThatHasNoSuchAxisIsRefused) {
   driver.addresses[2].axis = 4;
   make({}, driver);
   ASSERT_TRUE(rig_->runUntil([&] { return rig_->driver().state() == State::kFault; }, 3));
-  EXPECT_NE(rig_->driver().why().find("axis 4 of device 1"), std::string::npos) << rig_->driver().why();
-  EXPECT_NE(rig_->driver().why().find("BADAXIS"), std::string::npos) << rig_->driver().why();
+  EXPECT_NE(rig_->driver().reason().find("axis 4 of device 1"), std::string::npos) << rig_->driver().reason();
+  EXPECT_NE(rig_->driver().reason().find("BADAXIS"), std::string::npos) << rig_->driver().reason();
 }
 
 TEST_F(ZaberSessionTest, SaysThatRepliesComeWithoutChecksums) {
@@ -101,7 +101,7 @@ TEST_F(ZaberSessionTest, SaysThatRepliesComeWithoutChecksums) {
   driver.reply_checksum = true;
   make({}, driver);
   ASSERT_TRUE(rig_->runUntil([&] { return rig_->driver().state() == State::kFault; }, 5));
-  EXPECT_NE(rig_->driver().why().find("comm.checksum"), std::string::npos) << rig_->driver().why();
+  EXPECT_NE(rig_->driver().reason().find("comm.checksum"), std::string::npos) << rig_->driver().reason();
 }
 
 // A line that holds each answer back, as a USB adapter with its latency timer does.
@@ -110,7 +110,7 @@ TEST_F(ZaberSessionTest, ReadingsAreAsOftenAsItSaysAlsoOnASlowLine) {
   for (const double held : {0.0, 17e-3, 40e-3, 70e-3}) {  // s
     SCOPED_TRACE(held);
     makeWith(0.2, 0.2, held);
-    ASSERT_TRUE(rig_->runUntilReady(20)) << rig_->driver().why();
+    ASSERT_TRUE(rig_->runUntilReady(20)) << rig_->driver().reason();
     const ManipulatorAbilities abilities = rig_->driver().abilities();
     EXPECT_EQ(abilities.device.find("answers take") != std::string::npos, held > 0) << abilities.device;
     EXPECT_GT(abilities.reading_interval, 6 * held);
@@ -133,11 +133,11 @@ TEST_F(ZaberSessionTest, FollowsOnASlowLineWithoutAheadOrFault) {
     for (const double speed : {20e-6, 200e-6}) {  // m/s
       SCOPED_TRACE(std::to_string(held) + " s, m/s: " + std::to_string(speed));
       makeWith(0.2, 0.2, held);
-      ASSERT_TRUE(rig_->runUntilReady(20)) << rig_->driver().why();
+      ASSERT_TRUE(rig_->runUntilReady(20)) << rig_->driver().reason();
       const ManipulatorAbilities abilities = rig_->driver().abilities();
       const double behind = farthestBehind({speed, 0, 0}, 3);
       EXPECT_LE(behind, speed * (2 * abilities.command_interval + abilities.reading_interval + abilities.latency));
-      EXPECT_EQ(rig_->driver().state(), State::kReady) << rig_->driver().why();
+      EXPECT_EQ(rig_->driver().state(), State::kReady) << rig_->driver().reason();
       double past = 0;
       rig_->driver().follow(goal_, Eigen::Vector3d::Zero());
       rig_->run(1, [&] { past = std::max(past, (rig_->place() - goal_).x()); });
@@ -199,13 +199,13 @@ TEST_F(ZaberSessionTest, AChainThatSendsAlertsAndInfoLinesWorksAsOneDevice) {
       moveAndCheck(kPlace);
       farthestBehind({50e-6, -50e-6, 0}, 1);
       rig_->driver().follow(goal_, Eigen::Vector3d::Zero());
-      ASSERT_TRUE(rig_->runUntilArrived()) << rig_->driver().why();
+      ASSERT_TRUE(rig_->runUntilArrived()) << rig_->driver().reason();
       expectNear(rig_->place(), goal_, kStep);
     }
     EXPECT_EQ(rig_->driver().malformed(), 0);
     rig_->driver().stop();
     rig_->run(0.3);
-    EXPECT_EQ(rig_->driver().state(), State::kReady) << rig_->driver().why();
+    EXPECT_EQ(rig_->driver().state(), State::kReady) << rig_->driver().reason();
   }
 }
 

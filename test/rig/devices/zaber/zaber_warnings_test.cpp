@@ -31,9 +31,9 @@ class ZaberWarnings : public DriverTest<TestedZaber> {
   ZaberWarnings() { rig_ = std::make_unique<Rig>(TestedZaber::config(), device_); }
   void expectFault() {
     EXPECT_TRUE(rig_->runUntil([&] { return rig_->driver().state() == State::kFault; }, 5));
-    EXPECT_NE(rig_->driver().why().find("its warnings do not stay the same"), std::string::npos)
-        << rig_->driver().why();
-    EXPECT_NE(rig_->driver().why().find("axis 1 of device 1"), std::string::npos) << rig_->driver().why();
+    EXPECT_NE(rig_->driver().reason().find("its warnings do not stay the same"), std::string::npos)
+        << rig_->driver().reason();
+    EXPECT_NE(rig_->driver().reason().find("axis 1 of device 1"), std::string::npos) << rig_->driver().reason();
     EXPECT_FALSE(rig_->driver().reading());
   }
 
@@ -61,7 +61,7 @@ TEST_F(ZaberWarnings, TheFaultIsClearedOnceTheyStayTheSame) {
   expectFault();
   device_->flickers = false;
   rig_->driver().clearFault();
-  ASSERT_TRUE(rig_->runUntilReady()) << rig_->driver().why();
+  ASSERT_TRUE(rig_->runUntilReady()) << rig_->driver().reason();
   moveAndCheck();
 }
 

@@ -5,8 +5,9 @@
 
 namespace microinjection {
 
-/// A place for a number in a line, and the unit that the number has there: SI value = number * unit + zero.
-struct Place {
+/// A placeholder for a number in a line, and the unit of the number: SI value = number * unit +
+/// zero.
+struct Placeholder {
   std::string name;
   double unit;      ///< Pa or s
   double zero = 0;  ///< Pa, gauge
@@ -15,7 +16,7 @@ struct Place {
 };
 
 /// `unit` (Pa) and `zero` (Pa, gauge) are those of {pressure}, the device's own.
-inline std::vector<Place> pressurePlaces(double unit, double zero) {
+inline std::vector<Placeholder> pressurePlaceholders(double unit, double zero) {
   constexpr double kPsi = 6894.757293168;  // Pa
   return {{"pressure_Pa", 1},
           {"pressure_hPa", 100},
@@ -24,11 +25,11 @@ inline std::vector<Place> pressurePlaces(double unit, double zero) {
           {"pressure", unit, zero}};
 }
 
-inline std::vector<Place> durationPlaces() { return {{"duration_s", 1}, {"duration_ms", 1e-3}}; }
+inline std::vector<Placeholder> durationPlaceholders() { return {{"duration_s", 1}, {"duration_ms", 1e-3}}; }
 
-inline std::vector<std::string> names(const std::vector<Place>& places) {
+inline std::vector<std::string> names(const std::vector<Placeholder>& placeholders) {
   std::vector<std::string> all;
-  for (const Place& place : places) all.push_back(place.name);
+  for (const Placeholder& placeholder : placeholders) all.push_back(placeholder.name);
   return all;
 }
 

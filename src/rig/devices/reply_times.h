@@ -6,15 +6,15 @@
 
 namespace microinjection {
 
-/// How long a device takes to answer, measured at the begin of a session: with what the serial adapter adds, whose
-/// latency timer may hold back each answer for 16 ms.
-class AnswerTimes {
+/// Measures the reply time of a device at the start of a session. It includes the serial adapter,
+/// whose latency timer may delay each reply by 16 ms.
+class ReplyTimes {
  public:
   void clear() { times_.clear(); }
-  /// s, from the last byte of a command to the first of its answer.
+  /// s, from the last byte of a command to the first byte of its reply.
   void add(double time) { times_.push_back(std::max(0.0, time)); }
-  /// Within which nine of ten answers came (s), so that a machine that was held up once does not count. Empty: too few
-  /// answers were heard.
+  /// The time (s) within which nine of ten replies came, so that one delay of the machine does not
+  /// count. Empty if there are too few replies.
   std::optional<double> measured() const {
     if (times_.size() < kEnough) return std::nullopt;
     std::vector<double> sorted = times_;
