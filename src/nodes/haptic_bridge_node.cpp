@@ -187,7 +187,7 @@ void HapticBridgeNode::step(const Cycle::Tick& tick) {
   readRig(input, tick);
   input.clutch = clutchPressed(tick.now);
   input.operator_present = operatorPresent(tick.now);
-  if (!receiver_.feels()) input.unfelt = receiver_.why();
+  if (!receiver_.feels()) input.no_force_reason = receiver_.why();
   output_ = model_.step(input, tick.dt);
   hand_force_.publish(toWrench(output_.hand_force, tick.now, hand_frame_));
   sendToRig(tick);
@@ -204,7 +204,7 @@ void HapticBridgeNode::report(diagnostic_updater::DiagnosticStatusWrapper& statu
   status.add("tremor filter's delay (s)", model_.delay());
   status.add("observed energy (J)", model_.observedEnergy());
   if (link_) {
-    status.add("rig heard (s ago)", link_->age());
+    status.add("rig heard (s ago)", link_->packetAge());
     status.add("round trip (periods)", link_->roundTrip());
   }
   status.add("passivity controller acts", model_.passivityActing() ? "yes" : "no");

@@ -91,7 +91,7 @@ void TeleoperationFollowerNode::report(diagnostic_updater::DiagnosticStatusWrapp
   const bool good = model_.holdReason().empty();
   status.summary(good ? diagnostic_msgs::DiagnosticStatus::OK : diagnostic_msgs::DiagnosticStatus::WARN,
                  good ? "the needle follows" : "needle held: " + model_.holdReason());
-  status.add("hand's side heard (s ago)", model_.age());
+  status.add("hand's side heard (s ago)", model_.packetAge());
   status.add("energy left of what came (J)", model_.margin());
 }
 

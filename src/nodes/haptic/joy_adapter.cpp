@@ -36,7 +36,7 @@ std::optional<HandReading> JoyAdapter::read(const Cycle::Tick& tick) {
   const sensor_msgs::Joy* joy = joy_.get(tick.now);
   const auto stick = joy ? stick_.read(joy->axes, joy->buttons) : std::nullopt;
   if (!stick) {
-    stick_.lose();
+    stick_.reset();
     return std::nullopt;
   }
   // The joystick is where it was until it says otherwise: as of now, not of its last message.

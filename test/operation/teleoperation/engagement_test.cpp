@@ -65,7 +65,7 @@ TEST(Engagement, IndexTakesUpTheHandWhereverItIs) {
 
 TEST(Engagement, AgreeWaitsForTheHandOrTheClutch) {
   EngagementConfig config;
-  config.alignment = "agree";
+  config.mode = "agree";
   Engagement engagement(config);
   EXPECT_EQ(engagement.step({false, false, 0, 1}), State::kFollow) << "nothing to agree with yet";
   engagement.step({true, false, 0, 1});
@@ -81,7 +81,7 @@ TEST(Engagement, AgreeWaitsForTheHandOrTheClutch) {
 TEST(Engagement, ADeviceThatSetsASpeedMustBeLetGoClutchOrNot) {
   for (const char* alignment : {"index", "agree"}) {
     EngagementConfig config;
-    config.alignment = alignment;
+    config.mode = alignment;
     Engagement engagement(config);
     EXPECT_EQ(engagement.step({false, false, 0, 0, false, 1e-3, false}), State::kAlign) << "found deflected";
     EXPECT_NE(engagement.why().find("let go"), std::string::npos);
