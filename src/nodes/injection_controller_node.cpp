@@ -194,7 +194,7 @@ void InjectionControllerNode::publishInjection(const ros::Time& now) {
   cell_microinjection::InjectionStatus status;
   status.header.stamp = now;
   status.state = toText(known.state);
-  status.waits = model_.waits();
+  status.waits = model_.awaitsCommand();
   status.punctures = static_cast<std::uint32_t>(model_.punctures());
   status.force = known.force;
   status.depth = known.depth;

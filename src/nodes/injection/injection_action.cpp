@@ -130,7 +130,7 @@ void InjectionAction::publishFeedback() {
   const InjectionFeedback& known = controller_.feedback();
   cell_microinjection::InjectFeedback feedback;
   feedback.state = toText(known.state);
-  feedback.waits = controller_.waits();
+  feedback.waits = controller_.awaitsCommand();
   feedback.layer = known.layer;
   feedback.layers = known.layers;
   feedback.force = known.force;

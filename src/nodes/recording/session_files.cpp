@@ -18,8 +18,8 @@ SessionFiles::SessionFiles(const std::string& folder, const std::string& header,
 void SessionFiles::step(const ros::Time& now) {
   rows_.flush();
   const std::uint64_t time = now.toNSec();
-  if (!rows_.trouble().empty()) {
-    trouble_ = rows_.trouble();
+  if (!rows_.errorText().empty()) {
+    trouble_ = rows_.errorText();
     failed_at_ns_ = time;
     if (!failing_) ROS_ERROR_STREAM(trouble_ << "; the session goes on, its rows are lost until there is space");
     failing_ = true;
