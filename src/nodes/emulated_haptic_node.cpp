@@ -34,9 +34,9 @@ EmulatedHapticNode::EmulatedHapticNode(ros::NodeHandle node, ros::NodeHandle pri
       hand_(parameters_.hand, motion_.at(0).position),
       cycle_(node, parameters_.rate),
       meter_(cycle_.node()),
-      driver_(
-          makeEmulatedDriver(parameters_.kind, cycle_,
-                             [this](const auto& force, const ros::Time& received) { meter_.felt(force, received); })),
+      driver_(makeEmulatedDriver(
+          parameters_.kind, cycle_,
+          [this](const auto& force, const ros::Time& received) { meter_.addForce(force, received); })),
       force_(cycle_.output<geometry_msgs::WrenchStamped>("emulated_haptic/measured_cf")),
       phase_(cycle_.output<cell_microinjection::StringStamped>("operator/phase", true)) {
   if (cycle_.lockstep() && driver_->hasUnstampedButtons()) {

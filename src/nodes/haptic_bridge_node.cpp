@@ -96,7 +96,7 @@ void HapticBridgeNode::connectLink() {
   cycle_
       .input<cell_microinjection::LinkPacket>("link/hand/received", InputPhase::kPreviousTick,
                                               std::numeric_limits<double>::infinity())
-      .listen([this](const auto& message, const ros::Time&) {
+      .onMessage([this](const auto& message, const ros::Time&) {
         if (isPlausible("link/hand/received", message)) link_->receive(toPacket(message));
       });
   link_sent_ = &cycle_.output<cell_microinjection::LinkPacket>("link/hand/sent");

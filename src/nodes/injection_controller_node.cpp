@@ -86,7 +86,7 @@ void InjectionControllerNode::listenToCommands() {
     auto& input =
         cycle_.input<StringStamped>(kStateTopic, InputPhase::kPreviousTick, std::numeric_limits<double>::infinity());
     input.stamp_rule = StampRule::kAny;
-    input.listen([this](const StringStamped& message, const ros::Time&) { take(message, false, false); });
+    input.onMessage([this](const StringStamped& message, const ros::Time&) { take(message, false, false); });
     return;
   }
   commands_ = subscribeCommand<StringStamped>(
@@ -106,9 +106,9 @@ void InjectionControllerNode::take(const cell_microinjection::StringStamped& mes
   if (!stops(command) && !isTimely(kStateTopic, message, now)) return;
   const bool stale = !stamp.isZero() && secondsBetween(stamp, now) > kOldestCommand;
   const bool begins = !stops(command) || (moves(command) && latched);
-  if (begins && stale) return log_.answered("state command " + command, "it is stale");
+  if (begins && stale) return log_.addResult("state command " + command, "it is stale");
   if (begins && repeated) {
-    return log_.answered("state command " + command, std::string(kUnstampedLatched) + "; send it again");
+    return log_.addResult("state command " + command, std::string(kUnstampedLatched) + "; send it again");
   }
   execute(command);
 }
@@ -121,10 +121,10 @@ void InjectionControllerNode::execute(const std::string& command) {
   const bool ran = model_.running();
   const std::string refusal = model_.command(command);
   told_ = model_.notice();
-  log_.answered("state command " + command, refusal);
+  log_.addResult("state command " + command, refusal);
   if (!refusal.empty()) return;
   ROS_INFO_STREAM("state command " << command << ": " << toText(model_.state()));
-  if (ran && !model_.running()) log_.overridden("the injection", "by " + command);
+  if (ran && !model_.running()) log_.addOverride("the injection", "by " + command);
   if (moves(command)) busy_.accept(static_cast<std::int64_t>(ros::Time::now().toNSec()));
 }
 

@@ -49,10 +49,10 @@ InjectorNode::InjectorNode(ros::NodeHandle node, ros::NodeHandle private_node)
   makeDevice(private_node);
   // No command that comes between two steps is lost.
   cycle_.input<cell_microinjection::InjectionPulse>("injector/pulse", InputPhase::kPreviousTick, INFINITY)
-      .listen([this](const auto& message, const ros::Time&) { onPulse(message); });
+      .onMessage([this](const auto& message, const ros::Time&) { onPulse(message); });
   auto& stop = cycle_.input<cell_microinjection::StringStamped>("injector/stop", InputPhase::kPreviousTick, INFINITY);
   stop.stamp_rule = StampRule::kAny;
-  stop.listen([this](const auto& message, const ros::Time&) { onStop(message); });
+  stop.onMessage([this](const auto& message, const ros::Time&) { onStop(message); });
   balance_ = subscribeGuarded<sensor_msgs::FluidPressure>(
       cycle_.node(), "injector/set_balance", 100,
       [this](const sensor_msgs::FluidPressure& message, const std::string&) { onBalance(message); });

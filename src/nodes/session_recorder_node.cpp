@@ -127,28 +127,28 @@ SessionRecorderNode::SessionRecorderNode(ros::NodeHandle node, ros::NodeHandle p
 }
 
 void SessionRecorderNode::fillTable() {
-  needle_.listen([this](const geometry_msgs::PoseStamped& message, const ros::Time&) {
+  needle_.onMessage([this](const geometry_msgs::PoseStamped& message, const ros::Time&) {
     const auto pose = validPose(&message);
     if (!pose) return table_.needle.withdraw();
     tip_orientation_ = pose->linear();
     table_.needle.put(stampOf(message), {{pose->translation(), pose->linear().col(2)}});
   });
-  predicted_.listen([this](const geometry_msgs::WrenchStamped& message, const ros::Time&) {
+  predicted_.onMessage([this](const geometry_msgs::WrenchStamped& message, const ros::Time&) {
     putForce(message, validForce(&message, tip_orientation_), table_.predicted);
   });
-  measured_.listen([this](const geometry_msgs::WrenchStamped& message, const ros::Time&) {
+  measured_.onMessage([this](const geometry_msgs::WrenchStamped& message, const ros::Time&) {
     std::optional<SessionTable::Measured> measured;
     if (const auto force = finiteForce(&message)) measured = {force->z(), force->x()};
     putForce(message, measured, table_.measured);
   });
-  cell_.listen([this](const cell_microinjection::CellState& message, const ros::Time&) {
+  cell_.onMessage([this](const cell_microinjection::CellState& message, const ros::Time&) {
     SessionTable::Cell cell{std::nullopt, message.punctured != 0, message.layers_punctured, message.holes.size()};
     const auto& contact_point = message.contact_point;
     if (message.in_contact) cell.contact_point = Eigen::Vector3d(contact_point.x, contact_point.y, contact_point.z);
     table_.cell.put(stampOf(message), cell);
     layers_ = message.layers;
   });
-  injection_.listen([this](const cell_microinjection::InjectionStatus& message, const ros::Time&) {
+  injection_.onMessage([this](const cell_microinjection::InjectionStatus& message, const ros::Time&) {
     table_.injection.put(stampOf(message), {{message.state, static_cast<int>(message.punctures)}});
   });
   if (injector_) {

@@ -46,7 +46,7 @@ TeleoperationFollowerNode::TeleoperationFollowerNode(ros::NodeHandle node, ros::
   cycle_
       .input<cell_microinjection::LinkPacket>("link/rig/received", InputPhase::kPreviousTick,
                                               std::numeric_limits<double>::infinity())
-      .listen([this](const auto& message, const ros::Time&) {
+      .onMessage([this](const auto& message, const ros::Time&) {
         if (isPlausible("link/rig/received", message)) model_.receive(toPacket(message));
       });
   if (parameters_.controller_timeout > 0) {

@@ -30,7 +30,7 @@ class EmulatedCrtk : public EmulatedDriver {
         clutch_(cycle.output<sensor_msgs::Joy>("haptic/clutch", true)),
         present_(cycle.output<sensor_msgs::Joy>("haptic/operator_present", true)) {
     cycle.input<WrenchStamped>("haptic/servo_cf", InputPhase::kPreviousTick, kForEver)
-        .listen([this, listener](const WrenchStamped& message, const ros::Time& received) {
+        .onMessage([this, listener](const WrenchStamped& message, const ros::Time& received) {
           force_ = toVector(message);
           listener(force_, received);
         });
@@ -80,7 +80,7 @@ class EmulatedCisst : public EmulatedDriver {
       pose_ = &cycle.output<geometry_msgs::PoseStamped>(position);
     }
     cycle.input<WrenchStamped>(device.device + "/body/servo_cf", InputPhase::kPreviousTick, kForEver)
-        .listen([this, listener](const WrenchStamped& message, const ros::Time& received) {
+        .onMessage([this, listener](const WrenchStamped& message, const ros::Time& received) {
           force_ = toVector(message);
           freed_ = true;
           listener(force_, received);
@@ -167,7 +167,7 @@ class EmulatedFalcon : public EmulatedDriver {
       : position_(cycle.output<geometry_msgs::PoseStamped>("falcon/measured_cp", true)),
         joy_(cycle.output<sensor_msgs::Joy>("falcon/joy", true)) {
     cycle.input<WrenchStamped>("falcon/servo_cf", InputPhase::kPreviousTick, kForEver)
-        .listen([this, listener](const WrenchStamped& message, const ros::Time& received) {
+        .onMessage([this, listener](const WrenchStamped& message, const ros::Time& received) {
           listener(toVector(message), received);
           if (message.header.frame_id.empty() || message.header.frame_id == kFrame) force_ = toVector(message);
         });

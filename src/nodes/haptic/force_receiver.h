@@ -22,7 +22,7 @@ class ForceReceiver {
   /// The topic of the hand's position.
   template <typename Message>
   void watch(Input<Message>& position) {
-    position.listen([this, &position](const Message&, const ros::Time&) { driver_ = position.sender; });
+    position.onMessage([this, &position](const Message&, const ros::Time&) { driver_ = position.sender; });
   }
 
   /// Looks again each 50 ms.

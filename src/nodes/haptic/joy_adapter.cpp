@@ -20,7 +20,7 @@ JoyAdapter::JoyAdapter(Cycle& cycle, const JoyConfig& config)
     : config_(config),
       stick_(config.stick),
       joy_(cycle.input<sensor_msgs::Joy>(config.topic, InputPhase::kPreviousTick, config.timeout)) {
-  joy_.listen([this](const sensor_msgs::Joy& joy, const ros::Time&) { listen(joy); });
+  joy_.onMessage([this](const sensor_msgs::Joy& joy, const ros::Time&) { listen(joy); });
 }
 
 void JoyAdapter::listen(const sensor_msgs::Joy& joy) {

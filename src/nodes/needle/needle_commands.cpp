@@ -38,7 +38,7 @@ NeedleCommands::NeedleCommands(Cycle& cycle, const MicromanipulatorConfig& confi
 void NeedleCommands::subscribe() {
   servo_.stamp_rule = StampRule::kCommand;
   // Of each message that comes between two steps, also of those that a newer one replaces.
-  servo_.listen([this](const geometry_msgs::PoseStamped& message, const ros::Time& now) {
+  servo_.onMessage([this](const geometry_msgs::PoseStamped& message, const ros::Time& now) {
     if (secondsBetween(message.header.stamp, now) <= config_.command_timeout) authorize(servo_.sender);
   });
   using geometry_msgs::PoseStamped;
@@ -67,7 +67,7 @@ void NeedleCommands::onFault(const std::string& fault) {
   try {
     rig_.inject(fault, time());
   } catch (const ConfigError& error) {
-    log_.answered("emulated_fault", error.what());
+    log_.addResult("emulated_fault", error.what());
   }
 }
 
@@ -84,29 +84,29 @@ void NeedleCommands::command(const std::string& name, const std::string& sender,
   std::string why = unavailableReason();
   const bool moved = model_.busy();
   if (why.empty()) why = execute();
-  log_.answered(name, why);
-  if (why.empty() && moved) log_.overridden("move_cp of " + mover_, "by " + name + " of " + sender);
+  log_.addResult(name, why);
+  if (why.empty() && moved) log_.addOverride("move_cp of " + mover_, "by " + name + " of " + sender);
 }
 
 void NeedleCommands::onVelocity(const geometry_msgs::TwistStamped& message, const CommandSource& source) {
-  if (source.unstamped && source.latched) return log_.answered("servo_cv", kUnstampedLatched);
+  if (source.unstamped && source.latched) return log_.addResult("servo_cv", kUnstampedLatched);
   geometry_msgs::TwistStamped stamped = message;
   if (source.unstamped) stamped.header.stamp = ros::Time::now();
   const auto velocity = validVelocity(&stamped);
-  if (!velocity) return log_.answered("servo_cv", "not a valid velocity in world");
+  if (!velocity) return log_.addResult("servo_cv", "not a valid velocity in world");
   const double old = std::max(0.0, age(message.header.stamp));
-  if (old > config_.velocity_command_timeout) return log_.answered("servo_cv", "it is stale");
+  if (old > config_.velocity_command_timeout) return log_.addResult("servo_cv", "it is stale");
   authorize(source.sender);
   command("servo_cv", source.sender, [&] { return model_.servoVelocity(*velocity, time() - old); });
 }
 
 void NeedleCommands::onMove(const geometry_msgs::PoseStamped& message, const CommandSource& source) {
-  if (source.unstamped && source.latched) return log_.answered("move_cp", kUnstampedLatched);
+  if (source.unstamped && source.latched) return log_.addResult("move_cp", kUnstampedLatched);
   geometry_msgs::PoseStamped stamped = message;
   if (source.unstamped) stamped.header.stamp = ros::Time::now();
   const auto pose = validPose(&stamped);
-  if (!pose) return log_.answered("move_cp", "not a valid pose in world");
-  if (age(message.header.stamp) > kOldestMove) return log_.answered("move_cp", "it is stale");
+  if (!pose) return log_.addResult("move_cp", "not a valid pose in world");
+  if (age(message.header.stamp) > kOldestMove) return log_.addResult("move_cp", "it is stale");
   authorize(source.sender);
   command("move_cp", source.sender, [&] {
     std::string refusal = model_.movePosition(*pose);
@@ -119,9 +119,9 @@ void NeedleCommands::onMove(const geometry_msgs::PoseStamped& message, const Com
 void NeedleCommands::executeServo(const Cycle::Tick& tick) {
   const auto message = servo_.takeUpdates();
   if (!message) return;
-  if (!servo_.fresh(tick.now)) return log_.answered("servo_cp", master_lost_ ? unavailableReason() : "it is stale");
+  if (!servo_.fresh(tick.now)) return log_.addResult("servo_cp", master_lost_ ? unavailableReason() : "it is stale");
   const auto pose = validPose(message.get());
-  if (!pose) return log_.answered("servo_cp", "not a valid pose in world");
+  if (!pose) return log_.addResult("servo_cp", "not a valid pose in world");
   command("servo_cp", servo_.sender, [&] { return model_.servoPosition(*pose); });
   if (isTraced(tick.now)) trace_.publish(toTrace(tick.now, message->header.stamp, "hand"));
 }
@@ -130,9 +130,9 @@ void NeedleCommands::onState(const cell_microinjection::StringStamped& message, 
   answer_ = true;
   const bool moved = model_.busy();
   const std::string refusal = executeState(message, source);
-  log_.answered("state_command " + message.string, refusal);
+  log_.addResult("state_command " + message.string, refusal);
   if (moved && stops(message.string))
-    log_.overridden("move_cp of " + mover_, "by " + message.string + " of " + source.sender);
+    log_.addOverride("move_cp of " + mover_, "by " + message.string + " of " + source.sender);
 }
 
 std::string NeedleCommands::executeState(const cell_microinjection::StringStamped& message,

@@ -28,7 +28,7 @@ class SessionBag {
   template <typename Message>
   void follow(Input<Message>& input) {
     const std::string topic = "/" + input.topic;
-    input.listen([this, topic](const Message& message, const ros::Time& now) { write(topic, now, message); });
+    input.onMessage([this, topic](const Message& message, const ros::Time& now) { write(topic, now, message); });
   }
 
   /// From now on writes every message of a topic that is no input, in the thread that serves `node`.
