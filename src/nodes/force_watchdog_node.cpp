@@ -29,8 +29,8 @@ ForceWatchdogNode::Parameters ForceWatchdogNode::Parameters::read(const ros::Nod
 
 ForceWatchdogNode::ForceWatchdogNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node)
     : parameters_(Parameters::read(node, private_node)),
-      force_(WatchedForce::make(parameters_.kind, parameters_.device, parameters_.force, node,
-                                [this] { heard_ = ros::Time::now(); })) {}
+      force_(MonitoredForce::make(parameters_.kind, parameters_.device, parameters_.force, node,
+                                  [this] { heard_ = ros::Time::now(); })) {}
 
 void ForceWatchdogNode::run() {
   // Wakes up by the wall's time: it must also do so when nothing else does.

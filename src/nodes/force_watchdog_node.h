@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "nodes/haptic/watched_force.h"
+#include "nodes/haptic/monitored_force.h"
 #include "nodes/runtime/master_monitor.h"
 
 namespace microinjection {
@@ -42,7 +42,7 @@ class ForceWatchdogNode {
   const MasterMonitor master_{true};
   Parameters parameters_;
   ros::Time heard_;  ///< when another node's force came last
-  std::unique_ptr<WatchedForce> force_;
+  std::unique_ptr<MonitoredForce> force_;
 };
 
 }  // namespace microinjection

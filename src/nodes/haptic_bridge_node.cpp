@@ -73,7 +73,7 @@ HapticBridgeNode::HapticBridgeNode(ros::NodeHandle node, ros::NodeHandle private
     operator_present_ = &cycle_.input<sensor_msgs::Joy>("haptic/operator_present", InputPhase::kPreviousTick,
                                                         orForEver(parameters_.timeouts.operator_present));
   }
-  receiver_.watch(hand_);
+  receiver_.monitor(hand_);
   parameters_.link.used() ? connectLink() : connectRig();
   cycle_.diagnostics().add("loop", [this](auto& status) { report(status); });
 }
@@ -187,7 +187,7 @@ void HapticBridgeNode::step(const Cycle::Tick& tick) {
   readRig(input, tick);
   input.clutch = clutchPressed(tick.now);
   input.operator_present = operatorPresent(tick.now);
-  if (!receiver_.feels()) input.no_force_reason = receiver_.why();
+  if (!receiver_.isConnected()) input.no_force_reason = receiver_.reason();
   output_ = model_.step(input, tick.dt);
   hand_force_.publish(toWrench(output_.hand_force, tick.now, hand_frame_));
   sendToRig(tick);
