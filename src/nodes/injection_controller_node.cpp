@@ -161,7 +161,7 @@ void InjectionControllerNode::step(const Cycle::Tick& tick) {
     pose.translation() = *setpoint;
     setpoint_.publish(toPose(pose, target && model_.followsTarget() ? target->header.stamp : tick.now, kWorldFrame));
   }
-  if (injector_) injector_->want(model_.pulse(), tick.now);
+  if (injector_) injector_->setPulse(model_.pulse(), tick.now);
   action_.step(tick.now);
   logNotice();
   publishState(tick.now);

@@ -76,10 +76,10 @@ void MicromanipulatorNode::step(const Cycle::Tick& tick) {
 void MicromanipulatorNode::publishState(const Cycle::Tick& tick) {
   cell_microinjection::OperatingState state;
   state.is_busy = commands_.isBusy(tick);
-  if (commands_.busyIsPending() && state.is_busy == publisher_.said().is_busy) return;
+  if (commands_.busyIsPending() && state.is_busy == publisher_.lastPublishedState().is_busy) return;
   state.state = toText(commands_.state().state());
   state.is_homed = commands_.state().homed();
-  if (!publisher_.publishState(state, tick.now, commands_.takeAnswer())) return;
+  if (!publisher_.publishState(state, tick.now, commands_.takeStateCommandReceived())) return;
   const std::string why = model_.why().empty() ? commands_.unavailableReason() : model_.why();
   ROS_INFO_STREAM(state.state << (why.empty() ? "" : ": ") << why);
 }

@@ -47,7 +47,7 @@ void DisplayFrames::update() {
 }
 
 void DisplayFrames::publishNeedleTip(const Eigen::Isometry3d& tip) {
-  // tf refuses two transforms of one time, which happens while a simulated clock stands still.
+  // tf refuses two transforms with the same stamp, as while a simulated clock stands still.
   const ros::Time now = ros::Time::now();
   if (now.toSec() == tip_stamp_) return;
   broadcaster_.sendTransform(enlarged("needle_tip", tip, now));
