@@ -91,8 +91,8 @@ void TeleoperationFollowerNode::report(diagnostic_updater::DiagnosticStatusWrapp
   const bool good = model_.holdReason().empty();
   status.summary(good ? diagnostic_msgs::DiagnosticStatus::OK : diagnostic_msgs::DiagnosticStatus::WARN,
                  good ? "the needle follows" : "needle held: " + model_.holdReason());
-  status.add("hand's side heard (s ago)", model_.packetAge());
-  status.add("energy left of what came (J)", model_.margin());
+  status.add("age of the hand's packet (s)", model_.packetAge());
+  status.add("energy margin of the received wave (J)", model_.margin());
 }
 
 }  // namespace microinjection
