@@ -18,8 +18,9 @@ namespace microinjection {
 /// The cell under the needle: a prepared one (see SurrogateData) or a live one (see
 /// makeOnlineCell). An invalid force has stamp 0.
 ///
-/// In:  /needle/measured_cp or /needle/true_cp (PoseStamped, tip in `world`) Out:
-/// /cell/predicted_cf (WrenchStamped, of the cell on the tip, in `world`), /cell/state (CellState)
+/// In:  /needle/measured_cp or /needle/true_cp (PoseStamped, tip in `world`)
+/// Out: /cell/predicted_cf (WrenchStamped, of the cell on the tip, in `world`), /cell/state
+///      (CellState)
 ///
 /// Parameters (private): those of OnlineCellModelConfig and
 ///   scene           path of the scene file; required

@@ -20,8 +20,8 @@ namespace microinjection {
 /// Shows the scene in rviz at x 1e4. For people only: no node that controls reads its topics.
 ///
 /// In:  /cell/state (with the predicted force), /force_sensor/measured_cf, /haptic/measured_cp,
-///      /controller/injection_state, and from tf the frames of the rig with needle_tip, which
-///      saves poses at 1 kHz
+///      /controller/injection_state, and from tf the frames of the rig with needle_tip, which saves
+///      poses at 1 kHz
 /// Out: viz/markers, viz/still (MarkerArray; the second, for rare changes, is latched: an rviz that
 ///      draws slowly skips messages of the first), tf of viz/{cell, holding_pipette,
 ///      manipulator_base, needle_tip} below viz/world

@@ -23,9 +23,10 @@ namespace microinjection {
 /// `away`. In the phase `inject` it presses the inject button, if the device has one. In lock step
 /// the motion waits until a button outside of the lock step has arrived.
 ///
-/// Topics: of the kind, see haptic/emulated_driver.h; In: /haptic/servo_cf, /needle/setpoint_trace,
-///         /haptic/force_trace; Out: /emulated_haptic/measured_cf (WrenchStamped, N on the hand, in the view's axes),
-///         /operator/phase (StringStamped, latched, on change: the motion's phases, then done)
+/// Topics of the kind, see haptic/emulated_driver.h, and
+/// In:  /haptic/servo_cf, /needle/setpoint_trace, /haptic/force_trace
+/// Out: /emulated_haptic/measured_cf (WrenchStamped, N on the hand, in the view's axes),
+///      /operator/phase (StringStamped, latched, on change: the motion's phases, then done)
 ///
 /// Parameters (private): those of VirtualHandConfig and
 ///   kind           one of emulatedDrivers(); default crtk

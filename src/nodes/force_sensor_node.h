@@ -16,16 +16,17 @@ namespace microinjection {
 
 /// The force sensor at the pipette: a simulated two-axis MEMS sensor, voltages on a serial line, or
 /// another node's wrench. A two-axis sensor measures along its z (axial) and x (lateral). Its pose
-/// is read from tf once, at the start. In:  simulated: /cell/predicted_cf (WrenchStamped, `world`),
-/// /needle/measured_cp (PoseStamped, for
-///                 the pipette's axes)
-///      topic:     /force_sensor/device_cf (WrenchStamped in any frame that tf connects to `needle_tip`)
+/// is read from tf once, at the start.
+///
+/// In:  simulated: /cell/predicted_cf (WrenchStamped, `world`), /needle/measured_cp (PoseStamped,
+///                 for the pipette's axes)
+///      topic:     /force_sensor/device_cf (WrenchStamped in any frame that tf connects to
+///                 `needle_tip`)
 /// Out: /force_sensor/measured_cf (WrenchStamped at the tip in `needle_tip`, tared and calibrated)
 ///      /force_sensor/raw_cf (WrenchStamped in the sensor's frame; a two-axis sensor has no torque)
 ///      both with stamp 0 without a valid input, and from an overload to a reset
 /// Services: ~tare, ~reset (std_srvs/Trigger), ~calibrate (CalibrateForce; two-axis sensors). A
-/// service
-///      only starts an average; its outcome is on /diagnostics.
+///      service only starts an average; its outcome is on /diagnostics.
 ///
 /// Parameters (private):
 ///   source         simulated, serial or topic; default simulated
@@ -36,8 +37,8 @@ namespace microinjection {
 ///   frame_timeout  s of wall time to wait for tf at the start; default 10, in (0, inf)
 ///   simulated/     those of ForceSensorConfig
 ///   serial/        path, baud, parity, stop_bits (SerialPortConfig; default 115200, 8N1), those of
-///                  VoltReadingConfig,
-///                  axial_overload and lateral_overload (N); needed with source serial
+///                  VoltReadingConfig, axial_overload and lateral_overload (N); needed with source
+///                  serial
 ///   topic/         axial_overload and lateral_overload (N)
 class ForceSensorNode {
  public:

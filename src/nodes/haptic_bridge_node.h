@@ -27,25 +27,24 @@ namespace microinjection {
 /// - before it ends.
 ///
 /// In:  /haptic/measured_cp (PoseStamped, the device's axes), /haptic/clutch and
-/// /haptic/operator_present (Joy,
-///      buttons[0] is 1 while pressed or present; the latter counts with require_operator), /needle/measured_cp
-///      (PoseStamped), /cell/predicted_cf, /force_sensor/measured_cf or both (WrenchStamped),
-///      /controller/injection_state (InjectionStatus; that there is a controller)
+///      /haptic/operator_present (Joy, buttons[0] is 1 while pressed or present; the latter counts
+///      with require_operator), /needle/measured_cp (PoseStamped), /cell/predicted_cf,
+///      /force_sensor/measured_cf or both (WrenchStamped), /controller/injection_state
+///      (InjectionStatus, to detect the controller)
 /// Out: /haptic/servo_cf (WrenchStamped, N at the hand), /teleop/servo_cp (PoseStamped, tip in
-/// `world`),
-///      /haptic/force_trace (TimeReference)
+///      `world`), /haptic/force_trace (TimeReference)
+///
 /// With link/scheme wave the rig is behind a network. Packets from and to teleoperation_follower
 /// then carry needle, force and target: /link/hand/received and /link/hand/sent (LinkPacket).
 ///
 /// Parameters (private): those of HapticBridgeConfig, link/... (LinkConfig) and
 ///   rate           Hz; default 1000, in [50, 5000]
 ///   force_feedback whether the device renders a force, so that its driver must subscribe to it;
-///   default true
+///                  default true
 ///   timeouts/...   s, past which an input is stale, each its own: hand, needle, predicted,
-///                  measured (default 0.05),
-///                  in (0, inf); operator_present (0.2; 0: valid until the hand is stale), clutch (0: always valid,
-///                  for devices that publish changes only) and controller (0.25; 0: not checked, with
-///                  another controller), in [0, inf)
+///                  measured (default 0.05), in (0, inf); operator_present (0.2; 0: valid until the
+///                  hand is stale), clutch (0: always valid, for devices that publish changes only)
+///                  and controller (0.25; 0: not checked, with another controller), in [0, inf)
 class HapticBridgeNode {
  public:
   static const char* const kHelp;

@@ -25,14 +25,13 @@ namespace microinjection {
 /// Controls the needle, simulated or real. Holds it when an input is invalid.
 ///
 /// In:  /teleop/servo_cp (PoseStamped, `world`; with mode manual), /needle/measured_cp
-/// (PoseStamped),
-///      /cell/predicted_cf or /force_sensor/measured_cf (WrenchStamped), /controller/state_command (StringStamped),
-///      /needle/abilities (ManipulatorAbilities, to drive a slow rig slowly), /injector/state; the action
-///      Inject on /controller/inject
+///      (PoseStamped), /cell/predicted_cf or /force_sensor/measured_cf (WrenchStamped),
+///      /controller/state_command (StringStamped), /needle/abilities (ManipulatorAbilities, to
+///      drive a slow rig slowly), /injector/state; the action Inject on /controller/inject
 /// Out: /needle/servo_cp (PoseStamped, `world`), /controller/operating_state (OperatingState,
-/// latched, on
-///      change and after each state_command), /controller/injection_state (InjectionStatus, latched, on
-///      change and ten times a second), /injector/pulse, /injector/stop
+///      latched, on change and after each state_command), /controller/injection_state
+///      (InjectionStatus, latched, on change and ten times a second), /injector/pulse,
+///      /injector/stop
 ///
 /// Parameters (private): those of InjectionControllerConfig and
 ///   rate           Hz; default 1000, in [50, 5000]
@@ -41,8 +40,7 @@ namespace microinjection {
 ///   auto_enable    go to ENABLED at the start, for simulated rigs; default false
 ///   injector       whether there is one; default true
 ///   commands_in_lockstep  in lock step: the publisher of /controller/state_command is a
-///                         participant;
-///                  default false
+///                         participant; default false
 class InjectionControllerNode {
  public:
   static const char* const kHelp;

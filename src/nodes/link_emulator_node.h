@@ -13,7 +13,8 @@ namespace microinjection {
 /// packets.
 ///
 /// In:  /link/hand/sent, /link/rig/sent (LinkPacket), /link/plugged (Bool; false: a cable is
-/// disconnected) Out: /link/rig/received, /link/hand/received (LinkPacket)
+///      disconnected)
+/// Out: /link/rig/received, /link/hand/received (LinkPacket)
 ///
 /// Parameters (private): delay, jitter (s, one way), loss (1, a share), seed; see LinkConditions.
 /// Each direction has its own random numbers.

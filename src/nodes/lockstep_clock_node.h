@@ -21,8 +21,8 @@ namespace microinjection {
 /// ends.
 ///
 /// In:  /lockstep/acknowledgement (std_msgs/Header of each participant), /lockstep/leave
-/// (std_msgs/String) Out: /clock (rosgraph_msgs/Clock), /lockstep/left (std_msgs/String, see
-/// lockstep.h)
+///      (std_msgs/String)
+/// Out: /clock (rosgraph_msgs/Clock), /lockstep/left (std_msgs/String, see lockstep.h)
 ///
 /// Parameters: /lockstep/participants (names of nodes), and private:
 ///   step              s, of one tick; default 0.001, in [1e-6, 1]
@@ -31,8 +31,7 @@ namespace microinjection {
 ///   warn_after        s of wall time without an acknowledgement until a warning; default 5, in (0,
 ///                     inf)
 ///   frozen_after      s of wall time without an acknowledgement until a participant leaves;
-///                     default 60, in
-///                     (0, inf)
+///                     default 60, in (0, inf)
 class LockstepClockNode {
  public:
   static const char* const kHelp;

@@ -15,23 +15,25 @@ namespace microinjection {
 /// states. A refused command does not move the needle. Log and diagnostics report the reason, and
 /// each move that another command ends. When a second node commands the needle beside the first,
 /// the state is FAULT until `enable` (rig/manipulator/command_authority.h).
+///
 /// In:  /needle/servo_cp (PoseStamped), /needle/servo_cv (TwistStamped), /needle/move_cp
-/// (PoseStamped), in
-///      `world`. Old ones are refused. Without a stamp the time of arrival counts, and commands of
-///      latching publishers are refused.
+///      (PoseStamped), in `world`. Old ones are refused. Without a stamp the time of arrival
+///      counts, and commands of latching publishers are refused.
 ///      /needle/state_command (StringStamped: enable, disable, pause, resume, home, unhome of
-///      base/operating_state.h, and stop, which keeps the state). home moves nothing: the driver finds
-///      the axes' reference positions.
-///      /needle/emulated_fault (StringStamped, see rig/serial/fault.h), for a simulated or emulated device
+///      base/operating_state.h, and stop, which keeps the state). home moves nothing: the driver
+///      finds the axes' reference positions.
+///      /needle/emulated_fault (StringStamped, see rig/serial/fault.h), of a simulated or emulated
+///      device
 /// Out: /needle/measured_cp (PoseStamped), /needle/measured_cv (TwistStamped): the tip in `world`,
-/// stamp 0
-///      while the device's position is invalid
-///      /needle/setpoint_cp (PoseStamped): the device's set-point, stamp 0 while it follows a velocity
+///      stamp 0 while the device's position is invalid
+///      /needle/setpoint_cp (PoseStamped): the device's set-point, stamp 0 during a velocity
 ///      /needle/true_cp (PoseStamped): true pose of the tip, of the simulated device only
 ///      /needle/abilities (ManipulatorAbilities; on change and once a second)
-///      /needle/operating_state (OperatingState; on change and after each state_command): DISABLED without
-///      connection, FAULT until enable or disable; is_busy only for moves, once true and once false for each
-///      /needle/setpoint_trace (TimeReference); joint_states (JointState), for robot_state_publisher
+///      /needle/operating_state (OperatingState; on change and after each state_command): DISABLED
+///      without connection, FAULT until enable or disable; is_busy only for moves, once true and
+///      once false for each
+///      /needle/setpoint_trace (TimeReference)
+///      joint_states (JointState), for robot_state_publisher
 ///
 /// Parameters: /robot_description (URDF), and private those of MicromanipulatorConfig and
 ///   rig                sim (default), or a name of rig/devices/rig_registry.h

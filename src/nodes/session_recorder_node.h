@@ -34,10 +34,12 @@ namespace microinjection {
 /// written is an ERROR on /diagnostics ("files") and does not end the session. When a file is
 /// incomplete at the end, the exit status is 1.
 ///
-/// In: /needle/measured_cp, /cell/predicted_cf, /force_sensor/measured_cf, /cell/state,
-///     /controller/injection_state, with an injector /injector/state, with a hand
-///     /haptic/measured_cp, /haptic/servo_cf, /haptic/clutch, /operator/phase; /needle/setpoint_trace,
-///     /haptic/force_trace; /diagnostics, /tf, /tf_static, /controller/operating_state
+/// In:  /needle/measured_cp, /cell/predicted_cf, /force_sensor/measured_cf, /cell/state,
+///      /controller/injection_state, with an injector /injector/state, with a hand
+///      /haptic/measured_cp, /haptic/servo_cf, /haptic/clutch, /operator/phase;
+///      /needle/setpoint_trace, /haptic/force_trace; /diagnostics, /tf, /tf_static,
+///      /controller/operating_state
+///
 /// Live it reads its messages a hundred times a second and writes rows two seconds later, by the
 /// stamps of the messages (see SessionTable). It rarely needs the processor, and a delay does not
 /// change the rows.
@@ -49,9 +51,9 @@ namespace microinjection {
 ///   injector    record an injector; default true
 ///   bag         write session.bag; default true
 ///   training       absent: no score; else a map of operator (name), history (path of a CSV file),
-///                  force and
-///                  task, see config/training.yaml. Writes training.yaml, a row of the history, and
-///                  training.png, which compares the session with the operator's earlier ones
+///                  force and task, see config/training.yaml. Writes training.yaml, a row of the
+///                  history, and training.png, which compares the session with the operator's
+///                  earlier ones
 ///   end_when_done  write the files and end this node in the operator's phase `done`; default false
 class SessionRecorderNode {
  public:

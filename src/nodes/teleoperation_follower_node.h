@@ -20,16 +20,16 @@ namespace microinjection {
 /// side.
 ///
 /// In:  /link/rig/received (LinkPacket), /needle/measured_cp (PoseStamped), /cell/predicted_cf,
-///      /force_sensor/measured_cf or both (WrenchStamped), /controller/injection_state (InjectionStatus; that there is
-///      a controller)
+///      /force_sensor/measured_cf or both (WrenchStamped), /controller/injection_state
+///      (InjectionStatus; that there is a controller)
 /// Out: /link/rig/sent (LinkPacket), /teleop/servo_cp (PoseStamped, tip in `world`)
 ///
 /// Parameters (private): those of ForceSourceConfig, link/... (LinkConfig; the bridge must have the
 /// same) and
 ///   rate           Hz; default 1000, in [50, 5000]; that of the bridge
 ///   timeouts/...   s, past which an input is stale: needle, predicted, measured; default 0.05, in
-///                  (0, inf);
-///                  controller (0.25; 0: not checked, with another controller), in [0, inf)
+///                  (0, inf); controller (0.25; 0: not checked, with another controller), in [0,
+///                  inf)
 class TeleoperationFollowerNode {
  public:
   static const char* const kHelp;

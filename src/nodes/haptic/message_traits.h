@@ -17,10 +17,11 @@ std::string containedDefinition() {
 }  // namespace microinjection
 
 /// Makes a plain struct a message of another package, to exchange it with that package's nodes
-/// without a dependency. KIND is TrueType when the struct has a header. TYPE, MD5 and DEFINITION (a
-/// std::string, with contained messages) are those of that package's generated code; a test
-/// computes the md5 sum from the definition. The last argument streams the members of `message` in
-/// their order.
+/// without a dependency.
+///
+/// KIND is TrueType when the struct has a header. TYPE, MD5 and DEFINITION (a std::string, with
+/// contained messages) are those of that package's generated code; a test computes the md5 sum from
+/// the definition. The last argument streams the members of `message` in their order.
 #define MICROINJECTION_FOREIGN_MESSAGE(STRUCT, KIND, TYPE, MD5, DEFINITION, ...)                \
   namespace ros {                                                                               \
   namespace message_traits {                                                                    \

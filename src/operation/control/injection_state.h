@@ -49,6 +49,7 @@ std::optional<InjectionState> injectionStateOf(const std::string& name);
 ///     inject    .         .        .         .       .          .       punctured  withdraw  .
 ///     withdraw  .         contact  .         .       .          .       .          withdraw  idle
 ///     fault     .         .        .         .       .          .       .          .         .
+///
 /// In every state, fail leads to fault and reset to idle. punctured -> indent is for the next
 /// layer, withdraw -> contact for a hand that reverses.
 std::optional<InjectionState> after(InjectionState state, InjectionEvent event);
