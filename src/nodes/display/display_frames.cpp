@@ -29,10 +29,10 @@ geometry_msgs::TransformStamped enlarged(const std::string& frame, const Eigen::
 }  // namespace
 
 DisplayFrames::DisplayFrames(const ros::NodeHandle& node, const std::vector<std::string>& fixed)
-    : fixed_(fixed), listener_(node) {}
+    : fixed_(fixed), frames_(node) {}
 
 std::optional<Eigen::Isometry3d> DisplayFrames::find(const std::string& parent, const std::string& frame) const {
-  return listener_.find(parent, frame);
+  return frames_.find(parent, frame);
 }
 
 void DisplayFrames::update() {

@@ -34,7 +34,7 @@ class DisplayFrames {
 
  private:
   std::vector<std::string> fixed_;
-  FrameListener listener_;
+  FrameListener frames_;
   tf2_ros::StaticTransformBroadcaster static_broadcaster_;
   tf2_ros::TransformBroadcaster broadcaster_;
   std::map<std::string, Eigen::Isometry3d> published_;  ///< fixed frames in world (m), as last published

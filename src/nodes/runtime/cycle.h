@@ -13,7 +13,7 @@
 #include "nodes/runtime/cycle_diagnostics.h"
 #include "nodes/runtime/master_monitor.h"
 #include "nodes/runtime/ports.h"
-#include "nodes/runtime/stall_watch.h"
+#include "nodes/runtime/stall_monitor.h"
 
 namespace microinjection {
 
@@ -59,7 +59,7 @@ class Cycle {
   bool lockstep() const { return lockstep_; }
   bool masterLost() const { return master_lost_; }  ///< in this step
   double period() const { return period_; }         ///< s
-  /// Earliest arrival of a message that is received now; see StallWatch.
+  /// Earliest arrival of a message that is received now; see StallMonitor.
   ros::Time earliestArrival() const { return stalls_.earliest(); }
 
   /// Steps until ROS shuts down or stop() is called.
@@ -105,7 +105,7 @@ class Cycle {
   std::vector<std::unique_ptr<OutputPort>> outputs_;
   std::vector<ros::Subscriber> subscribers_;
   ros::Time last_step_;
-  StallWatch stalls_;
+  StallMonitor stalls_;
   bool triggered_ = false;  // live: a kThisTick input has arrived
   ros::Time tick_;          // lock step: the clock's newest
   ros::Time stepped_tick_;  // lock step: the last acknowledged one

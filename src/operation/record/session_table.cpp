@@ -66,7 +66,7 @@ void SessionTable::advanceTo(Nanoseconds end) {
     if (done_) return;
     const Row now = row(next_);
     write(now);
-    if (listener_) listener_(now);
+    if (row_handler_) row_handler_(now);
     discardBefore(next_);
   }
 }

@@ -74,8 +74,8 @@ class SessionTable {
   Timeline<Injection> injection;
   Timeline<double> volume;  ///< m^3, net, out of the pipette
 
-  /// `listener` receives every row when it is written.
-  void onRow(std::function<void(const Row&)> listener) { listener_ = std::move(listener); }
+  /// `handler` receives every row when it is written.
+  void onRow(std::function<void(const Row&)> handler) { row_handler_ = std::move(handler); }
 
   /// Writes the rows up to `max_delay` before `now`; the first call is time 0 of the table. The
   /// rows end with the phase `done`. When `now` jumps by more than a minute, ahead or back, there
@@ -103,7 +103,7 @@ class SessionTable {
   bool done_ = false;
   bool in_contact_ = false;                       ///< of the last row
   std::optional<Eigen::Vector3d> contact_point_;  ///< m, last; empty before the first contact
-  std::function<void(const Row&)> listener_;
+  std::function<void(const Row&)> row_handler_;
   Sink sink_;
   std::ostringstream line_;  ///< the row under construction
 };

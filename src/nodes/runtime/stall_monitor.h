@@ -9,7 +9,7 @@ namespace microinjection {
 /// Bounds the time that a message without a stamp may have waited before this node received it. A
 /// node that was frozen, or without the processor, finds old messages. They arrive some steps after
 /// it continues, since roscpp reads them in another thread.
-class StallWatch {
+class StallMonitor {
  public:
   void step(const ros::Time& now) {
     if (!last_.isZero() && secondsBetween(last_, now) > kGap) {
