@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Checks the arguments of session.launch, which calls it before any node starts. Usage: NAME:=VALUE ...
 
-Says what is wrong, each argument with its value and what is allowed, and ends with status 1: roslaunch then stops.
+Prints each wrong argument with its value and the allowed values, and ends with status 1: roslaunch then stops.
 """
 
 import pathlib
@@ -15,7 +15,7 @@ def stems(folder, pattern):
 
 
 def choices():
-    """{argument: what it may be}; of devices what has a file."""
+    """@returns {argument: allowed values}; devices are those with a file."""
     rigs = [name for name in stems("config/rigs", "*.yaml") if name not in ("sim", "imperfect")]
     injectors = stems("config/injectors", "*.yaml")
     boolean = ["true", "false"]
@@ -52,7 +52,7 @@ def problems(arguments):
     if arguments["mode"] != "manual" and arguments["haptic"] != "none":
         found.append(f"mode = '{arguments['mode']}': must be with haptic:=none")
     if arguments["operator"] and not arguments["record"]:
-        found.append("operator: must be with record:=FOLDER, which the score is of")
+        found.append("operator: must be with record:=FOLDER, whose session is scored")
     return found
 
 

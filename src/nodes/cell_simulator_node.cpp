@@ -42,7 +42,7 @@ CellSimulatorNode::CellSimulatorNode(ros::NodeHandle node, ros::NodeHandle priva
       state_(cycle_.output<cell_microinjection::CellState>("cell/state", true)) {
   parameters_.models.online.fixed_period = cycle_.lockstep();
   cell_ = makeCell();
-  invalid_reason_.reserve(200);  // no step has to find memory for it
+  invalid_reason_.reserve(200);  // no allocation in a step
   using Thread = CellStatePublisher::Thread;
   const auto thread = cycle_.lockstep() ? Thread::kOfTheStep : Thread::kOwn;
   state_publisher_ = std::make_unique<CellStatePublisher>(*cell_, state_, parameters_.state_rate, thread);

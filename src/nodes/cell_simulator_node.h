@@ -15,18 +15,21 @@
 
 namespace microinjection {
 
-/// The cell under the needle: see makeCellModel. Where it has no
-/// trustworthy force it says so: the wrench then has stamp 0.
+/// The cell under the needle, see makeCellModel. An invalid force has stamp 0.
 ///
 /// In:  /needle/measured_cp or /needle/true_cp (PoseStamped, tip in `world`)
-/// Out: /cell/predicted_cf (WrenchStamped, of the cell on the tip, in `world`), /cell/state (CellState)
+/// Out: /cell/predicted_cf (WrenchStamped, of the cell on the tip, in `world`), /cell/state
+///      (CellState)
 ///
 /// Parameters (private): those of OnlineCellModelConfig, ExplicitCellModelConfig and
 ///   scene           path of the scene file; required
-///   model           prepared, live, explicit, or auto (default): prepared where `prepare` has left data for the scene,
-///   else live needle          measured (default): what the micromanipulator tells; true: where a simulated one's tip
-///   truly is rate            Hz; default 1000, in [50, 5000] state_rate      Hz of /cell/state; default 60, in (0,
-///   100] needle_timeout  s, a needle pose older than this is stale; default 0.05, in (0, inf)
+///   model           prepared, live, explicit, or auto (default): prepared if `prepare` has left data for the
+///                   scene, else live
+///   needle          measured (default): the micromanipulator's pose; true: the true pose of a
+///                   simulated one
+///   rate            Hz; default 1000, in [50, 5000]
+///   state_rate      Hz of /cell/state; default 60, in (0, 100]
+///   needle_timeout  s, a needle pose older than this is stale; default 0.05, in (0, inf)
 class CellSimulatorNode {
  public:
   static const char* const kHelp;
@@ -57,8 +60,8 @@ class CellSimulatorNode {
   Input<geometry_msgs::PoseStamped>& needle_;
   Output<geometry_msgs::WrenchStamped>& force_;
   Output<cell_microinjection::CellState>& state_;
-  std::string invalid_reason_;                           ///< why the last force was not valid; else empty
-  std::unique_ptr<CellStatePublisher> state_publisher_;  ///< last: it uses cell and output in a thread of its own
+  std::string invalid_reason_;                           ///< why the last force was invalid; else empty
+  std::unique_ptr<CellStatePublisher> state_publisher_;  ///< last member: its thread uses cell and output
 };
 
 }  // namespace microinjection

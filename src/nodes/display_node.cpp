@@ -15,7 +15,7 @@
 namespace microinjection {
 namespace {
 
-constexpr double kStillPeriod = 1;  // s of wall time; an rviz that joins late sees the whole scene by then
+constexpr double kFixedPeriod = 1;  // s of wall time; a late rviz has the whole scene by then
 constexpr double kStaleAge = 1;     // s of wall time
 
 CellSurface toSurface(const cell_microinjection::CellState& message) {
@@ -39,7 +39,7 @@ CellMembers toMembers(const cell_microinjection::CellState& message) {
   return members;
 }
 
-/// CRTK: a message with stamp 0 says that what was said before does not hold any more.
+/// CRTK: a message with stamp 0 withdraws the last one.
 template <typename Message>
 bool isValid(const Message& message) {
   return !message.header.stamp.isZero();
@@ -85,11 +85,11 @@ DisplayNode::DisplayNode(ros::NodeHandle node, ros::NodeHandle private_node)
       diagnostics_(node, private_node) {
   state_.readout.state = "waiting for the cell";
   markers_ = node.advertise<visualization_msgs::MarkerArray>("viz/markers", 5);
-  still_ = node.advertise<visualization_msgs::MarkerArray>("viz/still", 1, true);
-  listen(node, kState, &DisplayNode::onState);
-  listen(node, kMeasured, &DisplayNode::onMeasuredForce);
-  listen(node, kHand, &DisplayNode::onHand);
-  listen(node, kInjection, &DisplayNode::onInjection);
+  fixed_markers_ = node.advertise<visualization_msgs::MarkerArray>("viz/still", 1, true);
+  subscribe(node, kState, &DisplayNode::onState);
+  subscribe(node, kMeasured, &DisplayNode::onMeasuredForce);
+  subscribe(node, kHand, &DisplayNode::onHand);
+  subscribe(node, kInjection, &DisplayNode::onInjection);
   diagnostics_.setHardwareID("none");
   diagnostics_.add("drawing", this, &DisplayNode::reportDrawing);
   diagnostics_.add("inputs", this, &DisplayNode::reportInputs);
@@ -97,10 +97,10 @@ DisplayNode::DisplayNode(ros::NodeHandle node, ros::NodeHandle private_node)
 }
 
 template <typename Message>
-void DisplayNode::listen(const ros::NodeHandle& node, InputId input, void (DisplayNode::*handler)(const Message&)) {
-  constexpr int kQueue = 1;  // only the latest message is worth a picture
-  const auto take = [this, handler](const Message& message, const std::string&) { (this->*handler)(message); };
-  subscribers_.push_back(subscribeGuarded<Message>(node, inputs_[input].topic, kQueue, take));
+void DisplayNode::subscribe(const ros::NodeHandle& node, InputId input, void (DisplayNode::*handler)(const Message&)) {
+  constexpr int kQueue = 1;  // only the latest message is drawn
+  const auto receive = [this, handler](const Message& message, const std::string&) { (this->*handler)(message); };
+  subscribers_.push_back(subscribeGuarded<Message>(node, inputs_[input].topic, kQueue, receive));
 }
 
 void DisplayNode::run() { ros::spin(); }
@@ -133,9 +133,9 @@ void DisplayNode::onState(const cell_microinjection::CellState& message) {
 }
 
 void DisplayNode::findTipTransform() {
-  const bool was_known = state_.tip.has_value();
+  const bool was_valid = state_.tip.has_value();
   state_.tip = frames_.find("world", "needle_tip");
-  if (state_.tip.has_value() != was_known) fixed_drawn_ = {};  // the pipette comes or goes at once
+  if (state_.tip.has_value() != was_valid) fixed_drawn_ = {};  // shows or hides the pipette at once
 }
 
 void DisplayNode::onHand(const geometry_msgs::PoseStamped& message) {
@@ -167,12 +167,12 @@ void DisplayNode::draw() {
     scene_.drawMoving(state_, markers);
     markers_.publish(markers);
   }
-  if (still_.getNumSubscribers() > 0 &&
-      (scene_.fixedChanged() || start - fixed_drawn_ > ros::WallDuration(kStillPeriod))) {
+  if (fixed_markers_.getNumSubscribers() > 0 &&
+      (scene_.fixedChanged() || start - fixed_drawn_ > ros::WallDuration(kFixedPeriod))) {
     state_.holding_from_cell = frames_.find("holding_pipette", state_.cell_frame);
     visualization_msgs::MarkerArray markers;
     scene_.drawFixed(state_, markers);
-    still_.publish(markers);
+    fixed_markers_.publish(markers);
     fixed_drawn_ = start;
   }
   if (master_.masterLostForLong()) {
@@ -191,7 +191,7 @@ void DisplayNode::reportDrawing(diagnostic_updater::DiagnosticStatusWrapper& sta
   status.summary(diagnostic_msgs::DiagnosticStatus::OK, "drawing");
   if (rate < 0.5 * config_.rate) status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "slow");
   for (const std::string& frame : missing) {
-    status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "tf does not know world -> " + frame);
+    status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "tf has no transform world -> " + frame);
   }
   status.add("rate (Hz of wall time)", rate);
   status.add("rate wanted (Hz)", config_.rate);

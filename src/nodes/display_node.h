@@ -17,19 +17,20 @@
 
 namespace microinjection {
 
-/// Shows the scene in rviz at x 1e4. For eyes only: nothing that controls reads its topics.
+/// Shows the scene in rviz at x 1e4. For people only: no node that controls reads its topics.
 ///
-/// In:  /cell/state (with the predicted force), /force_sensor/measured_cf, /haptic/measured_cp, and from tf the frames
-/// of the
-///      rig, needle_tip among them: a picture needs no pose a thousand times a second
-/// Out: viz/markers, viz/still (MarkerArray; the second, of what seldom changes, is latched: an rviz that draws slowly
-///      skips some of the first), tf of viz/{cell, holding_pipette, manipulator_base, needle_tip} below viz/world
+/// In:  /cell/state (with the predicted force), /force_sensor/measured_cf, /haptic/measured_cp,
+///      /controller/injection_state, and from tf the frames of the rig with needle_tip, which saves
+///      poses at 1 kHz
+/// Out: viz/markers, viz/still (MarkerArray; the second, for rare changes, is latched: an rviz that
+///      draws slowly skips messages of the first), tf of viz/{cell, holding_pipette,
+///      manipulator_base, needle_tip} below viz/world
 ///
 /// Parameters: private those of DisplayConfig; see config/display.yaml.
 ///
-/// It counts wall time, unlike the nodes that control: eyes want as many pictures a second however fast a simulated
-/// clock runs. Input that is not finite, invalid (stamp 0) or in an unknown frame is not drawn; the diagnostics count
-/// it.
+/// It uses wall time, unlike the nodes that control, so that the frame rate does not depend on a
+/// simulated clock. Input that is not finite, invalid (stamp 0) or in an unknown frame is not
+/// drawn; the diagnostics count it.
 class DisplayNode {
  public:
   static const char* const kHelp;
@@ -42,7 +43,7 @@ class DisplayNode {
   struct Input {
     Input(const std::string& input_topic, bool is_needed) : topic(input_topic), needed(is_needed) {}
     std::string topic;
-    bool needed;             ///< its absence is worth a warning
+    bool needed;             ///< its absence causes a warning
     ros::WallTime received;  ///< of the last message, drawn or not; zero: none yet
     unsigned refused = 0;    ///< messages that were not drawn
   };
@@ -52,7 +53,7 @@ class DisplayNode {
   void onHand(const geometry_msgs::PoseStamped& message);
   void onMeasuredForce(const geometry_msgs::WrenchStamped& message);
   template <typename Message>
-  void listen(const ros::NodeHandle& node, InputId input, void (DisplayNode::*handler)(const Message&));
+  void subscribe(const ros::NodeHandle& node, InputId input, void (DisplayNode::*handler)(const Message&));
   void findTipTransform();
   void count(InputId input, bool drawn);
 
@@ -65,15 +66,15 @@ class DisplayNode {
   DisplayFrames frames_;
   DisplayedState state_;  ///< the latest input
   MasterMonitor master_{true};
-  bool cell_changed_ = false;  ///< since it was drawn
+  bool cell_changed_ = false;  ///< since the cell was drawn
   std::array<Input, kInputs> inputs_;
 
-  ros::WallTime fixed_drawn_;  ///< when the markers that stay were last sent
+  ros::WallTime fixed_drawn_;  ///< last time of the fixed markers
   ros::WallTime reported_;
   unsigned drawings_ = 0;       ///< since reported_
   double longest_drawing_ = 0;  ///< s of wall time, since reported_
 
-  ros::Publisher markers_, still_;
+  ros::Publisher markers_, fixed_markers_;
   std::vector<ros::Subscriber> subscribers_;
   diagnostic_updater::Updater diagnostics_;
   ros::WallTimer timer_;

@@ -10,8 +10,8 @@
 namespace microinjection {
 
 const char* const EmulatedHapticNode::kHelp =
-    "emulated_haptic: a haptic device that is not there, behind the topics of its driver, in a virtual hand that\n"
-    "follows a recorded motion; measures the time from its pose to the force that comes back.\n"
+    "emulated_haptic: emulates a haptic device, its driver's topics and a hand that follows a recorded motion;\n"
+    "measures the time from the device's pose to the resulting force.\n"
     "Parameters: ~kind (crtk|omni|geomagic|force_dimension|dvrk|dvrk_2_0|falcon|joy|spacenav), ~motion (file, "
     "required), ~start_delay (s), ~mass (kg),\n"
     "~damping (N s/m), ~stiffness (N/m), ~rate (Hz).\n";
@@ -34,9 +34,9 @@ EmulatedHapticNode::EmulatedHapticNode(ros::NodeHandle node, ros::NodeHandle pri
       hand_(parameters_.hand, motion_.at(0).position),
       cycle_(node, parameters_.rate),
       meter_(cycle_.node()),
-      driver_(
-          makeEmulatedDriver(parameters_.kind, cycle_,
-                             [this](const auto& force, const ros::Time& received) { meter_.felt(force, received); })),
+      driver_(makeEmulatedDriver(
+          parameters_.kind, cycle_,
+          [this](const auto& force, const ros::Time& received) { meter_.addForce(force, received); })),
       force_(cycle_.output<geometry_msgs::WrenchStamped>("emulated_haptic/measured_cf")),
       phase_(cycle_.output<cell_microinjection::StringStamped>("operator/phase", true)) {
   if (cycle_.lockstep() && driver_->hasUnstampedButtons()) {
@@ -60,28 +60,28 @@ void EmulatedHapticNode::run() {
   cycle_.run([this](const Cycle::Tick& tick) { step(tick); });
 }
 
-bool EmulatedHapticNode::buttonHasComeThrough(const ros::Time& now) const {
+bool EmulatedHapticNode::buttonHasArrived(const ros::Time& now) const {
   if (!present_) return true;
   const sensor_msgs::Joy* joy = present_->get(now);
   return (joy && !joy->buttons.empty() && joy->buttons[0] == 1) == at_.present;
 }
 
 void EmulatedHapticNode::step(const Cycle::Tick& tick) {
-  if (buttonHasComeThrough(tick.now)) elapsed_ += tick.dt;
+  if (buttonHasArrived(tick.now)) elapsed_ += tick.dt;
   const double time = std::max(0.0, elapsed_ - parameters_.start_delay);
-  const HandMotion::Sample meant = motion_.at(time);
+  const HandMotion::Sample intended = motion_.at(time);
   driver_->process(at_);
   const Eigen::Vector3d force = driver_->render(at_);
   const Eigen::Vector3d before = hand_.position();
-  hand_.step(meant.position, force.allFinite() ? force : Eigen::Vector3d::Zero(), tick.dt);
+  hand_.step(intended.position, force.allFinite() ? force : Eigen::Vector3d::Zero(), tick.dt);
   at_.position = hand_.position();
   at_.velocity = (at_.position - before) / tick.dt;
-  at_.clutch = meant.clutch;
-  at_.present = elapsed_ >= parameters_.start_delay / 2 && meant.phase != "away";
-  at_.inject = meant.phase == "inject";
+  at_.clutch = intended.clutch;
+  at_.present = elapsed_ >= parameters_.start_delay / 2 && intended.phase != "away";
+  at_.inject = intended.phase == "inject";
   driver_->publish(at_, tick.now);
   force_.publish(toWrench(force, tick.now, "view"));
-  publishPhase(tick.now, time >= motion_.duration() ? "done" : meant.phase);
+  publishPhase(tick.now, time >= motion_.duration() ? "done" : intended.phase);
   meter_.step(tick.now);
 }
 

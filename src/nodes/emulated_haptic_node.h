@@ -16,16 +16,17 @@
 
 namespace microinjection {
 
-/// A haptic device that is not there, behind the topics of its driver, in a virtual hand: to try an adapter, and to
-/// measure what all nodes add between the device's pose and the force that comes back to it (on /diagnostics).
+/// Emulates a haptic device, its driver's topics and the operator's hand. It tests an adapter and
+/// measures the delay of all nodes from the device's pose to the resulting force (on /diagnostics).
 ///
-/// The hand holds the dead-man down from half the start_delay on, but in a phase that is called `away`; in one that is
-/// called `inject` it presses the button for that, on a device that has one. In lock step it goes on only when a button
-/// that takes no part in it has come through.
+/// The hand holds the dead-man switch down from half the start_delay on, except in the phase
+/// `away`. In the phase `inject` it presses the inject button, if the device has one. In lock step
+/// the motion waits until a button outside of the lock step has arrived.
 ///
-/// Topics: of the kind, see haptic/emulated_driver.h; In: /haptic/servo_cf, /needle/setpoint_trace,
-///         /haptic/force_trace; Out: /emulated_haptic/measured_cf (WrenchStamped, N on the hand, in the view's axes),
-///         /operator/phase (StringStamped, latched, on change: the motion's phases, then done)
+/// Topics of the kind, see haptic/emulated_driver.h, and
+/// In:  /haptic/servo_cf, /needle/setpoint_trace, /haptic/force_trace
+/// Out: /emulated_haptic/measured_cf (WrenchStamped, N on the hand, in the view's axes),
+///      /operator/phase (StringStamped, latched, on change: the motion's phases, then done)
 ///
 /// Parameters (private): those of VirtualHandConfig and
 ///   kind           one of emulatedDrivers(); default crtk
@@ -50,7 +51,7 @@ class EmulatedHapticNode {
   };
 
   void step(const Cycle::Tick& tick);
-  bool buttonHasComeThrough(const ros::Time& now) const;
+  bool buttonHasArrived(const ros::Time& now) const;
   void publishPhase(const ros::Time& now, const std::string& phase);
   void report(const std::string& name, const IntervalHistogram& trips);
 
@@ -62,7 +63,7 @@ class EmulatedHapticNode {
   std::unique_ptr<EmulatedDriver> driver_;
   Output<geometry_msgs::WrenchStamped>& force_;
   Output<cell_microinjection::StringStamped>& phase_;
-  Input<sensor_msgs::Joy>* present_ = nullptr;  ///< what came of the dead-man; null: not waited for
+  Input<sensor_msgs::Joy>* present_ = nullptr;  ///< dead-man switch as received; null: not waited for
   EmulatedHand at_;
   double elapsed_ = 0;  ///< s of steps; a stall of the machine pauses the hand
   std::string phase_published_;

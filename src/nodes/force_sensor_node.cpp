@@ -8,7 +8,7 @@
 namespace microinjection {
 
 const char* const ForceSensorNode::kHelp =
-    "force_sensor: a virtual two-axis MEMS force sensor at the pipette, voltages on a serial line, or another's "
+    "force_sensor: a simulated two-axis MEMS sensor at the pipette, voltages on a serial line, or another node's "
     "wrench.\n"
     "In: /cell/predicted_cf, /needle/measured_cp (source simulated) or /force_sensor/device_cf (source topic).\n"
     "Out: /force_sensor/measured_cf (needle_tip: z along, x across) /force_sensor/raw_cf (the sensor's frame).\n"
@@ -25,7 +25,7 @@ ForceSensorNode::Parameters ForceSensorNode::Parameters::read(const ros::NodeHan
   reader.number("frame_timeout", parameters.frame_timeout, Range::positive());
   ConfigReader simulated = reader.section("simulated");
   parameters.simulated = ForceSensorConfig::read(simulated);
-  // The other sources' sections may stay in a file that does not use them, and are read as strictly.
+  // Sections of unused sources may stay in a file; they are read as strictly.
   for (const std::string source : {"serial", "topic"}) {
     if (parameters.source != source && !reader.has(source)) continue;
     ConfigReader section = reader.section(source);
@@ -64,7 +64,7 @@ std::unique_ptr<ForceSource> ForceSensorNode::makeSource() {
 
 void ForceSensorNode::advertiseServices(ros::NodeHandle private_node) {
   using Trigger = std_srvs::Trigger;
-  // Answered right before a step, in the node's own thread.
+  // Services are executed right before a step, in the node's own thread.
   private_node.setCallbackQueue(cycle_.node().getCallbackQueue());
   tare_ = private_node.advertiseService<Trigger::Request, Trigger::Response>(
       "tare", [this](Trigger::Request&, Trigger::Response& response) {
@@ -99,8 +99,8 @@ std::string ForceSensorNode::act(const cell_microinjection::CalibrateForce::Requ
     case cell_microinjection::CalibrateForce::Request::ADD: {
       if (!notReadyReason().empty()) return notReadyReason();
       const Eigen::Vector3d at_tip(request.force.x, request.force.y, request.force.z);
-      const Eigen::Vector3d known = tip_from_sensor_.linear().transpose() * at_tip;
-      return readout_.beginPoint(Eigen::Vector2d(known.z(), known.x()));
+      const Eigen::Vector3d load = tip_from_sensor_.linear().transpose() * at_tip;
+      return readout_.beginPoint(Eigen::Vector2d(load.z(), load.x()));
     }
     case cell_microinjection::CalibrateForce::Request::SOLVE:
       return readout_.solve();
@@ -136,7 +136,7 @@ void ForceSensorNode::publishInvalid(const Cycle::Tick& tick) {
 }
 
 geometry_msgs::WrenchStamped ForceSensorNode::atTip(const Eigen::VectorXd& force, const ros::Time& stamp) const {
-  // What a two-axis sensor feels acts at the tip, hence without a torque about it.
+  // The force of a two-axis sensor acts at the tip, so there is no torque about it.
   if (force.size() == 2)
     return toWrench(tip_from_sensor_.linear() * Eigen::Vector3d(force[1], 0, force[0]), stamp, kTipFrame);
   geometry_msgs::WrenchStamped message = toWrench(force.head<3>(), stamp, kTipFrame);
@@ -149,7 +149,7 @@ geometry_msgs::WrenchStamped ForceSensorNode::atTip(const Eigen::VectorXd& force
 void ForceSensorNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) const {
   using diagnostic_msgs::DiagnosticStatus;
   if (source_->overloaded()) {
-    status.summary(DiagnosticStatus::ERROR, "overloaded; wants the service ~reset");
+    status.summary(DiagnosticStatus::ERROR, "overloaded; call the service ~reset");
   } else if (!source_->invalidReason().empty()) {
     status.summary(DiagnosticStatus::WARN, source_->invalidReason());
   } else {

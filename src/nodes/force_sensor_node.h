@@ -14,18 +14,19 @@
 
 namespace microinjection {
 
-/// The force sensor at the pipette: a virtual two-axis MEMS sensor, voltages on a serial line, or another node's
-/// wrench. A two-axis sensor measures along its z (axial) and x (lateral); where it sits, tf says, asked once at the
-/// start.
+/// The force sensor at the pipette: a simulated two-axis MEMS sensor, voltages on a serial line, or
+/// another node's wrench. A two-axis sensor measures along its z (axial) and x (lateral). Its pose
+/// is read from tf once, at the start.
 ///
-/// In:  simulated: /cell/predicted_cf (WrenchStamped, `world`), /needle/measured_cp (PoseStamped, for the pipette's
-/// axes)
-///      topic:     /force_sensor/device_cf (WrenchStamped in any frame that tf joins to `needle_tip`)
+/// In:  simulated: /cell/predicted_cf (WrenchStamped, `world`), /needle/measured_cp (PoseStamped,
+///                 for the pipette's axes)
+///      topic:     /force_sensor/device_cf (WrenchStamped in any frame that tf connects to
+///                 `needle_tip`)
 /// Out: /force_sensor/measured_cf (WrenchStamped at the tip in `needle_tip`, tared and calibrated)
-///      /force_sensor/raw_cf (WrenchStamped in the sensor's frame, as it is; a two-axis sensor measures no torque)
-///      both with stamp 0 when there is no valid force to sense, and from an overload to a reset
-/// Services: ~tare, ~reset (std_srvs/Trigger), ~calibrate (CalibrateForce; two-axis sensors). Averages take their time:
-///      a service only begins one, and its outcome is on /diagnostics.
+///      /force_sensor/raw_cf (WrenchStamped in the sensor's frame; a two-axis sensor has no torque)
+///      both with stamp 0 without a valid input, and from an overload to a reset
+/// Services: ~tare, ~reset (std_srvs/Trigger), ~calibrate (CalibrateForce; two-axis sensors). A
+///      service only starts an average; its outcome is on /diagnostics.
 ///
 /// Parameters (private):
 ///   source         simulated, serial or topic; default simulated
@@ -35,13 +36,14 @@ namespace microinjection {
 ///   frame          of the sensor, in tf; default force_sensor
 ///   frame_timeout  s of wall time to wait for tf at the start; default 10, in (0, inf)
 ///   simulated/     those of ForceSensorConfig
-///   serial/        path, baud, parity, stop_bits (SerialPortConfig; default 115200, 8N1), those of VoltReadingConfig,
-///                  axial_overload and lateral_overload (N); needed with source serial
+///   serial/        path, baud, parity, stop_bits (SerialPortConfig; default 115200, 8N1), those of
+///                  VoltReadingConfig, axial_overload and lateral_overload (N); needed with source
+///                  serial
 ///   topic/         axial_overload and lateral_overload (N)
 class ForceSensorNode {
  public:
   static const char* const kHelp;
-  /// @throws ConfigError, also when tf does not know the sensor's frame in time
+  /// @throws ConfigError, also when tf does not have the sensor's frame in time
   ForceSensorNode(ros::NodeHandle node, ros::NodeHandle private_node);
   void run();
 

@@ -7,7 +7,7 @@
 namespace microinjection {
 
 const char* const ForceWatchdogNode::kHelp =
-    "force_watchdog: says zero force to a haptic device while nobody else says any.\n"
+    "force_watchdog: publishes zero force to a haptic device while no other node publishes a force.\n"
     "In and out: /haptic/servo_cf, or /DEVICE/force_feedback of a driver.\n"
     "Parameters: ~kind (crtk|omni|geomagic), ~device (its namespace), ~force, ~from_start, ~timeout (s), ~rate (Hz).\n";
 
@@ -29,16 +29,16 @@ ForceWatchdogNode::Parameters ForceWatchdogNode::Parameters::read(const ros::Nod
 
 ForceWatchdogNode::ForceWatchdogNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node)
     : parameters_(Parameters::read(node, private_node)),
-      force_(WatchedForce::make(parameters_.kind, parameters_.device, parameters_.force, node,
-                                [this] { heard_ = ros::Time::now(); })) {}
+      force_(MonitoredForce::make(parameters_.kind, parameters_.device, parameters_.force, node,
+                                  [this] { last_received_ = ros::Time::now(); })) {}
 
 void ForceWatchdogNode::run() {
-  // Wakes up by the wall's time: it must also do so when nothing else does.
+  // Uses wall time: it must also work when nothing else does.
   for (ros::WallRate rate(parameters_.rate); ros::ok() && !master_.masterLostForLong(); rate.sleep()) {
     ros::spinOnce();
     const ros::Time now = ros::Time::now();
-    if (heard_.isZero() && !parameters_.from_start) continue;
-    if (secondsBetween(heard_, now) >= parameters_.timeout) force_->publishZeroForce(now);
+    if (last_received_.isZero() && !parameters_.from_start) continue;
+    if (secondsBetween(last_received_, now) >= parameters_.timeout) force_->publishZeroForce(now);
   }
 }
 

@@ -5,24 +5,26 @@
 #include <memory>
 #include <string>
 
-#include "nodes/haptic/watched_force.h"
+#include "nodes/haptic/monitored_force.h"
 #include "nodes/runtime/master_monitor.h"
 
 namespace microinjection {
 
-/// Says zero force, again and again, on a haptic device's topic while nobody else says any: drivers may hold the last
-/// force for ever, and the bridge, or the device's adapter, may have been killed.
+/// Publishes zero force on a haptic device's topic at a rate while no other node publishes a force.
+/// Drivers may hold the last force for ever, and the bridge or the device's adapter may have been
+/// killed.
 ///
 /// In and out: /haptic/servo_cf (WrenchStamped, N), or DEVICE/force_feedback of the driver
 ///
 /// Parameters (private):
 ///   kind     of the device: crtk, omni or geomagic; default crtk
-///   device   namespace of the driver's topics; default that of the adapter (/haptic_device/device); of crtk haptic
-///   force    of crtk: topic of the force, below device; default servo_cf
-///   from_start  also before another node's first force; default true. false: where the first force frees an arm that
-///            falls unless it was told something first
-///   timeout  s without a force of another node's; default 0.05, in (0, inf)
-///   rate     Hz, of looking and of zero force; default 200, in [50, 5000]
+///   device   namespace of the driver's topics; default that of the adapter
+///            (/haptic_device/device); for crtk haptic
+///   force    for crtk: topic of the force, below device; default servo_cf
+///   from_start  also before another node's first force; default true. false: for an arm that falls
+///               at the first force unless it has its settings
+///   timeout  s without a force of another node; default 0.05, in (0, inf)
+///   rate     Hz, of checks and of zero force; default 200, in [50, 5000]
 class ForceWatchdogNode {
  public:
   static const char* const kHelp;
@@ -41,8 +43,8 @@ class ForceWatchdogNode {
 
   const MasterMonitor master_{true};
   Parameters parameters_;
-  ros::Time heard_;  ///< when another node's force came last
-  std::unique_ptr<WatchedForce> force_;
+  ros::Time last_received_;  ///< arrival of another node's last force
+  std::unique_ptr<MonitoredForce> force_;
 };
 
 }  // namespace microinjection

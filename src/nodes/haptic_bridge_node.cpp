@@ -13,12 +13,12 @@
 namespace microinjection {
 namespace {
 
-constexpr int kLastForces = 5;  // since messages can be dropped
+constexpr int kLastForces = 5;  // several, since messages can be dropped
 
-/// s; 0 in the parameters: what was said last holds.
+/// A time-out (s) of 0 in the parameters means for ever.
 double orForEver(double timeout) { return timeout > 0 ? timeout : std::numeric_limits<double>::infinity(); }
 
-/// A tap that is over counts as 2 or 3 with some drivers (cisst's CLICKED, DOUBLE_CLICKED): not held down.
+/// Some drivers report a finished tap as 2 or 3 (cisst's CLICKED, DOUBLE_CLICKED): not held down.
 bool heldDown(const sensor_msgs::Joy& joy) { return joy.buttons[0] == 1; }
 
 }  // namespace
@@ -73,7 +73,7 @@ HapticBridgeNode::HapticBridgeNode(ros::NodeHandle node, ros::NodeHandle private
     operator_present_ = &cycle_.input<sensor_msgs::Joy>("haptic/operator_present", InputPhase::kPreviousTick,
                                                         orForEver(parameters_.timeouts.operator_present));
   }
-  receiver_.watch(hand_);
+  receiver_.monitor(hand_);
   parameters_.link.used() ? connectLink() : connectRig();
   cycle_.diagnostics().add("loop", [this](auto& status) { report(status); });
 }
@@ -90,13 +90,13 @@ void HapticBridgeNode::connectRig() {
 }
 
 void HapticBridgeNode::connectLink() {
-  // A bridge that was started again must count on from where it was: wall time, also in lock step.
+  // A restarted bridge must continue the count of epochs: wall time, also in lock step.
   link_ = std::make_unique<LinkLeader>(parameters_.link, parameters_.model.motion.position_scale,
                                        parameters_.model.force_gain, ros::WallTime::now().toNSec());
   cycle_
       .input<cell_microinjection::LinkPacket>("link/hand/received", InputPhase::kPreviousTick,
                                               std::numeric_limits<double>::infinity())
-      .listen([this](const auto& message, const ros::Time&) {
+      .onMessage([this](const auto& message, const ros::Time&) {
         if (isPlausible("link/hand/received", message)) link_->receive(toPacket(message));
       });
   link_sent_ = &cycle_.output<cell_microinjection::LinkPacket>("link/hand/sent");
@@ -119,7 +119,7 @@ void HapticBridgeNode::run() {
   publishZeroForce();
 }
 
-/// For a driver that holds the last force.
+/// Ends with zero force, for a driver that holds the last one.
 void HapticBridgeNode::publishZeroForce() {
   for (int i = 0; i < kLastForces && ros::ok(); ++i) {
     const ros::Time now = ros::Time::now();
@@ -129,12 +129,12 @@ void HapticBridgeNode::publishZeroForce() {
   }
 }
 
-bool HapticBridgeNode::controllerLives(const ros::Time& now) const { return !controller_ || controller_->get(now); }
+bool HapticBridgeNode::controllerIsAlive(const ros::Time& now) const { return !controller_ || controller_->get(now); }
 
 bool HapticBridgeNode::clutchPressed(const ros::Time& now) const {
   if (clutch_.received.isZero()) return false;  // a device without a clutch
   const sensor_msgs::Joy* joy = clutch_.get(now);
-  return !joy || joy->buttons.empty() || heldDown(*joy);  // one that cannot be read counts as pressed
+  return !joy || joy->buttons.empty() || heldDown(*joy);  // an invalid one counts as pressed
 }
 
 bool HapticBridgeNode::operatorPresent(const ros::Time& now) const {
@@ -144,14 +144,14 @@ bool HapticBridgeNode::operatorPresent(const ros::Time& now) const {
 
 void HapticBridgeNode::readRig(HapticBridge::Input& input, const Cycle::Tick& tick) {
   if (link_) {
-    // Whichever source the rig feels it from.
+    // The rig has chosen the source.
     const auto force = link_->step(tick.dt);
     input.needle = link_->needle();
     if (force) input.force.predicted = input.force.measured = *force / parameters_.model.force_gain;
     return;
   }
   const auto needle = validPose(needle_->get(tick.now));
-  without_controller_ = !controllerLives(tick.now);
+  without_controller_ = !controllerIsAlive(tick.now);
   if (!needle || without_controller_) return;
   input.needle = needle->translation();
   input.force.predicted = validForce(predicted_ ? predicted_->get(tick.now) : nullptr, needle->linear());
@@ -181,13 +181,13 @@ void HapticBridgeNode::step(const Cycle::Tick& tick) {
   const auto* hand = hand_.get(tick.now);
   HapticBridge::Input input;
   if (hand) hand_frame_ = hand->header.frame_id;
-  // Of a device that tells changes only: when it fell silent it may have missed to tell the last one.
+  // A stale device that publishes only changes may have missed the last one.
   if (!hand && operator_present_ && parameters_.timeouts.operator_present <= 0) operator_present_->invalidate();
   if (hand) input.hand = validPosition(hand, hand->header.frame_id, kLargestHandDistance);
   readRig(input, tick);
   input.clutch = clutchPressed(tick.now);
   input.operator_present = operatorPresent(tick.now);
-  if (!receiver_.feels()) input.unfelt = receiver_.why();
+  if (!receiver_.isConnected()) input.no_force_reason = receiver_.reason();
   output_ = model_.step(input, tick.dt);
   hand_force_.publish(toWrench(output_.hand_force, tick.now, hand_frame_));
   sendToRig(tick);
@@ -204,7 +204,7 @@ void HapticBridgeNode::report(diagnostic_updater::DiagnosticStatusWrapper& statu
   status.add("tremor filter's delay (s)", model_.delay());
   status.add("observed energy (J)", model_.observedEnergy());
   if (link_) {
-    status.add("rig heard (s ago)", link_->age());
+    status.add("age of the rig's packet (s)", link_->packetAge());
     status.add("round trip (periods)", link_->roundTrip());
   }
   status.add("passivity controller acts", model_.passivityActing() ? "yes" : "no");

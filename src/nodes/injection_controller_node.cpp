@@ -15,22 +15,22 @@ namespace {
 
 constexpr char kStateTopic[] = "controller/state_command";
 
-// s: what was said longer ago must not begin a motion. The needle's commands have the same.
+// s: an older command must not start a motion. The needle's commands have the same limit.
 constexpr double kOldestCommand = 3;
 
-/// Commands that stop or withdraw the needle are obeyed whatever their stamp.
+/// Commands that stop or withdraw the needle are executed with any stamp.
 bool stops(const std::string& command) {
   return command == "disable" || command == "pause" || command == "home" || command == "unhome" ||
          command == "withdraw";
 }
 
-/// Commands that begin a motion of the controller's own.
+/// Commands that start a motion of the controller.
 bool moves(const std::string& command) { return command == "home" || command == "withdraw" || command == "approach"; }
 
 }  // namespace
 
 const char* const InjectionControllerNode::kHelp =
-    "injection_controller: decides where the needle goes and holds it when an input is not valid.\n"
+    "injection_controller: controls the needle and holds it when an input is invalid.\n"
     "In: /teleop/servo_cp /needle/measured_cp, /cell/predicted_cf or /force_sensor/measured_cf, /injector/state,\n"
     "/needle/abilities, /controller/state_command (enable, disable, pause, resume, home, unhome, approach, indent,\n"
     "inject, withdraw). Action: /controller/inject. Out: /needle/servo_cp /controller/operating_state\n"
@@ -71,7 +71,7 @@ InjectionControllerNode::InjectionControllerNode(ros::NodeHandle node, ros::Node
   }
   if (parameters_.injector) injector_ = std::make_unique<InjectorLink>(cycle_, parameters_.input_timeout);
   state_ = cycle_.node().advertise<cell_microinjection::OperatingState>("controller/operating_state", 10, true);
-  listenToCommands();
+  subscribeCommands();
   using cell_microinjection::ManipulatorAbilities;
   abilities_ = subscribeGuarded<ManipulatorAbilities>(
       cycle_.node(), "needle/abilities", 1,
@@ -80,35 +80,37 @@ InjectionControllerNode::InjectionControllerNode(ros::NodeHandle node, ros::Node
   if (parameters_.auto_enable) execute("enable");
 }
 
-void InjectionControllerNode::listenToCommands() {
+void InjectionControllerNode::subscribeCommands() {
   using cell_microinjection::StringStamped;
   if (cycle_.lockstep() && parameters_.commands_in_lockstep) {
     auto& input =
         cycle_.input<StringStamped>(kStateTopic, InputPhase::kPreviousTick, std::numeric_limits<double>::infinity());
     input.stamp_rule = StampRule::kAny;
-    input.listen([this](const StringStamped& message, const ros::Time&) { take(message, false, false); });
+    input.onMessage([this](const StringStamped& message, const ros::Time&) { receiveCommand(message, false, false); });
     return;
   }
   commands_ = subscribeCommand<StringStamped>(
       cycle_.node(), kStateTopic,
       [this](const StringStamped& message, const CommandSource& source) {
-        take(message, source.latched, repeated_.mayBe(source));
+        receiveCommand(message, source.latched, repeated_.mayBe(source));
       },
       StampRule::kAny);
 }
 
-/// What stops is always obeyed. What begins a motion must not be an old command that a publisher which latches sends
-/// again: home and withdraw, too, though their stamps may be anything else.
-void InjectionControllerNode::take(const cell_microinjection::StringStamped& message, bool latched, bool repeated) {
+/// Commands that stop are always executed. A command that starts a motion must not be an old one
+/// that a latching publisher repeats. This includes home and withdraw, whose stamps are not checked
+/// otherwise.
+void InjectionControllerNode::receiveCommand(const cell_microinjection::StringStamped& message, bool latched,
+                                             bool repeated) {
   const std::string& command = message.string;
-  answer_ = true;
+  state_command_received_ = true;
   const ros::Time &stamp = message.header.stamp, now = ros::Time::now();
   if (!stops(command) && !isTimely(kStateTopic, message, now)) return;
   const bool stale = !stamp.isZero() && secondsBetween(stamp, now) > kOldestCommand;
   const bool begins = !stops(command) || (moves(command) && latched);
-  if (begins && stale) return log_.answered("state command " + command, "it is stale");
+  if (begins && stale) return log_.addResult("state command " + command, "it is stale");
   if (begins && repeated) {
-    return log_.answered("state command " + command, std::string(kUnstampedLatched) + "; send it again");
+    return log_.addResult("state command " + command, std::string(kUnstampedLatched) + "; send it again");
   }
   execute(command);
 }
@@ -120,11 +122,11 @@ void InjectionControllerNode::run() {
 void InjectionControllerNode::execute(const std::string& command) {
   const bool ran = model_.running();
   const std::string refusal = model_.command(command);
-  told_ = model_.notice();
-  log_.answered("state command " + command, refusal);
+  logged_notice_ = model_.notice();
+  log_.addResult("state command " + command, refusal);
   if (!refusal.empty()) return;
   ROS_INFO_STREAM("state command " << command << ": " << toText(model_.state()));
-  if (ran && !model_.running()) log_.overridden("the injection", "by " + command);
+  if (ran && !model_.running()) log_.addOverride("the injection", "by " + command);
   if (moves(command)) busy_.accept(static_cast<std::int64_t>(ros::Time::now().toNSec()));
 }
 
@@ -140,7 +142,7 @@ void InjectionControllerNode::adaptTo(const cell_microinjection::ManipulatorAbil
     ROS_ERROR_STREAM("rig: the abilities of " << rig.device << " are ignored: " << refusal);
     return;
   }
-  if (model_.speedLimit() == before && adapted_) return;  // it is told again and again
+  if (model_.speedLimit() == before && adapted_) return;  // the abilities are published repeatedly
   adapted_ = true;
   ROS_INFO_STREAM("rig: " << rig.device << ", driven at " << model_.speedLimit() << " m/s at the most");
 }
@@ -161,7 +163,7 @@ void InjectionControllerNode::step(const Cycle::Tick& tick) {
     pose.translation() = *setpoint;
     setpoint_.publish(toPose(pose, target && model_.followsTarget() ? target->header.stamp : tick.now, kWorldFrame));
   }
-  if (injector_) injector_->want(model_.pulse(), tick.now);
+  if (injector_) injector_->setPulse(model_.pulse(), tick.now);
   action_.step(tick.now);
   logNotice();
   publishState(tick.now);
@@ -169,9 +171,9 @@ void InjectionControllerNode::step(const Cycle::Tick& tick) {
 }
 
 void InjectionControllerNode::logNotice() {
-  if (model_.notice() == told_) return;
-  told_ = model_.notice();
-  if (!told_.empty()) ROS_WARN_STREAM(told_);
+  if (model_.notice() == logged_notice_) return;
+  logged_notice_ = model_.notice();
+  if (!logged_notice_.empty()) ROS_WARN_STREAM(logged_notice_);
 }
 
 void InjectionControllerNode::publishState(const ros::Time& now) {
@@ -179,33 +181,34 @@ void InjectionControllerNode::publishState(const ros::Time& now) {
   state.state = toText(model_.state());
   state.is_homed = model_.homed();
   state.is_busy = busy_.step(model_.busy(), static_cast<std::int64_t>(now.toNSec()));
-  if (busy_.pending() && state.is_busy == said_.is_busy) return;
-  const bool same = state.state == said_.state && state.is_homed == said_.is_homed && state.is_busy == said_.is_busy;
-  if (same && !std::exchange(answer_, false)) return;
-  answer_ = false;
+  if (busy_.pending() && state.is_busy == last_published_state_.is_busy) return;
+  const bool same = state.state == last_published_state_.state && state.is_homed == last_published_state_.is_homed &&
+                    state.is_busy == last_published_state_.is_busy;
+  if (same && !std::exchange(state_command_received_, false)) return;
+  state_command_received_ = false;
   state.header.stamp = now;
   state_.publish(state);
-  said_ = state;
+  last_published_state_ = state;
 }
 
 void InjectionControllerNode::publishInjection(const ros::Time& now) {
-  constexpr double kPeriod = 0.1;  // s, where nothing changes
-  const InjectionFeedback& known = model_.feedback();
+  constexpr double kPeriod = 0.1;  // s, without a change
+  const InjectionFeedback& feedback = model_.feedback();
   cell_microinjection::InjectionStatus status;
   status.header.stamp = now;
-  status.state = toText(known.state);
-  status.waits = model_.waits();
+  status.state = toText(feedback.state);
+  status.waits = model_.awaitsCommand();
   status.punctures = static_cast<std::uint32_t>(model_.punctures());
-  status.force = known.force;
-  status.depth = known.depth;
+  status.force = feedback.force;
+  status.depth = feedback.depth;
   status.volume = model_.injectedVolume();
   status.outcome = toText(model_.result().outcome);
   status.reason = model_.result().reason;
   status.notice = model_.notice();
-  const auto& said = last_published_injection_;
-  const bool same = status.state == said.state && status.waits == said.waits && status.punctures == said.punctures &&
-                    status.outcome == said.outcome && status.notice == said.notice;
-  if (same && secondsBetween(said.header.stamp, now) < kPeriod) return;
+  const auto& last = last_published_injection_;
+  const bool same = status.state == last.state && status.waits == last.waits && status.punctures == last.punctures &&
+                    status.outcome == last.outcome && status.notice == last.notice;
+  if (same && secondsBetween(last.header.stamp, now) < kPeriod) return;
   injection_.publish(status);
   last_published_injection_ = status;
 }
@@ -213,12 +216,12 @@ void InjectionControllerNode::publishInjection(const ros::Time& now) {
 void InjectionControllerNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   const bool fault = model_.state() == OperatingState::kFault;
   const bool good = model_.holdReason().empty();
-  const std::string news = log_.takeUpdates();
+  const std::string updates = log_.takeUpdates();
   const std::string text = good ? "the needle follows" : "needle held: " + model_.holdReason();
-  status.summary(fault                  ? diagnostic_msgs::DiagnosticStatus::ERROR
-                 : good && news.empty() ? diagnostic_msgs::DiagnosticStatus::OK
-                                        : diagnostic_msgs::DiagnosticStatus::WARN,
-                 text + (news.empty() ? "" : "; ") + news);
+  status.summary(fault                     ? diagnostic_msgs::DiagnosticStatus::ERROR
+                 : good && updates.empty() ? diagnostic_msgs::DiagnosticStatus::OK
+                                           : diagnostic_msgs::DiagnosticStatus::WARN,
+                 text + (updates.empty() ? "" : "; ") + updates);
   log_.addCounts(status);
   status.add("state", toText(model_.state()));
   status.add("speed limit (m/s)", model_.speedLimit());

@@ -22,15 +22,15 @@
 
 namespace microinjection {
 
-/// The one that moves the needle, simulated or real. Holds it when an input is not valid.
+/// Controls the needle, simulated or real. Holds it when an input is invalid.
 ///
-/// In:  /teleop/servo_cp (PoseStamped, `world`; with mode manual), /needle/measured_cp (PoseStamped),
-///      /cell/predicted_cf or /force_sensor/measured_cf (WrenchStamped), /controller/state_command (StringStamped),
-///      /needle/abilities (ManipulatorAbilities): a rig that follows late is driven slowly
-///      /injector/state; the action Inject on /controller/inject
-/// Out: /needle/servo_cp (PoseStamped, `world`), /controller/operating_state (OperatingState, latched, on change and in
-///      answer to each state_command),
-///      /controller/injection_state (InjectionStatus, latched, on change and ten times a second), /injector/pulse,
+/// In:  /teleop/servo_cp (PoseStamped, `world`; with mode manual), /needle/measured_cp
+///      (PoseStamped), /cell/predicted_cf or /force_sensor/measured_cf (WrenchStamped),
+///      /controller/state_command (StringStamped), /needle/abilities (ManipulatorAbilities, to
+///      drive a slow rig slowly), /injector/state; the action Inject on /controller/inject
+/// Out: /needle/servo_cp (PoseStamped, `world`), /controller/operating_state (OperatingState,
+///      latched, on change and after each state_command), /controller/injection_state
+///      (InjectionStatus, latched, on change and ten times a second), /injector/pulse,
 ///      /injector/stop
 ///
 /// Parameters (private): those of InjectionControllerConfig and
@@ -38,9 +38,9 @@ namespace microinjection {
 ///   input_timeout  s, past which an input is stale; default 0.05, in (0, inf)
 ///   force_source   predicted or measured; default predicted
 ///   auto_enable    go to ENABLED at the start, for simulated rigs; default false
-///   injector       there is one; default true
-///   commands_in_lockstep  in lock step: who sends /controller/state_command takes part, and is waited for; default
-///                  false
+///   injector       whether there is one; default true
+///   commands_in_lockstep  in lock step: the publisher of /controller/state_command is a
+///                         participant; default false
 class InjectionControllerNode {
  public:
   static const char* const kHelp;
@@ -60,8 +60,8 @@ class InjectionControllerNode {
     static Parameters read(const ros::NodeHandle& private_node);
   };
 
-  void listenToCommands();
-  void take(const cell_microinjection::StringStamped& message, bool latched, bool repeated);
+  void subscribeCommands();
+  void receiveCommand(const cell_microinjection::StringStamped& message, bool latched, bool repeated);
   void execute(const std::string& command);
   void adaptTo(const cell_microinjection::ManipulatorAbilities& rig);
   void step(const Cycle::Tick& tick);
@@ -83,14 +83,14 @@ class InjectionControllerNode {
   RepeatedCommands repeated_;
   CommandLog log_;
   BusyReport busy_;
-  bool answer_ = false;  ///< a state command was heard
+  bool state_command_received_ = false;
   ros::Subscriber commands_;
   ros::Subscriber abilities_;
   bool adapted_ = false;  ///< to a rig's abilities
   ros::Publisher state_;
-  cell_microinjection::OperatingState said_;                       ///< the last that was published
-  cell_microinjection::InjectionStatus last_published_injection_;  ///< the last that was published
-  std::string told_;                                               ///< the last notice that is in the log
+  cell_microinjection::OperatingState last_published_state_;
+  cell_microinjection::InjectionStatus last_published_injection_;
+  std::string logged_notice_;  ///< the last notice in the log
 };
 
 }  // namespace microinjection

@@ -47,12 +47,12 @@ InjectorNode::InjectorNode(ros::NodeHandle node, ros::NodeHandle private_node)
       state_(cycle_.output<cell_microinjection::InjectorState>("injector/state")) {
   private_node.setCallbackQueue(cycle_.node().getCallbackQueue());
   makeDevice(private_node);
-  // No command that comes between two steps is lost.
+  // The handler receives every command, also several between two steps.
   cycle_.input<cell_microinjection::InjectionPulse>("injector/pulse", InputPhase::kPreviousTick, INFINITY)
-      .listen([this](const auto& message, const ros::Time&) { onPulse(message); });
+      .onMessage([this](const auto& message, const ros::Time&) { onPulse(message); });
   auto& stop = cycle_.input<cell_microinjection::StringStamped>("injector/stop", InputPhase::kPreviousTick, INFINITY);
   stop.stamp_rule = StampRule::kAny;
-  stop.listen([this](const auto& message, const ros::Time&) { onStop(message); });
+  stop.onMessage([this](const auto& message, const ros::Time&) { onStop(message); });
   balance_ = subscribeGuarded<sensor_msgs::FluidPressure>(
       cycle_.node(), "injector/set_balance", 100,
       [this](const sensor_msgs::FluidPressure& message, const std::string&) { onBalance(message); });
@@ -81,7 +81,7 @@ void InjectorNode::makeDevice(ros::NodeHandle& private_node) {
     return;
   }
   auto model = std::make_unique<InjectorModel>(parameters_.model);
-  InjectorModel* const simulated = model.get();  // lives as long as the device, hence as the service
+  InjectorModel* const simulated = model.get();  // owned by device_, which outlives the service
   device_ = std::move(model);
   clog_ = private_node.advertiseService<std_srvs::SetBool::Request, std_srvs::SetBool::Response>(
       "clog", [this, simulated](std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response) {
@@ -113,12 +113,12 @@ void InjectorNode::reportRefusal(const std::string& command, const std::string& 
 void InjectorNode::onPulse(const cell_microinjection::InjectionPulse& message) {
   const std::string command = "pulse " + std::to_string(message.id);
   if (message.id == 0) return reportRefusal(command, "its id is 0, which means none");
-  const std::string late = stampError(message.header);
-  if (!late.empty()) return reportRefusal(command, late);
-  // A refused id is known as well: the same message, heard again, must not inject unexpectedly later.
+  const std::string error = stampError(message.header);
+  if (!error.empty()) return reportRefusal(command, error);
+  // A refused id counts as used, too: the same message, received again, must not inject later.
   if (!ids_.isNew(message.id)) {
     if (message.id == held_) {
-      wanted_ = message.header.stamp;
+      last_repetition_ = message.header.stamp;
     } else if (!message.held) {
       ++repeated_;
     }
@@ -129,7 +129,7 @@ void InjectorNode::onPulse(const cell_microinjection::InjectionPulse& message) {
   reportRefusal(command, refusal);
   if (!message.held || !refusal.empty()) return;
   held_ = message.id;
-  wanted_ = message.header.stamp;
+  last_repetition_ = message.header.stamp;
 }
 
 void InjectorNode::onStop(const cell_microinjection::StringStamped& message) {
@@ -138,18 +138,18 @@ void InjectorNode::onStop(const cell_microinjection::StringStamped& message) {
 }
 
 void InjectorNode::onBalance(const sensor_msgs::FluidPressure& message) {
-  const std::string late = stampError(message.header);
-  reportRefusal("set_balance", late.empty() ? device_->setBalance(message.fluid_pressure) : late);
+  const std::string error = stampError(message.header);
+  reportRefusal("set_balance", error.empty() ? device_->setBalance(message.fluid_pressure) : error);
 }
 
-/// What may flow without anybody who could end it.
+/// Ends a pulse that no node could end any more.
 void InjectorNode::endAbandonedPulse(const ros::Time& now) {
   const bool lost = !std::exchange(master_lost_, cycle_.masterLost()) && master_lost_;
   if (!device_->reading().busy) held_ = 0;
-  const bool silent = held_ != 0 && secondsBetween(wanted_, now) > parameters_.pulse_timeout;
+  const bool silent = held_ != 0 && secondsBetween(last_repetition_, now) > parameters_.pulse_timeout;
   if (!device_->reading().busy || !(lost || silent)) return;
   held_ = 0;
-  ROS_WARN_STREAM("the pulse is ended: " << (lost ? "the ROS master is lost" : "who asked for it is silent"));
+  ROS_WARN_STREAM("the pulse is ended: " << (lost ? "the ROS master is lost" : "its sender is stale"));
   reportRefusal("stop", device_->stop());
 }
 
@@ -177,7 +177,7 @@ void InjectorNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) c
   if (!device_->fault().empty()) {
     status.summary(DiagnosticStatus::ERROR, device_->fault());
   } else if (clogged_) {
-    status.summary(DiagnosticStatus::WARN, "the tip is clogged, as asked for");
+    status.summary(DiagnosticStatus::WARN, "the tip is clogged on request");
   } else if (!refusal_.empty()) {
     status.summary(DiagnosticStatus::WARN, refusal_);
   } else if (!reading.busy && reading.flow < 0) {
@@ -187,7 +187,7 @@ void InjectorNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) c
   }
   status.add("pulses done", reading.pulses);
   status.add("commands refused", refused_);
-  status.add("pulses heard again and ignored", repeated_);
+  status.add("repeated pulses ignored", repeated_);
 }
 
 }  // namespace microinjection

@@ -20,29 +20,31 @@
 
 namespace microinjection {
 
-/// The injector: a pressure regulator behind the pipette, simulated or real, behind the same topics. Each pulse is done
-/// once, or refused with the reason in the state: a repeated id is ignored, an old message is refused. A held pulse
-/// ends when who asked for it falls silent, and any when the ROS master is lost. In lock step who sends pulse and stop
-/// takes part.
+/// The injector: a pressure regulator behind the pipette, simulated or real, with the same topics.
+/// Each pulse is executed once, or refused with the reason in the state. A repeated id is ignored,
+/// an old message refused. A held pulse ends when its sender is stale, and any pulse when the ROS
+/// master is lost. In lock step the publisher of pulse and stop is a participant.
 ///
-/// In:  /injector/pulse (InjectionPulse), /injector/stop (StringStamped, the reason; always obeyed, however old: the
-///      pulse ends), /injector/set_balance (sensor_msgs/FluidPressure: fluid_pressure, Pa, gauge as everywhere here,
-///      although the message calls it absolute; its variance is not read)
+/// In:  /injector/pulse (InjectionPulse), /injector/stop (StringStamped, the reason; ends the pulse
+///      at any age), /injector/set_balance (sensor_msgs/FluidPressure: fluid_pressure, Pa, gauge,
+///      although the message defines it as absolute; its variance is not used)
 /// Out: /injector/state (InjectorState)
-/// Services: ~reset (std_srvs/Trigger: clears fault and volume), with source simulated ~clog (std_srvs/SetBool)
+/// Services: ~reset (std_srvs/Trigger: clears fault and volume), with source simulated ~clog
+///      (std_srvs/SetBool)
 ///
 /// Parameters (private):
 ///   source           simulated or serial; default simulated
 ///   rate             Hz; default 200, in [20, 5000]
 ///   command_timeout  s, an older command is refused; default 0.5, in (0, inf)
-///   pulse_timeout    s, past which a held pulse (see InjectionPulse) that is not said again ends; default 0.2, in
-///                    (0, inf)
-///   clog_factor      1, how much more the clogged tip resists; default 100, in [1, inf)
-///   those of InjectorModelConfig, which the estimates of a real one's flow and volume need, too
-///   serial/          path, baud, parity, stop_bits (SerialPortConfig; default 9600, 8N1) and those of
-///                    InjectorProtocol; needed with source serial
-///   emulated         none, or the name of an injector (injector_registry.h) whose emulator, in this node and on its
-///                    time, is at the other end of the line instead of the port; default none
+///   pulse_timeout    s without a repetition, past which a held pulse (see InjectionPulse) ends;
+///                    default 0.2, in (0, inf)
+///   clog_factor      1, resistance of the clogged tip over that of a free one; default 100, in [1,
+///                    inf)
+///   those of InjectorModelConfig, also for the estimates of a real one's flow and volume
+///   serial/          path, baud, parity, stop_bits (SerialPortConfig; default 9600, 8N1) and those
+///                    of InjectorProtocol; needed with source serial
+///   emulated         none, or the name of an injector (injector_registry.h): its emulator, in this
+///                    node and on its time, replaces the port; default none
 class InjectorNode {
  public:
   static const char* const kHelp;
@@ -80,15 +82,15 @@ class InjectorNode {
   std::unique_ptr<InjectorDevice> device_;
   Output<cell_microinjection::InjectorState>& state_;
   PulseIds ids_;
-  std::uint64_t held_ = 0;  ///< id of the held pulse that is not known to be over; 0: none
-  ros::Time wanted_;        ///< stamp of its last message
+  std::uint64_t held_ = 0;     ///< id of the held pulse under way; 0: none
+  ros::Time last_repetition_;  ///< stamp of its last message
   bool master_lost_ = false;
   ros::Subscriber balance_;
   ros::ServiceServer reset_, clog_;
   unsigned refused_ = 0;
   unsigned repeated_ = 0;
   bool clogged_ = false;
-  std::string refusal_;  ///< of the last command; empty when it was obeyed
+  std::string refusal_;  ///< of the last command; empty when it was accepted
 };
 
 }  // namespace microinjection

@@ -3,7 +3,7 @@
 
 namespace {
 
-/// Started by the operator in a terminal, with the parameters that the session has left for it, or without any.
+/// Started by the operator in a terminal, with the parameters of a session or without any.
 struct KeyboardHand : microinjection::HapticDeviceNode {
   KeyboardHand(const ros::NodeHandle& node, const ros::NodeHandle& private_node)
       : HapticDeviceNode(node, private_node, "keyboard") {}

@@ -40,7 +40,7 @@ LinkEmulatorNode::LinkEmulatorNode(ros::NodeHandle node, ros::NodeHandle private
       hand_received_(cycle_.output<Message>("link/hand/received")) {
   const auto relay = [this](const std::string& topic, LinkEmulator<Message>& link) {
     cycle_.input<Message>(topic, InputPhase::kPreviousTick, std::numeric_limits<double>::infinity())
-        .listen([&link](const Message& message, const ros::Time& now) { link.send(message, now.toSec()); });
+        .onMessage([&link](const Message& message, const ros::Time& now) { link.send(message, now.toSec()); });
   };
   plug_ = subscribeGuarded<std_msgs::Bool>(
       cycle_.node(), "link/plugged", 10,

@@ -9,13 +9,15 @@
 
 namespace microinjection {
 
-/// A network that delays, shuffles and loses what haptic bridge and teleoperation_follower send each other.
+/// A network between haptic bridge and teleoperation_follower that delays, reorders and loses
+/// packets.
 ///
-/// In:  /link/hand/sent, /link/rig/sent (LinkPacket), /link/plugged (Bool; false: a cable is out, nothing arrives)
+/// In:  /link/hand/sent, /link/rig/sent (LinkPacket), /link/plugged (Bool; false: a cable is
+///      disconnected)
 /// Out: /link/rig/received, /link/hand/received (LinkPacket)
 ///
-/// Parameters (private): delay, jitter (s, one way), loss (1, a share), seed; see LinkConditions. Either direction has
-/// its own chances.
+/// Parameters (private): delay, jitter (s, one way), loss (1, a share), seed; see LinkConditions.
+/// Each direction has its own random numbers.
 class LinkEmulatorNode {
  public:
   static const char* const kHelp;

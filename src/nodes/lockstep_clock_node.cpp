@@ -14,13 +14,13 @@
 namespace microinjection {
 namespace {
 
-constexpr double kLongestWait = 0.2;  // s, that counts of a wait
+constexpr double kLongestWait = 0.2;  // s, largest counted part of a wait
 
 }  // namespace
 
 const char* const LockstepClockNode::kHelp =
-    "lockstep_clock: steps /clock when every node of /lockstep/participants has done the tick before.\n"
-    "Parameters: ~step (s), ~real_time_factor (0: as fast as it goes), ~warn_after (s), ~frozen_after (s).\n";
+    "lockstep_clock: steps /clock when every node of /lockstep/participants has acknowledged the last tick.\n"
+    "Parameters: ~step (s), ~real_time_factor (0: as fast as possible), ~warn_after (s), ~frozen_after (s).\n";
 
 LockstepClockNode::LockstepClockNode(ros::NodeHandle node, ros::NodeHandle private_node)
     : participants_(lockstepParticipants()) {
@@ -36,12 +36,13 @@ LockstepClockNode::LockstepClockNode(ros::NodeHandle node, ros::NodeHandle priva
   departed_ = node.advertise<std_msgs::String>(kLeftTopic, 10, true);
   clock_ = node.advertise<rosgraph_msgs::Clock>(
       "/clock", 10, {},
-      [this](const ros::SingleSubscriberPublisher& who) { leave(who.getSubscriberName(), "has ended"); }, {}, true);
+      [this](const ros::SingleSubscriberPublisher& subscriber) { leave(subscriber.getSubscriberName(), "has ended"); },
+      {}, true);
   acknowledgements_ = node.subscribe(kAcknowledgementTopic, 100, &LockstepClockNode::onAcknowledgement, this,
                                      ros::TransportHints().tcpNoDelay());
   leave_ = subscribeGuarded<std_msgs::String>(node, kLeaveTopic, 10,
                                               [this](const std_msgs::String& name, const std::string& sender) {
-                                                leave(name.data, "is frozen, as " + sender + " says");
+                                                leave(name.data, "is frozen, reported by " + sender);
                                               });
 }
 
@@ -49,10 +50,11 @@ void LockstepClockNode::onAcknowledgement(const std_msgs::HeaderConstPtr& header
   if (header->stamp == tick_) missing_.erase(header->frame_id);
 }
 
-void LockstepClockNode::leave(const std::string& name, const std::string& why) {
+void LockstepClockNode::leave(const std::string& name, const std::string& reason) {
   if (participants_.erase(name) == 0) return;
   missing_.erase(name);
-  ROS_WARN_STREAM(name << " has left the lock step at " << tick_ << " s; it " << why << "; time goes on without it");
+  ROS_WARN_STREAM(name << " has left the lock step at " << tick_ << " s; it " << reason
+                       << "; time continues without it");
   std_msgs::String message;
   message.data = departed_published_ += name + " ";
   departed_.publish(message);
@@ -60,7 +62,7 @@ void LockstepClockNode::leave(const std::string& name, const std::string& why) {
 
 bool LockstepClockNode::shouldContinue() const { return ros::ok() && !master_.masterLostForLong(); }
 
-std::string LockstepClockNode::missing() const {
+std::string LockstepClockNode::missingNames() const {
   std::string names;
   for (const std::string& name : missing_) names += " " + name;
   return names;
@@ -68,18 +70,18 @@ std::string LockstepClockNode::missing() const {
 
 void LockstepClockNode::waitForAll() {
   ros::SteadyTime before = ros::SteadyTime::now(), warned = before;
-  double waited = 0;  // s; a clock that stood still itself has waited for nobody
+  double waiting_time = 0;  // s, without times in which this node itself was frozen
   while (shouldContinue() && !missing_.empty()) {
     queue_.callAvailable(ros::WallDuration(0.1));
     const ros::SteadyTime now = ros::SteadyTime::now();
     if (secondsBetween(warned, now) >= warn_after_) {
       warned = now;
-      ROS_WARN_STREAM("the clock stands at " << tick_ << " s and waits for:" << missing());
+      ROS_WARN_STREAM("the clock stands at " << tick_ << " s and waits for:" << missingNames());
     }
-    waited += std::min(secondsBetween(before, now), kLongestWait);
+    waiting_time += std::min(secondsBetween(before, now), kLongestWait);
     before = now;
-    if (tick_.isZero() || waited < frozen_after_) continue;
-    for (const std::string& name : std::set<std::string>(missing_)) leave(name, "answers nothing");
+    if (tick_.isZero() || waiting_time < frozen_after_) continue;
+    for (const std::string& name : std::set<std::string>(missing_)) leave(name, "does not acknowledge");
   }
 }
 

@@ -11,19 +11,27 @@
 
 namespace microinjection {
 
-/// Steps /clock when every participant of the lock step has done the tick before. The same session then gives the same
-/// bits on any machine, faster or slower than real time. A participant that hears /clock no more, since it has ended or
-/// was killed, has left for good: time goes on without it, and the others' time-outs run. So has one that is frozen: it
-/// has answered nothing for `frozen_after`, or /lockstep/leave names it. When all have left, so has this.
+/// Steps /clock when every participant of the lock step has acknowledged the last tick. The same
+/// session then gives the same bits on any machine, faster or slower than real time. A participant
+/// leaves for good
+/// - when it no longer subscribes to /clock, since it ended or was killed,
+/// - when it is frozen: no acknowledgement for `frozen_after`, or named on /lockstep/leave.
 ///
-/// In:  /lockstep/acknowledgement (std_msgs/Header of each participant), /lockstep/leave (std_msgs/String)
+/// Time then continues without it, and the others' time-outs run. When all have left, this node
+/// ends.
+///
+/// In:  /lockstep/acknowledgement (std_msgs/Header of each participant), /lockstep/leave
+///      (std_msgs/String)
 /// Out: /clock (rosgraph_msgs/Clock), /lockstep/left (std_msgs/String, see lockstep.h)
 ///
 /// Parameters: /lockstep/participants (names of nodes), and private:
 ///   step              s, of one tick; default 0.001, in [1e-6, 1]
-///   real_time_factor  times real time at the most, 0: as fast as it goes; default 0, in [0, inf)
-///   warn_after        s of wall time without an answer after which the silent nodes are named; default 5, in (0, inf)
-///   frozen_after       s of wall time without an answer after which a participant has left; default 60, in (0, inf)
+///   real_time_factor  largest speed, times real time; 0: as fast as possible; default 0, in [0,
+///                     inf)
+///   warn_after        s of wall time without an acknowledgement until a warning; default 5, in (0,
+///                     inf)
+///   frozen_after      s of wall time without an acknowledgement until a participant leaves;
+///                     default 60, in (0, inf)
 class LockstepClockNode {
  public:
   static const char* const kHelp;
@@ -33,18 +41,18 @@ class LockstepClockNode {
 
  private:
   void onAcknowledgement(const std_msgs::HeaderConstPtr& header);
-  void leave(const std::string& name, const std::string& why);
-  std::string missing() const;  ///< their names
+  void leave(const std::string& name, const std::string& reason);
+  std::string missingNames() const;
   bool shouldContinue() const;
   void waitForAll();
   void pace(const ros::SteadyTime& began) const;
 
   double step_ = 1e-3;           ///< s
-  double real_time_factor_ = 0;  ///< 0: as fast as it goes
+  double real_time_factor_ = 0;  ///< 0: as fast as possible
   double warn_after_ = 5;        ///< s of wall time
   double frozen_after_ = 60;     ///< s of wall time
   std::set<std::string> participants_;
-  std::set<std::string> missing_;  ///< those that have not answered the present tick
+  std::set<std::string> missing_;  ///< participants without an acknowledgement of the present tick
   ros::Time tick_;
   MasterMonitor master_{false};
   ros::CallbackQueue queue_;

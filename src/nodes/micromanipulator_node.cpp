@@ -23,7 +23,7 @@ const char* const MicromanipulatorNode::kHelp =
     "home, unhome, stop). Out: /needle/measured_cp /needle/measured_cv /needle/setpoint_cp /needle/abilities\n"
     "/needle/operating_state joint_states.\n"
     "Parameters: /robot_description, ~rig (sim|eppendorf|mp285|scientifica|zaber), ~emulated, ~device/...\n"
-    "(config/rigs/NAME.yaml), ~emulator/... (what an emulated device is like), ~rate (Hz),\n"
+    "(config/rigs/NAME.yaml), ~emulator/... (properties of an emulated device), ~rate (Hz),\n"
     "~joint_states_rate (Hz), ~command_timeout (s), ~velocity_command_timeout (s), ~servo_speed_limit (m/s),\n"
     "~pipette_tilt (rad), ~collision_margin (m), ~allow_network; see config/micromanipulator.yaml. With a serial "
     "device:\n"
@@ -55,7 +55,7 @@ MicromanipulatorNode::MicromanipulatorNode(const ros::NodeHandle& node, ConfigRe
       publisher_(cycle_, geometry_, rig_, model_, parameters_.joint_states_rate) {
   if (cycle_.lockstep() && !rig_.inject) {
     throw ConfigError("rig = " + parameters_.rig +
-                      ": a real one takes no part in lock step, it goes on while time stands");
+                      ": a real rig cannot take part in lock step, it moves on while time stands");
   }
   cycle_.diagnostics().add("commands", [this](auto& status) { commands_.report(status); });
 }
@@ -76,12 +76,12 @@ void MicromanipulatorNode::step(const Cycle::Tick& tick) {
 void MicromanipulatorNode::publishState(const Cycle::Tick& tick) {
   cell_microinjection::OperatingState state;
   state.is_busy = commands_.isBusy(tick);
-  if (commands_.busyIsPending() && state.is_busy == publisher_.said().is_busy) return;
+  if (commands_.busyIsPending() && state.is_busy == publisher_.lastPublishedState().is_busy) return;
   state.state = toText(commands_.state().state());
   state.is_homed = commands_.state().homed();
-  if (!publisher_.publishState(state, tick.now, commands_.takeAnswer())) return;
-  const std::string why = model_.reason().empty() ? commands_.unavailableReason() : model_.reason();
-  ROS_INFO_STREAM(state.state << (why.empty() ? "" : ": ") << why);
+  if (!publisher_.publishState(state, tick.now, commands_.takeStateCommandReceived())) return;
+  const std::string reason = model_.reason().empty() ? commands_.unavailableReason() : model_.reason();
+  ROS_INFO_STREAM(state.state << (reason.empty() ? "" : ": ") << reason);
 }
 
 }  // namespace microinjection

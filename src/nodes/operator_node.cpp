@@ -10,7 +10,7 @@ namespace microinjection {
 namespace {
 
 constexpr char kHapticFrame[] = "haptic";
-constexpr char kWord[] = "inject";  ///< the phase that is a word to the controller, too
+constexpr char kCommand[] = "inject";  ///< the phase that is also a command to the controller
 
 }  // namespace
 
@@ -44,7 +44,7 @@ OperatorNode::OperatorNode(ros::NodeHandle node, ros::NodeHandle private_node)
       position_(cycle_.output<geometry_msgs::PoseStamped>("haptic/measured_cp")),
       clutch_(cycle_.output<sensor_msgs::Joy>("haptic/clutch", true)),
       phase_(cycle_.output<cell_microinjection::StringStamped>("operator/phase", true)),
-      word_(cycle_.output<cell_microinjection::StringStamped>("controller/state_command")) {}
+      command_output_(cycle_.output<cell_microinjection::StringStamped>("controller/state_command")) {}
 
 void OperatorNode::waitForGo() const {
   bool go = !parameters_.wait_for_go;
@@ -62,12 +62,12 @@ void OperatorNode::run() {
 void OperatorNode::step(const Cycle::Tick& tick) {
   elapsed_ += tick.dt;
   const double time = std::max(0.0, elapsed_ - parameters_.start_delay);
-  const HandMotion::Sample meant = motion_.at(time);
+  const HandMotion::Sample intended = motion_.at(time);
   const auto force = finiteForce(force_.get(tick.now));
-  hand_.step(meant.position, force.value_or(Eigen::Vector3d::Zero()), tick.dt);
+  hand_.step(intended.position, force.value_or(Eigen::Vector3d::Zero()), tick.dt);
   position_.publish(toPose(hand_.position(), tick.now, kHapticFrame));
-  publishClutch(tick.now, meant.clutch);
-  publishPhase(tick.now, time >= motion_.duration() ? "done" : meant.phase);
+  publishClutch(tick.now, intended.clutch);
+  publishPhase(tick.now, time >= motion_.duration() ? "done" : intended.phase);
 }
 
 void OperatorNode::publishClutch(const ros::Time& now, bool pressed) {
@@ -85,7 +85,7 @@ void OperatorNode::publishPhase(const ros::Time& now, const std::string& phase) 
   message.header.stamp = now;
   message.string = phase;
   phase_.publish(message);
-  if (phase == kWord) word_.publish(message);
+  if (phase == kCommand) command_output_.publish(message);
   phase_published_ = phase;
 }
 

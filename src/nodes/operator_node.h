@@ -15,12 +15,12 @@
 
 namespace microinjection {
 
-/// A virtual haptic device in a virtual hand that follows a recorded motion and yields to the force it feels.
+/// A virtual haptic device and hand. The hand follows a recorded motion and yields to the force.
 ///
 /// In:  /haptic/servo_cf (WrenchStamped, N; none while it is stale)
 /// Out: /haptic/measured_cp (PoseStamped, m, frame `haptic`), /haptic/clutch (Joy, on change),
 ///      /operator/phase (StringStamped, latched, on change: the motion's phases, then done),
-///      /controller/state_command (StringStamped: the word of a phase that is called inject, as it begins)
+///      /controller/state_command (StringStamped: inject, when the phase of that name begins)
 ///
 /// Parameters (private): those of VirtualHandConfig and
 ///   motion         path of a hand motion (see operation/teleoperation/hand_motion.h); required
@@ -59,7 +59,7 @@ class OperatorNode {
   Output<geometry_msgs::PoseStamped>& position_;
   Output<sensor_msgs::Joy>& clutch_;
   Output<cell_microinjection::StringStamped>& phase_;
-  Output<cell_microinjection::StringStamped>& word_;
+  Output<cell_microinjection::StringStamped>& command_output_;
   double elapsed_ = 0;  ///< s of steps; a stall of the machine pauses the hand
   std::optional<bool> clutch_published_;
   std::string phase_published_;

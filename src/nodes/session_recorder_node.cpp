@@ -24,8 +24,8 @@ namespace {
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
 constexpr double kRate = 100;                          // Hz, live
-constexpr Nanoseconds kPatience = 2000000000;          // for messages that are late
-constexpr Nanoseconds kPatienceInLockstep = 50000000;  // none is, but the cell tells of a touch at its own rate
+constexpr Nanoseconds kMaxDelay = 2000000000;          // largest delay of a message
+constexpr Nanoseconds kMaxDelayInLockstep = 50000000;  // none is late, but the cell has its own rate for contacts
 
 Nanoseconds stampOf(const ros::Time& time) { return static_cast<Nanoseconds>(time.toNSec()); }
 
@@ -34,7 +34,7 @@ Nanoseconds stampOf(const Message& message) {
   return stampOf(message.header.stamp);
 }
 
-/// What has stamp 0 is invalid (CRTK).
+/// Puts a force into its timeline; one with stamp 0 is invalid (CRTK) and withdraws the last.
 template <typename Message, typename Value>
 void putForce(const Message& message, const std::optional<Value>& value, Timeline<Value>& line) {
   if (value && !message.header.stamp.isZero()) {
@@ -92,7 +92,7 @@ SessionRecorderNode::SessionRecorderNode(ros::NodeHandle node, ros::NodeHandle p
     : parameters_(Parameters::read(private_node)),
       cycle_(node, kRate),
       files_(parameters_.output_dir, SessionTable::kHeader, parameters_.bag),
-      table_(std::llround(1e9 * parameters_.row_period), cycle_.lockstep() ? kPatienceInLockstep : kPatience,
+      table_(std::llround(1e9 * parameters_.row_period), cycle_.lockstep() ? kMaxDelayInLockstep : kMaxDelay,
              [this](const std::string& line) { files_.rows().append(line); }),
       predicted_(cycle_.input<geometry_msgs::WrenchStamped>("cell/predicted_cf", InputPhase::kPreviousTick, 0.05)),
       needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", InputPhase::kPreviousTick, 0.05)),
@@ -121,69 +121,69 @@ SessionRecorderNode::SessionRecorderNode(ros::NodeHandle node, ros::NodeHandle p
   latency_ = std::make_unique<LatencyMeter>(cycle_.node());
   timer_loop_ = std::make_unique<BareTimerLoop>();
   cycle_.diagnostics().add("bare timer loop", [this](auto& status) {
-    status.summary(diagnostic_msgs::DiagnosticStatus::OK, "what this machine allows a loop at 1 kHz");
+    status.summary(diagnostic_msgs::DiagnosticStatus::OK, "this machine's limit for a loop at 1 kHz");
     CycleDiagnostics::reportIntervals(timer_loop_->intervals(), status);
   });
 }
 
 void SessionRecorderNode::fillTable() {
-  needle_.listen([this](const geometry_msgs::PoseStamped& message, const ros::Time&) {
+  needle_.onMessage([this](const geometry_msgs::PoseStamped& message, const ros::Time&) {
     const auto pose = validPose(&message);
     if (!pose) return table_.needle.withdraw();
     tip_orientation_ = pose->linear();
     table_.needle.put(stampOf(message), {{pose->translation(), pose->linear().col(2)}});
   });
-  predicted_.listen([this](const geometry_msgs::WrenchStamped& message, const ros::Time&) {
+  predicted_.onMessage([this](const geometry_msgs::WrenchStamped& message, const ros::Time&) {
     putForce(message, validForce(&message, tip_orientation_), table_.predicted);
   });
-  measured_.listen([this](const geometry_msgs::WrenchStamped& message, const ros::Time&) {
+  measured_.onMessage([this](const geometry_msgs::WrenchStamped& message, const ros::Time&) {
     std::optional<SessionTable::Measured> measured;
     if (const auto force = finiteForce(&message)) measured = {force->z(), force->x()};
     putForce(message, measured, table_.measured);
   });
-  cell_.listen([this](const cell_microinjection::CellState& message, const ros::Time&) {
+  cell_.onMessage([this](const cell_microinjection::CellState& message, const ros::Time&) {
     SessionTable::Cell cell{std::nullopt, message.punctured != 0, message.layers_punctured, message.holes.size()};
     const auto& contact_point = message.contact_point;
     if (message.in_contact) cell.contact_point = Eigen::Vector3d(contact_point.x, contact_point.y, contact_point.z);
     table_.cell.put(stampOf(message), cell);
     layers_ = message.layers;
   });
-  injection_.listen([this](const cell_microinjection::InjectionStatus& message, const ros::Time&) {
+  injection_.onMessage([this](const cell_microinjection::InjectionStatus& message, const ros::Time&) {
     table_.injection.put(stampOf(message), {{message.state, static_cast<int>(message.punctures)}});
   });
   if (injector_) {
-    injector_->listen([this](const cell_microinjection::InjectorState& message, const ros::Time&) {
+    injector_->onMessage([this](const cell_microinjection::InjectorState& message, const ros::Time&) {
       table_.volume.put(stampOf(message), message.volume);
     });
   }
   if (!parameters_.hand) return;
-  hand_force_->listen([this](const geometry_msgs::WrenchStamped& message, const ros::Time&) {
+  hand_force_->onMessage([this](const geometry_msgs::WrenchStamped& message, const ros::Time&) {
     std::optional<double> size;
     if (const auto force = finiteForce(&message)) size = force->norm();
     putForce(message, size, table_.hand_force);
   });
-  phase_->listen([this](const cell_microinjection::StringStamped& message, const ros::Time&) {
+  phase_->onMessage([this](const cell_microinjection::StringStamped& message, const ros::Time&) {
     table_.phase.put(stampOf(message), message.string);
   });
 }
 
 void SessionRecorderNode::recordBag(SessionBag& bag) {
-  bag.follow(needle_);
-  bag.follow(predicted_);
-  bag.follow(measured_);
-  bag.follow(cell_);
-  bag.follow(injection_);
-  if (injector_) bag.follow(*injector_);
+  bag.record(needle_);
+  bag.record(predicted_);
+  bag.record(measured_);
+  bag.record(cell_);
+  bag.record(injection_);
+  if (injector_) bag.record(*injector_);
   if (parameters_.hand) {
-    bag.follow(*hand_);
-    bag.follow(*clutch_);
-    bag.follow(*hand_force_);
-    bag.follow(*phase_);
+    bag.record(*hand_);
+    bag.record(*clutch_);
+    bag.record(*hand_force_);
+    bag.record(*phase_);
   }
-  bag.follow<tf2_msgs::TFMessage>(cycle_.node(), "/tf");
-  bag.follow<tf2_msgs::TFMessage>(cycle_.node(), "/tf_static");
-  bag.follow<diagnostic_msgs::DiagnosticArray>(cycle_.node(), "/diagnostics");
-  bag.follow<cell_microinjection::OperatingState>(cycle_.node(), "/controller/operating_state");
+  bag.record<tf2_msgs::TFMessage>(cycle_.node(), "/tf");
+  bag.record<tf2_msgs::TFMessage>(cycle_.node(), "/tf_static");
+  bag.record<diagnostic_msgs::DiagnosticArray>(cycle_.node(), "/diagnostics");
+  bag.record<cell_microinjection::OperatingState>(cycle_.node(), "/controller/operating_state");
 }
 
 void SessionRecorderNode::run() {
@@ -200,9 +200,9 @@ void SessionRecorderNode::run() {
   attempt([this] { writeFileAtomically(parameters_.output_dir + "/summary.yaml", summary()); });
   if (training_) attempt([&] { score(errors); });
   if (errors.empty()) return;
-  // Where the session was interrupted, ROS's own log is over.
+  // After an interrupt, ROS's own log has ended.
   for (const std::string& error : errors) std::cerr << error << std::endl;
-  throw std::runtime_error("the session's files are not whole: " + errors.front() +
+  throw std::runtime_error("the session's files are incomplete: " + errors.front() +
                            (errors.size() > 1 ? "; and " + std::to_string(errors.size() - 1) + " more" : ""));
 }
 
@@ -228,7 +228,7 @@ void SessionRecorderNode::step(const Cycle::Tick& tick) {
   if (table_.done() && parameters_.end_when_done) cycle_.stop();
 }
 
-/// In lock step an invalid message is none, but a silence that says so.
+/// In lock step an invalid value arrives as silence, not as a message.
 void SessionRecorderNode::withdrawInvalid() {
   if (!needle_.valid()) table_.needle.withdraw();
   if (!predicted_.valid()) table_.predicted.withdraw();

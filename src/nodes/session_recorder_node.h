@@ -27,30 +27,34 @@
 
 namespace microinjection {
 
-/// Writes what a session did: force_depth.csv (one row a `row_period`), summary.yaml (rates of every node and, live,
-/// the latency from hand to force beside a bare timer loop), session.bag. All are there, whole, at the end of the
-/// session. Until then rows and messages are in force_depth.csv.active and session.bag.active, which a kill leaves. A
-/// file that cannot be written is an ERROR on /diagnostics ("files") and does not end the session; where one is not
-/// whole at the end, the exit status is 1.
+/// Records a session in force_depth.csv (one row per `row_period`), summary.yaml (rates of every
+/// node and, live, the latency from hand to force beside a bare timer loop) and session.bag. All
+/// are complete at the end of the session. Until then rows and messages are in
+/// force_depth.csv.active and session.bag.active, which survive a kill. A file that cannot be
+/// written is an ERROR on /diagnostics ("files") and does not end the session. When a file is
+/// incomplete at the end, the exit status is 1.
 ///
-/// In: /needle/measured_cp, /cell/predicted_cf, /force_sensor/measured_cf, /cell/state,
-///     /controller/injection_state, with an injector /injector/state, with a hand
-///     /haptic/measured_cp, /haptic/servo_cf, /haptic/clutch, /operator/phase; /needle/setpoint_trace,
-///     /haptic/force_trace; /diagnostics, /tf, /tf_static, /controller/operating_state
+/// In:  /needle/measured_cp, /cell/predicted_cf, /force_sensor/measured_cf, /cell/state,
+///      /controller/injection_state, with an injector /injector/state, with a hand
+///      /haptic/measured_cp, /haptic/servo_cf, /haptic/clutch, /operator/phase;
+///      /needle/setpoint_trace, /haptic/force_trace; /diagnostics, /tf, /tf_static,
+///      /controller/operating_state
 ///
-/// Live it looks at what has come a hundred times a second and writes rows two seconds late, by the stamps of the
-/// messages (see SessionTable): it needs the processor seldom, and waiting for it spoils nothing.
+/// Live it reads its messages a hundred times a second and writes rows two seconds later, by the
+/// stamps of the messages (see SessionTable). It rarely needs the processor, and a delay does not
+/// change the rows.
 ///
 /// Parameters (private):
-///   output_dir  path, made when absent; required
+///   output_dir  path, created when absent; required
 ///   row_period  s; default 0.005, in (0, inf)
-///   hand        whether there is a haptic bridge to record; default true
-///   injector    whether there is an injector to record; default true
-///   bag         write session.bag too; default true
-///   training       none: not scored; else a map of operator (name), history (path of a CSV file), force and task, see
-///                  config/training.yaml. Then training.yaml is written too, the history gets a row and
-///                  training.png, beside training.yaml, compares it with the operator's earlier ones
-///   end_when_done  write the files and end this node when the operator's phase is done; default false
+///   hand        record a haptic bridge; default true
+///   injector    record an injector; default true
+///   bag         write session.bag; default true
+///   training       absent: no score; else a map of operator (name), history (path of a CSV file),
+///                  force and task, see config/training.yaml. Writes training.yaml, a row of the
+///                  history, and training.png, which compares the session with the operator's
+///                  earlier ones
+///   end_when_done  write the files and end this node in the operator's phase `done`; default false
 class SessionRecorderNode {
  public:
   static const char* const kHelp;
@@ -97,8 +101,8 @@ class SessionRecorderNode {
   Input<cell_microinjection::StringStamped>* phase_ = nullptr;     ///< null without a hand
   ros::Subscriber diagnostics_;
   std::string began_;                          ///< local date and time, ISO 8601
-  std::unique_ptr<TrainingLog> training_;      ///< null where nobody trains
-  std::unique_ptr<LatencyMeter> latency_;      ///< null in lock step, where wall time means nothing
+  std::unique_ptr<TrainingLog> training_;      ///< null without training
+  std::unique_ptr<LatencyMeter> latency_;      ///< null in lock step, where wall time has no meaning
   std::unique_ptr<BareTimerLoop> timer_loop_;  ///< null in lock step
 
   Eigen::Matrix3d tip_orientation_ = Eigen::Matrix3d::Identity();  ///< newest, in world

@@ -46,7 +46,7 @@ TeleoperationFollowerNode::TeleoperationFollowerNode(ros::NodeHandle node, ros::
   cycle_
       .input<cell_microinjection::LinkPacket>("link/rig/received", InputPhase::kPreviousTick,
                                               std::numeric_limits<double>::infinity())
-      .listen([this](const auto& message, const ros::Time&) {
+      .onMessage([this](const auto& message, const ros::Time&) {
         if (isPlausible("link/rig/received", message)) model_.receive(toPacket(message));
       });
   if (parameters_.controller_timeout > 0) {
@@ -91,8 +91,8 @@ void TeleoperationFollowerNode::report(diagnostic_updater::DiagnosticStatusWrapp
   const bool good = model_.holdReason().empty();
   status.summary(good ? diagnostic_msgs::DiagnosticStatus::OK : diagnostic_msgs::DiagnosticStatus::WARN,
                  good ? "the needle follows" : "needle held: " + model_.holdReason());
-  status.add("hand's side heard (s ago)", model_.age());
-  status.add("energy left of what came (J)", model_.margin());
+  status.add("age of the hand's packet (s)", model_.packetAge());
+  status.add("energy margin of the received wave (J)", model_.margin());
 }
 
 }  // namespace microinjection

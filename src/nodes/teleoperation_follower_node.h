@@ -14,19 +14,22 @@
 
 namespace microinjection {
 
-/// The rig's end of a network between haptic bridge and rig: what the hand's packets want of the needle, and the tip's
-/// force back. Without packets, needle, force or controller it withdraws its target, so that the controller holds the
-/// needle, and the hand's side hears that it does.
+/// The rig's end of a network between haptic bridge and rig. It publishes the needle's target from
+/// the hand's packets and sends the tip's force back. Without packets, needle, force or controller
+/// it withdraws its target, so that the controller holds the needle, and reports this to the hand's
+/// side.
 ///
 /// In:  /link/rig/received (LinkPacket), /needle/measured_cp (PoseStamped), /cell/predicted_cf,
-///      /force_sensor/measured_cf or both (WrenchStamped), /controller/injection_state (InjectionStatus; that there is
-///      a controller)
+///      /force_sensor/measured_cf or both (WrenchStamped), /controller/injection_state
+///      (InjectionStatus; that there is a controller)
 /// Out: /link/rig/sent (LinkPacket), /teleop/servo_cp (PoseStamped, tip in `world`)
 ///
-/// Parameters (private): those of ForceSourceConfig, link/... (LinkConfig; the bridge must have the same) and
+/// Parameters (private): those of ForceSourceConfig, link/... (LinkConfig; the bridge must have the
+/// same) and
 ///   rate           Hz; default 1000, in [50, 5000]; that of the bridge
-///   timeouts/...   s, past which an input is stale: needle, predicted, measured; default 0.05, in (0, inf); controller
-///                  (0.25; 0: not asked for, with another controller), in [0, inf)
+///   timeouts/...   s, past which an input is stale: needle, predicted, measured; default 0.05, in
+///                  (0, inf); controller (0.25; 0: not checked, with another controller), in [0,
+///                  inf)
 class TeleoperationFollowerNode {
  public:
   static const char* const kHelp;
@@ -54,7 +57,7 @@ class TeleoperationFollowerNode {
   Input<geometry_msgs::PoseStamped>& needle_;
   Input<geometry_msgs::WrenchStamped>* predicted_;                     ///< null: not used
   Input<geometry_msgs::WrenchStamped>* measured_;                      ///< null: not used
-  Input<cell_microinjection::InjectionStatus>* controller_ = nullptr;  ///< null: not asked for
+  Input<cell_microinjection::InjectionStatus>* controller_ = nullptr;  ///< null: not checked
   Output<cell_microinjection::LinkPacket>& sent_;
   Output<geometry_msgs::PoseStamped>& target_;
 };

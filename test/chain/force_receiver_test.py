@@ -108,7 +108,7 @@ class ForceReceiverTest(unittest.TestCase):
     def check_settings_first(self):
         """Both are latched, true, and heard before any force and before the hand counts."""
         force = self.listen()
-        self.check_held(f"/device has not yet heard its settings {SETTINGS[0]}")
+        self.check_held(f"/device has not received its settings {SETTINGS[0]}")
         self.assertEqual(self.forces, [])
         heard = [rospy.Subscriber(topic, Bool, lambda message, topic=topic: self.set_.update({topic: message.data}))
                  for topic in SETTINGS]

@@ -116,7 +116,7 @@ class TrustTest(unittest.TestCase):
         self.assertTrue(self.reading().header.stamp.is_zero())
         status = self.world.run_to_status("force_sensor: sensor", 300, self.messages(wrench(0, 0, 0)))
         self.assertTrue(self.reading().header.stamp.is_zero())
-        self.assertEqual(status, (2, "overloaded; wants the service ~reset"))
+        self.assertEqual(status, (2, "overloaded; call the service ~reset"))
         self.assertFalse(self.call(wrench(0, 0, 0), "tare", Trigger).success)
         self.assertTrue(self.call(wrench(0, 0, 0), "reset", Trigger).success)
         self.world.run(20, self.messages(wrench(0, 0, 0)))

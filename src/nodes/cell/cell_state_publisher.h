@@ -15,7 +15,7 @@
 
 namespace microinjection {
 
-/// What a step of the cell simulator found, but for the surface.
+/// Result of a step of the cell simulator, without the surface.
 struct CellMoment {
   ros::Time now;
   TipForce force;
@@ -23,14 +23,14 @@ struct CellMoment {
   std::optional<CellModel::Solution> solution;
   CellModel::Insertion insertion;
   bool valid = true;
-  std::array<char, 200> reason{};  ///< why the force is not valid, cut where it is too long
+  std::array<char, 200> reason{};  ///< why the force is invalid, truncated
 
   void setReason(const std::string& text);
 };
 
-/// Makes /cell/state, surface and all, at its own rate from what the steps hand over. Live, in a thread of its own of
-/// ordinary priority, so that a step neither makes nor sends it; in lock step in the step that
-/// is due, so that it is the same in every run.
+/// Publishes /cell/state with the surface at its own rate from the results of the steps. Live it
+/// uses its own thread of ordinary priority, so that no step is delayed. In lock step it publishes
+/// in the step that is due, so that all runs are the same.
 class CellStatePublisher {
  public:
   enum class Thread { kOwn, kOfTheStep };
@@ -41,7 +41,7 @@ class CellStatePublisher {
   CellStatePublisher(const CellStatePublisher&) = delete;
   CellStatePublisher& operator=(const CellStatePublisher&) = delete;
 
-  /// After each step of the cell, in its thread.
+  /// Call after each step of the cell, in the step's thread.
   void step(const CellMoment& moment);
 
  private:
@@ -52,11 +52,11 @@ class CellStatePublisher {
   CellModel& cell_;
   Output<cell_microinjection::CellState>& output_;
   double period_;                              ///< s
-  cell_microinjection::CellState undeformed_;  ///< what stays the same in every message
+  cell_microinjection::CellState undeformed_;  ///< the constant part of every message
   ros::Time sent_;                             ///< in lock step
   LatestValue<CellMoment> moment_;
   std::atomic<bool> stop_{false};
-  std::thread thread_;  ///< last: starts when all else is there
+  std::thread thread_;  ///< last member: starts after the others are initialised
 };
 
 }  // namespace microinjection

@@ -29,10 +29,10 @@ geometry_msgs::TransformStamped enlarged(const std::string& frame, const Eigen::
 }  // namespace
 
 DisplayFrames::DisplayFrames(const ros::NodeHandle& node, const std::vector<std::string>& fixed)
-    : fixed_(fixed), listener_(node) {}
+    : fixed_(fixed), frames_(node) {}
 
 std::optional<Eigen::Isometry3d> DisplayFrames::find(const std::string& parent, const std::string& frame) const {
-  return listener_.find(parent, frame);
+  return frames_.find(parent, frame);
 }
 
 void DisplayFrames::update() {
@@ -47,7 +47,7 @@ void DisplayFrames::update() {
 }
 
 void DisplayFrames::publishNeedleTip(const Eigen::Isometry3d& tip) {
-  // tf refuses two transforms of one time, which happens while a simulated clock stands still.
+  // tf refuses two transforms with the same stamp, as while a simulated clock stands still.
   const ros::Time now = ros::Time::now();
   if (now.toSec() == tip_stamp_) return;
   broadcaster_.sendTransform(enlarged("needle_tip", tip, now));

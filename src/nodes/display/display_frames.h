@@ -14,30 +14,30 @@
 
 namespace microinjection {
 
-/// Republishes the rig's frames at x 1e4 below viz/world: viz/NAME is where NAME is, for rviz only.
+/// Republishes the rig's frames at x 1e4 below viz/world, NAME as viz/NAME, for rviz only.
 class DisplayFrames {
  public:
-  /// @param fixed  frames that rarely move, taken from tf; they are republished as static transforms.
+  /// @param fixed  frames of tf that rarely move; republished as static transforms
   DisplayFrames(const ros::NodeHandle& node, const std::vector<std::string>& fixed);
 
-  /// Takes over from tf what has changed; call it regularly.
+  /// Republishes changed frames; call it regularly.
   void update();
 
   /// Publishes viz/needle_tip. @param tip  finite pose of needle_tip in world (m).
   void publishNeedleTip(const Eigen::Isometry3d& tip);
 
-  /// Pose in `parent` of `frame` (m), or nothing while tf does not know it.
+  /// Pose of `frame` in `parent` (m); empty while tf has none.
   std::optional<Eigen::Isometry3d> find(const std::string& parent, const std::string& frame) const;
 
-  /// Fixed frames that tf does not know yet; empty when all is well.
+  /// Fixed frames that tf does not have yet; empty: none.
   std::vector<std::string> missing() const;
 
  private:
   std::vector<std::string> fixed_;
-  FrameListener listener_;
+  FrameListener frames_;
   tf2_ros::StaticTransformBroadcaster static_broadcaster_;
   tf2_ros::TransformBroadcaster broadcaster_;
-  std::map<std::string, Eigen::Isometry3d> published_;  ///< fixed frames in world (m), as last sent
+  std::map<std::string, Eigen::Isometry3d> published_;  ///< fixed frames in world (m), as last published
   double tip_stamp_ = 0;                                ///< s, of the last viz/needle_tip
 };
 

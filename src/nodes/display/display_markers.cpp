@@ -45,7 +45,7 @@ Marker makeMarker(const MarkerName& name, int type, const Colour& colour) {
   return marker;
 }
 
-/// rviz complains about a list without points.
+/// Without points it removes the marker, since rviz reports an error for an empty list.
 Marker listMarker(const MarkerName& name, int type, const std::vector<Eigen::Vector3d>& points, double size,
                   const Colour& colour) {
   if (points.empty()) return noMarker(name);

@@ -12,7 +12,8 @@
 
 namespace microinjection {
 
-/// What identifies a marker to rviz and places it. Its header's stamp stays 0: rviz takes the latest transform.
+/// Identifies and places a marker in rviz. Its header's stamp stays 0: rviz uses the latest
+/// transform.
 struct MarkerName {
   std::string frame;  ///< under viz/
   std::string name;   ///< the marker's namespace
@@ -29,7 +30,7 @@ visualization_msgs::Marker sphereMarker(const MarkerName& name, const std::vecto
 visualization_msgs::Marker arrowMarker(const MarkerName& name, const Arrow& arrow, const Colour& colour);
 visualization_msgs::Marker textMarker(const MarkerName& name, const Eigen::Vector3d& position, const std::string& text,
                                       double height, const Colour& colour);
-/// Takes a marker away.
+/// Removes a marker.
 visualization_msgs::Marker noMarker(const MarkerName& name);
 
 }  // namespace microinjection

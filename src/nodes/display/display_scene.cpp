@@ -19,9 +19,9 @@ constexpr Colour kMeasured{0.95f, 0.40f, 0.80f, 1};
 constexpr Colour kText{0.92f, 0.94f, 0.97f, 1};
 constexpr Colour kAlarm{1.00f, 0.45f, 0.35f, 1};
 
-constexpr double kSmallestRange = 1e-6;                     // m, of the colour scale: noise does not fill it
+constexpr double kSmallestRange = 1e-6;                     // m, of the colour scale, above the noise
 constexpr float kMembrane = 0.25f;                          // opacity, of a cell with struts and cables inside
-constexpr double kForceAbove = 20e-6;                       // m, of a force's arrow from the tip
+constexpr double kForceAbove = 20e-6;                       // m, from the tip to a force's arrow
 constexpr double kHole = 0.03;                              // display units; not to scale
 constexpr double kStrutWidth = 0.016, kCableWidth = 0.006;  // display units; not to scale
 const std::string kWorld = "viz/world";
@@ -38,7 +38,7 @@ void DisplayScene::drawForce(const std::string& name, const DisplayedState& stat
                              visualization_msgs::MarkerArray& markers) const {
   std::optional<Arrow> arrow;
   if (state.tip && force) {
-    // Beside the pipette and above the dent, which would hide it.
+    // The arrow is beside the pipette and above the dent, which would hide it.
     const Eigen::Vector3d tail = *state.tip * Eigen::Vector3d(beside, 0, kForceAbove);
     arrow = forceArrow(tail, *force, config_.force_scale);
   }

@@ -14,32 +14,33 @@
 
 namespace microinjection {
 
-/// What is known of the scene, SI units; absent is what is not known or not valid.
+/// State of the displayed scene, SI units; absent values are unknown or invalid.
 struct DisplayedState {
   std::optional<CellSurface> surface;
   CellMembers members;
-  std::vector<Eigen::Vector3d> holes;                  ///< m, where the outermost layer was punctured
+  std::vector<Eigen::Vector3d> holes;                  ///< m, punctures of the outermost layer
   std::string cell_frame = "cell";                     ///< of surface, members and holes
   std::optional<Eigen::Isometry3d> holding_from_cell;  ///< pose of cell_frame in holding_pipette
   std::optional<Eigen::Isometry3d> tip;                ///< pose of needle_tip in world
   std::optional<Eigen::Vector3d> predicted;            ///< N, of the cell on the tip, in world
   std::optional<Eigen::Vector3d> measured;             ///< N, as `predicted`
   Readout readout;
-  bool alarm = false;  ///< the readout wants attention
+  bool alarm = false;  ///< the readout needs attention
 };
 
-/// Turns what is known into rviz's markers. Markers below viz/world, viz/cell, viz/needle_tip, viz/holding_pipette.
+/// Converts the state into rviz's markers below viz/world, viz/cell, viz/needle_tip and
+/// viz/holding_pipette.
 class DisplayScene {
  public:
   explicit DisplayScene(const DisplayConfig& config);
 
-  /// What moves on its own, but for the cell: forces and readout.
+  /// The moving markers except the cell: forces and readout.
   void drawMoving(const DisplayedState& state, visualization_msgs::MarkerArray& markers) const;
   /// The cell's surface, edges, members and contact.
   void drawCell(const DisplayedState& state, visualization_msgs::MarkerArray& markers);
-  /// What stays: pipettes and legend.
+  /// The fixed markers: pipettes and legend.
   void drawFixed(const DisplayedState& state, visualization_msgs::MarkerArray& markers);
-  /// Since drawFixed the colours' scale has.
+  /// Whether the colour scale has changed since drawFixed().
   bool fixedChanged() const { return fixed_changed_; }
 
  private:
@@ -51,9 +52,9 @@ class DisplayScene {
   void fitHoldingPipette(const DisplayedState& state);
 
   const DisplayConfig config_;
-  double tension_range_ = 0;  ///< N, largest tension seen
+  double tension_range_ = 0;  ///< N, largest tension so far
   double colour_range_;       ///< m, displacement at the end of the colour scale
-  HoldingPipette holding_;    ///< as configured, with the mouth where the cell touches it
+  HoldingPipette holding_;    ///< as configured, with the mouth at the contact with the cell
   bool fixed_changed_ = false;
   double holding_height_ = 0;  ///< m, of the mouth along the z axis of holding_pipette
 };

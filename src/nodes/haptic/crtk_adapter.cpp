@@ -9,7 +9,8 @@ namespace {
 
 constexpr double kForEver = std::numeric_limits<double>::infinity();
 
-/// `none`: where there is no such button; `unknown`: where it has said nothing, or nothing of this one.
+/// Whether a button is held down. Returns `none` without such a button, `unknown` without a valid
+/// message about it.
 bool heldDown(const Input<sensor_msgs::Joy>* input, int index, const ros::Time& now, bool none, bool unknown) {
   if (!input) return none;
   const sensor_msgs::Joy* joy = input->get(now);
@@ -42,8 +43,8 @@ CrtkConfig CrtkConfig::read(ConfigReader& reader) {
 CrtkAdapter::CrtkAdapter(Cycle& cycle, const CrtkConfig& config)
     : config_(config),
       lockstep_(cycle.lockstep()),
-      clutch_(listenTo(cycle, config.clutch)),
-      operator_present_(listenTo(cycle, config.operator_present)),
+      clutch_(subscribe(cycle, config.clutch)),
+      operator_present_(subscribe(cycle, config.operator_present)),
       force_(cycle.output<geometry_msgs::WrenchStamped>(deviceTopic(config.device, config.force))),
       settings_(cycle.node(), config.device, config.settings),
       receiver_(force_.publisher, !lockstep_) {
@@ -54,14 +55,14 @@ CrtkAdapter::CrtkAdapter(Cycle& cycle, const CrtkConfig& config)
   const std::string topic = deviceTopic(config.device, "measured_cp");
   if (config.position_type == "pose") {
     pose_ = &cycle.input<geometry_msgs::PoseStamped>(topic, InputPhase::kThisTick, config.timeout);
-    receiver_.watch(*pose_);
+    receiver_.monitor(*pose_);
   } else {
     transform_ = &cycle.input<geometry_msgs::TransformStamped>(topic, InputPhase::kThisTick, config.timeout);
-    receiver_.watch(*transform_);
+    receiver_.monitor(*transform_);
   }
 }
 
-Input<sensor_msgs::Joy>* CrtkAdapter::listenTo(Cycle& cycle, const CrtkButton& button) const {
+Input<sensor_msgs::Joy>* CrtkAdapter::subscribe(Cycle& cycle, const CrtkButton& button) const {
   if (button.topic.empty()) return nullptr;
   const double timeout = config_.button_timeout > 0 ? config_.button_timeout : kForEver;
   return &cycle.input<sensor_msgs::Joy>(deviceTopic(config_.device, button.topic), InputPhase::kPreviousTick, timeout);
@@ -80,41 +81,43 @@ std::optional<CrtkAdapter::Position> CrtkAdapter::position(const ros::Time& now)
   return Position{transform->header.stamp, transform->header.frame_id, {p.x, p.y, p.z}};
 }
 
-std::string CrtkAdapter::whyUnfelt(const ros::Time& now) {
-  if (!ready_) return receiver_.driver() + " has not yet heard its settings " + settings_.missing();
-  if (!receiver_.feels()) return receiver_.why();
+std::string CrtkAdapter::noForceReason(const ros::Time& now) {
+  if (!ready_) return receiver_.driver() + " has not received its settings " + settings_.missing();
+  if (!receiver_.isConnected()) return receiver_.reason();
   const auto* state = state_ ? state_->get(now) : nullptr;
   if (!state_ || (state && state->state == "ENABLED" && state->is_homed)) return "";
-  if (!state) return "it has not told its state, " + state_->topic;
-  return "it takes no force: " + state->state + (state->is_homed ? "" : ", not homed");
+  if (!state) return "no valid operating state on " + state_->topic;
+  return "it accepts no force: " + state->state + (state->is_homed ? "" : ", not homed");
 }
 
 std::optional<HandReading> CrtkAdapter::read(const Cycle::Tick& tick) {
-  const auto told = position(tick.now);
-  // Also while it is silent: one that was started again must be told first, too.
-  ready_ = !receiver_.driver().empty() && settings_.taken(receiver_.driver(), tick.now);
-  if (!told || !isWithin(told->position, kLargestHandDistance)) {
-    reason_ = told ? "its position is not finite, or too far away" : "";
-    // Of a driver that tells changes only: it may have missed to tell the last one.
-    if (!told && operator_present_ && config_.button_timeout <= 0) operator_present_->invalidate();
+  const auto measured = position(tick.now);
+  // Also while the device is stale: a restarted driver needs its settings first, too.
+  ready_ = !receiver_.driver().empty() && settings_.received(receiver_.driver(), tick.now);
+  if (!measured || !isWithin(measured->position, kLargestHandDistance)) {
+    reason_ = measured ? "its position is not finite, or too far away" : "";
+    // A driver that publishes only changes may have missed the last one.
+    if (!measured && operator_present_ && config_.button_timeout <= 0) operator_present_->invalidate();
     return std::nullopt;
   }
-  frame_ = told->frame;
-  reason_ = whyUnfelt(tick.now);
+  frame_ = measured->frame;
+  reason_ = noForceReason(tick.now);
   if (!reason_.empty()) return std::nullopt;
   HandReading reading;
-  reading.position = told->position;
-  reading.stamp = told->stamp;
-  // A clutch that says nothing counts as released where it tells changes only, a dead-man as let go.
+  reading.position = measured->position;
+  reading.stamp = measured->stamp;
+  // Without a message, the clutch of a driver that publishes only changes counts as released, and
+  // so does a dead-man switch.
   const bool clutch_unknown = clutch_ && !clutch_->received.isZero();
   reading.clutch = heldDown(clutch_, config_.clutch.index, tick.now, false, clutch_unknown);
   reading.operator_present = heldDown(operator_present_, config_.operator_present.index, tick.now, true, false);
   return reading;
 }
 
-/// A device holds the last force for ever, which may be that of an adapter before this one: it gets zero before
-/// anything is known of it. One that needs settings gets nothing before it has them, not even zero: in an arm of dVRK
-/// the first force ends the position control that holds it, so that without gravity compensation it would fall.
+/// A device holds the last force for ever, which may be an earlier adapter's: it receives zero
+/// before its first message. A device with settings receives no force before them, not even zero:
+/// in an arm of dVRK the first force ends the position control that holds it, and without gravity
+/// compensation it would fall.
 void CrtkAdapter::render(const Eigen::Vector3d& force, const Cycle::Tick& tick) {
   if (ready_ || config_.settings.empty()) force_.publish(toWrench(force, tick.now, frame_));
 }

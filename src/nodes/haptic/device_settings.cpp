@@ -10,7 +10,7 @@
 namespace microinjection {
 namespace {
 
-constexpr double kSettle = 0.2;  // s, from the connection until the driver has taken what was latched
+constexpr double kSettle = 0.2;  // s, from the connection until the driver has received the latched settings
 
 }  // namespace
 
@@ -32,28 +32,29 @@ std::vector<DeviceSetting> DeviceSetting::readAll(ConfigReader& reader, const st
 DeviceSettings::DeviceSettings(ros::NodeHandle& node, const std::string& device,
                                const std::vector<DeviceSetting>& settings) {
   for (const DeviceSetting& setting : settings) {
-    told_.push_back({setting, node.advertise<std_msgs::Bool>(deviceTopic(device, setting.topic), 1, true)});
+    published_.push_back({setting, node.advertise<std_msgs::Bool>(deviceTopic(device, setting.topic), 1, true)});
     std_msgs::Bool message;
     message.data = setting.value;
-    told_.back().publisher.publish(message);
+    published_.back().publisher.publish(message);
   }
 }
 
-bool DeviceSettings::taken(const std::string& driver, const ros::Time& now) {
-  const auto unheard =
-      std::find_if(told_.begin(), told_.end(), [&](const Told& told) { return !isSubscribed(told.publisher, driver); });
-  missing_ = unheard == told_.end() ? "" : unheard->publisher.getTopic();
-  if (unheard != told_.end()) {
+bool DeviceSettings::received(const std::string& driver, const ros::Time& now) {
+  const auto missing = std::find_if(published_.begin(), published_.end(),
+                                    [&](const Published& entry) { return !isSubscribed(entry.publisher, driver); });
+  missing_ = missing == published_.end() ? "" : missing->publisher.getTopic();
+  if (missing != published_.end()) {
     since_ = ros::Time();
-    said_ = false;
+    logged_ = false;
     return false;
   }
   if (since_.isZero()) since_ = now;
-  if (secondsBetween(since_, now) < kSettle && !told_.empty()) return false;
-  for (const Told& told : told_) {
-    if (!said_) ROS_INFO_STREAM("told " << driver << ": " << told.publisher.getTopic() << " = " << told.setting.value);
+  if (secondsBetween(since_, now) < kSettle && !published_.empty()) return false;
+  for (const Published& entry : published_) {
+    if (!logged_)
+      ROS_INFO_STREAM("sent to " << driver << ": " << entry.publisher.getTopic() << " = " << entry.setting.value);
   }
-  said_ = true;
+  logged_ = true;
   return true;
 }
 

@@ -9,7 +9,7 @@
 
 namespace microinjection {
 
-/// A switch of a driver's, a topic of std_msgs/Bool.
+/// A switch of a driver, a topic of std_msgs/Bool.
 struct DeviceSetting {
   std::string topic;  ///< below the device's namespace, or absolute
   bool value = true;
@@ -17,27 +17,27 @@ struct DeviceSetting {
   static std::vector<DeviceSetting> readAll(ConfigReader& reader, const std::string& key);
 };
 
-/// What a driver must be told before a force is meant as we mean it, latched: a driver that is started later, or again,
-/// hears it, too.
+/// Publishes the settings that a driver needs to render forces as the bridge defines them. They are
+/// latched, so a driver that starts later or restarts receives them, too.
 class DeviceSettings {
  public:
   DeviceSettings(ros::NodeHandle& node, const std::string& device, const std::vector<DeviceSetting>& settings);
 
-  /// Whether `driver` has been connected to all of them for 0.2 s: it has heard each before the first force comes on
-  /// another connection.
-  bool taken(const std::string& driver, const ros::Time& now);
-  /// The first one that `driver` does not hear; empty when it hears all.
+  /// Whether `driver` has been connected to all of them for 0.2 s. It then has received each before
+  /// the first force, which arrives on another connection.
+  bool received(const std::string& driver, const ros::Time& now);
+  /// The first one without a connection to `driver`; empty: none.
   const std::string& missing() const { return missing_; }
 
  private:
-  struct Told {
+  struct Published {
     DeviceSetting setting;
     ros::Publisher publisher;
   };
 
-  std::vector<Told> told_;
-  ros::Time since_;  ///< all are heard; zero: not yet
-  bool said_ = false;
+  std::vector<Published> published_;
+  ros::Time since_;  ///< all are connected; zero: not yet
+  bool logged_ = false;
   std::string missing_;
 };
 

@@ -1,4 +1,4 @@
-// Devices whose drivers speak CRTK, each in its own way.
+// Devices whose drivers use CRTK topics, with their differences.
 
 #include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/TransformStamped.h>
@@ -22,17 +22,18 @@ Eigen::Vector3d toVector(const WrenchStamped& message) {
   return {force.x, force.y, force.z};
 }
 
-/// A device that needs no adapter: /haptic/measured_cp, clutch, operator_present and servo_cf, in the view's axes.
+/// A device that needs no adapter: /haptic/measured_cp, clutch, operator_present and servo_cf, in
+/// the view's axes.
 class EmulatedCrtk : public EmulatedDriver {
  public:
-  EmulatedCrtk(Cycle& cycle, const Listener& listener)
+  EmulatedCrtk(Cycle& cycle, const Handler& handler)
       : position_(cycle.output<geometry_msgs::PoseStamped>("haptic/measured_cp")),
         clutch_(cycle.output<sensor_msgs::Joy>("haptic/clutch", true)),
         present_(cycle.output<sensor_msgs::Joy>("haptic/operator_present", true)) {
     cycle.input<WrenchStamped>("haptic/servo_cf", InputPhase::kPreviousTick, kForEver)
-        .listen([this, listener](const WrenchStamped& message, const ros::Time& received) {
+        .onMessage([this, handler](const WrenchStamped& message, const ros::Time& received) {
           force_ = toVector(message);
-          listener(force_, received);
+          handler(force_, received);
         });
   }
 
@@ -40,16 +41,16 @@ class EmulatedCrtk : public EmulatedDriver {
 
   void publish(const EmulatedHand& hand, const ros::Time& now) override {
     position_.publish(toPose(hand.position, now, "haptic"));
-    if (hand.clutch != told_.clutch) clutch_.publish(toJoy(now, hand.clutch));
-    if (hand.present != told_.present) present_.publish(toJoy(now, hand.present));
-    told_ = hand;
+    if (hand.clutch != last_published_.clutch) clutch_.publish(toJoy(now, hand.clutch));
+    if (hand.present != last_published_.present) present_.publish(toJoy(now, hand.present));
+    last_published_ = hand;
   }
 
  private:
   Output<geometry_msgs::PoseStamped>& position_;
   Output<sensor_msgs::Joy>&clutch_, &present_;
   Eigen::Vector3d force_ = Eigen::Vector3d::Zero();  // N
-  EmulatedHand told_;
+  EmulatedHand last_published_;
 };
 
 struct CisstDevice {
@@ -62,13 +63,15 @@ struct CisstDevice {
   bool is_arm;  ///< of dVRK; else behind sawForceDimensionSDK
 };
 
-/// A device behind the cisst-ros bridge of sawForceDimensionSDK or dVRK. It is held where it is until the first force
-/// on body/servo_cf, whatever the message's frame and stamp. An arm of dVRK takes it in the gripper's frame unless
-/// body/set_cf_orientation_absolute, weighs on the hand unless use_gravity_compensation, and tells its state; the Force
-/// Dimension SDK takes it in the axes of the base and compensates the weight. Buttons are told on change, latched.
+/// A device behind the cisst-ros bridge of sawForceDimensionSDK or dVRK. It holds its position
+/// until the first force on body/servo_cf, whatever the message's frame and stamp. An arm of dVRK
+/// expects forces in the gripper's frame unless body/set_cf_orientation_absolute, weighs on the
+/// hand unless use_gravity_compensation, and publishes its state. The Force Dimension SDK expects
+/// forces in the axes of the base and compensates the weight. Buttons are published on change,
+/// latched.
 class EmulatedCisst : public EmulatedDriver {
  public:
-  EmulatedCisst(Cycle& cycle, const CisstDevice& device, const Listener& listener)
+  EmulatedCisst(Cycle& cycle, const CisstDevice& device, const Handler& handler)
       : device_(device),
         clutch_(cycle.output<sensor_msgs::Joy>(device.clutch, true)),
         present_(cycle.output<sensor_msgs::Joy>(device.present, true)),
@@ -80,14 +83,14 @@ class EmulatedCisst : public EmulatedDriver {
       pose_ = &cycle.output<geometry_msgs::PoseStamped>(position);
     }
     cycle.input<WrenchStamped>(device.device + "/body/servo_cf", InputPhase::kPreviousTick, kForEver)
-        .listen([this, listener](const WrenchStamped& message, const ros::Time& received) {
+        .onMessage([this, handler](const WrenchStamped& message, const ros::Time& received) {
           force_ = toVector(message);
           freed_ = true;
-          listener(force_, received);
+          handler(force_, received);
         });
     if (!device.is_arm) return;
-    listen(cycle, "/body/set_cf_orientation_absolute", absolute_);
-    listen(cycle, "/use_gravity_compensation", compensated_);
+    subscribe(cycle, "/body/set_cf_orientation_absolute", absolute_);
+    subscribe(cycle, "/use_gravity_compensation", compensated_);
     state_ = &cycle.output<cell_microinjection::OperatingState>(device.device + "/operating_state", true);
   }
 
@@ -96,16 +99,16 @@ class EmulatedCisst : public EmulatedDriver {
       if (!held_) held_ = hand.position;
       return kHold * (*held_ - hand.position);
     }
-    const Eigen::Vector3d meant = absolute_ || !device_.is_arm ? force_ : Eigen::Vector3d(gripper() * force_);
+    const Eigen::Vector3d force_on_hand = absolute_ || !device_.is_arm ? force_ : Eigen::Vector3d(gripper() * force_);
     const double weight = device_.is_arm && !compensated_ ? kWeight : 0;
-    return device_.axes.transpose() * meant - weight * Eigen::Vector3d::UnitZ();
+    return device_.axes.transpose() * force_on_hand - weight * Eigen::Vector3d::UnitZ();
   }
 
   void publish(const EmulatedHand& hand, const ros::Time& now) override {
-    if (state_ && !state_told_) tellState(now);
-    if (hand.clutch != told_.clutch) clutch_.publish(toButton(now, hand.clutch));
-    if (hand.present != told_.present) present_.publish(toButton(now, hand.present));
-    told_ = hand;
+    if (state_ && !state_published_) publishState(now);
+    if (hand.clutch != last_published_.clutch) clutch_.publish(toButton(now, hand.clutch));
+    if (hand.present != last_published_.present) present_.publish(toButton(now, hand.present));
+    last_published_ = hand;
     if (!rate_.due(now)) return;
     const geometry_msgs::PoseStamped pose = toPose(Eigen::Vector3d(device_.axes * hand.position), now, device_.frame);
     if (pose_) return pose_->publish(pose);
@@ -131,17 +134,17 @@ class EmulatedCisst : public EmulatedDriver {
     return joy;
   }
 
-  /// Of an arm whose operator has homed it at the console; on change only.
-  void tellState(const ros::Time& now) {
+  /// Publishes the state of an arm that was homed at the console, on change only.
+  void publishState(const ros::Time& now) {
     cell_microinjection::OperatingState state;
     state.header.stamp = now;
     state.state = "ENABLED";
     state.is_homed = true;
     state_->publish(state);
-    state_told_ = true;
+    state_published_ = true;
   }
 
-  void listen(Cycle& cycle, const std::string& topic, bool& value) {
+  void subscribe(Cycle& cycle, const std::string& topic, bool& value) {
     subscribers_.push_back(cycle.node().subscribe<std_msgs::Bool>(
         device_.device + topic, 1, [&value](const std_msgs::BoolConstPtr& message) { value = message->data; }));
   }
@@ -149,26 +152,27 @@ class EmulatedCisst : public EmulatedDriver {
   CisstDevice device_;
   Output<geometry_msgs::PoseStamped>* pose_ = nullptr;
   Output<geometry_msgs::TransformStamped>* transform_ = nullptr;
-  Output<cell_microinjection::OperatingState>* state_ = nullptr;  // null: not told
+  Output<cell_microinjection::OperatingState>* state_ = nullptr;  // null: not published
   Output<sensor_msgs::Joy>&clutch_, &present_;
   std::vector<ros::Subscriber> subscribers_;
   EmulatedRate rate_;
   std::optional<Eigen::Vector3d> held_;              // m, the view's axes
-  Eigen::Vector3d force_ = Eigen::Vector3d::Zero();  // N, as told
-  bool state_told_ = false, freed_ = false, absolute_ = false, compensated_ = false;
-  EmulatedHand told_;
+  Eigen::Vector3d force_ = Eigen::Vector3d::Zero();  // N, as received
+  bool state_published_ = false, freed_ = false, absolute_ = false, compensated_ = false;
+  EmulatedHand last_published_;
 };
 
-/// The driver on libnifalcon: /falcon/measured_cp and joy at 1 kHz, latched, x right, y up, z to the operator from the
-/// device's front. A force in another frame than its own is not taken (it knows no other), one without frame is.
+/// The driver on libnifalcon: /falcon/measured_cp and joy at 1 kHz, latched, x right, y up, z to
+/// the operator from the device's front. It ignores a force in another frame than its own, but
+/// accepts one without a frame.
 class EmulatedFalcon : public EmulatedDriver {
  public:
-  EmulatedFalcon(Cycle& cycle, const Listener& listener)
+  EmulatedFalcon(Cycle& cycle, const Handler& handler)
       : position_(cycle.output<geometry_msgs::PoseStamped>("falcon/measured_cp", true)),
         joy_(cycle.output<sensor_msgs::Joy>("falcon/joy", true)) {
     cycle.input<WrenchStamped>("falcon/servo_cf", InputPhase::kPreviousTick, kForEver)
-        .listen([this, listener](const WrenchStamped& message, const ros::Time& received) {
-          listener(toVector(message), received);
+        .onMessage([this, handler](const WrenchStamped& message, const ros::Time& received) {
+          handler(toVector(message), received);
           if (message.header.frame_id.empty() || message.header.frame_id == kFrame) force_ = toVector(message);
         });
   }
@@ -192,7 +196,7 @@ class EmulatedFalcon : public EmulatedDriver {
 
   Output<geometry_msgs::PoseStamped>& position_;
   Output<sensor_msgs::Joy>& joy_;
-  Eigen::Vector3d force_ = Eigen::Vector3d::Zero();  // N, as told
+  Eigen::Vector3d force_ = Eigen::Vector3d::Zero();  // N, as received
 };
 
 CisstDevice forceDimension() {
@@ -208,7 +212,7 @@ CisstDevice forceDimension() {
 }
 
 CisstDevice dvrk(bool transform) {
-  // Of the stereo viewer: x left, y up, z into the picture.
+  // The stereo viewer's axes: x left, y up, z into the picture.
   return {"MTMR",
           "HRSV",
           (Eigen::Matrix3d() << -1, 0, 0, 0, 0, 1, 0, 1, 0).finished(),
@@ -222,12 +226,12 @@ CisstDevice dvrk(bool transform) {
 }  // namespace
 
 std::unique_ptr<EmulatedDriver> makeEmulatedCrtk(const std::string& kind, Cycle& cycle,
-                                                 const EmulatedDriver::Listener& listener) {
-  if (kind == "force_dimension") return std::make_unique<EmulatedCisst>(cycle, forceDimension(), listener);
-  if (kind == "dvrk") return std::make_unique<EmulatedCisst>(cycle, dvrk(false), listener);
-  if (kind == "dvrk_2_0") return std::make_unique<EmulatedCisst>(cycle, dvrk(true), listener);
-  if (kind == "falcon") return std::make_unique<EmulatedFalcon>(cycle, listener);
-  return std::make_unique<EmulatedCrtk>(cycle, listener);
+                                                 const EmulatedDriver::Handler& handler) {
+  if (kind == "force_dimension") return std::make_unique<EmulatedCisst>(cycle, forceDimension(), handler);
+  if (kind == "dvrk") return std::make_unique<EmulatedCisst>(cycle, dvrk(false), handler);
+  if (kind == "dvrk_2_0") return std::make_unique<EmulatedCisst>(cycle, dvrk(true), handler);
+  if (kind == "falcon") return std::make_unique<EmulatedFalcon>(cycle, handler);
+  return std::make_unique<EmulatedCrtk>(cycle, handler);
 }
 
 }  // namespace microinjection

@@ -11,14 +11,14 @@ std::vector<std::string> emulatedDrivers() {
 }
 
 std::unique_ptr<EmulatedDriver> makeEmulatedDriver(const std::string& kind, Cycle& cycle,
-                                                   const EmulatedDriver::Listener& listener) {
-  if (kind == "omni" || kind == "geomagic") return makeEmulatedTouch(kind, cycle, listener);
+                                                   const EmulatedDriver::Handler& handler) {
+  if (kind == "omni" || kind == "geomagic") return makeEmulatedTouch(kind, cycle, handler);
   if (kind == "joy" || kind == "spacenav") return makeEmulatedStick(kind, cycle);
-  return makeEmulatedCrtk(kind, cycle, listener);
+  return makeEmulatedCrtk(kind, cycle, handler);
 }
 
 bool EmulatedRate::due(const ros::Time& now) {
-  constexpr double kEarly = 5e-4;  // s: a step that comes a little early is the one that was meant
+  constexpr double kEarly = 5e-4;  // s: a step that is early by less counts as due
   if (next_.isZero()) next_ = now;
   if (secondsBetween(now, next_) > kEarly) return false;
   // After a stall it does not catch up.

@@ -14,49 +14,50 @@
 
 namespace microinjection {
 
-/// What a hand does with a device, in the view's axes: x right, y away, z up.
+/// State of a hand at a device, in the view's axes: x right, y away, z up.
 struct EmulatedHand {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m; of a stick 10 mm is the end of an axis
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m; 10 mm is the end of a stick's axis
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< m/s
   bool clutch = false;                                 ///< pressed
-  bool present = false;                                ///< holds the dead-man down
-  bool inject = false;                                 ///< presses the button for it, on devices that have one
+  bool present = false;                                ///< holds the dead-man switch down
+  bool inject = false;                                 ///< presses the inject button, if any
 };
 
-/// A haptic device behind its driver's topics, written from the driver's source: its messages, units, axes, rates and
-/// buttons, and what it does with the force.
+/// Emulates a haptic device and its driver's topics, after the driver's source: messages, units,
+/// axes, rates, buttons and rendering of the force.
 class EmulatedDriver {
  public:
-  /// A force (N, of the size that the message has), and when it came.
-  using Listener = std::function<void(const Eigen::Vector3d& force, const ros::Time& received)>;
+  /// Receives a force (N, with the message's magnitude) and its time of arrival.
+  using Handler = std::function<void(const Eigen::Vector3d& force, const ros::Time& received)>;
 
   virtual ~EmulatedDriver() = default;
-  /// Before each step: takes what has come outside of the cycle's inputs.
+  /// Before each step: receives messages outside of the cycle's inputs.
   virtual void process(const EmulatedHand&) {}
-  /// N on the hand now, in the view's axes: drivers hold the last force for ever.
+  /// The present force (N) on the hand, in the view's axes. Drivers hold the last force for ever.
   virtual Eigen::Vector3d render(const EmulatedHand&) { return Eigen::Vector3d::Zero(); }
-  /// Publishes what the driver would now.
+  /// Publishes the driver's messages that are due now.
   virtual void publish(const EmulatedHand& hand, const ros::Time& now) = 0;
-  /// Its buttons take no part in the lock step: they come when they come.
+  /// Whether its buttons are outside of the lock step and arrive at any time.
   virtual bool hasUnstampedButtons() const { return false; }
 };
 
 /// @pre kind is one of emulatedDrivers()
 std::unique_ptr<EmulatedDriver> makeEmulatedDriver(const std::string& kind, Cycle& cycle,
-                                                   const EmulatedDriver::Listener& listener);
-/// crtk: any device that needs no adapter; omni: phantom_omni; geomagic: ros_geomagic; force_dimension:
-/// sawForceDimensionSDK; dvrk: a master arm of dVRK 2.1, dvrk_2_0: of 2.0, with transforms; falcon: the driver on
-/// libnifalcon of 2025; joy: joy_node with a gamepad; spacenav: spacenav_node.
+                                                   const EmulatedDriver::Handler& handler);
+/// crtk: any device that needs no adapter; omni: phantom_omni; geomagic: ros_geomagic;
+/// force_dimension: sawForceDimensionSDK; dvrk: a master arm of dVRK 2.1, dvrk_2_0: of 2.0, with
+/// transforms; falcon: the driver on libnifalcon of 2025; joy: joy_node with a gamepad; spacenav:
+/// spacenav_node.
 std::vector<std::string> emulatedDrivers();
 
-// Of each file.
+// One for each file of emulated drivers.
 std::unique_ptr<EmulatedDriver> makeEmulatedCrtk(const std::string& kind, Cycle& cycle,
-                                                 const EmulatedDriver::Listener& listener);
+                                                 const EmulatedDriver::Handler& handler);
 std::unique_ptr<EmulatedDriver> makeEmulatedTouch(const std::string& kind, Cycle& cycle,
-                                                  const EmulatedDriver::Listener& listener);
+                                                  const EmulatedDriver::Handler& handler);
 std::unique_ptr<EmulatedDriver> makeEmulatedStick(const std::string& kind, Cycle& cycle);
 
-/// Lets through what a driver publishes at its own rate.
+/// Limits the publishing of a driver to its own rate.
 class EmulatedRate {
  public:
   explicit EmulatedRate(double period) : period_(period) {}  ///< s
@@ -67,11 +68,11 @@ class EmulatedRate {
   ros::Time next_;
 };
 
-/// The first button is `first`, the second `second`.
+/// A message with the states of two buttons.
 sensor_msgs::Joy toJoy(const ros::Time& now, bool first, bool second = false);
 
-/// A force that has no header. In lock step each step waits for the one of the tick before, since such a topic takes no
-/// part in it. In the first two ticks not all are connected.
+/// Receives a force message without a header. Such a topic is outside of the lock step, so each
+/// step waits for the message of the last tick, from the third tick on, when all are connected.
 template <typename Message>
 class UnstampedForce {
  public:

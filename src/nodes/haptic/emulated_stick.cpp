@@ -12,8 +12,8 @@ constexpr double kEnd = 0.01;  // m of an EmulatedHand at the end of an axis
 
 Eigen::Vector3d share(const EmulatedHand& hand) { return (hand.position / kEnd).cwiseMax(-1).cwiseMin(1); }
 
-/// joy_node as `_autorepeat_rate:=50` starts it, with a gamepad of the Xbox kind: axes are positive to the left and up,
-/// and 0 within the dead zone of 0.05. It tells what has changed at once.
+/// joy_node with `_autorepeat_rate:=50` and a gamepad of the Xbox kind: axes are positive to the
+/// left and up, and 0 within the dead zone of 0.05. It publishes changes at once.
 class EmulatedJoy : public EmulatedDriver {
  public:
   explicit EmulatedJoy(Cycle& cycle) : joy_(cycle.output<sensor_msgs::Joy>("joy")) {}
@@ -29,9 +29,9 @@ class EmulatedJoy : public EmulatedDriver {
     joy.buttons.resize(11);
     joy.buttons[0] = hand.inject ? 1 : 0;   // A
     joy.buttons[4] = hand.present ? 1 : 0;  // left shoulder
-    const bool changed = joy.axes != told_.axes || joy.buttons != told_.buttons;
-    if (!changed && secondsBetween(told_.header.stamp, now) < kRepetition) return;
-    told_ = joy;
+    const bool changed = joy.axes != last_published_.axes || joy.buttons != last_published_.buttons;
+    if (!changed && secondsBetween(last_published_.header.stamp, now) < kRepetition) return;
+    last_published_ = joy;
     joy_.publish(joy);
   }
 
@@ -45,11 +45,12 @@ class EmulatedJoy : public EmulatedDriver {
   }
 
   Output<sensor_msgs::Joy>& joy_;
-  sensor_msgs::Joy told_;
+  sensor_msgs::Joy last_published_;
 };
 
-/// spacenav_node: x away, y left, z up. A cap that is held aside is told with each of the device's reports, every 16
-/// ms; without one for 30 polls, of a millisecond each, zeros are told, again and again. Buttons are told at once.
+/// spacenav_node: x away, y left, z up. It publishes a deflected cap with each of the device's
+/// reports, every 16 ms. After 30 polls of a millisecond without a report it publishes zeros
+/// repeatedly. Buttons are published at once.
 class EmulatedSpacenav : public EmulatedDriver {
  public:
   explicit EmulatedSpacenav(Cycle& cycle) : joy_(cycle.output<sensor_msgs::Joy>("spacenav/joy")) {}

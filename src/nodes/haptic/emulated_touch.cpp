@@ -1,4 +1,5 @@
-// The Touch's two drivers. Both hold the last force for ever, less a damping by the velocity at which it came.
+// The Touch's two drivers. Both hold the last force for ever, less a damping by the velocity at its
+// arrival.
 
 #include <geometry_msgs/PoseStamped.h>
 
@@ -18,17 +19,17 @@ constexpr double kDriverDamping = 1e-3;  // N s/mm, of both drivers
 Eigen::Vector3d toVector(const geometry_msgs::Vector3& v) { return {v.x, v.y, v.z}; }
 Eigen::Vector3d damping(const EmulatedHand& hand) { return kDriverDamping * hand.velocity / kMillimetre; }
 
-/// phantom_omni's omni_state: state, button, force_feedback at 1 kHz, in the axes (X, -Z, Y) of OpenHaptics, which are
-/// the view's. Buttons are told on change and not latched; each press of the white one turns `locked` over, each of the
-/// grey one `close_gripper`, and neither does anything.
+/// phantom_omni's omni_state: state, button, force_feedback at 1 kHz, in the axes (X, -Z, Y) of
+/// OpenHaptics, which are the view's. Buttons are published on change and not latched. Each press
+/// of the white one toggles `locked`, each of the grey one `close_gripper`; neither has an effect.
 class EmulatedOmni : public EmulatedDriver {
  public:
-  EmulatedOmni(Cycle& cycle, const Listener& listener)
+  EmulatedOmni(Cycle& cycle, const Handler& handler)
       : state_(cycle.output<OmniState>("phantom/state")),
         button_(cycle.node().advertise<OmniButtonEvent>("phantom/button", 100)),
-        messages_(cycle, "phantom/force_feedback", [this, listener](const OmniFeedback& message, const auto& received) {
+        messages_(cycle, "phantom/force_feedback", [this, handler](const OmniFeedback& message, const auto& received) {
           force_ = toVector(message.force) - damping_;
-          listener(toVector(message.force), received);
+          handler(toVector(message.force), received);
         }) {}
 
   void process(const EmulatedHand& hand) override {
@@ -39,18 +40,18 @@ class EmulatedOmni : public EmulatedDriver {
   bool hasUnstampedButtons() const override { return true; }
 
   void publish(const EmulatedHand& hand, const ros::Time& now) override {
-    told_.header.stamp = now;
-    told_.pose = toPose(Eigen::Vector3d(hand.position / kMillimetre), now, "").pose;
-    told_.velocity.x = hand.velocity.x() / kMillimetre;
-    told_.velocity.y = hand.velocity.y() / kMillimetre;
-    told_.velocity.z = hand.velocity.z() / kMillimetre;
-    state_.publish(told_);
+    last_published_.header.stamp = now;
+    last_published_.pose = toPose(Eigen::Vector3d(hand.position / kMillimetre), now, "").pose;
+    last_published_.velocity.x = hand.velocity.x() / kMillimetre;
+    last_published_.velocity.y = hand.velocity.y() / kMillimetre;
+    last_published_.velocity.z = hand.velocity.z() / kMillimetre;
+    state_.publish(last_published_);
     OmniButtonEvent event;
     event.grey_button = hand.clutch ? 1 : 0;
     event.white_button = hand.present ? 1 : 0;
     if (event.grey_button == buttons_.grey_button && event.white_button == buttons_.white_button) return;
-    if (event.grey_button == 1) told_.close_gripper = !told_.close_gripper;
-    if (event.white_button == 1) told_.locked = !told_.locked;
+    if (event.grey_button == 1) last_published_.close_gripper = !last_published_.close_gripper;
+    if (event.white_button == 1) last_published_.locked = !last_published_.locked;
     buttons_ = event;
     button_.publish(event);
   }
@@ -59,24 +60,24 @@ class EmulatedOmni : public EmulatedDriver {
   Output<OmniState>& state_;
   ros::Publisher button_;
   UnstampedForce<OmniFeedback> messages_;
-  OmniState told_;
+  OmniState last_published_;
   OmniButtonEvent buttons_;
   Eigen::Vector3d damping_ = Eigen::Vector3d::Zero();  // N
   Eigen::Vector3d force_ = Eigen::Vector3d::Zero();    // N
 };
 
-/// ros_geomagic's geomagic_control: pose, joy, force_feedback at 100 Hz (its /publish_rate), in the axes of
-/// OpenHaptics: x right, y up, z to the operator. A pose that is more than 5 mm from the one before counts as a glitch,
-/// and the one before is told again.
+/// ros_geomagic's geomagic_control: pose, joy, force_feedback at 100 Hz (its /publish_rate), in the
+/// axes of OpenHaptics: x right, y up, z to the operator. A pose more than 5 mm from the last one
+/// counts as a glitch: the last one is published again.
 class EmulatedGeomagic : public EmulatedDriver {
  public:
-  EmulatedGeomagic(Cycle& cycle, const Listener& listener)
+  EmulatedGeomagic(Cycle& cycle, const Handler& handler)
       : pose_(cycle.output<geometry_msgs::PoseStamped>("Geomagic/pose")),
         joy_(cycle.output<sensor_msgs::Joy>("Geomagic/joy")),
         messages_(cycle, "Geomagic/force_feedback",
-                  [this, listener](const DeviceFeedback& message, const auto& received) {
-                    take(message);
-                    listener(toVector(message.force), received);
+                  [this, handler](const DeviceFeedback& message, const auto& received) {
+                    receive(message);
+                    handler(toVector(message.force), received);
                   }) {
     double rate = 100;
     ros::param::get("/publish_rate", rate);
@@ -100,9 +101,9 @@ class EmulatedGeomagic : public EmulatedDriver {
   void publish(const EmulatedHand& hand, const ros::Time& now) override {
     if (!rate_.due(now)) return;
     const Eigen::Vector3d position = toDevice(hand.position) / kMillimetre;
-    const bool glitch = told_ && (position - *told_).cwiseAbs().maxCoeff() > kGlitch;
-    if (!glitch) told_ = position;
-    pose_.publish(toPose(*told_, now, "world"));
+    const bool glitch = last_published_ && (position - *last_published_).cwiseAbs().maxCoeff() > kGlitch;
+    if (!glitch) last_published_ = position;
+    pose_.publish(toPose(*last_published_, now, "world"));
     sensor_msgs::Joy joy = toJoy(now, hand.clutch, hand.present);
     for (int i = 0; i < 3; ++i) joy.axes.push_back(static_cast<float>(position[i]));
     joy.axes.resize(6);
@@ -115,7 +116,7 @@ class EmulatedGeomagic : public EmulatedDriver {
 
   static Eigen::Vector3d toDevice(const Eigen::Vector3d& v) { return {v.x(), v.z(), -v.y()}; }
 
-  void take(const DeviceFeedback& message) {
+  void receive(const DeviceFeedback& message) {
     if (message.lock.size() < 3) {
       ROS_FATAL("the driver would read past the end of `lock`");
       return ros::shutdown();
@@ -129,7 +130,7 @@ class EmulatedGeomagic : public EmulatedDriver {
   Output<sensor_msgs::Joy>& joy_;
   UnstampedForce<DeviceFeedback> messages_;
   EmulatedRate rate_{0.01};
-  std::optional<Eigen::Vector3d> told_;                      // mm
+  std::optional<Eigen::Vector3d> last_published_;            // mm
   Eigen::Vector3d position_ = Eigen::Vector3d::Zero();       // mm
   Eigen::Vector3d damping_ = Eigen::Vector3d::Zero();        // N
   Eigen::Vector3d force_ = Eigen::Vector3d::Zero();          // N
@@ -140,9 +141,9 @@ class EmulatedGeomagic : public EmulatedDriver {
 }  // namespace
 
 std::unique_ptr<EmulatedDriver> makeEmulatedTouch(const std::string& kind, Cycle& cycle,
-                                                  const EmulatedDriver::Listener& listener) {
-  if (kind == "omni") return std::make_unique<EmulatedOmni>(cycle, listener);
-  return std::make_unique<EmulatedGeomagic>(cycle, listener);
+                                                  const EmulatedDriver::Handler& handler) {
+  if (kind == "omni") return std::make_unique<EmulatedOmni>(cycle, handler);
+  return std::make_unique<EmulatedGeomagic>(cycle, handler);
 }
 
 }  // namespace microinjection

@@ -14,7 +14,7 @@ const ros::WallDuration kConnecting(2);  // until all nodes of a session are con
 bool isSubscribed(const ros::Publisher& publisher, const std::string& node) {
   const auto publication = ros::TopicManager::instance()->lookupPublication(publisher.getTopic());
   if (!publication) return false;
-  XmlRpc::XmlRpcValue links;  // as getBusInfo tells them: id, the subscriber's name, ...
+  XmlRpc::XmlRpcValue links;  // as in getBusInfo: id, the subscriber's name, ...
   links.setSize(0);
   publication->getInfo(links);
   for (int i = 0; i < links.size(); ++i) {
@@ -23,19 +23,19 @@ bool isSubscribed(const ros::Publisher& publisher, const std::string& node) {
   return false;
 }
 
-bool ForceReceiver::feels() {
+bool ForceReceiver::isConnected() {
   const ros::SteadyTime now = ros::SteadyTime::now();
-  if (!asked_ || driver_.empty()) return true;
-  if (driver_ == looked_at_ && now - looked_ < kPeriod) return reason_.empty();
-  const bool felt = isSubscribed(force_, driver_);
-  if (felt || driver_ != looked_at_) felt_ = now;
-  looked_at_ = driver_;
-  looked_ = now;
-  reason_ = felt ? "" : driver_ + " does not subscribe to the hand's force, " + force_.getTopic();
-  if (now - felt_ > kConnecting) {
-    ROS_WARN_STREAM_THROTTLE(10, reason_ << ": the hand would feel nothing, and the needle does not follow it");
+  if (!required_ || driver_.empty()) return true;
+  if (driver_ == checked_driver_ && now - checked_ < kPeriod) return reason_.empty();
+  const bool connected = isSubscribed(force_, driver_);
+  if (connected || driver_ != checked_driver_) connected_ = now;
+  checked_driver_ = driver_;
+  checked_ = now;
+  reason_ = connected ? "" : driver_ + " does not subscribe to the hand's force, " + force_.getTopic();
+  if (now - connected_ > kConnecting) {
+    ROS_WARN_STREAM_THROTTLE(10, reason_ << ": without the force the needle does not follow the hand");
   }
-  return felt;
+  return connected;
 }
 
 }  // namespace microinjection

@@ -8,35 +8,35 @@
 
 namespace microinjection {
 
-/// Whether the device feels the force that this node publishes for the hand: the node that publishes the hand's
-/// position must be connected to the force's topic. Nobody else's subscription counts, since a watchdog, a recorder or
-/// `rostopic echo` renders nothing.
+/// Checks that the device receives the hand's force: the node that publishes the hand's position
+/// must be connected to the force's topic. Other subscriptions do not count, since a watchdog, a
+/// recorder or `rostopic echo` renders nothing.
 ///
-/// In lock step it is not asked: who is connected first would depend on the machine.
+/// It is not required in lock step, where the order of the connections would depend on the machine.
 class ForceReceiver {
  public:
-  /// `asked`: false for a device that renders no force.
-  ForceReceiver(const ros::Publisher& force, bool asked) : force_(force), asked_(asked) {}
+  /// `required`: false for a device that renders no force.
+  ForceReceiver(const ros::Publisher& force, bool required) : force_(force), required_(required) {}
   ForceReceiver(const ForceReceiver&) = delete;
 
-  /// The topic of the hand's position.
+  /// Sets the topic of the hand's position.
   template <typename Message>
-  void watch(Input<Message>& position) {
-    position.listen([this, &position](const Message&, const ros::Time&) { driver_ = position.sender; });
+  void monitor(Input<Message>& position) {
+    position.onMessage([this, &position](const Message&, const ros::Time&) { driver_ = position.sender; });
   }
 
-  /// Looks again each 50 ms.
-  bool feels();
-  /// Why feels() was false; empty while it was true.
-  const std::string& why() const { return reason_; }
-  /// The node that the hand's last position came from; empty: none yet.
+  /// Checks the connection each 50 ms.
+  bool isConnected();
+  /// Why isConnected() was false; empty while it was true.
+  const std::string& reason() const { return reason_; }
+  /// The node that published the hand's last position; empty: none yet.
   const std::string& driver() const { return driver_; }
 
  private:
   ros::Publisher force_;
-  bool asked_;
-  std::string driver_, looked_at_;
-  ros::SteadyTime looked_, felt_;  ///< when last; felt_ from when this driver was new
+  bool required_;
+  std::string driver_, checked_driver_;
+  ros::SteadyTime checked_, connected_;  ///< times of the last check and connection; a new driver resets connected_
   std::string reason_;
 };
 

@@ -6,7 +6,8 @@
 namespace microinjection {
 namespace {
 
-/// `none`: where there is no such button; `unknown`: where it cannot be read.
+/// Whether a button is pressed. Returns `none` without such a button, `unknown` without a valid
+/// message.
 bool pressed(const sensor_msgs::Joy* joy, int button, bool none, bool unknown) {
   if (button < 0) return none;
   const auto index = static_cast<std::size_t>(button);
@@ -34,18 +35,18 @@ GeomagicAdapter::GeomagicAdapter(Cycle& cycle, const GeomagicConfig& config)
       buttons_(cycle.input<sensor_msgs::Joy>(config.device + "/joy", InputPhase::kPreviousTick, config.timeout)),
       force_(cycle.node().advertise<DeviceFeedback>(config.device + "/force_feedback", 10)),
       receiver_(force_, !cycle.lockstep()) {
-  receiver_.watch(pose_);
+  receiver_.monitor(pose_);
 }
 
 std::optional<HandReading> GeomagicAdapter::read(const Cycle::Tick& tick) {
   const auto* pose = pose_.get(tick.now);
-  if (!pose || !receiver_.feels()) return std::nullopt;
+  if (!pose || !receiver_.isConnected()) return std::nullopt;
   const auto position = validPosition(pose, pose->header.frame_id, kLargestHandDistance / config_.length_unit);
   if (!position) return std::nullopt;
   HandReading reading;
   reading.position = config_.length_unit * *position;
   reading.stamp = pose->header.stamp;
-  // A clutch that cannot be read counts as pressed, a dead-man as let go.
+  // Without a valid message the clutch counts as pressed and the dead-man switch as released.
   const sensor_msgs::Joy* joy = buttons_.get(tick.now);
   reading.clutch = pressed(joy, config_.clutch_button, false, true);
   reading.operator_present = pressed(joy, config_.operator_button, true, false);

@@ -9,8 +9,8 @@
 
 namespace microinjection {
 
-/// geomagic_control/DeviceFeedback of ros_geomagic: force in N. Its driver reads lock[0] to lock[2] without asking how
-/// many there are.
+/// geomagic_control/DeviceFeedback of ros_geomagic: force in N. Its driver reads lock[0] to lock[2]
+/// without checking the length.
 struct DeviceFeedback {
   geometry_msgs::Vector3 force;
   geometry_msgs::Vector3 position;

@@ -10,7 +10,7 @@ using visualization_msgs::InteractiveMarkerControl;
 constexpr double kSize = 0.3;  // display units, of the arrows
 constexpr double kBall = 0.1;  // display units, diameter
 
-/// A control along an axis is along the x axis of its orientation; rviz draws the arrows.
+/// A control moves along the x axis of its orientation; rviz draws the arrows.
 InteractiveMarkerControl axisControl(const std::string& name, double x, double y, double z) {
   InteractiveMarkerControl control;
   control.name = name;

@@ -10,7 +10,7 @@
 
 namespace microinjection {
 
-/// What a device tells of the hand.
+/// State of the hand at a device.
 struct HandReading {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m, the device's axes
   ros::Time stamp;                                     ///< of the measurement
@@ -18,22 +18,22 @@ struct HandReading {
   bool operator_present = true;
 };
 
-/// A device behind the topics of its own driver, or one that has none. Its constructor has subscribed and advertised;
-/// see haptic_registry.h.
+/// Adapter of a device with its own driver's topics, or without a driver. The constructor
+/// subscribes and advertises; see haptic_registry.h.
 class HapticAdapter {
  public:
   virtual ~HapticAdapter() = default;
 
-  /// The hand now; empty while the device is silent or tells nonsense.
+  /// The present hand; empty while the device is stale or invalid.
   virtual std::optional<HandReading> read(const Cycle::Tick& tick) = 0;
-  /// Called in every step with the force on the hand (N, the device's axes), zero where none is to be felt. Drivers
-  /// that hold the last force for ever get it again and again.
+  /// Renders the force on the hand (N, the device's axes). Called in every step, with zero for no
+  /// force, since drivers hold the last force for ever.
   virtual void render(const Eigen::Vector3d& force, const Cycle::Tick& tick) = 0;
-  /// The operator's words for /controller/state_command since the last call.
+  /// The operator's commands for /controller/state_command since the last call.
   virtual std::vector<std::string> takeCommands() { return {}; }
-  /// Why there is no hand although the device is not silent; empty: it is, or there is a hand.
-  virtual std::string whySilent() const { return ""; }
-  /// The operator wants to end the program.
+  /// Why there is no hand although the device is not stale; else empty.
+  virtual std::string invalidReason() const { return ""; }
+  /// Whether the operator requested the end of the program.
   virtual bool wantsToEnd() const { return false; }
 };
 

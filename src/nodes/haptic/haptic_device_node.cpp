@@ -12,7 +12,7 @@ namespace {
 constexpr char kHapticFrame[] = "haptic";
 constexpr double kButtonPeriod = 0.02;   // s
 constexpr double kSilencePeriod = 0.02;  // s
-constexpr int kLastForces = 5;           // since messages can be dropped
+constexpr int kLastForces = 5;           // several, since messages can be dropped
 
 sensor_msgs::Joy button(const ros::Time& now, bool pressed) {
   sensor_msgs::Joy message;
@@ -24,7 +24,7 @@ sensor_msgs::Joy button(const ros::Time& now, bool pressed) {
 }  // namespace
 
 const char* const HapticDeviceNode::kHelp =
-    "haptic_device: a haptic device that does not speak CRTK, with the bridge's topics; keyboard_hand: the keyboard "
+    "haptic_device: connects a haptic device without CRTK topics to the bridge; keyboard_hand: uses the keyboard "
     "of\n"
     "the terminal that it is started in.\n"
     "In: /haptic/servo_cf and the device's own topics. Out: /haptic/measured_cp /haptic/clutch "
@@ -37,7 +37,7 @@ HapticDeviceNode::Parameters::Parameters(ConfigReader& reader, const std::string
   reader.text("kind", kind, default_kind.empty() ? ConfigReader::kRequired : ConfigReader::kOptional);
   reader.number("rate", rate, Range::closed(50, 5000));
   reader.number("force_timeout", force_timeout, Range::positive());
-  if (kind.empty()) reader.finish();  // says that it is missing
+  if (kind.empty()) reader.finish();  // reports that it is missing
 }
 
 HapticDeviceNode::HapticDeviceNode(ros::NodeHandle node, ros::NodeHandle private_node, const std::string& default_kind)
@@ -45,7 +45,7 @@ HapticDeviceNode::HapticDeviceNode(ros::NodeHandle node, ros::NodeHandle private
       parameters_(reader_, default_kind),
       kind_(findHapticKind(parameters_.kind)),
       cycle_(node, parameters_.rate),
-      // Handed on as soon as it comes, where that cannot set the bridge off again.
+      // Rendered on arrival, except where that would make bridge and device trigger each other.
       force_(cycle_.input<geometry_msgs::WrenchStamped>(
           "haptic/servo_cf", kind_.paced && !cycle_.lockstep() ? InputPhase::kThisTick : InputPhase::kPreviousTick,
           parameters_.force_timeout)),
@@ -87,7 +87,8 @@ void HapticDeviceNode::step(const Cycle::Tick& tick) {
   last_ = hand;
 }
 
-/// Not in every step: it sets the bridge off, whose force sets off this node, and both would run as fast as they can.
+/// Not in every step: the message triggers the bridge, whose force triggers this node, and both
+/// would run at full speed.
 void HapticDeviceNode::publishNoMessage(const ros::Time& now) {
   if (!last_ && secondsBetween(silence_published_, now) < kSilencePeriod) return;
   silence_published_ = now;
@@ -123,11 +124,11 @@ void HapticDeviceNode::publishZeroForce() {
 }
 
 void HapticDeviceNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) const {
-  const std::string why = adapter_->whySilent();
+  const std::string reason = adapter_->invalidReason();
   status.summary(last_ ? diagnostic_msgs::DiagnosticStatus::OK : diagnostic_msgs::DiagnosticStatus::WARN,
-                 last_         ? "the device tells where the hand is"
-                 : why.empty() ? "the device is silent: zero force"
-                               : "the hand is not followed: " + why);
+                 last_            ? "the hand's position is valid"
+                 : reason.empty() ? "the device is stale: zero force"
+                                  : "the hand is not followed: " + reason);
   status.add("kind", kind_.name);
   if (last_) status.add("operator", last_->operator_present ? "present" : "not present");
 }

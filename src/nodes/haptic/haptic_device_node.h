@@ -14,13 +14,13 @@
 
 namespace microinjection {
 
-/// A haptic device that does not speak CRTK, with the bridge's topics. When the device or the force is stale, and
-/// several times before it ends, it renders zero force.
+/// Connects a haptic device without CRTK topics to the bridge's topics. When the device or the
+/// force is stale, and several times before it ends, it renders zero force.
 ///
-/// In:  /haptic/servo_cf (WrenchStamped, N), and what the device's kind says (haptic/KIND_adapter.h)
-/// Out: /haptic/measured_cp (PoseStamped, m, frame `haptic`; stamp 0 each 20 ms while the device is silent),
-/// /haptic/clutch,
-///      /haptic/operator_present (Joy, on change and each 20 ms), /controller/state_command (StringStamped)
+/// In:  /haptic/servo_cf (WrenchStamped, N), topics of the device's kind (haptic/KIND_adapter.h)
+/// Out: /haptic/measured_cp (PoseStamped, m, frame `haptic`; stamp 0 each 20 ms while the device is
+///      stale), /haptic/clutch and /haptic/operator_present (Joy, on change and each 20 ms),
+///      /controller/state_command (StringStamped)
 ///
 /// Parameters (private): those of the kind and
 ///   kind           see haptic_registry.cpp; required
@@ -58,9 +58,9 @@ class HapticDeviceNode {
   Output<sensor_msgs::Joy>& operator_present_;
   ros::Publisher commands_;
   ros::Subscriber controller_;
-  bool paused_ = false;  ///< the controller is
+  bool paused_ = false;  ///< the controller is PAUSED
   std::unique_ptr<HapticAdapter> adapter_;
-  std::optional<HandReading> last_;  ///< what was told last
+  std::optional<HandReading> last_;  ///< what was published last
   ros::Time buttons_published_, silence_published_;
 };
 

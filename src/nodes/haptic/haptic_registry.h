@@ -8,17 +8,17 @@
 
 namespace microinjection {
 
-/// A kind of haptic device. config/haptic/NAME.yaml says which kind a device is.
+/// A kind of haptic device. config/haptic/NAME.yaml sets the kind of a device.
 struct HapticKind {
   std::string name;
-  /// A step follows the device's own messages, and the force is handed on as soon as it comes.
+  /// Whether the device's messages trigger the steps and the force is rendered on arrival.
   bool paced;
   /// Reads the kind's parameters; errors stay in the reader.
   std::unique_ptr<HapticAdapter> (*make)(Cycle& cycle, ConfigReader& reader);
 };
 
 const std::vector<HapticKind>& hapticKinds();
-/// @throws ConfigError that names all kinds.
+/// @throws ConfigError with the names of all kinds.
 const HapticKind& findHapticKind(const std::string& name);
 
 }  // namespace microinjection

@@ -20,10 +20,10 @@ JoyAdapter::JoyAdapter(Cycle& cycle, const JoyConfig& config)
     : config_(config),
       stick_(config.stick),
       joy_(cycle.input<sensor_msgs::Joy>(config.topic, InputPhase::kPreviousTick, config.timeout)) {
-  joy_.listen([this](const sensor_msgs::Joy& joy, const ros::Time&) { listen(joy); });
+  joy_.onMessage([this](const sensor_msgs::Joy& joy, const ros::Time&) { receive(joy); });
 }
 
-void JoyAdapter::listen(const sensor_msgs::Joy& joy) {
+void JoyAdapter::receive(const sensor_msgs::Joy& joy) {
   for (const auto& [command, button] : config_.commands) {
     const auto index = static_cast<std::size_t>(button);
     const bool before = index >= last_buttons_.size() || last_buttons_[index] != 0;
@@ -36,10 +36,10 @@ std::optional<HandReading> JoyAdapter::read(const Cycle::Tick& tick) {
   const sensor_msgs::Joy* joy = joy_.get(tick.now);
   const auto stick = joy ? stick_.read(joy->axes, joy->buttons) : std::nullopt;
   if (!stick) {
-    stick_.lose();
+    stick_.reset();
     return std::nullopt;
   }
-  // The joystick is where it was until it says otherwise: as of now, not of its last message.
+  // The stamp is the present time: the joystick keeps its position until it publishes a change.
   return HandReading{stick->position, tick.now, false, stick->operator_present};
 }
 

@@ -13,14 +13,15 @@ namespace microinjection {
 
 struct JoyConfig {
   std::string topic = "joy";
-  double timeout = 0.2;  ///< s, past which the joystick is silent: its driver must repeat what it told
+  double timeout = 0.2;  ///< s, past which the joystick is stale: its driver must repeat its messages
   RateInputConfig stick;
   std::vector<std::pair<std::string, int>> commands;  ///< state command and the button that sends it
 
   static JoyConfig read(ConfigReader& reader);
 };
 
-/// A joystick, gamepad or space mouse (sensor_msgs/Joy) for the bridge's rate mode. It renders no force.
+/// A joystick, gamepad or space mouse (sensor_msgs/Joy) for the bridge's rate mode. It renders no
+/// force.
 class JoyAdapter : public HapticAdapter {
  public:
   using Config = JoyConfig;
@@ -31,7 +32,7 @@ class JoyAdapter : public HapticAdapter {
   std::vector<std::string> takeCommands() override { return std::exchange(commands_, {}); }
 
  private:
-  void listen(const sensor_msgs::Joy& joy);
+  void receive(const sensor_msgs::Joy& joy);
 
   JoyConfig config_;
   RateInput stick_;

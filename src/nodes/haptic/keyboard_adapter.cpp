@@ -11,7 +11,7 @@ constexpr double kShowPeriod = 0.1;  // s
 constexpr char kKeys[] =
     "arrows: left, right, up (out of the cell), down (into it)   page up, page down: away, to you   hold a key to "
     "move\n"
-    "e enable   i inject   w withdraw (home)   d disable   + - longer and shorter steps   space: let go   q quit\n";
+    "e enable   i inject   w withdraw (home)   d disable   + - longer and shorter steps   space: release   q quit\n";
 
 const std::map<std::string, Eigen::Vector3d>& directions() {
   static const std::map<std::string, Eigen::Vector3d> all{{"left", {-1, 0, 0}},   {"right", {1, 0, 0}},
@@ -20,7 +20,7 @@ const std::map<std::string, Eigen::Vector3d>& directions() {
   return all;
 }
 
-const std::map<std::string, std::string>& words() {
+const std::map<std::string, std::string>& commands() {
   static const std::map<std::string, std::string> all{
       {"e", "enable"}, {"i", "inject"}, {"w", "home"}, {"d", "disable"}};
   return all;
@@ -37,7 +37,7 @@ KeyboardConfig KeyboardConfig::read(ConfigReader& reader) {
 }
 
 KeyboardAdapter::KeyboardAdapter(Cycle& cycle, const KeyboardConfig& config)
-    : config_(config), hand_(config.hand), news_(cycle) {
+    : config_(config), hand_(config.hand), session_(cycle) {
   std::fputs(kKeys, stdout);
 }
 
@@ -46,8 +46,8 @@ void KeyboardAdapter::execute(const std::string& key) {
     hand_.moveBy(config_.step * direction->second);
     return;
   }
-  hand_.release();  // any other key: the operator does something else
-  if (const auto word = words().find(key); word != words().end()) commands_.push_back(word->second);
+  hand_.release();  // any other key ends the motion
+  if (const auto command = commands().find(key); command != commands().end()) commands_.push_back(command->second);
   if (key == "+") config_.step *= 2;
   if (key == "-") config_.step /= 2;
   if (key == "q") ended_ = true;
@@ -71,8 +71,8 @@ void KeyboardAdapter::render(const Eigen::Vector3d& force, const Cycle::Tick& ti
   shown_ = tick.now;
   char felt[64];
   std::snprintf(felt, sizeof felt, "[%s] at the hand %.2f N, ", hand_.present() ? "moving" : "at rest", force.norm());
-  const std::string why = hand_.present() && !news_.held().empty() ? " (" + news_.held() + ")" : "";
-  terminal_.show(felt + news_.text() + why);
+  const std::string reason = hand_.present() && !session_.held().empty() ? " (" + session_.held() + ")" : "";
+  terminal_.show(felt + session_.text() + reason);
 }
 
 }  // namespace microinjection

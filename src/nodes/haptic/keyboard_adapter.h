@@ -19,8 +19,8 @@ struct KeyboardConfig {
   static KeyboardConfig read(ConfigReader& reader);
 };
 
-/// The keyboard of the terminal that the node was started in: arrows and page keys move the hand while they are held,
-/// letters are the operator's words. The line below tells what the operator cannot feel.
+/// The keyboard of the node's terminal: arrows and page keys move the hand while they are held,
+/// letters are the operator's commands. A line below shows the state and the force.
 class KeyboardAdapter : public HapticAdapter {
  public:
   using Config = KeyboardConfig;
@@ -37,7 +37,7 @@ class KeyboardAdapter : public HapticAdapter {
   KeyboardConfig config_;
   GoalHand hand_;
   TerminalKeys keys_;
-  SessionState news_;
+  SessionState session_;
   std::vector<std::string> commands_;
   ros::Time shown_;
   bool ended_ = false;

@@ -16,12 +16,12 @@ namespace {
 
 constexpr char kFrame[] = "viz/world";
 constexpr double kTimeout = 0.2;                // s, of needle and its target
-constexpr double kLongStart = 1.5;              // s, from taking hold to leading; a network's delay there and back
+constexpr double kLongStart = 1.5;              // s, from drag to control; includes a network's round trip
 constexpr double kLongHold = 0.5;               // s
 constexpr double kShowPeriod = 1.0 / 15;        // s
-constexpr double kLeastMotion = 0.05e-6;        // m of the needle that the handle is moved for
+constexpr double kLeastMotion = 0.05e-6;        // m, smallest motion of the needle that moves the handle
 constexpr double kTextHeight = 0.04;            // display units
-const Eigen::Vector3d kTextOffset{0, 0, 0.22};  // display units, of the words from the handle
+const Eigen::Vector3d kTextOffset{0, 0, 0.22};  // display units, of the text from the handle
 
 geometry_msgs::Pose toPoseInDisplay(const Eigen::Vector3d& position) {
   return toPose(toDisplay(position), ros::Time(), kFrame).pose;
@@ -41,7 +41,7 @@ MarkerConfig MarkerConfig::read(ConfigReader& reader) {
 MarkerAdapter::MarkerAdapter(Cycle& cycle, const MarkerConfig& config)
     : config_(config),
       hand_(config.hand),
-      news_(cycle),
+      session_(cycle),
       needle_(cycle.input<geometry_msgs::PoseStamped>("needle/measured_cp", InputPhase::kPreviousTick, kTimeout)),
       target_(cycle.input<geometry_msgs::PoseStamped>("teleop/servo_cp", InputPhase::kPreviousTick, kTimeout)),
       force_(cycle.node().advertise<visualization_msgs::MarkerArray>("hand_marker/force", 1, true)) {
@@ -49,12 +49,12 @@ MarkerAdapter::MarkerAdapter(Cycle& cycle, const MarkerConfig& config)
       cycle.node(), "controller/operating_state", 10,
       [this](const cell_microinjection::OperatingState& message, const std::string&) {
         const bool homes = message.state == "ENABLED" && message.is_busy;
-        controller_state_ = homes ? "on its way home" : message.state == "ENABLED" ? "" : message.state;
+        controller_state_ = homes ? "homing" : message.state == "ENABLED" ? "" : message.state;
       });
-  const std::vector<std::pair<std::string, std::string>> words{
+  const std::vector<std::pair<std::string, std::string>> commands{
       {"Enable", "enable"}, {"Inject", "inject"}, {"Withdraw (home)", "home"}, {"Disable", "disable"}};
-  for (const auto& [title, word] : words) {
-    menu_.insert(title, [this, word = word](const Feedback&) { commands_.push_back(word); });
+  for (const auto& [title, command] : commands) {
+    menu_.insert(title, [this, command = command](const Feedback&) { commands_.push_back(command); });
   }
   server_.insert(handMarker(kFrame), [this](const Feedback& feedback) { onFeedback(feedback); });
   menu_.apply(server_, kHandMarker);
@@ -64,23 +64,23 @@ MarkerAdapter::MarkerAdapter(Cycle& cycle, const MarkerConfig& config)
 void MarkerAdapter::onFeedback(const Feedback& feedback) {
   using Event = visualization_msgs::InteractiveMarkerFeedback;
   const auto event = feedback->event_type;
-  if (event == Event::MOUSE_UP) return release();
+  if (event == Event::MOUSE_UP) return endDrag();
   if (event != Event::MOUSE_DOWN && event != Event::POSE_UPDATE && event != Event::KEEP_ALIVE) return;
   const auto& p = feedback->pose.position;
   const Eigen::Vector3d to = fromDisplay({p.x, p.y, p.z});
   if (feedback->header.frame_id != kFrame || !to.allFinite() || to.norm() > kLargestNeedleDistance) {
     ROS_WARN_THROTTLE(5, "the handle cannot be dragged in frame '%s': set rviz's fixed frame to %s",
                       feedback->header.frame_id.c_str(), kFrame);
-    return release();
+    return endDrag();
   }
-  handle_ = to;  // also of a drag that is lost: then it is put back
-  if (event == Event::MOUSE_DOWN) takeHold();
+  handle_ = to;  // also after a lost drag, to move the handle back
+  if (event == Event::MOUSE_DOWN) beginDrag();
   if (dragged_) hand_.stay();
 }
 
-void MarkerAdapter::takeHold() {
+void MarkerAdapter::beginDrag() {
   if (dragged_) return;
-  lost_because_ = tip_ ? "" : "the needle's place is not known";
+  lost_reason_ = tip_ ? "" : "the needle's position is unknown";
   if (!tip_) return;
   dragged_ = true;
   was_controlling_ = false;
@@ -89,32 +89,32 @@ void MarkerAdapter::takeHold() {
   hand_from_ = hand_.position();
 }
 
-void MarkerAdapter::release() {
+void MarkerAdapter::endDrag() {
   dragged_ = false;
   hand_.release();
 }
 
-void MarkerAdapter::pull(const Cycle::Tick& tick) {
+void MarkerAdapter::moveHand(const Cycle::Tick& tick) {
   if (!dragged_) return;
-  const bool leads = controller_state_.empty() && target_.get(tick.now);
-  held_ = leads ? 0 : held_ + tick.dt;
-  was_controlling_ = was_controlling_ || leads;
+  const bool controls = controller_state_.empty() && target_.get(tick.now);
+  held_ = controls ? 0 : held_ + tick.dt;
+  was_controlling_ = was_controlling_ || controls;
   const bool long_held = held_ > (was_controlling_ ? kLongHold : kLongStart);
   if (long_held || !hand_.present()) {
-    lost_because_ = !hand_.present()             ? "rviz was silent"
-                    : !controller_state_.empty() ? "the controller is " + controller_state_
-                    : !news_.held().empty()      ? news_.held()
-                                                 : "the needle was held";
-    return release();
+    lost_reason_ = !hand_.present()             ? "rviz was silent"
+                   : !controller_state_.empty() ? "the controller is " + controller_state_
+                   : !session_.held().empty()   ? session_.held()
+                                                : "the needle was held";
+    return endDrag();
   }
-  hand_.moveTo(leads ? hand_from_ + config_.hand_scale * (handle_ - drag_from_) : hand_.position());
+  hand_.moveTo(controls ? hand_from_ + config_.hand_scale * (handle_ - drag_from_) : hand_.position());
 }
 
 std::optional<HandReading> MarkerAdapter::read(const Cycle::Tick& tick) {
   const auto needle = validPose(needle_.get(tick.now));
   tip_ = needle ? std::optional<Eigen::Vector3d>(needle->translation()) : std::nullopt;
-  ros::getGlobalCallbackQueue()->callAvailable();  // where the server hears rviz
-  pull(tick);
+  ros::getGlobalCallbackQueue()->callAvailable();  // the server's queue
+  moveHand(tick);
   HandReading reading;
   reading.position = hand_.step(tick.dt);
   reading.stamp = tick.now;
@@ -130,21 +130,21 @@ void MarkerAdapter::render(const Eigen::Vector3d& force, const Cycle::Tick& tick
 }
 
 void MarkerAdapter::followNeedle() {
-  if (dragged_) return server_.applyChanges();  // the server has taken the place over from rviz: for the other rviz's
+  if (dragged_) return server_.applyChanges();  // the server has the position from one rviz and publishes it to others
   if (!tip_) return;
-  const Eigen::Vector3d place = *tip_ + config_.handle_offset;
-  if ((place - handle_).norm() < kLeastMotion) return;
-  handle_ = place;
+  const Eigen::Vector3d position = *tip_ + config_.handle_offset;
+  if ((position - handle_).norm() < kLeastMotion) return;
+  handle_ = position;
   server_.setPose(kHandMarker, toPoseInDisplay(handle_));
   server_.applyChanges();
 }
 
-std::string MarkerAdapter::why() const {
+std::string MarkerAdapter::reasonText() const {
   std::string all;
-  if (dragged_ && !news_.held().empty()) all += "\n" + news_.held();
-  if (!lost_because_.empty()) all += "\n" + lost_because_ + ": let go, and take hold again";
+  if (dragged_ && !session_.held().empty()) all += "\n" + session_.held();
+  if (!lost_reason_.empty()) all += "\n" + lost_reason_ + ": release, and drag again";
   if (!controller_state_.empty()) all += "\n" + controller_state_ + " (right button: Enable)";
-  if (!news_.notice().empty()) all += "\n" + news_.notice();
+  if (!session_.notice().empty()) all += "\n" + session_.notice();
   return all;
 }
 
@@ -156,7 +156,7 @@ void MarkerAdapter::displayForce(const Eigen::Vector3d& force) {
   std::snprintf(felt, sizeof felt, "%.2f N at the hand", force.norm());
   visualization_msgs::MarkerArray shown;
   shown.markers = {arrow ? arrowMarker(arrow_name, *arrow, orange) : noMarker(arrow_name),
-                   textMarker(text_name, toDisplay(handle_) + kTextOffset, felt + why(), kTextHeight, white)};
+                   textMarker(text_name, toDisplay(handle_) + kTextOffset, felt + reasonText(), kTextHeight, white)};
   force_.publish(shown);
 }
 

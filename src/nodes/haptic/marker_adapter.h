@@ -16,21 +16,22 @@ namespace microinjection {
 
 struct MarkerConfig {
   GoalHandConfig hand;
-  double hand_scale = 1e3;                        ///< m of the hand per m that the marker is dragged in `world`
-  Eigen::Vector3d handle_offset = {36e-6, 0, 0};  ///< m, of the handle from the tip, `world`
+  double hand_scale = 1e3;                        ///< m of the hand per m of the marker in `world`
+  Eigen::Vector3d handle_offset = {36e-6, 0, 0};  ///< m, from the tip to the handle, `world`
   double arrow_scale = 20e-6;                     ///< m/N, length of the force's arrow, before x 1e4
 
   static MarkerConfig read(ConfigReader& reader);
 };
 
-/// A handle beside the needle in rviz that a person drags with the mouse, and a menu of the operator's words. While the
-/// mouse button is down the operator is present and the needle goes after the handle; otherwise the handle comes back
-/// to the needle. While the bridge holds the needle or the controller is not ENABLED the hand waits, so that needle and
-/// handle stay together; after a hold that was long (or when rviz was silent) the needle goes nowhere until the handle
-/// is taken hold of again. What a guard of the controller refuses is forgotten, and handle and needle are apart by it.
+/// A handle beside the needle in rviz, which the operator drags with the mouse, and a menu of
+/// commands. While the mouse button is down, the operator is present and the needle follows the
+/// handle; otherwise the handle returns to the needle. While the bridge holds the needle or the
+/// controller is not ENABLED, the hand waits, so that needle and handle stay together. After a long
+/// hold, or when rviz was stale, the needle rests until the next drag. Motion that a guard of the
+/// controller refuses is lost: it separates handle and needle.
 ///
-/// The handle lies in viz/world, at x 1e4. Its topics are /hand_marker/... and not below viz/, which nothing that
-/// controls may read.
+/// The handle lies in viz/world, at x 1e4. Its topics are /hand_marker/... and not below viz/,
+/// which no node that controls may read.
 class MarkerAdapter : public HapticAdapter {
  public:
   using Config = MarkerConfig;
@@ -43,16 +44,16 @@ class MarkerAdapter : public HapticAdapter {
  private:
   using Feedback = visualization_msgs::InteractiveMarkerFeedbackConstPtr;
   void onFeedback(const Feedback& feedback);
-  void takeHold();
-  void release();
-  void pull(const Cycle::Tick& tick);
-  std::string why() const;
+  void beginDrag();
+  void endDrag();
+  void moveHand(const Cycle::Tick& tick);
+  std::string reasonText() const;
   void followNeedle();
   void displayForce(const Eigen::Vector3d& force);
 
   MarkerConfig config_;
   GoalHand hand_;
-  SessionState news_;
+  SessionState session_;
   Input<geometry_msgs::PoseStamped>&needle_, &target_;
   interactive_markers::InteractiveMarkerServer server_{"hand_marker"};
   interactive_markers::MenuHandler menu_;
@@ -60,14 +61,14 @@ class MarkerAdapter : public HapticAdapter {
   ros::Publisher force_;
   std::vector<std::string> commands_;
   std::optional<Eigen::Vector3d> tip_;                   ///< m, `world`
-  Eigen::Vector3d handle_ = Eigen::Vector3d::Zero();     ///< m, `world`, where it is shown
+  Eigen::Vector3d handle_ = Eigen::Vector3d::Zero();     ///< m, `world`, as shown
   Eigen::Vector3d drag_from_ = Eigen::Vector3d::Zero();  ///< m, `world`, of the handle
   Eigen::Vector3d hand_from_ = Eigen::Vector3d::Zero();  ///< m, of the hand
   bool dragged_ = false;
   bool was_controlling_ = false;  ///< in this drag
-  double held_ = 0;               ///< s, since the hand led the needle or the drag began
-  std::string lost_because_;      ///< why a drag was ended while the mouse button was down; empty: it was not
-  std::string controller_state_;  ///< empty: it follows, as far as it has said
+  double held_ = 0;               ///< s, since the hand controlled the needle or the drag began
+  std::string lost_reason_;       ///< why a drag ended while the mouse button was down; else empty
+  std::string controller_state_;  ///< empty: it follows, or nothing is received
   ros::Time shown_;
 };
 

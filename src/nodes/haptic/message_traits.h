@@ -7,7 +7,7 @@
 
 namespace microinjection {
 
-/// What follows a message's definition for a message type that it contains.
+/// The part of a message's definition for a message type that it contains.
 template <typename Message>
 std::string containedDefinition() {
   return "\n" + std::string(80, '=') + "\nMSG: " + ros::message_traits::DataType<Message>::value() + "\n" +
@@ -16,11 +16,12 @@ std::string containedDefinition() {
 
 }  // namespace microinjection
 
-/// Makes a plain struct a message of another package, so that we talk with its nodes and do not depend on it.
+/// Makes a plain struct a message of another package, to exchange it with that package's nodes
+/// without a dependency.
 ///
-/// KIND is TrueType where the struct has a header. TYPE, MD5 and DEFINITION (a std::string, with what is
-/// contained) are what that package's own generated code says; a test computes the md5 sum from the definition. FIELDS
-/// streams the members of `message` in their order.
+/// KIND is TrueType when the struct has a header. TYPE, MD5 and DEFINITION (a std::string, with
+/// contained messages) are those of that package's generated code; a test computes the md5 sum from
+/// the definition. The last argument streams the members of `message` in their order.
 #define MICROINJECTION_FOREIGN_MESSAGE(STRUCT, KIND, TYPE, MD5, DEFINITION, ...)                \
   namespace ros {                                                                               \
   namespace message_traits {                                                                    \

@@ -29,7 +29,7 @@ OmniAdapter::OmniAdapter(Cycle& cycle, const OmniConfig& config)
       state_(cycle.input<OmniState>(config.device + "/state", InputPhase::kThisTick, config.timeout)),
       force_(cycle.node().advertise<OmniFeedback>(config.device + "/force_feedback", 10)),
       receiver_(force_, !cycle.lockstep()) {
-  receiver_.watch(state_);
+  receiver_.monitor(state_);
   buttons_ = subscribeGuarded<OmniButtonEvent>(cycle.node(), config.device + "/button", 10,
                                                [this](const OmniButtonEvent& event, const std::string&) {
                                                  clutch_ = pressed(event, config_.clutch_button);
@@ -43,7 +43,7 @@ std::optional<HandReading> OmniAdapter::read(const Cycle::Tick& tick) {
     operator_present_ = false;
     return std::nullopt;
   }
-  if (!receiver_.feels()) return std::nullopt;
+  if (!receiver_.isConnected()) return std::nullopt;
   const auto& p = state->pose.position;
   HandReading reading;
   reading.position = config_.length_unit * Eigen::Vector3d(p.x, p.y, p.z);

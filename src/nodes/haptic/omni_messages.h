@@ -10,8 +10,8 @@
 
 namespace microinjection {
 
-/// omni_msgs/OmniState of phantom_omni. Its pose is in millimetres unless the driver is told otherwise, whatever the
-/// definition's comment says.
+/// omni_msgs/OmniState of phantom_omni. By default its pose is in millimetres, despite the
+/// definition's comment.
 struct OmniState {
   std_msgs::Header header;
   std::uint8_t locked = false;
@@ -27,7 +27,7 @@ struct OmniFeedback {
   geometry_msgs::Vector3 position;
 };
 
-/// omni_msgs/OmniButtonEvent, sent on change only.
+/// omni_msgs/OmniButtonEvent, published on change only.
 struct OmniButtonEvent {
   std::int32_t grey_button = 0;
   std::int32_t white_button = 0;

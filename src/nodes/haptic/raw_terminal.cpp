@@ -16,7 +16,7 @@ RawTerminal::RawTerminal() {
     throw ConfigError("the keyboard needs a terminal: start it with rosrun in one, not with roslaunch");
   }
   termios raw = before_;
-  raw.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);  // Ctrl-C stays what it is
+  raw.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);  // Ctrl-C still ends the program
   raw.c_cc[VMIN] = 0;
   raw.c_cc[VTIME] = 0;
   tcsetattr(STDIN_FILENO, TCSANOW, &raw);
@@ -45,9 +45,10 @@ std::string RawTerminal::read() {
 
 void RawTerminal::show(const std::string& line) {
   winsize size{};
-  // Of standard input: standard output may be a pipe to the thread that writes to the terminal (base/console_relay.h).
-  const bool known = ioctl(STDIN_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
-  const std::string cut = line.substr(0, known ? size.ws_col - 1 : 79);
+  // The size is that of standard input: standard output may be a pipe to the thread that writes to
+  // the terminal (base/console_relay.h).
+  const bool has_size = ioctl(STDIN_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
+  const std::string cut = line.substr(0, has_size ? size.ws_col - 1 : 79);
   if (cut == shown_) return;
   shown_ = cut;
   std::printf("\r\x1b[K%s", cut.c_str());

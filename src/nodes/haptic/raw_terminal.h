@@ -6,20 +6,21 @@
 
 namespace microinjection {
 
-/// The terminal of this program, each key at once and not shown; as before when it is destroyed.
+/// The terminal of this program in raw mode: each key at once, without echo. The destructor
+/// restores its mode.
 class RawTerminal {
  public:
-  /// @throws ConfigError when standard input is no terminal.
+  /// @throws ConfigError when standard input is not a terminal.
   RawTerminal();
   ~RawTerminal();
   RawTerminal(const RawTerminal&) = delete;
   RawTerminal& operator=(const RawTerminal&) = delete;
 
-  /// What was typed since the last call; never waits.
+  /// The bytes typed since the last call; never waits.
   std::string read();
-  /// Writes over the present line.
+  /// Replaces the present line.
   void show(const std::string& line);
-  /// The terminal is gone.
+  /// Whether the terminal was closed.
   bool closed() const { return closed_; }
 
  private:

@@ -41,14 +41,15 @@ SessionState::SessionState(Cycle& cycle) {
 std::string SessionState::text() const { return state_ + injection_text_; }
 
 std::string SessionState::held() const {
-  // The bridge knows only that the far end holds, the far end why; unless that is for the bridge's sake.
-  return held_.empty() || far_.empty() || far_.find("the hand's side") != std::string::npos ? held_ : far_;
+  // Only the follower reports why it holds, unless the bridge itself is the reason.
+  return held_.empty() || follower_.empty() || follower_.find("the hand's side") != std::string::npos ? held_
+                                                                                                      : follower_;
 }
 
 void SessionState::process(const diagnostic_msgs::DiagnosticArray& diagnostics) {
   for (const auto& status : diagnostics.status) {
     if (status.name == "haptic_bridge: loop") held_ = status.level == 0 ? "" : status.message;
-    if (status.name == "teleoperation_follower: link") far_ = status.level == 0 ? "" : status.message;
+    if (status.name == "teleoperation_follower: link") follower_ = status.level == 0 ? "" : status.message;
     if (status.name == "injection_controller: control" && status.level != 0 && held_.empty()) held_ = status.message;
   }
 }

@@ -11,17 +11,18 @@
 
 namespace microinjection {
 
-/// What the operator of a hand without a device wants to see beside it: the controller's state, where the injection is,
-/// and why the needle does not follow. For people, not for control.
+/// State of the session for the display beside a hand without a device: the controller's state, the
+/// injection's state, and why the needle does not follow. For people, not for control.
 class SessionState {
  public:
   explicit SessionState(Cycle& cycle);
 
   /// For example "ENABLED, indent, 0.52 uN, 12.3 um deep" or "no controller".
   std::string text() const;
-  /// What bridge and controller say of themselves, for example "needle held: clutch is pressed"; once a second.
+  /// The diagnostics of bridge and controller, for example "needle held: clutch is pressed"; once a
+  /// second.
   std::string held() const;
-  /// What became of the operator's last word, where that was not done; else empty.
+  /// Why the operator's last command was not executed; else empty.
   const std::string& notice() const { return notice_; }
 
  private:
@@ -30,7 +31,7 @@ class SessionState {
   ros::Subscriber controller_, injection_, diagnostics_;
   std::string state_ = "no controller";
   std::string injection_text_;
-  std::string held_, far_, notice_;
+  std::string held_, follower_, notice_;
 };
 
 }  // namespace microinjection

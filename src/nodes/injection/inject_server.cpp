@@ -9,15 +9,15 @@
 namespace microinjection {
 namespace {
 
-// ros::Time throws where a sum or a difference does not fit into its seconds; these do.
-constexpr std::int64_t kAhead = 1000000000;        // ns that a stamp may be ahead
+// Times in ns: ros::Time throws when a sum or a difference does not fit into its seconds.
+constexpr std::int64_t kAhead = 1000000000;        // ns, largest lead of a stamp
 constexpr std::int64_t kStatusPeriod = 200000000;  // ns
-constexpr std::int64_t kStatusKept = 5000000000;   // ns that the status of a goal which is over is published on
-constexpr std::uint32_t kQueue = 50;               // messages, as actionlib's own server
+constexpr std::int64_t kStatusKept = 5000000000;   // ns, time after its end in which a goal's status is published
+constexpr std::uint32_t kQueue = 50;               // messages, as in actionlib's own server
 
 std::int64_t nanoseconds(const ros::Time& time) { return static_cast<std::int64_t>(time.toNSec()); }
 
-/// Empty, or what is wrong with the stamp. Before the clock has begun any may be right.
+/// Empty, or the error of the stamp. Before the clock starts, any stamp is accepted.
 std::string aheadOfTime(const ros::Time& stamp) {
   const std::int64_t now = nanoseconds(ros::Time::now()), ahead = nanoseconds(stamp) - now;
   if (now == 0 || ahead <= kAhead) return "";
@@ -43,7 +43,7 @@ void InjectServer::initialize() {
   using Goal = boost::shared_ptr<const ActionGoal>;
   using Cancel = boost::shared_ptr<const actionlib_msgs::GoalID>;
   goals_ = node_.subscribe<ActionGoal>("goal", kQueue, [this](const Goal& goal) {
-    refusal_.clear();  // of a goal before whose callback has thrown
+    refusal_.clear();  // may be left from a goal whose callback has thrown
     runGuarded("goal", [&] { receiveGoal(goal); });
   });
   cancels_ = node_.subscribe<actionlib_msgs::GoalID>(
@@ -70,7 +70,7 @@ void InjectServer::receiveCancel(const actionlib_msgs::GoalIDConstPtr& message) 
     timeless->stamp = ros::Time();
     cancelCallback(timeless);
   }
-  last_cancel_ = ros::Time();  // or it would recall goals that come later
+  last_cancel_ = ros::Time();  // otherwise it would recall later goals
 }
 
 void InjectServer::publishResult(const actionlib_msgs::GoalStatus& status, const Result& result) {
@@ -96,7 +96,7 @@ void InjectServer::publishStatus() {
   message.header.stamp = now;
   for (auto tracker = status_list_.begin(); tracker != status_list_.end();) {
     message.status_list.push_back(tracker->status_);
-    // The cancel of a goal that never came has no handle that could tell its time.
+    // The cancel of a goal that never arrived has no handle with a time.
     const bool over = tracker->handle_tracker_.expired();
     if (over && tracker->handle_destruction_time_.isZero()) tracker->handle_destruction_time_ = now;
     const std::int64_t age = std::abs(nanoseconds(now) - nanoseconds(tracker->handle_destruction_time_));

@@ -11,21 +11,22 @@
 
 namespace microinjection {
 
-/// The topics of the action Inject with actionlib's protocol and states of goals, and a policy of its own for stamps.
-/// The order of goals and cancels is that of their arrival: a stamp decides only which of the known goals a cancel
-/// without an id is for. A stamp that is ahead of the time therefore costs its own message and no later one:
+/// The topics of the action Inject with actionlib's protocol and goal states, but its own rule for
+/// stamps. Goals and cancels count in the order of their arrival; a stamp only selects the present
+/// goals of a cancel without an id. A stamp in the future therefore affects only its own message:
 ///
-///     goal whose stamp is more than 1 s ahead    handed on with the reason for its refusal
-///     cancel whose stamp is more than 1 s ahead  reported; it is for the goal with its id or, without an id, for all
-///                                                that are known. To withdraw is the safe answer to either
+/// - A goal more than 1 s ahead is passed on with the reason for its refusal.
+/// - A cancel more than 1 s ahead is reported and applies to the goal with its id or, without an
+///   id, to all present goals. Withdrawal is the safe reaction.
 ///
-/// It has no thread and no timer: callbacks run where those of the node handle do, and step() publishes the status.
+/// It has no thread and no timer: callbacks run with those of the node handle, and step() publishes
+/// the status.
 class InjectServer : public actionlib::ActionServerBase<cell_microinjection::InjectAction> {
  public:
-  /// `refusal`: why the goal must not be begun; empty where the server has nothing against it.
+  /// `refusal`: why the goal must not begin; empty: it may.
   using OnGoal = std::function<void(GoalHandle goal, const std::string& refusal)>;
 
-  /// Listens at once. `on_cancel` gets every goal that is to end, once.
+  /// Subscribes at once. `on_cancel` receives every goal that shall end, once.
   InjectServer(const ros::NodeHandle& node, const OnGoal& on_goal, const std::function<void(GoalHandle)>& on_cancel);
 
   /// Publishes the status of the goals five times a second.
@@ -40,7 +41,7 @@ class InjectServer : public actionlib::ActionServerBase<cell_microinjection::Inj
   void receiveCancel(const actionlib_msgs::GoalIDConstPtr& message);
 
   ros::NodeHandle node_;
-  std::string refusal_;  ///< of the goal that is being handed on
+  std::string refusal_;  ///< of the goal that is passed on
   std::int64_t published_ns_ = 0;
   ros::Publisher status_, result_, feedback_;
   ros::Subscriber goals_, cancels_;

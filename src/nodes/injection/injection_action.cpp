@@ -7,7 +7,7 @@
 namespace microinjection {
 namespace {
 
-constexpr std::int64_t kFeedback = 100000000;  ///< ns between two
+constexpr std::int64_t kFeedback = 100000000;  ///< ns between two messages
 
 std::int64_t nanoseconds(const ros::Time& time) { return static_cast<std::int64_t>(time.toNSec()); }
 
@@ -54,17 +54,17 @@ void InjectionAction::receive(GoalHandle goal, const std::string& refusal) {
   const auto message = goal.getGoal();
   const std::string problems = message->configured ? "" : toGoal(*message).problems();
   if (!refusal.empty() || !problems.empty()) return refuse(goal, refusal.empty() ? problems : refusal);
-  recall("a newer goal came before it began");
+  recall("replaced by a newer goal before it began");
   next_ = goal;
-  leaves_ = true;
+  end_requested_ = true;
 }
 
 void InjectionAction::cancel(GoalHandle goal) {
-  if (current_.isValid() && goal == current_) leaves_ = true;
+  if (current_.isValid() && goal == current_) end_requested_ = true;
   if (next_.isValid() && goal == next_) recall("cancelled before it began");
 }
 
-/// The goal that waits, if there is one.
+/// Cancels the waiting goal, if there is one.
 void InjectionAction::recall(const std::string& reason) {
   if (!next_.isValid()) return;
   cell_microinjection::InjectResult result = toMessage({});
@@ -84,9 +84,9 @@ void InjectionAction::refuse(GoalHandle goal, const std::string& refusal) {
 }
 
 void InjectionAction::step(const ros::Time& now) {
-  if (current_.isValid() && leaves_ && !withdrawn_) {
+  if (current_.isValid() && end_requested_ && !withdrawn_) {
     withdrawn_ = true;
-    controller_.withdraw();  // refused where there is nothing to withdraw from: then it is over already
+    controller_.withdraw();  // refused without an injection: then it has ended already
   }
   if (current_.isValid() && !controller_.running()) end();
   if (!current_.isValid() && next_.isValid()) begin();
@@ -104,7 +104,7 @@ void InjectionAction::begin() {
   if (!refusal.empty()) return refuse(goal, refusal);
   current_ = goal;
   current_.setAccepted();
-  leaves_ = withdrawn_ = false;
+  end_requested_ = withdrawn_ = false;
   fed_back_ns_ = 0;
 }
 
@@ -127,15 +127,15 @@ void InjectionAction::end() {
 }
 
 void InjectionAction::publishFeedback() {
-  const InjectionFeedback& known = controller_.feedback();
+  const InjectionFeedback& latest = controller_.feedback();
   cell_microinjection::InjectFeedback feedback;
-  feedback.state = toText(known.state);
-  feedback.waits = controller_.waits();
-  feedback.layer = known.layer;
-  feedback.layers = known.layers;
-  feedback.force = known.force;
-  feedback.depth = known.depth;
-  feedback.elapsed = known.elapsed;
+  feedback.state = toText(latest.state);
+  feedback.waits = controller_.awaitsCommand();
+  feedback.layer = latest.layer;
+  feedback.layers = latest.layers;
+  feedback.force = latest.force;
+  feedback.depth = latest.depth;
+  feedback.elapsed = latest.elapsed;
   current_.publishFeedback(feedback);
 }
 

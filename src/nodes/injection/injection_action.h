@@ -11,17 +11,18 @@
 
 namespace microinjection {
 
-/// The action /controller/inject (Inject.action) before an InjectionController. It has no thread: its messages are
-/// heard where the node handle's are, and what they ask for is done by step(). A goal that is cancelled, or replaced by
-/// a newer one, is withdrawn from; the newer one is begun when the needle is out. Of two that wait the newer one stays.
-/// A goal that cannot be meant (InjectionGoal::problems(), a stamp ahead of the time) is refused when it comes, and the
-/// one that runs goes on.
+/// The action /controller/inject (Inject.action) of an InjectionController. It has no thread: its
+/// messages are received with the node handle's, and step() executes them.
+/// - A goal that is cancelled or replaced by a newer one ends with a withdrawal; the newer one
+///   begins when the needle is out. Of two waiting goals the newer one stays.
+/// - An implausible goal (InjectionGoal::problems(), a stamp ahead of the time) is refused on
+///   arrival, and the running one continues.
 class InjectionAction {
  public:
-  /// `controller` outlives this; `configured`: the goal that stands in its configuration.
+  /// `controller` outlives this; `configured`: the goal of its configuration.
   InjectionAction(const ros::NodeHandle& node, InjectionController& controller, const InjectionGoal& configured);
 
-  /// After each step of the controller.
+  /// Call after each step of the controller.
   void step(const ros::Time& now);
 
  private:
@@ -38,8 +39,8 @@ class InjectionAction {
   InjectionController& controller_;
   InjectionGoal configured_;
   GoalHandle current_, next_;  ///< not valid: none
-  bool leaves_ = false;        ///< the current goal is to end
-  bool withdrawn_ = false;     ///< the controller knows that
+  bool end_requested_ = false;  ///< the current goal shall end
+  bool withdrawn_ = false;      ///< the controller has the command
   std::int64_t fed_back_ns_ = 0;
   InjectServer server_;
 };

@@ -25,10 +25,10 @@ std::optional<InjectorReport> InjectorLink::report(const ros::Time& now) {
   return InjectorReport{state->busy || pending_ != 0, state->volume, state->last_id == message_.id};
 }
 
-void InjectorLink::want(const std::optional<PulseGoal>& pulse, const ros::Time& now) {
-  if (pulse && !wanted_) {
+void InjectorLink::setPulse(const std::optional<PulseGoal>& pulse, const ros::Time& now) {
+  if (pulse && !requested_) {
     message_.header.stamp = now;
-    message_.id = pending_ = now.toNSec();  // new, also for an injector that outlives this node; the same in lock step
+    message_.id = pending_ = now.toNSec();  // unique, also after a restart of this node; reproducible in lock step
     message_.pressure = pulse->pressure;
     message_.duration = pulse->duration;
     message_.held = true;
@@ -39,14 +39,14 @@ void InjectorLink::want(const std::optional<PulseGoal>& pulse, const ros::Time& 
     message_.header.stamp = now;
     pulse_.publish(message_);
   }
-  if (!pulse && wanted_ && pending_ != 0) {
+  if (!pulse && requested_ && pending_ != 0) {
     cell_microinjection::StringStamped message;
     message.header.stamp = now;
-    message.string = "the controller does not want it any more";
+    message.string = "the controller ended the pulse";
     stop_.publish(message);
     pending_ = 0;
   }
-  wanted_ = pulse.has_value();
+  requested_ = pulse.has_value();
 }
 
 }  // namespace microinjection

@@ -18,8 +18,8 @@ void assign(Message& message, const Eigen::Vector3d& vector) {
   message.z = vector.z();
 }
 
-/// Of a wave's integral (J^0.5 s^0.5), its energy (J) and the scales: far beyond any, and far from where squares
-/// overflow.
+/// Limit of a wave's integral (J^0.5 s^0.5), its energy (J) and the scales: beyond any real value,
+/// and small enough for squares.
 constexpr double kLargestOfLink = 1e12;
 
 template <typename Vector>
@@ -30,12 +30,13 @@ bool isWithin(const Vector& vector, double largest) {
 }  // namespace
 
 bool isPlausible(const std::string& topic, const cell_microinjection::LinkPacket& message) {
-  // Epochs count from the wall time (ns) at which the hand's side was started. A later one would lock all others out.
+  // Epochs count from the wall time (ns) at the start of the hand's side. A later one would lock
+  // all others out.
   const std::uint64_t latest = ros::WallTime::now().toNSec() + static_cast<std::uint64_t>(1e9 * kLargestLead);
   const bool good = message.epoch <= latest && isFinite(message) && isWithin(message.wave, kLargestOfLink) &&
                     std::abs(message.energy) <= kLargestOfLink && std::abs(message.position_scale) <= kLargestOfLink &&
                     std::abs(message.force_gain) <= kLargestOfLink && isWithin(message.needle, kLargestNeedleDistance);
-  if (!good) MessageRefusals::ofProcess().add(topic, "its numbers cannot be those of a hand and a rig");
+  if (!good) MessageRefusals::ofProcess().add(topic, "its numbers are beyond the limits of a hand and a rig");
   return good;
 }
 

@@ -7,13 +7,13 @@
 
 namespace microinjection {
 
-/// The message's header is left to who sends it.
+/// The caller sets the message's header.
 cell_microinjection::LinkPacket toMessage(const LinkPacket& packet);
 
 LinkPacket toPacket(const cell_microinjection::LinkPacket& message);
 
-/// Whether epoch, wave, energy, scales and needle of a packet can be those of a hand and a rig. A packet that is not
-/// plausible is reported as refused on `topic`.
+/// Whether epoch, wave, energy, scales and needle of a packet are within the limits of any hand and
+/// rig. An implausible packet is reported as refused on `topic`.
 bool isPlausible(const std::string& topic, const cell_microinjection::LinkPacket& message);
 
 }  // namespace microinjection

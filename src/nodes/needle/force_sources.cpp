@@ -7,7 +7,8 @@
 namespace microinjection {
 namespace {
 
-/// What a two-axis sensor reads, in its frame: z axial, x lateral. The torque is not measured and 0.
+/// Wrench of a two-axis reading in the sensor's frame: z axial, x lateral. The torque is not
+/// measured and 0.
 geometry_msgs::WrenchStamped twoAxes(const Eigen::Vector2d& reading, const ros::Time& stamp, const std::string& frame) {
   return toWrench({reading[1], 0, reading[0]}, stamp, frame);
 }
@@ -34,8 +35,8 @@ std::optional<ForceSource::Signal> SimulatedForceSource::read(const Cycle::Tick&
   const auto force = pose ? validForce(message, pose->linear()) : std::nullopt;
   invalid_reason_ = force ? "" : pose ? "no valid force" : "no valid needle pose";
   if (!force) return std::nullopt;
-  const Eigen::Vector3d felt = sensor_from_tip_ * (pose->linear().transpose() * *force);
-  const Eigen::Vector2d reading = model_.sample({felt.z(), felt.x()}, tick.dt);
+  const Eigen::Vector3d at_sensor = sensor_from_tip_ * (pose->linear().transpose() * *force);
+  const Eigen::Vector2d reading = model_.sample({at_sensor.z(), at_sensor.x()}, tick.dt);
   return Signal{reading, message->header.stamp, twoAxes(reading, message->header.stamp, frame_)};
 }
 
@@ -67,20 +68,20 @@ TopicForceSource::TopicForceSource(Cycle& cycle, double timeout, const Eigen::Ve
       wrench_(cycle.input<geometry_msgs::WrenchStamped>("force_sensor/device_cf", InputPhase::kThisTick, timeout)) {}
 
 std::optional<ForceSource::Signal> TopicForceSource::read(const Cycle::Tick& tick) {
-  const auto news = wrench_.takeUpdates();
+  const auto message = wrench_.takeUpdates();
   const auto force = finiteForce(wrench_.get(tick.now));
   if (!force || !isWithin(torqueOf(*wrench_.get(tick.now)), kLargestForce)) {
     invalid_reason_ = "no valid wrench on force_sensor/device_cf";
     return std::nullopt;
   }
-  if (!news) return std::nullopt;
-  const auto pose = frames_.find(kTipFrame, news->header.frame_id);
-  invalid_reason_ = pose ? "" : "tf has no way from frame '" + news->header.frame_id + "' to " + kTipFrame;
+  if (!message) return std::nullopt;
+  const auto pose = frames_.find(kTipFrame, message->header.frame_id);
+  invalid_reason_ = pose ? "" : "tf has no transform from frame '" + message->header.frame_id + "' to " + kTipFrame;
   if (!pose) return std::nullopt;
   // The same force about another point: the torque gains arm x force.
-  Signal signal{Eigen::VectorXd(6), news->header.stamp, *news};
+  Signal signal{Eigen::VectorXd(6), message->header.stamp, *message};
   const Eigen::Vector3d at_tip = pose->linear() * *force;
-  signal.values << at_tip, pose->linear() * torqueOf(*news) + pose->translation().cross(at_tip);
+  signal.values << at_tip, pose->linear() * torqueOf(*message) + pose->translation().cross(at_tip);
   overload_.check({at_tip.z(), at_tip.head<2>().norm()});
   return signal;
 }

@@ -18,35 +18,36 @@
 
 namespace microinjection {
 
-/// Where the force sensor's readings come from.
+/// Source of the force sensor's readings.
 class ForceSource {
  public:
   struct Signal {
     Eigen::VectorXd values;  ///< (axial, lateral) in the sensor's frame (N), or force (N) and torque (N m) at the tip
     ros::Time stamp;
-    geometry_msgs::WrenchStamped raw;  ///< as the sensor sees it, in its own frame
+    geometry_msgs::WrenchStamped raw;  ///< in the sensor's frame
   };
 
   virtual ~ForceSource() = default;
 
   virtual int size() const = 0;  ///< of Signal::values
-  /// The largest of Signal::values that the sensor may be put under on purpose.
+  /// Largest Signal::values allowed for calibration loads.
   virtual Eigen::VectorXd range() const = 0;
-  /// The reading that is new in this step. Empty: there is none, and invalidReason() tells whether something is wrong.
+  /// The new reading of this step. Empty: none; invalidReason() has the reason if the source is
+  /// invalid.
   virtual std::optional<Signal> read(const Cycle::Tick& tick) = 0;
   virtual bool overloaded() const = 0;
   virtual void reset() = 0;
   virtual bool saturated() const = 0;
   virtual void report(diagnostic_updater::DiagnosticStatusWrapper&) const {}
 
-  /// Why there is no reading to trust; empty when there is one.
+  /// Why there is no valid reading; empty when there is one.
   const std::string& invalidReason() const { return invalid_reason_; }
 
  protected:
   std::string invalid_reason_;
 };
 
-/// The virtual sensor under the predicted force.
+/// A simulated sensor loaded with the predicted force.
 class SimulatedForceSource : public ForceSource {
  public:
   /// `tip_from_sensor`: pose of the sensor in needle_tip.
@@ -88,16 +89,17 @@ class SerialForceSource : public ForceSource {
   OverloadLatch overload_;
   double timeout_;  ///< s
   std::string frame_;
-  unsigned seen_ = 0;  ///< good lines at the step before
+  unsigned seen_ = 0;  ///< good lines up to the last step
 };
 
-/// A wrench that another node measures, in any frame that tf knows; overload is of its force at the tip.
+/// A wrench measured by another node, in any frame of tf; its force at the tip is checked for
+/// overload.
 class TopicForceSource : public ForceSource {
  public:
   TopicForceSource(Cycle& cycle, double timeout, const Eigen::Vector2d& overload);
 
   int size() const override { return 6; }
-  Eigen::VectorXd range() const override { return Eigen::VectorXd::Zero(size()); }  ///< it is calibrated where it is
+  Eigen::VectorXd range() const override { return Eigen::VectorXd::Zero(size()); }  ///< calibrated by its own node
   std::optional<Signal> read(const Cycle::Tick& tick) override;
   bool overloaded() const override { return overload_.latched(); }
   void reset() override { overload_.reset(); }

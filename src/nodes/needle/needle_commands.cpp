@@ -10,12 +10,13 @@
 namespace microinjection {
 namespace {
 
-// s: what a publisher latched, and a node that starts anew hears again, must not move the needle a second time.
+// s: a restarted node receives latched commands again, which must not move the needle a second
+// time.
 constexpr double kOldestMove = 3;
 
 constexpr char kStateTopic[] = "needle/state_command";
 
-/// Commands that stop something are obeyed whatever their stamp, and also where the state does not know them.
+/// Commands that stop something are executed with any stamp and in any state.
 bool stops(const std::string& command) {
   return command == "stop" || command == "disable" || command == "pause" || command == "unhome";
 }
@@ -37,8 +38,8 @@ NeedleCommands::NeedleCommands(Cycle& cycle, const MicromanipulatorConfig& confi
 
 void NeedleCommands::subscribe() {
   servo_.stamp_rule = StampRule::kCommand;
-  // Of each message that comes between two steps, also of those that a newer one replaces.
-  servo_.listen([this](const geometry_msgs::PoseStamped& message, const ros::Time& now) {
+  // Checks each message between two steps, also those that a newer one replaces.
+  servo_.onMessage([this](const geometry_msgs::PoseStamped& message, const ros::Time& now) {
     if (secondsBetween(message.header.stamp, now) <= config_.command_timeout) authorize(servo_.sender);
   });
   using geometry_msgs::PoseStamped;
@@ -63,50 +64,50 @@ void NeedleCommands::subscribeFaults() {
 }
 
 void NeedleCommands::onFault(const std::string& fault) {
-  answer_ = true;
+  state_command_received_ = true;
   try {
     rig_.inject(fault, time());
   } catch (const ConfigError& error) {
-    log_.answered("emulated_fault", error.what());
+    log_.addResult("emulated_fault", error.what());
   }
 }
 
-/// Age (s) of a command as of now, not of the last step: this node may have been frozen. One without a stamp is taken
-/// for as old as it can be.
+/// Age (s) of a command now, not at the last step: this node may have been frozen. Without a stamp
+/// it is the largest possible age.
 double NeedleCommands::age(const ros::Time& stamp) const {
   const ros::Time since = stamp.isZero() ? cycle_.earliestArrival() : stamp;
   return since.isZero() ? 0 : secondsBetween(since, std::max(now_, ros::Time::now()));
 }
 
-/// A valid motion command: whether its sender may command, and what becomes of it.
-template <typename Obey>
-void NeedleCommands::command(const std::string& name, const std::string& sender, const Obey& execute) {
-  std::string why = unavailableReason();
+/// Executes a valid motion command if motion is allowed, and logs the result.
+template <typename Execute>
+void NeedleCommands::command(const std::string& name, const std::string& sender, const Execute& execute) {
+  std::string refusal = unavailableReason();
   const bool moved = model_.busy();
-  if (why.empty()) why = execute();
-  log_.answered(name, why);
-  if (why.empty() && moved) log_.overridden("move_cp of " + mover_, "by " + name + " of " + sender);
+  if (refusal.empty()) refusal = execute();
+  log_.addResult(name, refusal);
+  if (refusal.empty() && moved) log_.addOverride("move_cp of " + mover_, "by " + name + " of " + sender);
 }
 
 void NeedleCommands::onVelocity(const geometry_msgs::TwistStamped& message, const CommandSource& source) {
-  if (source.unstamped && source.latched) return log_.answered("servo_cv", kUnstampedLatched);
+  if (source.unstamped && source.latched) return log_.addResult("servo_cv", kUnstampedLatched);
   geometry_msgs::TwistStamped stamped = message;
   if (source.unstamped) stamped.header.stamp = ros::Time::now();
   const auto velocity = validVelocity(&stamped);
-  if (!velocity) return log_.answered("servo_cv", "not a valid velocity in world");
+  if (!velocity) return log_.addResult("servo_cv", "not a valid velocity in world");
   const double old = std::max(0.0, age(message.header.stamp));
-  if (old > config_.velocity_command_timeout) return log_.answered("servo_cv", "it is stale");
+  if (old > config_.velocity_command_timeout) return log_.addResult("servo_cv", "it is stale");
   authorize(source.sender);
   command("servo_cv", source.sender, [&] { return model_.servoVelocity(*velocity, time() - old); });
 }
 
 void NeedleCommands::onMove(const geometry_msgs::PoseStamped& message, const CommandSource& source) {
-  if (source.unstamped && source.latched) return log_.answered("move_cp", kUnstampedLatched);
+  if (source.unstamped && source.latched) return log_.addResult("move_cp", kUnstampedLatched);
   geometry_msgs::PoseStamped stamped = message;
   if (source.unstamped) stamped.header.stamp = ros::Time::now();
   const auto pose = validPose(&stamped);
-  if (!pose) return log_.answered("move_cp", "not a valid pose in world");
-  if (age(message.header.stamp) > kOldestMove) return log_.answered("move_cp", "it is stale");
+  if (!pose) return log_.addResult("move_cp", "not a valid pose in world");
+  if (age(message.header.stamp) > kOldestMove) return log_.addResult("move_cp", "it is stale");
   authorize(source.sender);
   command("move_cp", source.sender, [&] {
     std::string refusal = model_.movePosition(*pose);
@@ -119,33 +120,33 @@ void NeedleCommands::onMove(const geometry_msgs::PoseStamped& message, const Com
 void NeedleCommands::executeServo(const Cycle::Tick& tick) {
   const auto message = servo_.takeUpdates();
   if (!message) return;
-  if (!servo_.fresh(tick.now)) return log_.answered("servo_cp", master_lost_ ? unavailableReason() : "it is stale");
+  if (!servo_.fresh(tick.now)) return log_.addResult("servo_cp", master_lost_ ? unavailableReason() : "it is stale");
   const auto pose = validPose(message.get());
-  if (!pose) return log_.answered("servo_cp", "not a valid pose in world");
+  if (!pose) return log_.addResult("servo_cp", "not a valid pose in world");
   command("servo_cp", servo_.sender, [&] { return model_.servoPosition(*pose); });
   if (isTraced(tick.now)) trace_.publish(toTrace(tick.now, message->header.stamp, "hand"));
 }
 
 void NeedleCommands::onState(const cell_microinjection::StringStamped& message, const CommandSource& source) {
-  answer_ = true;
+  state_command_received_ = true;
   const bool moved = model_.busy();
   const std::string refusal = executeState(message, source);
-  log_.answered("state_command " + message.string, refusal);
+  log_.addResult("state_command " + message.string, refusal);
   if (moved && stops(message.string))
-    log_.overridden("move_cp of " + mover_, "by " + message.string + " of " + source.sender);
+    log_.addOverride("move_cp of " + mover_, "by " + message.string + " of " + source.sender);
 }
 
 std::string NeedleCommands::executeState(const cell_microinjection::StringStamped& message,
                                          const CommandSource& source) {
   const bool old = repeated_.mayBe(source);
-  const std::string& word = message.string;
-  if (stops(word)) model_.stop();
-  if (word == "stop") return "";
-  const auto command = stateCommandOf(word);
+  const std::string& name = message.string;
+  if (stops(name)) model_.stop();
+  if (name == "stop") return "";
+  const auto command = stateCommandOf(name);
   if (!command) {
-    return "\"" + word + "\" is no command here; allowed: enable, disable, pause, resume, home, unhome, stop";
+    return "\"" + name + "\" is no command here; allowed: enable, disable, pause, resume, home, unhome, stop";
   }
-  if (!stops(word)) {
+  if (!stops(name)) {
     if (!isTimely(kStateTopic, message, now_)) return "its stamp is ahead";
     if (!source.unstamped && age(message.header.stamp) > kOldestMove) return "it is stale";
     if (old) return std::string(kUnstampedLatched) + "; send it again";
@@ -157,7 +158,7 @@ std::string NeedleCommands::executeState(const cell_microinjection::StringStampe
   return refusal;
 }
 
-/// What a command does beside the state. `fault`: the state it came in was FAULT.
+/// Effects of a command other than the state. `fault`: the state before was FAULT.
 void NeedleCommands::change(StateCommand command, bool fault) {
   switch (command) {
     case StateCommand::kDisable:
@@ -170,7 +171,7 @@ void NeedleCommands::change(StateCommand command, bool fault) {
     case StateCommand::kResume:
       model_.allowStreams();
       break;
-    case StateCommand::kHome:  // its axes have their reference: there is nothing to look for
+    case StateCommand::kHome:  // the axes are referenced, so there is no search
       busy_.accept(static_cast<std::int64_t>(ros::Time::now().toNSec()));
       model_.allowStreams();
       break;
@@ -189,13 +190,14 @@ void NeedleCommands::authorize(const std::string& sender) {
   ROS_ERROR_STREAM(authority_.fault());
 }
 
-/// A device that is not there is not known to move.
+/// A disconnected device does not count as moving.
 bool NeedleCommands::moves() const {
   const bool there = model_.state() != ManipulatorDevice::State::kDisconnected;
   return there && (model_.moving() || rig_.device->moving());
 }
 
-/// Decides whether the rig may be enabled. A needle that may be in a cell keeps its way out when an interface comes up.
+/// Decides whether the rig may be enabled. A needle in a cell may still be withdrawn when an
+/// interface comes up.
 void NeedleCommands::checkNetwork() {
   if (!network_) return;
   const bool reachable = network_->reachable();
@@ -219,7 +221,7 @@ std::string NeedleCommands::unavailableReason() const {
 void NeedleCommands::step(const Cycle::Tick& tick) {
   if (tick.now < now_) set_back_ += secondsBetween(tick.now, now_);
   now_ = tick.now;
-  // What goes on by itself, too: nobody new could stop it.
+  // Stops motions under way, too: no new node could stop them.
   if (cycle_.masterLost() && !master_lost_) model_.stop();
   master_lost_ = cycle_.masterLost();
   checkNetwork();
@@ -229,22 +231,21 @@ void NeedleCommands::step(const Cycle::Tick& tick) {
 
 bool NeedleCommands::isBusy(const Cycle::Tick& tick) {
   state_.setConditions(conditions());
-  if (model_.abortReason() != logged_abort_ && !model_.abortReason().empty())
-    ROS_WARN_STREAM("the motion ended: " << model_.abortReason());
-  logged_abort_ = model_.abortReason();
+  if (model_.abortReason() != abort_reason_ && !model_.abortReason().empty()) ROS_WARN_STREAM("the motion ended: " << model_.abortReason());
+  abort_reason_ = model_.abortReason();
   return busy_.step(model_.busy(), static_cast<std::int64_t>(tick.now.toNSec()));
 }
 
-bool NeedleCommands::takeAnswer() { return std::exchange(answer_, false); }
+bool NeedleCommands::takeStateCommandReceived() { return std::exchange(state_command_received_, false); }
 
 void NeedleCommands::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   using diagnostic_msgs::DiagnosticStatus;
   std::string problem = log_.takeUpdates();
   if (problem.empty()) problem = model_.abortReason();
   const bool held = exposed_ || !authority_.fault().empty();
-  const std::string why = model_.reason().empty() && held ? unavailableReason() : model_.reason();
-  if (!why.empty() && problem != why) problem = why + (problem.empty() ? "" : "; ") + problem;
-  const auto level = !why.empty()      ? DiagnosticStatus::ERROR
+  const std::string reason = model_.reason().empty() && held ? unavailableReason() : model_.reason();
+  if (!reason.empty() && problem != reason) problem = reason + (problem.empty() ? "" : "; ") + problem;
+  const auto level = !reason.empty()      ? DiagnosticStatus::ERROR
                      : problem.empty() ? DiagnosticStatus::OK
                                        : DiagnosticStatus::WARN;
   status.summary(level, !problem.empty() ? problem : model_.moving() ? "moves" : "holds");

@@ -22,27 +22,30 @@
 
 namespace microinjection {
 
-/// What may move the needle: takes the commands of the micromanipulator's topics, refuses with the reason what it
-/// cannot trust, and keeps the operating state. Which topics: nodes/micromanipulator_node.h.
+/// Receives the commands of the micromanipulator's topics (nodes/micromanipulator_node.h), refuses
+/// invalid ones with a reason, and keeps the operating state.
 class NeedleCommands {
  public:
-  /// All outlive this. @param allow_network  false: a real rig is not enabled while others can reach this machine
+  /// All references outlive this.
+  /// @param allow_network  false: a real rig is not enabled while others can reach this machine
   NeedleCommands(Cycle& cycle, const MicromanipulatorConfig& config, RigDevice& rig, Micromanipulator& model,
                  bool allow_network);
 
-  /// Before the model's step: looks at what surrounds the needle and obeys the newest servo_cp.
+  /// Call before the model's step: checks device, senders and network, and executes the newest
+  /// servo_cp.
   void step(const Cycle::Tick& tick);
-  /// After the model's step: what is_busy says in this step.
+  /// Call after the model's step. Returns this step's is_busy.
   bool isBusy(const Cycle::Tick& tick);
   /// See BusyReport::pending.
   bool busyIsPending() const { return busy_.pending(); }
 
   const NeedleState& state() const { return state_; }
-  /// As the device has it: a clock that is set back does not take it along. s
+  /// The device's time (s), which does not follow a clock that is set back.
   double time() const { return now_.toSec() + set_back_; }
   bool moves() const;
-  /// Whether a state command or a fault was heard since the last call: they are answered.
-  bool takeAnswer();
+  /// Whether a state command or a fault was received since the last call. Each is answered with the
+  /// state.
+  bool takeStateCommandReceived();
   std::string unavailableReason() const;  ///< why motion commands are refused here; else empty
   void report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
@@ -57,8 +60,8 @@ class NeedleCommands {
   void change(StateCommand command, bool fault);
   void executeServo(const Cycle::Tick& tick);
   double age(const ros::Time& stamp) const;
-  template <typename Obey>
-  void command(const std::string& name, const std::string& sender, const Obey& execute);
+  template <typename Execute>
+  void command(const std::string& name, const std::string& sender, const Execute& execute);
   void authorize(const std::string& sender);
   void checkNetwork();
   NeedleState::Conditions conditions() const;
@@ -76,14 +79,14 @@ class NeedleCommands {
   CommandLog log_;
   BusyReport busy_;
   std::string mover_;                        ///< node that commanded the move under way
-  std::string logged_abort_;                 ///< of the model's motion, as logged
-  std::unique_ptr<NetworkMonitor> network_;  ///< null where it does not matter who can reach this machine
+    std::string abort_reason_;                 ///< of the model's motion, as logged
+  std::unique_ptr<NetworkMonitor> network_;  ///< null when the network is not checked
   bool exposed_ = false;                     ///< a real rig, and others can reach this machine
-  bool admitted_ = false;                    ///< enabled while nobody else could reach this machine
+  bool admitted_ = false;                    ///< enabled while no other could reach this machine
   bool master_lost_ = false;
-  bool answer_ = false;
+  bool state_command_received_ = false;
   ros::Time now_;
-  double set_back_ = 0;  ///< s, that the clock was
+  double set_back_ = 0;  ///< s, sum of the clock's steps back
 };
 
 }  // namespace microinjection

@@ -50,20 +50,20 @@ void NeedlePublisher::publishMotion(const ros::Time& now) {
   if (true_) true_->publish(toPose(geometry_.tipPose(rig_.true_joints()), now, kWorldFrame));
 }
 
-bool NeedlePublisher::publishState(cell_microinjection::OperatingState state, const ros::Time& now, bool answer) {
-  const bool other = state.state != said_.state;
-  const bool same = !other && state.is_homed == said_.is_homed && state.is_busy == said_.is_busy;
-  if (same && !answer) return false;
+bool NeedlePublisher::publishState(cell_microinjection::OperatingState state, const ros::Time& now, bool reply) {
+  const bool other = state.state != last_published_state_.state;
+  const bool same = !other && state.is_homed == last_published_state_.is_homed && state.is_busy == last_published_state_.is_busy;
+  if (same && !reply) return false;
   state.header.stamp = now;
   state_.publish(state);
-  said_ = state;
+  last_published_state_ = state;
   return other;
 }
 
 void NeedlePublisher::publishAbilities(const ros::Time& now) {
   const ManipulatorAbilities abilities = rig_.device->abilities();
   cell_microinjection::ManipulatorAbilities message;
-  message.header.stamp = told_.header.stamp;
+  message.header.stamp = last_published_abilities_.header.stamp;
   message.device = abilities.device;
   message.follows = abilities.follows;
   message.command_interval = abilities.command_interval;
@@ -72,11 +72,11 @@ void NeedlePublisher::publishAbilities(const ros::Time& now) {
   message.speed = abilities.speed;
   message.latency = abilities.latency;
   message.stop_time = abilities.stop_time;
-  // Said again for who heard something else meanwhile.
-  if (message == told_ && secondsBetween(told_.header.stamp, now) < kAbilitiesPeriod) return;
+  // Repeated for subscribers that received another node's abilities meanwhile.
+  if (message == last_published_abilities_ && secondsBetween(last_published_abilities_.header.stamp, now) < kAbilitiesPeriod) return;
   message.header.stamp = now;
   abilities_.publish(message);
-  told_ = message;
+  last_published_abilities_ = message;
 }
 
 void NeedlePublisher::publishJointStates(const ros::Time& now) {

@@ -13,19 +13,21 @@
 
 namespace microinjection {
 
-/// Says what the needle does and what its rig can: the topics that nodes/micromanipulator_node.h names.
+/// Publishes the needle's state and its rig's abilities on the topics of
+/// nodes/micromanipulator_node.h.
 class NeedlePublisher {
  public:
-  /// All outlive this. @param joint_states_rate  Hz
+  /// All references outlive this. @param joint_states_rate  Hz
   NeedlePublisher(Cycle& cycle, const ManipulatorGeometry& geometry, const RigDevice& rig,
                   const Micromanipulator& model, double joint_states_rate);
 
-  /// After the model's step.
+  /// Call after the model's step.
   void publish(const ros::Time& now);
-  /// On change, or where a command is to be answered. Whether the state is another than before.
-  bool publishState(cell_microinjection::OperatingState state, const ros::Time& now, bool answer);
+  /// Publishes the state on change and as the reply to a command. Returns whether the operating
+  /// state has changed.
+  bool publishState(cell_microinjection::OperatingState state, const ros::Time& now, bool reply);
   void publishAbilities(const ros::Time& now);
-  const cell_microinjection::OperatingState& said() const { return said_; }  ///< the last that was published
+  const cell_microinjection::OperatingState& lastPublishedState() const { return last_published_state_; }
 
  private:
   void publishMotion(const ros::Time& now);
@@ -38,12 +40,12 @@ class NeedlePublisher {
   Output<geometry_msgs::PoseStamped>& measured_;
   Output<geometry_msgs::PoseStamped>& setpoint_;
   Output<geometry_msgs::TwistStamped>& velocity_;
-  Output<geometry_msgs::PoseStamped>* true_ = nullptr;  ///< null where the truth is not known
+  Output<geometry_msgs::PoseStamped>* true_ = nullptr;  ///< null when the true pose is unknown
   ros::Publisher joint_states_;
   ros::Publisher state_;
   ros::Publisher abilities_;
-  cell_microinjection::OperatingState said_;
-  cell_microinjection::ManipulatorAbilities told_;
+  cell_microinjection::OperatingState last_published_state_;
+  cell_microinjection::ManipulatorAbilities last_published_abilities_;
   ros::Time joint_states_sent_;
 };
 

@@ -23,12 +23,12 @@ RigDevice makeSimulated(const ManipulatorGeometry& geometry, ConfigReader& reade
     const Fault fault = parseFault(text);
     if (fault.kind != Fault::Kind::kError)
       throw ConfigError("fault " + text + ": the simulated rig has error:CODE only");
-    simulated->injectFault("error " + fault.code + ", as was asked for");
+    simulated->injectFault("error " + fault.code + ", injected on request");
   };
   return rig;
 }
 
-/// The cable between driver and emulator, which can be out for a while.
+/// The cable between driver and emulator, which can be disconnected for a time.
 class Cable {
  public:
   explicit Cable(EmulatedWire& wire) : wire_(wire) {}

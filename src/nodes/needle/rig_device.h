@@ -11,23 +11,23 @@
 
 namespace microinjection {
 
-/// The device behind the micromanipulator node, and what only a simulated or emulated one has.
+/// The device of the micromanipulator node, with extras of simulated and emulated ones.
 struct RigDevice {
   std::unique_ptr<ManipulatorDevice> device;
-  /// Has a fault happen (rig/serial/fault.h; besides, with a line, pull:S takes the cable out for S s). Null for a real
-  /// device. @throws ConfigError when there is no such fault.
+  /// Injects a fault (rig/serial/fault.h; with a serial line also pull:S, which disconnects the
+  /// cable for S s). Null for a real device. @throws ConfigError when there is no such fault.
   std::function<void(const std::string& fault, double time)> inject;
-  /// Where the tip truly is, as positions (m) of the joints; null where only the device's own reading is known.
+  /// True positions (m) of the joints; null when only the device's own reading is known.
   std::function<Eigen::Vector3d()> true_joints;
-  /// To be called at each step before the device's, `time` in s; null where nothing is to do.
+  /// Call before each step of the device, `time` in s; may be null.
   std::function<void(double time)> before_step;
 };
 
 /// @param name      sim, or a name of rig/devices/rig_registry.h
-/// @param emulated  puts the driver on an emulated device in this process, in the node's own time
+/// @param emulated  connects the driver to an emulated device in this process, in the node's time
 /// @param reader    the device's own keys; finish() is called. @throws ConfigError
-/// @param emulator  of an emulated one: `latency` (s, of the serial adapter: all answers come later by that), and what
-///                  its emulator's configure() reads
+/// @param emulator  for an emulated device: `latency` (s, of the serial adapter, delays all
+///                  replies), and the keys of its emulator's configure()
 RigDevice makeRigDevice(const std::string& name, bool emulated, const ManipulatorGeometry& geometry,
                         ConfigReader reader, ConfigReader emulator);
 

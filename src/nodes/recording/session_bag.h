@@ -13,37 +13,39 @@
 
 namespace microinjection {
 
-/// The bag of a session, written by the recorder from the messages that it gets anyway: a second process that
-/// subscribes to everything would cost half a core. The file has its name only when it is whole; until then it ends in
-/// .active. Where it cannot be written, the bag ends there, and trouble() says why.
+/// The bag of a session, written by the recorder from the messages that it receives anyway: a
+/// second process with all subscriptions would cost half a core. The file's name ends in .active
+/// until it is complete. The bag ends where it cannot be written; errorText() has the reason.
 class SessionBag {
  public:
-  /// Makes missing directories. @throws std::exception when the file cannot be written.
+  /// Creates missing directories. @throws std::exception when the file cannot be written.
   explicit SessionBag(const std::string& path);
   ~SessionBag() { close(); }
   SessionBag(const SessionBag&) = delete;
   SessionBag& operator=(const SessionBag&) = delete;
 
-  /// From now on writes every message that this input gets.
+  /// Writes every message of this input from now on.
   template <typename Message>
-  void follow(Input<Message>& input) {
+  void record(Input<Message>& input) {
     const std::string topic = "/" + input.topic;
-    input.listen([this, topic](const Message& message, const ros::Time& now) { write(topic, now, message); });
+    input.onMessage([this, topic](const Message& message, const ros::Time& now) { write(topic, now, message); });
   }
 
-  /// From now on writes every message of a topic that is no input, in the thread that serves `node`.
+  /// Writes every message of a topic that is no input from now on, in the thread that serves
+  /// `node`.
   template <typename Message>
-  void follow(ros::NodeHandle& node, const std::string& topic) {
+  void record(ros::NodeHandle& node, const std::string& topic) {
     subscribers_.push_back(node.subscribe<Message>(
         topic, 100,
         [this, topic](const boost::shared_ptr<const Message>& message) { write(topic, ros::Time::now(), *message); }));
   }
 
-  /// Completes the file; what comes later is not written. Empty, or why the bag is not whole.
+  /// Completes the file; later messages are not written. Returns empty, or why the bag is
+  /// incomplete.
   std::string close();
 
-  /// Why the bag is not whole, with its path; empty where nothing is wrong.
-  const std::string& trouble() const { return trouble_; }
+  /// Why the bag is incomplete, with its path; else empty.
+  const std::string& errorText() const { return error_text_; }
 
  private:
   template <typename Message>
@@ -52,7 +54,7 @@ class SessionBag {
     errno = 0;
     try {
       bag_->write(topic, now, message);
-    } catch (const std::exception& error) {  // a full disk must not take the session with it
+    } catch (const std::exception& error) {  // a full disk must not end the session
       const int reason = errno;
       abort(error.what(), reason);
     }
@@ -61,7 +63,7 @@ class SessionBag {
 
   std::string path_;
   std::unique_ptr<rosbag::Bag> bag_;  ///< null when it is closed
-  std::string trouble_;
+  std::string error_text_;
   std::vector<ros::Subscriber> subscribers_;
 };
 

@@ -5,7 +5,8 @@
 namespace microinjection {
 namespace {
 
-/// ns without a lost row after which the disk counts as writable again: a last row may fit into a full one.
+/// ns without a lost row until the disk counts as writable again: single rows may fit on a full
+/// one.
 constexpr std::uint64_t kSettled = 1000000000;
 
 }  // namespace
@@ -18,10 +19,10 @@ SessionFiles::SessionFiles(const std::string& folder, const std::string& header,
 void SessionFiles::step(const ros::Time& now) {
   rows_.flush();
   const std::uint64_t time = now.toNSec();
-  if (!rows_.trouble().empty()) {
-    trouble_ = rows_.trouble();
+  if (!rows_.errorText().empty()) {
+    error_text_ = rows_.errorText();
     failed_at_ns_ = time;
-    if (!failing_) ROS_ERROR_STREAM(trouble_ << "; the session goes on, its rows are lost until there is space");
+    if (!failing_) ROS_ERROR_STREAM(error_text_ << "; the session goes on, its rows are lost until there is space");
     failing_ = true;
   } else if (failing_ && (time < failed_at_ns_ || time - failed_at_ns_ > kSettled)) {
     failing_ = false;
@@ -40,8 +41,8 @@ void SessionFiles::report(diagnostic_updater::DiagnosticStatusWrapper& status) c
   using diagnostic_msgs::DiagnosticStatus;
   status.summary(DiagnosticStatus::OK, "the session is written");
   if (rows_.lost() > 0) status.summary(DiagnosticStatus::WARN, "rows of force_depth.csv are lost");
-  if (failing_) status.summary(DiagnosticStatus::ERROR, trouble_);
-  if (bag_ && !bag_->trouble().empty()) status.mergeSummary(DiagnosticStatus::ERROR, bag_->trouble());
+  if (failing_) status.summary(DiagnosticStatus::ERROR, error_text_);
+  if (bag_ && !bag_->errorText().empty()) status.mergeSummary(DiagnosticStatus::ERROR, bag_->errorText());
   status.add("rows written", rows_.written());
   status.add("rows lost", rows_.lost());
 }

@@ -29,7 +29,7 @@ const IntervalHistogram& BareTimerLoop::intervals() {
 
 void BareTimerLoop::run() {
   preferForThread(Priority::kRealTime);
-  IntervalHistogram intervals(2e-9 * kPeriod);  // more: late by more than a period
+  IntervalHistogram intervals(2e-9 * kPeriod);  // the limit marks wake-ups late by more than a period
   timespec due, woke;
   clock_gettime(CLOCK_MONOTONIC, &due);
   double before = seconds(due);

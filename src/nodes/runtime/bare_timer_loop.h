@@ -8,9 +8,8 @@
 
 namespace microinjection {
 
-/// A thread that does nothing but sleep for a millisecond at a time and notes how long it slept: what this machine
-/// allows any 1 kHz loop that runs in real time as the nodes of the hand's loop do, measured in the same run as what is
-/// compared with it.
+/// A real-time thread that only sleeps for a millisecond at a time and measures the intervals. They
+/// are this machine's limit for the nodes' 1 kHz loops, measured in the same run.
 class BareTimerLoop {
  public:
   BareTimerLoop();
@@ -18,7 +17,7 @@ class BareTimerLoop {
   BareTimerLoop(const BareTimerLoop&) = delete;
   BareTimerLoop& operator=(const BareTimerLoop&) = delete;
 
-  /// Intervals between its wake-ups so far, s. In one thread only.
+  /// Intervals (s) between its wake-ups so far. Call from one thread only.
   const IntervalHistogram& intervals();
 
  private:

@@ -6,12 +6,12 @@
 
 namespace microinjection {
 
-void CommandLog::answered(const std::string& command, const std::string& refusal) {
+void CommandLog::addResult(const std::string& command, const std::string& refusal) {
   refusal_ = refusal.empty() ? "" : command + " refused: " + refusal;
   if (refusal_.empty()) return;
   ++refused_;
-  refused_news_ = refusal_;
-  // A stream that is refused says the same a thousand times a second.
+  new_refusal_ = refusal_;
+  // A refused stream would log the same line a thousand times a second.
   const double now = ros::SteadyTime::now().toSec();
   if (refusal_ == logged_ && now - logged_at_ < 1) return;
   logged_ = refusal_;
@@ -19,17 +19,17 @@ void CommandLog::answered(const std::string& command, const std::string& refusal
   ROS_WARN_STREAM(refusal_);
 }
 
-void CommandLog::overridden(const std::string& motion, const std::string& why) {
+void CommandLog::addOverride(const std::string& motion, const std::string& reason) {
   ++overridden_;
-  overridden_news_ = motion + " overridden: " + why;
-  ROS_WARN_STREAM(overridden_news_);
+  new_override_ = motion + " overridden: " + reason;
+  ROS_WARN_STREAM(new_override_);
 }
 
 std::string CommandLog::takeUpdates() {
-  std::string news = std::exchange(refused_news_, refusal_);
-  const std::string overridden = std::exchange(overridden_news_, "");
-  if (!overridden.empty()) news += (news.empty() ? "" : "; ") + overridden;
-  return news;
+  std::string updates = std::exchange(new_refusal_, refusal_);
+  const std::string overridden = std::exchange(new_override_, "");
+  if (!overridden.empty()) updates += (updates.empty() ? "" : "; ") + overridden;
+  return updates;
 }
 
 void CommandLog::addCounts(diagnostic_updater::DiagnosticStatusWrapper& status) const {

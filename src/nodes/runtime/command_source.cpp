@@ -6,10 +6,11 @@
 namespace microinjection {
 namespace {
 
-// s: a publisher that was there before sends its last message as soon as it is connected; what comes later is new.
+// s: an existing publisher repeats its last message as soon as it is connected; later messages are
+// new.
 constexpr double kConnecting = 5;
 
-/// s since this process subscribed to commands first.
+/// Time (s) since this process first subscribed to commands.
 double sinceSubscribed() {
   static const ros::SteadyTime begun = ros::SteadyTime::now();
   return secondsBetween(begun, ros::SteadyTime::now());
@@ -19,9 +20,9 @@ double sinceSubscribed() {
 
 RepeatedCommands::RepeatedCommands(const std::string& topic) {
   sinceSubscribed();
-  XmlRpc::XmlRpcValue arguments, answer, state;
+  XmlRpc::XmlRpcValue arguments, reply, state;
   arguments[0] = ros::this_node::getName();
-  if (!ros::master::execute("getSystemState", arguments, answer, state, false)) return;
+  if (!ros::master::execute("getSystemState", arguments, reply, state, false)) return;
   XmlRpc::XmlRpcValue& publishers = state[0];
   for (int i = 0; i < publishers.size(); ++i) {
     if (static_cast<std::string>(publishers[i][0]) != topic) continue;
@@ -30,12 +31,12 @@ RepeatedCommands::RepeatedCommands(const std::string& topic) {
 }
 
 bool RepeatedCommands::mayBe(const CommandSource& command) {
-  const auto known = last_.find(command.sender);
-  const bool first = known == last_.end() || known->second.connection != command.connection;
-  const bool told_before = known != last_.end() && known->second.number == command.number;
-  const bool older = known == last_.end() && older_.count(command.sender) > 0 && sinceSubscribed() < kConnecting;
+  const auto last = last_.find(command.sender);
+  const bool first = last == last_.end() || last->second.connection != command.connection;
+  const bool repeated = last != last_.end() && last->second.number == command.number;
+  const bool older = last == last_.end() && older_.count(command.sender) > 0 && sinceSubscribed() < kConnecting;
   last_[command.sender] = {command.connection, command.number};
-  return command.unstamped && command.latched && first && (told_before || older);
+  return command.unstamped && command.latched && first && (repeated || older);
 }
 
 }  // namespace microinjection

@@ -12,7 +12,8 @@
 
 namespace microinjection {
 
-/// Whether the publisher of a message latches: it sends its last message, however old, to whoever connects.
+/// Whether the publisher of a message latches: it sends its last message, of any age, to each new
+/// subscriber.
 template <typename Message>
 bool isLatched(const ros::MessageEvent<const Message>& event) {
   const auto& header = event.getConnectionHeader();
@@ -23,21 +24,22 @@ bool isLatched(const ros::MessageEvent<const Message>& event) {
 /// Why an unstamped motion command of a publisher that latches is refused.
 constexpr char kUnstampedLatched[] = "it has no stamp and its publisher latches: it may be an old one";
 
-/// A command as it came. CRTK lets commands be without a stamp; the released crtk_python_client (1.4.0) sends them so.
+/// Origin of a command. CRTK allows commands without a stamp; the released crtk_python_client
+/// (1.4.0) sends such.
 struct CommandSource {
   std::string sender;                           ///< node
   bool unstamped = false;                       ///< stamp 0
   bool latched = false;                         ///< by its publisher
-  std::uint32_t number = 0;                     ///< header.seq: counts the messages of this publisher
+  std::uint32_t number = 0;                     ///< header.seq, the publisher's message counter
   boost::shared_ptr<ros::M_string> connection;  ///< the same for all messages of a connection
 };
 
-/// Finds commands that are said again and not anew: what a publisher that latches sends when it is connected, to a node
-/// that starts anew or after a line that broke. Only the first message of a connection can be one. It is taken for old
-/// when its publisher was there before this node subscribed, or has sent the same number on an earlier connection.
+/// Detects old commands that a latching publisher repeats: to a restarted node, or after a broken
+/// connection. Only the first message of a connection can be one. It counts as old when its
+/// publisher existed before this node subscribed, or sent the same number on an earlier connection.
 class RepeatedCommands {
  public:
-  /// Asks the master who publishes the topic now: to be called before subscribing.
+  /// Requests the topic's present publishers from the master. Call before subscribing.
   explicit RepeatedCommands(const std::string& topic);
   bool mayBe(const CommandSource& command);
 
@@ -50,7 +52,7 @@ class RepeatedCommands {
   std::map<std::string, Last> last_;  ///< by node
 };
 
-/// As subscribeGuarded, for commands: `handler` is called with the message and its CommandSource.
+/// Like subscribeGuarded, for commands: calls `handler` with the message and its CommandSource.
 template <typename Message, typename Handler>
 ros::Subscriber subscribeCommand(ros::NodeHandle node, const std::string& topic, Handler handler,
                                  StampRule rule = StampRule::kTimely) {

@@ -18,7 +18,7 @@ void fill(geometry_msgs::Vector3& message, const Eigen::Vector3d& vector) {
 }  // namespace
 
 bool isWithin(const Eigen::Vector3d& vector, double largest) {
-  // Not by the norm, whose squares may overflow.
+  // The norm's squares may overflow.
   return vector.allFinite() && vector.cwiseAbs().maxCoeff() <= largest;
 }
 

@@ -38,7 +38,8 @@ bool Cycle::shouldContinue() {
 
 void Cycle::run(const std::function<void(const Tick&)>& step) {
   step_ = step;
-  // A node's first line asks the master for a parameter of rosout's, and waits: not when the master hangs.
+  // The first line of a node's log waits for a parameter of rosout from the master, so log it
+  // before stepping.
   ROS_INFO_STREAM("steps " << (lockstep_ ? "in lock step" : "live") << ", nominally each " << period_ << " s");
   if (lockstep_) {
     runLockstep();
@@ -50,13 +51,13 @@ void Cycle::run(const std::function<void(const Tick&)>& step) {
 void Cycle::step(const ros::Time& now) {
   sampled_queue_.callAvailable();
   stalls_.step(now);
-  if (now.isZero()) return;  // a simulated clock that has not begun
-  if (now < last_step_) {    // a clock set back: nothing that was received before is valid
+  if (now.isZero()) return;  // the simulated clock has not started
+  if (now < last_step_) {    // the clock was set back: all received messages are invalid
     for (auto& input : inputs_) input->invalidate();
     last_step_ = now;
   }
   const double dt = last_step_.isZero() ? period_ : secondsBetween(last_step_, now);
-  if (dt <= 0) return;  // a simulated clock that stands still
+  if (dt <= 0) return;  // the simulated clock stands still
   checkMaster();
   diagnostics_.beginStep();
   step_({now, std::min(dt, 10 * period_)});
@@ -85,7 +86,7 @@ void Cycle::runLive() {
     queue_.callAvailable(std::clamp(wait, ros::WallDuration(0), ros::WallDuration(0.1)));
     const ros::SteadyTime now = ros::SteadyTime::now();
     if (!triggered_ && now < deadline) continue;
-    // An input that is late by half a period is not waited for.
+    // The node does not wait for an input that is late by half a period.
     deadline =
         driven ? now + ros::WallDuration((triggered_ ? 1.5 : 1.0) * period_) : deadline + ros::WallDuration(period_);
     if (secondsBetween(deadline, now) > 10 * period_) deadline = now;  // after a stall: do not catch up
@@ -94,15 +95,15 @@ void Cycle::runLive() {
   }
 }
 
-bool Cycle::answered(InputPhase phase, const ros::Time& stamp) const {
+bool Cycle::hasInputOf(InputPhase phase, const ros::Time& stamp) const {
   return std::all_of(inputs_.begin(), inputs_.end(), [&](const auto& input) {
-    return input->phase != phase || hasDeparted(input->publisher_name) || input->answered(stamp);
+    return input->phase != phase || hasDeparted(input->publisher_name) || input->hasInputOf(stamp);
   });
 }
 
 bool Cycle::readyFor(const ros::Time& tick) const {
   const bool first = stepped_tick_.isZero();  // nothing was published before it
-  return answered(InputPhase::kThisTick, tick) && (first || answered(InputPhase::kPreviousTick, stepped_tick_));
+  return hasInputOf(InputPhase::kThisTick, tick) && (first || hasInputOf(InputPhase::kPreviousTick, stepped_tick_));
 }
 
 std::string Cycle::inputsWithoutPublisher() const {
@@ -140,15 +141,16 @@ void Cycle::runLockstep() {
     const ros::Time now = tick_;
     const bool first = stepped_tick_.isZero();
     for (auto& input : inputs_) {
-      runGuarded(input->topic, [&] { input->take(input->phase == InputPhase::kThisTick ? now : stepped_tick_, now); });
+      runGuarded(input->topic,
+                 [&] { input->receiveTick(input->phase == InputPhase::kThisTick ? now : stepped_tick_, now); });
     }
     for (auto& output : outputs_) output->beginTick(now);
     step(now);
     for (auto& output : outputs_) output->endTick();
     stepped_tick_ = now;
-    // A topic may connect later than its greeting did. Nobody goes on, and latches what comes next, before this node
-    // has the first answer of each.
-    while (first && shouldContinue() && !answered(InputPhase::kPreviousTick, now))
+    // A topic may connect later than its greeting. The acknowledgement waits until this node has
+    // the first message or silence of each input: publishers latch only the newest.
+    while (first && shouldContinue() && !hasInputOf(InputPhase::kPreviousTick, now))
       queue_.callAvailable(ros::WallDuration(0.1));
     acknowledge(now);
   }

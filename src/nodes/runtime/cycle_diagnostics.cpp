@@ -96,7 +96,7 @@ void CycleDiagnostics::reportInputs(DiagnosticStatusWrapper& status) {
   }
   for (const InputPort* input : inputs_) {
     status.add("age of " + input->topic + " (s)", input->age(now_));
-    if (input->received.isZero() && std::isinf(input->timeout)) continue;  // a command comes when it comes
+    if (input->received.isZero() && std::isinf(input->timeout)) continue;  // a command may never arrive
     if (!input->fresh(now_)) {
       status.mergeSummary(DiagnosticStatus::WARN, input->topic + (input->valid() ? " is stale" : " has nothing valid"));
     }

@@ -13,8 +13,8 @@
 
 namespace microinjection {
 
-/// What each cyclic node says on /diagnostics: rate and step time, the age of every input, and what the node adds.
-/// Updated each `~diagnostic_period` of ROS time, as diagnostic_updater has it; default 1 s.
+/// The diagnostics of each cyclic node: rate, step time, the age of every input, and the node's own
+/// tasks. Published each `~diagnostic_period` of ROS time (of diagnostic_updater); default 1 s.
 class CycleDiagnostics {
  public:
   explicit CycleDiagnostics(double rate) : rate_(rate), intervals_(2 / rate) {}
@@ -22,10 +22,10 @@ class CycleDiagnostics {
   void monitor(const InputPort& port) { inputs_.push_back(&port); }
   void monitor(const OutputPort& port) { outputs_.push_back(&port); }
 
-  /// The node's own state: fills in level, message and values.
+  /// Adds a task of the node, which fills in level, message and values.
   void add(const std::string& name, const std::function<void(diagnostic_updater::DiagnosticStatusWrapper&)>& report);
 
-  /// Says how long the intervals (s) of something periodic were.
+  /// Adds the statistics of intervals (s).
   static void reportIntervals(const IntervalHistogram& intervals, diagnostic_updater::DiagnosticStatusWrapper& status);
 
   void beginStep();
@@ -41,7 +41,7 @@ class CycleDiagnostics {
   std::vector<const InputPort*> inputs_;
   std::vector<const OutputPort*> outputs_;
   std::vector<std::pair<std::string, std::function<void(diagnostic_updater::DiagnosticStatusWrapper&)>>> extra_;
-  std::unique_ptr<diagnostic_updater::Updater> updater_;  ///< made with the first step, when time runs
+  std::unique_ptr<diagnostic_updater::Updater> updater_;  ///< created in the first step, when time runs
   ros::Time now_;
   ros::Time reported_;
   ros::SteadyTime step_began_;
@@ -49,7 +49,7 @@ class CycleDiagnostics {
   double step_time_ = 0;         ///< s of wall time, sum since reported_
   double longest_step_ = 0;      ///< s of wall time, since reported_
   std::uint64_t all_steps_ = 0;  ///< since the start
-  unsigned withheld_ = 0;        ///< messages, until the last report
+  unsigned withheld_ = 0;        ///< messages up to the last report
   ros::Time began_;
   IntervalHistogram intervals_;  ///< of wall time between steps, since the start
 };

@@ -8,15 +8,15 @@
 namespace microinjection {
 namespace {
 
-volatile std::sig_atomic_t asked = 0;
+volatile std::sig_atomic_t requested = 0;
 
 void onSignal(int) {
-  if (asked) ros::requestShutdown();
-  asked = 1;
+  if (requested) ros::requestShutdown();
+  requested = 1;
 }
 
 void onShutdownCall(XmlRpc::XmlRpcValue&, XmlRpc::XmlRpcValue& result) {
-  asked = 1;
+  requested = 1;
   result = ros::xmlrpc::responseInt(1, "", 0);
 }
 
@@ -25,10 +25,10 @@ void onShutdownCall(XmlRpc::XmlRpcValue&, XmlRpc::XmlRpcValue& result) {
 void endInGoodOrder() {
   std::signal(SIGINT, onSignal);
   std::signal(SIGTERM, onSignal);
-  // Bound before ROS starts, which then leaves the name as it is.
+  // ROS does not replace a name that is bound before it starts.
   ros::XMLRPCManager::instance()->bind("shutdown", onShutdownCall);
 }
 
-bool shutdownRequested() { return asked != 0; }
+bool shutdownRequested() { return requested != 0; }
 
 }  // namespace microinjection

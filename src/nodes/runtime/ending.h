@@ -2,13 +2,13 @@
 
 namespace microinjection {
 
-/// For a node that has something to say before it ends, such as zero force to a driver that holds the last one: SIGINT,
-/// SIGTERM and rosnode's kill then only ask it to end, a second one ends it. Call it between ros::init with
-/// NoSigintHandler and the first node handle. (What a serial device hears of a program that was killed:
-/// rig/serial/stop_guard.h.)
+/// For a node that publishes before it ends, such as zero force to a driver that holds the last
+/// force. The first SIGINT, SIGTERM or rosnode kill then only requests the end, the second ends the
+/// node. Call between ros::init with NoSigintHandler and the first node handle.
+/// rig/serial/stop_guard.h covers serial devices of a killed program.
 void endInGoodOrder();
 
-/// Whether the node was asked to end.
+/// Whether the end was requested.
 bool shutdownRequested();
 
 }  // namespace microinjection

@@ -12,7 +12,7 @@
 namespace microinjection {
 namespace detail {
 
-/// Walks through a message's fields as a serialiser does, and looks at its floating-point numbers.
+/// Visits a message's fields like a serialiser and checks the floating-point numbers.
 class FiniteFields {
  public:
   template <typename T>
@@ -43,7 +43,8 @@ class FiniteFields {
 
 }  // namespace detail
 
-/// Whether every floating-point number of a message is finite, in whatever field, array or contained message.
+/// Whether all floating-point numbers of a message are finite, in any field, array or nested
+/// message.
 template <typename Message>
 bool isFinite(const Message& message) {
   detail::FiniteFields fields;

@@ -13,14 +13,14 @@ namespace microinjection {
 FrameListener::FrameListener(ros::NodeHandle node)
     : moving_(subscribeGuarded<tf2_msgs::TFMessage>(
           node, "/tf", 100,
-          [this](const tf2_msgs::TFMessage& message, const std::string& sender) { take(message, sender, false); })),
+          [this](const tf2_msgs::TFMessage& message, const std::string& sender) { receive(message, sender, false); })),
       static_(subscribeGuarded<tf2_msgs::TFMessage>(
           node, "/tf_static", 100,
-          [this](const tf2_msgs::TFMessage& message, const std::string& sender) { take(message, sender, true); })) {}
+          [this](const tf2_msgs::TFMessage& message, const std::string& sender) { receive(message, sender, true); })) {}
 
-void FrameListener::take(const tf2_msgs::TFMessage& message, const std::string& sender, bool is_static) {
+void FrameListener::receive(const tf2_msgs::TFMessage& message, const std::string& sender, bool is_static) {
   const ros::Time now = ros::Time::now();
-  if (now < newest_) buffer_.clear();  // a clock that was set back
+  if (now < newest_) buffer_.clear();  // the clock was set back
   newest_ = now;
   for (const geometry_msgs::TransformStamped& transform : message.transforms) {
     const auto& t = transform.transform.translation;
@@ -59,8 +59,8 @@ Eigen::Isometry3d waitForFrame(const std::string& parent, const std::string& fra
     if (const auto pose = listener.find(parent, frame)) return *pose;
   }
   std::ostringstream message;
-  message << "tf has had no way from frame '" << frame << "' to '" << parent << "' for " << timeout
-          << " s: a static_transform_publisher, as in the node's launch file, or robot_state_publisher must tell it";
+  message << "tf has had no transform from frame '" << frame << "' to '" << parent << "' for " << timeout
+          << " s: a static_transform_publisher, as in the node's launch file, or robot_state_publisher must publish it";
   throw ConfigError(message.str());
 }
 

@@ -11,27 +11,29 @@
 
 namespace microinjection {
 
-/// What tf says, heard in the thread that serves `node`. A transform that is stamped ahead, not finite or longer than
-/// kLargestTranslation is left out; tf2_ros's own listener would end the program at a stamp near the end of time.
+/// Receives tf in the thread that serves `node`. It ignores transforms that are stamped ahead, not
+/// finite or longer than kLargestTranslation. tf2_ros's own listener would end the program at a
+/// stamp near the largest time.
 class FrameListener {
  public:
   explicit FrameListener(ros::NodeHandle node);
 
-  /// The newest pose of `frame` in `parent`; empty when tf knows none.
+  /// The newest pose of `frame` in `parent`; empty when tf has none.
   std::optional<Eigen::Isometry3d> find(const std::string& parent, const std::string& frame) const;
 
  private:
   static constexpr double kLargestTranslation = 1e3;  // m
 
-  void take(const tf2_msgs::TFMessage& message, const std::string& sender, bool is_static);
+  void receive(const tf2_msgs::TFMessage& message, const std::string& sender, bool is_static);
 
   tf2::BufferCore buffer_;
-  ros::Time newest_;  ///< time of this node at the last message
+  ros::Time newest_;  ///< this node's time at the last message
   ros::Subscriber moving_, static_;
 };
 
-/// Waits up to `timeout` (s of wall time, since a simulated clock may not run yet) for a fixed pose.
-/// @throws ConfigError that says what is missing and who should say it
+/// Waits up to `timeout` (s of wall time, since a simulated clock may not run yet) for a fixed
+/// pose.
+/// @throws ConfigError naming the missing transform and its usual publishers
 Eigen::Isometry3d waitForFrame(const std::string& parent, const std::string& frame, double timeout);
 
 }  // namespace microinjection

@@ -5,16 +5,16 @@
 namespace microinjection {
 namespace {
 
-constexpr std::size_t kRemembered = 200;  // traced needle poses, two seconds of them
+constexpr std::size_t kCapacity = 200;  // traced needle poses, two seconds of them
 
 }  // namespace
 
 LatencyMeter::LatencyMeter(ros::NodeHandle& node)
-    : setpoints_(listen(node, "needle/setpoint_trace", &LatencyMeter::onSetpoint)),
-      forces_(listen(node, "haptic/force_trace", &LatencyMeter::onForce)) {}
+    : setpoints_(subscribe(node, "needle/setpoint_trace", &LatencyMeter::onSetpoint)),
+      forces_(subscribe(node, "haptic/force_trace", &LatencyMeter::onForce)) {}
 
-ros::Subscriber LatencyMeter::listen(ros::NodeHandle& node, const std::string& topic,
-                                     void (LatencyMeter::*handler)(const Trace&)) {
+ros::Subscriber LatencyMeter::subscribe(ros::NodeHandle& node, const std::string& topic,
+                                        void (LatencyMeter::*handler)(const Trace&)) {
   return subscribeGuarded<Trace>(node, topic, 100, [this, topic, handler](const Trace& trace, const std::string&) {
     if (isAhead(trace.time_ref, ros::Time::now()))
       return MessageRefusals::ofProcess().add(topic, "its time_ref is ahead");
@@ -24,7 +24,7 @@ ros::Subscriber LatencyMeter::listen(ros::NodeHandle& node, const std::string& t
 
 void LatencyMeter::onSetpoint(const Trace& trace) {
   hand_of_needle_[trace.header.stamp] = trace.time_ref;
-  if (hand_of_needle_.size() > kRemembered) hand_of_needle_.erase(hand_of_needle_.begin());
+  if (hand_of_needle_.size() > kCapacity) hand_of_needle_.erase(hand_of_needle_.begin());
   const auto waiting = force_waiting_.find(trace.header.stamp);
   if (waiting == force_waiting_.end()) return;
   if (trace.time_ref > last_hand_) {
@@ -37,12 +37,13 @@ void LatencyMeter::onSetpoint(const Trace& trace) {
 void LatencyMeter::onForce(const Trace& trace) {
   const auto hand = hand_of_needle_.find(trace.time_ref);
   if (hand == hand_of_needle_.end()) {
-    // The needle's trace is on its way, or the needle moved of itself and no hand sample belongs to the pose.
+    // The needle's trace arrives later, or the needle moved by itself and the pose has no sample of
+    // the hand.
     force_waiting_.emplace(trace.time_ref, trace.header.stamp);
-    if (force_waiting_.size() > kRemembered) force_waiting_.erase(force_waiting_.begin());
+    if (force_waiting_.size() > kCapacity) force_waiting_.erase(force_waiting_.begin());
     return;
   }
-  if (hand->second <= last_hand_) return;  // this hand sample has been felt before
+  if (hand->second <= last_hand_) return;  // this sample has been counted
   latencies_.add(secondsBetween(hand->second, trace.header.stamp));
   last_hand_ = hand->second;
 }

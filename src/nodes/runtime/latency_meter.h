@@ -10,10 +10,11 @@
 
 namespace microinjection {
 
-/// One needle pose in about ten, the same ones in every node: those of every tenth millisecond of their stamp.
+/// Whether a needle pose is traced: about one in ten, the same in every node (stamps in every tenth
+/// millisecond).
 inline bool isTraced(const ros::Time& needle_stamp) { return needle_stamp.nsec / 1000000 % 10 == 0; }
 
-/// What was measured by `source` at time_ref shaped what a node did at header.stamp.
+/// A trace: the measurement of `source` at time_ref affected a node's output at header.stamp.
 inline sensor_msgs::TimeReference toTrace(const ros::Time& done, const ros::Time& measured, const char* source) {
   sensor_msgs::TimeReference trace;
   trace.header.stamp = done;
@@ -22,10 +23,10 @@ inline sensor_msgs::TimeReference toTrace(const ros::Time& done, const ros::Time
   return trace;
 }
 
-/// Time from a sample of the hand to the first force at the hand that depends on it, joined from two traces: which hand
-/// sample the needle's pose obeyed (/needle/setpoint_trace) and which needle pose the rendered force came from
-/// (/haptic/force_trace).
-/// Only the needle poses that isTraced() picks are traced: at 1 kHz every message counts.
+/// Measures the time from a sample of the hand to the first force at the hand that depends on it.
+/// It joins two traces: from the hand's sample to the needle's pose (/needle/setpoint_trace), and
+/// from the needle's pose to the rendered force (/haptic/force_trace). isTraced() limits the poses,
+/// because of the cost of messages at 1 kHz.
 class LatencyMeter {
  public:
   explicit LatencyMeter(ros::NodeHandle& node);
@@ -33,13 +34,14 @@ class LatencyMeter {
 
  private:
   using Trace = sensor_msgs::TimeReference;
-  ros::Subscriber listen(ros::NodeHandle& node, const std::string& topic, void (LatencyMeter::*handler)(const Trace&));
+  ros::Subscriber subscribe(ros::NodeHandle& node, const std::string& topic,
+                            void (LatencyMeter::*handler)(const Trace&));
   void onSetpoint(const Trace& trace);
   void onForce(const Trace& trace);
 
-  std::map<ros::Time, ros::Time> hand_of_needle_;  ///< stamp of the hand sample by stamp of the needle pose; recent
-  std::map<ros::Time, ros::Time> force_waiting_;   ///< rendered at, by needle pose whose setpoint trace is to come
-  ros::Time last_hand_;                            ///< newest hand sample that was counted
+  std::map<ros::Time, ros::Time> hand_of_needle_;  ///< stamp of the hand's sample by stamp of the needle's pose
+  std::map<ros::Time, ros::Time> force_waiting_;   ///< time of rendering, by needle pose without a setpoint trace yet
+  ros::Time last_hand_;                            ///< newest counted sample of the hand
   IntervalHistogram latencies_;
   ros::Subscriber setpoints_, forces_;
 };

@@ -15,8 +15,8 @@
 namespace microinjection {
 namespace {
 
-constexpr bool kWait = false;  ///< for a master that is not there
-constexpr int kMostTries = 3;  ///< a publisher that was killed stays at the master
+constexpr bool kWait = false;  ///< for an absent master
+constexpr int kTries = 3;      ///< a killed publisher stays registered at the master
 
 }  // namespace
 
@@ -40,11 +40,11 @@ bool LostPublishers::connect(const std::string& topic, const std::vector<std::st
   XmlRpc::XmlRpcValue update, response, uris;
   uris.setSize(0);
   for (const std::string& name : publishers) {
-    XmlRpc::XmlRpcValue request, answer, uri;
+    XmlRpc::XmlRpcValue request, reply, uri;
     request[0] = ros::this_node::getName();
     request[1] = name;
-    // Never a part of the list: roscpp drops the connections to all that are not in it.
-    if (!ros::master::execute("lookupNode", request, answer, uri, kWait)) return false;
+    // The list must be complete: roscpp drops the connections to publishers that are not in it.
+    if (!ros::master::execute("lookupNode", request, reply, uri, kWait)) return false;
     uris[uris.size()] = uri;
   }
   update[0] = "/master";
@@ -61,7 +61,7 @@ void LostPublishers::check() {
   try {
     compare();
   } catch (const XmlRpc::XmlRpcException&) {
-    // Whoever answers so is no master.
+    // The reply is not that of a ROS master.
   }
 }
 
@@ -71,16 +71,17 @@ void LostPublishers::compare() {
   ros::this_node::getSubscribedTopics(subscribed);
   const Topics topics = publishersAtMaster();
   for (const std::string& topic : subscribed) {
-    const auto known = topics.find(topic);
-    if (known == topics.end() || ros::TopicManager::instance()->getNumPublishers(topic) >= known->second.size()) {
+    const auto registered = topics.find(topic);
+    if (registered == topics.end() ||
+        ros::TopicManager::instance()->getNumPublishers(topic) >= registered->second.size()) {
       missing_.erase(topic);
       continue;
     }
     Missing& missing = missing_[topic];
-    if (missing.publishers != known->second) missing = {known->second, false, 0};
-    // At the second look only: at the first the connection may be on its way.
-    if (!std::exchange(missing.seen, true) || missing.tries == kMostTries) continue;
-    if (connect(topic, known->second)) ++missing.tries;
+    if (missing.publishers != registered->second) missing = {registered->second, false, 0};
+    // Only at the second check: at the first the connection may still be under way.
+    if (!std::exchange(missing.seen, true) || missing.tries == kTries) continue;
+    if (connect(topic, registered->second)) ++missing.tries;
   }
 }
 

@@ -6,13 +6,14 @@
 
 namespace microinjection {
 
-/// Finds connections that roscpp has not made. It asks a publisher for a connection once; where that fails, as it may
-/// on a busy machine, the node hears nothing of that publisher until one of the two is started anew. Not for the loop's
-/// thread: the master may keep it waiting.
+/// Restores connections that roscpp failed to make. roscpp requests a connection from a publisher
+/// once. When that fails, as it may on a busy machine, the node receives nothing from that
+/// publisher until one of the two restarts. Do not call it in the loop's thread: the master may
+/// block it.
 class LostPublishers {
  public:
-  /// Compares the publishers of each subscribed topic at the master with the connections of this process. What was
-  /// missing at the last call, too, is reported to roscpp as if by the master.
+  /// Compares the publishers of each subscribed topic at the master with the connections of this
+  /// process. Publishers missing at two calls in a row are reported to roscpp as if by the master.
   void check();
 
  private:
@@ -22,7 +23,7 @@ class LostPublishers {
   static bool connect(const std::string& topic, const std::vector<std::string>& publishers);
 
   struct Missing {
-    std::vector<std::string> publishers;  ///< all of the topic
+    std::vector<std::string> publishers;  ///< all of the topic's
     bool seen = false;                    ///< by an earlier check
     int tries = 0;
   };

@@ -21,13 +21,13 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
-constexpr Seconds kPeriod(0.5);  ///< from an answer to the next question
-/// Without an answer. Long, since this thread and the master come last where nodes that run in real time need all of
-/// the processor; one that has died refuses at once.
-constexpr Seconds kPatience(5);
-constexpr unsigned kAnswersALinkCheck = 2;  ///< 1 s from one look for lost publishers to the next
+constexpr Seconds kPeriod(0.5);  ///< from a reply to the next request
+/// Without a reply. Long, since real-time nodes that need all of the processor delay this thread
+/// and the master; a dead master refuses at once.
+constexpr Seconds kTimeout(5);
+constexpr unsigned kRepliesPerLinkCheck = 2;  ///< 1 s between checks for lost publishers
 
-bool masterKnowsUs() {
+bool isRegistered() {
   XmlRpc::XmlRpcValue request, response, uri;
   request[0] = request[1] = ros::this_node::getName();
   constexpr bool kWait = false;
@@ -38,13 +38,13 @@ bool masterKnowsUs() {
 
 struct MasterMonitor::Shared {
   std::atomic<bool> refused{false};
-  std::atomic<Clock::time_point> answered{Clock::now()};
-  std::atomic<double> away{0};     // s, counted by questions that were refused: not while this process stands still
-  std::atomic<bool> asked{false};  // whether `masterLostForLong` was
-  double orphan_timeout = 60;      // s
-  std::mutex mutex;                // of what follows, which a step does not look at
+  std::atomic<Clock::time_point> last_reply{Clock::now()};
+  std::atomic<double> away{0};      // s, counted by refused requests: not while this process is frozen
+  std::atomic<bool> polled{false};  // masterLostForLong() was called
+  double orphan_timeout = 60;       // s
+  std::mutex mutex;                 // of the following members, which a step does not use
   std::condition_variable changed;
-  unsigned answers = 0;            // the thread's
+  unsigned replies = 0;            // the thread's
   LostPublishers lost_publishers;  // the thread's
   bool ending = false;
   bool ended = false;
@@ -53,15 +53,15 @@ struct MasterMonitor::Shared {
     std::unique_lock<std::mutex> lock(mutex);
     while (!changed.wait_for(lock, kPeriod, [this] { return ending; })) {
       lock.unlock();
-      const bool known = masterKnowsUs();
-      refused = !known;
-      if (known) answered = Clock::now();
-      away = known ? 0 : away + kPeriod.count();
-      if (known && ++answers % kAnswersALinkCheck == 0) {
+      const bool registered = isRegistered();
+      refused = !registered;
+      if (registered) last_reply = Clock::now();
+      away = registered ? 0 : away + kPeriod.count();
+      if (registered && ++replies % kRepliesPerLinkCheck == 0) {
         lost_publishers.check();
-        answered = Clock::now();  // it asked the master more, which took its time and answered
+        last_reply = Clock::now();  // the check waited for replies, too
       }
-      if (away > orphan_timeout && !asked) ros::requestShutdown();
+      if (away > orphan_timeout && !polled) ros::requestShutdown();
       lock.lock();
     }
     ended = true;
@@ -76,7 +76,7 @@ MasterMonitor::MasterMonitor(bool timed) : timed_(timed), shared_(std::make_shar
     throw ConfigError("/orphan_timeout = " + std::to_string(timeout) + ": must be in (0, inf)");
   }
   std::thread([shared = shared_] {
-    preferForThread(Priority::kOrdinary);  // its questions are nothing that the hand's loop should wait for
+    preferForThread(Priority::kOrdinary);  // its requests must not delay the hand's loop
     shared->monitor();
   }).detach();
 }
@@ -85,17 +85,18 @@ MasterMonitor::~MasterMonitor() {
   std::unique_lock<std::mutex> lock(shared_->mutex);
   shared_->ending = true;
   shared_->changed.notify_all();
-  // A master that hangs keeps the thread, but not the node, which may have a device to stop.
+  // A hanging master blocks the thread, but must not block the node, which may have to stop a
+  // device.
   shared_->changed.wait_for(lock, Seconds(1), [this] { return shared_->ended; });
 }
 
 bool MasterMonitor::lost() const {
   if (shared_->refused.load(std::memory_order_relaxed)) return true;
-  return timed_ && Clock::now() - shared_->answered.load(std::memory_order_relaxed) > kPatience;
+  return timed_ && Clock::now() - shared_->last_reply.load(std::memory_order_relaxed) > kTimeout;
 }
 
 bool MasterMonitor::masterLostForLong() const {
-  shared_->asked.store(true, std::memory_order_relaxed);
+  shared_->polled.store(true, std::memory_order_relaxed);
   return shared_->away.load(std::memory_order_relaxed) > shared_->orphan_timeout;
 }
 

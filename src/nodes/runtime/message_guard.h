@@ -13,8 +13,8 @@
 
 namespace microinjection {
 
-/// Whether a message's stamp can be true. One that is farther ahead than kLargestLead is refused and reported. Messages
-/// without a header are always timely.
+/// Whether a message's stamp is plausible. A stamp farther ahead than kLargestLead is refused and
+/// reported. Messages without a header are always timely.
 template <typename Message>
 bool isTimely(const std::string& topic, const Message& message, const ros::Time& now) {
   const ros::Time* stamp = ros::message_traits::TimeStamp<Message>::pointer(message);
@@ -24,7 +24,7 @@ bool isTimely(const std::string& topic, const Message& message, const ros::Time&
   return false;
 }
 
-/// Runs a callback so that no exception leaves it: one that did would end the node.
+/// Runs a callback and reports its exceptions, which would otherwise end the node.
 template <typename Callback>
 void runGuarded(const std::string& topic, const Callback& callback) {
   try {
@@ -34,12 +34,13 @@ void runGuarded(const std::string& topic, const Callback& callback) {
   }
 }
 
-/// kAny is for commands that stop something: they are obeyed whatever their stamp. kCommand is for commands of a
-/// stream, which may be without a stamp: they count from when they came.
+/// kAny is for commands that stop something: they are accepted with any stamp. kCommand is for
+/// commands of a stream: without a stamp, the time of arrival counts.
 enum class StampRule { kTimely, kAny, kCommand };
 
-/// As NodeHandle::subscribe, for topics that are no Input of a Cycle: refuses messages whose stamp is ahead, and lets
-/// no exception out of `handler`, which is called with the message and the name of the node that sent it.
+/// Like NodeHandle::subscribe, for topics that are no Input of a Cycle: refuses messages whose
+/// stamp is ahead, and reports the exceptions of `handler`, which receives the message and the name
+/// of its sender.
 template <typename Message, typename Handler>
 ros::Subscriber subscribeGuarded(ros::NodeHandle node, const std::string& topic, std::uint32_t queue_size,
                                  Handler handler, StampRule rule = StampRule::kTimely) {

@@ -8,15 +8,16 @@
 
 namespace microinjection {
 
-/// The messages that this process has refused, by topic and reason. Callbacks of any thread add to it; the log has one
-/// line a second of it at the most, and the diagnostics have all.
+/// The refused messages of this process, by topic and reason. Any thread may add to it. The log has
+/// at most one line a second, the diagnostics have all.
 class MessageRefusals {
  public:
   static MessageRefusals& ofProcess();
 
   void add(const std::string& topic, const std::string& reason);
 
-  /// Merges a warning for each topic that had refusals since the last call, and adds all counts since the start.
+  /// Merges a warning for each topic with refusals since the last call, and adds all counts since
+  /// the start.
   void report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
  private:

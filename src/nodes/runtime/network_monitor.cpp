@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::chrono::seconds kPeriod(1);
 
-/// Empty: of another family than IP.
+/// Returns empty for another family than IP.
 std::string addressOf(const ifaddrs& interface) {
   if (!interface.ifa_addr) return "";
   std::array<char, INET6_ADDRSTRLEN> text{};
@@ -31,7 +31,7 @@ std::string reachableInterfaces() {
   std::string names;
   for (const ifaddrs* each = all; each; each = each->ifa_next) {
     const auto has = [each](unsigned flag) { return (each->ifa_flags & flag) != 0; };
-    const bool counts = has(IFF_UP) && has(IFF_RUNNING) && !has(IFF_LOOPBACK);  // running: its cable is in
+    const bool counts = has(IFF_UP) && has(IFF_RUNNING) && !has(IFF_LOOPBACK);  // running: its cable is connected
     const std::string address = counts ? addressOf(*each) : "";
     if (!address.empty()) names += (names.empty() ? "" : ", ") + std::string(each->ifa_name) + " (" + address + ")";
   }
@@ -42,13 +42,13 @@ std::string reachableInterfaces() {
 }  // namespace
 
 NetworkMonitor::NetworkMonitor() {
-  look();
+  check();
   thread_ = std::thread([this] {
     preferForThread(Priority::kOrdinary);
     std::unique_lock<std::mutex> lock(mutex_);
     while (!changed_.wait_for(lock, kPeriod, [this] { return ending_; })) {
       lock.unlock();
-      look();
+      check();
       lock.lock();
     }
   });
@@ -63,7 +63,7 @@ NetworkMonitor::~NetworkMonitor() {
   thread_.join();
 }
 
-void NetworkMonitor::look() {
+void NetworkMonitor::check() {
   std::string found = reachableInterfaces();
   const std::lock_guard<std::mutex> lock(mutex_);
   reachable_ = !found.empty();

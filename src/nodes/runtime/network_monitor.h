@@ -8,9 +8,9 @@
 
 namespace microinjection {
 
-/// Through which interfaces others can reach this machine, looked at once a second in a thread of its own. roscpp and
-/// the ROS master listen on every interface, whatever ROS_IP says, and ask nobody who they are: whoever reaches them
-/// can end a node or connect it to another master.
+/// Lists the interfaces over which others can reach this machine, once a second in its own thread.
+/// roscpp and the ROS master accept connections on every interface, whatever ROS_IP is, without
+/// authentication: anyone who reaches them can end a node or connect it to another master.
 class NetworkMonitor {
  public:
   NetworkMonitor();
@@ -18,14 +18,14 @@ class NetworkMonitor {
   NetworkMonitor(const NetworkMonitor&) = delete;
   NetworkMonitor& operator=(const NetworkMonitor&) = delete;
 
-  /// Neither waits nor locks.
+  /// Does not block.
   bool reachable() const { return reachable_; }
-  /// The interfaces that are up, connected and have an address, but the loopback, e.g. "eth0 (192.168.1.5)"; empty:
-  /// none.
+  /// The interfaces that are up, connected and have an address, without the loopback, e.g. "eth0
+  /// (192.168.1.5)".
   std::string interfaces() const;
 
  private:
-  void look();
+  void check();
 
   std::atomic<bool> reachable_{false};
   mutable std::mutex mutex_;

@@ -7,7 +7,8 @@
 namespace microinjection {
 namespace {
 
-/// The shortest text that reads back as the same number, so that a message shows what the user wrote.
+/// The shortest text that reads back as the same number, so that a message shows what the user
+/// wrote.
 std::string shortest(double value) {
   std::string text;
   for (int digits = 6; digits <= 17; ++digits) {

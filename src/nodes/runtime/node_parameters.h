@@ -7,11 +7,11 @@
 
 namespace microinjection {
 
-/// The private namespace of a node as a YAML map, to be read strictly by ConfigReader. ROS itself may put
-/// `diagnostic_period` there, which is left out.
+/// The private parameters of a node as a YAML map, for strict reading by ConfigReader.
+/// `diagnostic_period`, which belongs to diagnostic_updater, is left out.
 YAML::Node privateParameters(const ros::NodeHandle& private_node);
 
-/// A reader over a node's private parameters whose messages name the node.
+/// A reader of a node's private parameters; its messages name the node.
 ConfigReader parameterReader(const ros::NodeHandle& private_node);
 
 }  // namespace microinjection

@@ -21,77 +21,78 @@
 
 namespace microinjection {
 
-/// Which message an input waits for in lock step: that of the same tick (from a node upstream) or that of the tick
-/// before (feedback). Live, kThisTick means that an arrival sets off a step.
+/// The message that an input waits for in lock step: that of the same tick (from a node upstream)
+/// or of the last tick (feedback). Live, the arrival of a kThisTick input starts a step.
 enum class InputPhase { kThisTick, kPreviousTick };
 
-/// Beside each topic T that takes part in lock step runs T + kNoMessageSuffix, on which the publisher says in every
-/// tick without a message that there is none, so that nobody waits for it. frame_id "invalid" also withdraws the last
-/// one. Silence with stamp 0 is the publisher's greeting: nobody begins before all its publishers have greeted it.
+/// Each topic T in lock step has a second topic T + kNoMessageSuffix. On it the publisher reports
+/// every tick without a message ("silence"), so that nobody waits for one. frame_id "invalid" also
+/// withdraws the last message. Silence with stamp 0 is the publisher's greeting: a node starts when
+/// all its publishers have sent theirs.
 constexpr char kNoMessageSuffix[] = "/silent";
 
-/// One subscribed topic as a Cycle sees it.
+/// A subscribed topic, as used by Cycle.
 class InputPort {
  public:
   InputPort(const std::string& name, InputPhase input_phase, double input_timeout)
       : topic(name), phase(input_phase), timeout(input_timeout) {}
   virtual ~InputPort() = default;
 
-  /// Lock step: is the answer for the tick with this stamp there, message or silence?
-  virtual bool answered(const ros::Time& stamp) const = 0;
-  /// Lock step: makes that answer the present one, as of `now`.
-  virtual void take(const ros::Time& stamp, const ros::Time& now) = 0;
+  /// Lock step: whether the message or silence of the tick with this stamp has arrived.
+  virtual bool hasInputOf(const ros::Time& stamp) const = 0;
+  /// Lock step: makes it the present input at `now`.
+  virtual void receiveTick(const ros::Time& stamp, const ros::Time& now) = 0;
   virtual bool valid() const = 0;
-  /// Forgets the last message.
+  /// Discards the last message.
   virtual void invalidate() = 0;
 
-  /// Age of the last message in s of ROS time, from its stamp or its arrival, whichever is older; infinite before the
-  /// first.
+  /// Age of the last message (s of ROS time), from the older of its stamp and its arrival; infinite
+  /// before the first.
   double age(const ros::Time& now) const { return received.isZero() ? INFINITY : secondsBetween(received, now); }
-  /// The last message is there, valid and not older than `timeout`.
+  /// Whether the last message is valid and not older than `timeout`.
   bool fresh(const ros::Time& now) const { return !disconnected && valid() && age(now) >= 0 && age(now) <= timeout; }
 
   const std::string topic;
   const InputPhase phase;
   const double timeout;        ///< s of ROS time
   ros::Time received;          ///< of the last message
-  std::string sender;          ///< node that the last message came from, whether it was taken or not
-  std::string publisher_name;  ///< lock step: the node whose greeting is here, silence with stamp 0; empty: none yet
-  bool disconnected = false;   ///< nothing counts as fresh; see Cycle
-  /// kAny: listeners hear also what is stamped ahead; it is never fresh. kCommand: live, what has no stamp is taken as
-  /// of its arrival, unless its publisher latches.
+  std::string sender;          ///< node of the last message, also of a refused one
+  std::string publisher_name;  ///< lock step: node that sent its greeting; empty: none yet
+  bool disconnected = false;   ///< no message is fresh; see Cycle
+  /// kAny: handlers also receive messages stamped ahead, which are never fresh. kCommand: live, a
+  /// message without a stamp gets that of its arrival, unless its publisher latches.
   StampRule stamp_rule = StampRule::kTimely;
 };
 
-/// How a message came, live.
+/// Arrival of a message, live.
 struct Arrival {
   ros::Time time;
-  ros::Time earliest;  ///< when it cannot have been here yet: a node that was frozen finds old messages
+  ros::Time earliest;  ///< earliest possible arrival: a frozen node finds old messages
   std::string sender;
   bool latched = false;  ///< by its publisher
 };
 
-/// The newest message of a topic, for one thread. Measured data with stamp 0 is invalid (CRTK) and withdraws the one
-/// before.
+/// The newest message of a topic, for one thread. Measured data with stamp 0 is invalid (CRTK) and
+/// withdraws the last message.
 template <typename Message>
 class Input : public InputPort {
  public:
   using InputPort::InputPort;
   using Pointer = boost::shared_ptr<const Message>;
 
-  bool answered(const ros::Time& stamp) const override {
+  bool hasInputOf(const ros::Time& stamp) const override {
     const auto is_it = [&](const ros::Time& other) { return other == stamp; };
     return std::any_of(silence_.begin(), silence_.end(), [&](const auto& header) { return is_it(header.stamp); }) ||
            std::any_of(waiting_.begin(), waiting_.end(),
                        [&](const Waiting& waiting) { return is_it(waiting.message->header.stamp); });
   }
 
-  void take(const ros::Time& stamp, const ros::Time& now) override {
-    news_ = false;
+  void receiveTick(const ros::Time& stamp, const ros::Time& now) override {
+    updated_ = false;
     for (; !silence_.empty() && silence_.front().stamp <= stamp; silence_.pop_front()) {
       if (silence_.front().frame_id == "invalid") newest_.reset();
     }
-    // A message that is not due yet must not hold those behind it back.
+    // A message that is not due yet must not delay those behind it.
     for (auto next = waiting_.begin(); next != waiting_.end();) {
       if (next->message->header.stamp > stamp) {
         ++next;
@@ -105,7 +106,7 @@ class Input : public InputPort {
     }
   }
 
-  /// Live. A message whose stamp is ahead is refused, and the last one stays.
+  /// Live. Refuses a message whose stamp is ahead; the last one stays.
   void receive(const Pointer& message, const Arrival& arrival) {
     sender = arrival.sender;
     if (message->header.stamp.isZero() && stamp_rule == StampRule::kCommand) return receiveUnstamped(*message, arrival);
@@ -124,15 +125,17 @@ class Input : public InputPort {
     if (!header.stamp.isZero()) silence_.push_back(header);
   }
 
-  /// Sees every message and when it came, also those that a newer one replaces before the next step.
-  using Listener = std::function<void(const Message&, const ros::Time& now)>;
-  void listen(Listener listener) { listeners_.push_back(std::move(listener)); }
+  /// Receives every message with its time of arrival, also those that a newer one replaces before
+  /// the next step.
+  using Handler = std::function<void(const Message&, const ros::Time& now)>;
+  void onMessage(Handler handler) { handlers_.push_back(std::move(handler)); }
 
   bool valid() const override { return newest_ != nullptr; }
   /// The newest message if fresh(now), else null.
   const Message* get(const ros::Time& now) const { return fresh(now) ? newest_.get() : nullptr; }
-  /// The newest message if it came since the last call of this function, else null: for commands.
-  Pointer takeUpdates() { return std::exchange(news_, false) ? newest_ : nullptr; }
+  /// The newest message if it arrived since the last call of this function, else null: for
+  /// commands.
+  Pointer takeUpdates() { return std::exchange(updated_, false) ? newest_ : nullptr; }
 
  private:
   struct Waiting {
@@ -154,23 +157,23 @@ class Input : public InputPort {
     return true;
   }
   void notify(const Message& message, const ros::Time& now) const {
-    for (const Listener& listener : listeners_) listener(message, now);
+    for (const Handler& handler : handlers_) handler(message, now);
   }
   void accept(const Pointer& message, const ros::Time& now) {
     newest_ = message;
-    // Whichever is older: a relay that repeats an old sample must not keep it fresh.
+    // The older of the two: a relay that repeats an old sample must not keep it fresh.
     received = message ? std::min(now, message->header.stamp) : now;
-    news_ = message != nullptr;
+    updated_ = message != nullptr;
   }
 
   Pointer newest_;
-  bool news_ = false;
-  std::vector<Listener> listeners_;
+  bool updated_ = false;
+  std::vector<Handler> handlers_;
   std::deque<Waiting> waiting_;
   std::deque<std_msgs::Header> silence_;
 };
 
-/// One advertised topic as a Cycle sees it.
+/// An advertised topic, as used by Cycle.
 class OutputPort {
  public:
   explicit OutputPort(const std::string& name) : topic(name) {}
@@ -179,10 +182,10 @@ class OutputPort {
   /// Lock step: see kNoMessageSuffix.
   void announce() { silent_publisher.publish(std_msgs::Header()); }
 
-  /// Lock step: every message is stamped with the tick that it was sent in.
+  /// Lock step: every message is stamped with the tick in which it is published.
   void beginTick(const ros::Time& now) { tick_ = now; }
 
-  /// Lock step: says, at the end of the tick, that there was no message, where there was none.
+  /// Lock step: publishes the silence of a tick without a message.
   void endTick() {
     if (!published_) {
       std_msgs::Header header;
@@ -196,8 +199,8 @@ class OutputPort {
   const std::string topic;
   ros::Publisher publisher;
   ros::Publisher silent_publisher;    ///< null when live
-  std::atomic<unsigned> count{0};     ///< messages sent, for the diagnostics
-  std::atomic<unsigned> withheld{0};  ///< messages whose numbers were not finite, for the diagnostics
+  std::atomic<unsigned> count{0};     ///< published messages, for the diagnostics
+  std::atomic<unsigned> withheld{0};  ///< messages with numbers that are not finite, for the diagnostics
 
  protected:
   ros::Time tick_;  ///< zero when live
@@ -210,8 +213,8 @@ class Output : public OutputPort {
  public:
   using OutputPort::OutputPort;
 
-  /// The header's stamp is that of the measurement that the message derives from; see beginTick for lock step. A
-  /// message with a number that is not finite is not sent: what goes out in its place is invalid. Live, a thread other
+  /// The header's stamp is that of the message's measurement; see beginTick for lock step. A
+  /// message with a number that is not finite is replaced by an invalid one. Live, another thread
   /// than the node's may call it, always the same one.
   void publish(Message message) {
     if (!isFinite(message)) {
@@ -224,7 +227,7 @@ class Output : public OutputPort {
     ++count;
   }
 
-  /// Sends the message with stamp 0: what was said before does not hold any more (CRTK).
+  /// Publishes the message with stamp 0, which withdraws the last one (CRTK).
   void publishInvalid(Message message) {
     if (!isFinite(message)) {
       Message empty;

@@ -10,11 +10,11 @@
 namespace microinjection {
 namespace {
 
-constexpr int kPromptNiceness = -3;  ///< before what is ordinary, and not so far that nothing is left for rviz
+constexpr int kPromptNiceness = -3;  ///< before ordinary processes, but leaves time for rviz
 
 }  // namespace
 
-// On Linux the calls of setpriority and sched_setscheduler concern the calling thread alone.
+// On Linux setpriority and sched_setscheduler affect the calling thread alone.
 
 void preferForThread(Priority priority) {
   if (priority == Priority::kRealTime && std::thread::hardware_concurrency() < 2) return;
@@ -28,9 +28,9 @@ void preferForThread(Priority priority) {
 void prefer(Priority priority) {
   if (priority == Priority::kOrdinary) return;  // it stays as its launch prefix has it
   preferForThread(priority);
-  // Where Linux groups threads by session (autogroup, which most distributions have on), their niceness counts only
-  // among themselves, and the group has one of its own. roslaunch gives each node a session; a node that shares one
-  // with a shell leaves it as it is.
+  // With autogroup (on in most distributions) Linux groups threads by session: their niceness
+  // counts only within the group, which has its own. roslaunch gives each node a session; a node in
+  // a shell's session does not change the group.
   const bool has_session = getsid(0) == getpid();
   if (priority == Priority::kPrompt && has_session) std::ofstream("/proc/self/autogroup") << kPromptNiceness;
 }

@@ -2,16 +2,18 @@
 
 namespace microinjection {
 
-/// When a process gets the processor: as any other (kOrdinary); before all that do not run in real time, the cell's
-/// solver too, for who must hear every message (kPrompt); in real time (kRealTime), as haptic loops are run: SCHED_RR,
-/// lowest priority.
+/// Scheduling of a process.
+/// - kOrdinary: as any other.
+/// - kPrompt: before all that do not run in real time, also the cell's solver; for nodes that must
+///   receive every message.
+/// - kRealTime: SCHED_RR, lowest priority, as usual for haptic loops.
 enum class Priority { kOrdinary, kPrompt, kRealTime };
 
-/// Asks the system for it, for the calling thread and those that it starts later. Where the system does not allow it
-/// (see `ulimit -r` and `ulimit -e`) nothing changes.
+/// Requests it for the calling thread and those that it starts later. Nothing changes where the
+/// system does not allow it (see `ulimit -r` and `ulimit -e`).
 void prefer(Priority priority);
 
-/// The same for the calling thread alone; the process stays what it is.
+/// The same for the calling thread alone.
 void preferForThread(Priority priority);
 
 }  // namespace microinjection

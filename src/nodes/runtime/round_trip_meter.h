@@ -11,17 +11,18 @@
 
 namespace microinjection {
 
-/// Time from a device's sample of the hand to the first force that depends on it and has come back to the device: what
-/// all nodes between add, adapter and messages included. Joined by stamps, and from bridge to device by the size of the
-/// force, since drivers' messages have no stamp. Only the needle poses that isTraced() picks are counted (see
-/// latency_meter.h), and forces that are not zero.
+/// Measures the time from a device's sample of the hand to the first force at the device that
+/// depends on it: the delay of all nodes between them, with adapter and messages. Messages are
+/// joined by stamps, and from bridge to device by the magnitude of the force, since drivers'
+/// messages have no stamp. Only needle poses that isTraced() selects (latency_meter.h) and forces
+/// other than zero count.
 class RoundTripMeter {
  public:
   explicit RoundTripMeter(ros::NodeHandle& node);
 
-  /// A force (N) came to the device.
-  void felt(const Eigen::Vector3d& force, const ros::Time& received);
-  /// Counts what is old enough for all of its messages to have come; call it in every step.
+  /// Adds a force (N) that the device received.
+  void addForce(const Eigen::Vector3d& force, const ros::Time& received);
+  /// Counts round trips whose messages must all have arrived. Call in every step.
   void step(const ros::Time& now);
 
   const IntervalHistogram& atBridge() const { return at_bridge_; }  ///< s, until the bridge's step began
@@ -33,8 +34,8 @@ class RoundTripMeter {
   std::map<ros::Time, ros::Time> hand_of_needle_;   ///< stamps
   std::map<ros::Time, ros::Time> needle_of_force_;  ///< stamp of the needle's pose by that of the bridge's force
   std::map<ros::Time, Eigen::Vector3d> rendered_;   ///< N, by stamp of the bridge's force
-  std::map<ros::Time, Eigen::Vector3d> felt_;       ///< N, by when it came
-  ros::Time last_hand_;                             ///< newest hand sample that was counted
+  std::map<ros::Time, Eigen::Vector3d> received_;   ///< N, by time of arrival
+  ros::Time last_hand_;                             ///< newest counted sample of the hand
   IntervalHistogram at_bridge_, at_device_;
   ros::Subscriber setpoints_, forces_, traces_;
 };

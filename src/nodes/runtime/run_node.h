@@ -14,10 +14,10 @@
 
 namespace microinjection {
 
-/// The whole `main` of a node: starts ROS, constructs Node(node, private_node) and runs it until shutdown. A node whose
-/// parameters are wrong must not come alive: what its constructor throws is logged and the exit status is 1. Live,
-/// nodes of the 1 kHz chain run in real time where the system allows it, those that hear every message of it promptly.
-/// With ShutdownMode::kInGoodOrder it is asked to end (see ending.h) instead of being ended.
+/// The `main` of a node: starts ROS, constructs Node(node, private_node) and runs it until
+/// shutdown. A node with wrong parameters does not start: exceptions of its constructor are logged
+/// and the exit status is 1. `priority` applies to live sessions, where the system allows it. With
+/// ShutdownMode::kInGoodOrder the first signal only requests the end (ending.h).
 enum class ShutdownMode { kAtOnce, kInGoodOrder };
 template <typename Node>
 int runNode(int argc, char** argv, const std::string& name, Priority priority = Priority::kRealTime,
@@ -28,16 +28,16 @@ int runNode(int argc, char** argv, const std::string& name, Priority priority = 
       return 0;
     }
   }
-  const ConsoleRelay console;  // before there are threads: a stopped terminal must not stop a loop
+  const ConsoleRelay console;  // before any thread starts: a stopped terminal must not stop a loop
   ros::init(argc, argv, name, ending == ShutdownMode::kInGoodOrder ? ros::init_options::NoSigintHandler : 0);
-  // roscpp hears SIGINT only: at the others, too, a device is told to stop before the end.
+  // roscpp handles only SIGINT. The other signals, too, must stop a device before the end.
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) std::signal(number, [](int) { ros::requestShutdown(); });
   if (!takesPartInLockstep()) {
     prefer(priority);
-    // In lock step a node that waits for its tick could not speak any more.
+    // In lock step a node that waits for its tick could not publish any more.
     if (ending == ShutdownMode::kInGoodOrder) endInGoodOrder();
   }
-  // These outlive the try block: the end of the last handle shuts ROS down, and its log with it.
+  // The handles outlive the try block: the end of the last one shuts ROS and its log down.
   const ros::NodeHandle node_handle, private_node_handle("~");
   try {
     Node node(node_handle, private_node_handle);

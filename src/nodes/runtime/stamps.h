@@ -6,18 +6,19 @@
 
 namespace microinjection {
 
-/// A message whose stamp is farther ahead of this node's time than this (s) is refused. Clocks that NTP keeps differ by
-/// milliseconds.
+/// A message whose stamp is farther ahead of this node's time (s) is refused. NTP keeps clocks
+/// within milliseconds.
 constexpr double kLargestLead = 1;
 
-/// Seconds from one time to another, of ros::Time, ros::WallTime or ros::SteadyTime. The difference of two ros::Time
-/// throws beyond 2^31 s, so that one wild stamp would end a node. This function never throws.
+/// Seconds from one time to another, of ros::Time, ros::WallTime or ros::SteadyTime. The difference
+/// of two ros::Time throws beyond 2^31 s, so one wrong stamp would end a node. This function never
+/// throws.
 template <typename Time>
 double secondsBetween(const Time& from, const Time& to) {
   return 1e-9 * static_cast<double>(static_cast<std::int64_t>(to.toNSec()) - static_cast<std::int64_t>(from.toNSec()));
 }
 
-/// Whether a stamp is too far in the future to be true.
+/// Whether a stamp is implausibly far in the future.
 inline bool isAhead(const ros::Time& stamp, const ros::Time& now) { return secondsBetween(now, stamp) > kLargestLead; }
 
 }  // namespace microinjection

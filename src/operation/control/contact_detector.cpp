@@ -6,14 +6,14 @@
 namespace microinjection {
 namespace {
 
-/// Less than what the offset is uncertain by adds up without end.
+/// An allowance below the offset's uncertainty would let the sum grow without bound.
 constexpr double kSmallestAllowance = 0.15;
 
-constexpr int kLate = 128;         ///< samples
-constexpr double kFollow = 1e-3;   ///< share of a sample in the offset
-constexpr double kFarthest = 4;    ///< contact forces
-constexpr double kSoftest = 5e-3;  ///< N/m, of a cell
-constexpr double kRests = 1e-12;   ///< m a sample
+constexpr int kDelay = 128;             ///< samples, see ContactDetector
+constexpr double kFollow = 1e-3;        ///< weight of a sample in the offset
+constexpr double kOffsetRange = 4;      ///< contact forces
+constexpr double kSoftest = 5e-3;       ///< N/m, of the softest cell
+constexpr double kRestAdvance = 1e-12;  ///< m a sample, below which the needle rests
 
 double samplesBetweenFalseAlarms(double k, double h) {
   const double exponent = 2 * k * (h + 1.166);
@@ -27,7 +27,7 @@ double limitFor(double k, double false_rate) {
     const double middle = 0.5 * (low + high);
     (samplesBetweenFalseAlarms(k, middle) < 1 / false_rate ? low : high) = middle;
   }
-  // The formula is for small k: for a large one a single sample beyond k + h is what alarms.
+  // The formula holds for small k. For a large k a single sample beyond k + h raises the alarm.
   return std::max(high, normalQuantile(false_rate) - k);
 }
 
@@ -38,20 +38,21 @@ ContactDetector::ContactDetector(const ForceNoise& noise, double force, double f
       deviation_(noise.deviation()),
       allowance_(std::max(kSmallestAllowance, 0.5 * force / noise.deviation())),
       limit_(limitFor(allowance_, false_rate)),
-      late_(kLate) {
-  rest_ = offset_;
-  farthest_ = kFarthest * force;
-  // An offset that follows a steady ramp stays behind by 1 / kFollow + kLate samples of it.
-  creep_ = allowance_ * deviation_ / (1 / kFollow + kLate) / kSoftest;
+      recent_(kDelay) {
+  start_offset_ = offset_;
+  offset_range_ = kOffsetRange * force;
+  // An offset that follows a steady ramp lags by 1 / kFollow + kDelay samples.
+  creep_limit_ = allowance_ * deviation_ / (1 / kFollow + kDelay) / kSoftest;
 }
 
-bool ContactDetector::isCreeping() const { return advance_ > kRests && advance_ < creep_; }
+bool ContactDetector::isCreeping() const { return advance_ > kRestAdvance && advance_ < creep_limit_; }
 
 bool ContactDetector::step(double force, double advance) {
-  advance_ += (advance - advance_) / kLate;
-  double& oldest = late_[static_cast<std::size_t>(count_ % kLate)];
-  if (count_++ >= kLate && !isCreeping()) {
-    offset_ = std::clamp(offset_ + kFollow * (oldest - offset_), rest_ - farthest_, rest_ + farthest_);
+  advance_ += (advance - advance_) / kDelay;
+  double& oldest = recent_[static_cast<std::size_t>(count_ % kDelay)];
+  if (count_++ >= kDelay && !isCreeping()) {
+    offset_ = std::clamp(offset_ + kFollow * (oldest - offset_), start_offset_ - offset_range_,
+                         start_offset_ + offset_range_);
   }
   oldest = force;
   sum_ = std::max(0.0, sum_ + (force - offset_) / deviation_ - allowance_);

@@ -5,14 +5,14 @@ namespace microinjection {
 /// Offset and noise of a force at rest, from its first samples (Welford's sums).
 class ForceNoise {
  public:
-  /// `samples` (> 1) to take; `floor` (N, > 0): a smaller deviation is not believed, as that of a force without noise.
+  /// `samples` (> 1) to take; `floor` (N, > 0): smallest deviation, for a force without noise.
   ForceNoise(int samples, double floor) : wanted_(samples), floor_(floor) {}
 
-  void add(double force);  ///< N; one more sample at rest, as long as it is not ready
+  void add(double force);  ///< N; adds a sample at rest, ignored when ready()
   bool ready() const { return count_ >= wanted_; }
 
   double offset() const { return mean_; }  ///< N
-  /// N, standard deviation, two of its own standard errors on the safe side (larger).
+  /// N, standard deviation, increased by two of its own standard errors to be on the safe side.
   double deviation() const;
 
  private:
@@ -23,7 +23,7 @@ class ForceNoise {
   double squares_ = 0;  ///< N^2, of the deviations from the mean
 };
 
-/// How many standard deviations a normal deviate exceeds with a probability in (0, 0.5).
+/// The number of standard deviations that a normal deviate exceeds with a probability in (0, 0.5).
 double normalQuantile(double probability);
 
 }  // namespace microinjection

@@ -8,9 +8,9 @@ namespace microinjection {
 namespace {
 
 constexpr double kSpeedWindow = 0.02;  ///< s
-constexpr double kSlack = 1e-6;        ///< m, of a leash: what encoders and a thermal drift do
+constexpr double kSlack = 1e-6;        ///< m, added to the following error for encoder steps and thermal drift
 
-/// `of`: what `what` ends with.
+/// Reason when a value exceeds its limit, else empty. `of` follows `what` in the text.
 std::string beyond(const char* what, double value, double limit, const char* unit, const char* of = "") {
   if (value <= limit) return "";
   std::ostringstream text;

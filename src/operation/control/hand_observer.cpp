@@ -5,8 +5,8 @@
 namespace microinjection {
 namespace {
 
-constexpr double kInside = 1e-6;  ///< m past the touch that is more than a touch, or before it that is out
-constexpr double kTurned = 2e-6;  ///< m back, or in again, that is no trembling of the hand
+constexpr double kInside = 1e-6;  ///< m past the contact point that is an indentation; m before it that is out
+constexpr double kTurned = 2e-6;  ///< m of reversed motion that is no tremor
 
 }  // namespace
 

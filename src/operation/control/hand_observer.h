@@ -8,16 +8,17 @@
 
 namespace microinjection {
 
-/// Names what a hand does with the needle: it sees, and moves nothing.
+/// Recognises the events of an injection by hand. It only observes.
 class HandObserver {
  public:
-  /// After a step in `state`; the monitor has seen its force and needle. `injector` empty: nothing valid is known.
+  /// Call after a step in `state`, when the monitor has its force and needle. `injector` empty: no
+  /// valid report.
   std::optional<InjectionEvent> step(InjectionState state, const NeedleMonitor& monitor,
                                      const std::optional<InjectorReport>& injector);
 
  private:
   InjectionState state_ = InjectionState::kIdle;
-  double deepest_ = 0, shallowest_ = 0;  ///< m past the touch, since the state was entered
+  double deepest_ = 0, shallowest_ = 0;  ///< m past the contact point, in this state
 };
 
 }  // namespace microinjection

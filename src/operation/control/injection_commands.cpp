@@ -1,4 +1,4 @@
-// What people and programs ask of the controller.
+// Commands of operators and programs to the controller.
 
 #include <sstream>
 #include <utility>
@@ -21,10 +21,10 @@ std::string InjectionController::execute(const std::string& command) {
   return applyCommand(command);
 }
 
-std::string InjectionController::applyCommand(const std::string& word) {
-  const auto command = stateCommandOf(word);
+std::string InjectionController::applyCommand(const std::string& text) {
+  const auto command = stateCommandOf(text);
   if (!command) {
-    return "\"" + word +
+    return "\"" + text +
            "\" is no command here; allowed: enable, disable, pause, resume, home, unhome, approach, indent, inject, "
            "withdraw";
   }
@@ -32,12 +32,12 @@ std::string InjectionController::applyCommand(const std::string& word) {
   if (!refusal.empty()) return refusal;
   homing_ = *command == StateCommand::kHome;
   if (*command != StateCommand::kUnhome) paused_ = *command == StateCommand::kPause;
-  monitor_.skip();  // what comes next is no sequel of the motion until now
+  monitor_.skip();  // the next motion does not continue the present one
   target_offset_.reset();
   return "";
 }
 
-/// CRTK's table, for all commands but home.
+/// Applies CRTK's table, for all commands but home.
 std::string InjectionController::change(StateCommand command) {
   const auto next = after(state_, command);
   if (!next) return refusalOf(state_, command);
@@ -57,7 +57,7 @@ std::string InjectionController::change(StateCommand command) {
       hold_reason_ = "PAUSED";
       break;
     case StateCommand::kResume:
-      run_.rested();
+      run_.resetSpeed();
       break;
     case StateCommand::kUnhome:
       unhomed_ = true;
@@ -69,7 +69,8 @@ std::string InjectionController::change(StateCommand command) {
   return "";
 }
 
-/// Beyond CRTK's table PAUSED allows it, too: it is the way out of the cell when a guard holds the needle.
+/// Unlike CRTK's table, PAUSED allows home, too: it withdraws a needle that a guard holds in the
+/// cell.
 std::string InjectionController::goHome() {
   const bool allowed = state_ == OperatingState::kEnabled || state_ == OperatingState::kPaused;
   if (!allowed) return std::string("state is ") + toText(state_) + ", home is allowed in ENABLED, PAUSED";
@@ -123,7 +124,7 @@ std::string InjectionController::withdraw() {
   const bool held = state_ == OperatingState::kEnabled || state_ == OperatingState::kPaused;
   if (!held) return std::string("state is ") + toText(state_) + ", withdraw is allowed in ENABLED and PAUSED";
   if (!setpoint_) return "the needle's position is not known yet";
-  // Left in the cell by an injection that was disabled: it is known where it came from.
+  // A disabled injection left the needle in the cell: its start is known.
   if (injection_ == InjectionState::kIdle && monitor_.touched() && !homing_) return applyCommand("home");
   if (homing_ || !after(injection_, InjectionEvent::kWithdraw)) {
     return std::string("there is nothing to withdraw from in ") + (homing_ ? "homing" : toText(injection_));

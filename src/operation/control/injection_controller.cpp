@@ -7,11 +7,11 @@
 namespace microinjection {
 namespace {
 
-constexpr double kOut = 1e-6;  ///< m before the touch, where a needle is out of the cell
+constexpr double kOut = 1e-6;  ///< m before the contact point, from where on a needle is out of the cell
 
-// Beyond these an announcement is a mistake: the fastest micromanipulators do some 0.02 m/s, and the slowest serial
-// line takes a fraction of a second for a command.
-constexpr double kSlowestRig = 1e-6;  ///< m/s: a slower one would hold the needle without saying so
+// Abilities beyond these are a mistake: the fastest micromanipulators reach some 0.02 m/s, and the
+// slowest serial line takes a fraction of a second for a command.
+constexpr double kSlowestRig = 1e-6;  ///< m/s: a slower one would hold the needle without a report
 constexpr double kFastestRig = 1;     ///< m/s
 constexpr double kLatestRig = 10;     ///< s
 
@@ -77,7 +77,7 @@ bool InjectionController::isInside(const Eigen::Vector3d& needle, const Eigen::V
 void InjectionController::engage(const Eigen::Vector3d& needle, const Eigen::Vector3d& axis) {
   setpoint_ = needle;
   needle_speed_.reset();
-  // In the cell the way out, the touch and the force at rest stay what they were when it set out.
+  // In the cell, home, the contact point and the force at rest stay.
   if (isInside(needle, axis)) return;
   monitor_.reset();
   home_ = needle;
@@ -86,16 +86,16 @@ void InjectionController::engage(const Eigen::Vector3d& needle, const Eigen::Vec
 }
 
 std::optional<Eigen::Vector3d> InjectionController::step(const Input& input, double dt) {
-  const bool known = valid(input.needle);
-  needle_valid_ = needle_valid_ || known;
+  const bool needle_valid = valid(input.needle);
+  needle_valid_ = needle_valid_ || needle_valid;
   if (state_ == OperatingState::kDisabled || state_ == OperatingState::kFault) {
-    // Taken out by somebody else it is out.
-    if (known && monitor_.touched() && !isInside(*input.needle, input.axis)) monitor_.reset();
+    // Something else may have moved the needle out of the cell.
+    if (needle_valid && monitor_.touched() && !isInside(*input.needle, input.axis)) monitor_.reset();
     return std::nullopt;
   }
-  if (!known) {
+  if (!needle_valid) {
     invalidateNeedle(dt);
-    return setpoint_;  // before the first pose there is nothing to hold yet
+    return setpoint_;  // empty before the first pose
   }
   if (!setpoint_) engage(*input.needle, input.axis);
   if (rigIsAtFault(*input.needle, dt)) return std::nullopt;
@@ -136,24 +136,24 @@ bool InjectionController::rigIsAtFault(const Eigen::Vector3d& needle, double dt)
   return true;
 }
 
-void InjectionController::observe(const Input& input, bool force_trusted, double dt) {
-  if (force_trusted) {
+void InjectionController::observe(const Input& input, bool force_valid, double dt) {
+  if (force_valid) {
     monitor_.step(*input.needle, input.axis, *input.force);
   } else {
     monitor_.skip();
   }
   if (!byHand()) return;
   monitorManualPulse(input, dt);
-  if (!force_trusted) return;
+  if (!force_valid) return;
   const auto event = observer_.step(injection_, monitor_, pulse_by_hand_ ? std::nullopt : input.injector);
   if (event) apply(*event);
 }
 
-/// A pulse goes on while the needle is PAUSED, but not past its volume.
+/// A pulse continues while the needle is PAUSED, up to its volume.
 void InjectionController::monitorPulse(const Input& input, double dt) {
   if (!run_.active() || injection_ != InjectionState::kInject) return;
   if (!valid(input.force)) return endPulse("no valid force");
-  take(run_.step(injection_, monitor_, input.injector, *setpoint_, input.axis, dt));
+  applyStep(run_.step(injection_, monitor_, input.injector, *setpoint_, input.axis, dt));
 }
 
 std::optional<Eigen::Vector3d> InjectionController::handTarget(const Input& input) {
@@ -165,7 +165,8 @@ std::optional<Eigen::Vector3d> InjectionController::handTarget(const Input& inpu
     if (!valid(input.force)) endPulse(hold_reason_);
     return std::nullopt;
   }
-  // The hand may have gone anywhere while the needle was held: the target counts from where it is now.
+  // The hand may have moved while the needle was held: its target counts from the present
+  // set-point.
   if (!target_offset_) target_offset_ = *setpoint_ - *input.target;
   return *input.target + *target_offset_;
 }
@@ -186,7 +187,7 @@ void InjectionController::stop(InjectionOutcome outcome, const std::string& reas
   hold(reason);
 }
 
-/// A needle that is behind its set-point must not go on deeper to it.
+/// Moves the set-point back to a lagging needle, which must not go deeper.
 void InjectionController::stopNeedle(const Input& input) {
   const double ahead = (*input.needle - *setpoint_).dot(input.axis);
   *setpoint_ += std::max(0.0, ahead) * input.axis;
@@ -196,12 +197,12 @@ std::optional<Eigen::Vector3d> InjectionController::ownTarget(const Input& input
   const bool out = injection_ == InjectionState::kWithdraw;
   hold_reason_.clear();
   if (!run_.active() && !out) {
-    hold_reason_ = "no injection is under way";
+    hold_reason_ = "no injection is under displacement";
     return std::nullopt;
   }
   if (!out && !valid(input.force)) {
     hold_reason_ = "no valid force";
-    // What the membrane does meanwhile is not known.
+    // Without a force a puncture would not be detected.
     if (injection_ == InjectionState::kIndent) {
       stop(InjectionOutcome::kGuard, "no valid force while it indents");
       stopNeedle(input);
@@ -216,13 +217,13 @@ std::optional<Eigen::Vector3d> InjectionController::ownTarget(const Input& input
     return std::nullopt;
   }
   const InjectionRun::Step step = run_.step(injection_, monitor_, input.injector, *setpoint_, input.axis, dt);
-  if (take(step)) return step.target;
+  if (applyStep(step)) return step.target;
   stopNeedle(input);
   return std::nullopt;
 }
 
-/// What a step of the injection brings; whether it goes on.
-bool InjectionController::take(const InjectionRun::Step& step) {
+/// Applies a step of the injection. Returns whether it continues.
+bool InjectionController::applyStep(const InjectionRun::Step& step) {
   if (step.event) apply(*step.event);
   if (step.stop) stop(*step.stop, step.reason);
   return !step.stop;
@@ -231,10 +232,11 @@ bool InjectionController::take(const InjectionRun::Step& step) {
 void InjectionController::stepHome(const Input& input, double dt) {
   const Eigen::Vector3d& axis = input.axis;
   hold_reason_ = "homing";
-  const Eigen::Vector3d way = home_ - *setpoint_;
-  const double out = way.dot(axis);
-  // First out of the cell along the pipette, then across, for a needle that goes sideways tears; never deeper.
-  move(out > 1e-9 ? Eigen::Vector3d(out * axis) : Eigen::Vector3d(way - out * axis), input, dt);
+  const Eigen::Vector3d displacement = home_ - *setpoint_;
+  const double out = displacement.dot(axis);
+  // First out of the cell along the pipette, then across: lateral motion in the cell would tear it.
+  // Never deeper.
+  move(out > 1e-9 ? Eigen::Vector3d(out * axis) : Eigen::Vector3d(displacement - out * axis), input, dt);
   const Eigen::Vector3d left = home_ - *setpoint_;
   if (std::max(0.0, left.dot(axis)) + (left - left.dot(axis) * axis).norm() > 1e-9) return;
   homing_ = unhomed_ = false;
@@ -255,7 +257,7 @@ void InjectionController::follow(const Eigen::Vector3d& target, const Input& inp
   if (motion.norm() > config_.guards.jump_limit) {
     std::ostringstream text;
     text << "target is " << motion.norm() << " m away, allowed " << config_.guards.jump_limit
-         << " m; press the clutch to take hold afresh";
+         << " m; press and release the clutch";
     hold_reason_ = text.str();
     return;
   }
@@ -264,7 +266,8 @@ void InjectionController::follow(const Eigen::Vector3d& target, const Input& inp
     if (!limited_) stopNeedle(input);
     hold_reason_ = beyond + ": the needle may only be withdrawn";
     motion = input.axis * std::max(0.0, (target - *setpoint_).dot(input.axis));
-    // What was refused is forgotten: when the force falls, as in a puncture, the needle must not catch up with it.
+    // The refused motion is discarded: when the force falls, as in a puncture, the needle must not
+    // catch up.
     refuse(target - *setpoint_ - motion);
   }
   limited_ = !beyond.empty();

@@ -9,7 +9,7 @@ using Limits = InjectionGoalLimits;
 
 const Range kLayers = Range::closed(1, Limits::kLayers);
 
-/// A number of a goal: its key, in the section pulse or outside of it, and what is allowed.
+/// A number of a goal: its key, in the section pulse or outside of it, and its range.
 struct Number {
   bool of_pulse;
   const char* key;

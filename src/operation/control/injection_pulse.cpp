@@ -1,4 +1,4 @@
-// The injector's pulse: when it is wanted, and what ends it.
+// The injector's pulse: when it runs, and what ends it.
 
 #include "operation/control/injection_controller.h"
 
@@ -15,18 +15,19 @@ void InjectionController::monitorManualPulse(const Input& input, double dt) {
   const InjectorWait::Status status = hand_pulse_.step(input.injector, dt);
   if (status == InjectorWait::Status::kWaiting) return;
   if (status == InjectorWait::Status::kBroken) notice_ = "the injector ended the pulse too early";
-  if (status == InjectorWait::Status::kTimeOut) notice_ = "the injector does not say that the pulse is over";
+  if (status == InjectorWait::Status::kTimeOut) notice_ = "the injector does not report the end of the pulse";
   apply(InjectionEvent::kInjected);
 }
 
-/// Where it is not known what is injected into. By hand only the pulse is over.
-void InjectionController::endPulse(const std::string& why) {
+/// Ends a pulse whose target is unknown for lack of a valid input. By hand the injection itself
+/// continues.
+void InjectionController::endPulse(const std::string& reason) {
   if (!pulse()) return;
   if (byHand()) {
-    notice_ = "the pulse was ended: " + why;
+    notice_ = "the pulse was ended: " + reason;
     return apply(InjectionEvent::kInjected);
   }
-  stop(InjectionOutcome::kGuard, why + " while it injects");
+  stop(InjectionOutcome::kGuard, reason + " while it injects");
 }
 
 }  // namespace microinjection

@@ -6,8 +6,8 @@
 namespace microinjection {
 namespace {
 
-constexpr double kArrived = 0.3e-6;  ///< m that the needle may be behind its set-point and counts as there
-constexpr double kSettling = 0.5;    ///< s, after which it counts as there anyway
+constexpr double kArrived = 0.3e-6;  ///< m of lag within which the needle counts as arrived
+constexpr double kSettling = 0.5;    ///< s, after which it counts as arrived anyway
 
 }  // namespace
 
@@ -30,16 +30,16 @@ InjectionRun::InjectionRun(const InjectionMotionConfig& config, const GuardConfi
     : config_(config), guards_(guards), automatic_(automatic) {}
 
 void InjectionRun::start(const InjectionGoal& goal, const Eigen::Vector3d& tip) {
-  const double fastest = fastest_;
+  const double speed_limit = speed_limit_;
   *this = InjectionRun(config_, guards_, automatic_);
-  fastest_ = fastest;
+  speed_limit_ = speed_limit;
   goal_ = goal;
   start_ = tip;
   active_ = true;
 }
 
 std::string InjectionRun::confirm(InjectionEvent event, InjectionState state) {
-  if (automatic_) return "the injection goes on by itself";
+  if (automatic_) return "mode is automatic: the injection needs no command";
   if (!active_) return "no injection is under way";
   if (event == InjectionEvent::kInject && (injected_ || goal_.pulse.duration <= 0)) {
     return injected_ ? "it is injected already" : "the goal has no pulse";
@@ -61,7 +61,7 @@ InjectionOutcome InjectionRun::done() const {
 }
 
 void InjectionRun::withdraw() {
-  in_state_ = 0;  // also after a time guard on the way out
+  state_time_ = 0;  // also after a time guard during a withdrawal
   if (!active_ || outcome_ != InjectionOutcome::kNone) return;
   outcome_ = done();
 }
@@ -73,14 +73,14 @@ void InjectionRun::end(InjectionOutcome outcome, const std::string& reason) {
   result_.reason = reason;
 }
 
-void InjectionRun::leave(InjectionOutcome outcome, const std::string& reason, Step& step) {
+void InjectionRun::beginWithdrawal(InjectionOutcome outcome, const std::string& reason, Step& step) {
   outcome_ = outcome;
   reason_ = reason;
   step.event = InjectionEvent::kWithdraw;
 }
 
-/// Whether the step that `event` begins may be done now.
-bool InjectionRun::goOn(InjectionEvent event) {
+/// Whether the step that `event` begins may start now.
+bool InjectionRun::mayProceed(InjectionEvent event) {
   awaits_command_ = !automatic_;
   if (automatic_) return true;
   if (confirmed_ != event) return false;
@@ -90,21 +90,21 @@ bool InjectionRun::goOn(InjectionEvent event) {
 }
 
 std::string InjectionRun::wait(InjectionState state, double dt) {
-  in_state_ += dt;
-  return timeGuard(guards_, toText(state), in_state_);
+  state_time_ += dt;
+  return timeGuard(guards_, toText(state), state_time_);
 }
 
 InjectionRun::Step InjectionRun::step(InjectionState state, const NeedleMonitor& monitor,
                                       const std::optional<InjectorReport>& injector, const Eigen::Vector3d& setpoint,
                                       const Eigen::Vector3d& axis, double dt) {
   if (state != state_) enter(state, monitor);
-  in_state_ += awaits_command_ ? 0 : dt;
+  state_time_ += awaits_command_ ? 0 : dt;
   if (active_) {
     result_.duration += dt;
     result_.peak_force = std::max(result_.peak_force, monitor.peakForce());
     result_.max_depth = std::max(result_.max_depth, monitor.maxDepth());
   }
-  // From where the set-point is: it may have waited for the needle, or been taken back to it.
+  // Starts from the set-point, which may have waited for the needle or been moved back to it.
   travel_ = std::min(travel_, (start_ - setpoint).dot(axis));
   Step step;
   awaits_command_ = false;
@@ -116,14 +116,14 @@ InjectionRun::Step InjectionRun::step(InjectionState state, const NeedleMonitor&
   if (state == InjectionState::kWithdraw) retract(dt, step);
   step.target = start_ - travel_ * axis;
   if (step.event || step.stop) return step;
-  step.reason = timeGuard(guards_, toText(state), in_state_);
+  step.reason = timeGuard(guards_, toText(state), state_time_);
   if (!step.reason.empty()) step.stop = InjectionOutcome::kGuard;
   return step;
 }
 
 void InjectionRun::enter(InjectionState state, const NeedleMonitor& monitor) {
   state_ = state;
-  in_state_ = rested_ = speed_ = 0;
+  state_time_ = rested_ = speed_ = 0;
   awaits_command_ = false;
   confirmed_.reset();
   if (state == InjectionState::kContact) touch_travel_ = travel_;
@@ -141,8 +141,9 @@ void InjectionRun::approach(const NeedleMonitor& monitor, double dt, Step& step)
     step.event = InjectionEvent::kTouch;
     return;
   }
-  travel_ = std::min(config_.travel_limit, travel_ + std::min(config_.approach_speed, fastest_) * dt);
-  if (travel_ >= config_.travel_limit) leave(InjectionOutcome::kNoContact, "no cell within the travel limit", step);
+  travel_ = std::min(config_.travel_limit, travel_ + std::min(config_.approach_speed, speed_limit_) * dt);
+  if (travel_ >= config_.travel_limit)
+    beginWithdrawal(InjectionOutcome::kNoContact, "no cell within the travel limit", step);
 }
 
 void InjectionRun::contact(const NeedleMonitor& monitor, Step& step) {
@@ -152,11 +153,12 @@ void InjectionRun::contact(const NeedleMonitor& monitor, Step& step) {
     step.event = InjectionEvent::kLost;
     return;
   }
-  if (goOn(InjectionEvent::kIndent)) step.event = InjectionEvent::kIndent;
+  if (mayProceed(InjectionEvent::kIndent)) step.event = InjectionEvent::kIndent;
 }
 
 double InjectionRun::stabSpeed(const NeedleMonitor& monitor, double dt) const {
-  // A membrane behind must not fail in the same fall, in which it would not be felt.
+  // A further membrane must not fail in the same fall of the force: its puncture would not be
+  // detected.
   const double overshoot = (result_.punctures + 1 < goal_.layers ? 0.5 : 1) * config_.overshoot;
   const double fast = overshoot / (monitor.latency() * dt + config_.stop_time);
   const double wanted = std::clamp(goal_.puncture ? fast : 0, config_.indent_speed, config_.stab_speed);
@@ -172,17 +174,17 @@ void InjectionRun::indent(const NeedleMonitor& monitor, double dt, Step& step) {
     return;
   }
   speed_ = stabSpeed(monitor, dt);
-  travel_ = std::min(end_travel_, travel_ + std::min(speed_, fastest_) * dt);
+  travel_ = std::min(end_travel_, travel_ + std::min(speed_, speed_limit_) * dt);
   if (travel_ < end_travel_) return;
   rested_ += dt;
   const bool there = monitor.depth() >= end_travel_ - touch_travel_ - kArrived || rested_ > kSettling;
   if (goal_.puncture && there) {
     step.stop = InjectionOutcome::kNotPunctured;
-    step.reason = "the membrane has not given way at the goal's depth";
+    step.reason = "the membrane is not punctured at the goal's depth";
   }
   if (!goal_.puncture && rested_ >= goal_.hold_time) {
     awaits_command_ = !automatic_;
-    if (automatic_) leave(InjectionOutcome::kIndented, "", step);
+    if (automatic_) beginWithdrawal(InjectionOutcome::kIndented, "", step);
   }
 }
 
@@ -198,17 +200,17 @@ void InjectionRun::through(const NeedleMonitor& monitor, double dt, Step& step) 
     step.event = InjectionEvent::kIndent;
     return;
   }
-  travel_ = std::min(end_travel_, travel_ + std::min(config_.indent_speed, fastest_) * dt);
+  travel_ = std::min(end_travel_, travel_ + std::min(config_.indent_speed, speed_limit_) * dt);
   const bool there = monitor.depth() >= end_travel_ - touch_travel_ - kArrived;
-  if (travel_ < end_travel_ || !(there || in_state_ > kSettling)) return;
+  if (travel_ < end_travel_ || !(there || state_time_ > kSettling)) return;
   const bool injects = goal_.pulse.duration > 0 && !injected_;
   if (injects) {
-    if (goOn(InjectionEvent::kInject)) step.event = InjectionEvent::kInject;
+    if (mayProceed(InjectionEvent::kInject)) step.event = InjectionEvent::kInject;
     return;
   }
   awaits_command_ = !automatic_;
   rested_ += dt;
-  if (automatic_ && rested_ >= goal_.hold_time) leave(done(), "", step);
+  if (automatic_ && rested_ >= goal_.hold_time) beginWithdrawal(done(), "", step);
 }
 
 void InjectionRun::inject(const std::optional<InjectorReport>& injector, double dt, Step& step) {
@@ -219,16 +221,17 @@ void InjectionRun::inject(const std::optional<InjectorReport>& injector, double 
     step.event = InjectionEvent::kInjected;
   }
   if (status == InjectorWait::Status::kBroken) {
-    return leave(InjectionOutcome::kNotInjected, "the pulse was broken off, or gave less than its volume", step);
+    return beginWithdrawal(InjectionOutcome::kNotInjected, "the pulse was aborted or delivered less than its volume",
+                           step);
   }
   if (status != InjectorWait::Status::kTimeOut) return;
-  if (injector) return leave(InjectionOutcome::kInjectorTimeOut, "the injector has not finished", step);
+  if (injector) return beginWithdrawal(InjectionOutcome::kInjectorTimeOut, "the injector has not finished", step);
   step.stop = InjectionOutcome::kInjectorTimeOut;
-  step.reason = "no valid word of the injector";
+  step.reason = "no valid state of the injector";
 }
 
 void InjectionRun::retract(double dt, Step& step) {
-  travel_ = std::max(0.0, travel_ - std::min(config_.retract_speed, fastest_) * dt);
+  travel_ = std::max(0.0, travel_ - std::min(config_.retract_speed, speed_limit_) * dt);
   if (travel_ > 0) return;
   step.event = InjectionEvent::kOut;
   end(outcome_, reason_);

@@ -14,60 +14,64 @@
 
 namespace microinjection {
 
-/// How the needle moves of the controller's own.
+/// Parameters of the motion of an injection.
 ///
-/// The stab. A cell's force rises with the speed of the needle and its membrane fails by force, so a fast needle
-/// deforms least; but what is through goes on until that is felt. So the needle is as fast as lets it go on for
-/// `overshoot` at the most, were the membrane to fail now: overshoot / (latency of the puncture detector at the present
-/// force + stop_time), between indent_speed and stab_speed. It starts slowly, where noise hides a puncture, and never
-/// slows down but to stop before the goal's depth.
+/// The stab: a cell's force rises with the needle's speed and its membrane fails at a force, so a
+/// fast needle deforms it least. But the needle moves on after the puncture until it is detected.
+/// Its speed is such that it moves on by at most `overshoot` if the membrane fails now: overshoot /
+/// (latency of the puncture detector at the present force + stop_time), between indent_speed and
+/// stab_speed. It starts slowly, while noise would hide a puncture, and slows down only to stop
+/// before the goal's depth.
 struct InjectionMotionConfig {
-  double approach_speed = 20e-6;    ///< m/s, until the cell is touched
-  double travel_limit = 60e-6;      ///< m, to look for the cell in before giving up
-  double indent_speed = 5e-6;       ///< m/s, the slowest in the cell
-  double stab_speed = 200e-6;       ///< m/s, the fastest; equal to indent_speed: no stab
+  double approach_speed = 20e-6;    ///< m/s, until contact
+  double travel_limit = 60e-6;      ///< m, longest approach without contact
+  double indent_speed = 5e-6;       ///< m/s, smallest speed in the cell
+  double stab_speed = 200e-6;       ///< m/s, largest speed; equal to indent_speed: no stab
   double stab_acceleration = 5e-3;  ///< m/s^2
-  double overshoot = 3e-6;          ///< m that the needle may go on when it is through; half with a membrane behind
-  double stop_time = 10e-3;         ///< s, from a set-point that rests to a needle that rests (the rig's)
+  double overshoot = 3e-6;          ///< m, travel after a puncture; half of it before a further membrane
+  double stop_time = 10e-3;         ///< s, from a resting set-point to a resting needle (the rig's)
   double retract_speed = 20e-6;     ///< m/s, back to the start
-  double injector_timeout = 1;      ///< s beyond its pulse that the injector may take
+  double injector_timeout = 1;      ///< s after the end of its pulse
 
   static InjectionMotionConfig read(ConfigReader& reader);
 };
 
-/// One injection along the pipette's axis without a hand: approach until the cell is touched, look again, indent until
-/// the membrane is through, inject, withdraw. Each step says where the tip shall be and what happened; whose state it
-/// is, is the caller's.
+/// One injection along the pipette's axis without a hand: approach until contact, confirm it,
+/// indent until the puncture, inject, withdraw. Each step returns the target of the tip and an
+/// event; the caller keeps the state.
 class InjectionRun {
  public:
   struct Step {
     Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< m, `world`
     std::optional<InjectionEvent> event;
-    std::optional<InjectionOutcome> stop;  ///< hold, and end with this
+    std::optional<InjectionOutcome> stop;  ///< hold, and end with this outcome
     std::string reason;                    ///< of `stop`
   };
 
-  /// `automatic`: false: waits in contact, at depth and when injected for `confirm`.
+  /// `automatic` = false: waits for confirm() in contact, at depth and after the injection.
   InjectionRun(const InjectionMotionConfig& config, const GuardConfig& guards, bool automatic);
 
   void start(const InjectionGoal& goal, const Eigen::Vector3d& tip);
-  /// The operator's word for the next step (indent, inject); empty when it is one now, otherwise why not.
+  /// The operator's command for the next step (indent, inject). Returns empty, or the reason for
+  /// the refusal.
   std::string confirm(InjectionEvent event, InjectionState state);
-  void limitSpeed(double speed) { fastest_ = speed; }  ///< m/s, never faster than that
-  void rested() { speed_ = 0; }                        ///< the needle has: a stab sets out slowly again
-  void withdraw();  ///< the way out is taken; the outcome is that of what was done until now
+  void limitSpeed(double speed) { speed_limit_ = speed; }  ///< m/s
+  void resetSpeed() { speed_ = 0; }                        ///< after a rest: a stab starts slowly again
+  /// The withdrawal begins; the outcome is that of the completed steps.
+  void withdraw();
   void end(InjectionOutcome outcome, const std::string& reason);
 
-  /// After dt (s) in `state`; the monitor has seen this step's force and needle. `setpoint`: m, the last; `axis`: unit,
-  /// out of the cell. In the state withdraw it leads out also when it is over (after a guard).
+  /// Call after dt (s) in `state`, when the monitor has this step's force and needle. `setpoint`:
+  /// m, the last; `axis`: unit, out of the cell. In the state withdraw it withdraws the needle also
+  /// after the end (by a guard).
   Step step(InjectionState state, const NeedleMonitor& monitor, const std::optional<InjectorReport>& injector,
             const Eigen::Vector3d& setpoint, const Eigen::Vector3d& axis, double dt);
 
-  /// dt (s) in which nothing could be done in `state`; empty, or why that is too long.
+  /// Waits dt (s) in `state`. Returns empty, or the time guard's reason.
   std::string wait(InjectionState state, double dt);
 
   bool active() const { return active_; }
-  bool waits() const { return awaits_command_; }  ///< for the operator
+  bool awaitsCommand() const { return awaits_command_; }  ///< of the operator
   const InjectionGoal& goal() const { return goal_; }
   const InjectionResult& result() const { return result_; }
 
@@ -82,9 +86,9 @@ class InjectionRun {
   void retract(double dt, Step& step);
   double stabSpeed(const NeedleMonitor& monitor, double dt) const;
   void countPuncture(const NeedleMonitor& monitor, Step& step);
-  bool goOn(InjectionEvent event);
+  bool mayProceed(InjectionEvent event);
   InjectionOutcome done() const;
-  void leave(InjectionOutcome outcome, const std::string& reason, Step& step);
+  void beginWithdrawal(InjectionOutcome outcome, const std::string& reason, Step& step);
 
   InjectionMotionConfig config_;
   GuardConfig guards_;
@@ -93,16 +97,16 @@ class InjectionRun {
   InjectionResult result_;
   bool active_ = false, awaits_command_ = false;
   InjectionState state_ = InjectionState::kIdle;
-  double in_state_ = 0;                                       ///< s
-  Eigen::Vector3d start_ = Eigen::Vector3d::Zero();           ///< m
-  double travel_ = 0;                                         ///< m, from start_ into the cell
-  double touch_travel_ = 0;                                   ///< m
-  double end_travel_ = 0;                                     ///< m, of the state
-  double speed_ = 0;                                          ///< m/s
-  double fastest_ = std::numeric_limits<double>::infinity();  ///< m/s, that the rig can be driven at
-  double rested_ = 0;                                         ///< s, at end_travel_
+  double state_time_ = 0;                                         ///< s
+  Eigen::Vector3d start_ = Eigen::Vector3d::Zero();               ///< m
+  double travel_ = 0;                                             ///< m, from start_ into the cell
+  double touch_travel_ = 0;                                       ///< m
+  double end_travel_ = 0;                                         ///< m, of the state
+  double speed_ = 0;                                              ///< m/s
+  double speed_limit_ = std::numeric_limits<double>::infinity();  ///< m/s, of the rig
+  double rested_ = 0;                                             ///< s, at end_travel_
   std::optional<InjectionEvent> confirmed_;
-  InjectionOutcome outcome_ = InjectionOutcome::kNone;  ///< of what was done; the result's when the needle is out
+  InjectionOutcome outcome_ = InjectionOutcome::kNone;  ///< of the completed steps; the result's when the needle is out
   std::string reason_;
   bool injected_ = false;
   InjectorWait wait_;

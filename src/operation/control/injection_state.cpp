@@ -14,9 +14,9 @@ const char* toText(InjectionEvent event) {
   return kWords[static_cast<int>(event)];
 }
 
-std::optional<InjectionState> injectionStateOf(const std::string& word) {
+std::optional<InjectionState> injectionStateOf(const std::string& name) {
   for (const InjectionState state : kInjectionStates) {
-    if (word == toText(state)) return state;
+    if (name == toText(state)) return state;
   }
   return std::nullopt;
 }

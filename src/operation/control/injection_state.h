@@ -6,24 +6,25 @@
 
 namespace microinjection {
 
-/// Where an injection is. Who moves the needle (a hand or the controller) makes no difference to it.
+/// State of an injection, the same by hand and by the controller.
 enum class InjectionState { kIdle, kApproach, kContact, kIndent, kPunctured, kInject, kWithdraw, kFault };
 constexpr std::array<InjectionState, 8> kInjectionStates = {
     InjectionState::kIdle,      InjectionState::kApproach, InjectionState::kContact,  InjectionState::kIndent,
     InjectionState::kPunctured, InjectionState::kInject,   InjectionState::kWithdraw, InjectionState::kFault};
 
-/// What takes it on: seen (touch, lost, puncture, injected, out), decided (start, indent, inject, withdraw) or failed.
+/// Events: detected (touch, lost, puncture, injected, out), decided (start, indent, inject,
+/// withdraw) or failures.
 enum class InjectionEvent {
-  kStart,     ///< the needle sets out
+  kStart,     ///< the needle starts
   kTouch,     ///< force along the pipette above the noise
-  kLost,      ///< that was noise
-  kIndent,    ///< the needle is to go into the cell, or does
+  kLost,      ///< the touch was noise
+  kIndent,    ///< the needle goes into the cell, or shall
   kPuncture,  ///< the force fell suddenly while the needle advanced
-  kInject,    ///< the injector is to work, or does
+  kInject,    ///< the injector works, or shall
   kInjected,  ///< it has finished
-  kWithdraw,  ///< the needle is to go back, or does
+  kWithdraw,  ///< the needle goes back, or shall
   kOut,       ///< it is back
-  kFail,      ///< the rig does not do what it is told
+  kFail,      ///< the rig does not execute its commands
   kReset      ///< DISABLED, or enabled anew
 };
 constexpr std::array<InjectionEvent, 11> kInjectionEvents = {
@@ -31,13 +32,13 @@ constexpr std::array<InjectionEvent, 11> kInjectionEvents = {
     InjectionEvent::kPuncture, InjectionEvent::kInject, InjectionEvent::kInjected, InjectionEvent::kWithdraw,
     InjectionEvent::kOut,      InjectionEvent::kFail,   InjectionEvent::kReset};
 
-/// Words for people and topics: "idle", "approach", ...; "start", "touch", ...
+/// Names for people and topics: "idle", "approach", ...; "start", "touch", ...
 const char* toText(InjectionState state);
 const char* toText(InjectionEvent event);
-/// The state of that word; empty where there is none.
-std::optional<InjectionState> injectionStateOf(const std::string& word);
+/// The state of that name; empty: none.
+std::optional<InjectionState> injectionStateOf(const std::string& name);
 
-/// The state after an event; empty where the event means nothing, and the state stays.
+/// The state after an event; empty: the event has no effect.
 ///
 ///             start     touch    lost      indent  puncture   inject  injected   withdraw  out
 ///     idle      approach  .        .         .       .          .       .          .         .
@@ -49,8 +50,8 @@ std::optional<InjectionState> injectionStateOf(const std::string& word);
 ///     withdraw  .         contact  .         .       .          .       .          withdraw  idle
 ///     fault     .         .        .         .       .          .       .          .         .
 ///
-/// fail leads to fault and reset to idle from anywhere. punctured -> indent is for the next layer; withdraw -> contact
-/// for a hand that goes back in.
+/// In every state, fail leads to fault and reset to idle. punctured -> indent is for the next
+/// layer, withdraw -> contact for a hand that reverses.
 std::optional<InjectionState> after(InjectionState state, InjectionEvent event);
 
 }  // namespace microinjection

@@ -6,22 +6,22 @@
 
 namespace microinjection {
 
-/// Waits for the end of an injector's pulse: its time is over, or its volume reached. A pulse that was broken off, or
-/// whose time was over with less than its volume, is kBroken.
+/// Waits for the end of an injector's pulse: its time is over, or its volume delivered. A pulse
+/// that was aborted, or ended with less than its volume, is kBroken.
 class InjectorWait {
  public:
   enum class Status { kWaiting, kOver, kBroken, kTimeOut };
 
-  /// `patience` (s): beyond the pulse's duration, before the injector is given up.
-  void start(const PulseGoal& pulse, double patience) {
+  /// `timeout` (s): after the pulse's duration.
+  void start(const PulseGoal& pulse, double timeout) {
     *this = {};
     pulse_ = pulse;
-    patience_ = patience;
+    timeout_ = timeout;
   }
 
-  /// After another dt (s); `report` empty: nothing valid is known of the injector.
+  /// Advances by dt (s); `report` empty: no valid state of the injector.
   Status step(const std::optional<InjectorReport>& report, double dt) {
-    waited_ += dt;
+    waiting_time_ += dt;
     if (report) {
       if (!before_) before_ = report->volume;
       volume_ = report->volume - *before_;
@@ -29,20 +29,20 @@ class InjectorWait {
       if (worked_ && !report->busy) return complete(*report) ? Status::kOver : Status::kBroken;
       worked_ = worked_ || report->busy;
     }
-    return waited_ > pulse_.duration + patience_ ? Status::kTimeOut : Status::kWaiting;
+    return waiting_time_ > pulse_.duration + timeout_ ? Status::kTimeOut : Status::kWaiting;
   }
 
   double volume() const { return volume_; }  ///< m^3, since the start
 
  private:
   bool complete(const InjectorReport& report) const {
-    constexpr double kEnough = 0.95;  // of a volume, that is no cause for alarm
+    constexpr double kEnough = 0.95;  // share of the volume that counts as complete
     return pulse_.volume > 0 ? volume_ >= kEnough * pulse_.volume : report.done;
   }
 
   PulseGoal pulse_;
-  double patience_ = 0;           ///< s
-  double waited_ = 0;             ///< s
+  double timeout_ = 0;            ///< s
+  double waiting_time_ = 0;       ///< s
   std::optional<double> before_;  ///< m^3, of the first report
   double volume_ = 0;
   bool worked_ = false;

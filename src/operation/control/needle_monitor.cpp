@@ -6,11 +6,12 @@
 namespace microinjection {
 namespace {
 
-/// Of the contact force: smaller noise is not believed, else a force without noise would be touched by its rounding.
+/// Smallest noise, as a share of the contact force: without it, rounding of a noiseless force would
+/// be a contact.
 constexpr double kSmallestNoise = 0.1;
-constexpr double kFalselyConfirmed = 1e-4;
-constexpr int kSmoothed = 32;  ///< samples
-constexpr int kBriefly = 8;    ///< samples, to find the crest of a force that rises in tens of milliseconds
+constexpr double kFalselyConfirmed = 1e-4;  ///< probability
+constexpr int kSmoothed = 32;               ///< samples
+constexpr int kCrest = 8;                   ///< samples, for the crest of a force that rises in tens of milliseconds
 
 }  // namespace
 
@@ -34,9 +35,9 @@ void NeedleMonitor::reset() { *this = NeedleMonitor(config_); }
 void NeedleMonitor::rearm() {
   if (contact_) contact_->reset();
   skip();
-  touched_at_.reset();
+  contact_point_.reset();
   confirmed_.reset();
-  looked_ = 0;
+  confirmation_samples_ = 0;
   confirmation_sum_ = depth_ = max_depth_ = peak_ = peak_mean_force_ = force_before_ = 0;
   punctured_ = false;
 }
@@ -59,14 +60,14 @@ void NeedleMonitor::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis
     return;
   }
   peak_ = std::max(peak_, std::abs(axial - offset()));
-  peak_mean_force_ = std::max(peak_mean_force_, puncture_->meanForce(kBriefly));
+  peak_mean_force_ = std::max(peak_mean_force_, puncture_->meanForce(kCrest));
   const double travel = -tip.dot(axis);
   const bool fell = puncture_->step(axial - offset(), travel);
-  if (!touched_at_) {
+  if (!contact_point_) {
     const double advance = travel - travel_.value_or(travel);
     travel_ = travel;
     if (!contact_->step(axial, advance)) return;
-    touched_at_ = tip;
+    contact_point_ = tip;
   }
   depth_ = depthOf(tip, axis);
   max_depth_ = std::max(max_depth_, depth_);
@@ -79,9 +80,9 @@ void NeedleMonitor::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis
 
 void NeedleMonitor::confirmContact(double axial) {
   confirmation_sum_ += axial - offset();
-  if (++looked_ < config_.confirm_samples) return;
-  const double uncertainty = noise_.deviation() * std::sqrt(1.0 / looked_ + 1.0 / config_.noise_samples);
-  confirmed_ = confirmation_sum_ / looked_ > normalQuantile(kFalselyConfirmed) * uncertainty;
+  if (++confirmation_samples_ < config_.confirm_samples) return;
+  const double uncertainty = noise_.deviation() * std::sqrt(1.0 / confirmation_samples_ + 1.0 / config_.noise_samples);
+  confirmed_ = confirmation_sum_ / confirmation_samples_ > normalQuantile(kFalselyConfirmed) * uncertainty;
 }
 
 }  // namespace microinjection

@@ -7,9 +7,9 @@ namespace microinjection {
 namespace {
 
 constexpr int kShortest = 4, kLongest = 256, kWindows = 7;
-constexpr int kRough = 64;                 ///< up to this window the speed may fall to half
+constexpr int kRough = 64;                 ///< longest window in which the speed may fall to half
 constexpr double kSmallestAdvance = 1e-9;  ///< m a sample: 1 um/s at 1 kHz
-constexpr double kMissed = 2.05;           ///< normal quantile of a miss in 50
+constexpr double kMissed = 2.05;           ///< normal quantile of one miss in 50
 
 }  // namespace
 
@@ -45,7 +45,7 @@ bool PunctureDetector::fell(int window) const {
   const double kept = window <= kRough ? 0.5 : 0.9;
   if (earlier < window * kSmallestAdvance || advance < window * kSmallestAdvance || advance < kept * earlier)
     return false;
-  // A trembling hand may end deeper and yet have been less deep meanwhile.
+  // A trembling hand may end deeper although it was less deep on average.
   if (now.travel_sum - middle.travel_sum <= middle.travel_sum - old.travel_sum) return false;
   const double mean = (now.force_sum - middle.force_sum) / window,
                mean_before = (middle.force_sum - old.force_sum) / window;

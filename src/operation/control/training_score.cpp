@@ -16,12 +16,12 @@ constexpr char kHeader[] =
     "operator,session,outcome,peak_force_N,deformation_m,lateral_error_m,time_s,punctures,volume_m3,force_points,"
     "deformation_points,lateral_points,time_points,punctures_points,volume_points,score\n";
 
-constexpr double kSetOut = 1e-6;  ///< m that the tip has moved when it has set out
-constexpr double kGaps = 0.05;    ///< share of the moments that may be left out
+constexpr double kStarted = 1e-6;  ///< m of the tip's motion that counts as start
+constexpr double kGaps = 0.05;     ///< largest share of samples left out
 
-/// Of the points: all up to the reference, none from twice the reference.
+/// Share of the points: 1 up to the reference, 0 from twice the reference.
 double within(double value, double reference) { return std::clamp(2 - value / reference, 0.0, 1.0); }
-/// All at the reference, less by the relative difference.
+/// Share of the points: 1 at the reference, less by the relative difference.
 double at(double value, double reference) {
   if (reference <= 0) return value <= 0 ? 1 : 0;
   return std::max(0.0, 1 - std::abs(value - reference) / reference);
@@ -78,7 +78,7 @@ void TrainingSession::add(const TrainingSample& sample) {
   measureDepth(sample);
 }
 
-/// Punctures and volume: what has been added since the sample before.
+/// Adds the punctures and the volume since the last sample.
 void TrainingSession::count(const TrainingSample& sample) {
   if (punctures_) measured_.punctures += sample.punctures - (sample.punctures < *punctures_ ? 0 : *punctures_);
   punctures_ = sample.punctures;
@@ -88,11 +88,11 @@ void TrainingSession::count(const TrainingSample& sample) {
   volume_ = sample.volume;
 }
 
-/// When the needle set out, and when it was last at work.
+/// Measures the time from the needle's start to its last work.
 void TrainingSession::follow(const TrainingSample& sample) {
   if (state_ == InjectionState::kIdle) return;
   if (!start_) start_ = sample.tip;
-  moving_ = moving_ || (sample.tip - *start_).norm() > kSetOut;
+  moving_ = moving_ || (sample.tip - *start_).norm() > kStarted;
   if (!moving_) began_ = sample.time;
   if (state_ != InjectionState::kApproach) measured_.time = sample.time - began_;
 }
@@ -106,8 +106,9 @@ void TrainingSession::measureDepth(const TrainingSample& sample) {
   if (!entry_) entry_ = sample.tip + *sample.depth * sample.axis;
   if (measured_.punctures == 0) measured_.deformation = std::max(measured_.deformation, *sample.depth);
   if (!inCell(state_)) return;
-  const Eigen::Vector3d way = sample.tip - *entry_;
-  measured_.lateral_error = std::max(measured_.lateral_error, (way - way.dot(sample.axis) * sample.axis).norm());
+  const Eigen::Vector3d displacement = sample.tip - *entry_;
+  measured_.lateral_error =
+      std::max(measured_.lateral_error, (displacement - displacement.dot(sample.axis) * sample.axis).norm());
 }
 
 void TrainingSession::computeScore(TrainingScore& score) const {

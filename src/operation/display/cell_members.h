@@ -8,15 +8,15 @@
 
 namespace microinjection {
 
-/// Struts and cables of a cell that has some, as the simulator reports them.
+/// Struts and cables of a tensegrity cell, as the simulator reports them.
 struct CellMembers {
   static constexpr int kStrut = 0, kActin = 1, kIntermediate = 2;
 
-  std::vector<Eigen::Vector3d> points;  ///< m, from and to of each
-  std::vector<double> forces;           ///< N, of each, positive where it pulls
-  std::vector<int> kinds;               ///< of each
+  std::vector<Eigen::Vector3d> points;  ///< m, start and end of each member
+  std::vector<double> forces;           ///< N, of each member, positive in tension
+  std::vector<int> kinds;               ///< of each member
 
-  /// Empty when they can be drawn, otherwise what is wrong: not finite, or lengths that do not fit.
+  /// Empty when they can be drawn, otherwise the reason: not finite, or lengths that do not match.
   std::string defect() const;
   double largestTension() const;  ///< N; 0 without any
 };

@@ -17,19 +17,22 @@ struct CellSurface {
   std::vector<int> contact_vertices;
   std::vector<int> held_vertices;
 
-  /// Empty when the surface can be drawn, otherwise what is wrong: not finite, or an index or length that does not fit.
+  /// Empty when the surface can be drawn, otherwise the reason: not finite, or a wrong index or
+  /// length.
   std::string defect() const;
   double largestDisplacement() const;  ///< m
 };
 
-/// Outward unit normals at the vertices, weighted with the triangles' areas; zero at a vertex without triangles.
+/// Outward unit normals at the vertices, weighted by the triangles' areas; zero at a vertex without
+/// triangles.
 std::vector<Eigen::Vector3d> vertexNormals(const CellSurface& surface);
 
-/// The surface coloured by displacement from 0 to `range` (m, > 0), in display units. Light from above the viewer is
-/// baked into the colours, because rviz does not light triangles that have colours of their own.
+/// The surface coloured by displacement from 0 to `range` (m, > 0), in display units. The colours
+/// include light from above the viewer, because rviz does not light triangles with individual
+/// colours.
 TriangleSoup colouredSurface(const CellSurface& surface, double range);
 
-/// Each edge once, lifted off the surface by `lift` (display units) so that it is not hidden in it.
+/// Each edge once, lifted off the surface by `lift` (display units) to stay visible.
 LineList edges(const CellSurface& surface, double lift);
 
 /// The points at `vertices`, display units.

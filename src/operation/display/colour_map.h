@@ -10,12 +10,14 @@ struct Colour {
   float a = 1;
 };
 
-/// Perceptually uniform colour of a fraction in [0, 1] (clamped): blue, green, yellow, of rising lightness.
-/// It is the upper three quarters of matplotlib's viridis, so that the undeformed cell stands out of a dark background.
+/// Perceptually uniform colour of a fraction in [0, 1] (clamped): blue, green, yellow, of rising
+/// lightness. It is the upper three quarters of matplotlib's viridis: the undeformed cell stays
+/// visible on a dark background.
 Colour colourOfFraction(double fraction);
 
-/// The readable end of a scale: the least of 1, 1.2, 1.6, 2, 2.4, 3.2, 4, 6, 8 times a power of ten, quarters of which
-/// are short, that is not below `value` (within 0.1 %, more than rounding); 1 for value <= 0.
+/// The readable end of a scale: the smallest of 1, 1.2, 1.6, 2, 2.4, 3.2, 4, 6, 8 times a power of
+/// ten that is not below `value` (within 0.1 %, more than rounding). Quarters of these have few
+/// digits. 1 for value <= 0.
 double niceCeiling(double value);
 
 }  // namespace microinjection

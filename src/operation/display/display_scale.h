@@ -4,8 +4,8 @@
 
 namespace microinjection {
 
-/// Metres shown in rviz for a metre of the scene: 100 um becomes 1 m. rviz cannot show micrometres, because its near
-/// clip and its least orbit distance are millimetres.
+/// Metres in rviz per metre of the scene: 100 um becomes 1 m. rviz cannot show micrometres, because
+/// its near clip and its smallest orbit distance are millimetres.
 constexpr double kDisplayScale = 1e4;
 
 /// From SI (m) to display units (m at x 1e4).

@@ -11,7 +11,7 @@ std::optional<Arrow> forceArrow(const Eigen::Vector3d& tail, const Eigen::Vector
   const Eigen::Vector3d shaft = toDisplay(scale * force);
   const double length = shaft.norm();
   if (!(length >= kShortest)) return std::nullopt;
-  // A short arrow keeps its shape: its head takes half of it and everything shrinks alike.
+  // A short arrow keeps its shape: its head is half of it and all sizes shrink alike.
   const double shrink = std::min(1.0, length / (2 * kHeadLength));
   const Eigen::Vector3d start = toDisplay(tail);
   return Arrow{start, start + shaft, shrink * kShaft, shrink * kHead, shrink * kHeadLength};

@@ -14,7 +14,7 @@ struct Arrow {
   double head_length = 0;
 };
 
-/// The arrow of a force, or nothing when it is too short to be seen.
+/// The arrow of a force; empty when it is too short to be visible.
 /// @param tail   m, where the arrow starts
 /// @param force  N, in the frame of `tail`
 /// @param scale  m/N, the arrow's length in the scene per newton, before x 1e4

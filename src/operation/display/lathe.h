@@ -7,9 +7,10 @@
 
 namespace microinjection {
 
-/// Surface that a profile sweeps in a full turn about the z axis.
-/// @param profile  points (r, z), r >= 0; walking along it with r to the right and z up, the outside is on the right.
-/// @param segments  sides of the polygon that stands for the circle, at least 3.
+/// The surface that a profile sweeps in a full turn about the z axis.
+/// @param profile   points (r, z), r >= 0; with r to the right and z up, the outside is on the
+///                  right of its direction
+/// @param segments  sides of the polygon that replaces the circle, at least 3
 TriangleSoup lathe(const std::vector<Eigen::Vector2d>& profile, int segments);
 
 }  // namespace microinjection

@@ -16,7 +16,8 @@ constexpr Colour kGlass{0.72f, 0.88f, 0.97f, 0.16f};
 constexpr int kSegments = 48;
 constexpr int kArcSteps = 12;
 
-/// Adds a quarter of an ellipse (m) that leaves `from` across the axis and arrives at `to` along it.
+/// Adds a quarter of an ellipse (m) that leaves `from` across the axis and arrives at `to` along
+/// it.
 void addQuarterEllipse(const Eigen::Vector2d& from, const Eigen::Vector2d& to, std::vector<Eigen::Vector2d>& profile) {
   for (int step = 0; step <= kArcSteps; ++step) {
     const double angle = M_PI / 2 * step / kArcSteps;

@@ -8,39 +8,39 @@
 
 namespace microinjection {
 
-/// What is drawn of an injection pipette: a tapered glass tube, pulled so that bore and wall keep their ratio.
-/// Sizes are illustrative of an ICSI needle with a bore of 4 um.
+/// The drawn injection pipette: a tapered glass tube whose bore and wall keep their ratio, as in
+/// pulled glass. The default sizes are those of a typical ICSI needle with a bore of 4 um.
 struct InjectionPipette {
   double tip_radius = 3e-6;     ///< m, outer
   double bore_ratio = 0.7;      ///< 1, inner over outer radius
   double taper_angle = 0.07;    ///< rad, of the outer wall with the axis
-  double shaft_radius = 10e-6;  ///< m, outer, where the taper ends
-  double length = 120e-6;       ///< m, drawn
+  double shaft_radius = 10e-6;  ///< m, outer, at the end of the taper
+  double length = 120e-6;       ///< m, of the drawn part
 
   static InjectionPipette read(ConfigReader& reader);
   void validate(ConfigReader& reader) const;  ///< adds an error for each pair of sizes that does not fit
 };
 
-/// What is drawn of a holding pipette: a blunt glass tube whose mouth was fire-polished to a small hole.
+/// The drawn holding pipette: a blunt glass tube whose mouth was fire-polished to a small hole.
 struct HoldingPipette {
   double mouth_radius = 10e-6;  ///< m, of the hole, where the cell touches it
   double outer_radius = 30e-6;  ///< m
   double bore_ratio = 0.7;      ///< 1, inner over outer radius behind the mouth
-  double length = 55e-6;        ///< m, drawn
+  double length = 55e-6;        ///< m, of the drawn part
 
   static HoldingPipette read(ConfigReader& reader);
   void validate(ConfigReader& reader) const;  ///< adds an error for each pair of sizes that does not fit
 };
 
-/// The shaded, translucent glass in the pipette's own frame, display units: origin at the centre of the tip or mouth,
-/// z into the body.
+/// The shaded, translucent glass in the pipette's own frame, display units: origin at the centre of
+/// the tip or mouth, z into the body.
 TriangleSoup glass(const InjectionPipette& pipette);
 TriangleSoup glass(const HoldingPipette& pipette);
 
-/// Where a cell meets the holding pipette.
+/// The circle of contact between the cell and the holding pipette.
 struct Mouth {
-  double radius = 0;  ///< m, of the circle of contact about the pipette's axis
-  double height = 0;  ///< m, of that circle along the pipette's z axis; negative: the cell bulges into the mouth
+  double radius = 0;  ///< m, about the pipette's axis
+  double height = 0;  ///< m, along the pipette's z axis; negative: the cell bulges into the mouth
 };
 
 /// The circle through the outermost held point.

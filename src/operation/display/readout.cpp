@@ -7,7 +7,8 @@
 namespace microinjection {
 namespace {
 
-/// Always with `decimals`, so that the text does not jump about as it changes; "-" when there is no value.
+/// Always with `decimals` digits, so that the text keeps its place when it changes; "-" without a
+/// value.
 std::string fixedFigure(const std::optional<double>& value, double unit, int decimals) {
   if (!value) return "-";
   char figure[64];
@@ -15,7 +16,8 @@ std::string fixedFigure(const std::optional<double>& value, double unit, int dec
   return figure;
 }
 
-/// Breaks a text at spaces into at most `most` lines of `width` characters, longer where a word is longer.
+/// Breaks a text at spaces into at most `most` lines of `width` characters; a longer word is not
+/// broken.
 std::vector<std::string> wrapped(const std::string& text, std::size_t width, std::size_t most) {
   std::vector<std::string> result;
   std::istringstream words(text);

@@ -6,9 +6,9 @@
 
 namespace microinjection {
 
-/// Brightness, about 1, of a surface with this outward unit normal under a lamp above the viewer's left shoulder (the
-/// viewer looks along y). Never dark, so that a colour keeps its meaning. rviz itself does not light triangles that
-/// have colours of their own.
+/// Brightness (about 1) of a surface with this outward unit normal, for a lamp above the left
+/// shoulder of a viewer who looks along y. It is never dark, so that colours stay recognisable.
+/// rviz does not light triangles with individual colours.
 double lampLight(const Eigen::Vector3d& normal);
 
 /// The colour with its brightness multiplied by `light` (>= 0), clamped; the opacity stays.

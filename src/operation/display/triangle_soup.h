@@ -7,10 +7,10 @@
 
 namespace microinjection {
 
-/// Triangles as a renderer takes them: three points each, counterclockwise as seen from outside.
+/// Triangles for a renderer: three points each, counterclockwise as seen from outside.
 struct TriangleSoup {
   std::vector<Eigen::Vector3d> points;  ///< display units
-  std::vector<Colour> colours;          ///< one a point, or empty: the renderer's own colour
+  std::vector<Colour> colours;          ///< one per point, or empty: the renderer's own colour
 
   void add(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
     points.push_back(a);

@@ -14,7 +14,8 @@
 namespace microinjection {
 namespace {
 
-/// From `offset`; how much of it is there, with the reason in errno when that is not all.
+/// Writes at `offset`. Returns the number of written bytes; when some are missing, errno has the
+/// reason.
 std::size_t writeAt(int file, const std::string& text, std::uint64_t offset) {
   std::size_t done = 0;
   while (done < text.size()) {
@@ -58,22 +59,22 @@ void RowFile::flush() {
   if (done == text.size()) {
     written_ += linesIn(text) - (size_ == 0 ? 1 : 0);
     size_ += done;
-    trouble_.clear();
+    error_text_.clear();
     return;
   }
   reason_ = std::strerror(errno);
-  trouble_ = path_ + ".active: cannot be written: " + reason_;
+  error_text_ = path_ + ".active: cannot be written: " + reason_;
   drop(done, text);
 }
 
-/// Of `text` its first `kept` bytes are in the file: its whole lines stay, the rest is lost.
+/// The first `kept` bytes of `text` are in the file: their whole lines stay, the rest is lost.
 void RowFile::drop(std::size_t kept, const std::string& text) {
   const std::string lines = text.substr(0, text.substr(0, kept).rfind('\n') + 1);
   const std::uint64_t heading = size_ == 0 ? 1 : 0, count = linesIn(lines);
   written_ += std::max(count, heading) - heading;
   lost_ += linesIn(text) - std::max(count, heading);
   size_ += lines.size();
-  // Where this fails, the next rows are written over the cut one: they go to `size_`.
+  // When this fails, the next rows overwrite the incomplete one, since they are written at `size_`.
   [[maybe_unused]] const int result = ::ftruncate(file_, static_cast<off_t>(size_));
 }
 
@@ -91,7 +92,7 @@ std::string RowFile::finish() {
   flush();
   if (size_ == 0) {
     close();
-    return trouble_ + "; " + std::to_string(lost_) + " rows are lost, and there is no table";
+    return error_text_ + "; " + std::to_string(lost_) + " rows are lost, and there is no table";
   }
   std::string error = close();
   if (std::rename((path_ + ".active").c_str(), path_.c_str()) != 0) {

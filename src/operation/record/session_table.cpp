@@ -6,9 +6,9 @@
 namespace microinjection {
 namespace {
 
-constexpr Nanoseconds kStale = 50000000;  ///< ns past which poses and forces are not believed
+constexpr Nanoseconds kStale = 50000000;  ///< ns past which poses and forces are stale
 constexpr Nanoseconds kForever = std::numeric_limits<Nanoseconds>::max();
-constexpr Nanoseconds kLongestStep = 60000000000;  ///< ns between two calls past which the clock was set
+constexpr Nanoseconds kLongestStep = 60000000000;  ///< ns between two calls, above which the clock was set
 
 template <typename Entry>
 auto valueOf(const Entry* entry) {
@@ -21,8 +21,8 @@ const char* const SessionTable::kHeader =
     "time_s,phase,depth_m,predicted_axial_N,measured_axial_N,measured_lateral_N,hand_force_N,in_contact,punctured,"
     "tip_x_m,tip_y_m,tip_z_m,layers_punctured,injection_state,injected_volume_m3,punctures_felt\n";
 
-SessionTable::SessionTable(Nanoseconds period, Nanoseconds patience, Sink sink)
-    : period_(period), patience_(patience), sink_(std::move(sink)) {
+SessionTable::SessionTable(Nanoseconds period, Nanoseconds max_delay, Sink sink)
+    : period_(period), max_delay_(max_delay), sink_(std::move(sink)) {
   line_.precision(9);
 }
 
@@ -38,18 +38,18 @@ void SessionTable::advance(Nanoseconds now) {
   }
   if (std::abs(now - seen_) > kLongestStep) skipTo(now);
   seen_ = now;
-  advanceTo(now - patience_);
+  advanceTo(now - max_delay_);
 }
 
-/// The clock was set. There are no messages for the rows in between, which may be more than a disk can hold. Set back,
-/// what was received before does not hold.
+/// The clock was set. There are no messages for the rows in between, which might fill the disk.
+/// Values received before a clock was set back are invalid.
 void SessionTable::skipTo(Nanoseconds now) {
   if (now > seen_) {
     advanceTo(seen_);
   } else {
     clear();
   }
-  const Nanoseconds due = std::max(*began_, now - patience_);
+  const Nanoseconds due = std::max(*began_, now - max_delay_);
   next_ = *began_ + (due - *began_ + period_ - 1) / period_ * period_;
 }
 
@@ -58,15 +58,15 @@ void SessionTable::finish() {
 }
 
 void SessionTable::advanceTo(Nanoseconds end) {
-  // What comes after the end is not wanted, and must not pile up.
+  // Messages after the end are discarded, so that they do not fill the memory.
   if (done_) return discardBefore(end);
   for (; next_ <= end; next_ += period_) {
-    const auto* said = phase.at(next_, kForever);
-    done_ = said && *said->value == "done";
+    const auto* latest = phase.at(next_, kForever);
+    done_ = latest && *latest->value == "done";
     if (done_) return;
     const Row now = row(next_);
     write(now);
-    if (listener_) listener_(now);
+    if (row_handler_) row_handler_(now);
     discardBefore(next_);
   }
 }
@@ -85,9 +85,9 @@ SessionTable::Row SessionTable::row(Nanoseconds time) {
   row.hand_force = valueOf(hand_force.at(time, kStale));
   row.phase = valueOf(phase.at(time, kForever)).value_or("");
   row.cell = valueOf(cell.at(time, kForever)).value_or(Cell());
-  const Injection told = valueOf(injection.at(time, kForever)).value_or(Injection());
-  row.injection = told.state;
-  row.punctures = told.punctures;
+  const Injection reported = valueOf(injection.at(time, kForever)).value_or(Injection());
+  row.injection = reported.state;
+  row.punctures = reported.punctures;
   row.volume = valueOf(volume.at(time, kStale));
   if (row.needle) row.depth = depth(time, *row.needle, row.predicted && in_contact_);
   return row;
@@ -96,14 +96,15 @@ SessionTable::Row SessionTable::row(Nanoseconds time) {
 std::optional<double> SessionTable::depth(Nanoseconds time, const Pose& pose, bool in_contact) {
   const auto* state = cell.at(time, kForever);
   if (state && state->value->contact_point) {
-    touched_at_ = state->value->contact_point;
+    contact_point_ = state->value->contact_point;
   } else if (in_contact) {
-    // The cell speaks less often than there are rows: it was touched since it last did.
+    // The cell's state is published less often than rows are written: contact began after the last
+    // one.
     const auto* next = cell.firstAfter(time, [](const Cell& later) { return later.contact_point.has_value(); });
-    touched_at_ = next ? next->value->contact_point : std::nullopt;
+    contact_point_ = next ? next->value->contact_point : std::nullopt;
   }
-  if (!touched_at_) return std::nullopt;
-  return (*touched_at_ - pose.tip).dot(pose.axis);
+  if (!contact_point_) return std::nullopt;
+  return (*contact_point_ - pose.tip).dot(pose.axis);
 }
 
 void SessionTable::write(const Row& row) {

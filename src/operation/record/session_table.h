@@ -12,14 +12,13 @@
 
 namespace microinjection {
 
-/// The rows of force_depth.csv, one each period: every source is asked for what it said at that time, by the stamps of
-/// what it said. It therefore does not matter when a message arrived, as long as it did within `patience`: a recorder
-/// that the scheduler lets wait writes the same rows as one that is always prompt. What comes later than that counts
-/// for the rows that are not written yet. A row is given away when it is due: the table keeps only what later ones
-/// need.
+/// The rows of force_depth.csv, one per period. Each row has the values of all sources at its time,
+/// by the stamps of their messages. The time of arrival does not matter within `max_delay`: a
+/// recorder delayed by the scheduler writes the same rows. Later messages only affect rows that are
+/// not written yet. A row is written when it is due, and the table keeps only what later rows need.
 ///
-/// Depth is the tip's travel along the pipette from where the cell says that it was touched, for the needle's pose that
-/// the predicted force belongs to (they have the same stamp); empty before the first touch.
+/// Depth is the tip's travel along the pipette from the contact point that the cell reports. Its
+/// needle pose is that of the predicted force (same stamp). It is empty before the first contact.
 class SessionTable {
  public:
   struct Pose {
@@ -30,42 +29,42 @@ class SessionTable {
     double axial = 0, lateral = 0;  ///< N
   };
   struct Cell {
-    std::optional<Eigen::Vector3d> contact_point;  ///< m, where the tip met the surface; empty without contact
+    std::optional<Eigen::Vector3d> contact_point;  ///< m; empty without contact
     bool punctured = false;
-    unsigned layers_punctured = 0;  ///< where the needle is or was last
+    unsigned layers_punctured = 0;  ///< at the needle's present or last position
     std::size_t holes = 0;          ///< in the outermost layer
   };
 
-  /// Of the injection, as the controller sees it.
+  /// The injection as the controller reports it.
   struct Injection {
     std::string state;
-    int punctures = 0;  ///< felt since the needle set out
+    int punctures = 0;  ///< detected since the needle started
   };
-  /// A row; what was not valid at its time is empty.
+  /// A row; values that were invalid at its time are empty.
   struct Row {
     double time = 0;  ///< s, of the table
     std::optional<Pose> needle;
     std::optional<Eigen::Vector3d> predicted;  ///< N, of the cell on the tip; only with a needle
     std::optional<Measured> measured;
     std::optional<double> hand_force;  ///< N
-    std::optional<double> depth;       ///< m; empty before the first touch and without a needle
+    std::optional<double> depth;       ///< m; empty before the first contact and without a needle
     bool in_contact = false;
-    std::string phase, injection;  ///< empty: not told yet
+    std::string phase, injection;  ///< empty: not received yet
     Cell cell;
-    int punctures = 0;             ///< that the controller has felt since the needle set out
+    int punctures = 0;             ///< detected by the controller since the needle started
     std::optional<double> volume;  ///< m^3
   };
 
-  /// Takes a row as it stands in the file, a line with its end.
+  /// Receives a row as a line of the file, with its line break.
   using Sink = std::function<void(const std::string& line)>;
-  static const char* const kHeader;  ///< the file's first line, with its end
+  static const char* const kHeader;  ///< the file's first line, with its line break
 
   /// @param period    ns between rows
-  /// @param patience  ns for which a row waits for messages that are late
-  /// @param sink      gets every row that is due, in order
-  SessionTable(Nanoseconds period, Nanoseconds patience, Sink sink);
+  /// @param max_delay  ns that a row waits for late messages
+  /// @param sink      receives the rows in order
+  SessionTable(Nanoseconds period, Nanoseconds max_delay, Sink sink);
 
-  // What the sources say, N and m. Force in the frame of the poses.
+  // The values of the sources, N and m. Forces are in the frame of the poses.
   Timeline<Pose> needle;
   Timeline<Eigen::Vector3d> predicted;
   Timeline<Measured> measured;
@@ -75,14 +74,14 @@ class SessionTable {
   Timeline<Injection> injection;
   Timeline<double> volume;  ///< m^3, net, out of the pipette
 
-  /// Sees every row when it is written.
-  void onRow(std::function<void(const Row&)> listener) { listener_ = std::move(listener); }
+  /// `handler` receives every row when it is written.
+  void onRow(std::function<void(const Row&)> handler) { row_handler_ = std::move(handler); }
 
-  /// Writes the rows that are due `patience` before `now`; the first call is time 0 of the table. After the row in
-  /// which the phase is `done` there are no more. Where `now` leaps by more than a minute, ahead or back,
-  /// there are no rows for the time in between.
+  /// Writes the rows up to `max_delay` before `now`; the first call is time 0 of the table. The
+  /// rows end with the phase `done`. When `now` jumps by more than a minute, ahead or back, there
+  /// are no rows for the time in between.
   void advance(Nanoseconds now);
-  /// Writes what is left, without patience.
+  /// Writes the remaining rows without delay.
   void finish();
 
   bool done() const { return done_; }
@@ -97,16 +96,16 @@ class SessionTable {
   void discardBefore(Nanoseconds time);
   void clear();
 
-  Nanoseconds period_, patience_;
+  Nanoseconds period_, max_delay_;
   std::optional<Nanoseconds> began_;
-  Nanoseconds next_ = 0;  ///< time of the row that is due next
+  Nanoseconds next_ = 0;  ///< time of the next row
   Nanoseconds seen_ = 0;  ///< newest `now`
   bool done_ = false;
-  bool in_contact_ = false;                    ///< of the last row
-  std::optional<Eigen::Vector3d> touched_at_;  ///< m, last; empty before the first touch
-  std::function<void(const Row&)> listener_;
+  bool in_contact_ = false;                       ///< of the last row
+  std::optional<Eigen::Vector3d> contact_point_;  ///< m, last; empty before the first contact
+  std::function<void(const Row&)> row_handler_;
   Sink sink_;
-  std::ostringstream line_;  ///< the row that is written
+  std::ostringstream line_;  ///< the row under construction
 };
 
 }  // namespace microinjection

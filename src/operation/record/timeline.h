@@ -10,36 +10,38 @@
 
 namespace microinjection {
 
-/// ns since the clock's zero: exact, so that messages that derive from one another can be joined by their stamps.
+/// ns since the clock's zero. Exact, so that messages with the same stamp can be joined.
 using Nanoseconds = std::int64_t;
 
-/// What one source said, in the order of its stamps, whenever it came. A wrong stamp costs its own message only.
+/// The values of one source in the order of their stamps, whatever the order of arrival. A wrong
+/// stamp affects only its own message.
 template <typename Value>
 class Timeline {
  public:
   struct Entry {
     Nanoseconds stamp = 0;
-    std::optional<Value> value;  ///< empty: what was said before does not hold any more
+    std::optional<Value> value;  ///< empty: the earlier value is withdrawn
   };
 
-  /// Entries at the most, half a minute of a source at 1 kHz. Beyond that the newest stamps are dropped, so that a
-  /// source whose stamps are all ahead of the time cannot fill the memory.
+  /// Largest number of entries, half a minute of a source at 1 kHz. Beyond it the newest stamps are
+  /// dropped, so that a source with stamps in the future cannot fill the memory.
   static constexpr std::size_t kCapacity = 32768;
 
-  /// Inserts the value at its stamp. Of two with the same stamp the later one holds. A stamp before the oldest entry is
-  /// ignored once something was forgotten.
+  /// Inserts the value at its stamp. A later value with the same stamp replaces the earlier one. A
+  /// stamp before the oldest entry is ignored once entries were discarded.
   void put(Nanoseconds stamp, std::optional<Value> value) {
     const bool holds = value.has_value();
     if (insert(stamp, std::move(value))) removable_ = holds ? std::optional(stamp) : std::nullopt;
   }
 
-  /// The source takes back what it said, as from right after the last stamp that arrived.
+  /// The source withdraws its value, from right after the stamp that arrived last.
   void withdraw() {
     if (removable_ && *removable_ < std::numeric_limits<Nanoseconds>::max()) insert(*removable_ + 1, std::nullopt);
     removable_.reset();
   }
 
-  /// The last entry that was said at `time` or before, when it has a value and is not older than `timeout`; else null.
+  /// The last entry at or before `time`, when it has a value and is not older than `timeout`; else
+  /// null.
   const Entry* at(Nanoseconds time, Nanoseconds timeout) const {
     const auto after = firstStampAfter(time);
     if (after == entries_.begin()) return nullptr;
@@ -56,7 +58,7 @@ class Timeline {
     return nullptr;
   }
 
-  /// Forgets what at(time) and later ones do not need.
+  /// Discards what at(time) and later calls do not need.
   void discardBefore(Nanoseconds time) {
     for (; entries_.size() > 1 && entries_[1].stamp <= time; entries_.pop_front()) forgot_ = true;
   }
@@ -64,16 +66,16 @@ class Timeline {
   std::size_t size() const { return entries_.size(); }
 
  private:
-  using Place = typename std::deque<Entry>::const_iterator;
+  using Iterator = typename std::deque<Entry>::const_iterator;
 
-  Place firstStampAfter(Nanoseconds time) const {
+  Iterator firstStampAfter(Nanoseconds time) const {
     return std::upper_bound(entries_.begin(), entries_.end(), time,
                             [](Nanoseconds wanted, const Entry& entry) { return wanted < entry.stamp; });
   }
 
-  /// False: it is older than what is known.
+  /// Returns false when the stamp is before the discarded entries.
   bool insert(Nanoseconds stamp, std::optional<Value> value) {
-    const Place after = firstStampAfter(stamp);
+    const Iterator after = firstStampAfter(stamp);
     const auto index = after - entries_.cbegin();
     if (index == 0 && forgot_) return false;
     if (index > 0 && entries_[index - 1].stamp == stamp) {
@@ -86,8 +88,8 @@ class Timeline {
   }
 
   std::deque<Entry> entries_;
-  bool forgot_ = false;                   ///< the oldest entry is not the first that there was
-  std::optional<Nanoseconds> removable_;  ///< stamp that arrived last, where its value holds
+  bool forgot_ = false;                   ///< older entries were discarded
+  std::optional<Nanoseconds> removable_;  ///< stamp that arrived last; empty when its value was withdrawn
 };
 
 }  // namespace microinjection

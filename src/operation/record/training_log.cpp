@@ -14,12 +14,12 @@ namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-/// A measure beside its reference, in SI units, and what it earned.
+/// A measure with its reference, in SI units, and its points.
 struct Item {
   const char* key;  ///< of training.yaml
   const char* name;
   const char* unit;  ///< for people
-  double scale;      ///< of that unit, in SI
+  double scale;      ///< SI units per `unit`
   double value, reference, points, most;
 };
 
@@ -37,7 +37,7 @@ std::array<Item, 6> items(const TrainingScore& score, const TrainingTask& task) 
            {"volume_m3", "volume", "pL", 1e-15, score.volume, task.volume, points.volume, most.volume}}};
 }
 
-/// `"` and `\` are all that a double-quoted YAML text of one line must not hold bare.
+/// Quotes a text for YAML: in a double-quoted line only `"` and `\` must be escaped.
 std::string quoted(const std::string& text) {
   std::string result = "\"";
   for (const char letter : text)
@@ -97,7 +97,8 @@ TrainingConfig TrainingConfig::read(ConfigReader& reader) {
 int TrainingLog::puncturesOf(const SessionTable::Row& row) {
   if (config_.punctures == "felt") return row.punctures;
   const SessionTable::Cell& now = row.cell;
-  // Back in a hole that was there already, the layers that failed there are told at once.
+  // On return to an existing hole the cell reports its failed layers at once: they do not count
+  // again.
   const bool old_hole = cell_ && cell_->layers_punctured == 0 && cell_->holes == now.holes;
   if (cell_ && !old_hole && now.layers_punctured > cell_->layers_punctured)
     cell_punctures_ += static_cast<int>(now.layers_punctured - cell_->layers_punctured);

@@ -12,38 +12,39 @@ namespace microinjection {
 
 struct TrainingConfig {
   std::string operator_name;
-  std::string history;              ///< path of the CSV file of all sessions; made when absent
-  std::string force = "predicted";  ///< or measured: the force that counts
-  std::string punctures = "cell";   ///< those of the cell model, or felt: those that the controller has felt
+  std::string history;              ///< path of the CSV file of all sessions; created when absent
+  std::string force = "predicted";  ///< the scored force: predicted or measured
+  std::string punctures = "cell";   ///< cell: those of the cell model; felt: those detected by the controller
   TrainingTask task;
 
   /// Keys operator, history (both required), force, punctures, and the section task.
   static TrainingConfig read(ConfigReader& reader);
 };
 
-/// A session as one of an operator's: scored from the rows of its table, written to training.yaml beside them and, when
-/// a cell was touched, as a row of the history.
+/// Scores an operator's session from the rows of its table. Writes training.yaml beside the table
+/// and, after a contact, a row of the history.
 class TrainingLog {
  public:
   struct Result {
     TrainingScore score;
     bool in_history = false;
     std::string text;                 ///< for people, a few lines
-    std::vector<std::string> errors;  ///< a text for each file that could not be written
+    std::vector<std::string> errors;  ///< one for each file that could not be written
   };
 
   explicit TrainingLog(const TrainingConfig& config) : config_(config) {}
 
   const TrainingConfig& config() const { return config_; }
   void add(const SessionTable::Row& row);
-  /// At the end; `session`: its date, say. A file that cannot be written keeps no other from being written.
+  /// Call at the end; `session` is its name, for example its date. Each file is written even when
+  /// another cannot be.
   Result finish(const std::string& folder, const std::string& session) const;
 
  private:
   int puncturesOf(const SessionTable::Row& row);
 
   TrainingConfig config_;
-  std::optional<SessionTable::Cell> cell_;  ///< of the row before
+  std::optional<SessionTable::Cell> cell_;  ///< of the last row
   int cell_punctures_ = 0;
   TrainingSession session_;
 };

@@ -5,15 +5,15 @@
 
 namespace microinjection {
 
-void ContactDisplacement::touch(const Eigen::Vector3d& force) {
-  touched_ = force.norm();
-  if (!isTouching()) way_.setZero();
-  pressed_ = std::max(0.0, -force.dot(way_));
+void ContactDisplacement::setForce(const Eigen::Vector3d& force) {
+  force_ = force.norm();
+  if (!isTouching()) displacement_.setZero();
+  contact_work_ = std::max(0.0, -force.dot(displacement_));
 }
 
 double ContactDisplacement::stiffness() const {
   if (!isTouching()) return 0;
-  return pressed_ > 0 ? touched_ * touched_ / pressed_ : std::numeric_limits<double>::infinity();
+  return contact_work_ > 0 ? force_ * force_ / contact_work_ : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace microinjection

@@ -4,25 +4,26 @@
 
 namespace microinjection {
 
-/// How far one has pressed into what is touched, and how stiff it is.
+/// Displacement since the beginning of a contact, the work done along it, and the apparent
+/// stiffness.
 class ContactDisplacement {
  public:
-  /// `contact_force` (N): below it nothing is touched.
+  /// Forces below `contact_force` (N) count as no contact.
   explicit ContactDisplacement(double contact_force) : contact_force_(contact_force) {}
 
   void reset() { *this = ContactDisplacement(contact_force_); }
-  void move(const Eigen::Vector3d& way) { way_ += way; }  ///< m, since the call before
-  void touch(const Eigen::Vector3d& force);               ///< N, of what is touched
-  bool isTouching() const { return touched_ >= contact_force_; }
-  double pressed() const { return pressed_; }  ///< J, force times way since the touch
-  /// N/m, force over way; 0: nothing is touched, infinite: it is touched where the way began.
+  void move(const Eigen::Vector3d& step) { displacement_ += step; }  ///< m, since the last call
+  void setForce(const Eigen::Vector3d& force);                       ///< N, of the touched body
+  bool isTouching() const { return force_ >= contact_force_; }
+  double contactWork() const { return contact_work_; }  ///< J, force times displacement since contact
+  /// N/m, force over displacement. 0: no contact; infinite: contact without displacement.
   double stiffness() const;
 
  private:
   double contact_force_;
-  double touched_ = 0;                             // N
-  double pressed_ = 0;                             // J
-  Eigen::Vector3d way_ = Eigen::Vector3d::Zero();  // m, since the touch
+  double force_ = 0;                                        // N
+  double contact_work_ = 0;                                 // J
+  Eigen::Vector3d displacement_ = Eigen::Vector3d::Zero();  // m, since contact
 };
 
 }  // namespace microinjection

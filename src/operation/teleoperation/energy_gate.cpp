@@ -21,17 +21,18 @@ double EnergyGate::damping(double energy_deficit, const Eigen::Vector3d& velocit
 }
 
 void EnergyGate::changeShare(double work, bool absorbs, double energy_margin, double dt) {
-  constexpr double kMostPatience = 256;
+  constexpr double kLargestFactor = 256;
   if (share_ < 1 && (energy_margin > 0 || absorbs)) {
-    share_ = std::min(1.0, share_ + dt / (patience_ * config_.return_time));
+    share_ = std::min(1.0, share_ + dt / (return_time_factor_ * config_.return_time));
     rising_ = true;
   }
   if (work <= 0) return;
-  // A share that falls with what is left lets the force fade over millimetres instead of dropping when nothing is left.
-  const double most = std::max(0.0, energy_margin) / std::max(work, config_.fade);
-  if (share_ <= most) return;
-  share_ = most;
-  if (rising_) patience_ = std::min(kMostPatience, 2 * patience_);
+  // The share falls with the margin, so the force fades over millimetres instead of dropping at
+  // zero margin.
+  const double largest = std::max(0.0, energy_margin) / std::max(work, config_.fade);
+  if (share_ <= largest) return;
+  share_ = largest;
+  if (rising_) return_time_factor_ = std::min(kLargestFactor, 2 * return_time_factor_);
   rising_ = false;
 }
 
@@ -41,7 +42,7 @@ Eigen::Vector3d EnergyGate::step(const Eigen::Vector3d& wanted, const Eigen::Vec
   changeShare(work, work < 0 && velocity.norm() > config_.velocity_floor, energy_margin, dt);
   const double added = damping(std::max(0.0, -energy_margin), velocity);
   acting_ = share_ < 1 || added > 0;
-  // Exactly the wanted force where nothing is to be done.
+  // Without action the wanted force passes unchanged to the last bit.
   return acting_ ? Eigen::Vector3d(share_ * wanted - added * velocity) : wanted;
 }
 

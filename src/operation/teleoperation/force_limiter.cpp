@@ -23,7 +23,7 @@ const Eigen::Vector3d& ForceLimiter::step(const Eigen::Vector3d& wanted, const E
   constexpr double kStill = 1e-3;  // m/s, below which a direction of motion is noise
   const Eigen::Vector3d target = limited(wanted, limits_.force);
   const double lag = (target - force_).norm();
-  // Exactly the target where it is within reach: a force at rest is the wanted one to the last bit.
+  // A target within reach is taken exactly: a force at rest equals the wanted one to the last bit.
   force_ = lag <= limits_.rate * dt ? target : Eigen::Vector3d(force_ + limited(target - force_, limits_.rate * dt));
   if (velocity.norm() < kStill) return force_;
   const Eigen::Vector3d along = velocity.normalized();

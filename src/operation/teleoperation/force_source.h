@@ -19,12 +19,13 @@ struct ForceSourceConfig {
 };
 
 struct TipForces {
-  std::optional<Eigen::Vector3d> predicted;  ///< N, by the cell's model; empty: absent or stale
-  std::optional<Eigen::Vector3d> measured;   ///< N, by the force sensor
+  std::optional<Eigen::Vector3d> predicted;  ///< N, of the cell model; empty: absent or stale
+  std::optional<Eigen::Vector3d> measured;   ///< N, of the force sensor; empty: absent or stale
 };
 
-/// The tip force (N) to reflect; empty when a source that is needed is missing or not finite. A blend without one of
-/// its two is not rendered from the other: the force would change for a reason that the operator cannot feel.
+/// Returns the tip force (N) to reflect; empty when a required source is missing or not finite. A
+/// blend is not rendered from one source alone: the force would change for a reason that the
+/// operator cannot feel.
 std::optional<Eigen::Vector3d> chooseForce(const ForceSourceConfig& config, const TipForces& forces);
 
 }  // namespace microinjection

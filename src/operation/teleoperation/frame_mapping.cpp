@@ -11,7 +11,8 @@ namespace {
 
 constexpr char kAllowed[] = "three of x, y, z with or without -, each once and right-handed, e.g. \"x -z y\"";
 
-/// Row i is the device's axis along the view's axis i; zero when the text is not three axes.
+/// Row i is the device's axis along the view's axis i. Returns zero when the text is not three
+/// axes.
 Eigen::Matrix3d toMatrix(const std::string& axes) {
   Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
   std::istringstream in(axes);
@@ -46,7 +47,7 @@ FrameMapping::FrameMapping(const FrameMappingConfig& config) {
   const Eigen::Quaterniond view = Eigen::AngleAxisd(angle.z(), Eigen::Vector3d::UnitZ()) *
                                   Eigen::AngleAxisd(angle.y(), Eigen::Vector3d::UnitY()) *
                                   Eigen::AngleAxisd(angle.x(), Eigen::Vector3d::UnitX());
-  // Without a turned view the axes are exact: no rounding in the hand's position.
+  // Without a view rotation the axes are exact: no rounding in the hand's position.
   rotation_ = angle.isZero(0) ? axes : Eigen::Matrix3d(view.toRotationMatrix() * axes);
 }
 

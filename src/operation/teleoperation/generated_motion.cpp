@@ -38,7 +38,7 @@ class Tremor {
  public:
   Tremor(double rms, int seed) : amplitude_(rms / std::sqrt(kSines / 2.0)) {
     std::mt19937_64 random(seed);
-    // Not uniform_real_distribution: each library has its own.
+    // std::uniform_real_distribution gives different numbers with each standard library.
     const auto share = [&random] { return static_cast<double>(random() >> 11) / static_cast<double>(1ULL << 53); };
     for (Sine& sine : sines_) {
       sine.frequency = 8 + 4 * share();
@@ -46,7 +46,7 @@ class Tremor {
     }
   }
 
-  /// m, at a time (s)
+  /// Displacement (m) at a time (s).
   Eigen::Vector3d at(double time) const {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (const Sine& sine : sines_) {

@@ -29,9 +29,10 @@ const Eigen::Vector3d& GoalHand::step(double dt) {
     goal_ = position_;
     return position_;
   }
-  const Eigen::Vector3d way = goal_ - position_;
+  const Eigen::Vector3d displacement = goal_ - position_;
   const double furthest = config_.speed * dt;
-  position_ += way.norm() > furthest ? Eigen::Vector3d(furthest / way.norm() * way) : way;
+  position_ +=
+      displacement.norm() > furthest ? Eigen::Vector3d(furthest / displacement.norm() * displacement) : displacement;
   return position_;
 }
 

@@ -6,7 +6,8 @@
 
 namespace microinjection {
 
-/// A hand's motion over time, recorded or synthetic: where the hand means to be, its clutch and what it is doing.
+/// A hand's motion over time, recorded or synthetic: intended position, clutch and phase of the
+/// task.
 class HandMotion {
  public:
   struct Sample {
@@ -16,10 +17,11 @@ class HandMotion {
     std::string phase;                                   ///< for people: approach, touch, indent, ...
   };
 
-  /// Of a .yaml file: synthetic, see generated_motion.h. Of any other: samples `time_s,x_m,y_m,z_m,clutch,phase` with a
-  /// header line; lines that begin with # are comments.
-  /// @throws ConfigError naming file and key or line: wrong header, not a number, not finite, time that does not
-  /// increase.
+  /// Reads a motion. A .yaml file describes a synthetic one, see generated_motion.h. Any other file
+  /// has samples `time_s,x_m,y_m,z_m,clutch,phase` below a header line; lines that begin with # are
+  /// comments.
+  /// @throws ConfigError naming file and key or line: wrong header, not a number, not finite, time
+  /// that does not increase.
   static HandMotion load(const std::string& path);
 
   /// @throws ConfigError without two samples, or when time does not increase.
@@ -27,7 +29,8 @@ class HandMotion {
 
   double duration() const { return samples_.back().time; }  ///< s
 
-  /// Position linear between samples; clutch and phase of the sample before. Held at both ends.
+  /// Interpolates the position; clutch and phase are those of the sample before. Constant beyond
+  /// both ends.
   Sample at(double time) const;
 
  private:

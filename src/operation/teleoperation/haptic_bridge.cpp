@@ -47,7 +47,7 @@ HapticBridge::HapticBridge(const HapticBridgeConfig& config)
 
 std::string HapticBridge::holdReason(const Input& input, const std::optional<Eigen::Vector3d>& force) const {
   if (!valid(input.hand)) return "no valid hand position";
-  if (!input.unfelt.empty()) return input.unfelt;
+  if (!input.no_force_reason.empty()) return input.no_force_reason;
   if (!valid(input.needle)) return "no valid needle position";
   if (!force) return "no valid force";
   if (config_.require_operator && !input.operator_present) return "the operator is not present";
@@ -85,29 +85,31 @@ HapticBridge::Output HapticBridge::step(const Input& input, double dt) {
 
   const bool held = !output.hold_reason.empty();
   const bool interrupted =
-      held && input.unfelt.empty() && !input.clutch && (!config_.require_operator || input.operator_present);
-  const double speed = motion_.isRate() ? 0 : passivity_.velocity().norm();  // a stick may spring back
+      held && input.no_force_reason.empty() && !input.clutch && (!config_.require_operator || input.operator_present);
+  const double speed = motion_.isRate() ? 0 : passivity_.velocity().norm();  // a released stick springs back fast
   output.state = engagement_.step({held, input.clutch, speed, held ? 0 : motion_.misalignment(hand, *input.needle),
-                                   interrupted, dt, motion_.release(hand)});
+                                   interrupted, dt, motion_.isAtRest(hand)});
   if (output.state != Engagement::State::kFollow) {
-    if (!held) output.hold_reason = engagement_.why();
+    if (!held) output.hold_reason = engagement_.reason();
     output.hand_force = render(Eigen::Vector3d::Zero(), dt);
     return output;
   }
 
-  const Eigen::Vector3d touched = config_.force_gain * *tip_force;
-  if (!followed) begin(hand, *input.needle, touched);
+  const Eigen::Vector3d contact_force = config_.force_gain * *tip_force;
+  if (!followed) begin(hand, *input.needle, contact_force);
   ramp_ = config_.ramp_time > 0 ? std::min(1.0, ramp_ + dt / config_.ramp_time) : 1.0;
-  // A deflection that sets a speed has no proxy that could yield. The first step is exactly where the needle is.
+  // In rate mode there is no proxy that could yield. The first target is exactly the needle's
+  // position.
   const bool yields = followed && !motion_.isRate();
-  const Eigen::Vector3d proxyOffset =
-      yields ? Eigen::Vector3d(coupling_.step(touched, dt) - proxy_offset_start_) : Eigen::Vector3d::Zero();
-  const VirtualFixtures::Result fixed = fixtures_.apply(motion_.step(tremor_.step(hand, dt) + proxyOffset, dt));
+  const Eigen::Vector3d proxy_offset =
+      yields ? Eigen::Vector3d(coupling_.step(contact_force, dt) - proxy_offset_start_) : Eigen::Vector3d::Zero();
+  const VirtualFixtures::Result fixed = fixtures_.apply(motion_.step(tremor_.step(hand, dt) + proxy_offset, dt));
   motion_.limitTo(fixed.target);
   output.needle = fixed.target;
-  const Eigen::Vector3d met = touched + fixed.hand_force;
-  const Eigen::Vector3d felt = met - coupling_.contactDamping(passivity_.stiffness()) * passivity_.velocity();
-  output.hand_force = render(passivity_.control(ramp_ * felt, met, dt), dt);
+  const Eigen::Vector3d total_force = contact_force + fixed.hand_force;
+  const Eigen::Vector3d damped_force =
+      total_force - coupling_.contactDamping(passivity_.stiffness()) * passivity_.velocity();
+  output.hand_force = render(passivity_.control(ramp_ * damped_force, total_force, dt), dt);
   return output;
 }
 

@@ -19,8 +19,8 @@ namespace microinjection {
 
 struct HapticBridgeConfig {
   double force_gain = 2e5;        ///< 1, newtons at the hand per newton at the tip
-  double ramp_time = 0.1;         ///< s, over which force comes back after the loop was open
-  bool require_operator = false;  ///< hold unless the device says that the operator is there
+  double ramp_time = 0.1;         ///< s, time in which the force rises after engagement
+  bool require_operator = false;  ///< hold unless the device reports the operator as present
   FrameMappingConfig frame;
   MotionMappingConfig motion;
   EngagementConfig engagement;
@@ -32,54 +32,55 @@ struct HapticBridgeConfig {
   PassivityConfig passivity;
 
   static HapticBridgeConfig read(ConfigReader& reader);
-  /// The same in front of a LinkLeader: the proxy is at the rig, where it does not wait for the network, and so is the
-  /// damping of what answers late.
+  /// The configuration in front of a LinkLeader. Proxy and contact damping then are at the rig,
+  /// where they do not wait for the network.
   HapticBridgeConfig beforeLink() const;
 };
 
 /// Bilateral coupling of a haptic device and a needle: position forward, force back.
 ///
-///     hand -> frame -> tremor filter -> coupling -> motion mapping -> fixtures -> needle's target
+///     hand -> frame -> tremor filter -> coupling -> motion mapping -> fixtures -> target of the
+///     needle
 ///     hand <- frame <- passivity, limits <- gain, ramp <- force source <- tip forces
 ///
-/// While the clutch is pressed the leader floats and the follower holds; hand and needle belong together anew on
-/// release, and (see EngagementConfig) whenever the loop was open for want of a valid input. In a hold the force
-/// falls to zero, as it does when the hand that is followed gets too fast to be one that holds the device (position
-/// mode): by the limiter's rate while the hand is known, so that it is not dropped, at once where it is not.
+/// While the clutch is pressed, the hand moves freely and the needle holds. Its release sets a new
+/// reference of hand and needle. So does each hold for an invalid input in mode `index`
+/// (EngagementConfig). In a hold, and in position mode when the followed hand is too fast to be
+/// holding the device, the force falls to zero: at the limiter's rate while the hand's position is
+/// valid, so that it does not drop, otherwise at once.
 class HapticBridge {
  public:
-  /// What the bridge can trust now; empty: absent, stale or not finite.
+  /// Valid inputs of this cycle; empty: absent, stale or not finite.
   struct Input {
     std::optional<Eigen::Vector3d> hand;    ///< m, haptic device, its axes
     std::optional<Eigen::Vector3d> needle;  ///< m, tip in `world`
-    TipForces force;                        ///< N, of the cell on the tip, `world`
+    TipForces force;                        ///< N, of the cell on the tip, in `world`
     bool clutch = false;                    ///< pressed
     bool operator_present = false;          ///< counts with require_operator
-    std::string unfelt;                     ///< why the device does not take the force on the hand; empty: it does
+    std::string no_force_reason;            ///< why the device does not render the force; empty: it does
   };
   struct Output {
-    std::optional<Eigen::Vector3d> needle;                 ///< m, where the tip shall go; empty: hold
+    std::optional<Eigen::Vector3d> needle;                 ///< m, target of the tip in `world`; empty: hold
     Eigen::Vector3d hand_force = Eigen::Vector3d::Zero();  ///< N, on the hand, the device's axes
     Engagement::State state = Engagement::State::kHeld;
     std::string hold_reason;  ///< empty while the loop is closed
   };
 
-  /// @throws ConfigError on axes that are no rotation or fixtures without direction.
+  /// @throws ConfigError when the axes are not a rotation or a fixture has no direction.
   explicit HapticBridge(const HapticBridgeConfig& config);
 
   /// One cycle of dt (s).
   Output step(const Input& input, double dt);
 
-  double delay() const { return tremor_.delay(); }  ///< s, added to slow motion on the way to the needle
-  double observedEnergy() const {
-    return passivity_.energy();
-  }  ///< J, taken from the hand; not below -passivity.reserve
-  bool passivityActing() const { return passivity_.acting(); }  ///< the controller changed the last force
+  double delay() const { return tremor_.delay(); }  ///< s, of slow motion between hand and needle
+  /// J, taken from the hand; not below -passivity.reserve.
+  double observedEnergy() const { return passivity_.energy(); }
+  bool passivityActing() const { return passivity_.acting(); }  ///< the passivity controller changed the last force
 
  private:
   std::string holdReason(const Input& input, const std::optional<Eigen::Vector3d>& force) const;
   void begin(const Eigen::Vector3d& hand, const Eigen::Vector3d& needle, const Eigen::Vector3d& force);
-  /// Force (N, `world`, at the hand) for the next period.
+  /// Limits the force `wanted` (N, `world`, at the hand); returns it in the device's axes.
   Eigen::Vector3d render(const Eigen::Vector3d& wanted, double dt);
 
   HapticBridgeConfig config_;
@@ -92,7 +93,7 @@ class HapticBridge {
   PassivityController passivity_;
   ForceLimiter limiter_;
   double ramp_ = 0;                                               ///< 0..1, share of the force that is rendered
-  Eigen::Vector3d proxy_offset_start_ = Eigen::Vector3d::Zero();  ///< m, of the coupling at the start
+  Eigen::Vector3d proxy_offset_start_ = Eigen::Vector3d::Zero();  ///< m, of the coupling at engagement
 };
 
 }  // namespace microinjection

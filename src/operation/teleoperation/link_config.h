@@ -6,10 +6,10 @@
 
 namespace microinjection {
 
-/// A network between bridge and rig.
+/// The network link between bridge and rig.
 struct LinkConfig {
-  std::string scheme = "none";  ///< none: bridge and rig are one; wave: wave variables between them
-  double timeout = 0.3;         ///< s without a packet: the rig holds the needle, the hand feels nothing
+  std::string scheme = "none";  ///< none: no network; wave: wave variables between bridge and rig
+  double timeout = 0.3;         ///< s without a packet until the rig holds the needle and the hand's force is zero
   WaveConfig wave;
 
   bool used() const { return scheme != "none"; }

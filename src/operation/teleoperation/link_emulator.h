@@ -10,29 +10,30 @@
 namespace microinjection {
 
 struct LinkConditions {
-  double delay = 0;   ///< s, one way, the shortest
-  double jitter = 0;  ///< s, added: uniform in [0, jitter], so that packets overtake each other
+  double delay = 0;   ///< s, smallest delay in one direction
+  double jitter = 0;  ///< s, added delay: uniform in [0, jitter], so packets overtake each other
   double loss = 0;    ///< 1, share of packets that never arrive
   unsigned seed = 1;
 
   static LinkConditions read(ConfigReader reader);
 };
 
-/// A network's one direction in virtual time: delays, shuffles and loses. The same seed loses the same packets.
+/// One direction of a network in virtual time: delays, reorders and loses packets. The same seed
+/// loses the same packets.
 template <typename Packet>
 class LinkEmulator {
  public:
   explicit LinkEmulator(const LinkConditions& conditions) : conditions_(conditions), random_(conditions.seed) {}
 
-  /// At `now` (s).
+  /// Sends a packet at `now` (s).
   void send(const Packet& packet, double now) {
-    // Both are drawn for each packet, so that delays do not depend on the loss.
-    const double late = uniform_(random_) * conditions_.jitter;
+    // Both random numbers are drawn for each packet, so that the delays do not depend on the loss.
+    const double extra_delay = uniform_(random_) * conditions_.jitter;
     if (uniform_(random_) < conditions_.loss) return;
-    travelling_.push({now + conditions_.delay + late, sent_++, packet});
+    travelling_.push({now + conditions_.delay + extra_delay, sent_++, packet});
   }
 
-  /// What has arrived by `now` (s), in the order of arrival.
+  /// Returns the packets that arrived by `now` (s), in the order of arrival.
   std::vector<Packet> receive(double now) {
     std::vector<Packet> arrived;
     for (; !travelling_.empty() && travelling_.top().arrival <= now; travelling_.pop()) {

@@ -6,57 +6,57 @@
 namespace microinjection {
 namespace {
 
-// The packet of an epoch past which one cannot begin with it.
-constexpr std::uint64_t kBeginning = 1000;
+// A follower whose first packet of an epoch has a later number than this cannot join the epoch.
+constexpr std::uint64_t kJoinLimit = 1000;
 
 bool valid(const std::optional<Eigen::Vector3d>& value) { return value && value->allFinite(); }
 
 }  // namespace
 
 LinkFollower::LinkFollower(const LinkConfig& config)
-    : config_(config), wave_(config.wave), age_(std::numeric_limits<double>::infinity()) {}
+    : config_(config), wave_(config.wave), packet_age_(std::numeric_limits<double>::infinity()) {}
 
 void LinkFollower::receive(const LinkPacket& packet) {
-  // A scale that is no number counts as not heard.
-  if (!(packet.position_scale > 0 && std::isfinite(packet.force_gain)) || packet.epoch < heard_.epoch) return;
-  if (packet.epoch > heard_.epoch) {
-    // What comes of the new epoch before the next step must not be lost.
+  // A packet with an invalid scale is ignored.
+  if (!(packet.position_scale > 0 && std::isfinite(packet.force_gain)) || packet.epoch < last_received_.epoch) return;
+  if (packet.epoch > last_received_.epoch) {
+    // Begins the epoch here and not in step(): its packets until then must not be lost.
     wave_.reset(Eigen::Vector3d::Zero());
     outgoing_.follows = false;
-    heard_ = packet;
-    heard_.number = 0;
-    // Started in the midst of it: what the waves have done until now is not known.
-    if (packet.wave.sequence > kBeginning) over_ = packet.epoch;
+    last_received_ = packet;
+    last_received_.number = 0;
+    // This follower started in the midst of the epoch: the earlier waves are unknown.
+    if (packet.wave.sequence > kJoinLimit) ended_epoch_ = packet.epoch;
   }
   wave_.receive(packet.wave);
-  if (packet.number <= heard_.number) return;
-  heard_ = packet;
-  age_ = 0;
+  if (packet.number <= last_received_.number) return;
+  last_received_ = packet;
+  packet_age_ = 0;
 }
 
 std::string LinkFollower::holdReason(const Input& input) const {
-  if (age_ > config_.timeout) return "the hand's side is not heard";
+  if (packet_age_ > config_.timeout) return "the hand's side is not heard";
   if (!valid(input.needle)) return "no valid needle position";
   if (!valid(input.force)) return "no valid force";
   if (!input.controller) return "the controller is silent";
-  if (!heard_.follows) return "the hand's side holds";
-  return heard_.epoch == over_ ? "the hand has to be taken up again" : "";
+  if (!last_received_.follows) return "the hand's side holds";
+  return last_received_.epoch == ended_epoch_ ? "the hand has to be taken up again" : "";
 }
 
 std::optional<Eigen::Vector3d> LinkFollower::step(const Input& input, double dt) {
-  age_ += dt;
-  outgoing_.epoch = heard_.epoch;
+  packet_age_ += dt;
+  outgoing_.epoch = last_received_.epoch;
   outgoing_.valid = input.controller && valid(input.needle) && valid(input.force);
   if (outgoing_.valid) outgoing_.needle = *input.needle;
   hold_reason_ = holdReason(input);
   if (!hold_reason_.empty()) {
-    if (outgoing_.follows) over_ = heard_.epoch;
+    if (outgoing_.follows) ended_epoch_ = last_received_.epoch;
     outgoing_.follows = false;
     return std::nullopt;
   }
-  if (!outgoing_.follows) wave_.begin(*input.needle / heard_.position_scale);
+  if (!outgoing_.follows) wave_.begin(*input.needle / last_received_.position_scale);
   outgoing_.follows = true;
-  return Eigen::Vector3d(heard_.position_scale * wave_.step(heard_.force_gain * *input.force, dt));
+  return Eigen::Vector3d(last_received_.position_scale * wave_.step(last_received_.force_gain * *input.force, dt));
 }
 
 LinkPacket LinkFollower::packet() {

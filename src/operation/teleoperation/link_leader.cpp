@@ -5,7 +5,7 @@
 namespace microinjection {
 
 LinkLeader::LinkLeader(const LinkConfig& config, double position_scale, double force_gain, std::uint64_t first_epoch)
-    : config_(config), wave_(config.wave), age_(std::numeric_limits<double>::infinity()) {
+    : config_(config), wave_(config.wave), packet_age_(std::numeric_limits<double>::infinity()) {
   outgoing_.epoch = first_epoch;
   outgoing_.position_scale = position_scale;
   outgoing_.force_gain = force_gain;
@@ -13,24 +13,24 @@ LinkLeader::LinkLeader(const LinkConfig& config, double position_scale, double f
 
 void LinkLeader::receive(const LinkPacket& packet) {
   if (outgoing_.follows && packet.epoch == outgoing_.epoch) wave_.receive(packet.wave);
-  if (packet.number <= heard_.number && age_ <= config_.timeout) return;  // a rig that was started again counts anew
-  heard_ = packet;
-  age_ = 0;
+  if (packet.number <= last_received_.number && packet_age_ <= config_.timeout) return;  // a restarted rig counts anew
+  last_received_ = packet;
+  packet_age_ = 0;
   if (!outgoing_.follows || packet.epoch != outgoing_.epoch) return;
   followed_ = followed_ || packet.follows;
   lost_ = lost_ || (followed_ && !packet.follows);
 }
 
 std::optional<Eigen::Vector3d> LinkLeader::needle() const {
-  if (age_ > config_.timeout || !heard_.valid || lost_) return std::nullopt;
-  return heard_.needle;
+  if (packet_age_ > config_.timeout || !last_received_.valid || lost_) return std::nullopt;
+  return last_received_.needle;
 }
 
 std::optional<Eigen::Vector3d> LinkLeader::step(double dt) {
-  age_ += dt;
+  packet_age_ += dt;
   if (outgoing_.follows) {
-    waited_ = followed_ ? 0 : waited_ + dt;
-    lost_ = lost_ || age_ > config_.timeout || waited_ > config_.timeout + 1;
+    waiting_time_ = followed_ ? 0 : waiting_time_ + dt;
+    lost_ = lost_ || packet_age_ > config_.timeout || waiting_time_ > config_.timeout + 1;
   }
   if (!needle()) return std::nullopt;
   if (!outgoing_.follows) return Eigen::Vector3d(Eigen::Vector3d::Zero());
@@ -49,7 +49,7 @@ void LinkLeader::setTarget(const std::optional<Eigen::Vector3d>& target) {
   ++outgoing_.epoch;
   wave_.reset(target_);
   followed_ = lost_ = false;
-  waited_ = 0;
+  waiting_time_ = 0;
 }
 
 LinkPacket LinkLeader::packet() {

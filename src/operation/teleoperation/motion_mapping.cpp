@@ -25,7 +25,7 @@ const Eigen::Vector3d& MotionMapping::step(const Eigen::Vector3d& hand, double d
     target_ = needle_ + config_.position_scale * (hand - hand_);
     return target_;
   }
-  if (release(hand)) return target_;
+  if (isAtRest(hand)) return target_;
   const double size = hand.norm();
   const double speed = std::min(config_.rate_limit, config_.rate_gain * (size - config_.dead_zone));
   target_ += speed * dt / size * hand;
@@ -36,6 +36,8 @@ double MotionMapping::misalignment(const Eigen::Vector3d& hand, const Eigen::Vec
   return isRate() ? 0 : (hand - hand_ - (needle - needle_) / config_.position_scale).norm();
 }
 
-bool MotionMapping::release(const Eigen::Vector3d& hand) const { return !isRate() || hand.norm() <= config_.dead_zone; }
+bool MotionMapping::isAtRest(const Eigen::Vector3d& hand) const {
+  return !isRate() || hand.norm() <= config_.dead_zone;
+}
 
 }  // namespace microinjection

@@ -5,9 +5,9 @@
 namespace microinjection {
 namespace {
 
-// Share of the reserve that is planned with; the rest is for what the predicted velocity misses in a period.
+// Used share of the reserve; the rest covers the error of the predicted velocity in a period.
 constexpr double kSpent = 0.5;
-// s without a touch, after which the next one has nothing to do with the last one's oscillation.
+// s without contact, after which an earlier oscillation does not matter any more.
 constexpr double kFreeTime = 0.5;
 
 }  // namespace
@@ -30,47 +30,48 @@ void PassivityController::reset() {
   total_ = 0;
   contact_.reset();
   rendered_.setZero();
-  known_ = paused_ = false;
+  has_last_ = paused_ = false;
   gate_.reset();
   ripple_.reset();
 }
 
 void PassivityController::observe(const Eigen::Vector3d& position, double dt) {
-  const Eigen::Vector3d way = known_ ? Eigen::Vector3d(position - last_) : Eigen::Vector3d::Zero();
+  const Eigen::Vector3d displacement = has_last_ ? Eigen::Vector3d(position - last_) : Eigen::Vector3d::Zero();
   last_ = position;
-  known_ = true;
+  has_last_ = true;
   velocity_.add(position, dt);
-  // Where the hand went without the needle is no ripple.
+  // Motion of the hand while the needle is held is no ripple.
   if (paused_)
     ripple_.reset();
   else
     ripple_.observe(rendered_, position, dt);
-  const double taken = -rendered_.dot(way);
+  const double taken = -rendered_.dot(displacement);
   balance_ += taken;
   total_ += taken;
-  if (!paused_) contact_.move(way);
+  if (!paused_) contact_.move(displacement);
   paused_ = false;
 }
 
-void PassivityController::followContact(const Eigen::Vector3d& touched, double dt) {
-  contact_.touch(touched);
+void PassivityController::followContact(const Eigen::Vector3d& contact_force, double dt) {
+  contact_.setForce(contact_force);
   if (!contact_.isTouching()) {
     ripple_.reset();
     free_ += dt;
-    if (free_ > kFreeTime) gate_.trust();
+    if (free_ > kFreeTime) gate_.resetReturnTime();
   } else {
     free_ = 0;
   }
   if (config_.behind_channel) return;
-  balance_ = std::min(balance_, kSpent * config_.reserve + config_.storage_ceiling * contact_.pressed());
+  balance_ = std::min(balance_, kSpent * config_.reserve + config_.storage_ceiling * contact_.contactWork());
 }
 
-Eigen::Vector3d PassivityController::control(const Eigen::Vector3d& wanted, const Eigen::Vector3d& touched, double dt) {
-  followContact(touched, dt);
+Eigen::Vector3d PassivityController::control(const Eigen::Vector3d& wanted, const Eigen::Vector3d& contact_force,
+                                             double dt) {
+  followContact(contact_force, dt);
   if (!config_.enabled) return wanted;
   if (config_.behind_channel) return gate_.step(wanted, velocity_.value(), balance_, dt);
   return gate_.step(wanted - gate_.damping(ripple_.energy_deficit(), ripple_.velocity()) * ripple_.velocity(),
-                    velocity_.value(), balance_ - config_.storage_floor * contact_.pressed(), dt);
+                    velocity_.value(), balance_ - config_.storage_floor * contact_.contactWork(), dt);
 }
 
 }  // namespace microinjection

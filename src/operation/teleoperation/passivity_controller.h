@@ -10,38 +10,44 @@
 
 namespace microinjection {
 
-/// Energies are those at the hand. With position scale s (needle per hand) and force gain g (hand per tip) the hand's
-/// power f v = (g F)(V / s) = (g / s) F V: the tip's power F V times a constant, so what is passive at the tip is
-/// passive at the hand as long as s and g do not change within a contact. In joules of the tip the same loop would hide
-/// the factor g / s (2e8 with the defaults), by which a fault of 1 pJ becomes 0.2 mJ in the hand.
+/// All energies are at the hand's scale. With position scale s (needle per hand) and force gain g
+/// (hand per tip) the hand's power is f v = (g F)(V / s) = (g / s) F V, a constant times the tip's
+/// power F V. A loop that is passive at the tip is therefore passive at the hand, as long as s and
+/// g do not change within a contact. Joules of the tip would hide the factor g / s (2e8 with the
+/// defaults), which turns an error of 1 pJ into 0.2 mJ at the hand.
 struct PassivityConfig {
   bool enabled = true;
-  double reserve = 1e-3;          ///< J, what the loop may give the hand before it has taken anything: the tolerance
-  double contact_force = 0.01;    ///< N, below which the hand is in free motion and keeps no more than the reserve
-  double storage_floor = 0.15;    ///< 1, share of force x way that what was touched stores at the least
-  double storage_ceiling = 0.55;  ///< 1, share of force x way that it can give back at the most
+  double reserve = 1e-3;          ///< J, energy that the loop may give the hand before it took any: the tolerance
+  double contact_force = 0.01;    ///< N, below which the hand is in free motion and the balance is at most the reserve
+  double storage_floor = 0.15;    ///< 1, smallest share of force x displacement that the touched body stores
+  double storage_ceiling = 0.55;  ///< 1, largest share of force x displacement that it can return
 
   EnergyGateConfig gate;
   RippleConfig ripple;
-  /// A channel with waves of its own lies between the hand and what is touched: what it stores is no share of force x
-  /// way, nor is its ripple a spring's. Only the whole balance counts then. Not a key: it follows from the link.
+  /// A wave channel lies between the hand and the touched body. Its stored energy is no share of
+  /// force x displacement, and its ripple is not that of a spring, so only the whole balance
+  /// counts. Not a key: it follows from the link.
   bool behind_channel = false;
 
   static PassivityConfig read(ConfigReader reader);
 };
 
 /// Time-domain passivity observer and controller of the port between the bridge and the hand
-/// (Hannaford & Ryu, IEEE Trans. Robotics and Automation 18(1), 2002), in impedance causality: velocity in, force out.
+/// (Hannaford & Ryu, IEEE Trans. Robotics and Automation 18(1), 2002), in impedance causality:
+/// velocity in, force out.
 ///
-/// The device holds a force f for a period, so what the hand gave in it is exactly -f (x_next - x): the observer counts
-/// that, with the force that went out after all limits. Counting from the start alone has two known faults: what a cell
-/// has dissipated over a minute would be a reserve that feeds a limit cycle for seconds; and a spring that gives back
-/// more than it took is noticed only when it is nearly at rest. Both are met by following a reference energy (Ryu,
-/// Preusche, Hannaford, Hirzinger 2005), the energy U that what is touched holds: it pushes with f and was pressed by p
-/// since the touch, so
+/// The device holds a force f for a period, so the hand's work in it is exactly -f (x_next - x).
+/// The observer sums this work with the force after all limits. A plain sum from the start has two
+/// known faults:
+/// - The energy that a cell dissipated over a minute would be a reserve that feeds a limit cycle
+///   for seconds.
+/// - A spring that returns more than it took is detected only when it is nearly at rest.
+///
+/// Both are avoided with a reference energy (Ryu, Preusche, Hannaford, Hirzinger 2005), the energy
+/// U stored in the touched body. It pushes with f and was displaced by p since contact, so
 ///     storage_floor f p <= U <= storage_ceiling f p
-/// (a linear spring has 0.5, Hertz' contact 0.4, a membrane's cubic law 0.25). Energy above the upper bound plus the
-/// reserve is forgotten; below the lower bound the controller acts.
+/// (a linear spring has 0.5, a Hertz contact 0.4, a membrane's cubic law 0.25). Energy above the
+/// upper bound plus the reserve is discarded; below the lower bound the controller acts.
 class PassivityController {
  public:
   explicit PassivityController(const PassivityConfig& config)
@@ -53,31 +59,31 @@ class PassivityController {
     reset();
   }
 
-  /// A new contact with nothing known: the reserve alone.
+  /// Begins anew: the balance is the reserve.
   void reset();
 
-  /// Counts the period that has passed. `position` (m) of the hand now; dt (s).
+  /// Counts the period dt (s) that has passed. `position` (m) is the hand's at its end.
   void observe(const Eigen::Vector3d& position, double dt);
 
-  /// The period that is observed next was one in which the needle was held: what was touched has seen nothing of the
-  /// hand's way.
+  /// Marks the period that is observed next: the needle was held in it, so the hand's motion did
+  /// not reach the touched body.
   void pause() { paused_ = true; }
 
-  /// The force (N, on the hand) to render instead of `wanted`; `touched`: the force of what is touched, before any
-  /// ramp.
-  Eigen::Vector3d control(const Eigen::Vector3d& wanted, const Eigen::Vector3d& touched, double dt);
+  /// Returns the force (N, on the hand) to render instead of `wanted`. `contact_force` (N) is the
+  /// touched body's, before any ramp.
+  Eigen::Vector3d control(const Eigen::Vector3d& wanted, const Eigen::Vector3d& contact_force, double dt);
 
-  /// What goes out for the next period (N), after every limit.
+  /// Sets the force (N) of the next period, after every limit.
   void setRendered(const Eigen::Vector3d& force) { rendered_ = force; }
 
-  double energy() const { return total_; }  ///< J, taken from the hand since the start; the observed energy
+  double energy() const { return total_; }  ///< J, observed energy: taken from the hand since the start
   const Eigen::Vector3d& velocity() const { return velocity_.value(); }  ///< m/s, of the hand
-  /// N/m, force over way of what is touched; 0: nothing, infinite: touched where the hand stands.
+  /// N/m, of the touched body, see ContactDisplacement::stiffness().
   double stiffness() const { return contact_.stiffness(); }
-  bool acting() const { return gate_.acting(); }  ///< the last force was not the one that was wanted
+  bool acting() const { return gate_.acting(); }  ///< the last force differed from the wanted one
 
  private:
-  void followContact(const Eigen::Vector3d& touched, double dt);
+  void followContact(const Eigen::Vector3d& contact_force, double dt);
 
   PassivityConfig config_;
   EnergyGate gate_;
@@ -88,8 +94,8 @@ class PassivityController {
   ContactDisplacement contact_;
   Eigen::Vector3d last_ = Eigen::Vector3d::Zero();      ///< m
   Eigen::Vector3d rendered_ = Eigen::Vector3d::Zero();  ///< N
-  double free_ = 0;                                     ///< s, without a touch
-  bool known_ = false;                                  ///< there is a last position
+  double free_ = 0;                                     ///< s, without contact
+  bool has_last_ = false;                               ///< last_ is set
   bool paused_ = false;
 };
 

@@ -18,7 +18,7 @@ std::optional<RateInput::Reading> RateInput::read(const std::vector<float>& axes
   Eigen::Vector3d share;
   for (int i = 0; i < 3; ++i) {
     const auto index = static_cast<std::size_t>(config_.axes[i]);
-    // A space mouse is set to about 1 at its end, not to 1. Compared so that NaN is refused.
+    // A space mouse reaches only about 1 at its stop. The negated comparison also rejects NaN.
     if (index >= axes.size() || !(std::abs(axes[index]) <= 1.5)) return std::nullopt;
     share[i] = axes[index];
   }

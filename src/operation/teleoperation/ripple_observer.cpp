@@ -26,7 +26,7 @@ void RippleObserver::observe(const Eigen::Vector3d& force, const Eigen::Vector3d
   position_ = keep * (position_ + position - last_position_);
   last_force_ = force;
   last_position_ = position;
-  // 5 ms: the encoder's steps are not the ripple's velocity.
+  // A low-pass of 5 ms removes the encoder's steps from the ripple's velocity.
   velocity_ += (1 - std::exp(-dt / 5e-3)) * ((position_ - before) / dt - velocity_);
   const double taken = -force_.dot(position_ - before);
   const double held = -0.5 * force_.dot(position_) - held_before;

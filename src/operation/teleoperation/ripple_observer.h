@@ -7,29 +7,31 @@
 namespace microinjection {
 
 struct RippleConfig {
-  double cutoff = 2.0;      ///< Hz, of the high-pass that force and motion go through
-  double tolerance = 2e-5;  ///< J, a loss that is no oscillation
+  double cutoff = 2.0;      ///< Hz, of the high-pass of force and motion
+  double tolerance = 2e-5;  ///< J, largest loss that does not count as oscillation
   double memory = 2.0;      ///< s, after which a loss is forgotten
 
   /// The keys of the same names.
   static RippleConfig read(ConfigReader reader);
 };
 
-/// Finds the oscillation that lives on energy which the loop makes, before it has used up what was stored by pressing
-/// in.
+/// Detects an oscillation fed by the energy that the loop generates, before it has used up the
+/// energy stored by indentation.
 ///
-/// What is touched is a rising function of depth, so about any depth it is passive for itself: with force and position
-/// high-passed alike, a spring has f~ = -K x~, and the energy -f~ . dx~ taken from the hand less the half of -f~ . x~
-/// that a spring holds is constant: 0. Damping lets it rise, force that comes late lets it fall in every period of an
-/// oscillation. What has fallen is owed as damping of the ripple.
+/// The touched body's force rises with depth, so the body is passive about any depth. With force
+/// and position high-passed alike, a spring has f~ = -K x~. The energy -f~ . dx~ taken from the
+/// hand, less the half of -f~ . x~ that a spring stores, is then constantly 0. Damping raises it; a
+/// late force lowers it in every period of an oscillation. The fall is the deficit that damping of
+/// the ripple dissipates.
 class RippleObserver {
  public:
   explicit RippleObserver(const RippleConfig& config) : config_(config) {}
 
   void reset() { *this = RippleObserver(config_); }
-  /// The period of dt (s) that has passed: `force` (N) as rendered in it, `position` (m) of the hand at its end.
+  /// Counts the period dt (s) that has passed: `force` (N) as rendered in it, `position` (m) of the
+  /// hand at its end.
   void observe(const Eigen::Vector3d& force, const Eigen::Vector3d& position, double dt);
-  double energy_deficit() const;                                 ///< J, past the tolerance
+  double energy_deficit() const;                                 ///< J, beyond the tolerance
   const Eigen::Vector3d& velocity() const { return velocity_; }  ///< m/s, of the ripple
 
  private:

@@ -7,8 +7,8 @@ namespace microinjection {
 namespace {
 
 constexpr char kEscape = '\x1b';
-constexpr std::size_t kLongest = 8;  // of a sequence; whatever is longer is none of ours
-constexpr double kPatience = 0.05;   // s, within which a terminal sends the whole sequence, also over a network
+constexpr std::size_t kLongest = 8;     // bytes; no sequence below is longer
+constexpr double kSequenceTime = 0.05;  // s, time in which a terminal sends a whole sequence, also over a network
 const char* const kOther = "other";
 
 const std::map<std::string, std::string>& sequences() {
@@ -27,7 +27,7 @@ bool ends(const std::string& sequence) {
 }  // namespace
 
 std::optional<std::string> TerminalKeys::feed(char byte) {
-  waited_ = 0;
+  waiting_time_ = 0;
   if (byte == kEscape) {
     const bool before = !std::exchange(pending_, kEscape).empty();
     return before ? std::optional<std::string>(kOther) : std::nullopt;
@@ -46,7 +46,7 @@ std::optional<std::string> TerminalKeys::feed(char byte) {
 }
 
 std::optional<std::string> TerminalKeys::wait(double dt) {
-  if (pending_.empty() || (waited_ += dt) < kPatience) return std::nullopt;
+  if (pending_.empty() || (waiting_time_ += dt) < kSequenceTime) return std::nullopt;
   pending_.clear();
   return kOther;
 }

@@ -5,17 +5,18 @@
 
 namespace microinjection {
 
-/// Velocity from the positions of an encoder that resolves 10 to 50 um, which over one period of 1 ms would read as 10
-/// to 50 mm/s: first-order adaptive windowing, end-fit (Janabi-Sharifi, Hayward & Chen 2000). The window is the longest
-/// one over which a straight line from its oldest to its newest position passes all others within the resolution: long
-/// at rest, and short, with little lag, where the motion bends.
+/// Velocity from encoder positions with a resolution of 10 to 50 um, whose differences over a
+/// period of 1 ms are steps of 10 to 50 mm/s. Method: first-order adaptive windowing, end-fit
+/// (Janabi-Sharifi, Hayward & Chen 2000). The window is the longest in which the straight line from
+/// the oldest to the newest position passes all others within the resolution. It is long at rest,
+/// and short, with little lag, where the velocity changes.
 class VelocityEstimate {
  public:
   /// `resolution` (m) of the device.
   explicit VelocityEstimate(double resolution) : resolution_(resolution) {}
 
   void reset() { count_ = 0, value_.setZero(); }
-  /// `position` (m), dt (s) after the one before.
+  /// Adds a position (m), dt (s) after the last one.
   void add(const Eigen::Vector3d& position, double dt);
   const Eigen::Vector3d& value() const { return value_; }  ///< m/s
 

@@ -10,14 +10,16 @@ VirtualHandConfig VirtualHandConfig::read(ConfigReader& reader) {
   return config;
 }
 
-const Eigen::Vector3d& VirtualHand::step(const Eigen::Vector3d& meant, const Eigen::Vector3d& force, double dt) {
-  // Implicit Euler: stable for every mass, damping, stiffness and step, also after the machine has stalled.
-  const Eigen::Vector3d meant_velocity = (meant - intended_) / dt;
+const Eigen::Vector3d& VirtualHand::step(const Eigen::Vector3d& intended, const Eigen::Vector3d& force, double dt) {
+  // Implicit Euler is stable for every mass, damping, stiffness and step, also after a stall of the
+  // machine.
+  const Eigen::Vector3d intended_velocity = (intended - last_intended_) / dt;
   const double c = config_.damping, k = config_.stiffness;
-  const Eigen::Vector3d pull = config_.mass / dt * velocity_ + k * (meant - position_) + c * meant_velocity + force;
-  velocity_ = pull / (config_.mass / dt + c + k * dt);
+  const Eigen::Vector3d drive =
+      config_.mass / dt * velocity_ + k * (intended - position_) + c * intended_velocity + force;
+  velocity_ = drive / (config_.mass / dt + c + k * dt);
   position_ += dt * velocity_;
-  intended_ = meant;
+  last_intended_ = intended;
   return position_;
 }
 

@@ -6,8 +6,8 @@
 
 namespace microinjection {
 
-/// Defaults: a relaxed pinch grip on a desktop haptic stylus, the order of magnitude that the literature on grip
-/// impedance reports.
+/// The defaults describe a relaxed pinch grip on a desktop haptic stylus, by the order of magnitude
+/// in the literature on grip impedance.
 struct VirtualHandConfig {
   double mass = 0.2;         ///< kg, of hand and stylus together
   double damping = 6.0;      ///< N s/m
@@ -16,15 +16,17 @@ struct VirtualHandConfig {
   static VirtualHandConfig read(ConfigReader& reader);
 };
 
-/// A hand that holds a haptic device: mass, damper and spring between where it means to be and where the force lets it.
-///     mass x'' = stiffness (x_meant - x) + damping (x_meant' - x') + force
+/// A simulated hand that holds a haptic device: a mass, with spring and damper to the intended
+/// position x_i.
+///     mass x'' = stiffness (x_i - x) + damping (x_i' - x') + force
 class VirtualHand {
  public:
   VirtualHand(const VirtualHandConfig& config, const Eigen::Vector3d& start)
-      : config_(config), position_(start), intended_(start) {}
+      : config_(config), position_(start), last_intended_(start) {}
 
-  /// Advances by dt (s) with the device's force (N) on the hand; returns the device's position (m).
-  const Eigen::Vector3d& step(const Eigen::Vector3d& meant, const Eigen::Vector3d& force, double dt);
+  /// Advances by dt (s) with the intended position (m) and the device's force (N) on the hand;
+  /// returns the device's position (m).
+  const Eigen::Vector3d& step(const Eigen::Vector3d& intended, const Eigen::Vector3d& force, double dt);
 
   const Eigen::Vector3d& position() const { return position_; }  ///< m
 
@@ -32,7 +34,7 @@ class VirtualHand {
   VirtualHandConfig config_;
   Eigen::Vector3d position_;                            ///< m
   Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();  ///< m/s
-  Eigen::Vector3d intended_;                            ///< m, of the step before
+  Eigen::Vector3d last_intended_;                       ///< m
 };
 
 }  // namespace microinjection

@@ -6,7 +6,7 @@
 namespace microinjection {
 namespace {
 
-/// Adds a wave (sqrt(W)) of a period dt (s) to what is sent.
+/// Adds a wave (sqrt(W)) of a period dt (s) to the packet.
 void send(TeleoperationPacket& packet, const Eigen::Vector3d& wave, double dt) {
   packet.value += dt * wave;
   packet.energy += 0.5 * wave.squaredNorm() * dt;
@@ -67,7 +67,7 @@ void WaveFollower::receive(const TeleoperationPacket& packet) {
 const Eigen::Vector3d& WaveFollower::step(const Eigen::Vector3d& force, double dt) {
   const double b = config_.impedance;
   const Eigen::Vector3d& incoming = receiver_.step(round_trip_.periods() * dt, dt);
-  contact_.touch(force);
+  contact_.setForce(force);
   const double damping = config_.matching * b + std::min(config_.damping, config_.lateness * contact_.stiffness());
   const Eigen::Vector3d velocity = (std::sqrt(2 * b) * incoming + force) / (b + damping);
   position_ += dt * velocity;

@@ -6,10 +6,10 @@
 namespace microinjection {
 namespace {
 
-// Share of the reserve that a wave is not held with while packets are late. A wave u that is held is taken back with
-// the correction time t as it goes on. What is too much of its integral after a time s is m = u t (1 - exp(-s / t)); it
-// has cost u^2 t (1 - exp(-2 s / t)) / 4, and giving it back when nothing more comes costs m^2 / (4 t), no more than
-// that.
+// Share of the reserve that is kept while a wave is held for late packets. A held wave u is
+// corrected with the time t. Its integral's excess after a time s is m = u t (1 - exp(-s / t)) and
+// has cost u^2 t (1 - exp(-2 s / t)) / 4. Correcting it when no more packets come costs m^2 / (4
+// t), which is no more.
 constexpr double kKept = 0.5;
 
 }  // namespace
@@ -24,7 +24,7 @@ void WavePlayout::receive(const TeleoperationPacket& packet) {
 }
 
 WavePlayout::Sent WavePlayout::at(double sequence) const {
-  // From what was played last, or what came in between, to the next that came.
+  // Interpolates from the last played period, or a later received one, to the next received one.
   auto after = static_cast<std::uint64_t>(std::ceil(sequence));
   while (sent_[after % kLength].sequence != after) ++after;
   const Sent& end = sent_[after % kLength];
@@ -37,28 +37,28 @@ WavePlayout::Sent WavePlayout::at(double sequence) const {
     from = static_cast<double>(before);
     break;
   }
-  const double way = static_cast<double>(after) - from;
-  const double share = way > 0 ? (sequence - from) / way : 1;
+  const double interval = static_cast<double>(after) - from;
+  const double share = interval > 0 ? (sequence - from) / interval : 1;
   return {0, start.integral + share * (end.integral - start.integral),
           start.energy + share * (end.energy - start.energy)};
 }
 
 std::optional<WavePlayout::Advance> WavePlayout::advance() {
   if (newest_ == 0) return std::nullopt;
-  constexpr double kPlayedOff = 1e-4, kFastest = 1e-2;  // 1 a period
+  constexpr double kCatchUpGain = 1e-4, kLargestCatchUp = 1e-2;  // 1 a period
   if (++observed_ == kObserved) {
-    faster_ = std::min(kFastest, kPlayedOff * std::max(0.0, least_ - 2));
+    catch_up_ = std::min(kLargestCatchUp, kCatchUpGain * std::max(0.0, smallest_buffer_ - 2));
     observed_ = 0;
-    least_ = kLength;
+    smallest_buffer_ = kLength;
   }
-  double next = playout_position_ + 1 + faster_;
-  // Far behind, after a burst, what cannot be kept is skipped over as if it were lost.
+  double next = playout_position_ + 1 + catch_up_;
+  // Far behind, after a burst, packets that do not fit the buffer are skipped as if lost.
   next = std::max(next, static_cast<double>(newest_) - (kLength - 2));
   if (next > static_cast<double>(newest_)) {
-    least_ = faster_ = 0;
+    smallest_buffer_ = catch_up_ = 0;
     return Advance{Eigen::Vector3d::Zero(), 0, true};
   }
-  least_ = std::min(least_, buffered());
+  smallest_buffer_ = std::min(smallest_buffer_, buffered());
   const Sent now = at(next);
   const Advance advance{now.integral - last_.integral, now.energy - last_.energy, false};
   last_ = now;
@@ -86,7 +86,7 @@ const Eigen::Vector3d& WaveReceiver::step(double round_trip, double dt) {
   const auto advance = playout_.advance();
   if (!advance) return wave_;
   const double slowness = std::max(round_trip, dt);
-  if (!advance->waits) {
+  if (!advance->underrun) {
     const Eigen::Vector3d wave = advance->integral / dt;
     wanted_ += advance->integral;
     slow_ += (1 - std::exp(-dt / slowness)) * (wave - slow_);
@@ -95,14 +95,14 @@ const Eigen::Vector3d& WaveReceiver::step(double round_trip, double dt) {
     in_ += advance->energy;
     credit_ += advance->energy;
   }
-  // The filters' own lag of the integral: time constant times output.
+  // The filters' lag of the integral is time constant times output.
   const Eigen::Vector3d missing =
       wanted_ - emitted_integral_ - config_.filter_time * filtered_ - config_.highpass_loss * slowness * slow_;
   wave_ = filtered_ + missing / config_.correction_time;
-  // What the filters hold will come out of them; what they have taken out is gone.
+  // The energy in the filters will leave them; the energy that they removed is gone.
   const double held =
       0.5 * (config_.filter_time * filtered_.squaredNorm() + config_.highpass_loss * slowness * slow_.squaredNorm());
-  const double energy_margin = std::max(0.0, credit_ - (advance->waits ? held + kKept * config_.reserve : 0));
+  const double energy_margin = std::max(0.0, credit_ - (advance->underrun ? held + kKept * config_.reserve : 0));
   const double energy = 0.5 * wave_.squaredNorm() * dt;
   if (energy > energy_margin) wave_ *= std::sqrt(energy_margin / energy);
   const double spent = std::min(energy, energy_margin);

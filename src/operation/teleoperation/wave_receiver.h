@@ -10,32 +10,33 @@
 
 namespace microinjection {
 
-/// The integral U of a wave u (sqrt(W)) and its energy E = int u^2/2 dt (J) as packets tell them, played one period of
-/// the sender's for each of the receiver's. What is lost is interpolated: u = (U_2 - U_1) / (t_2 - t_1) has the right
-/// integral and by Cauchy and Schwarz no more energy than what was sent. Jitter is taken up by playing late: a period
-/// for which the packet has not come waits, and everything after it is that much later; what was never needed of that
-/// for a second is played off slowly. Allocates nothing.
+/// Jitter buffer: plays the integral U of a wave u (sqrt(W)) and its energy E = int u^2/2 dt (J)
+/// from the packets, one period of the sender for each of the receiver. Lost packets are
+/// interpolated: u = (U_2 - U_1) / (t_2 - t_1) has the right integral and, by Cauchy and Schwarz,
+/// no more energy than was sent. Jitter delays the playout: when the packet of a period is missing,
+/// the playout waits, and all later periods are delayed, too. A delay that was not needed for a
+/// second is slowly removed. Allocates no memory.
 class WavePlayout {
  public:
   struct Advance {
-    Eigen::Vector3d integral = Eigen::Vector3d::Zero();  ///< sqrt(W) s, since the period before
-    double energy = 0;                                   ///< J, since the period before
-    bool waits = false;                                  ///< nothing came in time
+    Eigen::Vector3d integral = Eigen::Vector3d::Zero();  ///< sqrt(W) s, of this period
+    double energy = 0;                                   ///< J, of this period
+    bool underrun = false;                               ///< no packet came in time
   };
 
   void reset() { *this = WavePlayout(); }
-  /// The sender begins with U = E = 0 before its packet 1; who has heard none of its first kLength never begins.
+  /// The sender begins with U = E = 0 before its packet 1. A receiver that misses its first kLength
+  /// packets never begins.
   void receive(const TeleoperationPacket& packet);
   /// Empty before the first packet.
   std::optional<Advance> advance();
   std::uint64_t newest() const { return newest_; }  ///< sequence
-  double buffered() const {
-    return static_cast<double>(newest_) - playout_position_;
-  }  ///< periods that wait to be played
+  /// Periods that are not played yet.
+  double buffered() const { return static_cast<double>(newest_) - playout_position_; }
 
  private:
   static constexpr int kLength = 2048;    // periods
-  static constexpr int kObserved = 1000;  // periods, whose least buffer tells how much of it is not needed
+  static constexpr int kObserved = 1000;  // periods, whose smallest buffer is the unneeded delay
   struct Sent {
     std::uint64_t sequence = 0;  // 0: none
     Eigen::Vector3d integral = Eigen::Vector3d::Zero();
@@ -47,36 +48,38 @@ class WavePlayout {
   std::uint64_t newest_ = 0;
   double playout_position_ = 0;
   Sent last_;
-  int observed_ = 0;        // periods
-  double least_ = kLength;  // periods, buffered
-  double faster_ = 0;       // 1
+  int observed_ = 0;                  // periods
+  double smallest_buffer_ = kLength;  // periods
+  double catch_up_ = 0;               // additional periods played per period
 };
 
 struct WaveReceiverConfig {
-  double filter_time = 10e-3;    ///< s, of the low-pass that takes the ripple of the network off a wave
-  double highpass_loss = 0.1;    ///< 1, share of a wave that passes a low-pass of one round trip's time
-  double correction_time = 0.1;  ///< s, within which the integral is brought back to that of the sender
-  double reserve = 2.5e-4;       ///< J, what may come out before anything went in
+  double filter_time = 10e-3;    ///< s, of the low-pass that removes the network's ripple from a wave
+  double highpass_loss = 0.1;    ///< 1, share of each change that is removed, see WaveReceiver
+  double correction_time = 0.1;  ///< s, time in which the integral returns to the sender's
+  double reserve = 2.5e-4;       ///< J, energy that may leave before any entered
 
   /// The keys of the same names.
   static WaveReceiverConfig read(ConfigReader& reader);
 };
 
-/// A wave as it comes out of the channel: played, filtered, its integral kept, and never with more energy than came in
-/// plus the reserve. The filter's gain is one at rest and nowhere more, so a force that is held passes undiminished and
-/// the filter takes energy out only. Between a hand that stands and a stiff thing waves would go to and fro: the
-/// `highpass_loss` takes its share of every change off in each pass, at the price of that share of a round trip as
-/// delay. While packets are late the wave is held, which half of the reserve pays for; the other half is for giving
-/// back what was too much of its integral, also when nothing more comes.
+/// The wave at the receiving end of the channel. It is played and filtered, keeps its integral, and
+/// never has more energy than entered plus the reserve. The filter's gain is one at rest and less
+/// elsewhere: a held force passes undiminished, and the filter only removes energy. Between a
+/// resting hand and a stiff body waves would travel back and forth; `highpass_loss` removes its
+/// share of every change in each pass, through a low-pass of one round trip's time, at the price of
+/// that share of a round trip as delay. While packets are late, the wave is held: half of the
+/// reserve pays for it. The other half pays for correcting an excess of the integral, also when no
+/// more packets come.
 class WaveReceiver {
  public:
   explicit WaveReceiver(const WaveReceiverConfig& config) : config_(config) { reset(); }
 
   void reset();
   void receive(const TeleoperationPacket& packet) { playout_.receive(packet); }
-  /// The wave (sqrt(W)) for the next period of dt (s); `round_trip` (s) of a packet.
+  /// Returns the wave (sqrt(W)) for the next period dt (s), with the `round_trip` (s) of a packet.
   const Eigen::Vector3d& step(double round_trip, double dt);
-  double margin() const { return in_ - out_; }             ///< J, played less let out; at least -reserve
+  double margin() const { return in_ - out_; }             ///< J, energy in less energy out; at least -reserve
   double buffered() const { return playout_.buffered(); }  ///< periods
   std::uint64_t newest() const { return playout_.newest(); }
 

@@ -20,7 +20,7 @@ TEST_F(InjectionModesTest, SemiAutomaticWaitsForTheOperatorsWord) {
   ASSERT_TRUE(reach(InjectionState::kContact));
   steps(5000);
   ASSERT_EQ(controller_.injection(), InjectionState::kContact);
-  EXPECT_TRUE(controller_.waits());
+  EXPECT_TRUE(controller_.awaitsCommand());
   const double before = rig_.depth();
   EXPECT_NE(controller_.command("inject"), "");
   EXPECT_EQ(controller_.command("indent"), "");

@@ -84,18 +84,18 @@ TEST_F(RowFileTest, AFullDiskCostsRowsAndIsSaidAsLongAsItLasts) {
   file.append("7,8\n");  // the last bytes of this one have no space
   file.flush();
   EXPECT_EQ(active(), "a,b\n1,2\n3,4\n5,6\n");
-  EXPECT_EQ(file.trouble(), path_ + ".active: cannot be written: File too large");
+  EXPECT_EQ(file.errorText(), path_ + ".active: cannot be written: File too large");
   EXPECT_EQ(file.lost(), 1u);
   for (int i = 0; i < 3; ++i) {
     file.append("9,9\n");
     file.flush();
-    EXPECT_NE(file.trouble(), "");
+    EXPECT_NE(file.errorText(), "");
   }
   EXPECT_EQ(file.lost(), 4u);
   space(RLIM_INFINITY);
   file.append("0,1\n");
   file.flush();
-  EXPECT_EQ(file.trouble(), "");
+  EXPECT_EQ(file.errorText(), "");
   EXPECT_EQ(file.finish(), path_ + ": 4 rows are lost: File too large");
   EXPECT_EQ(content(path_), "a,b\n1,2\n3,4\n5,6\n0,1\n");
   EXPECT_EQ(file.written(), 4u);
@@ -104,7 +104,7 @@ TEST_F(RowFileTest, AFullDiskCostsRowsAndIsSaidAsLongAsItLasts) {
 TEST_F(RowFileTest, WithoutSpaceAtTheStartTheHeaderComesWithTheFirstRowThatHasIt) {
   space(2);
   RowFile file(path_, kHeader);
-  EXPECT_NE(file.trouble().find(path_), std::string::npos);
+  EXPECT_NE(file.errorText().find(path_), std::string::npos);
   file.append("1,2\n");
   file.flush();
   EXPECT_EQ(active(), "");

@@ -63,7 +63,7 @@ TEST(EnergyGate, WhatWasWithheldComesBackSlowlyAndSlowerEachTime) {
   gate.step(kForce, kWith, 0, kStep);
   for (int i = 0; i < 10; ++i) gate.step(kForce, Eigen::Vector3d::Zero(), 1, kStep);
   EXPECT_NEAR(stepsToReturn(), 8 * config.return_time / kStep, 4);
-  gate.trust();
+  gate.resetReturnTime();
   EXPECT_NEAR(stepsToReturn(), config.return_time / kStep, 2);
 }
 

@@ -22,9 +22,9 @@ TEST(Engagement, AFastHandIsNotTakenUp) {
   EngagementConfig config;
   Engagement engagement(config);
   EXPECT_EQ(engagement.step({false, false, 1.01 * config.speed, 0}), State::kAlign);
-  EXPECT_EQ(engagement.why(), "the hand is fast");
+  EXPECT_EQ(engagement.reason(), "the hand is fast");
   EXPECT_EQ(engagement.step({false, false, 0.99 * config.speed, 0}), State::kFollow);
-  EXPECT_EQ(engagement.why(), "");
+  EXPECT_EQ(engagement.reason(), "");
 }
 
 TEST(Engagement, AHandThatIsTooFastIsLostUntilItHasRested) {
@@ -42,7 +42,7 @@ TEST(Engagement, AHandThatIsTooFastIsLostUntilItHasRested) {
   EXPECT_EQ(stepFor(config.speed_time, fast), State::kFollow);
   EXPECT_EQ(stepFor(1e-3, fast), State::kAlign);
   EXPECT_EQ(stepFor(config.rest_time - 2e-3, slow), State::kAlign);
-  EXPECT_NE(engagement.why().find("rest"), std::string::npos);
+  EXPECT_NE(engagement.reason().find("rest"), std::string::npos);
   EXPECT_EQ(stepFor(1e-3, 1.01 * config.speed), State::kAlign) << "it bounces";
   EXPECT_EQ(stepFor(config.rest_time - 2e-3, slow), State::kAlign);
   EXPECT_EQ(stepFor(3e-3, slow), State::kFollow);
@@ -65,12 +65,12 @@ TEST(Engagement, IndexTakesUpTheHandWhereverItIs) {
 
 TEST(Engagement, AgreeWaitsForTheHandOrTheClutch) {
   EngagementConfig config;
-  config.alignment = "agree";
+  config.mode = "agree";
   Engagement engagement(config);
   EXPECT_EQ(engagement.step({false, false, 0, 1}), State::kFollow) << "nothing to agree with yet";
   engagement.step({true, false, 0, 1});
   EXPECT_EQ(engagement.step({false, false, 0, 1.01 * config.tolerance}), State::kAlign);
-  EXPECT_NE(engagement.why().find("press and release the clutch"), std::string::npos);
+  EXPECT_NE(engagement.reason().find("press and release the clutch"), std::string::npos);
   EXPECT_EQ(engagement.step({false, false, 0, 0.99 * config.tolerance}), State::kFollow);
   engagement.step({true, false, 0, 1});
   EXPECT_EQ(engagement.step({false, false, 0, 1}), State::kAlign);
@@ -81,10 +81,10 @@ TEST(Engagement, AgreeWaitsForTheHandOrTheClutch) {
 TEST(Engagement, ADeviceThatSetsASpeedMustBeLetGoClutchOrNot) {
   for (const char* alignment : {"index", "agree"}) {
     EngagementConfig config;
-    config.alignment = alignment;
+    config.mode = alignment;
     Engagement engagement(config);
     EXPECT_EQ(engagement.step({false, false, 0, 0, false, 1e-3, false}), State::kAlign) << "found deflected";
-    EXPECT_NE(engagement.why().find("let go"), std::string::npos);
+    EXPECT_NE(engagement.reason().find("let go"), std::string::npos);
     EXPECT_EQ(engagement.step({false, false, 0, 0, false, 1e-3, true}), State::kFollow);
     EXPECT_EQ(engagement.step({false, false, 0, 0, false, 1e-3, false}), State::kFollow) << "deflected by who leads";
     for (const bool clutch : {false, true}) {

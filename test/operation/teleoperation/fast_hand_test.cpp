@@ -42,7 +42,7 @@ double sunk(const HapticBridgeConfig& config, double height) {
 TEST(FastHand, AStylusThatWasLetGoDoesNotTakeTheNeedleDown) {
   for (const char* alignment : {"index", "agree"}) {
     HapticBridgeConfig config;
-    config.engagement.alignment = alignment;
+    config.engagement.mode = alignment;
     // It has fallen 3.2 mm when it has reached the limit, 5 mm when that was noticed.
     const double height = 0.1, noticed = 7e-3;
     EXPECT_LT(sunk(config, height), config.motion.position_scale * noticed) << alignment;

@@ -136,7 +136,7 @@ TEST_F(HapticBridgeTest, FramesTurnMotionForwardAndForceBack) {
 }
 
 TEST_F(HapticBridgeTest, AgreeHoldsUntilTheHandIsBack) {
-  config_.engagement.alignment = "agree";
+  config_.engagement.mode = "agree";
   bridge_ = HapticBridge(config_);
   run(trustedInput(), 100);
   HapticBridge::Input input = trustedInput();

@@ -41,9 +41,9 @@ TEST_F(RateMode, MovesNothingWithinTheDeadZone) {
 }
 
 TEST_F(RateMode, IsLetGoWithinTheDeadZoneOfTheDevicesZero) {
-  EXPECT_TRUE(mapping_->release({0, 0, 0.99 * config_.dead_zone}));
-  EXPECT_FALSE(mapping_->release({0, 0, -1.01 * config_.dead_zone}));
-  EXPECT_FALSE(mapping_->release(kHand));
+  EXPECT_TRUE(mapping_->isAtRest({0, 0, 0.99 * config_.dead_zone}));
+  EXPECT_FALSE(mapping_->isAtRest({0, 0, -1.01 * config_.dead_zone}));
+  EXPECT_FALSE(mapping_->isAtRest(kHand));
   EXPECT_EQ(mapping_->misalignment({0, 0, 1}, kNeedle + Eigen::Vector3d::UnitX()), 0);
 }
 

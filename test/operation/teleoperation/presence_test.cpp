@@ -33,7 +33,7 @@ Case caseOf(int bits) {
 HapticBridgeConfig configOf(const std::string& mode, const std::string& alignment, bool require_operator) {
   HapticBridgeConfig config;
   config.motion.mode = mode;
-  config.engagement.alignment = alignment;
+  config.engagement.mode = alignment;
   config.require_operator = require_operator;
   return config;
 }
@@ -60,7 +60,7 @@ void check(const HapticBridgeConfig& config, const Case& wrong) {
   if (wrong.no_force) input.force.predicted.reset();
   input.operator_present = !wrong.absent;
   input.clutch = wrong.clutch;
-  if (wrong.unfelt) input.unfelt = kUnfelt;
+  if (wrong.unfelt) input.no_force_reason = kUnfelt;
   const Case counts{wrong.no_hand, wrong.no_needle, wrong.no_force, wrong.absent && config.require_operator,
                     wrong.clutch,  wrong.unfelt};
   output = bridge.step(input, kStep);
@@ -108,7 +108,7 @@ TEST(Presence, AHoldLastsUntilItsLastReasonIsGone) {
         if (wrong.no_force) input.force.predicted.reset();
         input.operator_present = !wrong.absent;
         input.clutch = wrong.clutch;
-        if (wrong.unfelt) input.unfelt = kUnfelt;
+        if (wrong.unfelt) input.no_force_reason = kUnfelt;
         const auto output = bridge.step(input, kStep);
         EXPECT_FALSE(output.needle) << first << " then " << second;
         EXPECT_EQ(output.hold_reason, wrong.why());

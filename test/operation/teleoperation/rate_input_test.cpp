@@ -36,7 +36,7 @@ TEST(RateInput, TheOperatorIsPresentOnlyOnceTheHeldStickWasLetGo) {
   EXPECT_FALSE(stick.read(deflected, kLoose)->operator_present);
   EXPECT_FALSE(stick.read(deflected, kHeld)->operator_present);
   EXPECT_TRUE(stick.read(centre, kHeld)->operator_present);
-  stick.lose();
+  stick.reset();
   EXPECT_FALSE(stick.read(deflected, kHeld)->operator_present);
 }
 

@@ -49,7 +49,7 @@ class Stick {
     config.motion.rate_gain = 1e-3;
     config.motion.dead_zone = 2e-3;
     config.motion.rate_limit = 20e-6;
-    config.engagement.alignment = alignment;
+    config.engagement.mode = alignment;
     config.require_operator = true;
     return config;
   }

@@ -51,7 +51,7 @@ TEST(WavePlayout, WaitsWhenLateAndPlaysOffWhatItDoesNotNeed) {
   }
   EXPECT_LT(playout.buffered(), 4);
   for (int i = 0; i < 10; ++i) playout.advance();
-  EXPECT_TRUE(playout.advance()->waits);
+  EXPECT_TRUE(playout.advance()->underrun);
 }
 
 TEST(WavePlayout, DoesNotBeginInTheMidst) {

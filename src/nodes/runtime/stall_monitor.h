@@ -6,10 +6,10 @@
 
 namespace microinjection {
 
-/// Since when a message without a stamp may have waited before this node heard it. A node that was frozen, or kept from
-/// the processor, finds old messages; they come some steps after it has gone on, since roscpp reads them in another
-/// thread.
-class StallWatch {
+/// Bounds the time that a message without a stamp may have waited before this node received it. A
+/// node that was frozen, or without the processor, finds old messages. They arrive some steps after
+/// it continues, since roscpp reads them in another thread.
+class StallMonitor {
  public:
   void step(const ros::Time& now) {
     if (!last_.isZero() && secondsBetween(last_, now) > kGap) {
@@ -23,13 +23,13 @@ class StallWatch {
     if (settled || set_back) before_ = ros::Time();
   }
 
-  /// Of a message that is heard now: it cannot have been here before. Zero before the first step.
+  /// Earliest arrival of a message that is received now. Zero before the first step.
   ros::Time earliest() const { return before_.isZero() ? last_ : before_; }
 
  private:
   static constexpr double kGap = 0.1;   // s
   static constexpr double kTime = 0.2;  // s, and
-  static constexpr int kSteps = 20;     // after a gap, in which old messages come
+  static constexpr int kSteps = 20;     // after a gap, during which old messages arrive
 
   ros::Time last_, before_, ended_;
   int steps_ = 0;

@@ -1,4 +1,4 @@
-#include "nodes/haptic/watched_force.h"
+#include "nodes/haptic/monitored_force.h"
 
 #include <geometry_msgs/WrenchStamped.h>
 
@@ -21,10 +21,10 @@ geometry_msgs::WrenchStamped zeroLike(const geometry_msgs::WrenchStamped& last, 
 }
 
 template <typename Message>
-class TopicForce : public WatchedForce {
+class TopicForce : public MonitoredForce {
  public:
-  TopicForce(const std::string& topic, ros::NodeHandle node, Heard heard)
-      : heard_(std::move(heard)),
+  TopicForce(const std::string& topic, ros::NodeHandle node, Handler handler)
+      : handler_(std::move(handler)),
         publisher_(node.advertise<Message>(topic, 10)),
         subscriber_(node.subscribe<Message, const Event&>(
             topic, 100, [this](const Event& event) { process(event); }, {}, ros::TransportHints().tcpNoDelay())) {}
@@ -37,10 +37,10 @@ class TopicForce : public WatchedForce {
   void process(const Event& event) {
     if (event.getPublisherName() == ros::this_node::getName()) return;
     last_ = *event.getConstMessage();
-    heard_();
+    handler_();
   }
 
-  Heard heard_;
+  Handler handler_;
   Message last_;
   ros::Publisher publisher_;
   ros::Subscriber subscriber_;
@@ -48,10 +48,10 @@ class TopicForce : public WatchedForce {
 
 }  // namespace
 
-std::unique_ptr<WatchedForce> WatchedForce::make(const std::string& kind, const std::string& device,
-                                                 const std::string& force, ros::NodeHandle node, Heard heard) {
-  const auto on = [&](auto message, const std::string& topic) -> std::unique_ptr<WatchedForce> {
-    return std::make_unique<TopicForce<decltype(message)>>(deviceTopic(device, topic), node, std::move(heard));
+std::unique_ptr<MonitoredForce> MonitoredForce::make(const std::string& kind, const std::string& device,
+                                                     const std::string& force, ros::NodeHandle node, Handler handler) {
+  const auto on = [&](auto message, const std::string& topic) -> std::unique_ptr<MonitoredForce> {
+    return std::make_unique<TopicForce<decltype(message)>>(deviceTopic(device, topic), node, std::move(handler));
   };
   if (kind == "crtk") return on(geometry_msgs::WrenchStamped(), force);
   if (kind == "omni") return on(OmniFeedback(), "force_feedback");
