@@ -53,11 +53,11 @@ struct Outcome {
   bool good() const { return punctured && withdrawn && within; }
 };
 
-Outcome inject(const Bench& bench, const InjectionCase& of, const InjectionRig::Trouble& trouble = {}) {
+Outcome inject(const Bench& bench, const InjectionCase& of, const InjectionRig::Disturbance& disturbance = {}) {
   ScaledCell cell(bench.scene, bench.prepared, of.cell);
   InjectionRig::Config config;
   config.controller = injectionSettings(of);
-  config.trouble = trouble;
+  config.disturbance = disturbance;
   config.sensor.seed = of.seed;
   config.manipulator = bench.manipulator;
   config.manipulator.seed = of.seed;
@@ -170,10 +170,10 @@ void profiles(const Bench& bench) {
   }
 }
 
-/// Each trouble at a moment of its own in each of the cells: the needle within its guards, and at the end at rest or
-/// out, and the injector off.
-void troubles(const Bench& bench, int first_seed, int cells) {
-  using Kind = InjectionRig::Trouble::Kind;
+/// Each disturbance at a moment of its own in each of the cells: the needle within its guards, and at the end at rest
+/// or out, and the injector off.
+void disturbances(const Bench& bench, int first_seed, int cells) {
+  using Kind = InjectionRig::Disturbance::Kind;
   const std::pair<Kind, const char*> kinds[] = {{Kind::kNone, "a zona that does not fail"},
                                                 {Kind::kForceLost, "the force is lost"},
                                                 {Kind::kNeedleLost, "the needle's place is lost"},
@@ -195,10 +195,10 @@ void troubles(const Bench& bench, int first_seed, int cells) {
       furthest = std::max(
           {furthest, outcome.truth.peak_force / limits.force_limit, outcome.truth.max_depth / limits.depth_limit});
     }
-    std::fprintf(
-        stderr,
-        "injection: trouble: %s: %d of %d end at rest with the injector off, %d within guards (worst %.3f of a limit);",
-        words, safe, cells, within, furthest);
+    std::fprintf(stderr,
+                 "injection: disturbance: %s: %d of %d end at rest with the injector off, %d within guards (worst %.3f "
+                 "of a limit);",
+                 words, safe, cells, within, furthest);
     for (const auto& [outcome, count] : outcomes) std::fprintf(stderr, " %s %d", outcome.c_str(), count);
     std::fprintf(stderr, "\n");
   }
@@ -218,7 +218,7 @@ std::string table(int first_seed, int cells, const std::string& manipulator_file
     text += line;
   }
   if (!all.empty()) summarise(all);
-  troubles(bench, first_seed, cells / 5);
+  disturbances(bench, first_seed, cells / 5);
   profiles(bench);
   printDetectionFigures();
   return text;

@@ -14,7 +14,7 @@ InjectionRig::InjectionRig(const Config& config, const ManipulatorGeometry& geom
       injector_({}),
       controller_(config.controller),
       cell_(&cell),
-      trouble_(config.trouble) {
+      disturbance_(config.disturbance) {
   Eigen::Isometry3d pose = geometry.tip_at_zero;
   pose.translation() = config.start;
   const std::string refusal = manipulator_.movePosition(pose);
@@ -32,10 +32,10 @@ InjectionRig::InjectionRig(const Config& config, const ManipulatorGeometry& geom
   controller_.command("enable");
 }
 
-bool InjectionRig::isIn(Trouble::Kind kind) const {
+bool InjectionRig::isIn(Disturbance::Kind kind) const {
   constexpr double kStands = 3;  // s
-  const double since = time_ - began_ - trouble_.begin;
-  return trouble_.kind == kind && since >= 0 && (kind != Trouble::Kind::kRigStands || since < kStands);
+  const double since = time_ - began_ - disturbance_.begin;
+  return disturbance_.kind == kind && since >= 0 && (kind != Disturbance::Kind::kRigStands || since < kStands);
 }
 
 void InjectionRig::run(double limit) {
@@ -44,8 +44,8 @@ void InjectionRig::run(double limit) {
 }
 
 bool InjectionRig::holds() {
-  const bool stood = isIn(Trouble::Kind::kRigStands);  // it has yet to go where it was sent last
-  while (isIn(Trouble::Kind::kRigStands)) step();
+  const bool stood = isIn(Disturbance::Kind::kRigStands);  // it has yet to go where it was sent last
+  while (isIn(Disturbance::Kind::kRigStands)) step();
   for (int i = 0; i < (stood ? 1000 : 200); ++i) step();
   const Eigen::Vector3d before = tip();
   for (int i = 0; i < 500; ++i) step();
@@ -56,26 +56,26 @@ void InjectionRig::step() {
   time_ += kStep;
   const Eigen::Vector3d tip = this->tip();
   const Eigen::Vector3d force = cell_->step(tip, time_);
-  watch(force, tip);
+  monitor(force, tip);
   const Eigen::Vector2d reading = sensor_.sample({force.z(), force.x()}, kStep);
   InjectionController::Input input;
   if (const auto pose = manipulator_.tipPose()) input.needle = pose->translation();
   input.force = Eigen::Vector3d(reading.y(), 0, reading.x());
   input.injector =
       InjectorReport{injector_.reading().busy, injector_.reading().volume, injector_.reading().last_id == pulses_};
-  if (isIn(Trouble::Kind::kForceLost) || !cell_->valid()) input.force.reset();  // as cell_simulator says it
-  if (isIn(Trouble::Kind::kNeedleLost)) input.needle.reset();
+  if (isIn(Disturbance::Kind::kForceLost) || !cell_->valid()) input.force.reset();  // as cell_simulator says it
+  if (isIn(Disturbance::Kind::kNeedleLost)) input.needle.reset();
   const InjectionState before = controller_.injection();
   const int punctures_before = controller_.result().punctures;
   const auto setpoint = controller_.step(input, kStep);
-  listen(before, punctures_before);
-  if (setpoint && !isIn(Trouble::Kind::kRigStands)) {
+  receive(before, punctures_before);
+  if (setpoint && !isIn(Disturbance::Kind::kRigStands)) {
     Eigen::Isometry3d pose = geometry_.tip_at_zero;
     pose.translation() = *setpoint;
     manipulator_.servoPosition(pose);
   }
   const auto pulse = controller_.pulse();
-  if (pulse && !pulsing_ && !isIn(Trouble::Kind::kInjectorDead))
+  if (pulse && !pulsing_ && !isIn(Disturbance::Kind::kInjectorDead))
     injector_.pulse({++pulses_, pulse->pressure, pulse->duration});
   if (!pulse && pulsing_ && injector_.reading().busy) injector_.stop();
   pulsing_ = pulse.has_value();
@@ -83,7 +83,7 @@ void InjectionRig::step() {
   manipulator_.step(time_, kStep);
 }
 
-void InjectionRig::watch(const Eigen::Vector3d& force, const Eigen::Vector3d& tip) {
+void InjectionRig::monitor(const Eigen::Vector3d& force, const Eigen::Vector3d& tip) {
   truth_.valid = truth_.valid && cell_->valid();
   truth_.peak_force = std::max(truth_.peak_force, std::abs(force.z()));
   if (cell_->touched() && !touch_height_) touch_height_ = tip.z();
@@ -96,7 +96,7 @@ void InjectionRig::watch(const Eigen::Vector3d& force, const Eigen::Vector3d& ti
   failed_at_ = time_;
 }
 
-void InjectionRig::listen(InjectionState before, int punctures_before) {
+void InjectionRig::receive(InjectionState before, int punctures_before) {
   const bool touch = before == InjectionState::kApproach && controller_.injection() == InjectionState::kContact;
   truth_.false_detections += touch && !cell_->touched();
   if (controller_.result().punctures <= punctures_before) return;

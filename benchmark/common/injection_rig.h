@@ -17,13 +17,13 @@ namespace microinjection {
 class InjectionRig {
  public:
   /// What goes wrong, `begin` (s) after the start.
-  struct Trouble {
+  struct Disturbance {
     enum class Kind { kNone, kForceLost, kNeedleLost, kRigStands, kInjectorDead };
     Kind kind = Kind::kNone;
     double begin = 0;
   };
   struct Config {
-    Trouble trouble;
+    Disturbance disturbance;
     InjectionControllerConfig controller;
     ForceSensorConfig sensor;
     SimulatedManipulatorConfig manipulator;
@@ -58,9 +58,9 @@ class InjectionRig {
   bool holds();
 
  private:
-  bool isIn(Trouble::Kind kind) const;
-  void watch(const Eigen::Vector3d& force, const Eigen::Vector3d& tip);
-  void listen(InjectionState before, int punctures_before);
+  bool isIn(Disturbance::Kind kind) const;
+  void monitor(const Eigen::Vector3d& force, const Eigen::Vector3d& tip);
+  void receive(InjectionState before, int punctures_before);
 
   ManipulatorGeometry geometry_;
   SimulatedManipulator device_;
@@ -69,7 +69,7 @@ class InjectionRig {
   InjectorModel injector_;
   InjectionController controller_;
   ScaledCell* cell_;
-  Trouble trouble_;
+  Disturbance disturbance_;
   double began_ = 0;  ///< s
   double time_ = 0;   ///< s
   std::uint64_t pulses_ = 0;

@@ -35,9 +35,9 @@ std::string loadRow(const char* label, const TensegrityLoading& loading) {
   double largest = 0, mean = 0;
   for (int end = 0; end < 12; ++end) {
     const int node = structure.endNode(end);
-    const double way = (loading.state() - structure.start()).segment<3>(3 * node).norm();
-    largest = std::max(largest, way);
-    mean += way / 12;
+    const double moved = (loading.state() - structure.start()).segment<3>(3 * node).norm();
+    largest = std::max(largest, moved);
+    mean += moved / 12;
   }
   return line("%s,%.6g,%.6g,%.6g,%.6g\n", label, -loading.displacement().z(), loading.force().z(), largest, mean);
 }

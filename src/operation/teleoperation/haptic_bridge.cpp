@@ -16,7 +16,7 @@ HapticBridgeConfig HapticBridgeConfig::read(ConfigReader& reader) {
   reader.boolean("require_operator", config.require_operator);
   config.frame = FrameMappingConfig::read(reader);
   config.motion = MotionMappingConfig::read(reader);
-  config.engagement = EngagementConfig::read(reader.section("alignment"));
+  config.engagement = EngagementConfig::read(reader.section("engagement"));
   config.tremor = TremorFilterConfig::read(reader.section("tremor_filter"));
   config.fixtures = VirtualFixturesConfig::read(reader.section("fixtures"));
   config.force = ForceSourceConfig::read(reader);

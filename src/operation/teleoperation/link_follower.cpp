@@ -35,7 +35,7 @@ void LinkFollower::receive(const LinkPacket& packet) {
 }
 
 std::string LinkFollower::holdReason(const Input& input) const {
-  if (packet_age_ > config_.timeout) return "the hand's side is not heard";
+  if (packet_age_ > config_.timeout) return "no packets from the hand's side";
   if (!valid(input.needle)) return "no valid needle position";
   if (!valid(input.force)) return "no valid force";
   if (!input.controller) return "the controller is silent";

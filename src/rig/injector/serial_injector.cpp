@@ -53,7 +53,7 @@ bool SerialInjector::triggered() const {
 
 /// Why the actual pressure may differ from reading(); empty if it cannot.
 std::string SerialInjector::unconfirmedReason() const {
-  if (protocol_.timed && !stopped_) return "the device has not said that its output is off";
+  if (protocol_.timed && !stopped_) return "the device has not confirmed that its output is off";
   if (time_ < unconfirmed_until_) return "a pulse may be under way";
   return balance_confirmed_ || protocol_.balance.empty() ? "" : "the device has not accepted the balance pressure";
 }
@@ -233,7 +233,7 @@ void SerialInjector::complete() {
     unconfirmed_until_ = time_;
     const bool late = over_ && tries_ > 0;
     over_ && !late ? model_.finish() : static_cast<void>(model_.stop());
-    if (late) fail("the pulse lasted longer than was asked for: its end was heard at the second time only");
+    if (late) fail("the pulse lasted longer than requested: the device confirmed its end at the second attempt only");
     over_ = false;
   }
   tries_ = 0;

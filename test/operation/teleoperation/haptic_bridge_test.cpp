@@ -277,7 +277,7 @@ TEST(HapticBridgeConfig, NamesWhatIsWrong) {
        {"position_scale: 0", "force_source: guessed", "measured_share: 1.5", "device_axes: x y -z", "mode: speed",
         "force_rate_limit: 0", "passivity: {reserve: 0}", "passivity: {ripple: {memory: 0}}",
         "coupling: {stiffness: -1}", "fixtures: {guide: {axis: [0, 0, 0]}}", "fixtures: {workspace: {low: [1, 0, 0]}}",
-        "tremor_filter: {cutoff: -1}", "alignment: {mode: jump}", "rate_mode: {dead_zone: -1}",
+        "tremor_filter: {cutoff: -1}", "engagement: {mode: jump}", "rate_mode: {dead_zone: -1}",
         "passivity: {damping: 1}"}) {
     const std::string said = complaint(text);
     const std::string line(text);

@@ -98,7 +98,7 @@ TEST_F(TimedTest, NoPulseBeforeTheOutputIsKnownToBeOff) {
   EXPECT_NE(injector.pulse({5, 20e3, 0.5}), "");
   run(3);
   injector.reset();
-  EXPECT_EQ(injector.fault(), "the device has not said that its output is off");
+  EXPECT_EQ(injector.fault(), "the device has not confirmed that its output is off");
   answers["F"] = "OK";
   run(3);
   EXPECT_EQ(injector.fault(), "");
