@@ -87,7 +87,7 @@ void PolledManipulator::exchange(const std::string& bytes) {
     handle(reply);
     if (!exchanging()) return;
   }
-  if (exchange_ && activeTime() > exchange_->due) return exchangeFailed("no answer to \"" + exchange_->line + "\"");
+  if (exchange_ && activeTime() > exchange_->due) return exchangeFailed("no reply to \"" + exchange_->line + "\"");
   if (!exchange_) next();
 }
 

@@ -149,7 +149,7 @@ void SerialManipulator::step(double time) {
     reason_ = wire_->open();
     if (!reason_.empty()) return;
     was_open_ = lost_ = true;
-    reason_ = link_.device + ": connected, no answer yet";
+    reason_ = link_.device + ": connected, no reply yet";
     connected();
     beginSession(link_.quiet_after_loss);
   }

@@ -81,7 +81,7 @@ TEST_F(LinkEnds, ADeadLinkHoldsAndRendersNothingWithinItsTimeOut) {
   EXPECT_FALSE(goal_);
   EXPECT_FALSE(force_);
   EXPECT_FALSE(leader_.needle());
-  EXPECT_EQ(follower_.holdReason(), "the hand's side is not heard");
+  EXPECT_EQ(follower_.holdReason(), "no packets from the hand's side");
   plugged_ = true;
   const Eigen::Vector3d held = *needle_;
   run(kMoved, 1);

@@ -60,7 +60,7 @@ void checkLongSilence(Test& test, bool follows) {
   double waited = 0;  // s
   for (; rig.driver().state() != ManipulatorDevice::State::kFault && waited < 7; waited += 1e-3) rig.run(1e-3, command);
   ASSERT_LT(waited, 7);
-  EXPECT_NE(rig.driver().reason().find("no answer"), std::string::npos) << rig.driver().reason();
+  EXPECT_NE(rig.driver().reason().find("no reply"), std::string::npos) << rig.driver().reason();
   EXPECT_FALSE(rig.driver().reading());     // nobody knows where a device is that does not answer
   rig.run(8, follows ? command : nullptr);  // a stream that goes on moves nothing
   expectNear(rig.read(), rig.place(), Tested::kTold);

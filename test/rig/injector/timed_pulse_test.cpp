@@ -62,7 +62,7 @@ TEST_F(TimedTest, APulseThatLastedLongerIsNotDone) {
   run(0.4);
   answers["F"] = "OK";
   run(1);
-  EXPECT_EQ(injector.fault().rfind("the pulse lasted longer than was asked for", 0), 0U);
+  EXPECT_EQ(injector.fault().rfind("the pulse lasted longer than requested", 0), 0U);
   EXPECT_EQ(injector.reading().pulses, 0U);
   EXPECT_FALSE(injector.reading().busy);
 }

@@ -50,7 +50,7 @@ TEST_F(ForceReadoutTest, AnInterruptedTareChangesNothing) {
   readout.interrupt();
   readout.read(offset, 1);
   EXPECT_EQ(readout.tare(), Eigen::Vector2d(0, 0));
-  EXPECT_NE(readout.outcome().find("given up"), std::string::npos);
+  EXPECT_NE(readout.outcome().find("aborted"), std::string::npos);
 }
 
 TEST_F(ForceReadoutTest, PointsThatSpanBothAxesUndoTheCoupling) {
@@ -180,7 +180,7 @@ TEST_F(ForceReadoutTest, WhatIsNotFiniteIsNeitherTareNorPoint) {
   readout.beginTare();
   for (int i = 0; i <= 100; ++i) readout.read(Eigen::Vector2d(huge, 0), time += 1e-3);
   EXPECT_EQ(readout.tare(), Eigen::Vector2d(0, 0));
-  EXPECT_NE(readout.outcome().find("given up"), std::string::npos);
+  EXPECT_NE(readout.outcome().find("aborted"), std::string::npos);
 }
 
 }  // namespace

@@ -219,7 +219,7 @@ void ZaberDriver::missedReply() {
                                                           "comm.checksum to 1, or reply_checksum to false"
                                                         : "";
   const Exchange lost = *exchange_;
-  exchangeFailed("no answer of " + axisName(lost.axis) + " to \"" + lost.text + "\"" + unchecked);
+  exchangeFailed("no reply of " + axisName(lost.axis) + " to \"" + lost.text + "\"" + unchecked);
 }
 
 }  // namespace microinjection
