@@ -3,9 +3,9 @@
 #include <Eigen/Core>
 
 #include "base/config_reader.h"
+#include "operation/link/link_packet.h"
+#include "operation/link/wave_receiver.h"
 #include "operation/teleoperation/contact_displacement.h"
-#include "operation/teleoperation/teleoperation_packet.h"
-#include "operation/teleoperation/wave_receiver.h"
 
 namespace microinjection {
 

@@ -1,4 +1,4 @@
-#include "operation/teleoperation/wave_receiver.h"
+#include "operation/link/wave_receiver.h"
 
 #include <algorithm>
 #include <cmath>
