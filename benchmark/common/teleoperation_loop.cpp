@@ -5,8 +5,8 @@
 #include <optional>
 #include <utility>
 
-#include "operation/teleoperation/link_follower.h"
-#include "operation/teleoperation/link_leader.h"
+#include "operation/link/link_follower.h"
+#include "operation/link/link_leader.h"
 
 namespace microinjection {
 namespace {

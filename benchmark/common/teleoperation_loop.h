@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "operation/link/link_config.h"
+#include "operation/link/link_emulator.h"
 #include "operation/teleoperation/haptic_bridge.h"
-#include "operation/teleoperation/link_config.h"
-#include "operation/teleoperation/link_emulator.h"
 #include "operation/teleoperation/virtual_hand.h"
 
 namespace microinjection {

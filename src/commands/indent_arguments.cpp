@@ -17,7 +17,7 @@ constexpr char kHelp[] = R"(indent: quasi-static force on a needle tip pushed in
 Usage: indent --scene FILE --depths D1,D2,... [--tolerance T] [--lateral X,Y] [--csv FILE] [...]
 
 The tip moves along -z from its contact with the undeformed cell at the scene's needle/offset (a disc: its centre).
-With --withdraw it is then withdrawn, and the table continues with those depths: friction, adhesion, viscosity show there.
+With --withdraw it is then withdrawn, and the table continues with those depths: friction, adhesion, viscosity show.
 The scene is solved on successively finer meshes until two of them agree. One CSV row a depth, in the order given:
   depth_m,force_x_N,force_y_N,force_z_N,wall_s,converged,error_estimate
 force: of the cell on the needle, so force_z is positive when the cell is indented; nan without a solution.

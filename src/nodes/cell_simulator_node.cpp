@@ -12,11 +12,7 @@ namespace microinjection {
 
 const char* const CellSimulatorNode::kHelp =
     "cell_simulator: the finite-element cell under the needle.\n"
-    "In: /needle/measured_cp or /needle/true_cp. Out: /cell/predicted_cf, /cell/state.\n"
-    "Parameters: ~scene (file, required), ~model (auto|prepared|live|explicit), ~needle (measured|true),\n"
-    "~rate (Hz), ~state_rate (Hz), ~needle_timeout (s), ~prepare_distance (m), ~extrapolation_limit (m),\n"
-    "~solution_period (s, in lock step), ~time_step (s, of model explicit);\n"
-    "see config/cell_simulator.yaml.\n";
+    "In: /needle/measured_cp or /needle/true_cp. Out: /cell/predicted_cf, /cell/state.\n";
 
 CellSimulatorNode::Parameters CellSimulatorNode::Parameters::read(const ros::NodeHandle& private_node) {
   Parameters parameters;
@@ -40,11 +36,11 @@ CellSimulatorNode::CellSimulatorNode(ros::NodeHandle node, ros::NodeHandle priva
                                                        parameters_.needle_timeout)),
       force_(cycle_.output<geometry_msgs::WrenchStamped>("cell/predicted_cf")),
       state_(cycle_.output<cell_microinjection::CellState>("cell/state", true)) {
-  parameters_.models.online.fixed_period = cycle_.lockstep();
+  parameters_.models.online.fixed_period = cycle_.deterministic();
   cell_ = makeCell();
   invalid_reason_.reserve(200);  // no allocation in a step
   using Thread = CellStatePublisher::Thread;
-  const auto thread = cycle_.lockstep() ? Thread::kOfTheStep : Thread::kOwn;
+  const auto thread = cycle_.deterministic() ? Thread::kOfTheStep : Thread::kOwn;
   state_publisher_ = std::make_unique<CellStatePublisher>(*cell_, state_, parameters_.state_rate, thread);
   cycle_.diagnostics().add("solver", [this](auto& status) { report(status); });
 }

@@ -21,15 +21,7 @@ namespace microinjection {
 /// Out: /cell/predicted_cf (WrenchStamped, of the cell on the tip, in `world`), /cell/state
 ///      (CellState)
 ///
-/// Parameters (private): those of OnlineCellModelConfig, ExplicitCellModelConfig and
-///   scene           path of the scene file; required
-///   model           prepared, live, explicit, or auto (default): prepared if `prepare` has left data for the
-///                   scene, else live
-///   needle          measured (default): the micromanipulator's pose; true: the true pose of a
-///                   simulated one
-///   rate            Hz; default 1000, in [50, 5000]
-///   state_rate      Hz of /cell/state; default 60, in (0, 100]
-///   needle_timeout  s, a needle pose older than this is stale; default 0.05, in (0, inf)
+/// Parameters: config/cell_simulator.yaml
 class CellSimulatorNode {
  public:
   static const char* const kHelp;

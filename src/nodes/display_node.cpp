@@ -69,9 +69,7 @@ const char* const DisplayNode::kHelp =
     "display: shows the scene in rviz, ten thousand times enlarged.\n"
     "In: /cell/state /force_sensor/measured_cf /haptic/measured_cp /controller/injection_state, tf of world, cell, "
     "needle_tip and the rig.\n"
-    "Out: viz/markers viz/still (MarkerArray), tf below viz/world.\n"
-    "Parameters: ~rate (Hz of wall time), ~edges, ~colour_range (m), ~force_scale (m/N), ~injection_pipette,\n"
-    "~holding_pipette; see config/display.yaml.\n";
+    "Out: viz/markers viz/still (MarkerArray), tf below viz/world.\n";
 
 DisplayNode::DisplayNode(ros::NodeHandle node, ros::NodeHandle private_node)
     : config_(readConfig(private_node)),

@@ -26,7 +26,7 @@ namespace microinjection {
 ///      draws slowly skips messages of the first), tf of viz/{cell, holding_pipette,
 ///      manipulator_base, needle_tip} below viz/world
 ///
-/// Parameters: private those of DisplayConfig; see config/display.yaml.
+/// Parameters: config/display.yaml
 ///
 /// It uses wall time, unlike the nodes that control, so that the frame rate does not depend on a
 /// simulated clock. Input that is not finite, invalid (stamp 0) or in an unknown frame is not

@@ -39,7 +39,7 @@ EmulatedHapticNode::EmulatedHapticNode(ros::NodeHandle node, ros::NodeHandle pri
           [this](const auto& force, const ros::Time& received) { meter_.addForce(force, received); })),
       force_(cycle_.output<geometry_msgs::WrenchStamped>("emulated_haptic/measured_cf")),
       phase_(cycle_.output<cell_microinjection::StringStamped>("operator/phase", true)) {
-  if (cycle_.lockstep() && driver_->hasUnstampedButtons()) {
+  if (cycle_.deterministic() && driver_->hasUnstampedButtons()) {
     present_ = &cycle_.input<sensor_msgs::Joy>("haptic/operator_present", InputPhase::kPreviousTick,
                                                std::numeric_limits<double>::infinity());
   }

@@ -28,11 +28,7 @@ namespace microinjection {
 /// Out: /emulated_haptic/measured_cf (WrenchStamped, N on the hand, in the view's axes),
 ///      /operator/phase (StringStamped, latched, on change: the motion's phases, then done)
 ///
-/// Parameters (private): those of VirtualHandConfig and
-///   kind           one of emulatedDrivers(); default crtk
-///   motion         path of a hand motion (see operation/teleoperation/hand_motion.h); required
-///   start_delay    s, in which the hand rests before the motion; default 1, in [0, inf)
-///   rate           Hz; default 1000, in [50, 5000]
+/// Parameters: see kHelp
 class EmulatedHapticNode {
  public:
   static const char* const kHelp;

@@ -12,7 +12,7 @@ const char* const ForceSensorNode::kHelp =
     "wrench.\n"
     "In: /cell/predicted_cf, /needle/measured_cp (source simulated) or /force_sensor/device_cf (source topic).\n"
     "Out: /force_sensor/measured_cf (needle_tip: z along, x across) /force_sensor/raw_cf (the sensor's frame).\n"
-    "Services: ~tare ~reset ~calibrate. Parameters: see config/force_sensor.yaml.\n";
+    "Services: ~tare ~reset ~calibrate.\n";
 
 ForceSensorNode::Parameters ForceSensorNode::Parameters::read(const ros::NodeHandle& private_node) {
   Parameters parameters;

@@ -28,18 +28,7 @@ namespace microinjection {
 /// Services: ~tare, ~reset (std_srvs/Trigger), ~calibrate (CalibrateForce; two-axis sensors). A
 ///      service only starts an average; its outcome is on /diagnostics.
 ///
-/// Parameters (private):
-///   source         simulated, serial or topic; default simulated
-///   rate           Hz; default 1000, in [50, 5000]
-///   input_timeout  s, past which an input is stale; default 0.05, in (0, inf)
-///   averaging      s, of a tare or a calibration point; default 0.5, in (0, inf)
-///   frame          of the sensor, in tf; default force_sensor
-///   frame_timeout  s of wall time to wait for tf at the start; default 10, in (0, inf)
-///   simulated/     those of ForceSensorConfig
-///   serial/        path, baud, parity, stop_bits (SerialPortConfig; default 115200, 8N1), those of
-///                  VoltReadingConfig, axial_overload and lateral_overload (N); needed with source
-///                  serial
-///   topic/         axial_overload and lateral_overload (N)
+/// Parameters: config/force_sensor.yaml
 class ForceSensorNode {
  public:
   static const char* const kHelp;

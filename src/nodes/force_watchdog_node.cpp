@@ -9,7 +9,14 @@ namespace microinjection {
 const char* const ForceWatchdogNode::kHelp =
     "force_watchdog: publishes zero force to a haptic device while no other node publishes a force.\n"
     "In and out: /haptic/servo_cf, or /DEVICE/force_feedback of a driver.\n"
-    "Parameters: ~kind (crtk|omni|geomagic), ~device (its namespace), ~force, ~from_start, ~timeout (s), ~rate (Hz).\n";
+    "Parameters:\n"
+    "  ~kind        of the device: crtk (default), omni or geomagic\n"
+    "  ~device      namespace of the driver's topics; default haptic for crtk, else that of the adapter\n"
+    "  ~force       for crtk: topic of the force below the device, default servo_cf\n"
+    "  ~from_start  also before another node's first force, default true; false for an arm that falls at\n"
+    "               the first force unless it has its settings\n"
+    "  ~timeout     s without a force of another node, default 0.05\n"
+    "  ~rate        Hz, of checks and of zero force, default 200\n";
 
 ForceWatchdogNode::Parameters ForceWatchdogNode::Parameters::read(const ros::NodeHandle& node,
                                                                   const ros::NodeHandle& private_node) {

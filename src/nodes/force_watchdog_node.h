@@ -16,15 +16,7 @@ namespace microinjection {
 ///
 /// In and out: /haptic/servo_cf (WrenchStamped, N), or DEVICE/force_feedback of the driver
 ///
-/// Parameters (private):
-///   kind     of the device: crtk, omni or geomagic; default crtk
-///   device   namespace of the driver's topics; default that of the adapter
-///            (/haptic_device/device); for crtk haptic
-///   force    for crtk: topic of the force, below device; default servo_cf
-///   from_start  also before another node's first force; default true. false: for an arm that falls
-///               at the first force unless it has its settings
-///   timeout  s without a force of another node; default 0.05, in (0, inf)
-///   rate     Hz, of checks and of zero force; default 200, in [50, 5000]
+/// Parameters: see kHelp
 class ForceWatchdogNode {
  public:
   static const char* const kHelp;

@@ -9,12 +9,13 @@
 #include <memory>
 #include <string>
 
-#include "cell_microinjection/InjectionStatus.h"
-#include "cell_microinjection/LinkPacket.h"
 #include "nodes/haptic/force_receiver.h"
+#include "nodes/haptic/rig_inputs.h"
+#include "nodes/haptic/rig_side.h"
 #include "nodes/runtime/cycle.h"
+#include "nodes/runtime/loop_state.h"
+#include "operation/link/link_config.h"
 #include "operation/teleoperation/haptic_bridge.h"
-#include "operation/teleoperation/link_leader.h"
 
 namespace microinjection {
 
@@ -28,23 +29,12 @@ namespace microinjection {
 ///
 /// In:  /haptic/measured_cp (PoseStamped, the device's axes), /haptic/clutch and
 ///      /haptic/operator_present (Joy, buttons[0] is 1 while pressed or present; the latter counts
-///      with require_operator), /needle/measured_cp (PoseStamped), /cell/predicted_cf,
-///      /force_sensor/measured_cf or both (WrenchStamped), /controller/injection_state
-///      (InjectionStatus, to detect the controller)
-/// Out: /haptic/servo_cf (WrenchStamped, N at the hand), /teleop/servo_cp (PoseStamped, tip in
-///      `world`), /haptic/force_trace (TimeReference)
+///      with require_operator)
+/// Out: /haptic/servo_cf (WrenchStamped, N at the hand), /haptic/loop_state (LoopState),
+///      /haptic/force_trace (TimeReference)
+/// and those of LocalRig or, with link/scheme wave, of RemoteRig.
 ///
-/// With link/scheme wave the rig is behind a network. Packets from and to teleoperation_follower
-/// then carry needle, force and target: /link/hand/received and /link/hand/sent (LinkPacket).
-///
-/// Parameters (private): those of HapticBridgeConfig, link/... (LinkConfig) and
-///   rate           Hz; default 1000, in [50, 5000]
-///   force_feedback whether the device renders a force, so that its driver must subscribe to it;
-///                  default true
-///   timeouts/...   s, past which an input is stale, each its own: hand, needle, predicted,
-///                  measured (default 0.05), in (0, inf); operator_present (0.2; 0: valid until the
-///                  hand is stale), clutch (0: always valid, for devices that publish changes only)
-///                  and controller (0.25; 0: not checked, with another controller), in [0, inf)
+/// Parameters: config/haptic_bridge.yaml
 class HapticBridgeNode {
  public:
   static const char* const kHelp;
@@ -57,10 +47,7 @@ class HapticBridgeNode {
     double hand = 0.05;
     double clutch = 0;
     double operator_present = 0.2;
-    double needle = 0.05;
-    double predicted = 0.05;
-    double measured = 0.05;
-    double controller = 0.25;
+    RigTimeouts rig;
     static Timeouts read(ConfigReader reader);
   };
   struct Parameters {
@@ -73,16 +60,10 @@ class HapticBridgeNode {
   };
 
   void step(const Cycle::Tick& tick);
-  void connectRig();
-  void connectLink();
-  void readRig(HapticBridge::Input& input, const Cycle::Tick& tick);
-  void sendToRig(const Cycle::Tick& tick);
-  void trace(const Cycle::Tick& tick);
-  Input<geometry_msgs::WrenchStamped>* forceInput(bool used, const std::string& source, double timeout);
   bool clutchPressed(const ros::Time& now) const;
   bool operatorPresent(const ros::Time& now) const;
-  bool controllerIsAlive(const ros::Time& now) const;
   void publishZeroForce();
+  std::string holdReason() const;
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
   Parameters parameters_;
@@ -90,20 +71,14 @@ class HapticBridgeNode {
   Cycle cycle_;
   Input<geometry_msgs::PoseStamped>& hand_;
   Input<sensor_msgs::Joy>& clutch_;
-  Input<sensor_msgs::Joy>* operator_present_ = nullptr;                ///< null: not required
-  Input<geometry_msgs::PoseStamped>* needle_ = nullptr;                ///< null: behind a network
-  Input<geometry_msgs::WrenchStamped>* predicted_ = nullptr;           ///< null: not used
-  Input<geometry_msgs::WrenchStamped>* measured_ = nullptr;            ///< null: not used
-  Input<cell_microinjection::InjectionStatus>* controller_ = nullptr;  ///< null: not checked, or behind a network
+  Input<sensor_msgs::Joy>* operator_present_ = nullptr;  ///< null: not required
   Output<geometry_msgs::WrenchStamped>& hand_force_;
-  Output<geometry_msgs::PoseStamped>* target_ = nullptr;  ///< null: behind a network
-  std::unique_ptr<LinkLeader> link_;                      ///< null: no network
-  Output<cell_microinjection::LinkPacket>* link_sent_ = nullptr;
   Output<sensor_msgs::TimeReference>& trace_;
+  std::unique_ptr<RigSide> rig_;
+  LoopStatePublisher loop_state_;
   ForceReceiver receiver_;
-  std::string hand_frame_;           ///< of the last hand
-  bool without_controller_ = false;  ///< in the last step
-  HapticBridge::Output output_;      ///< of the last step, for the diagnostics
+  std::string hand_frame_;       ///< of the last hand
+  HapticBridge::Output output_;  ///< of the last step, for the diagnostics
 };
 
 }  // namespace microinjection

@@ -34,10 +34,7 @@ const char* const InjectionControllerNode::kHelp =
     "In: /teleop/servo_cp /needle/measured_cp, /cell/predicted_cf or /force_sensor/measured_cf, /injector/state,\n"
     "/needle/abilities, /controller/state_command (enable, disable, pause, resume, home, unhome, approach, indent,\n"
     "inject, withdraw). Action: /controller/inject. Out: /needle/servo_cp /controller/operating_state\n"
-    "/controller/injection_state /injector/pulse /injector/stop.\n"
-    "Parameters: ~mode (manual|semi_automatic|automatic), ~force_source (predicted|measured), ~speed_limit (m/s),\n"
-    "~jump_limit (m), ~lag_limit (m), ~force_limit (N), ~detection/... ~motion/... ~goal/... ~injector, ~auto_enable,\n"
-    "~rate (Hz), ~input_timeout (s) and more; see config/injection_controller.yaml.\n";
+    "/controller/injection_state /injector/pulse /injector/stop.\n";
 
 InjectionControllerNode::Parameters InjectionControllerNode::Parameters::read(const ros::NodeHandle& private_node) {
   Parameters parameters;
@@ -63,6 +60,7 @@ InjectionControllerNode::InjectionControllerNode(ros::NodeHandle node, ros::Node
                                                         parameters_.input_timeout)),
       setpoint_(cycle_.output<geometry_msgs::PoseStamped>("needle/servo_cp")),
       injection_(cycle_.output<cell_microinjection::InjectionStatus>("controller/injection_state", true)),
+      loop_state_(cycle_.node(), "controller/loop_state"),
       action_(cycle_.node(), model_, parameters_.model.goal),
       repeated_(cycle_.node().resolveName(kStateTopic)) {
   if (parameters_.model.mode == "manual") {
@@ -82,7 +80,7 @@ InjectionControllerNode::InjectionControllerNode(ros::NodeHandle node, ros::Node
 
 void InjectionControllerNode::subscribeCommands() {
   using cell_microinjection::StringStamped;
-  if (cycle_.lockstep() && parameters_.commands_in_lockstep) {
+  if (cycle_.deterministic() && parameters_.commands_in_lockstep) {
     auto& input =
         cycle_.input<StringStamped>(kStateTopic, InputPhase::kPreviousTick, std::numeric_limits<double>::infinity());
     input.stamp_rule = StampRule::kAny;
@@ -167,6 +165,7 @@ void InjectionControllerNode::step(const Cycle::Tick& tick) {
   action_.step(tick.now);
   logNotice();
   publishState(tick.now);
+  loop_state_.step(model_.holdReason(), tick.now);
   publishInjection(tick.now);
 }
 

@@ -18,6 +18,7 @@
 #include "nodes/runtime/command_log.h"
 #include "nodes/runtime/command_source.h"
 #include "nodes/runtime/cycle.h"
+#include "nodes/runtime/loop_state.h"
 #include "operation/control/injection_controller.h"
 
 namespace microinjection {
@@ -33,14 +34,7 @@ namespace microinjection {
 ///      (InjectionStatus, latched, on change and ten times a second), /injector/pulse,
 ///      /injector/stop
 ///
-/// Parameters (private): those of InjectionControllerConfig and
-///   rate           Hz; default 1000, in [50, 5000]
-///   input_timeout  s, past which an input is stale; default 0.05, in (0, inf)
-///   force_source   predicted or measured; default predicted
-///   auto_enable    go to ENABLED at the start, for simulated rigs; default false
-///   injector       whether there is one; default true
-///   commands_in_lockstep  in lock step: the publisher of /controller/state_command is a
-///                         participant; default false
+/// Parameters: config/injection_controller.yaml
 class InjectionControllerNode {
  public:
   static const char* const kHelp;
@@ -79,6 +73,7 @@ class InjectionControllerNode {
   Output<geometry_msgs::PoseStamped>& setpoint_;
   Output<cell_microinjection::InjectionStatus>& injection_;
   std::unique_ptr<InjectorLink> injector_;  ///< null without an injector
+  LoopStatePublisher loop_state_;
   InjectionAction action_;
   RepeatedCommands repeated_;
   CommandLog log_;

@@ -14,8 +14,7 @@ namespace microinjection {
 const char* const InjectorNode::kHelp =
     "injector: a pressure injector behind the pipette, simulated or on a serial line.\n"
     "In: /injector/pulse /injector/stop /injector/set_balance. Out: /injector/state. Services: ~reset ~clog "
-    "(simulated).\n"
-    "Parameters: see config/injector.yaml.\n";
+    "(simulated).\n";
 
 InjectorNode::Parameters InjectorNode::Parameters::read(const ros::NodeHandle& private_node) {
   Parameters parameters;

@@ -32,19 +32,7 @@ namespace microinjection {
 /// Services: ~reset (std_srvs/Trigger: clears fault and volume), with source simulated ~clog
 ///      (std_srvs/SetBool)
 ///
-/// Parameters (private):
-///   source           simulated or serial; default simulated
-///   rate             Hz; default 200, in [20, 5000]
-///   command_timeout  s, an older command is refused; default 0.5, in (0, inf)
-///   pulse_timeout    s without a repetition, past which a held pulse (see InjectionPulse) ends;
-///                    default 0.2, in (0, inf)
-///   clog_factor      1, resistance of the clogged tip over that of a free one; default 100, in [1,
-///                    inf)
-///   those of InjectorModelConfig, also for the estimates of a real one's flow and volume
-///   serial/          path, baud, parity, stop_bits (SerialPortConfig; default 9600, 8N1) and those
-///                    of InjectorProtocol; needed with source serial
-///   emulated         none, or the name of an injector (injector_registry.h): its emulator, in this
-///                    node and on its time, replaces the port; default none
+/// Parameters: config/injector.yaml
 class InjectorNode {
  public:
   static const char* const kHelp;

@@ -29,7 +29,11 @@ LinkConditions otherDirection(LinkConditions conditions) {
 const char* const LinkEmulatorNode::kHelp =
     "link_emulator: a network between haptic_bridge and teleoperation_follower, with delay, jitter and loss.\n"
     "In: /link/hand/sent /link/rig/sent /link/plugged (Bool). Out: /link/rig/received /link/hand/received.\n"
-    "Parameters: ~delay, ~jitter (s, one way), ~loss (0 to 1), ~seed.\n";
+    "Parameters, each direction with its own random numbers:\n"
+    "  ~delay   s, one way\n"
+    "  ~jitter  s, one way\n"
+    "  ~loss    share of the packets, 0 to 1\n"
+    "  ~seed    of the random numbers\n";
 
 LinkEmulatorNode::LinkEmulatorNode(ros::NodeHandle node, ros::NodeHandle private_node)
     : conditions_(readConditions(private_node)),

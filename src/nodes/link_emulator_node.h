@@ -5,7 +5,7 @@
 
 #include "cell_microinjection/LinkPacket.h"
 #include "nodes/runtime/cycle.h"
-#include "operation/teleoperation/link_emulator.h"
+#include "operation/link/link_emulator.h"
 
 namespace microinjection {
 
@@ -16,8 +16,7 @@ namespace microinjection {
 ///      disconnected)
 /// Out: /link/rig/received, /link/hand/received (LinkPacket)
 ///
-/// Parameters (private): delay, jitter (s, one way), loss (1, a share), seed; see LinkConditions.
-/// Each direction has its own random numbers.
+/// Parameters: see kHelp
 class LinkEmulatorNode {
  public:
   static const char* const kHelp;

@@ -20,7 +20,11 @@ constexpr double kLongestWait = 0.2;  // s, largest counted part of a wait
 
 const char* const LockstepClockNode::kHelp =
     "lockstep_clock: steps /clock when every node of /lockstep/participants has acknowledged the last tick.\n"
-    "Parameters: ~step (s), ~real_time_factor (0: as fast as possible), ~warn_after (s), ~frozen_after (s).\n";
+    "Parameters: /lockstep/participants (names of nodes) and\n"
+    "  ~step              s, of one tick, default 0.001\n"
+    "  ~real_time_factor  largest speed, times real time; default 0: as fast as possible\n"
+    "  ~warn_after        s of wall time without an acknowledgement until a warning, default 5\n"
+    "  ~frozen_after      s of wall time without an acknowledgement until a node leaves, default 60\n";
 
 LockstepClockNode::LockstepClockNode(ros::NodeHandle node, ros::NodeHandle private_node)
     : participants_(lockstepParticipants()) {

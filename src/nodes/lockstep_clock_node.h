@@ -24,14 +24,7 @@ namespace microinjection {
 ///      (std_msgs/String)
 /// Out: /clock (rosgraph_msgs/Clock), /lockstep/left (std_msgs/String, see lockstep.h)
 ///
-/// Parameters: /lockstep/participants (names of nodes), and private:
-///   step              s, of one tick; default 0.001, in [1e-6, 1]
-///   real_time_factor  largest speed, times real time; 0: as fast as possible; default 0, in [0,
-///                     inf)
-///   warn_after        s of wall time without an acknowledgement until a warning; default 5, in (0,
-///                     inf)
-///   frozen_after      s of wall time without an acknowledgement until a participant leaves;
-///                     default 60, in (0, inf)
+/// Parameters: see kHelp
 class LockstepClockNode {
  public:
   static const char* const kHelp;

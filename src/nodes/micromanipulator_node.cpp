@@ -21,13 +21,7 @@ const char* const MicromanipulatorNode::kHelp =
     "micromanipulator: a three-axis micromanipulator, simulated, emulated or real, with CRTK topics below /needle.\n"
     "In: /needle/servo_cp /needle/servo_cv /needle/move_cp /needle/state_command (enable, disable, pause, resume,\n"
     "home, unhome, stop). Out: /needle/measured_cp /needle/measured_cv /needle/setpoint_cp /needle/abilities\n"
-    "/needle/operating_state joint_states.\n"
-    "Parameters: /robot_description, ~rig (sim|eppendorf|mp285|scientifica|zaber), ~emulated, ~device/...\n"
-    "(config/rigs/NAME.yaml), ~emulator/... (properties of an emulated device), ~rate (Hz),\n"
-    "~joint_states_rate (Hz), ~command_timeout (s), ~velocity_command_timeout (s), ~servo_speed_limit (m/s),\n"
-    "~pipette_tilt (rad), ~collision_margin (m), ~allow_network; see config/micromanipulator.yaml. With a serial "
-    "device:\n"
-    "  rosrun cell_microinjection micromanipulator _rig:=zaber _device/port/path:=/dev/ttyUSB0\n";
+    "/needle/operating_state joint_states.\n";
 
 MicromanipulatorNode::Parameters MicromanipulatorNode::Parameters::read(ConfigReader& reader) {
   Parameters parameters;
@@ -53,7 +47,7 @@ MicromanipulatorNode::MicromanipulatorNode(const ros::NodeHandle& node, ConfigRe
       cycle_(node, parameters_.rate),
       commands_(cycle_, parameters_.model, rig_, model_, parameters_.allow_network),
       publisher_(cycle_, geometry_, rig_, model_, parameters_.joint_states_rate) {
-  if (cycle_.lockstep() && !rig_.inject) {
+  if (cycle_.deterministic() && !rig_.inject) {
     throw ConfigError("rig = " + parameters_.rig +
                       ": a real rig cannot take part in lock step, it moves on while time stands");
   }

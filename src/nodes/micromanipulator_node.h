@@ -35,17 +35,7 @@ namespace microinjection {
 ///      /needle/setpoint_trace (TimeReference)
 ///      joint_states (JointState), for robot_state_publisher
 ///
-/// Parameters: /robot_description (URDF), and private those of MicromanipulatorConfig and
-///   rig                sim (default), or a name of rig/devices/rig_registry.h
-///   emulated           default false; true: the driver is connected to an emulated device in this
-///                      process
-///   device/            the rig's keys, as in config/rigs/NAME.yaml
-///   emulator/          for an emulated device: latency (s, of its serial adapter) and its
-///                      emulator's keys
-///   rate               Hz; default 1000, in [50, 5000]
-///   joint_states_rate  Hz; default 50, in (0, 1000]
-///   allow_network      default false: a real rig is not enabled while others on a network can
-///                      reach this machine
+/// Parameters: config/micromanipulator.yaml
 class MicromanipulatorNode {
  public:
   static const char* const kHelp;

@@ -17,9 +17,7 @@ constexpr char kCommand[] = "inject";  ///< the phase that is also a command to 
 const char* const OperatorNode::kHelp =
     "operator: a virtual haptic device in a virtual hand that follows a recorded motion.\n"
     "In: /haptic/servo_cf. Out: /haptic/measured_cp /haptic/clutch /operator/phase\n"
-    "/controller/state_command (inject).\n"
-    "Parameters: ~motion (file, required), ~start_delay (s), ~wait_for_go, ~mass (kg), ~damping (N s/m),\n"
-    "~stiffness (N/m), ~rate (Hz), ~force_timeout (s); see config/operator.yaml.\n";
+    "/controller/state_command (inject).\n";
 
 OperatorNode::Parameters OperatorNode::Parameters::read(const ros::NodeHandle& private_node) {
   Parameters parameters;

@@ -22,12 +22,7 @@ namespace microinjection {
 ///      /operator/phase (StringStamped, latched, on change: the motion's phases, then done),
 ///      /controller/state_command (StringStamped: inject, when the phase of that name begins)
 ///
-/// Parameters (private): those of VirtualHandConfig and
-///   motion         path of a hand motion (see operation/teleoperation/hand_motion.h); required
-///   start_delay    s, in which the hand rests before the motion; default 1, in [0, inf)
-///   wait_for_go    do nothing until the parameter /session/go is true; default false
-///   rate           Hz; default 1000, in [50, 5000]
-///   force_timeout  s; default 0.05, in (0, inf)
+/// Parameters: config/operator.yaml
 class OperatorNode {
  public:
   static const char* const kHelp;

@@ -51,13 +51,6 @@ std::string localTime() {
   return text.str();
 }
 
-std::string value(const diagnostic_msgs::DiagnosticStatus& status, const std::string& key) {
-  for (const auto& pair : status.values) {
-    if (pair.key == key) return pair.value;
-  }
-  return "";
-}
-
 void writeIntervals(std::ostream& out, const std::string& name, const IntervalHistogram& intervals) {
   out << name << ": {count: " << intervals.count() << ", median_ms: " << 1e3 * intervals.quantile(0.5)
       << ", p99_ms: " << 1e3 * intervals.quantile(0.99) << ", max_ms: " << 1e3 * intervals.largest() << "}\n";
@@ -68,8 +61,15 @@ void writeIntervals(std::ostream& out, const std::string& name, const IntervalHi
 const char* const SessionRecorderNode::kHelp =
     "session_recorder: writes force_depth.csv, summary.yaml and session.bag of a session. While it runs, its rows and\n"
     "messages are in force_depth.csv.active and session.bag.active.\n"
-    "Parameters: ~output_dir (required), ~row_period (s), ~hand, ~injector (record them), ~bag,\n"
-    "~training/... (see config/training.yaml), ~end_when_done.\n";
+    "Parameters:\n"
+    "  ~output_dir     folder, created when absent; required\n"
+    "  ~row_period     s, default 0.005\n"
+    "  ~hand           record a haptic bridge, default true\n"
+    "  ~injector       record an injector, default true\n"
+    "  ~bag            write session.bag, default true\n"
+    "  ~training/...   score the session, write training.yaml and training.png and extend the history:\n"
+    "                  operator (name), history (CSV file) and the keys of config/training.yaml; default: no score\n"
+    "  ~end_when_done  write the files and end in the operator's phase done, default false\n";
 
 SessionRecorderNode::Parameters SessionRecorderNode::Parameters::read(const ros::NodeHandle& private_node) {
   Parameters parameters;
@@ -92,7 +92,7 @@ SessionRecorderNode::SessionRecorderNode(ros::NodeHandle node, ros::NodeHandle p
     : parameters_(Parameters::read(private_node)),
       cycle_(node, kRate),
       files_(parameters_.output_dir, SessionTable::kHeader, parameters_.bag),
-      table_(std::llround(1e9 * parameters_.row_period), cycle_.lockstep() ? kMaxDelayInLockstep : kMaxDelay,
+      table_(std::llround(1e9 * parameters_.row_period), cycle_.deterministic() ? kMaxDelayInLockstep : kMaxDelay,
              [this](const std::string& line) { files_.rows().append(line); }),
       predicted_(cycle_.input<geometry_msgs::WrenchStamped>("cell/predicted_cf", InputPhase::kPreviousTick, 0.05)),
       needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", InputPhase::kPreviousTick, 0.05)),
@@ -113,11 +113,14 @@ SessionRecorderNode::SessionRecorderNode(ros::NodeHandle node, ros::NodeHandle p
   began_ = localTime();
   if (parameters_.training) training_ = std::make_unique<TrainingLog>(*parameters_.training);
   if (training_) table_.onRow([this](const SessionTable::Row& row) { training_->add(row); });
-  diagnostics_ = cycle_.node().subscribe("/diagnostics", 100, &SessionRecorderNode::onDiagnostics, this);
+  using cell_microinjection::CycleStatistics;
+  statistics_ = subscribeGuarded<CycleStatistics>(
+      cycle_.node(), "/cycle_statistics", 100,
+      [this](const CycleStatistics& message, const std::string&) { nodes_[message.node] = message; });
   fillTable();
   if (files_.bag()) recordBag(*files_.bag());
   cycle_.diagnostics().add("files", [this](auto& status) { files_.report(status); });
-  if (cycle_.lockstep()) return;
+  if (cycle_.deterministic()) return;
   latency_ = std::make_unique<LatencyMeter>(cycle_.node());
   timer_loop_ = std::make_unique<BareTimerLoop>();
   cycle_.diagnostics().add("bare timer loop", [this](auto& status) {
@@ -236,33 +239,18 @@ void SessionRecorderNode::withdrawInvalid() {
   if (hand_force_ && !hand_force_->valid()) table_.hand_force.withdraw();
 }
 
-void SessionRecorderNode::onDiagnostics(const diagnostic_msgs::DiagnosticArrayConstPtr& message) {
-  for (const auto& status : message->status) {
-    const std::size_t colon = status.name.find(": cycle");
-    if (colon == std::string::npos) continue;
-    NodeFigures& figures = figures_[status.name.substr(0, colon)];
-    for (const auto& pair : status.values) {
-      if (pair.key.rfind("sent on ", 0) == 0 && figures.topic.empty()) figures.topic = "/" + pair.key.substr(8);
-    }
-    figures.count = value(status, "steps since the start");
-    figures.rate = value(status, "mean rate since the start (Hz)");
-    figures.median = value(status, "median interval since the start (s of wall time)");
-    figures.p99 = value(status, "99 % interval since the start (s of wall time)");
-  }
-}
-
 std::string SessionRecorderNode::summary() const {
   std::ostringstream out;
-  out << "clock: " << (cycle_.lockstep() ? "lockstep" : "wall") << '\n';
+  out << "clock: " << (cycle_.deterministic() ? "lockstep" : "wall") << '\n';
   out << "duration_s: " << table_.duration() << '\n';
   out << "layers: [";
   for (std::size_t i = 0; i < layers_.size(); ++i) out << (i > 0 ? ", " : "") << layers_[i];
   out << "]\nnodes:\n";
-  for (const auto& [node, figures] : figures_) {
-    if (figures.topic.empty()) continue;
-    out << "  - {node: " << node << ", topic: " << figures.topic << ", count: " << figures.count
-        << ", rate_hz: " << figures.rate << ", interval_median_ms: " << 1e3 * std::atof(figures.median.c_str())
-        << ", interval_p99_ms: " << 1e3 * std::atof(figures.p99.c_str()) << "}\n";
+  for (const auto& [name, node] : nodes_) {
+    if (node.topic.empty()) continue;
+    out << "  - {node: " << name << ", topic: " << node.topic << ", count: " << node.steps
+        << ", rate_hz: " << node.mean_rate << ", interval_median_ms: " << 1e3 * node.median_interval
+        << ", interval_p99_ms: " << 1e3 * node.p99_interval << "}\n";
   }
   if (latency_) writeIntervals(out, "hand_to_force_latency", latency_->latencies());
   if (timer_loop_) writeIntervals(out, "bare_timer_loop", timer_loop_->intervals());

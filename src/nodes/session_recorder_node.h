@@ -15,6 +15,7 @@
 
 #include "base/interval_histogram.h"
 #include "cell_microinjection/CellState.h"
+#include "cell_microinjection/CycleStatistics.h"
 #include "cell_microinjection/InjectionStatus.h"
 #include "cell_microinjection/InjectorState.h"
 #include "cell_microinjection/StringStamped.h"
@@ -44,17 +45,7 @@ namespace microinjection {
 /// stamps of the messages (see SessionTable). It rarely needs the processor, and a delay does not
 /// change the rows.
 ///
-/// Parameters (private):
-///   output_dir  path, created when absent; required
-///   row_period  s; default 0.005, in (0, inf)
-///   hand        record a haptic bridge; default true
-///   injector    record an injector; default true
-///   bag         write session.bag; default true
-///   training       absent: no score; else a map of operator (name), history (path of a CSV file),
-///                  force and task, see config/training.yaml. Writes training.yaml, a row of the
-///                  history, and training.png, which compares the session with the operator's
-///                  earlier ones
-///   end_when_done  write the files and end this node in the operator's phase `done`; default false
+/// Parameters: see kHelp
 class SessionRecorderNode {
  public:
   static const char* const kHelp;
@@ -73,15 +64,10 @@ class SessionRecorderNode {
     std::optional<TrainingConfig> training;
     static Parameters read(const ros::NodeHandle& private_node);
   };
-  struct NodeFigures {
-    std::string topic, count, rate, median, p99;
-  };
-
   void fillTable();
   void recordBag(SessionBag& bag);
   void step(const Cycle::Tick& tick);
   void withdrawInvalid();
-  void onDiagnostics(const diagnostic_msgs::DiagnosticArrayConstPtr& message);
   std::string summary() const;
   void score(std::vector<std::string>& errors) const;
 
@@ -99,15 +85,15 @@ class SessionRecorderNode {
   Input<sensor_msgs::Joy>* clutch_ = nullptr;                      ///< null without a hand
   Input<geometry_msgs::WrenchStamped>* hand_force_ = nullptr;      ///< null without a hand
   Input<cell_microinjection::StringStamped>* phase_ = nullptr;     ///< null without a hand
-  ros::Subscriber diagnostics_;
+  ros::Subscriber statistics_;
   std::string began_;                          ///< local date and time, ISO 8601
   std::unique_ptr<TrainingLog> training_;      ///< null without training
   std::unique_ptr<LatencyMeter> latency_;      ///< null in lock step, where wall time has no meaning
   std::unique_ptr<BareTimerLoop> timer_loop_;  ///< null in lock step
 
-  Eigen::Matrix3d tip_orientation_ = Eigen::Matrix3d::Identity();  ///< newest, in world
-  std::vector<std::string> layers_;                                ///< of the cell, outermost first
-  std::map<std::string, NodeFigures> figures_;                     ///< by node
+  Eigen::Matrix3d tip_orientation_ = Eigen::Matrix3d::Identity();      ///< newest, in world
+  std::vector<std::string> layers_;                                    ///< of the cell, outermost first
+  std::map<std::string, cell_microinjection::CycleStatistics> nodes_;  ///< by name
 };
 
 }  // namespace microinjection

@@ -4,7 +4,6 @@
 
 #include "nodes/link/link_messages.h"
 #include "nodes/runtime/conversions.h"
-#include "nodes/runtime/force_topic.h"
 #include "nodes/runtime/node_parameters.h"
 #include "nodes/runtime/run_node.h"
 
@@ -14,8 +13,7 @@ const char* const TeleoperationFollowerNode::kHelp =
     "teleoperation_follower: the rig's end of a network between haptic bridge and rig.\n"
     "In: /link/rig/received /needle/measured_cp /controller/injection_state and /cell/predicted_cf,\n"
     "/force_sensor/measured_cf or both.\n"
-    "Out: /link/rig/sent /teleop/servo_cp.\n"
-    "Parameters: ~rate (Hz), ~timeouts/... (s), ~force_source, ~measured_share, ~link/...; see config/link.yaml.\n";
+    "Out: /link/rig/sent /link/rig/loop_state /teleop/servo_cp.\n";
 
 TeleoperationFollowerNode::Parameters TeleoperationFollowerNode::Parameters::read(const ros::NodeHandle& private_node) {
   Parameters parameters;
@@ -23,10 +21,7 @@ TeleoperationFollowerNode::Parameters TeleoperationFollowerNode::Parameters::rea
   ConfigReader reader = parameterReader(private_node);
   reader.number("rate", parameters.rate, Range::closed(50, 5000));
   ConfigReader timeouts = reader.section("timeouts");
-  timeouts.number("needle", parameters.needle_timeout, Range::positive());
-  timeouts.number("predicted", parameters.predicted_timeout, Range::positive());
-  timeouts.number("measured", parameters.measured_timeout, Range::positive());
-  timeouts.number("controller", parameters.controller_timeout, Range::nonNegative());
+  parameters.timeouts.read(timeouts);
   parameters.force = ForceSourceConfig::read(reader);
   parameters.link = LinkConfig::read(reader.section("link"));
   reader.finish();
@@ -37,29 +32,17 @@ TeleoperationFollowerNode::TeleoperationFollowerNode(ros::NodeHandle node, ros::
     : parameters_(Parameters::read(private_node)),
       model_(parameters_.link),
       cycle_(node, parameters_.rate),
-      needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", InputPhase::kPreviousTick,
-                                                       parameters_.needle_timeout)),
-      predicted_(forceInput(parameters_.force.usesPredicted(), "predicted", parameters_.predicted_timeout)),
-      measured_(forceInput(parameters_.force.usesMeasured(), "measured", parameters_.measured_timeout)),
+      rig_(cycle_, parameters_.timeouts, parameters_.force),
       sent_(cycle_.output<cell_microinjection::LinkPacket>("link/rig/sent")),
-      target_(cycle_.output<geometry_msgs::PoseStamped>("teleop/servo_cp")) {
+      target_(cycle_.output<geometry_msgs::PoseStamped>("teleop/servo_cp")),
+      loop_state_(cycle_.node(), "link/rig/loop_state") {
   cycle_
       .input<cell_microinjection::LinkPacket>("link/rig/received", InputPhase::kPreviousTick,
                                               std::numeric_limits<double>::infinity())
       .onMessage([this](const auto& message, const ros::Time&) {
         if (isPlausible("link/rig/received", message)) model_.receive(toPacket(message));
       });
-  if (parameters_.controller_timeout > 0) {
-    controller_ = &cycle_.input<cell_microinjection::InjectionStatus>(
-        "controller/injection_state", InputPhase::kPreviousTick, parameters_.controller_timeout);
-  }
   cycle_.diagnostics().add("link", [this](auto& status) { report(status); });
-}
-
-Input<geometry_msgs::WrenchStamped>* TeleoperationFollowerNode::forceInput(bool used, const std::string& source,
-                                                                           double timeout) {
-  if (!used) return nullptr;
-  return &cycle_.input<geometry_msgs::WrenchStamped>(forceTopic(source), InputPhase::kPreviousTick, timeout);
 }
 
 void TeleoperationFollowerNode::run() {
@@ -67,15 +50,11 @@ void TeleoperationFollowerNode::run() {
 }
 
 void TeleoperationFollowerNode::step(const Cycle::Tick& tick) {
+  const RigInputs::Reading rig = rig_.read(tick.now);
   LinkFollower::Input input;
-  input.controller = !controller_ || controller_->get(tick.now);
-  if (const auto needle = validPose(needle_.get(tick.now))) {
-    input.needle = needle->translation();
-    TipForces forces;
-    forces.predicted = validForce(predicted_ ? predicted_->get(tick.now) : nullptr, needle->linear());
-    forces.measured = validForce(measured_ ? measured_->get(tick.now) : nullptr, needle->linear());
-    input.force = chooseForce(parameters_.force, forces);
-  }
+  input.controller = rig.controller;
+  input.needle = rig.needle;
+  if (rig.needle) input.force = chooseForce(parameters_.force, rig.force);
   const auto target = model_.step(input, tick.dt);
   cell_microinjection::LinkPacket message = toMessage(model_.packet());
   message.header.stamp = tick.now;
@@ -85,6 +64,7 @@ void TeleoperationFollowerNode::step(const Cycle::Tick& tick) {
   } else {
     target_.publishInvalid(toPose(Eigen::Vector3d::Zero(), tick.now, kWorldFrame));
   }
+  loop_state_.step(model_.holdReason(), tick.now);
 }
 
 void TeleoperationFollowerNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) const {

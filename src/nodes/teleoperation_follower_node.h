@@ -1,16 +1,13 @@
 #pragma once
 
 #include <geometry_msgs/PoseStamped.h>
-#include <geometry_msgs/WrenchStamped.h>
 #include <ros/ros.h>
 
-#include <string>
-
-#include "cell_microinjection/InjectionStatus.h"
 #include "cell_microinjection/LinkPacket.h"
+#include "nodes/haptic/rig_inputs.h"
 #include "nodes/runtime/cycle.h"
-#include "operation/teleoperation/force_source.h"
-#include "operation/teleoperation/link_follower.h"
+#include "nodes/runtime/loop_state.h"
+#include "operation/link/link_follower.h"
 
 namespace microinjection {
 
@@ -19,17 +16,11 @@ namespace microinjection {
 /// it withdraws its target, so that the controller holds the needle, and reports this to the hand's
 /// side.
 ///
-/// In:  /link/rig/received (LinkPacket), /needle/measured_cp (PoseStamped), /cell/predicted_cf,
-///      /force_sensor/measured_cf or both (WrenchStamped), /controller/injection_state
-///      (InjectionStatus; that there is a controller)
-/// Out: /link/rig/sent (LinkPacket), /teleop/servo_cp (PoseStamped, tip in `world`)
+/// In:  /link/rig/received (LinkPacket) and those of RigInputs
+/// Out: /link/rig/sent (LinkPacket), /link/rig/loop_state (LoopState), /teleop/servo_cp
+///      (PoseStamped, tip in `world`)
 ///
-/// Parameters (private): those of ForceSourceConfig, link/... (LinkConfig; the bridge must have the
-/// same) and
-///   rate           Hz; default 1000, in [50, 5000]; that of the bridge
-///   timeouts/...   s, past which an input is stale: needle, predicted, measured; default 0.05, in
-///                  (0, inf); controller (0.25; 0: not checked, with another controller), in [0,
-///                  inf)
+/// Parameters: config/link.yaml; the bridge must have the same `link`.
 class TeleoperationFollowerNode {
  public:
   static const char* const kHelp;
@@ -40,26 +31,22 @@ class TeleoperationFollowerNode {
  private:
   struct Parameters {
     double rate = 1000;
-    double needle_timeout = 0.05, predicted_timeout = 0.05, measured_timeout = 0.05;  // s
-    double controller_timeout = 0.25;                                                 // s
+    RigTimeouts timeouts;
     ForceSourceConfig force;
     LinkConfig link;
     static Parameters read(const ros::NodeHandle& private_node);
   };
 
   void step(const Cycle::Tick& tick);
-  Input<geometry_msgs::WrenchStamped>* forceInput(bool used, const std::string& source, double timeout);
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
   Parameters parameters_;
   LinkFollower model_;
   Cycle cycle_;
-  Input<geometry_msgs::PoseStamped>& needle_;
-  Input<geometry_msgs::WrenchStamped>* predicted_;                     ///< null: not used
-  Input<geometry_msgs::WrenchStamped>* measured_;                      ///< null: not used
-  Input<cell_microinjection::InjectionStatus>* controller_ = nullptr;  ///< null: not checked
+  RigInputs rig_;
   Output<cell_microinjection::LinkPacket>& sent_;
   Output<geometry_msgs::PoseStamped>& target_;
+  LoopStatePublisher loop_state_;
 };
 
 }  // namespace microinjection

@@ -54,7 +54,7 @@ class ForceTopicTest(unittest.TestCase):
         self.world.run(600, {DEVICE: zero})
 
     def test_what_cannot_be_placed_or_read_is_not_trusted(self):
-        for bad, why in ((wrench(1e-6, 0, 0, "nowhere"), "no way from frame 'nowhere'"),
+        for bad, why in ((wrench(1e-6, 0, 0, "nowhere"), "no transform from frame 'nowhere'"),
                          (wrench(math.nan, 0, 0, "transducer"), "no valid wrench"),
                          (None, "no valid wrench")):
             self.world.run(20, {DEVICE: wrench(0, 0, 0, "transducer")})

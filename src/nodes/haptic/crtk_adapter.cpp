@@ -42,12 +42,11 @@ CrtkConfig CrtkConfig::read(ConfigReader& reader) {
 
 CrtkAdapter::CrtkAdapter(Cycle& cycle, const CrtkConfig& config)
     : config_(config),
-      lockstep_(cycle.lockstep()),
       clutch_(subscribe(cycle, config.clutch)),
       operator_present_(subscribe(cycle, config.operator_present)),
       force_(cycle.output<geometry_msgs::WrenchStamped>(deviceTopic(config.device, config.force))),
       settings_(cycle.node(), config.device, config.settings),
-      receiver_(force_.publisher, !lockstep_) {
+      receiver_(cycle, force_.publisher) {
   if (!config.state.empty()) {
     state_ = &cycle.input<cell_microinjection::OperatingState>(deviceTopic(config.device, config.state),
                                                                InputPhase::kPreviousTick, kForEver);

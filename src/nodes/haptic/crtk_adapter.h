@@ -63,7 +63,6 @@ class CrtkAdapter : public HapticAdapter {
   Input<sensor_msgs::Joy>* subscribe(Cycle& cycle, const CrtkButton& button) const;
 
   CrtkConfig config_;
-  bool lockstep_;
   Input<geometry_msgs::PoseStamped>* pose_ = nullptr;            ///< null: positions are transforms
   Input<geometry_msgs::TransformStamped>* transform_ = nullptr;  ///< null: they are poses
   Input<cell_microinjection::OperatingState>* state_ = nullptr;  ///< null: not checked

@@ -78,7 +78,8 @@ class UnstampedForce {
  public:
   using Handler = std::function<void(const Message& message, const ros::Time& received)>;
 
-  UnstampedForce(const Cycle& cycle, const std::string& topic, const Handler& handler) : lockstep_(cycle.lockstep()) {
+  UnstampedForce(const Cycle& cycle, const std::string& topic, const Handler& handler)
+      : lockstep_(cycle.deterministic()) {
     using Event = ros::MessageEvent<const Message>;
     const auto receive = [this, handler](const Event& event) {
       ++count_;

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "nodes/runtime/ports.h"
+#include "nodes/runtime/cycle.h"
 
 namespace microinjection {
 
@@ -16,7 +16,8 @@ namespace microinjection {
 class ForceReceiver {
  public:
   /// `required`: false for a device that renders no force.
-  ForceReceiver(const ros::Publisher& force, bool required) : force_(force), required_(required) {}
+  ForceReceiver(const Cycle& cycle, const ros::Publisher& force, bool required = true)
+      : force_(force), required_(required && !cycle.deterministic()) {}
   ForceReceiver(const ForceReceiver&) = delete;
 
   /// Sets the topic of the hand's position.

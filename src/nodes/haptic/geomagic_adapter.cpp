@@ -34,7 +34,7 @@ GeomagicAdapter::GeomagicAdapter(Cycle& cycle, const GeomagicConfig& config)
       pose_(cycle.input<geometry_msgs::PoseStamped>(config.device + "/pose", InputPhase::kThisTick, config.timeout)),
       buttons_(cycle.input<sensor_msgs::Joy>(config.device + "/joy", InputPhase::kPreviousTick, config.timeout)),
       force_(cycle.node().advertise<DeviceFeedback>(config.device + "/force_feedback", 10)),
-      receiver_(force_, !cycle.lockstep()) {
+      receiver_(cycle, force_) {
   receiver_.monitor(pose_);
 }
 

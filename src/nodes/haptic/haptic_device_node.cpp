@@ -46,9 +46,9 @@ HapticDeviceNode::HapticDeviceNode(ros::NodeHandle node, ros::NodeHandle private
       kind_(findHapticKind(parameters_.kind)),
       cycle_(node, parameters_.rate),
       // Rendered on arrival, except where that would make bridge and device trigger each other.
-      force_(cycle_.input<geometry_msgs::WrenchStamped>(
-          "haptic/servo_cf", kind_.paced && !cycle_.lockstep() ? InputPhase::kThisTick : InputPhase::kPreviousTick,
-          parameters_.force_timeout)),
+      force_(cycle_.input<geometry_msgs::WrenchStamped>("haptic/servo_cf",
+                                                        kind_.paced ? InputPhase::kTrigger : InputPhase::kPreviousTick,
+                                                        parameters_.force_timeout)),
       position_(cycle_.output<geometry_msgs::PoseStamped>("haptic/measured_cp")),
       clutch_(cycle_.output<sensor_msgs::Joy>("haptic/clutch")),
       operator_present_(cycle_.output<sensor_msgs::Joy>("haptic/operator_present")),

@@ -22,10 +22,7 @@ namespace microinjection {
 ///      stale), /haptic/clutch and /haptic/operator_present (Joy, on change and each 20 ms),
 ///      /controller/state_command (StringStamped)
 ///
-/// Parameters (private): those of the kind and
-///   kind           see haptic_registry.cpp; required
-///   rate           Hz; default 1000, in [50, 5000]
-///   force_timeout  s, past which a force is stale; default 0.05, in (0, inf)
+/// Parameters: see kHelp and config/haptic/
 class HapticDeviceNode {
  public:
   static const char* const kHelp;

@@ -28,7 +28,7 @@ OmniAdapter::OmniAdapter(Cycle& cycle, const OmniConfig& config)
     : config_(config),
       state_(cycle.input<OmniState>(config.device + "/state", InputPhase::kThisTick, config.timeout)),
       force_(cycle.node().advertise<OmniFeedback>(config.device + "/force_feedback", 10)),
-      receiver_(force_, !cycle.lockstep()) {
+      receiver_(cycle, force_) {
   receiver_.monitor(state_);
   buttons_ = subscribeGuarded<OmniButtonEvent>(cycle.node(), config.device + "/button", 10,
                                                [this](const OmniButtonEvent& event, const std::string&) {

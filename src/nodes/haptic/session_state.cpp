@@ -1,6 +1,7 @@
 #include "nodes/haptic/session_state.h"
 
 #include <cstdio>
+#include <utility>
 
 namespace microinjection {
 namespace {
@@ -23,8 +24,8 @@ std::string describe(const cell_microinjection::InjectionStatus& status) {
 
 SessionState::SessionState(Cycle& cycle) {
   using cell_microinjection::InjectionStatus;
+  using cell_microinjection::LoopState;
   using cell_microinjection::OperatingState;
-  using diagnostic_msgs::DiagnosticArray;
   controller_ = subscribeGuarded<OperatingState>(
       cycle.node(), "controller/operating_state", 10,
       [this](const OperatingState& message, const std::string&) { state_ = message.state; });
@@ -33,25 +34,22 @@ SessionState::SessionState(Cycle& cycle) {
                                                    injection_text_ = describe(message);
                                                    notice_ = message.notice;
                                                  });
-  diagnostics_ = subscribeGuarded<DiagnosticArray>(
-      cycle.node(), "/diagnostics", 10,
-      [this](const DiagnosticArray& message, const std::string&) { process(message); });
+  const std::pair<const char*, std::string*> loops[] = {
+      {"link/rig/loop_state", &rig_}, {"haptic/loop_state", &bridge_}, {"controller/loop_state", &controller_reason_}};
+  for (const auto& [topic, reason] : loops) {
+    loop_states_.push_back(subscribeGuarded<LoopState>(
+        cycle.node(), topic, 1,
+        [reason = reason](const LoopState& message, const std::string&) { *reason = message.hold_reason; }));
+  }
 }
 
 std::string SessionState::text() const { return state_ + injection_text_; }
 
 std::string SessionState::held() const {
-  // Only the follower reports why it holds, unless the bridge itself is the reason.
-  return held_.empty() || follower_.empty() || follower_.find("the hand's side") != std::string::npos ? held_
-                                                                                                      : follower_;
-}
-
-void SessionState::process(const diagnostic_msgs::DiagnosticArray& diagnostics) {
-  for (const auto& status : diagnostics.status) {
-    if (status.name == "haptic_bridge: loop") held_ = status.level == 0 ? "" : status.message;
-    if (status.name == "teleoperation_follower: link") follower_ = status.level == 0 ? "" : status.message;
-    if (status.name == "injection_controller: control" && status.level != 0 && held_.empty()) held_ = status.message;
-  }
+  // If the bridge holds, the rig's side only repeats that.
+  const bool repeats = rig_.find("the hand's side") != std::string::npos;
+  const std::string& reason = bridge_.empty() ? controller_reason_ : rig_.empty() || repeats ? bridge_ : rig_;
+  return reason.empty() ? "" : "needle held: " + reason;
 }
 
 }  // namespace microinjection

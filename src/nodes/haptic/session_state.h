@@ -3,10 +3,11 @@
 #include <ros/ros.h>
 
 #include <string>
+#include <vector>
 
 #include "cell_microinjection/InjectionStatus.h"
+#include "cell_microinjection/LoopState.h"
 #include "cell_microinjection/OperatingState.h"
-#include "diagnostic_msgs/DiagnosticArray.h"
 #include "nodes/runtime/cycle.h"
 
 namespace microinjection {
@@ -19,19 +20,19 @@ class SessionState {
 
   /// For example "ENABLED, indent, 0.52 uN, 12.3 um deep" or "no controller".
   std::string text() const;
-  /// The diagnostics of bridge and controller, for example "needle held: clutch is pressed"; once a
-  /// second.
+  /// For example "needle held: clutch is pressed"; empty while the needle follows the hand. A rig
+  /// behind a network, then the bridge, then the controller gives the reason.
   std::string held() const;
   /// Why the operator's last command was not executed; else empty.
   const std::string& notice() const { return notice_; }
 
  private:
-  void process(const diagnostic_msgs::DiagnosticArray& diagnostics);
-
-  ros::Subscriber controller_, injection_, diagnostics_;
+  ros::Subscriber controller_, injection_;
+  std::vector<ros::Subscriber> loop_states_;
   std::string state_ = "no controller";
   std::string injection_text_;
-  std::string held_, follower_, notice_;
+  std::string notice_;
+  std::string rig_, bridge_, controller_reason_;  ///< why they hold; empty: they follow
 };
 
 }  // namespace microinjection

@@ -38,7 +38,7 @@ class InjectionAction {
 
   InjectionController& controller_;
   InjectionGoal configured_;
-  GoalHandle current_, next_;  ///< not valid: none
+  GoalHandle current_, next_;   ///< not valid: none
   bool end_requested_ = false;  ///< the current goal shall end
   bool withdrawn_ = false;      ///< the controller has the command
   std::int64_t fed_back_ns_ = 0;

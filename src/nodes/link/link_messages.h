@@ -3,7 +3,7 @@
 #include <string>
 
 #include "cell_microinjection/LinkPacket.h"
-#include "operation/teleoperation/link_packet.h"
+#include "operation/link/link_packet.h"
 
 namespace microinjection {
 

@@ -231,7 +231,8 @@ void NeedleCommands::step(const Cycle::Tick& tick) {
 
 bool NeedleCommands::isBusy(const Cycle::Tick& tick) {
   state_.setConditions(conditions());
-  if (model_.abortReason() != abort_reason_ && !model_.abortReason().empty()) ROS_WARN_STREAM("the motion ended: " << model_.abortReason());
+  if (model_.abortReason() != abort_reason_ && !model_.abortReason().empty())
+    ROS_WARN_STREAM("the motion ended: " << model_.abortReason());
   abort_reason_ = model_.abortReason();
   return busy_.step(model_.busy(), static_cast<std::int64_t>(tick.now.toNSec()));
 }
@@ -245,7 +246,7 @@ void NeedleCommands::report(diagnostic_updater::DiagnosticStatusWrapper& status)
   const bool held = exposed_ || !authority_.fault().empty();
   const std::string reason = model_.reason().empty() && held ? unavailableReason() : model_.reason();
   if (!reason.empty() && problem != reason) problem = reason + (problem.empty() ? "" : "; ") + problem;
-  const auto level = !reason.empty()      ? DiagnosticStatus::ERROR
+  const auto level = !reason.empty()   ? DiagnosticStatus::ERROR
                      : problem.empty() ? DiagnosticStatus::OK
                                        : DiagnosticStatus::WARN;
   status.summary(level, !problem.empty() ? problem : model_.moving() ? "moves" : "holds");

@@ -79,7 +79,7 @@ class NeedleCommands {
   CommandLog log_;
   BusyReport busy_;
   std::string mover_;                        ///< node that commanded the move under way
-    std::string abort_reason_;                 ///< of the model's motion, as logged
+  std::string abort_reason_;                 ///< of the model's motion, as logged
   std::unique_ptr<NetworkMonitor> network_;  ///< null when the network is not checked
   bool exposed_ = false;                     ///< a real rig, and others can reach this machine
   bool admitted_ = false;                    ///< enabled while no other could reach this machine

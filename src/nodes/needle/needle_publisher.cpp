@@ -52,7 +52,8 @@ void NeedlePublisher::publishMotion(const ros::Time& now) {
 
 bool NeedlePublisher::publishState(cell_microinjection::OperatingState state, const ros::Time& now, bool reply) {
   const bool other = state.state != last_published_state_.state;
-  const bool same = !other && state.is_homed == last_published_state_.is_homed && state.is_busy == last_published_state_.is_busy;
+  const bool same =
+      !other && state.is_homed == last_published_state_.is_homed && state.is_busy == last_published_state_.is_busy;
   if (same && !reply) return false;
   state.header.stamp = now;
   state_.publish(state);
@@ -73,7 +74,9 @@ void NeedlePublisher::publishAbilities(const ros::Time& now) {
   message.latency = abilities.latency;
   message.stop_time = abilities.stop_time;
   // Repeated for subscribers that received another node's abilities meanwhile.
-  if (message == last_published_abilities_ && secondsBetween(last_published_abilities_.header.stamp, now) < kAbilitiesPeriod) return;
+  if (message == last_published_abilities_ &&
+      secondsBetween(last_published_abilities_.header.stamp, now) < kAbilitiesPeriod)
+    return;
   message.header.stamp = now;
   abilities_.publish(message);
   last_published_abilities_ = message;

@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <string>
 
+#include "cell_microinjection/CycleStatistics.h"
+
 namespace microinjection {
 
 using diagnostic_msgs::DiagnosticStatus;
@@ -22,6 +24,7 @@ void CycleDiagnostics::start() {
   updater_->add("cycle", [this](DiagnosticStatusWrapper& status) { reportCycle(status); });
   updater_->add("inputs", [this](DiagnosticStatusWrapper& status) { reportInputs(status); });
   for (const auto& task : extra_) updater_->add(task.first, task.second);
+  statistics_ = ros::NodeHandle().advertise<cell_microinjection::CycleStatistics>("/cycle_statistics", 10);
   began_ = reported_ = now_;
 }
 
@@ -41,9 +44,22 @@ void CycleDiagnostics::endStep(const ros::Time& now) {
   if (!updater_) start();
   if (secondsBetween(reported_, now) < updater_->getPeriod()) return;
   updater_->force_update();
+  publishStatistics();
   reported_ = now;
   steps_ = 0;
   step_time_ = longest_step_ = 0;
+}
+
+void CycleDiagnostics::publishStatistics() {
+  cell_microinjection::CycleStatistics statistics;
+  statistics.header.stamp = now_;
+  statistics.node = ros::this_node::getName().substr(1);
+  if (!outputs_.empty()) statistics.topic = "/" + outputs_.front()->topic;
+  statistics.steps = all_steps_;
+  statistics.mean_rate = static_cast<double>(all_steps_ - 1) / std::max(1e-9, secondsBetween(began_, now_));
+  statistics.median_interval = intervals_.quantile(0.5);
+  statistics.p99_interval = intervals_.quantile(0.99);
+  statistics_.publish(statistics);
 }
 
 void CycleDiagnostics::reportCycle(DiagnosticStatusWrapper& status) {
@@ -55,7 +71,6 @@ void CycleDiagnostics::reportCycle(DiagnosticStatusWrapper& status) {
   status.add("mean step time (s)", step_time_ / std::max(1u, steps_));
   status.add("longest step time (s)", longest_step_);
   status.add("steps since the start", all_steps_);
-  status.add("mean rate since the start (Hz)", (all_steps_ - 1) / std::max(1e-9, secondsBetween(began_, now_)));
   reportIntervals(intervals_, status);
   reportOutputs(status);
 }

@@ -14,7 +14,8 @@
 namespace microinjection {
 
 /// The diagnostics of each cyclic node: rate, step time, the age of every input, and the node's own
-/// tasks. Published each `~diagnostic_period` of ROS time (of diagnostic_updater); default 1 s.
+/// tasks. Published each `~diagnostic_period` of ROS time (of diagnostic_updater); default 1 s. With
+/// them go statistics for other programs, /cycle_statistics (CycleStatistics).
 class CycleDiagnostics {
  public:
   explicit CycleDiagnostics(double rate) : rate_(rate), intervals_(2 / rate) {}
@@ -33,6 +34,7 @@ class CycleDiagnostics {
 
  private:
   void start();
+  void publishStatistics();
   void reportCycle(diagnostic_updater::DiagnosticStatusWrapper& status);
   void reportInputs(diagnostic_updater::DiagnosticStatusWrapper& status);
   void reportOutputs(diagnostic_updater::DiagnosticStatusWrapper& status);
@@ -42,6 +44,7 @@ class CycleDiagnostics {
   std::vector<const OutputPort*> outputs_;
   std::vector<std::pair<std::string, std::function<void(diagnostic_updater::DiagnosticStatusWrapper&)>>> extra_;
   std::unique_ptr<diagnostic_updater::Updater> updater_;  ///< created in the first step, when time runs
+  ros::Publisher statistics_;
   ros::Time now_;
   ros::Time reported_;
   ros::SteadyTime step_began_;

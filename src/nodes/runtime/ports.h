@@ -22,8 +22,9 @@
 namespace microinjection {
 
 /// The message that an input waits for in lock step: that of the same tick (from a node upstream)
-/// or of the last tick (feedback). Live, the arrival of a kThisTick input starts a step.
-enum class InputPhase { kThisTick, kPreviousTick };
+/// or of the last tick (feedback). Live, the arrival of a kThisTick input starts a step. kTrigger:
+/// kThisTick when live, kPreviousTick in lock step, for feedback that shall start a step.
+enum class InputPhase { kThisTick, kPreviousTick, kTrigger };
 
 /// Each topic T in lock step has a second topic T + kNoMessageSuffix. On it the publisher reports
 /// every tick without a message ("silence"), so that nobody waits for one. frame_id "invalid" also

@@ -10,6 +10,7 @@
 #include "base/console_relay.h"
 #include "nodes/runtime/ending.h"
 #include "nodes/runtime/lockstep.h"
+#include "nodes/runtime/parameter_texts.h"
 #include "nodes/runtime/real_time.h"
 
 namespace microinjection {
@@ -24,7 +25,9 @@ int runNode(int argc, char** argv, const std::string& name, Priority priority = 
             ShutdownMode ending = ShutdownMode::kAtOnce) {
   for (int i = 1; i < argc; ++i) {
     if (std::string(argv[i]) == "--help" || std::string(argv[i]) == "-h") {
+      const std::string parameters = parameterText(name);
       std::printf("%s", Node::kHelp);
+      if (!parameters.empty()) std::printf("\nParameters (private), with their defaults:\n\n%s", parameters.c_str());
       return 0;
     }
   }

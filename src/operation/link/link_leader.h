@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "operation/teleoperation/link_config.h"
-#include "operation/teleoperation/link_packet.h"
+#include "operation/link/link_config.h"
+#include "operation/link/link_packet.h"
 
 namespace microinjection {
 

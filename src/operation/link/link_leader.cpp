@@ -1,4 +1,4 @@
-#include "operation/teleoperation/link_leader.h"
+#include "operation/link/link_leader.h"
 
 #include <limits>
 

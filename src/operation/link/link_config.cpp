@@ -1,4 +1,4 @@
-#include "operation/teleoperation/link_config.h"
+#include "operation/link/link_config.h"
 
 namespace microinjection {
 

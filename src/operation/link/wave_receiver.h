@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "base/config_reader.h"
-#include "operation/teleoperation/teleoperation_packet.h"
+#include "operation/link/link_packet.h"
 
 namespace microinjection {
 

@@ -3,9 +3,9 @@
 #include <Eigen/Core>
 
 #include "base/config_reader.h"
+#include "operation/link/link_packet.h"
+#include "operation/link/wave_receiver.h"
 #include "operation/teleoperation/contact_displacement.h"
-#include "operation/teleoperation/teleoperation_packet.h"
-#include "operation/teleoperation/wave_receiver.h"
 
 namespace microinjection {
 
@@ -42,10 +42,11 @@ struct WaveConfig {
 ///     f v = u^2 / 2 - w^2 / 2,
 /// so the channel is passive for any delay as long as no wave leaves it with more energy than
 /// entered. WaveReceiver guarantees this. At rest, when reflections have decayed, u and w are
-/// constant and f is the same on both sides. The packets carry the integrals sqrt(2 b) int u = b x
-/// + int f, so a lost packet causes no drift. With a delay T in each direction, a held force f
-/// leaves the needle f T / b behind the hand: the channel is a spring of b / T. All quantities are
-/// at the hand's scale (see passivity_controller.h).
+/// constant and f is the same on both sides. The packets carry the integrals
+///     sqrt(2 b) int u = b x + int f,
+/// so a lost packet causes no drift. With a delay T in each direction, a held force f leaves the
+/// needle f T / b behind the hand: the channel is a spring of b / T. All quantities are at the
+/// hand's scale (see passivity_controller.h).
 ///
 /// A resting hand reflects every wave (u = -w). So does a needle in free motion (w = u) or on a
 /// stiff body (w = -u). Between such ends waves travel back and forth, and for seconds neither

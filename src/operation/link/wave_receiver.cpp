@@ -1,4 +1,4 @@
-#include "operation/teleoperation/wave_receiver.h"
+#include "operation/link/wave_receiver.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,8 @@ namespace {
 
 // Share of the reserve that is kept while a wave is held for late packets. A held wave u is
 // corrected with the time t. Its integral's excess after a time s is m = u t (1 - exp(-s / t)) and
-// has cost u^2 t (1 - exp(-2 s / t)) / 4. Correcting it when no more packets come costs m^2 / (4
-// t), which is no more.
+// has cost u^2 t (1 - exp(-2 s / t)) / 4. Correcting it when no more packets come costs no more,
+// m^2 / (4 t).
 constexpr double kKept = 0.5;
 
 }  // namespace

@@ -1,11 +1,11 @@
-#include "operation/teleoperation/wave_port.h"
+#include "operation/link/wave_port.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "operation/teleoperation/link_emulator.h"
+#include "operation/link/link_emulator.h"
 
 namespace microinjection {
 namespace {

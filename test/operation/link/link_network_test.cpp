@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "operation/teleoperation/link_emulator.h"
-#include "operation/teleoperation/link_follower.h"
-#include "operation/teleoperation/link_leader.h"
+#include "operation/link/link_emulator.h"
+#include "operation/link/link_follower.h"
+#include "operation/link/link_leader.h"
 
 namespace microinjection {
 namespace {

@@ -1,4 +1,4 @@
-#include "operation/teleoperation/wave_port.h"
+#include "operation/link/wave_port.h"
 
 #include <algorithm>
 #include <cmath>

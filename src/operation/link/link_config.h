@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "operation/teleoperation/wave_port.h"
+#include "operation/link/wave_port.h"
 
 namespace microinjection {
 

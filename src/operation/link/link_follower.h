@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "operation/teleoperation/link_config.h"
-#include "operation/teleoperation/link_packet.h"
+#include "operation/link/link_config.h"
+#include "operation/link/link_packet.h"
 
 namespace microinjection {
 

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "operation/teleoperation/link_follower.h"
-#include "operation/teleoperation/link_leader.h"
+#include "operation/link/link_follower.h"
+#include "operation/link/link_leader.h"
 
 namespace microinjection {
 namespace {

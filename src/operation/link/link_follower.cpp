@@ -1,4 +1,4 @@
-#include "operation/teleoperation/link_follower.h"
+#include "operation/link/link_follower.h"
 
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "operation/teleoperation/link_emulator.h"
+#include "operation/link/link_emulator.h"
 
 namespace microinjection {
 

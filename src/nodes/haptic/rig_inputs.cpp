@@ -1,0 +1,45 @@
+#include "nodes/haptic/rig_inputs.h"
+
+#include "nodes/runtime/conversions.h"
+
+namespace microinjection {
+
+void RigTimeouts::read(ConfigReader& timeouts) {
+  timeouts.number("needle", needle, Range::positive());
+  timeouts.number("predicted", predicted, Range::positive());
+  timeouts.number("measured", measured, Range::positive());
+  timeouts.number("controller", controller, Range::nonNegative());
+}
+
+RigInputs::RigInputs(Cycle& cycle, const RigTimeouts& timeouts, const ForceSourceConfig& source)
+    : needle_(
+          cycle.input<geometry_msgs::PoseStamped>("needle/measured_cp", InputPhase::kPreviousTick, timeouts.needle)) {
+  using geometry_msgs::WrenchStamped;
+  if (source.usesPredicted()) {
+    predicted_ = &cycle.input<WrenchStamped>("cell/predicted_cf", InputPhase::kPreviousTick, timeouts.predicted);
+  }
+  if (source.usesMeasured()) {
+    measured_ = &cycle.input<WrenchStamped>("force_sensor/measured_cf", InputPhase::kPreviousTick, timeouts.measured);
+  }
+  if (timeouts.controller > 0) {
+    controller_ = &cycle.input<cell_microinjection::InjectionStatus>("controller/injection_state",
+                                                                     InputPhase::kPreviousTick, timeouts.controller);
+  }
+}
+
+RigInputs::Reading RigInputs::read(const ros::Time& now) const {
+  Reading reading;
+  reading.controller = !controller_ || controller_->get(now);
+  if (const auto needle = validPose(needle_.get(now))) {
+    reading.needle = needle->translation();
+    reading.force.predicted = validForce(predicted_ ? predicted_->get(now) : nullptr, needle->linear());
+    reading.force.measured = validForce(measured_ ? measured_->get(now) : nullptr, needle->linear());
+  }
+  return reading;
+}
+
+ros::Time RigInputs::forceStamp(const ros::Time& now) const {
+  return (predicted_ ? predicted_ : measured_)->get(now)->header.stamp;
+}
+
+}  // namespace microinjection

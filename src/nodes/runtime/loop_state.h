@@ -1,0 +1,34 @@
+#pragma once
+
+#include <ros/ros.h>
+
+#include <string>
+
+#include "cell_microinjection/LoopState.h"
+#include "nodes/runtime/stamps.h"
+
+namespace microinjection {
+
+/// Publishes on a latched topic whether a node follows its inputs: at each change, at most each
+/// 0.1 s, and each second.
+class LoopStatePublisher {
+ public:
+  LoopStatePublisher(ros::NodeHandle& node, const std::string& topic)
+      : publisher_(node.advertise<cell_microinjection::LoopState>(topic, 1, true)) {}
+
+  /// `reason`: why the node holds; empty: it follows.
+  void step(const std::string& reason, const ros::Time& now) {
+    const double age = last_.header.stamp.isZero() ? 1 : secondsBetween(last_.header.stamp, now);
+    if (age >= 0 && age < (reason == last_.hold_reason ? 1 : 0.1)) return;
+    last_.header.stamp = now;
+    last_.follows = reason.empty();
+    last_.hold_reason = reason;
+    publisher_.publish(last_);
+  }
+
+ private:
+  ros::Publisher publisher_;
+  cell_microinjection::LoopState last_;
+};
+
+}  // namespace microinjection
