@@ -1,4 +1,4 @@
-#include "nodes/runtime/round_trip_meter.h"
+#include "benchmark/emulated_haptic/round_trip_meter.h"
 
 #include <cmath>
 

@@ -7,8 +7,8 @@
 
 #include <limits>
 
+#include "benchmark/emulated_haptic/emulated_driver.h"
 #include "cell_microinjection/OperatingState.h"
-#include "nodes/haptic/emulated_driver.h"
 #include "nodes/runtime/conversions.h"
 
 namespace microinjection {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "nodes/haptic/emulated_driver.h"
+#include "benchmark/emulated_haptic/emulated_driver.h"
 #include "nodes/haptic/geomagic_messages.h"
 #include "nodes/haptic/omni_messages.h"
 #include "nodes/runtime/conversions.h"
