@@ -2,17 +2,9 @@
 
 #include <algorithm>
 
-#include "base/errors.h"
 #include "base/vectors.h"
 
 namespace microinjection {
-namespace {
-
-void requireDirection(const Eigen::Vector3d& axis, const std::string& key) {
-  if (!(axis.norm() > 0)) throw ConfigError("fixtures/" + key + ": must not be zero");
-}
-
-}  // namespace
 
 VirtualFixturesConfig VirtualFixturesConfig::read(ConfigReader reader) {
   VirtualFixturesConfig config;
@@ -42,11 +34,6 @@ VirtualFixturesConfig VirtualFixturesConfig::read(ConfigReader reader) {
 
 VirtualFixtures::VirtualFixtures(const VirtualFixturesConfig& config, double position_scale)
     : config_(config), position_scale_(position_scale) {
-  requireDirection(config.guide_axis, "guide/axis");
-  requireDirection(config.wall_normal, "wall/normal");
-  if ((config.workspace_low.array() >= config.workspace_high.array()).any()) {
-    throw ConfigError("fixtures/workspace/low: must be below high on every axis");
-  }
   config_.guide_axis.normalize();
   config_.wall_normal.normalize();
 }
