@@ -2,7 +2,7 @@
 
 A room includes only itself and the rooms that its microinjection_room(... DEPENDS ...) names, directly or in turn. A
 room of one wing never depends on one of another. Only src/nodes includes ROS; nothing else includes src/nodes or
-benchmark.
+benchmark. benchmark/emulated_haptic is a node and includes both.
 """
 import re
 import tempfile
@@ -13,8 +13,8 @@ ROOT = Path(__file__).resolve().parent.parent
 SOURCE = ROOT / 'src'
 
 # Folders that are programs and not rooms: they may include every room, and no room may include them.
-PROGRAMS = {'nodes', 'commands', 'tools', 'benchmark'}
-KNOWS_ROS = {'nodes'}
+PROGRAMS = {'nodes', 'commands', 'tools', 'benchmark', 'benchmark/emulated_haptic'}
+KNOWS_ROS = {'nodes', 'benchmark/emulated_haptic'}
 
 # First folders of the include paths of ROS, of its libraries and of generated messages (ours too).
 ROS_FOLDERS = re.compile(
@@ -57,7 +57,9 @@ def check_include(folder, target, allowed):
     if ROS_FOLDERS.match(target):
         return None if folder in KNOWS_ROS else 'only src/nodes may include ROS'
     if first in PROGRAMS and '/' in target:
-        return None if first == folder else f'nothing includes {"" if first == "benchmark" else "src/"}{first}'
+        if first == folder or (first == 'nodes' and folder in KNOWS_ROS):
+            return None
+        return f'nothing includes {"" if first.startswith("benchmark") else "src/"}{first}'
     if first in allowed and folder in allowed and first not in allowed[folder]:
         return f'room {folder} may include only {", ".join(sorted(allowed[folder]))}'
     return None
@@ -193,6 +195,18 @@ class TheRule(unittest.TestCase):
         self.write('../benchmark/a.cpp', '#include "benchmark/a.h"\n')
         self.assertEqual(check_source(self.source), [])
         self.assert_reported('cell/model/b.cpp', '#include "benchmark/a.h"', 'nothing includes benchmark')
+
+    def test_holds_for_the_node_of_the_benchmarks(self):
+        self.write('../benchmark/emulated_haptic/a.h', '#include "nodes/a.h"\n#include <ros/ros.h>\n')
+        self.write('../benchmark/emulated_haptic/a.cpp', '#include "benchmark/emulated_haptic/a.h"\n')
+        self.assertEqual(check_source(self.source), [])
+        self.write('../benchmark/a.cpp', '#include <ros/ros.h>\n')
+        self.assertIn('only src/nodes may include ROS', check_source(self.source)[0])
+        self.write('../benchmark/a.cpp', '#include "nodes/a.h"\n')
+        self.assertIn('nothing includes src/nodes', check_source(self.source)[0])
+        (self.source / '../benchmark/a.cpp').unlink()
+        self.assert_reported('nodes/b.cpp', '#include "benchmark/emulated_haptic/a.h"',
+                             'nothing includes benchmark/emulated_haptic')
 
     def test_reports_an_include_without_its_room(self):
         self.assert_reported('cell/model/b.cpp', '#include "a.h"', 'included as "room/file.h"')

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import yaml
 
+# Folders of the nodes' code.
+NODE_FILES = ('src/nodes/*', 'src/nodes/*/*', 'benchmark/emulated_haptic/*')
 SKIPPED = {'.git', 'out', 'build', 'catkin_ws', '__pycache__'}
 TOPIC_CALL = re.compile(
     r'(?:advertise|output|input|subscribe|subscribeGuarded|follow)<[^;()]*>\(\s*(?:[\w.()]+,\s*)?"(/?[a-z_]+(?:/[a-z_]+)*)"')
@@ -98,7 +100,8 @@ class Project:
 
     def read_programs(self):
         """{program: the options it knows}; empty for a node."""
-        self.programs = {Path(path).stem.removesuffix('_node'): set() for path in self.files if Path(path).match('src/nodes/*.cpp')}
+        self.programs = {Path(path).stem.removesuffix('_node'): set() for path in self.files
+                         if Path(path).match('src/nodes/*.cpp') or Path(path).match('benchmark/*/*_node.cpp')}
         self.benches = {}
         for path, text in self.code.items():
             options = set(re.findall(r"""add_argument\(\s*['"](--[a-z-]+)""", text))
@@ -116,7 +119,7 @@ class Project:
 
     def read_nodes(self):
         """Topics, services and global parameters, as the code has them."""
-        text = self.sources('src/nodes/*', 'src/nodes/*/*')
+        text = self.sources(*NODE_FILES)
         self.topics = {'/' + topic.lstrip('/') for topic in TOPIC_CALL.findall(text)}
         self.topics |= set(re.findall(r'"(/[a-z_]+(?:/[a-z_]+)*)"', text))
         self.topics |= {'/' + topic for topic in re.findall(r'"([a-z_]+/[a-z_]+(?:/[a-z_]+)?)"', text)}

@@ -5,7 +5,7 @@ from pathlib import Path
 import yaml
 
 from documents_checker import PACKAGE, Checker
-from documents_project import TOPIC_CALL, flatten
+from documents_project import NODE_FILES, TOPIC_CALL, flatten
 
 DRIVERS = ('/phantom/', '/Geomagic/')  # topics of others that have an emulator here
 
@@ -35,21 +35,23 @@ def check_parameters(project, text):
 
 def check_topics(project, text):
     """Each topic that a node publishes or hears below a name of ours, and each service, is in topics_and_frames.md."""
-    calls = {'/' + topic.lstrip('/') for topic in TOPIC_CALL.findall(project.sources('src/nodes/*', 'src/nodes/*/*'))}
+    calls = {'/' + topic.lstrip('/') for topic in TOPIC_CALL.findall(project.sources(*NODE_FILES))}
     ours = {topic for topic in calls if topic.count('/') > 1 and not topic.startswith(DRIVERS)} | project.services
     return [f'{topic} is not in the tables' for topic in sorted(ours) if f'`{topic}`' not in text]
 
 
 def files_of(project, node):
-    """The files of src/nodes that a node is made of: its own, and what these include."""
-    found, waiting = set(), [f'src/nodes/{node}_node.cpp', f'src/nodes/{node}.cpp']
+    """The files that a node is made of: its own, and what these include of src/nodes and benchmark."""
+    found, waiting = set(), [f'src/nodes/{node}_node.cpp', f'src/nodes/{node}.cpp',
+                               f'benchmark/{node}/{node}_node.cpp']
     waiting += [path for path in project.code if node == 'haptic_device' and path.endswith('_adapter.cpp')]
     while waiting:
         path = waiting.pop()
         if path in project.code and path not in found:
             found.add(path)
-            included = re.findall(r'#include "(nodes/[^"]+)"', project.code[path])
-            waiting += [f'src/{name[:-1]}{end}' for name in included for end in ('h', 'cpp')] + [path[:-3] + 'h']
+            included = re.findall(r'#include "((?:nodes|benchmark)/[^"]+)"', project.code[path])
+            included = [name if name.startswith('benchmark/') else f'src/{name}' for name in included]
+            waiting += [name[:-1] + end for name in included for end in ('h', 'cpp')] + [path[:-3] + 'h']
     return found
 
 

@@ -20,7 +20,7 @@ constexpr double kStaleAge = 1;     // s of wall time
 
 CellSurface toSurface(const cell_microinjection::CellState& message) {
   CellSurface surface;
-  for (const auto& p : message.vertices) surface.vertices.emplace_back(p.x, p.y, p.z);
+  for (const auto& p : message.vertices) surface.vertices.push_back(toVector(p));
   for (std::size_t i = 0; i + 2 < message.triangles.size(); i += 3) {
     const auto* t = &message.triangles[i];
     surface.triangles.push_back({static_cast<int>(t[0]), static_cast<int>(t[1]), static_cast<int>(t[2])});
@@ -33,7 +33,7 @@ CellSurface toSurface(const cell_microinjection::CellState& message) {
 
 CellMembers toMembers(const cell_microinjection::CellState& message) {
   CellMembers members;
-  for (const auto& p : message.member_points) members.points.emplace_back(p.x, p.y, p.z);
+  for (const auto& p : message.member_points) members.points.push_back(toVector(p));
   members.forces.assign(message.member_force.begin(), message.member_force.end());
   members.kinds.assign(message.member_kind.begin(), message.member_kind.end());
   return members;
@@ -117,7 +117,7 @@ void DisplayNode::onState(const cell_microinjection::CellState& message) {
   state_.alarm = !defect.empty() || message.punctured || !message.converged;
   state_.readout.indentation = std::nullopt;
   if (std::isfinite(message.indentation)) state_.readout.indentation = message.indentation;
-  const Eigen::Vector3d force(message.force.x, message.force.y, message.force.z);
+  const Eigen::Vector3d force = toVector(message.force);
   state_.predicted = std::nullopt;
   if (message.converged && isWithin(force, kLargestForce)) state_.predicted = force;
   state_.readout.predicted = magnitude(state_.predicted);
@@ -126,7 +126,7 @@ void DisplayNode::onState(const cell_microinjection::CellState& message) {
   state_.surface = std::move(surface);
   state_.members = std::move(members);
   state_.holes.clear();
-  for (const auto& hole : message.holes) state_.holes.emplace_back(hole.x, hole.y, hole.z);
+  for (const auto& hole : message.holes) state_.holes.push_back(toVector(hole));
   cell_changed_ = true;
 }
 

@@ -98,8 +98,7 @@ std::string ForceSensorNode::act(const cell_microinjection::CalibrateForce::Requ
   switch (request.action) {
     case cell_microinjection::CalibrateForce::Request::ADD: {
       if (!notReadyReason().empty()) return notReadyReason();
-      const Eigen::Vector3d at_tip(request.force.x, request.force.y, request.force.z);
-      const Eigen::Vector3d load = tip_from_sensor_.linear().transpose() * at_tip;
+      const Eigen::Vector3d load = tip_from_sensor_.linear().transpose() * toVector(request.force);
       return readout_.beginPoint(Eigen::Vector2d(load.z(), load.x()));
     }
     case cell_microinjection::CalibrateForce::Request::SOLVE:
@@ -140,9 +139,7 @@ geometry_msgs::WrenchStamped ForceSensorNode::atTip(const Eigen::VectorXd& force
   if (force.size() == 2)
     return toWrench(tip_from_sensor_.linear() * Eigen::Vector3d(force[1], 0, force[0]), stamp, kTipFrame);
   geometry_msgs::WrenchStamped message = toWrench(force.head<3>(), stamp, kTipFrame);
-  message.wrench.torque.x = force[3];
-  message.wrench.torque.y = force[4];
-  message.wrench.torque.z = force[5];
+  message.wrench.torque = toMessage<geometry_msgs::Vector3>(force.tail<3>());
   return message;
 }
 

@@ -15,9 +15,6 @@ namespace {
 
 constexpr char kStateTopic[] = "controller/state_command";
 
-// s: an older command must not start a motion. The needle's commands have the same limit.
-constexpr double kOldestCommand = 3;
-
 /// Commands that stop or withdraw the needle are executed with any stamp.
 bool stops(const std::string& command) {
   return command == "disable" || command == "pause" || command == "home" || command == "unhome" ||

@@ -58,7 +58,7 @@ InjectorNode::InjectorNode(ros::NodeHandle node, ros::NodeHandle private_node)
   reset_ = private_node.advertiseService<std_srvs::Trigger::Request, std_srvs::Trigger::Response>(
       "reset", [this](std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
         device_->reset();
-        refusal_.clear();
+        log_.addResult("reset", "");
         response.success = device_->fault().empty();
         response.message = device_->fault();
         return true;
@@ -102,18 +102,11 @@ std::string InjectorNode::stampError(const std_msgs::Header& header) const {
   return age < -parameters_.command_timeout ? "it is from the future" : "";
 }
 
-void InjectorNode::reportRefusal(const std::string& command, const std::string& refusal) {
-  refusal_ = refusal.empty() ? "" : command + " refused: " + refusal;
-  if (refusal_.empty()) return;
-  ++refused_;
-  ROS_WARN_STREAM(refusal_);
-}
-
 void InjectorNode::onPulse(const cell_microinjection::InjectionPulse& message) {
   const std::string command = "pulse " + std::to_string(message.id);
-  if (message.id == 0) return reportRefusal(command, "its id is 0, which means none");
+  if (message.id == 0) return log_.addResult(command, "its id is 0, which means none");
   const std::string error = stampError(message.header);
-  if (!error.empty()) return reportRefusal(command, error);
+  if (!error.empty()) return log_.addResult(command, error);
   // A refused id counts as used, too: the same message, received again, must not inject later.
   if (!ids_.isNew(message.id)) {
     if (message.id == held_) {
@@ -125,20 +118,20 @@ void InjectorNode::onPulse(const cell_microinjection::InjectionPulse& message) {
   }
   const std::string refusal =
       cycle_.masterLost() ? "the ROS master is lost" : device_->pulse({message.id, message.pressure, message.duration});
-  reportRefusal(command, refusal);
+  log_.addResult(command, refusal);
   if (!message.held || !refusal.empty()) return;
   held_ = message.id;
   last_repetition_ = message.header.stamp;
 }
 
 void InjectorNode::onStop(const cell_microinjection::StringStamped& message) {
-  reportRefusal("stop", device_->stop());
+  log_.addResult("stop", device_->stop());
   ROS_INFO_STREAM("stopped: " << message.string);
 }
 
 void InjectorNode::onBalance(const sensor_msgs::FluidPressure& message) {
   const std::string error = stampError(message.header);
-  reportRefusal("set_balance", error.empty() ? device_->setBalance(message.fluid_pressure) : error);
+  log_.addResult("set_balance", error.empty() ? device_->setBalance(message.fluid_pressure) : error);
 }
 
 /// Ends a pulse that no node could end any more.
@@ -149,7 +142,7 @@ void InjectorNode::endAbandonedPulse(const ros::Time& now) {
   if (!device_->reading().busy || !(lost || silent)) return;
   held_ = 0;
   ROS_WARN_STREAM("the pulse is ended: " << (lost ? "the ROS master is lost" : "its sender is stale"));
-  reportRefusal("stop", device_->stop());
+  log_.addResult("stop", device_->stop());
 }
 
 void InjectorNode::step(const Cycle::Tick& tick) {
@@ -166,7 +159,7 @@ void InjectorNode::step(const Cycle::Tick& tick) {
   state.last_id = reading.last_id;
   state.pulses = reading.pulses;
   state.fault = device_->fault();
-  state.refusal = refusal_;
+  state.refusal = log_.refusal();
   state_.publish(state);
 }
 
@@ -177,15 +170,15 @@ void InjectorNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) c
     status.summary(DiagnosticStatus::ERROR, device_->fault());
   } else if (clogged_) {
     status.summary(DiagnosticStatus::WARN, "the tip is clogged on request");
-  } else if (!refusal_.empty()) {
-    status.summary(DiagnosticStatus::WARN, refusal_);
+  } else if (!log_.refusal().empty()) {
+    status.summary(DiagnosticStatus::WARN, log_.refusal());
   } else if (!reading.busy && reading.flow < 0) {
     status.summary(DiagnosticStatus::WARN, "flows back: the balance pressure is too low");
   } else {
     status.summary(DiagnosticStatus::OK, reading.busy ? "injects" : "ready");
   }
   status.add("pulses done", reading.pulses);
-  status.add("commands refused", refused_);
+  status.add("commands refused", log_.refused());
   status.add("repeated pulses ignored", repeated_);
 }
 

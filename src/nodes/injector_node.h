@@ -11,6 +11,7 @@
 #include "cell_microinjection/InjectionPulse.h"
 #include "cell_microinjection/InjectorState.h"
 #include "cell_microinjection/StringStamped.h"
+#include "nodes/runtime/command_log.h"
 #include "nodes/runtime/cycle.h"
 #include "rig/injector/injector_model.h"
 #include "rig/injector/injector_protocol.h"
@@ -60,7 +61,6 @@ class InjectorNode {
   void onStop(const cell_microinjection::StringStamped& message);
   void onBalance(const sensor_msgs::FluidPressure& message);
   std::string stampError(const std_msgs::Header& header) const;
-  void reportRefusal(const std::string& command, const std::string& refusal);
   void endAbandonedPulse(const ros::Time& now);
   void step(const Cycle::Tick& tick);
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
@@ -75,10 +75,9 @@ class InjectorNode {
   bool master_lost_ = false;
   ros::Subscriber balance_;
   ros::ServiceServer reset_, clog_;
-  unsigned refused_ = 0;
   unsigned repeated_ = 0;
   bool clogged_ = false;
-  std::string refusal_;  ///< of the last command; empty when it was accepted
+  CommandLog log_;
 };
 
 }  // namespace microinjection

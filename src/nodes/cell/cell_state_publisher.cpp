@@ -3,21 +3,13 @@
 #include <algorithm>
 #include <chrono>
 
+#include "nodes/runtime/conversions.h"
 #include "nodes/runtime/real_time.h"
 
 namespace microinjection {
 namespace {
 
 constexpr char kCellFrame[] = "cell";
-
-template <typename Message>
-Message toMessage(const Eigen::Vector3d& vector) {
-  Message message;
-  message.x = vector.x();
-  message.y = vector.y();
-  message.z = vector.z();
-  return message;
-}
 
 }  // namespace
 

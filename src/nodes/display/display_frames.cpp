@@ -3,6 +3,7 @@
 #include <geometry_msgs/TransformStamped.h>
 #include <ros/time.h>
 
+#include "nodes/runtime/conversions.h"
 #include "operation/display/display_scale.h"
 
 namespace microinjection {
@@ -10,15 +11,12 @@ namespace {
 
 geometry_msgs::TransformStamped enlarged(const std::string& frame, const Eigen::Isometry3d& pose,
                                          const ros::Time& stamp) {
-  const Eigen::Vector3d position = toDisplay(pose.translation());
   const Eigen::Quaterniond rotation(pose.linear());
   geometry_msgs::TransformStamped message;
   message.header.stamp = stamp;
   message.header.frame_id = "viz/world";
   message.child_frame_id = "viz/" + frame;
-  message.transform.translation.x = position.x();
-  message.transform.translation.y = position.y();
-  message.transform.translation.z = position.z();
+  message.transform.translation = toMessage<geometry_msgs::Vector3>(toDisplay(pose.translation()));
   message.transform.rotation.x = rotation.x();
   message.transform.rotation.y = rotation.y();
   message.transform.rotation.z = rotation.z();

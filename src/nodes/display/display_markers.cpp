@@ -3,18 +3,16 @@
 #include <geometry_msgs/Point.h>
 #include <std_msgs/ColorRGBA.h>
 
+#include <algorithm>
+
+#include "nodes/runtime/conversions.h"
+
 namespace microinjection {
 namespace {
 
 using visualization_msgs::Marker;
 
-geometry_msgs::Point toPoint(const Eigen::Vector3d& vector) {
-  geometry_msgs::Point point;
-  point.x = vector.x();
-  point.y = vector.y();
-  point.z = vector.z();
-  return point;
-}
+constexpr auto toPoint = toMessage<geometry_msgs::Point>;
 
 std_msgs::ColorRGBA toColour(const Colour& colour) {
   std_msgs::ColorRGBA message;
@@ -26,9 +24,8 @@ std_msgs::ColorRGBA toColour(const Colour& colour) {
 }
 
 std::vector<geometry_msgs::Point> toPoints(const std::vector<Eigen::Vector3d>& vectors) {
-  std::vector<geometry_msgs::Point> points;
-  points.reserve(vectors.size());
-  for (const Eigen::Vector3d& vector : vectors) points.push_back(toPoint(vector));
+  std::vector<geometry_msgs::Point> points(vectors.size());
+  std::transform(vectors.begin(), vectors.end(), points.begin(), toPoint);
   return points;
 }
 

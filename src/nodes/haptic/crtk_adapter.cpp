@@ -71,13 +71,11 @@ std::optional<CrtkAdapter::Position> CrtkAdapter::position(const ros::Time& now)
   if (pose_) {
     const auto* pose = pose_->get(now);
     if (!pose) return std::nullopt;
-    const auto& p = pose->pose.position;
-    return Position{pose->header.stamp, pose->header.frame_id, {p.x, p.y, p.z}};
+    return Position{pose->header.stamp, pose->header.frame_id, toVector(pose->pose.position)};
   }
   const auto* transform = transform_->get(now);
   if (!transform) return std::nullopt;
-  const auto& p = transform->transform.translation;
-  return Position{transform->header.stamp, transform->header.frame_id, {p.x, p.y, p.z}};
+  return Position{transform->header.stamp, transform->header.frame_id, toVector(transform->transform.translation)};
 }
 
 std::string CrtkAdapter::noForceReason(const ros::Time& now) {

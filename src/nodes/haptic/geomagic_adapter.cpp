@@ -55,9 +55,7 @@ std::optional<HandReading> GeomagicAdapter::read(const Cycle::Tick& tick) {
 
 void GeomagicAdapter::render(const Eigen::Vector3d& force, const Cycle::Tick&) {
   DeviceFeedback feedback;
-  feedback.force.x = force.x();
-  feedback.force.y = force.y();
-  feedback.force.z = force.z();
+  feedback.force = toMessage<geometry_msgs::Vector3>(force);
   force_.publish(feedback);
 }
 

@@ -66,8 +66,7 @@ void MarkerAdapter::onFeedback(const Feedback& feedback) {
   const auto event = feedback->event_type;
   if (event == Event::MOUSE_UP) return endDrag();
   if (event != Event::MOUSE_DOWN && event != Event::POSE_UPDATE && event != Event::KEEP_ALIVE) return;
-  const auto& p = feedback->pose.position;
-  const Eigen::Vector3d to = fromDisplay({p.x, p.y, p.z});
+  const Eigen::Vector3d to = fromDisplay(toVector(feedback->pose.position));
   if (feedback->header.frame_id != kFrame || !to.allFinite() || to.norm() > kLargestNeedleDistance) {
     ROS_WARN_THROTTLE(5, "the handle cannot be dragged in frame '%s': set rviz's fixed frame to %s",
                       feedback->header.frame_id.c_str(), kFrame);

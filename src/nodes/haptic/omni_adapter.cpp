@@ -44,9 +44,8 @@ std::optional<HandReading> OmniAdapter::read(const Cycle::Tick& tick) {
     return std::nullopt;
   }
   if (!receiver_.isConnected()) return std::nullopt;
-  const auto& p = state->pose.position;
   HandReading reading;
-  reading.position = config_.length_unit * Eigen::Vector3d(p.x, p.y, p.z);
+  reading.position = config_.length_unit * toVector(state->pose.position);
   if (!isWithin(reading.position, kLargestHandDistance)) return std::nullopt;
   reading.stamp = state->header.stamp;
   reading.clutch = clutch_;
@@ -56,9 +55,7 @@ std::optional<HandReading> OmniAdapter::read(const Cycle::Tick& tick) {
 
 void OmniAdapter::render(const Eigen::Vector3d& force, const Cycle::Tick&) {
   OmniFeedback feedback;
-  feedback.force.x = force.x();
-  feedback.force.y = force.y();
-  feedback.force.z = force.z();
+  feedback.force = toMessage<geometry_msgs::Vector3>(force);
   force_.publish(feedback);
 }
 

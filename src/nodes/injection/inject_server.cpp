@@ -1,29 +1,24 @@
 #include "nodes/injection/inject_server.h"
 
-#include "nodes/runtime/message_guard.h"
-
-#include <cstdlib>
+#include <cmath>
 #include <iterator>
 #include <sstream>
+
+#include "nodes/runtime/message_guard.h"
 
 namespace microinjection {
 namespace {
 
-// Times in ns: ros::Time throws when a sum or a difference does not fit into its seconds.
-constexpr std::int64_t kAhead = 1000000000;        // ns, largest lead of a stamp
-constexpr std::int64_t kStatusPeriod = 200000000;  // ns
-constexpr std::int64_t kStatusKept = 5000000000;   // ns, time after its end in which a goal's status is published
-constexpr std::uint32_t kQueue = 50;               // messages, as in actionlib's own server
-
-std::int64_t nanoseconds(const ros::Time& time) { return static_cast<std::int64_t>(time.toNSec()); }
+constexpr double kStatusPeriod = 0.2;  // s
+constexpr double kStatusKept = 5;      // s, time after its end in which a goal's status is published
+constexpr std::uint32_t kQueue = 50;   // messages, as in actionlib's own server
 
 /// Empty, or the error of the stamp. Before the clock starts, any stamp is accepted.
 std::string aheadOfTime(const ros::Time& stamp) {
-  const std::int64_t now = nanoseconds(ros::Time::now()), ahead = nanoseconds(stamp) - now;
-  if (now == 0 || ahead <= kAhead) return "";
+  const ros::Time now = ros::Time::now();
+  if (now.isZero() || !isAhead(stamp, now)) return "";
   std::ostringstream text;
-  text << "its stamp is " << 1e-9 * static_cast<double>(ahead) << " s ahead of the time, allowed "
-       << 1e-9 * static_cast<double>(kAhead) << " s";
+  text << "its stamp is " << secondsBetween(now, stamp) << " s ahead of the time, allowed " << kLargestLead << " s";
   return text.str();
 }
 
@@ -99,15 +94,15 @@ void InjectServer::publishStatus() {
     // The cancel of a goal that never arrived has no handle with a time.
     const bool over = tracker->handle_tracker_.expired();
     if (over && tracker->handle_destruction_time_.isZero()) tracker->handle_destruction_time_ = now;
-    const std::int64_t age = std::abs(nanoseconds(now) - nanoseconds(tracker->handle_destruction_time_));
+    const double age = std::abs(secondsBetween(tracker->handle_destruction_time_, now));
     tracker = over && age > kStatusKept ? status_list_.erase(tracker) : std::next(tracker);
   }
   status_.publish(message);
-  published_ns_ = nanoseconds(now);
+  published_ = now;
 }
 
 void InjectServer::step(const ros::Time& now) {
-  if (std::abs(nanoseconds(now) - published_ns_) >= kStatusPeriod) publishStatus();
+  if (std::abs(secondsBetween(published_, now)) >= kStatusPeriod) publishStatus();
 }
 
 }  // namespace microinjection

@@ -3,7 +3,6 @@
 #include <actionlib/server/action_server_base.h>
 #include <ros/ros.h>
 
-#include <cstdint>
 #include <functional>
 #include <string>
 
@@ -42,7 +41,7 @@ class InjectServer : public actionlib::ActionServerBase<cell_microinjection::Inj
 
   ros::NodeHandle node_;
   std::string refusal_;  ///< of the goal that is passed on
-  std::int64_t published_ns_ = 0;
+  ros::Time published_;  ///< the status
   ros::Publisher status_, result_, feedback_;
   ros::Subscriber goals_, cancels_;
 };

@@ -1,15 +1,15 @@
 #include "nodes/injection/injection_action.h"
 
-#include <cstdlib>
+#include <cmath>
 #include <limits>
 #include <utility>
+
+#include "nodes/runtime/stamps.h"
 
 namespace microinjection {
 namespace {
 
-constexpr std::int64_t kFeedback = 100000000;  ///< ns between two messages
-
-std::int64_t nanoseconds(const ros::Time& time) { return static_cast<std::int64_t>(time.toNSec()); }
+constexpr double kFeedback = 0.1;  ///< s between two messages
 
 InjectionGoal toGoal(const cell_microinjection::InjectGoal& message) {
   InjectionGoal goal;
@@ -90,9 +90,9 @@ void InjectionAction::step(const ros::Time& now) {
   }
   if (current_.isValid() && !controller_.running()) end();
   if (!current_.isValid() && next_.isValid()) begin();
-  if (current_.isValid() && std::abs(nanoseconds(now) - fed_back_ns_) >= kFeedback) {
+  if (current_.isValid() && std::abs(secondsBetween(fed_back_, now)) >= kFeedback) {
     publishFeedback();
-    fed_back_ns_ = nanoseconds(now);
+    fed_back_ = now;
   }
   server_.step(now);
 }
@@ -105,7 +105,7 @@ void InjectionAction::begin() {
   current_ = goal;
   current_.setAccepted();
   end_requested_ = withdrawn_ = false;
-  fed_back_ns_ = 0;
+  fed_back_ = ros::Time();
 }
 
 void InjectionAction::end() {

@@ -2,7 +2,6 @@
 
 #include <ros/ros.h>
 
-#include <cstdint>
 #include <string>
 
 #include "cell_microinjection/InjectAction.h"
@@ -41,7 +40,7 @@ class InjectionAction {
   GoalHandle current_, next_;   ///< not valid: none
   bool end_requested_ = false;  ///< the current goal shall end
   bool withdrawn_ = false;      ///< the controller has the command
-  std::int64_t fed_back_ns_ = 0;
+  ros::Time fed_back_;
   InjectServer server_;
 };
 

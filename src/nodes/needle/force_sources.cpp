@@ -13,11 +13,6 @@ geometry_msgs::WrenchStamped twoAxes(const Eigen::Vector2d& reading, const ros::
   return toWrench({reading[1], 0, reading[0]}, stamp, frame);
 }
 
-Eigen::Vector3d torqueOf(const geometry_msgs::WrenchStamped& message) {
-  const auto& t = message.wrench.torque;
-  return {t.x, t.y, t.z};
-}
-
 }  // namespace
 
 SimulatedForceSource::SimulatedForceSource(Cycle& cycle, double timeout, const ForceSensorConfig& config,
@@ -70,7 +65,7 @@ TopicForceSource::TopicForceSource(Cycle& cycle, double timeout, const Eigen::Ve
 std::optional<ForceSource::Signal> TopicForceSource::read(const Cycle::Tick& tick) {
   const auto message = wrench_.takeUpdates();
   const auto force = finiteForce(wrench_.get(tick.now));
-  if (!force || !isWithin(torqueOf(*wrench_.get(tick.now)), kLargestForce)) {
+  if (!force || !isWithin(toVector(wrench_.get(tick.now)->wrench.torque), kLargestForce)) {
     invalid_reason_ = "no valid wrench on force_sensor/device_cf";
     return std::nullopt;
   }
@@ -81,7 +76,7 @@ std::optional<ForceSource::Signal> TopicForceSource::read(const Cycle::Tick& tic
   // The same force about another point: the torque gains arm x force.
   Signal signal{Eigen::VectorXd(6), message->header.stamp, *message};
   const Eigen::Vector3d at_tip = pose->linear() * *force;
-  signal.values << at_tip, pose->linear() * torqueOf(*message) + pose->translation().cross(at_tip);
+  signal.values << at_tip, pose->linear() * toVector(message->wrench.torque) + pose->translation().cross(at_tip);
   overload_.check({at_tip.z(), at_tip.head<2>().norm()});
   return signal;
 }

@@ -10,10 +10,6 @@
 namespace microinjection {
 namespace {
 
-// s: a restarted node receives latched commands again, which must not move the needle a second
-// time.
-constexpr double kOldestMove = 3;
-
 constexpr char kStateTopic[] = "needle/state_command";
 
 /// Commands that stop something are executed with any stamp and in any state.
@@ -107,7 +103,7 @@ void NeedleCommands::onMove(const geometry_msgs::PoseStamped& message, const Com
   if (source.unstamped) stamped.header.stamp = ros::Time::now();
   const auto pose = validPose(&stamped);
   if (!pose) return log_.addResult("move_cp", "not a valid pose in world");
-  if (age(message.header.stamp) > kOldestMove) return log_.addResult("move_cp", "it is stale");
+  if (age(message.header.stamp) > kOldestCommand) return log_.addResult("move_cp", "it is stale");
   authorize(source.sender);
   command("move_cp", source.sender, [&] {
     std::string refusal = model_.movePosition(*pose);
@@ -148,7 +144,7 @@ std::string NeedleCommands::executeState(const cell_microinjection::StringStampe
   }
   if (!stops(name)) {
     if (!isTimely(kStateTopic, message, now_)) return "its stamp is ahead";
-    if (!source.unstamped && age(message.header.stamp) > kOldestMove) return "it is stale";
+    if (!source.unstamped && age(message.header.stamp) > kOldestCommand) return "it is stale";
     if (old) return std::string(kUnstampedLatched) + "; send it again";
   }
   state_.setConditions(conditions());

@@ -16,6 +16,7 @@ class CommandLog {
 
   /// Refusal of the last command; empty when it was accepted.
   const std::string& refusal() const { return refusal_; }
+  unsigned refused() const { return refused_; }
   /// The last refusal and the last overridden motion since the previous call, or a lasting refusal;
   /// empty: none. Reports are made once a second, with many commands in between.
   std::string takeUpdates();

@@ -1,7 +1,8 @@
 #include "nodes/runtime/command_source.h"
 
-#include <XmlRpc.h>
-#include <ros/master.h>
+#include <vector>
+
+#include "nodes/runtime/lost_publishers.h"
 
 namespace microinjection {
 namespace {
@@ -20,14 +21,8 @@ double sinceSubscribed() {
 
 RepeatedCommands::RepeatedCommands(const std::string& topic) {
   sinceSubscribed();
-  XmlRpc::XmlRpcValue arguments, reply, state;
-  arguments[0] = ros::this_node::getName();
-  if (!ros::master::execute("getSystemState", arguments, reply, state, false)) return;
-  XmlRpc::XmlRpcValue& publishers = state[0];
-  for (int i = 0; i < publishers.size(); ++i) {
-    if (static_cast<std::string>(publishers[i][0]) != topic) continue;
-    for (int j = 0; j < publishers[i][1].size(); ++j) older_.insert(static_cast<std::string>(publishers[i][1][j]));
-  }
+  const std::vector<std::string> publishers = publishersAtMaster()[topic];
+  older_.insert(publishers.begin(), publishers.end());
 }
 
 bool RepeatedCommands::mayBe(const CommandSource& command) {

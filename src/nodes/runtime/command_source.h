@@ -24,6 +24,10 @@ bool isLatched(const ros::MessageEvent<const Message>& event) {
 /// Why an unstamped motion command of a publisher that latches is refused.
 constexpr char kUnstampedLatched[] = "it has no stamp and its publisher latches: it may be an old one";
 
+/// s: an older command does not start a motion. A restarted node receives latched commands again,
+/// which must not move the needle a second time.
+constexpr double kOldestCommand = 3;
+
 /// Origin of a command. CRTK allows commands without a stamp; the released crtk_python_client
 /// (1.4.0) sends such.
 struct CommandSource {

@@ -7,14 +7,6 @@ namespace {
 
 bool isIn(const std::string& frame, const std::string& wanted) { return frame.empty() || frame == wanted; }
 
-Eigen::Vector3d toEigen(const geometry_msgs::Point& point) { return {point.x, point.y, point.z}; }
-
-void fill(geometry_msgs::Vector3& message, const Eigen::Vector3d& vector) {
-  message.x = vector.x();
-  message.y = vector.y();
-  message.z = vector.z();
-}
-
 }  // namespace
 
 bool isWithin(const Eigen::Vector3d& vector, double largest) {
@@ -25,7 +17,7 @@ bool isWithin(const Eigen::Vector3d& vector, double largest) {
 std::optional<Eigen::Vector3d> validPosition(const geometry_msgs::PoseStamped* message, const std::string& frame,
                                              double largest) {
   if (!message || message->header.stamp.isZero() || !isIn(message->header.frame_id, frame)) return std::nullopt;
-  const Eigen::Vector3d position = toEigen(message->pose.position);
+  const Eigen::Vector3d position = toVector(message->pose.position);
   if (!isWithin(position, largest)) return std::nullopt;
   return position;
 }
@@ -44,16 +36,14 @@ std::optional<Eigen::Isometry3d> validPose(const geometry_msgs::PoseStamped* mes
 
 std::optional<Eigen::Vector3d> validVelocity(const geometry_msgs::TwistStamped* message) {
   if (message->header.stamp.isZero() || !isIn(message->header.frame_id, kWorldFrame)) return std::nullopt;
-  const auto& v = message->twist.linear;
-  const Eigen::Vector3d velocity(v.x, v.y, v.z);
+  const Eigen::Vector3d velocity = toVector(message->twist.linear);
   if (!isWithin(velocity, kLargestSpeed)) return std::nullopt;
   return velocity;
 }
 
 std::optional<Eigen::Vector3d> finiteForce(const geometry_msgs::WrenchStamped* message) {
   if (!message) return std::nullopt;
-  const auto& f = message->wrench.force;
-  const Eigen::Vector3d force(f.x, f.y, f.z);
+  const Eigen::Vector3d force = toVector(message->wrench.force);
   if (!isWithin(force, kLargestForce)) return std::nullopt;
   return force;
 }
@@ -69,9 +59,7 @@ geometry_msgs::PoseStamped toPose(const Eigen::Isometry3d& pose, const ros::Time
   geometry_msgs::PoseStamped message;
   message.header.stamp = stamp;
   message.header.frame_id = frame;
-  message.pose.position.x = pose.translation().x();
-  message.pose.position.y = pose.translation().y();
-  message.pose.position.z = pose.translation().z();
+  message.pose.position = toMessage<geometry_msgs::Point>(pose.translation());
   const Eigen::Quaterniond orientation(pose.linear());
   message.pose.orientation.w = orientation.w();
   message.pose.orientation.x = orientation.x();
@@ -90,7 +78,7 @@ geometry_msgs::WrenchStamped toWrench(const Eigen::Vector3d& force, const ros::T
   geometry_msgs::WrenchStamped message;
   message.header.stamp = stamp;
   message.header.frame_id = frame;
-  fill(message.wrench.force, force);
+  message.wrench.force = toMessage<geometry_msgs::Vector3>(force);
   return message;
 }
 
@@ -98,7 +86,7 @@ geometry_msgs::TwistStamped toTwist(const Eigen::Vector3d& velocity, const ros::
   geometry_msgs::TwistStamped message;
   message.header.stamp = stamp;
   message.header.frame_id = frame;
-  fill(message.twist.linear, velocity);
+  message.twist.linear = toMessage<geometry_msgs::Vector3>(velocity);
   return message;
 }
 

@@ -20,6 +20,21 @@ constexpr double kLargestHandDistance = 10;   ///< m from the origin of the devi
 constexpr double kLargestSpeed = 10;          ///< m/s
 constexpr double kLargestForce = 1e3;         ///< N
 
+/// The vector of a message with x, y and z.
+template <typename Message>
+Eigen::Vector3d toVector(const Message& message) {
+  return {message.x, message.y, message.z};
+}
+/// A message with x, y and z.
+template <typename Message>
+Message toMessage(const Eigen::Vector3d& vector) {
+  Message message;
+  message.x = vector.x();
+  message.y = vector.y();
+  message.z = vector.z();
+  return message;
+}
+
 /// Whether a vector is finite and no coordinate is larger than `largest`.
 bool isWithin(const Eigen::Vector3d& vector, double largest);
 

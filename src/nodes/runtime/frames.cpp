@@ -23,10 +23,9 @@ void FrameListener::receive(const tf2_msgs::TFMessage& message, const std::strin
   if (now < newest_) buffer_.clear();  // the clock was set back
   newest_ = now;
   for (const geometry_msgs::TransformStamped& transform : message.transforms) {
-    const auto& t = transform.transform.translation;
     const std::string topic = is_static ? "/tf_static" : "/tf";
     if (!isTimely(topic, transform, now)) continue;
-    if (!isWithin({t.x, t.y, t.z}, kLargestTranslation)) {
+    if (!isWithin(toVector(transform.transform.translation), kLargestTranslation)) {
       MessageRefusals::ofProcess().add(topic, transform.child_frame_id + " cannot be that far away");
       continue;
     }
@@ -37,11 +36,10 @@ void FrameListener::receive(const tf2_msgs::TFMessage& message, const std::strin
 std::optional<Eigen::Isometry3d> FrameListener::find(const std::string& parent, const std::string& frame) const {
   try {
     const auto transform = buffer_.lookupTransform(parent, frame, ros::Time(0)).transform;
-    const auto& t = transform.translation;
     const auto& q = transform.rotation;
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
     pose.linear() = Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized().toRotationMatrix();
-    pose.translation() << t.x, t.y, t.z;
+    pose.translation() = toVector(transform.translation);
     return pose;
   } catch (const tf2::TransformException&) {
     return std::nullopt;

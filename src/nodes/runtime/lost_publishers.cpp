@@ -20,10 +20,10 @@ constexpr int kTries = 3;      ///< a killed publisher stays registered at the m
 
 }  // namespace
 
-LostPublishers::Topics LostPublishers::publishersAtMaster() {
+std::map<std::string, std::vector<std::string>> publishersAtMaster() {
   XmlRpc::XmlRpcValue request, response, state;
   request[0] = ros::this_node::getName();
-  Topics result;
+  std::map<std::string, std::vector<std::string>> result;
   if (!ros::master::execute("getSystemState", request, response, state, kWait)) return result;
   XmlRpc::XmlRpcValue& publishers = state[0];  // [topic, [name, ...]] each
   for (int i = 0; i < publishers.size(); ++i) {
@@ -69,7 +69,7 @@ void LostPublishers::compare() {
   if (ros::isShuttingDown()) return;
   ros::V_string subscribed;
   ros::this_node::getSubscribedTopics(subscribed);
-  const Topics topics = publishersAtMaster();
+  const auto topics = publishersAtMaster();
   for (const std::string& topic : subscribed) {
     const auto registered = topics.find(topic);
     if (registered == topics.end() ||

@@ -6,6 +6,9 @@
 
 namespace microinjection {
 
+/// {topic: names of its publishers, without this node}, from the master; empty without a reply.
+std::map<std::string, std::vector<std::string>> publishersAtMaster();
+
 /// Restores connections that roscpp failed to make. roscpp requests a connection from a publisher
 /// once. When that fails, as it may on a busy machine, the node receives nothing from that
 /// publisher until one of the two restarts. Do not call it in the loop's thread: the master may
@@ -17,9 +20,7 @@ class LostPublishers {
   void check();
 
  private:
-  using Topics = std::map<std::string, std::vector<std::string>>;  ///< {topic: names of publishers}
   void compare();
-  static Topics publishersAtMaster();
   static bool connect(const std::string& topic, const std::vector<std::string>& publishers);
 
   struct Missing {

@@ -30,9 +30,7 @@ class ContactDetector {
   bool step(double force, double advance = 0);
   void reset() { sum_ = 0; }
 
-  double offset() const { return offset_; }        ///< N, as followed until contact
-  double allowance() const { return allowance_; }  ///< k
-  double limit() const { return limit_; }          ///< h
+  double offset() const { return offset_; }  ///< N, as followed until contact
 
  private:
   bool isCreeping() const;
@@ -41,7 +39,7 @@ class ContactDetector {
   double start_offset_, offset_range_;  ///< N, offset at the start, and its largest change
   double creep_limit_;                  ///< m a sample, below which a soft cell's force looks like drift
   double advance_ = 0;                  ///< m a sample, recent mean
-  double allowance_, limit_;
+  double allowance_, limit_;            ///< k and h
   double sum_ = 0;
   std::vector<double> recent_;  ///< N, ring buffer of the last samples
   long count_ = 0;

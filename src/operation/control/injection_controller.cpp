@@ -4,6 +4,8 @@
 #include <limits>
 #include <sstream>
 
+#include "base/vectors.h"
+
 namespace microinjection {
 namespace {
 
@@ -14,8 +16,6 @@ constexpr double kOut = 1e-6;  ///< m before the contact point, from where on a 
 constexpr double kSlowestRig = 1e-6;  ///< m/s: a slower one would hold the needle without a report
 constexpr double kFastestRig = 1;     ///< m/s
 constexpr double kLatestRig = 10;     ///< s
-
-bool valid(const std::optional<Eigen::Vector3d>& value) { return value && value->allFinite(); }
 
 }  // namespace
 
@@ -86,7 +86,7 @@ void InjectionController::engage(const Eigen::Vector3d& needle, const Eigen::Vec
 }
 
 std::optional<Eigen::Vector3d> InjectionController::step(const Input& input, double dt) {
-  const bool needle_valid = valid(input.needle);
+  const bool needle_valid = isValid(input.needle);
   needle_valid_ = needle_valid_ || needle_valid;
   if (state_ == OperatingState::kDisabled || state_ == OperatingState::kFault) {
     // Something else may have moved the needle out of the cell.
@@ -99,7 +99,7 @@ std::optional<Eigen::Vector3d> InjectionController::step(const Input& input, dou
   }
   if (!setpoint_) engage(*input.needle, input.axis);
   if (rigIsAtFault(*input.needle, dt)) return std::nullopt;
-  observe(input, valid(input.force), dt);
+  observe(input, isValid(input.force), dt);
   if (state_ == OperatingState::kPaused) {
     monitorPulse(input, dt);
   } else if (homing_) {
@@ -152,17 +152,17 @@ void InjectionController::observe(const Input& input, bool force_valid, double d
 /// A pulse continues while the needle is PAUSED, up to its volume.
 void InjectionController::monitorPulse(const Input& input, double dt) {
   if (!run_.active() || injection_ != InjectionState::kInject) return;
-  if (!valid(input.force)) return endPulse("no valid force");
+  if (!isValid(input.force)) return endPulse("no valid force");
   applyStep(run_.step(injection_, monitor_, input.injector, *setpoint_, input.axis, dt));
 }
 
 std::optional<Eigen::Vector3d> InjectionController::handTarget(const Input& input) {
   hold_reason_.clear();
-  if (!valid(input.target)) hold_reason_ = kNoTarget;
-  if (!valid(input.force)) hold_reason_ = "no valid force";
+  if (!isValid(input.target)) hold_reason_ = kNoTarget;
+  if (!isValid(input.force)) hold_reason_ = "no valid force";
   if (!hold_reason_.empty()) {
     target_offset_.reset();
-    if (!valid(input.force)) endPulse(hold_reason_);
+    if (!isValid(input.force)) endPulse(hold_reason_);
     return std::nullopt;
   }
   // The hand may have moved while the needle was held: its target counts from the present
@@ -200,7 +200,7 @@ std::optional<Eigen::Vector3d> InjectionController::ownTarget(const Input& input
     hold_reason_ = "no injection is under displacement";
     return std::nullopt;
   }
-  if (!out && !valid(input.force)) {
+  if (!out && !isValid(input.force)) {
     hold_reason_ = "no valid force";
     // Without a force a puncture would not be detected.
     if (injection_ == InjectionState::kIndent) {
@@ -280,8 +280,7 @@ void InjectionController::refuse(const Eigen::Vector3d& motion) {
 
 bool InjectionController::move(const Eigen::Vector3d& motion, const Input& input, double dt) {
   const double largest = std::min(config_.guards.speed_limit, rig_speed_) * dt;
-  const Eigen::Vector3d next =
-      *setpoint_ + (motion.norm() > largest ? Eigen::Vector3d(motion * (largest / motion.norm())) : motion);
+  const Eigen::Vector3d next = *setpoint_ + clampedNorm(motion, largest);
   const double ahead = (next - *input.needle).norm();
   if (ahead > following_error_limit_ && ahead > (*setpoint_ - *input.needle).norm()) {
     hold_reason_ = "the needle does not follow its set-point";

@@ -8,12 +8,6 @@ const char* toText(InjectionState state) {
   return kWords[static_cast<int>(state)];
 }
 
-const char* toText(InjectionEvent event) {
-  constexpr const char* kWords[] = {"start",    "touch",    "lost", "indent", "puncture", "inject",
-                                    "injected", "withdraw", "out",  "fail",   "reset"};
-  return kWords[static_cast<int>(event)];
-}
-
 std::optional<InjectionState> injectionStateOf(const std::string& name) {
   for (const InjectionState state : kInjectionStates) {
     if (name == toText(state)) return state;

@@ -27,14 +27,9 @@ enum class InjectionEvent {
   kFail,      ///< the rig does not execute its commands
   kReset      ///< DISABLED, or enabled anew
 };
-constexpr std::array<InjectionEvent, 11> kInjectionEvents = {
-    InjectionEvent::kStart,    InjectionEvent::kTouch,  InjectionEvent::kLost,     InjectionEvent::kIndent,
-    InjectionEvent::kPuncture, InjectionEvent::kInject, InjectionEvent::kInjected, InjectionEvent::kWithdraw,
-    InjectionEvent::kOut,      InjectionEvent::kFail,   InjectionEvent::kReset};
 
-/// Names for people and topics: "idle", "approach", ...; "start", "touch", ...
+/// Names for people and topics: "idle", "approach", ...
 const char* toText(InjectionState state);
-const char* toText(InjectionEvent event);
 /// The state of that name; empty: none.
 std::optional<InjectionState> injectionStateOf(const std::string& name);
 

@@ -38,7 +38,6 @@ class NeedleMonitor {
   void step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, const Eigen::Vector3d& force);
 
   bool ready() const { return noise_.ready(); }
-  double noise() const { return noise_.deviation(); }                                ///< N
   double offset() const { return contact_ ? contact_->offset() : noise_.offset(); }  ///< N, of the force at rest
   double force() const;                       ///< N, along the pipette above the offset, smoothed
   double peakForce() const { return peak_; }  ///< N, largest magnitude along the pipette

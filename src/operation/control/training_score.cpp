@@ -19,12 +19,12 @@ constexpr char kHeader[] =
 constexpr double kStarted = 1e-6;  ///< m of the tip's motion that counts as start
 constexpr double kGaps = 0.05;     ///< largest share of samples left out
 
-/// Share of the points: 1 up to the reference, 0 from twice the reference.
-double within(double value, double reference) { return std::clamp(2 - value / reference, 0.0, 1.0); }
-/// Share of the points: 1 at the reference, less by the relative difference.
-double at(double value, double reference) {
-  if (reference <= 0) return value <= 0 ? 1 : 0;
-  return std::max(0.0, 1 - std::abs(value - reference) / reference);
+/// Share of the points: 1 up to the reference, 0 from twice the reference. An exact measure has 1 at
+/// the reference, less by the relative difference.
+double shareOf(const TrainingMeasure& measure) {
+  if (!measure.exact) return std::clamp(2 - measure.value / measure.reference, 0.0, 1.0);
+  if (measure.reference <= 0) return measure.value <= 0 ? 1 : 0;
+  return std::max(0.0, 1 - std::abs(measure.value - measure.reference) / measure.reference);
 }
 
 bool inCell(InjectionState state) {
@@ -57,6 +57,15 @@ TrainingTask TrainingTask::read(ConfigReader& reader) {
 const char* toText(TrainingOutcome outcome) {
   constexpr const char* kWords[] = {"complete", "aborted", "invalid", "untouched"};
   return kWords[static_cast<int>(outcome)];
+}
+
+std::array<TrainingMeasure, 6> TrainingScore::measures(const TrainingTask& task) const {
+  return {{{"peak_force_N", "peak force", "uN", 1e-6, peak_force, task.peak_force, 25, false},
+           {"deformation_m", "deformation", "um", 1e-6, deformation, task.deformation, 15, false},
+           {"lateral_error_m", "lateral error", "um", 1e-6, lateral_error, task.lateral_error, 20, false},
+           {"time_s", "time", "s", 1, time, task.time, 10, false},
+           {"punctures", "punctures", "", 1, double(punctures), double(task.punctures), 20, true},
+           {"volume_m3", "volume", "pL", 1e-15, volume, task.volume, 10, true}}};
 }
 
 void TrainingSession::addGap() {
@@ -133,12 +142,9 @@ TrainingScore TrainingSession::score(const TrainingTask& task) const {
   TrainingScore score = measured_;
   computeScore(score);
   if (score.outcome != TrainingOutcome::kComplete) return score;
-  score.points.force = kTrainingPoints.force * within(score.peak_force, task.peak_force);
-  score.points.deformation = kTrainingPoints.deformation * within(score.deformation, task.deformation);
-  score.points.lateral = kTrainingPoints.lateral * within(score.lateral_error, task.lateral_error);
-  score.points.time = kTrainingPoints.time * within(score.time, task.time);
-  score.points.punctures = kTrainingPoints.punctures * at(score.punctures, task.punctures);
-  score.points.volume = kTrainingPoints.volume * at(score.volume, task.volume);
+  const auto measures = score.measures(task);
+  std::transform(measures.begin(), measures.end(), score.points.begin(),
+                 [](const TrainingMeasure& measure) { return measure.most * shareOf(measure); });
   return score;
 }
 
@@ -158,11 +164,10 @@ void appendTrainingRow(const std::string& path, const std::string& operator_name
   if (content.back() != '\n') content += '\n';
   std::ostringstream row;
   row.precision(6);
-  const TrainingScore::Points& points = score.points;
-  row << operator_name << ',' << session << ',' << toText(score.outcome) << ',' << score.peak_force << ','
-      << score.deformation << ',' << score.lateral_error << ',' << score.time << ',' << score.punctures << ','
-      << score.volume << ',' << points.force << ',' << points.deformation << ',' << points.lateral << ',' << points.time
-      << ',' << points.punctures << ',' << points.volume << ',' << score.score() << '\n';
+  row << operator_name << ',' << session << ',' << toText(score.outcome);
+  for (const TrainingMeasure& measure : score.measures({})) row << ',' << measure.value;
+  for (const double points : score.points) row << ',' << points;
+  row << ',' << score.score() << '\n';
   writeFileAtomically(path, content + row.str());
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <numeric>
 #include <optional>
 #include <string>
 
@@ -43,14 +45,19 @@ enum class TrainingOutcome {
 };
 const char* toText(TrainingOutcome outcome);
 
-/// Measures and points of a session. kTrainingPoints has the largest points; `score` is the sum, 0
-/// to 100.
-struct TrainingScore {
-  struct Points {
-    double force = 0, deformation = 0, lateral = 0, time = 0, punctures = 0, volume = 0;
-    double sum() const { return force + deformation + lateral + time + punctures + volume; }
-  };
+/// A measure of a session with its reference, in SI units.
+struct TrainingMeasure {
+  const char* key;   ///< of training.yaml
+  const char* name;  ///< for people
+  const char* unit;  ///< for people
+  double scale;      ///< SI units per `unit`
+  double value, reference;
+  double most;  ///< largest points
+  bool exact;   ///< a value below the reference costs points, too
+};
 
+/// Measures and points of a session; `score` is the sum of the points, 0 to 100.
+struct TrainingScore {
   TrainingOutcome outcome = TrainingOutcome::kUntouched;
   std::string reason;        ///< why it is not complete, for people; else empty
   double peak_force = 0;     ///< N, largest magnitude
@@ -59,11 +66,11 @@ struct TrainingScore {
   double time = 0;           ///< s, from the needle's start until it was out of the cell for the last time
   int punctures = 0;         ///< of membranes
   double volume = 0;         ///< m^3, delivered through a punctured membrane; leaks do not count
-  Points points;
-  double score() const { return points.sum(); }
-};
+  std::array<double, 6> points = {};  ///< of each of measures()
 
-constexpr TrainingScore::Points kTrainingPoints = {25, 15, 20, 10, 20, 10};
+  std::array<TrainingMeasure, 6> measures(const TrainingTask& task) const;
+  double score() const { return std::accumulate(points.begin(), points.end(), 0.0); }
+};
 
 /// Scores a session from its stream of samples.
 class TrainingSession {

@@ -48,12 +48,8 @@ InjectionPipette InjectionPipette::read(ConfigReader& reader) {
   reader.number("taper_angle", pipette.taper_angle, Range::open(0, 1));
   reader.number("shaft_radius", pipette.shaft_radius, Range::positive());
   reader.number("length", pipette.length, Range::positive());
-  pipette.validate(reader);
+  if (!(pipette.shaft_radius >= pipette.tip_radius)) reader.error("shaft_radius", "must not be below tip_radius");
   return pipette;
-}
-
-void InjectionPipette::validate(ConfigReader& reader) const {
-  if (!(shaft_radius >= tip_radius)) reader.error("shaft_radius", "must not be below tip_radius");
 }
 
 HoldingPipette HoldingPipette::read(ConfigReader& reader) {
@@ -62,13 +58,9 @@ HoldingPipette HoldingPipette::read(ConfigReader& reader) {
   reader.number("outer_radius", pipette.outer_radius, Range::positive());
   reader.number("bore_ratio", pipette.bore_ratio, Range::open(0, 1));
   reader.number("length", pipette.length, Range::positive());
-  pipette.validate(reader);
+  if (!(pipette.outer_radius > pipette.mouth_radius)) reader.error("outer_radius", "must be above mouth_radius");
+  if (!(pipette.length > pipette.outer_radius)) reader.error("length", "must be above outer_radius");
   return pipette;
-}
-
-void HoldingPipette::validate(ConfigReader& reader) const {
-  if (!(outer_radius > mouth_radius)) reader.error("outer_radius", "must be above mouth_radius");
-  if (!(length > outer_radius)) reader.error("length", "must be above outer_radius");
 }
 
 TriangleSoup glass(const InjectionPipette& pipette) {

@@ -18,7 +18,6 @@ struct InjectionPipette {
   double length = 120e-6;       ///< m, of the drawn part
 
   static InjectionPipette read(ConfigReader& reader);
-  void validate(ConfigReader& reader) const;  ///< adds an error for each pair of sizes that does not fit
 };
 
 /// The drawn holding pipette: a blunt glass tube whose mouth was fire-polished to a small hole.
@@ -29,7 +28,6 @@ struct HoldingPipette {
   double length = 55e-6;        ///< m, of the drawn part
 
   static HoldingPipette read(ConfigReader& reader);
-  void validate(ConfigReader& reader) const;  ///< adds an error for each pair of sizes that does not fit
 };
 
 /// The shaded, translucent glass in the pipette's own frame, display units: origin at the centre of

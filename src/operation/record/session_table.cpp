@@ -127,27 +127,21 @@ void SessionTable::write(const Row& row) {
   sink_(line_.str());
 }
 
+template <typename Function>
+void SessionTable::forEachButNeedle(const Function& function) {
+  const auto each = [&function](auto&... timelines) { (function(timelines), ...); };
+  each(predicted, measured, hand_force, phase, cell, injection, volume);
+}
+
 void SessionTable::discardBefore(Nanoseconds time) {
   // A row's pose has the stamp of its force, which may be older than the row by kStale.
   needle.discardBefore(time - 2 * kStale);
-  predicted.discardBefore(time);
-  measured.discardBefore(time);
-  hand_force.discardBefore(time);
-  phase.discardBefore(time);
-  cell.discardBefore(time);
-  injection.discardBefore(time);
-  volume.discardBefore(time);
+  forEachButNeedle([time](auto& timeline) { timeline.discardBefore(time); });
 }
 
 void SessionTable::clear() {
   needle = {};
-  predicted = {};
-  measured = {};
-  hand_force = {};
-  phase = {};
-  cell = {};
-  injection = {};
-  volume = {};
+  forEachButNeedle([](auto& timeline) { timeline = {}; });
 }
 
 }  // namespace microinjection

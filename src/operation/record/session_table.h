@@ -93,6 +93,8 @@ class SessionTable {
   Row row(Nanoseconds time);
   std::optional<double> depth(Nanoseconds time, const Pose& pose, bool in_contact);
   void write(const Row& row);
+  template <typename Function>
+  void forEachButNeedle(const Function& function);
   void discardBefore(Nanoseconds time);
   void clear();
 

@@ -1,6 +1,5 @@
 #include "operation/record/training_log.h"
 
-#include <array>
 #include <cmath>
 #include <iomanip>
 #include <limits>
@@ -13,29 +12,6 @@ namespace microinjection {
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-
-/// A measure with its reference, in SI units, and its points.
-struct Item {
-  const char* key;  ///< of training.yaml
-  const char* name;
-  const char* unit;  ///< for people
-  double scale;      ///< SI units per `unit`
-  double value, reference, points, most;
-};
-
-std::array<Item, 6> items(const TrainingScore& score, const TrainingTask& task) {
-  const TrainingScore::Points& points = score.points;
-  constexpr const TrainingScore::Points& most = kTrainingPoints;
-  return {{{"peak_force_N", "peak force", "uN", 1e-6, score.peak_force, task.peak_force, points.force, most.force},
-           {"deformation_m", "deformation", "um", 1e-6, score.deformation, task.deformation, points.deformation,
-            most.deformation},
-           {"lateral_error_m", "lateral error", "um", 1e-6, score.lateral_error, task.lateral_error, points.lateral,
-            most.lateral},
-           {"time_s", "time", "s", 1, score.time, task.time, points.time, most.time},
-           {"punctures", "punctures", "", 1, double(score.punctures), double(task.punctures), points.punctures,
-            most.punctures},
-           {"volume_m3", "volume", "pL", 1e-15, score.volume, task.volume, points.volume, most.volume}}};
-}
 
 /// Quotes a text for YAML: in a double-quoted line only `"` and `\` must be escaped.
 std::string quoted(const std::string& text) {
@@ -51,9 +27,10 @@ std::string toYaml(const TrainingConfig& config, const std::string& session, con
   out << "operator: " << quoted(config.operator_name) << "\nsession: " << quoted(session)
       << "\noutcome: " << toText(score.outcome) << "\nreason: " << quoted(score.reason) << "\nscore: " << score.score()
       << "\nmoments_left_out: " << left_out << "\nmeasures:\n";
-  for (const Item& item : items(score, config.task)) {
-    out << "  " << item.key << ": {value: " << item.value << ", reference: " << item.reference
-        << ", points: " << item.points << ", of: " << item.most << "}\n";
+  const double* points = score.points.data();
+  for (const TrainingMeasure& measure : score.measures(config.task)) {
+    out << "  " << measure.key << ": {value: " << measure.value << ", reference: " << measure.reference
+        << ", points: " << *points++ << ", of: " << measure.most << "}\n";
   }
   return out.str();
 }
@@ -62,16 +39,17 @@ std::string toText(const TrainingConfig& config, const std::string& session, con
   std::ostringstream out;
   out << "training of " << config.operator_name << ", session " << session << ": " << std::fixed;
   if (score.outcome == TrainingOutcome::kComplete) {
-    out << std::setprecision(0) << score.score() << " of " << kTrainingPoints.sum() << " points";
+    out << std::setprecision(0) << score.score() << " of 100 points";
   } else {
     out << toText(score.outcome) << ", no points: " << score.reason;
   }
   if (score.outcome == TrainingOutcome::kUntouched) return out.str() + "; it is not in the history";
-  for (const Item& item : items(score, config.task)) {
-    out << "\n  " << std::left << std::setw(14) << item.name << std::right << std::setprecision(2) << std::setw(8)
-        << item.value / item.scale << " of " << std::setw(6) << item.reference / item.scale << ' ' << std::left
-        << std::setw(2) << item.unit << std::right << std::setprecision(1) << std::setw(8) << item.points << " of "
-        << std::setprecision(0) << item.most;
+  const double* points = score.points.data();
+  for (const TrainingMeasure& measure : score.measures(config.task)) {
+    out << "\n  " << std::left << std::setw(14) << measure.name << std::right << std::setprecision(2) << std::setw(8)
+        << measure.value / measure.scale << " of " << std::setw(6) << measure.reference / measure.scale << ' '
+        << std::left << std::setw(2) << measure.unit << std::right << std::setprecision(1) << std::setw(8) << *points++
+        << " of " << std::setprecision(0) << measure.most;
   }
   return out.str();
 }

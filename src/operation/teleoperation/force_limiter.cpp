@@ -2,15 +2,9 @@
 
 #include <algorithm>
 
+#include "base/vectors.h"
+
 namespace microinjection {
-namespace {
-
-Eigen::Vector3d limited(const Eigen::Vector3d& vector, double size) {
-  const double norm = vector.norm();
-  return norm > size ? Eigen::Vector3d(vector * (size / norm)) : vector;
-}
-
-}  // namespace
 
 ForceLimits ForceLimits::read(ConfigReader& reader) {
   ForceLimits limits;
@@ -21,10 +15,11 @@ ForceLimits ForceLimits::read(ConfigReader& reader) {
 
 const Eigen::Vector3d& ForceLimiter::step(const Eigen::Vector3d& wanted, const Eigen::Vector3d& velocity, double dt) {
   constexpr double kStill = 1e-3;  // m/s, below which a direction of motion is noise
-  const Eigen::Vector3d target = limited(wanted, limits_.force);
+  const Eigen::Vector3d target = clampedNorm(wanted, limits_.force);
   const double lag = (target - force_).norm();
   // A target within reach is taken exactly: a force at rest equals the wanted one to the last bit.
-  force_ = lag <= limits_.rate * dt ? target : Eigen::Vector3d(force_ + limited(target - force_, limits_.rate * dt));
+  force_ =
+      lag <= limits_.rate * dt ? target : Eigen::Vector3d(force_ + clampedNorm(target - force_, limits_.rate * dt));
   if (velocity.norm() < kStill) return force_;
   const Eigen::Vector3d along = velocity.normalized();
   const double excess = force_.dot(along) - std::max(0.0, target.dot(along));

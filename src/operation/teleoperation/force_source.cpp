@@ -1,11 +1,8 @@
 #include "operation/teleoperation/force_source.h"
 
+#include "base/vectors.h"
+
 namespace microinjection {
-namespace {
-
-bool valid(const std::optional<Eigen::Vector3d>& value) { return value && value->allFinite(); }
-
-}  // namespace
 
 ForceSourceConfig ForceSourceConfig::read(ConfigReader& reader) {
   ForceSourceConfig config;
@@ -15,8 +12,8 @@ ForceSourceConfig ForceSourceConfig::read(ConfigReader& reader) {
 }
 
 std::optional<Eigen::Vector3d> chooseForce(const ForceSourceConfig& config, const TipForces& forces) {
-  if (config.usesPredicted() && !valid(forces.predicted)) return std::nullopt;
-  if (config.usesMeasured() && !valid(forces.measured)) return std::nullopt;
+  if (config.usesPredicted() && !isValid(forces.predicted)) return std::nullopt;
+  if (config.usesMeasured() && !isValid(forces.measured)) return std::nullopt;
   if (!config.usesMeasured()) return forces.predicted;
   if (!config.usesPredicted()) return forces.measured;
   return Eigen::Vector3d(*forces.predicted + config.measured_share * (*forces.measured - *forces.predicted));

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <sstream>
 
-#include "base/errors.h"
-
 namespace microinjection {
 namespace {
 
@@ -42,7 +40,6 @@ FrameMappingConfig FrameMappingConfig::read(ConfigReader& reader) {
 
 FrameMapping::FrameMapping(const FrameMappingConfig& config) {
   const Eigen::Matrix3d axes = toMatrix(config.device_axes);
-  if (!isRotation(axes)) throw ConfigError("device_axes = " + config.device_axes + ": must be " + kAllowed);
   const Eigen::Vector3d& angle = config.view_rotation;
   const Eigen::Quaterniond view = Eigen::AngleAxisd(angle.z(), Eigen::Vector3d::UnitZ()) *
                                   Eigen::AngleAxisd(angle.y(), Eigen::Vector3d::UnitY()) *

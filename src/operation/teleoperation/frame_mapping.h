@@ -20,15 +20,13 @@ struct FrameMappingConfig {
 /// Rotation between the haptic device's axes and `world`: the hand's right is right in the image.
 class FrameMapping {
  public:
-  /// @throws ConfigError when the axes are not a rotation.
   explicit FrameMapping(const FrameMappingConfig& config);
 
   Eigen::Vector3d toWorld(const Eigen::Vector3d& in_device) const { return rotation_ * in_device; }
   Eigen::Vector3d toDevice(const Eigen::Vector3d& in_world) const { return rotation_.transpose() * in_world; }
-  const Eigen::Matrix3d& rotation() const { return rotation_; }  ///< device to `world`
 
  private:
-  Eigen::Matrix3d rotation_;
+  Eigen::Matrix3d rotation_;  ///< device to `world`
 };
 
 }  // namespace microinjection

@@ -1,5 +1,7 @@
 #include "operation/teleoperation/goal_hand.h"
 
+#include "base/vectors.h"
+
 namespace microinjection {
 
 GoalHandConfig GoalHandConfig::read(ConfigReader& reader) {
@@ -10,9 +12,7 @@ GoalHandConfig GoalHandConfig::read(ConfigReader& reader) {
 }
 
 void GoalHand::moveBy(const Eigen::Vector3d& step) {
-  Eigen::Vector3d ahead = goal_ + step - position_;
-  if (ahead.norm() > config_.lead) ahead *= config_.lead / ahead.norm();
-  moveTo(position_ + ahead);
+  moveTo(position_ + clampedNorm(goal_ + step - position_, config_.lead));
   stay();
 }
 
@@ -29,10 +29,7 @@ const Eigen::Vector3d& GoalHand::step(double dt) {
     goal_ = position_;
     return position_;
   }
-  const Eigen::Vector3d displacement = goal_ - position_;
-  const double furthest = config_.speed * dt;
-  position_ +=
-      displacement.norm() > furthest ? Eigen::Vector3d(furthest / displacement.norm() * displacement) : displacement;
+  position_ += clampedNorm(goal_ - position_, config_.speed * dt);
   return position_;
 }
 

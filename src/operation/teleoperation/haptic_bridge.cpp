@@ -2,12 +2,9 @@
 
 #include <algorithm>
 
+#include "base/vectors.h"
+
 namespace microinjection {
-namespace {
-
-bool valid(const std::optional<Eigen::Vector3d>& value) { return value && value->allFinite(); }
-
-}  // namespace
 
 HapticBridgeConfig HapticBridgeConfig::read(ConfigReader& reader) {
   HapticBridgeConfig config;
@@ -46,9 +43,9 @@ HapticBridge::HapticBridge(const HapticBridgeConfig& config)
       limiter_(config.limits) {}
 
 std::string HapticBridge::holdReason(const Input& input, const std::optional<Eigen::Vector3d>& force) const {
-  if (!valid(input.hand)) return "no valid hand position";
+  if (!isValid(input.hand)) return "no valid hand position";
   if (!input.no_force_reason.empty()) return input.no_force_reason;
-  if (!valid(input.needle)) return "no valid needle position";
+  if (!isValid(input.needle)) return "no valid needle position";
   if (!force) return "no valid force";
   if (config_.require_operator && !input.operator_present) return "the operator is not present";
   return input.clutch ? "clutch is pressed" : "";
@@ -72,7 +69,7 @@ HapticBridge::Output HapticBridge::step(const Input& input, double dt) {
   const std::optional<Eigen::Vector3d> tip_force = chooseForce(config_.force, input.force);
   Output output;
   output.hold_reason = holdReason(input, tip_force);
-  if (!valid(input.hand)) {
+  if (!isValid(input.hand)) {
     engagement_.step({true, input.clutch});
     limiter_.release();
     passivity_.reset();

@@ -37,12 +37,6 @@ class VirtualCoupling {
  public:
   explicit VirtualCoupling(const VirtualCouplingConfig& config) : config_(config) {}
 
-  /// Largest stiffness (N/m) of a sampled spring that is passive with a device's `damping` (N s/m),
-  /// a virtual damping (N s/m) and `period` (s); negative: none.
-  static double passiveStiffness(double damping, double virtual_damping, double period) {
-    return 2 * (damping - virtual_damping) / period;
-  }
-
   /// Damping (N s/m) to render beside the force of a body of this felt stiffness (N/m).
   double contactDamping(double stiffness) const;
 

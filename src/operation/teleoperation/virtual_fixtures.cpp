@@ -2,21 +2,9 @@
 
 #include <algorithm>
 
-#include "base/errors.h"
+#include "base/vectors.h"
 
 namespace microinjection {
-namespace {
-
-Eigen::Vector3d limited(const Eigen::Vector3d& force, double limit) {
-  const double size = force.norm();
-  return size > limit ? Eigen::Vector3d(force * (limit / size)) : force;
-}
-
-void requireDirection(const Eigen::Vector3d& axis, const std::string& key) {
-  if (!(axis.norm() > 0)) throw ConfigError("fixtures/" + key + ": must not be zero");
-}
-
-}  // namespace
 
 VirtualFixturesConfig VirtualFixturesConfig::read(ConfigReader reader) {
   VirtualFixturesConfig config;
@@ -46,11 +34,6 @@ VirtualFixturesConfig VirtualFixturesConfig::read(ConfigReader reader) {
 
 VirtualFixtures::VirtualFixtures(const VirtualFixturesConfig& config, double position_scale)
     : config_(config), position_scale_(position_scale) {
-  requireDirection(config.guide_axis, "guide/axis");
-  requireDirection(config.wall_normal, "wall/normal");
-  if ((config.workspace_low.array() >= config.workspace_high.array()).any()) {
-    throw ConfigError("fixtures/workspace/low: must be below high on every axis");
-  }
   config_.guide_axis.normalize();
   config_.wall_normal.normalize();
 }
@@ -67,11 +50,11 @@ Eigen::Vector3d VirtualFixtures::insideLimits(Eigen::Vector3d target) const {
 VirtualFixtures::Result VirtualFixtures::apply(const Eigen::Vector3d& target) const {
   Result result{insideLimits(target), Eigen::Vector3d::Zero()};
   const double k = config_.limit_stiffness / position_scale_;
-  result.hand_force = limited(k * (result.target - target), config_.limit_force);
+  result.hand_force = clampedNorm(k * (result.target - target), config_.limit_force);
   if (!config_.guide) return result;
   const Eigen::Vector3d off = target - config_.guide_point;
   const Eigen::Vector3d lateral = off - off.dot(config_.guide_axis) * config_.guide_axis;
-  result.hand_force += limited(-config_.guide_stiffness / position_scale_ * lateral, config_.guide_force);
+  result.hand_force += clampedNorm(-config_.guide_stiffness / position_scale_ * lateral, config_.guide_force);
   return result;
 }
 

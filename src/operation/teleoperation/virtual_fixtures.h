@@ -24,6 +24,7 @@ struct VirtualFixturesConfig {
   double limit_stiffness = 300;  ///< N/m at the hand, of wall and box
   double limit_force = 2.0;      ///< N, largest push of each
 
+  /// A direction of zero and a box whose low is not below its high are errors.
   static VirtualFixturesConfig read(ConfigReader reader);
 };
 
@@ -37,7 +38,6 @@ class VirtualFixtures {
     Eigen::Vector3d hand_force;  ///< N, at the hand, axes as `world`
   };
 
-  /// @throws ConfigError when a direction is zero or the box's low is not below its high.
   VirtualFixtures(const VirtualFixturesConfig& config, double position_scale);
 
   Result apply(const Eigen::Vector3d& target) const;

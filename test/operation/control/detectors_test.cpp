@@ -85,9 +85,11 @@ TEST_F(DetectorsTest, ContactIsFeltSoonAfterItIsLargeEnough) {
     while (!detector.step(sample(20e-9))) ++steps;
     total += steps;
   }
-  // h / (2 - k) = 15.8 / 1.5 samples, a little less for the sum that the noise has left and more for the overshoot.
-  EXPECT_NEAR(total / kTrials, detector.limit() / (2 - detector.allowance()), 2);
-  EXPECT_NEAR(detector.allowance(), 0.5, 0.01);
+  // h / (2 - k) samples, a little less for the sum that the noise has left and more for the overshoot.
+  const double allowance = 0.5 * 10e-9 / noise_.deviation();
+  EXPECT_NEAR(allowance, 0.5, 0.01);
+  const double limit = std::log(0.5 / 1e-7) - 1.166;  // of Siegmund's formula for k = 0.5
+  EXPECT_NEAR(total / kTrials, limit / (2 - allowance), 2);
 }
 
 /// Force (N) of an elastic cell of 0.1 N/m under a needle at 100 um/s, per sample of 1 ms.

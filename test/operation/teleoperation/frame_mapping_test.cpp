@@ -27,14 +27,13 @@ TEST(FrameMapping, TurnsTheViewInTheWorld) {
   config.view_rotation = {0.3, -0.5, 1.1};
   const FrameMapping both(config);
   EXPECT_LT((both.toDevice(both.toWorld({1, 2, 3})) - Eigen::Vector3d(1, 2, 3)).norm(), 1e-14);
-  EXPECT_NEAR(both.rotation().determinant(), 1, 1e-12);
+  Eigen::Matrix3d rotation;
+  for (int i = 0; i < 3; ++i) rotation.col(i) = both.toWorld(Eigen::Vector3d::Unit(i));
+  EXPECT_NEAR(rotation.determinant(), 1, 1e-12);
 }
 
 TEST(FrameMapping, RefusesWhatIsNoRotation) {
   for (const char* axes : {"", "x y", "x y z x", "x x z", "x z y", "-x y z", "x y w", "x y zz", "+x y z", "x,y,z"}) {
-    FrameMappingConfig config;
-    config.device_axes = axes;
-    EXPECT_THROW(FrameMapping{config}, ConfigError) << axes;
     YAML::Node map;
     map["device_axes"] = axes;
     ConfigReader reader(map, "test");

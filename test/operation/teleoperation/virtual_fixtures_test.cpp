@@ -1,6 +1,10 @@
 #include "operation/teleoperation/virtual_fixtures.h"
 
 #include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
+
+#include <string>
+#include <utility>
 
 #include "base/errors.h"
 
@@ -54,15 +58,18 @@ TEST(VirtualFixtures, WorkspaceIsABox) {
 }
 
 TEST(VirtualFixtures, RefuseGeometryThatIsNone) {
-  VirtualFixturesConfig config;
-  config.guide_axis.setZero();
-  EXPECT_THROW(VirtualFixtures(config, kScale), ConfigError);
-  config = {};
-  config.wall_normal.setZero();
-  EXPECT_THROW(VirtualFixtures(config, kScale), ConfigError);
-  config = {};
-  config.workspace_low.y() = config.workspace_high.y();
-  EXPECT_THROW(VirtualFixtures(config, kScale), ConfigError);
+  for (const auto& [yaml, error] : {std::pair("{guide: {axis: [0, 0, 0]}}", "guide/axis"),
+                                    {"{wall: {normal: [0, 0, 0]}}", "wall/normal"},
+                                    {"{workspace: {low: [-1, 1, -1], high: [1, 1, 1]}}", "workspace/low"}}) {
+    ConfigReader reader(YAML::Load(yaml), "fixtures");
+    VirtualFixturesConfig::read(reader);
+    try {
+      reader.finish();
+      ADD_FAILURE() << yaml;
+    } catch (const ConfigError& refusal) {
+      EXPECT_NE(std::string(refusal.what()).find(error), std::string::npos) << refusal.what();
+    }
+  }
 }
 
 }  // namespace

@@ -1,7 +1,8 @@
-#include "nodes/runtime/round_trip_meter.h"
+#include "benchmark/emulated_haptic/round_trip_meter.h"
 
 #include <cmath>
 
+#include "nodes/runtime/conversions.h"
 #include "nodes/runtime/message_guard.h"
 
 namespace microinjection {
@@ -29,8 +30,7 @@ RoundTripMeter::RoundTripMeter(ros::NodeHandle& node) {
   });
   forces_ = subscribeGuarded<WrenchStamped>(node, "haptic/servo_cf", 100,
                                             [this](const WrenchStamped& message, const std::string&) {
-                                              const auto& force = message.wrench.force;
-                                              rendered_[message.header.stamp] = {force.x, force.y, force.z};
+                                              rendered_[message.header.stamp] = toVector(message.wrench.force);
                                             });
 }
 

@@ -1,4 +1,4 @@
-#include "nodes/emulated_haptic_node.h"
+#include "benchmark/emulated_haptic/emulated_haptic_node.h"
 
 #include <algorithm>
 #include <limits>

@@ -7,8 +7,8 @@
 
 #include <limits>
 
+#include "benchmark/emulated_haptic/emulated_driver.h"
 #include "cell_microinjection/OperatingState.h"
-#include "nodes/haptic/emulated_driver.h"
 #include "nodes/runtime/conversions.h"
 
 namespace microinjection {
@@ -16,11 +16,6 @@ namespace {
 
 constexpr double kForEver = std::numeric_limits<double>::infinity();
 using geometry_msgs::WrenchStamped;
-
-Eigen::Vector3d toVector(const WrenchStamped& message) {
-  const auto& force = message.wrench.force;
-  return {force.x, force.y, force.z};
-}
 
 /// A device that needs no adapter: /haptic/measured_cp, clutch, operator_present and servo_cf, in
 /// the view's axes.
@@ -32,7 +27,7 @@ class EmulatedCrtk : public EmulatedDriver {
         present_(cycle.output<sensor_msgs::Joy>("haptic/operator_present", true)) {
     cycle.input<WrenchStamped>("haptic/servo_cf", InputPhase::kPreviousTick, kForEver)
         .onMessage([this, handler](const WrenchStamped& message, const ros::Time& received) {
-          force_ = toVector(message);
+          force_ = toVector(message.wrench.force);
           handler(force_, received);
         });
   }
@@ -84,7 +79,7 @@ class EmulatedCisst : public EmulatedDriver {
     }
     cycle.input<WrenchStamped>(device.device + "/body/servo_cf", InputPhase::kPreviousTick, kForEver)
         .onMessage([this, handler](const WrenchStamped& message, const ros::Time& received) {
-          force_ = toVector(message);
+          force_ = toVector(message.wrench.force);
           freed_ = true;
           handler(force_, received);
         });
@@ -114,9 +109,7 @@ class EmulatedCisst : public EmulatedDriver {
     if (pose_) return pose_->publish(pose);
     geometry_msgs::TransformStamped transform;
     transform.header = pose.header;
-    transform.transform.translation.x = pose.pose.position.x;
-    transform.transform.translation.y = pose.pose.position.y;
-    transform.transform.translation.z = pose.pose.position.z;
+    transform.transform.translation = toMessage<geometry_msgs::Vector3>(toVector(pose.pose.position));
     transform.transform.rotation.w = 1;
     transform_->publish(transform);
   }
@@ -172,8 +165,9 @@ class EmulatedFalcon : public EmulatedDriver {
         joy_(cycle.output<sensor_msgs::Joy>("falcon/joy", true)) {
     cycle.input<WrenchStamped>("falcon/servo_cf", InputPhase::kPreviousTick, kForEver)
         .onMessage([this, handler](const WrenchStamped& message, const ros::Time& received) {
-          handler(toVector(message), received);
-          if (message.header.frame_id.empty() || message.header.frame_id == kFrame) force_ = toVector(message);
+          handler(toVector(message.wrench.force), received);
+          if (message.header.frame_id.empty() || message.header.frame_id == kFrame)
+            force_ = toVector(message.wrench.force);
         });
   }
 

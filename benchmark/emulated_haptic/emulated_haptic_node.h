@@ -7,10 +7,10 @@
 #include <memory>
 #include <string>
 
+#include "benchmark/emulated_haptic/emulated_driver.h"
+#include "benchmark/emulated_haptic/round_trip_meter.h"
 #include "cell_microinjection/StringStamped.h"
-#include "nodes/haptic/emulated_driver.h"
 #include "nodes/runtime/cycle.h"
-#include "nodes/runtime/round_trip_meter.h"
 #include "operation/teleoperation/hand_motion.h"
 #include "operation/teleoperation/virtual_hand.h"
 
@@ -23,7 +23,7 @@ namespace microinjection {
 /// `away`. In the phase `inject` it presses the inject button, if the device has one. In lock step
 /// the motion waits until a button outside of the lock step has arrived.
 ///
-/// Topics of the kind, see haptic/emulated_driver.h, and
+/// Topics of the kind, see emulated_driver.h, and
 /// In:  /haptic/servo_cf, /needle/setpoint_trace, /haptic/force_trace
 /// Out: /emulated_haptic/measured_cf (WrenchStamped, N on the hand, in the view's axes),
 ///      /operator/phase (StringStamped, latched, on change: the motion's phases, then done)

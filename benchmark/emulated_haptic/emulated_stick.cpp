@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "nodes/haptic/emulated_driver.h"
+#include "benchmark/emulated_haptic/emulated_driver.h"
 #include "nodes/runtime/stamps.h"
 
 namespace microinjection {

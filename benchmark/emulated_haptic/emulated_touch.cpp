@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "nodes/haptic/emulated_driver.h"
+#include "benchmark/emulated_haptic/emulated_driver.h"
 #include "nodes/haptic/geomagic_messages.h"
 #include "nodes/haptic/omni_messages.h"
 #include "nodes/runtime/conversions.h"
@@ -16,7 +16,6 @@ namespace {
 constexpr double kMillimetre = 1e-3;     // m, of both drivers
 constexpr double kDriverDamping = 1e-3;  // N s/mm, of both drivers
 
-Eigen::Vector3d toVector(const geometry_msgs::Vector3& v) { return {v.x, v.y, v.z}; }
 Eigen::Vector3d damping(const EmulatedHand& hand) { return kDriverDamping * hand.velocity / kMillimetre; }
 
 /// phantom_omni's omni_state: state, button, force_feedback at 1 kHz, in the axes (X, -Z, Y) of
@@ -42,9 +41,7 @@ class EmulatedOmni : public EmulatedDriver {
   void publish(const EmulatedHand& hand, const ros::Time& now) override {
     last_published_.header.stamp = now;
     last_published_.pose = toPose(Eigen::Vector3d(hand.position / kMillimetre), now, "").pose;
-    last_published_.velocity.x = hand.velocity.x() / kMillimetre;
-    last_published_.velocity.y = hand.velocity.y() / kMillimetre;
-    last_published_.velocity.z = hand.velocity.z() / kMillimetre;
+    last_published_.velocity = toMessage<geometry_msgs::Vector3>(hand.velocity / kMillimetre);
     state_.publish(last_published_);
     OmniButtonEvent event;
     event.grey_button = hand.clutch ? 1 : 0;

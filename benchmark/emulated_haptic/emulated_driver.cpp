@@ -1,4 +1,4 @@
-#include "nodes/haptic/emulated_driver.h"
+#include "benchmark/emulated_haptic/emulated_driver.h"
 
 #include <algorithm>
 
