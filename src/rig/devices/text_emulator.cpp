@@ -38,16 +38,6 @@ void TextEmulator::process(const std::string& bytes, double time) {
   }
 }
 
-std::string TextEmulator::produce(double time) {
-  advance(time);
-  std::string output;
-  while (!replies_.empty() && replies_.front().due <= time) {
-    output += replies_.front().bytes;
-    replies_.erase(replies_.begin());
-  }
-  return output;
-}
-
 void TextEmulator::checkError(const std::string& code) const {
   long number = 0;
   if (code == kReset || (isWhole(code, number) && number >= 0 && number <= 999)) return;
@@ -60,7 +50,7 @@ void TextEmulator::failNextCommand(const std::string& code) {
     return;
   }
   command_.clear();
-  replies_.clear();
+  dropReplies();
   error_ = -1;
   moving_ = false;
   switchOn();

@@ -24,7 +24,7 @@ std::string parameter(double value) {
 }  // namespace
 
 void FemtojetEmulator::process(const std::string& bytes, double time) {
-  time_ = std::max(time, time_);
+  advance(time);
   for (const char each : bytes) {
     if (each != '\r' && each != '\n') {
       command_ += each;
@@ -34,7 +34,7 @@ void FemtojetEmulator::process(const std::string& bytes, double time) {
     const std::string first = config_.echo == FemtojetEmulatorConfig::Echo::kCommand ? command_ : "";
     const bool two_lines = config_.echo != FemtojetEmulatorConfig::Echo::kNone;
     const std::string reply = (two_lines ? first + config_.line_end : "") + handleCommand(command_) + config_.line_end;
-    replies_.add(reply, time_ + config_.answer_time);
+    sendAt(time_ + config_.answer_time, reply);
     command_.clear();
   }
 }
@@ -73,11 +73,6 @@ std::string FemtojetEmulator::enter(const std::string& number, const std::string
     return kFaulty;
   }
   return "A" + number;
-}
-
-std::string FemtojetEmulator::produce(double time) {
-  time_ = std::max(time, time_);
-  return replies_.popDue(time);
 }
 
 void FemtojetEmulator::checkError(const std::string& code) const {

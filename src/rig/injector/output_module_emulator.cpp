@@ -26,7 +26,7 @@ void OutputModuleEmulator::process(const std::string& bytes, double time) {
       continue;
     }
     const std::string reply = handleCommand(std::exchange(command_, ""));
-    if (!reply.empty()) replies_.add(reply + "\r", time + config_.answer_time);
+    if (!reply.empty()) sendAt(time + config_.answer_time, reply + "\r");
   }
 }
 

@@ -3,7 +3,6 @@
 #include <string>
 
 #include "rig/injector/injector_emulator.h"
-#include "rig/injector/reply_queue.h"
 
 namespace microinjection {
 
@@ -39,7 +38,6 @@ class OutputModuleEmulator : public InjectorEmulator {
 
  protected:
   void process(const std::string& bytes, double time) override;
-  std::string produce(double time) override { return replies_.popDue(time); }
   void checkError(const std::string& code) const override;
   void failNextCommand(const std::string&) override { fails_ = true; }
   void interrupt(double) override { relays_ = 0, volts_ = 0; }
@@ -55,7 +53,6 @@ class OutputModuleEmulator : public InjectorEmulator {
   bool fails_ = false;
   unsigned relays_ = 0;  // one bit each
   double volts_ = 0;
-  ReplyQueue replies_;
 };
 
 }  // namespace microinjection
