@@ -25,17 +25,14 @@ std::string parameter(double value) {
 
 void FemtojetEmulator::process(const std::string& bytes, double time) {
   advance(time);
-  for (const char each : bytes) {
-    if (each != '\r' && each != '\n') {
-      command_ += each;
-      continue;
-    }
-    if (command_.empty()) continue;  // the line feed after a carriage return
-    const std::string first = config_.echo == FemtojetEmulatorConfig::Echo::kCommand ? command_ : "";
+  std::string text = bytes;
+  std::replace(text.begin(), text.end(), '\n', '\r');
+  for (const std::string& command : commands_.feed(text)) {
+    if (command.empty()) continue;  // the line feed after a carriage return
+    const std::string first = config_.echo == FemtojetEmulatorConfig::Echo::kCommand ? command : "";
     const bool two_lines = config_.echo != FemtojetEmulatorConfig::Echo::kNone;
-    const std::string reply = (two_lines ? first + config_.line_end : "") + handleCommand(command_) + config_.line_end;
+    const std::string reply = (two_lines ? first + config_.line_end : "") + handleCommand(command) + config_.line_end;
     sendAt(time_ + config_.answer_time, reply);
-    command_.clear();
   }
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "rig/injector/injector_emulator.h"
+#include "rig/serial/line_splitter.h"
 
 namespace microinjection {
 
@@ -50,7 +51,7 @@ class FemtojetEmulator : public InjectorEmulator {
   std::string enter(const std::string& number, const std::string& parameter);
 
   FemtojetEmulatorConfig config_;
-  std::string command_;                            // received so far
+  LineSplitter commands_{"\r", 1 << 20};
   std::string error_;                              // for the next command; empty: none
   double injection_time_ = 2;                      // s
   double compensation_ = 2500, injection_ = 10e3;  // Pa

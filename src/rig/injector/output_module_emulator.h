@@ -3,6 +3,7 @@
 #include <string>
 
 #include "rig/injector/injector_emulator.h"
+#include "rig/serial/line_splitter.h"
 
 namespace microinjection {
 
@@ -49,7 +50,7 @@ class OutputModuleEmulator : public InjectorEmulator {
   std::string readBack() const;
 
   OutputModuleConfig config_;
-  std::string command_;  // received so far
+  LineSplitter commands_{"\r", 1 << 20};
   bool fails_ = false;
   unsigned relays_ = 0;  // one bit each
   double volts_ = 0;
