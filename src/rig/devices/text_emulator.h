@@ -1,7 +1,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "rig/devices/manipulator_emulator.h"
 
@@ -44,10 +43,5 @@ class TextEmulator : public ManipulatorEmulator {
   int moves_begun_ = 0;
   double time_ = 0;  // s
 };
-
-/// Splits a command into words in capitals.
-std::vector<std::string> capitalWords(const std::string& command);
-/// @returns whether `text` is a whole number, which is then in `number`
-bool isWhole(const std::string& text, long& number);
 
 }  // namespace microinjection
