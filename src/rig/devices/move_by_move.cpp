@@ -90,11 +90,7 @@ double MoveByMove::requestedSpeed(const Eigen::Vector3d& displacement) const {
 double MoveByMove::fastestAlong(const Eigen::Vector3d& displacement) const {
   const Eigen::Vector3d direction =
       common_.axes.inJointOrder(displacement.cwiseProduct(counts()).normalized()).cwiseAbs();
-  double speed = common_.speed;
-  for (int i = 0; i < 3; ++i) {
-    if (direction[i] > 0) speed = std::min(speed, speedLimits()[i] / direction[i]);
-  }
-  return speed;
+  return std::min(common_.speed, speedLimits().cwiseQuotient(direction).minCoeff());
 }
 
 /// Returns whether to abort the move in progress for a newer goal. A short move towards a set-point
