@@ -116,11 +116,6 @@ void MoveByMove::onStopSent() {
   maxValidityTime(common_.reply_timeout + longest_move_ * common_.byteTime() + recoveryTime());
 }
 
-void MoveByMove::recordCorrection(const Eigen::Vector3d& position, const Eigen::Vector3d& expected) {
-  const Eigen::Vector3d by = (position - expected).cwiseProduct(counts());
-  largest_correction_ = std::max(largest_correction_, by.cwiseAbs().maxCoeff());
-}
-
 /// Records the position at rest until the next reading.
 void MoveByMove::rest(const Eigen::Vector3d& position) {
   position_ = position;

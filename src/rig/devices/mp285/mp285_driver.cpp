@@ -7,13 +7,10 @@ namespace microinjection {
 namespace {
 
 constexpr double kFineLimit = 1310;  // um/s
-constexpr double kHeldReply = 0.02;  // s, for which a USB adapter may delay a reply
 constexpr double kBytePause = 0.04;  // s, longest pause between two bytes of a reply (USB adapters collect for 16 ms)
-constexpr double kMoveAllowance = 0.5;  // s, allowed in addition to 1.25 times the duration of a move
-constexpr double kCoarseStep = 5;       // microsteps, resolution of a coarse move
-constexpr double kMargin = 5e-6;        // m, from the ends of a move within which it may still be moving
-constexpr int kSlowest = 20;            // um/s, of a short move
-constexpr int kTries = 2;               // of a move that misses its goal
+constexpr double kCoarseStep = 5;    // microsteps, resolution of a coarse move
+constexpr double kMargin = 5e-6;     // m, from the ends of a move within which it may still be moving
+constexpr int kSlowest = 20;         // um/s, of a short move
 constexpr std::size_t kMoveBytes = 19;  // for a move, sometimes with a speed, including replies
 
 }  // namespace
@@ -178,7 +175,6 @@ void Mp285Driver::handlePosition(const Mp285Position& reading) {
   const bool elsewhere = !((position - expected).cwiseAbs().maxCoeff() <= tolerance);
   const double outside = move_ ? origin_monitor_.outside(position, counts()) : 0;
   if (detectNewOrigin(position, outside, isNewZero(position, kMargin), kMargin)) return;
-  if (position_ && settled_) recordCorrection(position, expected);
   if (settled_ && !move_ && elsewhere) forgetSettings();
   const bool missed = move_ && (position - move_->to).cwiseAbs().maxCoeff() > tolerance;
   rest(position);
