@@ -5,7 +5,6 @@
 #include <optional>
 #include <string>
 
-#include "rig/devices/axis_order.h"
 #include "rig/devices/joint_axes.h"
 #include "rig/devices/origin_monitor.h"
 #include "rig/devices/reading_filter.h"
