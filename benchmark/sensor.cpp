@@ -6,8 +6,8 @@
 #include <string>
 
 #include "benchmark/bench_main.h"
+#include "benchmark/common/stream_estimates.h"
 #include "rig/sensor/force_sensor.h"
-#include "rig/sensor/stream_estimates.h"
 
 namespace microinjection {
 namespace {

@@ -90,11 +90,7 @@ double MoveByMove::requestedSpeed(const Eigen::Vector3d& displacement) const {
 double MoveByMove::fastestAlong(const Eigen::Vector3d& displacement) const {
   const Eigen::Vector3d direction =
       common_.axes.inJointOrder(displacement.cwiseProduct(counts()).normalized()).cwiseAbs();
-  double speed = common_.speed;
-  for (int i = 0; i < 3; ++i) {
-    if (direction[i] > 0) speed = std::min(speed, speedLimits()[i] / direction[i]);
-  }
-  return speed;
+  return std::min(common_.speed, speedLimits().cwiseQuotient(direction).minCoeff());
 }
 
 /// Returns whether to abort the move in progress for a newer goal. A short move towards a set-point
@@ -118,11 +114,6 @@ void MoveByMove::onStopSent() {
   move_.reset();
   settled_ = false;
   maxValidityTime(common_.reply_timeout + longest_move_ * common_.byteTime() + recoveryTime());
-}
-
-void MoveByMove::recordCorrection(const Eigen::Vector3d& position, const Eigen::Vector3d& expected) {
-  const Eigen::Vector3d by = (position - expected).cwiseProduct(counts());
-  largest_correction_ = std::max(largest_correction_, by.cwiseAbs().maxCoeff());
 }
 
 /// Records the position at rest until the next reading.

@@ -5,7 +5,6 @@
 #include <optional>
 #include <string>
 
-#include "rig/devices/axis_order.h"
 #include "rig/devices/joint_axes.h"
 #include "rig/devices/origin_monitor.h"
 #include "rig/devices/reading_filter.h"
@@ -45,11 +44,13 @@ class MoveByMove : public SerialManipulator {
   std::optional<Reading> reading() const final;
   bool moving() const final;
 
-  double largestCorrection() const { return largest_correction_; }  ///< m, of an extrapolated position by a reading
-  int malformed() const { return malformed_; }                      ///< malformed replies
+  int malformed() const { return malformed_; }  ///< malformed replies
 
  protected:
-  static constexpr double kSame = 0.5;  ///< counts; an axis at rest changes by less than one
+  static constexpr double kSame = 0.5;           ///< counts; an axis at rest changes by less than one
+  static constexpr double kHeldReply = 0.02;     ///< s, for which a USB adapter may delay a reply
+  static constexpr double kMoveAllowance = 0.5;  ///< s, allowed in addition to 1.25 times the duration of a move
+  static constexpr int kTries = 2;               ///< of a move that misses its goal
 
   struct Move {
     Eigen::Vector3d from, to;  ///< counts
@@ -85,7 +86,6 @@ class MoveByMove : public SerialManipulator {
   Eigen::Vector3d extrapolatedPosition(double time) const;
   double timeLeft() const { return move_ ? move_->begin + move_->duration - time() : 0; }
   bool isOutdated() const;
-  void recordCorrection(const Eigen::Vector3d& position, const Eigen::Vector3d& expected);
   void rest(const Eigen::Vector3d& position);
   bool isNewZero(const Eigen::Vector3d& position, double margin) const;
   bool detectNewOrigin(const Eigen::Vector3d& position, double outside, bool new_zero, double margin);
@@ -106,7 +106,6 @@ class MoveByMove : public SerialManipulator {
 
  private:
   double stop_bytes_, longest_move_;
-  double largest_correction_ = 0;  // m
 };
 
 }  // namespace microinjection

@@ -9,7 +9,6 @@ namespace microinjection {
 namespace {
 
 constexpr double kLongestExtrapolation = 0.1;  // s, of motion by which an extrapolated position may be wrong
-constexpr double kHeldReply = 0.02;            // s, for which a USB adapter may delay a reply
 constexpr int kSetupTries = 6;                 // for a setup line, which needs two equal replies
 constexpr std::size_t kLongestLine = 80;
 
@@ -185,7 +184,6 @@ void PolledManipulator::updatePosition(const Eigen::Vector3d& position) {
     return;
   if (move_) return checkMove(position);
   if (settled_) {
-    recordCorrection(position, expected);
     if (elsewhere) forgetSettings();
     return rest(position);
   }

@@ -10,11 +10,9 @@
 namespace microinjection {
 namespace {
 
-constexpr double kMoveAllowance = 0.5;  // s, allowed in addition to 1.25 times the duration of a move
-constexpr double kSettleTime = 0.2;     // s, in which a device that reports rest may still come to rest (acq4)
-constexpr int kSteady = 2;              // successive readings at the goal
-constexpr int kShorter = 5;             // attempts to shorten a part of the path
-constexpr int kTries = 2;               // of a move that misses its goal
+constexpr double kSettleTime = 0.2;  // s, in which a device that reports rest may still come to rest (acq4)
+constexpr int kSteady = 2;           // successive readings at the goal
+constexpr int kShorter = 5;          // attempts to shorten a part of the path
 
 }  // namespace
 

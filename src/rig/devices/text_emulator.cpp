@@ -1,12 +1,10 @@
 #include "rig/devices/text_emulator.h"
 
 #include <algorithm>
-#include <cctype>
-#include <cstdlib>
-#include <sstream>
 #include <utility>
 
 #include "base/errors.h"
+#include "base/parse_number.h"
 
 namespace microinjection {
 namespace {
@@ -38,19 +36,9 @@ void TextEmulator::process(const std::string& bytes, double time) {
   }
 }
 
-std::string TextEmulator::produce(double time) {
-  advance(time);
-  std::string output;
-  while (!replies_.empty() && replies_.front().due <= time) {
-    output += replies_.front().bytes;
-    replies_.erase(replies_.begin());
-  }
-  return output;
-}
-
 void TextEmulator::checkError(const std::string& code) const {
-  long number = 0;
-  if (code == kReset || (isWhole(code, number) && number >= 0 && number <= 999)) return;
+  const auto number = parseNumber<int>(code);
+  if (code == kReset || (number && *number >= 0 && *number <= 999)) return;
   throw ConfigError("fault = error:" + code + ": must be a number from 0 to 999, or RESET");
 }
 
@@ -60,27 +48,10 @@ void TextEmulator::failNextCommand(const std::string& code) {
     return;
   }
   command_.clear();
-  replies_.clear();
+  dropReplies();
   error_ = -1;
   moving_ = false;
   switchOn();
-}
-
-std::vector<std::string> capitalWords(const std::string& command) {
-  std::vector<std::string> words;
-  std::istringstream stream(command);
-  for (std::string word; stream >> word;) {
-    std::transform(word.begin(), word.end(), word.begin(), [](unsigned char each) { return std::toupper(each); });
-    words.push_back(word);
-  }
-  return words;
-}
-
-bool isWhole(const std::string& text, long& number) {
-  char* end = nullptr;
-  if (text.empty() || std::isspace(static_cast<unsigned char>(text[0]))) return false;
-  number = std::strtol(text.c_str(), &end, 10);
-  return *end == '\0' && text.size() <= 11;
 }
 
 }  // namespace microinjection

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "rig/devices/manipulator_emulator.h"
 
@@ -28,33 +27,21 @@ class TextEmulator : public ManipulatorEmulator {
   virtual void switchOn() = 0;
 
   void process(const std::string& bytes, double time) final;
-  std::string produce(double time) final;
+  void advance(double time) final;
   void checkError(const std::string& code) const final;
   void failNextCommand(const std::string& code) final;
 
-  void reply(const std::string& line, double time) { replies_.push_back({time + answer_time_, line + "\r"}); }
+  void reply(const std::string& line, double time) { sendAt(time + answer_time_, line + "\r"); }
   void beginMoving() { moving_ = true, ++moves_begun_; }
   void endMoving() { moving_ = false; }
 
  private:
-  struct Reply {
-    double due;  // s
-    std::string bytes;
-  };
-  void advance(double time);
-
   double answer_time_;  // s
   std::string command_;
-  std::vector<Reply> replies_;
   int error_ = -1;  // for the next command; -1: none
   bool moving_ = false;
   int moves_begun_ = 0;
   double time_ = 0;  // s
 };
-
-/// Splits a command into words in capitals.
-std::vector<std::string> capitalWords(const std::string& command);
-/// @returns whether `text` is a whole number, which is then in `number`
-bool isWhole(const std::string& text, long& number);
 
 }  // namespace microinjection

@@ -24,18 +24,15 @@ std::string parameter(double value) {
 }  // namespace
 
 void FemtojetEmulator::process(const std::string& bytes, double time) {
-  time_ = std::max(time, time_);
-  for (const char each : bytes) {
-    if (each != '\r' && each != '\n') {
-      command_ += each;
-      continue;
-    }
-    if (command_.empty()) continue;  // the line feed after a carriage return
-    const std::string first = config_.echo == FemtojetEmulatorConfig::Echo::kCommand ? command_ : "";
+  advance(time);
+  std::string text = bytes;
+  std::replace(text.begin(), text.end(), '\n', '\r');
+  for (const std::string& command : commands_.feed(text)) {
+    if (command.empty()) continue;  // the line feed after a carriage return
+    const std::string first = config_.echo == FemtojetEmulatorConfig::Echo::kCommand ? command : "";
     const bool two_lines = config_.echo != FemtojetEmulatorConfig::Echo::kNone;
-    const std::string reply = (two_lines ? first + config_.line_end : "") + handleCommand(command_) + config_.line_end;
-    replies_.add(reply, time_ + config_.answer_time);
-    command_.clear();
+    const std::string reply = (two_lines ? first + config_.line_end : "") + handleCommand(command) + config_.line_end;
+    sendAt(time_ + config_.answer_time, reply);
   }
 }
 
@@ -73,11 +70,6 @@ std::string FemtojetEmulator::enter(const std::string& number, const std::string
     return kFaulty;
   }
   return "A" + number;
-}
-
-std::string FemtojetEmulator::produce(double time) {
-  time_ = std::max(time, time_);
-  return replies_.popDue(time);
 }
 
 void FemtojetEmulator::checkError(const std::string& code) const {

@@ -1,9 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <string>
 
 #include "rig/injector/injector_emulator.h"
-#include "rig/injector/reply_queue.h"
+#include "rig/serial/line_splitter.h"
 
 namespace microinjection {
 
@@ -39,7 +40,7 @@ class FemtojetEmulator : public InjectorEmulator {
 
  protected:
   void process(const std::string& bytes, double time) override;
-  std::string produce(double time) override;
+  void advance(double time) override { time_ = std::max(time, time_); }
   void checkError(const std::string& code) const override;
   void failNextCommand(const std::string& code) override { error_ = code; }
   void interrupt(double time) override { injects_until_ = time; }
@@ -50,13 +51,12 @@ class FemtojetEmulator : public InjectorEmulator {
   std::string enter(const std::string& number, const std::string& parameter);
 
   FemtojetEmulatorConfig config_;
-  std::string command_;                            // received so far
+  LineSplitter commands_{"\r", 1 << 20};
   std::string error_;                              // for the next command; empty: none
   double injection_time_ = 2;                      // s
   double compensation_ = 2500, injection_ = 10e3;  // Pa
   double injects_until_ = -1;                      // s
   double time_ = 0;                                // s
-  ReplyQueue replies_;
 };
 
 }  // namespace microinjection

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <sstream>
 
+#include "base/parse_number.h"
 #include "rig/injector/protocol_placeholders.h"
 
 namespace microinjection {
@@ -39,13 +39,6 @@ std::string other(const std::string& what, double requested, double set, const s
   std::ostringstream out;
   out << what << " = " << requested << ' ' << unit << ": set by hand at the device, must be " << set << ' ' << unit;
   return out.str();
-}
-
-std::optional<double> toNumber(const std::string& text) {
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != '\0' || !std::isfinite(value)) return std::nullopt;
-  return value;
 }
 
 }  // namespace
@@ -99,7 +92,7 @@ InjectorProtocol::Values InjectorProtocol::balanceValues(double pressure) const 
 std::string InjectorProtocol::misread(const Exchange& exchange, const std::smatch& groups, const Values& values) {
   if (exchange.confirm.empty()) return "";
   const double wanted = values.at(exchange.confirm);
-  const auto read = toNumber(groups[1].str());
+  const auto read = parseNumber<double>(groups[1].str());
   if (read && std::abs(*read - wanted) <= 1e-6 * std::max(1.0, std::abs(wanted))) return "";
   std::ostringstream out;
   out << "it reads back " << groups[1].str() << " instead of " << wanted;
@@ -107,7 +100,7 @@ std::string InjectorProtocol::misread(const Exchange& exchange, const std::smatc
 }
 
 std::optional<double> InjectorProtocol::queriedPressure(const std::smatch& groups) const {
-  const auto read = toNumber(groups[1].str());
+  const auto read = parseNumber<double>(groups[1].str());
   if (!read) return std::nullopt;
   return *read * pressure_unit + pressure_zero;
 }

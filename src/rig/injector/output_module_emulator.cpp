@@ -20,13 +20,9 @@ double OutputModuleEmulator::pressure() const {
 }
 
 void OutputModuleEmulator::process(const std::string& bytes, double time) {
-  for (const char each : bytes) {
-    if (each != '\r') {
-      command_ += each;
-      continue;
-    }
-    const std::string reply = handleCommand(std::exchange(command_, ""));
-    if (!reply.empty()) replies_.add(reply + "\r", time + config_.answer_time);
+  for (const std::string& command : commands_.feed(bytes)) {
+    const std::string reply = handleCommand(command);
+    if (!reply.empty()) sendAt(time + config_.answer_time, reply + "\r");
   }
 }
 

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "rig/injector/injector_emulator.h"
-#include "rig/injector/reply_queue.h"
+#include "rig/serial/line_splitter.h"
 
 namespace microinjection {
 
@@ -39,7 +39,6 @@ class OutputModuleEmulator : public InjectorEmulator {
 
  protected:
   void process(const std::string& bytes, double time) override;
-  std::string produce(double time) override { return replies_.popDue(time); }
   void checkError(const std::string& code) const override;
   void failNextCommand(const std::string&) override { fails_ = true; }
   void interrupt(double) override { relays_ = 0, volts_ = 0; }
@@ -51,11 +50,10 @@ class OutputModuleEmulator : public InjectorEmulator {
   std::string readBack() const;
 
   OutputModuleConfig config_;
-  std::string command_;  // received so far
+  LineSplitter commands_{"\r", 1 << 20};
   bool fails_ = false;
   unsigned relays_ = 0;  // one bit each
   double volts_ = 0;
-  ReplyQueue replies_;
 };
 
 }  // namespace microinjection

@@ -30,8 +30,8 @@ double coneResistanceIntegral(double from_radius, double to_radius, double lengt
 }
 
 PipetteFlow::PipetteFlow(const PipetteConfig& config)
-    : capillary_(2 * config.surface_tension * std::cos(config.contact_angle) / config.meniscus_radius),
-      outside_(config.outside_pressure) {
+    : rest_(2 * config.surface_tension * std::cos(config.contact_angle) / config.meniscus_radius +
+            config.outside_pressure) {
   const double integral = coneResistanceIntegral(config.tip_radius, config.tip_radius, config.tip_length) +
                           coneResistanceIntegral(config.tip_radius, config.shaft_radius, config.taper_length) +
                           coneResistanceIntegral(config.shaft_radius, config.shaft_radius, config.shaft_length);

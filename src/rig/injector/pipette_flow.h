@@ -30,11 +30,10 @@ class PipetteFlow {
 
   /// Pa s/m^3: 8 viscosity / pi times the integral of r^-4 along the pipette.
   double resistance() const { return resistance_; }
-  /// Pa, 2 gamma cos(theta) / r (Young-Laplace): capillary pressure of the meniscus, which pulls
-  /// the liquid back from the tip.
-  double capillaryPressure() const { return capillary_; }
-  /// The pressure (Pa) behind the liquid at which nothing flows. Below it the pipette aspirates.
-  double restPressure() const { return capillary_ + outside_; }
+  /// The pressure (Pa) behind the liquid at which nothing flows. Below it the pipette aspirates. It
+  /// is the outside pressure and the capillary pressure of the meniscus, 2 gamma cos(theta) / r
+  /// (Young-Laplace), which pulls the liquid back from the tip.
+  double restPressure() const { return rest_; }
 
   /// Flow (m^3/s) at a pressure (Pa) behind the liquid. `clogging`: resistance relative to the
   /// clean pipette.
@@ -44,8 +43,7 @@ class PipetteFlow {
 
  private:
   double resistance_;
-  double capillary_;
-  double outside_;
+  double rest_;  // Pa
 };
 
 /// Integral of r^-4 (m^-3) along a cone of this length between two radii (m); equal radii make a

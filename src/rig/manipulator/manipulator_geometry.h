@@ -34,6 +34,10 @@ struct ManipulatorGeometry {
   ///   beyond its limits.
   static ManipulatorGeometry fromUrdf(const std::string& xml, double tilt_angle = 0);
 
+  /// m/s and m/s^2, the largest of the axes.
+  Eigen::Vector3d velocities() const { return {axes[0].velocity, axes[1].velocity, axes[2].velocity}; }
+  Eigen::Vector3d accelerations() const { return {axes[0].acceleration, axes[1].acceleration, axes[2].acceleration}; }
+
   /// Tip position in `world` (m) from joint positions (m).
   Eigen::Vector3d tip(const Eigen::Vector3d& joints) const;
   /// Pose of `needle_tip` in `world` from joint positions (m).

@@ -1,6 +1,5 @@
 #include "rig/manipulator/micromanipulator.h"
 
-#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <utility>
@@ -25,7 +24,7 @@ Micromanipulator::Micromanipulator(const ManipulatorGeometry& geometry, const Co
       device_(&device),
       accepts_setpoints_while_moving_(device.abilities().follows) {
   adapt();
-  device.limitSpeed({geometry.axes[0].velocity, geometry.axes[1].velocity, geometry.axes[2].velocity});
+  device.limitSpeed(geometry.velocities());
   if (const auto ends = device.homingEnds()) device.planHoming(planHoming(geometry, guard, *ends));
 }
 
@@ -58,14 +57,9 @@ AxesMotion Micromanipulator::start() const {
   const bool resting = mode_ == Mode::kHold && !device_->moving();
   if (setpoint_ && !resting) return *setpoint_;
   const ManipulatorDevice::Reading reading = *device_->reading();
-  AxesMotion motion{reading.joints, Eigen::Vector3d::Zero()};
-  if (!resting) {
-    for (int i = 0; i < 3; ++i) {
-      const double largest = geometry_.axes[i].velocity;
-      motion.velocity[i] = std::clamp(reading.velocity[i], -largest, largest);
-    }
-  }
-  return motion;
+  if (resting) return {reading.joints, Eigen::Vector3d::Zero()};
+  const Eigen::Vector3d largest = geometry_.velocities();
+  return {reading.joints, reading.velocity.cwiseMax(-largest).cwiseMin(largest)};
 }
 
 Eigen::Vector3d Micromanipulator::restAfter(const AxesMotion& motion) const {

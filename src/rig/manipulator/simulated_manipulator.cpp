@@ -29,11 +29,8 @@ ManipulatorAbilities SimulatedManipulator::abilities() const {
   abilities.device = "simulated";
   abilities.follows = true;
   abilities.resolution = config_.resolution;
-  double slowest_stop = 0;
-  for (const auto& axis : geometry_.axes) {
-    abilities.speed = std::max(abilities.speed, axis.velocity);
-    slowest_stop = std::max(slowest_stop, axis.velocity / axis.acceleration);
-  }
+  abilities.speed = geometry_.velocities().maxCoeff();
+  const double slowest_stop = brakingTime(geometry_, geometry_.velocities());
   abilities.stop_time = slowest_stop + 5 * config_.servo_time_constant;  // until 1 % of the lag remains
   return abilities;
 }
@@ -89,14 +86,13 @@ void SimulatedManipulator::stepMotors(double dt) {
 }
 
 void SimulatedManipulator::stepTip(double dt) {
-  const Eigen::Vector3d before = tip_;
   std::normal_distribution<double> normal;
   for (int i = 0; i < 3; ++i) {
-    after_backlash_[i] = std::clamp(after_backlash_[i], motors_[i] - config_.backlash / 2, motors_[i] + config_.backlash / 2);
+    after_backlash_[i] =
+        std::clamp(after_backlash_[i], motors_[i] - config_.backlash / 2, motors_[i] + config_.backlash / 2);
     drift_[i] += config_.drift_rate[i] * dt + config_.drift_walk * std::sqrt(dt) * normal(random_);
     tip_[i] = hysteresis_[i].follow(after_backlash_[i]) + drift_[i];
   }
-  tip_velocity_ = (tip_ - before) / dt;
 }
 
 bool SimulatedManipulator::moving() const {

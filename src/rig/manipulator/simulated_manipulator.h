@@ -51,9 +51,8 @@ class SimulatedManipulator : public ManipulatorDevice {
   /// @pre `reason` is not empty
   void injectFault(const std::string& reason);
 
-  /// True tip position, as joint positions (m) of an ideal device, and its velocity (m/s).
+  /// True tip position, as joint positions (m) of an ideal device.
   const Eigen::Vector3d& trueJoints() const { return tip_; }
-  const Eigen::Vector3d& trueJointVelocity() const { return tip_velocity_; }
 
  private:
   enum class Mode { kFollow, kMove, kStop };
@@ -71,11 +70,10 @@ class SimulatedManipulator : public ManipulatorDevice {
   double speed_ = 0;                                          ///< m/s, of moveTo
   Eigen::Vector3d motors_ = Eigen::Vector3d::Zero();          ///< m
   Eigen::Vector3d motor_velocity_ = Eigen::Vector3d::Zero();  ///< m/s
-  Eigen::Vector3d after_backlash_ = Eigen::Vector3d::Zero();          ///< m, after the backlash
+  Eigen::Vector3d after_backlash_ = Eigen::Vector3d::Zero();  ///< m, after the backlash
   std::array<Hysteresis, 3> hysteresis_;
-  Eigen::Vector3d drift_ = Eigen::Vector3d::Zero();         ///< m
-  Eigen::Vector3d tip_ = Eigen::Vector3d::Zero();           ///< m
-  Eigen::Vector3d tip_velocity_ = Eigen::Vector3d::Zero();  ///< m/s
+  Eigen::Vector3d drift_ = Eigen::Vector3d::Zero();  ///< m
+  Eigen::Vector3d tip_ = Eigen::Vector3d::Zero();    ///< m
   std::mt19937_64 random_;
 };
 

@@ -1,20 +1,15 @@
 #include "rig/manipulator/straight_move.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include "rig/manipulator/approach_speed.h"
 
 namespace microinjection {
 namespace {
 
-double straightAcceleration(const ManipulatorGeometry& geometry, const Eigen::Vector3d& direction) {
-  double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < 3; ++i) {
-    if (direction[i] != 0) least = std::min(least, geometry.axes[i].acceleration / std::abs(direction[i]));
-  }
-  return least;
+/// The largest magnitude along a unit direction with which no axis exceeds its limit.
+double straightLimit(const Eigen::Vector3d& limits, const Eigen::Vector3d& direction) {
+  return (limits.array() / direction.array().abs()).minCoeff();
 }
 
 Eigen::Vector3d braked(const ManipulatorGeometry& geometry, const Eigen::Vector3d& velocity, double dt) {
@@ -25,9 +20,7 @@ Eigen::Vector3d braked(const ManipulatorGeometry& geometry, const Eigen::Vector3
 }  // namespace
 
 double brakingTime(const ManipulatorGeometry& geometry, const Eigen::Vector3d& velocity) {
-  double longest = 0;
-  for (int i = 0; i < 3; ++i) longest = std::max(longest, std::abs(velocity[i]) / geometry.axes[i].acceleration);
-  return longest;
+  return velocity.cwiseAbs().cwiseQuotient(geometry.accelerations()).maxCoeff();
 }
 
 void brake(const ManipulatorGeometry& geometry, AxesMotion& motion, double dt) {
@@ -40,11 +33,7 @@ bool atRest(const ManipulatorGeometry& geometry, const AxesMotion& motion, const
 }
 
 double straightSpeed(const ManipulatorGeometry& geometry, const Eigen::Vector3d& direction) {
-  double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < 3; ++i) {
-    if (direction[i] != 0) least = std::min(least, geometry.axes[i].velocity / std::abs(direction[i]));
-  }
-  return least;
+  return straightLimit(geometry.velocities(), direction);
 }
 
 Eigen::Vector3d straightVelocity(const ManipulatorGeometry& geometry, const AxesMotion& motion,
@@ -54,7 +43,7 @@ Eigen::Vector3d straightVelocity(const ManipulatorGeometry& geometry, const Axes
   if (distance == 0) return braked(geometry, motion.velocity, dt);
   const Eigen::Vector3d direction = displacement / distance;
   const double forward = motion.velocity.dot(direction);
-  const double acceleration = straightAcceleration(geometry, direction);
+  const double acceleration = straightLimit(geometry.accelerations(), direction);
   const bool off_line = (motion.velocity - forward * direction).norm() > 1e-6 * motion.velocity.norm();
   const bool past = forward > acceleration * dt + approachSpeed(distance, acceleration, dt);
   if (forward < 0 || off_line || past) return braked(geometry, motion.velocity, dt);

@@ -1,11 +1,11 @@
 #include "rig/sensor/volt_reading.h"
 
 #include <cstdio>
-#include <locale>
-#include <sstream>
 #include <vector>
 
+#include "base/parse_number.h"
 #include "rig/serial/line_ending.h"
+#include "rig/serial/line_splitter.h"
 
 namespace microinjection {
 namespace {
@@ -36,10 +36,7 @@ std::optional<double> plainNumber(const std::string& field, int decimals) {
     if (at == exponent || at - exponent > 3) return std::nullopt;
   }
   if (at != text.size()) return std::nullopt;
-  std::istringstream in(text);
-  in.imbue(std::locale::classic());
-  double value = 0;
-  return in >> value ? std::optional<double>(value) : std::nullopt;
+  return parseNumber<double>(text);
 }
 
 /// Removes the checksum from the line. Returns false if it is wrong.
@@ -53,18 +50,6 @@ bool checkedBody(std::string& line) {
   if (line.compare(star + 1, 2, expected) != 0) return false;
   line.resize(star);
   return true;
-}
-
-std::vector<std::string> split(const std::string& line, char separator) {
-  std::vector<std::string> fields(1);
-  for (const char c : line) {
-    if (c == separator) {
-      fields.emplace_back();
-    } else {
-      fields.back() += c;
-    }
-  }
-  return fields;
 }
 
 }  // namespace
@@ -97,7 +82,7 @@ std::optional<Eigen::VectorXd> parseVoltages(const std::string& text, const Volt
   // If a device ends lines with \r\n and the terminator is \n, the \r remains here.
   if (config.terminator == "\n" && !line.empty() && line.back() == '\r') line.pop_back();
   if (config.checksum == "nmea" && !checkedBody(line)) return std::nullopt;
-  const std::vector<std::string> fields = split(line, config.separator[0]);
+  const auto fields = LineSplitter(config.separator, line.size()).feed(line + config.separator);
   if (static_cast<int>(fields.size()) != config.columns) return std::nullopt;
   Eigen::VectorXd voltages(config.voltages);
   for (int i = 0; i < config.voltages; ++i) {

@@ -48,6 +48,14 @@ void DeviceEmulator::receive(const std::string& bytes, double time) {
   if (time >= silent_until_ && missed < bytes.size()) process(bytes.substr(missed), time);
 }
 
+std::string DeviceEmulator::produce(double time) {
+  advance(time);
+  std::string output;
+  const auto end = replies_.upper_bound(time);
+  for (auto each = replies_.begin(); each != end; each = replies_.erase(each)) output += each->second;
+  return output;
+}
+
 std::string DeviceEmulator::send(double time) {
   beginFaults(time);
   std::string output = produce(time);

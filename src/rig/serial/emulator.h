@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,13 @@ class DeviceEmulator {
 
  protected:
   virtual void process(const std::string& bytes, double time) = 0;
-  virtual std::string produce(double time) = 0;
+  /// Advances the device to `time` (s).
+  virtual void advance(double /*time*/) {}
+  /// Advances to `time` (s). Removes and returns the replies that are due.
+  virtual std::string produce(double time);
+  /// Sends `bytes` at the time `due` (s), in the order of the calls when it is the same.
+  void sendAt(double due, const std::string& bytes) { replies_.emplace(due, bytes); }
+  void dropReplies() { replies_.clear(); }
   /// checkError() throws ConfigError for an error code that the device does not have.
   /// failNextCommand() lets the next command fail with this error.
   virtual void checkError(const std::string& code) const = 0;
@@ -35,6 +42,7 @@ class DeviceEmulator {
   void beginFaults(double time);
 
   std::vector<Fault> pending_;
+  std::multimap<double, std::string> replies_;     // by time (s)
   double silent_until_ = -1;                       // s
   int to_drop_ = 0, to_miss_ = 0, to_garble_ = 0;  // bytes
 };

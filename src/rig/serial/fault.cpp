@@ -4,6 +4,7 @@
 #include <map>
 
 #include "base/errors.h"
+#include "base/parse_number.h"
 
 namespace microinjection {
 namespace {
@@ -13,18 +14,12 @@ constexpr char kAllowed[] =
     "s";
 
 double number(const std::string& fault, const std::string& text, bool whole) {
-  std::size_t used = 0;
-  double value = std::nan("");
-  try {
-    value = std::stod(text, &used);
-  } catch (const std::exception&) {
-  }
-  if (used != text.size() || !std::isfinite(value) || value < 0 ||
-      (whole && (value != std::floor(value) || value < 1))) {
+  const auto value = parseNumber<double>(text);
+  if (!value || *value < 0 || (whole && (*value != std::floor(*value) || *value < 1))) {
     throw ConfigError("fault = " + fault + ": \"" + text + "\" must be " +
                       (whole ? "a whole number of at least 1" : "a number of at least 0, s"));
   }
-  return value;
+  return *value;
 }
 
 }  // namespace

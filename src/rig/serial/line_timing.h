@@ -18,7 +18,6 @@ class LineTiming {
   /// `baud` in bit/s, > 0.
   explicit LineTiming(double baud) : byte_time_(10 / baud) {}
 
-  double byteTime() const { return byte_time_; }  ///< s
   /// Sends bytes from `time` (s), after those that are still being sent.
   void put(const std::string& bytes, double time);
   /// Removes and returns the bytes that have arrived by `time` (s), in order.

@@ -44,7 +44,7 @@ TEST(PipetteFlow, CapillarityDrawsBackUntilTheBalancePressure) {
   config.contact_angle = 0;
   config.meniscus_radius = 0.25e-3;
   PipetteFlow flow(config);
-  EXPECT_NEAR(flow.capillaryPressure(), 576, 1e-9);  // 2 x 0.072 / 0.25e-3
+  EXPECT_NEAR(flow.restPressure(), 576, 1e-9);  // 2 x 0.072 / 0.25e-3
   EXPECT_LT(flow.flow(500), 0);
   EXPECT_GT(flow.flow(600), 0);
   EXPECT_EQ(flow.flow(flow.restPressure()), 0);

@@ -44,6 +44,12 @@ double deviationOf(const Eigen::Vector3d& displacement, const Eigen::Vector3d& s
 
 }  // namespace
 
+EppendorfConfig EppendorfConfig::read(ConfigReader& reader) {
+  EppendorfConfig config;
+  config.readCommon(reader, 19200, {1e-6, 7.5e-3});
+  return config;
+}
+
 EppendorfDriver::EppendorfDriver(const EppendorfConfig& config, std::unique_ptr<Wire> wire)
     : PolledManipulator(config, std::move(wire), dialect()) {}
 

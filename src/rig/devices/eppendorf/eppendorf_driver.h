@@ -1,9 +1,14 @@
 #pragma once
 
-#include "rig/devices/eppendorf/eppendorf_config.h"
 #include "rig/devices/polled_manipulator.h"
 
 namespace microinjection {
+
+struct EppendorfConfig : PolledManipulatorConfig {
+  EppendorfConfig() { port.baud = 19200; }
+
+  static EppendorfConfig read(ConfigReader& reader);
+};
 
 /// Driver of the Eppendorf PatchMan NP 2, and of the InjectMan NI 2 as far as its protocol is the
 /// same. The device is under remote control while the driver is connected: joystick and keys are

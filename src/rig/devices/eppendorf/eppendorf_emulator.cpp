@@ -7,6 +7,8 @@
 #include <regex>
 #include <vector>
 
+#include "base/parse_number.h"
+
 namespace microinjection {
 namespace {
 
@@ -18,9 +20,9 @@ std::optional<std::vector<long>> numbersIn(const std::string& text) {
   if (!std::regex_match(text, form)) return std::nullopt;
   std::vector<long> numbers;
   for (std::sregex_iterator each(text.begin(), text.end(), number), end; each != end; ++each) {
-    long value = 0;
-    if (!isWhole(each->str(), value)) return std::nullopt;
-    numbers.push_back(value);
+    const auto value = parseNumber<long>(each->str());
+    if (!value) return std::nullopt;
+    numbers.push_back(*value);
   }
   return numbers;
 }

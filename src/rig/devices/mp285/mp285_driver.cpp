@@ -7,16 +7,25 @@ namespace microinjection {
 namespace {
 
 constexpr double kFineLimit = 1310;  // um/s
-constexpr double kHeldReply = 0.02;  // s, for which a USB adapter may delay a reply
 constexpr double kBytePause = 0.04;  // s, longest pause between two bytes of a reply (USB adapters collect for 16 ms)
-constexpr double kMoveAllowance = 0.5;  // s, allowed in addition to 1.25 times the duration of a move
-constexpr double kCoarseStep = 5;       // microsteps, resolution of a coarse move
-constexpr double kMargin = 5e-6;        // m, from the ends of a move within which it may still be moving
-constexpr int kSlowest = 20;            // um/s, of a short move
-constexpr int kTries = 2;               // of a move that misses its goal
+constexpr double kCoarseStep = 5;    // microsteps, resolution of a coarse move
+constexpr double kMargin = 5e-6;     // m, from the ends of a move within which it may still be moving
+constexpr int kSlowest = 20;         // um/s, of a short move
 constexpr std::size_t kMoveBytes = 19;  // for a move, sometimes with a speed, including replies
 
 }  // namespace
+
+Mp285Config Mp285Config::read(ConfigReader& reader) {
+  Mp285Config config;
+  config.readCommon(reader, 9600, {1e-6, 6.55e-3}, Range::nonNegative());
+  reader.vector("microsteps", config.microsteps, Range::closed(0, 1e-6));
+  if (((config.microsteps.array() > 0) && (config.microsteps.array() < 1e-9)).any()) {
+    reader.error("microsteps", "each must be 0 (by the device's status) or from 1e-9 to 1e-6 m");
+  }
+  reader.number("command_pause", config.command_pause, Range::nonNegative());
+  reader.number("half_command_time", config.half_command_time, Range::positive());
+  return config;
+}
 
 Mp285Driver::Mp285Driver(const Mp285Config& config, std::unique_ptr<Wire> wire)
     : MoveByMove(config, std::move(wire),
@@ -178,7 +187,6 @@ void Mp285Driver::handlePosition(const Mp285Position& reading) {
   const bool elsewhere = !((position - expected).cwiseAbs().maxCoeff() <= tolerance);
   const double outside = move_ ? origin_monitor_.outside(position, counts()) : 0;
   if (detectNewOrigin(position, outside, isNewZero(position, kMargin), kMargin)) return;
-  if (position_ && settled_) recordCorrection(position, expected);
   if (settled_ && !move_ && elsewhere) forgetSettings();
   const bool missed = move_ && (position - move_->to).cwiseAbs().maxCoeff() > tolerance;
   rest(position);

@@ -57,7 +57,7 @@ void Mp285Emulator::switchOn() {
   absolute_ = true;
   fails_at_ = error_ = -1;
   command_.clear();
-  replies_.clear();
+  dropReplies();
 }
 
 void Mp285Emulator::failNextCommand(const std::string& code) {
@@ -192,12 +192,7 @@ std::string Mp285Emulator::status() const {
 }
 
 std::string Mp285Emulator::produce(double time) {
-  advance(time);
-  std::string output;
-  while (!replies_.empty() && replies_.front().due <= time) {
-    output += replies_.front().bytes;
-    replies_.erase(replies_.begin());
-  }
+  const std::string output = ManipulatorEmulator::produce(time);
   if (!output.empty()) {
     deaf_until_ = time + static_cast<double>(output.size()) * 10 / config_.baud + config_.command_pause;
   }

@@ -42,24 +42,19 @@ class Mp285Emulator : public ManipulatorEmulator {
 
  protected:
   void process(const std::string& bytes, double time) override;
+  void advance(double time) override;
   std::string produce(double time) override;
   void checkError(const std::string& code) const override;
   void failNextCommand(const std::string& code) override;
   void interrupt(double time) override;
 
  private:
-  struct Reply {
-    double due;  // s
-    std::string bytes;
-  };
-
   void switchOn();
-  void advance(double time);
   void receiveByte(unsigned char byte, double time);
   void stop(double time);
   void handleCommand(double time);
   void beginMove();
-  void reply(const std::string& bytes, double time) { replies_.push_back({time + config_.answer_time, bytes}); }
+  void reply(const std::string& bytes, double time) { sendAt(time + config_.answer_time, bytes); }
   void replyError(int code, double time);
   std::string status() const;
 
@@ -73,8 +68,7 @@ class Mp285Emulator : public ManipulatorEmulator {
   std::vector<unsigned char> command_;
   double last_byte_ = 0;    // s
   double deaf_until_ = -1;  // s
-  std::vector<Reply> replies_;
-  double time_ = 0;  // s
+  double time_ = 0;         // s
   int moves_begun_ = 0;
 };
 

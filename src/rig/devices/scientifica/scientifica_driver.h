@@ -1,9 +1,20 @@
 #pragma once
 
 #include "rig/devices/polled_manipulator.h"
-#include "rig/devices/scientifica/scientifica_config.h"
 
 namespace microinjection {
+
+struct ScientificaConfig : PolledManipulatorConfig {
+  ScientificaConfig() {
+    port.baud = 38400;
+    reply_timeout = 0.35;
+  }
+
+  int version = 3;             ///< of the motion card: 2 or 3; others are refused
+  double acceleration = 0.03;  ///< m/s^2, set in the device at the start
+
+  static ScientificaConfig read(ConfigReader& reader);
+};
 
 /// Driver of the Scientifica PatchStar, and of other manipulators with the same motion cards and
 /// step size. At the start the card must confirm the maker Scientifica, the version in the file,

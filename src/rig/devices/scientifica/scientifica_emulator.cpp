@@ -1,13 +1,28 @@
 #include "rig/devices/scientifica/scientifica_emulator.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <sstream>
+
+#include "base/parse_number.h"
 
 namespace microinjection {
 namespace {
 
 constexpr int kUnknown = 3;
+
+/// Splits a command into words in capitals.
+std::vector<std::string> capitalWords(const std::string& command) {
+  std::vector<std::string> words;
+  std::istringstream stream(command);
+  for (std::string word; stream >> word;) {
+    std::transform(word.begin(), word.end(), word.begin(), [](unsigned char each) { return std::toupper(each); });
+    words.push_back(word);
+  }
+  return words;
+}
 
 }  // namespace
 
@@ -78,16 +93,16 @@ bool ScientificaEmulator::replyToQuery(const std::vector<std::string>& words, do
 }
 
 bool ScientificaEmulator::set(const std::vector<std::string>& words, double time) {
-  long number = 0;
-  if (words.size() != 2 || !isWhole(words[1], number)) return false;
+  const auto number = words.size() == 2 ? parseNumber<long>(words[1]) : std::nullopt;
+  if (!number) return false;
   const bool speed = words[0] == "TOP" || words[0] == "FIRST";
   if (!speed && words[0] != "ACC") return false;
   const long least = !isOld() ? 1 : speed ? 1000 : 10, most = isOld() && !speed ? 1000 : isOld() ? 50000 : 1000000;
-  if (number < least || number > most) {
+  if (*number < least || *number > most) {
     reply("E", time);
     return true;
   }
-  (words[0] == "TOP" ? top_ : words[0] == "FIRST" ? first_ : acc_) = static_cast<int>(number);
+  (words[0] == "TOP" ? top_ : words[0] == "FIRST" ? first_ : acc_) = static_cast<int>(*number);
   reply("A", time);
   return true;
 }
@@ -96,10 +111,10 @@ bool ScientificaEmulator::set(const std::vector<std::string>& words, double time
 void ScientificaEmulator::goTo(const std::vector<std::string>& words, bool relative, double time) {
   Eigen::Vector3d end = position_;
   for (std::size_t i = 1; i < words.size(); ++i) {
-    long number = 0;
-    if (i > 3 || !isWhole(words[i], number)) return reply(error(kUnknown), time);
+    const auto number = parseNumber<long>(words[i]);
+    if (i > 3 || !number) return reply(error(kUnknown), time);
     end[static_cast<Eigen::Index>(i) - 1] =
-        (relative ? position_[static_cast<Eigen::Index>(i) - 1] : 0) + static_cast<double>(number) * stepsPerCount();
+        (relative ? position_[static_cast<Eigen::Index>(i) - 1] : 0) + static_cast<double>(*number) * stepsPerCount();
   }
   if (words.size() < 3) return reply(error(kUnknown), time);
   if (moves()) return;

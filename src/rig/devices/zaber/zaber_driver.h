@@ -46,9 +46,7 @@ class ZaberDriver : public SerialManipulator {
   void planHoming(const HomingPlan& plan) override { homing_ = plan; }
 
   std::string note() const override;
-  double largestCorrection() const { return largest_correction_; }  ///< m, of an extrapolated position by a reading
-  int malformed() const { return parser_.malformed(); }             ///< malformed messages
-  double answerTime() const { return answer_time_; }                ///< s, measured reply time
+  int malformed() const { return parser_.malformed(); }  ///< malformed messages
 
  protected:
   void connected() override;
@@ -169,7 +167,6 @@ class ZaberDriver : public SerialManipulator {
   int move_stage_ = 0;   // of a move: 0..2 speeds, 3..5 positions, then in progress
   int move_tries_ = 0;
   bool move_done_ = false;
-  double largest_correction_ = 0;  // m
 };
 
 }  // namespace microinjection

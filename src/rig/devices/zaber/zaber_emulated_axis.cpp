@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "base/parse_number.h"
+
 namespace microinjection {
 namespace {
 
@@ -28,10 +30,8 @@ std::pair<int, std::ptrdiff_t> rank(const std::string& flag) {
 }
 
 std::optional<long long> whole(const std::string& word) {
-  char* rest = nullptr;
-  const long long value = std::strtoll(word.c_str(), &rest, 10);
-  if (word.empty() || *rest != '\0' || std::llabs(value) > kLargestData) return std::nullopt;
-  return value;
+  const auto value = parseNumber<long long>(word);
+  return value && std::abs(*value) <= kLargestData ? value : std::nullopt;
 }
 
 std::string ok(double value) { return "OK " + std::to_string(std::llround(value)); }

@@ -256,19 +256,7 @@ std::string ZaberEmulator::set(Device& device, const std::string& name, const st
 
 void ZaberEmulator::queueLine(char kind, const Device& device, const std::string& text, double delay) {
   const std::string sum = device.checksum ? digits(":%02X", (256 - sumOf(text)) % 256) : "";
-  const Line line{time_ + delay, kind + text + sum + "\r\n"};
-  const auto later = [](const Line& a, const Line& b) { return a.due < b.due; };
-  lines_.insert(std::upper_bound(lines_.begin(), lines_.end(), line, later), line);
-}
-
-std::string ZaberEmulator::produce(double time) {
-  advance(time);
-  std::string output;
-  while (!lines_.empty() && lines_.front().due <= time) {
-    output += lines_.front().text;
-    lines_.erase(lines_.begin());
-  }
-  return output;
+  sendAt(time_ + delay, kind + text + sum + "\r\n");
 }
 
 void ZaberEmulator::checkError(const std::string& code) const {

@@ -53,7 +53,7 @@ class ZaberEmulator : public ManipulatorEmulator {
 
  protected:
   void process(const std::string& bytes, double time) override;
-  std::string produce(double time) override;
+  void advance(double time) override;
   void checkError(const std::string& code) const override;
   void failNextCommand(const std::string& code) override;
   void interrupt(double time) override;
@@ -69,13 +69,8 @@ class ZaberEmulator : public ManipulatorEmulator {
     std::string id;  // message ID and a blank, or nothing
     std::vector<std::string> words;
   };
-  struct Line {
-    double due;  // s
-    std::string text;
-  };
 
   void build();
-  void advance(double time);
   void handleCommand(const std::string& line);
   void handleCommand(int number, Device& device, const Command& command);
   std::string perform(int number, Device& device, const Command& command);
@@ -88,7 +83,6 @@ class ZaberEmulator : public ManipulatorEmulator {
   ZaberEmulatorConfig config_;
   std::vector<ZaberEmulatedAxis> axes_;
   std::map<int, Device> devices_;  // by number
-  std::vector<Line> lines_;
   std::string line_;
   std::string rejection_;  // for the next command; empty: none
   double time_ = 0;        // s

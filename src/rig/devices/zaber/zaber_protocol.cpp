@@ -30,12 +30,8 @@ std::string popToken(std::string& text) {
 }
 
 std::optional<int> number(const std::string& word, std::size_t digits) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (word.size() > digits || word.empty() || error != std::errc() || end != word.data() + word.size() || value < 0) {
-    return std::nullopt;
-  }
-  return value;
+  const auto value = zaberWholeNumber(word);
+  return value && *value >= 0 && word.size() <= digits ? std::make_optional(static_cast<int>(*value)) : std::nullopt;
 }
 
 bool printable(const std::string& text) {

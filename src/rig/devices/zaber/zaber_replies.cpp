@@ -189,7 +189,6 @@ void ZaberDriver::handlePosition(const Exchange& request, const ZaberMessage& re
   if (!axis.filter.accept(Coordinate::Constant(1, position), Coordinate::Constant(1, extrapolated), tolerance,
                           agreement))
     return;
-  if (axis.read_since_begin) largest_correction_ = std::max(largest_correction_, std::abs(position - extrapolated));
   const bool unchanged = axis.position && std::abs(position - *axis.position) < 0.5 * step;
   if (!reply.busy) axis.coasting = 0;
   axis.position = position;

@@ -68,7 +68,9 @@ TEST_F(ZaberSessionTest, StopsInTheTimeThatTheDevicesOwnAccelerationGives) {
   makeWith(0.185, 0.2);
   start();
   const double wire = 40 * 10.0 / 115200;  // s, of three stops
-  EXPECT_NEAR(rig_->driver().abilities().stop_time, 2e-3 / 0.185 + wire + rig_->driver().answerTime(), 0.3e-3);
+  const ManipulatorAbilities abilities = rig_->driver().abilities();
+  const double answer = abilities.latency / 4 - (kZaberCommandBytes + kZaberReplyBytes) * 10.0 / 115200;  // s
+  EXPECT_NEAR(abilities.stop_time, 2e-3 / 0.185 + wire + answer, 0.3e-3);
 }
 
 TEST_F(ZaberSessionTest, RefusesADeviceThatCountsOtherMicrosteps) {

@@ -1,12 +1,12 @@
 // The sensor's stream against its configuration, within 5 %. The streams are long enough that the statistical error is
 // well below that; seeds are fixed.
-#include "rig/sensor/stream_estimates.h"
+#include "benchmark/common/stream_estimates.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "stream.h"
+#include "rig/sensor/stream.h"
 
 namespace microinjection {
 namespace {

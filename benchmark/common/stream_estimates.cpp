@@ -1,4 +1,4 @@
-#include "rig/sensor/stream_estimates.h"
+#include "benchmark/common/stream_estimates.h"
 
 #include <Eigen/QR>
 #include <algorithm>
