@@ -11,8 +11,6 @@
 namespace microinjection {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 /// tension times area minus pressure times volume per unit of the reference facet, as a function of
 /// the position and the tangents there, in this order (Dim^2 numbers).
 template <int Dim>
@@ -64,7 +62,7 @@ void addVolume(const Eigen::Matrix3d& at, double pressure, Density<3>& density) 
 
 /// Area 2 pi r |t|, t the tangent. False when it vanishes or the axis is crossed.
 bool addArea(const Eigen::Matrix2d& at, double tension, Density<2>& density) {
-  const double r = at(0, 0), length = at.col(1).norm(), factor = 2 * kPi * tension;
+  const double r = at(0, 0), length = at.col(1).norm(), factor = 2 * M_PI * tension;
   if (!(r > 0) || !(length > 0)) return false;
   const Eigen::Vector2d direction = at.col(1) / length;
   density.value += factor * r * length;
@@ -79,7 +77,7 @@ bool addArea(const Eigen::Matrix2d& at, double tension, Density<2>& density) {
 
 /// Volume pi r^2 dz of a slice.
 void addVolume(const Eigen::Matrix2d& at, double pressure, Density<2>& density) {
-  const double r = at(0, 0), dz = at(1, 1), factor = -pressure * kPi;
+  const double r = at(0, 0), dz = at(1, 1), factor = -pressure * M_PI;
   density.value += factor * r * r * dz;
   density.gradient[0] += factor * 2 * r * dz;
   density.gradient[3] += factor * r * r;

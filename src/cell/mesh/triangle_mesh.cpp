@@ -17,10 +17,9 @@ double triangleArea(const TriangleMesh& mesh, int triangle) {
 }
 
 double sweptVolume(const TriangleMesh& mesh, int triangle) {
-  constexpr double kPi = 3.14159265358979323846;
   const std::array<int, 3>& corners = mesh.triangles[triangle];
   const double r = (mesh.vertices[corners[0]] + mesh.vertices[corners[1]] + mesh.vertices[corners[2]]).x() / 3;
-  return 2 * kPi * r * triangleArea(mesh, triangle);
+  return 2 * M_PI * r * triangleArea(mesh, triangle);
 }
 
 double smallestAngle(const TriangleMesh& mesh, int triangle) {
