@@ -10,8 +10,6 @@ namespace {
 
 constexpr int kCables = 36;
 
-bool positive(double value) { return std::isfinite(value) && value > 0; }
-
 void checkFilaments(const FilamentConfig& filaments, const std::string& path, ConfigErrors& errors) {
   errors.require(Range::positive(), path + "young_modulus", filaments.young_modulus, " Pa");
   errors.require(Range::positive(), path + "bending_stiffness", filaments.bending_stiffness, " N m^2");
@@ -64,7 +62,7 @@ bool TensegrityConfig::viscous() const {
 
 std::vector<std::string> TensegrityConfig::errors() const {
   ConfigErrors errors;
-  errors.require(positive(radius), "diameter", 2 * radius, " m", "positive (m)");
+  errors.require(Range::positive().contains(radius), "diameter", 2 * radius, " m", "positive (m)");
   errors.requireOneOf(tensegrityOrientations(), "orientation", orientation);
   checkCable(actin, "actin/", errors);
   checkCable(intermediate, "intermediate_filaments/", errors);
