@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "cell/material/volume.h"
 #include "cell/mechanics/reference_element.h"
 
 namespace microinjection {
@@ -19,13 +20,6 @@ struct Density {
   Eigen::Matrix<double, Dim * Dim, 1> gradient = Eigen::Matrix<double, Dim * Dim, 1>::Zero();
   Eigen::Matrix<double, Dim * Dim, Dim* Dim> hessian = Eigen::Matrix<double, Dim * Dim, Dim * Dim>::Zero();
 };
-
-/// a x b = cross(a) b.
-Eigen::Matrix3d cross(const Eigen::Vector3d& a) {
-  Eigen::Matrix3d matrix;
-  matrix << 0, -a[2], a[1], a[2], 0, -a[0], -a[1], a[0], 0;
-  return matrix;
-}
 
 /// Area |a1 x a2| = sqrt(g) with the metric's determinant g. False when it vanishes.
 bool addArea(const Eigen::Matrix3d& at, double tension, Density<3>& density) {
