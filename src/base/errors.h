@@ -6,6 +6,8 @@
 
 namespace microinjection {
 
+std::string join(const std::vector<std::string>& texts, const std::string& separator);
+
 /// An error that the user can correct.
 class UserError : public std::runtime_error {
   using std::runtime_error::runtime_error;
