@@ -19,7 +19,8 @@
 namespace microinjection {
 namespace {
 
-/// Increase it when the same configuration gives another mesh, or the cache another file, than before.
+/// Increase it when the same configuration gives another mesh than before, or the cache another
+/// file.
 constexpr int kMesherVersion = 4;
 
 /// Vertices of tetrahedra with a radiusRatio below kPoor are moved. Below kBad the mesher tries
