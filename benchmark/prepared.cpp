@@ -146,7 +146,7 @@ void reportTimes(const Scene& scene, std::shared_ptr<const SurrogateData> cell) 
                times[times.size() / 2], times[times.size() * 99 / 100], sum / 200000);
   Eigen::Matrix3Xd rest, displaced;
   const double start = threadCpuTime();
-  for (int i = 0; i < 100; ++i) contact.surface(rest, displaced);
+  for (int i = 0; i < 100; ++i) contact.surface(contact.shape(), rest, displaced);
   std::fprintf(stderr, "prepared: surface of %d nodes: %.3f ms of CPU\n", cell->surface.nodeCount(),
                10 * (threadCpuTime() - start));
 }

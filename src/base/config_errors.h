@@ -32,9 +32,8 @@ class ConfigErrors {
   }
   /// Requires one of `names`.
   void requireOneOf(const std::vector<std::string>& names, const std::string& key, const std::string& value) {
-    std::string all;
-    for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
-    require(std::find(names.begin(), names.end(), value) != names.end(), key, value, "", "one of: " + all);
+    const bool known = std::find(names.begin(), names.end(), value) != names.end();
+    require(known, key, value, "", "one of: " + join(names, ", "));
   }
   void add(const std::string& message) { messages_.push_back(prefix_ + message); }
 

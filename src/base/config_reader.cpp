@@ -111,9 +111,7 @@ void ConfigReader::choice(const std::string& key, std::string& value, const std:
       return;
     }
   }
-  std::string list;
-  for (const std::string& option : allowed) list += (list.empty() ? "" : ", ") + option;
-  error(key, "must be one of: " + list);
+  error(key, "must be one of: " + join(allowed, ", "));
 }
 
 void ConfigReader::vector(const std::string& key, Eigen::Ref<Eigen::VectorXd> value, const Range& range,
@@ -169,9 +167,8 @@ void ConfigReader::finish() {
       const std::string key = item.first.Scalar();
       if (!seen.insert(key).second) errors_->push_back(origin_ + ": " + level->path + key + ": is there twice");
       if (level->known.count(key)) continue;
-      std::string known;
-      for (const std::string& name : level->known) known += (known.empty() ? "" : ", ") + name;
-      errors_->push_back(origin_ + ": " + level->path + key + ": unknown key; known here: " + known);
+      errors_->push_back(origin_ + ": " + level->path + key +
+                         ": unknown key; known here: " + join({level->known.begin(), level->known.end()}, ", "));
     }
   }
   if (!errors_->empty()) throw ConfigError(*errors_);

@@ -7,10 +7,10 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <condition_variable>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <deque>
@@ -79,7 +79,6 @@ struct ConsoleRelay::Shared {
   std::uint64_t dropped_unreported = 0;  // lines
   bool ended = false;                    // nothing more will be read
   bool written = false;                  // the writing thread has ended
-  std::atomic<std::uint64_t> dropped{0};
 
   bool open();
   void read();
@@ -131,9 +130,7 @@ void ConsoleRelay::Shared::read() {
 void ConsoleRelay::Shared::queue(int stream, std::string text) {
   const std::lock_guard<std::mutex> lock(mutex);
   if (waiting_bytes + text.size() > kMostWaiting) {
-    const auto lines = static_cast<std::uint64_t>(std::count(text.begin(), text.end(), '\n'));
-    dropped += lines;
-    dropped_unreported += lines;
+    dropped_unreported += static_cast<std::uint64_t>(std::count(text.begin(), text.end(), '\n'));
     return;
   }
   if (dropped_unreported > 0) {
@@ -181,7 +178,5 @@ ConsoleRelay::~ConsoleRelay() {
   std::unique_lock<std::mutex> lock(shared_->mutex);
   shared_->changed.wait_for(lock, kWriteTimeout, [this] { return shared_->written; });
 }
-
-std::uint64_t ConsoleRelay::droppedLines() const { return shared_ ? shared_->dropped.load() : 0; }
 
 }  // namespace microinjection

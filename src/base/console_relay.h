@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <memory>
 
 namespace microinjection {
@@ -20,8 +19,6 @@ class ConsoleRelay {
   ~ConsoleRelay();
   ConsoleRelay(const ConsoleRelay&) = delete;
   ConsoleRelay& operator=(const ConsoleRelay&) = delete;
-
-  std::uint64_t droppedLines() const;  ///< since the start
 
  private:
   struct Shared;

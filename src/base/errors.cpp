@@ -1,16 +1,13 @@
 #include "base/errors.h"
 
 namespace microinjection {
-namespace {
 
-std::string join(const std::vector<std::string>& messages) {
+std::string join(const std::vector<std::string>& texts, const std::string& separator) {
   std::string all;
-  for (const std::string& message : messages) all += (all.empty() ? "" : "\n") + message;
+  for (const std::string& text : texts) all += (all.empty() ? "" : separator) + text;
   return all;
 }
 
-}  // namespace
-
-ConfigError::ConfigError(const std::vector<std::string>& messages) : ConfigError(join(messages)) {}
+ConfigError::ConfigError(const std::vector<std::string>& messages) : ConfigError(join(messages, "\n")) {}
 
 }  // namespace microinjection

@@ -7,6 +7,7 @@
 #include <limits>
 #include <sstream>
 
+#include "base/config_errors.h"
 #include "base/errors.h"
 
 namespace microinjection {
@@ -89,11 +90,10 @@ double parsePositive(const std::string& option, const std::string& text, const s
 
 /// Index of a name. Throws ConfigError that lists all names.
 std::size_t parseChoice(const std::string& option, const std::string& name, const std::vector<std::string>& names) {
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found != names.end()) return found - names.begin();
-  std::string all;
-  for (const std::string& one : names) all += (all.empty() ? "" : ", ") + one;
-  throw ConfigError("--" + option + " = " + name + ": must be one of: " + all);
+  ConfigErrors errors;
+  errors.requireOneOf(names, "--" + option, name);
+  errors.throwAny();
+  return std::find(names.begin(), names.end(), name) - names.begin();
 }
 
 struct OptionTexts {

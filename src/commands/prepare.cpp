@@ -267,10 +267,7 @@ int run(int argc, char** argv) {
   } catch (const po::error& error) {
     std::cerr << "prepare: " << error.what() << "; see --help\n";
     return kBadUsage;
-  } catch (const ConfigError& error) {
-    std::cerr << "prepare: " << error.what() << '\n';
-    return kBadUsage;
-  } catch (const WriteError& error) {
+  } catch (const UserError& error) {
     std::cerr << "prepare: " << error.what() << '\n';
     return kBadUsage;
   } catch (const std::exception& error) {

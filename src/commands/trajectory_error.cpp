@@ -112,10 +112,7 @@ int run(int argc, char** argv) {
   } catch (const po::error& error) {
     std::cerr << "trajectory_error: " << error.what() << "; see --help\n";
     return kBadUsage;
-  } catch (const ConfigError& error) {
-    std::cerr << "trajectory_error: " << error.what() << '\n';
-    return kBadUsage;
-  } catch (const WriteError& error) {
+  } catch (const UserError& error) {
     std::cerr << "trajectory_error: " << error.what() << '\n';
     return kBadUsage;
   } catch (const std::exception& error) {

@@ -33,8 +33,7 @@ Eigen::Matrix<double, Dim, 1> fromSpace(const Eigen::Vector3d& v) {
 
 /// Area of the body's surface per unit of the reference facet.
 double areaDensity(const Eigen::Matrix<double, 2, 1>& tangent, const Eigen::Vector2d& x) {
-  constexpr double kTurn = 2 * 3.14159265358979323846;
-  return kTurn * x[0] * tangent.norm();
+  return 2 * M_PI * x[0] * tangent.norm();
 }
 double areaDensity(const Eigen::Matrix<double, 3, 2>& tangents, const Eigen::Vector3d&) {
   return tangents.col(0).cross(tangents.col(1)).norm();

@@ -54,16 +54,11 @@ class Material {
   /// dP/dF, Pa.
   Matrix9d tangent(const Eigen::Matrix3d& F) const { return tangent(kinematics(F), whole()); }
 
-  /// Wd, J/m^3, zero in the undeformed state, +infinity where W is; its first and second
-  /// derivative, Pa.
-  double distortionalEnergy(const Eigen::Matrix3d& F) const { return energyDensity(kinematics(F), distortional()); }
-  Eigen::Matrix3d distortionalStress(const Eigen::Matrix3d& F) const { return stress(kinematics(F), distortional()); }
+  /// Second derivative of Wd, Pa. Wd is zero in the undeformed state and +infinity where W is.
   Matrix9d distortionalTangent(const Eigen::Matrix3d& F) const { return tangent(kinematics(F), distortional()); }
 
-  /// g, zero in the undeformed state; dg/dF, the identity there; and the second derivative.
+  /// g, zero in the undeformed state; dg/dF is the identity there.
   double dilatation(const Eigen::Matrix3d& F) const { return kinematics(F).dilatation; }
-  Eigen::Matrix3d dilatationGradient(const Eigen::Matrix3d& F) const { return kinematics(F).dilatation_gradient; }
-  Matrix9d dilatationHessian(const Eigen::Matrix3d& F) const { return tangent(kinematics(F), mixed(0, 1)); }
 
   /// kappa, Pa, > 0: the model's lambda, or more when lambda is small or negative. It is at most
   /// the model's bulk modulus, so that Wd, which contains (lambda - kappa)/2 g^2, stays stable.

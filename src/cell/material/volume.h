@@ -20,6 +20,13 @@ inline Eigen::Matrix3d cofactors(const Eigen::Matrix3d& F) {
   return result;
 }
 
+/// a x b = cross(a) b.
+inline Eigen::Matrix3d cross(const Eigen::Vector3d& a) {
+  Eigen::Matrix3d result;
+  result << 0, -a[2], a[1], a[2], 0, -a[0], -a[1], a[0], 0;
+  return result;
+}
+
 /// Kinematics of a material with the dilatation g = ln det F, hence dg/dF = F^-T.
 inline Material::Kinematics logarithmicDilatation(const Eigen::Matrix3d& F) {
   const Eigen::Matrix3d cofactor = cofactors(F);

@@ -90,8 +90,7 @@ void LayeredBody<Dim>::addElement(int index, const std::vector<ReferenceElement:
     if (!(determinant > 0)) {
       throw InvertedElement("element " + std::to_string(index) + " is not positively oriented");
     }
-    constexpr double kTurn = 2 * 3.14159265358979323846;
-    weights_.push_back(at.weight * determinant * (Dim == 2 ? kTurn * x[0] : 1));
+    weights_.push_back(at.weight * determinant * (Dim == 2 ? 2 * M_PI * x[0] : 1));
     Eigen::Matrix<double, Eigen::Dynamic, 3> derivatives(nodes_of_element_, 3);
     derivatives.template leftCols<Dim>() = at.gradient * jacobian.inverse();
     if (Dim == 2) derivatives.col(2) = at.shape / x[0];

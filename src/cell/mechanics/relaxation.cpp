@@ -7,6 +7,7 @@
 namespace microinjection {
 namespace {
 
+constexpr double kTolerance = 1e-10;     ///< of the last step of Newton's method, relative to the length
 constexpr double kSmallestShift = 1e-4;  ///< larger than zero
 constexpr double kLargestShift = 1e10;
 constexpr double kShiftFactor = 4;
@@ -45,7 +46,7 @@ Relaxation::Result Relaxation::relax(Eigen::VectorXd& state) {
     if (stationary) shift_ = 0;  // checks stability
     if (!system_.assemble(state) || !factorise(result)) break;
     Eigen::VectorXd direction = -solver_.solve(gradient_);
-    result.converged = shift_ == 0 && direction.cwiseAbs().maxCoeff() <= config_.tolerance * config_.length;
+    result.converged = shift_ == 0 && direction.cwiseAbs().maxCoeff() <= kTolerance * config_.length;
     const bool unstable = stationary && shift_ > 0;
     if (unstable) direction = softestDirection();
     const double share = descend(state, direction);
@@ -88,7 +89,7 @@ bool Relaxation::factorise(Result& result) {
 
 /// Whether the residual is negligible.
 bool Relaxation::isStationary() const {
-  return gradient_.cwiseQuotient(diagonal_).cwiseAbs().maxCoeff() <= config_.tolerance * config_.length;
+  return gradient_.cwiseQuotient(diagonal_).cwiseAbs().maxCoeff() <= kTolerance * config_.length;
 }
 
 /// Direction of the fastest decrease of the energy from a stationary state that is not stable, by

@@ -10,7 +10,6 @@ namespace microinjection {
 
 struct RelaxationConfig {
   double length = 56e-6;          ///< m, size of the body
-  double tolerance = 1e-10;       ///< of the last step of Newton's method, relative to the length
   int maximum_iterations = 1000;  ///< factorisations
 };
 

@@ -6,12 +6,11 @@
 #include <stdexcept>
 #include <string>
 
+#include "cell/material/volume.h"
 #include "cell/mechanics/reference_element.h"
 
 namespace microinjection {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// tension times area minus pressure times volume per unit of the reference facet, as a function of
 /// the position and the tangents there, in this order (Dim^2 numbers).
@@ -21,13 +20,6 @@ struct Density {
   Eigen::Matrix<double, Dim * Dim, 1> gradient = Eigen::Matrix<double, Dim * Dim, 1>::Zero();
   Eigen::Matrix<double, Dim * Dim, Dim* Dim> hessian = Eigen::Matrix<double, Dim * Dim, Dim * Dim>::Zero();
 };
-
-/// a x b = cross(a) b.
-Eigen::Matrix3d cross(const Eigen::Vector3d& a) {
-  Eigen::Matrix3d matrix;
-  matrix << 0, -a[2], a[1], a[2], 0, -a[0], -a[1], a[0], 0;
-  return matrix;
-}
 
 /// Area |a1 x a2| = sqrt(g) with the metric's determinant g. False when it vanishes.
 bool addArea(const Eigen::Matrix3d& at, double tension, Density<3>& density) {
@@ -64,7 +56,7 @@ void addVolume(const Eigen::Matrix3d& at, double pressure, Density<3>& density) 
 
 /// Area 2 pi r |t|, t the tangent. False when it vanishes or the axis is crossed.
 bool addArea(const Eigen::Matrix2d& at, double tension, Density<2>& density) {
-  const double r = at(0, 0), length = at.col(1).norm(), factor = 2 * kPi * tension;
+  const double r = at(0, 0), length = at.col(1).norm(), factor = 2 * M_PI * tension;
   if (!(r > 0) || !(length > 0)) return false;
   const Eigen::Vector2d direction = at.col(1) / length;
   density.value += factor * r * length;
@@ -79,7 +71,7 @@ bool addArea(const Eigen::Matrix2d& at, double tension, Density<2>& density) {
 
 /// Volume pi r^2 dz of a slice.
 void addVolume(const Eigen::Matrix2d& at, double pressure, Density<2>& density) {
-  const double r = at(0, 0), dz = at(1, 1), factor = -pressure * kPi;
+  const double r = at(0, 0), dz = at(1, 1), factor = -pressure * M_PI;
   density.value += factor * r * r * dz;
   density.gradient[0] += factor * 2 * r * dz;
   density.gradient[3] += factor * r * r;

@@ -10,8 +10,6 @@
 namespace microinjection {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 constexpr int kSurfaceLoop = -2;  ///< gmsh's dimension of surface loops
 
 /// Radius of the sphere's caps around +-y, over the sphere's radius. Imprinted circles are within
@@ -45,7 +43,7 @@ gmsh::vectorpair addSphere(double radius) {
   namespace occ = gmsh::model::occ;
   const double latitude = std::acos(kCapRadius), height = std::sin(latitude) * radius;
   gmsh::vectorpair zone = {{3, occ::addSphere(0, 0, 0, radius, -1, -latitude, latitude)}};
-  occ::rotate(zone, 0, 0, 0, 1, 0, 0, kPi / 2);
+  occ::rotate(zone, 0, 0, 0, 1, 0, 0, M_PI / 2);
   gmsh::vectorpair ball = {{3, occ::addSphere(0, 0, 0, radius)}};
   gmsh::vectorpair boxes, pieces, caps;
   for (double y : {height, -2 * radius}) {

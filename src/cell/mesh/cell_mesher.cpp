@@ -19,8 +19,9 @@
 namespace microinjection {
 namespace {
 
-/// Increase it when the same configuration gives another mesh than before.
-constexpr int kMesherVersion = 3;
+/// Increase it when the same configuration gives another mesh than before, or the cache another
+/// file.
+constexpr int kMesherVersion = 4;
 
 /// Vertices of tetrahedra with a radiusRatio below kPoor are moved. Below kBad the mesher tries
 /// again.

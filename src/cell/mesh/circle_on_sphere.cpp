@@ -7,7 +7,6 @@ namespace microinjection {
 namespace {
 
 constexpr int kCorners = 80;  // sagitta of the polygon: 1 - cos(pi / 80) = 0.8e-3 of the radius
-constexpr double kPi = 3.14159265358979323846;
 
 double distanceToSegment(const Eigen::Vector3d& point, const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   const Eigen::Vector3d along = to - from;
@@ -24,7 +23,7 @@ Eigen::Vector3d pointOnSphere(const Eigen::Vector2d& xy, double side, double rad
 CircleOnSphere::CircleOnSphere(const Eigen::Vector2d& centre, double radius, double side, double sphere_radius)
     : centre_(centre), radius_(radius), side_(side), sphere_radius_(sphere_radius), corners_(kCorners, 3) {
   for (int i = 0; i < kCorners; ++i) {
-    const double angle = 2 * kPi * i / kCorners;
+    const double angle = 2 * M_PI * i / kCorners;
     const Eigen::Vector2d direction(std::cos(angle), std::sin(angle));
     corners_.row(i) = pointOnSphere(centre_ + radius_ * direction, side_, sphere_radius_).transpose();
   }

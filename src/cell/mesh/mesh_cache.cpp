@@ -1,11 +1,10 @@
 #include "cell/mesh/mesh_cache.h"
 
-#include <cstdint>
-#include <cstring>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
 
+#include "base/bytes.h"
 #include "base/cache_file.h"
 
 namespace microinjection {
@@ -27,48 +26,20 @@ std::string describe(const CellMeshConfig& config) {
   return out.str();
 }
 
-template <typename T>
-void append(std::string& bytes, const T* data, std::size_t count) {
-  bytes.append(reinterpret_cast<const char*>(data), count * sizeof(T));
-}
-
-std::string encodeBody(const TetMesh& mesh) {
-  std::string body;
-  const std::uint64_t counts[2] = {mesh.vertices.size(), mesh.tetrahedra.size()};
-  append(body, counts, 2);
-  for (const Eigen::Vector3d& vertex : mesh.vertices) append(body, vertex.data(), 3);
-  for (const std::array<int, 4>& tetrahedron : mesh.tetrahedra) append(body, tetrahedron.data(), 4);
-  append(body, mesh.layers.data(), mesh.layers.size());
-  return body;
-}
-
-template <typename T>
-const char* readArray(const char* bytes, std::vector<T>& values, std::uint64_t count) {
-  values.resize(count);
-  std::memcpy(static_cast<void*>(values.data()), bytes, count * sizeof(T));
-  return bytes + count * sizeof(T);
-}
-
-/// Returns nothing when the sizes do not fit the number of bytes.
-std::optional<TetMesh> decodeBody(const std::string& body) {
-  std::uint64_t counts[2];
-  if (body.size() < sizeof(counts)) return std::nullopt;
-  std::memcpy(counts, body.data(), sizeof(counts));
-  constexpr std::size_t kVertex = sizeof(Eigen::Vector3d), kTetrahedron = sizeof(std::array<int, 4>) + sizeof(int);
-  const std::size_t rest = body.size() - sizeof(counts);
-  // Division, because the product may overflow with the counts of a damaged file.
-  if (counts[0] > rest / kVertex || counts[1] > rest / kTetrahedron) return std::nullopt;
-  if (counts[0] * kVertex + counts[1] * kTetrahedron != rest) return std::nullopt;
-  TetMesh mesh;
-  const char* bytes = readArray(body.data() + sizeof(counts), mesh.vertices, counts[0]);
-  bytes = readArray(bytes, mesh.tetrahedra, counts[1]);
-  readArray(bytes, mesh.layers, counts[1]);
-  return mesh;
-}
-
 std::optional<TetMesh> readMesh(const std::string& path, const std::string& description) {
   const CacheRead<std::string> read = readCacheFile(path, description);
-  return read ? decodeBody(*read.content) : std::nullopt;
+  if (!read) return std::nullopt;
+  try {
+    ByteReader reader(*read.content);
+    TetMesh mesh;
+    reader.array(mesh.vertices);
+    reader.array(mesh.tetrahedra);
+    reader.array(mesh.layers);
+    if (reader.atEnd() && mesh.layers.size() == mesh.tetrahedra.size()) return mesh;
+  } catch (const std::runtime_error&) {
+    // The sizes do not fit the number of bytes.
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -88,7 +59,11 @@ TetMesh MeshCache::get(const CellMeshConfig& config) const {
   }
   TetMesh mesh = makeCellMesh(config);
   try {
-    if (!file.empty()) writeCacheFile(file, description, encodeBody(mesh));
+    ByteWriter body;
+    body.array(mesh.vertices);
+    body.array(mesh.tetrahedra);
+    body.array(mesh.layers);
+    if (!file.empty()) writeCacheFile(file, description, body.bytes());
   } catch (const std::runtime_error&) {
     // A mesh that is not stored only costs time.
   }

@@ -16,8 +16,6 @@
 namespace microinjection {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 /// Elements along each arc. One of the nine is a margin for rounding.
 constexpr int kSegments = 9;
 
@@ -45,7 +43,7 @@ class SectionSizes {
     const double from_centre = point.norm();
     double size = std::min(config_.size, layers_.at(from_centre));
     for (double radius : config_.radii) {
-      size = std::min(size, kPi * radius / kSegments + config_.growth * std::abs(from_centre - radius));
+      size = std::min(size, M_PI * radius / kSegments + config_.growth * std::abs(from_centre - radius));
     }
     for (const Zone& zone : zones_) {
       const double outside = std::max(0.0, (point - zone.centre).norm() - zone.reach);

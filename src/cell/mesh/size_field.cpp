@@ -1,12 +1,11 @@
 #include "cell/mesh/size_field.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace microinjection {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// Element size over the thickness of a layer, and over the radius of the innermost ball.
 constexpr double kSizeOverThickness = 1.25;
@@ -46,7 +45,7 @@ SizeField::SizeField(const CellMeshConfig& config)
   }
   for (const CellMeshConfig::Circle& circle : config.imprints) {
     circles_.emplace_back(CircleOnSphere(circle.centre, circle.radius, circle.side, radius),
-                          2 * kPi * circle.radius / kSegments);
+                          2 * M_PI * circle.radius / kSegments);
   }
 }
 

@@ -11,8 +11,6 @@
 namespace microinjection {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 /// 1 below `from`, 0 above `to`, linear between, which has the smallest slope.
 double fade(double x, double from, double to) { return 1 - std::clamp((x - from) / (to - from), 0.0, 1.0); }
 
@@ -26,7 +24,7 @@ class PoleMap {
         disc_(config.disc_radius / radius),
         disc_angle_(std::asin(disc_)),
         near_(std::max({0.3, std::min(4 * disc_angle_, 0.8), 1.4 * disc_angle_})),
-        far_(kPi - std::asin(std::min(1.0, config.holding_radius / radius)) * 1.02) {}
+        far_(M_PI - std::asin(std::min(1.0, config.holding_radius / radius)) * 1.02) {}
 
   Eigen::Vector3d operator()(double distance, double angle, double turn) const {
     const double beta = turn;  // measured from the direction in which the pole moves
@@ -51,7 +49,7 @@ class PoleMap {
       return std::hypot(x, y) - disc_;
     };
     double low = 0, high = 0.5 * disc_angle_;
-    while (outside(high) < 0 && high < kPi / 2) high *= 1.2;
+    while (outside(high) < 0 && high < M_PI / 2) high *= 1.2;
     for (int i = 0; i < 60; ++i) (outside(0.5 * (low + high)) < 0 ? low : high) = 0.5 * (low + high);
     return 0.5 * (low + high);
   }
@@ -94,7 +92,7 @@ class Sweep {
   /// Position of a section's node, m, swept by a number of segments.
   Eigen::Vector3d position(int node, double turn) const {
     const Eigen::Vector2d& rz = section_.nodes[node];
-    const double whole = half_ ? kPi : 2 * kPi;
+    const double whole = half_ ? M_PI : 2 * M_PI;
     Eigen::Vector3d x = map_(rz.norm(), rz.norm() == 0 ? 0 : std::atan2(rz[0], rz[1]), whole * turn / segments_);
     if (half_ && (turn == 0 || turn == segments_)) x.y() = 0;  // exactly in the plane
     return x;

@@ -12,12 +12,6 @@ double tetrahedronVolume(const TetMesh& mesh, int tetrahedron) {
   return (mesh.vertices[corners[1]] - a).cross(mesh.vertices[corners[2]] - a).dot(mesh.vertices[corners[3]] - a) / 6;
 }
 
-double meshVolume(const TetMesh& mesh) {
-  double volume = 0;
-  for (size_t t = 0; t < mesh.tetrahedra.size(); ++t) volume += tetrahedronVolume(mesh, static_cast<int>(t));
-  return volume;
-}
-
 double radiusRatio(const TetMesh& mesh, int tetrahedron) {
   const std::array<int, 4>& corners = mesh.tetrahedra[tetrahedron];
   const Eigen::Vector3d& origin = mesh.vertices[corners[0]];

@@ -17,9 +17,6 @@ struct TetMesh {
 /// Signed volume of one tetrahedron, m^3.
 double tetrahedronVolume(const TetMesh& mesh, int tetrahedron);
 
-/// Volume of the whole mesh, m^3.
-double meshVolume(const TetMesh& mesh);
-
 /// Shape quality of one tetrahedron: three times the radius of its inscribed sphere over the radius
 /// of its circumscribed sphere; 1 for the regular tetrahedron, 0 for a flat one, negative for an
 /// inverted one.

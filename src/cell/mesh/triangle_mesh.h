@@ -18,11 +18,4 @@ struct TriangleMesh {
 /// Signed area of one triangle, m^2.
 double triangleArea(const TriangleMesh& mesh, int triangle);
 
-/// Volume that one triangle sweeps around the axis, m^3: 2 pi times its area times its centroid's r
-/// (Pappus).
-double sweptVolume(const TriangleMesh& mesh, int triangle);
-
-/// Smallest angle of one triangle, rad.
-double smallestAngle(const TriangleMesh& mesh, int triangle);
-
 }  // namespace microinjection

@@ -5,11 +5,6 @@
 #include "base/config_errors.h"
 
 namespace microinjection {
-namespace {
-
-constexpr double kPi = 3.14159265358979323846;
-
-}  // namespace
 
 Biomembrane::Biomembrane(double young_modulus, double poisson_ratio, double tip_radius,
                          const BiomembraneConfig& config) {
@@ -24,7 +19,7 @@ Biomembrane::Biomembrane(double young_modulus, double poisson_ratio, double tip_
   const double square = tip_radius * tip_radius / (a * a), L = 1 - square + std::log(square);
   const double numerator = 3 - 4 * square + square * square + 2 * std::log(square);
   strain_ = -numerator / (2 * L * L * a * a * (1 - square));
-  coefficient_ = -4 * kPi / L * young_modulus * h / (1 - poisson_ratio) * strain_;
+  coefficient_ = -4 * M_PI / L * young_modulus * h / (1 - poisson_ratio) * strain_;
 }
 
 }  // namespace microinjection

@@ -31,13 +31,6 @@ double largestModulus(const Scene& scene) {
 }
 constexpr double kOnCircle = 1 + 1e-9;
 
-template <int Dim>
-typename LayeredBody<Dim>::Materials materials(const Scene& scene) {
-  typename LayeredBody<Dim>::Materials result;
-  for (const Scene::Layer& layer : scene.cell.layers) result.push_back(makeMaterial(layer.material));
-  return result;
-}
-
 SymmetricSolver::Method method(ElementKind element, int dimension) {
   if (hasContinuousPressure(element)) return SymmetricSolver::Method::kIndefinite;
   return dimension == 3 ? SymmetricSolver::Method::kSupernodal : SymmetricSolver::Method::kSimplicial;
@@ -85,7 +78,8 @@ void checkMirror(const Scene& scene, const QuadraticMesh<Dim>& mesh) {
 
 template <int Dim>
 CellProblem<Dim>::CellProblem(const Scene& scene, QuadraticMesh<Dim> mesh, ElementKind element, Symmetry symmetry)
-    : symmetry_(symmetry), body_(std::make_shared<LayeredBody<Dim>>(std::move(mesh), element, materials<Dim>(scene))) {
+    : symmetry_(symmetry),
+      body_(std::make_shared<LayeredBody<Dim>>(std::move(mesh), element, scene.cell.makeMaterials())) {
   if (symmetry == Symmetry::kMirror) checkMirror(scene, body_->mesh());
   EquilibriumSystem::Terms terms = {body_};
   bool linear = body_->isLinear() && !scene.needle.tip.rounded();
@@ -106,6 +100,13 @@ CellProblem<Dim>::CellProblem(const Scene& scene, QuadraticMesh<Dim> mesh, Eleme
   system_ = std::make_unique<EquilibriumSystem>(terms, constraints(scene), method(element, Dim));
   path_ = std::make_unique<LoadPath>(*system_, pathConfig(scene, linear));
 }
+
+template <int Dim>
+CellProblem<Dim>::CellProblem(std::shared_ptr<LayeredBody<Dim>> body, const Constraints& constraints,
+                              const LoadPathConfig& path_config, SymmetricSolver::Method method)
+    : body_(std::move(body)),
+      system_(std::make_unique<EquilibriumSystem>(EquilibriumSystem::Terms{body_}, constraints, method)),
+      path_(std::make_unique<LoadPath>(*system_, path_config)) {}
 
 template <int Dim>
 Constraints CellProblem<Dim>::constraints(const Scene& scene) const {

@@ -28,6 +28,9 @@ class CellProblem {
   /// Throws std::invalid_argument when the needle's disc and the holding pipette overlap, or when
   /// kMirror is used without the half y >= 0 of a mesh in space and a contact point in y = 0.
   CellProblem(const Scene& scene, QuadraticMesh<Dim> mesh, ElementKind element, Symmetry symmetry = Symmetry::kNone);
+  /// A body that only the constraints' displacements load. Throws as LoadPath does.
+  CellProblem(std::shared_ptr<LayeredBody<Dim>> body, const Constraints& constraints, const LoadPathConfig& path_config,
+              SymmetricSolver::Method method);
 
   /// Equilibrium with the tip displaced by this (m) from first contact with the undeformed cell.
   /// The tip moves along the straight line from its present position at constant speed in
@@ -49,7 +52,7 @@ class CellProblem {
   void addContact(const Scene& scene, EquilibriumSystem::Terms& terms);
   static LoadPathConfig pathConfig(const Scene& scene, bool linear);
 
-  Symmetry symmetry_;
+  Symmetry symmetry_ = Symmetry::kNone;
   std::shared_ptr<LayeredBody<Dim>> body_;
   std::shared_ptr<TipContact<Dim>> contact_;  ///< of a rounded tip
   double deepest_ = 0;                        ///< m, largest allowed penetration

@@ -3,8 +3,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "base/cpu_time.h"
-
 namespace microinjection {
 namespace {
 
@@ -39,32 +37,13 @@ LoadPathConfig pathConfig(const P1Cell& cell) {
 
 Indentation::Indentation(std::shared_ptr<const P1Cell> cell, const TipPatch& patch)
     : cell_(std::move(cell)),
-      system_({cell_->body()}, makeConstraints(*cell_, patch), SymmetricSolver::Method::kSimplicial),
-      path_(system_, pathConfig(*cell_)) {}
-
-IndentationSolution Indentation::solve(const Eigen::Vector3d& tip_displacement) {
-  const double start = threadCpuTime();
-  const LoadPath::Result result = path_.advance(tip_displacement);
-  IndentationSolution solution;
-  solution.converged = result.converged;
-  solution.reason = result.reason;
-  solution.tip_displacement = path_.translation();
-  solution.force = -path_.reaction();
-  solution.stiffness = path_.stiffness();
-  solution.smallest_jacobian = cell_->body()->smallestJacobian(path_.state());
-  solution.newton_iterations = result.newton_iterations;
-  solution.cpu_time = threadCpuTime() - start;
-  return solution;
-}
-
-Eigen::VectorXd Indentation::displacement() const {
-  return path_.state().head(3 * static_cast<Eigen::Index>(cell_->mesh().vertices.size()));
-}
+      problem_(cell_->body(), makeConstraints(*cell_, patch), pathConfig(*cell_),
+               SymmetricSolver::Method::kSimplicial) {}
 
 Eigen::VectorXd Indentation::surfaceDisplacement() const {
   const std::vector<int>& nodes = cell_->surface().mesh_vertices;
   Eigen::VectorXd result(3 * nodes.size());
-  for (std::size_t i = 0; i < nodes.size(); ++i) result.segment<3>(3 * i) = path_.state().segment<3>(3 * nodes[i]);
+  for (std::size_t i = 0; i < nodes.size(); ++i) result.segment<3>(3 * i) = state().segment<3>(3 * nodes[i]);
   return result;
 }
 

@@ -10,19 +10,13 @@
 namespace microinjection {
 namespace {
 
-std::vector<double> outerRadii(const Scene& scene) {
-  std::vector<double> radii;
-  for (const Scene::Layer& layer : scene.cell.layers) radii.push_back(layer.outer_radius);
-  return radii;
-}
-
 TetMesh makeMesh(const Scene& scene) {
   scene.validate();
   const std::vector<std::string> refusals = P1Cell::refusals(scene);
   if (!refusals.empty()) throw ConfigError(refusals);
   const double tip = scene.needle.tip.radius, size = scene.meshSize();
   CellMeshConfig config;
-  config.radii = outerRadii(scene);
+  config.radii = scene.cell.outerRadii();
   config.size = size;
   config.stretch = scene.mesh.stretch;
   config.refinements = {{CellMeshConfig::Shape::kBall, scene.needle.offset, scene.mesh.refinement.zone * tip, +1,
@@ -30,12 +24,6 @@ TetMesh makeMesh(const Scene& scene) {
   config.imprints = {{scene.needle.offset, tip, +1},
                      {Eigen::Vector2d::Zero(), scene.holding_pipette.contact_radius, -1}};
   return MeshCache().get(config);
-}
-
-LayeredBody<3>::Materials makeMaterials(const Scene& scene) {
-  LayeredBody<3>::Materials materials;
-  for (const Scene::Layer& layer : scene.cell.layers) materials.push_back(makeMaterial(layer.material));
-  return materials;
 }
 
 }  // namespace
@@ -65,8 +53,8 @@ std::vector<std::string> P1Cell::refusals(const Scene& scene) {
 P1Cell::P1Cell(const Scene& scene)
     : DiscContactCell(scene),
       mesh_(makeMesh(scene)),
-      body_(std::make_shared<LayeredBody<3>>(makeQuadratic(mesh_, outerRadii(scene)), ElementKind::kP1,
-                                             makeMaterials(scene))) {
+      body_(std::make_shared<LayeredBody<3>>(makeQuadratic(mesh_, scene.cell.outerRadii()), ElementKind::kP1,
+                                             scene.cell.makeMaterials())) {
   surface_ = extractSurface(mesh_);
   // Same rule as under the needle: the pipette's mouth is a disc below, along -z.
   const Eigen::Vector3d down = -Eigen::Vector3d::UnitZ();

@@ -32,14 +32,11 @@ class PunctureHoles {
   std::optional<int> under(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double radius) const {
     std::optional<int> nearest;
     for (int i = 0; i < count(); ++i) {
-      if (!isOnNeedleLine(i, tip, axis, radius)) continue;
+      if (!(distance(i, tip, axis) <= radius && holes_[i].position.dot(axis) > 0)) continue;
       radius = distance(i, tip, axis);
       nearest = i;
     }
     return nearest;
-  }
-  bool isOnNeedleLine(int index, const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double radius) const {
-    return distance(index, tip, axis) <= radius && holes_[index].position.dot(axis) > 0;
   }
 
  private:

@@ -156,6 +156,18 @@ void readRequirements(ConfigReader requirements, Scene::Requirements& value) {
 
 }  // namespace
 
+std::vector<double> Scene::Cell::outerRadii() const {
+  std::vector<double> radii;
+  for (const Layer& layer : layers) radii.push_back(layer.outer_radius);
+  return radii;
+}
+
+std::vector<std::shared_ptr<const Material>> Scene::Cell::makeMaterials() const {
+  std::vector<std::shared_ptr<const Material>> materials;
+  for (const Layer& layer : layers) materials.push_back(makeMaterial(layer.material));
+  return materials;
+}
+
 double Scene::meshSize() const {
   if (mesh.size) return *mesh.size;
   const double wanted = needle.tip.radius * mesh.refinement.density;

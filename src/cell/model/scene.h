@@ -3,6 +3,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,6 +38,9 @@ struct Scene {
     const MaterialConfig& material() const { return layers.front().material; }
     double radius() const { return layers.front().outer_radius; }  ///< m
     double diameter() const { return 2 * radius(); }               ///< m
+
+    std::vector<double> outerRadii() const;                              ///< m, of each layer
+    std::vector<std::shared_ptr<const Material>> makeMaterials() const;  ///< of each layer
   };
   struct HoldingPipette {
     double contact_radius = 10e-6;  ///< m, of the circle on the surface that sticks to the mouth

@@ -1,6 +1,5 @@
 #include "cell/model/scene_check.h"
 
-#include <cmath>
 #include <set>
 #include <sstream>
 
@@ -18,8 +17,6 @@ constexpr double kSharpest = 0.05;  // radius of the rounded edge, over the tip'
 constexpr double kReach = 0.95;
 
 constexpr double kThinnestLayer = 1.0 / 500;  // over the cell's radius
-
-bool positive(double value) { return std::isfinite(value) && value > 0; }
 
 std::string metres(double value) {
   std::ostringstream text;
@@ -51,7 +48,7 @@ void checkLayers(const std::vector<Scene::Layer>& layers, ConfigErrors& errors) 
     errors.require(!layer.name.empty() && names.insert(layer.name).second, path + "name", layer.name, "",
                    "a name that no other layer has");
     errors.require(Range::positive(), path + "outer_radius", layer.outer_radius, " m");
-    if (!positive(layer.outer_radius) || !positive(radius)) continue;
+    if (!Range::positive().contains(layer.outer_radius) || !Range::positive().contains(radius)) continue;
     const double inner = i + 1 < layers.size() ? layers[i + 1].outer_radius : 0;
     if (inner >= layer.outer_radius) {
       errors.add("cell/layers/" + std::to_string(i + 1) + "/outer_radius = " + metres(inner) + ": must be below the " +
@@ -78,7 +75,7 @@ void checkTip(const Scene::Tip& tip, double cell_radius, ConfigErrors& errors) {
   errors.requireOneOf(tipShapes(), "needle/tip/shape", tip.shape);
   const double limit = tip.rounded() ? cell_radius * (1 + kRounding) : kReach * cell_radius;
   errors.require(
-      positive(tip.radius) && tip.radius <= limit, "needle/tip/radius", tip.radius, " m",
+      Range{0, limit, true, false}.contains(tip.radius), "needle/tip/radius", tip.radius, " m",
       "above 0 and at most " + metres(limit) + (tip.rounded() ? ", the cell's radius" : ", 0.95 of the cell's radius"));
   if (tip.shape == "rounded_flat") {
     errors.require(tip.edge_radius >= kSharpest * tip.radius && tip.edge_radius <= tip.radius, "needle/tip/edge_radius",
@@ -95,14 +92,14 @@ void checkAdhesion(const Scene::Needle& needle, ConfigErrors& errors) {
   errors.require(Range::nonNegative(), "needle/contact/adhesion/energy", contact.adhesion_energy, " J/m^2");
   errors.require(!there || needle.tip.rounded(), "needle/contact/adhesion/energy", contact.adhesion_energy, " J/m^2",
                  "left out: a disc never parts from what it touches");
-  errors.require(!there || positive(contact.adhesion_range), "needle/contact/adhesion/range", contact.adhesion_range,
-                 " m", "above 0");
+  errors.require(!there || Range::positive().contains(contact.adhesion_range), "needle/contact/adhesion/range",
+                 contact.adhesion_range, " m", "above 0");
 }
 
 void checkBiomembrane(const Scene& scene, ConfigErrors& errors) {
   if (!scene.cell.biomembrane) return;
   const double dimple = scene.cell.biomembrane->dimple_radius, thickness = scene.cell.biomembrane->thickness;
-  errors.require(positive(thickness) && thickness < scene.radius(), "cell/biomembrane/thickness", thickness, " m",
+  errors.require(Range::open(0, scene.radius()).contains(thickness), "cell/biomembrane/thickness", thickness, " m",
                  "above 0 and below the cell's radius, " + metres(scene.radius()));
   errors.require(dimple > scene.needle.tip.radius && dimple <= scene.radius(), "cell/biomembrane/dimple_radius", dimple,
                  " m", "above needle/tip/radius and at most the cell's radius, " + metres(scene.radius()));
@@ -155,8 +152,8 @@ void checkScene(const Scene& scene) {
     checkNeedle(scene.needle, scene.radius(), errors);
     return errors.throwAny();
   }
-  errors.require(positive(contact_radius) && contact_radius < reach, "holding_pipette/contact_radius", contact_radius,
-                 " m", "above 0 and below 0.95 of the cell's radius, " + metres(reach));
+  errors.require(Range::open(0, reach).contains(contact_radius), "holding_pipette/contact_radius", contact_radius, " m",
+                 "above 0 and below 0.95 of the cell's radius, " + metres(reach));
   checkNeedle(scene.needle, scene.radius(), errors);
   checkBiomembrane(scene, errors);
   checkMesh(scene, errors);

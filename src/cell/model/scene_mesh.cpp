@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "cell/contact/rounded_tip.h"
 #include "cell/mesh/section_mesher.h"
@@ -24,18 +23,12 @@ double holdingSize(const Scene& scene, double level) {
   return 0.25 * scene.holding_pipette.contact_radius * std::pow(2, -level);
 }
 
-std::vector<double> radii(const Scene& scene) {
-  std::vector<double> result;
-  for (const Scene::Layer& layer : scene.cell.layers) result.push_back(layer.outer_radius);
-  return result;
-}
-
 /// Radius about the contact point within which the surface may touch the tip's end or its shaft, m.
 double contactReach(const Scene& scene) { return 1.4 * scene.needle.tip.radius; }
 
 SectionMeshConfig sectionConfig(const Scene& scene, double level) {
   SectionMeshConfig config;
-  config.radii = radii(scene);
+  config.radii = scene.cell.outerRadii();
   config.size = farSize(scene, level);
   config.growth = kGrowth;
   config.vertices = {{scene.holding_pipette.contact_radius, -1}};

@@ -40,7 +40,6 @@ class EnergyExpansion {
   EnergyExpansion(const EnergyScales& scales, const EnergyDegrees& degrees);
 
   const EnergyScales& scales() const { return scales_; }
-  const EnergyDegrees& degrees() const { return degrees_; }
   int size() const { return static_cast<int>(terms_.size()) * (degrees_.distance + 1); }
 
   /// Energy (J) and its gradient (N) by the displacement for a unit of each coefficient (3 x size).

@@ -1,6 +1,5 @@
 #include "cell/surrogate/force_field.h"
 
-#include <Eigen/QR>
 #include <stdexcept>
 
 namespace microinjection {
@@ -13,17 +12,6 @@ EnergyScales forceScales(EnergyScales scales) {
   return scales;
 }
 
-/// Least squares with a penalty on each coefficient: `regularisation` relative to its effect.
-Eigen::VectorXd solve(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right, double regularisation) {
-  const Eigen::Index rows = matrix.rows(), unknowns = matrix.cols();
-  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(rows + unknowns, unknowns);
-  Eigen::VectorXd values = Eigen::VectorXd::Zero(rows + unknowns);
-  all.topRows(rows) = matrix;
-  all.bottomRows(unknowns).diagonal() = regularisation * matrix.colwise().norm();
-  values.head(rows) = right;
-  return all.colPivHouseholderQr().solve(values);
-}
-
 }  // namespace
 
 ForceField::ForceField(const EnergyScales& scales)
@@ -32,7 +20,7 @@ ForceField::ForceField(const EnergyScales& scales)
       lateral_(forceScales(scales), kLateral),
       axial_(forceScales(scales), kAxial) {}
 
-void ForceField::fit(const std::vector<TrainingSample>& samples, const EnergyFitConfig& config) {
+void ForceField::fit(const std::vector<TrainingSample>& samples) {
   const auto count = static_cast<Eigen::Index>(samples.size());
   const int a_size = away_.size(), b_size = lateral_.size();
   Eigen::MatrixXd sideways = Eigen::MatrixXd::Zero(2 * count, a_size + b_size);
@@ -43,7 +31,7 @@ void ForceField::fit(const std::vector<TrainingSample>& samples, const EnergyFit
   for (Eigen::Index i = 0; i < count; ++i) {
     const TrainingSample& sample = samples[i];
     if (sample.force.isZero(0)) continue;  // the tip has lost the cell
-    const double weight = 1 / (sample.force.norm() + config.floor * largest), c = sample.angle / scales_.angle;
+    const double weight = 1 / (sample.force.norm() + kFitFloor * largest), c = sample.angle / scales_.angle;
     const Eigen::Vector3d direction = sample.displacement.normalized();
     away_.basis(sample.angle, sample.displacement, values, gradients);
     sideways.row(2 * i).head(a_size) = weight * c * values;
@@ -55,10 +43,10 @@ void ForceField::fit(const std::vector<TrainingSample>& samples, const EnergyFit
     along.row(i) = weight * values;
     along_right[i] = weight * sample.force.z();
   }
-  const Eigen::VectorXd lateral = solve(sideways, sideways_right, config.regularisation);
+  const Eigen::VectorXd lateral = solveRegularised(sideways, sideways_right);
   away_.setCoefficients(lateral.head(a_size));
   lateral_.setCoefficients(lateral.tail(b_size));
-  axial_.setCoefficients(solve(along, along_right, config.regularisation));
+  axial_.setCoefficients(solveRegularised(along, along_right));
 }
 
 void ForceField::makeLocal(double angle, Local& local) const {

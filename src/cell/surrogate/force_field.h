@@ -25,7 +25,7 @@ class ForceField {
   bool empty() const { return axial_.size() == 0; }
 
   /// Least-squares fit to the samples' forces, with errors relative to each force.
-  void fit(const std::vector<TrainingSample>& samples, const EnergyFitConfig& config = {});
+  void fit(const std::vector<TrainingSample>& samples);
 
   /// The field at one contact point. Only the first makeLocal allocates.
   class Local {

@@ -19,8 +19,6 @@ class PassiveCorrection {
   Eigen::Vector3d step(const Eigen::Vector3d& displacement, const Eigen::Vector3d& wanted, double energy);
   void reset() { *this = PassiveCorrection(); }
 
-  double stored() const { return tank_; }  ///< J
-
  private:
   Eigen::Vector3d displacement_ = Eigen::Vector3d::Zero();  ///< m, of the last step
   Eigen::Vector3d applied_ = Eigen::Vector3d::Zero();       ///< N, in the last step

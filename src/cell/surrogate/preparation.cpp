@@ -12,8 +12,7 @@ namespace {
 
 /// Version of the data and their computation: increase it when these change.
 constexpr int kVersion = 3;
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kDegree = kPi / 180;
+constexpr double kDegree = M_PI / 180;
 constexpr int kAngles = 4;
 constexpr int kPoints = 12;  ///< along a path as long as the range is deep
 constexpr int kFewest = 8;

@@ -38,7 +38,6 @@ struct Preparation {
   PreparationRange range;
   std::vector<TrainingRay> rays;  ///< most expensive first, so that workers end together
   EnergyScales scales;
-  EnergyDegrees degrees;
 
   static Preparation plan(const Scene& scene, const PreparationRange& range);
 

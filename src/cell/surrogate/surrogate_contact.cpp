@@ -86,7 +86,6 @@ SurrogateContact::Local SurrogateContact::evaluate(const Jet& overlap) {
 
 SurrogateContact::Result SurrogateContact::step(const Eigen::Vector3d& tip) {
   Result result;
-  energy_ = 0;
   const Jet overlap = this->overlap(tip);
   if (contact_frame_) displacement_ = contact_frame_->rotation.transpose() * (tip - contact_frame_->origin);
   if (overlap.value < (contact_frame_ ? kEnd * displacement_.norm() : 0)) contact_frame_.reset();
@@ -102,11 +101,9 @@ SurrogateContact::Result SurrogateContact::step(const Eigen::Vector3d& tip) {
   }
   const Local local = evaluate(overlap);
   Eigen::Vector3d force = -local.energy.gradient;
-  energy_ = local.energy.value;
   if (!cell_->field.empty()) {
     force *= 1 - PassiveCorrection::kReserve;
-    force += correction_.step(displacement_, local.force - force, energy_);
-    energy_ = (1 - PassiveCorrection::kReserve) * energy_ + correction_.stored();
+    force += correction_.step(displacement_, local.force - force, local.energy.value);
   }
   result.prepared = prepared_;
   result.too_deep = too_deep_;

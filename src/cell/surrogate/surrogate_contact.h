@@ -39,13 +39,11 @@ class SurrogateContact {
 
   const std::optional<ContactFrame>& contactFrame() const { return contact_frame_; }
   Eigen::Vector3d displacement() const { return displacement_; }  ///< m, of the tip, in the contact frame
-  double storedEnergy() const { return energy_; }                 ///< J
 
   Shape shape() const;
   /// Surface for display: positions of its nodes at rest and their displacement, m, in the frame of
   /// the cell. Allocates. Any thread may call it at any time, because it only uses constant data.
   void surface(const Shape& shape, Eigen::Matrix3Xd& at_rest, Eigen::Matrix3Xd& displaced) const;
-  void surface(Eigen::Matrix3Xd& at_rest, Eigen::Matrix3Xd& displaced) const { surface(shape(), at_rest, displaced); }
 
  private:
   struct Local {
@@ -64,7 +62,6 @@ class SurrogateContact {
   PassiveCorrection correction_;
   std::optional<ContactFrame> contact_frame_;
   Eigen::Vector3d displacement_ = Eigen::Vector3d::Zero();
-  double energy_ = 0;
   bool prepared_ = true, too_deep_ = false;
 };
 

@@ -16,7 +16,8 @@ namespace {
 
 constexpr char kFit[] = " fit 8";  ///< change it when the fit changes
 constexpr double kSmall = 0.0025;  ///< over the largest force: smaller ones are excluded from the errors
-constexpr int kDeepSamples = 14;   ///< on the axis, below the depth of the range elsewhere
+constexpr EnergyDegrees kDegrees{};
+constexpr int kDeepSamples = 14;  ///< on the axis, below the depth of the range elsewhere
 
 bool straightOnAxis(const TrainingRay& ray) { return ray.angle == 0 && ray.target.head<2>().isZero(0); }
 
@@ -95,22 +96,20 @@ SurrogateData decode(const Preparation& plan, ByteReader& reader) {
   cell.range = plan.range;
   double& reached = cell.range.axis_depth;
   EnergyScales scales;
-  EnergyDegrees degrees;
   for (double* x : {&reached, &scales.angle, &scales.length, &scales.energy, &cell.median_error, &cell.common_error,
                     &cell.largest_error}) {
     *x = reader.number<double>();
   }
-  for (int* x : {&degrees.angle, &degrees.direction, &degrees.distance}) *x = reader.number<std::int32_t>();
+  bool same = true;
+  for (int x : {kDegrees.angle, kDegrees.direction, kDegrees.distance}) same &= reader.number<std::int32_t>() == x;
   if (!(reached > 0 && reached <= plan.range.axis_depth)) throw std::runtime_error("its range cannot be");
-  if (scales.angle != plan.scales.angle || scales.length != plan.scales.length || scales.energy != plan.scales.energy ||
-      degrees.angle != plan.degrees.angle || degrees.direction != plan.degrees.direction ||
-      degrees.distance != plan.degrees.distance) {
-    throw std::runtime_error("its scales or degrees are not those of this cell");
-  }
+  same &=
+      scales.angle == plan.scales.angle && scales.length == plan.scales.length && scales.energy == plan.scales.energy;
+  if (!same) throw std::runtime_error("its scales or degrees are not those of this cell");
   for (const double error : {cell.median_error, cell.common_error, cell.largest_error}) {
     if (!(std::isfinite(error) && error >= 0)) throw std::runtime_error("an error of the fit cannot be");
   }
-  cell.energy = EnergyExpansion(scales, degrees);
+  cell.energy = EnergyExpansion(scales, kDegrees);
   cell.energy.setCoefficients(readCoefficients(reader));
   cell.field = ForceField(scales);
   cell.field.setCoefficients(readCoefficients(reader));
@@ -135,7 +134,7 @@ SurrogateData SurrogateData::fit(const Scene& scene, const Preparation& preparat
   SurrogateData cell;
   cell.range = preparation.range;
   cell.range.axis_depth = all.axis_depth;  // the section may end earlier
-  cell.energy = EnergyExpansion(preparation.scales, preparation.degrees);
+  cell.energy = EnergyExpansion(preparation.scales, kDegrees);
   fitEnergy(cell.energy, samples);
   cell.field = ForceField(preparation.scales);
   cell.field.fit(samples);
@@ -172,12 +171,11 @@ std::string preparedFile(const Scene& scene, const Preparation& preparation) {
 void SurrogateData::save(const Scene& scene, const PreparationRange& planned, const std::string& path) const {
   ByteWriter writer;
   const EnergyScales& scales = energy.scales();
-  const EnergyDegrees& degrees = energy.degrees();
   for (double x :
        {range.axis_depth, scales.angle, scales.length, scales.energy, median_error, common_error, largest_error}) {
     writer.number(x);
   }
-  for (int x : {degrees.angle, degrees.direction, degrees.distance}) writer.number<std::int32_t>(x);
+  for (int x : {kDegrees.angle, kDegrees.direction, kDegrees.distance}) writer.number<std::int32_t>(x);
   writer.array(energy.coefficients());
   writer.array(field.coefficients());
   surface.write(writer);

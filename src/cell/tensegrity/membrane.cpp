@@ -5,16 +5,12 @@
 #include <cmath>
 #include <utility>
 
+#include "cell/material/volume.h"
+
 namespace microinjection {
 namespace {
 
 using Matrix32d = Eigen::Matrix<double, 3, 2>;
-
-Eigen::Matrix3d cross(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d result;
-  result << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return result;
-}
 
 /// h C of plane stress, N/m, for (E11, E22, 2 E12).
 Eigen::Matrix3d planeStress(const MembraneConfig& config) {

@@ -7,7 +7,6 @@
 namespace microinjection {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kCapHeight = 0.5;                                                             ///< of the circumradius
 constexpr std::array<std::array<int, 3>, 3> kTriangles = {{{0, 1, 2}, {0, 2, 3}, {0, 3, 4}}};  ///< of the section
 
@@ -20,10 +19,10 @@ void addTetrahedron(TetMesh& mesh, std::array<int, 4> corners) {
 
 }  // namespace
 
-double StrutMesh::circumradius(double section) { return std::sqrt(section / (2.5 * std::sin(0.4 * kPi))); }
+double StrutMesh::circumradius(double section) { return std::sqrt(section / (2.5 * std::sin(0.4 * M_PI))); }
 
 double StrutMesh::secondMoment(double section) {
-  const double radius = circumradius(section), side = 2 * radius * std::sin(0.2 * kPi);
+  const double radius = circumradius(section), side = 2 * radius * std::sin(0.2 * M_PI);
   return section / 24 * (6 * radius * radius - side * side);
 }
 
@@ -33,13 +32,13 @@ StrutMesh::StrutMesh(const StrutMeshConfig& config, const Eigen::Vector3d& from,
   const Eigen::Vector3d u = (bow_direction - bow_direction.dot(along) * along).normalized(), v = along.cross(u);
   const double radius = circumradius(config.section), cap = kCapHeight * radius;
   const auto line = [&](double distance) -> Eigen::Vector3d {
-    return from + distance * along + config.bow * config.length * std::sin(kPi * distance / config.length) * u;
+    return from + distance * along + config.bow * config.length * std::sin(M_PI * distance / config.length) * u;
   };
   mesh.vertices.push_back(from);
   for (int section = 0; section <= config.slices; ++section) {
     const Eigen::Vector3d middle = line(cap + (config.length - 2 * cap) * section / config.slices);
     for (int corner = 0; corner < kCorners; ++corner) {
-      const double angle = 2 * kPi * corner / kCorners;
+      const double angle = 2 * M_PI * corner / kCorners;
       mesh.vertices.emplace_back(middle + radius * (std::cos(angle) * u + std::sin(angle) * v));
     }
   }

@@ -8,10 +8,7 @@
 namespace microinjection {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kCables = 36;
-
-bool positive(double value) { return std::isfinite(value) && value > 0; }
 
 void checkFilaments(const FilamentConfig& filaments, const std::string& path, ConfigErrors& errors) {
   errors.require(Range::positive(), path + "young_modulus", filaments.young_modulus, " Pa");
@@ -47,11 +44,11 @@ void checkMembrane(const MembraneConfig& membrane, ConfigErrors& errors) {
 
 }  // namespace
 
-double FilamentConfig::filamentSection() const { return std::sqrt(4 * kPi * bending_stiffness / young_modulus); }
-double FilamentConfig::filamentRadius() const { return std::sqrt(filamentSection() / kPi); }
-double FilamentConfig::radius() const { return std::sqrt(section() / kPi); }
+double FilamentConfig::filamentSection() const { return std::sqrt(4 * M_PI * bending_stiffness / young_modulus); }
+double FilamentConfig::filamentRadius() const { return std::sqrt(filamentSection() / M_PI); }
+double FilamentConfig::radius() const { return std::sqrt(section() / M_PI); }
 double FilamentConfig::bendingStiffness() const { return bending_stiffness * count * count; }
-double FilamentConfig::eulerLoad(double length) const { return kPi * kPi * bendingStiffness() / (length * length); }
+double FilamentConfig::eulerLoad(double length) const { return M_PI * M_PI * bendingStiffness() / (length * length); }
 
 TensegrityConfig::TensegrityConfig() {
   actin.filaments = {1.95e9, 7e-26, 1};
@@ -65,7 +62,7 @@ bool TensegrityConfig::viscous() const {
 
 std::vector<std::string> TensegrityConfig::errors() const {
   ConfigErrors errors;
-  errors.require(positive(radius), "diameter", 2 * radius, " m", "positive (m)");
+  errors.require(Range::positive().contains(radius), "diameter", 2 * radius, " m", "positive (m)");
   errors.requireOneOf(tensegrityOrientations(), "orientation", orientation);
   checkCable(actin, "actin/", errors);
   checkCable(intermediate, "intermediate_filaments/", errors);

@@ -20,6 +20,20 @@ constexpr double kYoung = 17.9e3;  // Pa
 inline Eigen::VectorXd flatVector(const Eigen::Matrix3d& matrix) { return matrix.reshaped(); }
 inline Eigen::Matrix3d square(const Eigen::VectorXd& vector) { return vector.reshaped(3, 3); }
 
+/// Wd, J/m^3, and its derivative, Pa; derivatives of the dilatation g.
+inline double distortionalEnergy(const Material& material, const Eigen::Matrix3d& F) {
+  return material.energyDensity(material.kinematics(F), Material::distortional());
+}
+inline Eigen::Matrix3d distortionalStress(const Material& material, const Eigen::Matrix3d& F) {
+  return material.stress(material.kinematics(F), Material::distortional());
+}
+inline Eigen::Matrix3d dilatationGradient(const Material& material, const Eigen::Matrix3d& F) {
+  return material.kinematics(F).dilatation_gradient;
+}
+inline Material::Matrix9d dilatationHessian(const Material& material, const Eigen::Matrix3d& F) {
+  return material.tangent(material.kinematics(F), Material::mixed(0, 1));
+}
+
 /// Deformations of some 20 % with det F > 0.
 inline std::vector<Eigen::Matrix3d> deformations(int count = 20) {
   std::mt19937 random(1);

@@ -79,7 +79,7 @@ TEST_P(MaterialTest, InvertedStateIsRefusedOrSmooth) {
     ASSERT_LT(F.determinant(), 0);
     if (material_->resistsInversion()) {
       EXPECT_EQ(energy(F), std::numeric_limits<double>::infinity());
-      EXPECT_EQ(material_->distortionalEnergy(F), std::numeric_limits<double>::infinity());
+      EXPECT_EQ(distortionalEnergy(*material_, F), std::numeric_limits<double>::infinity());
     } else {
       EXPECT_LT(gradientError(energy, F, stress(F)), 1e-6);
       EXPECT_LT(hessianError(stress, F, material_->tangent(F)), 1e-6);

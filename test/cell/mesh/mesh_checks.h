@@ -11,6 +11,13 @@
 
 namespace microinjection {
 
+/// Volume of the whole mesh, m^3.
+inline double meshVolume(const TetMesh& mesh) {
+  double volume = 0;
+  for (size_t t = 0; t < mesh.tetrahedra.size(); ++t) volume += tetrahedronVolume(mesh, static_cast<int>(t));
+  return volume;
+}
+
 /// What flat triangles cut off the ball: over a triangle of area A the cap's height is (rho^2 - s^2) / 2R at distance s
 /// from its circumcentre, whose integral is A (a^2 + b^2 + c^2) / 24 R, a, b, c the edges; to first order in (edge /
 /// R)^2.

@@ -27,6 +27,29 @@ const TriangleMesh& layeredMesh() {
   return mesh;
 }
 
+double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+/// Volume that one triangle sweeps around the axis, m^3: 2 pi times its area times its centroid's r
+/// (Pappus).
+double sweptVolume(const TriangleMesh& mesh, int triangle) {
+  const std::array<int, 3>& corners = mesh.triangles[triangle];
+  const double r = (mesh.vertices[corners[0]] + mesh.vertices[corners[1]] + mesh.vertices[corners[2]]).x() / 3;
+  return 2 * kPi * r * triangleArea(mesh, triangle);
+}
+
+/// Smallest angle of one triangle, rad.
+double smallestAngle(const TriangleMesh& mesh, int triangle) {
+  const std::array<int, 3>& corners = mesh.triangles[triangle];
+  double smallest = kPi;
+  for (int i = 0; i < 3; ++i) {
+    const Vector2d& at = mesh.vertices[corners[i]];
+    const Vector2d to = mesh.vertices[corners[(i + 1) % 3]] - at;
+    const Vector2d from = mesh.vertices[corners[(i + 2) % 3]] - at;
+    smallest = std::min(smallest, std::atan2(std::abs(cross(to, from)), to.dot(from)));
+  }
+  return smallest;
+}
+
 /// Triangles of each edge, by its vertices in ascending order.
 std::map<std::array<int, 2>, std::vector<int>> edgesOf(const TriangleMesh& mesh) {
   std::map<std::array<int, 2>, std::vector<int>> edges;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "cell/mesh/mesh_checks.h"
 #include "cell/mesh/shapes.h"
 
 namespace microinjection {

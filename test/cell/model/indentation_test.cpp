@@ -85,8 +85,8 @@ TEST_F(IndentationTest, PatchMovesByTheTipAndTheHeldVerticesStay) {
   Indentation indentation(cell, patch);
   const Vector3d tip(0.5e-6, 0, -4e-6);
   ASSERT_TRUE(indentation.solve(tip).converged);
-  for (int v : patch.vertices) EXPECT_LT((indentation.displacement().segment<3>(3 * v) - tip).norm(), 1e-18);
-  for (int v : cell->heldVertices()) EXPECT_EQ(indentation.displacement().segment<3>(3 * v).norm(), 0);
+  for (int v : patch.vertices) EXPECT_LT((indentation.state().segment<3>(3 * v) - tip).norm(), 1e-18);
+  for (int v : cell->heldVertices()) EXPECT_EQ(indentation.state().segment<3>(3 * v).norm(), 0);
 }
 
 TEST_F(IndentationTest, NeoHookeanGoesDeepAndComesBack) {
@@ -132,7 +132,7 @@ TEST_F(IndentationTest, TwoRunsGiveTheSameBits) {
     const IndentationSolution a = one.solve({0.1e-6, 0, -depth}), b = two.solve({0.1e-6, 0, -depth});
     EXPECT_EQ(a.force, b.force);
     EXPECT_EQ(a.stiffness, b.stiffness);
-    EXPECT_EQ(one.displacement(), two.displacement());
+    EXPECT_EQ(one.state(), two.state());
   }
 }
 

@@ -19,7 +19,7 @@ inline std::shared_ptr<SurrogateData> springs(const Scene& scene) {
   auto cell = std::make_shared<SurrogateData>();
   cell->range = PreparationRange::standard(scene);
   const Preparation plan = Preparation::plan(scene, cell->range);
-  cell->energy = EnergyExpansion(plan.scales, plan.degrees);
+  cell->energy = EnergyExpansion(plan.scales, {});
   Eigen::VectorXd coefficients = Eigen::VectorXd::Zero(cell->energy.size());
   coefficients[0] = 1;
   cell->energy.setCoefficients(coefficients);

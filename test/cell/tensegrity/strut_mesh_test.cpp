@@ -8,6 +8,7 @@
 
 #include "cell/mechanics/equilibrium_system.h"
 #include "cell/mechanics/layered_body.h"
+#include "cell/mesh/mesh_checks.h"
 #include "cell/tensegrity/spin_stop.h"
 
 namespace microinjection {
