@@ -1,4 +1,4 @@
-// Error of the force against time and size, for every model and element, on scenes with converged references.
+// Error of the force against time and size: every model and element, converged references.
 
 #include <chrono>
 #include <cmath>

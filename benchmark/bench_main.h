@@ -9,8 +9,8 @@
 
 namespace microinjection {
 
-/// The main of a benchmark program: `table` makes the CSV table, printing its rows as it goes; --csv FILE stores it.
-/// `more`: options of its own.
+/// The main of a benchmark program: `table` makes the CSV table, printing its rows as it goes;
+/// --csv FILE stores it. `more`: options of its own.
 template <typename Table>
 int benchMain(int argc, char** argv, const std::string& title, const Table& table,
               const boost::program_options::options_description& more = {}) {

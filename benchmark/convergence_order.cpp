@@ -23,12 +23,13 @@ constexpr double kRadius = 28e-6;  ///< m
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kStrain = 1e-3;  ///< scale of the gradient; the problem is linear
 
-/// Exact solution of linear elasticity without body force (Papkovich, Neuber): with harmonic c and d,
+/// Exact solution of linear elasticity without body force (Papkovich, Neuber): with harmonic c and
+/// d,
 ///
 ///     u = c e_z - grad(z c) / (4 (1 - nu)) + grad(d),    p = lambda div u = mu nu / (1 - nu) dc/dz;
 ///
-/// the pressure is smooth, not zero, and bounded as nu goes to 1/2. c = z^4 - 3 z^2 r^2 + 3/8 r^4; d, in space only,
-/// = (x^4 - 6 x^2 y^2 + y^4) / 5. Lengths in radii of the ball.
+/// the pressure is smooth, not zero, and bounded as nu goes to 1/2. c = z^4 - 3 z^2 r^2 + 3/8 r^4;
+/// d, in space only, = (x^4 - 6 x^2 y^2 + y^4) / 5. Lengths in radii of the ball.
 class ExactSolution {
  public:
   ExactSolution(double poisson_ratio, int dimension)
@@ -143,7 +144,8 @@ Eigen::VectorXd prescribed(const LayeredBody<Dim>& body, const ExactSolution& ex
   return state;
 }
 
-/// Shape functions at a place of the reference element, and their derivatives by its coordinates (nodes x Dim).
+/// Shape functions at a place of the reference element, and their derivatives by its coordinates
+/// (nodes x Dim).
 struct Shape {
   Eigen::VectorXd value;
   Eigen::MatrixXd gradient;
@@ -175,8 +177,9 @@ Eigen::Matrix3d wholeGradient(const Eigen::Matrix2d& rz, double hoop) {
 }
 Eigen::Matrix3d wholeGradient(const Eigen::Matrix3d& gradient, double /*hoop*/) { return gradient; }
 
-/// Norm of the gradient's error over that of the exact gradient, in L2 over the body. Integrated with the rule of
-/// `mini`, in space the finest: with that of their own, quadratic elements would not see all of their error.
+/// Norm of the gradient's error over that of the exact gradient, in L2 over the body. Integrated
+/// with the rule of `mini`, in space the finest: with that of their own, quadratic elements would
+/// not see all of their error.
 template <int Dim>
 double gradientError(const LayeredBody<Dim>& body, const ExactSolution& exact, const Eigen::VectorXd& state) {
   using Vector = Eigen::Matrix<double, Dim, 1>;

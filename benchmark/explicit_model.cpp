@@ -1,5 +1,4 @@
-// What the paper's explicit dynamics costs and errs as a served cell model: force against needle speed, and time of a
-// tick.
+// The served explicit dynamics: force error against the needle's speed, and time of a tick.
 
 #include <cmath>
 #include <cstdio>

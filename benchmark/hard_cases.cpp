@@ -1,4 +1,4 @@
-// Converged forces of scenes at the edge of what the model carries; each must end with a force or a reason.
+// Forces of scenes at the edge of the model; each must end with a force or a reason.
 
 #include <chrono>
 #include <cmath>
@@ -73,7 +73,8 @@ std::string failed(const Case& made, const std::string& reason, double time) {
   return rows;
 }
 
-/// In a process of its own, so that a crash or a case out of time (it hangs, or is slow) becomes rows, too.
+/// In a process of its own, so that a crash or a case out of time (it hangs, or is slow) becomes
+/// rows, too.
 std::string run(const Case& made) {
   const double start = now();
   const ForkedCase result = runForked(

@@ -1,4 +1,4 @@
-// Automatic injection of 200 random cells, with a noisy force sensor and a lagging rig, in virtual time.
+// Automatic injection of 200 random cells: noisy force sensor, lagging rig, virtual time.
 
 #include <algorithm>
 #include <array>
@@ -32,7 +32,8 @@ struct Bench {
   ManipulatorGeometry geometry;
   SimulatedManipulatorConfig manipulator;
 
-  /// @param manipulator_file  config file of the micromanipulator; empty: the ideal device with a lag
+  /// @param manipulator_file  config file of the micromanipulator; empty: the ideal device with a
+  /// lag
   explicit Bench(const std::string& manipulator_file) {
     std::ifstream file(kRig);
     std::ostringstream text;
@@ -139,7 +140,8 @@ InjectionCase oocyte() {
   return of;
 }
 
-/// How deep a needle at constant speed, or the controller's own profile, is when the zona fails, and where it stops.
+/// How deep a needle at constant speed, or the controller's own profile, is when the zona fails,
+/// and where it stops.
 void profiles(const Bench& bench) {
   std::fprintf(stderr,
                "injection: a relaxing oocyte: depth where the zona fails, and where the needle comes to rest before "
@@ -170,8 +172,8 @@ void profiles(const Bench& bench) {
   }
 }
 
-/// Each disturbance at a moment of its own in each of the cells: the needle within its guards, and at the end at rest
-/// or out, and the injector off.
+/// Each disturbance at a moment of its own in each of the cells: the needle within its guards, and
+/// at the end at rest or out, and the injector off.
 void disturbances(const Bench& bench, int first_seed, int cells) {
   using Kind = InjectionRig::Disturbance::Kind;
   const std::pair<Kind, const char*> kinds[] = {{Kind::kNone, "a zona that does not fail"},

@@ -1,4 +1,4 @@
-// Which elements to solve a rounded tip's cell with while the needle moves: force error, and time for a small move
+// Elements for a rounded tip's cell while the needle moves: force error and time.
 
 #include <array>
 #include <cmath>

@@ -1,5 +1,4 @@
-// Energy and limit cycles at the hand: impedance, stiffness, delay, loss, chatter; controllers off and on: ./dev bench
-// passivity.
+// Energy and limit cycles at the hand: impedance, stiffness, delay, loss, chatter.
 
 #include <cmath>
 #include <cstdio>

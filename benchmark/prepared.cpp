@@ -1,4 +1,4 @@
-// The prepared cell (off-line stage) against the converging model where it was not trained, and its time.
+// The prepared cell against the converging model where it was not trained, and its time.
 
 #include <yaml-cpp/yaml.h>
 
@@ -46,7 +46,8 @@ std::string sceneFile(double poisson_ratio) {
   return path;
 }
 
-/// Paths to random places in the range, between the trained angles; every second one in the plane of symmetry.
+/// Paths to random places in the range, between the trained angles; every second one in the plane
+/// of symmetry.
 std::vector<TrainingRay> unseenPaths(const PreparationRange& range) {
   std::mt19937 random(20);
   std::uniform_real_distribution<double> share(0, 1);
@@ -60,8 +61,8 @@ std::vector<TrainingRay> unseenPaths(const PreparationRange& range) {
   return paths;
 }
 
-/// Random closed paths in and out of the cell and of the range: largest share of the energy that went to and fro which
-/// the needle got for nothing (negative: it lost some).
+/// Random closed paths in and out of the cell and of the range: largest share of the energy that
+/// went to and fro which the needle got for nothing (negative: it lost some).
 double createdEnergy(const Scene& scene, const std::shared_ptr<const SurrogateData>& cell) {
   constexpr int kClosed = 200, kLegs = 6, kSteps = 2000;
   std::mt19937 random(5);
@@ -105,8 +106,8 @@ std::string row(const SurrogateData& cell, const TrainingSample& sample, const E
   return text;
 }
 
-/// Difference of the surfaces, m: nodes of another mesh do not correspond, so the reference is solved on the
-/// training's.
+/// Difference of the surfaces, m: nodes of another mesh do not correspond, so the reference is
+/// solved on the training's.
 Eigen::VectorXd surfaceError(const SurrogateData& cell, const TrainingSample& on_training_mesh) {
   Eigen::VectorXd rest, displaced;
   cell.surface.evaluate(on_training_mesh.angle, on_training_mesh.displacement, rest, displaced);
@@ -151,8 +152,8 @@ void reportTimes(const Scene& scene, std::shared_ptr<const SurrogateData> cell) 
                10 * (threadCpuTime() - start));
 }
 
-/// Where points stick as they touch, the force depends on the way: straight to a place against down and then aside, on
-/// the training's mesh.
+/// Where points stick as they touch, the force depends on the way: straight to a place against down
+/// and then aside, on the training's mesh.
 std::string pathDependence(const Scene& scene, double angle_deg, const Eigen::Vector3d& end) {
   Scene there = scene;
   there.needle.offset = ContactFrame::offsetFor(scene, angle_deg * M_PI / 180);
@@ -168,7 +169,8 @@ std::string pathDependence(const Scene& scene, double angle_deg, const Eigen::Ve
   return text;
 }
 
-/// With Prony terms, at constant speed on the axis, against the section in which the material itself relaxes.
+/// With Prony terms, at constant speed on the axis, against the section in which the material
+/// itself relaxes.
 std::string memoryError(Scene scene, const std::shared_ptr<const SurrogateData>& cell, double speed) {
   scene.cell.material().viscoelasticity.prony = {{0.5, 0.2}, {0.3, 2}};
   SurrogateCellModel tracker(scene, cell);

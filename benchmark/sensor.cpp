@@ -1,4 +1,4 @@
-// The virtual force sensor, estimated from nothing but its stream of readings, beside its configuration.
+// The virtual force sensor, estimated from its stream of readings, beside its configuration.
 
 #include <algorithm>
 #include <cmath>
@@ -47,7 +47,8 @@ class SensorTable {
   }
   static Eigen::Vector2d along(int axis, double force) { return force * Eigen::Vector2d::Unit(axis); }
 
-  /// 40 s at rest. What the converter's rounding adds is taken off, as its step is in the stream, too.
+  /// 40 s at rest. What the converter's rounding adds is taken off, as its step is in the stream,
+  /// too.
   void noise(int axis) {
     ForceSensor sensor(config_);
     const double rate = config_.sample_rate;
@@ -62,7 +63,8 @@ class SensorTable {
         "N");
   }
 
-  /// Onto and off 45 % of the range, so that no overshoot saturates, thirty times; the mean of the responses.
+  /// Onto and off 45 % of the range, so that no overshoot saturates, thirty times; the mean of the
+  /// responses.
   void response(int axis) {
     ForceSensor sensor(config_);
     constexpr int kSteps = 30;
@@ -77,7 +79,8 @@ class SensorTable {
     row(kAxes[axis] + std::string(" damping ratio"), config_.damping_ratio, found.damping_ratio, "1");
   }
 
-  /// Readings under half of the range of each axis, with and against it in turn, so that drift drops out.
+  /// Readings under half of the range of each axis, with and against it in turn, so that drift
+  /// drops out.
   void coupling() {
     for (int from = 0; from < 2; ++from) {
       for (int to = 0; to < 2; ++to) {

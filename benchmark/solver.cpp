@@ -1,4 +1,4 @@
-// Time of a solution of the live cell against vertices, for each method of SymmetricSolver: ./dev bench solver.
+// Time of a solution of the live cell against vertices, for each method of SymmetricSolver.
 
 #include <algorithm>
 #include <cstdio>

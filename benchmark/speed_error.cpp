@@ -1,4 +1,4 @@
-// Error of the force against the time of one on-line force, for every model of the suite, and the explicit P1 kernel.
+// Error of the force against the time of one on-line force, for every model of the suite.
 
 #include <algorithm>
 #include <array>
@@ -62,7 +62,8 @@ Row rowOf(const std::string& model, const P1Cell& cell) {
   return {model, "p1", cell.mesh.vertices.size(), cell.mesh.tetrahedra.size(), {}, {}};
 }
 
-/// One force: the equilibrium at the needle's next place, a fiftieth of the way to the deepest from the last one.
+/// One force: the equilibrium at the needle's next place, a fiftieth of the way to the deepest from
+/// the last one.
 std::string quasiStatic(const std::string& model, const ReferenceScene& scene, const PaperMesh& mesh) {
   const P1Cell cell = makeP1Cell(scene.scene, mesh);
   Row row = rowOf(model, cell);
@@ -86,9 +87,10 @@ int settledAfter(const std::vector<double>& forces, double share) {
   return settled;
 }
 
-/// One force: one time step of equation (13) with the cell's mass (Table I: 1000 kg/m^3), none added. Its error is
-/// that of the force it comes to rest at ("to rest": with the time until then after a move of 0.25 um), damped
-/// critically for a shear wave of two diameters: the quasi-static one.
+/// One force: one time step of equation (13) with the cell's mass (Table I: 1000 kg/m^3), none
+/// added. Its error is that of the force it comes to rest at ("to rest": with the time until then
+/// after a move of 0.25 um), damped critically for a shear wave of two diameters: the quasi-static
+/// one.
 std::string explicitDynamics(const ReferenceScene& scene, const PaperMesh& mesh) {
   constexpr int kRamp = 200;
   const P1Cell cell = makeP1Cell(scene.scene, mesh);
@@ -194,8 +196,8 @@ TetMesh cube(int n) {
   return mesh;
 }
 
-/// One force: of all vertices of a cube, the kernel alone. The smallest of blocks of calls is what the machine can do
-/// when nobody else is on it.
+/// One force: of all vertices of a cube, the kernel alone. The smallest of blocks of calls is what
+/// the machine can do when nobody else is on it.
 std::string kernel(int n, InstructionSet set, bool listed) {
   const TetMesh mesh = cube(n);
   StVenantKirchhoffForce force(mesh, Lame::from(17.9e3, 0.49), set);

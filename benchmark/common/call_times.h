@@ -23,9 +23,9 @@ inline double quantile(std::vector<double> values, double share) {
   return *at;
 }
 
-/// CPU times of call(i), i = 0, 1, ..., us: of one call, or of a batch of quick ones over its size, since asking for
-/// the time takes a fraction of a microsecond. Until there are `samples` or `seconds` are over, but `least` in any
-/// case.
+/// CPU times of call(i), i = 0, 1, ..., us: of one call, or of a batch of quick ones over its size,
+/// since asking for the time takes a fraction of a microsecond. Until there are `samples` or
+/// `seconds` are over, but `least` in any case.
 template <typename Call>
 std::vector<double> callTimes(const Call& call, int batch, std::size_t samples, double seconds, std::size_t least = 1) {
   std::vector<double> times;

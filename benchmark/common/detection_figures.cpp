@@ -15,7 +15,8 @@ constexpr double kAdvance = 100e-9;  ///< m a step: 100 um/s
 constexpr int kApproach = 10000;     ///< steps of a needle that sets out and feels nothing
 constexpr int kRuns = 100, kTrials = 200;
 
-/// A monitor behind a sensor that reads a force along the pipette; each run has its own offset and noise.
+/// A monitor behind a sensor that reads a force along the pipette; each run has its own offset and
+/// noise.
 class DetectorRun {
  public:
   DetectorRun(const DetectionConfig& config, int seed) : monitor_(config), sensor_(sensor(seed)) {

@@ -12,7 +12,8 @@ struct ForkedCase {
   double memory_megabytes = 0;  ///< peak, resident
 };
 
-/// Runs `work` in a child process, so that its memory is its own and neither a crash nor a hang ends the benchmark.
+/// Runs `work` in a child process, so that its memory is its own and neither a crash nor a hang
+/// ends the benchmark.
 ForkedCase runForked(const std::function<std::string()>& work, unsigned seconds);
 
 }  // namespace microinjection

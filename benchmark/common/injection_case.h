@@ -16,12 +16,14 @@ struct InjectionCase {
   double believed_modulus = 0;                       ///< Pa
 };
 
-/// Diameter 20 to 150 um, even; modulus 2 to 45 kPa, even in its logarithm, known to a third; zona failing at 0.03 to
-/// 0.13 E R^2 (0.09 to 0.31 diameters deep), in every second cell an oolemma behind it; two Prony terms; offset up to
-/// 0.3 R; what a failure leaves falls in 1 to 10 ms, to a friction of the shaft of up to 0.3 of the zona's strength.
+/// Diameter 20 to 150 um, even; modulus 2 to 45 kPa, even in its logarithm, known to a third; zona
+/// failing at 0.03 to 0.13 E R^2 (0.09 to 0.31 diameters deep), in every second cell an oolemma
+/// behind it; two Prony terms; offset up to 0.3 R; what a failure leaves falls in 1 to 10 ms, to a
+/// friction of the shaft of up to 0.3 of the zona's strength.
 InjectionCase randomInjectionCase(int seed);
 
-/// What an operator sets for a kind of cell: its diameter is seen, its modulus is believed, the layers are known.
+/// What an operator sets for a kind of cell: its diameter is seen, its modulus is believed, the
+/// layers are known.
 InjectionControllerConfig injectionSettings(const InjectionCase& of);
 
 }  // namespace microinjection

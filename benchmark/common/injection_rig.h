@@ -12,8 +12,9 @@
 
 namespace microinjection {
 
-/// A whole rig in virtual time, 1 kHz, without ROS: the controller sees what the simulated micromanipulator measures
-/// and what the virtual force sensor reads of the cell's force, one step old, and moves the needle and the injector.
+/// A whole rig in virtual time, 1 kHz, without ROS: the controller sees what the simulated
+/// micromanipulator measures and what the virtual force sensor reads of the cell's force, one step
+/// old, and moves the needle and the injector.
 class InjectionRig {
  public:
   /// What goes wrong, `begin` (s) after the start.
@@ -53,8 +54,8 @@ class InjectionRig {
   const Truth& truth() const { return truth_; }
   const InjectionController& controller() const { return controller_; }
   Eigen::Vector3d tip() const { return geometry_.tip(device_.trueJoints()); }
-  /// Rests: 0.2 s later (a second after a rig that stood still goes again) the tip stays where it is for half a second,
-  /// and the injector is off.
+  /// Rests: 0.2 s later (a second after a rig that stood still goes again) the tip stays where it
+  /// is for half a second, and the injector is off.
   bool holds();
 
  private:

@@ -10,9 +10,10 @@
 
 namespace microinjection {
 
-/// A mesh within 5 % of the size of one of Table III of Ladjal, Hanus, Ferreira, "Micro-to-nano biomechanical modeling
-/// for assisted biological cell injection", whose meshes are not published. Refined as the paper has it: about the
-/// needle, in a ball of five needle diameters, elements are five times smaller than the largest.
+/// A mesh within 5 % of the size of one of Table III of Ladjal, Hanus, Ferreira, "Micro-to-nano
+/// biomechanical modeling for assisted biological cell injection", whose meshes are not published.
+/// Refined as the paper has it: about the needle, in a ball of five needle diameters, elements are
+/// five times smaller than the largest.
 struct PaperMesh {
   std::size_t vertices, tetrahedra;  ///< the paper's
   double size;                       ///< m, of the largest elements that are asked for
@@ -24,8 +25,8 @@ struct PaperMesh {
 /// All twelve rows.
 const std::vector<PaperMesh>& paperMeshes();
 
-/// Linear tetrahedra of a scene with a disc, its sticking vertices found as the live cell finds them; held by three at
-/// least.
+/// Linear tetrahedra of a scene with a disc, its sticking vertices found as the live cell finds
+/// them; held by three at least.
 struct P1Cell {
   TetMesh mesh;
   std::vector<int> tip, held;
@@ -33,8 +34,8 @@ struct P1Cell {
 
 P1Cell makeP1Cell(const Scene& scene, const PaperMesh& mesh);
 
-/// Quasi-static P1 of a scene's outermost material, with the live cell's solver (cell/model/indentation.h) on any
-/// P1Cell.
+/// Quasi-static P1 of a scene's outermost material, with the live cell's solver
+/// (cell/model/indentation.h) on any P1Cell.
 class P1QuasiStatic {
  public:
   P1QuasiStatic(const Scene& scene, const P1Cell& cell);

@@ -6,8 +6,8 @@
 
 namespace microinjection {
 
-/// What `prepare` left of a scene in the cache; runs it first, which takes minutes, where there is nothing.
-/// `scene_file`: where the scene was read. @throws std::runtime_error when that fails.
+/// What `prepare` left of a scene in the cache; runs it first, which takes minutes, where there is
+/// nothing. `scene_file`: where the scene was read. @throws std::runtime_error when that fails.
 SurrogateData preparedScene(const Scene& scene, const std::string& scene_file);
 
 }  // namespace microinjection

@@ -21,8 +21,8 @@ struct ReferenceScene {
 /// Read from test/reference; std::runtime_error when a file cannot be.
 std::vector<ReferenceScene> referenceScenes();
 
-/// The paper's material under a disc, to 0.5 um: as good as any mesh gives it (0.3 um at the disc's edge), since the
-/// continuum probably has no solution.
+/// The paper's material under a disc, to 0.5 um: as good as any mesh gives it (0.3 um at the disc's
+/// edge), since the continuum probably has no solution.
 ReferenceScene stVenantKirchhoffScene();
 
 }  // namespace microinjection

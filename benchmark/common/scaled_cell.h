@@ -8,10 +8,10 @@
 
 namespace microinjection {
 
-/// A cell of any size and stiffness, whose membranes fail, from a prepared one by dimensional analysis: with gravity
-/// and inertia left out, a homogeneous neo-Hookean cell's force is F = E R^2 f(x / R), so lengths scale with R and
-/// forces with E R^2. Everything scales: holding pipette and needle, too, so that a cell twice as large meets a tip
-/// twice as large. Times do not.
+/// A cell of any size and stiffness, whose membranes fail, from a prepared one by dimensional
+/// analysis: with gravity and inertia left out, a homogeneous neo-Hookean cell's force is F = E R^2
+/// f(x / R), so lengths scale with R and forces with E R^2. Everything scales: holding pipette and
+/// needle, too, so that a cell twice as large meets a tip twice as large. Times do not.
 class ScaledCell {
  public:
   /// Of the wanted cell.

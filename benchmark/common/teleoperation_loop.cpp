@@ -27,8 +27,8 @@ double reach(double time, double start, double end) {
   return x * x * x * (10 + x * (-15 + 6 * x));
 }
 
-/// Root mean square of the hand about its straight line over [start, start + 1 s): a hand that creeps does not
-/// oscillate.
+/// Root mean square of the hand about its straight line over [start, start + 1 s): a hand that
+/// creeps does not oscillate.
 double amplitude(const std::vector<TeleoperationLoop::Sample>& samples, double start) {
   const auto first = static_cast<Eigen::Index>(std::lround(start / kPeriod));
   const auto count = static_cast<Eigen::Index>(std::lround(1.0 / kPeriod));

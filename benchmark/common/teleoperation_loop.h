@@ -11,8 +11,8 @@
 
 namespace microinjection {
 
-/// A hand, a haptic device, the bridge, a network, a needle and an elastic thing with the needle's motion along one
-/// axis.
+/// A hand, a haptic device, the bridge, a network, a needle and an elastic thing with the needle's
+/// motion along one axis.
 struct TeleoperationLoop {
   enum class Controller { kOff, kObserver, kWave };
 

@@ -1,5 +1,5 @@
-// Equation (13) of the paper: the stable time step at the cell's true mass, the mass that real time would need, and
-// what that costs in error of the force.
+// Equation (13) of the paper: the stable time step at the cell's true mass, the mass that real time
+// would need, and what that costs in error of the force.
 
 #include <algorithm>
 #include <cmath>
@@ -79,8 +79,8 @@ std::string limits(const PaperMesh& mesh) {
   return text;
 }
 
-/// The force while the needle goes in at a constant speed, against the equilibria of the same mesh. Damped critically
-/// for a shear wave of two diameters.
+/// The force while the needle goes in at a constant speed, against the equilibria of the same mesh.
+/// Damped critically for a shear wave of two diameters.
 std::string ramp(const PaperMesh& mesh, double scale) {
   Case at(mesh);
   at.config.density *= scale;

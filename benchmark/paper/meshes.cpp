@@ -1,4 +1,5 @@
-// Table III and figure 14 of the paper: the times of its two stages at its mesh sizes, and how far off its forces are.
+// Table III and figure 14 of the paper: the times of its two stages at its mesh sizes, and how far
+// off its forces are.
 
 #include <cstdio>
 #include <functional>
@@ -21,8 +22,8 @@ constexpr double kDepth = 1e-6;       ///< m, of the linear force
 constexpr double kSafety = 0.8;       ///< of the time step to the bound
 using Force = ExplicitStepConfig::Force;
 
-/// The paper's mesh for validation once more, but with an edge around the tip, which that within 5 % of its size has no
-/// room for: it pushes a single vertex.
+/// The paper's mesh for validation once more, but with an edge around the tip, which that within 5
+/// % of its size has no room for: it pushes a single vertex.
 constexpr PaperMesh kResolved = {123, 379, 38.96e-6, 0.8, true};
 
 struct Times {

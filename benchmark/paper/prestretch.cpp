@@ -1,4 +1,5 @@
-// Section IV.A of the paper: elements stretched against the needle's motion beforehand, and whether that helps.
+// Section IV.A of the paper: elements stretched against the needle's motion beforehand, and whether
+// that helps.
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +19,8 @@ constexpr unsigned kTimeLimit = 120;  ///< s, of one row
 constexpr double kStep = 0.25e-6;     ///< m
 constexpr double kDeepest = 20e-6;    ///< m
 
-/// The depth that a mesh reaches, how flat its flattest element is there and at 1 um, and the force at 1 um.
+/// The depth that a mesh reaches, how flat its flattest element is there and at 1 um, and the force
+/// at 1 um.
 std::string row(const PaperMesh& mesh, const std::string& model) {
   Scene scene;
   scene.cell.material().model = model;

@@ -1,4 +1,5 @@
-// The tensegrity cell of the paper (section III.A): Table II, Figures 2, 3, 11, 12 and 13 as tables; see --help.
+// The tensegrity cell of the paper (section III.A): Table II, Figures 2, 3, 11, 12 and 13 as
+// tables; see --help.
 
 #include <boost/program_options.hpp>
 #include <iostream>

@@ -12,7 +12,8 @@
 namespace microinjection {
 namespace {
 
-/// Bending stiffness of a strut's mesh over that of the beam, hinged at both ends and loaded in the middle.
+/// Bending stiffness of a strut's mesh over that of the beam, hinged at both ends and loaded in the
+/// middle.
 double locking(const FilamentConfig& filaments, double length, int slices, ElementKind kind) {
   const StrutMesh strut({length, filaments.section(), slices, 0}, Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitX(),
                         Eigen::Vector3d::UnitY());

@@ -4,10 +4,12 @@
 
 namespace microinjection {
 
-/// Table II: sections, stiffnesses and Euler loads of the members, from the paper's moduli and bending stiffnesses.
+/// Table II: sections, stiffnesses and Euler loads of the members, from the paper's moduli and
+/// bending stiffnesses.
 void writeMembers(const TensegrityStudy& study);
 
-/// Bending stiffness of struts of tetrahedra over that of the beam, by number of filaments, slices and element.
+/// Bending stiffness of struts of tetrahedra over that of the beam, by number of filaments, slices
+/// and element.
 void writeBending(const TensegrityStudy& study);
 
 }  // namespace microinjection

@@ -16,8 +16,8 @@ namespace {
 
 constexpr double kDensity = 1000;  ///< kg/m^3
 
-/// s, of central differences at the true, lumped mass (struts of 1000 kg/m^3, membrane by its thickness; cables' mass
-/// is left out, which would count for nothing).
+/// s, of central differences at the true, lumped mass (struts of 1000 kg/m^3, membrane by its
+/// thickness; cables' mass is left out, which would count for nothing).
 double stableStep(const TensegrityStructure& structure) {
   const LayeredBody<3>& struts = structure.struts();
   Eigen::VectorXd mass = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(structure.nodePositions().size()));
@@ -43,8 +43,8 @@ double stableStep(const TensegrityStructure& structure) {
   return 2 / largestFrequency(system.matrix(), of_free);
 }
 
-/// Processor time of a force for a needle that goes in at 10 um/s, at 1 kHz: in lock step with the solving thread, so
-/// that what else the machine does is not counted.
+/// Processor time of a force for a needle that goes in at 10 um/s, at 1 kHz: in lock step with the
+/// solving thread, so that what else the machine does is not counted.
 template <typename Add>
 void serve(const std::shared_ptr<const TensegrityCell>& cell, const Add& add) {
   constexpr int kSteps = 4000;

@@ -21,16 +21,18 @@ struct ExplicitCellModelConfig {
   static ExplicitCellModelConfig read(ConfigReader& reader);
 };
 
-/// The paper's own loop: P1 tetrahedra and central differences at the rate of the haptic device (equation (13) of
-/// Ladjal, Hanus, Ferreira, "Micro-to-nano biomechanical modeling for assisted biological cell injection").
+/// The paper's own loop: P1 tetrahedra and central differences at the rate of the haptic device
+/// (equation (13) of Ladjal, Hanus, Ferreira, "Micro-to-nano biomechanical modeling for assisted
+/// biological cell injection").
 ///
-/// The cell's true mass would need steps of some 10 ns. The mass is scaled so that `time_step` is stable for the
-/// undeformed cell; description() says how far the force then lags behind the needle. The force is that of the
-/// vertices under the tip, and includes their inertia's reaction. For a homogeneous cell and a disc tip.
+/// The cell's true mass would need steps of some 10 ns. The mass is scaled so that `time_step` is
+/// stable for the undeformed cell; description() says how far the force then lags behind the
+/// needle. The force is that of the vertices under the tip, and includes their inertia's reaction.
+/// For a homogeneous cell and a disc tip.
 class ExplicitCellModel : public CellModel {
  public:
-  /// Throws ConfigError for a scene that P1Cell refuses, more than one layer, or a material that is neither
-  /// st_venant_kirchhoff nor linear; else as P1Cell does.
+  /// Throws ConfigError for a scene that P1Cell refuses, more than one layer, or a material that is
+  /// neither st_venant_kirchhoff nor linear; else as P1Cell does.
   ExplicitCellModel(const Scene& scene, const ExplicitCellModelConfig& config);
 
   /// What the model is, and its error in plain words.

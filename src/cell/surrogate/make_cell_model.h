@@ -21,9 +21,9 @@ struct CellModelConfig {
 };
 
 /// A scene's cell for a moving needle. `model`: prepared (data of `prepare`), live (see
-/// makeOnlineCell), explicit (ExplicitCellModel) or auto (chosen by the scene's requirements, see chooseModel; live
-/// without prepared data). It never replaces a model that was requested by name. `path`: of the scene, for messages.
-/// Throws ConfigError when the model cannot serve the scene.
+/// makeOnlineCell), explicit (ExplicitCellModel) or auto (chosen by the scene's requirements, see
+/// chooseModel; live without prepared data). It never replaces a model that was requested by name.
+/// `path`: of the scene, for messages. Throws ConfigError when the model cannot serve the scene.
 ChosenCellModel makeCellModel(const Scene& scene, const std::string& model, const CellModelConfig& config,
                               const std::string& path);
 

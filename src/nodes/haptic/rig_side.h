@@ -7,7 +7,8 @@
 
 namespace microinjection {
 
-/// The rig as the haptic bridge sees it: on this machine (LocalRig) or behind a network (RemoteRig).
+/// The rig as the haptic bridge sees it: on this machine (LocalRig) or behind a network
+/// (RemoteRig).
 class RigSide {
  public:
   virtual ~RigSide() = default;

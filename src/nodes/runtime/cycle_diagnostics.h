@@ -14,8 +14,8 @@
 namespace microinjection {
 
 /// The diagnostics of each cyclic node: rate, step time, the age of every input, and the node's own
-/// tasks. Published each `~diagnostic_period` of ROS time (of diagnostic_updater); default 1 s. With
-/// them go statistics for other programs, /cycle_statistics (CycleStatistics).
+/// tasks. Published each `~diagnostic_period` of ROS time (of diagnostic_updater); default 1 s.
+/// With them go statistics for other programs, /cycle_statistics (CycleStatistics).
 class CycleDiagnostics {
  public:
   explicit CycleDiagnostics(double rate) : rate_(rate), intervals_(2 / rate) {}

@@ -19,8 +19,8 @@ constexpr char kHeader[] =
 constexpr double kStarted = 1e-6;  ///< m of the tip's motion that counts as start
 constexpr double kGaps = 0.05;     ///< largest share of samples left out
 
-/// Share of the points: 1 up to the reference, 0 from twice the reference. An exact measure has 1 at
-/// the reference, less by the relative difference.
+/// Share of the points: 1 up to the reference, 0 from twice the reference. An exact measure has 1
+/// at the reference, less by the relative difference.
 double shareOf(const TrainingMeasure& measure) {
   if (!measure.exact) return std::clamp(2 - measure.value / measure.reference, 0.0, 1.0);
   if (measure.reference <= 0) return measure.value <= 0 ? 1 : 0;

@@ -25,7 +25,8 @@ CommandLine findCommandLine();
 /// be non-blocking; both descriptors must be > 2.
 ///
 /// It overwrites `program` with a name of its own, so that `pkill -f` with the driver's name does
-/// not kill it. It locks its memory if the limits allow it, so that it runs while the machine swaps.
+/// not kill it. It locks its memory if the limits allow it, so that it runs while the machine
+/// swaps.
 ///
 /// It runs in the child of a fork of a multi-threaded program, so it may only call
 /// async-signal-safe functions.
