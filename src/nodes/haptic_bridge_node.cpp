@@ -27,7 +27,8 @@ const char* const HapticBridgeNode::kHelp =
     "In: /haptic/measured_cp /haptic/clutch /haptic/operator_present /needle/measured_cp\n"
     "/controller/injection_state, and /cell/predicted_cf, /force_sensor/measured_cf or both.\n"
     "Out: /haptic/servo_cf /haptic/loop_state /teleop/servo_cp.\n"
-    "With link/scheme wave, /link/hand/received and /link/hand/sent replace the rig's topics.\n";
+    "With link/scheme wave, /link/hand/received and /link/hand/sent replace the rig's topics;\n"
+    "config/link.yaml has the keys of ~link.\n";
 
 HapticBridgeNode::Timeouts HapticBridgeNode::Timeouts::read(ConfigReader reader) {
   Timeouts timeouts;

@@ -186,6 +186,10 @@ void SessionRecorderNode::recordBag(SessionBag& bag) {
   bag.record<tf2_msgs::TFMessage>(cycle_.node(), "/tf");
   bag.record<tf2_msgs::TFMessage>(cycle_.node(), "/tf_static");
   bag.record<diagnostic_msgs::DiagnosticArray>(cycle_.node(), "/diagnostics");
+  bag.record<cell_microinjection::CycleStatistics>(cycle_.node(), "/cycle_statistics");
+  for (const char* topic : {"/controller/loop_state", "/haptic/loop_state", "/link/rig/loop_state"}) {
+    bag.record<cell_microinjection::LoopState>(cycle_.node(), topic);
+  }
   bag.record<cell_microinjection::OperatingState>(cycle_.node(), "/controller/operating_state");
 }
 

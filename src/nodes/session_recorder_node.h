@@ -18,6 +18,7 @@
 #include "cell_microinjection/CycleStatistics.h"
 #include "cell_microinjection/InjectionStatus.h"
 #include "cell_microinjection/InjectorState.h"
+#include "cell_microinjection/LoopState.h"
 #include "cell_microinjection/StringStamped.h"
 #include "nodes/recording/session_files.h"
 #include "nodes/runtime/bare_timer_loop.h"

@@ -13,7 +13,9 @@ const char* const TeleoperationFollowerNode::kHelp =
     "teleoperation_follower: the rig's end of a network between haptic bridge and rig.\n"
     "In: /link/rig/received /needle/measured_cp /controller/injection_state and /cell/predicted_cf,\n"
     "/force_sensor/measured_cf or both.\n"
-    "Out: /link/rig/sent /link/rig/loop_state /teleop/servo_cp.\n";
+    "Out: /link/rig/sent /link/rig/loop_state /teleop/servo_cp.\n"
+    "Beside those below: ~rate, ~timeouts/needle, predicted and measured, ~force_source and ~measured_share, as in\n"
+    "config/haptic_bridge.yaml.\n";
 
 TeleoperationFollowerNode::Parameters TeleoperationFollowerNode::Parameters::read(const ros::NodeHandle& private_node) {
   Parameters parameters;

@@ -14,7 +14,7 @@ import numpy as np
 import rospkg
 import rospy
 import rostest
-from cell_microinjection.msg import CellState
+from cell_microinjection.msg import CellState, LoopState
 from geometry_msgs.msg import PoseStamped, WrenchStamped
 from sensor_msgs.msg import Joy
 
@@ -112,6 +112,10 @@ class ChainTest(unittest.TestCase):
         level, text = self.chain.status("injection_controller: control")
         self.assertNotEqual(level, 0)
         self.assertIn("needle held", text)
+        for topic, part in (("/haptic/loop_state", why), ("/controller/loop_state", "")):
+            state = rospy.wait_for_message(topic, LoopState, 30)
+            self.assertFalse(state.follows)
+            self.assertIn(part, state.hold_reason)
         # The hand is back, 5 mm deeper: the needle must not leap there, the force must not kick.
         self.chain.tick(self.hand())
         self.chain.run(5, lambda: self.hand())

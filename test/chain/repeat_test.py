@@ -94,6 +94,7 @@ class RepeatTest(unittest.TestCase):
             cls.first, cls.second = (run_session(folder, training) for folder in (a, b))
             cls.told = yaml.safe_load((pathlib.Path(b) / "out/training.yaml").read_text(encoding="utf-8"))
             cls.history = (pathlib.Path(a) / "history.csv").read_text(encoding="utf-8")
+            cls.nodes = yaml.safe_load((pathlib.Path(b) / "out/summary.yaml").read_text(encoding="utf-8"))["nodes"]
             cls.picture = (pathlib.Path(b) / "out/training.png").read_bytes()
         cls.rows = list(csv.DictReader(cls.first.decode().splitlines()))
 
@@ -113,6 +114,13 @@ class RepeatTest(unittest.TestCase):
         self.assertLess(max(depths), 4.1e-6)
         self.assertGreater(max(self.numbers("predicted_axial_N", ("indent", "hold"))), 0.3e-6)
         self.assertEqual(self.numbers("predicted_axial_N", ("retract",))[-1], 0)
+
+    def test_summary_has_the_steps_of_each_node(self):
+        topics = {node["topic"]: node for node in self.nodes}
+        self.assertLessEqual({"/cell/predicted_cf", "/haptic/servo_cf", "/needle/servo_cp"}, set(topics))
+        for node in self.nodes:
+            self.assertGreater(node["count"], 1000, node)
+            self.assertAlmostEqual(node["rate_hz"] / round(node["rate_hz"], -2), 1, delta=0.01, msg=str(node))
 
     def test_hand_yields(self):
         """At rest in the cell the springs of hand and coupling, in series, are in balance with the rendered force."""

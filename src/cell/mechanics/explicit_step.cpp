@@ -12,6 +12,8 @@
 namespace microinjection {
 namespace {
 
+constexpr double kApproach = 0.05;  // share of the distance to the undeformed body, in each step
+
 void checkVertices(const std::vector<int>& vertices, const std::string& name, std::vector<int>& uses,
                    std::vector<std::string>& errors) {
   for (int vertex : vertices) {
@@ -144,6 +146,7 @@ void ExplicitStep::step(const Eigen::Vector3d& tip_displacement) {
   for (std::size_t i = 0; i < config_.tip.size(); ++i) {
     const int entry = 3 * config_.tip[i];
     force_ += Eigen::Vector3d::Map(&forces_[entry]);
+    tip_start_[i] += kApproach * (Eigen::Vector3d::Map(&rest_[entry]) - tip_start_[i]);
     Eigen::Vector3d::Map(&positions_[entry]) = tip_start_[i] + tip_displacement;
   }
 }

@@ -48,7 +48,8 @@ class ExplicitStep {
   /// without mass.
   ExplicitStep(const TetMesh& mesh, const ExplicitStepConfig& config);
 
-  /// Makes these vertices move with the tip from where they are now, instead of those before.
+  /// Makes these vertices move with the tip, instead of those before. They start where they are now;
+  /// within some steps they come to be displaced from the undeformed body by the tip's displacement.
   /// Throws ConfigError, as the constructor does, and then changes nothing.
   void setTip(const std::vector<int>& vertices);
   /// Restores the undeformed body at rest.
@@ -79,7 +80,7 @@ class ExplicitStep {
   std::vector<double> rest_, positions_, velocities_, forces_, displacements_;  ///< xyz per vertex
   std::vector<double> masses_;                                                  ///< kg, of each vertex
   std::vector<double> inverse_masses_;      ///< 1/kg, xyz per vertex; 0 for prescribed motion
-  std::vector<Eigen::Vector3d> tip_start_;  ///< m, of each vertex of the tip at zero displacement
+  std::vector<Eigen::Vector3d> tip_start_;  ///< m, of each vertex of the tip at zero displacement; it approaches rest_
   double highest_frequency_ = 0;
   double time_step_ = 0;
   Eigen::Vector3d force_ = Eigen::Vector3d::Zero();

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kDensity = 1000;     // kg/m^3, Table I of the paper
 constexpr double kShare = 0.5;        // of the step to the bound of the undeformed cell, which stiffens when pressed
-constexpr double kLongestGap = 0.05;  // s, past which the dynamics leaves time out
+constexpr double kLongestGap = 0.01;  // s, past which the dynamics leaves time out
 
 void checkScene(const Scene& scene) {
   std::vector<std::string> errors = P1Cell::refusals(scene);
@@ -32,7 +32,7 @@ void checkScene(const Scene& scene) {
 
 ExplicitCellModelConfig ExplicitCellModelConfig::read(ConfigReader& reader) {
   ExplicitCellModelConfig config;
-  reader.number("time_step", config.time_step, Range::closed(1e-6, 1e-3));
+  reader.number("time_step", config.time_step, Range::closed(1e-4, 1e-3));
   return config;
 }
 
@@ -88,12 +88,12 @@ TipForce ExplicitCellModel::computeForce(const Eigen::Vector3d& tip, const Eigen
   unstable_ = unstable_ || !isStable();
   inverted_ = !may_invert_ && dynamics_->hasInvertedElement();
   if (!contact_) {
-    if (unstable_ || inverted_) release();
+    if (unstable_ || inverted_) restore();
     return {};
   }
   const double push = dynamics_->force().dot(axis);
   if ((defect() != nullptr || push <= 0) && cell_->isClear(tip, axis, contact_->contact_point)) {
-    release();
+    unstable_ || inverted_ ? restore() : disengage();
     return {};
   }
   if (defect() != nullptr) return invalidForce(defect());
@@ -102,7 +102,7 @@ TipForce ExplicitCellModel::computeForce(const Eigen::Vector3d& tip, const Eigen
 }
 
 void ExplicitCellModel::engage(const Eigen::Vector3d& touch, const Eigen::Vector3d& axis) {
-  const TipPatch patch = cell_->contactAt(touch, axis).patch;
+  const TipPatch patch = cell_->contactAt(snapToNeedleLine(cell_->scene().needle, touch), axis).patch;
   const std::vector<int>& held = cell_->heldVertices();
   const auto is_held = [&](int vertex) { return std::find(held.begin(), held.end(), vertex) != held.end(); };
   touches_held_ = std::any_of(patch.vertices.begin(), patch.vertices.end(), is_held);
@@ -111,12 +111,13 @@ void ExplicitCellModel::engage(const Eigen::Vector3d& touch, const Eigen::Vector
   contact_ = Contact{};
   contact_->contact_point = touch;
   applied_.setZero();
+  last_move_.setZero();
 }
 
-/// The needle's work is that on the vertices at the positions from which each step sets out.
+/// Each step's force is that at its start, so that the work of a move is known one step later.
 void ExplicitCellModel::advance(const Eigen::Vector3d& displacement, double time) {
-  if (!time_ || time < *time_ || time - *time_ > kLongestGap)
-    time_ = std::max(time - kLongestGap, time_.value_or(time));
+  if (!time_ || time < *time_) time_ = time;
+  time_ = std::max(*time_, time - kLongestGap);
   const int count = static_cast<int>((time - *time_) / dynamics_->timeStep() + 1e-6);
   *time_ += count * dynamics_->timeStep();
   if (unstable_) return;
@@ -124,7 +125,8 @@ void ExplicitCellModel::advance(const Eigen::Vector3d& displacement, double time
   for (int i = 0; i < count; ++i) {
     applied_ += move;
     dynamics_->step(applied_);
-    work_ -= dynamics_->force().dot(move);
+    work_ -= dynamics_->force().dot(last_move_ + move) / 2;
+    last_move_ = move;
   }
 }
 
@@ -142,12 +144,20 @@ const char* ExplicitCellModel::defect() const {
 }
 
 void ExplicitCellModel::release() {
+  restore();
+  writeShape();
+}
+
+void ExplicitCellModel::disengage() {
   contact_.reset();
   drawn_.contact_vertices.clear();
   invalid_reason_.clear();
   touches_held_ = false;
   dynamics_->setTip({});
-  if (!unstable_ && !inverted_) return;
+}
+
+void ExplicitCellModel::restore() {
+  disengage();
   dynamics_->reset();
   work_ = 0;
   unstable_ = inverted_ = false;

@@ -38,8 +38,9 @@ class ExplicitCellModel : public CellModel {
   /// What the model is, and its error in plain words.
   std::string description() const;
 
-  /// Advances the dynamics to `time`, at most by 0.05 s; the tip moves there in a straight line.
+  /// Advances the dynamics to `time`, at most by 0.01 s; the tip moves there in a straight line.
   TipForce step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time) override;
+  /// Restores the undeformed cell: after a puncture nothing steps it until the next contact.
   void release() override;
 
   const std::optional<Contact>& contact() const override { return contact_; }
@@ -58,6 +59,8 @@ class ExplicitCellModel : public CellModel {
   TipForce computeForce(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time);
   void engage(const Eigen::Vector3d& touch, const Eigen::Vector3d& axis);
   void advance(const Eigen::Vector3d& displacement, double time);
+  void disengage();
+  void restore();
   bool isStable() const;
   const char* defect() const;
   TipForce invalidForce(const char* reason);
@@ -70,8 +73,9 @@ class ExplicitCellModel : public CellModel {
   std::optional<double> time_;  ///< s, that the dynamics has reached
   std::optional<Contact> contact_;
   Eigen::Vector3d applied_ = Eigen::Vector3d::Zero();  ///< m, displacement of the tip in the last time step
-  double work_ = 0;                                    ///< J, of the needle on the cell
-  double negligible_energy_;                           ///< J
+  Eigen::Vector3d last_move_ = Eigen::Vector3d::Zero();
+  double work_ = 0;           ///< J, of the needle on the cell
+  double negligible_energy_;  ///< J
   bool may_invert_ = false, touches_held_ = false, unstable_ = false, inverted_ = false;
   Shape drawn_;
   std::string invalid_reason_;

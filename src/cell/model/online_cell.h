@@ -92,6 +92,12 @@ class OnlineCell {
   virtual std::vector<CellModel::Member> undeformedMembers() const { return {}; }
 };
 
+/// m, about which a hand trembles: a tenth of the tip's radius. A smaller shift is no new contact
+/// point.
+double tremble(const Scene::Needle& needle);
+/// A touch close to the scene's needle line is moved onto it, where the mesh has the tip's circle.
+Eigen::Vector3d snapToNeedleLine(const Scene::Needle& needle, const Eigen::Vector3d& touch);
+
 /// The live model of a scene without prepared data: TensegrityCell for a tensegrity scene, else
 /// P1Cell if the scene allows it, because it is faster, else OnlineFemCell. Throws ConfigError for
 /// a bad scene, and std::runtime_error as their constructors do.

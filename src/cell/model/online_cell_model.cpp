@@ -61,13 +61,9 @@ void OnlineCellModel::receiveSolution(double time) {
 void OnlineCellModel::prepare(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, const Eigen::Vector3d& touch,
                               double time) {
   if ((tip - touch).dot(axis) > config_.prepare_distance) return;
-  // A hand trembles: a shift below a tenth of the tip's radius is no new contact point. Close to
-  // the scene's offset, where the mesh has the tip's circle, the offset itself is used.
   const Scene::Needle& needle = cell_->scene().needle;
-  const double tremble = 0.1 * needle.tip.radius;
-  Eigen::Vector3d point = touch;
-  if ((point.head<2>() - needle.offset).norm() < tremble) point.head<2>() = needle.offset;
-  if (!contact_prepared_at_ || (point - *contact_prepared_at_).norm() > tremble) {
+  const Eigen::Vector3d point = snapToNeedleLine(needle, touch);
+  if (!contact_prepared_at_ || (point - *contact_prepared_at_).norm() > tremble(needle)) {
     contact_point_ = std::make_shared<ContactPoint>(cell_->contactAt(point, axis));
     contact_prepared_at_ = point;
     contact_requested_ = false;

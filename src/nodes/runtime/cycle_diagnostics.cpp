@@ -14,6 +14,11 @@ namespace microinjection {
 using diagnostic_msgs::DiagnosticStatus;
 using diagnostic_updater::DiagnosticStatusWrapper;
 
+CycleDiagnostics::CycleDiagnostics(double rate)
+    : rate_(rate),
+      intervals_(2 / rate),
+      statistics_(ros::NodeHandle().advertise<cell_microinjection::CycleStatistics>("/cycle_statistics", 10)) {}
+
 void CycleDiagnostics::add(const std::string& name, const std::function<void(DiagnosticStatusWrapper&)>& report) {
   extra_.emplace_back(name, report);
 }
@@ -24,7 +29,6 @@ void CycleDiagnostics::start() {
   updater_->add("cycle", [this](DiagnosticStatusWrapper& status) { reportCycle(status); });
   updater_->add("inputs", [this](DiagnosticStatusWrapper& status) { reportInputs(status); });
   for (const auto& task : extra_) updater_->add(task.first, task.second);
-  statistics_ = ros::NodeHandle().advertise<cell_microinjection::CycleStatistics>("/cycle_statistics", 10);
   began_ = reported_ = now_;
 }
 

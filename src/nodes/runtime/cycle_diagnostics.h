@@ -18,7 +18,7 @@ namespace microinjection {
 /// With them go statistics for other programs, /cycle_statistics (CycleStatistics).
 class CycleDiagnostics {
  public:
-  explicit CycleDiagnostics(double rate) : rate_(rate), intervals_(2 / rate) {}
+  explicit CycleDiagnostics(double rate);
 
   void monitor(const InputPort& port) { inputs_.push_back(&port); }
   void monitor(const OutputPort& port) { outputs_.push_back(&port); }
@@ -44,7 +44,6 @@ class CycleDiagnostics {
   std::vector<const OutputPort*> outputs_;
   std::vector<std::pair<std::string, std::function<void(diagnostic_updater::DiagnosticStatusWrapper&)>>> extra_;
   std::unique_ptr<diagnostic_updater::Updater> updater_;  ///< created in the first step, when time runs
-  ros::Publisher statistics_;
   ros::Time now_;
   ros::Time reported_;
   ros::SteadyTime step_began_;
@@ -55,6 +54,7 @@ class CycleDiagnostics {
   unsigned withheld_ = 0;        ///< messages up to the last report
   ros::Time began_;
   IntervalHistogram intervals_;  ///< of wall time between steps, since the start
+  ros::Publisher statistics_;
 };
 
 }  // namespace microinjection

@@ -197,7 +197,7 @@ std::optional<Eigen::Vector3d> InjectionController::ownTarget(const Input& input
   const bool out = injection_ == InjectionState::kWithdraw;
   hold_reason_.clear();
   if (!run_.active() && !out) {
-    hold_reason_ = "no injection is under displacement";
+    hold_reason_ = "no injection is under way";
     return std::nullopt;
   }
   if (!out && !isValid(input.force)) {

@@ -118,7 +118,9 @@ void SerialInjector::reset() {
 }
 
 void SerialInjector::step(double time) {
+  const bool unconfirmed = time_ < unconfirmed_until_;
   time_ = time;
+  if (unconfirmed && time >= unconfirmed_until_) pressureChanges();  // such a pulse is over now
   checkGuard(time);  // before the model continues a pulse that the guard has ended
   const bool flowed = model_.reading().busy;
   model_.step(time);

@@ -50,6 +50,7 @@ void SerialInjector::abort(const std::string& reason, Refusal refusal) {
     waiting_stop_ = !last;
     if (!last) return;
     stop_failed_ = time_;
+    pressureChanges();  // the device may have stopped, and only its reply was lost
     stopped_ = false;
     unconfirmed_until_ = std::max(unconfirmed_until_, ends_);
     fail("stop: " + reason + "; the pulse may go on");

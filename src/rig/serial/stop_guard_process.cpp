@@ -170,7 +170,7 @@ void runStopGuard(int line, int driver, const char* stop, std::size_t size, Comm
     std::memset(program.text, 0, program.size);
     std::memcpy(program.text, kName, sizeof(kName));
   }
-  mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT);  // only the pages that the guard uses
+  mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT);  // the pages that are there, not the whole address space
   // The guard must keep nothing else open: neither connections nor the socket's other end.
   dup2(line, kLine);
   dup2(driver, kDriver);

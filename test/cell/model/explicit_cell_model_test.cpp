@@ -35,6 +35,10 @@ class ExplicitCellModelTest : public testing::Test {
     for (int i = 1; i <= steps; ++i) step(start + (depth - start) * i / steps);
     return force_;
   }
+  double settledAt3um() {
+    moveTo(3e-6, 0.3);
+    return rest(1.5).force.z();
+  }
   TipForce rest(double duration) { return moveTo(depth_, duration); }
 
   void step(double depth) {
@@ -126,6 +130,43 @@ TEST_P(FailedExplicitCellModelTest, ReportsItAndIsWholeAfterTheNeedleHasLeft) {
 }
 /// m, of a jump: elements are inverted, or the steps diverge.
 INSTANTIATE_TEST_SUITE_P(Jumps, FailedExplicitCellModelTest, testing::Values(30e-6, 60e-6, 200e-6));
+
+TEST_F(ExplicitCellModelTest, ASecondContactOnACellThatStillMovesSettlesToTheSameForce) {
+  const double first = settledAt3um();
+  moveTo(-1e-6, 0.02);
+  moveTo(3e-6, 0.1);
+  EXPECT_NEAR(rest(1.5).force.z(), first, 0.01 * first);
+}
+
+TEST_F(ExplicitCellModelTest, AHandThatTremblesMeetsTheSameContact) {
+  ExplicitCellModel beside(scene_, kConfig);
+  TipForce centred, shifted;
+  for (double time = 0; time < 1; time += kStep) {
+    const double z = kTouch - 2e-6 * time;
+    centred = cell_.step({0, 0, z}, kAxis, time);
+    shifted = beside.step({10e-9, 5e-9, z}, kAxis, time);
+  }
+  EXPECT_EQ(beside.deformedSurface().contact_vertices, cell_.deformedSurface().contact_vertices);
+  EXPECT_NEAR(shifted.force.z(), centred.force.z(), 0.01 * centred.force.z());
+}
+
+TEST_F(ExplicitCellModelTest, APunctureLeavesAnUndeformedCell) {
+  moveTo(3e-6, 0.5);
+  cell_.release();
+  EXPECT_FALSE(cell_.contact());
+  const CellModel::DeformedSurface surface = cell_.deformedSurface();
+  EXPECT_EQ(*std::max_element(surface.displacement.begin(), surface.displacement.end()), 0);
+  EXPECT_TRUE(surface.contact_vertices.empty());
+}
+
+TEST_F(ExplicitCellModelTest, ALongHoldWithNoiseStaysStable) {
+  moveTo(3e-6, 0.5);
+  for (int i = 0; i < 30000; ++i) {
+    const double noise = 40e-9 * std::sin(1.0 * i * i);
+    cell_.step({0, 0, kTouch - 3e-6 + noise}, kAxis, time_ += kStep);
+    ASSERT_EQ(cell_.invalidReason(), "") << i;
+  }
+}
 
 TEST_F(ExplicitCellModelTest, TimeThatIsMissingIsLeftOut) {
   moveTo(2e-6, 0.5);
