@@ -110,6 +110,30 @@ TEST_F(QueriedPressureTest, OfThePulseIsNotShownAfterTheGuardHasEndedIt) {
   EXPECT_LT(pressure(), 5000) << "it falls to the balance pressure";
 }
 
+TEST_F(QueriedPressureTest, OfAPulseThatMayHaveBeenDoneIsNotShownAfterItsTime) {
+  run(1);
+  answers.erase("G");
+  answers["?"] = "=122.0";
+  injector.pulse({5, 12300, 3});
+  while (injector.fault().empty()) run(0.01);
+  run(1.5);
+  ASSERT_NEAR(pressure(), 12200, 1);
+  for (int i = 0; i < 400 && pressure() > 12000; ++i) run(0.01);
+  EXPECT_NEAR(pressure(), 1000, 1);
+}
+
+TEST_F(QueriedPressureTest, OfBeforeAStopWithoutReplyIsNotShownAfterIt) {
+  run(1);
+  injector.pulse({5, 12300, 30});
+  answers["?"] = "=122.0";
+  run(1);
+  ASSERT_NEAR(pressure(), 12200, 1);
+  answers.erase("S");
+  injector.stop();
+  while (injector.fault().empty()) run(0.01);
+  EXPECT_NEAR(pressure(), 12300, 1) << "the pulse may go on";
+}
+
 class TimedQueryTest : public QueriedPressureTest {
  protected:
   TimedQueryTest() : QueriedPressureTest(kTimed) { answers["N"] = answers["F"] = "OK"; }
