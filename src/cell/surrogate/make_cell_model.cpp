@@ -61,7 +61,8 @@ ChosenCellModel makeCellModel(const Scene& scene, const std::string& model, cons
                               const std::string& path) {
   if (model == "explicit") {
     auto tracker = std::make_unique<ExplicitCellModel>(scene, config.explicit_dynamics);
-    const std::string description = "the cell is the paper's explicit dynamics, as asked for: " + tracker->description();
+    const std::string description =
+        "the cell is the paper's explicit dynamics, as asked for: " + tracker->description();
     return {std::make_unique<PuncturableCell>(scene, std::move(tracker)), description, false};
   }
   if (scene.cell.tensegrity && model != "prepared") {

@@ -48,7 +48,8 @@ void LockstepPacing::run(const CycleSteps& steps) {
   acknowledgement_ = ports_.node.advertise<std_msgs::Header>(kAcknowledgementTopic, 10, true);
   for (auto& output : ports_.outputs) output->announce();
   waitForPublishers(steps);
-  acknowledge(ros::Time());  // ready for the first tick
+  ROS_INFO("ready for the first tick");
+  acknowledge(ros::Time());
   while (steps.should_continue()) {
     ports_.queue.callAvailable(kWait);
     if (isReady()) stepTick(steps);

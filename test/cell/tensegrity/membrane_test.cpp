@@ -7,9 +7,9 @@
 #include <random>
 #include <set>
 
+#include "cell/mechanics/term_derivatives.h"
 #include "cell/tensegrity/geodesic_sphere.h"
 #include "cell/tensegrity/tensegrity_geometry.h"
-#include "cell/mechanics/term_derivatives.h"
 
 namespace microinjection {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <memory>
 
-#include "cell/tensegrity/tensegrity_loading.h"
 #include "cell/mechanics/term_derivatives.h"
+#include "cell/tensegrity/tensegrity_loading.h"
 
 namespace microinjection {
 namespace {
