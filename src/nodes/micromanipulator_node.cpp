@@ -62,6 +62,7 @@ void MicromanipulatorNode::step(const Cycle::Tick& tick) {
   commands_.step(tick);
   if (rig_.before_step) rig_.before_step(commands_.time());
   model_.step(commands_.time(), tick.dt);
+  commands_.endStep();
   publisher_.publish(tick.now);
   publishState(tick);
   cycle_.setBusy(commands_.moves());

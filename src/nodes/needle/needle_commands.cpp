@@ -180,7 +180,7 @@ void NeedleCommands::change(StateCommand command, bool fault) {
 
 void NeedleCommands::authorize(const std::string& sender) {
   if (!unavailableReason().empty()) return;
-  if (authority_.authorize(sender, time(), moves())) return;
+  if (authority_.authorize(sender, time())) return;
   model_.stop();
   state_.setConditions(conditions());
   ROS_ERROR_STREAM(authority_.fault());
@@ -224,6 +224,8 @@ void NeedleCommands::step(const Cycle::Tick& tick) {
   state_.setConditions(conditions());
   executeServo(tick);
 }
+
+void NeedleCommands::endStep() { authority_.step(time(), moves()); }
 
 bool NeedleCommands::isBusy(const Cycle::Tick& tick) {
   state_.setConditions(conditions());

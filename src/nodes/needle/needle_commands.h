@@ -34,6 +34,8 @@ class NeedleCommands {
   /// Call before the model's step: checks device, senders and network, and executes the newest
   /// servo_cp.
   void step(const Cycle::Tick& tick);
+  /// Call after the model's step, before the state is published.
+  void endStep();
   /// Call after the model's step. Returns this step's is_busy.
   bool isBusy(const Cycle::Tick& tick);
   /// See BusyReport::pending.

@@ -2,16 +2,19 @@
 
 namespace microinjection {
 
-bool CommandAuthority::authorize(const std::string& source, double time, bool moving) {
+bool CommandAuthority::authorize(const std::string& source, double time) {
   if (!fault_.empty()) return false;
-  const bool free = authorized_source_.empty() || (!moving && time > commanded_);
-  if (source != authorized_source_ && !free) {
+  if (source != authorized_source_ && !authorized_source_.empty()) {
     fault_ = "two nodes command the needle: " + authorized_source_ + " and " + source;
     return false;
   }
   authorized_source_ = source;
   commanded_ = time;
   return true;
+}
+
+void CommandAuthority::step(double time, bool moving) {
+  if (!moving && time > commanded_) authorized_source_.clear();
 }
 
 void CommandAuthority::clear() {

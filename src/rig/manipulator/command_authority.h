@@ -11,16 +11,18 @@ namespace microinjection {
 class CommandAuthority {
  public:
   /// Registers a command of `source` at `time` (s), which is the same for all commands of a step.
-  /// `moving`: the needle still executes an earlier command. Returns true if the command may be
-  /// executed: without a fault.
-  bool authorize(const std::string& source, double time, bool moving);
+  /// Returns true if the command may be executed: without a fault.
+  bool authorize(const std::string& source, double time);
+  /// To be called at the end of each step. Once the needle rests (`moving` is false) after the last
+  /// command, another source may command, also if the device then corrects its position.
+  void step(double time, bool moving);
 
   /// Names both sources; empty without a fault.
   const std::string& fault() const { return fault_; }
   void clear();
 
  private:
-  std::string authorized_source_;                                ///< empty: none yet
+  std::string authorized_source_;                                ///< empty: any may command
   double commanded_ = -std::numeric_limits<double>::infinity();  ///< s, of the authorized source's last command
   std::string fault_;
 };

@@ -2,50 +2,77 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
 namespace microinjection {
 namespace {
 
-TEST(CommandAuthority, OneSourceCommandsAsOftenAsItLikes) {
-  CommandAuthority authority;
-  for (int i = 0; i < 100; ++i) EXPECT_TRUE(authority.authorize("/controller", 0.03 * i, i % 2 == 0));
-  EXPECT_EQ(authority.fault(), "");
+class CommandAuthorityTest : public testing::Test {
+ protected:
+  bool command(const std::string& source) { return authority_.authorize(source, time_); }
+  void step(bool moving) { authority_.step(time_ += 1e-3, moving); }
+
+  CommandAuthority authority_;
+  double time_ = 1;
+};
+
+TEST_F(CommandAuthorityTest, OneSourceCommandsAsOftenAsItLikes) {
+  for (int i = 0; i < 100; ++i) {
+    EXPECT_TRUE(command("/controller"));
+    step(i % 2 == 0);
+  }
+  EXPECT_EQ(authority_.fault(), "");
 }
 
-TEST(CommandAuthority, ASecondSourceInTheSameStepIsAFaultThatNamesBoth) {
-  CommandAuthority authority;
-  EXPECT_TRUE(authority.authorize("/controller", 1, false));
-  EXPECT_FALSE(authority.authorize("/stranger", 1, false));
-  EXPECT_EQ(authority.fault(), "two nodes command the needle: /controller and /stranger");
+TEST_F(CommandAuthorityTest, ASecondSourceInTheSameStepIsAFaultThatNamesBoth) {
+  EXPECT_TRUE(command("/controller"));
+  EXPECT_FALSE(command("/stranger"));
+  EXPECT_EQ(authority_.fault(), "two nodes command the needle: /controller and /stranger");
 }
 
-TEST(CommandAuthority, TwoStreamsAreAFaultAsSoonAsTheSecondOneMovesTheNeedle) {
-  CommandAuthority authority;
-  EXPECT_TRUE(authority.authorize("/controller", 1, false));
-  EXPECT_TRUE(authority.authorize("/stranger", 1.001, false));
-  EXPECT_FALSE(authority.authorize("/controller", 1.002, true));
+TEST_F(CommandAuthorityTest, TheStepOfACommandIsNoRestBeforeTheDeviceHasIt) {
+  EXPECT_TRUE(command("/controller"));
+  authority_.step(time_, false);
+  EXPECT_FALSE(command("/stranger"));
 }
 
-TEST(CommandAuthority, ASecondSourceIsAFaultAsLongAsTheNeedleMoves) {
-  CommandAuthority authority;
-  EXPECT_TRUE(authority.authorize("/controller", 1, false));
-  EXPECT_FALSE(authority.authorize("/stranger", 100, true));
+TEST_F(CommandAuthorityTest, TwoStreamsAreAFaultAsSoonAsTheSecondOneMovesTheNeedle) {
+  EXPECT_TRUE(command("/controller"));
+  step(false);
+  EXPECT_TRUE(command("/stranger"));
+  step(true);
+  EXPECT_FALSE(command("/controller"));
 }
 
-TEST(CommandAuthority, AnotherMayCommandWhenTheNeedleRests) {
-  CommandAuthority authority;
-  EXPECT_TRUE(authority.authorize("/rostopic_1", 1, false));
-  EXPECT_FALSE(CommandAuthority(authority).authorize("/rostopic_2", 1.1, true));
-  EXPECT_TRUE(authority.authorize("/rostopic_2", 1.1, false));
+TEST_F(CommandAuthorityTest, ASecondSourceIsAFaultAsLongAsTheNeedleMoves) {
+  EXPECT_TRUE(command("/controller"));
+  for (int i = 0; i < 1000; ++i) step(true);
+  EXPECT_FALSE(command("/stranger"));
 }
 
-TEST(CommandAuthority, TheFaultLastsForAllUntilItIsCleared) {
-  CommandAuthority authority;
-  authority.authorize("/controller", 1, false);
-  authority.authorize("/stranger", 1, false);
-  EXPECT_FALSE(authority.authorize("/controller", 100, false));
-  authority.clear();
-  EXPECT_EQ(authority.fault(), "");
-  EXPECT_TRUE(authority.authorize("/stranger", 100, false));
+TEST_F(CommandAuthorityTest, AnotherMayCommandWhenTheNeedleRests) {
+  EXPECT_TRUE(command("/rostopic_1"));
+  step(true);
+  step(false);
+  EXPECT_TRUE(command("/rostopic_2"));
+}
+
+TEST_F(CommandAuthorityTest, ADeviceThatCorrectsItsPositionAtRestHoldsNobodyOff) {
+  EXPECT_TRUE(command("/rostopic"));
+  step(true);
+  step(false);  // is_busy becomes false
+  step(true);
+  EXPECT_TRUE(command("/controller"));
+}
+
+TEST_F(CommandAuthorityTest, TheFaultLastsForAllUntilItIsCleared) {
+  command("/controller");
+  command("/stranger");
+  step(false);
+  EXPECT_FALSE(command("/controller"));
+  authority_.clear();
+  EXPECT_EQ(authority_.fault(), "");
+  EXPECT_TRUE(command("/stranger"));
 }
 
 }  // namespace
