@@ -24,14 +24,18 @@ SUFFIXES = ('md', 'py', 'cpp', 'h', 'launch', 'yaml', 'csv', 'png', 'bag', 'urdf
 
 
 def commands_of(text):
-    """Yields (line, command) of the blocks: indented by four and more after an empty line, or fenced."""
-    block, fenced, empty = False, False, True
+    """Yields (line, command) of the blocks: indented by four and more after an empty line, or fenced. A backslash at its
+    end joins a line to the next."""
+    block, fenced, empty, begun = False, False, True, ''
     for number, line in enumerate(text.splitlines(), 1):
         if line.lstrip().startswith('```'):
             fenced = not fenced
         elif fenced or ((empty or block) and line.startswith('    ')):
             block = True
-            yield number, line.strip()
+            whole, continued = (begun + line.strip()), line.endswith('\\')
+            begun = whole[:-1] if continued else ''
+            if not continued:
+                yield number, whole
         else:
             block = block and not line.strip()
         empty = not line.strip()

@@ -2,7 +2,7 @@
 import re
 from pathlib import Path
 
-README_LINES, COLUMNS, SENTENCE = 150, 100, 30
+README_LINES, COLUMNS, WIDEST, SENTENCE = 150, 100, 120, 30
 PRIVATE = re.compile(r'\b(heeds?|distrusts?|judged?s?|tells?|told|says?|said|let go|lets go)\b', re.IGNORECASE)
 
 
@@ -78,6 +78,9 @@ class FormChecker:
             if len(line) > COLUMNS and not fenced and not re.match(r'\s*\||    |\s*!\[', line):
                 self.place = f'{path}:{number}'
                 self.report(f'{len(line)} columns, at most {COLUMNS}')
+            elif len(line) > WIDEST and not re.match(r'\s*\|', line):
+                self.place = f'{path}:{number}'
+                self.report(f'{len(line)} columns, at most {WIDEST} outside of tables')
         if path == 'README.md' or path.startswith('doc/'):
             for number, paragraph in documents_prose(text):
                 self.place = f'{path}:{number}'

@@ -143,14 +143,16 @@ See [other](doc/guide/other.md#how-its-rate-is-mostly), `config/bridge.yaml`, `s
                 'cp config/none.yaml mine.yaml': 'no file config/none.yaml'}.items():
             for block in (f'    {wrong}\n', f'```\n{wrong}\n```\n'):
                 with self.subTest(block=block):
-                    found = self.problems(f'# Page\n\nText.\n\n{block}')
-                    self.assertIn(reason, '\n'.join(found))
+                    for written in (block, block.replace(' --', ' \\\n     --')):
+                        found = self.problems(f'# Page\n\nText.\n\n{written}')
+                        self.assertIn(reason, '\n'.join(found))
 
     def test_reports_length_columns_and_sentences(self):
         self.assertIn('151 lines', self.problems('word\n\n' * 75 + 'word\n', 'README.md')[0])
         (self.root / 'README.md').unlink()
         self.assertIn('101 columns', self.problems('x' * 101 + '\n')[0])
-        self.assertEqual(self.problems('| ' + 'x' * 120 + ' |\n\n    ' + 'x' * 120 + '\n'), [])
+        self.assertEqual(self.problems('| ' + 'x' * 120 + ' |\n\n    ' + 'x' * 116 + '\n'), [])
+        self.assertIn('121 columns', self.problems('\n    ' + 'x' * 117 + '\n')[0])
         self.assertIn('"heeds" is', self.problems('The node heeds a command.\n')[0])
         self.assertIn('31 words', self.problems('word\n' * 30 + 'end.\n')[0])
         self.assertEqual(self.problems('word\n' * 29 + 'end. Next one.\n\n- ' + 'word\n  ' * 29 + '\n- item\n'), [])

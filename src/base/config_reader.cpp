@@ -127,14 +127,15 @@ void ConfigReader::vector(const std::string& key, Eigen::Ref<Eigen::VectorXd> va
   value = read;
 }
 
+YAML::Node ConfigReader::map(const std::string& key, Presence presence) {
+  const YAML::Node node = find(key, presence);
+  if (node.IsDefined() && node.IsMap()) return node;
+  if (node.IsDefined()) error(key, "must be a map");
+  return YAML::Node(YAML::NodeType::Map);
+}
+
 ConfigReader ConfigReader::section(const std::string& key, Presence presence) {
-  YAML::Node node = find(key, presence);
-  if (node.IsDefined() && !node.IsMap()) {
-    error(key, "must be a map");
-    node = YAML::Node(YAML::NodeType::Map);
-  }
-  if (!node.IsDefined()) node = YAML::Node(YAML::NodeType::Map);
-  return ConfigReader(node, origin_, level_->path + key + "/", errors_, levels_);
+  return ConfigReader(map(key, presence), origin_, level_->path + key + "/", errors_, levels_);
 }
 
 std::vector<ConfigReader> ConfigReader::sections(const std::string& key, Presence presence) {

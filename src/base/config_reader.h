@@ -47,6 +47,9 @@ class ConfigReader {
   /// Messages name them key/0, key/1 and so on.
   std::vector<ConfigReader> sections(const std::string& key, Presence = kOptional);
 
+  /// The map under `key`, for a reader of its own; an empty map when it is absent.
+  YAML::Node map(const std::string& key, Presence = kOptional);
+
   /// Adds an error about `key`: "origin: cell/diameter = 3: MESSAGE".
   void error(const std::string& key, const std::string& message);
 

@@ -20,6 +20,7 @@
 #include "base/standard_output.h"
 #include "base/worker_processes.h"
 #include "cell/model/scene.h"
+#include "cell/model/similarity.h"
 #include "cell/surrogate/model_choice.h"
 #include "cell/surrogate/surrogate_data.h"
 #include "cell/surrogate/training_ray.h"
@@ -39,7 +40,8 @@ Usage: prepare --scene FILE [--jobs N] [...]
 
 Takes minutes, shows its progress, and may be interrupted: the next call continues from the finished paths. The data are
 in $XDG_CACHE_HOME (else ~/.cache) under cell_microinjection/prepared, in a folder named after the cell, the tip and
-the program's version; another cell or tip needs its own, another needle offset does not.
+the program's version. A cell that only differs in scale or Young's modulus has the same data; another ratio of
+lengths or moduli needs its own.
 
 Data that are damaged, or of another version, are reported and replaced.
 
@@ -87,8 +89,9 @@ class Preparing {
   explicit Preparing(const Arguments& arguments)
       : arguments_(arguments),
         scene_(loadScene(arguments.scene)),
-        plan_(Preparation::plan(scene_, PreparationRange::standard(scene_))),
-        folder_(preparedFolder(scene_, plan_)) {
+        solved_(withoutDimension(scene_)),
+        plan_(Preparation::plan(solved_, PreparationRange::standard(solved_))),
+        folder_(preparedFolder(solved_, plan_)) {
     Preparation::check(scene_);
     if (folder_.empty()) throw ConfigError("neither XDG_CACHE_HOME nor HOME is set: no folder for the data");
   }
@@ -97,7 +100,7 @@ class Preparing {
     prctl(PR_SET_PDEATHSIG, SIGKILL);  // the workers end when the preparation is killed
     const TrainingRay& ray = plan_.rays.at(arguments_.ray);
     try {
-      writeCacheFile(file(arguments_.ray), description(arguments_.ray), encode(solveRay(scene_, ray)));
+      writeCacheFile(file(arguments_.ray), description(arguments_.ray), encode(solveRay(solved_, ray)));
     } catch (const std::exception&) {
       std::fputc('\n', stderr);  // ends the progress line of the preparation
       throw;
@@ -106,7 +109,7 @@ class Preparing {
   }
 
   int run() {
-    const std::string path = preparedFile(scene_, plan_);
+    const std::string path = preparedFile(solved_, plan_);
     if (wasPrepared(path)) {
       std::printf("prepare: was prepared before: %s\n", path.c_str());
       const auto figures = loadFigures(scene_, "live");
@@ -120,11 +123,11 @@ class Preparing {
     solveMissing();
     const std::vector<TrainingResult> results = loadAll();
     std::fprintf(stderr, "prepare: fitting\n");
-    const SurrogateData cell = SurrogateData::fit(scene_, plan_, results);
-    cell.save(scene_, plan_.range, path);
+    const SurrogateData cell = SurrogateData::fit(solved_, plan_, results);
+    cell.save(solved_, plan_.range, path);
     if (cell.range.axis_depth < 0.999 * plan_.range.axis_depth) {
       std::fprintf(stderr, "prepare: on the axis the cell has a solution to %.3g um only\n",
-                   1e6 * cell.range.axis_depth);
+                   1e6 * scene_.radius() * cell.range.axis_depth);
     }
     std::printf(
         "prepare: done: %s\nprepare: the fit's force error at the equilibria: median %.2g %%, nine of ten below %.2g "
@@ -152,7 +155,7 @@ class Preparing {
 
   bool wasPrepared(const std::string& path) const {
     if (arguments_.again) return false;
-    const auto prepared = SurrogateData::load(scene_, plan_.range, path);
+    const auto prepared = SurrogateData::load(solved_, plan_.range, path);
     reportDamage(prepared.state, prepared.reason);
     return static_cast<bool>(prepared);
   }
@@ -194,7 +197,7 @@ class Preparing {
     return results;
   }
 
-  std::string description(std::size_t ray) const { return plan_.description(scene_, plan_.rays[ray]); }
+  std::string description(std::size_t ray) const { return plan_.description(solved_, plan_.rays[ray]); }
   std::string file(std::size_t ray) const { return folder_ + "/path_" + contentHash(description(ray)); }
 
   std::vector<std::size_t> missingRays() const {
@@ -211,7 +214,7 @@ class Preparing {
   }
 
   void solveMissing() {
-    surface_size_ = trainingSurface(scene_, 0).nodes.size();
+    surface_size_ = trainingSurface(solved_, 0).nodes.size();
     const std::vector<std::size_t> missing = missingRays();
     std::vector<std::vector<std::string>> commands;
     for (const std::size_t i : missing) {
@@ -239,15 +242,16 @@ class Preparing {
     std::fflush(stderr);
   }
 
-  static void reportEarlyEnd(const TrainingRay& ray, const TrainingResult& result) {
+  void reportEarlyEnd(const TrainingRay& ray, const TrainingResult& result) const {
     const double reached = result.samples.empty() ? 0 : result.samples.back().displacement.norm();
     std::fprintf(stderr, "prepare: a path at %.0f degrees ends at %.3g of %.3g um: %s\n", ray.angle * 57.2958,
-                 1e6 * reached, 1e6 * ray.target.norm(), result.reason.c_str());
+                 1e6 * scene_.radius() * reached, 1e6 * scene_.radius() * ray.target.norm(), result.reason.c_str());
   }
 
   Arguments arguments_;
   Scene scene_;
-  Preparation plan_;
+  Scene solved_;      ///< the same without dimension
+  Preparation plan_;  ///< of it
   std::string folder_;
   Eigen::Index surface_size_ = 0;  ///< numbers of a path's surface; set before paths are solved
 };

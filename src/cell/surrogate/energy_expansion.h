@@ -40,6 +40,11 @@ class EnergyExpansion {
   EnergyExpansion(const EnergyScales& scales, const EnergyDegrees& degrees);
 
   const EnergyScales& scales() const { return scales_; }
+  /// Changes to a unit of length and one of energy, given in the new ones.
+  void changeUnits(double length, double energy) {
+    scales_.length *= length;
+    scales_.energy *= energy;
+  }
   int size() const { return static_cast<int>(terms_.size()) * (degrees_.distance + 1); }
 
   /// Energy (J) and its gradient (N) by the displacement for a unit of each coefficient (3 x size).

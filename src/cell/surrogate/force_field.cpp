@@ -20,6 +20,12 @@ ForceField::ForceField(const EnergyScales& scales)
       lateral_(forceScales(scales), kLateral),
       axial_(forceScales(scales), kAxial) {}
 
+void ForceField::changeUnits(double length, double energy) {
+  scales_.length *= length;
+  scales_.energy *= energy;
+  for (EnergyExpansion* expansion : {&away_, &lateral_, &axial_}) expansion->changeUnits(length, energy / length);
+}
+
 void ForceField::fit(const std::vector<TrainingSample>& samples) {
   const auto count = static_cast<Eigen::Index>(samples.size());
   const int a_size = away_.size(), b_size = lateral_.size();

@@ -23,6 +23,8 @@ class ForceField {
   explicit ForceField(const EnergyScales& scales);
 
   bool empty() const { return axial_.size() == 0; }
+  /// Changes to a unit of length and one of energy, given in the new ones.
+  void changeUnits(double length, double energy);
 
   /// Least-squares fit to the samples' forces, with errors relative to each force.
   void fit(const std::vector<TrainingSample>& samples);

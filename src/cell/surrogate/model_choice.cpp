@@ -13,6 +13,7 @@
 #include "cell/model/converged_force.h"
 #include "cell/model/online_cell.h"
 #include "cell/model/p1_cell.h"
+#include "cell/model/similarity.h"
 #include "cell/surrogate/surrogate_contact.h"
 
 namespace microinjection {
@@ -37,7 +38,7 @@ std::string figuresDescription(const Scene& scene, const std::string& name) {
   const Preparation plan = Preparation::plan(scene, PreparationRange::standard(scene));
   std::ostringstream out;
   out << plan.description(scene) << " figures " << kFigures << ' ' << name << " on " << std::hexfloat
-      << scene.meshSize() << ' ' << scene.mesh.refinement.zone << ' ' << scene.mesh.refinement.density << ' '
+      << rounded(scene.meshSize() / scene.radius()) << ' ' << scene.mesh.refinement.zone << ' ' << scene.mesh.refinement.density << ' '
       << scene.mesh.stretch << (P1Cell::refusals(scene).empty() ? " linear" : " swept");
   return out.str();
 }

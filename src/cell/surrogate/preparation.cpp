@@ -6,12 +6,13 @@
 
 #include "base/errors.h"
 #include "cell/model/scene_description.h"
+#include "cell/model/similarity.h"
 
 namespace microinjection {
 namespace {
 
 /// Version of the data and their computation: increase it when these change.
-constexpr int kVersion = 3;
+constexpr int kVersion = 4;
 constexpr double kDegree = M_PI / 180;
 constexpr int kAngles = 4;
 constexpr int kPoints = 12;  ///< along a path as long as the range is deep
@@ -79,6 +80,10 @@ PreparationRange PreparationRange::standard(const Scene& scene) {
   return {60 * kDegree, 0.36 * diameter, 0.805 * diameter, 0.09 * diameter};
 }
 
+PreparationRange PreparationRange::scaled(double factor) const {
+  return {angle, factor * depth, factor * axis_depth, factor * lateral};
+}
+
 void Preparation::check(const Scene& scene) {
   if (scene.cell.tensegrity) {
     throw ConfigError(
@@ -139,15 +144,18 @@ Preparation Preparation::plan(const Scene& scene, const PreparationRange& range)
 std::string Preparation::description(const Scene& scene, const TrainingRay& ray) const {
   std::ostringstream out;
   out << description(scene) << " path " << std::hexfloat << ray.angle;
-  for (int i = 0; i < ray.target.size(); ++i) out << ' ' << ray.target[i];
+  for (const double x : ray.target) out << ' ' << rounded(x / scene.radius());
   out << ' ' << ray.points << " level " << ray.level;
   return out.str();
 }
 
 std::string Preparation::description(const Scene& scene) const {
   std::ostringstream out;
-  out << "prepared cell " << kVersion << ": " << describeCellAndTip(elastic(scene)) << std::hexfloat << " to "
-      << range.angle << ' ' << range.depth << ' ' << range.axis_depth << ' ' << range.lateral;
+  out << "prepared cell " << kVersion << ": " << describeCellAndTip(withoutDimension(elastic(scene))) << std::hexfloat
+      << " to " << range.angle;
+  for (const double length : {range.depth, range.axis_depth, range.lateral}) {
+    out << ' ' << rounded(length / scene.radius());
+  }
   return out.str();
 }
 

@@ -19,6 +19,9 @@ struct PreparationRange {
   /// Range for a training session: 60 degrees; 0.36, on the axis 0.8, and 0.09 of the cell's
   /// diameter.
   static PreparationRange standard(const Scene& scene);
+
+  /// The range of a cell that is larger by a factor.
+  PreparationRange scaled(double factor) const;
 };
 
 /// Meshes of the training, see scene_mesh.h. All paths are solved on the coarse mesh; those in a
@@ -48,7 +51,8 @@ struct Preparation {
   /// The scene that is solved: without viscoelasticity.
   static Scene elastic(const Scene& scene);
 
-  /// One line with scene, range and version of the data.
+  /// One line with scene, range and version of the data, without dimension: similar scenes have the
+  /// same data (see similarity.h).
   std::string description(const Scene& scene) const;
   /// Same, for one path.
   std::string description(const Scene& scene, const TrainingRay& ray) const;

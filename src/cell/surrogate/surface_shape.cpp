@@ -86,6 +86,12 @@ SurfaceShape::SurfaceShape(const PreparationRange& range, const std::vector<doub
   weights_ = system.partialPivLu().solve(right);
 }
 
+void SurfaceShape::changeUnit(double length) {
+  range_ = range_.scaled(length);
+  rest_ *= length;
+  modes_ = (length * modes_.cast<double>()).cast<float>();
+}
+
 Eigen::Vector4d SurfaceShape::variables(double angle, const Eigen::Vector3d& displacement) const {
   return {angle / range_.angle, displacement.x() / range_.lateral, displacement.y() / range_.lateral,
           -displacement.z() / range_.depth};

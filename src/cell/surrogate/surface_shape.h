@@ -19,6 +19,9 @@ class SurfaceShape {
   SurfaceShape(const PreparationRange& range, const std::vector<double>& angles,
                const std::vector<TrainingSurface>& surfaces, const std::vector<TrainingSample>& samples);
 
+  /// Changes to a unit of length, given in the new one.
+  void changeUnit(double length);
+
   int nodeCount() const { return static_cast<int>(node_count_); }
   const std::vector<Eigen::Vector3i>& triangles() const { return triangles_; }
 

@@ -7,63 +7,17 @@
 #include <utility>
 
 #include "base/cache_file.h"
-#include "cell/surrogate/axis_ray.h"
+#include "cell/model/similarity.h"
 #include "cell/surrogate/energy_fit.h"
-#include "cell/surrogate/mesh_correction.h"
+#include "cell/surrogate/training_set.h"
 
 namespace microinjection {
 namespace {
 
-constexpr char kFit[] = " fit 8";  ///< change it when the fit changes
+constexpr char kFit[] = " fit 9";  ///< change it when the fit changes
 constexpr double kSmall = 0.0025;  ///< over the largest force: smaller ones are excluded from the errors
+constexpr double kRounding = 1e-9;  ///< relative, of a change of units
 constexpr EnergyDegrees kDegrees{};
-constexpr int kDeepSamples = 14;  ///< on the axis, below the depth of the range elsewhere
-
-bool straightOnAxis(const TrainingRay& ray) { return ray.angle == 0 && ray.target.head<2>().isZero(0); }
-
-/// Samples to fit: `forces` as converged as possible, `surfaces` on the coarse mesh and, deep on
-/// the axis, of the section.
-struct Samples {
-  std::vector<TrainingSample> forces, surfaces;
-  double axis_depth = 0;  ///< m, reached on the axis
-
-  void add(const TrainingSample& sample) {
-    forces.push_back(sample);
-    surfaces.push_back(sample);
-  }
-};
-
-/// Adds the section's results, which are more accurate and deeper, for the straight path on the
-/// axis.
-void addAxis(const Scene& scene, const PreparationRange& range, const std::vector<TrainingSample>& coarse,
-             const Eigen::VectorXd& surface, Samples& samples) {
-  std::vector<double> depths;
-  for (const TrainingSample& sample : coarse) depths.push_back(-sample.displacement.z());
-  for (int i = 1; i <= kDeepSamples; ++i) {
-    depths.push_back(range.depth + (range.axis_depth - range.depth) * i / kDeepSamples);
-  }
-  for (const TrainingSample& sample : solveAxis(scene, depths, surface)) {
-    samples.add(sample);
-    samples.axis_depth = -sample.displacement.z();
-  }
-}
-
-Samples gather(const Scene& scene, const Preparation& preparation, const std::vector<TrainingResult>& results,
-               const Eigen::VectorXd& surface_on_axis) {
-  const std::vector<TrainingRay>& rays = preparation.rays;
-  const auto better = betterForces(preparation.scales, rays, results);
-  Samples samples;
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (rays[i].level != kCoarseLevel) continue;
-    if (straightOnAxis(rays[i])) {
-      addAxis(scene, preparation.range, results[i].samples, surface_on_axis, samples);
-      continue;
-    }
-    samples.forces.insert(samples.forces.end(), better[i].begin(), better[i].end());
-    samples.surfaces.insert(samples.surfaces.end(), results[i].samples.begin(), results[i].samples.end());
-  }
-  return samples;
-}
 
 /// Relative errors of a force (angle, displacement -> N), ascending, without samples of small
 /// force.
@@ -102,9 +56,10 @@ SurrogateData decode(const Preparation& plan, ByteReader& reader) {
   }
   bool same = true;
   for (int x : {kDegrees.angle, kDegrees.direction, kDegrees.distance}) same &= reader.number<std::int32_t>() == x;
-  if (!(reached > 0 && reached <= plan.range.axis_depth)) throw std::runtime_error("its range cannot be");
-  same &=
-      scales.angle == plan.scales.angle && scales.length == plan.scales.length && scales.energy == plan.scales.energy;
+  if (!(reached > 0 && reached <= (1 + kRounding) * plan.range.axis_depth)) throw std::runtime_error("its range cannot be");
+  const auto equal = [](double a, double b) { return std::abs(a - b) <= kRounding * std::abs(b); };
+  same &= equal(scales.angle, plan.scales.angle) && equal(scales.length, plan.scales.length) &&
+          equal(scales.energy, plan.scales.energy);
   if (!same) throw std::runtime_error("its scales or degrees are not those of this cell");
   for (const double error : {cell.median_error, cell.common_error, cell.largest_error}) {
     if (!(std::isfinite(error) && error >= 0)) throw std::runtime_error("an error of the fit cannot be");
@@ -128,8 +83,7 @@ SurrogateData SurrogateData::fit(const Scene& scene, const Preparation& preparat
   std::vector<TrainingSurface> surfaces;
   for (double angle : angles) surfaces.push_back(trainingSurface(scene, angle));
 
-  const Samples all = gather(scene, preparation, results, surfaces.front().nodes);
-  if (!(all.axis_depth > 0)) throw std::runtime_error("on the axis the cell's section has no solution at any depth");
+  const TrainingSet all = TrainingSet::gather(scene, preparation, results, surfaces.front().nodes);
   const std::vector<TrainingSample>& samples = all.forces;
   SurrogateData cell;
   cell.range = preparation.range;
@@ -168,29 +122,41 @@ std::string preparedFile(const Scene& scene, const Preparation& preparation) {
   return folder.empty() ? "" : folder + "/prepared.cell";
 }
 
+void SurrogateData::changeUnits(double length, double of_energy) {
+  range = range.scaled(length);
+  energy.changeUnits(length, of_energy);
+  if (!field.empty()) field.changeUnits(length, of_energy);
+  surface.changeUnit(length);
+}
+
 void SurrogateData::save(const Scene& scene, const PreparationRange& planned, const std::string& path) const {
+  const Similarity units = Similarity::of(scene);
+  SurrogateData data = *this;
+  data.changeUnits(1 / units.length, 1 / units.energy());
   ByteWriter writer;
-  const EnergyScales& scales = energy.scales();
-  for (double x :
-       {range.axis_depth, scales.angle, scales.length, scales.energy, median_error, common_error, largest_error}) {
+  const EnergyScales& scales = data.energy.scales();
+  for (double x : {data.range.axis_depth, scales.angle, scales.length, scales.energy, median_error, common_error,
+                   largest_error}) {
     writer.number(x);
   }
   for (int x : {kDegrees.angle, kDegrees.direction, kDegrees.distance}) writer.number<std::int32_t>(x);
-  writer.array(energy.coefficients());
-  writer.array(field.coefficients());
-  surface.write(writer);
+  writer.array(data.energy.coefficients());
+  writer.array(data.field.coefficients());
+  data.surface.write(writer);
   writeCacheFile(path, Preparation::plan(scene, planned).description(scene) + kFit, writer.bytes());
 }
 
 CacheRead<SurrogateData> SurrogateData::load(const Scene& scene, const PreparationRange& range,
                                              const std::string& path) {
-  const Preparation plan = Preparation::plan(scene, range);
-  const CacheRead<std::string> read = readCacheFile(path, plan.description(scene) + kFit);
+  const Similarity units = Similarity::of(scene);
+  const Preparation plan = Preparation::plan(withoutDimension(scene), range.scaled(1 / units.length));
+  const CacheRead<std::string> read = readCacheFile(path, plan.description(withoutDimension(scene)) + kFit);
   if (!read) return read.failure<SurrogateData>();
   try {
     ByteReader reader(*read.content);
     SurrogateData cell = decode(plan, reader);
     if (!reader.atEnd()) throw std::runtime_error("there is more than was written");
+    cell.changeUnits(units.length, units.energy());
     return {std::move(cell), CacheState::kRead, ""};
   } catch (const std::exception& error) {  // an expansion throws std::invalid_argument
     return damagedCache<SurrogateData>(path, error.what());

@@ -32,10 +32,14 @@ struct SurrogateData {
   static SurrogateData fit(const Scene& scene, const Preparation& preparation,
                            const std::vector<TrainingResult>& results);
 
-  /// `planned`: range of the preparation; `range` is the part that was reached.
+  /// Changes to a unit of length and one of energy, given in the new ones.
+  void changeUnits(double length, double energy);
+
+  /// Stores the data without dimension. `planned`: range of the preparation; `range` is the part
+  /// that was reached.
   void save(const Scene& scene, const PreparationRange& planned, const std::string& path) const;
-  /// Data of this scene in `path`, prepared for a range. The state is kDamaged, too, for an invalid
-  /// size, index or value.
+  /// Data of this scene, or of a similar one (see similarity.h), in `path`, prepared for a range. The
+  /// state is kDamaged, too, for an invalid size, index or value.
   static CacheRead<SurrogateData> load(const Scene& scene, const PreparationRange& range, const std::string& path);
 };
 

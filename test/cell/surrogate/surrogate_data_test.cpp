@@ -29,15 +29,46 @@ class StoredCell : public testing::Test {
 TEST_F(StoredCell, IsReadAsItWasWritten) {
   const CacheRead<SurrogateData> read = load();
   ASSERT_TRUE(read) << read.reason;
-  EXPECT_EQ(read.content->range.axis_depth, cell_.range.axis_depth);
+  EXPECT_NEAR(read.content->range.axis_depth, cell_.range.axis_depth, 1e-12 * cell_.range.axis_depth);
   EXPECT_EQ(read.content->energy.coefficients(), cell_.energy.coefficients());
   EXPECT_EQ(read.content->field.coefficients(), cell_.field.coefficients());
   Eigen::VectorXd rest[2], displaced[2];
   const Eigen::Vector3d u(1e-6, 0, -2e-6);
   cell_.surface.evaluate(0.2, u, rest[0], displaced[0]);
   read.content->surface.evaluate(0.2, u, rest[1], displaced[1]);
-  EXPECT_EQ(rest[0], rest[1]);
-  EXPECT_EQ(displaced[0], displaced[1]);
+  EXPECT_TRUE(rest[0].isApprox(rest[1], 1e-12));
+  EXPECT_TRUE(displaced[0].isApprox(displaced[1], 1e-6));  // of single precision
+}
+
+/// A larger and softer cell of the same ratios has the same data, in its own units.
+TEST_F(StoredCell, ServesASimilarScene) {
+  Scene similar = scene_;
+  constexpr double kLonger = 74.0 / 56, kStiffer = 15.0 / 17.9;
+  similar.cell.layers.front().outer_radius *= kLonger;
+  similar.cell.material().young_modulus *= kStiffer;
+  similar.holding_pipette.contact_radius *= kLonger;
+  similar.needle.tip.radius *= kLonger;
+  const CacheRead<SurrogateData> own = load();
+  const auto other = SurrogateData::load(similar, PreparationRange::standard(similar), path_);
+  ASSERT_TRUE(own && other) << own.reason << other.reason;
+  const Eigen::Vector3d u(1e-6, 0.5e-6, -6e-6);
+  const auto force = [](const SurrogateData& cell, const Eigen::Vector3d& displacement) {
+    ForceField::Local local;
+    cell.field.makeLocal(0.4, local);
+    Eigen::Matrix3d jacobian;
+    return local.evaluate(displacement, jacobian);
+  };
+  const Eigen::Vector3d expected = kStiffer * kLonger * kLonger * force(*own.content, u);
+  EXPECT_GT(expected.norm(), 0);
+  EXPECT_LT((force(*other.content, kLonger * u) - expected).norm(), 1e-9 * expected.norm());
+  Eigen::VectorXd rest[2], displaced[2];
+  own.content->surface.evaluate(0.2, u, rest[0], displaced[0]);
+  other.content->surface.evaluate(0.2, kLonger * u, rest[1], displaced[1]);
+  EXPECT_TRUE(rest[1].isApprox(kLonger * rest[0], 1e-9));
+  EXPECT_TRUE(displaced[1].isApprox(kLonger * displaced[0], 1e-6));
+  Scene thinner = similar;
+  thinner.needle.tip.radius *= 0.99;
+  EXPECT_EQ(SurrogateData::load(thinner, PreparationRange::standard(thinner), path_).state, CacheState::kOther);
 }
 
 /// What no checksum can tell: a program that stored nonsense. A force that is no number must not reach a hand.
@@ -51,7 +82,7 @@ TEST_F(StoredCell, WhatCannotBeIsDamagedWhateverItsChecksum) {
       {"short", [](std::string& body) { body.pop_back(); }},
       {"long", [](std::string& body) { body += 'x'; }},
       {"depth", [](std::string& body) { overwrite(body, 0, kNan); }},
-      {"deeper than was asked for", [](std::string& body) { overwrite(body, 0, 1.0); }},
+      {"deeper than was asked for", [](std::string& body) { overwrite(body, 0, 2.0); }},
       {"scale", [](std::string& body) { overwrite(body, sizeof(double), 0.0); }},
       {"error", [](std::string& body) { overwrite(body, 5 * sizeof(double), kNan); }},
       {"degree", [](std::string& body) { overwrite<std::int32_t>(body, 7 * sizeof(double), -1); }},

@@ -1,0 +1,36 @@
+#include "cell/model/similarity.h"
+
+#include <cstdio>
+#include <cstdlib>
+
+namespace microinjection {
+
+Similarity Similarity::of(const Scene& scene) { return {scene.radius(), scene.cell.material().young_modulus}; }
+
+double rounded(double value) {
+  char text[40];
+  std::snprintf(text, sizeof(text), "%.12g", value);
+  return std::strtod(text, nullptr);
+}
+
+Scene withoutDimension(const Scene& scene) {
+  const Similarity units = Similarity::of(scene);
+  Scene result = scene;
+  const auto divide = [](double& value, double unit) { value = rounded(value / unit); };
+  for (Scene::Layer& layer : result.cell.layers) {
+    divide(layer.outer_radius, units.length);
+    divide(layer.material.young_modulus, units.modulus);
+    divide(layer.surface_tension, units.modulus * units.length);
+  }
+  divide(result.holding_pipette.contact_radius, units.length);
+  Scene::Needle& needle = result.needle;
+  divide(needle.tip.radius, units.length);
+  divide(needle.tip.edge_radius, units.length);
+  divide(needle.contact.adhesion_energy, units.modulus * units.length);
+  divide(needle.contact.adhesion_range, units.length);
+  for (double& offset : needle.offset) divide(offset, units.length);
+  if (result.mesh.size) divide(*result.mesh.size, units.length);
+  return result;
+}
+
+}  // namespace microinjection

@@ -1,0 +1,53 @@
+#include "cell/surrogate/training_set.h"
+
+#include <stdexcept>
+
+#include "cell/surrogate/axis_ray.h"
+#include "cell/surrogate/mesh_correction.h"
+
+namespace microinjection {
+namespace {
+
+constexpr int kDeepSamples = 14;  ///< on the axis, below the depth of the range elsewhere
+
+bool straightOnAxis(const TrainingRay& ray) { return ray.angle == 0 && ray.target.head<2>().isZero(0); }
+
+/// Adds the section's results, which are more accurate and deeper, for the straight path on the
+/// axis.
+void addAxis(const Scene& scene, const PreparationRange& range, const std::vector<TrainingSample>& coarse,
+             const Eigen::VectorXd& surface, TrainingSet& samples) {
+  std::vector<double> depths;
+  for (const TrainingSample& sample : coarse) depths.push_back(-sample.displacement.z());
+  for (int i = 1; i <= kDeepSamples; ++i) {
+    depths.push_back(range.depth + (range.axis_depth - range.depth) * i / kDeepSamples);
+  }
+  for (const TrainingSample& sample : solveAxis(scene, depths, surface)) {
+    samples.forces.push_back(sample);
+    samples.surfaces.push_back(sample);
+    samples.axis_depth = -sample.displacement.z();
+  }
+}
+
+}  // namespace
+
+TrainingSet TrainingSet::gather(const Scene& scene, const Preparation& preparation,
+                                const std::vector<TrainingResult>& results, const Eigen::VectorXd& surface) {
+  const std::vector<TrainingRay>& rays = preparation.rays;
+  const auto better = betterForces(preparation.scales, rays, results);
+  TrainingSet samples;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (rays[i].level != kCoarseLevel) continue;
+    if (straightOnAxis(rays[i])) {
+      addAxis(scene, preparation.range, results[i].samples, surface, samples);
+      continue;
+    }
+    samples.forces.insert(samples.forces.end(), better[i].begin(), better[i].end());
+    samples.surfaces.insert(samples.surfaces.end(), results[i].samples.begin(), results[i].samples.end());
+  }
+  if (!(samples.axis_depth > 0)) {
+    throw std::runtime_error("on the axis the cell's section has no solution at any depth");
+  }
+  return samples;
+}
+
+}  // namespace microinjection

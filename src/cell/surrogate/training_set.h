@@ -1,0 +1,24 @@
+#pragma once
+
+#include <vector>
+
+#include "cell/model/scene.h"
+#include "cell/surrogate/preparation.h"
+#include "cell/surrogate/training_ray.h"
+
+namespace microinjection {
+
+/// Equilibria that a prepared cell is fitted to: forces as converged as possible, surfaces of the
+/// coarse mesh and, deep on the axis, of the section.
+struct TrainingSet {
+  std::vector<TrainingSample> forces, surfaces;
+  double axis_depth = 0;  ///< m, reached on the axis
+
+  /// Of the results of preparation.rays. On the axis it uses forces of the section, elsewhere those
+  /// of the fine mesh or corrected ones of the coarse mesh. `surface`: nodes of the coarse mesh at
+  /// rest. Throws std::runtime_error when the section has no solution.
+  static TrainingSet gather(const Scene& scene, const Preparation& preparation,
+                            const std::vector<TrainingResult>& results, const Eigen::VectorXd& surface);
+};
+
+}  // namespace microinjection
