@@ -45,10 +45,12 @@ lengths or moduli needs its own.
 
 Data that are damaged, or of another version, are reported and replaced.
 
+Where the cell has no solution in a part of the range, the range shrinks, which is reported.
+
 Exit status: 0 prepared (or was already); 2 bad usage, a scene that cannot be prepared (friction, adhesion, a viscosity
-that does not relax, tensegrity: the message names it), or data or output that cannot be written (the message names the
-path and the reason; the folder is checked first); 3 the cell has no solution in a part of the range, as under a sharp
-disc where the surface folds: nothing is stored.
+that does not relax, a sharp disc on a nonlinear cell, tensegrity: the message names it), or data or output that cannot
+be written (the message names the path and the reason; the folder is checked first); 3 the cell has no solution in most
+of the range: nothing is stored.
 
 Options)";
 
@@ -125,10 +127,7 @@ class Preparing {
     std::fprintf(stderr, "prepare: fitting\n");
     const SurrogateData cell = SurrogateData::fit(solved_, plan_, results);
     cell.save(solved_, plan_.range, path);
-    if (cell.range.axis_depth < 0.999 * plan_.range.axis_depth) {
-      std::fprintf(stderr, "prepare: on the axis the cell has a solution to %.3g um only\n",
-                   1e6 * scene_.radius() * cell.range.axis_depth);
-    }
+    reportRange(cell.range);
     std::printf(
         "prepare: done: %s\nprepare: the fit's force error at the equilibria: median %.2g %%, nine of ten below %.2g "
         "%%, "
@@ -181,19 +180,15 @@ class Preparing {
     return loadTraining(file(ray), description(ray), plan_.rays[ray], surface_size_);
   }
 
-  /// Results of all paths. Throws std::runtime_error when a path ended early that must be complete.
+  /// Results of all paths.
   std::vector<TrainingResult> loadAll() const {
     std::vector<TrainingResult> results;
-    bool complete = true;
     for (std::size_t i = 0; i < plan_.rays.size(); ++i) {
       const CacheRead<TrainingResult> read = load(i);
       if (!read) throw std::runtime_error(read.reason);
       results.push_back(*read.content);
-      if (results.back().reason.empty()) continue;
-      reportEarlyEnd(plan_.rays[i], results.back());
-      complete = complete && plan_.rays[i].level != kCoarseLevel;  // the coarse mesh continues beyond the fine one
+      if (!results.back().reason.empty()) reportEarlyEnd(plan_.rays[i], results.back());
     }
-    if (!complete) throw std::runtime_error("the cell has no solution in all of the range (see above): not prepared");
     return results;
   }
 
@@ -240,6 +235,18 @@ class Preparing {
     std::fprintf(stderr, "\rprepare: [%-*s] %zu of %zu paths, %.0f s", static_cast<int>(kWidth), bar.c_str(), done, all,
                  spent);
     std::fflush(stderr);
+  }
+
+  /// Reports what is smaller than planned.
+  void reportRange(const PreparationRange& reached) const {
+    const double unit = 1e6 * scene_.radius();  // um
+    if (reached.depth < plan_.range.depth) {
+      std::fprintf(stderr, "prepare: the range is smaller than planned: %.3g um deep, %.3g um sideways\n",
+                   unit * reached.depth, unit * reached.lateral);
+    }
+    if (reached.axis_depth < 0.999 * plan_.range.axis_depth) {
+      std::fprintf(stderr, "prepare: on the axis the cell has a solution to %.3g um only\n", unit * reached.axis_depth);
+    }
   }
 
   void reportEarlyEnd(const TrainingRay& ray, const TrainingResult& result) const {

@@ -69,6 +69,12 @@ double cost(const TrainingRay& ray) {
   return whole * fine * ray.points;
 }
 
+bool isLinear(const Scene::Cell& cell) {
+  return std::all_of(cell.layers.begin(), cell.layers.end(), [](const Scene::Layer& layer) {
+    return layer.material.model == "linear" && layer.surface_tension == 0;
+  });
+}
+
 bool relaxesAlike(const PronyTerm& a, const PronyTerm& b) {
   return a.modulus_ratio == b.modulus_ratio && a.relaxation_time == b.relaxation_time;
 }
@@ -89,6 +95,11 @@ void Preparation::check(const Scene& scene) {
     throw ConfigError(
         "cell/model = tensegrity: must be continuum: a prepared cell is one of revolution about the holding "
         "pipette's axis, and a tensegrity cell is not; it is solved live");
+  }
+  if (!scene.needle.tip.rounded() && !isLinear(scene.cell)) {
+    throw ConfigError(
+        "needle/tip/shape = disc: must be hemisphere or rounded_flat, or the cell's material linear and without "
+        "tension: under a sharp edge the surface folds");
   }
   const std::vector<PronyTerm>& first = scene.cell.layers.front().material.viscoelasticity.prony;
   for (const Scene::Layer& layer : scene.cell.layers) {

@@ -45,7 +45,8 @@ struct Preparation {
   static Preparation plan(const Scene& scene, const PreparationRange& range);
 
   /// Throws ConfigError for a scene whose force is not that of an elastic cell with ForceMemory:
-  /// with friction, with layers that relax differently, or with a viscosity that does not relax.
+  /// with friction, with layers that relax differently, or with a viscosity that does not relax. And
+  /// for a sharp disc on a nonlinear cell, which has no converged force.
   static void check(const Scene& scene);
 
   /// The scene that is solved: without viscoelasticity.

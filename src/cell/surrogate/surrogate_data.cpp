@@ -14,8 +14,8 @@
 namespace microinjection {
 namespace {
 
-constexpr char kFit[] = " fit 9";  ///< change it when the fit changes
-constexpr double kSmall = 0.0025;  ///< over the largest force: smaller ones are excluded from the errors
+constexpr char kFit[] = " fit 10";  ///< change it when the fit changes
+constexpr double kSmall = 0.0025;   ///< over the largest force: smaller ones are excluded from the errors
 constexpr double kRounding = 1e-9;  ///< relative, of a change of units
 constexpr EnergyDegrees kDegrees{};
 
@@ -48,15 +48,20 @@ Eigen::VectorXd readCoefficients(ByteReader& reader) {
 SurrogateData decode(const Preparation& plan, ByteReader& reader) {
   SurrogateData cell;
   cell.range = plan.range;
-  double& reached = cell.range.axis_depth;
   EnergyScales scales;
-  for (double* x : {&reached, &scales.angle, &scales.length, &scales.energy, &cell.median_error, &cell.common_error,
-                    &cell.largest_error}) {
+  for (double* x : {&cell.range.axis_depth, &cell.range.depth, &cell.range.lateral, &scales.angle, &scales.length,
+                    &scales.energy, &cell.median_error, &cell.common_error, &cell.largest_error}) {
     *x = reader.number<double>();
   }
   bool same = true;
   for (int x : {kDegrees.angle, kDegrees.direction, kDegrees.distance}) same &= reader.number<std::int32_t>() == x;
-  if (!(reached > 0 && reached <= (1 + kRounding) * plan.range.axis_depth)) throw std::runtime_error("its range cannot be");
+  const auto within = [](double reached, double planned) {
+    return reached > 0 && reached <= (1 + kRounding) * planned;
+  };
+  if (!(within(cell.range.axis_depth, plan.range.axis_depth) && within(cell.range.depth, plan.range.depth) &&
+        within(cell.range.lateral, plan.range.lateral))) {
+    throw std::runtime_error("its range cannot be");
+  }
   const auto equal = [](double a, double b) { return std::abs(a - b) <= kRounding * std::abs(b); };
   same &= equal(scales.angle, plan.scales.angle) && equal(scales.length, plan.scales.length) &&
           equal(scales.energy, plan.scales.energy);
@@ -86,8 +91,7 @@ SurrogateData SurrogateData::fit(const Scene& scene, const Preparation& preparat
   const TrainingSet all = TrainingSet::gather(scene, preparation, results, surfaces.front().nodes);
   const std::vector<TrainingSample>& samples = all.forces;
   SurrogateData cell;
-  cell.range = preparation.range;
-  cell.range.axis_depth = all.axis_depth;  // the section may end earlier
+  cell.range = all.range;
   cell.energy = EnergyExpansion(preparation.scales, kDegrees);
   fitEnergy(cell.energy, samples);
   cell.field = ForceField(preparation.scales);
@@ -135,8 +139,8 @@ void SurrogateData::save(const Scene& scene, const PreparationRange& planned, co
   data.changeUnits(1 / units.length, 1 / units.energy());
   ByteWriter writer;
   const EnergyScales& scales = data.energy.scales();
-  for (double x : {data.range.axis_depth, scales.angle, scales.length, scales.energy, median_error, common_error,
-                   largest_error}) {
+  for (double x : {data.range.axis_depth, data.range.depth, data.range.lateral, scales.angle, scales.length,
+                   scales.energy, median_error, common_error, largest_error}) {
     writer.number(x);
   }
   for (int x : {kDegrees.angle, kDegrees.direction, kDegrees.distance}) writer.number<std::int32_t>(x);

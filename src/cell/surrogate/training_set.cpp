@@ -1,5 +1,6 @@
 #include "cell/surrogate/training_set.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "cell/surrogate/axis_ray.h"
@@ -8,7 +9,8 @@
 namespace microinjection {
 namespace {
 
-constexpr int kDeepSamples = 14;  ///< on the axis, below the depth of the range elsewhere
+constexpr double kLeastShare = 0.2;  ///< of a path: with less, the cell is not worth serving
+constexpr int kDeepSamples = 14;     ///< on the axis, below the depth of the range elsewhere
 
 bool straightOnAxis(const TrainingRay& ray) { return ray.angle == 0 && ray.target.head<2>().isZero(0); }
 
@@ -24,7 +26,7 @@ void addAxis(const Scene& scene, const PreparationRange& range, const std::vecto
   for (const TrainingSample& sample : solveAxis(scene, depths, surface)) {
     samples.forces.push_back(sample);
     samples.surfaces.push_back(sample);
-    samples.axis_depth = -sample.displacement.z();
+    samples.range.axis_depth = -sample.displacement.z();
   }
 }
 
@@ -35,6 +37,8 @@ TrainingSet TrainingSet::gather(const Scene& scene, const Preparation& preparati
   const std::vector<TrainingRay>& rays = preparation.rays;
   const auto better = betterForces(preparation.scales, rays, results);
   TrainingSet samples;
+  samples.range = reachedRange(preparation, results);
+  samples.range.axis_depth = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (rays[i].level != kCoarseLevel) continue;
     if (straightOnAxis(rays[i])) {
@@ -44,10 +48,25 @@ TrainingSet TrainingSet::gather(const Scene& scene, const Preparation& preparati
     samples.forces.insert(samples.forces.end(), better[i].begin(), better[i].end());
     samples.surfaces.insert(samples.surfaces.end(), results[i].samples.begin(), results[i].samples.end());
   }
-  if (!(samples.axis_depth > 0)) {
+  if (!(samples.range.axis_depth > 0)) {
     throw std::runtime_error("on the axis the cell's section has no solution at any depth");
   }
   return samples;
+}
+
+PreparationRange reachedRange(const Preparation& preparation, const std::vector<TrainingResult>& results) {
+  double share = 1;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    // The coarse mesh continues where the fine one has no solution.
+    if (preparation.rays[i].level != kCoarseLevel || results[i].reason.empty()) continue;
+    const double reached = results[i].samples.empty() ? 0 : results[i].samples.back().displacement.norm();
+    share = std::min(share, reached / preparation.rays[i].target.norm());
+  }
+  if (share < kLeastShare) throw std::runtime_error("the cell has no solution in most of the range: not prepared");
+  PreparationRange range = preparation.range;
+  range.depth *= share;
+  range.lateral *= share;
+  return range;
 }
 
 }  // namespace microinjection

@@ -12,7 +12,7 @@ namespace microinjection {
 /// coarse mesh and, deep on the axis, of the section.
 struct TrainingSet {
   std::vector<TrainingSample> forces, surfaces;
-  double axis_depth = 0;  ///< m, reached on the axis
+  PreparationRange range;  ///< that the paths reached
 
   /// Of the results of preparation.rays. On the axis it uses forces of the section, elsewhere those
   /// of the fine mesh or corrected ones of the coarse mesh. `surface`: nodes of the coarse mesh at
@@ -20,5 +20,10 @@ struct TrainingSet {
   static TrainingSet gather(const Scene& scene, const Preparation& preparation,
                             const std::vector<TrainingResult>& results, const Eigen::VectorXd& surface);
 };
+
+/// The range that all coarse paths reached. Depth and lateral range are smaller than planned by the
+/// share of the path that ended first; `axis_depth` is as planned. Throws std::runtime_error when
+/// that share is below a fifth.
+PreparationRange reachedRange(const Preparation& preparation, const std::vector<TrainingResult>& results);
 
 }  // namespace microinjection

@@ -78,6 +78,7 @@ TEST_F(ServeNeedle, PreparedRefusesWhatIsNot) {
 /// An operator who reads "not prepared" would not look for a disk that fails.
 TEST_F(ServeNeedle, DamagedDataAreNamedAndHowToMakeThemAnew) {
   Scene disc;
+  disc.cell.material().model = "linear";
   disc.mesh.size = 20e-6;
   const std::string path = file(disc);
   smallCell(disc).save(disc, PreparationRange::standard(disc), path);

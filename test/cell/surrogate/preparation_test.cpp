@@ -43,6 +43,15 @@ TEST(Preparation, RefusesWhatHasNoEnergy) {
   for (const Scene& bad : {viscous, rubbing, different}) EXPECT_THROW(Preparation::check(bad), ConfigError);
 }
 
+TEST(Preparation, RefusesASharpDiscButOnALinearCell) {
+  Scene disc;
+  EXPECT_THROW(Preparation::check(disc), ConfigError);
+  disc.cell.material().model = "linear";
+  EXPECT_NO_THROW(Preparation::check(disc));
+  disc.cell.layers.front().surface_tension = 1e-3;
+  EXPECT_THROW(Preparation::check(disc), ConfigError);
+}
+
 TEST(Preparation, RaysFillTheRange) {
   const Scene scene = pipette();
   const PreparationRange range = PreparationRange::standard(scene);

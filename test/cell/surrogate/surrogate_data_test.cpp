@@ -73,7 +73,7 @@ TEST_F(StoredCell, ServesASimilarScene) {
 
 /// What no checksum can tell: a program that stored nonsense. A force that is no number must not reach a hand.
 TEST_F(StoredCell, WhatCannotBeIsDamagedWhateverItsChecksum) {
-  const std::size_t energy = 7 * sizeof(double) + 3 * sizeof(std::int32_t);  // its size, then its coefficients
+  const std::size_t energy = 9 * sizeof(double) + 3 * sizeof(std::int32_t);  // its size, then its coefficients
   const std::size_t field = energy + sizeof(std::uint64_t) + sizeof(double) * cell_.energy.coefficients().size();
   const std::size_t surface = field + sizeof(std::uint64_t) + sizeof(double) * cell_.field.coefficients().size();
   const std::size_t nodes = surface + 4 * sizeof(double), corners = nodes + 2 * sizeof(std::int64_t);
@@ -83,9 +83,10 @@ TEST_F(StoredCell, WhatCannotBeIsDamagedWhateverItsChecksum) {
       {"long", [](std::string& body) { body += 'x'; }},
       {"depth", [](std::string& body) { overwrite(body, 0, kNan); }},
       {"deeper than was asked for", [](std::string& body) { overwrite(body, 0, 2.0); }},
-      {"scale", [](std::string& body) { overwrite(body, sizeof(double), 0.0); }},
-      {"error", [](std::string& body) { overwrite(body, 5 * sizeof(double), kNan); }},
-      {"degree", [](std::string& body) { overwrite<std::int32_t>(body, 7 * sizeof(double), -1); }},
+      {"lateral range", [](std::string& body) { overwrite(body, 2 * sizeof(double), 0.0); }},
+      {"scale", [](std::string& body) { overwrite(body, 3 * sizeof(double), 0.0); }},
+      {"error", [](std::string& body) { overwrite(body, 7 * sizeof(double), kNan); }},
+      {"degree", [](std::string& body) { overwrite<std::int32_t>(body, 9 * sizeof(double), -1); }},
       {"huge size", [=](std::string& body) { overwrite(body, energy, ~std::uint64_t{0}); }},
       {"energy", [=](std::string& body) { overwrite(body, energy + 2 * sizeof(double), kNan); }},
       {"force", [=](std::string& body) { overwrite(body, field + 2 * sizeof(double), kNan); }},
