@@ -18,6 +18,7 @@ from live_chain import until
 
 NODES = pathlib.Path(sys.argv[0]).parent  # this program is found beside them
 SCENE = rospkg.RosPack().get_path("cell_microinjection") + "/test/chain/coarse_oocyte.yaml"
+ROUNDED = rospkg.RosPack().get_path("cell_microinjection") + "/config/cells/mouse_oocyte_pipette.yaml"
 MOTION = rospkg.RosPack().get_path("cell_microinjection") + "/config/hand_motions/indent_and_retract.yaml"
 EMPTY = tempfile.mkdtemp()  # no mesh, nothing prepared
 GOOD = {  # what each node cannot do without
@@ -35,7 +36,8 @@ GOOD = {  # what each node cannot do without
 }
 BAD = [  # node, wrong parameters, what the message must say
     ("cell_simulator", {"scene": "/nowhere.yaml"}, ["/nowhere.yaml"]),
-    ("cell_simulator", {"model": "prepared"}, ["model = prepared", "prepare --scene"]),
+    ("cell_simulator", {"model": "prepared"}, ["model = prepared", "needle/tip/shape = disc"]),
+    ("cell_simulator", {"model": "prepared", "scene": ROUNDED}, ["model = prepared", "prepare --scene"]),
     ("cell_simulator", {"model": "guessed"}, ["model = guessed", "auto, prepared, live, explicit"]),
     ("cell_simulator", {"rate": 1e6}, ["rate = 1e+06", "[50, 5000]"]),
     ("cell_simulator", {"extrapolation_limit": 0.0}, ["extrapolation_limit = 0", "(0, inf)"]),
