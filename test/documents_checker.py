@@ -26,16 +26,22 @@ SUFFIXES = ('md', 'py', 'cpp', 'h', 'launch', 'yaml', 'csv', 'png', 'bag', 'urdf
 def commands_of(text):
     """Yields (line, command) of the blocks: indented by four and more after an empty line, or fenced. A backslash at its
     end joins a line to the next."""
-    block, fenced, empty, begun = False, False, True, ''
-    for number, line in enumerate(text.splitlines(), 1):
-        if line.lstrip().startswith('```'):
+    block, fenced, empty, begun, first = False, False, True, '', 0
+    for number, line in enumerate([*text.splitlines(), ''], 1):
+        fence = line.lstrip().startswith('```')
+        inside = not fence and (fenced or ((empty or block) and line.startswith('    ')))
+        if begun and not inside:
+            yield first, begun
+            begun = ''
+        if fence:
             fenced = not fenced
-        elif fenced or ((empty or block) and line.startswith('    ')):
+        elif inside:
             block = True
-            whole, continued = (begun + line.strip()), line.endswith('\\')
-            begun = whole[:-1] if continued else ''
-            if not continued:
-                yield number, whole
+            first = first if begun else number
+            begun += line.strip().rstrip('\\')
+            if not line.endswith('\\'):
+                yield first, begun
+                begun = ''
         else:
             block = block and not line.strip()
         empty = not line.strip()

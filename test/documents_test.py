@@ -147,6 +147,11 @@ See [other](doc/guide/other.md#how-its-rate-is-mostly), `config/bridge.yaml`, `s
                         found = self.problems(f'# Page\n\nText.\n\n{written}')
                         self.assertIn(reason, '\n'.join(found))
 
+    def test_checks_a_command_whose_continuation_is_missing(self):
+        found = self.problems('# Page\n\nText.\n\n    ./dev walk \\\n\nMore text.\n\n    ./dev run\n')
+        self.assertEqual(len(found), 2, found)
+        self.assertIn('doc/guide/page.md:5: ./dev has no command walk', found[0])
+
     def test_reports_length_columns_and_sentences(self):
         self.assertIn('151 lines', self.problems('word\n\n' * 75 + 'word\n', 'README.md')[0])
         (self.root / 'README.md').unlink()

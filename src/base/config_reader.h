@@ -47,9 +47,6 @@ class ConfigReader {
   /// Messages name them key/0, key/1 and so on.
   std::vector<ConfigReader> sections(const std::string& key, Presence = kOptional);
 
-  /// The map under `key`, for a reader of its own; an empty map when it is absent.
-  YAML::Node map(const std::string& key, Presence = kOptional);
-
   /// Adds an error about `key`: "origin: cell/diameter = 3: MESSAGE".
   void error(const std::string& key, const std::string& message);
 
@@ -61,6 +58,7 @@ class ConfigReader {
   ConfigReader(const YAML::Node& map, const std::string& origin, const std::string& path,
                std::shared_ptr<std::vector<std::string>> errors, std::shared_ptr<std::vector<std::shared_ptr<Level>>>);
   const YAML::Node find(const std::string& key, Presence presence);
+  YAML::Node map(const std::string& key, Presence presence);  ///< empty when it is absent
   std::string valueText(const std::string& key) const;
 
   std::string origin_;

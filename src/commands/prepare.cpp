@@ -9,6 +9,7 @@
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -40,8 +41,8 @@ Usage: prepare --scene FILE [--jobs N] [...]
 
 Takes minutes, shows its progress, and may be interrupted: the next call continues from the finished paths. The data are
 in $XDG_CACHE_HOME (else ~/.cache) under cell_microinjection/prepared, in a folder named after the cell, the tip and
-the program's version. A cell that only differs in scale or Young's modulus has the same data; another ratio of
-lengths or moduli needs its own.
+the program's version. Cells that differ in scale, or whose moduli and tensions differ by one factor, have the same data.
+Another tip, another ratio of lengths or another ratio of moduli needs its own; another needle offset does not.
 
 Data that are damaged, or of another version, are reported and replaced.
 
@@ -49,8 +50,8 @@ Where the cell has no solution in a part of the range, the range shrinks, which 
 
 Exit status: 0 prepared (or was already); 2 bad usage, a scene that cannot be prepared (friction, adhesion, a viscosity
 that does not relax, a sharp disc on a nonlinear cell, tensegrity: the message names it), or data or output that cannot
-be written (the message names the path and the reason; the folder is checked first); 3 the cell has no solution in most
-of the range: nothing is stored.
+be written (the message names the path and the reason; the folder is checked first); 3 a path ends before a fifth of its
+length: nothing is stored.
 
 Options)";
 
@@ -112,8 +113,9 @@ class Preparing {
 
   int run() {
     const std::string path = preparedFile(solved_, plan_);
-    if (wasPrepared(path)) {
+    if (const auto before = preparedBefore(path)) {
       std::printf("prepare: was prepared before: %s\n", path.c_str());
+      reportRange(before->range);
       const auto figures = loadFigures(scene_, "live");
       if (figures) return kDone;
       reportDamage(figures.state, figures.reason);
@@ -152,11 +154,11 @@ class Preparing {
     }
   }
 
-  bool wasPrepared(const std::string& path) const {
-    if (arguments_.again) return false;
-    const auto prepared = SurrogateData::load(solved_, plan_.range, path);
+  std::optional<SurrogateData> preparedBefore(const std::string& path) const {
+    if (arguments_.again) return std::nullopt;
+    auto prepared = SurrogateData::load(solved_, plan_.range, path);
     reportDamage(prepared.state, prepared.reason);
-    return static_cast<bool>(prepared);
+    return std::move(prepared.content);
   }
 
   /// Reports a cache file that exists and cannot be used.
@@ -240,7 +242,7 @@ class Preparing {
   /// Reports what is smaller than planned.
   void reportRange(const PreparationRange& reached) const {
     const double unit = 1e6 * scene_.radius();  // um
-    if (reached.depth < plan_.range.depth) {
+    if (reached.depth < 0.999 * plan_.range.depth) {
       std::fprintf(stderr, "prepare: the range is smaller than planned: %.3g um deep, %.3g um sideways\n",
                    unit * reached.depth, unit * reached.lateral);
     }

@@ -38,8 +38,9 @@ std::string figuresDescription(const Scene& scene, const std::string& name) {
   const Preparation plan = Preparation::plan(scene, PreparationRange::standard(scene));
   std::ostringstream out;
   out << plan.description(scene) << " figures " << kFigures << ' ' << name << " on " << std::hexfloat
-      << rounded(scene.meshSize() / scene.radius()) << ' ' << scene.mesh.refinement.zone << ' ' << scene.mesh.refinement.density << ' '
-      << scene.mesh.stretch << (P1Cell::refusals(scene).empty() ? " linear" : " swept");
+      << rounded(scene.meshSize() / scene.radius()) << ' ' << scene.mesh.refinement.zone << ' '
+      << scene.mesh.refinement.density << ' ' << scene.mesh.stretch
+      << (P1Cell::refusals(scene).empty() ? " linear" : " swept");
   return out.str();
 }
 

@@ -34,6 +34,11 @@ struct TrainingRay {
   Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< m, displacement at its end, in the contact frame
   int points = 12;                                   ///< points along it, at the squares of equal steps
   double level = kCoarseLevel;                       ///< of the mesh
+
+  /// Displacement at the point `index`, from 0, m.
+  Eigen::Vector3d at(int index) const {
+    return static_cast<double>((index + 1) * (index + 1)) / (points * points) * target;
+  }
 };
 
 /// Plan of the computations for a prepared cell.
@@ -46,7 +51,7 @@ struct Preparation {
 
   /// Throws ConfigError for a scene whose force is not that of an elastic cell with ForceMemory:
   /// with friction, with layers that relax differently, or with a viscosity that does not relax. And
-  /// for a sharp disc on a nonlinear cell, which has no converged force.
+  /// for a sharp disc on a nonlinear cell, whose converged force ends within the range.
   static void check(const Scene& scene);
 
   /// The scene that is solved: without viscoelasticity.

@@ -27,8 +27,7 @@ struct SurrogateData {
   double energy_common_error = 0;
 
   /// Fits the results of preparation.rays. On the axis it uses forces of the section, elsewhere
-  /// those of the fine mesh or corrected ones of the coarse mesh. Throws std::runtime_error when
-  /// the section has no solution.
+  /// those of the fine mesh or corrected ones of the coarse mesh. Throws as TrainingSet::gather.
   static SurrogateData fit(const Scene& scene, const Preparation& preparation,
                            const std::vector<TrainingResult>& results);
 

@@ -61,11 +61,6 @@ class SurfaceOfState {
   std::vector<float> sides_;  ///< -1 for mirror images
 };
 
-/// Share of a ray's target at its point `index`, from 0.
-double share(const TrainingRay& ray, int index) {
-  return static_cast<double>((index + 1) * (index + 1)) / (ray.points * ray.points);
-}
-
 /// Difference between a result and its ray; empty when they fit.
 std::string mismatch(const TrainingResult& result, const TrainingRay& ray, Eigen::Index surface_size) {
   const int count = static_cast<int>(result.samples.size());
@@ -74,7 +69,7 @@ std::string mismatch(const TrainingResult& result, const TrainingRay& ray, Eigen
   const Eigen::Index expected = ray.level == kCoarseLevel ? surface_size : 0;
   for (int i = 0; i < count; ++i) {
     const TrainingSample& sample = result.samples[i];
-    if (sample.angle != ray.angle || sample.displacement != share(ray, i) * ray.target) return "it is of another path";
+    if (sample.angle != ray.angle || sample.displacement != ray.at(i)) return "it is of another path";
     if (sample.surface.size() != expected) return "its surface is of another mesh";
   }
   return "";
@@ -91,7 +86,7 @@ TrainingResult solveRay(const Scene& scene, const TrainingRay& ray) {
   if (ray.level == kCoarseLevel) surface.emplace(local, problem.body().mesh(), half);
   TrainingResult result;
   for (int i = 0; i < ray.points; ++i) {
-    const Eigen::Vector3d displacement = share(ray, i) * ray.target;
+    const Eigen::Vector3d displacement = ray.at(i);
     const IndentationSolution solution = problem.solve(displacement);
     if (!solution.converged) {
       result.reason = solution.reason;

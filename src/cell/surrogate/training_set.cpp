@@ -16,13 +16,8 @@ bool straightOnAxis(const TrainingRay& ray) { return ray.angle == 0 && ray.targe
 
 /// Adds the section's results, which are more accurate and deeper, for the straight path on the
 /// axis.
-void addAxis(const Scene& scene, const PreparationRange& range, const std::vector<TrainingSample>& coarse,
-             const Eigen::VectorXd& surface, TrainingSet& samples) {
-  std::vector<double> depths;
-  for (const TrainingSample& sample : coarse) depths.push_back(-sample.displacement.z());
-  for (int i = 1; i <= kDeepSamples; ++i) {
-    depths.push_back(range.depth + (range.axis_depth - range.depth) * i / kDeepSamples);
-  }
+void addAxis(const Scene& scene, const std::vector<double>& depths, const Eigen::VectorXd& surface,
+             TrainingSet& samples) {
   for (const TrainingSample& sample : solveAxis(scene, depths, surface)) {
     samples.forces.push_back(sample);
     samples.surfaces.push_back(sample);
@@ -42,7 +37,7 @@ TrainingSet TrainingSet::gather(const Scene& scene, const Preparation& preparati
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (rays[i].level != kCoarseLevel) continue;
     if (straightOnAxis(rays[i])) {
-      addAxis(scene, preparation.range, results[i].samples, surface, samples);
+      addAxis(scene, axisDepths(preparation.range, rays[i]), surface, samples);
       continue;
     }
     samples.forces.insert(samples.forces.end(), better[i].begin(), better[i].end());
@@ -54,6 +49,15 @@ TrainingSet TrainingSet::gather(const Scene& scene, const Preparation& preparati
   return samples;
 }
 
+std::vector<double> axisDepths(const PreparationRange& range, const TrainingRay& straight) {
+  std::vector<double> depths;
+  for (int i = 0; i < straight.points; ++i) depths.push_back(-straight.at(i).z());
+  for (int i = 1; i <= kDeepSamples; ++i) {
+    depths.push_back(range.depth + (range.axis_depth - range.depth) * i / kDeepSamples);
+  }
+  return depths;
+}
+
 PreparationRange reachedRange(const Preparation& preparation, const std::vector<TrainingResult>& results) {
   double share = 1;
   for (std::size_t i = 0; i < results.size(); ++i) {
@@ -62,7 +66,8 @@ PreparationRange reachedRange(const Preparation& preparation, const std::vector<
     const double reached = results[i].samples.empty() ? 0 : results[i].samples.back().displacement.norm();
     share = std::min(share, reached / preparation.rays[i].target.norm());
   }
-  if (share < kLeastShare) throw std::runtime_error("the cell has no solution in most of the range: not prepared");
+  if (share < kLeastShare)
+    throw std::runtime_error("a path ends before a fifth of its length (see above): not prepared");
   PreparationRange range = preparation.range;
   range.depth *= share;
   range.lateral *= share;

@@ -16,10 +16,14 @@ struct TrainingSet {
 
   /// Of the results of preparation.rays. On the axis it uses forces of the section, elsewhere those
   /// of the fine mesh or corrected ones of the coarse mesh. `surface`: nodes of the coarse mesh at
-  /// rest. Throws std::runtime_error when the section has no solution.
+  /// rest. Throws std::runtime_error when the section has no solution, and as reachedRange.
   static TrainingSet gather(const Scene& scene, const Preparation& preparation,
                             const std::vector<TrainingResult>& results, const Eigen::VectorXd& surface);
 };
+
+/// Depths (m, ascending) of the samples on the axis: of all points of the straight path, whether it
+/// reached them or not, and below it.
+std::vector<double> axisDepths(const PreparationRange& range, const TrainingRay& straight);
 
 /// The range that all coarse paths reached. Depth and lateral range are smaller than planned by the
 /// share of the path that ended first; `axis_depth` is as planned. Throws std::runtime_error when

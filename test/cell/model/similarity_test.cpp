@@ -31,7 +31,11 @@ Scene similar(Scene scene, double length, double modulus) {
   }
   scene.holding_pipette.contact_radius *= length;
   scene.needle.tip.radius *= length;
+  scene.needle.tip.edge_radius *= length;
+  scene.needle.contact.adhesion_energy *= modulus * length;
+  scene.needle.contact.adhesion_range *= length;
   scene.needle.offset *= length;
+  if (scene.mesh.size) *scene.mesh.size *= length;
   return scene;
 }
 
@@ -46,17 +50,26 @@ double dimensionlessForce(const Scene& scene) {
 
 TEST(Similarity, ScaledAndStiffenedCellsAreTheSameWithoutDimension) {
   Scene scene = layeredCell();
+  scene.needle.tip.shape = "rounded_flat";
+  scene.needle.tip.edge_radius = 1e-6;
+  scene.needle.contact.adhesion_energy = 1e-4;
+  scene.needle.contact.adhesion_range = 0.1e-6;
   scene.needle.offset = {3e-6, 1e-6};
+  scene.mesh.size = 5e-6;
   const Scene units = withoutDimension(scene);
   EXPECT_EQ(units.radius(), 1);
   EXPECT_EQ(units.cell.material().young_modulus, 1);
   EXPECT_NEAR(units.cell.layers[1].outer_radius, 22.0 / 28, 1e-12);
+  EXPECT_NEAR(units.needle.tip.edge_radius, 1.0 / 28, 1e-12);
   EXPECT_NEAR(units.cell.layers[0].surface_tension, 2e-3 / (17.9e3 * 28e-6), 1e-12);
   for (const double length : {1.0, 3.7, 1 / 28e-6}) {
     for (const double modulus : {1.0, 0.31, 1 / 17.9e3}) {
       const Scene other = withoutDimension(similar(scene, length, modulus));
       EXPECT_EQ(describeCellAndTip(other), describeCellAndTip(units));
       EXPECT_EQ(other.needle.offset, units.needle.offset);
+      EXPECT_EQ(other.needle.contact.adhesion_energy, units.needle.contact.adhesion_energy);
+      EXPECT_EQ(other.needle.contact.adhesion_range, units.needle.contact.adhesion_range);
+      EXPECT_EQ(other.mesh.size, units.mesh.size);
     }
   }
   EXPECT_EQ(describeCellAndTip(withoutDimension(units)), describeCellAndTip(units));

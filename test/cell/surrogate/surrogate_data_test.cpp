@@ -40,6 +40,20 @@ TEST_F(StoredCell, IsReadAsItWasWritten) {
   EXPECT_TRUE(displaced[0].isApprox(displaced[1], 1e-6));  // of single precision
 }
 
+/// The part of the planned range that was reached.
+TEST_F(StoredCell, KeepsASmallerRange) {
+  SurrogateData shrunk = cell_;
+  shrunk.range.depth *= 0.5;
+  shrunk.range.lateral *= 0.4;
+  shrunk.range.axis_depth *= 0.9;
+  shrunk.save(scene_, cell_.range, path_);
+  const CacheRead<SurrogateData> read = load();
+  ASSERT_TRUE(read) << read.reason;
+  EXPECT_NEAR(read.content->range.depth, shrunk.range.depth, 1e-9 * shrunk.range.depth);
+  EXPECT_NEAR(read.content->range.lateral, shrunk.range.lateral, 1e-9 * shrunk.range.lateral);
+  EXPECT_NEAR(read.content->range.axis_depth, shrunk.range.axis_depth, 1e-9 * shrunk.range.axis_depth);
+}
+
 /// A larger and softer cell of the same ratios has the same data, in its own units.
 TEST_F(StoredCell, ServesASimilarScene) {
   Scene similar = scene_;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <stdexcept>
 #include <vector>
 
@@ -50,6 +51,21 @@ TEST_F(ReachedRange, ShrinksToThePathThatEndedFirst) {
   EXPECT_NEAR(range.depth, 0.5 * plan_.range.depth, 1e-12 * plan_.range.depth);
   EXPECT_NEAR(range.lateral, 0.5 * plan_.range.lateral, 1e-12 * plan_.range.lateral);
   EXPECT_EQ(range.angle, plan_.range.angle);
+}
+
+/// Also where the path in space ended early, since the section may go on.
+TEST_F(ReachedRange, TheAxisIsSampledWithoutAGap) {
+  const auto straight = std::find_if(plan_.rays.begin(), plan_.rays.end(), [](const TrainingRay& ray) {
+    return ray.angle == 0 && ray.target.head<2>().isZero(0);
+  });
+  ASSERT_NE(straight, plan_.rays.end());
+  const std::vector<double> depths = axisDepths(plan_.range, *straight);
+  EXPECT_LT(depths.front(), 0.01 * plan_.range.depth);
+  for (std::size_t i = 1; i < depths.size(); ++i) {
+    EXPECT_GT(depths[i], depths[i - 1]);
+    EXPECT_LT(depths[i], depths[i - 1] + 0.2 * plan_.range.depth);
+  }
+  EXPECT_NEAR(depths.back(), plan_.range.axis_depth, 1e-12 * plan_.range.axis_depth);
 }
 
 TEST_F(ReachedRange, IsRefusedWhenHardlyAnythingIsLeft) {
