@@ -1,9 +1,9 @@
 // Prepares the surrogate cell of a scene from converged solutions; see --help.
 
+#include <malloc.h>
 #include <sys/prctl.h>
 
 #include <boost/program_options.hpp>
-#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -25,6 +25,9 @@
 #include "cell/surrogate/model_choice.h"
 #include "cell/surrogate/surrogate_data.h"
 #include "cell/surrogate/training_ray.h"
+#include "commands/path_store.h"
+#include "commands/prepare_family.h"
+#include "commands/solve_paths.h"
 
 namespace microinjection {
 namespace {
@@ -38,11 +41,16 @@ constexpr char kHelp[] =
 with which a live session evaluates a converged force in microseconds.
 
 Usage: prepare --scene FILE [--jobs N] [...]
+       prepare --family FILE [--members N | --check N] [--jobs N]
 
 Takes minutes, shows its progress, and may be interrupted: the next call continues from the finished paths. The data are
 in $XDG_CACHE_HOME (else ~/.cache) under cell_microinjection/prepared, in a folder named after the cell, the tip and
 the program's version. Cells that differ in scale, or whose moduli and tensions differ by one factor, have the same data.
 Another tip, another ratio of lengths or another ratio of moduli needs its own; another needle offset does not.
+
+With --family it solves members of a family of cells, each in minutes, and stores the family's data beside its file (NAME.data
+beside NAME.yaml). Every cell inside of the family is then served at once, without a preparation. The members are where
+the prediction from the solved ones is least certain. Several processes with one cache share the work.
 
 Data that are damaged, or of another version, are reported and replaced.
 
@@ -57,22 +65,39 @@ Options)";
 
 struct Arguments {
   std::string scene;
+  FamilyArguments family;
   int jobs = 1;
   int ray = -1;
+  std::string at;  ///< coordinates of a family's member
+  int member = -1;
   bool again = false;
   bool show_help = false;
   std::string options;
 };
 
+void requireAtLeast(const std::string& option, int value, int least) {
+  if (value >= least) return;
+  throw ConfigError("--" + option + " = " + std::to_string(value) + ": must be " + std::to_string(least) + " or more");
+}
+
 Arguments parse(int argc, char** argv) {
   Arguments arguments;
   const int processors = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   po::options_description visible, all;
+  FamilyArguments& family = arguments.family;
   visible.add_options()("help", "this text")("scene", po::value(&arguments.scene), "scene file (YAML, SI units)")(
+      "family", po::value(&family.file), "family file (YAML), instead of a scene")(
+      "members", po::value(&family.members)->default_value(family.members), "members that the family shall have")(
+      "check", po::value(&family.check)->default_value(0),
+      "draws this many members of the family that were never solved, solves them and prints the family's errors")(
+      "seed", po::value(&family.seed)->default_value(family.seed), "of the draw")("csv", po::value(&family.csv),
+                                                                                  "file for the table of the check")(
       "jobs", po::value(&arguments.jobs)->default_value(processors), "paths solved at a time, each on one core")(
       "again", po::bool_switch(&arguments.again), "replaces data that were prepared before");
   po::options_description hidden;
-  hidden.add_options()("ray", po::value(&arguments.ray), "solves only this path, as a worker process");
+  hidden.add_options()("ray", po::value(&arguments.ray), "solves only this path, as a worker process")(
+      "at", po::value(&arguments.at), "of the family's member at these coordinates")(
+      "member", po::value(&arguments.member), "of this member of the check");
   all.add(visible).add(hidden);
   po::variables_map values;
   po::store(po::command_line_parser(argc, argv).options(all).positional({}).run(), values);
@@ -82,8 +107,11 @@ Arguments parse(int argc, char** argv) {
   arguments.options = options.str();
   arguments.show_help = values.count("help") != 0;
   if (arguments.show_help) return arguments;
-  if (arguments.scene.empty()) throw ConfigError("--scene is missing");
-  if (arguments.jobs < 1) throw ConfigError("--jobs = " + std::to_string(arguments.jobs) + ": must be 1 or more");
+  if (arguments.scene.empty() == family.file.empty()) throw ConfigError("one of --scene and --family must be given");
+  requireAtLeast("jobs", arguments.jobs, 1);
+  requireAtLeast("members", family.members, 1);
+  requireAtLeast("check", family.check, 0);
+  family.jobs = arguments.jobs;
   return arguments;
 }
 
@@ -94,22 +122,11 @@ class Preparing {
         scene_(loadScene(arguments.scene)),
         solved_(withoutDimension(scene_)),
         plan_(Preparation::plan(solved_, PreparationRange::standard(solved_))),
-        folder_(preparedFolder(solved_, plan_)) {
+        paths_(solved_, plan_) {
     Preparation::check(scene_);
-    if (folder_.empty()) throw ConfigError("neither XDG_CACHE_HOME nor HOME is set: no folder for the data");
   }
 
-  int work() {
-    prctl(PR_SET_PDEATHSIG, SIGKILL);  // the workers end when the preparation is killed
-    const TrainingRay& ray = plan_.rays.at(arguments_.ray);
-    try {
-      writeCacheFile(file(arguments_.ray), description(arguments_.ray), encode(solveRay(solved_, ray)));
-    } catch (const std::exception&) {
-      std::fputc('\n', stderr);  // ends the progress line of the preparation
-      throw;
-    }
-    return kDone;
-  }
+  int work() { return paths_.solve(arguments_.ray) == PathStore::Outcome::kBusy ? kBusyStatus : kDone; }
 
   int run() {
     const std::string path = preparedFile(solved_, plan_);
@@ -124,8 +141,10 @@ class Preparing {
       return kDone;
     }
     requireWritable(path);
+    removePathsToReplace();
     solveMissing();
-    const std::vector<TrainingResult> results = loadAll();
+    const std::vector<TrainingResult> results = paths_.loadAll();
+    for (std::size_t i = 0; i < results.size(); ++i) reportEarlyEnd(plan_.rays[i], results[i]);
     std::fprintf(stderr, "prepare: fitting\n");
     const SurrogateData cell = SurrogateData::fit(solved_, plan_, results);
     cell.save(solved_, plan_.range, path);
@@ -161,82 +180,32 @@ class Preparing {
     return std::move(prepared.content);
   }
 
-  /// Reports a cache file that exists and cannot be used.
-  static void reportDamage(CacheState state, const std::string& reason) {
-    if (state == CacheState::kRead || state == CacheState::kMissing) return;
-    std::fprintf(stderr, "prepare: %s; it is replaced\n", reason.c_str());
-  }
-
   /// Checks before minutes of work that the results can be written.
   void requireWritable(const std::string& prepared) const {
-    requireWritableFolder(folder_);
+    requireWritableFolder(paths_.folder());
     std::vector<std::string> paths = {prepared};
-    for (std::size_t i = 0; i < plan_.rays.size(); ++i) paths.push_back(file(i));
+    for (std::size_t i = 0; i < plan_.rays.size(); ++i) paths.push_back(paths_.file(i));
     std::error_code error;
     for (const std::string& path : paths) {
       if (std::filesystem::is_directory(path, error)) throw WriteError(path, "it is a directory; remove it");
     }
   }
 
-  CacheRead<TrainingResult> load(std::size_t ray) const {
-    return loadTraining(file(ray), description(ray), plan_.rays[ray], surface_size_);
-  }
-
-  /// Results of all paths.
-  std::vector<TrainingResult> loadAll() const {
-    std::vector<TrainingResult> results;
-    for (std::size_t i = 0; i < plan_.rays.size(); ++i) {
-      const CacheRead<TrainingResult> read = load(i);
-      if (!read) throw std::runtime_error(read.reason);
-      results.push_back(*read.content);
-      if (!results.back().reason.empty()) reportEarlyEnd(plan_.rays[i], results.back());
+  void removePathsToReplace() const {
+    std::error_code error;
+    for (std::size_t i = 0; arguments_.again && i < plan_.rays.size(); ++i) {
+      std::filesystem::remove(paths_.file(i), error);
     }
-    return results;
   }
 
-  std::string description(std::size_t ray) const { return plan_.description(solved_, plan_.rays[ray]); }
-  std::string file(std::size_t ray) const { return folder_ + "/path_" + contentHash(description(ray)); }
-
-  std::vector<std::size_t> missingRays() const {
-    std::vector<std::size_t> missing;
-    for (std::size_t i = 0; i < plan_.rays.size(); ++i) {
-      if (!arguments_.again) {
-        const CacheRead<TrainingResult> read = load(i);
-        if (read) continue;
-        reportDamage(read.state, read.reason);
+  void solveMissing() const {
+    solvePaths("prepare", arguments_.jobs, [&] {
+      std::vector<std::vector<std::string>> commands;
+      for (const std::size_t i : paths_.missing()) {
+        commands.push_back({thisProgram(), "--scene", arguments_.scene, "--ray", std::to_string(i)});
       }
-      missing.push_back(i);
-    }
-    return missing;
-  }
-
-  void solveMissing() {
-    surface_size_ = trainingSurface(solved_, 0).nodes.size();
-    const std::vector<std::size_t> missing = missingRays();
-    std::vector<std::vector<std::string>> commands;
-    for (const std::size_t i : missing) {
-      commands.push_back({thisProgram(), "--scene", arguments_.scene, "--ray", std::to_string(i)});
-    }
-    const auto start = std::chrono::steady_clock::now();
-    std::size_t done = 0;
-    show(done, missing.size(), 0);
-    runWorkers(commands, arguments_.jobs, [&](std::size_t index, int status) {
-      const std::string failed = "path " + std::to_string(missing[index]) + " failed, see above";
-      if (status == kBadUsage) throw ConfigError(failed);
-      if (status != 0) throw std::runtime_error(failed);
-      const double spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-      show(++done, missing.size(), spent);
+      return commands;
     });
-    if (!missing.empty()) std::fprintf(stderr, "\n");
-  }
-
-  static void show(std::size_t done, std::size_t all, double spent) {
-    if (all == 0) return;
-    constexpr std::size_t kWidth = 30;
-    const std::string bar(kWidth * done / all, '#');
-    std::fprintf(stderr, "\rprepare: [%-*s] %zu of %zu paths, %.0f s", static_cast<int>(kWidth), bar.c_str(), done, all,
-                 spent);
-    std::fflush(stderr);
   }
 
   /// Reports what is smaller than planned.
@@ -252,6 +221,7 @@ class Preparing {
   }
 
   void reportEarlyEnd(const TrainingRay& ray, const TrainingResult& result) const {
+    if (result.reason.empty()) return;
     const double reached = result.samples.empty() ? 0 : result.samples.back().displacement.norm();
     std::fprintf(stderr, "prepare: a path at %.0f degrees ends at %.3g of %.3g um: %s\n", ray.angle * 57.2958,
                  1e6 * scene_.radius() * reached, 1e6 * scene_.radius() * ray.target.norm(), result.reason.c_str());
@@ -261,9 +231,30 @@ class Preparing {
   Scene scene_;
   Scene solved_;      ///< the same without dimension
   Preparation plan_;  ///< of it
-  std::string folder_;
-  Eigen::Index surface_size_ = 0;  ///< numbers of a path's surface; set before paths are solved
+  PathStore paths_;
 };
+
+/// Solves one path, as a process that ends when the preparation is killed.
+int work(const Arguments& arguments) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  // The solver allocates and releases large blocks in every step: the system need not have them back.
+  mallopt(M_TRIM_THRESHOLD, 1 << 30);
+  mallopt(M_MMAP_THRESHOLD, 1 << 30);
+  try {
+    if (arguments.family.file.empty()) return Preparing(arguments).work();
+    if (arguments.member >= 0) return solveCheckPath(arguments.family, arguments.member, arguments.ray);
+    return solveFamilyPath(arguments.family.file, arguments.at, arguments.ray);
+  } catch (const std::exception&) {
+    std::fputc('\n', stderr);  // ends the progress line of the preparation
+    throw;
+  }
+}
+
+int prepare(const Arguments& arguments) {
+  if (arguments.family.file.empty()) return Preparing(arguments).run();
+  arguments.family.check > 0 ? checkFamily(arguments.family) : prepareFamily(arguments.family);
+  return kDone;
+}
 
 int run(int argc, char** argv) {
   try {
@@ -273,8 +264,7 @@ int run(int argc, char** argv) {
       flushStandardOutput();
       return kDone;
     }
-    Preparing preparing(arguments);
-    const int status = arguments.ray >= 0 ? preparing.work() : preparing.run();
+    const int status = arguments.ray >= 0 ? work(arguments) : prepare(arguments);
     flushStandardOutput();
     return status;
   } catch (const po::error& error) {

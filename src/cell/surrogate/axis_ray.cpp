@@ -6,6 +6,7 @@
 
 #include "cell/model/cell_problem.h"
 #include "cell/model/scene_mesh.h"
+#include "cell/surrogate/surface_grid.h"
 
 namespace microinjection {
 namespace {
@@ -52,10 +53,10 @@ Eigen::VectorXf turned(const Outline& outline, const Eigen::VectorXd& surface) {
 
 }  // namespace
 
-std::vector<TrainingSample> solveAxis(const Scene& scene, const std::vector<double>& depths,
-                                      const Eigen::VectorXd& surface) {
+std::vector<TrainingSample> solveAxis(const Scene& scene, const std::vector<double>& depths) {
   Scene axial = Preparation::elastic(scene);
   axial.needle.offset.setZero();
+  const Eigen::VectorXd surface = SurfaceGrid::standard().nodes(scene.radius(), 0);
   std::vector<TrainingSample> samples;
   for (const double level : kLevels) {
     CellProblem<2> problem(axial, makeSceneMesh<2>(axial, level), ElementKind::kP2P0);

@@ -12,7 +12,7 @@ namespace microinjection {
 namespace {
 
 /// Version of the data and their computation: increase it when these change.
-constexpr int kVersion = 4;
+constexpr int kVersion = 5;
 constexpr double kDegree = M_PI / 180;
 constexpr int kAngles = 4;
 constexpr int kPoints = 12;  ///< along a path as long as the range is deep
@@ -34,22 +34,27 @@ struct Target {
   bool fine;            ///< also solved on the fine mesh, if in the plane of symmetry
 };
 
-std::vector<Target> targets(const PreparationRange& range, bool on_axis) {
+/// `index`: of the contact angle, 0 on the axis.
+std::vector<Target> targets(const PreparationRange& range, int index, PathSet paths) {
   struct Cone {
     double tilt;                ///< degrees
     std::vector<double> turns;  ///< degrees
     bool fine;
+    bool fine_of_few;  ///< also when few paths are wanted
   };
-  const std::vector<Cone> cones = {{12, {0, 180}, false},
-                                   {24, {0, 90, 180}, true},
-                                   {38, {0, 60, 120, 180}, true},
-                                   {55, {0, 90, 180}, true},
-                                   {72, {0, 60, 120, 180}, false}};
+  const std::vector<Cone> cones = {{12, {0, 180}, false, false},
+                                   {24, {0, 90, 180}, true, false},
+                                   {38, {0, 60, 120, 180}, true, false},
+                                   {55, {0, 90, 180}, true, true},
+                                   {72, {0, 60, 120, 180}, false, false}};
+  const bool on_axis = index == 0, few = paths == PathSet::kFew;
   std::vector<Target> result = {{border(range, 0, 0), !on_axis}};  // on the axis the section is finer
   for (const Cone& cone : cones) {
+    const bool fine = few ? cone.fine_of_few && !on_axis : cone.fine;
     for (double turn : cone.turns) {
       const Eigen::Vector3d end = border(range, cone.tilt, on_axis ? 0 : turn);
-      result.push_back({end, cone.fine && end.y() == 0});
+      const bool in_plane = end.y() == 0;
+      if (in_plane || !few || index > 1) result.push_back({end, fine && in_plane});
       if (on_axis) break;  // all turns are equal there
     }
   }
@@ -130,19 +135,26 @@ Scene Preparation::elastic(const Scene& scene) {
   return result;
 }
 
-Preparation Preparation::plan(const Scene& scene, const PreparationRange& range) {
-  Preparation result;
-  result.range = range;
+std::vector<TrainingRay> Preparation::paths(const PreparationRange& range, PathSet paths) {
+  std::vector<TrainingRay> rays;
   for (int i = 0; i < kAngles; ++i) {
     const double angle = range.angle * i / (kAngles - 1);
-    for (const auto& [target, fine] : targets(range, i == 0)) {
-      if (!keepsContact(scene, angle, target)) continue;
+    for (const auto& [target, fine] : targets(range, i, paths)) {
       const int points = static_cast<int>(std::lround(kPoints * std::sqrt(target.norm() / range.depth)));
-      result.rays.push_back({angle, target, std::max(points, kFewest), kCoarseLevel});
+      rays.push_back({angle, target, std::max(points, kFewest), kCoarseLevel});
       if (!fine) continue;
-      result.rays.push_back(result.rays.back());
-      result.rays.back().level = kFineLevel;
+      rays.push_back(rays.back());
+      rays.back().level = kFineLevel;
     }
+  }
+  return rays;
+}
+
+Preparation Preparation::plan(const Scene& scene, const PreparationRange& range, PathSet paths) {
+  Preparation result;
+  result.range = range;
+  for (const TrainingRay& ray : Preparation::paths(range, paths)) {
+    if (keepsContact(scene, ray.angle, ray.target)) result.rays.push_back(ray);
   }
   std::stable_sort(result.rays.begin(), result.rays.end(),
                    [](const TrainingRay& a, const TrainingRay& b) { return cost(a) > cost(b); });

@@ -41,13 +41,21 @@ struct TrainingRay {
   }
 };
 
+/// Which paths are solved. kFew: without those that change the fit least, where neighbours in a
+/// family help each other: fine ones at two tilts only, and beside the plane of symmetry none at the
+/// smallest angle.
+enum class PathSet { kAll, kFew };
+
 /// Plan of the computations for a prepared cell.
 struct Preparation {
   PreparationRange range;
   std::vector<TrainingRay> rays;  ///< most expensive first, so that workers end together
   EnergyScales scales;
 
-  static Preparation plan(const Scene& scene, const PreparationRange& range);
+  static Preparation plan(const Scene& scene, const PreparationRange& range, PathSet paths = PathSet::kAll);
+
+  /// All paths of a range, also those on which the tip would only graze the cell.
+  static std::vector<TrainingRay> paths(const PreparationRange& range, PathSet paths);
 
   /// Throws ConfigError for a scene whose force is not that of an elastic cell with ForceMemory:
   /// with friction, with layers that relax differently, or with a viscosity that does not relax. And

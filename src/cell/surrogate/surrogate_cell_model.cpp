@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "cell/surrogate/surface_grid.h"
+
 namespace microinjection {
 namespace {
 
@@ -94,7 +96,7 @@ std::optional<CellModel::Solution> SurrogateCellModel::solution(double /*time*/)
 
 std::vector<std::array<int, 3>> SurrogateCellModel::triangles() const {
   std::vector<std::array<int, 3>> result;
-  for (const Eigen::Vector3i& t : cell_->surface.triangles()) result.push_back({t[0], t[1], t[2]});
+  for (const Eigen::Vector3i& t : SurfaceGrid::standard().triangles()) result.push_back({t[0], t[1], t[2]});
   return result;
 }
 

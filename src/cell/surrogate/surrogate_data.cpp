@@ -14,7 +14,7 @@
 namespace microinjection {
 namespace {
 
-constexpr char kFit[] = " fit 10";  ///< change it when the fit changes
+constexpr char kFit[] = " fit 11";  ///< change it when the fit changes
 constexpr double kSmall = 0.0025;   ///< over the largest force: smaller ones are excluded from the errors
 constexpr double kRounding = 1e-9;  ///< relative, of a change of units
 constexpr EnergyDegrees kDegrees{};
@@ -85,10 +85,7 @@ SurrogateData SurrogateData::fit(const Scene& scene, const Preparation& preparat
   for (const TrainingRay& ray : preparation.rays) angles.push_back(ray.angle);
   std::sort(angles.begin(), angles.end());
   angles.erase(std::unique(angles.begin(), angles.end()), angles.end());
-  std::vector<TrainingSurface> surfaces;
-  for (double angle : angles) surfaces.push_back(trainingSurface(scene, angle));
-
-  const TrainingSet all = TrainingSet::gather(scene, preparation, results, surfaces.front().nodes);
+  const TrainingSet all = TrainingSet::gather(scene, preparation, results);
   const std::vector<TrainingSample>& samples = all.forces;
   SurrogateData cell;
   cell.range = all.range;
@@ -112,7 +109,7 @@ SurrogateData SurrogateData::fit(const Scene& scene, const Preparation& preparat
   });
   cell.energy_median_error = median(of_energy);
   cell.energy_common_error = common(of_energy);
-  cell.surface = SurfaceShape(cell.range, angles, surfaces, all.surfaces);
+  cell.surface = SurfaceShape(cell.range, scene.radius(), angles, all.surfaces);
   return cell;
 }
 

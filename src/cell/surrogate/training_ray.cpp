@@ -1,17 +1,15 @@
 #include "cell/surrogate/training_ray.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <optional>
 #include <stdexcept>
-#include <vector>
 
 #include "base/bytes.h"
-#include "cell/mesh/outer_surface.h"
 #include "cell/model/cell_problem.h"
 #include "cell/model/contact_frame.h"
 #include "cell/model/scene_mesh.h"
+#include "cell/surrogate/surface_grid.h"
 
 namespace microinjection {
 namespace {
@@ -28,49 +26,16 @@ Scene at(const Scene& scene, double angle) {
 /// symmetry.
 bool inPlane(const TrainingRay& ray) { return ray.target.y() == 0; }
 
-/// Displacement of the whole coarse mesh's surface, from a solution of the whole or of the half y
-/// >= 0.
-class SurfaceOfState {
- public:
-  SurfaceOfState(const Scene& scene, const QuadraticMesh<3>& mesh, bool half) {
-    const QuadraticMesh<3> whole = makeSceneMesh<3>(scene, kCoarseLevel);
-    const std::vector<int> candidates = outerNodes(mesh);
-    for (int node : outerNodes(whole)) {
-      Eigen::Vector3d x = whole.nodes[node];
-      const bool other_side = half && x.y() < 0;
-      if (other_side) x.y() *= -1;
-      sides_.push_back(other_side ? -1.0f : 1.0f);
-      nodes_.push_back(*std::min_element(candidates.begin(), candidates.end(), [&](int a, int b) {
-        return (mesh.nodes[a] - x).squaredNorm() < (mesh.nodes[b] - x).squaredNorm();
-      }));
-    }
-  }
-
-  /// m, xyz of each node, ascending.
-  Eigen::VectorXf displacement(const Eigen::VectorXd& state) const {
-    Eigen::VectorXf result(3 * static_cast<Eigen::Index>(nodes_.size()));
-    for (std::size_t n = 0; n < nodes_.size(); ++n) {
-      result.segment<3>(3 * n) = state.segment<3>(3 * nodes_[n]).cast<float>();
-      result[3 * n + 1] *= sides_[n];
-    }
-    return result;
-  }
-
- private:
-  std::vector<int> nodes_;    ///< node of the state for each node of the whole surface
-  std::vector<float> sides_;  ///< -1 for mirror images
-};
-
 /// Difference between a result and its ray; empty when they fit.
-std::string mismatch(const TrainingResult& result, const TrainingRay& ray, Eigen::Index surface_size) {
+std::string mismatch(const TrainingResult& result, const TrainingRay& ray) {
   const int count = static_cast<int>(result.samples.size());
   if (count > ray.points || (count < ray.points && result.reason.empty()))
     return "not all places of its path are there";
-  const Eigen::Index expected = ray.level == kCoarseLevel ? surface_size : 0;
+  const Eigen::Index expected = ray.level == kCoarseLevel ? 3 * SurfaceGrid::standard().nodeCount() : 0;
   for (int i = 0; i < count; ++i) {
     const TrainingSample& sample = result.samples[i];
     if (sample.angle != ray.angle || sample.displacement != ray.at(i)) return "it is of another path";
-    if (sample.surface.size() != expected) return "its surface is of another mesh";
+    if (sample.surface.size() != expected) return "its surface is of another grid";
   }
   return "";
 }
@@ -82,8 +47,8 @@ TrainingResult solveRay(const Scene& scene, const TrainingRay& ray) {
   const bool half = inPlane(ray);
   CellProblem<3> problem(local, half ? makeHalfSceneMesh(local, ray.level) : makeSceneMesh<3>(local, ray.level),
                          kElement, half ? Symmetry::kMirror : Symmetry::kNone);
-  std::optional<SurfaceOfState> surface;
-  if (ray.level == kCoarseLevel) surface.emplace(local, problem.body().mesh(), half);
+  std::optional<GridInterpolation> surface;
+  if (ray.level == kCoarseLevel) surface.emplace(problem.body().mesh(), ray.angle, half);
   TrainingResult result;
   for (int i = 0; i < ray.points; ++i) {
     const Eigen::Vector3d displacement = ray.at(i);
@@ -132,28 +97,18 @@ TrainingResult decodeTraining(const std::string& bytes) {
   return result;
 }
 
-CacheRead<TrainingResult> loadTraining(const std::string& path, const std::string& description, const TrainingRay& ray,
-                                       Eigen::Index surface_size) {
+CacheRead<TrainingResult> loadTraining(const std::string& path, const std::string& description,
+                                       const TrainingRay& ray) {
   const CacheRead<std::string> read = readCacheFile(path, description);
   if (!read) return read.failure<TrainingResult>();
   try {
     TrainingResult result = decodeTraining(*read.content);
-    const std::string difference = mismatch(result, ray, surface_size);
+    const std::string difference = mismatch(result, ray);
     if (!difference.empty()) return damagedCache<TrainingResult>(path, difference);
     return {std::move(result), CacheState::kRead, ""};
   } catch (const std::runtime_error& error) {
     return damagedCache<TrainingResult>(path, error.what());
   }
-}
-
-TrainingSurface trainingSurface(const Scene& scene, double angle) {
-  const QuadraticMesh<3> mesh = makeSceneMesh<3>(at(scene, angle), kCoarseLevel);
-  const std::vector<int> nodes = outerNodes(mesh);
-  TrainingSurface surface;
-  surface.nodes.resize(3 * static_cast<Eigen::Index>(nodes.size()));
-  for (std::size_t n = 0; n < nodes.size(); ++n) surface.nodes.segment<3>(3 * n) = mesh.nodes[nodes[n]];
-  surface.triangles = outerTriangles(mesh);
-  return surface;
 }
 
 }  // namespace microinjection

@@ -14,7 +14,7 @@ struct TrainingSample {
   double angle = 0;                                        ///< rad, of the contact point
   Eigen::Vector3d displacement = Eigen::Vector3d::Zero();  ///< m, of the tip since first contact
   Eigen::Vector3d force = Eigen::Vector3d::Zero();         ///< N, of the cell on the needle
-  Eigen::VectorXf surface;  ///< m, xyz of each node of the outer surface; coarse mesh only
+  Eigen::VectorXf surface;  ///< m, displacement of each node (xyz) of SurfaceGrid; coarse mesh only
 };
 
 struct TrainingResult {
@@ -30,18 +30,7 @@ std::string encode(const TrainingResult& result);
 TrainingResult decodeTraining(const std::string& bytes);
 
 /// The stored result of `ray`. The state is kDamaged, too, when it belongs to another ray, or when
-/// its surfaces do not have `surface_size` numbers (trainingSurface().nodes.size()), as those of
-/// another mesh.
-CacheRead<TrainingResult> loadTraining(const std::string& path, const std::string& description, const TrainingRay& ray,
-                                       Eigen::Index surface_size);
-
-/// The outer surface of the coarse meshes of solveRay with the contact point at `angle`: all nodes,
-/// and triangles, four for each facet, counter-clockwise seen from outside. Nodes of different
-/// angles correspond.
-struct TrainingSurface {
-  Eigen::VectorXd nodes;  ///< m, xyz of each
-  std::vector<Eigen::Vector3i> triangles;
-};
-TrainingSurface trainingSurface(const Scene& scene, double angle);
+/// its surfaces are not of SurfaceGrid.
+CacheRead<TrainingResult> loadTraining(const std::string& path, const std::string& description, const TrainingRay& ray);
 
 }  // namespace microinjection

@@ -16,9 +16,8 @@ bool straightOnAxis(const TrainingRay& ray) { return ray.angle == 0 && ray.targe
 
 /// Adds the section's results, which are more accurate and deeper, for the straight path on the
 /// axis.
-void addAxis(const Scene& scene, const std::vector<double>& depths, const Eigen::VectorXd& surface,
-             TrainingSet& samples) {
-  for (const TrainingSample& sample : solveAxis(scene, depths, surface)) {
+void addAxis(const Scene& scene, const std::vector<double>& depths, TrainingSet& samples) {
+  for (const TrainingSample& sample : solveAxis(scene, depths)) {
     samples.forces.push_back(sample);
     samples.surfaces.push_back(sample);
     samples.range.axis_depth = -sample.displacement.z();
@@ -28,7 +27,7 @@ void addAxis(const Scene& scene, const std::vector<double>& depths, const Eigen:
 }  // namespace
 
 TrainingSet TrainingSet::gather(const Scene& scene, const Preparation& preparation,
-                                const std::vector<TrainingResult>& results, const Eigen::VectorXd& surface) {
+                                const std::vector<TrainingResult>& results) {
   const std::vector<TrainingRay>& rays = preparation.rays;
   const auto better = betterForces(preparation.scales, rays, results);
   TrainingSet samples;
@@ -37,7 +36,7 @@ TrainingSet TrainingSet::gather(const Scene& scene, const Preparation& preparati
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (rays[i].level != kCoarseLevel) continue;
     if (straightOnAxis(rays[i])) {
-      addAxis(scene, axisDepths(preparation.range, rays[i]), surface, samples);
+      addAxis(scene, axisDepths(preparation.range, rays[i]), samples);
       continue;
     }
     samples.forces.insert(samples.forces.end(), better[i].begin(), better[i].end());

@@ -15,10 +15,10 @@ struct TrainingSet {
   PreparationRange range;  ///< that the paths reached
 
   /// Of the results of preparation.rays. On the axis it uses forces of the section, elsewhere those
-  /// of the fine mesh or corrected ones of the coarse mesh. `surface`: nodes of the coarse mesh at
-  /// rest. Throws std::runtime_error when the section has no solution, and as reachedRange.
+  /// of the fine mesh or corrected ones of the coarse mesh. Throws std::runtime_error when the section
+  /// has no solution, and as reachedRange.
   static TrainingSet gather(const Scene& scene, const Preparation& preparation,
-                            const std::vector<TrainingResult>& results, const Eigen::VectorXd& surface);
+                            const std::vector<TrainingResult>& results);
 };
 
 /// Depths (m, ascending) of the samples on the axis: of all points of the straight path, whether it

@@ -7,21 +7,21 @@
 
 #include "base/cache_file.h"
 #include "cell/surrogate/spring_cells.h"
+#include "cell/surrogate/surface_grid.h"
 
 namespace microinjection {
 
-/// Springs with a field and a surface of one triangle, as can be stored.
+/// Springs with a field and a surface that moves as a whole, as can be stored.
 inline SurrogateData smallCell(const Scene& scene) {
   SurrogateData cell = *fieldOfSprings(scene, 0);
-  TrainingSurface surface;
-  surface.nodes = Eigen::VectorXd::LinSpaced(9, 0, 1e-5);
-  surface.triangles = {{0, 1, 2}};
   std::vector<TrainingSample> samples;
   for (int i = 1; i <= 6; ++i) {
     const Eigen::Vector3d way(0.1 * i * i, 0.3 * (i % 3), -1.0 * i);
-    samples.push_back({0.1 * i, 1e-6 * way, way, 1e-6f * Eigen::VectorXf::LinSpaced(9, 1.0f * i, 2.0f * i * i)});
+    const Eigen::VectorXf surface =
+        Eigen::VectorXf::LinSpaced(3 * SurfaceGrid::standard().nodeCount(), 1e-6f * i, 2e-6f * i * i);
+    samples.push_back({0.1 * i, 1e-6 * way, way, surface});
   }
-  cell.surface = SurfaceShape(cell.range, {0.0, 0.5}, {surface, surface}, samples);
+  cell.surface = SurfaceShape(cell.range, scene.radius(), {0.0, 0.5}, samples);
   return cell;
 }
 

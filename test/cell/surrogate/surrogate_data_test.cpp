@@ -90,7 +90,7 @@ TEST_F(StoredCell, WhatCannotBeIsDamagedWhateverItsChecksum) {
   const std::size_t energy = 9 * sizeof(double) + 3 * sizeof(std::int32_t);  // its size, then its coefficients
   const std::size_t field = energy + sizeof(std::uint64_t) + sizeof(double) * cell_.energy.coefficients().size();
   const std::size_t surface = field + sizeof(std::uint64_t) + sizeof(double) * cell_.field.coefficients().size();
-  const std::size_t nodes = surface + 4 * sizeof(double), corners = nodes + 2 * sizeof(std::int64_t);
+  const std::size_t radius = surface + 4 * sizeof(double), centres = radius + sizeof(double);
   const std::vector<std::pair<const char*, std::function<void(std::string&)>>> changes = {
       {"empty", [](std::string& body) { body.clear(); }},
       {"short", [](std::string& body) { body.pop_back(); }},
@@ -105,9 +105,9 @@ TEST_F(StoredCell, WhatCannotBeIsDamagedWhateverItsChecksum) {
       {"energy", [=](std::string& body) { overwrite(body, energy + 2 * sizeof(double), kNan); }},
       {"force", [=](std::string& body) { overwrite(body, field + 2 * sizeof(double), kNan); }},
       {"surface's range", [=](std::string& body) { overwrite(body, surface, 0.0); }},
-      {"number of nodes", [=](std::string& body) { overwrite<std::int64_t>(body, nodes, 4); }},
-      {"corner", [=](std::string& body) { overwrite<std::int32_t>(body, corners, 3); }},
-      {"mirrored", [=](std::string& body) { overwrite<std::int32_t>(body, corners + 12 + sizeof(std::uint64_t), -1); }},
+      {"radius", [=](std::string& body) { overwrite(body, radius, -1.0); }},
+      {"rows of the centres", [=](std::string& body) { overwrite<std::int64_t>(body, centres, 3); }},
+      {"centre", [=](std::string& body) { overwrite(body, centres + 2 * sizeof(std::int64_t), kNan); }},
       {"mode", [](std::string& body) { overwrite(body, body.size() - sizeof(double), kNan); }}};
   for (const auto& [what, change] : changes) {
     cell_.save(scene_, cell_.range, path_);

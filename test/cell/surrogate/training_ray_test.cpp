@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "cell/surrogate/surface_grid.h"
+
 namespace microinjection {
 namespace {
 
@@ -39,7 +41,7 @@ TEST(TrainingRay, SamplesAreReadAsTheyWereWritten) {
   EXPECT_EQ(read.samples[0].surface, result.samples[0].surface);
 }
 
-/// A path of two places with a surface of three nodes.
+/// A path of two places.
 struct StoredPath {
   TrainingRay ray{0.3, {4e-6, 0, -8e-6}, 2};
   TrainingResult result;
@@ -47,12 +49,15 @@ struct StoredPath {
 
   StoredPath() {
     for (const double share : {0.25, 1.0}) {
-      result.samples.push_back({ray.angle, share * ray.target, {1, 2, 3}, Eigen::VectorXf::LinSpaced(9, 0, 1)});
+      result.samples.push_back({ray.angle,
+                                share * ray.target,
+                                {1, 2, 3},
+                                Eigen::VectorXf::LinSpaced(3 * SurfaceGrid::standard().nodeCount(), 0, 1)});
     }
   }
   CacheRead<TrainingResult> loadOf(const std::string& bytes) const {
     writeCacheFile(path, "path", bytes);
-    return loadTraining(path, "path", ray, 9);
+    return loadTraining(path, "path", ray);
   }
 };
 
@@ -64,7 +69,7 @@ TEST(TrainingRay, AStoredPathIsLoaded) {
   stored.result.samples.pop_back();
   stored.result.reason = "ended";
   EXPECT_TRUE(stored.loadOf(encode(stored.result)));
-  EXPECT_EQ(loadTraining(stored.path, "other path", stored.ray, 9).state, CacheState::kOther);
+  EXPECT_EQ(loadTraining(stored.path, "other path", stored.ray).state, CacheState::kOther);
 }
 
 /// The fit would take it for a force, or read beyond a surface that is too short.
@@ -87,7 +92,7 @@ TEST(TrainingRay, AStoredPathThatCannotBeIsDamagedWhateverItsChecksum) {
       {"too many", with([](TrainingResult& r) { r.samples.push_back(r.samples.back()); })},
       {"another path", with([](TrainingResult& r) { r.samples[0].displacement *= 2; })},
       {"another angle", with([](TrainingResult& r) { r.samples[0].angle = 0; })},
-      {"another mesh", with([](TrainingResult& r) { r.samples[1].surface.conservativeResize(6); })}};
+      {"another grid", with([](TrainingResult& r) { r.samples[1].surface.conservativeResize(6); })}};
   for (const auto& [what, body] : cases) {
     const auto read = stored.loadOf(body);
     EXPECT_FALSE(read) << what;

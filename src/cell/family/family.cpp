@@ -1,0 +1,119 @@
+#include "cell/family/family.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "base/config_reader.h"
+#include "cell/family/family_places.h"
+#include "cell/model/scene_description.h"
+#include "cell/model/similarity.h"
+
+namespace microinjection {
+namespace {
+
+constexpr double kRounding = 1e-9;
+constexpr double kSteepness = 2.5;  ///< of the depth as a function of the tip's radius
+
+/// Reads `key: {ratio: [low, high], ...}`.
+void readParameters(ConfigReader& file, const std::string& key, int layers,
+                    std::vector<Family::Parameter>& parameters) {
+  ConfigReader reader = file.section(key);
+  for (const Ratio& ratio : ratios()) {
+    if (!reader.has(ratio.name)) continue;
+    Eigen::VectorXd borders = Eigen::Vector2d::Zero();
+    reader.vector(ratio.name, borders, ratio.logarithmic ? Range::positive() : Range::nonNegative());
+    if (!(borders[0] < borders[1])) reader.error(ratio.name, "must be [low, high] with low < high");
+    if (layers < ratio.layers) reader.error(ratio.name, "must be left out: the scene's cell has one layer");
+    parameters.push_back({&ratio, borders[0], borders[1]});
+  }
+}
+
+}  // namespace
+
+double Family::Parameter::coordinate(double value) const {
+  if (!ratio->logarithmic) return (2 * value - low - high) / (high - low);
+  return std::log(value * value / (low * high)) / std::log(high / low);
+}
+
+double Family::Parameter::value(double coordinate) const {
+  if (!ratio->logarithmic) return 0.5 * (low + high) + 0.5 * coordinate * (high - low);
+  return std::sqrt(low * high) * std::pow(high / low, 0.5 * coordinate);
+}
+
+Family Family::load(const std::string& path) {
+  YAML::Node node = loadYamlMap(path);
+  const YAML::Node scene = node["scene"];  // has a reader of its own
+  node.remove("scene");
+  Family family;
+  ConfigReader reader(node, path);
+  reader.text("name", family.name_, ConfigReader::kRequired);
+  if (!scene) reader.error("scene", "is missing");
+  ConfigReader range = reader.section("range", ConfigReader::kRequired);
+  range.number("angle", family.angle_, Range{0, 1.2, true, false}, ConfigReader::kRequired);
+  range.number("deepest", family.deepest_, Range{0, 1, true, false}, ConfigReader::kRequired);
+  range.number("half_depth_tip", family.half_depth_tip_, Range::positive(), ConfigReader::kRequired);
+  if (scene) family.scene_ = withoutDimension(parseScene(scene, path + ": scene"));
+  const int layers = static_cast<int>(family.scene_.cell.layers.size());
+  readParameters(reader, "parameters", layers, family.parameters_);
+  readParameters(reader, "constants", layers, family.constants_);
+  if (family.parameters_.empty()) reader.error("parameters", "must name at least one ratio");
+  reader.finish();
+  Preparation::check(family.scene_);
+  return family;
+}
+
+Scene Family::member(const Eigen::VectorXd& coordinates) const {
+  Scene scene = scene_;
+  for (int i = 0; i < dimension(); ++i) parameters_[i].ratio->set(scene, parameters_[i].value(coordinates[i]));
+  return scene;
+}
+
+/// Reads a ratio of `scene` and gives the scene the family's own.
+std::optional<double> Family::takeRatio(const Ratio& ratio, Scene& scene) const {
+  const double value = ratio.get(scene);
+  Scene same = scene;
+  ratio.set(same, value);
+  if (describeCellAndTip(same) != describeCellAndTip(scene)) return std::nullopt;  // not that of all layers
+  ratio.set(scene, ratio.get(scene_));
+  return value;
+}
+
+std::optional<Eigen::VectorXd> Family::coordinatesOf(const Scene& scene) const {
+  if (scene.cell.tensegrity || scene.cell.layers.size() != scene_.cell.layers.size()) return std::nullopt;
+  Scene other = withoutDimension(Preparation::elastic(scene));
+  Eigen::VectorXd coordinates(dimension());
+  for (int i = 0; i < dimension(); ++i) {
+    const std::optional<double> value = takeRatio(*parameters_[i].ratio, other);
+    if (!value || (parameters_[i].ratio->logarithmic && !(*value > 0))) return std::nullopt;
+    coordinates[i] = parameters_[i].coordinate(*value);
+  }
+  for (const Parameter& constant : constants_) {
+    const std::optional<double> value = takeRatio(*constant.ratio, other);
+    if (!value || *value < constant.low || *value > constant.high) return std::nullopt;
+  }
+  if (describeCellAndTip(other) != describeCellAndTip(Preparation::elastic(scene_))) return std::nullopt;
+  return coordinates;
+}
+
+bool Family::contains(const Eigen::VectorXd& coordinates) { return coordinates.cwiseAbs().maxCoeff() <= 1 + kRounding; }
+
+PreparationRange Family::range(const Scene& member) const {
+  const double depth =
+      rounded(deepest_ / (1 + std::pow(half_depth_tip_ / member.needle.tip.radius, kSteepness)) * member.radius());
+  return familyRange(angle_, depth);
+}
+
+std::string Family::description() const {
+  std::ostringstream out;
+  out << std::hexfloat << "family " << name_ << " of ";
+  for (const Parameter& parameter : parameters_) {
+    out << parameter.ratio->name << ' ' << parameter.low << ' ' << parameter.high << ' ';
+  }
+  const Scene centre = member(Eigen::VectorXd::Zero(dimension()));
+  out << "range " << deepest_ << ' ' << half_depth_tip_ << ' '
+      << Preparation::plan(centre, range(centre)).description(centre);
+  return out.str();
+}
+
+}  // namespace microinjection

@@ -1,0 +1,247 @@
+#include "cell/family/family_data.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <stdexcept>
+
+#include "base/bytes.h"
+#include "cell/family/family_places.h"
+#include "cell/surrogate/surface_grid.h"
+
+namespace microinjection {
+namespace {
+
+constexpr char kVersion[] = " data 1";  ///< change it when the format or the fit of a member changes
+constexpr double kNeighbour = 0.1;      ///< weight over the largest, above which a member limits the range
+constexpr int kMostMembers = 1000;
+
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return 0;
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+ExpectedError quantiles(const std::vector<double>& values) { return {quantile(values, 0.5), quantile(values, 0.9)}; }
+
+void writeMember(ByteWriter& writer, const FamilyMember& member, const Eigen::MatrixXf& surface) {
+  writer.array(member.coordinates);
+  for (const double x : {member.share, member.axis_share, member.scale, member.median_error, member.common_error}) {
+    writer.number(x);
+  }
+  writer.array(member.energy);
+  writer.array(member.field);
+  writer.array(Eigen::VectorXf(Eigen::Map<const Eigen::VectorXf>(surface.data(), surface.size())));
+}
+
+template <typename Vector>
+Vector readVector(ByteReader& reader, Eigen::Index size) {
+  Vector values;
+  reader.array(values);
+  if (values.size() != size) throw std::runtime_error("a size cannot be");
+  if (!values.allFinite()) throw std::runtime_error("a value is not finite");
+  return values;
+}
+
+Eigen::MatrixXf readSurface(ByteReader& reader, Eigen::Index rows, Eigen::Index columns) {
+  const auto values = readVector<Eigen::VectorXf>(reader, rows * columns);
+  return Eigen::Map<const Eigen::MatrixXf>(values.data(), rows, columns);
+}
+
+FamilyMember readMember(ByteReader& reader, Eigen::Index dimension) {
+  const Eigen::Index energy = EnergyExpansion(EnergyScales(), EnergyDegrees()).size();
+  const Eigen::Index field = ForceField(EnergyScales()).coefficients().size();
+  FamilyMember member;
+  member.coordinates = readVector<Eigen::VectorXd>(reader, dimension);
+  for (double* x : {&member.share, &member.axis_share, &member.scale, &member.median_error, &member.common_error}) {
+    *x = reader.number<double>();
+    if (!(std::isfinite(*x) && *x >= 0)) throw std::runtime_error("a number of a member cannot be");
+  }
+  if (!(member.scale > 0 && member.share > 0 && member.axis_share > 0)) {
+    throw std::runtime_error("a number of a member cannot be");
+  }
+  member.energy = readVector<Eigen::VectorXd>(reader, energy);
+  member.field = readVector<Eigen::VectorXd>(reader, field);
+  return member;
+}
+
+std::uint64_t readCount(ByteReader& reader) {
+  const auto count = reader.number<std::uint64_t>();
+  if (count > kMostMembers) throw std::runtime_error("a number of members cannot be");
+  return count;
+}
+
+}  // namespace
+
+void FamilyData::add(const FamilyMember& member, const Eigen::MatrixXf& displacements) {
+  members_.push_back(member);
+  surfaces_.add(displacements);
+  kriging_.reset();
+}
+
+Eigen::MatrixXd FamilyData::points() const {
+  Eigen::MatrixXd result(family_.dimension(), members_.size());
+  for (std::size_t i = 0; i < members_.size(); ++i) {
+    result.col(static_cast<Eigen::Index>(i)) = members_[i].coordinates;
+  }
+  return result;
+}
+
+Eigen::MatrixXd FamilyData::knownPoints() const {
+  Eigen::MatrixXd result = points();
+  for (const Eigen::VectorXd& point : failed_) {
+    result.conservativeResize(family_.dimension(), result.cols() + 1);
+    result.rightCols(1) = point;
+  }
+  return result;
+}
+
+void FamilyData::update() {
+  const LeaveOneOut left_out(family_, members_);
+  covariance_ = chooseCovariance(points(), left_out);
+  prepare();
+  std::vector<double> all, relative;
+  const Eigen::MatrixXd known = points();
+  const std::vector<std::vector<double>> errors = left_out.errors(*kriging_);
+  for (std::size_t i = 0; i < errors.size() && errors.size() > 1; ++i) {
+    Eigen::MatrixXd others(known.rows(), known.cols() - 1);
+    const auto own = static_cast<Eigen::Index>(i);
+    others << known.leftCols(own), known.rightCols(known.cols() - own - 1);
+    const double deviation = Kriging(others, covariance_.lengths, covariance_.noise).deviation(known.col(own));
+    for (const double error : errors[i]) {
+      all.push_back(error);
+      relative.push_back(error / std::max(deviation, std::numeric_limits<double>::min()));
+    }
+  }
+  left_out_ = quantiles(all);
+  per_deviation_ = quantiles(relative);
+}
+
+void FamilyData::prepare() {
+  kriging_.emplace(points(), covariance_.lengths, covariance_.noise);
+  std::vector<double> medians, commons;
+  for (const FamilyMember& member : members_) {
+    medians.push_back(member.median_error);
+    commons.push_back(member.common_error);
+  }
+  fit_ = {quantile(medians, 0.5), quantile(commons, 0.5)};
+}
+
+bool FamilyData::serves(const Eigen::VectorXd& coordinates) const {
+  if (members_.empty() || !Family::contains(coordinates)) return false;
+  const auto distance = [&](const Eigen::VectorXd& point) {
+    return (point - coordinates).cwiseQuotient(covariance_.lengths).norm();
+  };
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const FamilyMember& member : members_) nearest = std::min(nearest, distance(member.coordinates));
+  return std::all_of(failed_.begin(), failed_.end(), [&](const auto& point) { return distance(point) > nearest; });
+}
+
+ExpectedError FamilyData::expectedError(const Eigen::VectorXd& coordinates) const {
+  const double deviation = kriging_->deviation(coordinates);
+  return {std::hypot(fit_.median, per_deviation_.median * deviation),
+          std::hypot(fit_.common, per_deviation_.common * deviation)};
+}
+
+SurrogateData FamilyData::cell(const Eigen::VectorXd& coordinates) const {
+  const Scene scene = family_.member(coordinates);
+  const Preparation plan = planMember(family_, scene);
+  const Eigen::VectorXd weights = kriging_->weights(coordinates);
+  const double largest = weights.cwiseAbs().maxCoeff();
+  const FamilyMember& first = members_.front();
+  Eigen::VectorXd energy = Eigen::VectorXd::Zero(first.energy.size()),
+                  field = Eigen::VectorXd::Zero(first.field.size());
+  Eigen::MatrixXd amplitudes =
+      Eigen::MatrixXd::Zero(surfaces_.amplitudes().front().rows(), surfaces_.amplitudes().front().cols());
+  double log_scale = 0, share = 1, axis_share = 1;
+  for (std::size_t i = 0; i < members_.size(); ++i) {
+    const FamilyMember& member = members_[i];
+    const double weight = weights[static_cast<Eigen::Index>(i)];
+    energy += weight * member.energy;
+    field += weight * member.field;
+    amplitudes += weight * surfaces_.amplitudes()[i].cast<double>();
+    log_scale += weight * std::log(member.scale);
+    if (std::abs(weight) < kNeighbour * largest) continue;
+    share = std::min(share, member.share);
+    axis_share = std::min(axis_share, member.axis_share);
+  }
+  SurrogateData cell;
+  cell.range = plan.range;
+  cell.range.depth *= share;
+  cell.range.lateral *= share;
+  cell.range.axis_depth *= axis_share;
+  cell.energy = EnergyExpansion(plan.scales, EnergyDegrees());
+  cell.energy.setCoefficients(std::exp(log_scale) * energy);
+  cell.field = ForceField(plan.scales);
+  cell.field.setCoefficients(std::exp(log_scale) * field);
+  cell.surface = SurfaceShape(plan.range, scene.radius(), surfaceCentres(), amplitudes, surfaces_.modes());
+  const ExpectedError error = expectedError(coordinates);
+  cell.median_error = error.median;
+  cell.common_error = error.common;
+  return cell;
+}
+
+void FamilyData::save(const std::string& path) const {
+  ByteWriter writer;
+  writer.array(provenance_);
+  writer.array(covariance_.lengths);
+  for (const double x :
+       {covariance_.noise, left_out_.median, left_out_.common, per_deviation_.median, per_deviation_.common}) {
+    writer.number(x);
+  }
+  writer.number<std::uint64_t>(failed_.size());
+  for (const Eigen::VectorXd& point : failed_) writer.array(point);
+  writer.number<std::uint64_t>(members_.size());
+  const Eigen::MatrixXf& modes = surfaces_.modes();
+  writer.array(Eigen::VectorXf(Eigen::Map<const Eigen::VectorXf>(modes.data(), modes.size())));
+  for (std::size_t i = 0; i < members_.size(); ++i) writeMember(writer, members_[i], surfaces_.amplitudes()[i]);
+  writeCacheFile(path, family_.description() + kVersion, writer.bytes());
+}
+
+FamilyData FamilyData::decode(const Family& family, const std::string& bytes) {
+  ByteReader reader(bytes);
+  FamilyData data(family);
+  reader.array(data.provenance_);
+  data.covariance_.lengths = readVector<Eigen::VectorXd>(reader, family.dimension());
+  if (!(data.covariance_.lengths.minCoeff() > 0)) throw std::runtime_error("a length cannot be");
+  for (double* x : {&data.covariance_.noise, &data.left_out_.median, &data.left_out_.common,
+                    &data.per_deviation_.median, &data.per_deviation_.common}) {
+    *x = reader.number<double>();
+    if (!(std::isfinite(*x) && *x >= 0)) throw std::runtime_error("an error cannot be");
+  }
+  for (std::uint64_t left = readCount(reader); left > 0; --left) {
+    data.failed_.push_back(readVector<Eigen::VectorXd>(reader, family.dimension()));
+  }
+  const std::uint64_t count = readCount(reader);
+  if (count == 0) throw std::runtime_error("it has no member");
+  const Eigen::Index entries = 3 * static_cast<Eigen::Index>(SurfaceGrid::standard().nodeCount());
+  const Eigen::Index places = surfaceCentres().cols();
+  Eigen::VectorXf modes;
+  reader.array(modes);
+  if (modes.size() == 0 || modes.size() % entries != 0 || !modes.allFinite()) {
+    throw std::runtime_error("the modes of the surface cannot be");
+  }
+  std::vector<Eigen::MatrixXf> surfaces;
+  for (std::uint64_t i = 0; i < count; ++i) {
+    data.members_.push_back(readMember(reader, family.dimension()));
+    surfaces.push_back(readSurface(reader, places, modes.size() / entries));
+  }
+  if (!reader.atEnd()) throw std::runtime_error("there is more than was written");
+  data.surfaces_.set(Eigen::Map<const Eigen::MatrixXf>(modes.data(), entries, modes.size() / entries), surfaces);
+  data.prepare();
+  return data;
+}
+
+CacheRead<FamilyData> FamilyData::load(const Family& family, const std::string& path) {
+  const CacheRead<std::string> read = readCacheFile(path, family.description() + kVersion);
+  if (!read) return read.failure<FamilyData>();
+  try {
+    return {decode(family, *read.content), CacheState::kRead, ""};
+  } catch (const std::exception& error) {
+    return damagedCache<FamilyData>(path, error.what());
+  }
+}
+
+}  // namespace microinjection

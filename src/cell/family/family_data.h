@@ -1,0 +1,75 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/cache_file.h"
+#include "cell/family/family.h"
+#include "cell/family/family_error.h"
+#include "cell/family/family_member.h"
+#include "cell/family/surface_modes.h"
+
+namespace microinjection {
+
+/// Expected relative force error of a cell that a family serves.
+struct ExpectedError {
+  double median = 0;
+  double common = 0;  ///< exceeded by one of ten places
+};
+
+/// The solved members of a family, from which it makes any other one.
+class FamilyData {
+ public:
+  explicit FamilyData(Family family) : family_(std::move(family)) {}
+
+  const Family& family() const { return family_; }
+  const std::vector<FamilyMember>& members() const { return members_; }
+  /// Coordinates of members without a solution.
+  const std::vector<Eigen::VectorXd>& failed() const { return failed_; }
+  /// Where the data come from: text for the reader of the file, kept as it was stored.
+  const std::string& provenance() const { return provenance_; }
+  void setProvenance(std::string text) { provenance_ = std::move(text); }
+
+  void add(const FamilyMember& member, const Eigen::MatrixXf& displacements);
+  void addFailed(const Eigen::VectorXd& coordinates) { failed_.push_back(coordinates); }
+  /// Chooses the covariance and estimates the errors anew. Call it after the last add().
+  void update();
+
+  /// A column for each member and each failed one.
+  Eigen::MatrixXd knownPoints() const;
+  const Covariance& covariance() const { return covariance_; }
+  /// Errors of the members when each is predicted from the others.
+  ExpectedError leaveOneOutError() const { return left_out_; }
+
+  /// Whether there is a converged solution around these coordinates: the nearest member did not
+  /// fail.
+  bool serves(const Eigen::VectorXd& coordinates) const;
+  ExpectedError expectedError(const Eigen::VectorXd& coordinates) const;
+  /// The member at any coordinates, without dimension. Its range is the part that its neighbours
+  /// reached, its errors are those of expectedError(). Takes milliseconds.
+  SurrogateData cell(const Eigen::VectorXd& coordinates) const;
+
+  void save(const std::string& path) const;
+  /// The state is kOther for data of another family or version, and kDamaged for an invalid size or
+  /// value.
+  static CacheRead<FamilyData> load(const Family& family, const std::string& path);
+
+ private:
+  Eigen::MatrixXd points() const;  ///< of the members, a column each
+  void prepare();                  ///< what follows from the members and the covariance
+  static FamilyData decode(const Family& family, const std::string& bytes);
+
+  Family family_;
+  std::string provenance_;
+  std::vector<FamilyMember> members_;
+  std::vector<Eigen::VectorXd> failed_;
+  SurfaceModes surfaces_;
+  Covariance covariance_;
+  ExpectedError left_out_, fit_;  ///< of the prediction, and of the members' own fits
+  ExpectedError per_deviation_;   ///< of the prediction, over Kriging::deviation
+  std::optional<Kriging> kriging_;
+};
+
+}  // namespace microinjection

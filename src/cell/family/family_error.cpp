@@ -1,0 +1,99 @@
+#include "cell/family/family_error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "cell/family/family_places.h"
+
+namespace microinjection {
+namespace {
+
+constexpr double kLengths[] = {1, 1.5, 2, 3, 4.5}, kNoises[] = {1e-6, 1e-4, 1e-3};
+constexpr double kDefaultLength = 2;
+constexpr double kLarge = 0.02;   ///< of the largest force: smaller ones have no error
+constexpr double kOutlier = 0.1;  ///< error above which a place does not count more
+
+/// Forces at places, xyz each.
+Eigen::VectorXd forcesAt(const ForceField& field, const std::vector<ContactPlace>& places) {
+  Eigen::VectorXd forces(3 * static_cast<Eigen::Index>(places.size()));
+  ForceField::Local local;
+  Eigen::Matrix3d jacobian;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (i == 0 || places[i].angle != places[i - 1].angle) field.makeLocal(places[i].angle, local);
+    forces.segment<3>(3 * static_cast<Eigen::Index>(i)) = local.evaluate(places[i].displacement, jacobian);
+  }
+  return forces;
+}
+
+/// Sum of the squared errors.
+double badness(const std::vector<std::vector<double>>& errors) {
+  double sum = 0;
+  for (const auto& member : errors) {
+    for (const double error : member) sum += std::pow(std::min(error, kOutlier), 2);
+  }
+  return sum;
+}
+
+}  // namespace
+
+LeaveOneOut::LeaveOneOut(const Family& family, const std::vector<FamilyMember>& members) {
+  for (const FamilyMember& at : members) {
+    const Preparation plan = planMember(family, family.member(at.coordinates));
+    const std::vector<ContactPlace> places = forcePlaces(plan);
+    Member member;
+    member.scale = at.scale;
+    for (const FamilyMember& other : members) {
+      ForceField field(plan.scales);
+      field.setCoefficients(other.field);
+      member.forces.push_back(forcesAt(field, places));
+    }
+    members_.push_back(std::move(member));
+  }
+}
+
+std::vector<std::vector<double>> LeaveOneOut::errors(const Kriging& kriging) const {
+  const Eigen::MatrixXd weights = kriging.leaveOneOut();
+  std::vector<std::vector<double>> result(members_.size());
+  for (std::size_t i = 0; i < members_.size(); ++i) {
+    const Eigen::VectorXd& own = members_[i].forces[i];
+    Eigen::VectorXd predicted = Eigen::VectorXd::Zero(own.size());
+    double log_scale = 0;
+    for (std::size_t j = 0; j < members_.size(); ++j) {
+      const double weight = weights(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+      predicted += weight * members_[i].forces[j];
+      log_scale += weight * std::log(members_[j].scale);
+    }
+    predicted *= std::exp(log_scale) / members_[i].scale;
+    const Eigen::Map<const Eigen::Matrix3Xd> truth(own.data(), 3, own.size() / 3);
+    const Eigen::Map<const Eigen::Matrix3Xd> guess(predicted.data(), 3, own.size() / 3);
+    const double largest = truth.colwise().norm().maxCoeff();
+    for (Eigen::Index k = 0; k < truth.cols(); ++k) {
+      const double force = truth.col(k).norm();
+      if (force > kLarge * largest) result[i].push_back((guess.col(k) - truth.col(k)).norm() / force);
+    }
+  }
+  return result;
+}
+
+Covariance chooseCovariance(const Eigen::MatrixXd& points, const LeaveOneOut& errors) {
+  const Eigen::Index dimension = points.rows();
+  Covariance best{Eigen::VectorXd::Constant(dimension, kDefaultLength), kNoises[0]};
+  if (points.cols() < 4 * dimension) return best;
+  constexpr int kCount = sizeof(kLengths) / sizeof(*kLengths);
+  const auto combinations = static_cast<int>(std::lround(std::pow(kCount, dimension)));
+  double least = std::numeric_limits<double>::infinity();
+  for (const double noise : kNoises) {
+    for (int i = 0; i < combinations; ++i) {
+      Covariance trial{Eigen::VectorXd(dimension), noise};
+      for (Eigen::Index k = 0, rest = i; k < dimension; ++k, rest /= kCount) trial.lengths[k] = kLengths[rest % kCount];
+      const double bad = badness(errors.errors(Kriging(points, trial.lengths, noise)));
+      if (bad >= least) continue;
+      least = bad;
+      best = trial;
+    }
+  }
+  return best;
+}
+
+}  // namespace microinjection

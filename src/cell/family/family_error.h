@@ -1,0 +1,39 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "cell/family/family_member.h"
+#include "cell/family/kriging.h"
+
+namespace microinjection {
+
+/// Relative force error of a family's members, as far as it comes from the interpolation between
+/// them: each member is predicted from all others.
+class LeaveOneOut {
+ public:
+  /// Evaluates every member at the places of every other.
+  LeaveOneOut(const Family& family, const std::vector<FamilyMember>& members);
+
+  /// Errors at all places of each member where its force is above a fiftieth of its largest.
+  std::vector<std::vector<double>> errors(const Kriging& kriging) const;
+
+ private:
+  struct Member {
+    double scale = 0;
+    std::vector<Eigen::VectorXd> forces;  ///< of each member at the places of this one, over that one's scale
+  };
+  std::vector<Member> members_;
+};
+
+/// Covariance that predicts the members best.
+struct Covariance {
+  Eigen::VectorXd lengths;
+  double noise = 0;
+};
+
+/// Chosen among a grid by the errors of LeaveOneOut; lengths of 2 for fewer than four times as many
+/// members as coordinates.
+Covariance chooseCovariance(const Eigen::MatrixXd& points, const LeaveOneOut& errors);
+
+}  // namespace microinjection

@@ -1,0 +1,47 @@
+#include "cell/family/family_member.h"
+
+#include "cell/family/family_places.h"
+
+namespace microinjection {
+namespace {
+
+/// Magnitude of the force in the middle of the range, over that of the scales.
+double middleForce(const SurrogateData& cell, const PreparationRange& range) {
+  ForceField::Local local;
+  cell.field.makeLocal(0.5 * range.angle, local);
+  Eigen::Matrix3d jacobian;
+  const Eigen::Vector3d force = local.evaluate(-0.5 * range.depth * Eigen::Vector3d::UnitZ(), jacobian);
+  return force.norm() * cell.energy.scales().length / cell.energy.scales().energy;
+}
+
+}  // namespace
+
+Preparation planMember(const Family& family, const Scene& member) {
+  return Preparation::plan(member, family.range(member), PathSet::kFew);
+}
+
+FamilyMember fitMember(const Family& family, const Eigen::VectorXd& coordinates,
+                       const std::vector<TrainingResult>& results, Eigen::MatrixXf& displacements) {
+  const Scene scene = family.member(coordinates);
+  const Preparation plan = planMember(family, scene);
+  const SurrogateData cell = SurrogateData::fit(scene, plan, results);
+  FamilyMember member;
+  member.coordinates = coordinates;
+  member.share = cell.range.depth / plan.range.depth;
+  member.axis_share = cell.range.axis_depth / plan.range.axis_depth;
+  member.scale = middleForce(cell, plan.range);
+  member.energy = cell.energy.coefficients() / member.scale;
+  member.field = cell.field.coefficients() / member.scale;
+  member.median_error = cell.median_error;
+  member.common_error = cell.common_error;
+  const std::vector<ContactPlace> places = surfacePlaces(plan.range);
+  Eigen::VectorXd rest, moved;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    cell.surface.evaluate(places[i].angle, places[i].displacement, rest, moved);
+    if (i == 0) displacements.resize(moved.size(), static_cast<Eigen::Index>(places.size()));
+    displacements.col(static_cast<Eigen::Index>(i)) = moved.cast<float>();
+  }
+  return member;
+}
+
+}  // namespace microinjection

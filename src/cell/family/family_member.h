@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "cell/family/family.h"
+#include "cell/surrogate/surrogate_data.h"
+
+namespace microinjection {
+
+/// A member of a family that was solved, without dimension. The coefficients are those of
+/// SurrogateData with the scales of the member's plan, divided by `scale`.
+struct FamilyMember {
+  Eigen::VectorXd coordinates;
+  double share = 1;               ///< of the planned depth, that all paths reached
+  double axis_share = 1;          ///< same, on the axis
+  double scale = 1;               ///< force in the middle of the range over that of EnergyScales
+  Eigen::VectorXd energy, field;  ///< coefficients
+  double median_error = 0;        ///< relative, of the member's own fit
+  double common_error = 0;        ///< same, exceeded by one of ten samples
+};
+
+/// Plan of a member's paths.
+Preparation planMember(const Family& family, const Scene& member);
+
+/// Fits a member to the results of planMember's paths. `displacements`: of SurfaceGrid (rows) at
+/// surfacePlaces (columns), over the cell's radius. Throws as SurrogateData::fit.
+FamilyMember fitMember(const Family& family, const Eigen::VectorXd& coordinates,
+                       const std::vector<TrainingResult>& results, Eigen::MatrixXf& displacements);
+
+}  // namespace microinjection

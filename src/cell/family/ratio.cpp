@@ -1,0 +1,34 @@
+#include "cell/family/ratio.h"
+
+#include <algorithm>
+
+#include "cell/model/similarity.h"
+
+namespace microinjection {
+
+const std::vector<Ratio>& ratios() {
+  static const std::vector<Ratio> all = {
+      {"tip_radius", true, 1, [](const Scene& scene) { return scene.needle.tip.radius; },
+       [](Scene& scene, double value) { scene.needle.tip.radius = rounded(value); }},
+      {"holding_radius", false, 1, [](const Scene& scene) { return scene.holding_pipette.contact_radius; },
+       [](Scene& scene, double value) { scene.holding_pipette.contact_radius = rounded(value); }},
+      {"poisson_ratio", false, 1, [](const Scene& scene) { return scene.cell.material().poisson_ratio; },
+       [](Scene& scene, double value) {
+         for (Scene::Layer& layer : scene.cell.layers) layer.material.poisson_ratio = rounded(value);
+       }},
+      {"surface_tension", false, 1, [](const Scene& scene) { return scene.cell.layers[0].surface_tension; },
+       [](Scene& scene, double value) { scene.cell.layers[0].surface_tension = rounded(value); }},
+      {"shell_thickness", true, 2, [](const Scene& scene) { return 1 - scene.cell.layers[1].outer_radius; },
+       [](Scene& scene, double value) { scene.cell.layers[1].outer_radius = rounded(1 - value); }},
+      {"core_modulus", true, 2, [](const Scene& scene) { return scene.cell.layers[1].material.young_modulus; },
+       [](Scene& scene, double value) { scene.cell.layers[1].material.young_modulus = rounded(value); }}};
+  return all;
+}
+
+const Ratio* findRatio(const std::string& name) {
+  const std::vector<Ratio>& all = ratios();
+  const auto found = std::find_if(all.begin(), all.end(), [&](const Ratio& ratio) { return ratio.name == name; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+}  // namespace microinjection

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cell/model/scene.h"
+
+namespace microinjection {
+
+/// A number without dimension that determines a cell's force (see similarity.h).
+struct Ratio {
+  const char* name;
+  bool logarithmic;  ///< its logarithm is the coordinate of an interpolation
+  int layers;        ///< that a cell has at least
+  double (*get)(const Scene& scene);
+  void (*set)(Scene& scene, double value);
+};
+
+/// tip_radius, holding_radius, shell_thickness: over the cell's radius; core_modulus: of the second
+/// layer over that of the shell; surface_tension: over modulus and radius; poisson_ratio: of all
+/// layers. `get` and `set` take a scene without dimension; `set` rounds as withoutDimension does.
+const std::vector<Ratio>& ratios();
+
+/// nullptr when there is none.
+const Ratio* findRatio(const std::string& name);
+
+}  // namespace microinjection

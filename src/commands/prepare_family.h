@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+
+namespace microinjection {
+
+struct FamilyArguments {
+  std::string file;  ///< of the family, YAML
+  int jobs = 1;
+  int members = 30;  ///< to have at the end
+  int check = 0;     ///< members to draw and solve, instead
+  int seed = 1;      ///< of the draw
+  std::string csv;   ///< of the check's table; empty for none
+};
+
+/// Solves members of a family until there are so many, and stores the family's data beside its file
+/// (.data for .yaml). Continues from members and paths that are there; several processes share the
+/// work. Throws ConfigError, WriteError and std::runtime_error with messages for the user.
+void prepareFamily(const FamilyArguments& arguments);
+
+/// Solves members that the family has not, at random coordinates, and prints how far its forces are
+/// off.
+void checkFamily(const FamilyArguments& arguments);
+
+/// Solves one path of the member at `coordinates` (text, with commas), as a worker process. Exit
+/// status: 0, or kBusyStatus.
+int solveFamilyPath(const std::string& file, const std::string& coordinates, int ray);
+
+/// Same, for a path of the check's member.
+int solveCheckPath(const FamilyArguments& arguments, int member, int ray);
+
+}  // namespace microinjection

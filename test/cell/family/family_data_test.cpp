@@ -1,0 +1,186 @@
+#include "cell/family/family_data.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+#include "cell/family/family_places.h"
+#include "cell/surrogate/cached_cell.h"
+#include "cell/surrogate/surface_grid.h"
+
+namespace microinjection {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+Family homogeneous() { return Family::load(MICROINJECTION_SOURCE_DIR "/config/families/homogeneous.yaml"); }
+
+/// A made-up member: a spring whose stiffness depends smoothly on the coordinates, and a surface that follows the tip.
+struct MadeUp {
+  FamilyMember member;
+  Eigen::MatrixXf surface;
+
+  explicit MadeUp(const Eigen::VectorXd& x) {
+    member.coordinates = x;
+    member.scale = std::exp(0.7 * x[0] - 0.2 * x[1]);
+    member.energy = Eigen::VectorXd::Zero(EnergyExpansion(EnergyScales(), EnergyDegrees()).size());
+    member.energy[0] = 1 + 0.2 * x[2];
+    member.field = Eigen::VectorXd::Zero(ForceField(EnergyScales()).coefficients().size());
+    member.field.tail(1)[0] = 0;
+    member.field[0] = 0.1 * x[1];
+    member.field[member.field.size() - 40] = 1 + 0.2 * x[2] + 0.05 * x[0] * x[1];
+    member.median_error = 0.003;
+    member.common_error = 0.008;
+    const Eigen::Index entries = 3 * static_cast<Eigen::Index>(SurfaceGrid::standard().nodeCount());
+    const auto places = surfacePlaces(familyRange(1, 1));
+    surface.resize(entries, static_cast<Eigen::Index>(places.size()));
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const auto depth = static_cast<float>(-places[i].displacement.z() * (1 + 0.1 * x[0]));
+      surface.col(static_cast<Eigen::Index>(i)) = depth * Eigen::VectorXf::LinSpaced(entries, 0, 1);
+    }
+  }
+};
+
+class FamilyOfSprings : public testing::Test {
+ protected:
+  FamilyOfSprings() {
+    for (const double x : {-1.0, 0.0, 1.0}) {
+      for (const double y : {-1.0, 0.0, 1.0}) {
+        for (const double z : {-1.0, 1.0}) add(Eigen::Vector3d(x, y, z));
+      }
+    }
+    data_.update();
+    data_.setProvenance("made up");
+  }
+  void TearDown() override { std::filesystem::remove(path_); }
+
+  void add(const Eigen::VectorXd& x) {
+    const MadeUp made(x);
+    data_.add(made.member, made.surface);
+  }
+
+  FamilyData data_{homogeneous()};
+  const std::string path_ = testing::TempDir() + "microinjection_family.data";
+};
+
+TEST_F(FamilyOfSprings, AMemberBetweenTheSolvedOnesHasTheirForm) {
+  const Eigen::Vector3d x(0.4, -0.3, 0.6);
+  const MadeUp truth(x);
+  const SurrogateData cell = data_.cell(x);
+  const Eigen::VectorXd expected = truth.member.scale * truth.member.energy;
+  EXPECT_NEAR(cell.energy.coefficients()[0], expected[0], 0.005 * expected[0]);
+  const Eigen::Index at = truth.member.field.size() - 40;
+  EXPECT_NEAR(cell.field.coefficients()[at], truth.member.scale * truth.member.field[at], 0.005 * expected[0]);
+  Eigen::VectorXd rest, moved;
+  const Eigen::Vector3d u(0, 0, -0.5 * cell.range.depth);
+  cell.surface.evaluate(0.3, u, rest, moved);
+  const double motion = 0.5 * (1 + 0.1 * x[0]);
+  EXPECT_NEAR(moved.tail(1)[0], motion, 0.01 * motion);
+}
+
+TEST_F(FamilyOfSprings, ASolvedMemberIsReturnedAsItIs) {
+  const Eigen::Vector3d x(1, -1, -1);
+  const MadeUp truth(x);
+  const SurrogateData cell = data_.cell(x);
+  EXPECT_NEAR(cell.energy.coefficients()[0], truth.member.scale * truth.member.energy[0], 2e-3 * truth.member.scale);
+  EXPECT_NEAR(cell.range.depth, data_.family().range(data_.family().member(x)).depth, 1e-12);
+}
+
+TEST_F(FamilyOfSprings, TheErrorsAreThoseOfFitAndPrediction) {
+  EXPECT_LT(data_.leaveOneOutError().common, 0.1);
+  const ExpectedError at_member = data_.expectedError(Eigen::Vector3d(1, 1, 1));
+  const ExpectedError between = data_.expectedError(Eigen::Vector3d(0.5, 0.5, 0));
+  EXPECT_GE(at_member.common, 0.008);
+  EXPECT_GT(between.common, at_member.common);
+  EXPECT_LE(between.median, between.common);
+  EXPECT_EQ(data_.cell(Eigen::Vector3d(0.5, 0.5, 0)).common_error, between.common);
+}
+
+TEST_F(FamilyOfSprings, TheRangeIsWhatTheNeighboursReached) {
+  MadeUp shallow(Eigen::Vector3d(0.9, 0.9, 0.1));
+  shallow.member.share = 0.6;
+  data_.add(shallow.member, shallow.surface);
+  data_.update();
+  const auto depthOver = [&](const Eigen::Vector3d& x) {
+    return data_.cell(x).range.depth / data_.family().range(data_.family().member(x)).depth;
+  };
+  EXPECT_NEAR(depthOver(Eigen::Vector3d(0.85, 0.95, 0.05)), 0.6, 1e-9);
+  EXPECT_NEAR(depthOver(Eigen::Vector3d(-1, -1, -1)), 1, 1e-9);
+}
+
+TEST_F(FamilyOfSprings, AroundAMemberWithoutSolutionNothingIsServed) {
+  const Eigen::Vector3d bad(0.5, 0.5, 0.25);
+  EXPECT_TRUE(data_.serves(bad));
+  data_.addFailed(bad);
+  EXPECT_FALSE(data_.serves(bad));
+  EXPECT_FALSE(data_.serves(bad + Eigen::Vector3d::Constant(0.05)));
+  EXPECT_TRUE(data_.serves(Eigen::Vector3d(-1, -1, -1)));
+  EXPECT_FALSE(data_.serves(Eigen::Vector3d(1.01, 0, 0))) << "past the border";
+}
+
+TEST_F(FamilyOfSprings, IsReadAsItWasWritten) {
+  data_.addFailed(Eigen::Vector3d(0.5, 0.5, 0.25));
+  data_.save(path_);
+  const auto read = FamilyData::load(homogeneous(), path_);
+  ASSERT_TRUE(read) << read.reason;
+  EXPECT_EQ(read.content->members().size(), data_.members().size());
+  EXPECT_EQ(read.content->failed().size(), 1u);
+  EXPECT_EQ(read.content->provenance(), "made up");
+  const Eigen::Vector3d x(0.2, 0.1, -0.7);
+  const SurrogateData before = data_.cell(x), after = read.content->cell(x);
+  EXPECT_EQ(before.energy.coefficients(), after.energy.coefficients());
+  EXPECT_EQ(before.field.coefficients(), after.field.coefficients());
+  EXPECT_EQ(before.common_error, after.common_error);
+}
+
+TEST_F(FamilyOfSprings, DataOfAnotherFamilyAreNotRead) {
+  data_.save(path_);
+  const Family zona = Family::load(MICROINJECTION_SOURCE_DIR "/config/families/zona.yaml");
+  EXPECT_EQ(FamilyData::load(zona, path_).state, CacheState::kOther);
+}
+
+TEST_F(FamilyOfSprings, ATornFileOrAChangedByteIsDamaged) {
+  data_.save(path_);
+  std::ostringstream text;
+  text << std::ifstream(path_, std::ios::binary).rdbuf();
+  const std::string whole = text.str();
+  const auto stateOf = [&](const std::string& bytes) {
+    std::ofstream(path_, std::ios::binary) << bytes;
+    return FamilyData::load(homogeneous(), path_).state;
+  };
+  for (const double share : {0.3, 0.9, 0.9999}) {
+    const auto length = static_cast<std::size_t>(share * static_cast<double>(whole.size()));
+    EXPECT_EQ(stateOf(whole.substr(0, length)), CacheState::kDamaged) << share;
+  }
+  std::string changed = whole;
+  changed[whole.size() / 2] ^= 1;
+  EXPECT_EQ(stateOf(changed), CacheState::kDamaged);
+}
+
+/// What no checksum can tell.
+TEST_F(FamilyOfSprings, ValuesThatCannotBeAreDamagedWhateverTheChecksum) {
+  const std::size_t lengths = sizeof(std::uint64_t) + std::string("made up").size();
+  const std::size_t numbers = lengths + sizeof(std::uint64_t) + 3 * sizeof(double);
+  const std::size_t failed = numbers + 5 * sizeof(double), members = failed + sizeof(std::uint64_t);
+  const std::vector<std::pair<const char*, std::function<void(std::string&)>>> changes = {
+      {"short", [](std::string& body) { body.pop_back(); }},
+      {"long", [](std::string& body) { body += 'x'; }},
+      {"length", [=](std::string& body) { overwrite(body, lengths + sizeof(std::uint64_t), -1.0); }},
+      {"error", [=](std::string& body) { overwrite(body, numbers + sizeof(double), kNan); }},
+      {"failed", [=](std::string& body) { overwrite<std::uint64_t>(body, failed, ~std::uint64_t{0}); }},
+      {"no member", [=](std::string& body) { overwrite<std::uint64_t>(body, members, 0); }},
+      {"amplitude", [](std::string& body) { overwrite(body, body.size() - sizeof(float), static_cast<float>(kNan)); }}};
+  for (const auto& [what, change] : changes) {
+    data_.save(path_);
+    changeBody(path_, change);
+    const auto read = FamilyData::load(homogeneous(), path_);
+    EXPECT_EQ(read.state, CacheState::kDamaged) << what << ": " << read.reason;
+  }
+}
+
+}  // namespace
+}  // namespace microinjection
