@@ -21,6 +21,7 @@
 #include "benchmark/common/prepared_scene.h"
 #include "cell/model/cell_problem.h"
 #include "cell/model/scene_mesh.h"
+#include "cell/surrogate/surface_grid.h"
 #include "cell/surrogate/surrogate_cell_model.h"
 #include "cell/surrogate/training_ray.h"
 
@@ -147,8 +148,8 @@ void reportTimes(const Scene& scene, std::shared_ptr<const SurrogateData> cell) 
                times[times.size() / 2], times[times.size() * 99 / 100], sum / 200000);
   Eigen::Matrix3Xd rest, displaced;
   const double start = threadCpuTime();
-  for (int i = 0; i < 100; ++i) contact.surface(contact.shape(), rest, displaced);
-  std::fprintf(stderr, "prepared: surface of %d nodes: %.3f ms of CPU\n", cell->surface.nodeCount(),
+  for (int i = 0; i < 100; ++i) SurrogateContact::surface(*cell, contact.shape(), rest, displaced);
+  std::fprintf(stderr, "prepared: surface of %d nodes: %.3f ms of CPU\n", SurfaceGrid::standard().nodeCount(),
                10 * (threadCpuTime() - start));
 }
 

@@ -20,6 +20,7 @@
 #include "cell/mechanics/explicit_step.h"
 #include "cell/model/cell_problem.h"
 #include "cell/model/scene_mesh.h"
+#include "cell/surrogate/surface_grid.h"
 #include "cell/surrogate/surrogate_contact.h"
 
 namespace microinjection {
@@ -158,7 +159,7 @@ std::string converging(const ReferenceScene& scene, const std::string& element, 
 /// One force: with its stiffness, at the needle's next place.
 std::string prepared(const ReferenceScene& scene) {
   const auto cell = std::make_shared<const SurrogateData>(preparedScene(loadScene(kPreparedScene), kPreparedScene));
-  Row row{scene.name + " prepared", "energy", static_cast<std::size_t>(cell->surface.nodeCount()), 0, {}, {}};
+  Row row{scene.name + " prepared", "energy", static_cast<std::size_t>(SurfaceGrid::standard().nodeCount()), 0, {}, {}};
   SurrogateContact contact(scene.scene, cell);
   const double top = scene.scene.radius();
   contact.step({0, 0, top + 1e-9});

@@ -128,6 +128,8 @@ class Project:
         for path, source in self.code.items():
             if path.endswith('_node.cpp'):
                 node = Path(path).stem[:-len('_node')]
+                parts = re.findall(r'#include "(nodes/[^"]+)\.h"', source + self.code.get(f'{path[:-3]}h', ''))
+                source += ''.join(self.code.get(f'src/{part}.cpp', '') for part in parts)
                 self.services |= {f'/{node}/{name}' for name in re.findall(r'advertiseService[^;"]*\(\s*"(\w+)"', source)}
         self.topics |= self.services
         self.topics |= set(re.findall(r'<param name="(/[a-z_/]+)"', self.sources('launch/*')))

@@ -12,13 +12,15 @@ namespace microinjection {
 
 const char* const CellSimulatorNode::kHelp =
     "cell_simulator: the finite-element cell under the needle.\n"
-    "In: /needle/measured_cp or /needle/true_cp. Out: /cell/predicted_cf, /cell/state.\n";
+    "In: /needle/measured_cp or /needle/true_cp, /cell/set_parameters. Out: /cell/predicted_cf, /cell/state.\n"
+    "Service: ~set_cell_parameters.\n";
 
 CellSimulatorNode::Parameters CellSimulatorNode::Parameters::read(const ros::NodeHandle& private_node) {
   Parameters parameters;
   ConfigReader reader = parameterReader(private_node);
   reader.text("scene", parameters.scene, ConfigReader::kRequired);
   reader.choice("model", parameters.model, {"auto", "prepared", "live", "explicit"});
+  reader.text("families", parameters.models.families);
   reader.choice("needle", parameters.needle, {"measured", "true"});
   reader.number("rate", parameters.rate, Range::closed(50, 5000));
   reader.number("state_rate", parameters.state_rate, {0, 100, true, false});
@@ -37,23 +39,26 @@ CellSimulatorNode::CellSimulatorNode(ros::NodeHandle node, ros::NodeHandle priva
       force_(cycle_.output<geometry_msgs::WrenchStamped>("cell/predicted_cf")),
       state_(cycle_.output<cell_microinjection::CellState>("cell/state", true)) {
   parameters_.models.online.fixed_period = cycle_.deterministic();
-  cell_ = makeCell();
+  const Scene scene = loadScene(parameters_.scene);
+  chosen_ = makeCell(scene);
+  cell_ = chosen_.cell.get();
   invalid_reason_.reserve(200);  // no allocation in a step
   using Thread = CellStatePublisher::Thread;
   const auto thread = cycle_.deterministic() ? Thread::kOfTheStep : Thread::kOwn;
-  state_publisher_ = std::make_unique<CellStatePublisher>(*cell_, state_, parameters_.state_rate, thread);
+  state_publisher_ = std::make_unique<CellStatePublisher>(*cell_, scene, state_, parameters_.state_rate, thread);
+  parameter_server_ =
+      std::make_unique<CellParameterServer>(chosen_.change.get(), chosen_.unchangeable, cycle_, private_node);
   cycle_.diagnostics().add("solver", [this](auto& status) { report(status); });
 }
 
-std::unique_ptr<CellModel> CellSimulatorNode::makeCell() const {
-  const Scene scene = loadScene(parameters_.scene);
+ChosenCellModel CellSimulatorNode::makeCell(const Scene& scene) const {
   ChosenCellModel served = makeCellModel(scene, parameters_.model, parameters_.models, parameters_.scene);
   if (served.as_required) {
     ROS_INFO_STREAM(served.description);
   } else {
     ROS_WARN_STREAM(served.description);
   }
-  return std::move(served.cell);
+  return served;
 }
 
 void CellSimulatorNode::run() {

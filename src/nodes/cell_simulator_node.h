@@ -7,9 +7,10 @@
 #include <memory>
 #include <string>
 
+#include "cell/choice/make_cell_model.h"
 #include "cell/model/cell_model.h"
-#include "cell/surrogate/make_cell_model.h"
 #include "cell_microinjection/CellState.h"
+#include "nodes/cell/cell_parameter_server.h"
 #include "nodes/cell/cell_state_publisher.h"
 #include "nodes/runtime/cycle.h"
 
@@ -20,6 +21,7 @@ namespace microinjection {
 /// In:  /needle/measured_cp or /needle/true_cp (PoseStamped, tip in `world`)
 /// Out: /cell/predicted_cf (WrenchStamped, of the cell on the tip, in `world`), /cell/state
 ///      (CellState)
+/// The cell's parameters change by CellParameterServer.
 ///
 /// Parameters: config/cell_simulator.yaml
 class CellSimulatorNode {
@@ -41,19 +43,22 @@ class CellSimulatorNode {
     static Parameters read(const ros::NodeHandle& private_node);
   };
 
-  std::unique_ptr<CellModel> makeCell() const;
+  ChosenCellModel makeCell(const Scene& scene) const;
   void step(const Cycle::Tick& tick);
   CellMoment moment(const ros::Time& now, const TipForce& force) const;
   void report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   Parameters parameters_;
   Cycle cycle_;
-  std::unique_ptr<CellModel> cell_;
+  ChosenCellModel chosen_;
+  CellModel* cell_ = nullptr;
   Input<geometry_msgs::PoseStamped>& needle_;
   Output<geometry_msgs::WrenchStamped>& force_;
   Output<cell_microinjection::CellState>& state_;
-  std::string invalid_reason_;                           ///< why the last force was invalid; else empty
-  std::unique_ptr<CellStatePublisher> state_publisher_;  ///< last member: its thread uses cell and output
+  std::string invalid_reason_;  ///< why the last force was invalid; else empty
+  // Last members: their threads use the others.
+  std::unique_ptr<CellStatePublisher> state_publisher_;
+  std::unique_ptr<CellParameterServer> parameter_server_;
 };
 
 }  // namespace microinjection

@@ -74,7 +74,7 @@ const char* const DisplayNode::kHelp =
 DisplayNode::DisplayNode(ros::NodeHandle node, ros::NodeHandle private_node)
     : config_(readConfig(private_node)),
       scene_(config_),
-      frames_(node, {"cell", "holding_pipette", "manipulator_base"}),
+      frames_(node, {"cell", "holding_pipette", "manipulator_base"}, config_.enlargement),
       inputs_{{{"/cell/state", true},
                {"/force_sensor/measured_cf", true},
                {"/haptic/measured_cp", false},

@@ -17,7 +17,7 @@
 
 namespace microinjection {
 
-/// Shows the scene in rviz at x 1e4. For people only: no node that controls reads its topics.
+/// Shows the scene in rviz, enlarged. For people only: no node that controls reads its topics.
 ///
 /// In:  /cell/state (with the predicted force), /force_sensor/measured_cf, /haptic/measured_cp,
 ///      /controller/injection_state, and from tf the frames of the rig with needle_tip, which saves

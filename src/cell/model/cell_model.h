@@ -3,11 +3,14 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace microinjection {
+
+struct Scene;
 
 /// Force of the cell on the tip in one step.
 struct TipForce {
@@ -39,6 +42,7 @@ class CellModel {
     std::vector<std::uint32_t> contact_vertices;  ///< vertices that move with the tip
     std::vector<Member> members;                  ///< correspond between calls
     std::vector<Eigen::Vector3d> holes;           ///< m, punctures of the outermost layer, positions at rest
+    std::shared_ptr<const Scene> scene;           ///< whose force is felt; null if it is that of the start
   };
   /// Progress of the needle into the cell.
   struct Insertion {
@@ -66,6 +70,8 @@ class CellModel {
   virtual void release() = 0;
 
   virtual const std::optional<Contact>& contact() const = 0;
+  /// m, of the surface at rest that the needle touches, if it can change.
+  virtual std::optional<double> radius() const { return std::nullopt; }
   virtual Insertion insertion() const { return {}; }
   virtual std::vector<std::string> layers() const { return {}; }  ///< of membranes that can fail, outermost first
   virtual const std::string& invalidReason() const = 0;           ///< of the last force; empty if it was valid

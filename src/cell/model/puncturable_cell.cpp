@@ -58,6 +58,7 @@ TipForce PuncturableCell::contactForce(const Pose& pose) {
   const bool was_in_contact = cell_->contact().has_value();
   inner_force_used_ = true;
   TipForce result = cell_->step(pose.tip, pose.axis, pose.time);
+  followRadius();
   if (!result.valid) return result;
   const auto& contact = cell_->contact();
   if (!was_in_contact && contact) work_ = 0;
@@ -75,6 +76,14 @@ TipForce PuncturableCell::contactForce(const Pose& pose) {
   enter(hole, pose);
   failLayer(pose);
   return result;
+}
+
+void PuncturableCell::followRadius() {
+  const double radius = cell_->radius().value_or(radius_);
+  if (radius == radius_) return;
+  holes_.scale(radius / radius_);
+  published_holes_.write(holes_);
+  radius_ = radius;
 }
 
 Eigen::Vector3d PuncturableCell::forceInside(const Pose& pose) {

@@ -59,6 +59,7 @@ class PuncturableCell : public CellModel {
 
   TipForce computeForce(const Pose& pose);
   TipForce contactForce(const Pose& pose);
+  void followRadius();
   Eigen::Vector3d forceInside(const Pose& pose);
   void enter(int hole, const Pose& pose);
   void leave(const Pose& pose);
@@ -77,7 +78,7 @@ class PuncturableCell : public CellModel {
 
   PunctureConfig config_;
   Scene::Tip tip_;
-  double radius_;  ///< m, of the cell
+  double radius_;  ///< m, of the cell at rest
   std::unique_ptr<CellModel> cell_;
   ShaftResistance shaft_;
   FadingForce fading_;

@@ -23,6 +23,11 @@ class PunctureHoles {
     return index;
   }
 
+  /// Moves the holes with a surface that grows by `factor`.
+  void scale(double factor) {
+    for (int i = 0; i < count(); ++i) holes_[i].position *= factor;
+  }
+
   int count() const { return made_ < kMost ? made_ : kMost; }
   Hole& operator[](int index) { return holes_[index]; }
   const Hole& operator[](int index) const { return holes_[index]; }

@@ -18,6 +18,11 @@ class PassiveCorrection {
   /// at the total energy `energy` (J). Does not allocate.
   Eigen::Vector3d step(const Eigen::Vector3d& displacement, const Eigen::Vector3d& wanted, double energy);
   void reset() { *this = PassiveCorrection(); }
+  /// The cell's energy has changed by a factor.
+  void scale(double factor) {
+    applied_ *= factor;
+    tank_ *= factor;
+  }
 
  private:
   Eigen::Vector3d displacement_ = Eigen::Vector3d::Zero();  ///< m, of the last step

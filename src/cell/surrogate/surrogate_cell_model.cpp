@@ -14,16 +14,35 @@ constexpr char kTooDeep[] = "the tip is deeper than the cell was prepared for: w
 constexpr char kTooFarOut[] = "the tip touched the cell further from its pole than what was prepared";
 constexpr double kTrembling = 0.1e-6;  ///< m, by which a needle at rest may move deeper
 constexpr double kRest = 0.1;          ///< s
+constexpr std::size_t kKept = 16;      ///< cells, for the thread that draws
 constexpr double kUpright = 0.999;     ///< cosine: within 2.5 degrees of the prepared direction
 
 }  // namespace
 
 SurrogateCellModel::SurrogateCellModel(const Scene& scene, std::shared_ptr<const SurrogateData> cell)
-    : scene_(scene),
-      cell_(std::move(cell)),
-      needle_(scene, cell_),
-      memory_(scene.cell.material().viscoelasticity.prony) {
+    : needle_(std::make_unique<SurrogateContact>(scene, cell)),
+      memory_(scene.cell.material().viscoelasticity.prony),
+      served_{{std::make_shared<const Scene>(scene), cell}} {
   invalid_reason_.reserve(200);
+}
+
+void SurrogateCellModel::change(const Scene& scene, std::shared_ptr<const SurrogateData> cell) {
+  auto next = std::make_unique<SurrogateContact>(scene, cell);
+  {
+    const std::lock_guard<std::mutex> lock(served_mutex_);
+    served_.push_back({std::make_shared<const Scene>(scene), std::move(cell)});
+    if (served_.size() > kKept) served_.erase(served_.begin());
+  }
+  needle_.change(std::move(next));
+}
+
+/// The newest for one that is no longer kept, because the drawing thread was too slow for it.
+SurrogateCellModel::Served SurrogateCellModel::served(const SurrogateData* cell) {
+  const std::lock_guard<std::mutex> lock(served_mutex_);
+  for (const Served& one : served_) {
+    if (one.cell.get() == cell) return one;
+  }
+  return served_.back();
 }
 
 TipForce SurrogateCellModel::invalidForce(const char* reason) {
@@ -35,8 +54,9 @@ void SurrogateCellModel::release() {
   contact_.reset();
   needle_.reset();
   memory_.reset();
+  limit_.reset();
   invalid_reason_.clear();
-  shape_.write(needle_.shape());
+  shape_.write(needle_.felt().shape());
 }
 
 TipForce SurrogateCellModel::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time) {
@@ -45,7 +65,7 @@ TipForce SurrogateCellModel::step(const Eigen::Vector3d& tip, const Eigen::Vecto
   }
   TipForce force = computeForce(tip, axis, std::max(0.0, time - time_));
   time_ = time;
-  shape_.write(needle_.shape());
+  shape_.write(needle_.felt().shape());
   return force;
 }
 
@@ -65,22 +85,26 @@ bool SurrogateCellModel::continuesBelow(bool too_deep, double duration) {
 
 TipForce SurrogateCellModel::computeForce(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double duration) {
   invalid_reason_.clear();
-  const SurrogateContact::Result prepared = needle_.step(tip);
+  const ChangingContact::Result prepared = needle_.step(tip, duration);
+  const std::optional<ContactFrame>& frame = needle_.felt().contactFrame();
   stiffness_ = prepared.stiffness;
-  if (!needle_.contactFrame()) {
+  if (!frame) {
     contact_.reset();
     memory_.reset();
+    limit_.reset();
     return {};
   }
+  if (prepared.changing) limit_.activate();
   const Eigen::Vector3d viscous = memory_.step(prepared.force, duration);
   Eigen::Vector3d force = prepared.force + viscous;
   if (!viscous.isZero(0)) force -= std::min(0.0, force.dot(axis)) * axis;  // relaxed so far that the cell would pull
+  force = limit_.step(force, tip, prepared.energy);
   if (!contact_) contact_ = Contact{};
-  contact_->contact_point = needle_.contactFrame()->origin;
+  contact_->contact_point = frame->origin;
   contact_->displacement = tip - contact_->contact_point;
   contact_->indentation = -contact_->displacement.dot(axis);
   if (axis.z() < kUpright) return invalidForce("the needle is not upright, and the cell was prepared for that only");
-  if (needle_.contactFrame()->angle > 1.001 * cell_->range.angle) return invalidForce(kTooFarOut);
+  if (frame->angle > 1.001 * needle_.felt().cell()->range.angle) return invalidForce(kTooFarOut);
   if (continuesBelow(prepared.too_deep, duration)) return invalidForce(kTooDeep);
   if (prepared.too_deep) invalid_reason_ = kTooDeep;
   if (!prepared.prepared && invalid_reason_.empty()) invalid_reason_ = kBeside;
@@ -102,10 +126,11 @@ std::vector<std::array<int, 3>> SurrogateCellModel::triangles() const {
 
 std::vector<std::uint32_t> SurrogateCellModel::held() const {
   Eigen::Matrix3Xd rest, displaced;
-  needle_.surface({}, rest, displaced);
+  const SurrogateContact& felt = needle_.felt();
+  SurrogateContact::surface(*felt.cell(), {}, rest, displaced);
   std::vector<std::uint32_t> result;
   for (Eigen::Index i = 0; i < rest.cols(); ++i) {
-    const bool inside = rest.col(i).head<2>().norm() <= 1.001 * scene_.holding_pipette.contact_radius;
+    const bool inside = rest.col(i).head<2>().norm() <= 1.001 * felt.scene().holding_pipette.contact_radius;
     if (rest(2, i) < 0 && inside) result.push_back(static_cast<std::uint32_t>(i));
   }
   return result;
@@ -114,8 +139,10 @@ std::vector<std::uint32_t> SurrogateCellModel::held() const {
 CellModel::DeformedSurface SurrogateCellModel::deformedSurface() {
   Eigen::Matrix3Xd rest, displaced;
   shape_.update();
-  needle_.surface(shape_.value(), rest, displaced);
+  const Served drawn = served(shape_.value().cell);
+  SurrogateContact::surface(*drawn.cell, shape_.value(), rest, displaced);
   DeformedSurface surface;
+  surface.scene = drawn.scene;
   for (Eigen::Index i = 0; i < rest.cols(); ++i) {
     surface.vertices.emplace_back(rest.col(i) + displaced.col(i));
     surface.displacement.push_back(displaced.col(i).norm());

@@ -1,12 +1,16 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <string>
+#include <vector>
 
 #include "base/latest_value.h"
 #include "cell/model/cell_model.h"
+#include "cell/surrogate/changing_contact.h"
 #include "cell/surrogate/force_memory.h"
 #include "cell/surrogate/surrogate_contact.h"
+#include "cell/surrogate/work_limit.h"
 
 namespace microinjection {
 
@@ -24,7 +28,12 @@ class SurrogateCellModel : public CellModel {
 
   void release() override;
 
+  /// Serves another cell from the next step on, as ChangingContact does. The relaxation times stay.
+  /// Call it in one ordinary thread at a time.
+  void change(const Scene& scene, std::shared_ptr<const SurrogateData> cell);
+
   const std::optional<Contact>& contact() const override { return contact_; }
+  std::optional<double> radius() const override { return needle_.felt().radius(); }
   const std::string& invalidReason() const override { return invalid_reason_; }
   std::optional<Solution> solution(double time) const override;
   std::vector<std::array<int, 3>> triangles() const override;
@@ -36,10 +45,16 @@ class SurrogateCellModel : public CellModel {
   TipForce invalidForce(const char* reason);
   bool continuesBelow(bool too_deep, double duration);
 
-  Scene scene_;
-  std::shared_ptr<const SurrogateData> cell_;
-  SurrogateContact needle_;
+  /// A cell that is or was served.
+  struct Served {
+    std::shared_ptr<const Scene> scene;
+    std::shared_ptr<const SurrogateData> cell;
+  };
+  Served served(const SurrogateData* cell);
+
+  ChangingContact needle_;
   ForceMemory memory_;
+  WorkLimit limit_;
   double time_ = 0;  ///< s, of the last step
   std::optional<Contact> contact_;
   double deepest_ = 0;                                   ///< m, deepest indentation below the range
@@ -47,6 +62,8 @@ class SurrogateCellModel : public CellModel {
   Eigen::Matrix3d stiffness_ = Eigen::Matrix3d::Zero();  ///< N/m
   std::string invalid_reason_;
   LatestValue<SurrogateContact::Shape> shape_;  ///< from the thread that steps to the one that draws
+  std::mutex served_mutex_;                     ///< of the ordinary threads; the one that steps never takes it
+  std::vector<Served> served_;                  ///< the last few, newest last
 };
 
 }  // namespace microinjection

@@ -28,24 +28,46 @@ Jet smoothStep(const Jet& x) {
 }  // namespace
 
 SurrogateContact::SurrogateContact(const Scene& scene, std::shared_ptr<const SurrogateData> cell)
-    : scene_(scene), cell_(std::move(cell)) {
+    : scene_(scene), radius_(scene.radius()), cell_(std::move(cell)) {
   const Scene::Tip& tip = scene.needle.tip;
   if (tip.rounded()) shape_ = RoundedTip::make(tip.shape, tip.radius, tip.edge_radius);
-  cell_->energy.makeLocal(0, local_energy_);
-  if (!cell_->field.empty()) cell_->field.makeLocal(0, local_field_);
+  makeLocals(0);
 }
 
-Jet SurrogateContact::overlap(const Eigen::Vector3d& tip) const {
+void SurrogateContact::makeLocals(double angle) {
+  const double prepared = std::min(angle, cell_->range.angle);
+  cell_->energy.makeLocal(prepared, local_energy_);
+  if (!cell_->field.empty()) cell_->field.makeLocal(prepared, local_field_);
+}
+
+void SurrogateContact::reset() {
+  contact_frame_.reset();
+  energy_ = 0;
+}
+
+void SurrogateContact::continueFrom(const SurrogateContact& other) {
+  radius_ = other.radius_;
+  contact_frame_ = other.contact_frame_;
+  if (!contact_frame_) return;
+  displacement_ = other.displacement_;
+  makeLocals(contact_frame_->angle);
+  const double energy =
+      evaluate(overlap(contact_frame_->origin + contact_frame_->rotation * displacement_, radius_)).energy.value;
+  correction_ = other.correction_;
+  correction_.scale(other.energy_ > 0 ? energy / other.energy_ : 0);
+}
+
+Jet SurrogateContact::overlap(const Eigen::Vector3d& tip, double radius) const {
   if (shape_) {
     const Gap gap = shape_->gap(-tip);
-    return {scene_.radius() - gap.distance, gap.normal, -gap.curvature};
+    return {radius - gap.distance, gap.normal, -gap.curvature};
   }
   const Jet x = Jet::coordinate(0, tip.x()), y = Jet::coordinate(1, tip.y());
   Jet squared = -1.0 * (x * x + y * y);
-  squared.value += scene_.radius() * scene_.radius();
+  squared.value += radius * radius;
   constexpr double kRim = 0.05;  // over the radius, from the cell's silhouette, where the needle passes the cell
-  if (!(squared.value > kRim * kRim * scene_.radius() * scene_.radius())) {
-    return {-scene_.radius(), Eigen::Vector3d::UnitZ(), {}};
+  if (!(squared.value > kRim * kRim * radius * radius)) {
+    return {-radius, Eigen::Vector3d::UnitZ(), {}};
   }
   return sqrt(squared) - Jet::coordinate(2, tip.z());
 }
@@ -86,20 +108,20 @@ SurrogateContact::Local SurrogateContact::evaluate(const Jet& overlap) {
 
 SurrogateContact::Result SurrogateContact::step(const Eigen::Vector3d& tip) {
   Result result;
-  const Jet overlap = this->overlap(tip);
+  if (!contact_frame_ && overlap(tip, std::max(radius_, scene_.radius())).value < 0) radius_ = scene_.radius();
+  const Jet overlap = this->overlap(tip, radius_);
   if (contact_frame_) displacement_ = contact_frame_->rotation.transpose() * (tip - contact_frame_->origin);
-  if (overlap.value < (contact_frame_ ? kEnd * displacement_.norm() : 0)) contact_frame_.reset();
+  if (overlap.value < (contact_frame_ ? kEnd * displacement_.norm() : 0)) reset();
   if (!contact_frame_) {
     if (overlap.value < 0) return result;
-    contact_frame_ = ContactFrame::at(scene_.radius(), shape_, tip.head<2>());
+    contact_frame_ = ContactFrame::at(radius_, shape_, tip.head<2>());
     if (!contact_frame_) return result;
-    const double angle = std::min(contact_frame_->angle, cell_->range.angle);
-    cell_->energy.makeLocal(angle, local_energy_);
-    if (!cell_->field.empty()) cell_->field.makeLocal(angle, local_field_);
+    makeLocals(contact_frame_->angle);
     correction_.reset();
     displacement_ = contact_frame_->rotation.transpose() * (tip - contact_frame_->origin);
   }
   const Local local = evaluate(overlap);
+  energy_ = local.energy.value;
   Eigen::Vector3d force = -local.energy.gradient;
   if (!cell_->field.empty()) {
     force *= 1 - PassiveCorrection::kReserve;
@@ -113,14 +135,17 @@ SurrogateContact::Result SurrogateContact::step(const Eigen::Vector3d& tip) {
 }
 
 SurrogateContact::Shape SurrogateContact::shape() const {
-  if (!contact_frame_) return {};
-  return {std::min(contact_frame_->angle, cell_->range.angle), contact_frame_->rotation,
+  Shape free;
+  free.cell = cell_.get();
+  if (!contact_frame_) return free;
+  return {cell_.get(), std::min(contact_frame_->angle, cell_->range.angle), contact_frame_->rotation,
           LimitedDisplacement(cell_->range, contact_frame_->angle < kOnAxis, displacement_).value()};
 }
 
-void SurrogateContact::surface(const Shape& shape, Eigen::Matrix3Xd& at_rest, Eigen::Matrix3Xd& displaced) const {
+void SurrogateContact::surface(const SurrogateData& cell, const Shape& shape, Eigen::Matrix3Xd& at_rest,
+                               Eigen::Matrix3Xd& displaced) {
   Eigen::VectorXd rest, moved;
-  cell_->surface.evaluate(shape.angle, shape.displacement, rest, moved);
+  cell.surface.evaluate(shape.angle, shape.displacement, rest, moved);
   at_rest = shape.rotation * Eigen::Map<const Eigen::Matrix3Xd>(rest.data(), 3, rest.size() / 3);
   displaced = shape.rotation * Eigen::Map<const Eigen::Matrix3Xd>(moved.data(), 3, moved.size() / 3);
 }

@@ -24,6 +24,7 @@ class SurrogateContact {
 
   /// All data that the surface depends on.
   struct Shape {
+    const SurrogateData* cell = nullptr;                     ///< identifies it
     double angle = 0;                                        ///< rad, of the contact point
     Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< from the contact frame to the cell's
     Eigen::Vector3d displacement = Eigen::Vector3d::Zero();  ///< m, of the tip, in the contact frame
@@ -35,15 +36,25 @@ class SurrogateContact {
   Result step(const Eigen::Vector3d& tip);
 
   /// Removes the contact.
-  void reset() { contact_frame_.reset(); }
+  void reset();
+
+  /// Takes over the contact of another cell, before the first step. It keeps its place: the surface
+  /// of a cell of another size is where it was, until the needle is clear of both. Does not
+  /// allocate.
+  void continueFrom(const SurrogateContact& other);
+  double energy() const { return energy_; }  ///< J, stored in the cell in the last step
+  double radius() const { return radius_; }  ///< m, of the surface at rest that the needle touches
+  const Scene& scene() const { return scene_; }
+  const std::shared_ptr<const SurrogateData>& cell() const { return cell_; }
 
   const std::optional<ContactFrame>& contactFrame() const { return contact_frame_; }
   Eigen::Vector3d displacement() const { return displacement_; }  ///< m, of the tip, in the contact frame
 
   Shape shape() const;
-  /// Surface for display: positions of its nodes at rest and their displacement, m, in the frame of
-  /// the cell. Allocates. Any thread may call it at any time, because it only uses constant data.
-  void surface(const Shape& shape, Eigen::Matrix3Xd& at_rest, Eigen::Matrix3Xd& displaced) const;
+  /// Surface of `cell` for display: positions of its nodes at rest and their displacement, m, in the
+  /// frame of the cell. Allocates. Any thread may call it at any time.
+  static void surface(const SurrogateData& cell, const Shape& shape, Eigen::Matrix3Xd& at_rest,
+                      Eigen::Matrix3Xd& displaced);
 
  private:
   struct Local {
@@ -51,10 +62,13 @@ class SurrogateContact {
     Eigen::Vector3d force = Eigen::Vector3d::Zero();      ///< N, of the field
     Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();  ///< N/m, of the field
   };
-  Jet overlap(const Eigen::Vector3d& tip) const;  ///< m, of the tip with the cell at rest
-  Local evaluate(const Jet& overlap);             ///< in the contact frame; sets prepared_
+  /// m, of the tip with a cell of `radius` at rest.
+  Jet overlap(const Eigen::Vector3d& tip, double radius) const;
+  void makeLocals(double angle);
+  Local evaluate(const Jet& overlap);  ///< in the contact frame; sets prepared_
 
   Scene scene_;
+  double radius_;
   std::optional<RoundedTip> shape_;
   std::shared_ptr<const SurrogateData> cell_;
   EnergyExpansion::Local local_energy_;
@@ -63,6 +77,7 @@ class SurrogateContact {
   std::optional<ContactFrame> contact_frame_;
   Eigen::Vector3d displacement_ = Eigen::Vector3d::Zero();
   bool prepared_ = true, too_deep_ = false;
+  double energy_ = 0;
 };
 
 }  // namespace microinjection

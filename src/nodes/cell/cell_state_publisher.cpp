@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "cell/model/cell_parameters.h"
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/real_time.h"
 
@@ -20,9 +21,9 @@ void CellMoment::setReason(const std::string& text) {
   reason[length] = '\0';
 }
 
-CellStatePublisher::CellStatePublisher(CellModel& cell, Output<cell_microinjection::CellState>& output, double rate,
-                                       Thread thread)
-    : cell_(cell), output_(output), period_(1 / rate) {
+CellStatePublisher::CellStatePublisher(CellModel& cell, const Scene& scene,
+                                       Output<cell_microinjection::CellState>& output, double rate, Thread thread)
+    : cell_(cell), scene_(scene), output_(output), period_(1 / rate) {
   undeformed_.header.frame_id = kCellFrame;
   for (const auto& triangle : cell_.triangles()) {
     undeformed_.triangles.insert(undeformed_.triangles.end(), triangle.begin(), triangle.end());
@@ -65,6 +66,10 @@ void CellStatePublisher::fillSurface(cell_microinjection::CellState& state) {
                  [](const Eigen::Vector3d& vertex) { return toMessage<geometry_msgs::Point32>(vertex); });
   state.displacement.assign(picture.displacement.begin(), picture.displacement.end());
   state.contact_vertices = picture.contact_vertices;
+  for (const CellParameter& parameter : cellParameters(picture.scene ? *picture.scene : scene_)) {
+    state.parameter_names.push_back(parameter.name);
+    state.parameter_values.push_back(parameter.value);
+  }
   for (const Eigen::Vector3d& hole : picture.holes) state.holes.push_back(toMessage<geometry_msgs::Point>(hole));
   for (const CellModel::Member& member : picture.members) {
     state.member_points.push_back(toMessage<geometry_msgs::Point32>(member.from));

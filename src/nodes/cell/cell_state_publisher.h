@@ -10,6 +10,7 @@
 
 #include "base/latest_value.h"
 #include "cell/model/cell_model.h"
+#include "cell/model/scene.h"
 #include "cell_microinjection/CellState.h"
 #include "nodes/runtime/ports.h"
 
@@ -35,8 +36,10 @@ class CellStatePublisher {
  public:
   enum class Thread { kOwn, kOfTheStep };
 
-  /// @param rate  Hz. `cell` and `output` outlive it.
-  CellStatePublisher(CellModel& cell, Output<cell_microinjection::CellState>& output, double rate, Thread thread);
+  /// @param scene  of the start
+  /// @param rate   Hz. `cell` and `output` outlive it.
+  CellStatePublisher(CellModel& cell, const Scene& scene, Output<cell_microinjection::CellState>& output, double rate,
+                     Thread thread);
   ~CellStatePublisher();
   CellStatePublisher(const CellStatePublisher&) = delete;
   CellStatePublisher& operator=(const CellStatePublisher&) = delete;
@@ -50,6 +53,7 @@ class CellStatePublisher {
   void fillSurface(cell_microinjection::CellState& state);
 
   CellModel& cell_;
+  Scene scene_;
   Output<cell_microinjection::CellState>& output_;
   double period_;                              ///< s
   cell_microinjection::CellState undeformed_;  ///< the constant part of every message

@@ -9,14 +9,14 @@
 namespace microinjection {
 namespace {
 
-geometry_msgs::TransformStamped enlarged(const std::string& frame, const Eigen::Isometry3d& pose,
+geometry_msgs::TransformStamped enlarged(const std::string& frame, const Eigen::Isometry3d& pose, double enlargement,
                                          const ros::Time& stamp) {
   const Eigen::Quaterniond rotation(pose.linear());
   geometry_msgs::TransformStamped message;
   message.header.stamp = stamp;
   message.header.frame_id = "viz/world";
   message.child_frame_id = "viz/" + frame;
-  message.transform.translation = toMessage<geometry_msgs::Vector3>(toDisplay(pose.translation()));
+  message.transform.translation = toMessage<geometry_msgs::Vector3>(toDisplay(pose.translation(), enlargement));
   message.transform.rotation.x = rotation.x();
   message.transform.rotation.y = rotation.y();
   message.transform.rotation.z = rotation.z();
@@ -26,8 +26,8 @@ geometry_msgs::TransformStamped enlarged(const std::string& frame, const Eigen::
 
 }  // namespace
 
-DisplayFrames::DisplayFrames(const ros::NodeHandle& node, const std::vector<std::string>& fixed)
-    : fixed_(fixed), frames_(node) {}
+DisplayFrames::DisplayFrames(const ros::NodeHandle& node, const std::vector<std::string>& fixed, double enlargement)
+    : fixed_(fixed), enlargement_(enlargement), frames_(node) {}
 
 std::optional<Eigen::Isometry3d> DisplayFrames::find(const std::string& parent, const std::string& frame) const {
   return frames_.find(parent, frame);
@@ -39,7 +39,7 @@ void DisplayFrames::update() {
     if (!pose) continue;
     const auto last = published_.find(frame);
     if (last != published_.end() && last->second.matrix() == pose->matrix()) continue;
-    static_broadcaster_.sendTransform(enlarged(frame, *pose, ros::Time::now()));
+    static_broadcaster_.sendTransform(enlarged(frame, *pose, enlargement_, ros::Time::now()));
     published_[frame] = *pose;
   }
 }
@@ -48,7 +48,7 @@ void DisplayFrames::publishNeedleTip(const Eigen::Isometry3d& tip) {
   // tf refuses two transforms with the same stamp, as while a simulated clock stands still.
   const ros::Time now = ros::Time::now();
   if (now.toSec() == tip_stamp_) return;
-  broadcaster_.sendTransform(enlarged("needle_tip", tip, now));
+  broadcaster_.sendTransform(enlarged("needle_tip", tip, enlargement_, now));
   tip_stamp_ = now.toSec();
 }
 

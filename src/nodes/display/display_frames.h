@@ -14,11 +14,11 @@
 
 namespace microinjection {
 
-/// Republishes the rig's frames at x 1e4 below viz/world, NAME as viz/NAME, for rviz only.
+/// Republishes the rig's frames, enlarged, below viz/world, NAME as viz/NAME, for rviz only.
 class DisplayFrames {
  public:
   /// @param fixed  frames of tf that rarely move; republished as static transforms
-  DisplayFrames(const ros::NodeHandle& node, const std::vector<std::string>& fixed);
+  DisplayFrames(const ros::NodeHandle& node, const std::vector<std::string>& fixed, double enlargement);
 
   /// Republishes changed frames; call it regularly.
   void update();
@@ -34,6 +34,7 @@ class DisplayFrames {
 
  private:
   std::vector<std::string> fixed_;
+  double enlargement_;
   FrameListener frames_;
   tf2_ros::StaticTransformBroadcaster static_broadcaster_;
   tf2_ros::TransformBroadcaster broadcaster_;

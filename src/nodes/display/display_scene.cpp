@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "nodes/display/display_markers.h"
-#include "operation/display/display_scale.h"
 #include "operation/display/force_arrow.h"
 #include "operation/display/legend.h"
 #include "operation/display/pipettes.h"
@@ -21,7 +20,7 @@ constexpr Colour kAlarm{1.00f, 0.45f, 0.35f, 1};
 
 constexpr double kSmallestRange = 1e-6;                     // m, of the colour scale, above the noise
 constexpr float kMembrane = 0.25f;                          // opacity, of a cell with struts and cables inside
-constexpr double kForceAbove = 20e-6;                       // m, from the tip to a force's arrow
+constexpr double kForceAbove = 0.2;                         // display units, from the tip to a force's arrow
 constexpr double kHole = 0.03;                              // display units; not to scale
 constexpr double kStrutWidth = 0.016, kCableWidth = 0.006;  // display units; not to scale
 const std::string kWorld = "viz/world";
@@ -39,8 +38,8 @@ void DisplayScene::drawForce(const std::string& name, const DisplayedState& stat
   std::optional<Arrow> arrow;
   if (state.tip && force) {
     // The arrow is beside the pipette and above the dent, which would hide it.
-    const Eigen::Vector3d tail = *state.tip * Eigen::Vector3d(beside, 0, kForceAbove);
-    arrow = forceArrow(tail, *force, config_.force_scale);
+    const Eigen::Vector3d tail = *state.tip * Eigen::Vector3d(beside, 0, kForceAbove / config_.enlargement);
+    arrow = forceArrow(tail, *force, config_.force_scale, config_.enlargement);
   }
   const MarkerName marker{kWorld, name};
   markers.markers.push_back(arrow ? arrowMarker(marker, *arrow, colour) : noMarker(marker));
@@ -84,25 +83,26 @@ void DisplayScene::drawCell(const DisplayedState& state, visualization_msgs::Mar
     }
   }
   const std::string frame = "viz/" + state.cell_frame;
-  TriangleSoup skin = colouredSurface(surface, colour_range_);
+  TriangleSoup skin = colouredSurface(surface, colour_range_, config_.enlargement);
   if (!state.members.kinds.empty()) {
     for (Colour& colour : skin.colours) colour.a = kMembrane;
     drawMembers(state.members, frame, markers);
   }
   markers.markers.push_back(triangleMarker({frame, "cell"}, skin, {1, 1, 1, 1}));
-  markers.markers.push_back(
-      sphereMarker({frame, "contact"}, pointsAt(surface, surface.contact_vertices), 0.008, kContact));
+  markers.markers.push_back(sphereMarker(
+      {frame, "contact"}, pointsAt(surface, surface.contact_vertices, config_.enlargement), 0.008, kContact));
   std::vector<Eigen::Vector3d> holes;
-  for (const Eigen::Vector3d& hole : state.holes) holes.push_back(toDisplay(hole));
+  for (const Eigen::Vector3d& hole : state.holes) holes.push_back(toDisplay(hole, config_.enlargement));
   markers.markers.push_back(sphereMarker({frame, "holes"}, holes, kHole, kAlarm));
-  if (config_.edges) markers.markers.push_back(lineMarker({frame, "edges"}, edges(surface, 0.0015), 0.001, kEdge));
+  if (config_.edges)
+    markers.markers.push_back(lineMarker({frame, "edges"}, edges(surface, 0.0015, config_.enlargement), 0.001, kEdge));
 }
 
 void DisplayScene::drawMembers(const CellMembers& members, const std::string& frame,
                                visualization_msgs::MarkerArray& markers) {
   tension_range_ = std::max(tension_range_, members.largestTension());
-  markers.markers.push_back(lineMarker({frame, "struts"}, strutLines(members), kStrutWidth));
-  const ColouredLines cables = cableLines(members, tension_range_ > 0 ? tension_range_ : 1);
+  markers.markers.push_back(lineMarker({frame, "struts"}, strutLines(members, config_.enlargement), kStrutWidth));
+  const ColouredLines cables = cableLines(members, tension_range_ > 0 ? tension_range_ : 1, config_.enlargement);
   markers.markers.push_back(lineMarker({frame, "cables"}, cables, kCableWidth));
 }
 
@@ -130,12 +130,13 @@ void DisplayScene::fitHoldingPipette(const DisplayedState& state) {
 void DisplayScene::drawFixed(const DisplayedState& state, visualization_msgs::MarkerArray& markers) {
   fitHoldingPipette(state);
   visualization_msgs::Marker holding =
-      triangleMarker({"viz/holding_pipette", "holding_pipette"}, glass(holding_), {1, 1, 1, 1});
-  holding.pose.position.z = kDisplayScale * holding_height_;
+      triangleMarker({"viz/holding_pipette", "holding_pipette"}, glass(holding_, config_.enlargement), {1, 1, 1, 1});
+  holding.pose.position.z = config_.enlargement * holding_height_;
   markers.markers.push_back(holding);
   const MarkerName injection{"viz/needle_tip", "injection_pipette"};
-  markers.markers.push_back(state.tip ? triangleMarker(injection, glass(config_.injection_pipette), {1, 1, 1, 1})
-                                      : noMarker(injection));
+  markers.markers.push_back(
+      state.tip ? triangleMarker(injection, glass(config_.injection_pipette, config_.enlargement), {1, 1, 1, 1})
+                : noMarker(injection));
   drawLegend(markers);
   fixed_changed_ = false;
 }

@@ -19,12 +19,12 @@ constexpr double kTimeout = 0.2;                // s, of needle and its target
 constexpr double kLongStart = 1.5;              // s, from drag to control; includes a network's round trip
 constexpr double kLongHold = 0.5;               // s
 constexpr double kShowPeriod = 1.0 / 15;        // s
-constexpr double kLeastMotion = 0.05e-6;        // m, smallest motion of the needle that moves the handle
+constexpr double kLeastMotion = 5e-4;           // display units, smallest motion of the needle that moves the handle
 constexpr double kTextHeight = 0.04;            // display units
 const Eigen::Vector3d kTextOffset{0, 0, 0.22};  // display units, of the text from the handle
 
-geometry_msgs::Pose toPoseInDisplay(const Eigen::Vector3d& position) {
-  return toPose(toDisplay(position), ros::Time(), kFrame).pose;
+geometry_msgs::Pose toPoseInDisplay(const Eigen::Vector3d& position, double enlargement) {
+  return toPose(toDisplay(position, enlargement), ros::Time(), kFrame).pose;
 }
 
 }  // namespace
@@ -33,7 +33,8 @@ MarkerConfig MarkerConfig::read(ConfigReader& reader) {
   MarkerConfig config;
   config.hand = GoalHandConfig::read(reader);
   reader.number("hand_scale", config.hand_scale, Range::positive());
-  reader.vector("handle_offset", config.handle_offset, Range::closed(-1e-3, 1e-3));
+  reader.number("enlargement", config.enlargement, Range::positive());
+  reader.vector("handle_offset", config.handle_offset, Range::closed(-0.01, 0.01));
   reader.number("arrow_scale", config.arrow_scale, Range::positive());
   return config;
 }
@@ -66,7 +67,7 @@ void MarkerAdapter::onFeedback(const Feedback& feedback) {
   const auto event = feedback->event_type;
   if (event == Event::MOUSE_UP) return endDrag();
   if (event != Event::MOUSE_DOWN && event != Event::POSE_UPDATE && event != Event::KEEP_ALIVE) return;
-  const Eigen::Vector3d to = fromDisplay(toVector(feedback->pose.position));
+  const Eigen::Vector3d to = fromDisplay(toVector(feedback->pose.position), config_.enlargement);
   if (feedback->header.frame_id != kFrame || !to.allFinite() || to.norm() > kLargestNeedleDistance) {
     ROS_WARN_THROTTLE(5, "the handle cannot be dragged in frame '%s': set rviz's fixed frame to %s",
                       feedback->header.frame_id.c_str(), kFrame);
@@ -132,9 +133,9 @@ void MarkerAdapter::followNeedle() {
   if (dragged_) return server_.applyChanges();  // the server has the position from one rviz and publishes it to others
   if (!tip_) return;
   const Eigen::Vector3d position = *tip_ + config_.handle_offset;
-  if ((position - handle_).norm() < kLeastMotion) return;
+  if (config_.enlargement * (position - handle_).norm() < kLeastMotion) return;
   handle_ = position;
-  server_.setPose(kHandMarker, toPoseInDisplay(handle_));
+  server_.setPose(kHandMarker, toPoseInDisplay(handle_, config_.enlargement));
   server_.applyChanges();
 }
 
@@ -148,14 +149,15 @@ std::string MarkerAdapter::reasonText() const {
 }
 
 void MarkerAdapter::displayForce(const Eigen::Vector3d& force) {
-  const auto arrow = forceArrow(handle_, force, config_.arrow_scale);
+  const auto arrow = forceArrow(handle_, force, config_.arrow_scale, config_.enlargement);
   const MarkerName arrow_name{kFrame, "force on the hand", 0}, text_name{kFrame, "words", 0};
   const Colour orange{1.0F, 0.45F, 0.1F, 1.0F}, white{1.0F, 1.0F, 1.0F, 1.0F};
   char felt[48];
   std::snprintf(felt, sizeof felt, "%.2f N at the hand", force.norm());
   visualization_msgs::MarkerArray shown;
   shown.markers = {arrow ? arrowMarker(arrow_name, *arrow, orange) : noMarker(arrow_name),
-                   textMarker(text_name, toDisplay(handle_) + kTextOffset, felt + reasonText(), kTextHeight, white)};
+                   textMarker(text_name, toDisplay(handle_, config_.enlargement) + kTextOffset, felt + reasonText(),
+                              kTextHeight, white)};
   force_.publish(shown);
 }
 

@@ -10,6 +10,7 @@
 
 #include "nodes/haptic/haptic_adapter.h"
 #include "nodes/haptic/session_state.h"
+#include "operation/display/display_scale.h"
 #include "operation/teleoperation/goal_hand.h"
 
 namespace microinjection {
@@ -18,7 +19,8 @@ struct MarkerConfig {
   GoalHandConfig hand;
   double hand_scale = 1e3;                        ///< m of the hand per m of the marker in `world`
   Eigen::Vector3d handle_offset = {36e-6, 0, 0};  ///< m, from the tip to the handle, `world`
-  double arrow_scale = 20e-6;                     ///< m/N, length of the force's arrow, before x 1e4
+  double arrow_scale = 20e-6;                     ///< m/N, length of the force's arrow, before the enlargement
+  double enlargement = kDisplayScale;             ///< m in rviz per m, as of the display
 
   static MarkerConfig read(ConfigReader& reader);
 };

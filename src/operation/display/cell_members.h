@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "operation/display/display_scale.h"
 #include "operation/display/triangle_soup.h"
 
 namespace microinjection {
@@ -28,8 +29,8 @@ struct ColouredLines {
 };
 
 /// The struts, in one colour.
-ColouredLines strutLines(const CellMembers& members);
+ColouredLines strutLines(const CellMembers& members, double enlargement = kDisplayScale);
 /// The cables, coloured by tension from 0 to `range` (N, > 0); a slack one is grey.
-ColouredLines cableLines(const CellMembers& members, double range);
+ColouredLines cableLines(const CellMembers& members, double range, double enlargement = kDisplayScale);
 
 }  // namespace microinjection

@@ -7,7 +7,6 @@
 #include <set>
 #include <utility>
 
-#include "operation/display/display_scale.h"
 #include "operation/display/shading.h"
 
 namespace microinjection {
@@ -51,14 +50,14 @@ std::vector<Eigen::Vector3d> vertexNormals(const CellSurface& surface) {
   return normals;
 }
 
-TriangleSoup colouredSurface(const CellSurface& surface, double range) {
+TriangleSoup colouredSurface(const CellSurface& surface, double range, double enlargement) {
   const std::vector<Eigen::Vector3d> normals = vertexNormals(surface);
   TriangleSoup soup;
   soup.points.reserve(3 * surface.triangles.size());
   soup.colours.reserve(3 * surface.triangles.size());
   for (const auto& triangle : surface.triangles) {
     for (const int vertex : triangle) {
-      soup.points.push_back(toDisplay(surface.vertices[vertex]));
+      soup.points.push_back(toDisplay(surface.vertices[vertex], enlargement));
       soup.colours.push_back(
           shaded(colourOfFraction(surface.displacement[vertex] / range), lampLight(normals[vertex])));
     }
@@ -66,10 +65,10 @@ TriangleSoup colouredSurface(const CellSurface& surface, double range) {
   return soup;
 }
 
-LineList edges(const CellSurface& surface, double lift) {
+LineList edges(const CellSurface& surface, double lift, double enlargement) {
   const std::vector<Eigen::Vector3d> normals = vertexNormals(surface);
   const auto lifted = [&](int vertex) -> Eigen::Vector3d {
-    return toDisplay(surface.vertices[vertex]) + lift * normals[vertex];
+    return toDisplay(surface.vertices[vertex], enlargement) + lift * normals[vertex];
   };
   std::set<std::pair<int, int>> unique;
   for (const auto& [a, b, c] : surface.triangles) {
@@ -84,10 +83,11 @@ LineList edges(const CellSurface& surface, double lift) {
   return lines;
 }
 
-std::vector<Eigen::Vector3d> pointsAt(const CellSurface& surface, const std::vector<int>& vertices) {
+std::vector<Eigen::Vector3d> pointsAt(const CellSurface& surface, const std::vector<int>& vertices,
+                                      double enlargement) {
   std::vector<Eigen::Vector3d> points;
   points.reserve(vertices.size());
-  for (const int vertex : vertices) points.push_back(toDisplay(surface.vertices[vertex]));
+  for (const int vertex : vertices) points.push_back(toDisplay(surface.vertices[vertex], enlargement));
   return points;
 }
 

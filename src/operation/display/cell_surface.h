@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "operation/display/display_scale.h"
 #include "operation/display/triangle_soup.h"
 
 namespace microinjection {
@@ -30,12 +31,13 @@ std::vector<Eigen::Vector3d> vertexNormals(const CellSurface& surface);
 /// The surface coloured by displacement from 0 to `range` (m, > 0), in display units. The colours
 /// include light from above the viewer, because rviz does not light triangles with individual
 /// colours.
-TriangleSoup colouredSurface(const CellSurface& surface, double range);
+TriangleSoup colouredSurface(const CellSurface& surface, double range, double enlargement = kDisplayScale);
 
 /// Each edge once, lifted off the surface by `lift` (display units) to stay visible.
-LineList edges(const CellSurface& surface, double lift);
+LineList edges(const CellSurface& surface, double lift, double enlargement = kDisplayScale);
 
 /// The points at `vertices`, display units.
-std::vector<Eigen::Vector3d> pointsAt(const CellSurface& surface, const std::vector<int>& vertices);
+std::vector<Eigen::Vector3d> pointsAt(const CellSurface& surface, const std::vector<int>& vertices,
+                                      double enlargement = kDisplayScale);
 
 }  // namespace microinjection

@@ -5,6 +5,7 @@ namespace microinjection {
 DisplayConfig DisplayConfig::read(ConfigReader& reader) {
   DisplayConfig config;
   reader.number("rate", config.rate, {0, 60, true, false});
+  reader.number("enlargement", config.enlargement, Range::positive());
   reader.boolean("edges", config.edges);
   reader.number("colour_range", config.colour_range, Range::nonNegative());
   reader.number("force_scale", config.force_scale, Range::positive());

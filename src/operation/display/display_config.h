@@ -1,15 +1,17 @@
 #pragma once
 
 #include "base/config_reader.h"
+#include "operation/display/display_scale.h"
 #include "operation/display/pipettes.h"
 
 namespace microinjection {
 
 struct DisplayConfig {
-  double rate = 30;         ///< Hz of wall time, of the markers, at most 60
-  bool edges = true;        ///< draw the edges of the cell's mesh
-  double colour_range = 0;  ///< m, displacement at the end of the colour scale; 0: the largest so far
-  double force_scale = 5;   ///< m/N, length of a force's arrow in the scene, before x 1e4
+  double rate = 30;                    ///< Hz of wall time, of the markers, at most 60
+  bool edges = true;                   ///< draw the edges of the cell's mesh
+  double colour_range = 0;             ///< m, displacement at the end of the colour scale; 0: the largest so far
+  double enlargement = kDisplayScale;  ///< m in rviz per m
+  double force_scale = 5;              ///< m/N, length of a force's arrow in the scene, before the enlargement
   InjectionPipette injection_pipette;
   HoldingPipette holding_pipette;
 

@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <optional>
 
+#include "operation/display/display_scale.h"
+
 namespace microinjection {
 
 /// An arrow in display units.
@@ -17,7 +19,8 @@ struct Arrow {
 /// The arrow of a force; empty when it is too short to be visible.
 /// @param tail   m, where the arrow starts
 /// @param force  N, in the frame of `tail`
-/// @param scale  m/N, the arrow's length in the scene per newton, before x 1e4
-std::optional<Arrow> forceArrow(const Eigen::Vector3d& tail, const Eigen::Vector3d& force, double scale);
+/// @param scale  m/N, the arrow's length in the scene per newton, before the enlargement
+std::optional<Arrow> forceArrow(const Eigen::Vector3d& tail, const Eigen::Vector3d& force, double scale,
+                                double enlargement = kDisplayScale);
 
 }  // namespace microinjection

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 
-#include "operation/display/display_scale.h"
 #include "operation/display/lathe.h"
 #include "operation/display/shading.h"
 
@@ -27,8 +26,8 @@ void addQuarterEllipse(const Eigen::Vector2d& from, const Eigen::Vector2d& to, s
 }
 
 /// Glass with this profile (m) about the z axis.
-TriangleSoup turned(std::vector<Eigen::Vector2d> profile) {
-  for (Eigen::Vector2d& point : profile) point *= kDisplayScale;
+TriangleSoup turned(std::vector<Eigen::Vector2d> profile, double enlargement) {
+  for (Eigen::Vector2d& point : profile) point *= enlargement;
   TriangleSoup soup = lathe(profile, kSegments);
   for (std::size_t i = 0; i < soup.points.size(); i += 3) {
     const Eigen::Vector3d& origin = soup.points[i];
@@ -63,7 +62,7 @@ HoldingPipette HoldingPipette::read(ConfigReader& reader) {
   return pipette;
 }
 
-TriangleSoup glass(const InjectionPipette& pipette) {
+TriangleSoup glass(const InjectionPipette& pipette, double enlargement) {
   const double taper = (pipette.shaft_radius - pipette.tip_radius) / std::tan(pipette.taper_angle);
   const double taper_end = std::min(taper, pipette.length);
   const double end_radius = pipette.tip_radius + taper_end * std::tan(pipette.taper_angle);
@@ -74,10 +73,11 @@ TriangleSoup glass(const InjectionPipette& pipette) {
                  {end_radius, pipette.length},
                  {bore * end_radius, pipette.length},
                  {bore * end_radius, taper_end},
-                 {bore * pipette.tip_radius, 0}});
+                 {bore * pipette.tip_radius, 0}},
+                enlargement);
 }
 
-TriangleSoup glass(const HoldingPipette& pipette) {
+TriangleSoup glass(const HoldingPipette& pipette, double enlargement) {
   const double wall = pipette.outer_radius - pipette.mouth_radius;
   const Eigen::Vector2d rim(pipette.mouth_radius, 0);
   const double bore = std::max(pipette.bore_ratio * pipette.outer_radius, pipette.mouth_radius);
@@ -89,7 +89,7 @@ TriangleSoup glass(const HoldingPipette& pipette) {
   profile.emplace_back(bore, pipette.length);
   profile.insert(profile.end(), inside.rbegin(), inside.rend());
   profile.push_back(rim);
-  return turned(profile);
+  return turned(profile, enlargement);
 }
 
 Mouth fitMouth(const std::vector<Eigen::Vector3d>& held) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/config_reader.h"
+#include "operation/display/display_scale.h"
 #include "operation/display/triangle_soup.h"
 
 namespace microinjection {
@@ -32,8 +33,8 @@ struct HoldingPipette {
 
 /// The shaded, translucent glass in the pipette's own frame, display units: origin at the centre of
 /// the tip or mouth, z into the body.
-TriangleSoup glass(const InjectionPipette& pipette);
-TriangleSoup glass(const HoldingPipette& pipette);
+TriangleSoup glass(const InjectionPipette& pipette, double enlargement = kDisplayScale);
+TriangleSoup glass(const HoldingPipette& pipette, double enlargement = kDisplayScale);
 
 /// The circle of contact between the cell and the holding pipette.
 struct Mouth {

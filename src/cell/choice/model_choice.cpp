@@ -1,4 +1,4 @@
-#include "cell/surrogate/model_choice.h"
+#include "cell/choice/model_choice.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,24 +1,28 @@
-#include "cell/surrogate/make_cell_model.h"
+#include "cell/choice/make_cell_model.h"
 
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "base/errors.h"
+#include "cell/choice/member_change.h"
+#include "cell/choice/model_choice.h"
+#include "cell/family/family_cell.h"
 #include "cell/model/online_cell.h"
 #include "cell/model/puncturable_cell.h"
-#include "cell/surrogate/model_choice.h"
 #include "cell/surrogate/surrogate_cell_model.h"
 
 namespace microinjection {
 namespace {
+
+constexpr char kNotOfFamily[] = "only a cell of a family can";
 
 ChosenCellModel live(const Scene& scene, const OnlineCellModelConfig& config, const std::string& description,
                      bool as_required) {
   const auto cell = makeOnlineCell(scene);
   auto tracker = std::make_unique<OnlineCellModel>(cell, config);
   return {std::make_unique<PuncturableCell>(scene, std::move(tracker)), description + ": " + cell->description(),
-          as_required};
+          as_required, nullptr, std::string("this one is solved live; ") + kNotOfFamily};
 }
 
 ChosenCellModel unprepared(const Scene& scene, const OnlineCellModelConfig& config, const std::string& reason) {
@@ -45,6 +49,28 @@ std::string notPreparedReason(const CacheRead<SurrogateData>& read, const std::s
   }
 }
 
+/// Data of a scene's converged force.
+struct PreparedCell {
+  std::shared_ptr<const SurrogateData> data;  ///< none: `text` is the reason
+  std::string text;                           ///< where they are from
+  std::shared_ptr<const FamilyData> family;   ///< that contains the scene; null: none
+};
+
+/// The scene's own data or those of a family, whichever are more exact.
+PreparedCell findPrepared(const Scene& scene, const std::string& families, const std::string& call) {
+  const PreparationRange range = PreparationRange::standard(scene);
+  auto own = SurrogateData::load(scene, range, preparedFile(scene, Preparation::plan(scene, range)));
+  std::string outside;
+  const std::optional<FamilyCell> member = findFamilyCell(families, scene, outside);
+  const std::string damage = own || own.state == CacheState::kMissing ? "" : "; " + notPreparedReason(own, call);
+  if (own && (!member || own.content->common_error <= member->data->common_error)) {
+    return {std::make_shared<const SurrogateData>(std::move(*own.content)), "from its own preparation",
+            member ? member->family : nullptr};
+  }
+  if (member) return {member->data, member->description + damage, member->family};
+  return {nullptr, notPreparedReason(own, call) + (outside.empty() ? "" : "; " + outside), nullptr};
+}
+
 /// Reason why a scene cannot be prepared; empty when it can.
 std::string preparationRefusal(const Scene& scene) {
   try {
@@ -63,7 +89,7 @@ ChosenCellModel makeCellModel(const Scene& scene, const std::string& model, cons
     auto tracker = std::make_unique<ExplicitCellModel>(scene, config.explicit_dynamics);
     const std::string description =
         "the cell is the paper's explicit dynamics, as asked for: " + tracker->description();
-    return {std::make_unique<PuncturableCell>(scene, std::move(tracker)), description, false};
+    return {std::make_unique<PuncturableCell>(scene, std::move(tracker)), description, false, nullptr, kNotOfFamily};
   }
   if (scene.cell.tensegrity && model != "prepared") {
     return live(scene, config.online, "the cell is a tensegrity, solved live", true);  // its scene has no requirements
@@ -74,14 +100,11 @@ ChosenCellModel makeCellModel(const Scene& scene, const std::string& model, cons
     if (model == "prepared") throw ConfigError("model = prepared: " + refused);
     return unprepared(scene, config.online, "the cell cannot be prepared (" + refused + ")");
   }
-  const PreparationRange range = PreparationRange::standard(scene);
   const std::string call = "rosrun cell_microinjection prepare --scene " + path;
-  auto loaded = SurrogateData::load(scene, range, preparedFile(scene, Preparation::plan(scene, range)));
-  const std::string reason = loaded ? "" : notPreparedReason(loaded, call);
-  if (!loaded && model == "prepared") throw ConfigError("model = prepared: " + reason);
-  if (!loaded) return unprepared(scene, config.online, reason);
-  const auto cell = std::make_shared<const SurrogateData>(std::move(*loaded.content));
-  std::vector<ModelFigures> figures = {measurePreparedCell(scene, cell)};
+  const PreparedCell prepared = findPrepared(scene, config.families, call);
+  if (!prepared.data && model == "prepared") throw ConfigError("model = prepared: " + prepared.text);
+  if (!prepared.data) return unprepared(scene, config.online, prepared.text);
+  std::vector<ModelFigures> figures = {measurePreparedCell(scene, prepared.data)};
   std::string note;
   if (model != "prepared") {
     const CacheRead<ModelFigures> other = loadFigures(scene, "live");
@@ -92,8 +115,10 @@ ChosenCellModel makeCellModel(const Scene& scene, const std::string& model, cons
   const ModelChoice choice = chooseModel(scene.requirements, figures);
   const std::string description = "model " + model + ": " + choice.reason + note;
   if (choice.name == "live") return live(scene, config.online, description + "; it is", choice.meets);
-  auto tracker = std::make_unique<SurrogateCellModel>(scene, cell);
-  return {std::make_unique<PuncturableCell>(scene, std::move(tracker)), description, choice.meets};
+  auto tracker = std::make_unique<SurrogateCellModel>(scene, prepared.data);
+  auto change = prepared.family ? std::make_unique<MemberChange>(scene, prepared.family, *tracker) : nullptr;
+  return {std::make_unique<PuncturableCell>(scene, std::move(tracker)), description + "; " + prepared.text,
+          choice.meets, std::move(change), kNotOfFamily};
 }
 
 }  // namespace microinjection

@@ -1,16 +1,18 @@
-#include "cell/surrogate/make_cell_model.h"
+#include "cell/choice/make_cell_model.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 #include <string>
 
 #include "base/errors.h"
+#include "cell/choice/model_choice.h"
+#include "cell/family/made_up_family.h"
 #include "cell/surrogate/cached_cell.h"
-#include "cell/surrogate/model_choice.h"
 
 namespace microinjection {
 namespace {
@@ -153,6 +155,107 @@ TEST_F(ServeNeedle, ExplicitDynamicsIsServedWithAWarningWhereItIsAskedForByName)
   EXPECT_FALSE(served.as_required);
   EXPECT_TRUE(has(served.description, "too large") && has(served.description, "mass times")) << served.description;
   EXPECT_TRUE(has(refusal(pipette(), "explicit"), "needle/tip/shape = ")) << refusal(pipette(), "explicit");
+}
+
+/// With a folder of families, in which a made-up one is.
+class ServeMember : public ServeNeedle {
+ protected:
+  void SetUp() override {
+    ServeNeedle::SetUp();
+    fs::create_directories(families_);
+    fs::copy_file(MICROINJECTION_SOURCE_DIR "/config/families/homogeneous.yaml", families_ + "/homogeneous.yaml");
+    familyOfSprings().save(families_ + "/homogeneous.data");
+    config_.families = families_;
+  }
+
+  /// A cell without requirements.
+  static Scene inside() {
+    Scene scene = pipette();
+    scene.requirements = {};
+    return scene;
+  }
+
+  const std::string families_ = cache_ + "/families";
+  CellModelConfig config_;
+};
+
+TEST_F(ServeMember, ACellOfAFamilyIsServedWithoutPreparation) {
+  Scene scene = inside();
+  scene.cell.material().young_modulus = 15e3;
+  const ChosenCellModel served = makeCellModel(scene, "prepared", config_, "a.yaml");
+  EXPECT_TRUE(has(served.description, "family homogeneous: tip_radius 0.107 of [0.04, 0.2], ")) << served.description;
+  EXPECT_TRUE(has(served.description, "expected force error: median ")) << served.description;
+  EXPECT_NE(served.change, nullptr);
+}
+
+TEST_F(ServeMember, TheBorderIsInsideAndTheCellPastItIsNot) {
+  Scene scene = inside();
+  for (const double factor : {1.0, 1 + 1e-9, 1.001}) {
+    scene.needle.tip.radius = 0.2 * factor * scene.radius();
+    const ChosenCellModel served = makeCellModel(scene, "auto", config_, "a.yaml");
+    if (factor < 1.001) {
+      EXPECT_TRUE(has(served.description, "family homogeneous: tip_radius 0.2 of")) << served.description;
+    } else {
+      EXPECT_TRUE(has(served.description, "outside of family homogeneous: tip_radius 0.2 of")) << served.description;
+      EXPECT_TRUE(has(served.description, "live: P2-P0")) << served.description;
+      EXPECT_EQ(served.change, nullptr);
+      EXPECT_TRUE(has(served.unchangeable, "live")) << served.unchangeable;
+    }
+  }
+}
+
+TEST_F(ServeMember, ItsOwnPreparationIsServedWhereItIsMoreExact) {
+  const Scene scene = inside();
+  SurrogateData own = smallCell(scene);
+  own.median_error = own.common_error = 1e-6;
+  own.save(scene, PreparationRange::standard(scene), file(scene));
+  const ChosenCellModel served = makeCellModel(scene, "prepared", config_, "a.yaml");
+  EXPECT_TRUE(has(served.description, "from its own preparation")) << served.description;
+  EXPECT_NE(served.change, nullptr);
+  own.median_error = own.common_error = 0.5;
+  own.save(scene, PreparationRange::standard(scene), file(scene));
+  const ChosenCellModel member = makeCellModel(scene, "prepared", config_, "a.yaml");
+  EXPECT_TRUE(has(member.description, "family homogeneous: ")) << member.description;
+}
+
+TEST_F(ServeMember, DamagedDataOfAFamilyAreNamed) {
+  fs::resize_file(families_ + "/homogeneous.data", fs::file_size(families_ + "/homogeneous.data") - 1);
+  const ChosenCellModel served = makeCellModel(inside(), "auto", config_, "a.yaml");
+  EXPECT_TRUE(has(served.description, "family homogeneous has no data (")) << served.description;
+  EXPECT_TRUE(has(served.description, "is damaged")) << served.description;
+}
+
+TEST_F(ServeMember, ChangesWhileItIsServed) {
+  const ChosenCellModel served = makeCellModel(inside(), "prepared", config_, "a.yaml");
+  ASSERT_NE(served.change, nullptr);
+  const std::string text = served.change->change({{"young_modulus", 15e3}, {"diameter", 60e-6}});
+  EXPECT_TRUE(has(text, "family homogeneous: tip_radius 0.1 of")) << text;
+  served.cell->step({0, 0, 40e-6}, Eigen::Vector3d::UnitZ(), 1);
+  const auto felt = served.cell->deformedSurface().scene;
+  ASSERT_NE(felt, nullptr);
+  EXPECT_DOUBLE_EQ(felt->radius(), 30e-6);
+  EXPECT_DOUBLE_EQ(felt->cell.material().young_modulus, 15e3);
+  // Each change begins with the cell that the one before made.
+  served.change->change({{"young_modulus", 20e3}});
+  served.cell->step({0, 0, 40e-6}, Eigen::Vector3d::UnitZ(), 1.1);
+  EXPECT_DOUBLE_EQ(served.cell->deformedSurface().scene->radius(), 30e-6);
+}
+
+TEST_F(ServeMember, ARefusedChangeChangesNothing) {
+  const ChosenCellModel served = makeCellModel(inside(), "prepared", config_, "a.yaml");
+  const auto refused = [&](const CellParameter& parameter) -> std::string {
+    try {
+      served.change->change({{"young_modulus", 1e3}, parameter});
+    } catch (const ConfigError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_TRUE(has(refused({"diameter", 150e-6}), "outside of family homogeneous: ")) << refused({"diameter", 150e-6});
+  EXPECT_TRUE(has(refused({"diameter", -1}), "diameter = -1: must be ")) << refused({"diameter", -1});
+  served.cell->step({0, 0, 40e-6}, Eigen::Vector3d::UnitZ(), 1);
+  EXPECT_DOUBLE_EQ(served.cell->deformedSurface().scene->cell.material().young_modulus,
+                   inside().cell.material().young_modulus);
 }
 
 }  // namespace

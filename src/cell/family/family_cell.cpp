@@ -1,0 +1,96 @@
+#include "cell/family/family_cell.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+#include "base/errors.h"
+#include "cell/family/family_file.h"
+#include "cell/model/similarity.h"
+
+namespace microinjection {
+namespace {
+
+/// "tip_radius 0.107 of [0.04, 0.2], ..."
+std::string parametersText(const Family& family, const Eigen::VectorXd& coordinates) {
+  std::ostringstream out;
+  out.precision(3);
+  for (int i = 0; i < family.dimension(); ++i) {
+    const Family::Parameter& parameter = family.parameters()[i];
+    out << (i > 0 ? ", " : "") << parameter.ratio->name << ' ' << parameter.value(coordinates[i]) << " of ["
+        << parameter.low << ", " << parameter.high << ']';
+  }
+  return out.str();
+}
+
+std::string describe(const Family& family, const Eigen::VectorXd& coordinates, const SurrogateData& cell) {
+  std::ostringstream out;
+  out.precision(2);
+  out << "family " << family.name() << ": " << parametersText(family, coordinates) << "; expected force error: median "
+      << 100 * cell.median_error << " %, nine of ten below " << 100 * cell.common_error << " %; ";
+  out.precision(3);
+  out << 1e6 * cell.range.depth << " um deep, on the axis " << 1e6 * cell.range.axis_depth << " um";
+  return out.str();
+}
+
+std::vector<std::string> familyFiles(const std::string& folder) {
+  std::vector<std::string> files;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    if (entry.path().extension() == ".yaml") files.push_back(entry.path().string());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+void append(std::string& reasons, const std::string& reason) {
+  if (!reason.empty()) reasons += (reasons.empty() ? "" : "; ") + reason;
+}
+
+}  // namespace
+
+std::optional<FamilyCell> makeFamilyCell(const std::shared_ptr<const FamilyData>& family, const Scene& scene,
+                                         std::string& reason) {
+  reason.clear();
+  const auto coordinates = family->family().coordinatesOf(scene);
+  if (!coordinates) return std::nullopt;
+  const std::string place = parametersText(family->family(), *coordinates);
+  if (!Family::contains(*coordinates)) {
+    reason = "outside of family " + family->family().name() + ": " + place;
+    return std::nullopt;
+  }
+  if (!family->serves(*coordinates)) {
+    reason = "family " + family->family().name() + " has no converged member near " + place;
+    return std::nullopt;
+  }
+  auto data = std::make_shared<SurrogateData>(family->cell(*coordinates));
+  const Similarity units = Similarity::of(scene);
+  data->changeUnits(units.length, units.energy());
+  std::string description = describe(family->family(), *coordinates, *data);
+  return FamilyCell{family, std::move(data), std::move(description)};
+}
+
+std::optional<FamilyCell> findFamilyCell(const std::string& folder, const Scene& scene, std::string& reason) {
+  reason.clear();
+  if (folder.empty()) return std::nullopt;
+  std::optional<FamilyCell> best;
+  for (const std::string& file : familyFiles(folder)) {
+    const Family family = Family::load(file);
+    if (!family.coordinatesOf(scene)) continue;
+    CacheRead<FamilyData> read = FamilyData::load(family, familyDataFile(file));
+    if (!read) {
+      append(reason, "family " + family.name() + " has no data (" + read.reason + ")");
+      continue;
+    }
+    std::string own;
+    auto cell = makeFamilyCell(std::make_shared<const FamilyData>(std::move(*read.content)), scene, own);
+    append(reason, own);
+    if (cell && (!best || cell->data->common_error < best->data->common_error)) best = std::move(cell);
+  }
+  if (!best && reason.empty()) reason = "no family has cells of this form";
+  return best;
+}
+
+}  // namespace microinjection

@@ -1,0 +1,86 @@
+#include "nodes/cell/cell_parameter_server.h"
+
+#include <exception>
+
+#include "base/errors.h"
+#include "nodes/runtime/message_guard.h"
+#include "nodes/runtime/real_time.h"
+
+namespace microinjection {
+namespace {
+
+constexpr double kLargestAge = 1;  ///< s: an older message is of another time, and perhaps of another cell
+
+std::vector<CellParameter> pairs(const std::vector<std::string>& names, const std::vector<double>& values) {
+  if (names.empty()) throw ConfigError("name: is empty; must have at least one parameter");
+  if (names.size() != values.size()) {
+    throw ConfigError("value: has " + std::to_string(values.size()) + " numbers; must have one for each of the " +
+                      std::to_string(names.size()) + " names");
+  }
+  std::vector<CellParameter> parameters;
+  for (std::size_t i = 0; i < names.size(); ++i) parameters.push_back({names[i], values[i]});
+  return parameters;
+}
+
+}  // namespace
+
+CellParameterServer::CellParameterServer(MemberChange* change, const std::string& unchangeable, Cycle& cycle,
+                                         ros::NodeHandle private_node)
+    : change_(change), unchangeable_(unchangeable) {
+  ros::NodeHandle node = cycle.node();
+  if (!cycle.deterministic()) node.setCallbackQueue(&queue_);
+  private_node.setCallbackQueue(node.getCallbackQueue());
+  subscriber_ = subscribeGuarded<cell_microinjection::CellParameters>(
+      node, "cell/set_parameters", 1,
+      [this](const cell_microinjection::CellParameters& message, const std::string&) { receive(message); });
+  service_ = private_node.advertiseService("set_cell_parameters", &CellParameterServer::call, this);
+  cycle.diagnostics().add("cell parameters", [this](auto& status) { report(status); });
+  if (!cycle.deterministic()) thread_ = std::thread([this] { run(); });
+}
+
+CellParameterServer::~CellParameterServer() {
+  stop_ = true;
+  if (thread_.joinable()) thread_.join();
+}
+
+void CellParameterServer::run() {
+  preferForThread(Priority::kOrdinary);
+  while (!stop_) queue_.callAvailable(ros::WallDuration(0.1));
+}
+
+void CellParameterServer::receive(const cell_microinjection::CellParameters& message) {
+  const double age = message.header.stamp.isZero() ? 0 : secondsBetween(message.header.stamp, ros::Time::now());
+  if (age > kLargestAge) throw ConfigError("its stamp is " + std::to_string(age) + " s old; must be at most 1 s");
+  change(message.name, message.value);
+}
+
+bool CellParameterServer::call(cell_microinjection::SetCellParameters::Request& request,
+                               cell_microinjection::SetCellParameters::Response& response) {
+  try {
+    response.message = change(request.name, request.value);
+    response.success = true;
+  } catch (const std::exception& error) {
+    response.success = false;
+    response.message = error.what();
+  }
+  return true;
+}
+
+std::string CellParameterServer::change(const std::vector<std::string>& names, const std::vector<double>& values) {
+  const std::vector<CellParameter> parameters = pairs(names, values);
+  if (!change_) throw ConfigError("the cell cannot change while it is served: " + unchangeable_);
+  const std::string outcome = change_->change(parameters);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  ++changes_;
+  return outcome_ = outcome;
+}
+
+/// Refused messages are in the diagnostics of the inputs.
+void CellParameterServer::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  const std::unique_lock<std::mutex> lock(mutex_, std::try_to_lock);
+  if (!lock) return status.summary(diagnostic_msgs::DiagnosticStatus::OK, "are changing");
+  status.summary(diagnostic_msgs::DiagnosticStatus::OK, changes_ > 0 ? outcome_ : "as at the start");
+  status.add("changes", changes_);
+}
+
+}  // namespace microinjection

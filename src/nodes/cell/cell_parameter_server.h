@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cell_microinjection/CellParameters.h>
+#include <cell_microinjection/SetCellParameters.h>
+#include <ros/callback_queue.h>
+#include <ros/ros.h>
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "cell/choice/make_cell_model.h"
+#include "nodes/runtime/cycle.h"
+
+namespace microinjection {
+
+/// Changes parameters of the cell while it is served, see MemberChange. Live it makes the new cell
+/// in its own thread of ordinary priority, so that no step is delayed. In lock step it does so
+/// right before a step, so that all runs are the same.
+///
+/// In:      /cell/set_parameters (CellParameters)
+/// Service: ~set_cell_parameters (SetCellParameters)
+class CellParameterServer {
+ public:
+  /// `change` and `cycle` outlive it. A null `change` refuses everything, with the reason
+  /// `unchangeable`.
+  CellParameterServer(MemberChange* change, const std::string& unchangeable, Cycle& cycle,
+                      ros::NodeHandle private_node);
+  ~CellParameterServer();
+  CellParameterServer(const CellParameterServer&) = delete;
+  CellParameterServer& operator=(const CellParameterServer&) = delete;
+
+ private:
+  void run();
+  void receive(const cell_microinjection::CellParameters& message);
+  bool call(cell_microinjection::SetCellParameters::Request& request,
+            cell_microinjection::SetCellParameters::Response& response);
+  std::string change(const std::vector<std::string>& names, const std::vector<double>& values);
+  void report(diagnostic_updater::DiagnosticStatusWrapper& status);
+
+  MemberChange* change_;
+  std::string unchangeable_;
+  ros::CallbackQueue queue_;
+  ros::Subscriber subscriber_;
+  ros::ServiceServer service_;
+  std::mutex mutex_;      ///< of what follows; the thread that steps never waits for it
+  unsigned changes_ = 0;  ///< since the start
+  std::string outcome_;   ///< of the last one
+  std::atomic<bool> stop_{false};
+  std::thread thread_;  ///< last member: starts after the others are initialised
+};
+
+}  // namespace microinjection
