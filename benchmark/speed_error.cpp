@@ -8,6 +8,7 @@
 #include <iostream>
 #include <limits>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@
 #include "benchmark/common/paper_mesh.h"
 #include "benchmark/common/prepared_scene.h"
 #include "benchmark/common/reference_scenes.h"
+#include "cell/family/family_cell.h"
 #include "cell/mechanics/explicit_step.h"
 #include "cell/model/cell_problem.h"
 #include "cell/model/scene_mesh.h"
@@ -28,6 +30,7 @@ namespace {
 
 constexpr unsigned kTimeLimit = 240;  ///< s, of one row, where the machine is shared
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr char kFamilies[] = MICROINJECTION_SOURCE_DIR "/config/families";
 constexpr char kPreparedScene[] = MICROINJECTION_SOURCE_DIR "/config/cells/mouse_oocyte_pipette.yaml";
 
 struct Row {
@@ -157,9 +160,8 @@ std::string converging(const ReferenceScene& scene, const std::string& element, 
 }
 
 /// One force: with its stiffness, at the needle's next place.
-std::string prepared(const ReferenceScene& scene) {
-  const auto cell = std::make_shared<const SurrogateData>(preparedScene(loadScene(kPreparedScene), kPreparedScene));
-  Row row{scene.name + " prepared", "energy", static_cast<std::size_t>(SurfaceGrid::standard().nodeCount()), 0, {}, {}};
+std::string prepared(const ReferenceScene& scene, const char* from, const std::shared_ptr<const SurrogateData>& cell) {
+  Row row{scene.name + from, "energy", static_cast<std::size_t>(SurfaceGrid::standard().nodeCount()), 0, {}, {}};
   SurrogateContact contact(scene.scene, cell);
   const double top = scene.scene.radius();
   contact.step({0, 0, top + 1e-9});
@@ -272,7 +274,16 @@ std::string table() {
   for (const InstructionSet set : sets) {
     for (int n : {4, 9, 16, 26}) table.add([&] { return kernel(n, set, set == sets.back()); });
   }
-  table.add([] { return prepared(referenceScene("hemisphere_sticking")); });
+  table.add([] {
+    const auto cell = std::make_shared<const SurrogateData>(preparedScene(loadScene(kPreparedScene), kPreparedScene));
+    return prepared(referenceScene("hemisphere_sticking"), " prepared", cell);
+  });
+  table.add([] {
+    std::string reason;
+    const auto member = findFamilyCell(kFamilies, loadScene(kPreparedScene), reason);
+    if (!member) throw std::runtime_error(reason);
+    return prepared(referenceScene("hemisphere_sticking"), " family", member->data);
+  });
   addLinear(table);
   addConverging(table);
   return table.text();

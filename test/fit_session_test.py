@@ -63,6 +63,18 @@ class FitSessionTest(unittest.TestCase):
             scale = bridge.get('position_scale', 1e-3) * bridge.get('force_gain', 2e5)
             self.assertAlmostEqual(stiffness * scale, 1e-3 * 2e5, delta=1e-2)
 
+    def test_a_soft_inside_is_felt(self):
+        def gain(moduli):
+            layers = [{'outer_radius': radius, 'material': {'young_modulus': modulus}}
+                      for radius, modulus in zip((28e-6, 24e-6, 10e-6), moduli)]
+            scene = {**large(1), 'cell': {'layers': layers[:len(moduli)]}}
+            return self.fit(scene)[1].get('haptic_bridge', {}).get('force_gain', 2e5)
+
+        self.assertEqual(gain([17.9e3]), 2e5)
+        self.assertEqual(gain([17.9e3, 17.9e3, 17.9e3]), 2e5)
+        self.assertAlmostEqual(2e5 / gain([17.9e3, 1e3]), (1 + 16.9 * (1 - (24 / 28)**3)**2) / 17.9, 5)
+        self.assertGreater(gain([17.9e3, 1e3]), gain([17.9e3, 1e3, 5e3]))
+
     def test_times_stay(self):
         controller = self.fit(large(3))[1]['injection_controller']
         self.assertAlmostEqual(controller['motion']['travel_limit'] / controller['motion']['approach_speed'], 3, 4)

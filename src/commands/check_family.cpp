@@ -58,14 +58,14 @@ void checkFamily(const FamilyArguments& arguments) {
     return commands;
   });
   std::ostringstream table;
-  table << "family,member,angle,depth,lateral,force_share,force_error,surface_error\n";
+  table << "family,member,angle,depth,lateral,force_error,surface_error,force_share\n";
   std::vector<double> forces, surfaces;
   for (std::size_t i = 0; i < members.size(); ++i) {
     for (const CheckedPlace& place : compareMember(data, members[i], stores[i].plan(), stores[i].loadAll())) {
       char row[200];
-      std::snprintf(row, sizeof(row), "%s,%zu,%.1f,%.3f,%.3f,%.3f,%.5f,%.5f\n", family.name().c_str(), i,
-                    place.angle * 57.29578, place.depth, place.lateral, place.force_share, place.force_error,
-                    place.surface_error);
+      std::snprintf(row, sizeof(row), "%s,%zu,%.1f,%.3f,%.3f,%.5f,%.5f,%.3f\n", family.name().c_str(), i,
+                    place.angle * 57.29578, place.depth, place.lateral, place.force_error, place.surface_error,
+                    place.force_share);
       table << row;
       surfaces.push_back(place.surface_error);
       if (place.force_share > kLargeForce) forces.push_back(place.force_error);

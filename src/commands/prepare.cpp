@@ -21,6 +21,7 @@
 #include "base/standard_output.h"
 #include "base/worker_processes.h"
 #include "cell/choice/model_choice.h"
+#include "cell/family/family_cell.h"
 #include "cell/model/scene.h"
 #include "cell/model/similarity.h"
 #include "cell/surrogate/surrogate_data.h"
@@ -65,6 +66,7 @@ Options)";
 
 struct Arguments {
   std::string scene;
+  std::string families;
   FamilyArguments family;
   int jobs = 1;
   int ray = -1;
@@ -86,6 +88,8 @@ Arguments parse(int argc, char** argv) {
   po::options_description visible, all;
   FamilyArguments& family = arguments.family;
   visible.add_options()("help", "this text")("scene", po::value(&arguments.scene), "scene file (YAML, SI units)")(
+      "families", po::value(&arguments.families),
+      "prepares nothing when a family of this folder serves the scene as exactly as its requirements ask for")(
       "family", po::value(&family.file), "family file (YAML), instead of a scene")(
       "members", po::value(&family.members)->default_value(family.members), "members that the family shall have")(
       "check", po::value(&family.check)->default_value(0),
@@ -250,8 +254,23 @@ int work(const Arguments& arguments) {
   }
 }
 
+/// Whether a family serves the scene to its requirements.
+bool isServed(const Arguments& arguments) {
+  if (arguments.families.empty() || arguments.again) return false;
+  const Scene scene = loadScene(arguments.scene);
+  std::string reason;
+  const auto member = findFamilyCell(arguments.families, scene, reason);
+  if (!member || member->data->common_error > scene.requirements.force_error) {
+    std::printf("prepare: no family serves the scene as exactly as it asks for: %s\n",
+                member ? member->description.c_str() : reason.c_str());
+    return false;
+  }
+  std::printf("prepare: served without preparation: %s\n", member->description.c_str());
+  return true;
+}
+
 int prepare(const Arguments& arguments) {
-  if (arguments.family.file.empty()) return Preparing(arguments).run();
+  if (arguments.family.file.empty()) return isServed(arguments) ? kDone : Preparing(arguments).run();
   arguments.family.check > 0 ? checkFamily(arguments.family) : prepareFamily(arguments.family);
   return kDone;
 }

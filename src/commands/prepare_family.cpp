@@ -108,9 +108,9 @@ class FamilyPreparation {
       Eigen::MatrixXf displacements;
       const FamilyMember member = fitMember(family_, coordinates, store.loadAll(), displacements);
       data_.add(member, displacements);
-      if (member.share < 1) {
+      if (member.reached.share < 1) {
         std::printf("prepare: the member at %s has a solution to %.0f %% of the planned depth\n",
-                    text(coordinates).c_str(), 100 * member.share);
+                    text(coordinates).c_str(), 100 * member.reached.share);
       }
     } catch (const std::exception& error) {
       data_.addFailed(coordinates);

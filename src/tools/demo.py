@@ -47,8 +47,8 @@ def parse_arguments():
     parser.add_argument('--cell', default=CELL,
                         help='name in config/cells, or path of a scene file (%(default)s)')
     parser.add_argument('--model', choices=('auto', 'prepared', 'live', 'explicit'), default='auto',
-                        help='prepared: converged force, made ready first (minutes, once); live: P1 tetrahedra, at once; '
-                        'auto: prepared where the cell can be')
+                        help='prepared: converged force, of a family or made ready first (minutes, once); live: P1 tetrahedra, at '
+                        'once; auto: prepared where the cell can be')
     parser.add_argument('--clock', choices=('wall', 'lockstep'), default='wall',
                         help='wall time, or a simulated clock that gives the same bits on any machine')
     parser.add_argument('--rig', default='sim',
@@ -101,7 +101,7 @@ class Demo:
             raise DemoError(f'--cell {self._arguments.cell}: there is no file {self._scene()}')
         if self._arguments.model == 'live':
             return
-        say('the off-line stage: takes minutes the first time')
+        say('the off-line stage: takes minutes the first time, for a cell of no family')
         if not full_solution.prepare(self._scene()):
             if self._arguments.model == 'prepared':
                 raise DemoError('the cell cannot be prepared, see above')

@@ -17,8 +17,16 @@ def _program(name):
 
 
 def prepare(scene):
-    """Trains the on-line model of a scene, with progress; at once when that was done before. @returns whether it is."""
-    return subprocess.run([_program('prepare'), '--scene', str(scene)], check=False).returncode == 0
+    """Prepares a scene, with progress; at once when that was done before, or when a family serves it. @returns whether
+    it is prepared."""
+    families = Path(__file__).resolve().parents[2] / 'config' / 'families'
+    return subprocess.run([_program('prepare'), '--scene', str(scene), '--families', str(families)], check=False).returncode == 0
+
+
+def check_family(family, members, seed, table):
+    """Compares a family with members at random that were never solved for, and leaves the table. @returns success."""
+    command = [_program('prepare'), '--family', str(family), '--check', str(members), '--seed', str(seed), '--csv', str(table)]
+    return subprocess.run(command, check=False, stdout=subprocess.DEVNULL).returncode == 0
 
 
 def judge(scene, session, table):

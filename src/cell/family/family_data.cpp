@@ -14,7 +14,6 @@ namespace microinjection {
 namespace {
 
 constexpr char kVersion[] = " data 1";  ///< change it when the format or the fit of a member changes
-constexpr double kNeighbour = 0.1;      ///< weight over the largest, above which a member limits the range
 constexpr int kMostMembers = 1000;
 
 double quantile(std::vector<double> values, double share) {
@@ -28,7 +27,8 @@ ExpectedError quantiles(const std::vector<double>& values) { return {quantile(va
 
 void writeMember(ByteWriter& writer, const FamilyMember& member, const Eigen::MatrixXf& surface) {
   writer.array(member.coordinates);
-  for (const double x : {member.share, member.axis_share, member.scale, member.median_error, member.common_error}) {
+  for (const double x :
+       {member.reached.share, member.reached.axis_share, member.scale, member.median_error, member.common_error}) {
     writer.number(x);
   }
   writer.array(member.energy);
@@ -55,11 +55,12 @@ FamilyMember readMember(ByteReader& reader, Eigen::Index dimension) {
   const Eigen::Index field = ForceField(EnergyScales()).coefficients().size();
   FamilyMember member;
   member.coordinates = readVector<Eigen::VectorXd>(reader, dimension);
-  for (double* x : {&member.share, &member.axis_share, &member.scale, &member.median_error, &member.common_error}) {
+  for (double* x :
+       {&member.reached.share, &member.reached.axis_share, &member.scale, &member.median_error, &member.common_error}) {
     *x = reader.number<double>();
     if (!(std::isfinite(*x) && *x >= 0)) throw std::runtime_error("a number of a member cannot be");
   }
-  if (!(member.scale > 0 && member.share > 0 && member.axis_share > 0)) {
+  if (!(member.scale > 0 && member.reached.share > 0 && member.reached.axis_share > 0)) {
     throw std::runtime_error("a number of a member cannot be");
   }
   member.energy = readVector<Eigen::VectorXd>(reader, energy);
@@ -149,13 +150,13 @@ SurrogateData FamilyData::cell(const Eigen::VectorXd& coordinates) const {
   const Scene scene = family_.member(coordinates);
   const Preparation plan = planMember(family_, scene);
   const Eigen::VectorXd weights = kriging_->weights(coordinates);
-  const double largest = weights.cwiseAbs().maxCoeff();
   const FamilyMember& first = members_.front();
   Eigen::VectorXd energy = Eigen::VectorXd::Zero(first.energy.size()),
                   field = Eigen::VectorXd::Zero(first.field.size());
   Eigen::MatrixXd amplitudes =
       Eigen::MatrixXd::Zero(surfaces_.amplitudes().front().rows(), surfaces_.amplitudes().front().cols());
-  double log_scale = 0, share = 1, axis_share = 1;
+  double log_scale = 0;
+  std::vector<Reached> reached;
   for (std::size_t i = 0; i < members_.size(); ++i) {
     const FamilyMember& member = members_[i];
     const double weight = weights[static_cast<Eigen::Index>(i)];
@@ -163,15 +164,14 @@ SurrogateData FamilyData::cell(const Eigen::VectorXd& coordinates) const {
     field += weight * member.field;
     amplitudes += weight * surfaces_.amplitudes()[i].cast<double>();
     log_scale += weight * std::log(member.scale);
-    if (std::abs(weight) < kNeighbour * largest) continue;
-    share = std::min(share, member.share);
-    axis_share = std::min(axis_share, member.axis_share);
+    reached.push_back(member.reached);
   }
   SurrogateData cell;
   cell.range = plan.range;
-  cell.range.depth *= share;
-  cell.range.lateral *= share;
-  cell.range.axis_depth *= axis_share;
+  const Reached together = reachedTogether(reached, weights);
+  cell.range.depth *= together.share;
+  cell.range.lateral *= together.share;
+  cell.range.axis_depth *= together.axis_share;
   cell.energy = EnergyExpansion(plan.scales, EnergyDegrees());
   cell.energy.setCoefficients(std::exp(log_scale) * energy);
   cell.field = ForceField(plan.scales);

@@ -15,15 +15,18 @@ class LeaveOneOut {
   /// Evaluates every member at the places of every other.
   LeaveOneOut(const Family& family, const std::vector<FamilyMember>& members);
 
-  /// Errors at all places of each member where its force is above a fiftieth of its largest.
+  /// Errors at all places of each member's paths that it and the members around it reached, where
+  /// its force is above a fiftieth of its largest.
   std::vector<std::vector<double>> errors(const Kriging& kriging) const;
 
  private:
   struct Member {
     double scale = 0;
+    std::vector<double> shares;           ///< of their paths, of the places
     std::vector<Eigen::VectorXd> forces;  ///< of each member at the places of this one, over that one's scale
   };
   std::vector<Member> members_;
+  std::vector<Reached> reached_;
 };
 
 /// Covariance that predicts the members best.

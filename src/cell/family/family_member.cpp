@@ -1,9 +1,14 @@
 #include "cell/family/family_member.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "cell/family/family_places.h"
 
 namespace microinjection {
 namespace {
+
+constexpr double kNeighbour = 0.1;  ///< weight over the largest, above which a member limits the range
 
 /// Magnitude of the force in the middle of the range, over that of the scales.
 double middleForce(const SurrogateData& cell, const PreparationRange& range) {
@@ -16,6 +21,17 @@ double middleForce(const SurrogateData& cell, const PreparationRange& range) {
 
 }  // namespace
 
+Reached reachedTogether(const std::vector<Reached>& members, const Eigen::VectorXd& weights) {
+  const double least = kNeighbour * weights.cwiseAbs().maxCoeff();
+  Reached result;
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    if (std::abs(weights[static_cast<Eigen::Index>(i)]) < least) continue;
+    result.share = std::min(result.share, members[i].share);
+    result.axis_share = std::min(result.axis_share, members[i].axis_share);
+  }
+  return result;
+}
+
 Preparation planMember(const Family& family, const Scene& member) {
   return Preparation::plan(member, family.range(member), PathSet::kFew);
 }
@@ -27,8 +43,7 @@ FamilyMember fitMember(const Family& family, const Eigen::VectorXd& coordinates,
   const SurrogateData cell = SurrogateData::fit(scene, plan, results);
   FamilyMember member;
   member.coordinates = coordinates;
-  member.share = cell.range.depth / plan.range.depth;
-  member.axis_share = cell.range.axis_depth / plan.range.axis_depth;
+  member.reached = {cell.range.depth / plan.range.depth, cell.range.axis_depth / plan.range.axis_depth};
   member.scale = middleForce(cell, plan.range);
   member.energy = cell.energy.coefficients() / member.scale;
   member.field = cell.field.coefficients() / member.scale;

@@ -8,12 +8,19 @@
 
 namespace microinjection {
 
+/// The part of their planned ranges that all members reached which a prediction with these weights
+/// depends on: those with a tenth of the largest weight or more.
+struct Reached {
+  double share = 1;       ///< of the depth, by all paths
+  double axis_share = 1;  ///< of the depth on the axis
+};
+Reached reachedTogether(const std::vector<Reached>& members, const Eigen::VectorXd& weights);
+
 /// A member of a family that was solved, without dimension. The coefficients are those of
 /// SurrogateData with the scales of the member's plan, divided by `scale`.
 struct FamilyMember {
   Eigen::VectorXd coordinates;
-  double share = 1;               ///< of the planned depth, that all paths reached
-  double axis_share = 1;          ///< same, on the axis
+  Reached reached;                ///< of the planned range
   double scale = 1;               ///< force in the middle of the range over that of EnergyScales
   Eigen::VectorXd energy, field;  ///< coefficients
   double median_error = 0;        ///< relative, of the member's own fit

@@ -22,14 +22,14 @@ std::vector<ContactPlace> surfacePlaces(const PreparationRange& range) {
   std::vector<double> angles;
   for (const TrainingRay& ray : Preparation::paths(range, PathSet::kAll)) {
     if (ray.level != kCoarseLevel) continue;
-    for (const double share : kShares) places.push_back({ray.angle, share * ray.target});
+    for (const double share : kShares) places.push_back({ray.angle, share * ray.target, share});
     if (std::find(angles.begin(), angles.end(), ray.angle) == angles.end()) angles.push_back(ray.angle);
   }
   for (int i = 1; i <= kDeep; ++i) {
     const double depth = range.depth + (range.axis_depth - range.depth) * i / kDeep;
-    places.push_back({0, -depth * Eigen::Vector3d::UnitZ()});
+    places.push_back({0, -depth * Eigen::Vector3d::UnitZ(), 1});
   }
-  for (const double angle : angles) places.push_back({angle, Eigen::Vector3d::Zero()});
+  for (const double angle : angles) places.push_back({angle, Eigen::Vector3d::Zero(), 0});
   return places;
 }
 
@@ -47,7 +47,7 @@ std::vector<ContactPlace> forcePlaces(const Preparation& plan) {
   std::vector<ContactPlace> places;
   for (const TrainingRay& ray : plan.rays) {
     if (ray.level != kCoarseLevel) continue;
-    for (const double share : kShares) places.push_back({ray.angle, share * ray.target});
+    for (const double share : kShares) places.push_back({ray.angle, share * ray.target, share});
   }
   return places;
 }

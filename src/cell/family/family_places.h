@@ -15,6 +15,7 @@ PreparationRange familyRange(double angle, double depth);
 struct ContactPlace {
   double angle = 0;                                        ///< rad, of the contact point
   Eigen::Vector3d displacement = Eigen::Vector3d::Zero();  ///< m, of the tip, in the contact frame
+  double share = 1;                                        ///< of the length of its path
 };
 
 /// The places at which all members of a family store their surface: along every path of the range,

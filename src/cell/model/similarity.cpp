@@ -20,6 +20,7 @@ Scene withoutDimension(const Scene& scene) {
   for (Scene::Layer& layer : result.cell.layers) {
     divide(layer.outer_radius, units.length);
     divide(layer.material.young_modulus, units.modulus);
+    divide(layer.material.poisson_ratio, 1);
     divide(layer.surface_tension, units.modulus * units.length);
   }
   divide(result.holding_pipette.contact_radius, units.length);

@@ -64,7 +64,7 @@ TEST_F(FamilyOfSprings, TheErrorsAreThoseOfFitAndPrediction) {
 
 TEST_F(FamilyOfSprings, TheRangeIsWhatTheNeighboursReached) {
   MadeUp shallow(Eigen::Vector3d(0.9, 0.9, 0.1));
-  shallow.member.share = 0.6;
+  shallow.member.reached.share = 0.6;
   data_.add(shallow.member, shallow.surface);
   data_.update();
   const auto depthOver = [&](const Eigen::Vector3d& x) {

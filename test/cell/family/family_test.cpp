@@ -44,6 +44,17 @@ TEST(Family, ContainsACellOfAnySizeAndStiffness) {
   EXPECT_NEAR(cells.parameters()[0].value((*after)[0]), 3.0 / 28, 1e-9);
 }
 
+TEST(Family, ContainsMeasuredCellsWhoseNumbersAreNotRound) {
+  const Family cells = family("homogeneous");
+  Scene scene = loadScene(MICROINJECTION_SOURCE_DIR "/config/cells/mouse_oocyte_pipette.yaml");
+  for (int i = 1; i < 100; ++i) {
+    scene.cell.layers.front().outer_radius = 28e-6 + 1e-8 * M_PI * i;
+    scene.cell.material().young_modulus = 15e3 + M_E * i;
+    scene.cell.material().poisson_ratio = 0.46 + 1e-4 * M_PI * i;
+    EXPECT_TRUE(cells.coordinatesOf(scene)) << i;
+  }
+}
+
 TEST(Family, AViscoelasticCellIsServedAsItsElasticPart) {
   Scene scene = cell("mouse_oocyte_pipette");
   scene.cell.material().viscoelasticity.prony = {{0.5, 1.0}};
