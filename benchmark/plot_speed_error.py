@@ -22,6 +22,7 @@ MODELS = {
     'hemisphere_sticking axisymmetric': ('{}, section (hemisphere)', '#00a5b5', '-', 'h'),
     'hemisphere_sticking spatial': ('{}, space (hemisphere)', '#00a5b5', '--', 'X'),
     'hemisphere_sticking prepared': ('prepared cell (hemisphere)', '#d8a300', '', '*'),
+    'hemisphere_sticking family': ('cell of a family (hemisphere)', '#8a5a00', '', 'P'),
 }
 
 

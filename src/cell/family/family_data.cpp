@@ -156,7 +156,7 @@ SurrogateData FamilyData::cell(const Eigen::VectorXd& coordinates) const {
   Eigen::MatrixXd amplitudes =
       Eigen::MatrixXd::Zero(surfaces_.amplitudes().front().rows(), surfaces_.amplitudes().front().cols());
   double log_scale = 0;
-  std::vector<Reached> reached;
+  std::vector<const FamilyMember*> solved;
   for (std::size_t i = 0; i < members_.size(); ++i) {
     const FamilyMember& member = members_[i];
     const double weight = weights[static_cast<Eigen::Index>(i)];
@@ -164,14 +164,14 @@ SurrogateData FamilyData::cell(const Eigen::VectorXd& coordinates) const {
     field += weight * member.field;
     amplitudes += weight * surfaces_.amplitudes()[i].cast<double>();
     log_scale += weight * std::log(member.scale);
-    reached.push_back(member.reached);
+    solved.push_back(&member);
   }
   SurrogateData cell;
   cell.range = plan.range;
-  const Reached together = reachedTogether(reached, weights);
-  cell.range.depth *= together.share;
-  cell.range.lateral *= together.share;
-  cell.range.axis_depth *= together.axis_share;
+  const Reached reached = reachedAt(coordinates, solved);
+  cell.range.depth *= reached.share;
+  cell.range.lateral *= reached.share;
+  cell.range.axis_depth *= reached.axis_share;
   cell.energy = EnergyExpansion(plan.scales, EnergyDegrees());
   cell.energy.setCoefficients(std::exp(log_scale) * energy);
   cell.field = ForceField(plan.scales);

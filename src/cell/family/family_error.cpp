@@ -43,7 +43,12 @@ LeaveOneOut::LeaveOneOut(const Family& family, const std::vector<FamilyMember>& 
     const std::vector<ContactPlace> places = forcePlaces(plan);
     Member member;
     member.scale = at.scale;
-    reached_.push_back(at.reached);
+    std::vector<const FamilyMember*> others;
+    for (const FamilyMember& other : members) {
+      if (&other != &at) others.push_back(&other);
+    }
+    member.reached = at.reached.share;
+    if (!others.empty()) member.reached = std::min(member.reached, reachedAt(at.coordinates, others).share);
     for (const ContactPlace& place : places) member.shares.push_back(place.share);
     for (const FamilyMember& other : members) {
       ForceField field(plan.scales);
@@ -70,11 +75,9 @@ std::vector<std::vector<double>> LeaveOneOut::errors(const Kriging& kriging) con
     const Eigen::Map<const Eigen::Matrix3Xd> truth(own.data(), 3, own.size() / 3);
     const Eigen::Map<const Eigen::Matrix3Xd> guess(predicted.data(), 3, own.size() / 3);
     const double largest = truth.colwise().norm().maxCoeff();
-    const Reached together = reachedTogether(reached_, weights.row(static_cast<Eigen::Index>(i)).transpose());
-    const double reached = std::min(reached_[i].share, together.share);
     for (Eigen::Index k = 0; k < truth.cols(); ++k) {
       const double force = truth.col(k).norm();
-      const bool served = members_[i].shares[static_cast<std::size_t>(k)] <= reached;
+      const bool served = members_[i].shares[static_cast<std::size_t>(k)] <= members_[i].reached;
       if (served && force > kLarge * largest) result[i].push_back((guess.col(k) - truth.col(k)).norm() / force);
     }
   }

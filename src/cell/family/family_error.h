@@ -15,18 +15,18 @@ class LeaveOneOut {
   /// Evaluates every member at the places of every other.
   LeaveOneOut(const Family& family, const std::vector<FamilyMember>& members);
 
-  /// Errors at all places of each member's paths that it and the members around it reached, where
+  /// Errors at all places of each member's paths that it and a prediction of its range reach, where
   /// its force is above a fiftieth of its largest.
   std::vector<std::vector<double>> errors(const Kriging& kriging) const;
 
  private:
   struct Member {
     double scale = 0;
+    double reached = 1;                   ///< share of its paths that it and a prediction from the others reach
     std::vector<double> shares;           ///< of their paths, of the places
     std::vector<Eigen::VectorXd> forces;  ///< of each member at the places of this one, over that one's scale
   };
   std::vector<Member> members_;
-  std::vector<Reached> reached_;
 };
 
 /// Covariance that predicts the members best.

@@ -1,6 +1,5 @@
 #include "cell/family/family_member.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "cell/family/family_places.h"
@@ -8,7 +7,7 @@
 namespace microinjection {
 namespace {
 
-constexpr double kNeighbour = 0.1;  ///< weight over the largest, above which a member limits the range
+constexpr double kSamePlace = 1e-9;  ///< squared distance of coordinates
 
 /// Magnitude of the force in the middle of the range, over that of the scales.
 double middleForce(const SurrogateData& cell, const PreparationRange& range) {
@@ -21,15 +20,17 @@ double middleForce(const SurrogateData& cell, const PreparationRange& range) {
 
 }  // namespace
 
-Reached reachedTogether(const std::vector<Reached>& members, const Eigen::VectorXd& weights) {
-  const double least = kNeighbour * weights.cwiseAbs().maxCoeff();
-  Reached result;
-  for (std::size_t i = 0; i < members.size(); ++i) {
-    if (std::abs(weights[static_cast<Eigen::Index>(i)]) < least) continue;
-    result.share = std::min(result.share, members[i].share);
-    result.axis_share = std::min(result.axis_share, members[i].axis_share);
+Reached reachedAt(const Eigen::VectorXd& coordinates, const std::vector<const FamilyMember*>& solved) {
+  Reached sum{0, 0};
+  double weights = 0;
+  for (const FamilyMember* member : solved) {
+    const double square = (member->coordinates - coordinates).squaredNorm();
+    const double weight = 1 / std::pow(square + kSamePlace, 2);
+    sum.share += weight * member->reached.share;
+    sum.axis_share += weight * member->reached.axis_share;
+    weights += weight;
   }
-  return result;
+  return {sum.share / weights, sum.axis_share / weights};
 }
 
 Preparation planMember(const Family& family, const Scene& member) {

@@ -8,13 +8,11 @@
 
 namespace microinjection {
 
-/// The part of their planned ranges that all members reached which a prediction with these weights
-/// depends on: those with a tenth of the largest weight or more.
+/// The part of its planned range that a member reached.
 struct Reached {
   double share = 1;       ///< of the depth, by all paths
   double axis_share = 1;  ///< of the depth on the axis
 };
-Reached reachedTogether(const std::vector<Reached>& members, const Eigen::VectorXd& weights);
 
 /// A member of a family that was solved, without dimension. The coefficients are those of
 /// SurrogateData with the scales of the member's plan, divided by `scale`.
@@ -26,6 +24,10 @@ struct FamilyMember {
   double median_error = 0;        ///< relative, of the member's own fit
   double common_error = 0;        ///< same, exceeded by one of ten samples
 };
+
+/// The part that a member at other coordinates reaches: the mean of those that were solved, weighted
+/// by their distance to the power of -4 (Shepard's interpolation).
+Reached reachedAt(const Eigen::VectorXd& coordinates, const std::vector<const FamilyMember*>& solved);
 
 /// Plan of a member's paths.
 Preparation planMember(const Family& family, const Scene& member);

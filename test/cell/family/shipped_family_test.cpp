@@ -1,0 +1,79 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "cell/family/family_data.h"
+#include "cell/family/family_file.h"
+#include "cell/surrogate/axis_ray.h"
+
+namespace microinjection {
+namespace {
+
+/// The families whose data are part of the repository.
+class ShippedFamily : public testing::TestWithParam<const char*> {
+ protected:
+  ShippedFamily() {
+    auto read = FamilyData::load(family_, familyDataFile(file_));
+    if (read) data_ = std::move(*read.content);
+    reason_ = read.reason;
+  }
+
+  const std::string file_ = MICROINJECTION_SOURCE_DIR "/config/families/" + std::string(GetParam()) + ".yaml";
+  const Family family_ = Family::load(file_);
+  FamilyData data_{family_};
+  std::string reason_;
+};
+
+TEST_P(ShippedFamily, SaysWhereItsDataAreFrom) {
+  ASSERT_EQ(reason_, "");
+  for (const char* part : {"made by: prepare --family ", "version: ", "date: ", "force error of each member"}) {
+    EXPECT_NE(data_.provenance().find(part), std::string::npos) << part;
+  }
+}
+
+/// Largest relative difference of a member's forces from those of an equilibrium each.
+double largestError(const SurrogateData& cell, const std::vector<TrainingSample>& solved) {
+  double largest = 0;
+  for (const TrainingSample& sample : solved) {
+    ForceField::Local local;
+    cell.field.makeLocal(sample.angle, local);
+    Eigen::Matrix3d jacobian;
+    const Eigen::Vector3d force = local.evaluate(sample.displacement, jacobian);
+    largest = std::max(largest, (force - sample.force).norm() / sample.force.norm());
+  }
+  return largest;
+}
+
+/// Members drawn at random, solved again: the section on the axis, which is quick and exact.
+TEST_P(ShippedFamily, MembersHaveTheForceOfTheirSectionOnTheAxis) {
+  ASSERT_EQ(reason_, "");
+  std::mt19937 random(20261124);
+  for (int draw = 0; draw < 3; ++draw) {
+    const FamilyMember& drawn = data_.members()[random() % data_.members().size()];
+    const SurrogateData cell = data_.cell(drawn.coordinates);
+    const std::vector<double> depths = {0.3 * cell.range.depth, 0.7 * cell.range.depth, cell.range.depth};
+    const std::vector<TrainingSample> solved = solveAxis(family_.member(drawn.coordinates), depths);
+    ASSERT_EQ(solved.size(), depths.size());
+    EXPECT_LT(largestError(cell, solved), 0.02) << drawn.coordinates.transpose();
+  }
+}
+
+/// A path beside the axis, on the coarse mesh, whose force is a few percent off the converged one.
+TEST_P(ShippedFamily, AMemberHasTheForceOfItsPathBesideTheAxis) {
+  ASSERT_EQ(reason_, "");
+  std::mt19937 random(20261125);
+  const FamilyMember& drawn = data_.members()[random() % data_.members().size()];
+  const SurrogateData cell = data_.cell(drawn.coordinates);
+  const Eigen::Vector3d target(0.5 * cell.range.lateral, 0, -0.8 * cell.range.depth);
+  const TrainingResult solved = solveRay(family_.member(drawn.coordinates), {0.7, target, 2, kCoarseLevel});
+  ASSERT_EQ(solved.samples.size(), 2u) << solved.reason;
+  EXPECT_LT(largestError(cell, solved.samples), 0.1) << drawn.coordinates.transpose();
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ShippedFamily, testing::Values("homogeneous"));
+
+}  // namespace
+}  // namespace microinjection
