@@ -266,6 +266,7 @@ def main():
         for line in str(error).splitlines():
             print(f"session.launch: {line}", file=sys.stderr)
         return 1
+    print(f"session.launch: {text}", file=sys.stderr)  # roslaunch shows it
     print(text)  # the parameter's value
     return 0
 
