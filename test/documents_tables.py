@@ -90,7 +90,7 @@ def check_commands(project, text):
     problems = check_arguments(project, text)
     problems += [f'./dev {name} is not in the table' for name in project.dev if f'`./dev {name}' not in text]
     for program in ('indent', 'prepare', 'trajectory_error', 'emulate'):
-        hidden = {'--help', '--ray', '--at', '--member'}
+        hidden = {'--help', '--ray', '--at', '--member', '--axis'}
         rows = table_rows(text, program)
         problems += [f'{program} {option} is not in the table' for option in sorted(project.programs[program] - hidden)
                      if option not in rows]

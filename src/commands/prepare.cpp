@@ -72,6 +72,7 @@ struct Arguments {
   int ray = -1;
   std::string at;  ///< coordinates of a family's member
   int member = -1;
+  int axis = -1;
   bool again = false;
   bool show_help = false;
   std::string options;
@@ -101,7 +102,8 @@ Arguments parse(int argc, char** argv) {
   po::options_description hidden;
   hidden.add_options()("ray", po::value(&arguments.ray), "solves only this path, as a worker process")(
       "at", po::value(&arguments.at), "of the family's member at these coordinates")(
-      "member", po::value(&arguments.member), "of this member of the check");
+      "member", po::value(&arguments.member), "of this member of the check")(
+      "axis", po::value(&arguments.axis), "solves only this node of the family's grid on the axis");
   all.add(visible).add(hidden);
   po::variables_map values;
   po::store(po::command_line_parser(argc, argv).options(all).positional({}).run(), values);
@@ -246,6 +248,10 @@ int work(const Arguments& arguments) {
   mallopt(M_MMAP_THRESHOLD, 1 << 30);
   try {
     if (arguments.family.file.empty()) return Preparing(arguments).work();
+    if (arguments.axis >= 0) {
+      solveAxisNode(arguments.family.file, arguments.axis);
+      return kDone;
+    }
     if (arguments.member >= 0) return solveCheckPath(arguments.family, arguments.member, arguments.ray);
     return solveFamilyPath(arguments.family.file, arguments.at, arguments.ray);
   } catch (const std::exception&) {
@@ -283,7 +289,7 @@ int run(int argc, char** argv) {
       flushStandardOutput();
       return kDone;
     }
-    const int status = arguments.ray >= 0 ? work(arguments) : prepare(arguments);
+    const int status = arguments.ray >= 0 || arguments.axis >= 0 ? work(arguments) : prepare(arguments);
     flushStandardOutput();
     return status;
   } catch (const po::error& error) {

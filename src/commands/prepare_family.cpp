@@ -13,6 +13,7 @@
 #include "cell/family/family_data.h"
 #include "cell/family/family_file.h"
 #include "cell/family/next_members.h"
+#include "commands/axis_store.h"
 #include "commands/path_store.h"
 #include "commands/solve_paths.h"
 
@@ -53,10 +54,12 @@ class FamilyPreparation {
   }
 
   void run() {
+    solveAxisForces();
     while (count() < arguments_.members) {
       const int round = std::min(kRound, arguments_.members - count());
       solve(nextMembers(data_.knownPoints(), lengths(), round));
     }
+    if (axis_forces_.size() > 0 && !data_.hasAxisForces()) store();
     report();
   }
 
@@ -71,6 +74,22 @@ class FamilyPreparation {
     auto read = FamilyData::load(family_, path_);
     if (read) data_ = std::move(*read.content);
     reportDamage(read.state, read.reason);
+  }
+
+  void solveAxisForces() {
+    const AxisStore store(family_);
+    if (data_.hasAxisForces()) return;
+    solvePaths("prepare: forces on the axis", arguments_.jobs, [&] {
+      std::vector<std::vector<std::string>> commands;
+      for (const int node : store.missing()) {
+        commands.push_back({thisProgram(), "--family", arguments_.file, "--axis", std::to_string(node)});
+      }
+      return commands;
+    });
+    axis_forces_ = store.loadAll();
+    if (axis_forces_.size() == 0) {
+      std::printf("prepare: some members have no solution on the axis: its force is interpolated between members\n");
+    }
   }
 
   void solve(const std::vector<Eigen::VectorXd>& next) {
@@ -90,13 +109,18 @@ class FamilyPreparation {
     });
     reload();  // another process may have added members
     for (std::size_t i = 0; i < next.size(); ++i) addMember(next[i], stores[i]);
-    data_.update();
-    data_.setProvenance(provenance());
-    data_.save(path_);
+    store();
     const ExpectedError error = data_.leaveOneOutError();
     std::printf("prepare: %zu members, %zu left out: each from the others: median %.2g %%, nine of ten below %.2g %%\n",
                 data_.members().size(), data_.failed().size(), 100 * error.median, 100 * error.common);
     std::fflush(stdout);
+  }
+
+  void store() {
+    if (axis_forces_.size() > 0) data_.setAxisForces(axis_forces_);
+    data_.update();
+    data_.setProvenance(provenance());
+    data_.save(path_);
   }
 
   void addMember(const Eigen::VectorXd& coordinates, const PathStore& store) {
@@ -141,11 +165,14 @@ class FamilyPreparation {
   Family family_;
   std::string path_;
   FamilyData data_;
+  Eigen::VectorXd axis_forces_;  ///< that `data_` has not yet
 };
 
 }  // namespace
 
 void prepareFamily(const FamilyArguments& arguments) { FamilyPreparation(arguments).run(); }
+
+void solveAxisNode(const std::string& file, int node) { AxisStore(Family::load(file)).solve(node); }
 
 int solveFamilyPath(const std::string& file, const std::string& coordinates, int ray) {
   const Family family = Family::load(file);

@@ -26,7 +26,10 @@ void checkFamily(const FamilyArguments& arguments);
 /// status: 0, or kBusyStatus.
 int solveFamilyPath(const std::string& file, const std::string& coordinates, int ray);
 
-/// Same, for a path of the check's member.
+/// Solves one node of the family's grid of forces on the axis, as a worker process.
+void solveAxisNode(const std::string& file, int node);
+
+/// Same as solveFamilyPath, for a path of the check's member.
 int solveCheckPath(const FamilyArguments& arguments, int member, int ray);
 
 }  // namespace microinjection

@@ -7,13 +7,14 @@
 #include <stdexcept>
 
 #include "base/bytes.h"
+#include "cell/family/axis_force.h"
 #include "cell/family/family_places.h"
 #include "cell/surrogate/surface_grid.h"
 
 namespace microinjection {
 namespace {
 
-constexpr char kVersion[] = " data 1";  ///< change it when the format or the fit of a member changes
+constexpr char kVersion[] = " data 2";  ///< change it when the format or the fit of a member changes
 constexpr int kMostMembers = 1000;
 
 double quantile(std::vector<double> values, double share) {
@@ -100,12 +101,16 @@ Eigen::MatrixXd FamilyData::knownPoints() const {
 }
 
 void FamilyData::update() {
-  const LeaveOneOut left_out(family_, members_);
+  std::vector<double> scales;
+  for (const FamilyMember& member : members_) {
+    if (hasAxisForces()) scales.push_back(scale(member.coordinates, {}));
+  }
+  const LeaveOneOut left_out(family_, members_, scales);
   covariance_ = chooseCovariance(points(), left_out);
   prepare();
   std::vector<double> all, relative;
   const Eigen::MatrixXd known = points();
-  const std::vector<std::vector<double>> errors = left_out.errors(*kriging_);
+  const std::vector<std::vector<double>> errors = left_out.errors(kriging_->leaveOneOut());
   for (std::size_t i = 0; i < errors.size() && errors.size() > 1; ++i) {
     Eigen::MatrixXd others(known.rows(), known.cols() - 1);
     const auto own = static_cast<Eigen::Index>(i);
@@ -146,6 +151,15 @@ ExpectedError FamilyData::expectedError(const Eigen::VectorXd& coordinates) cons
           std::hypot(fit_.common, per_deviation_.common * deviation)};
 }
 
+double FamilyData::scale(const Eigen::VectorXd& coordinates, const Eigen::VectorXd& weights) const {
+  if (hasAxisForces()) return std::exp(axisForceGrid(family_).interpolate(log_axis_forces_, coordinates));
+  double sum = 0;
+  for (std::size_t i = 0; i < members_.size(); ++i) {
+    sum += weights[static_cast<Eigen::Index>(i)] * std::log(members_[i].scale);
+  }
+  return std::exp(sum);
+}
+
 SurrogateData FamilyData::cell(const Eigen::VectorXd& coordinates) const {
   const Scene scene = family_.member(coordinates);
   const Preparation plan = planMember(family_, scene);
@@ -155,7 +169,6 @@ SurrogateData FamilyData::cell(const Eigen::VectorXd& coordinates) const {
                   field = Eigen::VectorXd::Zero(first.field.size());
   Eigen::MatrixXd amplitudes =
       Eigen::MatrixXd::Zero(surfaces_.amplitudes().front().rows(), surfaces_.amplitudes().front().cols());
-  double log_scale = 0;
   std::vector<const FamilyMember*> solved;
   for (std::size_t i = 0; i < members_.size(); ++i) {
     const FamilyMember& member = members_[i];
@@ -163,7 +176,6 @@ SurrogateData FamilyData::cell(const Eigen::VectorXd& coordinates) const {
     energy += weight * member.energy;
     field += weight * member.field;
     amplitudes += weight * surfaces_.amplitudes()[i].cast<double>();
-    log_scale += weight * std::log(member.scale);
     solved.push_back(&member);
   }
   SurrogateData cell;
@@ -173,9 +185,10 @@ SurrogateData FamilyData::cell(const Eigen::VectorXd& coordinates) const {
   cell.range.lateral *= reached.share;
   cell.range.axis_depth *= reached.axis_share;
   cell.energy = EnergyExpansion(plan.scales, EnergyDegrees());
-  cell.energy.setCoefficients(std::exp(log_scale) * energy);
+  const double scale = this->scale(coordinates, weights);
+  cell.energy.setCoefficients(scale * energy);
   cell.field = ForceField(plan.scales);
-  cell.field.setCoefficients(std::exp(log_scale) * field);
+  cell.field.setCoefficients(scale * field);
   cell.surface = SurfaceShape(plan.range, scene.radius(), surfaceCentres(), amplitudes, surfaces_.modes());
   const ExpectedError error = expectedError(coordinates);
   cell.median_error = error.median;
@@ -191,6 +204,7 @@ void FamilyData::save(const std::string& path) const {
        {covariance_.noise, left_out_.median, left_out_.common, per_deviation_.median, per_deviation_.common}) {
     writer.number(x);
   }
+  writer.array(log_axis_forces_);
   writer.number<std::uint64_t>(failed_.size());
   for (const Eigen::VectorXd& point : failed_) writer.array(point);
   writer.number<std::uint64_t>(members_.size());
@@ -210,6 +224,11 @@ FamilyData FamilyData::decode(const Family& family, const std::string& bytes) {
                     &data.per_deviation_.median, &data.per_deviation_.common}) {
     *x = reader.number<double>();
     if (!(std::isfinite(*x) && *x >= 0)) throw std::runtime_error("an error cannot be");
+  }
+  reader.array(data.log_axis_forces_);
+  const bool known = data.hasAxisForces();
+  if (known && !(data.log_axis_forces_.size() == axisForceGrid(family).size() && data.log_axis_forces_.allFinite())) {
+    throw std::runtime_error("the forces on the axis cannot be");
   }
   for (std::uint64_t left = readCount(reader); left > 0; --left) {
     data.failed_.push_back(readVector<Eigen::VectorXd>(reader, family.dimension()));

@@ -34,6 +34,10 @@ class FamilyData {
 
   void add(const FamilyMember& member, const Eigen::MatrixXf& displacements);
   void addFailed(const Eigen::VectorXd& coordinates) { failed_.push_back(coordinates); }
+  /// Forces on the axis at the nodes of axisForceGrid(). Without them, a cell's is predicted from
+  /// the members.
+  void setAxisForces(const Eigen::VectorXd& forces) { log_axis_forces_ = forces.array().log(); }
+  bool hasAxisForces() const { return log_axis_forces_.size() > 0; }
   /// Chooses the covariance and estimates the errors anew. Call it after the last add().
   void update();
 
@@ -58,13 +62,15 @@ class FamilyData {
 
  private:
   Eigen::MatrixXd points() const;  ///< of the members, a column each
-  void prepare();                  ///< what follows from the members and the covariance
+  double scale(const Eigen::VectorXd& coordinates, const Eigen::VectorXd& weights) const;
+  void prepare();  ///< what follows from the members and the covariance
   static FamilyData decode(const Family& family, const std::string& bytes);
 
   Family family_;
   std::string provenance_;
   std::vector<FamilyMember> members_;
   std::vector<Eigen::VectorXd> failed_;
+  Eigen::VectorXd log_axis_forces_;
   SurfaceModes surfaces_;
   Covariance covariance_;
   ExpectedError left_out_, fit_;  ///< of the prediction, and of the members' own fits

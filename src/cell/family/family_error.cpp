@@ -9,7 +9,7 @@
 namespace microinjection {
 namespace {
 
-constexpr double kLengths[] = {1, 1.5, 2, 3, 4.5}, kNoises[] = {1e-6, 1e-4, 1e-3};
+constexpr double kLengths[] = {1, 1.5, 2, 3, 4.5, 9}, kNoises[] = {1e-6, 1e-4, 1e-3};
 constexpr double kDefaultLength = 2;
 constexpr double kLarge = 0.02;   ///< of the largest force: smaller ones have no error
 constexpr double kOutlier = 0.1;  ///< error above which a place does not count more
@@ -37,7 +37,9 @@ double badness(const std::vector<std::vector<double>>& errors) {
 
 }  // namespace
 
-LeaveOneOut::LeaveOneOut(const Family& family, const std::vector<FamilyMember>& members) {
+LeaveOneOut::LeaveOneOut(const Family& family, const std::vector<FamilyMember>& members,
+                         const std::vector<double>& scales)
+    : scales_(scales) {
   for (const FamilyMember& at : members) {
     const Preparation plan = planMember(family, family.member(at.coordinates));
     const std::vector<ContactPlace> places = forcePlaces(plan);
@@ -59,8 +61,7 @@ LeaveOneOut::LeaveOneOut(const Family& family, const std::vector<FamilyMember>& 
   }
 }
 
-std::vector<std::vector<double>> LeaveOneOut::errors(const Kriging& kriging) const {
-  const Eigen::MatrixXd weights = kriging.leaveOneOut();
+std::vector<std::vector<double>> LeaveOneOut::errors(const Eigen::MatrixXd& weights) const {
   std::vector<std::vector<double>> result(members_.size());
   for (std::size_t i = 0; i < members_.size(); ++i) {
     const Eigen::VectorXd& own = members_[i].forces[i];
@@ -71,7 +72,7 @@ std::vector<std::vector<double>> LeaveOneOut::errors(const Kriging& kriging) con
       predicted += weight * members_[i].forces[j];
       log_scale += weight * std::log(members_[j].scale);
     }
-    predicted *= std::exp(log_scale) / members_[i].scale;
+    predicted *= (scales_.empty() ? std::exp(log_scale) : scales_[i]) / members_[i].scale;
     const Eigen::Map<const Eigen::Matrix3Xd> truth(own.data(), 3, own.size() / 3);
     const Eigen::Map<const Eigen::Matrix3Xd> guess(predicted.data(), 3, own.size() / 3);
     const double largest = truth.colwise().norm().maxCoeff();
@@ -95,7 +96,7 @@ Covariance chooseCovariance(const Eigen::MatrixXd& points, const LeaveOneOut& er
     for (int i = 0; i < combinations; ++i) {
       Covariance trial{Eigen::VectorXd(dimension), noise};
       for (Eigen::Index k = 0, rest = i; k < dimension; ++k, rest /= kCount) trial.lengths[k] = kLengths[rest % kCount];
-      const double bad = badness(errors.errors(Kriging(points, trial.lengths, noise)));
+      const double bad = badness(errors.errors(Kriging(points, trial.lengths, noise).leaveOneOut()));
       if (bad >= least) continue;
       least = bad;
       best = trial;

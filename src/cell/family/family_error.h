@@ -13,11 +13,13 @@ namespace microinjection {
 class LeaveOneOut {
  public:
   /// Evaluates every member at the places of every other.
-  LeaveOneOut(const Family& family, const std::vector<FamilyMember>& members);
+  /// @param scales of the members, where they need not be predicted from the others; else empty
+  LeaveOneOut(const Family& family, const std::vector<FamilyMember>& members, const std::vector<double>& scales);
 
   /// Errors at all places of each member's paths that it and a prediction of its range reach, where
   /// its force is above a fiftieth of its largest.
-  std::vector<std::vector<double>> errors(const Kriging& kriging) const;
+  /// @param weights of the other members (columns) in the prediction of each (rows)
+  std::vector<std::vector<double>> errors(const Eigen::MatrixXd& weights) const;
 
  private:
   struct Member {
@@ -27,6 +29,7 @@ class LeaveOneOut {
     std::vector<Eigen::VectorXd> forces;  ///< of each member at the places of this one, over that one's scale
   };
   std::vector<Member> members_;
+  std::vector<double> scales_;
 };
 
 /// Covariance that predicts the members best.

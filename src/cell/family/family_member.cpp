@@ -2,21 +2,13 @@
 
 #include <cmath>
 
+#include "cell/family/axis_force.h"
 #include "cell/family/family_places.h"
 
 namespace microinjection {
 namespace {
 
 constexpr double kSamePlace = 1e-9;  ///< squared distance of coordinates
-
-/// Magnitude of the force in the middle of the range, over that of the scales.
-double middleForce(const SurrogateData& cell, const PreparationRange& range) {
-  ForceField::Local local;
-  cell.field.makeLocal(0.5 * range.angle, local);
-  Eigen::Matrix3d jacobian;
-  const Eigen::Vector3d force = local.evaluate(-0.5 * range.depth * Eigen::Vector3d::UnitZ(), jacobian);
-  return force.norm() * cell.energy.scales().length / cell.energy.scales().energy;
-}
 
 }  // namespace
 
@@ -45,7 +37,7 @@ FamilyMember fitMember(const Family& family, const Eigen::VectorXd& coordinates,
   FamilyMember member;
   member.coordinates = coordinates;
   member.reached = {cell.range.depth / plan.range.depth, cell.range.axis_depth / plan.range.axis_depth};
-  member.scale = middleForce(cell, plan.range);
+  member.scale = axisForce(cell.field, plan);
   member.energy = cell.energy.coefficients() / member.scale;
   member.field = cell.field.coefficients() / member.scale;
   member.median_error = cell.median_error;

@@ -19,7 +19,7 @@ struct Reached {
 struct FamilyMember {
   Eigen::VectorXd coordinates;
   Reached reached;                ///< of the planned range
-  double scale = 1;               ///< force in the middle of the range over that of EnergyScales
+  double scale = 1;               ///< see axisForce()
   Eigen::VectorXd energy, field;  ///< coefficients
   double median_error = 0;        ///< relative, of the member's own fit
   double common_error = 0;        ///< same, exceeded by one of ten samples

@@ -5,9 +5,11 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
 #include <limits>
 #include <sstream>
 
+#include "cell/family/axis_force.h"
 #include "cell/family/made_up_family.h"
 #include "cell/surrogate/cached_cell.h"
 
@@ -60,6 +62,23 @@ TEST_F(FamilyOfSprings, TheErrorsAreThoseOfFitAndPrediction) {
   EXPECT_GT(between.common, at_member.common);
   EXPECT_LE(between.median, between.common);
   EXPECT_EQ(data_.cell(Eigen::Vector3d(0.5, 0.5, 0)).common_error, between.common);
+}
+
+TEST_F(FamilyOfSprings, KnownForcesOnTheAxisAreTheSizeOfTheForce) {
+  const ChebyshevGrid grid = axisForceGrid(data_.family());
+  Eigen::VectorXd forces(grid.size());
+  for (int i = 0; i < grid.size(); ++i) forces[i] = std::exp(0.5 + 0.3 * grid.node(i)[0] - 0.2 * grid.node(i)[2]);
+  const Eigen::Vector3d x(0.4, -0.3, 0.6);
+  const double before = data_.cell(x).energy.coefficients()[0];
+  data_.setAxisForces(forces);
+  data_.update();
+  data_.save(path_);
+  const auto read = FamilyData::load(homogeneous(), path_);
+  ASSERT_TRUE(read) << read.reason;
+  const double predicted = std::exp(0.7 * x[0] - 0.2 * x[1]), known = std::exp(0.5 + 0.3 * x[0] - 0.2 * x[2]);
+  for (const FamilyData* data : std::initializer_list<const FamilyData*>{&data_, &*read.content}) {
+    EXPECT_NEAR(data->cell(x).energy.coefficients()[0] / before, known / predicted, 0.005 * known / predicted);
+  }
 }
 
 TEST_F(FamilyOfSprings, TheRangeIsWhatTheMembersAroundReached) {
@@ -130,12 +149,14 @@ TEST_F(FamilyOfSprings, ATornFileOrAChangedByteIsDamaged) {
 TEST_F(FamilyOfSprings, ValuesThatCannotBeAreDamagedWhateverTheChecksum) {
   const std::size_t lengths = sizeof(std::uint64_t) + std::string("made up").size();
   const std::size_t numbers = lengths + sizeof(std::uint64_t) + 3 * sizeof(double);
-  const std::size_t failed = numbers + 5 * sizeof(double), members = failed + sizeof(std::uint64_t);
+  const std::size_t axis = numbers + 5 * sizeof(double), failed = axis + sizeof(std::uint64_t);
+  const std::size_t members = failed + sizeof(std::uint64_t);
   const std::vector<std::pair<const char*, std::function<void(std::string&)>>> changes = {
       {"short", [](std::string& body) { body.pop_back(); }},
       {"long", [](std::string& body) { body += 'x'; }},
       {"length", [=](std::string& body) { overwrite(body, lengths + sizeof(std::uint64_t), -1.0); }},
       {"error", [=](std::string& body) { overwrite(body, numbers + sizeof(double), kNan); }},
+      {"axis", [=](std::string& body) { overwrite<std::uint64_t>(body, axis, 1); }},
       {"failed", [=](std::string& body) { overwrite<std::uint64_t>(body, failed, ~std::uint64_t{0}); }},
       {"no member", [=](std::string& body) { overwrite<std::uint64_t>(body, members, 0); }},
       {"amplitude", [](std::string& body) { overwrite(body, body.size() - sizeof(float), static_cast<float>(kNan)); }}};
