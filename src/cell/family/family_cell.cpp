@@ -61,6 +61,10 @@ std::optional<FamilyCell> makeFamilyCell(const std::shared_ptr<const FamilyData>
     reason = "outside of family " + family->family().name() + ": " + place;
     return std::nullopt;
   }
+  if (!family->isComplete()) {
+    reason = "family " + family->family().name() + " has only " + std::to_string(family->members().size()) + " members";
+    return std::nullopt;
+  }
   if (!family->serves(*coordinates)) {
     reason = "family " + family->family().name() + " has no converged member near " + place;
     return std::nullopt;

@@ -47,6 +47,8 @@ class FamilyData {
   /// Errors of the members when each is predicted from the others.
   ExpectedError leaveOneOutError() const { return left_out_; }
 
+  /// Whether there are members enough to know the error of a prediction.
+  bool isComplete() const { return static_cast<int>(members_.size()) > 2 * family_.dimension(); }
   /// Whether there is a converged solution around these coordinates: the nearest member did not
   /// fail.
   bool serves(const Eigen::VectorXd& coordinates) const;

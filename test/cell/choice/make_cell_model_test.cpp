@@ -218,6 +218,18 @@ TEST_F(ServeMember, ItsOwnPreparationIsServedWhereItIsMoreExact) {
   EXPECT_TRUE(has(member.description, "family homogeneous: ")) << member.description;
 }
 
+TEST_F(ServeMember, AFamilyOfAFewMembersServesNothing) {
+  FamilyData few(homogeneous());
+  for (int i = -3; i < 3; ++i) {
+    const MadeUp made(Eigen::Vector3d(0.3 * i, 0, 0));
+    few.add(made.member, made.surface);
+  }
+  few.update();
+  few.save(families_ + "/homogeneous.data");
+  const ChosenCellModel served = makeCellModel(inside(), "auto", config_, "a.yaml");
+  EXPECT_TRUE(has(served.description, "family homogeneous has only 6 members")) << served.description;
+}
+
 TEST_F(ServeMember, DamagedDataOfAFamilyAreNamed) {
   fs::resize_file(families_ + "/homogeneous.data", fs::file_size(families_ + "/homogeneous.data") - 1);
   const ChosenCellModel served = makeCellModel(inside(), "auto", config_, "a.yaml");
