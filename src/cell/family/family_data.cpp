@@ -16,6 +16,7 @@ namespace {
 
 constexpr char kVersion[] = " data 2";  ///< change it when the format or the fit of a member changes
 constexpr int kMostMembers = 1000;
+constexpr double kLargestError = 0.1;  ///< expected at one of ten places of a cell that is served
 
 double quantile(std::vector<double> values, double share) {
   if (values.empty()) return 0;
@@ -137,6 +138,7 @@ void FamilyData::prepare() {
 
 bool FamilyData::serves(const Eigen::VectorXd& coordinates) const {
   if (members_.empty() || !Family::contains(coordinates)) return false;
+  if (expectedError(coordinates).common > kLargestError) return false;
   const auto distance = [&](const Eigen::VectorXd& point) {
     return (point - coordinates).cwiseQuotient(covariance_.lengths).norm();
   };

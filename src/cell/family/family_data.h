@@ -49,8 +49,8 @@ class FamilyData {
 
   /// Whether there are members enough to know the error of a prediction.
   bool isComplete() const { return static_cast<int>(members_.size()) > 2 * family_.dimension(); }
-  /// Whether there is a converged solution around these coordinates: the nearest member did not
-  /// fail.
+  /// Whether there is a converged solution around these coordinates, because the nearest member did
+  /// not fail, and members enough around them: nine of ten places are expected within a tenth.
   bool serves(const Eigen::VectorXd& coordinates) const;
   ExpectedError expectedError(const Eigen::VectorXd& coordinates) const;
   /// The member at any coordinates, without dimension. Its range is the part that its neighbours

@@ -106,6 +106,20 @@ TEST_F(FamilyOfSprings, AroundAMemberWithoutSolutionNothingIsServed) {
   EXPECT_FALSE(data_.serves(Eigen::Vector3d(1.01, 0, 0))) << "past the border";
 }
 
+TEST_F(FamilyOfSprings, WhereTheErrorIsExpectedToBeLargeNothingIsServed) {
+  FamilyData coarse(homogeneous());
+  for (const FamilyMember& member : data_.members()) {
+    MadeUp made(member.coordinates);
+    made.member.common_error = 0.11;
+    coarse.add(made.member, made.surface);
+  }
+  coarse.update();
+  const Eigen::Vector3d x(0.3, 0.5, 0);
+  EXPECT_TRUE(data_.serves(x));
+  EXPECT_GT(coarse.expectedError(x).common, 0.1);
+  EXPECT_FALSE(coarse.serves(x));
+}
+
 TEST_F(FamilyOfSprings, IsReadAsItWasWritten) {
   data_.addFailed(Eigen::Vector3d(0.5, 0.5, 0.25));
   data_.save(path_);
