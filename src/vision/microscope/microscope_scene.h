@@ -16,7 +16,9 @@ using CellOutline = std::vector<Eigen::Vector2d>;
 CellOutline circleOutline(const Eigen::Vector2d& centre, double radius, int corners = 512);
 CellOutline ellipseOutline(const Eigen::Vector2d& centre, double a, double b, double angle, int corners = 512);
 
-/// How a body looks in focus. The defaults resemble a mouse oocyte.
+/// How a body looks in focus. In bright field the rim and the line show the border. The border is in
+/// the middle of a rim that is as wide inside as outside (zona), or where the dark rim outside meets
+/// the bright line inside (ooplasm).
 struct BodyOptics {
   double phase = 0;        ///< rad, of the light through the body; negative for a lower refractive index
   double absorption = 0;   ///< share of the light, in [-1, 1]; negative where the body focuses light
@@ -45,9 +47,9 @@ struct CellScene {
   double y = 0;                    ///< m, of the equatorial plane
   Eigen::Vector2d material{0, 0};  ///< (x, z), m, where the texture of the cell has its origin: it moves with the cell
   std::uint64_t texture_seed = 1;  ///< of the place in the texture
-  BodyOptics zona{0.35, 0.02, 0.14, 0.7e-6, 0.3e-6, 0.05, 0.8e-6, 0, 0.035};
+  BodyOptics zona{0.35, 0, 0.14, 0.5e-6, 0.5e-6, 0, 0, 0, 0.035};
   BodyOptics perivitelline{-0.15, 0, 0.10, 0.4e-6, 0.4e-6, 0, 0, 0, 0};
-  BodyOptics cytoplasm{0.5, 0.10, 0.42, 0.1e-6, 1.6e-6, 0.22, 0.8e-6, 0.10, 0.085};
+  BodyOptics cytoplasm{0.5, 0.10, 0.42, 0, 1.6e-6, 0.22, 0.8e-6, 0.10, 0.085};
   std::optional<CellBody> polar_body, nucleus;
 
   /// A cell of two or three concentric circles (m); a zona thickness of 0 leaves the zona out.
