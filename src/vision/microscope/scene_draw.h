@@ -34,7 +34,7 @@ struct SceneDrawConfig {
   Interval dimple_depth{2e-6, 12e-6};  ///< m
   Interval cell_y{0, 0};               ///< m
   Interval tip_y{0, 0};                ///< m
-  Interval inclination{0, 0.5};        ///< rad, of the injection pipette out of the image plane
+  Interval inclination{0, 0.5};        ///< rad, of the shaft out of the image plane; positive away from the camera
   double tilt = 0.25;                  ///< rad, largest angle of a pipette to the world's z
 
   /// Throws ConfigError with all errors of the members.
