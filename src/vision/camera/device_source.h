@@ -1,0 +1,51 @@
+#pragma once
+
+#include <memory>
+#include <opencv2/videoio.hpp>
+#include <optional>
+#include <string>
+
+#include "base/config_reader.h"
+#include "vision/camera/frame_source.h"
+
+namespace microinjection {
+
+/// A camera behind OpenCV's VideoCapture. What is absent keeps the device's own setting.
+struct DeviceSourceConfig {
+  std::string device = "0";        ///< index, path such as /dev/video0, or a GStreamer pipeline (with "!")
+  int width = 0;                   ///< px; 0: the device's own
+  int height = 0;                  ///< px; 0: the device's own
+  std::string format;              ///< FOURCC, for example MJPG or Y16; empty: the device's own
+  double rate = 0;                 ///< 1/s; 0: the device's own
+  std::optional<double> exposure;  ///< in the driver's unit (V4L2: 1e-4 s); turns automatic exposure off
+  std::optional<double> gain;      ///< in the driver's unit
+
+  static DeviceSourceConfig read(ConfigReader& reader);
+  void validate() const;
+  bool changesSettings() const;  ///< whether any setting of the device is given
+};
+
+/// Frames of a camera. A GStreamer pipeline ends in an appsink. Its settings belong in its text:
+/// OpenCV would stop the pipeline to change them.
+class DeviceSource : public FrameSource {
+ public:
+  /// Throws ConfigError when the device cannot be opened. Reports every setting that the device
+  /// refused, with the value that it has instead.
+  explicit DeviceSource(const DeviceSourceConfig& config);
+  /// Takes a device that is open.
+  DeviceSource(const DeviceSourceConfig& config, std::unique_ptr<cv::VideoCapture> capture);
+
+  /// Waits for the device's next frame. The stamp is the driver's, if it has one.
+  std::optional<Frame> next() override;
+  double period() const override { return 0; }
+
+ private:
+  void configure();
+  void set(int property, const std::string& key, double value, const std::string& unit);
+
+  DeviceSourceConfig config_;
+  std::unique_ptr<cv::VideoCapture> capture_;
+  long count_ = 0;
+};
+
+}  // namespace microinjection

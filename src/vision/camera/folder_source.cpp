@@ -1,0 +1,43 @@
+#include "vision/camera/folder_source.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+
+#include "base/errors.h"
+#include "vision/camera/image_file.h"
+#include "vision/camera/natural_order.h"
+
+namespace microinjection {
+
+namespace fs = std::filesystem;
+
+FolderSource::FolderSource(const std::string& folder, double rate, bool loop) : period_(1 / rate), loop_(loop) {
+  std::error_code error;
+  fs::directory_iterator entry(folder, error);
+  if (error) throw ConfigError(folder + ": is no folder that can be read: " + error.message());
+  for (; entry != fs::directory_iterator(); entry.increment(error)) {
+    if (error) throw ConfigError(folder + ": cannot be listed: " + error.message());
+    if (hasImageName(entry->path().string()) && !entry->is_directory(error)) paths_.push_back(entry->path().string());
+  }
+  std::sort(paths_.begin(), paths_.end(), naturalLess);
+  if (paths_.empty()) report(folder + ": has no images");
+}
+
+std::optional<Frame> FolderSource::next() {
+  // One loop without a readable image ends the search.
+  for (std::size_t tried = 0; tried < paths_.size(); ++tried) {
+    if (position_ == paths_.size()) {
+      if (!loop_) return std::nullopt;
+      position_ = 0;
+    }
+    const std::string& path = paths_[position_++];
+    const double stamp = static_cast<double>(count_++) * period_;
+    LoadedImage loaded = loadImage(path);
+    if (loaded.refusal.empty()) return Frame{loaded.image, stamp, fs::path(path).filename().string()};
+    report(path + ": " + loaded.refusal);
+  }
+  return std::nullopt;
+}
+
+}  // namespace microinjection
