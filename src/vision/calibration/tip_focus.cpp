@@ -10,8 +10,9 @@
 namespace microinjection {
 namespace {
 
-constexpr int kParameters = 4;   ///< base, peak, middle, log width
-constexpr int kLeastPlanes = 7;  ///< that a fit needs
+constexpr int kParameters = 4;                                        ///< base, peak, middle, log width
+constexpr int kLeastPlanes = 7;                                       ///< that a fit needs
+constexpr double kFarthest = 1000, kNarrowest = 0.2, kWidest = 1000;  ///< planes, of middle and width
 constexpr double kConfidence = 0.95;
 constexpr double kOutlierChance = 1e-4;
 
@@ -48,6 +49,11 @@ bool fit(const std::vector<Point>& points, double loss, Bell& bell) {
     problem.AddResidualBlock(new ceres::AutoDiffCostFunction<BellCost, 1, kParameters>(new BellCost{point}),
                              loss > 0 ? new ceres::CauchyLoss(loss) : nullptr, bell.data());
   }
+  // Beyond these the bell is a line or a single plane, and its middle is not determined.
+  problem.SetParameterLowerBound(bell.data(), 2, -kFarthest);
+  problem.SetParameterUpperBound(bell.data(), 2, kFarthest);
+  problem.SetParameterLowerBound(bell.data(), 3, std::log(kNarrowest));
+  problem.SetParameterUpperBound(bell.data(), 3, std::log(kWidest));
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
   options.max_num_iterations = 200;

@@ -16,7 +16,7 @@ struct TipRecord {
 
 /// Where the next tip is expected, from the ones before. For each coordinate
 ///     median +- t(99.75 %, n - 1) sqrt(1 + 1 / n) max(1.4826 MAD, 10 um).
-/// With both coordinates together, one good tip in about a hundred lies outside.
+/// Of tips with normal scatter, 3 to 7 in a hundred lie outside: MAD of few values is often small.
 struct TipRegion {
   int count = 0;                   ///< n
   Eigen::Vector2d median, spread;  ///< m; the spread is 1.4826 MAD, at least 10 um

@@ -167,7 +167,7 @@ TEST(TipHistory, WarnsWithNumbersAndIsNotMovedByOneBadTip) {
   EXPECT_EQ(warning.find("tip z"), std::string::npos);
 }
 
-TEST(TipHistory, OneGoodTipInAHundredLiesOutside) {
+TEST(TipHistory, FewGoodTipsLieOutside) {
   SimulatedNeedle random(drawnNeedle(9), Eigen::Vector3d::Zero());
   for (const int count : {4, 8, 20}) {
     int outside = 0;
@@ -178,8 +178,8 @@ TEST(TipHistory, OneGoodTipInAHundredLiesOutside) {
       const TipRecord tip{kTestDate, 50e-6 * Eigen::Vector2d(random.normal(), random.normal())};
       outside += tipWarning(tip, history).empty() ? 0 : 1;
     }
-    EXPECT_LT(outside, 0.06 * kTrials) << count;
-    EXPECT_GT(outside, 0.003 * kTrials) << count;
+    EXPECT_LT(outside, 0.08 * kTrials) << count;
+    EXPECT_GT(outside, 0.01 * kTrials) << count;
   }
 }
 
