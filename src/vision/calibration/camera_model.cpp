@@ -18,7 +18,8 @@ bool setImageAxes(CalibrationVector<double>& p, const Eigen::Vector2d& x, const 
   p[kPixelSize] = 1 / std::sqrt(x.norm() * z.norm());
   p[kAxisRatio] = z.norm() / x.norm();
   p[kSkew] = wrapped(mirrored ? 1.5 * kPi - turn : turn - 0.5 * kPi);
-  p[kAngle] = wrapped(directionOf(z) + 0.5 * kPi + (mirrored ? -0.5 : 0.5) * p[kSkew]);
+  // Directions grow clockwise on the screen, because the image's y points down.
+  p[kAngle] = wrapped(-(directionOf(z) + 0.5 * kPi + (mirrored ? -0.5 : 0.5) * p[kSkew]));
   return mirrored;
 }
 

@@ -9,7 +9,7 @@ namespace microinjection {
 /// What a calibration estimates, in the order of its vectors and covariance.
 enum CalibrationParameter : int {
   kPixelSize,    ///< m, geometric mean over the axes x and z
-  kAngle,        ///< rad, rotation of the camera, from image x towards image y
+  kAngle,        ///< rad, turns the picture counter-clockwise on the screen, after the mirror
   kSkew,         ///< rad, angle from axis x to axis z minus a right angle
   kAxisRatio,    ///< 1, image length of a metre of axis z over that of axis x
   kDepthDriftX,  ///< m/m, by how much axis y moves the tip along x in the image plane
@@ -53,7 +53,7 @@ inline constexpr std::array<CalibrationParameterName, kCalibrationParameters> kC
 }};
 
 /// Image motion of each manipulator axis, px/m, 2 x 3:
-///     J = (1 / s) R(angle) diag(mirrored ? -1 : 1, -1) W.
+///     J = (1 / s) R diag(mirrored ? -1 : 1, -1) W,  R = [cos, sin; -sin, cos](angle).
 /// The -1 of the second row turns world z, up, into image y, down. The columns of W are the axes in
 /// the image plane (x, z). x and z lie symmetric about the world's axes, half of the skew beside
 /// them; their lengths are ratio^(-1/2) and ratio^(1/2).
@@ -69,7 +69,7 @@ Eigen::Matrix<T, 2, 3> imageAxes(const CalibrationVector<T>& p, bool mirrored) {
   axes.row(0) *= T(mirrored ? -1 : 1);
   axes.row(1) *= T(-1);
   Eigen::Matrix<T, 2, 2> rotation;
-  rotation << cos(p[kAngle]), -sin(p[kAngle]), sin(p[kAngle]), cos(p[kAngle]);
+  rotation << cos(p[kAngle]), sin(p[kAngle]), -sin(p[kAngle]), cos(p[kAngle]);
   return rotation * axes / p[kPixelSize];
 }
 

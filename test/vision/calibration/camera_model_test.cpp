@@ -24,12 +24,12 @@ TEST(CameraModel, AMirrorTurnsXAround) {
   EXPECT_TRUE(imageAxes(identity(), true).col(2).isApprox(Eigen::Vector2d(0, -1e7)));
 }
 
-TEST(CameraModel, APositiveAngleTurnsImageXTowardsImageY) {
+TEST(CameraModel, APositiveAngleTurnsThePictureCounterClockwise) {
   CalibrationVector<double> p = identity();
   p[kAngle] = 0.5 * 3.14159265358979323846;
   const Eigen::Matrix<double, 2, 3> axes = imageAxes(p, false);
-  EXPECT_NEAR((axes.col(0) - Eigen::Vector2d(0, 1e7)).norm(), 0, 1e-6);
-  EXPECT_NEAR((axes.col(2) - Eigen::Vector2d(1e7, 0)).norm(), 0, 1e-6);
+  EXPECT_NEAR((axes.col(0) - Eigen::Vector2d(0, -1e7)).norm(), 0, 1e-6);
+  EXPECT_NEAR((axes.col(2) - Eigen::Vector2d(-1e7, 0)).norm(), 0, 1e-6);
 }
 
 TEST(CameraModel, SkewIsTheAngleBetweenTheAxesBeyondARightOne) {
