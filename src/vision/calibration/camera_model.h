@@ -53,7 +53,7 @@ inline constexpr std::array<CalibrationParameterName, kCalibrationParameters> kC
 }};
 
 /// Image motion of each manipulator axis, px/m, 2 x 3:
-///     J = (1 / s) R diag(mirrored ? -1 : 1, -1) W,  R = [cos, sin; -sin, cos](angle).
+///     J = (1 / s) R diag(mirrored ? -1 : 1, -1) W,  R = [cos, sin; -sin, cos] of the angle.
 /// The -1 of the second row turns world z, up, into image y, down. The columns of W are the axes in
 /// the image plane (x, z). x and z lie symmetric about the world's axes, half of the skew beside
 /// them; their lengths are ratio^(-1/2) and ratio^(1/2).
