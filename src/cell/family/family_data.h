@@ -38,6 +38,8 @@ class FamilyData {
   /// the members.
   void setAxisForces(const Eigen::VectorXd& forces) { log_axis_forces_ = forces.array().log(); }
   bool hasAxisForces() const { return log_axis_forces_.size() > 0; }
+  /// Fits all members anew whose paths are known, and returns their number. A second for each.
+  int refit();
   /// Chooses the covariance and estimates the errors anew. Call it after the last add().
   void update();
 
