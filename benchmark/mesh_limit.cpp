@@ -37,8 +37,7 @@ std::string table() {
   Scene scene = family.member(Eigen::VectorXd::Zero(family.dimension()));
   std::string rows = "mesh,angle_deg,depth,lateral,level,unknowns,force,time_s\n";
   std::fputs(rows.c_str(), stdout);
-  const Place places[] = {
-      {0, {0, 0, -0.18}}, {0.4, {-0.05, 0, -0.12}}, {0.4, {-0.09, 0, -0.45}}, {0.9, {0.05, 0, -0.3}}};
+  const Place places[] = {{0, {0, 0, -0.18}}, {0.4, {-0.05, 0, -0.12}}, {0.4, {-0.09, 0, -0.45}}};
   for (const Place& place : places) {
     scene.needle.offset.setZero();
     for (double level = -1; place.angle == 0 && level <= 3; ++level) {
