@@ -16,8 +16,8 @@ constexpr double kLargestAngle = 56 * M_PI / 180;
 constexpr double kDeepest = 0.3, kSideways = 0.08;  ///< over the diameter
 constexpr double kShallowest = 0.15;                ///< over the depth of the range
 constexpr double kSteepness = 0.5;                  ///< least depth over lateral motion
-/// Change from the fine mesh to the limit, over that from the coarse to the fine one. `./dev bench mesh_limit` has 0.2 at
-/// small depths and on the axis, and more than 0.5 deep beside it.
+/// Change from the fine mesh to the limit, over that from the coarse to the fine one. `./dev bench mesh_limit` has 0.2
+/// at small depths and on the axis, and 0.5 deep beside it.
 constexpr double kExtrapolation = 0.5;
 constexpr int kNodeStride = 23;    ///< of the grid's nodes that references have
 constexpr double kOverlap = 0.02;  ///< least overlap of tip and cell, over the cell's radius
