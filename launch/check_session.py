@@ -32,6 +32,7 @@ def choices():
         "force_source": ["predicted", "measured"],
         "hand_force": ["predicted", "measured", "blend"],
         "link": ["none", "wave"],
+        "camera": ["none", "sim", "device", "folder", "video"],
         "clock": ["wall", "lockstep", "external"],
         **{flag: boolean for flag in flags}}
 

@@ -18,7 +18,7 @@ import yaml
 from fit_rig import Rig
 
 PACKAGE = pathlib.Path(__file__).resolve().parents[1]
-NODES = ("micromanipulator", "haptic_bridge", "injection_controller", "display")
+NODES = ("micromanipulator", "haptic_bridge", "injection_controller", "display", "microscope")
 OVERRIDDEN = (*NODES, "haptic_device", "force_sensor", "injector", "cell_simulator", "operator", "teleoperation_follower")
 
 RADIUS, MODULUS = 28e-6, 17.9e3  # m, Pa, of the cell that the files are for
@@ -34,6 +34,7 @@ LENGTHS = {
         "motion/approach_speed", "motion/travel_limit", "motion/indent_speed", "motion/stab_speed",
         "motion/stab_acceleration", "motion/overshoot", "motion/retract_speed", "goal/depth", "goal/margin"),
     "display": ("colour_range", "force_scale", "injection_pipette/length", "holding_pipette/length"),
+    "microscope": ("camera/pixel_size", "focus/range", "focus/speed"),
     "haptic_device": ("handle_offset", "arrow_scale")}
 PER_LENGTH = {"haptic_device": ("hand_scale", "enlargement"), "display": ("enlargement",)}
 FORCES = {"injection_controller": ("force_limit", "lateral_force_limit")}
@@ -171,15 +172,17 @@ class Fit:
             self._set("injection_controller", "force_limit", scaled(self._cell.puncture_force, GUARD))
 
     def _follow_scene(self):
-        tip = self.get("display", "injection_pipette/tip_radius")
-        shaft = self.get("display", "injection_pipette/shaft_radius")
-        self._set("display", "injection_pipette/tip_radius", self._cell.tip_radius)
-        self._set("display", "injection_pipette/shaft_radius", scaled(shaft, self._cell.tip_radius / tip))
-        mouth = self.get("display", "holding_pipette/mouth_radius")
-        outer = self.get("display", "holding_pipette/outer_radius")
-        if self._cell.mouth_radius:
-            self._set("display", "holding_pipette/mouth_radius", self._cell.mouth_radius)
-            self._set("display", "holding_pipette/outer_radius", scaled(outer, self._cell.mouth_radius / mouth))
+        for node, needle, holder in (("display", "injection_pipette", "holding_pipette"),
+                                     ("microscope", "specimen/injection_pipette", "specimen/holding_pipette")):
+            self._follow(node, needle, ("tip_radius", "shaft_radius"), self._cell.tip_radius)
+            self._follow(node, holder, ("mouth_radius", "outer_radius"), self._cell.mouth_radius)
+
+    def _follow(self, node, pipette, names, radius):
+        """The first radius is the scene's, if it has one, and the second keeps its ratio to the first."""
+        first, second = (self.get(node, f"{pipette}/{name}") for name in names)
+        if radius:
+            self._set(node, f"{pipette}/{names[0]}", radius)
+            self._set(node, f"{pipette}/{names[1]}", scaled(second, radius / first))
 
 
 def override(fit, rig, path):

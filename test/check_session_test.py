@@ -12,8 +12,8 @@ from check_session import choices, problems  # noqa: E402
 
 GOOD = {'model': 'auto', 'rig': 'sim', 'sensor': 'simulated', 'injector': 'simulated', 'haptic': 'operator',
         'position_type': '', 'mode': 'manual', 'force_source': 'predicted', 'hand_force': 'predicted', 'link': 'none',
-        'clock': 'wall', 'scene': str(LAUNCH.parent / 'config/cells/mouse_oocyte.yaml'), 'operator': '', 'record': '',
-        'allow_network': 'True', 'require_operator': 'true', 'inject': 'True', 'link_emulated': 'False',
+        'clock': 'wall', 'camera': 'sim', 'scene': str(LAUNCH.parent / 'config/cells/mouse_oocyte.yaml'),
+        'operator': '', 'record': '', 'allow_network': 'True', 'require_operator': 'true', 'inject': 'True', 'link_emulated': 'False',
         'auto_enable': 'True', 'display': 'true', 'rviz': 'false', 'bag': 'true', 'end_when_done': 'false',
         'wait_for_go': 'false'}
 

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "nodes/cell/cell_state_reader.h"
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/message_guard.h"
 #include "nodes/runtime/node_parameters.h"
@@ -17,19 +18,6 @@ namespace {
 
 constexpr double kFixedPeriod = 1;  // s of wall time; a late rviz has the whole scene by then
 constexpr double kStaleAge = 1;     // s of wall time
-
-CellSurface toSurface(const cell_microinjection::CellState& message) {
-  CellSurface surface;
-  for (const auto& p : message.vertices) surface.vertices.push_back(toVector(p));
-  for (std::size_t i = 0; i + 2 < message.triangles.size(); i += 3) {
-    const auto* t = &message.triangles[i];
-    surface.triangles.push_back({static_cast<int>(t[0]), static_cast<int>(t[1]), static_cast<int>(t[2])});
-  }
-  surface.displacement.assign(message.displacement.begin(), message.displacement.end());
-  surface.contact_vertices.assign(message.contact_vertices.begin(), message.contact_vertices.end());
-  surface.held_vertices.assign(message.held_vertices.begin(), message.held_vertices.end());
-  return surface;
-}
 
 CellMembers toMembers(const cell_microinjection::CellState& message) {
   CellMembers members;

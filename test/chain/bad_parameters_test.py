@@ -22,6 +22,7 @@ ROUNDED = rospkg.RosPack().get_path("cell_microinjection") + "/config/cells/mous
 MOTION = rospkg.RosPack().get_path("cell_microinjection") + "/config/hand_motions/indent_and_retract.yaml"
 EMPTY = tempfile.mkdtemp()  # no mesh, nothing prepared
 GOOD = {  # what each node cannot do without
+    "camera": {"source": "folder", "path": tempfile.mkdtemp()},
     "cell_simulator": {"scene": SCENE},
     "display": {},
     "force_sensor": {},
@@ -31,10 +32,14 @@ GOOD = {  # what each node cannot do without
     "injection_controller": {},
     "injector": {},
     "micromanipulator": {},
+    "microscope": {},
     "operator": {"motion": MOTION},
     "session_recorder": {"output_dir": tempfile.mkdtemp()},
 }
 BAD = [  # node, wrong parameters, what the message must say
+    ("camera", {"path": "/nowhere"}, ["/nowhere"]),
+    ("camera", {"rate": -1}, ["rate = -1"]),
+    ("camera", {"source": "television"}, ["source = television", "device, folder, video"]),
     ("cell_simulator", {"scene": "/nowhere.yaml"}, ["/nowhere.yaml"]),
     ("cell_simulator", {"model": "prepared"}, ["model = prepared", "needle/tip/shape = disc"]),
     ("cell_simulator", {"model": "prepared", "scene": ROUNDED}, ["model = prepared", "prepare --scene"]),
@@ -64,6 +69,9 @@ BAD = [  # node, wrong parameters, what the message must say
     ("injection_controller", {"mode": "moon", "rate": 1}, ["mode = moon", "manual, semi_automatic, automatic", "rate = 1"]),
     ("injector", {"pipette/tip_radius": -1e-6}, ["tip_radius = -1e-06", "(0, inf)"]),
     ("injector", {"source": "serial"}, ["serial/path is missing", "serial/pulse is missing"]),
+    ("microscope", {"focus/start": 1}, ["focus/start = 1", "within range"]),
+    ("microscope", {"specimen/dust": -1}, ["specimen/dust = -1", "[0, 200]"]),
+    ("microscope", {"camera/pixel_size": 0}, ["camera/pixel_size = 0"]),
     ("micromanipulator", {"collision_margin": -1}, ["collision_margin = -1", "[0, inf)"]),
     ("micromanipulator", {"pipette_tilt": 2}, ["pipette_tilt = 2 rad", "[0, 1.2] rad"]),
     ("micromanipulator", {"device/backlash": -1}, ["device/backlash = -1", "[0, inf)"]),

@@ -52,9 +52,9 @@ class DisplayScene {
   void fitHoldingPipette(const DisplayedState& state);
 
   const DisplayConfig config_;
-  double tension_range_ = 0;  ///< N, largest tension so far
-  double colour_range_;       ///< m, displacement at the end of the colour scale
-  HoldingPipette holding_;    ///< as configured, with the mouth at the contact with the cell
+  double tension_range_ = 0;     ///< N, largest tension so far
+  double colour_range_;          ///< m, displacement at the end of the colour scale
+  DrawnHoldingPipette holding_;  ///< as configured, with the mouth at the contact with the cell
   bool fixed_changed_ = false;
   double holding_height_ = 0;  ///< m, of the mouth along the z axis of holding_pipette
 };

@@ -10,9 +10,9 @@ DisplayConfig DisplayConfig::read(ConfigReader& reader) {
   reader.number("colour_range", config.colour_range, Range::nonNegative());
   reader.number("force_scale", config.force_scale, Range::positive());
   ConfigReader injection_pipette = reader.section("injection_pipette");
-  config.injection_pipette = InjectionPipette::read(injection_pipette);
+  config.injection_pipette = DrawnInjectionPipette::read(injection_pipette);
   ConfigReader holding_pipette = reader.section("holding_pipette");
-  config.holding_pipette = HoldingPipette::read(holding_pipette);
+  config.holding_pipette = DrawnHoldingPipette::read(holding_pipette);
   return config;
 }
 

@@ -12,8 +12,8 @@ struct DisplayConfig {
   double colour_range = 0;             ///< m, displacement at the end of the colour scale; 0: the largest so far
   double enlargement = kDisplayScale;  ///< m in rviz per m
   double force_scale = 5;              ///< m/N, length of a force's arrow in the scene, before the enlargement
-  InjectionPipette injection_pipette;
-  HoldingPipette holding_pipette;
+  DrawnInjectionPipette injection_pipette;
+  DrawnHoldingPipette holding_pipette;
 
   static DisplayConfig read(ConfigReader& reader);
 };

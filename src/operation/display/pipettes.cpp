@@ -40,8 +40,8 @@ TriangleSoup turned(std::vector<Eigen::Vector2d> profile, double enlargement) {
 
 }  // namespace
 
-InjectionPipette InjectionPipette::read(ConfigReader& reader) {
-  InjectionPipette pipette;
+DrawnInjectionPipette DrawnInjectionPipette::read(ConfigReader& reader) {
+  DrawnInjectionPipette pipette;
   reader.number("tip_radius", pipette.tip_radius, Range::positive());
   reader.number("bore_ratio", pipette.bore_ratio, Range::open(0, 1));
   reader.number("taper_angle", pipette.taper_angle, Range::open(0, 1));
@@ -51,8 +51,8 @@ InjectionPipette InjectionPipette::read(ConfigReader& reader) {
   return pipette;
 }
 
-HoldingPipette HoldingPipette::read(ConfigReader& reader) {
-  HoldingPipette pipette;
+DrawnHoldingPipette DrawnHoldingPipette::read(ConfigReader& reader) {
+  DrawnHoldingPipette pipette;
   reader.number("mouth_radius", pipette.mouth_radius, Range::positive());
   reader.number("outer_radius", pipette.outer_radius, Range::positive());
   reader.number("bore_ratio", pipette.bore_ratio, Range::open(0, 1));
@@ -62,7 +62,7 @@ HoldingPipette HoldingPipette::read(ConfigReader& reader) {
   return pipette;
 }
 
-TriangleSoup glass(const InjectionPipette& pipette, double enlargement) {
+TriangleSoup glass(const DrawnInjectionPipette& pipette, double enlargement) {
   const double taper = (pipette.shaft_radius - pipette.tip_radius) / std::tan(pipette.taper_angle);
   const double taper_end = std::min(taper, pipette.length);
   const double end_radius = pipette.tip_radius + taper_end * std::tan(pipette.taper_angle);
@@ -77,7 +77,7 @@ TriangleSoup glass(const InjectionPipette& pipette, double enlargement) {
                 enlargement);
 }
 
-TriangleSoup glass(const HoldingPipette& pipette, double enlargement) {
+TriangleSoup glass(const DrawnHoldingPipette& pipette, double enlargement) {
   const double wall = pipette.outer_radius - pipette.mouth_radius;
   const Eigen::Vector2d rim(pipette.mouth_radius, 0);
   const double bore = std::max(pipette.bore_ratio * pipette.outer_radius, pipette.mouth_radius);

@@ -14,7 +14,7 @@ const Range kRate = Range::closed(0, 1e5);  // 1/s
 
 FrameSourceConfig FrameSourceConfig::read(ConfigReader& reader) {
   FrameSourceConfig config;
-  reader.choice("source", config.source, kSources);
+  reader.choice("source", config.source, kSources, ConfigReader::kRequired);
   if (config.source == "device") {
     ConfigReader device = reader.section("device");
     config.device = DeviceSourceConfig::read(device);

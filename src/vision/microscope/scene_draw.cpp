@@ -18,7 +18,7 @@ class Random {
   double within(double low, double high) {
     return low + (high - low) * static_cast<double>(random_() >> 11) * 0x1.0p-53;
   }
-  double within(const Interval& interval) { return within(interval.low, interval.high); }
+  double within(const DrawInterval& interval) { return within(interval.low, interval.high); }
   bool chance(double probability) { return within(0, 1) < probability; }
   int upTo(int most) { return static_cast<int>(within(0, most + 1.0)); }
   std::uint64_t bits() { return random_(); }
@@ -252,7 +252,7 @@ void SceneDrawConfig::validate() const {
   probability("dimple", dimple);
   errors.require(Range::closed(0, 1000), "dust", dust);
   errors.require(Range::closed(0, 1000), "bubbles", bubbles);
-  const auto interval = [&](const char* key, const Interval& value, const Range& range) {
+  const auto interval = [&](const char* key, const DrawInterval& value, const Range& range) {
     errors.require(range, key, value.low);
     errors.require(range, key, value.high);
     errors.require(value.low <= value.high, key, value.low, "", "not above the interval's end");

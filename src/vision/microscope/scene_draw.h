@@ -11,31 +11,31 @@
 namespace microinjection {
 
 /// An interval to draw from, both ends included.
-struct Interval {
+struct DrawInterval {
   double low, high;
 };
 
 /// What a drawn scene contains; probabilities are in [0, 1].
 struct SceneDrawConfig {
-  double cell = 1;                     ///< probability
-  double polar_body = 0.7;             ///< of a cell with zona, probability
-  double nucleus = 0.4;                ///< probability
-  double holding = 0.7;                ///< probability; holds the cell if there is one
-  double injection = 0.7;              ///< probability
-  double dimple = 0.4;                 ///< that the injection pipette indents the cell, probability
-  int dust = 4;                        ///< at most
-  int bubbles = 0;                     ///< at most
-  bool centred = false;                ///< the cell is at the world's origin and round
-  Interval diameter{60e-6, 140e-6};    ///< m
-  Interval zona{0.05, 0.2};            ///< thickness over the radius
-  Interval gap{0, 0.08};               ///< perivitelline gap over the radius
-  double ellipticity = 0.03;           ///< largest (a - b) / (a + b)
-  double place = 0.2;                  ///< largest offset of the cell from the middle of the image, over its sides
-  Interval dimple_depth{2e-6, 12e-6};  ///< m
-  Interval cell_y{0, 0};               ///< m
-  Interval tip_y{0, 0};                ///< m
-  Interval inclination{0, 0.5};        ///< rad, of the shaft out of the image plane; positive away from the camera
-  double tilt = 0.25;                  ///< rad, largest angle of a pipette to the world's z
+  double cell = 1;                         ///< probability
+  double polar_body = 0.7;                 ///< of a cell with zona, probability
+  double nucleus = 0.4;                    ///< probability
+  double holding = 0.7;                    ///< probability; holds the cell if there is one
+  double injection = 0.7;                  ///< probability
+  double dimple = 0.4;                     ///< that the injection pipette indents the cell, probability
+  int dust = 4;                            ///< at most
+  int bubbles = 0;                         ///< at most
+  bool centred = false;                    ///< the cell is at the world's origin and round
+  DrawInterval diameter{60e-6, 140e-6};    ///< m
+  DrawInterval zona{0.05, 0.2};            ///< thickness over the radius
+  DrawInterval gap{0, 0.08};               ///< perivitelline gap over the radius
+  double ellipticity = 0.03;               ///< largest (a - b) / (a + b)
+  double place = 0.2;                      ///< largest offset of the cell from the middle of the image, over its sides
+  DrawInterval dimple_depth{2e-6, 12e-6};  ///< m
+  DrawInterval cell_y{0, 0};               ///< m
+  DrawInterval tip_y{0, 0};                ///< m
+  DrawInterval inclination{0, 0.5};        ///< rad, of the shaft out of the image plane; positive away from the camera
+  double tilt = 0.25;                      ///< rad, largest angle of a pipette to the world's z
 
   /// Throws ConfigError with all errors of the members.
   void validate() const;

@@ -22,6 +22,18 @@ double doubleArea(const CellOutline& outline) {
   return area;
 }
 
+/// Removes corners at the place of the one before: a plane through a node crosses all its sides
+/// there, and between two such corners an outline has no direction.
+void removeRepeated(CellOutline& outline) {
+  constexpr double kTolerance = 1e-6;  // of the outline's size
+  const double least = kTolerance * std::sqrt(std::abs(doubleArea(outline)));
+  CellOutline kept;
+  for (const Eigen::Vector2d& corner : outline)
+    if (kept.empty() || (corner - kept.back()).norm() > least) kept.push_back(corner);
+  while (kept.size() > 1 && (kept.front() - kept.back()).norm() <= least) kept.pop_back();
+  outline = std::move(kept);
+}
+
 using Side = std::pair<int, int>;  // of triangles, by its nodes in ascending order
 
 /// The sides of triangles that the plane crosses, each with the sides that follow it on the section.
@@ -92,6 +104,7 @@ CellOutline sectionOutline(const std::vector<Eigen::Vector3d>& nodes, const std:
   CellOutline largest, curve;
   while (section.takeCurve(curve))
     if (curve.size() >= 3 && std::abs(doubleArea(curve)) > std::abs(doubleArea(largest))) largest = curve;
+  removeRepeated(largest);
   return largest;
 }
 

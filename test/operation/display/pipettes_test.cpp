@@ -25,8 +25,8 @@ std::string errorsOf(const std::string& yaml) {
   return "";
 }
 
-TEST(InjectionPipette, HasItsSizesAtTenThousandTimes) {
-  const InjectionPipette pipette;
+TEST(DrawnInjectionPipette, HasItsSizesAtTenThousandTimes) {
+  const DrawnInjectionPipette pipette;
   const TriangleSoup soup = glass(pipette);
   const RadialRange tip = radialRange(soup, -1e-9, 1e-9);
   EXPECT_NEAR(tip.largest, 0.03, 1e-9);
@@ -35,8 +35,8 @@ TEST(InjectionPipette, HasItsSizesAtTenThousandTimes) {
   EXPECT_NEAR(radialRange(soup, 1.2 - 1e-9, 1.2 + 1e-9).least, 0.07, 1e-9);
 }
 
-TEST(InjectionPipette, IsAClosedHollowGlassThatFacesOutwards) {
-  const InjectionPipette pipette;
+TEST(DrawnInjectionPipette, IsAClosedHollowGlassThatFacesOutwards) {
+  const DrawnInjectionPipette pipette;
   const TriangleSoup soup = glass(pipette);
   EXPECT_TRUE(isClosed(soup));
   const double taper = (0.1 - 0.03) / std::tan(pipette.taper_angle);
@@ -44,14 +44,14 @@ TEST(InjectionPipette, IsAClosedHollowGlassThatFacesOutwards) {
   EXPECT_NEAR(signedVolume(soup), solid * (1 - 0.7 * 0.7) * polygonFactor(48), 1e-9);
 }
 
-TEST(InjectionPipette, ShowsOnlyTheTaperWhenItIsLongerThanWhatIsDrawn) {
-  InjectionPipette pipette;
+TEST(DrawnInjectionPipette, ShowsOnlyTheTaperWhenItIsLongerThanWhatIsDrawn) {
+  DrawnInjectionPipette pipette;
   pipette.length = 20e-6;
   EXPECT_NEAR(radialRange(glass(pipette), 0, 1).largest, 0.03 + 0.2 * std::tan(pipette.taper_angle), 1e-9);
 }
 
-TEST(HoldingPipette, IsNarrowestAtItsMouth) {
-  const HoldingPipette pipette;
+TEST(DrawnHoldingPipette, IsNarrowestAtItsMouth) {
+  const DrawnHoldingPipette pipette;
   const TriangleSoup soup = glass(pipette);
   EXPECT_TRUE(isClosed(soup));
   EXPECT_GT(signedVolume(soup), 0);
@@ -64,7 +64,7 @@ TEST(HoldingPipette, IsNarrowestAtItsMouth) {
   EXPECT_EQ(radialRange(soup, -1, -1e-9).largest, 0);  // nothing in front of the mouth
 }
 
-TEST(HoldingPipette, MouthFollowsTheOutermostHeldPoint) {
+TEST(DrawnHoldingPipette, MouthFollowsTheOutermostHeldPoint) {
   const Mouth mouth = fitMouth({{0, 0, 0}, {3e-6, 4e-6, -1e-6}, {0, -6e-6, -1.5e-6}});
   EXPECT_DOUBLE_EQ(mouth.radius, 6e-6);
   EXPECT_DOUBLE_EQ(mouth.height, -1.5e-6);

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cell_microinjection/CellState.h>
+
+#include <optional>
+#include <string>
+
+#include "operation/display/cell_surface.h"
+
+namespace microinjection {
+
+/// The deformed surface of a message, in its frame; see CellSurface::defect().
+CellSurface toSurface(const cell_microinjection::CellState& message);
+
+/// Value (SI) of a parameter of the felt cell; empty when the message has no such name, or its value
+/// is not finite.
+std::optional<double> cellParameter(const cell_microinjection::CellState& message, const std::string& name);
+
+}  // namespace microinjection

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cell_microinjection/CellState.h>
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <ros/ros.h>
+#include <sensor_msgs/JointState.h>
+
+#include <cstdint>
+#include <string>
+
+#include "nodes/imaging/image_output.h"
+#include "nodes/runtime/frames.h"
+#include "nodes/runtime/master_monitor.h"
+#include "vision/microscope/focus_axis.h"
+#include "vision/microscope/microscope.h"
+#include "vision/microscope/specimen.h"
+
+namespace microinjection {
+
+/// The virtual microscope: renders the session's scene as a microscope's camera sees it.
+///
+/// In:  /cell/state, tf of cell, needle_tip and holding_pipette in world, /focus/move_jp
+///      (JointState, position[0]: m, the world's y of the plane in focus)
+/// Out: microscope/image_raw, microscope/camera_info, /focus/measured_js
+///
+/// Parameters: config/microscope.yaml
+///
+/// It uses wall time, as a camera does. While /cell/state is stale or not finite it publishes no
+/// image: a picture of the past must not look like a new one.
+class MicroscopeNode {
+ public:
+  static const char* const kHelp;
+  /// @throws ConfigError when a parameter is unknown or out of range.
+  MicroscopeNode(ros::NodeHandle node, ros::NodeHandle private_node);
+  void run();
+
+ private:
+  struct Parameters {
+    double rate = 30;            ///< Hz of wall time
+    double state_timeout = 0.5;  ///< s of wall time, of /cell/state
+    FocusAxisConfig focus;
+    SpecimenConfig specimen;
+    MicroscopeConfig microscope;
+  };
+  static Parameters readParameters(const ros::NodeHandle& private_node);
+
+  void onState(const cell_microinjection::CellState& message);
+  void onFocus(const sensor_msgs::JointState& message);
+  std::string missingInput() const;  ///< why there is no image; empty when there is one
+  void step();
+  void publishFocus(const ros::Time& now);
+  void report(diagnostic_updater::DiagnosticStatusWrapper& status);
+
+  Parameters parameters_;
+  Microscope microscope_;
+  FocusAxis focus_;
+  FrameListener frames_;
+  ImageOutput images_;
+  MasterMonitor master_{true};
+  Specimen specimen_;       ///< vertices in cell_frame_
+  std::string cell_frame_;  ///< of the last state
+  std::string defect_;      ///< of the last state; empty: it can be drawn
+  ros::SteadyTime received_, stepped_, reported_;
+  std::uint64_t frame_ = 0;    ///< number of images, which seeds their noise
+  unsigned rendered_ = 0;      ///< since reported_
+  double longest_render_ = 0;  ///< s, since reported_
+
+  ros::Publisher focus_state_;
+  ros::Subscriber state_, focus_command_;
+  diagnostic_updater::Updater diagnostics_;
+  ros::SteadyTimer timer_;
+};
+
+}  // namespace microinjection

@@ -1,0 +1,81 @@
+#include "vision/camera/camera_stream.h"
+
+#include <cstring>
+#include <utility>
+
+#include "base/errors.h"
+
+namespace microinjection {
+namespace {
+
+/// Whether two images have the same bytes. Rows are compared, because an image may have gaps between
+/// them.
+bool same(const cv::Mat& a, const cv::Mat& b) {
+  if (a.size() != b.size() || a.type() != b.type()) return false;
+  const std::size_t width = a.elemSize() * static_cast<std::size_t>(a.cols);
+  for (int row = 0; row < a.rows; ++row) {
+    if (std::memcmp(a.ptr(row), b.ptr(row), width) != 0) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+CameraStream::CameraStream(const FrameSourceConfig& config, Open open)
+    : is_device_(config.source == "device"), open_(std::move(open)) {
+  this->open();
+  period_ = source_->period();
+}
+
+void CameraStream::open() {
+  source_ = open_();
+  for (const std::string& report : source_->takeReports()) note(report);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  ++state_.opened;
+}
+
+std::optional<Frame> CameraStream::next() {
+  if (!source_) {
+    try {
+      open();
+    } catch (const ConfigError& error) {
+      note(error.what());
+      return std::nullopt;
+    }
+  }
+  std::optional<Frame> frame = source_->next();
+  for (const std::string& report : source_->takeReports()) note(report);
+  if (!frame && is_device_) {
+    source_.reset();
+    return std::nullopt;
+  }
+  if (frame && is_device_ && repeats(*frame)) return std::nullopt;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (frame) {
+    ++state_.frames;
+  } else {
+    state_.ended = true;
+  }
+  return frame;
+}
+
+bool CameraStream::repeats(const Frame& frame) {
+  const bool repeated = same(frame.image, last_);
+  last_ = frame.image;
+  if (!repeated) return false;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  ++state_.repeated;
+  return true;
+}
+
+void CameraStream::note(const std::string& report) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  state_.report = report;
+}
+
+CameraStreamState CameraStream::state() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return state_;
+}
+
+}  // namespace microinjection
