@@ -23,7 +23,7 @@ FrameSourceConfig readSource(ConfigReader& reader, double& silence) {
 }
 
 /// V4L2 stamps frames on the monotonic clock.
-ros::Time exposureTime(const Frame& frame, double period) {
+ros::Time exposureTime(const CameraFrame& frame, double period) {
   const ros::Time now = ros::Time::now();
   if (period > 0 || !frame.stamp) return now;
   const double age = 1e-9 * static_cast<double>(ros::SteadyTime::now().toNSec()) - *frame.stamp;
@@ -66,7 +66,7 @@ void CameraNode::grab() {
       std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(stream_->period()));
   while (!stop_ && ros::ok()) {
     const unsigned repeated = stream_->state().repeated;
-    const std::optional<Frame> frame = stream_->next();
+    const std::optional<CameraFrame> frame = stream_->next();
     const CameraStreamState state = stream_->state();
     if (state.ended) return;
     if (!frame) {

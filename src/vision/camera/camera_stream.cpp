@@ -34,7 +34,7 @@ void CameraStream::open() {
   ++state_.opened;
 }
 
-std::optional<Frame> CameraStream::next() {
+std::optional<CameraFrame> CameraStream::next() {
   if (!source_) {
     try {
       open();
@@ -43,7 +43,7 @@ std::optional<Frame> CameraStream::next() {
       return std::nullopt;
     }
   }
-  std::optional<Frame> frame = source_->next();
+  std::optional<CameraFrame> frame = source_->next();
   for (const std::string& report : source_->takeReports()) note(report);
   if (!frame && is_device_) {
     source_.reset();
@@ -59,7 +59,7 @@ std::optional<Frame> CameraStream::next() {
   return frame;
 }
 
-bool CameraStream::repeats(const Frame& frame) {
+bool CameraStream::repeats(const CameraFrame& frame) {
   const bool repeated = same(frame.image, last_);
   last_ = frame.image;
   if (!repeated) return false;

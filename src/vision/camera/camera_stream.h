@@ -35,7 +35,7 @@ class CameraStream {
 
   /// Waits for the next frame. None: there is none at the moment (a device that cannot be opened,
   /// or a repeated frame), or no more (ended).
-  std::optional<Frame> next();
+  std::optional<CameraFrame> next();
   /// s from one frame to the next of a recording; 0 for a device.
   double period() const { return period_; }
   /// Of any thread.
@@ -43,7 +43,7 @@ class CameraStream {
 
  private:
   void open();
-  bool repeats(const Frame& frame);
+  bool repeats(const CameraFrame& frame);
   void note(const std::string& report);
 
   bool is_device_;

@@ -130,7 +130,7 @@ void DeviceSource::set(int property, const std::string& key, double value, const
   report(text.str());
 }
 
-std::optional<Frame> DeviceSource::next() {
+std::optional<CameraFrame> DeviceSource::next() {
   cv::Mat image;
   try {
     if (!capture_->read(image) || image.empty()) {
@@ -145,7 +145,7 @@ std::optional<Frame> DeviceSource::next() {
   std::optional<double> stamp;
   if (std::isfinite(milliseconds) && milliseconds > 0) stamp = milliseconds * 1e-3;
   // The driver may reuse its buffer for the next frame.
-  return Frame{image.clone(), stamp, std::to_string(count_++)};
+  return CameraFrame{image.clone(), stamp, std::to_string(count_++)};
 }
 
 }  // namespace microinjection

@@ -36,7 +36,7 @@ class DeviceSource : public FrameSource {
   DeviceSource(const DeviceSourceConfig& config, std::unique_ptr<cv::VideoCapture> capture);
 
   /// Waits for the device's next frame. The stamp is the driver's, if it has one.
-  std::optional<Frame> next() override;
+  std::optional<CameraFrame> next() override;
   double period() const override { return 0; }
 
  private:

@@ -24,7 +24,7 @@ FolderSource::FolderSource(const std::string& folder, double rate, bool loop) : 
   if (paths_.empty()) report(folder + ": has no images");
 }
 
-std::optional<Frame> FolderSource::next() {
+std::optional<CameraFrame> FolderSource::next() {
   // One loop without a readable image ends the search.
   for (std::size_t tried = 0; tried < paths_.size(); ++tried) {
     if (position_ == paths_.size()) {
@@ -34,7 +34,7 @@ std::optional<Frame> FolderSource::next() {
     const std::string& path = paths_[position_++];
     const double stamp = static_cast<double>(count_++) * period_;
     LoadedImage loaded = loadImage(path);
-    if (loaded.refusal.empty()) return Frame{loaded.image, stamp, fs::path(path).filename().string()};
+    if (loaded.refusal.empty()) return CameraFrame{loaded.image, stamp, fs::path(path).filename().string()};
     report(path + ": " + loaded.refusal);
   }
   return std::nullopt;

@@ -18,7 +18,7 @@ class FolderSource : public FrameSource {
 
   /// The stamp is the frame's number over the rate. It keeps rising from one loop to the next, and
   /// a skipped file has its time, too.
-  std::optional<Frame> next() override;
+  std::optional<CameraFrame> next() override;
   double period() const override { return period_; }
   std::size_t size() const { return paths_.size(); }  ///< images in the folder, readable or not
 

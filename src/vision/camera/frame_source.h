@@ -9,7 +9,7 @@
 namespace microinjection {
 
 /// One image of a camera, as it came.
-struct Frame {
+struct CameraFrame {
   cv::Mat image;                ///< 8 or 16 bit; grey, BGR or BGRA
   std::optional<double> stamp;  ///< s, when it was taken, on the source's own clock; none if the source has no clock
   std::string name;             ///< of its file, or its number
@@ -23,7 +23,7 @@ class FrameSource {
 
   /// Returns the next frame; none at the end, or when a device has stopped. What was skipped on the
   /// way is in takeReports().
-  virtual std::optional<Frame> next() = 0;
+  virtual std::optional<CameraFrame> next() = 0;
   /// s from one frame of a recording to the next; 0 for a device, which sets its own pace.
   virtual double period() const = 0;
 

@@ -17,7 +17,7 @@ VideoSource::VideoSource(const std::string& path, double rate, bool loop) : path
   period_ = 1 / rate;
 }
 
-std::optional<Frame> VideoSource::next() {
+std::optional<CameraFrame> VideoSource::next() {
   cv::Mat image;
   if (!capture_.read(image) && loop_ && of_loop_ > 0) {
     // Opened again, because not every container can seek to its first frame.
@@ -32,7 +32,7 @@ std::optional<Frame> VideoSource::next() {
   ++of_loop_;
   const long number = count_++;
   // The decoder may reuse its buffer for the next frame.
-  return Frame{image.clone(), static_cast<double>(number) * period_, std::to_string(number)};
+  return CameraFrame{image.clone(), static_cast<double>(number) * period_, std::to_string(number)};
 }
 
 }  // namespace microinjection

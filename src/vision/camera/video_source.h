@@ -15,7 +15,7 @@ class VideoSource : public FrameSource {
   VideoSource(const std::string& path, double rate, bool loop);
 
   /// The stamp is the frame's number over the rate and keeps rising from one loop to the next.
-  std::optional<Frame> next() override;
+  std::optional<CameraFrame> next() override;
   double period() const override { return period_; }
 
  private:

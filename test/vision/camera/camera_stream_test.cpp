@@ -14,7 +14,7 @@ namespace {
 class LevelSource : public FrameSource {
  public:
   LevelSource(std::deque<int>& levels, double period) : levels_(levels), period_(period) {}
-  std::optional<Frame> next() override {
+  std::optional<CameraFrame> next() override {
     if (levels_.empty()) return std::nullopt;
     const int level = levels_.front();
     levels_.pop_front();
@@ -22,7 +22,7 @@ class LevelSource : public FrameSource {
       report("fails");
       return std::nullopt;
     }
-    return Frame{cv::Mat(3, 4, CV_8U, cv::Scalar(level)), std::nullopt, std::to_string(level)};
+    return CameraFrame{cv::Mat(3, 4, CV_8U, cv::Scalar(level)), std::nullopt, std::to_string(level)};
   }
   double period() const override { return period_; }
 

@@ -34,7 +34,7 @@ TEST(DeviceSource, ReadsAPipelineToItsEnd) {
   }
   EXPECT_EQ(source->period(), 0);
   for (int i = 0; i < 3; ++i) {
-    const std::optional<Frame> frame = source->next();
+    const std::optional<CameraFrame> frame = source->next();
     ASSERT_TRUE(frame) << i;
     EXPECT_EQ(frame->image.size(), cv::Size(64, 48));
     EXPECT_EQ(frame->name, std::to_string(i));
@@ -84,7 +84,7 @@ TEST(DeviceSource, ReportsWhatTheDeviceRefused) {
 TEST(DeviceSource, FramesHaveTheDriversStampAndTheirOwnPixels) {
   DeviceSource source({}, std::make_unique<FakeDevice>());
   EXPECT_TRUE(source.takeReports().empty());
-  const std::optional<Frame> first = source.next(), second = source.next();
+  const std::optional<CameraFrame> first = source.next(), second = source.next();
   ASSERT_TRUE(first && second);
   EXPECT_NEAR(first->stamp.value(), 1.54, 1e-12);
   EXPECT_NEAR(second->stamp.value(), 1.58, 1e-12);

@@ -47,7 +47,7 @@ class FrameSourceTest : public ::testing::Test {
 std::string namesOf(FrameSource& source, int count = 100) {
   std::string names;
   for (int i = 0; i < count; ++i) {
-    const std::optional<Frame> frame = source.next();
+    const std::optional<CameraFrame> frame = source.next();
     if (!frame) break;
     names += frame->name + " ";
   }
@@ -72,7 +72,7 @@ TEST_F(FrameSourceTest, ALoopStartsAgainAndItsStampsKeepRising) {
   FolderSource source(folder.string(), 4, true);
   EXPECT_EQ(source.period(), 0.25);
   for (int i = 0; i < 5; ++i) {
-    const std::optional<Frame> frame = source.next();
+    const std::optional<CameraFrame> frame = source.next();
     ASSERT_TRUE(frame);
     EXPECT_EQ(frame->name, i % 2 ? "b.png" : "a.png");
     EXPECT_DOUBLE_EQ(frame->stamp.value(), 0.25 * i);
@@ -100,7 +100,7 @@ TEST_F(FrameSourceTest, FilesThatCannotBeReadAreReportedAndSkipped) {
   write("7.png", grey(7));
   FolderSource source(folder.string(), 10, false);
   EXPECT_EQ(source.next()->name, "1.png");
-  const std::optional<Frame> last = source.next();
+  const std::optional<CameraFrame> last = source.next();
   ASSERT_TRUE(last);
   EXPECT_EQ(last->name, "7.png");
   EXPECT_DOUBLE_EQ(last->stamp.value(), 0.6);
@@ -167,7 +167,7 @@ TEST_F(VideoSourceTest, PlaysItsFramesAtTheirRate) {
   VideoSource source(path("video.avi"), 0, false);
   EXPECT_NEAR(source.period(), 0.05, 1e-9);
   for (int i = 0; i < 3; ++i) {
-    const std::optional<Frame> frame = source.next();
+    const std::optional<CameraFrame> frame = source.next();
     ASSERT_TRUE(frame) << i;
     EXPECT_NEAR(frame->image.at<cv::Vec3b>(20, 20)[0], 50 * (i + 1), 3);
     EXPECT_NEAR(frame->stamp.value(), 0.05 * i, 1e-9);
@@ -178,7 +178,7 @@ TEST_F(VideoSourceTest, PlaysItsFramesAtTheirRate) {
 TEST_F(VideoSourceTest, LoopsAtAnotherRate) {
   VideoSource source(path("video.avi"), 5, true);
   for (int i = 0; i < 8; ++i) {
-    const std::optional<Frame> frame = source.next();
+    const std::optional<CameraFrame> frame = source.next();
     ASSERT_TRUE(frame) << i;
     EXPECT_NEAR(frame->image.at<cv::Vec3b>(20, 20)[0], 50 * (i % 3 + 1), 3);
     EXPECT_NEAR(frame->stamp.value(), 0.2 * i, 1e-9);
@@ -246,7 +246,7 @@ TEST_F(MicrographsTest, AFocusStackIsPlayedPlaneByPlane) {
 TEST_F(MicrographsTest, SixteenBitAndColourBecomeGrey) {
   for (const char* folder : {"/vampy", "/autooocyte", "/usama_oocyte"}) {
     FolderSource source(micrographs + folder, 30, false);
-    const std::optional<Frame> frame = source.next();
+    const std::optional<CameraFrame> frame = source.next();
     ASSERT_TRUE(frame) << folder;
     EXPECT_EQ(frame->image.depth() == CV_16U, std::string(folder) == "/vampy");
     EXPECT_EQ(frame->image.channels() > 1, std::string(folder) != "/vampy");
