@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -14,6 +15,7 @@ constexpr std::size_t kNormals = std::size_t{1} << 21;
 constexpr std::uint64_t kNormalSeed = 3;
 constexpr std::uint64_t kMottleSeed = 4;
 constexpr double kMottleSize = 4;  // px rms, of the blur
+constexpr double kStopSoftness = 0.012;
 
 cv::Mat mottleOf(const cv::Size& size) {
   cv::Mat noise(size, CV_32F);
@@ -23,10 +25,17 @@ cv::Mat mottleOf(const cv::Size& size) {
   return noise / std::sqrt(cv::mean(noise.mul(noise))[0]);
 }
 
+/// Share of the light at a distance from the middle, over half the diagonal, that a field stop lets
+/// through.
+double behindStop(double distance, double stop) {
+  return stop == 0 ? 1 : 1 / (1 + std::exp((distance - stop) / kStopSoftness));
+}
+
 cv::Mat illuminationOf(const MicroscopeConfig& config) {
   const IlluminationConfig& light = config.illumination;
   const double full = config.sensor.bits == 16 ? 65535 : 255;
   const int width = config.camera.width, height = config.camera.height;
+  const double half = std::hypot(width, height) / 2;
   cv::Mat result = mottleOf(cv::Size(width, height)) * light.mottle + 1;
   for (int y = 0; y < height; ++y) {
     float* row = result.ptr<float>(y);
@@ -34,8 +43,9 @@ cv::Mat illuminationOf(const MicroscopeConfig& config) {
     for (int x = 0; x < width; ++x) {
       const double u = (x - (width - 1) / 2.0) / width;
       const double fall = light.vignetting * 2 * (u * u + v * v);
-      row[x] *=
-          static_cast<float>(full * light.level * (1 + light.gradient.x() * u + light.gradient.y() * v) * (1 - fall));
+      const double lit = behindStop(std::hypot(u * width, v * height) / half, light.field_stop);
+      const double slope = 1 + light.gradient.x() * u + light.gradient.y() * v;
+      row[x] *= static_cast<float>(full * light.level * slope * (1 - fall) * lit);
     }
   }
   return result;

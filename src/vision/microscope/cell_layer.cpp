@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kDomeWidth = 20e-6;  // m, over which the thickness of a cell becomes that of its middle
 // Granules are phase objects. In phase and DIC they show by their path (rad per contrast).
-constexpr double kGranulePath = 1.2;
+constexpr double kGranulePath = 3;
 // A cell is full of granules: however far the focus is, some are near it.
 constexpr double kLargestGranuleBlur = 0.8e-6;  // m rms
 

@@ -30,13 +30,14 @@ struct Pattern {
   double absorption;  ///< of the whole disc
   double inner;       ///< radius of the middle
   double middle;      ///< absorption of the middle, on top of the disc's
+  double softness;    ///< rms width of the middle's border
   double phase;       ///< rad, of the disc
 };
 
 Pattern patternOf(Debris::Kind kind) {
   // Air turns away all light but that near the middle, where the bubble is a lens.
-  if (kind == Debris::Kind::kBubble) return {0.88, 0.55, -1.05, 0.4};
-  return {0.5, 0.5, 0.15, 0.6};
+  if (kind == Debris::Kind::kBubble) return {0.9, 0.5, -1.1, 0.1, 0.5};
+  return {0.5, 0.5, 0.2, 0.15, 0.6};
 }
 
 }  // namespace
@@ -46,7 +47,9 @@ void addDebris(const Debris& debris, double focus, const CameraView& view, const
   const EdgeResponse::Depth depth = optics.depth(defocus);
   const Pattern pattern = patternOf(debris.kind);
   const double radius = debris.radius / view.pixel_size;
-  const Disc whole(depth, radius, blur), middle(depth, radius * pattern.inner, blur);
+  const double softness = radius * pattern.softness;
+  const EdgeResponse::Depth soft = optics.depth(defocus, softness);
+  const Disc whole(depth, radius, blur), middle(soft, radius * pattern.inner, std::hypot(blur, softness));
   const Eigen::Vector2d centre = view.pixelOf({debris.centre.x(), debris.centre.z()});
   const double reach = radius + depth.reach();
   const cv::Rect frame(cv::Point(0, 0), image.transmission.size());

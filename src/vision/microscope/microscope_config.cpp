@@ -18,6 +18,7 @@ const Range kHalo = Range::closed(0.5e-6, 50e-6);              // m
 const Range kLevel = Range::closed(0, 10);
 const Range kGradient = Range::closed(-1, 1);
 const Range kVignetting = Range::closed(0, 1);
+const Range kFieldStop = Range::closed(0, 2);
 const Range kMottle = Range::closed(0, 0.5);
 const Range kGain = Range::closed(1e-3, 1e6);
 const Range kQuality = Range::closed(0, 100);
@@ -46,6 +47,7 @@ MicroscopeConfig MicroscopeConfig::read(ConfigReader& reader) {
   illumination.number("level", config.illumination.level, kLevel);
   illumination.vector("gradient", config.illumination.gradient, kGradient);
   illumination.number("vignetting", config.illumination.vignetting, kVignetting);
+  illumination.number("field_stop", config.illumination.field_stop, kFieldStop);
   illumination.number("mottle", config.illumination.mottle, kMottle);
   ConfigReader sensor = reader.section("sensor");
   sensor.number("gain", config.sensor.gain, kGain);
@@ -73,6 +75,7 @@ void MicroscopeConfig::validate() const {
   errors.require(kGradient, "gradient x", illumination.gradient.x());
   errors.require(kGradient, "gradient y", illumination.gradient.y());
   errors.require(kVignetting, "vignetting", illumination.vignetting);
+  errors.require(kFieldStop, "field_stop", illumination.field_stop);
   errors.require(kMottle, "mottle", illumination.mottle);
   errors.require(kGain, "gain", sensor.gain, " electrons");
   errors.require(Range::nonNegative(), "read_noise", sensor.read_noise, " electrons");

@@ -26,6 +26,7 @@ struct IlluminationConfig {
   double level = 0.55;                   ///< of full scale, in the middle of the image; above 1 is over-exposed
   Eigen::Vector2d gradient{0.06, 0.04};  ///< relative change across the image, along its x and its y
   double vignetting = 0.08;              ///< relative loss at the corners
+  double field_stop = 0;                 ///< radius of the lit field over half the image's diagonal; 0: none
   double mottle = 0.004;                 ///< relative rms of a coarse fixed pattern
 };
 

@@ -78,7 +78,7 @@ CellOutline ellipseOutline(const Eigen::Vector2d& centre, double a, double b, do
 }
 
 CellBody CellBody::polarBody(const Eigen::Vector2d& centre, double radius) {
-  return {centre, radius, {0.35, 0.05, 0.30, 0.2e-6, 0.8e-6, 0.12, 0.5e-6, 0, 0.07}};
+  return {centre, radius, {0.35, 0.05, 0.30, 0, 0.9e-6, 0.14, 0.6e-6, 0, 0.07}};
 }
 
 CellBody CellBody::nucleus(const Eigen::Vector2d& centre, double radius) {

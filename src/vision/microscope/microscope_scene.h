@@ -16,7 +16,9 @@ using CellOutline = std::vector<Eigen::Vector2d>;
 CellOutline circleOutline(const Eigen::Vector2d& centre, double radius, int corners = 512);
 CellOutline ellipseOutline(const Eigen::Vector2d& centre, double a, double b, double angle, int corners = 512);
 
-/// How a body looks in focus. The defaults resemble a mouse oocyte.
+/// How a body looks in focus. In bright field the rim and the line show the border. The border is in
+/// the middle of a rim that is as wide inside as outside (zona), or where the dark rim outside meets
+/// the bright line inside (ooplasm).
 struct BodyOptics {
   double phase = 0;        ///< rad, of the light through the body; negative for a lower refractive index
   double absorption = 0;   ///< share of the light, in [-1, 1]; negative where the body focuses light
@@ -45,26 +47,27 @@ struct CellScene {
   double y = 0;                    ///< m, of the equatorial plane
   Eigen::Vector2d material{0, 0};  ///< (x, z), m, where the texture of the cell has its origin: it moves with the cell
   std::uint64_t texture_seed = 1;  ///< of the place in the texture
-  BodyOptics zona{0.35, 0.02, 0.14, 0.7e-6, 0.3e-6, 0.05, 0.8e-6, 0, 0.035};
+  BodyOptics zona{0.35, 0, 0.14, 0.5e-6, 0.5e-6, 0, 0, 0, 0.035};
   BodyOptics perivitelline{-0.15, 0, 0.10, 0.4e-6, 0.4e-6, 0, 0, 0, 0};
-  BodyOptics cytoplasm{0.5, 0.10, 0.42, 0.1e-6, 1.6e-6, 0.22, 0.8e-6, 0.10, 0.085};
+  BodyOptics cytoplasm{0.5, 0.10, 0.42, 0, 1.6e-6, 0.22, 0.8e-6, 0.10, 0.085};
   std::optional<CellBody> polar_body, nucleus;
 
   /// A cell of two or three concentric circles (m); a zona thickness of 0 leaves the zona out.
   static CellScene round(const Eigen::Vector2d& centre, double radius, double zona_thickness, double perivitelline_gap);
 };
 
-/// A glass tube seen from the side. Its axis is a unit vector from the mouth or the tip towards the
-/// shaft; the tube widens along it.
+/// How a glass tube looks from the side, in focus.
 struct PipetteOptics {
-  double wall = 0.75;         ///< share of the light that thick walls take; negative for walls that focus light
-  double core = 0.55;         ///< share that a line along the axis gains; it may exceed 1
-  double core_share = 0.35;   ///< width of this line over the inner diameter
-  double lumen = 0;           ///< share of the light that the liquid beside the core takes
-  double phase = 0.7;         ///< rad, of the edges: strength of the fringes
-  double full_wall = 1.0e-6;  ///< m, of wall thickness at which the wall takes (1 - 1/e) of its share
+  double wall = 0.8;          ///< share of the light that thick walls take; negative for walls that focus light
+  double core = 0.7;          ///< share that a line along the axis gains; it may exceed 1
+  double core_share = 0.4;    ///< width of this line over the inner diameter
+  double lumen = 0.35;        ///< share of the light that is missing beside the core
+  double phase = 0.5;         ///< rad, of the edges: strength of the fringes
+  double full_wall = 0.5e-6;  ///< m, of wall thickness at which the wall takes (1 - 1/e) of its share
 };
 
+/// The pipette that holds the cell. Its lip is round, as heat leaves it; the mouth is where the lip
+/// ends.
 struct HoldingPipette {
   Eigen::Vector2d mouth{0, 0};  ///< (x, z), m, the middle of the mouth
   Eigen::Vector2d axis{0, -1};  ///< (x, z), of unit length, from the mouth towards the shaft
@@ -72,9 +75,10 @@ struct HoldingPipette {
   double outer_radius = 40e-6;  ///< m, at the mouth
   double inner_radius = 25e-6;  ///< m
   double taper = 0;             ///< growth of the radius over the length
-  PipetteOptics optics{0.6, 0.25, 0.5, 0.05, 0.7, 1.5e-6};
+  PipetteOptics optics{0.65, 0.2, 0.8, 0.1, 0.5, 1.5e-6};
 };
 
+/// The needle. Its end is cut straight; the tube widens behind it.
 struct InjectionPipette {
   Eigen::Vector3d tip{0, 0, 0};   ///< m, (x, y, z): the end of the axis
   Eigen::Vector3d axis{0, 0, 1};  ///< of unit length, from the tip towards the shaft; not along y

@@ -8,8 +8,10 @@ namespace {
 // Gaussian that fits the Airy disc of incoherent light: 0.21 lambda / NA.
 constexpr double kAiry = 0.21;
 constexpr double kPixelVariance = 1.0 / 12;  // px^2, of the light gathered by a square pixel
-// In phase contrast an intensity changes by twice the phase.
-constexpr double kPhaseContrast = 1.0;
+// A body's phase is that of its border in bright field. DIC shows the whole of it (rad).
+constexpr double kPathPerPhase = 2.5;
+constexpr double kPathPerDome = 20;       // rad per absorption
+constexpr double kAbsorptionInDic = 0.4;  // its aperture is open, so that borders turn away less light
 
 double square(double value) { return value * value; }
 
@@ -40,8 +42,8 @@ Optics::Optics(const MicroscopeConfig& config)
 
 double Optics::blur(double defocus) const { return std::sqrt(variance_in_focus_ + square(slope_ * defocus)); }
 
-EdgeResponse::Depth Optics::depth(double defocus) const {
-  return response_.depth(square(blur(defocus)), diffraction_ * defocus);
+EdgeResponse::Depth Optics::depth(double defocus, double softness) const {
+  return response_.depth(square(blur(defocus)) + square(softness), diffraction_ * defocus);
 }
 
 EdgeResponse::Depth Optics::haloDepth(double defocus) const {
@@ -60,13 +62,13 @@ BorderProfile::BorderProfile(const Optics& optics, double defocus, const std::ve
   for (int i = 0; i < entries; ++i) {
     const double distance = i / kPerPixel - reach_;
     const double rise = smoothRise(distance / dome_width);
-    double change = -dome * rise, path = dic ? 2 * dome * rise : 0;
+    double change = -dome * rise, path = kPathPerDome * dome * rise;
     for (const Step& step : steps) {
       const auto u = static_cast<float>(distance - step.inside);
       const EdgeResponse::Value value = depth.at(u);
-      change -= step.absorption * value.real();
-      if (dic) path += step.phase * value.real();
-      if (has_halo) change -= kPhaseContrast * step.phase * (value.real() - halo.at(u).real());
+      change -= (dic ? kAbsorptionInDic : 1) * step.absorption * value.real();
+      path += kPathPerPhase * step.phase * value.real();
+      if (has_halo) change -= step.phase * (value.real() - halo.at(u).real());
       if (!has_halo) change -= (dic ? 1 : 2) * step.phase * value.imag();
     }
     transmission_.push_back(static_cast<float>(change));

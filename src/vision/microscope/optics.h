@@ -27,8 +27,9 @@ class Optics {
   /// px, rms blur of an object at distance `defocus` (m) behind (positive) or before the plane in
   /// focus.
   double blur(double defocus) const;
-  /// The edge response of an object at this distance (m); lengths in px.
-  EdgeResponse::Depth depth(double defocus) const;
+  /// The edge response of an object at this distance (m); lengths in px. `softness` (px rms): blur of
+  /// the object itself.
+  EdgeResponse::Depth depth(double defocus, double softness = 0) const;
   /// The response to the light that a phase ring lets through beside the specimen, px.
   EdgeResponse::Depth haloDepth(double defocus) const;
 

@@ -101,7 +101,8 @@ OutlineDistance outlineDistance(const std::vector<Eigen::Vector2d>& outline, dou
   }
   const Outline coarse = onGrid(outline, result.region.tl(), kCoarse, outline.size() > 64 ? kSkipped : 1);
   const cv::Size size(result.region.width / kCoarse + 2, result.region.height / kCoarse + 2);
-  const cv::Mat far = distanceOnGrid(coarse, wide / kCoarse, size) * kCoarse;
+  // Nodes just outside the band take part in the interpolation.
+  const cv::Mat far = distanceOnGrid(coarse, wide / kCoarse + 2, size) * kCoarse;
   const cv::Matx23d to_coarse(1.0 / kCoarse, 0, 0, 0, 1.0 / kCoarse, 0);
   cv::warpAffine(far, result.distance, to_coarse, result.region.size(), cv::INTER_LINEAR | cv::WARP_INVERSE_MAP,
                  cv::BORDER_REPLICATE);

@@ -9,7 +9,7 @@ namespace microinjection {
 /// Signed distances of the pixels around a closed outline.
 struct OutlineDistance {
   cv::Rect region;   ///< of the image; empty when nothing of the outline or its band is in it
-  cv::Mat distance;  ///< CV_32F, px, of the region: positive inside, cut at the band
+  cv::Mat distance;  ///< CV_32F, px, of the region: positive inside; cut beyond the band
 };
 
 /// Signed distances to a closed polygon (px, at least three corners, in either sense, need not be

@@ -7,7 +7,14 @@ namespace microinjection {
 namespace {
 
 constexpr float kStationsPerPixel = 2;
-constexpr double kPathPerPhase = 1.0;  // rad of the path per phase of the optics, dic
+constexpr float kPathPerPhase = 1.5F;   // rad of the path per phase of the optics, dic
+constexpr double kFading = 0.25;        // of the wall's thickness
+constexpr float kMiddle = 0.45F;        // darkness of the wall's middle over that of its outside
+constexpr double kCoreWidth = 0.5;      // rms half width over the half width of the core
+constexpr double kHoldingRim = 1.5e-6;  // m
+constexpr double kLeastGrowth = 1e-3;   // px
+constexpr float kSteepest = 0.97F;      // sine of the largest angle of a round lip
+constexpr float kRim = 0.5F;            // darkness of the end face's rim over that of the wall
 
 using Value = EdgeResponse::Value;
 
@@ -18,18 +25,31 @@ struct Tube {
   double growth;         ///< of the radius per px
   double largest;        ///< radius where the growth ends
   double inner;          ///< inner over outer radius
+  double lip;            ///< px, radius to which the end of the wall is rounded; 0: cut straight
+  double rim;            ///< px, width of the end face's rim along the axis
   double defocus;        ///< m, at the end
   double defocus_slope;  ///< m per px
   PipetteOptics optics;
 
-  double radiusAt(double s) const { return std::min(largest, radius + growth * std::max(0.0, s)); }
+  /// Straight near the end, and bending to its largest value.
+  double radiusAt(double s) const { return growth == 0 ? radius : radius + bent(s) * s * growth; }
+  double slopeAt(double s) const { return growth == 0 ? 0 : std::pow(bent(s), 5) * growth; }
+
+ private:
+  /// Share of the straight growth that is left at `s`.
+  double bent(double s) const {
+    const double straight = growth * std::max(0.0, s) / std::max(largest - radius, kLeastGrowth);
+    return std::pow(1 + std::pow(straight, 4), -0.25);
+  }
 };
 
 /// What holds at one place of the axis.
 struct Station {
   EdgeResponse::Depth depth, halo;
-  float outer, inner, core;  ///< px, half widths
-  float slant;               ///< cosine of the wall's angle to the axis
+  float outer, inner;  ///< px, half widths
+  float slant;         ///< cosine of the wall's angle to the axis
+  float fading;        ///< px into the wall over which its darkness falls to that of its middle
+  float narrowness;    ///< 1/px^2, of the core: exp(-narrowness r^2)
   float wall, lumen, gain, phase;
 };
 
@@ -38,15 +58,18 @@ Station stationOf(const Tube& tube, const Optics& optics, double s) {
   const double defocus = tube.defocus + tube.defocus_slope * s;
   station.depth = optics.depth(defocus);
   station.halo = optics.haloDepth(defocus);
-  const double radius = tube.radiusAt(s), inner = radius * tube.inner;
+  const double radius = tube.radiusAt(std::max(0.0, s)), inner = radius * tube.inner;
   const double glass = 1 - std::exp(-(radius - inner) * optics.pixelSize() / tube.optics.full_wall);
   station.outer = static_cast<float>(radius);
   station.inner = static_cast<float>(inner);
-  station.core = static_cast<float>(inner * tube.optics.core_share);
-  station.slant = static_cast<float>(radius < tube.largest ? 1 / std::hypot(1.0, tube.growth) : 1);
+  station.slant = static_cast<float>(1 / std::hypot(1.0, tube.slopeAt(s)));
+  station.fading = static_cast<float>(kFading * (radius - inner) + optics.blur(defocus));
+  // The core is a bell curve, so that the blur widens and lowers it.
+  const double width = kCoreWidth * inner * tube.optics.core_share, blurred = std::hypot(width, optics.blur(defocus));
+  station.narrowness = static_cast<float>(1 / (2 * blurred * blurred));
   station.wall = static_cast<float>(tube.optics.wall * glass);
   station.lumen = static_cast<float>(tube.optics.lumen * glass);
-  station.gain = static_cast<float>(tube.optics.core * glass);
+  station.gain = static_cast<float>((tube.optics.core + tube.optics.lumen) * glass * width / blurred);
   station.phase = static_cast<float>(tube.optics.phase);
   return station;
 }
@@ -56,26 +79,40 @@ Value bandOf(const EdgeResponse::Depth& depth, float r, float half, float slant)
   return depth.at((half - r) * slant) + depth.at((half + r) * slant) - Value(1, 0);
 }
 
+/// Darkness of a wall: the outer part turns away more light than the middle.
+float darknessOf(const Station& station, float r) {
+  const float into = (station.outer - r) / station.fading;
+  return kMiddle + (1 - kMiddle) / (1 + into * into);
+}
+
 struct Change {
   float transmission, path;
 };
 
+/// The end face at a place: response along the axis, and that of the rim behind it.
+struct End {
+  Value value, rim;
+  float halo;
+};
+
 /// The kernel of the edge response is a product of one along and one across the axis, so that the
 /// response of a band with an end is the product of theirs.
-Change changeAt(const Station& station, Optics::Look look, float r, const Value& end, float halo_end) {
-  const Value outer = end * bandOf(station.depth, r, station.outer, station.slant);
-  const Value inner = end * bandOf(station.depth, r, station.inner, station.slant);
-  const Value core = end * bandOf(station.depth, r, station.core, station.slant);
+Change changeAt(const Station& station, Optics::Look look, float r, const End& end) {
+  const Value across = bandOf(station.depth, r, station.outer, station.slant);
+  const Value outer = end.value * across;
+  const Value inner = end.value * bandOf(station.depth, r, station.inner, station.slant);
+  const float core = end.value.real() * std::exp(-station.narrowness * r * r);
   Change change{0, 0};
-  change.transmission =
-      -station.wall * (outer - inner).real() - station.lumen * (inner - core).real() + station.gain * core.real();
+  change.transmission = -station.wall * darknessOf(station, std::min(r, station.outer)) * (outer - inner).real() -
+                        station.lumen * inner.real() + station.gain * core -
+                        kRim * station.wall * ((end.value - end.rim) * across).real();
   if (look == Optics::Look::kPhase) {
-    const float halo = halo_end * bandOf(station.halo, r, station.outer, station.slant).real();
+    const float halo = end.halo * bandOf(station.halo, r, station.outer, station.slant).real();
     change.transmission -= 0.5F * station.phase * (outer.real() - halo);
   } else {
-    change.transmission -= station.phase * (outer - inner).imag();
+    change.transmission -= station.phase * (2.0F * outer - inner).imag();
   }
-  change.path = static_cast<float>(kPathPerPhase) * station.phase * (outer - 0.5F * inner).real();
+  change.path = kPathPerPhase * station.phase * (outer - 0.5F * inner).real();
   return change;
 }
 
@@ -128,6 +165,8 @@ class TubePicture {
   TubePicture(const Tube& tube, const Optics& optics, OpticalImage& image)
       : tube_(tube), optics_(optics), image_(image) {
     end_ = stationOf(tube, optics, 0);
+    lip_ = static_cast<float>(tube.lip);
+    rim_ = static_cast<float>(tube.rim);
     back_ = static_cast<float>(end_.depth.reach());
     if (optics.look() == Optics::Look::kPhase) back_ = std::max(back_, static_cast<float>(end_.halo.reach()));
     const double length = farthest();
@@ -177,18 +216,30 @@ class TubePicture {
       const auto place =
           std::min(static_cast<std::size_t>(std::max(0.0F, s * kStationsPerPixel + 0.5F)), stations_.size() - 1);
       if (s < -back_ || r > widths_[place]) continue;
-      const float halo_end = optics_.look() == Optics::Look::kPhase ? end_.halo.at(s).real() : 1;
-      const Change change = changeAt(stations_[place], optics_.look(), r, end_.depth.at(s), halo_end);
+      const Change change = changeAt(stations_[place], optics_.look(), r, endAt(s, r));
       transmission[x] *= std::max(0.0F, 1 + contrast * change.transmission);
       if (path) path[x] += contrast * change.path;
     }
+  }
+
+  /// A round lip is a circle on the middle of the wall: beside the middle the end lies behind it.
+  End endAt(float s, float r) const {
+    float behind = s;
+    if (lip_ > 0 && r > end_.inner) {
+      const float beside = std::min(std::abs(r - end_.outer + lip_) / lip_, kSteepest);
+      const float cosine = std::sqrt(1 - beside * beside);
+      behind = (s - lip_ * (1 - cosine)) * cosine;
+    }
+    const float halo = optics_.look() == Optics::Look::kPhase ? end_.halo.at(behind).real() : 1;
+    return {end_.depth.at(behind), end_.depth.at(behind - rim_), halo};
   }
 
   const Tube& tube_;
   const Optics& optics_;
   OpticalImage& image_;
   Station end_;
-  float back_;  ///< px before the end face that see it
+  float lip_, rim_;  ///< px
+  float back_;       ///< px before the end face that see it
   std::vector<Station> stations_;
   std::vector<float> widths_;  ///< px from the axis that see the station
   std::vector<Eigen::Vector2f> hull_;
@@ -205,6 +256,8 @@ void addPipette(const HoldingPipette& pipette, double focus, const CameraView& v
   tube.growth = pipette.taper;
   tube.largest = 3 * tube.radius;
   tube.inner = pipette.inner_radius / pipette.outer_radius;
+  tube.lip = (pipette.outer_radius - pipette.inner_radius) / 2 / view.pixel_size;
+  tube.rim = std::min(kHoldingRim, pipette.outer_radius - pipette.inner_radius) / view.pixel_size;
   tube.defocus = pipette.y - focus;
   tube.defocus_slope = 0;
   tube.optics = pipette.optics;
@@ -221,6 +274,8 @@ void addPipette(const InjectionPipette& pipette, double focus, const CameraView&
   tube.growth = pipette.taper / in_image.norm();
   tube.largest = pipette.shaft_radius / view.pixel_size;
   tube.inner = 1 - pipette.wall;
+  tube.lip = 0;
+  tube.rim = pipette.wall * pipette.tip_radius / view.pixel_size;
   tube.defocus = pipette.tip.y() - focus;
   tube.defocus_slope = pipette.axis.y() / in_image.norm() * view.pixel_size;
   tube.optics = pipette.optics;

@@ -97,12 +97,20 @@ class SceneMaker {
     drawn_.truth.cell = truth;
   }
 
-  /// A polar body lies in the gap and presses into the ooplasm where the gap is narrow.
+  /// A polar body touches the zona, and the ooplasm gives way to it.
   void addPolarBody(CellScene& cell, CellTruth& truth, double inner) {
     const double size = inner * random_.within(0.09, 0.15);
     const Eigen::Vector2d direction = unit(random_.within(-M_PI, M_PI));
     const double away = inner * (1 - config_.ellipticity) - size;
     cell.polar_body = CellBody::polarBody(centre_ + away * direction, size);
+    const Eigen::Vector2d across(direction.y(), -direction.x());
+    double highest = 0;
+    for (const Eigen::Vector2d& corner : cell.ooplasm) highest = std::max(highest, (corner - centre_).dot(direction));
+    const double excess = std::max(0.0, highest - (away - 1.1 * size));
+    for (Eigen::Vector2d& corner : cell.ooplasm) {
+      const double side = (corner - centre_).dot(across) / (1.3 * size);
+      if ((corner - centre_).dot(direction) > 0) corner -= excess * std::exp(-side * side / 2) * direction;
+    }
     truth.polar_body_angle = imageAngle(direction);
   }
 
@@ -132,6 +140,7 @@ class SceneMaker {
     pipette.y = drawn_.scene.cells.empty() ? 0 : drawn_.scene.cells.front().y;
     pipette.optics.wall = random_.chance(0.25) ? -random_.within(0.3, 0.7) : random_.within(0.4, 0.8);
     pipette.optics.core = random_.within(0.05, 0.4);
+    pipette.optics.lumen = random_.within(0, 0.25);
     drawn_.scene.holding = pipette;
     drawn_.truth.holding = PipetteTruth{view_.pixelOf(pipette.mouth), view_.imageDirection(pipette.axis),
                                         pipette.outer_radius / view_.pixel_size, pipette.y};
@@ -147,7 +156,9 @@ class SceneMaker {
     pipette.wall = random_.within(0.15, 0.4);
     pipette.shaft_radius = random_.within(20e-6, 60e-6);
     pipette.optics.wall = random_.within(0.5, 0.9);
-    pipette.optics.core = random_.within(0.3, 1.2);
+    pipette.optics.core = random_.within(0.4, 1.2);
+    pipette.optics.core_share = random_.within(0.25, 0.6);
+    pipette.optics.lumen = random_.within(0.1, 0.5);
     const Eigen::Vector2d tip = has_cell_ && random_.chance(config_.dimple) ? indent(axis) : placeOfTip(axis);
     pipette.tip = {tip.x(), random_.within(config_.tip_y), tip.y()};
     drawn_.scene.injection = pipette;

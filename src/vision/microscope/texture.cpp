@@ -38,8 +38,11 @@ cv::Mat blurPeriodic(const cv::Mat& tile, double blur) {
 }
 
 Texture::Texture() {
-  // Granules below 1 um, clusters of some micrometres, and faint clouds.
-  tile_ = 0.8 * band(kTileSeed, 1.2, 3) + 0.5 * band(kTileSeed + 1, 3, 7) + 0.35 * band(kTileSeed + 2, 10, 30);
+  // Granules of about 1 um, clusters of some micrometres, and faint clouds.
+  cv::Mat granules = band(kTileSeed, 1.5, 3.5);
+  // Granules stand out of the noise: large values grow.
+  granules = granules.mul(0.6 + 0.4 * cv::abs(granules));
+  tile_ = 0.8 * granules + 0.5 * band(kTileSeed + 1, 3.5, 8) + 0.35 * band(kTileSeed + 2, 10, 30);
   tile_ /= std::sqrt(cv::mean(tile_.mul(tile_))[0]);
 }
 

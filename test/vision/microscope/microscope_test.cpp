@@ -202,6 +202,32 @@ TEST(Microscope, TheSameSeedGivesTheSamePicture) {
   }
 }
 
+/// In bright field a zona's border is the middle of its dark line, and an ooplasm's is half-way from
+/// the dark rim to the bright line.
+TEST(Microscope, TheBordersOfACellAreWhereTheLinesShowThem) {
+  Microscope microscope(smallConfig());
+  MicroscopeScene scene;
+  CellScene cell = CellScene::round({0, 0}, 40e-6, 8e-6, 4e-6);
+  cell.zona.granules = cell.cytoplasm.granules = 0;
+  scene.cells.push_back(cell);
+  const cv::Mat image = microscope.transmission(scene, 0);
+  for (const double radius : {40.0, 32.0}) {
+    double sum = 0, first = 0;
+    for (double r = radius / 0.25 - 6; r <= radius / 0.25 + 6; r += 0.5) {
+      double dark = 0;
+      for (int i = 0; i < 60; ++i) {
+        const Eigen::Vector2d direction(std::cos(M_PI * i / 30), std::sin(M_PI * i / 30));
+        dark += 1 - sampleAt(image, Eigen::Vector2d(239.5, 199.5) + r * direction);
+      }
+      sum += dark;
+      first += dark * r;
+    }
+    EXPECT_NEAR(first / sum, radius / 0.25, 0.06) << radius;
+  }
+  const double level = 1 + (-0.42 - 0.10 + 0.22) / 2;
+  EXPECT_NEAR(seenRadius(image, {239.5, 199.5}, 112, level), 112, 0.06);
+}
+
 TEST(Microscope, TheTextureMovesWithTheCell) {
   Microscope microscope(smallConfig());
   MicroscopeScene scene;

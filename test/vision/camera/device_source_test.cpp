@@ -1,0 +1,98 @@
+#include "vision/camera/device_source.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "base/errors.h"
+
+namespace microinjection {
+namespace {
+
+TEST(DeviceSource, AnAbsentDeviceIsRefusedByName) {
+  DeviceSourceConfig config;
+  config.device = "/dev/video_that_is_absent";
+  try {
+    DeviceSource source(config);
+    FAIL();
+  } catch (const ConfigError& error) {
+    EXPECT_NE(std::string(error.what()).find("device = /dev/video_that_is_absent"), std::string::npos) << error.what();
+  }
+}
+
+TEST(DeviceSource, ReadsAPipelineToItsEnd) {
+  DeviceSourceConfig config;
+  config.device = "videotestsrc num-buffers=3 ! video/x-raw,format=GRAY8,width=64,height=48,framerate=25/1 ! appsink";
+  std::unique_ptr<DeviceSource> source;
+  try {
+    source = std::make_unique<DeviceSource>(config);
+  } catch (const ConfigError& error) {
+    GTEST_SKIP() << "this OpenCV has no GStreamer, or GStreamer no test source: " << error.what();
+  }
+  EXPECT_EQ(source->period(), 0);
+  for (int i = 0; i < 3; ++i) {
+    const std::optional<Frame> frame = source->next();
+    ASSERT_TRUE(frame) << i;
+    EXPECT_EQ(frame->image.size(), cv::Size(64, 48));
+    EXPECT_EQ(frame->name, std::to_string(i));
+  }
+  EXPECT_TRUE(source->takeReports().empty());
+  EXPECT_FALSE(source->next());
+  EXPECT_EQ(source->takeReports().size(), 1u);
+}
+
+/// A camera that has one size, takes gains up to 5, and delivers two frames from one buffer.
+class FakeDevice : public cv::VideoCapture {
+ public:
+  bool set(int property, double value) override {
+    if (property == cv::CAP_PROP_GAIN) values[property] = std::min(value, 5.0);
+    if (property == cv::CAP_PROP_AUTO_EXPOSURE || property == cv::CAP_PROP_EXPOSURE) values[property] = value;
+    return true;  // as drivers do that keep their own value
+  }
+  double get(int property) const override { return values.count(property) ? values.at(property) : 0; }
+  bool read(cv::OutputArray image) override {
+    if (frames == 2) return false;
+    buffer.setTo(10 * ++frames);
+    values[cv::CAP_PROP_POS_MSEC] = 1500 + 40 * frames;
+    image.assign(buffer);
+    return true;
+  }
+
+  cv::Mat buffer = cv::Mat(48, 64, CV_8U);
+  int frames = 0;
+  std::map<int, double> values = {{cv::CAP_PROP_FRAME_WIDTH, 64},
+                                  {cv::CAP_PROP_FRAME_HEIGHT, 48},
+                                  {cv::CAP_PROP_FOURCC, cv::VideoWriter::fourcc('Y', 'U', 'Y', 'V')}};
+};
+
+TEST(DeviceSource, ReportsWhatTheDeviceRefused) {
+  DeviceSourceConfig config;
+  config.width = 320;
+  config.height = 48;
+  config.format = "Y16";
+  config.exposure = 100;
+  config.gain = 20;
+  DeviceSource source(config, std::make_unique<FakeDevice>());
+  const std::vector<std::string> refused = source.takeReports();
+  EXPECT_EQ(refused, (std::vector<std::string>{"format = Y16: the device has YUYV",
+                                               "width = 320 px: the device has 64 px", "gain = 20: the device has 5"}));
+}
+
+TEST(DeviceSource, FramesHaveTheDriversStampAndTheirOwnPixels) {
+  DeviceSource source({}, std::make_unique<FakeDevice>());
+  EXPECT_TRUE(source.takeReports().empty());
+  const std::optional<Frame> first = source.next(), second = source.next();
+  ASSERT_TRUE(first && second);
+  EXPECT_NEAR(first->stamp.value(), 1.54, 1e-12);
+  EXPECT_NEAR(second->stamp.value(), 1.58, 1e-12);
+  EXPECT_EQ(first->image.at<unsigned char>(3, 3), 10);
+  EXPECT_EQ(second->image.at<unsigned char>(3, 3), 20);
+  EXPECT_FALSE(source.next());
+  EXPECT_EQ(source.takeReports().size(), 1u);
+}
+
+}  // namespace
+}  // namespace microinjection
