@@ -58,12 +58,12 @@ double outsideShare(const Frame& frame, const Ellipse& ellipse) {
   return static_cast<double>(outside) / kPoints;
 }
 
-/// Mean slope along the ellipse over its standard error.
-double significanceOf(const PolarMap& map, const CellBorder& border) {
+/// Mean slope along the ellipse, and that over its standard error.
+void weigh(const PolarMap& map, CellBorder& border) {
   double sum = 0, square = 0;
   int count = 0;
   for (int ray = 0; ray < map.rays(); ++ray) {
-    const double radius = border.ellipse.radius(map.direction(ray));
+    const double radius = border.ellipse.reach(map.centre(), map.direction(ray));
     const int column = static_cast<int>(std::lround(map.column(ray, radius)));
     if (column < 0 || column >= map.columns() || map.valid().at<unsigned char>(ray, column) == 0) continue;
     double slope = map.slope().at<float>(ray, column);
@@ -73,9 +73,10 @@ double significanceOf(const PolarMap& map, const CellBorder& border) {
     square += slope * slope;
     ++count;
   }
-  if (count < 3 * kIndependentRays) return 0;
+  if (count < 3 * kIndependentRays) return;
   const double mean = sum / count, variance = std::max(square / count - mean * mean, 1e-14);
-  return mean / std::sqrt(variance * kIndependentRays / count);
+  border.contrast = mean / map.step();
+  border.significance = mean / std::sqrt(variance * kIndependentRays / count);
 }
 
 struct Points {
@@ -139,7 +140,7 @@ CellBorder findBorder(const Frame& frame, const PolarMap& map, Polarity polarity
   // Directions whose border the image does not show count as not covered, once they are many.
   const double seen = std::max<double>(points.seen, 0.3 * map.rays());
   border.coverage = static_cast<double>(inliers) / seen;
-  border.significance = significanceOf(map, border);
+  weigh(map, border);
   if (border.coverage >= kLeastCoverage) border.finding = Finding::found();
   return border;
 }
@@ -213,7 +214,7 @@ CellBorder refineBorder(const Frame& frame, const CellBorder& coarse, const Bord
   std::vector<double> place = flankPath(map, coarse.polarity, flank, half, scale);
   CellBorder fine = coarse;
   fine.points.clear();
-  fine.rim = 0;
+  fine.rim = fine.shift = 0;
   if (rim.widest > 0 && coarse.polarity == Polarity::kRising) {
     const std::vector<double> slope = meanSlope(map);
     const int rising = steepestColumn(slope, std::max(0, flank - half), std::min(columns, flank + half + 1));
@@ -224,6 +225,7 @@ CellBorder refineBorder(const Frame& frame, const CellBorder& coarse, const Bord
       const std::vector<double> inner = flankPath(map, Polarity::kFalling, falling, reach, scale);
       for (int ray = 0; ray < rays; ++ray) place[ray] -= rim.place * (place[ray] - inner[ray]);
       fine.rim = (rising - falling) * step;
+      fine.shift = rim.place * fine.rim;
     }
   }
   for (int ray = 0; ray < rays; ++ray) {

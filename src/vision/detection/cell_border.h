@@ -20,8 +20,10 @@ struct CellBorder {
   double outside = 0;       ///< share of the ellipse that is outside of the image
   double strength = 0;      ///< 0..1, of the gradient along it relative to what is around it
   double consistency = 0;   ///< share of the directions whose gradient is that of a border
+  double contrast = 0;      ///< mean slope of the grey value along it, of full scale per px
   double significance = 0;  ///< mean gradient along it over the standard error of that
   Polarity polarity = Polarity::kRising;
+  double shift = 0;                 ///< px, that the border is inside of the rising flank that shows it
   double rim = 0;                   ///< px, mean width of the dark rim along it; 0: none was seen
   std::vector<cv::Point2d> points;  ///< px, in order of direction
   std::vector<bool> inlier;         ///< of each point

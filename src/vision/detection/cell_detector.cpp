@@ -57,16 +57,41 @@ CellDetection CellDetector::detect(const Frame& frame) const {
       continue;
     }
     detection.finding = finding;
-    detection.ooplasm = layers.ooplasm;
-    detection.zona_inner = layers.zona_inner;
-    detection.zona_outer = layers.zona_outer;
-    detection.centre = detection.outer().ellipse.centre;
-    detection.centre_covariance = detection.outer().covariance.topLeftCorner<2, 2>();
+    take(detection, layers);
   }
   if (detection.finding.isFound() && !detection.others.empty()) {
     detection.finding = Finding::uncertain("two cells: the clearest is given");
   }
   return detection;
+}
+
+CellDetection CellDetector::track(const Frame& frame, const CellDetection& previous, double reach) const {
+  CellDetection detection;
+  detection.finding = Finding::notFound("there is no earlier cell to follow");
+  if (!frame.refusal().empty()) detection.finding = Finding::notFound(frame.refusal());
+  if (!frame.refusal().empty() || !previous.finding.hasValues()) return detection;
+  CellLayers before;
+  before.ooplasm = previous.ooplasm;
+  before.zona_inner = previous.zona_inner;
+  before.zona_outer = previous.zona_outer;
+  const CellLayers layers = followLayers(frame, before, reach);
+  const bool lost = !layers.ooplasm.finding.hasValues() ||
+                    (previous.zona_outer.finding.hasValues() && !layers.zona_outer.finding.hasValues());
+  if (lost) {
+    detection.finding = Finding::notFound("the cell is lost: its border is not where it was");
+    return detection;
+  }
+  detection.finding = judge(frame, layers);
+  take(detection, layers);
+  return detection;
+}
+
+void CellDetector::take(CellDetection& detection, const CellLayers& layers) {
+  detection.ooplasm = layers.ooplasm;
+  detection.zona_inner = layers.zona_inner;
+  detection.zona_outer = layers.zona_outer;
+  detection.centre = detection.outer().ellipse.centre;
+  detection.centre_covariance = detection.outer().covariance.topLeftCorner<2, 2>();
 }
 
 bool CellDetector::isClear(const CellBorder& border) const {

@@ -48,10 +48,14 @@ class CellDetector {
 
   /// Searches the whole frame.
   CellDetection detect(const Frame& frame) const;
+  /// Searches near a cell that was found in an earlier frame: moved by at most `reach` (px), of
+  /// nearly the same size.
+  CellDetection track(const Frame& frame, const CellDetection& previous, double reach) const;
 
  private:
   bool isClear(const CellBorder& border) const;
   Finding judge(const Frame& frame, const CellLayers& layers) const;
+  static void take(CellDetection& detection, const CellLayers& layers);
   static void addOther(CellDetection& detection, const CellLayers& layers);
 
   CellDetectorConfig config_;

@@ -10,18 +10,19 @@ constexpr int kRays = 96, kFineRays = 180, kColumns = 110;
 constexpr double kSmoothing = 1.2;   // columns
 constexpr double kOutermost = 1.65;  // of the ooplasm's radius, a zona's outer border
 constexpr double kNear = 1.1, kNearStrength = 0.75;
+constexpr double kFaded = 0.25;   // of a border's contrast, when it is lost
 constexpr double kInside = 0.93;  // ratio of a border inside of the main one, at most
 constexpr double kGap = 1.03;     // ratio of two borders' radii, at least
 constexpr double kLeastCoverage = 0.55, kLeastConsistency = 0.6, kLeastStrength = 0.55;  // of a second border
-constexpr double kClear = 0.8;          // of the main border's strength: an inner border as clear as the main one
-constexpr double kZonaPlace = 0.3;      // of the zona's outer border in its dark rim, see refineBorder()
-constexpr double kInnerPlace = 0.5;     // of the zona's inner border
-constexpr double kOoplasmPlace = 0.95;  // of the ooplasm's: the rim is refracted beside it
-constexpr int kFreeChange = 4;          // columns from ray to ray
-constexpr double kFreeGain = 0.07;      // of strength, what a freer path must be better by
-constexpr double kSure = 0.9;           // strength that needs no freer path
-constexpr double kOutwards = 0.2;       // see BorderBand
-constexpr double kWidestRim = 0.2;      // of the radius
+constexpr double kClear = 0.8;         // of the main border's strength: an inner border as clear as the main one
+constexpr double kZonaPlace = 0.5;     // of the zona's outer border in its dark rim, see refineBorder()
+constexpr double kInnerPlace = 0.5;    // of the zona's inner border
+constexpr double kOoplasmPlace = 1.0;  // of the ooplasm's: the rim is refracted beside it
+constexpr int kFreeChange = 4;         // columns from ray to ray
+constexpr double kFreeGain = 0.07;     // of strength, what a freer path must be better by
+constexpr double kSure = 0.9;          // strength that needs no freer path
+constexpr double kOutwards = 0.2;      // see BorderBand
+constexpr double kWidestRim = 0.2;     // of the radius
 
 std::vector<Polarity> polaritiesOf(const std::string& look) {
   if (look == "dic") return {Polarity::kEither};
@@ -165,6 +166,50 @@ CellLayers findLayers(const Frame& frame, const CellBorder& main, const std::str
     layers.zona_inner.ellipse = scaled(layers.ooplasm.ellipse, 1 + 0.5 * layers.ooplasm.rim / radiusOf(layers.ooplasm));
   }
   layers.zona_outer = refined(frame, layers.zona_outer, kZonaPlace, 0.35 * gap);
+  return layers;
+}
+
+namespace {
+
+CellBorder follow(const Frame& frame, const CellBorder& previous, const cv::Point2d& moved, double room, double place,
+                  double rim) {
+  if (!previous.finding.hasValues()) return {};
+  CellBorder base = previous;
+  base.ellipse.centre += moved;
+  // The flank that is searched is at the outer end of the rim.
+  const double radius = radiusOf(previous), flank = 1 + place * previous.rim / radius;
+  base.ellipse = scaled(base.ellipse, flank);
+  const PolarMap map(frame, base.ellipse, {-room, room, std::max(13, static_cast<int>(2 * room) + 1), kRays}, 2.0);
+  const CellBorder found = findBorder(frame, map, previous.polarity, {}, scaleOf(frame, map), toleranceFor(radius));
+  const bool faded = found.contrast < kFaded * previous.contrast;
+  if (!found.finding.hasValues() || found.coverage < kLeastCoverage || faded) return {};
+  CellBorder fine = refined(frame, found, place, rim);
+  fine.strength = previous.strength;
+  fine.contrast = previous.contrast;
+  fine.consistency = found.consistency;
+  return fine;
+}
+
+}  // namespace
+
+CellLayers followLayers(const Frame& frame, const CellLayers& previous, double reach) {
+  CellLayers layers;
+  const bool zona = previous.zona_outer.finding.hasValues();
+  const double gap = zona ? radiusOf(previous.zona_outer) - radiusOf(previous.ooplasm) : 0;
+  const double place = zona ? kOoplasmPlace : 0;
+  const double rim = zona ? std::min(kWidestRim * radiusOf(previous.ooplasm), 0.8 * gap) : 0;
+  layers.ooplasm = follow(frame, previous.ooplasm, {0, 0}, reach + 4, place, rim);
+  if (!layers.ooplasm.finding.hasValues()) return layers;
+  layers.main = layers.ooplasm;
+  // The clearest border tells how far the cell moved; the others are then near.
+  const cv::Point2d moved = layers.ooplasm.ellipse.centre - previous.ooplasm.ellipse.centre;
+  layers.zona_outer = follow(frame, previous.zona_outer, moved, 6, kZonaPlace, 0.35 * gap);
+  if (previous.zona_inner.finding.isFound()) {
+    layers.zona_inner = follow(frame, previous.zona_inner, moved, 5, kInnerPlace, 0.25 * gap);
+  } else if (zona) {
+    layers.zona_inner = previous.zona_inner;
+    layers.zona_inner.ellipse.centre += moved;
+  }
   return layers;
 }
 

@@ -12,6 +12,10 @@ struct CellLayers {
   CellBorder ooplasm, zona_inner, zona_outer;
 };
 
+/// Finds the same borders in another frame, moved by at most `reach` (px). A border that is lost has
+/// the verdict kNotFound.
+CellLayers followLayers(const Frame& frame, const CellLayers& previous, double reach);
+
 /// Whether the round thing is a bubble: its rim is wide and nearly black, its middle bright.
 bool isBubble(const Frame& frame, const CellLayers& layers);
 

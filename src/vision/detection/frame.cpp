@@ -10,7 +10,7 @@ namespace {
 constexpr int kSmallest = 32;             // px, of a side
 constexpr double kMostSaturated = 0.95;   // of the pixels
 constexpr double kLeastContrast = 0.004;  // of full scale, between the 0.5th and the 99.5th percentile
-constexpr int kStride = 4;                // of the pixels that the statistics look at
+constexpr int kStride = 7;                // of the pixels that the statistics look at
 
 cv::Mat toGrey(const cv::Mat& image) {
   cv::Mat one;
@@ -72,7 +72,7 @@ Frame::Frame(const cv::Mat& image) {
   }
   if (!refusal_.empty()) return;
   grey_ = toGrey(image);
-  if (!cv::checkRange(grey_)) {
+  if (image.depth() == CV_32F && !cv::checkRange(grey_)) {
     refusal_ = "the frame has values that are not finite";
     return;
   }
