@@ -39,8 +39,9 @@ using TakeRow = std::function<void(const VisionRow&)>;
 /// Rows of `images` rendered images.
 void renderedRows(const VisionCondition& condition, int images, const TakeRow& take);
 
-/// Rows of the real micrographs, sets real_tune and real_held: every second file of each source, by
-/// the order of the readings below, was used to choose the constants. Nothing without the folder.
+/// Rows of the real micrographs, nothing without their folder. real_tune and real_held are every second
+/// file of each source in the order of its readings. Both were looked at while the constants were
+/// chosen, so neither is independent: only images that nobody here has seen are.
 void realRows(const TakeRow& take);
 
 }  // namespace microinjection

@@ -38,7 +38,7 @@ std::vector<Reading> readings(const std::string& folder) {
   return all;
 }
 
-/// The first, third, fifth... file of a source were used to choose the constants.
+/// Every second file of a source, by the order of the readings. See realRows() for what that means.
 class Halves {
  public:
   std::string setOf(const std::string& file) {

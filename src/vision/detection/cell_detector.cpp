@@ -12,6 +12,7 @@ namespace {
 constexpr int kCandidates = 6;
 constexpr double kThinnestOoplasm = 0.55;  // of the outer border's diameter
 constexpr double kMostOutside = 0.4, kLeastOutside = 0.02;
+constexpr double kMostElongated = 1.5;  // ratio of a cell's axes
 constexpr double kLeastStrength = 0.6, kLeastConsistency = 0.6;
 
 }  // namespace
@@ -96,7 +97,8 @@ void CellDetector::take(CellDetection& detection, const CellLayers& layers) {
 
 bool CellDetector::isClear(const CellBorder& border) const {
   return border.finding.hasValues() && border.strength >= kLeastStrength && border.consistency >= kLeastConsistency &&
-         border.coverage >= config_.least_coverage;
+         border.coverage >= config_.least_coverage &&
+         border.ellipse.semi_axes[0] < kMostElongated * border.ellipse.semi_axes[1];
 }
 
 Finding CellDetector::judge(const Frame& frame, const CellLayers& layers) const {

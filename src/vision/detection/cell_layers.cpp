@@ -131,7 +131,10 @@ CellBorder findMainBorder(const Frame& frame, const cv::Point2d& centre, double 
   CellBorder best;
   for (int round = 0; round < 2; ++round) {
     const PolarMap map(frame, base, {-0.5 * radius, 0.5 * radius, kColumns, kRays}, kSmoothing);
-    const CellBorder border = bestBorder(frame, map, look, radius);
+    // Dark inside: the rim of a cell is dark in every look. A border that is only bright inside is a
+    // bubble's middle or a pipette's lumen.
+    const Polarity polarity = look == "dic" ? Polarity::kEither : Polarity::kRising;
+    const CellBorder border = findBorder(frame, map, polarity, {}, scaleOf(frame, map), toleranceFor(radius));
     if (!border.finding.hasValues() || worthOf(border) < 0.5 * worthOf(best)) break;
     best = border;
     base = border.ellipse;

@@ -9,7 +9,8 @@
 namespace microinjection {
 namespace {
 
-constexpr int kAxes = 5;
+constexpr int kAxes = 5, kHoldingAxes = 8;
+constexpr double kWider = 1.38;        // ratio of two outlines' widths that tells them apart
 constexpr double kLeastClearness = 3;  // of the shared edges at the end
 constexpr int kAxisRows = 160;         // px behind the end, whose symmetry gives the axis
 constexpr double kAcross = 1.5;        // px, blur of the derivative across the axis
@@ -90,14 +91,18 @@ PipetteDetection PipetteDetector::detect(const Frame& frame) const {
                              static_cast<int>(config_.region[2]), static_cast<int>(config_.region[3]));
   }
   best.finding = Finding::notFound("no pipette: no two straight edges from the side that it comes from");
-  for (const PipetteAxis& axis : findPipetteAxes(frame, search, kAxes)) {
+  const bool holding = config_.kind == "holding";
+  for (const PipetteAxis& axis : findPipetteAxes(frame, search, holding ? kHoldingAxes : kAxes)) {
+    if (holding && best.finding.isFound() && outlineAt(axis, best.end) < kWider * best.half_width) continue;
     const PipetteDetection found = measure(frame, axis);
     if (!found.finding.hasValues()) {
       if (!best.finding.hasValues()) best.finding = found.finding;
       continue;
     }
-    if (!best.finding.hasValues() || (found.finding.isFound() && !best.finding.isFound())) best = found;
-    if (best.finding.isFound()) break;
+    // A thick wall is symmetric to an axis of its own. The widest outline is that of the whole.
+    const bool wider = holding && found.half_width > kWider * best.half_width;
+    if (!best.finding.hasValues() || wider || (found.finding.isFound() && !best.finding.isFound())) best = found;
+    if (best.finding.isFound() && !holding) break;
   }
   return best;
 }
