@@ -20,20 +20,12 @@ struct CellDetectorConfig {
   static CellDetectorConfig read(ConfigReader& reader);
 };
 
-/// Direction of the polar body from the cell's centre.
-struct PolarBody {
-  Finding finding;
-  double angle = 0;      ///< rad, from x towards y
-  double deviation = 0;  ///< rad, standard deviation
-};
-
 struct CellDetection {
   Finding finding;
   cv::Point2d centre;                                           ///< px
   Eigen::Matrix2d centre_covariance = Eigen::Matrix2d::Zero();  ///< px^2
   CellBorder zona_outer, zona_inner, ooplasm;                   ///< a cell without zona has only the last
-  PolarBody polar_body;
-  std::vector<Ellipse> others;  ///< other whole cells
+  std::vector<Ellipse> others;                                  ///< other whole cells
 
   /// The outermost border that was found.
   const CellBorder& outer() const { return zona_outer.finding.hasValues() ? zona_outer : ooplasm; }
