@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Families of cells against the converged solution: members at random that were never solved for.
 
-Solves each at random motions (angle to 56 degrees, depth to 0.3 diameters, sideways to 0.08) and compares the served
-forces and surfaces. Takes about 5 minutes of two cores for a member of `homogeneous`, more for one of `zona`; solved paths
-are kept, so that it may be interrupted.
+Compares the served forces and surfaces with converged ones at random motions (angle to 56 degrees, depth to 0.3
+diameters, sideways to 0.08). The converged places of some members are kept in test/reference/family_NAME.csv. A member
+that they lack takes about 2 minutes of two cores, more for `zona`; it is added to the file, so that the benchmark may
+be interrupted.
 """
 import argparse
 import csv
@@ -23,9 +24,24 @@ def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('--out', type=Path, required=True, help='folder of family.csv')
     parser.add_argument('--families', default=','.join(families), help='default %(default)s')
-    parser.add_argument('--members', type=int, default=30, help='that are drawn of each (default %(default)s)')
+    parser.add_argument('--members', type=int, help='that are drawn of each (default: those whose places are kept)')
     parser.add_argument('--seed', type=int, default=1, help='of the draw (default %(default)s)')
     return parser.parse_args()
+
+
+def kept_places(family, arguments):
+    """Returns the file of the converged places of a draw: those of the first draw are part of the repository."""
+    if arguments.seed == 1:
+        return ROOT / 'test' / 'reference' / f'family_{family}.csv'
+    return arguments.out / f'places_{family}_{arguments.seed}.csv'
+
+
+def count_members(kept):
+    """Returns how many members' places a file has."""
+    if not kept.exists():
+        return 0
+    lines = kept.read_text(encoding='utf-8').splitlines()[2:]
+    return 1 + max((int(line.split(',')[0]) for line in lines), default=-1)
 
 
 def quantile(values, share):
@@ -38,8 +54,13 @@ def main():
     rows = []
     for family in arguments.families.split(','):
         table = arguments.out / f'family_{family}.csv'
-        if not full_solution.check_family(ROOT / 'config' / 'families' / f'{family}.yaml', arguments.members, arguments.seed,
-                                          table):
+        kept = kept_places(family, arguments)
+        members = arguments.members or count_members(kept)
+        if members == 0:
+            print(f'{family}: no converged places are kept: choose --members')
+            continue
+        definition = ROOT / 'config' / 'families' / f'{family}.yaml'
+        if not full_solution.check_family(definition, members, arguments.seed, kept, table):
             return 1
         with table.open(encoding='utf-8') as file:
             rows += csv.DictReader(file)

@@ -6,10 +6,11 @@
 #include <sstream>
 
 #include "base/cpu_time.h"
-#include "benchmark/common/vision_cases.h"
+#include "benchmark/common/vision_row.h"
+#include "vision/calibration/tip_focus.h"
 #include "vision/detection/cell_detector.h"
 #include "vision/detection/pipette_detector.h"
-#include "vision/detection/tip_focus.h"
+#include "vision/detection/tip_sharpness.h"
 
 namespace microinjection {
 namespace {
@@ -106,12 +107,13 @@ void stackRows(const std::string& folder, const std::vector<Reading>& all, const
   std::map<int, cv::Point2d> tips;
   for (const int stage : {0, 3, 6}) {
     const std::string set = stage == 3 ? "real_held" : "real_tune", stack = "holypipette/stack" + std::to_string(stage);
-    std::vector<double> sharpness;
+    std::vector<FocusSample> planes;
     for (int plane = 0; plane <= 16; ++plane) {
       const std::string name = stack + "." + std::to_string(plane) + ".jpg";
       const Frame frame(cv::imread(folder + "/" + name, cv::IMREAD_UNCHANGED));
       const PipetteDetection found = detector.detect(frame);
-      sharpness.push_back(found.finding.hasValues() ? tipSharpness(frame, found.end, found.direction) : 0);
+      // The planes are 1 um apart.
+      if (found.finding.hasValues()) planes.push_back({1e-6 * plane, tipSharpness(frame, found.end, found.direction)});
       if (plane == 8) tips[stage] = found.end;
       for (const Reading& reading : all) {
         if (reading.file != stack + ".8.jpg" || std::abs(plane - 8) > 5) continue;
@@ -119,8 +121,11 @@ void stackRows(const std::string& folder, const std::vector<Reading>& all, const
         take(judged(set, {name, "tip_in_plane_" + std::to_string(plane)}, found.finding, error, 5, std::nan("")));
       }
     }
-    const BestFocus best = bestFocus(sharpness);
-    take(judged(set, {stack, "best_plane"}, best.finding, std::abs(best.plane - 8.5), kFocus, std::nan("")));
+    const FocusReport best = findFocus(planes, {});
+    const Finding finding = best.verdict == FocusVerdict::kFocus    ? Finding::found()
+                            : best.verdict == FocusVerdict::kUnsure ? Finding::uncertain(best.text)
+                                                                    : Finding::notFound(best.text);
+    take(judged(set, {stack, "best_plane"}, finding, std::abs(1e6 * best.height - 8.5), kFocus, std::nan("")));
   }
   const double scale = cv::norm(tips[0] - tips[6]) / 60;
   VisionRow row = judged("real_tune", {"holypipette", "stage_scale"}, Finding::found(), std::abs(scale - kScale),

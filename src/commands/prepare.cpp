@@ -22,6 +22,7 @@
 #include "base/worker_processes.h"
 #include "cell/choice/model_choice.h"
 #include "cell/family/family_cell.h"
+#include "cell/mechanics/symmetric_solver.h"
 #include "cell/model/scene.h"
 #include "cell/model/similarity.h"
 #include "cell/surrogate/surrogate_data.h"
@@ -95,8 +96,11 @@ Arguments parse(int argc, char** argv) {
       "members", po::value(&family.members)->default_value(family.members), "members that the family shall have")(
       "check", po::value(&family.check)->default_value(0),
       "draws this many members of the family that were never solved, solves them and prints the family's errors")(
+      "refit", po::bool_switch(&family.refit), "first fits the family's members anew to the forces that it keeps")(
       "seed", po::value(&family.seed)->default_value(family.seed), "of the draw")("csv", po::value(&family.csv),
                                                                                   "file for the table of the check")(
+      "reference", po::value(&family.reference),
+      "file of the check's solutions: those that it has are not solved again, the others are added")(
       "jobs", po::value(&arguments.jobs)->default_value(processors), "paths solved at a time, each on one core")(
       "again", po::bool_switch(&arguments.again), "replaces data that were prepared before");
   po::options_description hidden;
@@ -246,6 +250,7 @@ int work(const Arguments& arguments) {
   // The solver allocates and releases large blocks in every step: the system need not have them back.
   mallopt(M_TRIM_THRESHOLD, 1 << 30);
   mallopt(M_MMAP_THRESHOLD, 1 << 30);
+  SymmetricSolver::useOneThread();  // the paths are solved side by side; more threads only wait for each other
   try {
     if (arguments.family.file.empty()) return Preparing(arguments).work();
     if (arguments.axis >= 0) {

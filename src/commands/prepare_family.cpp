@@ -54,6 +54,10 @@ class FamilyPreparation {
   }
 
   void run() {
+    if (arguments_.refit) {
+      std::printf("prepare: %d members fitted anew\n", data_.refit());
+      store();
+    }
     solveAxisForces();
     while (count() < arguments_.members) {
       const int round = std::min(kRound, arguments_.members - count());

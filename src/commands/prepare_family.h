@@ -7,10 +7,12 @@ namespace microinjection {
 struct FamilyArguments {
   std::string file;  ///< of the family, YAML
   int jobs = 1;
-  int members = 30;  ///< to have at the end
-  int check = 0;     ///< members to draw and solve, instead
-  int seed = 1;      ///< of the draw
-  std::string csv;   ///< of the check's table; empty for none
+  int members = 30;       ///< to have at the end
+  int check = 0;          ///< members to draw and solve, instead
+  bool refit = false;     ///< first fits the members anew to the forces that the data keep
+  int seed = 1;           ///< of the draw
+  std::string csv;        ///< of the check's table; empty for none
+  std::string reference;  ///< file of the check's solutions, read and completed; empty for none
 };
 
 /// Solves members of a family until there are so many, and stores the family's data beside its file

@@ -23,9 +23,13 @@ def prepare(scene):
     return subprocess.run([_program('prepare'), '--scene', str(scene), '--families', str(families)], check=False).returncode == 0
 
 
-def check_family(family, members, seed, table):
-    """Compares a family with members at random that were never solved for, and leaves the table. @returns success."""
-    command = [_program('prepare'), '--family', str(family), '--check', str(members), '--seed', str(seed), '--csv', str(table)]
+def check_family(family, members, seed, kept, table):
+    """Compares a family with members at random that were never solved for, and leaves the table.
+
+    `kept`: file of converged places, which gets those that it lacks. @returns success.
+    """
+    command = [_program('prepare'), '--family', str(family), '--check', str(members), '--seed', str(seed),
+               '--reference', str(kept), '--csv', str(table)]
     return subprocess.run(command, check=False, stdout=subprocess.DEVNULL).returncode == 0
 
 

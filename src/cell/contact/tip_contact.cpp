@@ -14,6 +14,10 @@ namespace {
 constexpr double kDeeper = 1.5;
 constexpr double kDeepestFirst = 1e-4;
 
+/// Gap of the undeformed surface, over the tip's radius, up to which it may come into contact in the
+/// depths that are solved. Where more does, the solver only loses time.
+constexpr double kNear = 0.7;
+
 /// Gap over the range of adhesion at which a point is released. The traction is then 1e-7 of the
 /// largest.
 constexpr double kFree = 20;
@@ -75,6 +79,7 @@ void TipContact<Dim>::addFacet(const LayeredBody<Dim>& body, const typename Quad
     point.weight = at.weight * areaDensity(tangents, x);
     point.shape = quadratic ? at.shape : at.barycentric;
     result.points.push_back(point);
+    result.near = result.near || tip_.distance(inSpace(point.undeformed)) < kNear * tip_.radius();
   }
   facets_.push_back(std::move(result));
 }

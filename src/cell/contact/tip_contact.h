@@ -42,6 +42,7 @@ class TipContact : public EnergyTerm {
   int elementCount() const override { return static_cast<int>(facets_.size()); }
   const std::vector<int>& entries(int facet) const override { return facets_[facet].entries; }
   bool evaluate(int facet, const Eigen::VectorXd& state, Order order, LocalEnergy& result) const override;
+  bool isNonsmooth(int facet) const override { return facets_[facet].near; }
   bool beginStep(double duration) override;
   bool settle(const Eigen::VectorXd& state) override;
   void accept(const Eigen::VectorXd& state) override;
@@ -75,6 +76,7 @@ class TipContact : public EnergyTerm {
     std::vector<int> entries;  ///< node by node, then the tip's
     int nodes;
     std::vector<Point> points;
+    bool near = false;  ///< to the tip, undeformed: its points may come into contact
   };
   struct Local {
     double energy = 0;

@@ -66,7 +66,13 @@ std::optional<FamilyCell> makeFamilyCell(const std::shared_ptr<const FamilyData>
     return std::nullopt;
   }
   if (!family->serves(*coordinates)) {
-    reason = "family " + family->family().name() + " has no converged member near " + place;
+    const ExpectedError error = family->expectedError(*coordinates);
+    std::ostringstream out;
+    out.precision(2);
+    out << "family " << family->family().name() << " has no converged members enough near " << place
+        << " (expected force error: median " << 100 * error.median << " %, nine of ten below " << 100 * error.common
+        << " %)";
+    reason = out.str();
     return std::nullopt;
   }
   auto data = std::make_shared<SurrogateData>(family->cell(*coordinates));

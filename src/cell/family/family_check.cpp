@@ -2,7 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <random>
+
+#include "cell/surrogate/mesh_correction.h"
+#include "cell/surrogate/surface_grid.h"
 
 namespace microinjection {
 namespace {
@@ -12,7 +16,11 @@ constexpr double kLargestAngle = 56 * M_PI / 180;
 constexpr double kDeepest = 0.3, kSideways = 0.08;  ///< over the diameter
 constexpr double kShallowest = 0.15;                ///< over the depth of the range
 constexpr double kSteepness = 0.5;                  ///< least depth over lateral motion
-constexpr double kOverlap = 0.02;                   ///< least overlap of tip and cell, over the cell's radius
+/// Change from the fine mesh to the limit, over that from the coarse to the fine one. `./dev bench mesh_limit` has 0.2
+/// at small depths and on the axis, and 0.5 deep beside it.
+constexpr double kExtrapolation = 0.5;
+constexpr int kNodeStride = 23;    ///< of the grid's nodes that references have
+constexpr double kOverlap = 0.02;  ///< least overlap of tip and cell, over the cell's radius
 
 double uniform(std::mt19937& random, double low, double high) {
   return low + (high - low) * static_cast<double>(random()) / static_cast<double>(std::mt19937::max());
@@ -24,11 +32,38 @@ double overlap(double tip_radius, double angle, const Eigen::Vector3d& displacem
   return reach - (reach * Eigen::Vector3d(std::sin(angle), 0, std::cos(angle)) + displacement).norm();
 }
 
-Eigen::Vector3d evaluate(const SurrogateData& cell, const TrainingSample& at) {
+Eigen::Vector3d evaluate(const SurrogateData& cell, double angle, const Eigen::Vector3d& displacement) {
   ForceField::Local local;
-  cell.field.makeLocal(at.angle, local);
+  cell.field.makeLocal(angle, local);
   Eigen::Matrix3d jacobian;
-  return local.evaluate(at.displacement, jacobian);
+  return local.evaluate(displacement, jacobian);
+}
+
+Eigen::VectorXf atReferenceNodes(const Eigen::VectorXf& surface) {
+  const std::vector<int> nodes = referenceNodes();
+  Eigen::VectorXf result(3 * static_cast<Eigen::Index>(nodes.size()));
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    result.segment<3>(3 * static_cast<Eigen::Index>(i)) = surface.segment<3>(3 * nodes[i]);
+  }
+  return result;
+}
+
+/// Nothing beyond the cell's range. `force_share` is the force itself.
+std::optional<CheckedPlace> compare(const SurrogateData& cell, const ReferencePlace& truth) {
+  const Eigen::Vector3d& u = truth.displacement;
+  if (-u.z() > cell.range.depth || u.head<2>().norm() > cell.range.lateral) return std::nullopt;
+  CheckedPlace place;
+  place.member = truth.member;
+  place.angle = truth.angle;
+  place.depth = -0.5 * u.z();
+  place.lateral = 0.5 * u.head<2>().norm();
+  place.force_share = truth.force.norm();
+  place.force_error = (evaluate(cell, truth.angle, u) - truth.force).norm() / truth.force.norm();
+  Eigen::VectorXd rest, moved;
+  cell.surface.evaluate(truth.angle, u, rest, moved);
+  const Eigen::VectorXf difference = atReferenceNodes(moved.cast<float>()) - truth.surface;
+  place.surface_error = 0.5 * difference.norm() / std::sqrt(static_cast<double>(difference.size()) / 3);
+  return place;
 }
 
 }  // namespace
@@ -55,7 +90,7 @@ Preparation drawMotions(const Family& family, const Eigen::VectorXd& coordinates
   for (int count = 0; count < kMotions;) {
     const double angle = uniform(random, 0, kLargestAngle), depth = uniform(random, kShallowest, 1) * deepest;
     const double side = sideways * std::sqrt(uniform(random, 0, 1)), turn = uniform(random, 0, M_PI);
-    const bool in_plane = count > 0;
+    const bool in_plane = count > 0 || seed % 2 == 0;
     const double away = in_plane ? (turn < M_PI / 2 ? 1 : -1) : std::cos(turn);
     const Eigen::Vector3d end(side * away, in_plane ? 0 : side * std::sin(turn), -depth);
     if (depth < kSteepness * side || overlap(member.needle.tip.radius, angle, end) < kOverlap) continue;
@@ -65,33 +100,48 @@ Preparation drawMotions(const Family& family, const Eigen::VectorXd& coordinates
   return motions;
 }
 
-std::vector<CheckedPlace> compareMember(const FamilyData& data, const Eigen::VectorXd& coordinates,
-                                        const Preparation& motions, const std::vector<TrainingResult>& results) {
-  const SurrogateData cell = data.cell(coordinates);
-  std::vector<CheckedPlace> places;
-  double largest = 0;
-  for (std::size_t i = 0; i + 1 < motions.rays.size(); i += 2) {
-    const TrainingResult &fine = results[i], &coarse = results[i + 1];
-    for (std::size_t k = 0; k < std::min(fine.samples.size(), coarse.samples.size()); ++k) {
-      const TrainingSample& truth = fine.samples[k];
-      const Eigen::Vector3d& u = truth.displacement;
-      if (-u.z() > cell.range.depth || u.head<2>().norm() > cell.range.lateral) continue;
-      CheckedPlace place;
-      place.angle = truth.angle;
-      place.depth = -0.5 * u.z();
-      place.lateral = 0.5 * u.head<2>().norm();
-      place.force_share = truth.force.norm();
-      place.force_error = (evaluate(cell, truth) - truth.force).norm() / truth.force.norm();
-      Eigen::VectorXd rest, moved;
-      cell.surface.evaluate(truth.angle, u, rest, moved);
-      const Eigen::VectorXd difference = moved - coarse.samples[k].surface.cast<double>();
-      place.surface_error = 0.5 * difference.norm() / std::sqrt(static_cast<double>(difference.size()) / 3);
-      largest = std::max(largest, place.force_share);
-      places.push_back(place);
+std::vector<int> referenceNodes() {
+  std::vector<int> nodes;
+  for (int node = 0; node < SurfaceGrid::standard().nodeCount(); node += kNodeStride) nodes.push_back(node);
+  return nodes;
+}
+
+std::vector<ReferencePlace> referencePlaces(int member, const Eigen::VectorXd& coordinates, const Preparation& motions,
+                                            const std::vector<TrainingResult>& results) {
+  std::vector<MeshCorrection::Pair> pairs;
+  for (std::size_t i = 0; i + 1 < results.size(); i += 2) {
+    pairs.push_back({&results[i + 1].samples, &results[i].samples});
+  }
+  const MeshCorrection correction(motions.scales, pairs);
+  std::vector<ReferencePlace> places;
+  for (const auto& [coarse, fine] : pairs) {
+    for (std::size_t k = 0; k < std::min(fine->size(), coarse->size()); ++k) {
+      const TrainingSample& truth = (*fine)[k];
+      const double to_fine = correction.factor(truth.angle, truth.displacement);
+      places.push_back({member, coordinates, truth.angle, truth.displacement,
+                        truth.force * std::pow(to_fine, kExtrapolation), atReferenceNodes((*coarse)[k].surface)});
     }
   }
-  for (CheckedPlace& place : places) place.force_share /= largest;
   return places;
+}
+
+std::vector<CheckedPlace> comparePlaces(const FamilyData& data, const std::vector<ReferencePlace>& places) {
+  std::vector<CheckedPlace> result;
+  std::vector<CheckedPlace> own;  // of one member
+  SurrogateData cell;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (i == 0 || places[i].member != places[i - 1].member) cell = data.cell(places[i].coordinates);
+    if (const auto place = compare(cell, places[i])) own.push_back(*place);
+    if (i + 1 < places.size() && places[i + 1].member == places[i].member) continue;
+    double largest = 0;
+    for (const CheckedPlace& place : own) largest = std::max(largest, place.force_share);
+    for (CheckedPlace& place : own) {
+      place.force_share /= largest;
+      result.push_back(place);
+    }
+    own.clear();
+  }
+  return result;
 }
 
 }  // namespace microinjection

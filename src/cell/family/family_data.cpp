@@ -14,8 +14,9 @@
 namespace microinjection {
 namespace {
 
-constexpr char kVersion[] = " data 2";  ///< change it when the format or the fit of a member changes
+constexpr char kVersion[] = " data 3";  ///< change it when the format or the fit of a member changes
 constexpr int kMostMembers = 1000;
+constexpr double kLargestError = 0.1;  ///< expected at one of ten places of a cell that is served
 
 double quantile(std::vector<double> values, double share) {
   if (values.empty()) return 0;
@@ -125,6 +126,17 @@ void FamilyData::update() {
   per_deviation_ = quantiles(relative);
 }
 
+int FamilyData::refit() {
+  int count = 0;
+  for (FamilyMember& member : members_) {
+    if (member.paths.empty()) continue;
+    member = refitMember(family_, member);
+    ++count;
+  }
+  update();
+  return count;
+}
+
 void FamilyData::prepare() {
   kriging_.emplace(points(), covariance_.lengths, covariance_.noise);
   std::vector<double> medians, commons;
@@ -137,6 +149,7 @@ void FamilyData::prepare() {
 
 bool FamilyData::serves(const Eigen::VectorXd& coordinates) const {
   if (members_.empty() || !Family::contains(coordinates)) return false;
+  if (expectedError(coordinates).common > kLargestError) return false;
   const auto distance = [&](const Eigen::VectorXd& point) {
     return (point - coordinates).cwiseQuotient(covariance_.lengths).norm();
   };
@@ -211,6 +224,7 @@ void FamilyData::save(const std::string& path) const {
   const Eigen::MatrixXf& modes = surfaces_.modes();
   writer.array(Eigen::VectorXf(Eigen::Map<const Eigen::VectorXf>(modes.data(), modes.size())));
   for (std::size_t i = 0; i < members_.size(); ++i) writeMember(writer, members_[i], surfaces_.amplitudes()[i]);
+  for (const FamilyMember& member : members_) write(writer, member.paths);
   writeCacheFile(path, family_.description() + kVersion, writer.bytes());
 }
 
@@ -247,6 +261,7 @@ FamilyData FamilyData::decode(const Family& family, const std::string& bytes) {
     data.members_.push_back(readMember(reader, family.dimension()));
     surfaces.push_back(readSurface(reader, places, modes.size() / entries));
   }
+  for (FamilyMember& member : data.members_) member.paths = readPathForces(reader);
   if (!reader.atEnd()) throw std::runtime_error("there is more than was written");
   data.surfaces_.set(Eigen::Map<const Eigen::MatrixXf>(modes.data(), entries, modes.size() / entries), surfaces);
   data.prepare();

@@ -38,6 +38,8 @@ class FamilyData {
   /// the members.
   void setAxisForces(const Eigen::VectorXd& forces) { log_axis_forces_ = forces.array().log(); }
   bool hasAxisForces() const { return log_axis_forces_.size() > 0; }
+  /// Fits all members anew whose paths are known, and returns their number. A second for each.
+  int refit();
   /// Chooses the covariance and estimates the errors anew. Call it after the last add().
   void update();
 
@@ -49,8 +51,8 @@ class FamilyData {
 
   /// Whether there are members enough to know the error of a prediction.
   bool isComplete() const { return static_cast<int>(members_.size()) > 2 * family_.dimension(); }
-  /// Whether there is a converged solution around these coordinates: the nearest member did not
-  /// fail.
+  /// Whether there is a converged solution around these coordinates, because the nearest member did
+  /// not fail, and members enough around them: nine of ten places are expected within a tenth.
   bool serves(const Eigen::VectorXd& coordinates) const;
   ExpectedError expectedError(const Eigen::VectorXd& coordinates) const;
   /// The member at any coordinates, without dimension. Its range is the part that its neighbours

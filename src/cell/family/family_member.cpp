@@ -10,6 +10,18 @@ namespace {
 
 constexpr double kSamePlace = 1e-9;  ///< squared distance of coordinates
 
+/// All of a member but its place and its paths.
+FamilyMember ofCell(const SurrogateData& cell, const Preparation& plan) {
+  FamilyMember member;
+  member.reached = {cell.range.depth / plan.range.depth, cell.range.axis_depth / plan.range.axis_depth};
+  member.scale = axisForce(cell.field, plan);
+  member.energy = cell.energy.coefficients() / member.scale;
+  member.field = cell.field.coefficients() / member.scale;
+  member.median_error = cell.median_error;
+  member.common_error = cell.common_error;
+  return member;
+}
+
 }  // namespace
 
 Reached reachedAt(const Eigen::VectorXd& coordinates, const std::vector<const FamilyMember*>& solved) {
@@ -34,14 +46,9 @@ FamilyMember fitMember(const Family& family, const Eigen::VectorXd& coordinates,
   const Scene scene = family.member(coordinates);
   const Preparation plan = planMember(family, scene);
   const SurrogateData cell = SurrogateData::fit(scene, plan, results);
-  FamilyMember member;
+  FamilyMember member = ofCell(cell, plan);
   member.coordinates = coordinates;
-  member.reached = {cell.range.depth / plan.range.depth, cell.range.axis_depth / plan.range.axis_depth};
-  member.scale = axisForce(cell.field, plan);
-  member.energy = cell.energy.coefficients() / member.scale;
-  member.field = cell.field.coefficients() / member.scale;
-  member.median_error = cell.median_error;
-  member.common_error = cell.common_error;
+  member.paths = pathForces(results);
   const std::vector<ContactPlace> places = surfacePlaces(plan.range);
   Eigen::VectorXd rest, moved;
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -50,6 +57,15 @@ FamilyMember fitMember(const Family& family, const Eigen::VectorXd& coordinates,
     displacements.col(static_cast<Eigen::Index>(i)) = moved.cast<float>();
   }
   return member;
+}
+
+FamilyMember refitMember(const Family& family, const FamilyMember& member) {
+  const Scene scene = family.member(member.coordinates);
+  const Preparation plan = planMember(family, scene);
+  FamilyMember result = ofCell(SurrogateData::fitForces(scene, plan, trainingResults(plan, member.paths)), plan);
+  result.coordinates = member.coordinates;
+  result.paths = member.paths;
+  return result;
 }
 
 }  // namespace microinjection

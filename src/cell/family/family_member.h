@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "cell/family/family.h"
+#include "cell/family/path_forces.h"
 #include "cell/surrogate/surrogate_data.h"
 
 namespace microinjection {
@@ -23,6 +24,7 @@ struct FamilyMember {
   Eigen::VectorXd energy, field;  ///< coefficients
   double median_error = 0;        ///< relative, of the member's own fit
   double common_error = 0;        ///< same, exceeded by one of ten samples
+  std::vector<PathForces> paths;  ///< of planMember; empty where they are not known any more
 };
 
 /// The part that a member at other coordinates reaches: the mean of those that were solved, weighted
@@ -36,5 +38,8 @@ Preparation planMember(const Family& family, const Scene& member);
 /// surfacePlaces (columns), over the cell's radius. Throws as SurrogateData::fit.
 FamilyMember fitMember(const Family& family, const Eigen::VectorXd& coordinates,
                        const std::vector<TrainingResult>& results, Eigen::MatrixXf& displacements);
+
+/// Fits a member anew to the forces of its paths. @pre they are known
+FamilyMember refitMember(const Family& family, const FamilyMember& member);
 
 }  // namespace microinjection

@@ -35,6 +35,11 @@ class EnergyTerm {
   /// inverted element).
   virtual bool evaluate(int element, const Eigen::VectorXd& state, Order order, LocalEnergy& result) const = 0;
 
+  /// Whether the tangent of an element may jump between two iterations, because points come into
+  /// contact. The answer never changes. Where other elements of the same term contribute, the
+  /// solver has to factorise in each iteration.
+  virtual bool isNonsmooth(int /*element*/) const { return false; }
+
   /// Begins a load step of `duration` (s, > 0; infinite: viscous stresses have relaxed), or repeats
   /// one. Changes that settle() made in an earlier attempt are discarded. Returns true when the
   /// energy depends on the duration.

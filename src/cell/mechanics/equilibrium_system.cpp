@@ -7,6 +7,9 @@
 namespace microinjection {
 namespace {
 
+/// Change of the contact's tangent, relative, that refresh() takes notice of.
+constexpr double kNoticeable = 0.01;
+
 /// Component of the tip that a constrained entry follows.
 int tipComponent(int unknown) { return -2 - unknown; }
 
@@ -25,7 +28,8 @@ EquilibriumSystem::EquilibriumSystem(Terms terms, Constraints constraints, Symme
     : terms_(std::move(terms)), pressures_(constraints.pressures), solver_(method) {
   number(constraints);
   buildPattern();
-  solver_.analyse(matrix_);
+  nonsmooth_ = std::make_unique<NonsmoothTangent>(terms_, unknown_, matrix_size_);
+  solver_.analyse(matrix_, nonsmooth_->unknowns());
   coupling_.setZero(matrix_size_, 3);
   sensitivity_.setZero(free_size_, 3);
 }
@@ -257,8 +261,19 @@ void EquilibriumSystem::condenseTip() {
   stiffness_ = tip_stiffness_ + coupling_.transpose() * sensitivity_.topRows(matrix_size_);
 }
 
+bool EquilibriumSystem::refresh(const Eigen::VectorXd& state) {
+  if (factorised_contact_.size() == 0) return false;
+  Eigen::MatrixXd tangent;
+  if (!nonsmooth_->evaluate(state, tangent)) return false;
+  if (!((tangent - present_contact_).norm() > kNoticeable * tangent.norm())) return false;
+  present_contact_ = tangent;
+  return solver_.update(tangent - factorised_contact_);
+}
+
 bool EquilibriumSystem::factorise(const Eigen::VectorXd& state) {
   if (!assemble(state) || !solver_.factorise(matrix_, pressures_)) return false;
+  if (!nonsmooth_->evaluate(state, factorised_contact_)) factorised_contact_.resize(0, 0);
+  present_contact_ = factorised_contact_;
   condenseTip();
   stiffness_ = 0.5 * (stiffness_ + stiffness_.transpose()).eval();
   return stiffness_.allFinite();

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cell/mechanics/energy_term.h"
+#include "cell/mechanics/nonsmooth_tangent.h"
 #include "cell/mechanics/symmetric_solver.h"
 
 namespace microinjection {
@@ -64,6 +65,12 @@ class EquilibriumSystem {
   /// stiffness() must not be called.
   bool factorise(const Eigen::VectorXd& state);
 
+  /// Gives the last factorisation the tangent of this state in the elements that are not smooth
+  /// (EnergyTerm::isNonsmooth): the contact. All others keep theirs. Costs a small part of a
+  /// factorisation. False when this changes nothing to speak of, or is not possible: then
+  /// factorise() is needed. @pre factorise() returned true.
+  bool refresh(const Eigen::VectorXd& state);
+
   /// K_ff^-1 right_hand_side, with the last factorisation.
   Eigen::VectorXd solve(const Eigen::VectorXd& right_hand_side);
 
@@ -103,7 +110,10 @@ class EquilibriumSystem {
   std::vector<int> slots_;  ///< index in matrix_'s values of each pair of each element's entries: see pairIndex
   std::vector<Internal> internal_;
   SymmetricSolver solver_;
-  Eigen::MatrixXd coupling_;  ///< K_ft
+  std::unique_ptr<NonsmoothTangent> nonsmooth_;
+  Eigen::MatrixXd factorised_contact_;  ///< of NonsmoothTangent, in the last factorisation; empty: not known
+  Eigen::MatrixXd present_contact_;     ///< same, after the last refresh
+  Eigen::MatrixXd coupling_;            ///< K_ft
   Eigen::Matrix3d tip_stiffness_ = Eigen::Matrix3d::Zero();
   Eigen::MatrixXd sensitivity_;
   Eigen::Matrix3d stiffness_ = Eigen::Matrix3d::Zero();

@@ -49,6 +49,11 @@ bool LoadPath::refactorise(const State& state) {
   return factorised_;
 }
 
+/// In most iterations that need another tangent, only the contact has changed.
+bool LoadPath::improveTangent(const State& trial) {
+  return (factorised_ && system_.refresh(trial.x)) || refactorise(trial);
+}
+
 LoadPath::Result LoadPath::advance(const Eigen::Vector3d& target, double duration) {
   Result result;
   double remaining_time = duration;
@@ -116,12 +121,10 @@ bool LoadPath::step(const Eigen::Vector3d& increment, double duration, int& iter
 bool LoadPath::settle(int& iterations, std::string& reason) {
   bool changed = false;
   for (const auto& term : system_.terms()) changed = term->settle(trial_.x) || changed;
-  if (!changed) return true;
-  factorised_ = false;
-  return balance(trial_, iterations, reason);
+  return !changed || balance(trial_, iterations, reason, true);
 }
 
-bool LoadPath::balance(State& trial, int& iterations, std::string& reason) {
+bool LoadPath::balance(State& trial, int& iterations, std::string& reason, bool other_contact) {
   if (!system_.residual(trial.x, residual_, trial.reaction)) {
     reason = "an element would be inverted";
     return false;
@@ -130,8 +133,8 @@ bool LoadPath::balance(State& trial, int& iterations, std::string& reason) {
   for (int i = 0; i < kMaximumIterations; ++i) {
     const double norm = residual_.norm();
     if (norm <= std::max(kTolerance * trial.reaction.norm(), force_floor_)) return true;
-    const bool far = i == 0 && norm > kFar * trial.reaction.norm();  // contact started, which it does not include
-    if ((!factorised_ || far || norm > kSlow * last) && !refactorise(trial)) {
+    const bool far = i == 0 && (other_contact || norm > kFar * trial.reaction.norm());  // it has another contact
+    if ((!factorised_ || far || norm > kSlow * last) && !improveTangent(trial)) {
       reason = "no stable equilibrium: the tangent along the step is not positive definite";
       return false;
     }

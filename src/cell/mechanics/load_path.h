@@ -66,10 +66,12 @@ class LoadPath {
   };
 
   bool step(const Eigen::Vector3d& increment, double duration, int& iterations, std::string& reason);
-  bool balance(State& trial, int& iterations, std::string& reason);
+  /// @param other_contact whether the contact has changed since the last factorisation
+  bool balance(State& trial, int& iterations, std::string& reason, bool other_contact = false);
   bool correct(State& trial);
   bool workMatches(const State& trial) const;
   bool refactorise(const State& state);
+  bool improveTangent(const State& trial);
   bool settle(int& iterations, std::string& reason);
 
   EquilibriumSystem& system_;

@@ -86,6 +86,17 @@ SurrogateData SurrogateData::fit(const Scene& scene, const Preparation& preparat
   std::sort(angles.begin(), angles.end());
   angles.erase(std::unique(angles.begin(), angles.end()), angles.end());
   const TrainingSet all = TrainingSet::gather(scene, preparation, results);
+  SurrogateData cell = fitted(preparation, all);
+  cell.surface = SurfaceShape(cell.range, scene.radius(), angles, all.surfaces);
+  return cell;
+}
+
+SurrogateData SurrogateData::fitForces(const Scene& scene, const Preparation& preparation,
+                                       const std::vector<TrainingResult>& results) {
+  return fitted(preparation, TrainingSet::gather(scene, preparation, results));
+}
+
+SurrogateData SurrogateData::fitted(const Preparation& preparation, const TrainingSet& all) {
   const std::vector<TrainingSample>& samples = all.forces;
   SurrogateData cell;
   cell.range = all.range;
@@ -109,7 +120,6 @@ SurrogateData SurrogateData::fit(const Scene& scene, const Preparation& preparat
   });
   cell.energy_median_error = median(of_energy);
   cell.energy_common_error = common(of_energy);
-  cell.surface = SurfaceShape(cell.range, scene.radius(), angles, all.surfaces);
   return cell;
 }
 

@@ -9,6 +9,7 @@
 #include "cell/surrogate/force_field.h"
 #include "cell/surrogate/preparation.h"
 #include "cell/surrogate/surface_shape.h"
+#include "cell/surrogate/training_set.h"
 
 namespace microinjection {
 
@@ -30,6 +31,9 @@ struct SurrogateData {
   /// those of the fine mesh or corrected ones of the coarse mesh. Throws as TrainingSet::gather.
   static SurrogateData fit(const Scene& scene, const Preparation& preparation,
                            const std::vector<TrainingResult>& results);
+  /// Same, without the surface, which the results need not have.
+  static SurrogateData fitForces(const Scene& scene, const Preparation& preparation,
+                                 const std::vector<TrainingResult>& results);
 
   /// Changes to a unit of length and one of energy, given in the new ones.
   void changeUnits(double length, double energy);
@@ -40,6 +44,9 @@ struct SurrogateData {
   /// Data of this scene, or of a similar one (see similarity.h), in `path`, prepared for a range. The
   /// state is kDamaged, too, for an invalid size, index or value.
   static CacheRead<SurrogateData> load(const Scene& scene, const PreparationRange& range, const std::string& path);
+
+ private:
+  static SurrogateData fitted(const Preparation& preparation, const TrainingSet& all);
 };
 
 /// Folder of a scene's data, and the file of the result in it; empty without a cache.

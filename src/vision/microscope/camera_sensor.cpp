@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -55,11 +54,10 @@ cv::Mat illuminationOf(const MicroscopeConfig& config) {
 template <typename Level>
 void exposeRow(const float* light, const float* transmission, const float* normal, int step, float sign, float variance,
                float read_variance, Level* row, int width) {
-  const auto full = static_cast<float>(std::numeric_limits<Level>::max());
   for (int x = 0; x < width; ++x, normal += step) {
     const float level = light[x] * transmission[x];
     const float noise = sign * *normal * std::sqrt(std::max(0.0F, level) * variance + read_variance);
-    row[x] = static_cast<Level>(std::clamp(level + noise, 0.0F, full) + 0.5F);
+    row[x] = cv::saturate_cast<Level>(level + noise);
   }
 }
 

@@ -16,8 +16,9 @@ using Outline = std::vector<Eigen::Vector2f>;
 /// Squared distances (grid units) to the outline where they are below band^2; band^2 elsewhere.
 void lowerToOutline(const Outline& outline, float band, cv::Mat& squared) {
   for (std::size_t k = 0; k < outline.size(); ++k) {
-    const Eigen::Vector2f a = outline[k], side = outline[(k + 1) % outline.size()] - a;
-    const Eigen::Vector2f b = a + side;
+    const Eigen::Vector2f& a = outline[k];
+    const Eigen::Vector2f& b = outline[(k + 1) % outline.size()];
+    const Eigen::Vector2f side = b - a;
     const float length = side.squaredNorm(), scale = length > 0 ? 1 / length : 0;
     const int left = std::max(0, static_cast<int>(std::ceil(std::min(a.x(), b.x()) - band)));
     const int right = std::min(squared.cols - 1, static_cast<int>(std::floor(std::max(a.x(), b.x()) + band)));

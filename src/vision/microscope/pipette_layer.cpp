@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace microinjection {
 namespace {
@@ -121,18 +122,20 @@ struct Span {
   int begin, end;
 };
 
-/// The region that sees the tube is a convex polygon around it.
-std::vector<Eigen::Vector2f> hullOf(const Tube& tube, const std::vector<float>& widths, float back, double length) {
+/// The region that sees the tube from `begin` px of its axis on is a convex polygon around it.
+/// `widths`: px from the axis that see each station.
+std::vector<Eigen::Vector2f> hullOf(const Tube& tube, const std::vector<float>& widths, float begin, float back) {
   const Eigen::Vector2f across(-tube.axis.y(), tube.axis.x());
-  const auto step = static_cast<float>(length / static_cast<double>(widths.size() - 1));
   // The half width is concave where the radius stops growing and convex in the defocus: the widest
   // straight hull over the stations is taken.
-  float first = widths.front(), slope = 0;
+  const float first = widths.front();
+  float slope = 0;
   for (std::size_t i = 1; i < widths.size(); ++i)
-    slope = std::max(slope, (widths[i] - first) / (static_cast<float>(i) * step));
-  const auto far = static_cast<float>(length);
-  const Eigen::Vector2f near_end = tube.end - back * tube.axis, far_end = tube.end + far * tube.axis;
-  const float wide = first + slope * far;
+    slope = std::max(slope, (widths[i] - first) * kStationsPerPixel / static_cast<float>(i));
+  const float length = static_cast<float>(widths.size()) / kStationsPerPixel;
+  const Eigen::Vector2f near_end = tube.end + (begin - back) * tube.axis,
+                        far_end = near_end + (back + length) * tube.axis;
+  const float wide = first + slope * length;
   return {near_end + first * across, far_end + wide * across, far_end - wide * across, near_end - first * across};
 }
 
@@ -169,16 +172,11 @@ class TubePicture {
     rim_ = static_cast<float>(tube.rim);
     back_ = static_cast<float>(end_.depth.reach());
     if (optics.look() == Optics::Look::kPhase) back_ = std::max(back_, static_cast<float>(end_.halo.reach()));
-    const double length = farthest();
-    const int count = static_cast<int>(length * kStationsPerPixel) + 2;
-    for (int i = 0; i < count; ++i) {
-      stations_.push_back(stationOf(tube, optics, i / kStationsPerPixel));
-      widths_.push_back(reachOf(stations_.back()));
-    }
-    hull_ = hullOf(tube, widths_, back_, length);
+    placeStations();
   }
 
   void add() {
+    if (stations_.empty()) return;
     for (int y = 0; y < image_.transmission.rows; ++y) {
       const Span span = spanOf(hull_, y, image_.transmission.cols);
       if (span.begin < span.end) addRow(y, span);
@@ -186,16 +184,25 @@ class TubePicture {
   }
 
  private:
-  /// px along the axis to the farthest corner of the image, and one more.
-  double farthest() const {
-    double length = 1;
+  /// Stations are where the image sees the axis: a tube may begin far outside.
+  void placeStations() {
+    float nearest = std::numeric_limits<float>::max(), farthest = -nearest;
     for (const int x : {0, image_.transmission.cols - 1}) {
       for (const int y : {0, image_.transmission.rows - 1}) {
         const Eigen::Vector2f corner(static_cast<float>(x), static_cast<float>(y));
-        length = std::max<double>(length, (corner - tube_.end).dot(tube_.axis) + 2);
+        const float s = (corner - tube_.end).dot(tube_.axis);
+        nearest = std::min(nearest, s);
+        farthest = std::max(farthest, s);
       }
     }
-    return length;
+    if (farthest < -back_) return;
+    begin_ = std::floor(std::max(0.0F, nearest));
+    const int count = static_cast<int>((std::max(0.0F, farthest) - begin_) * kStationsPerPixel) + 2;
+    for (int i = 0; i < count; ++i) {
+      stations_.push_back(stationOf(tube_, optics_, begin_ + static_cast<float>(i) / kStationsPerPixel));
+      widths_.push_back(reachOf(stations_.back()));
+    }
+    hull_ = hullOf(tube_, widths_, begin_, back_);
   }
 
   float reachOf(const Station& station) const {
@@ -213,8 +220,8 @@ class TubePicture {
       const float dx = static_cast<float>(x) - tube_.end.x();
       const float s = dx * tube_.axis.x() + dy * tube_.axis.y();
       const float r = std::abs(dy * tube_.axis.x() - dx * tube_.axis.y());
-      const auto place =
-          std::min(static_cast<std::size_t>(std::max(0.0F, s * kStationsPerPixel + 0.5F)), stations_.size() - 1);
+      const auto place = std::min(static_cast<std::size_t>(std::max(0.0F, (s - begin_) * kStationsPerPixel + 0.5F)),
+                                  stations_.size() - 1);
       if (s < -back_ || r > widths_[place]) continue;
       const Change change = changeAt(stations_[place], optics_.look(), r, endAt(s, r));
       transmission[x] *= std::max(0.0F, 1 + contrast * change.transmission);
@@ -240,6 +247,7 @@ class TubePicture {
   Station end_;
   float lip_, rim_;  ///< px
   float back_;       ///< px before the end face that see it
+  float begin_ = 0;  ///< px along the axis, of the first station
   std::vector<Station> stations_;
   std::vector<float> widths_;  ///< px from the axis that see the station
   std::vector<Eigen::Vector2f> hull_;

@@ -150,7 +150,7 @@ class SceneMaker {
     InjectionPipette pipette;
     const double tilt = random_.within(-config_.tilt, config_.tilt), rise = random_.within(config_.inclination);
     const Eigen::Vector2d axis(std::sin(tilt), std::cos(tilt));
-    pipette.axis = {std::cos(rise) * axis.x(), -std::sin(rise), std::cos(rise) * axis.y()};
+    pipette.axis = {std::cos(rise) * axis.x(), std::sin(rise), std::cos(rise) * axis.y()};
     pipette.tip_radius = random_.within(0.4e-6, 3e-6);
     pipette.taper = random_.within(0.03, 0.14);
     pipette.wall = random_.within(0.15, 0.4);

@@ -34,7 +34,7 @@ struct SceneDrawConfig {
   Interval dimple_depth{2e-6, 12e-6};  ///< m
   Interval cell_y{0, 0};               ///< m
   Interval tip_y{0, 0};                ///< m
-  Interval inclination{0, 0.5};        ///< rad, of the injection pipette out of the image plane
+  Interval inclination{0, 0.5};        ///< rad, of the shaft out of the image plane; positive away from the camera
   double tilt = 0.25;                  ///< rad, largest angle of a pipette to the world's z
 
   /// Throws ConfigError with all errors of the members.
@@ -46,7 +46,8 @@ struct SceneDrawConfig {
 struct CellTruth {
   Eigen::Vector2d centre{0, 0};  ///< of the outer border, without the dimple
   double diameter = 0;           ///< of the circle with the area of the outer border, without the dimple
-  /// Semi-axes (long, short) of the borders without the dimple; the inner ones are 0 without a zona.
+  /// Semi-axes (long, short) of the borders without the dimple. The ooplasm also gives way to the
+  /// polar body, which its semi-axes leave out.
   Eigen::Vector2d outer{0, 0}, zona_inner{0, 0}, ooplasm{0, 0};
   Eigen::Vector2d ooplasm_centre{0, 0};
   double angle = 0;  ///< rad in [0, pi), of the long axis, from the image's x towards its y (down)

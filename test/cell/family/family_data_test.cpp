@@ -106,6 +106,20 @@ TEST_F(FamilyOfSprings, AroundAMemberWithoutSolutionNothingIsServed) {
   EXPECT_FALSE(data_.serves(Eigen::Vector3d(1.01, 0, 0))) << "past the border";
 }
 
+TEST_F(FamilyOfSprings, WhereTheErrorIsExpectedToBeLargeNothingIsServed) {
+  FamilyData coarse(homogeneous());
+  for (const FamilyMember& member : data_.members()) {
+    MadeUp made(member.coordinates);
+    made.member.common_error = 0.11;
+    coarse.add(made.member, made.surface);
+  }
+  coarse.update();
+  const Eigen::Vector3d x(0.3, 0.5, 0);
+  EXPECT_TRUE(data_.serves(x));
+  EXPECT_GT(coarse.expectedError(x).common, 0.1);
+  EXPECT_FALSE(coarse.serves(x));
+}
+
 TEST_F(FamilyOfSprings, IsReadAsItWasWritten) {
   data_.addFailed(Eigen::Vector3d(0.5, 0.5, 0.25));
   data_.save(path_);
@@ -119,6 +133,41 @@ TEST_F(FamilyOfSprings, IsReadAsItWasWritten) {
   EXPECT_EQ(before.energy.coefficients(), after.energy.coefficients());
   EXPECT_EQ(before.field.coefficients(), after.field.coefficients());
   EXPECT_EQ(before.common_error, after.common_error);
+}
+
+/// A member is solved (a spring on every path), stored, read, and fitted anew: nothing must change.
+TEST_F(FamilyOfSprings, FittingAnewNeedsNoNewSolutions) {
+  const Family family = homogeneous();
+  const Eigen::Vector3d x(1, -1, 1);
+  const Preparation plan = planMember(family, family.member(x));
+  std::vector<TrainingResult> results;
+  for (const TrainingRay& ray : plan.rays) {
+    TrainingResult result;
+    for (int k = 0; k < ray.points; ++k) {
+      const Eigen::Vector3d u = ray.at(k);
+      result.samples.push_back({ray.angle, u, -2 * u, {}});
+    }
+    results.push_back(std::move(result));
+  }
+  results.back().samples.pop_back();
+  results.back().reason = "ended";
+  MadeUp made(x);
+  made.member.paths = pathForces(results);
+  FamilyData data(family);
+  data.add(made.member, made.surface);
+  data.update();
+  EXPECT_EQ(data.refit(), 1);
+  const FamilyMember once = data.members().front();
+  EXPECT_LT(once.reached.share, 1);
+  EXPECT_GT((once.field - made.member.field).norm(), 0.1 * made.member.field.norm());
+  data.save(path_);
+  auto read = FamilyData::load(family, path_);
+  ASSERT_TRUE(read) << read.reason;
+  EXPECT_EQ(read.content->refit(), 1);
+  const FamilyMember& again = read.content->members().front();
+  EXPECT_EQ(again.field, once.field);
+  EXPECT_EQ(again.energy, once.energy);
+  EXPECT_EQ(data_.refit(), 0) << "the paths of made-up members are not known";
 }
 
 TEST_F(FamilyOfSprings, DataOfAnotherFamilyAreNotRead) {

@@ -7,6 +7,7 @@
 
 #include "cell/family/family_data.h"
 #include "cell/family/family_file.h"
+#include "cell/family/family_reference.h"
 #include "cell/surrogate/axis_ray.h"
 
 namespace microinjection {
@@ -73,7 +74,33 @@ TEST_P(ShippedFamily, AMemberHasTheForceOfItsPathBesideTheAxis) {
   EXPECT_LT(largestError(cell, solved.samples), 0.1) << drawn.coordinates.transpose();
 }
 
-INSTANTIATE_TEST_SUITE_P(All, ShippedFamily, testing::Values("homogeneous"));
+double quantile(std::vector<double> values, double share) {
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
+}
+
+/// Of which there are converged places.
+class ReferencedFamily : public ShippedFamily {};
+
+/// Members that were never solved for, at places whose converged force is known (test/reference/README.md). The bounds
+/// are a little above what was measured: doc/reference/benchmarks.md.
+TEST_P(ReferencedFamily, HasTheConvergedForcesOfMembersThatItHasNot) {
+  ASSERT_EQ(reason_, "");
+  const std::string reference = MICROINJECTION_SOURCE_DIR "/test/reference/family_" + family_.name() + ".csv";
+  std::vector<double> forces, surfaces;
+  for (const CheckedPlace& place : comparePlaces(data_, readReferences(family_, 1, reference))) {
+    surfaces.push_back(place.surface_error);
+    if (place.force_share > 0.02) forces.push_back(place.force_error);
+  }
+  ASSERT_GE(forces.size(), 30u) << reference;
+  EXPECT_LT(quantile(forces, 0.5), 0.007);
+  EXPECT_LT(quantile(forces, 0.9), 0.025);
+  EXPECT_LT(quantile(forces, 1), 0.06);
+  EXPECT_LT(quantile(surfaces, 1), 0.01);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ShippedFamily, testing::Values("homogeneous", "zona"));
+INSTANTIATE_TEST_SUITE_P(All, ReferencedFamily, testing::Values("homogeneous"));
 
 }  // namespace
 }  // namespace microinjection

@@ -178,5 +178,64 @@ TYPED_TEST(EquilibriumSystemTest, RefusesNothingFree) {
   EXPECT_THROW(EquilibriumSystem({this->body_}, constraints, methodFor(TypeParam::kKind)), std::invalid_argument);
 }
 
+/// A spring from a node to the tip that is taut or slack: its tangent jumps.
+class SwitchingSpring : public TipSpring {
+ public:
+  SwitchingSpring(int node, int tip_entry, double stiffness, bool nonsmooth)
+      : TipSpring(node, tip_entry, stiffness), nonsmooth_(nonsmooth) {}
+  bool isNonsmooth(int element) const override { return nonsmooth_ && element == 0; }
+  bool evaluate(int element, const Eigen::VectorXd& state, Order order, LocalEnergy& result) const override {
+    TipSpring::evaluate(element, state, order, result);
+    result.zero = result.zero || !taut;
+    return true;
+  }
+  bool taut = false;
+
+ private:
+  bool nonsmooth_;
+};
+
+/// Blocks of P2-P0 elements between plates, with a spring to the tip at one of the free nodes.
+struct SpringSystem {
+  explicit SpringSystem(bool nonsmooth) {
+    const Constraints constraints = betweenPlates(*body);
+    int node = 0;
+    while (constraints.entries[3 * node] != Constraints::kFree) ++node;
+    spring = std::make_shared<SwitchingSpring>(node, body->tipEntry(), 50, nonsmooth);
+    system = std::make_unique<EquilibriumSystem>(EquilibriumSystem::Terms{body, spring}, constraints,
+                                                 SymmetricSolver::Method::kSupernodal);
+    state.setZero(body->stateSize());
+  }
+  std::shared_ptr<LayeredBody<3>> body = makeBody(irregularBlock<3>(2), ElementKind::kP2P0, "neo_hookean", 0.4);
+  std::shared_ptr<SwitchingSpring> spring;
+  std::unique_ptr<EquilibriumSystem> system;
+  Eigen::VectorXd state;
+};
+
+TEST(EquilibriumSystem, RefreshingFollowsASpringThatBecomesTautAndSlack) {
+  SpringSystem at(true);
+  ASSERT_TRUE(at.system->factorise(at.state));
+  const Eigen::VectorXd right = randomVector(at.system->freeSize(), 1);
+  const Eigen::VectorXd slack = at.system->solve(right);
+  EXPECT_FALSE(at.system->refresh(at.state)) << "nothing has changed";
+  at.spring->taut = true;
+  ASSERT_TRUE(at.system->refresh(at.state));
+  const Eigen::VectorXd refreshed = at.system->solve(right);
+  ASSERT_TRUE(at.system->factorise(at.state));
+  const Eigen::VectorXd taut = at.system->solve(right);
+  EXPECT_GT((taut - slack).norm(), 1e-2 * slack.norm()) << "the spring must matter";
+  EXPECT_LT((refreshed - taut).norm(), 1e-10 * taut.norm());
+  at.spring->taut = false;
+  ASSERT_TRUE(at.system->refresh(at.state));
+  EXPECT_LT((at.system->solve(right) - slack).norm(), 1e-10 * slack.norm());
+}
+
+TEST(EquilibriumSystem, RefreshingIsImpossibleWhereASmoothElementHasChanged) {
+  SpringSystem at(false);
+  ASSERT_TRUE(at.system->factorise(at.state));
+  at.spring->taut = true;
+  EXPECT_FALSE(at.system->refresh(at.state));
+}
+
 }  // namespace
 }  // namespace microinjection

@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <utility>
+#include <vector>
 
 #include "cell/mechanics/bodies.h"
 
@@ -43,6 +44,46 @@ TEST(SymmetricSolver, SolvesOneAndSeveralRightHandSides) {
     EXPECT_LT((K * solver.solve(right) - right).norm(), 1e-12);
     EXPECT_LT((solver.solve(right.col(1)) - solver.solve(right).col(1)).norm(), 1e-12);
     EXPECT_GE(solver.factorEntries(), 99);
+  }
+}
+
+/// The last unknowns' block of K gets another value: the solver must give the solution of the changed matrix.
+TEST(SymmetricSolver, UpdatesTheBlockOfTheLastUnknowns) {
+  constexpr int kSize = 200;
+  Eigen::MatrixXd K = chain(kSize) + 0.1 * Eigen::MatrixXd::Identity(kSize, kSize);
+  const std::vector<int> last = {17, 3, 150, 80, 81};
+  for (const int a : last) {  // they are coupled by the matrix, too
+    for (const int b : last) K(a, b) += a == b ? 5 : -1;
+  }
+  SymmetricSolver solver(Method::kSupernodal);
+  solver.analyse(lowerTriangle(K), last);
+  ASSERT_TRUE(solver.factorise(lowerTriangle(K)));
+  const Eigen::MatrixXd right = randomVector(2 * kSize, 1).reshaped(kSize, 2);
+  EXPECT_LT((K * solver.solve(right) - right).norm(), 1e-11);
+  for (const double factor : {100.0, 3.0}) {  // the second change replaces the first
+    const Eigen::MatrixXd root = randomVector(25, factor).reshaped(5, 5);
+    const Eigen::MatrixXd change = root * root.transpose() - Eigen::MatrixXd::Identity(5, 5);
+    ASSERT_TRUE(solver.update(change));
+    Eigen::MatrixXd changed = K;
+    for (int a = 0; a < 5; ++a) {
+      for (int b = 0; b < 5; ++b) changed(last[a], last[b]) += change(a, b);
+    }
+    EXPECT_LT((changed * solver.solve(right) - right).norm(), 1e-9);
+  }
+  EXPECT_FALSE(solver.update(-100 * Eigen::MatrixXd::Identity(5, 5)));  // not positive definite
+  ASSERT_TRUE(solver.factorise(lowerTriangle(K)));
+  EXPECT_LT((K * solver.solve(right) - right).norm(), 1e-11);
+}
+
+TEST(SymmetricSolver, UpdatesNothingWithoutLastUnknownsOrWithoutSupernodes) {
+  const Eigen::MatrixXd K = chain(50);
+  const Eigen::MatrixXd change = Eigen::MatrixXd::Identity(2, 2);
+  for (const Method method : kMethods) {
+    SymmetricSolver solver(method);
+    solver.analyse(lowerTriangle(K), method == Method::kSupernodal ? std::vector<int>() : std::vector<int>{1, 7});
+    ASSERT_TRUE(solver.factorise(lowerTriangle(K)));
+    EXPECT_FALSE(solver.update(change));
+    EXPECT_LT((K * solver.solve(K) - K).norm(), 1e-11);
   }
 }
 

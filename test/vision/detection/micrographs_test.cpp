@@ -11,9 +11,10 @@
 #include <cstdlib>
 #include <opencv2/imgcodecs.hpp>
 
+#include "vision/calibration/tip_focus.h"
 #include "vision/detection/cell_detector.h"
 #include "vision/detection/pipette_detector.h"
-#include "vision/detection/tip_focus.h"
+#include "vision/detection/tip_sharpness.h"
 
 namespace microinjection {
 namespace {
@@ -70,13 +71,15 @@ TEST_F(Micrographs, StageStepsGiveTheScale) {
 
 TEST_F(Micrographs, BestPlaneWithinOne) {
   for (const int stage : {0, 3, 6}) {
-    std::vector<double> sharpness;
+    std::vector<FocusSample> planes;
     for (int plane = 0; plane <= 16; ++plane) {
       const std::string name = "holypipette/stack" + std::to_string(stage) + "." + std::to_string(plane) + ".jpg";
       const PipetteDetection found = pipette(name, "injection", 0);
-      sharpness.push_back(tipSharpness(frame(name), found.end, found.direction));
+      // The planes are 1 um apart.
+      planes.push_back({1e-6 * plane, tipSharpness(frame(name), found.end, found.direction)});
     }
-    EXPECT_NEAR(bestFocus(sharpness).plane, 8.5, 1) << stage;
+    const FocusReport best = findFocus(planes, {});
+    EXPECT_NEAR(best.height, 8.5e-6, 1e-6) << stage << ": " << best.text;
   }
 }
 

@@ -249,6 +249,21 @@ TEST(Microscope, WhatIsOutOfTheImageLeavesItEmpty) {
   EXPECT_EQ(cv::norm(microscope.transmission(scene, 0), cv::Mat(400, 480, CV_32F, cv::Scalar(1)), cv::NORM_INF), 0);
 }
 
+/// A needle whose tip is far outside: its shaft is still seen, as wide as the taper has made it.
+TEST(Microscope, AShaftIsSeenWithoutItsTip) {
+  Microscope microscope(smallConfig());
+  MicroscopeScene scene;
+  scene.injection = InjectionPipette{};
+  scene.injection->optics = {0, -0.5, 0.4, 0.5, 0, 1e-12};  // a bar that absorbs half between the inner walls
+  scene.injection->tip = {0, 0, -1e-3};
+  scene.injection->taper = 0.01;
+  const cv::Mat image = microscope.transmission(scene, 0);
+  const double inner = (1e-6 + 0.01 * 1e-3) * 0.75 / 0.25e-6;
+  EXPECT_NEAR((480 - cv::sum(image.row(199))[0]) / 0.5, 2 * inner, 0.2);
+  scene.injection->tip.z() = 1;  // and nothing of a needle that points away
+  EXPECT_EQ(cv::norm(microscope.transmission(scene, 0), cv::Mat(400, 480, CV_32F, cv::Scalar(1)), cv::NORM_INF), 0);
+}
+
 TEST(Microscope, RefusesWhatCannotBeRendered) {
   Microscope microscope(smallConfig());
   MicroscopeScene scene = discAt({NAN, 0}, 30e-6);

@@ -1,0 +1,44 @@
+#include "vision/calibration/statistics.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/fisher_f.hpp>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+
+namespace microinjection {
+
+double studentLimit(double confidence, double freedom) {
+  return boost::math::quantile(boost::math::students_t(freedom), 0.5 + 0.5 * confidence);
+}
+
+double fisherLimit(double confidence, double n, double m) {
+  return boost::math::quantile(boost::math::fisher_f(n, m), confidence);
+}
+
+double chiSquaredLimit(double confidence, double freedom) {
+  return boost::math::quantile(boost::math::chi_squared(freedom), confidence);
+}
+
+double medianOf(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  if (values.size() % 2 == 1) return *middle;
+  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
+}
+
+double robustDeviation(const std::vector<double>& values) {
+  const double median = medianOf(values);
+  std::vector<double> distances;
+  distances.reserve(values.size());
+  for (const double value : values) distances.push_back(std::abs(value - median));
+  return 1.4826 * medianOf(distances);
+}
+
+bool isCovariance(const Eigen::MatrixXd& matrix) {
+  if (!matrix.allFinite() || !matrix.isApprox(matrix.transpose(), 1e-6)) return false;
+  return (matrix.diagonal().array() > 0).all() && Eigen::LLT<Eigen::MatrixXd>(matrix).info() == Eigen::Success;
+}
+
+}  // namespace microinjection

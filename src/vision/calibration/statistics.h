@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace microinjection {
+
+/// Two-sided interval of a value.
+struct Interval {
+  double low = 0;
+  double high = 0;
+  bool contains(double value) const { return low <= value && value <= high; }
+  double half() const { return 0.5 * (high - low); }
+};
+
+/// The t that |T| stays below with probability `confidence`, T of Student's distribution with
+/// `freedom` (>= 1) degrees of freedom.
+double studentLimit(double confidence, double freedom);
+/// The f that Fisher's F(n, m) stays below with probability `confidence`.
+double fisherLimit(double confidence, double n, double m);
+/// The x that chi^2 with `freedom` degrees of freedom stays below with probability `confidence`.
+double chiSquaredLimit(double confidence, double freedom);
+
+/// Median; the mean of the two middle ones of an even number. @pre not empty
+double medianOf(std::vector<double> values);
+/// 1.4826 times the median of the distances from the median: the deviation of normal values,
+/// unmoved by fewer than half of outliers. @pre not empty
+double robustDeviation(const std::vector<double>& values);
+
+/// Whether a covariance is finite, symmetric and positive definite.
+bool isCovariance(const Eigen::MatrixXd& matrix);
+
+}  // namespace microinjection

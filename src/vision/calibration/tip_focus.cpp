@@ -1,0 +1,269 @@
+#include "vision/calibration/tip_focus.h"
+
+#include <ceres/ceres.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace microinjection {
+namespace {
+
+constexpr int kParameters = 4;                                        ///< base, peak, middle, log width
+constexpr int kLeastPlanes = 7;                                       ///< that a fit needs
+constexpr double kFarthest = 1000, kNarrowest = 0.2, kWidest = 1000;  ///< planes, of middle and width
+constexpr double kConfidence = 0.95;
+constexpr double kOutlierChance = 1e-4;
+
+using Bell = Eigen::Vector4d;
+
+/// Heights in steps of the planes from the sharpest one, sharpness in units of the range.
+struct Point {
+  double height, sharpness;
+  bool used = true;
+};
+
+struct BellCost {
+  Point point;
+  template <typename T>
+  bool operator()(const T* p, T* residual) const {
+    using std::exp;
+    const T distance = (T(point.height) - p[2]) * exp(-p[3]);
+    *residual = p[0] + p[1] * exp(T(-0.5) * distance * distance) - T(point.sharpness);
+    return true;
+  }
+};
+
+double errorOf(const Point& point, const Bell& bell) {
+  double error = 0;
+  BellCost{point}(bell.data(), &error);
+  return error;
+}
+
+/// Fits the used points; returns whether it converged.
+bool fit(const std::vector<Point>& points, double loss, Bell& bell) {
+  ceres::Problem problem;
+  for (const Point& point : points) {
+    if (!point.used) continue;
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<BellCost, 1, kParameters>(new BellCost{point}),
+                             loss > 0 ? new ceres::CauchyLoss(loss) : nullptr, bell.data());
+  }
+  // Beyond these the bell is a line or a single plane, and its middle is not determined.
+  problem.SetParameterLowerBound(bell.data(), 2, -kFarthest);
+  problem.SetParameterUpperBound(bell.data(), 2, kFarthest);
+  problem.SetParameterLowerBound(bell.data(), 3, std::log(kNarrowest));
+  problem.SetParameterUpperBound(bell.data(), 3, std::log(kWidest));
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_QR;
+  options.max_num_iterations = 200;
+  options.function_tolerance = 1e-12;
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  return summary.IsSolutionUsable() && bell.allFinite() && bell[1] > 0;
+}
+
+double robustScale(const std::vector<Point>& points, const Bell& bell) {
+  std::vector<double> errors;
+  for (const Point& point : points) errors.push_back(std::abs(errorOf(point, bell)));
+  const auto n = static_cast<double>(points.size());
+  return 1.4826 * medianOf(errors) * std::sqrt(n / (n - kParameters));
+}
+
+struct Fit {
+  Bell bell = Bell::Zero();
+  double squares = 0;  ///< of the used points
+  int used = 0;
+  double deviation = 0;  ///< of the middle, steps
+  bool good = false;
+  int freedom() const { return used - kParameters; }
+};
+
+/// Sums of the residuals and the covariance of the middle.
+void finish(const std::vector<Point>& points, Fit& result) {
+  Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
+  for (const Point& point : points) {
+    if (!point.used) continue;
+    using Jet = ceres::Jet<double, kParameters>;
+    Jet p[kParameters], residual;
+    for (int i = 0; i < kParameters; ++i) p[i] = Jet(result.bell[i], i);
+    BellCost{point}(p, &residual);
+    normal += residual.v * residual.v.transpose();
+    result.squares += residual.a * residual.a;
+    ++result.used;
+  }
+  const Eigen::FullPivLU<Eigen::Matrix4d> lu(normal);
+  result.good = result.freedom() >= 2 && lu.isInvertible();
+  if (!result.good) return;
+  result.deviation = std::sqrt(lu.inverse()(2, 2) * result.squares / result.freedom());
+}
+
+Fit fitBell(std::vector<Point>& points, const TipFocusConfig& config) {
+  Fit result;
+  result.bell << 0, 1, 0, std::log(0.5 * config.planes_beside);
+  constexpr double kStartLoss = 0.1;
+  if (!fit(points, kStartLoss, result.bell)) return result;
+  const auto freedom = static_cast<double>(points.size()) - kParameters;
+  const double limit = studentLimit(1 - kOutlierChance, freedom) * robustScale(points, result.bell);
+  for (Point& point : points) point.used = std::abs(errorOf(point, result.bell)) <= limit;
+  if (std::count_if(points.begin(), points.end(), [](const Point& p) { return p.used; }) < kParameters + 2)
+    return result;
+  if (!fit(points, 0, result.bell)) return result;
+  finish(points, result);
+  return result;
+}
+
+bool bellIsNeeded(const std::vector<Point>& points, const Fit& result, double false_rate) {
+  double sum = 0, squares = 0;
+  for (const Point& point : points) sum += point.used ? point.sharpness : 0;
+  for (const Point& point : points) squares += point.used ? std::pow(point.sharpness - sum / result.used, 2) : 0;
+  constexpr double kMore = kParameters - 1;
+  const double noise = std::max(result.squares / result.freedom(), 1e-300);
+  return (squares - result.squares) / kMore / noise > fisherLimit(1 - false_rate, kMore, result.freedom());
+}
+
+std::string refusalOf(const std::vector<FocusSample>& samples) {
+  if (samples.size() < kLeastPlanes) {
+    return "planes = " + std::to_string(samples.size()) + ": must be at least " + std::to_string(kLeastPlanes);
+  }
+  for (const FocusSample& each : samples) {
+    if (!std::isfinite(each.height) || !std::isfinite(each.sharpness)) return "a height or a sharpness is not finite";
+  }
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    if (samples[i].height <= samples[i - 1].height) return "two planes have the same height";
+  }
+  return "";
+}
+
+/// Index of the sharpest plane, by the median of three, so that one bad plane is not taken for it.
+int sharpest(const std::vector<FocusSample>& samples) {
+  const auto smooth = [&](std::size_t i) {
+    const std::size_t low = i == 0 ? 0 : i - 1, high = std::min(i + 1, samples.size() - 1);
+    return medianOf({samples[low].sharpness, samples[i].sharpness, samples[high].sharpness});
+  };
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    if (smooth(i) > smooth(best)) best = i;
+  }
+  return static_cast<int>(best);
+}
+
+/// Planes in order of height, and what is read off them.
+struct Stack {
+  explicit Stack(const std::vector<FocusSample>& planes) : samples(planes), best(sharpest(planes)) {
+    foot = samples[0].sharpness;
+    for (const FocusSample& each : samples) foot = std::min(foot, each.sharpness);
+    range = samples[best].sharpness - foot;
+    step = (samples.back().height - samples.front().height) / static_cast<double>(samples.size() - 1);
+  }
+
+  const std::vector<FocusSample>& samples;
+  int best;            ///< index of the sharpest plane
+  double foot, range;  ///< least sharpness, and that of the sharpest plane above it
+  double step;         ///< m, between planes
+};
+
+/// The planes to fit. Their number stays the same at a border, where they reach further inwards.
+std::vector<Point> pointsBeside(const Stack& stack, const TipFocusConfig& config) {
+  const int count = static_cast<int>(stack.samples.size());
+  const int width = std::min(count, std::max(kLeastPlanes, 2 * config.planes_beside + 1));
+  const int first = std::clamp(stack.best - width / 2, 0, count - width);
+  std::vector<Point> points;
+  for (int i = first; i < first + width; ++i) {
+    const FocusSample& each = stack.samples[i];
+    const double height = (each.height - stack.samples[stack.best].height) / stack.step;
+    points.push_back({height, (each.sharpness - stack.foot) / stack.range});
+  }
+  return points;
+}
+
+/// Index of a peak beside the main one that is nearly as high; -1 without one. A valley below half of the peak
+/// must lie between them.
+int secondPeak(const std::vector<FocusSample>& samples, int best, double foot, double share) {
+  const double peak = samples[best].sharpness - foot;
+  for (const int step : {-1, 1}) {
+    bool valley = false;
+    for (int i = best + step; i >= 0 && i < static_cast<int>(samples.size()); i += step) {
+      const double value = samples[i].sharpness - foot;
+      valley = valley || value < 0.5 * peak;
+      if (valley && value > share * peak) return i;
+    }
+  }
+  return -1;
+}
+
+/// Judges what was fitted; empty when it is a focus.
+std::string doubtsOf(const Stack& stack, const FocusReport& report, const TipFocusConfig& config) {
+  std::ostringstream text;
+  const std::vector<FocusSample>& samples = stack.samples;
+  const int other = secondPeak(samples, stack.best, stack.foot, config.second_peak);
+  if (other >= 0) {
+    text << "two peaks: at " << 1e6 * samples[stack.best].height << " um and at " << 1e6 * samples[other].height
+         << " um";
+  } else if (!(report.interval.half() <= config.largest_interval)) {
+    text << "the height is vague: +- " << 1e6 * report.interval.half() << " um, allowed "
+         << 1e6 * config.largest_interval << " um";
+  }
+  return text.str();
+}
+
+FocusReport borderReport(const std::vector<FocusSample>& samples, double height, int towards) {
+  FocusReport report;
+  report.verdict = FocusVerdict::kBorder;
+  report.height = height;
+  report.interval = {height, height};
+  report.towards = towards;
+  std::ostringstream text;
+  text << "the peak is at the border of the planes, at " << 1e6 * height << " um of [" << 1e6 * samples.front().height
+       << ", " << 1e6 * samples.back().height << "] um: add planes " << (towards > 0 ? "above" : "below");
+  report.text = text.str();
+  return report;
+}
+
+}  // namespace
+
+TipFocusConfig TipFocusConfig::read(ConfigReader& reader) {
+  TipFocusConfig config;
+  reader.integer("planes_beside", config.planes_beside, Range::closed(3, 100));
+  reader.number("least_contrast", config.least_contrast, Range::open(0, 1));
+  reader.number("false_rate", config.false_rate, Range::open(0, 0.1));
+  reader.number("largest_interval", config.largest_interval, Range::positive());
+  reader.number("second_peak", config.second_peak, Range{0.5, 1, false, false});
+  return config;
+}
+
+FocusReport findFocus(std::vector<FocusSample> samples, const TipFocusConfig& config) {
+  std::sort(samples.begin(), samples.end(), [](const auto& a, const auto& b) { return a.height < b.height; });
+  FocusReport report;
+  report.text = refusalOf(samples);
+  if (!report.text.empty()) return report;
+  const Stack stack(samples);
+  report.verdict = FocusVerdict::kNoPeak;
+  report.text = "no peak: the planes do not differ";
+  if (!(stack.range > config.least_contrast * std::abs(samples[stack.best].sharpness))) return report;
+  std::vector<Point> points = pointsBeside(stack, config);
+  const Fit result = fitBell(points, config);
+  if (result.good && !bellIsNeeded(points, result, config.false_rate)) return report;
+  const double middle = samples[stack.best].height + stack.step * result.bell[2];
+  const int last = static_cast<int>(samples.size()) - 1;
+  const bool inside = middle > samples.front().height + stack.step && middle < samples.back().height - stack.step;
+  if (stack.best < 2 || stack.best > last - 2 || (result.good && !inside)) {
+    return borderReport(samples, samples[stack.best].height, 2 * stack.best < last ? -1 : 1);
+  }
+  report.verdict = FocusVerdict::kUnsure;
+  report.text = "no bell fits the planes beside the sharpest";
+  if (!result.good) return report;
+  const double half = studentLimit(kConfidence, result.freedom()) * stack.step * result.deviation;
+  report.height = middle;
+  report.interval = {middle - half, middle + half};
+  report.text = doubtsOf(stack, report, config);
+  if (!report.text.empty()) return report;
+  report.verdict = FocusVerdict::kFocus;
+  std::ostringstream text;
+  text << "best focus at " << 1e6 * middle << " +- " << 1e6 * half << " um";
+  report.text = text.str();
+  return report;
+}
+
+}  // namespace microinjection
