@@ -62,11 +62,12 @@ VisionRow judged(const std::string& set, const Reading& reading, const Finding& 
                  double time) {
   VisionRow row{set, reading.file, reading.object};
   row.found = finding.hasValues();
+  row.sure = finding.isFound();
   row.verdict = nameOf(finding.verdict);
   row.time = time;
   if (!row.found) return row;
   row.error = error;
-  row.wrong = finding.isFound() && error > kWrongFactor * goal;
+  row.wrong = row.sure && error > kWrongFactor * goal;
   return row;
 }
 
@@ -143,7 +144,8 @@ void emptyRows(const std::string& folder, const TakeRow& take) {
         CellDetector(config).detect(Frame(cv::imread(folder + "/" + name, cv::IMREAD_UNCHANGED)));
     VisionRow row{well % 2 == 1 ? "real_tune" : "real_held", name, "empty_well"};
     row.found = cell.finding.hasValues();
-    row.wrong = cell.finding.isFound();
+    row.sure = cell.finding.isFound();
+    row.wrong = row.sure;
     row.verdict = nameOf(cell.finding.verdict);
     take(row);
   }

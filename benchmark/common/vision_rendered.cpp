@@ -14,6 +14,7 @@ namespace {
 // The goals, px and degrees.
 constexpr double kCentre = 0.15, kZona = 0.5, kTip = 0.2, kMouth = 0.5, kAxis = 0.2, kDimple = 0.3;
 constexpr double kDiameter = 0.003;  // of the diameter
+const cv::Point2d kMoved(4, -3);     // px, that a pipette is thought to be off before it is tracked
 
 template <typename Call>
 auto timed(double& seconds, const Call& call) {
@@ -33,12 +34,13 @@ class ImageRows {
            double time = std::numeric_limits<double>::quiet_NaN()) const {
     VisionRow row{set_, image_, what};
     row.found = finding.hasValues();
+    row.sure = finding.isFound();
     row.verdict = nameOf(finding.verdict);
     row.time = time;
     if (row.found) {
       row.error = error;
       row.relative = truth > 0 ? error / truth : std::numeric_limits<double>::quiet_NaN();
-      row.wrong = finding.isFound() && error > kWrongFactor * goal;
+      row.wrong = row.sure && error > kWrongFactor * goal;
     }
     take_(row);
   }
@@ -46,7 +48,8 @@ class ImageRows {
   void addAbsent(const std::string& what, const Finding& finding, double time) const {
     VisionRow row{set_, image_, what};
     row.found = finding.hasValues();
-    row.wrong = finding.isFound();
+    row.sure = finding.isFound();
+    row.wrong = row.sure;
     row.verdict = nameOf(finding.verdict);
     row.time = time;
     take_(row);
@@ -90,8 +93,11 @@ void pipetteRows(const ImageRows& rows, const std::string& what, const Frame& fr
   const double turn = std::remainder(found.direction - std::atan2(truth->axis.y(), truth->axis.x()), 2 * M_PI);
   rows.add(what + "_axis", found.finding, std::abs(turn) * 180 / M_PI, 0, kAxis);
   if (!found.finding.hasValues()) return;
-  const PipetteDetection again = timed(following, [&] { return detector.track(frame, found, 8); });
-  rows.add(what + "_tracked", again.finding, cv::norm(again.end - found.end), 0, goal, following);
+  PipetteDetection before = found;
+  before.end += kMoved;
+  const PipetteDetection again = timed(following, [&] { return detector.track(frame, before, 8); });
+  rows.add(what + "_tracked", again.finding, std::hypot(again.end.x - truth->end.x(), again.end.y - truth->end.y()), 0,
+           goal, following);
 }
 
 void dimpleRow(const ImageRows& rows, const Frame& frame, const CellDetection& cell, const SceneTruth& truth) {

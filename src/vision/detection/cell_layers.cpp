@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vision/detection/zona_inner.h"
+
 namespace microinjection {
 namespace {
 
@@ -17,6 +19,7 @@ constexpr double kLeastCoverage = 0.55, kLeastConsistency = 0.6, kLeastStrength 
 constexpr double kClear = 0.8;         // of the main border's strength: an inner border as clear as the main one
 constexpr double kZonaPlace = 0.5;     // of the zona's outer border in its dark rim, see refineBorder()
 constexpr double kInnerPlace = 0.5;    // of the zona's inner border
+constexpr double kApart = 2;           // px, from the rim, that is another border
 constexpr double kOoplasmPlace = 1.0;  // of the ooplasm's: the rim is refracted beside it
 constexpr int kFreeChange = 4;         // columns from ray to ray
 constexpr double kFreeGain = 0.07;     // of strength, what a freer path must be better by
@@ -87,22 +90,29 @@ CellBorder settled(const Frame& frame, const CellBorder& border, double inner) {
 
 double radiusOf(const CellBorder& border) { return 0.5 * border.ellipse.meanDiameter(); }
 
-/// The zona's inner border. A zona has nearly the same thickness everywhere, so its inner border is
-/// straight in a map about the outer one. It is outside of the ooplasm's rim; where nothing is, the
-/// gap is thinner than the rim.
-CellBorder innerBorder(const Frame& frame, const CellLayers& layers, const CellBorder& ooplasm,
-                       const std::string& look) {
+/// A zona has nearly the same thickness everywhere, so its inner border is straight in a map about the
+/// outer one. It is outside of the ooplasm's rim.
+CellBorder wholeInnerBorder(const Frame& frame, const CellLayers& layers, const std::string& look) {
   const double outer = radiusOf(layers.zona_outer), inner = radiusOf(layers.ooplasm);
   const double low = std::max(0.6, inner / outer - 0.05);
-  const Ellipse rim = scaled(ooplasm.ellipse, (radiusOf(ooplasm) + std::max(2.0, 0.02 * outer)) / radiusOf(ooplasm));
+  const Ellipse rim = scaled(layers.main.ellipse, 1 + std::max(2.0, 0.02 * outer) / radiusOf(layers.main));
+  if (rim.meanDiameter() >= 0.96 * layers.zona_outer.ellipse.meanDiameter()) return {};
   const PolarMap map = mapAbout(frame, layers.zona_outer.ellipse, low, 0.97);
-  CellBorder border;
-  if (rim.meanDiameter() < 0.96 * layers.zona_outer.ellipse.meanDiameter()) {
-    border = bestBorder(frame, map, look, outer, {rim, {}, 0, kFreeChange});
-  }
-  if (isSecondBorder(border)) return border;
-  border = ooplasm;
+  return bestBorder(frame, map, look, outer, {rim, {}, 0, kFreeChange});
+}
+
+/// The zona's inner border: all round, or as the line beside the ooplasm's rim. Where neither is seen,
+/// the gap is thinner than the rim.
+CellBorder innerBorder(const Frame& frame, const CellLayers& layers, const std::string& look) {
+  const double gap = radiusOf(layers.zona_outer) - radiusOf(layers.ooplasm);
+  const CellBorder whole = wholeInnerBorder(frame, layers, look);
+  const bool apart = radiusOf(whole) > radiusOf(layers.ooplasm) + layers.ooplasm.shift + kApart;
+  if (isSecondBorder(whole) && apart) return refined(frame, whole, kInnerPlace, 0.25 * gap);
+  CellBorder border = findZonaInner(frame, layers.zona_outer, layers.ooplasm);
+  if (border.finding.hasValues()) return border;
+  border = layers.ooplasm;
   border.finding = Finding::uncertain("no gap between ooplasm and zona: the middle of the ooplasm's rim is given");
+  border.ellipse = scaled(layers.ooplasm.ellipse, 1 + 0.5 * layers.ooplasm.rim / radiusOf(layers.ooplasm));
   return border;
 }
 
@@ -161,14 +171,10 @@ CellLayers findLayers(const Frame& frame, const CellBorder& main, const std::str
   }
   const double gap = radiusOf(layers.zona_outer) - radiusOf(ooplasm);
   layers.ooplasm = refined(frame, ooplasm, kOoplasmPlace, std::min(kWidestRim * radiusOf(ooplasm), 0.8 * gap));
-  const CellBorder inner = innerBorder(frame, layers, ooplasm, look);
-  if (inner.finding.isFound()) {
-    layers.zona_inner = refined(frame, inner, kInnerPlace, 0.25 * gap);
-  } else {
-    layers.zona_inner = inner;
-    layers.zona_inner.ellipse = scaled(layers.ooplasm.ellipse, 1 + 0.5 * layers.ooplasm.rim / radiusOf(layers.ooplasm));
-  }
   layers.zona_outer = refined(frame, layers.zona_outer, kZonaPlace, 0.35 * gap);
+  layers.main = ooplasm;
+  layers.zona_inner = innerBorder(frame, layers, look);
+  layers.main = main;
   return layers;
 }
 
@@ -207,11 +213,10 @@ CellLayers followLayers(const Frame& frame, const CellLayers& previous, double r
   // The clearest border tells how far the cell moved; the others are then near.
   const cv::Point2d moved = layers.ooplasm.ellipse.centre - previous.ooplasm.ellipse.centre;
   layers.zona_outer = follow(frame, previous.zona_outer, moved, 6, kZonaPlace, 0.35 * gap);
-  if (previous.zona_inner.finding.isFound()) {
-    layers.zona_inner = follow(frame, previous.zona_inner, moved, 5, kInnerPlace, 0.25 * gap);
-  } else if (zona) {
+  if (zona) {
+    // The zona keeps its thickness from frame to frame.
     layers.zona_inner = previous.zona_inner;
-    layers.zona_inner.ellipse.centre += moved;
+    layers.zona_inner.ellipse.centre += layers.zona_outer.ellipse.centre - previous.zona_outer.ellipse.centre;
   }
   return layers;
 }

@@ -47,6 +47,9 @@ class PipetteDetector {
 
  private:
   PipetteDetection measure(const Frame& frame, const PipetteAxis& axis) const;
+  PipetteDetection measureHolding(const Frame& frame, PipetteAxis axis) const;
+  PipetteDetection refineHolding(const Frame& frame, PipetteAxis axis, const cv::Point2d& end, double reach,
+                                 int rounds) const;
   PipetteDetection refine(const Frame& frame, PipetteAxis axis, const cv::Point2d& end, double reach) const;
 
   PipetteDetectorConfig config_;

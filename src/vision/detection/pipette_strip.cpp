@@ -14,7 +14,8 @@ cv::Size kernelFor(double across, double along) {
 
 }  // namespace
 
-PipetteStrip::PipetteStrip(const Frame& frame, const Shape& shape, double across, double along) : shape_(shape) {
+PipetteStrip::PipetteStrip(const Frame& frame, const Shape& shape, double across, double along)
+    : shape_(shape), frame_(frame.grey().size()) {
   const int columns = 2 * shape.half + 1;
   cv::Mat x(shape.rows, columns, CV_32F), y(shape.rows, columns, CV_32F);
   const int level = shape.step < 2 ? 0 : static_cast<int>(std::log2(shape.step));
@@ -37,6 +38,11 @@ PipetteStrip::PipetteStrip(const Frame& frame, const Shape& shape, double across
 cv::Point2d PipetteStrip::point(double row, double side) const {
   const double c = std::cos(shape_.direction), s = std::sin(shape_.direction);
   return shape_.origin + shape_.step * (row * cv::Point2d(c, s) + side * cv::Point2d(-s, c));
+}
+
+bool PipetteStrip::contains(double row, double side) const {
+  const cv::Point2d place = point(row, side);
+  return place.x >= 1 && place.y >= 1 && place.x <= frame_.width - 2 && place.y <= frame_.height - 2;
 }
 
 std::vector<double> sharedEdges(const PipetteStrip& strip, const std::vector<double>& half_width) {

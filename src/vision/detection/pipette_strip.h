@@ -29,9 +29,11 @@ class PipetteStrip {
   int half() const { return shape_.half; }
   cv::Point2d point(double row, double side) const;    ///< px; `side`: columns from the middle one
   bool inside(int row) const { return inside_[row]; }  ///< whether the axis is in the image there
+  bool contains(double row, double side) const;        ///< whether a place is in the image
 
  private:
   Shape shape_;
+  cv::Size frame_;
   cv::Mat grey_, across_, along_;
   std::vector<bool> inside_;
 };
