@@ -1,0 +1,59 @@
+#include <opencv2/core.hpp>
+
+#include "benchmark/common/vision_cases.h"
+
+namespace microinjection {
+namespace {
+
+SceneDrawConfig usual() {
+  SceneDrawConfig draw;
+  draw.dimple = 0;
+  draw.holding = draw.injection = 1;
+  return draw;
+}
+
+VisionCondition condition(const std::string& name, const SceneDrawConfig& draw) {
+  VisionCondition result;
+  result.name = "rendered_" + name;
+  result.draw = draw;
+  return result;
+}
+
+}  // namespace
+
+std::vector<VisionCondition> visionConditions() {
+  std::vector<VisionCondition> all = {condition("clean", usual())};
+  all.push_back(condition("noise", usual()));
+  all.back().microscope.sensor.gain = 8;
+  all.push_back(condition("defocus", usual()));
+  all.back().focus = 10e-6;
+  SceneDrawConfig debris = usual();
+  debris.dust = 25;
+  all.push_back(condition("debris", debris));
+  for (const char* look : {"dic", "phase"}) {
+    all.push_back(condition(look, usual()));
+    all.back().microscope.look.kind = look;
+  }
+  all.push_back(condition("compressed", usual()));
+  all.back().microscope.sensor.jpeg_quality = 50;
+  all.push_back(condition("turned_mirrored", usual()));
+  all.back().microscope.camera.angle = 0.9;
+  all.back().microscope.camera.mirrored = true;
+  SceneDrawConfig dimple = usual();
+  dimple.dimple = 1;
+  all.push_back(condition("dimple", dimple));
+  SceneDrawConfig nothing = usual();
+  nothing.cell = nothing.holding = nothing.injection = 0;
+  nothing.dust = 0;
+  all.push_back(condition("empty", nothing));
+  nothing.dust = 12;
+  all.push_back(condition("dust", nothing));
+  nothing.bubbles = 3;
+  all.push_back(condition("bubbles", nothing));
+  SceneDrawConfig pipettes = usual();
+  pipettes.cell = 0;
+  all.push_back(condition("pipettes_only", pipettes));
+  return all;
+}
+
+}  // namespace microinjection

@@ -1,0 +1,109 @@
+#include "vision/detection/axis_fit.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace microinjection {
+namespace {
+
+constexpr int kBlock = 10;           // rows that are compared together
+constexpr double kMostSlant = 0.16;  // columns per row
+constexpr double kSlantStep = 0.005;
+constexpr double kLeastSymmetry = 0.45;
+constexpr int kBeside = 5;  // half columns beside the common axis, that a block's own may be
+
+struct Block {
+  double row = 0;  ///< rows behind the first one
+  std::vector<double> mirrored;
+};
+
+struct Place {
+  double row, column;
+};
+
+double valueAt(const std::vector<double>& values, double place) {
+  const int i = static_cast<int>(std::floor(place));
+  if (i < 0 || i + 1 >= static_cast<int>(values.size())) return 0;
+  return values[i] + (place - i) * (values[i + 1] - values[i]);
+}
+
+/// The straight line with the largest sum of symmetry over all blocks.
+AxisFit common(const std::vector<Block>& blocks, int most) {
+  AxisFit best;
+  double highest = 0;
+  for (double slant = -kMostSlant; slant <= kMostSlant; slant += kSlantStep) {
+    for (double offset = -0.5 * most; offset <= 0.5 * most; offset += 0.5) {
+      double sum = 0;
+      for (const Block& block : blocks) sum += valueAt(block.mirrored, 2 * (offset + slant * block.row) + most);
+      if (sum <= highest) continue;
+      highest = sum;
+      best.offset = offset;
+      best.slant = slant;
+    }
+  }
+  best.valid = highest > kLeastSymmetry * static_cast<double>(blocks.size());
+  return best;
+}
+
+std::vector<Place> placesBeside(const std::vector<Block>& blocks, const AxisFit& axis, int most) {
+  std::vector<Place> places;
+  for (const Block& block : blocks) {
+    const auto& values = block.mirrored;
+    const int middle = static_cast<int>(std::lround(2 * (axis.offset + axis.slant * block.row))) + most;
+    const int low = std::max(1, middle - kBeside),
+              high = std::min(static_cast<int>(values.size()) - 2, middle + kBeside);
+    if (low >= high) continue;
+    const auto peak = std::max_element(values.begin() + low, values.begin() + high + 1);
+    const int i = static_cast<int>(peak - values.begin());
+    const double bend = values[i - 1] - 2 * values[i] + values[i + 1];
+    if (i == low || i == high || bend >= 0 || values[i] < kLeastSymmetry) continue;
+    places.push_back({block.row, 0.5 * (i + 0.5 * (values[i - 1] - values[i + 1]) / bend - most)});
+  }
+  return places;
+}
+
+}  // namespace
+
+AxisFit fitAxis(const PipetteStrip& strip, int first, int rows, double half_width, int most) {
+  std::vector<Block> blocks;
+  for (int row = first; row + kBlock <= std::min(strip.rows(), first + rows) && strip.inside(row + kBlock - 1);
+       row += kBlock) {
+    Block block{row + 0.5 * (kBlock - 1) - first, mirrored(strip, row, row + kBlock, half_width, most)};
+    if (!block.mirrored.empty()) blocks.push_back(std::move(block));
+  }
+  if (blocks.size() < 3) return {};
+  AxisFit fit = common(blocks, most);
+  if (!fit.valid) return fit;
+  const std::vector<Place> places = placesBeside(blocks, fit, most);
+  if (places.size() < 3) {
+    fit.offset_deviation = 1;
+    fit.slant_deviation = kSlantStep;
+    return fit;
+  }
+  double scale = 0.5 * kBeside;
+  for (int round = 0; round < 6; ++round) {
+    double w = 0, x = 0, y = 0, xx = 0, xy = 0;
+    for (const Place& place : places) {
+      const double d = (place.column - fit.offset - fit.slant * place.row) / (3 * scale);
+      const double weight = std::abs(d) < 1 ? (1 - d * d) * (1 - d * d) : 0;
+      w += weight;
+      x += weight * place.row;
+      y += weight * place.column;
+      xx += weight * place.row * place.row;
+      xy += weight * place.row * place.column;
+    }
+    const double det = w * xx - x * x;
+    if (w < 1.5 || det <= 1e-9) break;
+    fit.slant = (w * xy - x * y) / det;
+    fit.offset = (y - fit.slant * x) / w;
+    std::vector<double> sizes;
+    for (const Place& place : places) sizes.push_back(std::abs(place.column - fit.offset - fit.slant * place.row));
+    std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2), sizes.end());
+    scale = std::max(0.1, 1.48 * sizes[sizes.size() / 2]);
+    fit.offset_deviation = scale * std::sqrt(xx / det);
+    fit.slant_deviation = scale * std::sqrt(w / det);
+  }
+  return fit;
+}
+
+}  // namespace microinjection

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "vision/detection/pipette_strip.h"
+
+namespace microinjection {
+
+/// A straight axis in a strip, by the symmetry of its rows.
+struct AxisFit {
+  bool valid = false;
+  double offset = 0;            ///< columns from the middle, at the first row
+  double slant = 0;             ///< columns per row
+  double offset_deviation = 0;  ///< columns
+  double slant_deviation = 0;   ///< columns per row
+};
+
+/// Fits the axis to `rows` rows from row `first`. All rows together choose the axis; the places where
+/// blocks of them are most symmetric beside it refine it.
+/// @param half_width  columns on both sides that are compared
+/// @param most        columns that the axis may be off
+AxisFit fitAxis(const PipetteStrip& strip, int first, int rows, double half_width, int most);
+
+}  // namespace microinjection

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "vision/detection/ellipse.h"
+#include "vision/detection/finding.h"
+#include "vision/detection/polar_map.h"
+
+namespace microinjection {
+
+/// A closed border of a cell: its ellipse, and where it was seen.
+struct CellBorder {
+  Finding finding;
+  Ellipse ellipse;                                       ///< px
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of centre x, centre y, mean diameter, px^2
+  double residual = 0;                                   ///< px rms, of the points that the ellipse describes
+  double coverage = 0;      ///< share of the directions within the image in which the border is on the ellipse
+  double outside = 0;       ///< share of the ellipse that is outside of the image
+  double strength = 0;      ///< 0..1, of the gradient along it relative to what is around it
+  double consistency = 0;   ///< share of the directions whose gradient is that of a border
+  double contrast = 0;      ///< mean slope of the grey value along it, of full scale per px
+  double significance = 0;  ///< mean gradient along it over the standard error of that
+  Polarity polarity = Polarity::kRising;
+  double shift = 0;                 ///< px, that the border is inside of the rising flank that shows it
+  double rim = 0;                   ///< px, mean width of the dark rim along it; 0: none was seen
+  std::vector<cv::Point2d> points;  ///< px, in order of direction
+  std::vector<bool> inlier;         ///< of each point
+};
+
+/// Which columns of a map a border may be in, by radius (px) for a direction (rad).
+struct BorderBand {
+  Ellipse inner, outer;  ///< an ellipse without axes does not limit
+  double outwards = 0;   ///< strength that the last column has over the first: of two borders the outer is taken
+  int most_change = 2;   ///< columns from ray to ray
+};
+
+/// Best closed border of a polarity in a map, with its ellipse. kNotFound when no ellipse fits.
+/// @param scale      slope that counts as half of a full border, see slopeScale()
+/// @param tolerance  px, distance up to which a point belongs to the ellipse
+CellBorder findBorder(const Frame& frame, const PolarMap& map, Polarity polarity, const BorderBand& band, double scale,
+                      double tolerance);
+
+/// How a border appears, see refineBorder().
+struct BorderRim {
+  double widest = 0;  ///< px, of the dark rim that ends at the border's rising flank; 0: no rim
+  double place = 0;   ///< of the border in the rim: 0 at its outer, 1 at its inner flank
+};
+
+/// The same border at the frame's resolution, to a fraction of a pixel: the steepest places of each
+/// ray near `coarse`. Where a dark rim lies inside of a rising flank, the border is at the rim's
+/// `place`; otherwise it is the flank.
+/// @param window  px, to both sides of the flank
+/// @param blur    px, standard deviation of the derivative along the ray
+CellBorder refineBorder(const Frame& frame, const CellBorder& coarse, const BorderRim& rim, double window, double blur,
+                        int rays);
+
+/// How much a border is one: seen all round, clear and on its ellipse, in 0..1. A border from dark to
+/// bright counts more: the rim of a cell is dark.
+double worthOf(const CellBorder& border);
+
+/// An ellipse about the same centre with both axes changed by the factor.
+Ellipse scaled(const Ellipse& ellipse, double factor);
+
+}  // namespace microinjection

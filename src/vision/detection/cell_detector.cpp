@@ -1,0 +1,126 @@
+#include "vision/detection/cell_detector.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "vision/detection/cell_candidates.h"
+#include "vision/detection/cell_layers.h"
+
+namespace microinjection {
+namespace {
+
+constexpr int kCandidates = 6;
+constexpr double kThinnestOoplasm = 0.55;  // of the outer border's diameter
+constexpr double kMostOutside = 0.4, kLeastOutside = 0.02;
+constexpr double kMostElongated = 1.5;  // ratio of a cell's axes
+constexpr double kLeastStrength = 0.6, kLeastConsistency = 0.6;
+
+}  // namespace
+
+CellDetectorConfig CellDetectorConfig::read(ConfigReader& reader) {
+  CellDetectorConfig config;
+  reader.number("smallest_diameter", config.smallest_diameter, Range::closed(20, 1e4));
+  reader.number("largest_diameter", config.largest_diameter, Range::closed(20, 1e4));
+  reader.choice("look", config.look, {"bright_field", "phase", "dic", "unknown"});
+  reader.number("least_coverage", config.least_coverage, Range::closed(0.3, 1));
+  reader.number("most_outside", config.most_outside, Range::closed(0, 0.5));
+  if (config.largest_diameter < config.smallest_diameter) {
+    reader.error("largest_diameter", "must not be below smallest_diameter");
+  }
+  return config;
+}
+
+CellDetector::CellDetector(const CellDetectorConfig& config) : config_(config) {}
+
+CellDetection CellDetector::detect(const Frame& frame) const {
+  CellDetection detection;
+  if (!frame.refusal().empty()) {
+    detection.finding = Finding::notFound(frame.refusal());
+    return detection;
+  }
+  const double low = 0.5 * kThinnestOoplasm * config_.smallest_diameter, high = 0.5 * config_.largest_diameter;
+  std::vector<CellBorder> borders;
+  for (const CellCandidate& candidate : findCellCandidates(frame, low, high, kCandidates)) {
+    const CellBorder border = findMainBorder(frame, candidate.centre, candidate.radius, config_.look);
+    if (isClear(border)) borders.push_back(border);
+  }
+  std::sort(borders.begin(), borders.end(), [](const auto& a, const auto& b) { return worthOf(a) > worthOf(b); });
+  detection.finding = Finding::notFound("no closed border of the size that is asked for");
+  for (const CellBorder& border : borders) {
+    const CellLayers layers = findLayers(frame, border, config_.look, config_.largest_diameter);
+    const Finding finding = judge(frame, layers);
+    if (!finding.hasValues()) {
+      if (!detection.finding.hasValues()) detection.finding = finding;
+      continue;
+    }
+    if (detection.finding.hasValues()) {
+      addOther(detection, layers);
+      continue;
+    }
+    detection.finding = finding;
+    take(detection, layers);
+  }
+  if (detection.finding.isFound() && !detection.others.empty()) {
+    detection.finding = Finding::uncertain("two cells: the clearest is given");
+  }
+  return detection;
+}
+
+CellDetection CellDetector::track(const Frame& frame, const CellDetection& previous, double reach) const {
+  CellDetection detection;
+  detection.finding = Finding::notFound("there is no earlier cell to follow");
+  if (!frame.refusal().empty()) detection.finding = Finding::notFound(frame.refusal());
+  if (!frame.refusal().empty() || !previous.finding.hasValues()) return detection;
+  CellLayers before;
+  before.ooplasm = previous.ooplasm;
+  before.zona_inner = previous.zona_inner;
+  before.zona_outer = previous.zona_outer;
+  const CellLayers layers = followLayers(frame, before, reach);
+  const bool lost = !layers.ooplasm.finding.hasValues() ||
+                    (previous.zona_outer.finding.hasValues() && !layers.zona_outer.finding.hasValues());
+  if (lost) {
+    detection.finding = Finding::notFound("the cell is lost: its border is not where it was");
+    return detection;
+  }
+  detection.finding = judge(frame, layers);
+  take(detection, layers);
+  return detection;
+}
+
+void CellDetector::take(CellDetection& detection, const CellLayers& layers) {
+  detection.ooplasm = layers.ooplasm;
+  detection.zona_inner = layers.zona_inner;
+  detection.zona_outer = layers.zona_outer;
+  detection.centre = detection.outer().ellipse.centre;
+  detection.centre_covariance = detection.outer().covariance.topLeftCorner<2, 2>();
+}
+
+bool CellDetector::isClear(const CellBorder& border) const {
+  return border.finding.hasValues() && border.strength >= kLeastStrength && border.consistency >= kLeastConsistency &&
+         border.coverage >= config_.least_coverage &&
+         border.ellipse.semi_axes[0] < kMostElongated * border.ellipse.semi_axes[1];
+}
+
+Finding CellDetector::judge(const Frame& frame, const CellLayers& layers) const {
+  const CellBorder& outer = layers.zona_outer.finding.hasValues() ? layers.zona_outer : layers.ooplasm;
+  const double diameter = outer.ellipse.meanDiameter();
+  if (diameter < config_.smallest_diameter || diameter > config_.largest_diameter) {
+    return Finding::notFound("no closed border of the size that is asked for");
+  }
+  if (isBubble(frame, layers))
+    return Finding::notFound("a round thing is a bubble: a wide dark rim and a bright middle");
+  if (outer.outside > kMostOutside) return Finding::notFound("half of the border is outside of the image");
+  if (outer.outside > config_.most_outside) return Finding::uncertain("a part of the border is outside of the image");
+  return Finding::found();
+}
+
+void CellDetector::addOther(CellDetection& detection, const CellLayers& layers) {
+  const CellBorder& outer = layers.zona_outer.finding.hasValues() ? layers.zona_outer : layers.ooplasm;
+  const Ellipse& first = detection.outer().ellipse;
+  // What overlaps the first one is a part of it.
+  if (cv::norm(outer.ellipse.centre - first.centre) < 0.4 * (outer.ellipse.meanDiameter() + first.meanDiameter()))
+    return;
+  if (outer.outside < kLeastOutside) detection.others.push_back(outer.ellipse);
+}
+
+}  // namespace microinjection

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "base/config_reader.h"
+#include "vision/detection/cell_layers.h"
+
+namespace microinjection {
+
+struct CellDetectorConfig {
+  double smallest_diameter = 70;  ///< px, of the outermost border of a cell
+  double largest_diameter = 600;  ///< px
+  std::string look = "unknown";   ///< bright_field, phase, dic or unknown
+  double least_coverage = 0.6;    ///< share of the border that must lie on its ellipse
+  double most_outside = 0.1;      ///< share of the border that may be outside of the image without a warning
+
+  static CellDetectorConfig read(ConfigReader& reader);
+};
+
+struct CellDetection {
+  Finding finding;
+  cv::Point2d centre;                                           ///< px
+  Eigen::Matrix2d centre_covariance = Eigen::Matrix2d::Zero();  ///< px^2
+  CellBorder zona_outer, zona_inner, ooplasm;                   ///< a cell without zona has only the last
+  std::vector<Ellipse> others;                                  ///< other whole cells
+
+  /// The outermost border that was found.
+  const CellBorder& outer() const { return zona_outer.finding.hasValues() ? zona_outer : ooplasm; }
+};
+
+/// Finds a cell in a frame: candidates by the votes of edges, closed borders by dynamic programming
+/// in polar maps about them, ellipses by robust least squares. The border is the steepest place of
+/// the grey value: from dark to bright outwards, in DIC either way.
+class CellDetector {
+ public:
+  explicit CellDetector(const CellDetectorConfig& config);
+
+  /// Searches the whole frame.
+  CellDetection detect(const Frame& frame) const;
+  /// Searches near a cell that was found in an earlier frame: moved by at most `reach` (px), of
+  /// nearly the same size.
+  CellDetection track(const Frame& frame, const CellDetection& previous, double reach) const;
+
+ private:
+  bool isClear(const CellBorder& border) const;
+  Finding judge(const Frame& frame, const CellLayers& layers) const;
+  static void take(CellDetection& detection, const CellLayers& layers);
+  static void addOther(CellDetection& detection, const CellLayers& layers);
+
+  CellDetectorConfig config_;
+};
+
+}  // namespace microinjection

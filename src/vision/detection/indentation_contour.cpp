@@ -1,0 +1,124 @@
+#include "vision/detection/indentation_contour.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+namespace microinjection {
+namespace {
+
+constexpr double kFacing = 1.1;     // rad, half of the sector that faces the needle
+constexpr double kDisturbed = 0.9;  // rad from the needle, that a dimple reaches to
+constexpr double kDeepest = 0.55;   // of the radius, a dimple
+constexpr double kFitted = 0.12;    // of the radius, half of the dimple's middle that gives the parabola, at least
+constexpr double kBelowTip = 7;     // px, that the border may be deeper than the tip
+constexpr int kRays = 240;
+constexpr double kFullBorder = 5;  // of the slopes' scale
+
+double angleBetween(double a, double b) { return std::abs(std::remainder(a - b, 2 * M_PI)); }
+
+struct Seen {
+  double across, along;  ///< px, from the tip, in the needle's frame: along is positive towards the shaft
+};
+
+/// Place of the border along the needle at `across` = 0, by a parabola with Tukey's weights.
+bool parabola(const std::vector<Seen>& points, double& value, double& deviation) {
+  if (points.size() < 8) return false;
+  Eigen::Vector3d coefficients(0, 0, 0);
+  double scale = 1e3;
+  Eigen::Matrix3d matrix;
+  for (int round = 0; round < 8; ++round) {
+    matrix.setZero();
+    Eigen::Vector3d right(0, 0, 0);
+    for (const Seen& seen : points) {
+      const Eigen::Vector3d row(1, seen.across, seen.across * seen.across);
+      const double d = (seen.along - row.dot(coefficients)) / (4.685 * scale);
+      const double weight = round == 0 ? 1 : std::abs(d) < 1 ? (1 - d * d) * (1 - d * d) : 0;
+      matrix += weight * row * row.transpose();
+      right += weight * seen.along * row;
+    }
+    const Eigen::LDLT<Eigen::Matrix3d> solver(matrix);
+    if (solver.info() != Eigen::Success || !(solver.rcond() > 1e-14)) return false;
+    coefficients = solver.solve(right);
+    std::vector<double> rest;
+    for (const Seen& seen : points) {
+      rest.push_back(
+          std::abs(seen.along - coefficients.dot(Eigen::Vector3d(1, seen.across, seen.across * seen.across))));
+    }
+    std::nth_element(rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(rest.size() / 2), rest.end());
+    scale = std::max(0.1, 1.48 * rest[rest.size() / 2]);
+  }
+  value = coefficients[0];
+  deviation = scale * std::sqrt(std::max(0.0, matrix.inverse()(0, 0)));
+  return true;
+}
+
+/// The border's ellipse from the points that do not face the needle.
+EllipseFit undisturbed(const CellBorder& border, double facing) {
+  std::vector<cv::Point2d> points;
+  for (const cv::Point2d& point : border.points) {
+    const cv::Point2d d = point - border.ellipse.centre;
+    if (angleBetween(std::atan2(d.y, d.x), facing) > kDisturbed) points.push_back(point);
+  }
+  return fitEllipse(points, border.ellipse, 1.0);
+}
+
+}  // namespace
+
+Indentation findIndentation(const Frame& frame, const CellBorder& border, const cv::Point2d& tip, double direction,
+                            double width) {
+  Indentation result;
+  result.finding = Finding::notFound("there is no outline of a cell");
+  if (!border.finding.hasValues()) return result;
+  const double radius = 0.5 * border.ellipse.meanDiameter(), low = -kDeepest * radius, high = 0.06 * radius;
+  const int columns = static_cast<int>(high - low) + 1;
+  const PolarMap map(frame, border.ellipse, {low, low + columns - 1, columns, kRays}, 1.5);
+  const double scale = std::max(slopeScale(map, 0, columns), 0.2 * frame.noise());
+  const double facing = std::atan2(tip.y - border.ellipse.centre.y, tip.x - border.ellipse.centre.x);
+  cv::Mat strength = borderStrength(map, border.polarity, kFullBorder * scale);
+  const cv::Point2d u(std::cos(direction), std::sin(direction)), v(-u.y, u.x);
+  for (int ray = 0; ray < kRays; ++ray) {
+    if (angleBetween(map.direction(ray), facing) > kFacing) {
+      // Elsewhere the border is on its ellipse.
+      for (int i = 0; i < columns; ++i) {
+        if (std::abs(low + i) > 4) strength.at<float>(ray, i) = -5;
+      }
+      continue;
+    }
+    for (int i = 0; i < columns; ++i) {
+      // The needle's own walls are not the cell's border.
+      const cv::Point2d d = map.point(ray, i) - tip;
+      if (d.dot(u) > -3 && std::abs(d.dot(v)) < width) strength.at<float>(ray, i) = 0;
+      // The ooplasm's border is deeper than the needle is.
+      if (d.dot(u) < -kBelowTip) strength.at<float>(ray, i) = kForbidden;
+    }
+  }
+  const ClosedPath path = closedPath(strength, 6);
+  std::vector<Seen> seen;
+  for (int ray = 0; ray < kRays; ++ray) {
+    if (angleBetween(map.direction(ray), facing) > kFacing) continue;
+    const int column = path.column[ray];
+    if (map.valid().at<unsigned char>(ray, column) == 0 || strength.at<float>(ray, column) < 0.3F) continue;
+    const cv::Point2d point = map.point(ray, column - border.shift);
+    result.contour.push_back(point);
+    const cv::Point2d d = point - tip;
+    if (std::abs(d.dot(v)) < std::max(2.5 * width, kFitted * radius) && std::abs(d.dot(v)) > 0.5 * width)
+      seen.push_back({d.dot(v), d.dot(u)});
+  }
+  double place = 0;
+  result.finding = Finding::notFound("the outline under the needle is not clear");
+  if (!parabola(seen, place, result.deviation)) return result;
+  result.deepest = tip + place * u;
+  result.undisturbed = undisturbed(border, facing);
+  result.finding = Finding::notFound("too little of the outline is undisturbed");
+  if (!result.undisturbed.valid) return result;
+  // From the deepest place back along the needle to the undisturbed outline; 0 outside of it.
+  result.depth = result.undisturbed.ellipse.reach(result.deepest, direction);
+  result.finding = Finding::found();
+  if (std::abs(place) > std::max(8.0, 0.1 * radius)) {
+    result.finding = Finding::uncertain("the outline under the needle is far from the tip: the needle may not touch");
+  }
+  return result;
+}
+
+}  // namespace microinjection

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "vision/detection/cell_border.h"
+#include "vision/detection/finding.h"
+#include "vision/detection/frame.h"
+
+namespace microinjection {
+
+/// The outline of a cell where a needle presses on it.
+struct Indentation {
+  Finding finding;
+  double depth = 0;                  ///< px, along the needle, from the undisturbed outline to the deepest place
+  double deviation = 0;              ///< px, standard deviation
+  cv::Point2d deepest;               ///< px
+  EllipseFit undisturbed;            ///< outline without the dimple: of the border's points that do not face the needle
+  std::vector<cv::Point2d> contour;  ///< px, of the part that faces the needle
+};
+
+/// Follows the outer border of a cell through the dimple under a needle. The needle hides the border
+/// at the tip itself and behind it: there the contour is the parabola through what is seen on both
+/// sides.
+/// @param border     the undisturbed outline: its ellipse describes the rest of the cell
+/// @param tip        px
+/// @param direction  rad, from the tip towards the shaft, from x towards y
+/// @param width      px, of the needle near its tip
+Indentation findIndentation(const Frame& frame, const CellBorder& border, const cv::Point2d& tip, double direction,
+                            double width);
+
+}  // namespace microinjection

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "vision/detection/frame.h"
+
+namespace microinjection {
+
+/// Where a pipette may be, roughly. Its outline is two straight lines that are symmetric to its axis.
+struct PipetteAxis {
+  cv::Point2d point;      ///< px, on the axis, the nearest to the region's centre
+  double direction = 0;   ///< rad, of the axis, from x towards y; as yet either way
+  double half_width = 0;  ///< px, of the outline at `point`
+  double taper = 0;       ///< growth of the half width along the direction
+  double weight = 0;      ///< of its edges
+};
+
+struct AxisSearch {
+  double direction = 0;          ///< rad, from the pipette's end towards its shaft, from x towards y
+  double tolerance = 0.5;        ///< rad, of the direction
+  double steepest_taper = 0.45;  ///< rad, of an outline's line to the axis
+  double widest = 500;           ///< px, of an outline
+  cv::Rect region;               ///< px, that is searched; empty: the half of the frame that the shaft comes from
+};
+
+/// Finds axes by straight edges (Hough) and the axis of symmetry of each two of them. Best first.
+std::vector<PipetteAxis> findPipetteAxes(const Frame& frame, const AxisSearch& search, int most);
+
+}  // namespace microinjection

@@ -1,0 +1,91 @@
+#include "vision/detection/pipette_detector.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "vision/microscope/microscope.h"
+#include "vision/microscope/scene_draw.h"
+
+namespace microinjection {
+namespace {
+
+struct Rendered {
+  cv::Mat image;
+  SceneTruth truth;
+  double injection = 0, holding = 0;  ///< rad, directions of the shafts in the image
+};
+
+Rendered render(const SceneDrawConfig& draw, std::uint64_t seed, const MicroscopeConfig& config = {},
+                double focus = 0) {
+  Microscope microscope(config);
+  const DrawnScene drawn = drawScene(draw, config.camera, seed);
+  const Eigen::Vector2d up = config.camera.imageDirection({0, 1});
+  return {microscope.render(drawn.scene, focus, seed), drawn.truth, std::atan2(up.y(), up.x()),
+          std::atan2(-up.y(), -up.x())};
+}
+
+SceneDrawConfig pipettesOnly() {
+  SceneDrawConfig draw;
+  draw.cell = draw.dimple = 0;
+  draw.holding = draw.injection = 1;
+  draw.dust = 0;
+  draw.inclination = {0, 0.2};
+  return draw;
+}
+
+PipetteDetection detect(const Rendered& rendered, const std::string& kind) {
+  PipetteDetectorConfig config;
+  config.kind = kind;
+  config.direction = kind == "holding" ? rendered.holding : rendered.injection;
+  return PipetteDetector(config).detect(Frame(rendered.image));
+}
+
+void expectEnd(const PipetteDetection& found, const PipetteTruth& truth, double tolerance) {
+  ASSERT_TRUE(found.finding.hasValues()) << found.finding.reason;
+  EXPECT_NEAR(found.end.x, truth.end.x(), tolerance);
+  EXPECT_NEAR(found.end.y, truth.end.y(), tolerance);
+  EXPECT_NEAR(std::remainder(found.direction - std::atan2(truth.axis.y(), truth.axis.x()), 2 * M_PI), 0, 0.005);
+}
+
+TEST(PipetteDetector, FindsTheTip) {
+  // A needle of less than 3 px in radius has hardly an end.
+  for (const std::uint64_t seed : {1, 4, 5, 6, 9, 13}) {
+    const Rendered rendered = render(pipettesOnly(), seed);
+    expectEnd(detect(rendered, "injection"), *rendered.truth.injection, 0.6);
+  }
+}
+
+TEST(PipetteDetector, FindsTheMouth) {
+  for (const std::uint64_t seed : {6, 8, 11}) {
+    const Rendered rendered = render(pipettesOnly(), seed);
+    expectEnd(detect(rendered, "holding"), *rendered.truth.holding, 0.8);
+  }
+}
+
+TEST(PipetteDetector, TurnedAndMirrored) {
+  MicroscopeConfig config;
+  config.camera.angle = 0.6;
+  config.camera.mirrored = true;
+  const Rendered rendered = render(pipettesOnly(), 4, config);
+  expectEnd(detect(rendered, "injection"), *rendered.truth.injection, 0.6);
+}
+
+TEST(PipetteDetector, ClaimsNothingWithoutAPipette) {
+  SceneDrawConfig draw;
+  draw.cell = draw.holding = draw.injection = 0;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const PipetteDetection found = detect(render(draw, seed), "injection");
+    EXPECT_FALSE(found.finding.hasValues()) << seed;
+    EXPECT_FALSE(found.finding.reason.empty());
+  }
+}
+
+TEST(PipetteDetector, RefusesUselessFrames) {
+  EXPECT_EQ(PipetteDetector({}).detect(Frame(cv::Mat())).finding.verdict, Verdict::kNotFound);
+  EXPECT_FALSE(PipetteDetector({}).detect(Frame(cv::Mat(300, 300, CV_8U, cv::Scalar(255)))).finding.reason.empty());
+}
+
+}  // namespace
+}  // namespace microinjection
