@@ -6,7 +6,7 @@ scaled with its radius R, forces with E R^2 (E: the Young's modulus that the nee
 the largest puncture force. `overrides`, a YAML file of the user's, has the last word. Writes the parameters that differ
 to `out`. Ends with status 1 when something does not fit: roslaunch then stops.
 
-scene, urdf, haptic_config, overrides: paths; the last two may be empty. force_sources: those of controller and hand.
+scene, urdf, haptic_config, overrides: paths; the last two may be empty. camera: as in session.launch. force_sources: those of controller and hand.
 """
 
 import pathlib
@@ -19,7 +19,7 @@ from fit_rig import Rig
 
 PACKAGE = pathlib.Path(__file__).resolve().parents[1]
 NODES = ("micromanipulator", "haptic_bridge", "injection_controller", "display", "microscope")
-OVERRIDDEN = (*NODES, "haptic_device", "force_sensor", "injector", "cell_simulator", "operator", "teleoperation_follower")
+OVERRIDDEN = (*NODES, "vision", "haptic_device", "force_sensor", "injector", "cell_simulator", "operator", "teleoperation_follower")
 
 RADIUS, MODULUS = 28e-6, 17.9e3  # m, Pa, of the cell that the files are for
 GUARD = 2  # times the largest puncture force
@@ -243,6 +243,8 @@ def fit_session(arguments):
     rig.scale(cell.length_scale, cell.mouth_radius)
     haptic = arguments["haptic_config"]
     fit = Fit(cell, read(haptic) if pathlib.Path(haptic).is_file() else {}, rig.axis_speed)
+    if arguments["camera"] == "sim":  # of another camera only a calibration knows it
+        put(fit.changed, "vision/pixel_size", fit.get("microscope", "camera/pixel_size"))
     if arguments["overrides"]:
         override(fit, rig, arguments["overrides"])
     measured = arguments["sensor"] == "simulated" and "measured" in arguments["force_sources"]

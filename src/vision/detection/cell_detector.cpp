@@ -61,7 +61,7 @@ CellDetection CellDetector::detect(const Frame& frame) const {
     take(detection, layers);
   }
   if (detection.finding.isFound() && !detection.others.empty()) {
-    detection.finding = Finding::uncertain("two cells: the clearest is given");
+    detection.finding = Finding::uncertain(CellDetection::kTwoCells);
   }
   return detection;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <opencv2/core.hpp>
 #include <string>
 #include <vector>
@@ -26,6 +27,16 @@ struct CellDetection {
   Eigen::Matrix2d centre_covariance = Eigen::Matrix2d::Zero();  ///< px^2
   CellBorder zona_outer, zona_inner, ooplasm;                   ///< a cell without zona has only the last
   std::vector<Ellipse> others;                                  ///< other whole cells
+
+  /// Removes the others for which `part_of_another_thing` is true. Without others the one cell is
+  /// certain again.
+  template <typename Predicate>
+  void dismissOthers(const Predicate& part_of_another_thing) {
+    others.erase(std::remove_if(others.begin(), others.end(), part_of_another_thing), others.end());
+    if (others.empty() && finding.reason == kTwoCells) finding = Finding::found();
+  }
+
+  static constexpr const char* kTwoCells = "two cells: the clearest is given";
 
   /// The outermost border that was found.
   const CellBorder& outer() const { return zona_outer.finding.hasValues() ? zona_outer : ooplasm; }

@@ -1,0 +1,30 @@
+#include "nodes/imaging/measured_scene.h"
+
+#include <cmath>
+
+#include "base/errors.h"
+
+namespace microinjection {
+
+YAML::Node withMeasuredSize(const YAML::Node& scene, double diameter, double zona_thickness) {
+  YAML::Node result = YAML::Clone(scene);
+  YAML::Node cell = result["cell"];
+  if (!cell || !cell.IsMap()) throw ConfigError("scene: cell is missing");
+  YAML::Node layers = cell["layers"];
+  if (!layers) {
+    if (!cell["diameter"]) throw ConfigError("scene: cell/diameter is missing");
+    cell["diameter"] = diameter;
+    return result;
+  }
+  if (!layers.IsSequence() || layers.size() == 0) throw ConfigError("scene: cell/layers must be a list");
+  const double factor = diameter / 2 / layers[0]["outer_radius"].as<double>();
+  for (YAML::Node layer : layers) layer["outer_radius"] = factor * layer["outer_radius"].as<double>();
+  if (layers.size() == 2 && std::isfinite(zona_thickness)) {
+    if (zona_thickness <= 0 || zona_thickness >= diameter / 2)
+      throw ConfigError("zona thickness = " + std::to_string(zona_thickness) + " m: must be within the cell's radius");
+    layers[1]["outer_radius"] = diameter / 2 - zona_thickness;
+  }
+  return result;
+}
+
+}  // namespace microinjection

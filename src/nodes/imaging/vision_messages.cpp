@@ -1,0 +1,77 @@
+#include "nodes/imaging/vision_messages.h"
+
+#include <cmath>
+#include <limits>
+
+#include "vision/detection/zona_thickness.h"
+
+namespace microinjection {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+template <typename Message>
+void setFinding(const Finding& finding, Message& message) {
+  message.verdict = finding.verdict == Verdict::kFound       ? Message::FOUND
+                    : finding.verdict == Verdict::kUncertain ? Message::UNCERTAIN
+                                                             : Message::NOT_FOUND;
+  message.reason = finding.reason;
+}
+
+template <typename Message>
+void setCovariance(const Eigen::Matrix2d& covariance, Message& message) {
+  for (int i = 0; i < 4; ++i) message.covariance[i] = covariance(i / 2, i % 2);
+}
+
+cell_microinjection::CellInImage toMessage(const CellDetection& cell) {
+  cell_microinjection::CellInImage message;
+  setFinding(cell.finding, message);
+  if (!cell.finding.hasValues()) return message;
+  message.x = cell.centre.x;
+  message.y = cell.centre.y;
+  setCovariance(cell.centre_covariance, message);
+  message.diameter = cell.outer().ellipse.meanDiameter();
+  message.diameter_deviation = std::sqrt(cell.outer().covariance(2, 2));
+  const std::optional<ZonaThickness> zona = zonaThickness(cell);
+  message.zona_thickness = zona ? zona->thickness : kNone;
+  message.zona_thickness_deviation = zona ? zona->deviation : kNone;
+  message.others = static_cast<std::uint32_t>(cell.others.size());
+  return message;
+}
+
+cell_microinjection::PipetteInImage toMessage(const PipetteDetection& pipette) {
+  cell_microinjection::PipetteInImage message;
+  setFinding(pipette.finding, message);
+  if (!pipette.finding.hasValues()) return message;
+  message.x = pipette.end.x;
+  message.y = pipette.end.y;
+  setCovariance(pipette.covariance, message);
+  message.direction = pipette.direction;
+  message.direction_deviation = pipette.direction_deviation;
+  message.half_width = pipette.half_width;
+  return message;
+}
+
+cell_microinjection::IndentationInImage toMessage(const Indentation& indentation) {
+  cell_microinjection::IndentationInImage message;
+  setFinding(indentation.finding, message);
+  if (!indentation.finding.hasValues()) return message;
+  message.x = indentation.deepest.x;
+  message.y = indentation.deepest.y;
+  message.depth = indentation.depth;
+  message.deviation = indentation.deviation;
+  return message;
+}
+
+}  // namespace
+
+cell_microinjection::VisionState toMessage(const SpecimenView& view) {
+  cell_microinjection::VisionState message;
+  message.cell = toMessage(view.cell);
+  message.injection_pipette = toMessage(view.injection);
+  message.holding_pipette = toMessage(view.holding);
+  message.indentation = toMessage(view.indentation);
+  return message;
+}
+
+}  // namespace microinjection

@@ -1,0 +1,77 @@
+#include "vision/detection/specimen_tracker.h"
+
+#include <cmath>
+
+namespace microinjection {
+namespace {
+
+constexpr double kNear = 1.3;  // over the cell's radius: a tip this near may indent it
+
+PipetteDetectorConfig readPipette(ConfigReader& reader, const std::string& kind, double direction) {
+  PipetteDetectorConfig config = PipetteDetectorConfig::read(reader);
+  if (!reader.has("direction")) config.direction = direction;
+  config.kind = kind;
+  return config;
+}
+
+/// The thing near its last place, else anywhere.
+template <typename Detection, typename Detector>
+Detection follow(const Detector& detector, const Frame& frame, const Detection& last, double reach) {
+  if (last.finding.isFound()) {
+    const Detection tracked = detector.track(frame, last, reach);
+    if (tracked.finding.isFound()) return tracked;
+  }
+  return detector.detect(frame);
+}
+
+/// Whether the round thing is at the end of the pipette or behind it: lip or wall of a thick one.
+bool belongsTo(const PipetteDetection& pipette, const Ellipse& thing) {
+  const cv::Point2d axis(std::cos(pipette.direction), std::sin(pipette.direction));
+  const cv::Point2d away = thing.centre - pipette.end;
+  return away.dot(axis) > 0 && std::abs(away.cross(axis)) < pipette.half_width;
+}
+
+Indentation indentationOf(const Frame& frame, const SpecimenView& view) {
+  Indentation none;
+  if (!view.cell.finding.isFound() || !view.injection.finding.isFound()) {
+    none.finding = Finding::notFound(view.cell.finding.isFound() ? "no tip was found" : "no cell was found");
+    return none;
+  }
+  const CellBorder& outer = view.cell.outer();
+  const cv::Point2d away = view.injection.end - view.cell.centre;
+  if (std::hypot(away.x, away.y) > kNear * 0.5 * outer.ellipse.meanDiameter()) {
+    none.finding = Finding::notFound("the needle is not at the cell");
+    return none;
+  }
+  return findIndentation(frame, outer, view.injection.end, view.injection.direction, 2 * view.injection.half_width);
+}
+
+}  // namespace
+
+SpecimenTrackerConfig SpecimenTrackerConfig::read(ConfigReader& reader) {
+  SpecimenTrackerConfig config;
+  reader.number("reach", config.reach, Range::closed(2, 500));
+  ConfigReader cell = reader.section("cell");
+  config.cell = CellDetectorConfig::read(cell);
+  ConfigReader injection = reader.section("injection_pipette"), holding = reader.section("holding_pipette");
+  config.injection = readPipette(injection, "injection", -M_PI / 2);
+  config.holding = readPipette(holding, "holding", M_PI / 2);
+  return config;
+}
+
+SpecimenTracker::SpecimenTracker(const SpecimenTrackerConfig& config)
+    : config_(config), cell_(config.cell), injection_(config.injection), holding_(config.holding) {}
+
+const SpecimenView& SpecimenTracker::next(const Frame& frame) {
+  SpecimenView view;
+  view.cell = follow(cell_, frame, view_.cell, config_.reach);
+  view.injection = follow(injection_, frame, view_.injection, config_.reach);
+  view.holding = follow(holding_, frame, view_.holding, config_.reach);
+  if (view.holding.finding.isFound())
+    view.cell.dismissOthers([&](const Ellipse& thing) { return belongsTo(view.holding, thing); });
+  view.indentation = indentationOf(frame, view);
+  view_ = view;
+  return view_;
+}
+
+}  // namespace microinjection

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "base/config_reader.h"
+#include "vision/detection/cell_detector.h"
+#include "vision/detection/indentation_contour.h"
+#include "vision/detection/overlay.h"
+#include "vision/detection/pipette_detector.h"
+
+namespace microinjection {
+
+struct SpecimenTrackerConfig {
+  double reach = 40;  ///< px, largest motion from one frame to the next
+  CellDetectorConfig cell;
+  PipetteDetectorConfig injection, holding;
+
+  /// Reads reach and the sections cell, injection_pipette and holding_pipette.
+  static SpecimenTrackerConfig read(ConfigReader& reader);
+};
+
+/// What one frame shows.
+struct SpecimenView {
+  CellDetection cell;
+  PipetteDetection injection, holding;
+  Indentation indentation;
+
+  OverlayContent overlay() const { return {&cell, &holding, &injection, &indentation}; }
+};
+
+/// Follows cell and pipettes from frame to frame. What was found is searched near its last place;
+/// what is lost is searched in the whole frame.
+class SpecimenTracker {
+ public:
+  explicit SpecimenTracker(const SpecimenTrackerConfig& config);
+
+  /// A refused frame finds nothing, and the next one is searched as a whole.
+  const SpecimenView& next(const Frame& frame);
+  const SpecimenView& view() const { return view_; }  ///< of the last frame
+
+ private:
+  SpecimenTrackerConfig config_;
+  CellDetector cell_;
+  PipetteDetector injection_, holding_;
+  SpecimenView view_;
+};
+
+}  // namespace microinjection
