@@ -37,7 +37,7 @@ class FitSessionTest(unittest.TestCase):
         return fit_session({
             'scene': self.file('scene.yaml', scene), 'urdf': str(PACKAGE / 'urdf/rig.urdf'), 'haptic_config': '',
             'overrides': self.file('overrides.yaml', overrides) if overrides is not None else '',
-            'sensor': 'simulated', 'force_sources': 'predicted', **arguments})
+            'sensor': 'simulated', 'camera': 'none', 'force_sources': 'predicted', **arguments})
 
     def refused(self, *arguments, **more):
         with self.assertRaises(Misfit) as context:
@@ -48,6 +48,14 @@ class FitSessionTest(unittest.TestCase):
         text, parameters = self.fit(OOCYTE)
         self.assertEqual(parameters, {})
         self.assertIn('56 um: the needle starts at 60 um, stops at 15 uN', text)
+
+    def test_the_virtual_microscope_shows_a_cell_of_any_size_alike(self):
+        large = {**OOCYTE, 'cell': {**OOCYTE['cell'], 'diameter': 112e-6}}
+        _, parameters = self.fit(large, camera='sim')
+        self.assertAlmostEqual(parameters['microscope']['camera']['pixel_size'], 0.5e-6)
+        self.assertEqual(parameters['vision']['pixel_size'], parameters['microscope']['camera']['pixel_size'])
+        _, parameters = self.fit(large, camera='device')  # its pixel size is known to a calibration only
+        self.assertNotIn('vision', parameters)
 
     def test_keys_are_those_of_the_files(self):
         for node in NODES:

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <random>
+#include <utility>
 
 #include "vision/microscope/section_outline.h"
 
@@ -28,7 +29,10 @@ CellScene cellScene(const SpecimenConfig& config, const Specimen& specimen, cons
     cell.zona_inner = insetOutline(outline, zona);
     cell.ooplasm = insetOutline(outline, zona + gap);
   } else {
+    // A bare cell is a lens: the light that its border refracts is missing from a band inside of it.
     cell.ooplasm = outline;
+    std::swap(cell.cytoplasm.rim_inside, cell.cytoplasm.rim_outside);
+    cell.cytoplasm.line = 0;
   }
   if (config.polar_body_radius > 0) {
     const double place = radius - zona - config.polar_body_radius * radius;

@@ -1,0 +1,126 @@
+#!/usr/bin/python3
+"""A cell of unknown size is measured in the microscope's image and served: the felt force is that of the true cell."""
+
+import pathlib
+import tempfile
+import time
+import unittest
+
+import numpy as np
+import rospy
+import rostest
+import yaml
+from cell_microinjection.msg import CellState, CellInImage, VisionState
+from cell_microinjection.srv import MeasureCell
+from geometry_msgs.msg import PoseStamped, TransformStamped, WrenchStamped
+from sensor_msgs.msg import Image
+from tf2_msgs.msg import TFMessage
+
+PATIENCE = 60  # s
+PIXEL = 0.25e-6  # m
+DIAMETER = 62e-6  # m, of the true cell
+ORIGIN = np.array([695.5, 519.5])  # px, of the image, where the world's origin is seen
+CLEAR, PRESSED = 60e-6, 0.5 * DIAMETER - 8e-6  # m, heights of the tip
+
+
+def transform(child, position):
+    message = TransformStamped(child_frame_id=child)
+    message.header.frame_id, message.header.stamp = "world", rospy.Time.now()
+    t = message.transform.translation
+    t.x, t.y, t.z = position
+    message.transform.rotation.w = 1
+    return message
+
+
+class MeasureCellTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.seen, cls.height = {}, CLEAR
+        cls.needle = rospy.Publisher("/needle/measured_cp", PoseStamped, queue_size=1)
+        cls.tf = rospy.Publisher("/tf", TFMessage, queue_size=10)
+        for topic, kind in (("/cell/predicted_cf", WrenchStamped), ("/truth/predicted_cf", WrenchStamped),
+                            ("/cell/state", CellState), ("/vision/state", VisionState)):
+            rospy.Subscriber(topic, kind, lambda message, topic=topic: cls.seen.update({topic: message}), queue_size=1)
+        rospy.Subscriber("/vision/image_overlay", Image, lambda message: cls.seen.update(overlay=message),
+                         queue_size=1, buff_size=1 << 24)
+        rospy.wait_for_service("/vision/measure_cell", PATIENCE)
+        cls.measure = staticmethod(rospy.ServiceProxy("/vision/measure_cell", MeasureCell))
+        cls.world = rospy.Timer(rospy.Duration(0.005), cls.publish)
+        cls.addClassCleanup(cls.world.shutdown)
+
+    @classmethod
+    def publish(cls, _):
+        pose = PoseStamped()
+        pose.header.frame_id, pose.header.stamp = "world", rospy.Time.now()
+        pose.pose.position.z, pose.pose.orientation.w = cls.height, 1
+        cls.needle.publish(pose)
+        cls.tf.publish(TFMessage([transform("cell", (0, 0, 0)), transform("needle_tip", (0, 0, cls.height))]))
+
+    def until(self, condition, what):
+        end = time.monotonic() + PATIENCE
+        while not condition():
+            self.assertLess(time.monotonic(), end, f"{what}: not within {PATIENCE} s")
+            time.sleep(0.02)
+
+    def drive(self, height):
+        for place in np.linspace(self.height, height, 100):
+            type(self).height = place
+            time.sleep(0.01)
+
+    def force(self, topic):
+        """The force at rest, N along the needle."""
+        last = []
+
+        def steady():
+            message = self.seen.get(topic)
+            last.append(0 if not message or message.header.stamp.is_zero() else message.wrench.force.z)
+            return len(last) > 10 and last[-1] > 0 and max(last[-10:]) - min(last[-10:]) < 1e-3 * last[-1]
+        self.until(steady, f"a steady force on {topic}")
+        return last[-1]
+
+    def found(self):
+        state = self.seen.get("/vision/state")
+        return state and state.cell.verdict == CellInImage.FOUND
+
+    def measured(self, **request):
+        answer = None
+
+        def enough():
+            nonlocal answer
+            answer = self.measure(**{"serve": False, "scene": "", **request})
+            return answer.images >= 10 or (answer.images > 0 and not answer.success)
+        self.until(enough, "ten images of the cell")
+        return answer
+
+    def test_measured_and_served(self):
+        self.until(self.found, "the cell")
+        cell = self.seen["/vision/state"].cell
+        self.assertLess(np.hypot(*(np.array([cell.x, cell.y]) - ORIGIN)), 0.5)
+        scene = pathlib.Path(tempfile.mkdtemp()) / "measured.yaml"
+        answer = self.measured(serve=True, scene=str(scene))
+        self.assertTrue(answer.success, answer.message)
+        self.assertAlmostEqual(answer.diameter, DIAMETER, delta=max(answer.diameter_interval, 3e-3 * DIAMETER))
+        self.assertLess(answer.diameter_interval, 1e-2 * DIAMETER)
+        self.assertTrue(np.isnan(answer.zona_thickness))
+        self.assertAlmostEqual(yaml.safe_load(scene.read_text())["cell"]["diameter"], answer.diameter, delta=1e-9)
+        self.drive(PRESSED)
+        felt, true = self.force("/cell/predicted_cf"), self.force("/truth/predicted_cf")
+        self.assertAlmostEqual(felt / true, 1, delta=0.03)
+        state = self.seen["/vision/state"]
+        self.assertIn("overlay", self.seen)
+        self.drive(CLEAR)
+        self.assertEqual(state.injection_pipette.verdict, state.injection_pipette.FOUND, state.injection_pipette.reason)
+
+    def test_an_impossible_scene_file_changes_nothing(self):
+        self.until(self.found, "the cell")
+        before = dict(zip(self.seen["/cell/state"].parameter_names, self.seen["/cell/state"].parameter_values))
+        answer = self.measured(serve=True, scene="/proc/nowhere/scene.yaml")
+        self.assertFalse(answer.success)
+        self.assertIn("/proc/nowhere", answer.message)
+        self.assertEqual(before["diameter"], dict(zip(self.seen["/cell/state"].parameter_names,
+                                                      self.seen["/cell/state"].parameter_values))["diameter"])
+
+
+if __name__ == "__main__":
+    rospy.init_node("needle")
+    rostest.rosrun("cell_microinjection", "measure_cell", MeasureCellTest)

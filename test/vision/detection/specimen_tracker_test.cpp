@@ -1,0 +1,98 @@
+#include "vision/detection/specimen_tracker.h"
+
+#include <gtest/gtest.h>
+
+#include "vision/detection/zona_thickness.h"
+#include "vision/microscope/microscope.h"
+
+namespace microinjection {
+namespace {
+
+constexpr double kRadius = 38e-6;  // m
+constexpr double kPixel = 0.3e-6;  // m
+
+/// A held oocyte with a needle above it, as a session has them.
+MicroscopeScene heldOocyte(double tip_height) {
+  MicroscopeScene scene;
+  scene.cells.push_back(CellScene::round({0, 0}, kRadius, 6e-6, 0));
+  HoldingPipette holder;
+  holder.mouth = {0, -37e-6};
+  holder.outer_radius = 40e-6;
+  holder.inner_radius = 13.6e-6;
+  scene.holding = holder;
+  InjectionPipette needle;
+  needle.tip = {0, 0, tip_height};
+  needle.tip_radius = 3e-6;
+  scene.injection = needle;
+  return scene;
+}
+
+class SpecimenTrackerTest : public testing::Test {
+ protected:
+  SpecimenTrackerTest() : microscope_(config()), tracker_(tracking()) {}
+
+  static MicroscopeConfig config() {
+    MicroscopeConfig config;
+    config.camera.pixel_size = kPixel;
+    return config;
+  }
+  static SpecimenTrackerConfig tracking() {
+    SpecimenTrackerConfig config;
+    config.holding.kind = "holding";
+    config.holding.direction = M_PI / 2;
+    return config;
+  }
+  const SpecimenView& see(const MicroscopeScene& scene) {
+    return tracker_.next(Frame(microscope_.render(scene, 0, ++seed_)));
+  }
+  cv::Point2d pixel(double x, double z) const {
+    const Eigen::Vector2d place = microscope_.config().camera.pixelOf({x, z});
+    return {place.x(), place.y()};
+  }
+
+  Microscope microscope_;
+  SpecimenTracker tracker_;
+  std::uint64_t seed_ = 0;
+};
+
+TEST_F(SpecimenTrackerTest, FollowsASession) {
+  for (const double height : {60e-6, 55e-6, 50e-6, 45e-6}) {
+    const SpecimenView& view = see(heldOocyte(height));
+    ASSERT_TRUE(view.cell.finding.isFound()) << view.cell.finding.reason;
+    EXPECT_LT(cv::norm(view.cell.centre - pixel(0, 0)), 0.3);
+    EXPECT_NEAR(view.cell.outer().ellipse.meanDiameter() * kPixel, 2 * kRadius, 0.01 * kRadius);
+    ASSERT_TRUE(zonaThickness(view.cell));
+    EXPECT_NEAR(zonaThickness(view.cell)->thickness * kPixel, 6e-6, 0.2e-6);
+    ASSERT_TRUE(view.injection.finding.isFound()) << view.injection.finding.reason;
+    EXPECT_LT(cv::norm(view.injection.end - pixel(0, height)), 0.5);
+    ASSERT_TRUE(view.holding.finding.isFound()) << view.holding.finding.reason;
+    EXPECT_LT(cv::norm(view.holding.end - pixel(0, -37e-6)), 1);
+  }
+}
+
+TEST_F(SpecimenTrackerTest, TheLipsOfAThickPipetteAreNoCells) {
+  const SpecimenView& view = see(heldOocyte(60e-6));
+  EXPECT_TRUE(view.cell.others.empty());
+}
+
+TEST_F(SpecimenTrackerTest, AnEmptyFrameFindsNothingAndTheNextOneEverything) {
+  ASSERT_TRUE(see(heldOocyte(60e-6)).cell.finding.isFound());
+  EXPECT_FALSE(tracker_.next(Frame(cv::Mat())).cell.finding.hasValues());
+  EXPECT_FALSE(tracker_.view().injection.finding.hasValues());
+  EXPECT_FALSE(see(MicroscopeScene()).cell.finding.hasValues());
+  MicroscopeScene moved = heldOocyte(60e-6);
+  moved.cells[0] = CellScene::round({30e-6, 20e-6}, kRadius, 6e-6, 0);
+  EXPECT_LT(cv::norm(see(moved).cell.centre - pixel(30e-6, 20e-6)), 0.3);
+}
+
+TEST_F(SpecimenTrackerTest, AJumpIsSearchedInTheWholeFrame) {
+  ASSERT_TRUE(see(heldOocyte(60e-6)).cell.finding.isFound());
+  MicroscopeScene moved = heldOocyte(60e-6);
+  moved.cells[0] = CellScene::round({-60e-6, 10e-6}, kRadius, 6e-6, 0);
+  const SpecimenView& view = see(moved);
+  ASSERT_TRUE(view.cell.finding.isFound()) << view.cell.finding.reason;
+  EXPECT_LT(cv::norm(view.cell.centre - pixel(-60e-6, 10e-6)), 0.3);
+}
+
+}  // namespace
+}  // namespace microinjection
