@@ -14,13 +14,16 @@ namespace microinjection {
 
 const char* const MicroscopeNode::kHelp =
     "microscope: the virtual microscope. Renders the session as its camera sees it.\n"
-    "In: /cell/state, tf of cell, needle_tip and holding_pipette, /focus/move_jp (JointState: the plane in focus, m).\n"
+    "In: /cell/state, /needle/measured_cp or /needle/true_cp, tf of cell and holding_pipette, /focus/move_jp "
+    "(JointState:\n"
+    "the plane in focus, m).\n"
     "Out: microscope/image_raw microscope/camera_info /focus/measured_js.\n";
 
 MicroscopeNode::Parameters MicroscopeNode::readParameters(const ros::NodeHandle& private_node) {
   Parameters parameters;
   ConfigReader reader = parameterReader(private_node);
   reader.number("rate", parameters.rate, Range::closed(1, 120));
+  reader.choice("needle", parameters.needle, {"measured", "true"});
   reader.number("state_timeout", parameters.state_timeout, Range::positive());
   ConfigReader focus = reader.section("focus");
   parameters.focus = FocusAxisConfig::read(focus);
@@ -46,6 +49,9 @@ MicroscopeNode::MicroscopeNode(ros::NodeHandle node, ros::NodeHandle private_nod
   state_ = subscribeGuarded<cell_microinjection::CellState>(
       node, "/cell/state", kQueue,
       [this](const cell_microinjection::CellState& message, const std::string&) { onState(message); });
+  needle_ = subscribeGuarded<geometry_msgs::PoseStamped>(
+      node, parameters_.needle == "true" ? "/needle/true_cp" : "/needle/measured_cp", kQueue,
+      [this](const geometry_msgs::PoseStamped& message, const std::string&) { onNeedle(message); });
   focus_command_ = subscribeGuarded<sensor_msgs::JointState>(
       node, "/focus/move_jp", kQueue,
       [this](const sensor_msgs::JointState& message, const std::string&) { onFocus(message); }, StampRule::kCommand);
@@ -71,6 +77,8 @@ void MicroscopeNode::onState(const cell_microinjection::CellState& message) {
   specimen_.shell_thickness = cellParameter(message, "shell_thickness").value_or(0);
   received_ = ros::SteadyTime::now();
 }
+
+void MicroscopeNode::onNeedle(const geometry_msgs::PoseStamped& message) { specimen_.needle = validPose(&message); }
 
 void MicroscopeNode::onFocus(const sensor_msgs::JointState& message) {
   const Eigen::Vector2d& range = parameters_.focus.range;
@@ -100,7 +108,6 @@ void MicroscopeNode::step() {
     Specimen specimen = specimen_;
     const Eigen::Isometry3d cell = *frames_.find("world", cell_frame_);
     for (Eigen::Vector3d& vertex : specimen.vertices) vertex = cell * vertex;
-    specimen.needle = frames_.find("world", "needle_tip");
     specimen.holder = frames_.find("world", "holding_pipette");
     runGuarded("microscope/image_raw", [&] {
       const MicroscopeScene scene = specimenScene(parameters_.specimen, specimen);
@@ -133,10 +140,9 @@ void MicroscopeNode::report(diagnostic_updater::DiagnosticStatusWrapper& status)
   if (images_.wanted() && missing.empty() && rate < 0.5 * parameters_.rate)
     status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "slow");
   if (!missing.empty()) status.mergeSummary(diagnostic_msgs::DiagnosticStatus::ERROR, "no image: " + missing);
-  for (const char* frame : {"needle_tip", "holding_pipette"}) {
-    if (!frames_.find("world", frame))
-      status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, std::string("not drawn, tf lacks ") + frame);
-  }
+  if (!specimen_.needle) status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "no needle: its pose is invalid");
+  if (!frames_.find("world", "holding_pipette"))
+    status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "no holding pipette: tf lacks it");
   MessageRefusals::ofProcess().report(status);
   status.add("rate (Hz)", rate);
   status.add("rate wanted (Hz)", parameters_.rate);

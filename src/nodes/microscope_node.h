@@ -2,6 +2,7 @@
 
 #include <cell_microinjection/CellState.h>
 #include <diagnostic_updater/diagnostic_updater.h>
+#include <geometry_msgs/PoseStamped.h>
 #include <ros/ros.h>
 #include <sensor_msgs/JointState.h>
 
@@ -19,8 +20,8 @@ namespace microinjection {
 
 /// The virtual microscope: renders the session's scene as a microscope's camera sees it.
 ///
-/// In:  /cell/state, tf of cell, needle_tip and holding_pipette in world, /focus/move_jp
-///      (JointState, position[0]: m, the world's y of the plane in focus)
+/// In:  /cell/state, /needle/measured_cp or /needle/true_cp, tf of cell and holding_pipette in world,
+///      /focus/move_jp (JointState, position[0]: m, the world's y of the plane in focus)
 /// Out: microscope/image_raw, microscope/camera_info, /focus/measured_js
 ///
 /// Parameters: config/microscope.yaml
@@ -36,7 +37,8 @@ class MicroscopeNode {
 
  private:
   struct Parameters {
-    double rate = 30;            ///< Hz of wall time
+    double rate = 30;  ///< Hz of wall time
+    std::string needle = "measured";
     double state_timeout = 0.5;  ///< s of wall time, of /cell/state
     FocusAxisConfig focus;
     SpecimenConfig specimen;
@@ -45,6 +47,7 @@ class MicroscopeNode {
   static Parameters readParameters(const ros::NodeHandle& private_node);
 
   void onState(const cell_microinjection::CellState& message);
+  void onNeedle(const geometry_msgs::PoseStamped& message);
   void onFocus(const sensor_msgs::JointState& message);
   std::string missingInput() const;  ///< why there is no image; empty when there is one
   void step();
@@ -66,7 +69,7 @@ class MicroscopeNode {
   double longest_render_ = 0;  ///< s, since reported_
 
   ros::Publisher focus_state_;
-  ros::Subscriber state_, focus_command_;
+  ros::Subscriber state_, needle_, focus_command_;
   diagnostic_updater::Updater diagnostics_;
   ros::SteadyTimer timer_;
 };

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <opencv2/core/utility.hpp>
 #include <sstream>
@@ -12,11 +13,13 @@
 #include "base/atomic_file.h"
 #include "base/cpu_time.h"
 #include "base/errors.h"
+#include "nodes/imaging/calibration_path.h"
 #include "nodes/imaging/measured_scene.h"
 #include "nodes/imaging/vision_messages.h"
 #include "nodes/runtime/message_guard.h"
 #include "nodes/runtime/node_parameters.h"
 #include "nodes/runtime/run_node.h"
+#include "vision/calibration/calibration_file.h"
 
 namespace microinjection {
 namespace {
@@ -53,11 +56,11 @@ VisionNode::Parameters VisionNode::readParameters(const ros::NodeHandle& private
   Parameters parameters;
   ConfigReader reader = parameterReader(private_node);
   reader.text("scene", parameters.scene);
+  reader.text("calibration", parameters.calibration);
   reader.number("pixel_size", parameters.pixel_size, Range::closed(0, 1e-4));
   reader.number("image_timeout", parameters.image_timeout, Range::positive());
   reader.boolean("overlay", parameters.overlay);
-  reader.integer("measured_images", parameters.measured_images,
-                 Range::closed(static_cast<double>(kLeastImages), 1000));
+  reader.integer("measured_images", parameters.measured_images, Range::closed(static_cast<double>(kLeastImages), 1000));
   parameters.tracker = SpecimenTrackerConfig::read(reader);
   reader.finish();
   return parameters;
@@ -124,6 +127,8 @@ void VisionNode::onImage(const sensor_msgs::Image& message) {
 void VisionNode::publish(const std_msgs::Header& header, const Frame& frame, double processing_time) {
   cell_microinjection::VisionState state = toMessage(tracker_.view());
   state.header = header;
+  state.width = static_cast<std::uint32_t>(frame.width());
+  state.height = static_cast<std::uint32_t>(frame.height());
   state.processing_time = processing_time;
   state_.publish(state);
   if (!parameters_.overlay || overlay_.getNumSubscribers() == 0) return;
@@ -131,16 +136,23 @@ void VisionNode::publish(const std_msgs::Header& header, const Frame& frame, dou
   overlay_.publish(cv_bridge::CvImage(header, "bgr8", overlay).toImageMsg());
 }
 
+double VisionNode::pixelSize() const {
+  if (parameters_.pixel_size > 0) return parameters_.pixel_size;
+  const std::string path = calibrationPath(parameters_.calibration);
+  if (!std::filesystem::exists(path))
+    throw ConfigError("pixel_size = 0: unknown, and there is no calibration " + path +
+                      ": calibrate, or set pixel_size");
+  return readCalibration(path).value[kPixelSize];
+}
+
 void VisionNode::fillSizes(cell_microinjection::MeasureCell::Response& response) const {
-  if (parameters_.pixel_size <= 0)
-    throw ConfigError("pixel_size = 0: unknown; set it from a calibration to measure in metres");
+  const double scale = pixelSize();
   const double age = received_.isZero() ? -1 : secondsBetween(received_, ros::SteadyTime::now());
   if (age < 0 || age > parameters_.image_timeout)
     throw ConfigError("there is no new image" + (refusal_.empty() ? "" : ": " + refusal_));
   std::string reason;
   const std::optional<CellSizeInImages> size = readings_.measure(kLeastImages, reason);
   if (!size) throw ConfigError(reason);
-  const double scale = parameters_.pixel_size;
   response.images = static_cast<std::uint32_t>(size->images);
   response.diameter = scale * size->diameter.value;
   response.diameter_interval = scale * size->diameter.interval;
@@ -159,8 +171,8 @@ void VisionNode::writeScene(const std::string& path, const cell_microinjection::
   if (parameters_.scene.empty()) throw ConfigError("scene: this node has none to write another one from");
   YAML::Emitter text;
   text << withMeasuredSize(loadYamlMap(parameters_.scene), size.diameter, size.zona_thickness);
-  writeFileAtomically(path, std::string("# Measured by the vision node: ") + size.message + ". From " + parameters_.scene +
-                            "\n" + text.c_str() + "\n");
+  writeFileAtomically(path, std::string("# Measured by the vision node: ") + size.message + ". From " +
+                                parameters_.scene + "\n" + text.c_str() + "\n");
 }
 
 std::string VisionNode::serve(const cell_microinjection::MeasureCell::Response& size) {
@@ -216,6 +228,5 @@ void VisionNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
 }  // namespace microinjection
 
 int main(int argc, char** argv) {
-  return microinjection::runNode<microinjection::VisionNode>(argc, argv, "vision",
-                                                             microinjection::Priority::kOrdinary);
+  return microinjection::runNode<microinjection::VisionNode>(argc, argv, "vision", microinjection::Priority::kOrdinary);
 }

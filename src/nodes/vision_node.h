@@ -34,7 +34,8 @@ class VisionNode {
  private:
   struct Parameters {
     std::string scene;           ///< path of the session's scene; empty: none, measure_cell writes no scene
-    double pixel_size = 0;       ///< m of the specimen; 0: unknown
+    std::string calibration;     ///< file, see calibrationPath()
+    double pixel_size = 0;       ///< m of the specimen; 0: that of the calibration
     double image_timeout = 0.5;  ///< s
     bool overlay = true;
     int measured_images = 15;
@@ -47,6 +48,7 @@ class VisionNode {
   void publish(const std_msgs::Header& header, const Frame& frame, double processing_time);
   bool measureCell(cell_microinjection::MeasureCell::Request& request,
                    cell_microinjection::MeasureCell::Response& response);
+  double pixelSize() const;  ///< m; throws ConfigError when it is not known
   /// The sizes in metres; throws ConfigError with the reason why there are none.
   void fillSizes(cell_microinjection::MeasureCell::Response& response) const;
   void writeScene(const std::string& path, const cell_microinjection::MeasureCell::Response& size) const;

@@ -7,7 +7,7 @@ import unittest
 import numpy as np
 import rospy
 import rostest
-from geometry_msgs.msg import Point32, TransformStamped
+from geometry_msgs.msg import Point32, PoseStamped, TransformStamped
 from sensor_msgs.msg import CameraInfo, Image, JointState
 from tf2_msgs.msg import TFMessage
 
@@ -62,6 +62,7 @@ class MicroscopeTest(unittest.TestCase):
         cls.tip = np.array([20e-6, 0, 60e-6])
         cls.shown = True
         cls.tf = rospy.Publisher("/tf", TFMessage, queue_size=10)
+        cls.needle = rospy.Publisher("/needle/measured_cp", PoseStamped, queue_size=1)
         cls.cell = rospy.Publisher("/cell/state", CellState, queue_size=1)
         cls.command = rospy.Publisher("/focus/move_jp", JointState, queue_size=1)
         rospy.Subscriber("/microscope/image_raw", Image, cls.images.append, buff_size=1 << 24)
@@ -72,7 +73,12 @@ class MicroscopeTest(unittest.TestCase):
         end = time.monotonic() + PATIENCE
         while not condition():
             self.assertLess(time.monotonic(), end, f"{what}: not within {PATIENCE} s")
-            self.tf.publish(TFMessage([transform("cell", (0, 0, 0)), transform("needle_tip", self.tip)]))
+            self.tf.publish(TFMessage([transform("cell", (0, 0, 0))]))
+            pose = PoseStamped()
+            pose.header.frame_id, pose.header.stamp = "world", rospy.Time.now()
+            p = pose.pose.position
+            (p.x, p.y, p.z), pose.pose.orientation.w = self.tip, 1
+            self.needle.publish(pose)
             if self.shown:
                 self.cell.publish(self.state)
             time.sleep(0.02)

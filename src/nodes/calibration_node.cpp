@@ -1,0 +1,326 @@
+#include "nodes/calibration_node.h"
+
+#include <cell_microinjection/StringStamped.h>
+
+#include <cmath>
+#include <ctime>
+#include <filesystem>
+#include <iomanip>
+#include <sstream>
+
+#include "base/errors.h"
+#include "nodes/imaging/calibration_path.h"
+#include "nodes/runtime/conversions.h"
+#include "nodes/runtime/message_guard.h"
+#include "nodes/runtime/node_parameters.h"
+#include "nodes/runtime/run_node.h"
+#include "vision/calibration/calibration_file.h"
+
+namespace microinjection {
+namespace {
+
+constexpr double kPeriod = 0.02;        // s of wall time, of a step
+constexpr double kResolution = 0.2e-6;  // m, within which a needle rests
+constexpr double kFar = 1;              // m, a border that the micromanipulator's own limits come before
+
+std::string utcNow() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  char text[sizeof "YYYY-MM-DDTHH:MM:SSZ"];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text;
+}
+
+double halfWidth(const CameraCalibration& calibration, CalibrationParameter parameter) {
+  const Interval interval = calibration.interval(parameter);
+  return (interval.high - interval.low) / 2;
+}
+
+std::string describe(const CameraCalibration& calibration) {
+  std::ostringstream text;
+  text.precision(5);
+  text << "pixel size " << 1e6 * calibration.value[kPixelSize] << " um";
+  text << std::fixed << std::setprecision(3) << " +- "
+       << 100 * halfWidth(calibration, kPixelSize) / calibration.value[kPixelSize] << " %, angle "
+       << 180 / M_PI * calibration.value[kAngle] << " +- " << 180 / M_PI * halfWidth(calibration, kAngle)
+       << " degrees, " << (calibration.mirrored ? "mirrored" : "not mirrored") << ", residual " << calibration.residual
+       << " px";
+  return text.str();
+}
+
+}  // namespace
+
+const char* const CalibrationNode::kHelp =
+    "calibration: calibrates the camera against the manipulator, and watches the calibration.\n"
+    "In: vision/state, /needle/measured_cp, /needle/operating_state, /controller/operating_state.\n"
+    "Out: /needle/move_cp; action calibration/calibrate, service calibration/rezero.\n";
+
+CalibrationNode::Parameters CalibrationNode::readParameters(const ros::NodeHandle& private_node) {
+  Parameters parameters;
+  ConfigReader reader = parameterReader(private_node);
+  reader.text("file", parameters.file);
+  reader.number("input_timeout", parameters.input_timeout, Range::positive());
+  parameters.calibration = CalibrationConfig::read(reader);
+  reader.finish();
+  parameters.file = calibrationPath(parameters.file);
+  return parameters;
+}
+
+CalibrationNode::CalibrationNode(ros::NodeHandle node, ros::NodeHandle private_node)
+    : parameters_(readParameters(private_node)),
+      drift_(parameters_.calibration.drift),
+      move_(node.advertise<geometry_msgs::PoseStamped>("/needle/move_cp", 1)),
+      needle_command_(node.advertise<cell_microinjection::StringStamped>("/needle/state_command", 1)),
+      action_(node, "calibration/calibrate", false),
+      diagnostics_(node, private_node) {
+  if (std::filesystem::exists(parameters_.file)) take(readCalibration(parameters_.file));
+  constexpr int kQueue = 1;
+  using cell_microinjection::OperatingState;
+  using cell_microinjection::VisionState;
+  subscribers_ = {
+      subscribeGuarded<geometry_msgs::PoseStamped>(
+          node, "/needle/measured_cp", kQueue,
+          [this](const geometry_msgs::PoseStamped& message, const std::string&) { onNeedle(message); }),
+      subscribeGuarded<VisionState>(node, "vision/state", kQueue,
+                                    [this](const VisionState& message, const std::string&) { onVision(message); }),
+      subscribeGuarded<OperatingState>(
+          node, "/needle/operating_state", kQueue,
+          [this](const OperatingState& message, const std::string&) { needle_state_ = message; }),
+      subscribeGuarded<OperatingState>(
+          node, "/controller/operating_state", kQueue,
+          [this](const OperatingState& message, const std::string&) { controller_state_ = message; })};
+  rezero_ = node.advertiseService("calibration/rezero", &CalibrationNode::rezero, this);
+  action_.registerGoalCallback([this] { onGoal(); });
+  action_.registerPreemptCallback([this] {
+    if (run_) fail("cancelled");
+  });
+  action_.start();
+  diagnostics_.setHardwareID("none");
+  diagnostics_.add("calibration", this, &CalibrationNode::report);
+  timer_ = node.createSteadyTimer(ros::WallDuration(kPeriod), [this](const ros::SteadyTimerEvent&) { step(); });
+}
+
+void CalibrationNode::run() { ros::spin(); }
+
+void CalibrationNode::onNeedle(const geometry_msgs::PoseStamped& message) {
+  const std::optional<Eigen::Isometry3d> pose = validPose(&message);
+  position_.reset();
+  if (!pose) return;
+  position_ = pose->translation();
+  orientation_ = Eigen::Quaterniond(pose->linear());
+  position_received_ = ros::SteadyTime::now();
+  if ((*position_ - resting_place_).norm() > kResolution) {
+    resting_place_ = *position_;
+    rested_ = ros::Time::now().toSec();
+    if (play_) play_->moveTo(*position_);
+  }
+}
+
+void CalibrationNode::onVision(const cell_microinjection::VisionState& message) {
+  tip_.reset();
+  tip_received_ = ros::SteadyTime::now();
+  const auto& tip = message.injection_pipette;
+  tip_reason_ = tip.reason;
+  image_centre_ = Eigen::Vector2d(message.width - 1.0, message.height - 1.0) / 2;
+  if (tip.verdict != tip.FOUND) return;
+  SeenTip seen;
+  seen.stamp = message.header.stamp.toSec();
+  seen.pixel = {tip.x, tip.y};
+  for (int i = 0; i < 4; ++i) seen.covariance(i / 2, i % 2) = tip.covariance[i];
+  if (!seen.pixel.allFinite() || !seen.covariance.allFinite()) {
+    tip_reason_ = "the tip's place is not finite";
+    return;
+  }
+  tip_ = seen;
+  watchDrift(seen);
+}
+
+void CalibrationNode::watchDrift(const SeenTip& tip) {
+  if (!calibration_ || !play_ || !play_->known(0) || !play_->known(2) || run_) return;
+  if (tip.stamp < rested_ + parameters_.calibration.pattern.settle_time) return;
+  drift_report_ = drift_.add(*calibration_, play_->tip(), tip.pixel, tip.covariance);
+}
+
+CalibrationInput CalibrationNode::input() const {
+  const ros::SteadyTime now = ros::SteadyTime::now();
+  CalibrationInput input;
+  input.now = ros::Time::now().toSec();
+  if (position_ && secondsBetween(position_received_, now) < parameters_.input_timeout) input.position = position_;
+  input.busy = needle_state_.is_busy;
+  if (tip_ && secondsBetween(tip_received_, now) < parameters_.input_timeout) input.tip = tip_;
+  return input;
+}
+
+std::string CalibrationNode::refusal() const {
+  const CalibrationInput present = input();
+  if (!present.position) return "/needle/measured_cp is silent or invalid";
+  if (needle_state_.state != "ENABLED") return "the needle is " + needle_state_.state + ", must be ENABLED";
+  if (controller_state_.state == "ENABLED" || controller_state_.state == "PAUSED")
+    return "the controller is " + controller_state_.state +
+           ", must be DISABLED: send disable on /controller/state_command";
+  if (!present.tip) return "the tip is not seen: " + tip_reason_;
+  return "";
+}
+
+void CalibrationNode::onGoal() {
+  const auto goal = action_.acceptNewGoal();
+  std::string reason = run_ ? "another calibration is under way" : refusal();
+  CalibrationPatternConfig pattern = parameters_.calibration.pattern;
+  if (goal->field_x != 0) pattern.field.x() = goal->field_x;
+  if (goal->field_z != 0) pattern.field.y() = goal->field_z;
+  CalibrationPlan plan;
+  if (reason.empty()) {
+    try {
+      pattern.validate();
+      const Eigen::Vector3d start = *position_;
+      const Eigen::Vector3d centre = start + Eigen::Vector3d(0, 0, 0.5 * pattern.field.y() + pattern.take_up);
+      // Rounding must not put the lowest waypoint below the start.
+      const TravelBox above{{-kFar, -kFar, start.z() - 1e-9}, {kFar, kFar, kFar}};
+      plan = planCalibration(pattern, centre, start, above);
+      for (const std::string& each : plan.refusals) reason += (reason.empty() ? "" : "; ") + each;
+    } catch (const ConfigError& error) {
+      reason = error.what();
+    }
+  }
+  if (!reason.empty()) {
+    cell_microinjection::CalibrateResult result;
+    result.message = reason;
+    action_.setAborted(result, reason);
+    return;
+  }
+  run_ = std::make_unique<CalibrationRun>(pattern, plan);
+}
+
+void CalibrationNode::step() {
+  diagnostics_.update();
+  if (master_.masterLostForLong()) {
+    ROS_ERROR("the ROS master has been away for too long: this node ends");
+    ros::requestShutdown();
+  }
+  if (!run_) return;
+  if (needle_state_.state != "ENABLED") return fail("the needle is " + needle_state_.state);
+  if (controller_state_.state == "ENABLED") return fail("the controller was enabled");
+  if (const auto goal = run_->step(input())) {
+    geometry_msgs::PoseStamped move = toPose(*goal, ros::Time::now(), kWorldFrame);
+    move.pose.orientation.x = orientation_.x();
+    move.pose.orientation.y = orientation_.y();
+    move.pose.orientation.z = orientation_.z();
+    move.pose.orientation.w = orientation_.w();
+    move_.publish(move);
+  }
+  if (!run_->failure().empty()) return fail(run_->failure());
+  cell_microinjection::CalibrateFeedback feedback;
+  feedback.waypoint = static_cast<int>(run_->waypoint());
+  feedback.waypoints = static_cast<int>(run_->waypoints());
+  feedback.seen = run_->seen();
+  action_.publishFeedback(feedback);
+  if (run_->done()) end();
+}
+
+void CalibrationNode::end() {
+  const CalibrationSetup setup{utcNow(), image_centre_, calibration_ ? calibration_->tips : std::vector<TipRecord>()};
+  const CalibrationOutcome outcome = calibrate(run_->observations(), parameters_.calibration.limits, setup);
+  cell_microinjection::CalibrateResult result;
+  if (!outcome.calibration) {
+    for (const std::string& each : outcome.refusals) result.message += (result.message.empty() ? "" : "; ") + each;
+    run_.reset();
+    action_.setAborted(result, result.message);
+    return;
+  }
+  const CameraCalibration& found = *outcome.calibration;
+  result.message = describe(found) + (outcome.warning.empty() ? "" : "; " + outcome.warning);
+  result.pixel_size = found.value[kPixelSize];
+  result.pixel_size_interval = halfWidth(found, kPixelSize);
+  result.angle = found.value[kAngle];
+  result.angle_interval = halfWidth(found, kAngle);
+  result.mirrored = static_cast<unsigned char>(found.mirrored);
+  for (int i = 0; i < 3; ++i) result.backlash[i] = found.estimated[kBacklashX + i] ? found.backlash()[i] : 0;
+  result.residual = found.residual;
+  result.points = found.points;
+  result.outliers = found.outliers;
+  try {
+    writeCalibration(parameters_.file, found);
+  } catch (const std::exception& error) {
+    fail(error.what());
+    return;
+  }
+  take(found);
+  for (const TipObservation& observation : run_->observations()) play_->moveTo(observation.position);
+  run_.reset();
+  result.success = 1;
+  action_.setSucceeded(result, result.message);
+}
+
+void CalibrationNode::fail(const std::string& reason) {
+  stopNeedle();
+  run_.reset();
+  cell_microinjection::CalibrateResult result;
+  result.message = reason;
+  if (action_.isPreemptRequested()) {
+    action_.setPreempted(result, reason);
+  } else {
+    action_.setAborted(result, reason);
+  }
+}
+
+void CalibrationNode::stopNeedle() {
+  cell_microinjection::StringStamped stop;
+  stop.header.stamp = ros::Time::now();
+  stop.string = "stop";
+  needle_command_.publish(stop);
+}
+
+void CalibrationNode::take(const CameraCalibration& calibration) {
+  calibration_ = calibration;
+  drift_.reset();
+  drift_report_ = DriftReport();
+  play_.emplace(calibration.backlash(), position_.value_or(calibration.origin));
+}
+
+bool CalibrationNode::rezero(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+  const CalibrationInput present = input();
+  if (!calibration_) {
+    response.message = "there is no calibration: run calibration/calibrate first";
+  } else if (run_) {
+    response.message = "a calibration is under way";
+  } else if (!present.tip || present.tip->stamp < rested_ + parameters_.calibration.pattern.settle_time) {
+    response.message = present.tip ? "the needle has just moved" : "the tip is not seen: " + tip_reason_;
+  } else {
+    NewTip tip;
+    tip.pixel = present.tip->pixel;
+    tip.covariance = present.tip->covariance;
+    const RezeroResult result = microinjection::rezero(*calibration_, tip, *play_, utcNow());
+    response.message = result.calibration ? "the tip's place is new; the axes stay" : result.refusal;
+    if (!result.warning.empty()) response.message += "; " + result.warning;
+    if (!result.calibration) return true;
+    try {
+      writeCalibration(parameters_.file, *result.calibration);
+      calibration_ = *result.calibration;
+      drift_.reset();
+      response.success = 1;
+    } catch (const std::exception& error) {
+      response.message = error.what();
+    }
+  }
+  return true;
+}
+
+void CalibrationNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  status.summary(diagnostic_msgs::DiagnosticStatus::OK, calibration_ ? "calibrated" : "not calibrated");
+  if (run_) status.summary(diagnostic_msgs::DiagnosticStatus::OK, "calibrating");
+  if (drift_report_.verdict == DriftVerdict::kDrifted)
+    status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "the tip has drifted: calibrate or rezero");
+  MessageRefusals::ofProcess().report(status);
+  status.add("file", parameters_.file);
+  if (calibration_) status.add("date", calibration_->date);
+  if (calibration_) status.add("calibration", describe(*calibration_));
+  status.add("drift", drift_report_.text);
+}
+
+}  // namespace microinjection
+
+int main(int argc, char** argv) {
+  return microinjection::runNode<microinjection::CalibrationNode>(argc, argv, "calibration",
+                                                                  microinjection::Priority::kOrdinary);
+}

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <actionlib/server/simple_action_server.h>
+#include <cell_microinjection/CalibrateAction.h>
+#include <cell_microinjection/OperatingState.h>
+#include <cell_microinjection/VisionState.h>
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <geometry_msgs/PoseStamped.h>
+#include <ros/ros.h>
+#include <std_srvs/Trigger.h>
+
+#include <Eigen/Geometry>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "nodes/runtime/master_monitor.h"
+#include "vision/calibration/calibrate.h"
+#include "vision/calibration/calibration_run.h"
+#include "vision/calibration/drift_watch.h"
+
+namespace microinjection {
+
+/// Calibrates the camera against the manipulator, and watches the calibration.
+///
+/// In:  vision/state, /needle/measured_cp, /needle/operating_state, /controller/operating_state
+/// Out: /needle/move_cp, and `stop` on /needle/state_command when a run is cancelled; the action
+///      calibration/calibrate (Calibrate), the service calibration/rezero (Trigger)
+///
+/// Parameters: config/calibration.yaml
+///
+/// The micromanipulator keeps its limits and obstacles. A run needs a needle that is ENABLED and a
+/// controller that is not: two nodes must not command it.
+class CalibrationNode {
+ public:
+  static const char* const kHelp;
+  /// @throws ConfigError when a parameter is unknown or out of range, or the file of the last
+  /// calibration cannot be read.
+  CalibrationNode(ros::NodeHandle node, ros::NodeHandle private_node);
+  void run();
+
+ private:
+  struct Parameters {
+    std::string file;            ///< of the calibration; empty: in $XDG_DATA_HOME
+    double input_timeout = 0.5;  ///< s
+    CalibrationConfig calibration;
+  };
+  static Parameters readParameters(const ros::NodeHandle& private_node);
+
+  void onNeedle(const geometry_msgs::PoseStamped& message);
+  void onVision(const cell_microinjection::VisionState& message);
+  void onGoal();
+  std::string refusal() const;  ///< why no run may begin; empty: it may
+  void step();
+  CalibrationInput input() const;
+  void end();
+  void fail(const std::string& reason);
+  void stopNeedle();
+  void take(const CameraCalibration& calibration);
+  bool rezero(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+  void watchDrift(const SeenTip& tip);
+  void report(diagnostic_updater::DiagnosticStatusWrapper& status);
+
+  Parameters parameters_;
+  std::optional<CameraCalibration> calibration_;
+  std::optional<Play> play_;  ///< of the needle, by the calibration's backlash
+  DriftWatch drift_;
+  DriftReport drift_report_;
+  std::unique_ptr<CalibrationRun> run_;
+  Eigen::Vector2d image_centre_ = Eigen::Vector2d::Zero();  ///< px
+
+  std::optional<Eigen::Vector3d> position_;  ///< m, of the needle, as measured
+  Eigen::Quaterniond orientation_ = Eigen::Quaterniond::Identity();
+  ros::SteadyTime position_received_;
+  double rested_ = 0;  ///< s of ROS time: since when the needle has been within a resolution of one place
+  Eigen::Vector3d resting_place_ = Eigen::Vector3d::Zero();  ///< m
+  std::optional<SeenTip> tip_;
+  ros::SteadyTime tip_received_;
+  std::string tip_reason_ = "no image was received";
+  cell_microinjection::OperatingState needle_state_, controller_state_;
+
+  MasterMonitor master_{true};
+  ros::Publisher move_, needle_command_;
+  std::vector<ros::Subscriber> subscribers_;
+  ros::ServiceServer rezero_;
+  actionlib::SimpleActionServer<cell_microinjection::CalibrateAction> action_;
+  diagnostic_updater::Updater diagnostics_;
+  ros::SteadyTimer timer_;
+};
+
+}  // namespace microinjection

@@ -1,0 +1,115 @@
+#!/usr/bin/python3
+"""The action calibration/calibrate finds scale, angle and backlash of a simulated rig from its images; what must not
+move, does not."""
+
+import pathlib
+import time
+import unittest
+
+import actionlib
+import numpy as np
+import rospy
+import rostest
+import yaml
+from actionlib_msgs.msg import GoalStatus
+from cell_microinjection.msg import CalibrateAction, CalibrateGoal, OperatingState, StringStamped, VisionState
+from geometry_msgs.msg import PoseStamped
+from std_srvs.srv import Trigger
+
+PATIENCE = 300  # s
+PIXEL, BACKLASH = 0.25e-6, 2e-6  # m, of config/microscope.yaml and the test's rig
+FIELD_X, FIELD_Z = 60e-6, 45e-6  # m
+
+
+class CalibrateTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.seen, cls.heights = {}, []
+        for topic, kind in (("/needle/operating_state", OperatingState), ("/controller/operating_state", OperatingState),
+                            ("/vision/state", VisionState)):
+            rospy.Subscriber(topic, kind, lambda message, topic=topic: cls.seen.update({topic: message}), queue_size=1)
+        rospy.Subscriber("/needle/measured_cp", PoseStamped,
+                         lambda message: cls.heights.append(message.pose.position.z), queue_size=1)
+        cls.needle = rospy.Publisher("/needle/state_command", StringStamped, queue_size=1)
+        cls.controller = rospy.Publisher("/controller/state_command", StringStamped, queue_size=1)
+        cls.action = actionlib.SimpleActionClient("/calibration/calibrate", CalibrateAction)
+        assert cls.action.wait_for_server(rospy.Duration(PATIENCE))
+        cls.rezero = staticmethod(rospy.ServiceProxy("/calibration/rezero", Trigger))
+
+    def until(self, condition, what):
+        end = time.monotonic() + PATIENCE
+        while not condition():
+            self.assertLess(time.monotonic(), end, f"{what}: not within {PATIENCE} s")
+            time.sleep(0.05)
+
+    def command(self, publisher, topic, command, state):
+        def reached():
+            message = self.seen.get(topic)
+            if message and message.state == state:
+                return True
+            publisher.publish(StringStamped(string=command))
+            time.sleep(0.2)
+            return False
+        self.until(reached, f"{topic} {state}")
+
+    def goal(self, field_x=FIELD_X, field_z=FIELD_Z):
+        self.action.send_goal(CalibrateGoal(field_x=field_x, field_z=field_z))
+
+    def result(self):
+        self.assertTrue(self.action.wait_for_result(rospy.Duration(PATIENCE)))
+        return self.action.get_result()
+
+    def setUp(self):
+        self.command(self.controller, "/controller/operating_state", "disable", "DISABLED")
+        self.command(self.needle, "/needle/operating_state", "enable", "ENABLED")
+        self.until(lambda: self.tip_is_seen(), "the tip")
+
+    def tip_is_seen(self):
+        state = self.seen.get("/vision/state")
+        return state and state.injection_pipette.verdict == state.injection_pipette.FOUND
+
+    def test_finds_scale_angle_and_backlash(self):
+        lowest = self.heights[-1]
+        self.heights.clear()
+        self.goal()
+        result = self.result()
+        self.assertTrue(result.success, result.message)
+        self.assertGreaterEqual(min(self.heights), lowest - 1e-8)  # never below where it began
+        self.assertAlmostEqual(result.pixel_size / PIXEL, 1, delta=1e-3)
+        self.assertLess(result.pixel_size_interval, 2e-3 * PIXEL)
+        self.assertAlmostEqual(np.degrees(result.angle), 0, delta=0.1)
+        self.assertFalse(result.mirrored)
+        for axis in (0, 2):
+            self.assertAlmostEqual(result.backlash[axis], BACKLASH, delta=0.3e-6)
+        path = pathlib.Path(rospy.get_param("/calibration/file"))
+        written = yaml.safe_load(path.read_text())
+        self.assertAlmostEqual(written["parameters"]["pixel_size"]["value"], result.pixel_size, delta=1e-12)
+        answer = self.rezero()
+        self.assertTrue(answer.success, answer.message)
+
+    def test_refuses_while_the_controller_may_command(self):
+        self.command(self.controller, "/controller/operating_state", "enable", "ENABLED")
+        self.goal()
+        result = self.result()
+        self.assertFalse(result.success)
+        self.assertIn("must be DISABLED", result.message)
+
+    def test_refuses_a_field_that_is_too_small_or_not_finite(self):
+        for field in (1e-6, -60e-6, float("nan"), 0.5):
+            self.goal(field_x=field)
+            result = self.result()
+            self.assertFalse(result.success, field)
+            self.assertTrue(result.message)
+
+    def test_stops_when_cancelled(self):
+        self.goal()
+        self.until(lambda: self.seen["/needle/operating_state"].is_busy, "a move")
+        self.action.cancel_goal()
+        self.assertEqual(self.result().message, "cancelled")
+        self.assertEqual(self.action.get_state(), GoalStatus.PREEMPTED)
+        self.until(lambda: not self.seen["/needle/operating_state"].is_busy, "the needle's rest")
+
+
+if __name__ == "__main__":
+    rospy.init_node("operator")
+    rostest.rosrun("cell_microinjection", "calibrate", CalibrateTest)
