@@ -20,7 +20,6 @@ namespace microinjection {
 namespace {
 
 constexpr double kPeriod = 0.02;        // s of wall time, of a step
-constexpr double kResolution = 0.2e-6;  // m, within which a needle rests
 constexpr double kFar = 1;              // m, a border that the micromanipulator's own limits come before
 
 std::string utcNow() {
@@ -69,27 +68,17 @@ CalibrationNode::Parameters CalibrationNode::readParameters(const ros::NodeHandl
 
 CalibrationNode::CalibrationNode(ros::NodeHandle node, ros::NodeHandle private_node)
     : parameters_(readParameters(private_node)),
+      watch_(node, parameters_.input_timeout),
       drift_(parameters_.calibration.drift),
       move_(node.advertise<geometry_msgs::PoseStamped>("/needle/move_cp", 1)),
       needle_command_(node.advertise<cell_microinjection::StringStamped>("/needle/state_command", 1)),
       action_(node, "calibration/calibrate", false),
       diagnostics_(node, private_node) {
   if (std::filesystem::exists(parameters_.file)) take(readCalibration(parameters_.file));
-  constexpr int kQueue = 1;
-  using cell_microinjection::OperatingState;
-  using cell_microinjection::VisionState;
-  subscribers_ = {
-      subscribeGuarded<geometry_msgs::PoseStamped>(
-          node, "/needle/measured_cp", kQueue,
-          [this](const geometry_msgs::PoseStamped& message, const std::string&) { onNeedle(message); }),
-      subscribeGuarded<VisionState>(node, "vision/state", kQueue,
-                                    [this](const VisionState& message, const std::string&) { onVision(message); }),
-      subscribeGuarded<OperatingState>(
-          node, "/needle/operating_state", kQueue,
-          [this](const OperatingState& message, const std::string&) { needle_state_ = message; }),
-      subscribeGuarded<OperatingState>(
-          node, "/controller/operating_state", kQueue,
-          [this](const OperatingState& message, const std::string&) { controller_state_ = message; })};
+  watch_.on_motion = [this](const Eigen::Vector3d& position) {
+    if (play_) play_->moveTo(position);
+  };
+  watch_.on_tip = [this](const SeenTip& tip) { watchDrift(tip); };
   rezero_ = node.advertiseService("calibration/rezero", &CalibrationNode::rezero, this);
   action_.registerGoalCallback([this] { onGoal(); });
   action_.registerPreemptCallback([this] {
@@ -103,63 +92,24 @@ CalibrationNode::CalibrationNode(ros::NodeHandle node, ros::NodeHandle private_n
 
 void CalibrationNode::run() { ros::spin(); }
 
-void CalibrationNode::onNeedle(const geometry_msgs::PoseStamped& message) {
-  const std::optional<Eigen::Isometry3d> pose = validPose(&message);
-  position_.reset();
-  if (!pose) return;
-  position_ = pose->translation();
-  orientation_ = Eigen::Quaterniond(pose->linear());
-  position_received_ = ros::SteadyTime::now();
-  if ((*position_ - resting_place_).norm() > kResolution) {
-    resting_place_ = *position_;
-    rested_ = ros::Time::now().toSec();
-    if (play_) play_->moveTo(*position_);
-  }
-}
-
-void CalibrationNode::onVision(const cell_microinjection::VisionState& message) {
-  tip_.reset();
-  tip_received_ = ros::SteadyTime::now();
-  const auto& tip = message.injection_pipette;
-  tip_reason_ = tip.reason;
-  image_centre_ = Eigen::Vector2d(message.width - 1.0, message.height - 1.0) / 2;
-  if (tip.verdict != tip.FOUND) return;
-  SeenTip seen;
-  seen.stamp = message.header.stamp.toSec();
-  seen.pixel = {tip.x, tip.y};
-  for (int i = 0; i < 4; ++i) seen.covariance(i / 2, i % 2) = tip.covariance[i];
-  if (!seen.pixel.allFinite() || !seen.covariance.allFinite()) {
-    tip_reason_ = "the tip's place is not finite";
-    return;
-  }
-  tip_ = seen;
-  watchDrift(seen);
-}
-
 void CalibrationNode::watchDrift(const SeenTip& tip) {
   if (!calibration_ || !play_ || !play_->known(0) || !play_->known(2) || run_) return;
-  if (tip.stamp < rested_ + parameters_.calibration.pattern.settle_time) return;
+  if (tip.stamp < watch_.restedSince() + parameters_.calibration.pattern.settle_time) return;
   drift_report_ = drift_.add(*calibration_, play_->tip(), tip.pixel, tip.covariance);
 }
 
 CalibrationInput CalibrationNode::input() const {
-  const ros::SteadyTime now = ros::SteadyTime::now();
-  CalibrationInput input;
-  input.now = ros::Time::now().toSec();
-  if (position_ && secondsBetween(position_received_, now) < parameters_.input_timeout) input.position = position_;
-  input.busy = needle_state_.is_busy;
-  if (tip_ && secondsBetween(tip_received_, now) < parameters_.input_timeout) input.tip = tip_;
-  return input;
+  return {ros::Time::now().toSec(), watch_.position(), static_cast<bool>(watch_.needle().is_busy), watch_.tip()};
 }
 
 std::string CalibrationNode::refusal() const {
   const CalibrationInput present = input();
   if (!present.position) return "/needle/measured_cp is silent or invalid";
-  if (needle_state_.state != "ENABLED") return "the needle is " + needle_state_.state + ", must be ENABLED";
-  if (controller_state_.state == "ENABLED" || controller_state_.state == "PAUSED")
-    return "the controller is " + controller_state_.state +
+  if (watch_.needle().state != "ENABLED") return "the needle is " + watch_.needle().state + ", must be ENABLED";
+  if (watch_.controller().state == "ENABLED" || watch_.controller().state == "PAUSED")
+    return "the controller is " + watch_.controller().state +
            ", must be DISABLED: send disable on /controller/state_command";
-  if (!present.tip) return "the tip is not seen: " + tip_reason_;
+  if (!present.tip) return "the tip is not seen: " + watch_.tipReason();
   return "";
 }
 
@@ -173,7 +123,7 @@ void CalibrationNode::onGoal() {
   if (reason.empty()) {
     try {
       pattern.validate();
-      const Eigen::Vector3d start = *position_;
+      const Eigen::Vector3d start = *watch_.position();
       const Eigen::Vector3d centre = start + Eigen::Vector3d(0, 0, 0.5 * pattern.field.y() + pattern.take_up);
       // Rounding must not put the lowest waypoint below the start.
       const TravelBox above{{-kFar, -kFar, start.z() - 1e-9}, {kFar, kFar, kFar}};
@@ -199,14 +149,14 @@ void CalibrationNode::step() {
     ros::requestShutdown();
   }
   if (!run_) return;
-  if (needle_state_.state != "ENABLED") return fail("the needle is " + needle_state_.state);
-  if (controller_state_.state == "ENABLED") return fail("the controller was enabled");
+  if (watch_.needle().state != "ENABLED") return fail("the needle is " + watch_.needle().state);
+  if (watch_.controller().state == "ENABLED") return fail("the controller was enabled");
   if (const auto goal = run_->step(input())) {
     geometry_msgs::PoseStamped move = toPose(*goal, ros::Time::now(), kWorldFrame);
-    move.pose.orientation.x = orientation_.x();
-    move.pose.orientation.y = orientation_.y();
-    move.pose.orientation.z = orientation_.z();
-    move.pose.orientation.w = orientation_.w();
+    move.pose.orientation.x = watch_.orientation().x();
+    move.pose.orientation.y = watch_.orientation().y();
+    move.pose.orientation.z = watch_.orientation().z();
+    move.pose.orientation.w = watch_.orientation().w();
     move_.publish(move);
   }
   if (!run_->failure().empty()) return fail(run_->failure());
@@ -219,7 +169,7 @@ void CalibrationNode::step() {
 }
 
 void CalibrationNode::end() {
-  const CalibrationSetup setup{utcNow(), image_centre_, calibration_ ? calibration_->tips : std::vector<TipRecord>()};
+  const CalibrationSetup setup{utcNow(), watch_.imageCentre(), calibration_ ? calibration_->tips : std::vector<TipRecord>()};
   const CalibrationOutcome outcome = calibrate(run_->observations(), parameters_.calibration.limits, setup);
   cell_microinjection::CalibrateResult result;
   if (!outcome.calibration) {
@@ -275,7 +225,7 @@ void CalibrationNode::take(const CameraCalibration& calibration) {
   calibration_ = calibration;
   drift_.reset();
   drift_report_ = DriftReport();
-  play_.emplace(calibration.backlash(), position_.value_or(calibration.origin));
+  play_.emplace(calibration.backlash(), watch_.position().value_or(calibration.origin));
 }
 
 bool CalibrationNode::rezero(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
@@ -284,8 +234,8 @@ bool CalibrationNode::rezero(std_srvs::Trigger::Request&, std_srvs::Trigger::Res
     response.message = "there is no calibration: run calibration/calibrate first";
   } else if (run_) {
     response.message = "a calibration is under way";
-  } else if (!present.tip || present.tip->stamp < rested_ + parameters_.calibration.pattern.settle_time) {
-    response.message = present.tip ? "the needle has just moved" : "the tip is not seen: " + tip_reason_;
+  } else if (!present.tip || present.tip->stamp < watch_.restedSince() + parameters_.calibration.pattern.settle_time) {
+    response.message = present.tip ? "the needle has just moved" : "the tip is not seen: " + watch_.tipReason();
   } else {
     NewTip tip;
     tip.pixel = present.tip->pixel;

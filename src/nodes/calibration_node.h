@@ -2,18 +2,15 @@
 
 #include <actionlib/server/simple_action_server.h>
 #include <cell_microinjection/CalibrateAction.h>
-#include <cell_microinjection/OperatingState.h>
-#include <cell_microinjection/VisionState.h>
 #include <diagnostic_updater/diagnostic_updater.h>
-#include <geometry_msgs/PoseStamped.h>
 #include <ros/ros.h>
 #include <std_srvs/Trigger.h>
 
-#include <Eigen/Geometry>
 #include <memory>
 #include <optional>
 #include <string>
 
+#include "nodes/imaging/tip_watch.h"
 #include "nodes/runtime/master_monitor.h"
 #include "vision/calibration/calibrate.h"
 #include "vision/calibration/calibration_run.h"
@@ -47,8 +44,6 @@ class CalibrationNode {
   };
   static Parameters readParameters(const ros::NodeHandle& private_node);
 
-  void onNeedle(const geometry_msgs::PoseStamped& message);
-  void onVision(const cell_microinjection::VisionState& message);
   void onGoal();
   std::string refusal() const;  ///< why no run may begin; empty: it may
   void step();
@@ -62,26 +57,15 @@ class CalibrationNode {
   void report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   Parameters parameters_;
+  TipWatch watch_;
   std::optional<CameraCalibration> calibration_;
   std::optional<Play> play_;  ///< of the needle, by the calibration's backlash
   DriftWatch drift_;
   DriftReport drift_report_;
   std::unique_ptr<CalibrationRun> run_;
-  Eigen::Vector2d image_centre_ = Eigen::Vector2d::Zero();  ///< px
-
-  std::optional<Eigen::Vector3d> position_;  ///< m, of the needle, as measured
-  Eigen::Quaterniond orientation_ = Eigen::Quaterniond::Identity();
-  ros::SteadyTime position_received_;
-  double rested_ = 0;  ///< s of ROS time: since when the needle has been within a resolution of one place
-  Eigen::Vector3d resting_place_ = Eigen::Vector3d::Zero();  ///< m
-  std::optional<SeenTip> tip_;
-  ros::SteadyTime tip_received_;
-  std::string tip_reason_ = "no image was received";
-  cell_microinjection::OperatingState needle_state_, controller_state_;
 
   MasterMonitor master_{true};
   ros::Publisher move_, needle_command_;
-  std::vector<ros::Subscriber> subscribers_;
   ros::ServiceServer rezero_;
   actionlib::SimpleActionServer<cell_microinjection::CalibrateAction> action_;
   diagnostic_updater::Updater diagnostics_;

@@ -1,12 +1,13 @@
 #!/usr/bin/python3
-"""Calibrates the camera against the manipulator, or only the tip's place after a pipette change: doc/guide/calibrate.md."""
+"""Calibrates the camera against the manipulator, or only the tip's place after a pipette change; brings the tip to a pixel:
+doc/guide/calibrate.md."""
 
 import argparse
 import sys
 
 import actionlib
 import rospy
-from cell_microinjection.msg import CalibrateAction, CalibrateGoal
+from cell_microinjection.msg import CalibrateAction, CalibrateGoal, GoToPixelAction, GoToPixelGoal
 from std_srvs.srv import Trigger
 
 MICROMETRE = 1e-6  # m
@@ -20,20 +21,28 @@ def rezero():
     return answer.success
 
 
-def calibrate(field_x, field_z):
-    client = actionlib.SimpleActionClient("/calibration/calibrate", CalibrateAction)
+def run(name, action, goal, describe):
+    """Runs an action to its end, with its progress in one line; Ctrl-C cancels it. @returns its success"""
+    client = actionlib.SimpleActionClient(name, action)
     if not client.wait_for_server(rospy.Duration(SERVER_TIMEOUT)):
-        raise rospy.ROSException("no node calibration: start a session with camera:=sim or camera:=device")
-
-    def show(feedback):
-        print(f"\rpoint {feedback.waypoint} of {feedback.waypoints}, tip seen at {feedback.seen}", end="", flush=True)
-
+        raise rospy.ROSException(f"no action {name}: start a session with camera:=sim or camera:=device")
     rospy.on_shutdown(client.cancel_all_goals)
-    client.send_goal(CalibrateGoal(field_x=MICROMETRE * field_x, field_z=MICROMETRE * field_z), feedback_cb=show)
+    client.send_goal(goal, feedback_cb=lambda feedback: print(f"\r{describe(feedback)}  ", end="", flush=True))
     client.wait_for_result()
     result = client.get_result()
     print(f"\n{result.message}")
     return result.success
+
+
+def calibrate(field_x, field_z):
+    return run("/calibration/calibrate", CalibrateAction,
+               CalibrateGoal(field_x=MICROMETRE * field_x, field_z=MICROMETRE * field_z),
+               lambda at: f"point {at.waypoint} of {at.waypoints}, tip seen at {at.seen}")
+
+
+def go_to(x, y):
+    return run("/visual_servo/go_to_pixel", GoToPixelAction, GoToPixelGoal(x=x, y=y),
+               lambda at: f"{at.distance:.1f} px away" + (f", {at.waits_for}" if at.waits_for else ""))
 
 
 def main():
@@ -42,10 +51,14 @@ def main():
                         "0: that of config/calibration.yaml")
     parser.add_argument("--field-z", type=float, default=0, metavar="UM", help="extent along the needle")
     parser.add_argument("--rezero", action="store_true", help="keep the axes; only the tip's place is new")
+    parser.add_argument("--go-to", type=float, nargs=2, metavar=("X", "Y"), help="bring the tip to this pixel")
     arguments = parser.parse_args(rospy.myargv()[1:])
     rospy.init_node("calibrate", anonymous=True)
     try:
-        succeeded = rezero() if arguments.rezero else calibrate(arguments.field_x, arguments.field_z)
+        if arguments.go_to:
+            succeeded = go_to(*arguments.go_to)
+        else:
+            succeeded = rezero() if arguments.rezero else calibrate(arguments.field_x, arguments.field_z)
     except (rospy.ROSException, rospy.ServiceException) as error:
         print(f"calibrate: {error}", file=sys.stderr)
         return 1

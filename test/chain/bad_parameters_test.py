@@ -22,6 +22,7 @@ ROUNDED = rospkg.RosPack().get_path("cell_microinjection") + "/config/cells/mous
 MOTION = rospkg.RosPack().get_path("cell_microinjection") + "/config/hand_motions/indent_and_retract.yaml"
 EMPTY = tempfile.mkdtemp()  # no mesh, nothing prepared
 GOOD = {  # what each node cannot do without
+    "calibration": {},
     "camera": {"source": "folder", "path": tempfile.mkdtemp()},
     "cell_simulator": {"scene": SCENE},
     "display": {},
@@ -35,8 +36,12 @@ GOOD = {  # what each node cannot do without
     "microscope": {},
     "operator": {"motion": MOTION},
     "session_recorder": {"output_dir": tempfile.mkdtemp()},
+    "vision": {},
+    "visual_servo": {},
 }
 BAD = [  # node, wrong parameters, what the message must say
+    ("calibration", {"pattern/rows": 1}, ["pattern/rows = 1", "[2, 100]"]),
+    ("calibration", {"file": MOTION}, ["indent_and_retract.yaml"]),
     ("camera", {"path": "/nowhere"}, ["/nowhere"]),
     ("camera", {"rate": -1}, ["rate = -1"]),
     ("camera", {"source": "television"}, ["source = television", "device, folder, video"]),
@@ -83,6 +88,9 @@ BAD = [  # node, wrong parameters, what the message must say
     ("operator", {"motion": "/nowhere.csv"}, ["/nowhere.csv"]),
     ("operator", {"mass": -0.1}, ["mass = -0.1", "(0, inf)"]),
     ("session_recorder", {"row_period": 0}, ["row_period = 0", "(0, inf)"]),
+    ("vision", {"pixel_size": -1}, ["pixel_size = -1", "[0, 0.0001]"]),
+    ("vision", {"cell/look": "x_ray"}, ["cell/look = x_ray", "bright_field, phase, dic, unknown"]),
+    ("visual_servo", {"image_target/gain": 0}, ["image_target/gain = 0", "(0, 1]"]),
 ]
 
 

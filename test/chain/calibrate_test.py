@@ -12,7 +12,8 @@ import rospy
 import rostest
 import yaml
 from actionlib_msgs.msg import GoalStatus
-from cell_microinjection.msg import CalibrateAction, CalibrateGoal, OperatingState, StringStamped, VisionState
+from cell_microinjection.msg import (CalibrateAction, CalibrateGoal, GoToPixelAction, GoToPixelGoal, OperatingState,
+                                     StringStamped, VisionState)
 from geometry_msgs.msg import PoseStamped
 from std_srvs.srv import Trigger
 
@@ -86,6 +87,26 @@ class CalibrateTest(unittest.TestCase):
         self.assertAlmostEqual(written["parameters"]["pixel_size"]["value"], result.pixel_size, delta=1e-12)
         answer = self.rezero()
         self.assertTrue(answer.success, answer.message)
+        self.check_go_to_pixel()
+
+    def check_go_to_pixel(self):
+        servo = actionlib.SimpleActionClient("/visual_servo/go_to_pixel", GoToPixelAction)
+        self.assertTrue(servo.wait_for_server(rospy.Duration(PATIENCE)))
+        target = GoToPixelGoal(x=640, y=200)
+
+        def go():
+            servo.send_goal(target)
+            self.assertTrue(servo.wait_for_result(rospy.Duration(PATIENCE)))
+            return servo.get_result()
+        refused = go()
+        self.assertFalse(refused.success)
+        self.assertIn("must be ENABLED", refused.message)
+        self.command(self.controller, "/controller/operating_state", "enable", "ENABLED")
+        result = go()
+        self.assertTrue(result.success, result.message)
+        self.assertLess(result.distance, 1)
+        tip = self.seen["/vision/state"].injection_pipette
+        self.assertLess(np.hypot(tip.x - target.x, tip.y - target.y), 2)
 
     def test_refuses_while_the_controller_may_command(self):
         self.command(self.controller, "/controller/operating_state", "enable", "ENABLED")

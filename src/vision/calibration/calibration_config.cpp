@@ -5,12 +5,10 @@ namespace microinjection {
 CalibrationConfig CalibrationConfig::read(ConfigReader& reader) {
   CalibrationConfig config;
   ConfigReader pattern = reader.section("pattern"), limits = reader.section("limits"), drift = reader.section("drift");
-  ConfigReader target = reader.section("image_target"), touch = reader.section("touch"),
-               focus = reader.section("focus");
+  ConfigReader touch = reader.section("touch"), focus = reader.section("focus");
   config.pattern = CalibrationPatternConfig::read(pattern);
   config.limits = CalibrationLimits::read(limits);
   config.drift = DriftWatchConfig::read(drift);
-  config.image_target = ImageTargetConfig::read(target);
   config.touch = TouchByVisionConfig::read(touch);
   config.focus = TipFocusConfig::read(focus);
   if (config.pattern.take_up <= config.limits.largest_backlash) {

@@ -4,7 +4,6 @@
 #include "vision/calibration/calibration_limits.h"
 #include "vision/calibration/calibration_pattern.h"
 #include "vision/calibration/drift_watch.h"
-#include "vision/calibration/image_target.h"
 #include "vision/calibration/tip_focus.h"
 #include "vision/calibration/touch_by_vision.h"
 
@@ -15,7 +14,6 @@ struct CalibrationConfig {
   CalibrationPatternConfig pattern;
   CalibrationLimits limits;
   DriftWatchConfig drift;
-  ImageTargetConfig image_target;
   TouchByVisionConfig touch;
   TipFocusConfig focus;
 

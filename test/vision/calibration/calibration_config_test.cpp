@@ -32,8 +32,6 @@ TEST(CalibrationConfig, TheFileHasTheDefaults) {
   EXPECT_EQ(file.limits.focus_interval, code.limits.focus_interval);
   EXPECT_EQ(file.drift.threshold, code.drift.threshold);
   EXPECT_EQ(file.drift.confidence, code.drift.confidence);
-  EXPECT_EQ(file.image_target.gain, code.image_target.gain);
-  EXPECT_EQ(file.image_target.largest_jump, code.image_target.largest_jump);
   EXPECT_EQ(file.touch.least_change, code.touch.least_change);
   EXPECT_EQ(file.focus.second_peak, code.focus.second_peak);
   EXPECT_NO_THROW(file.pattern.validate());
@@ -42,8 +40,8 @@ TEST(CalibrationConfig, TheFileHasTheDefaults) {
 
 TEST(CalibrationConfig, RefusesUnknownKeysAndBadValues) {
   for (const char* text : {"{patern: {}}", "{limits: {mirror: maybe}}", "{limits: {largest_backlash: -1}}",
-                           "{limits: {pixel_size: [2, 1]}}", "{drift: {window: 1}}", "{image_target: {gain: 0}}",
-                           "{image_target: {gain: 1.5}}", "{touch: {false_rate: 0}}", "{focus: {least_contrast: 2}}",
+                           "{limits: {pixel_size: [2, 1]}}", "{drift: {window: 1}}", 
+                           "{touch: {false_rate: 0}}", "{focus: {least_contrast: 2}}",
                            "{pattern: {depth: 1e-6}}", "{pattern: {speed: .nan}}"}) {
     EXPECT_THROW(fromText(text), ConfigError) << text;
   }

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cell_microinjection/OperatingState.h>
+#include <cell_microinjection/VisionState.h>
+#include <geometry_msgs/PoseStamped.h>
+#include <ros/ros.h>
+
+#include <Eigen/Geometry>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "vision/calibration/calibration_run.h"
+
+namespace microinjection {
+
+/// What is known of the needle: its position by the manipulator, its tip in the newest image, and the
+/// operating states of needle and controller.
+class TipWatch {
+ public:
+  /// `timeout` (s): older values count as unknown.
+  TipWatch(const ros::NodeHandle& node, double timeout);
+
+  std::optional<Eigen::Vector3d> position() const;  ///< m, `world`; none: silent or invalid
+  Eigen::Quaterniond orientation() const { return orientation_; }
+  std::optional<SeenTip> tip() const;  ///< none: not found in the newest image, or that is old
+  const std::string& tipReason() const { return tip_reason_; }
+  /// s of ROS time, since when the needle has been at one place within 0.2 um.
+  double restedSince() const { return rested_; }
+  Eigen::Vector2d imageCentre() const { return image_centre_; }  ///< px
+  const cell_microinjection::OperatingState& needle() const { return needle_state_; }
+  const cell_microinjection::OperatingState& controller() const { return controller_state_; }
+
+  /// Called when the needle has moved to another place (m).
+  std::function<void(const Eigen::Vector3d&)> on_motion;
+  /// Called for each image in which the tip was found.
+  std::function<void(const SeenTip&)> on_tip;
+
+ private:
+  void onNeedle(const geometry_msgs::PoseStamped& message);
+  void onVision(const cell_microinjection::VisionState& message);
+
+  double timeout_;
+  std::optional<Eigen::Vector3d> position_;
+  Eigen::Quaterniond orientation_ = Eigen::Quaterniond::Identity();
+  ros::SteadyTime position_received_, tip_received_;
+  Eigen::Vector3d resting_place_ = Eigen::Vector3d::Zero();  ///< m
+  double rested_ = 0;
+  std::optional<SeenTip> tip_;
+  std::string tip_reason_ = "no image was received";
+  Eigen::Vector2d image_centre_ = Eigen::Vector2d::Zero();
+  cell_microinjection::OperatingState needle_state_, controller_state_;
+  std::vector<ros::Subscriber> subscribers_;
+};
+
+}  // namespace microinjection

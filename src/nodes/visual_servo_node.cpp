@@ -1,0 +1,145 @@
+#include "nodes/visual_servo_node.h"
+
+#include <limits>
+
+#include "base/errors.h"
+#include "nodes/imaging/calibration_path.h"
+#include "nodes/runtime/conversions.h"
+#include "nodes/runtime/message_guard.h"
+#include "nodes/runtime/node_parameters.h"
+#include "nodes/runtime/run_node.h"
+#include "vision/calibration/calibration_file.h"
+
+namespace microinjection {
+namespace {
+
+constexpr double kEngaging = 0.5;  // s: the controller counts a hand's targets from the first that it has received
+constexpr double kPeriod = 0.005;  // s of wall time: the controller takes a target of 0.05 s ago for stale
+constexpr char kSetpoints[] = "/teleop/servo_cp";
+
+}  // namespace
+
+const char* const VisualServoNode::kHelp =
+    "visual_servo: brings the needle's tip to a pixel of the microscope's image.\n"
+    "In: vision/state, /needle/measured_cp, /controller/operating_state.\n"
+    "Out: /teleop/servo_cp; action visual_servo/go_to_pixel.\n";
+
+VisualServoNode::Parameters VisualServoNode::readParameters(const ros::NodeHandle& private_node) {
+  Parameters parameters;
+  ConfigReader reader = parameterReader(private_node);
+  reader.text("calibration", parameters.calibration);
+  reader.number("input_timeout", parameters.input_timeout, Range::positive());
+  parameters.approach = ImageApproachConfig::read(reader);
+  reader.finish();
+  return parameters;
+}
+
+VisualServoNode::VisualServoNode(ros::NodeHandle node, ros::NodeHandle private_node)
+    : parameters_(readParameters(private_node)),
+      node_(node),
+      watch_(node, parameters_.input_timeout),
+      others_(subscribeGuarded<geometry_msgs::PoseStamped>(node, kSetpoints, 1,
+                                                           [](const geometry_msgs::PoseStamped&, const std::string&) {})),
+      action_(node, "visual_servo/go_to_pixel", false),
+      diagnostics_(node, private_node) {
+  action_.registerGoalCallback([this] { onGoal(); });
+  action_.registerPreemptCallback([this] {
+    if (calibration_) finish(false, "cancelled");
+  });
+  action_.start();
+  diagnostics_.setHardwareID("none");
+  diagnostics_.add("approach", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
+    status.summary(diagnostic_msgs::DiagnosticStatus::OK, calibration_ ? "moves the needle" : "waits for a goal");
+    MessageRefusals::ofProcess().report(status);
+    if (approach_) status.add("distance (px)", approach_->distance());
+    if (approach_) status.add("waits for", approach_->waitsFor());
+  });
+  timer_ = node.createSteadyTimer(ros::WallDuration(kPeriod), [this](const ros::SteadyTimerEvent&) { step(); });
+}
+
+void VisualServoNode::run() { ros::spin(); }
+
+void VisualServoNode::onGoal() {
+  const auto goal = action_.acceptNewGoal();
+  try {
+    begin({goal->x, goal->y});
+  } catch (const std::exception& error) {
+    finish(false, error.what());
+  }
+}
+
+void VisualServoNode::begin(const Eigen::Vector2d& pixel) {
+  if (watch_.controller().state != "ENABLED")
+    throw ConfigError("the controller is " + watch_.controller().state + ", must be ENABLED");
+  if (others_.getNumPublishers() > 0) throw ConfigError(std::string("another node publishes ") + kSetpoints);
+  const std::optional<Eigen::Vector3d> position = watch_.position();
+  if (!position) throw ConfigError("/needle/measured_cp is silent or invalid");
+  if (!watch_.tip()) throw ConfigError("the tip is not seen: " + watch_.tipReason());
+  calibration_ = readCalibration(calibrationPath(parameters_.calibration));
+  pixel_ = pixel;
+  start_ = *position;
+  began_ = ros::SteadyTime::now();
+  setpoints_ = node_.advertise<geometry_msgs::PoseStamped>(kSetpoints, 1);
+}
+
+bool VisualServoNode::isEngaged() {
+  if (setpoints_.getNumSubscribers() == 0) began_ = ros::SteadyTime::now();
+  return secondsBetween(began_, ros::SteadyTime::now()) > kEngaging;
+}
+
+void VisualServoNode::publish(const Eigen::Vector3d& setpoint, const ros::Time& now) {
+  geometry_msgs::PoseStamped message = toPose(setpoint, now, kWorldFrame);
+  message.pose.orientation.x = watch_.orientation().x();
+  message.pose.orientation.y = watch_.orientation().y();
+  message.pose.orientation.z = watch_.orientation().z();
+  message.pose.orientation.w = watch_.orientation().w();
+  setpoints_.publish(message);
+}
+
+void VisualServoNode::step() {
+  diagnostics_.update();
+  if (master_.masterLostForLong()) {
+    ROS_ERROR("the ROS master has been away for too long: this node ends");
+    ros::requestShutdown();
+  }
+  if (!calibration_) return;
+  if (watch_.controller().state != "ENABLED") return finish(false, "the controller is " + watch_.controller().state);
+  const ros::Time now = ros::Time::now();
+  if (!approach_) {
+    publish(start_, now);
+    if (!isEngaged()) return;
+    approach_ = std::make_unique<ImageApproach>(parameters_.approach, *calibration_, pixel_, start_, now.toSec());
+  }
+  const auto setpoint = approach_->step({now.toSec(), watch_.position(), watch_.restedSince(), watch_.tip()});
+  if (setpoint) publish(*setpoint, now);
+  cell_microinjection::GoToPixelFeedback feedback;
+  feedback.distance = approach_->distance();
+  feedback.waits_for = approach_->waitsFor();
+  action_.publishFeedback(feedback);
+  if (approach_->done()) return finish(true, "arrived");
+  if (!approach_->failure().empty()) finish(false, approach_->failure());
+}
+
+void VisualServoNode::finish(bool success, const std::string& message) {
+  cell_microinjection::GoToPixelResult result;
+  result.success = static_cast<unsigned char>(success);
+  result.message = message;
+  result.distance = approach_ ? approach_->distance() : std::numeric_limits<double>::quiet_NaN();
+  approach_.reset();
+  calibration_.reset();
+  setpoints_.shutdown();
+  if (success) {
+    action_.setSucceeded(result, message);
+  } else if (action_.isPreemptRequested()) {
+    action_.setPreempted(result, message);
+  } else {
+    action_.setAborted(result, message);
+  }
+}
+
+}  // namespace microinjection
+
+int main(int argc, char** argv) {
+  return microinjection::runNode<microinjection::VisualServoNode>(argc, argv, "visual_servo",
+                                                                  microinjection::Priority::kOrdinary);
+}

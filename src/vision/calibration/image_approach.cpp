@@ -1,0 +1,93 @@
+#include "vision/calibration/image_approach.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+namespace microinjection {
+namespace {
+
+constexpr double kArrived = 0.5e-6;    // m, of the motors from their goal
+constexpr double kBeyondPlay = 3e-6;   // m, by which a motion is longer than the backlash that it takes up
+
+}  // namespace
+
+ImageApproachConfig ImageApproachConfig::read(ConfigReader& reader) {
+  ImageApproachConfig config;
+  reader.number("speed", config.speed, Range::positive());
+  reader.number("settle_time", config.settle_time, Range::nonNegative());
+  reader.number("time_limit", config.time_limit, Range::positive());
+  ConfigReader target = reader.section("image_target");
+  config.target = ImageTargetConfig::read(target);
+  return config;
+}
+
+ImageApproach::ImageApproach(const ImageApproachConfig& config, const CameraCalibration& calibration,
+                             const Eigen::Vector2d& target, const Eigen::Vector3d& position, double now)
+    : config_(config),
+      calibration_(calibration),
+      pixel_(target),
+      images_(config.target),
+      play_(calibration.backlash(), position),
+      setpoint_(position),
+      goal_(position),
+      began_(now),
+      stepped_(now),
+      distance_(std::numeric_limits<double>::quiet_NaN()) {
+  if (!target.allFinite()) failure_ = "the target's pixel is not finite";
+}
+
+std::optional<Eigen::Vector3d> ImageApproach::step(const Input& input) {
+  if (done_ || !failure_.empty()) return std::nullopt;
+  const double duration = std::max(0.0, input.now - stepped_);
+  stepped_ = input.now;
+  if (input.now - began_ > config_.time_limit) {
+    std::ostringstream text;
+    text << "the tip has not arrived within " << config_.time_limit << " s";
+    if (!waits_for_.empty()) text << ": " << waits_for_;
+    failure_ = text.str();
+    return std::nullopt;
+  }
+  const Eigen::Vector3d way = goal_ - setpoint_;
+  const double reach = config_.speed * duration;
+  setpoint_ = way.norm() <= reach ? goal_ : Eigen::Vector3d(setpoint_ + reach * way.normalized());
+  waits_for_.clear();
+  if (!input.position) {
+    waits_for_ = "the needle's position is not known";
+  } else if (setpoint_ == goal_ && (*input.position - goal_).norm() > kArrived) {
+    waits_for_ = "the needle does not follow";
+  } else if (setpoint_ == goal_ && input.now - input.rested_since >= config_.settle_time) {
+    plan(input);
+  }
+  return done_ ? std::nullopt : std::optional(setpoint_);
+}
+
+void ImageApproach::plan(const Input& input) {
+  play_.moveTo(goal_);
+  if (taken_up_ < 2) {
+    const int axis = taken_up_ == 0 ? 2 : 0;
+    goal_[axis] += play_.backlash()[axis] + kBeyondPlay;
+    ++taken_up_;
+    return;
+  }
+  if (!input.tip) {
+    waits_for_ = "the tip is not seen";
+    return;
+  }
+  if (input.tip->stamp == last_stamp_) {
+    waits_for_ = refusal_;
+    return;
+  }
+  last_stamp_ = input.tip->stamp;
+  const TipFrame frame{++sequence_, input.tip->stamp, input.tip->pixel};
+  const ImageStep next = images_.step(frame, pixel_, calibration_, play_, input.now,
+                                      input.rested_since + config_.settle_time);
+  distance_ = (input.tip->pixel - pixel_).norm();
+  done_ = next.arrived;
+  if (next.position) goal_ = *next.position;
+  refusal_ = next.position || done_ ? "" : next.reason;
+  waits_for_ = refusal_;
+}
+
+}  // namespace microinjection
