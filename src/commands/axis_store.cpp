@@ -1,7 +1,6 @@
 #include "commands/axis_store.h"
 
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include "base/atomic_file.h"
@@ -18,16 +17,18 @@ AxisStore::AxisStore(const Family& family) : family_(family) {
 }
 
 std::string AxisStore::description(int node) const {
-  return family_.description() + " axis node " + std::to_string(node);
+  return family_.description() + " axis curve " + std::to_string(node);
 }
 
 std::string AxisStore::file(int node) const { return folder_ + "/axis_" + std::to_string(node); }
 
-CacheRead<double> AxisStore::load(int node) const {
+CacheRead<Eigen::VectorXd> AxisStore::load(int node) const {
   const CacheRead<std::string> read = readCacheFile(file(node), description(node));
-  if (!read) return read.failure<double>();
+  if (!read) return read.failure<Eigen::VectorXd>();
   ByteReader reader(*read.content);
-  return {reader.number<double>(), CacheState::kRead, ""};
+  Eigen::VectorXd forces;
+  reader.array(forces);
+  return {forces, CacheState::kRead, ""};
 }
 
 std::vector<int> AxisStore::missing() const {
@@ -39,23 +40,24 @@ std::vector<int> AxisStore::missing() const {
 }
 
 void AxisStore::solve(int node) const {
-  double force = std::numeric_limits<double>::quiet_NaN();
+  Eigen::VectorXd forces;
   try {
-    force = solveAxisForce(family_, axisForceGrid(family_).node(node));
+    forces = solveAxisForces(family_, axisForceGrid(family_).node(node));
   } catch (const std::runtime_error&) {
   }
   requireWritableFolder(folder_);
   ByteWriter writer;
-  writer.number(force);
+  writer.array(forces);
   writeCacheFile(file(node), description(node), writer.bytes());
 }
 
-Eigen::VectorXd AxisStore::loadAll() const {
-  Eigen::VectorXd forces(axisForceGrid(family_).size());
-  for (int node = 0; node < forces.size(); ++node) {
-    const CacheRead<double> read = load(node);
+Eigen::MatrixXd AxisStore::loadAll() const {
+  Eigen::MatrixXd forces(axisForceGrid(family_).size(), kAxisDepths);
+  for (int node = 0; node < forces.rows(); ++node) {
+    const CacheRead<Eigen::VectorXd> read = load(node);
     if (!read) throw std::runtime_error(read.reason);
-    forces[node] = *read.content;
+    if (read.content->size() != kAxisDepths) return {};
+    forces.row(node) = read.content->transpose();
   }
   if (!forces.allFinite() || !(forces.minCoeff() > 0)) return {};
   return forces;

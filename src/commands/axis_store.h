@@ -9,7 +9,7 @@
 
 namespace microinjection {
 
-/// A family's forces on the axis (axisForceGrid()), a file each in the folder of the family.
+/// A family's curves of the force on the axis (axisForceGrid()), a file each in the folder of the family.
 class AxisStore {
  public:
   /// Throws ConfigError without a cache.
@@ -20,13 +20,13 @@ class AxisStore {
   std::vector<int> missing() const;
   /// Solves and stores a node.
   void solve(int node) const;
-  /// Of all nodes; empty when some have no solution. Throws std::runtime_error when one is missing.
-  Eigen::VectorXd loadAll() const;
+  /// Of all nodes (rows); empty when some have no solution. Throws std::runtime_error when one is missing.
+  Eigen::MatrixXd loadAll() const;
 
  private:
   std::string description(int node) const;
   std::string file(int node) const;
-  CacheRead<double> load(int node) const;  ///< not a number: no solution
+  CacheRead<Eigen::VectorXd> load(int node) const;  ///< empty: no solution
 
   Family family_;
   std::string folder_;

@@ -63,7 +63,7 @@ class FamilyPreparation {
       const int round = std::min(kRound, arguments_.members - count());
       solve(nextMembers(data_.knownPoints(), lengths(), round));
     }
-    if (axis_forces_.size() > 0 && !data_.hasAxisForces()) store();
+    if (axis_forces_.size() > 0 && !data_.hasAxisCurves()) store();
     report();
   }
 
@@ -82,7 +82,7 @@ class FamilyPreparation {
 
   void solveAxisForces() {
     const AxisStore store(family_);
-    if (data_.hasAxisForces()) return;
+    if (data_.hasAxisCurves()) return;
     solvePaths("prepare: forces on the axis", arguments_.jobs, [&] {
       std::vector<std::vector<std::string>> commands;
       for (const int node : store.missing()) {
@@ -169,7 +169,7 @@ class FamilyPreparation {
   Family family_;
   std::string path_;
   FamilyData data_;
-  Eigen::VectorXd axis_forces_;  ///< that `data_` has not yet
+  Eigen::MatrixXd axis_forces_;  ///< that `data_` has not yet
 };
 
 }  // namespace

@@ -103,10 +103,15 @@ Eigen::MatrixXd FamilyData::knownPoints() const {
 
 void FamilyData::update() {
   std::vector<double> scales;
+  std::vector<AxisCurve> curves;
   for (const FamilyMember& member : members_) {
-    if (hasAxisForces()) scales.push_back(scale(member.coordinates, {}));
+    if (hasAxisCurves()) {
+      curves.push_back(curveAt(member.coordinates));
+    } else if (hasAxisForces()) {
+      scales.push_back(scale(member.coordinates, {}));
+    }
   }
-  const LeaveOneOut left_out(family_, members_, scales);
+  const LeaveOneOut left_out(family_, members_, scales, curves);
   covariance_ = chooseCovariance(points(), left_out);
   prepare();
   std::vector<double> all, relative;
@@ -165,12 +170,19 @@ ExpectedError FamilyData::expectedError(const Eigen::VectorXd& coordinates) cons
 }
 
 double FamilyData::scale(const Eigen::VectorXd& coordinates, const Eigen::VectorXd& weights) const {
-  if (hasAxisForces()) return std::exp(axisForceGrid(family_).interpolate(log_axis_forces_, coordinates));
+  if (hasAxisForces()) return std::exp(axisForceGrid(family_).interpolate(log_axis_forces_.col(0), coordinates));
   double sum = 0;
   for (std::size_t i = 0; i < members_.size(); ++i) {
     sum += weights[static_cast<Eigen::Index>(i)] * std::log(members_[i].scale);
   }
   return std::exp(sum);
+}
+
+AxisCurve FamilyData::curveAt(const Eigen::VectorXd& coordinates) const {
+  const ChebyshevGrid grid = axisForceGrid(family_);
+  Eigen::VectorXd log_forces(kAxisDepths);
+  for (int i = 0; i < kAxisDepths; ++i) log_forces[i] = grid.interpolate(log_axis_forces_.col(i), coordinates);
+  return axisCurve(log_forces);
 }
 
 SurrogateData FamilyData::cell(const Eigen::VectorXd& coordinates) const {
@@ -183,11 +195,21 @@ SurrogateData FamilyData::cell(const Eigen::VectorXd& coordinates) const {
   Eigen::MatrixXd amplitudes =
       Eigen::MatrixXd::Zero(surfaces_.amplitudes().front().rows(), surfaces_.amplitudes().front().cols());
   std::vector<const FamilyMember*> solved;
+  const AxisCurve curve = hasAxisCurves() ? curveAt(coordinates) : AxisCurve();
   for (std::size_t i = 0; i < members_.size(); ++i) {
     const FamilyMember& member = members_[i];
     const double weight = weights[static_cast<Eigen::Index>(i)];
-    energy += weight * member.energy;
-    field += weight * member.field;
+    EnergyExpansion own_energy(plan.scales, EnergyDegrees());
+    ForceField own_field(plan.scales);
+    own_energy.setCoefficients(member.energy);
+    own_field.setCoefficients(member.field);
+    if (curve) {
+      const AxisCurve ratio = curveRatio(curve, member, own_field, plan.scales);
+      own_energy.scaleAlongPaths(ratio);
+      own_field.scaleAlongPaths(ratio);
+    }
+    energy += weight * own_energy.coefficients();
+    field += weight * own_field.coefficients();
     amplitudes += weight * surfaces_.amplitudes()[i].cast<double>();
     solved.push_back(&member);
   }
@@ -198,7 +220,7 @@ SurrogateData FamilyData::cell(const Eigen::VectorXd& coordinates) const {
   cell.range.lateral *= reached.share;
   cell.range.axis_depth *= reached.axis_share;
   cell.energy = EnergyExpansion(plan.scales, EnergyDegrees());
-  const double scale = this->scale(coordinates, weights);
+  const double scale = curve ? 1 : this->scale(coordinates, weights);
   cell.energy.setCoefficients(scale * energy);
   cell.field = ForceField(plan.scales);
   cell.field.setCoefficients(scale * field);
@@ -217,7 +239,7 @@ void FamilyData::save(const std::string& path) const {
        {covariance_.noise, left_out_.median, left_out_.common, per_deviation_.median, per_deviation_.common}) {
     writer.number(x);
   }
-  writer.array(log_axis_forces_);
+  writer.array(Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(log_axis_forces_.data(), log_axis_forces_.size())));
   writer.number<std::uint64_t>(failed_.size());
   for (const Eigen::VectorXd& point : failed_) writer.array(point);
   writer.number<std::uint64_t>(members_.size());
@@ -239,11 +261,14 @@ FamilyData FamilyData::decode(const Family& family, const std::string& bytes) {
     *x = reader.number<double>();
     if (!(std::isfinite(*x) && *x >= 0)) throw std::runtime_error("an error cannot be");
   }
-  reader.array(data.log_axis_forces_);
-  const bool known = data.hasAxisForces();
-  if (known && !(data.log_axis_forces_.size() == axisForceGrid(family).size() && data.log_axis_forces_.allFinite())) {
+  Eigen::VectorXd log_axis_forces;
+  reader.array(log_axis_forces);
+  const Eigen::Index nodes = axisForceGrid(family).size(), depths = log_axis_forces.size() / nodes;
+  if (log_axis_forces.size() != depths * nodes || depths > kAxisDepths || (depths > 1 && depths < kAxisDepths) ||
+      !log_axis_forces.allFinite()) {
     throw std::runtime_error("the forces on the axis cannot be");
   }
+  data.log_axis_forces_ = Eigen::Map<const Eigen::MatrixXd>(log_axis_forces.data(), nodes, depths);
   for (std::uint64_t left = readCount(reader); left > 0; --left) {
     data.failed_.push_back(readVector<Eigen::VectorXd>(reader, family.dimension()));
   }

@@ -34,10 +34,12 @@ class FamilyData {
 
   void add(const FamilyMember& member, const Eigen::MatrixXf& displacements);
   void addFailed(const Eigen::VectorXd& coordinates) { failed_.push_back(coordinates); }
-  /// Forces on the axis at the nodes of axisForceGrid(). Without them, a cell's is predicted from
-  /// the members.
-  void setAxisForces(const Eigen::VectorXd& forces) { log_axis_forces_ = forces.array().log(); }
+  /// Forces on the axis at the nodes of axisForceGrid() (rows): a column for each depth of an
+  /// AxisCurve, or one at half of the range's depth (older data). Without them, a cell's is predicted
+  /// from the members.
+  void setAxisForces(const Eigen::MatrixXd& forces) { log_axis_forces_ = forces.array().log(); }
   bool hasAxisForces() const { return log_axis_forces_.size() > 0; }
+  bool hasAxisCurves() const { return log_axis_forces_.cols() == kAxisDepths; }
   /// Fits all members anew whose paths are known, and returns their number. A second for each.
   int refit();
   /// Chooses the covariance and estimates the errors anew. Call it after the last add().
@@ -67,6 +69,7 @@ class FamilyData {
  private:
   Eigen::MatrixXd points() const;  ///< of the members, a column each
   double scale(const Eigen::VectorXd& coordinates, const Eigen::VectorXd& weights) const;
+  AxisCurve curveAt(const Eigen::VectorXd& coordinates) const;
   void prepare();  ///< what follows from the members and the covariance
   static FamilyData decode(const Family& family, const std::string& bytes);
 
@@ -74,7 +77,7 @@ class FamilyData {
   std::string provenance_;
   std::vector<FamilyMember> members_;
   std::vector<Eigen::VectorXd> failed_;
-  Eigen::VectorXd log_axis_forces_;
+  Eigen::MatrixXd log_axis_forces_;
   SurfaceModes surfaces_;
   Covariance covariance_;
   ExpectedError left_out_, fit_;  ///< of the prediction, and of the members' own fits

@@ -38,9 +38,10 @@ double badness(const std::vector<std::vector<double>>& errors) {
 }  // namespace
 
 LeaveOneOut::LeaveOneOut(const Family& family, const std::vector<FamilyMember>& members,
-                         const std::vector<double>& scales)
-    : scales_(scales) {
-  for (const FamilyMember& at : members) {
+                         const std::vector<double>& scales, const std::vector<AxisCurve>& curves)
+    : scales_(scales), with_curves_(!curves.empty()) {
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    const FamilyMember& at = members[i];
     const Preparation plan = planMember(family, family.member(at.coordinates));
     const std::vector<ContactPlace> places = forcePlaces(plan);
     Member member;
@@ -55,6 +56,8 @@ LeaveOneOut::LeaveOneOut(const Family& family, const std::vector<FamilyMember>& 
     for (const FamilyMember& other : members) {
       ForceField field(plan.scales);
       field.setCoefficients(other.field);
+      if (&other == &at) member.own = forcesAt(field, places);
+      if (with_curves_) field.scaleAlongPaths(curveRatio(curves[i], other, field, plan.scales));
       member.forces.push_back(forcesAt(field, places));
     }
     members_.push_back(std::move(member));
@@ -64,7 +67,7 @@ LeaveOneOut::LeaveOneOut(const Family& family, const std::vector<FamilyMember>& 
 std::vector<std::vector<double>> LeaveOneOut::errors(const Eigen::MatrixXd& weights) const {
   std::vector<std::vector<double>> result(members_.size());
   for (std::size_t i = 0; i < members_.size(); ++i) {
-    const Eigen::VectorXd& own = members_[i].forces[i];
+    const Eigen::VectorXd& own = members_[i].own;
     Eigen::VectorXd predicted = Eigen::VectorXd::Zero(own.size());
     double log_scale = 0;
     for (std::size_t j = 0; j < members_.size(); ++j) {
@@ -72,7 +75,8 @@ std::vector<std::vector<double>> LeaveOneOut::errors(const Eigen::MatrixXd& weig
       predicted += weight * members_[i].forces[j];
       log_scale += weight * std::log(members_[j].scale);
     }
-    predicted *= (scales_.empty() ? std::exp(log_scale) : scales_[i]) / members_[i].scale;
+    const double scale = scales_.empty() ? std::exp(log_scale) : scales_[i];
+    predicted *= (with_curves_ ? 1 : scale) / members_[i].scale;
     const Eigen::Map<const Eigen::Matrix3Xd> truth(own.data(), 3, own.size() / 3);
     const Eigen::Map<const Eigen::Matrix3Xd> guess(predicted.data(), 3, own.size() / 3);
     const double largest = truth.colwise().norm().maxCoeff();

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "cell/family/axis_force.h"
 #include "cell/family/family_member.h"
 #include "cell/family/kriging.h"
 
@@ -14,7 +15,9 @@ class LeaveOneOut {
  public:
   /// Evaluates every member at the places of every other.
   /// @param scales of the members, where they need not be predicted from the others; else empty
-  LeaveOneOut(const Family& family, const std::vector<FamilyMember>& members, const std::vector<double>& scales);
+  /// @param curves same, of the force on the axis: the others' forces are scaled with them
+  LeaveOneOut(const Family& family, const std::vector<FamilyMember>& members, const std::vector<double>& scales,
+              const std::vector<AxisCurve>& curves = {});
 
   /// Errors at all places of each member's paths that it and a prediction of its range reach, where
   /// its force is above a fiftieth of its largest.
@@ -26,10 +29,12 @@ class LeaveOneOut {
     double scale = 0;
     double reached = 1;                   ///< share of its paths that it and a prediction from the others reach
     std::vector<double> shares;           ///< of their paths, of the places
-    std::vector<Eigen::VectorXd> forces;  ///< of each member at the places of this one, over that one's scale
+    Eigen::VectorXd own;                  ///< forces at its places, over its scale
+    std::vector<Eigen::VectorXd> forces;  ///< same of each member, over that one's scale or with this one's curve
   };
   std::vector<Member> members_;
   std::vector<double> scales_;
+  bool with_curves_ = false;
 };
 
 /// Covariance that predicts the members best.

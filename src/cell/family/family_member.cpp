@@ -37,6 +37,11 @@ Reached reachedAt(const Eigen::VectorXd& coordinates, const std::vector<const Fa
   return {sum.share / weights, sum.axis_share / weights};
 }
 
+AxisCurve curveRatio(const AxisCurve& other, const FamilyMember& member, const ForceField& field,
+                     const EnergyScales& scales) {
+  return axisRatio(other, axisCurve(field, scales), member.reached.axis_share);
+}
+
 Preparation planMember(const Family& family, const Scene& member) {
   return Preparation::plan(member, family.range(member), PathSet::kFew);
 }

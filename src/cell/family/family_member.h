@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "cell/family/axis_force.h"
 #include "cell/family/family.h"
 #include "cell/family/path_forces.h"
 #include "cell/surrogate/surrogate_data.h"
@@ -30,6 +31,11 @@ struct FamilyMember {
 /// The part that a member at other coordinates reaches: the mean of those that were solved, weighted
 /// by their distance to the power of -4 (Shepard's interpolation).
 Reached reachedAt(const Eigen::VectorXd& coordinates, const std::vector<const FamilyMember*>& solved);
+
+/// What a member's forces are multiplied with to have another one's force on the axis. `field`: the
+/// member's coefficients, with the other one's scales.
+AxisCurve curveRatio(const AxisCurve& other, const FamilyMember& member, const ForceField& field,
+                     const EnergyScales& scales);
 
 /// Plan of a member's paths.
 Preparation planMember(const Family& family, const Scene& member);

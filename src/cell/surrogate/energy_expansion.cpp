@@ -1,5 +1,6 @@
 #include "cell/surrogate/energy_expansion.h"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +13,8 @@ namespace {
 constexpr int kMost = 16;              ///< largest number of terms of a polynomial in one variable
 constexpr double kLargestRoot = 1.05;  ///< s of the longest displacement, with a margin
 constexpr double kNothing = 1e-9;      ///< t below which the displacement is zero
+constexpr int kFitPoints = 24;         ///< of s, where a product is approximated
+constexpr double kSmallRoot = 0.05;    ///< s below which an approximation need not become more exact
 
 using Series = std::array<double, kMost>;
 
@@ -96,6 +99,16 @@ Jet compose(const Sum& sum, const Variables& at) {
   return at.factor * polynomial;
 }
 
+/// Row of the force along a straight path over t, at s, for a unit of each T_n: T_n itself for an expansion of a force,
+/// and (t^2 T_n)' / t = 2 T_n + s T_n' / 2 for one of an energy.
+Eigen::RowVectorXd alongPath(int root, double s, int degree) {
+  Values values;
+  chebyshev(s, degree, values);
+  Eigen::RowVectorXd row(degree + 1);
+  for (int n = 0; n <= degree; ++n) row[n] = root == 2 ? 2 * values.f[n] + 0.5 * s * values.f1[n] : values.f[n];
+  return row;
+}
+
 }  // namespace
 
 EnergyExpansion::EnergyExpansion(const EnergyScales& scales, const EnergyDegrees& degrees)
@@ -157,6 +170,20 @@ void EnergyExpansion::makeLocal(double angle, Local& local) const {
       local.coefficients_(n, term.column) += angle_factor * coefficients_[index];
     }
   }
+}
+
+void EnergyExpansion::scaleAlongPaths(const std::function<double(double)>& factor) {
+  const int count = degrees_.distance + 1;
+  Eigen::MatrixXd basis(kFitPoints, count), product(kFitPoints, count);
+  for (int i = 0; i < kFitPoints; ++i) {
+    const double s = 0.5 * kLargestRoot * (1 - std::cos(M_PI * (i + 0.5) / kFitPoints));
+    const double weight = 1 / ((s + kSmallRoot) * (s + kSmallRoot));  // a force over t is small near the touch
+    basis.row(i) = weight * alongPath(degrees_.root, s, degrees_.distance);
+    product.row(i) = factor(s) * basis.row(i);
+  }
+  const Eigen::MatrixXd scaling = basis.colPivHouseholderQr().solve(product);
+  Eigen::Map<Eigen::MatrixXd> series(coefficients_.data(), count, coefficients_.size() / count);
+  series = (scaling * series).eval();
 }
 
 Jet EnergyExpansion::Local::evaluate(const Eigen::Vector3d& displacement) const {

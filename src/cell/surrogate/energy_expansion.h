@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <vector>
 
 #include "cell/surrogate/jet.h"
@@ -70,6 +71,11 @@ class EnergyExpansion {
     Eigen::MatrixXd coefficients_;             ///< of T_n (row) in each column
   };
   void makeLocal(double angle, Local& local) const;
+
+  /// Multiplies the force along every straight path by a function of s: that of an expansion of a
+  /// force itself, and the derivative by the length of an expansion of an energy. The product is
+  /// approximated by a polynomial in s of the same degree, best at small s.
+  void scaleAlongPaths(const std::function<double(double)>& factor);
 
  private:
   struct Term {

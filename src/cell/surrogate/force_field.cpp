@@ -55,6 +55,10 @@ void ForceField::fit(const std::vector<TrainingSample>& samples) {
   axial_.setCoefficients(solveRegularised(along, along_right));
 }
 
+void ForceField::scaleAlongPaths(const std::function<double(double)>& factor) {
+  for (EnergyExpansion* expansion : {&away_, &lateral_, &axial_}) expansion->scaleAlongPaths(factor);
+}
+
 void ForceField::makeLocal(double angle, Local& local) const {
   local.scaled_angle_ = angle / scales_.angle;
   away_.makeLocal(angle, local.away_);

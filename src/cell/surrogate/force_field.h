@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <vector>
 
 #include "cell/surrogate/energy_expansion.h"
@@ -28,6 +29,9 @@ class ForceField {
 
   /// Least-squares fit to the samples' forces, with errors relative to each force.
   void fit(const std::vector<TrainingSample>& samples);
+
+  /// Multiplies the force by a function of s, see EnergyExpansion.
+  void scaleAlongPaths(const std::function<double(double)>& factor);
 
   /// The field at one contact point. Only the first makeLocal allocates.
   class Local {
