@@ -16,6 +16,7 @@ constexpr double kFaded = 0.25;   // of a border's contrast, when it is lost
 constexpr double kInside = 0.93;  // ratio of a border inside of the main one, at most
 constexpr double kGap = 1.03;     // ratio of two borders' radii, at least
 constexpr double kLeastCoverage = 0.55, kLeastConsistency = 0.6, kLeastStrength = 0.55;  // of a second border
+constexpr double kLeastSignificance = 3;  // of a second border
 constexpr double kClear = 0.8;         // of the main border's strength: an inner border as clear as the main one
 constexpr double kZonaPlace = 0.5;     // of the zona's outer border in its dark rim, see refineBorder()
 constexpr double kInnerPlace = 0.5;    // of the zona's inner border
@@ -56,7 +57,7 @@ CellBorder bestBorder(const Frame& frame, const PolarMap& map, const std::string
 
 bool isSecondBorder(const CellBorder& border) {
   return border.finding.hasValues() && border.coverage >= kLeastCoverage && border.consistency >= kLeastConsistency &&
-         border.strength >= kLeastStrength && border.outside < 0.5;
+         border.strength >= kLeastStrength && border.outside < 0.5 && border.significance > kLeastSignificance;
 }
 
 /// @param rim  px, widest dark rim

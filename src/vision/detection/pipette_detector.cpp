@@ -34,6 +34,7 @@ constexpr double kHoldingStep = 2;           // px, of the strip that gives the 
 constexpr double kNearMouth = 8, kMouthRows = 36, kMouthBlur = 1.3;  // px, of the strip that shows the mouth
 constexpr double kWitnessReach = 14;         // px beside lips that are not clear
 constexpr int kMouthMargin = 18;             // px beside the walls
+constexpr double kSureClearness = 9;          // of a tip
 constexpr double kSureSymmetry = 0.9;         // of the edges near a tip
 constexpr double kLeastSymmetry = 0.5;       // of the edges of a whole pipette
 
@@ -309,6 +310,7 @@ PipetteDetection PipetteDetector::refine(const Frame& frame, PipetteAxis axis, c
   found.clearness = last.clearness;
   setCovariance(found, last.deviation, fit.offset_deviation);
   found.finding = last.deviation > kUnclear ? Finding::uncertain("the pipette's end is not clear") : Finding::found();
+  if (found.clearness < kSureClearness) found.finding = Finding::uncertain("the tip is not clear before its background");
   if (found.symmetry < kSureSymmetry) found.finding = Finding::uncertain("the pipette's walls are not symmetric");
   if (!frame.contains(found.end, 2)) found.finding = Finding::notFound("no pipette: its end is out of the image");
   return found;
