@@ -98,7 +98,7 @@ int main(int argc, char** argv) {
   po::options_description more;
   more.add_options()("images", po::value(&microinjection::images)->default_value(40),
                      "rendered images of each condition")("only", po::value(&microinjection::only),
-                     "one set: the name of a condition as in the table, or real");
+                                                          "one set: the name of a condition as in the table, or real");
   return microinjection::benchMain(argc, argv,
                                    "bench_vision: errors of the vision on rendered images, and on real ones where "
                                    "MICROINJECTION_MICROGRAPHS names their folder.",

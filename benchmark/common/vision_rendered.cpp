@@ -78,7 +78,7 @@ void cellRows(const ImageRows& rows, const CellDetection& cell, const CellTruth&
 }
 
 PipetteDetection pipetteRows(const ImageRows& rows, const std::string& what, const Frame& frame, const CameraView& view,
-                 const std::optional<PipetteTruth>& truth, double goal) {
+                             const std::optional<PipetteTruth>& truth, double goal) {
   PipetteDetectorConfig config;
   config.kind = what == "tip" ? "injection" : "holding";
   const Eigen::Vector2d shaft = view.imageDirection({0, what == "tip" ? 1 : -1});

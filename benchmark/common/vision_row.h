@@ -11,9 +11,9 @@ struct VisionRow {
   std::string set, image, what;
   double error = std::numeric_limits<double>::quiet_NaN();     ///< px; planes of focus, degrees of an axis
   double relative = std::numeric_limits<double>::quiet_NaN();  ///< of the truth
-  bool found = false;  ///< it has values
-  bool sure = false;   ///< without a warning
-  bool wrong = false;  ///< sure, and not so
+  bool found = false;                                          ///< it has values
+  bool sure = false;                                           ///< without a warning
+  bool wrong = false;                                          ///< sure, and not so
   std::string verdict{};
   double time = std::numeric_limits<double>::quiet_NaN();  ///< s of processor time
 };

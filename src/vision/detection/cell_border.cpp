@@ -11,10 +11,11 @@ constexpr double kFullBorder = 6;  // of the slopes' scale, a slope that counts 
 constexpr int kClimb = 8;          // columns
 constexpr double kBorder = 0.5;    // strength of a ray that sees a border
 constexpr double kLeastCoverage = 0.3;
-constexpr int kBendRun = 45, kBendSides = 18;  // shares 1 / n of the border: of a bend, and of what belongs to it beside it
+constexpr int kBendRun = 45,
+              kBendSides = 18;  // shares 1 / n of the border: of a bend, and of what belongs to it beside it
 constexpr double kLeastBend = 0.7, kBend = 3;  // px; of the median distance: what is off the ellipse
 constexpr double kLeastRest = 0.5;             // of the points, that an ellipse without the bends needs
-constexpr int kIndependentRays = 3;  // neighbours that the smoothing ties together
+constexpr int kIndependentRays = 3;            // neighbours that the smoothing ties together
 
 void forbid(const PolarMap& map, const BorderBand& band, cv::Mat& strength) {
   for (int ray = 0; ray < map.rays(); ++ray) {
@@ -135,7 +136,8 @@ EllipseFit withoutBends(const std::vector<cv::Point2d>& points, const EllipseFit
   EllipseFit better = fitEllipse(rest, fit.ellipse, tolerance);
   if (!better.valid) return fit;
   better.inlier.clear();
-  for (const cv::Point2d& point : points) better.inlier.push_back(std::abs(better.ellipse.distance(point)) <= tolerance);
+  for (const cv::Point2d& point : points)
+    better.inlier.push_back(std::abs(better.ellipse.distance(point)) <= tolerance);
   return better;
 }
 

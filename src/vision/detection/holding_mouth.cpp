@@ -9,21 +9,21 @@ namespace microinjection {
 namespace {
 
 constexpr int kAngles = 13, kFineAngles = 31;
-constexpr double kFirstAngle = 0.1, kLastAngle = 2.0;          // rad, of an arc, from the wall to beyond its outermost place
-constexpr double kSmallestLip = 0.04, kLargestLip = 0.42;      // of the half width, radius
+constexpr double kFirstAngle = 0.1, kLastAngle = 2.0;  // rad, of an arc, from the wall to beyond its outermost place
+constexpr double kSmallestLip = 0.04, kLargestLip = 0.42;  // of the half width, radius
 constexpr double kLipStep = 0.04;
-constexpr int kShaftRows = 24, kShaftGap = 8;                  // behind the lip, that show the walls
-constexpr double kFineAngle = 0.3;  // rad, first of the refined ones
+constexpr int kShaftRows = 24, kShaftGap = 8;    // behind the lip, that show the walls
+constexpr double kFineAngle = 0.3;               // rad, first of the refined ones
 constexpr double kNearStep = 0.5, kFaint = 0.3;  // px; of the wall
-constexpr double kNear = 3.5;                                  // px along the normal, of a refined place
+constexpr double kNear = 3.5;                    // px along the normal, of a refined place
 constexpr double kLeastScore = 0.35, kSureScore = 0.96;
-constexpr double kMostUneven = 0.06;                           // slant of a mouth that is certain
-constexpr double kWallOff = 10;                               // px, that a wall may be off the given width
-constexpr double kClearWall = 0.5;                             // of the clearest edge near it
-constexpr double kTowardsShaft = 1.6;                          // what looks like walls may go on beyond a mouth, into a cell
-constexpr int kWidest = 24;                                    // px, of an edge
-constexpr double kWidestSure = 6.5;                            // px, an edge of a pipette in focus
-constexpr double kSoft = 1.5;                                  // px, prior of radius and width
+constexpr double kMostUneven = 0.06;   // slant of a mouth that is certain
+constexpr double kWallOff = 10;        // px, that a wall may be off the given width
+constexpr double kClearWall = 0.5;     // of the clearest edge near it
+constexpr double kTowardsShaft = 1.6;  // what looks like walls may go on beyond a mouth, into a cell
+constexpr int kWidest = 24;            // px, of an edge
+constexpr double kWidestSure = 6.5;    // px, an edge of a pipette in focus
+constexpr double kSoft = 1.5;          // px, prior of radius and width
 
 struct Arc {
   double apex, radius, half_width;  ///< row; columns
@@ -40,15 +40,15 @@ float valueAt(const cv::Mat& image, double row, double column) {
 /// Derivative along the outward normal, `off` px outside of the arc at `angle`.
 double slopeAt(const PipetteStrip& strip, const Arc& arc, int side, double angle, double off) {
   const double c = std::cos(angle), s = std::sin(angle), r = arc.radius + off;
-  const double row = arc.apex + arc.radius - r * s, column = strip.half() + side * (arc.half_width - arc.radius + r * c);
+  const double row = arc.apex + arc.radius - r * s,
+               column = strip.half() + side * (arc.half_width - arc.radius + r * c);
   return side * c * valueAt(strip.across(), row, column) - s * valueAt(strip.along(), row, column);
 }
 
 /// Mean derivative across of one outer wall, outwards: with its sign.
 double wallAt(const PipetteStrip& strip, int side, double row, double half_width) {
   double sum = 0;
-  for (int k = 0; k < kShaftRows; ++k)
-    sum += side * valueAt(strip.across(), row + k, strip.half() + side * half_width);
+  for (int k = 0; k < kShaftRows; ++k) sum += side * valueAt(strip.across(), row + k, strip.half() + side * half_width);
   return sum / kShaftRows;
 }
 
@@ -195,7 +195,8 @@ HoldingMouth findMouth(const PipetteStrip& strip, double coarse, double reach, d
   mouth.deviation = 0.5 * std::hypot(left.deviation, right.deviation);
   mouth.valid = true;
   mouth.half_width = half_width;
-  if (edgeWidth(strip, shaft, half_width) > kWidestSure) mouth.doubt = "the pipette is out of focus: its mouth is displaced";
+  if (edgeWidth(strip, shaft, half_width) > kWidestSure)
+    mouth.doubt = "the pipette is out of focus: its mouth is displaced";
   if (mouth.score < kSureScore) mouth.doubt = "the lips of the mouth are not clear";
   if (std::abs(mouth.slant) > kMostUneven) mouth.doubt = "the lips are not at the same place of the axis";
   return mouth;

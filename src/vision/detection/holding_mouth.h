@@ -9,12 +9,12 @@ namespace microinjection {
 /// The mouth of a holding pipette in a strip about its axis.
 struct HoldingMouth {
   bool valid = false;
-  double row = 0;        ///< of the outermost place of both lips
-  double deviation = 0;  ///< rows, standard deviation
-  double slant = 0;      ///< rows per column, of the line over both lips
-  double score = 0;      ///< 0..1, edge along both lips relative to that of the walls
-  double half_width = 0; ///< columns, of the walls
-  std::string doubt;     ///< empty, or why the mouth is not certain
+  double row = 0;         ///< of the outermost place of both lips
+  double deviation = 0;   ///< rows, standard deviation
+  double slant = 0;       ///< rows per column, of the line over both lips
+  double score = 0;       ///< 0..1, edge along both lips relative to that of the walls
+  double half_width = 0;  ///< columns, of the walls
+  std::string doubt;      ///< empty, or why the mouth is not certain
 };
 
 /// Fits a round lip to the end of each wall: an arc that is tangent to the outer edge of the wall and

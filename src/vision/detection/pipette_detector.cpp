@@ -12,18 +12,18 @@ namespace microinjection {
 namespace {
 
 constexpr int kAxes = 5, kHoldingAxes = 8;
-constexpr double kWider = 1.38;        // ratio of two outlines' widths that tells them apart
-constexpr double kLeastClearness = 3;  // of the shared edges at the end
-constexpr int kAxisRows = 160;         // px behind the end, whose symmetry gives the axis
-constexpr double kAcross = 1.5;        // px, blur of the derivative across the axis
+constexpr double kWider = 1.38;                            // ratio of two outlines' widths that tells them apart
+constexpr double kLeastClearness = 3;                      // of the shared edges at the end
+constexpr int kAxisRows = 160;                             // px behind the end, whose symmetry gives the axis
+constexpr double kAcross = 1.5;                            // px, blur of the derivative across the axis
 constexpr double kEdgesEnded = 0.15, kSharedEnded = 0.25;  // see coarseEnd()
-constexpr double kEmpty = 8;                 // clearness of a tip before an empty background
-constexpr double kAxisMargin = 24;           // px beside an outline, that shows the symmetry
-constexpr double kWidestPoint = 14;          // px from the axis, that a tip is looked for in
-constexpr double kTube = 0.1;                // widening of a tube whose profile stays the same, at most
-constexpr double kAgree = 6;                 // px, between two ways to see a tip's end
-constexpr double kApart = 0.25;              // standard deviation of an end over the distance between two ways to see it
-constexpr double kUnclear = 3;               // px, standard deviation of an end that needs a second witness
+constexpr double kEmpty = 8;                               // clearness of a tip before an empty background
+constexpr double kAxisMargin = 24;                         // px beside an outline, that shows the symmetry
+constexpr double kWidestPoint = 14;                        // px from the axis, that a tip is looked for in
+constexpr double kTube = 0.1;                              // widening of a tube whose profile stays the same, at most
+constexpr double kAgree = 6;                               // px, between two ways to see a tip's end
+constexpr double kApart = 0.25;  // standard deviation of an end over the distance between two ways to see it
+constexpr double kUnclear = 3;   // px, standard deviation of an end that needs a second witness
 constexpr int kFirstShift = 24, kShift = 8;  // px, that an axis may be off
 constexpr double kMargin = 6;                // px beside an outline
 constexpr double kCoarseLength = 430;        // rows of the strip that shows a whole holding pipette
@@ -32,11 +32,11 @@ constexpr int kBehindMouth = 8;              // rows of it, that a mouth must le
 constexpr double kNarrowestHolding = 12;     // px, half width
 constexpr double kHoldingStep = 2;           // px, of the strip that gives the axis of a holding pipette
 constexpr double kNearMouth = 8, kMouthRows = 36, kMouthBlur = 1.3;  // px, of the strip that shows the mouth
-constexpr double kWitnessReach = 14;         // px beside lips that are not clear
-constexpr int kMouthMargin = 18;             // px beside the walls
-constexpr double kSureClearness = 9;          // of a tip
-constexpr double kSureSymmetry = 0.9;         // of the edges near a tip
-constexpr double kLeastSymmetry = 0.5;       // of the edges of a whole pipette
+constexpr double kWitnessReach = 14;                                 // px beside lips that are not clear
+constexpr int kMouthMargin = 18;                                     // px beside the walls
+constexpr double kSureClearness = 9;                                 // of a tip
+constexpr double kSureSymmetry = 0.9;                                // of the edges near a tip
+constexpr double kLeastSymmetry = 0.5;                               // of the edges of a whole pipette
 
 double outlineAt(const PipetteAxis& axis, const cv::Point2d& point) {
   const cv::Point2d d = point - axis.point;
@@ -174,12 +174,14 @@ PipetteDetection PipetteDetector::measureHolding(const Frame& frame, PipetteAxis
   for (int round = 0; round < 2; ++round) {
     const cv::Point2d border = entry(frame, axis);
     shape.direction = axis.direction;
-    shape.origin = border - (shape.rows - 1) * shape.step * cv::Point2d(std::cos(axis.direction), std::sin(axis.direction));
+    shape.origin =
+        border - (shape.rows - 1) * shape.step * cv::Point2d(std::cos(axis.direction), std::sin(axis.direction));
     const PipetteStrip strip(frame, shape, 1.0, 1.5);
     outline = findOutline(strip, kNarrowestHolding / shape.step);
     none.finding = Finding::notFound("no pipette: an axis without two walls in the image");
     if (!outline.valid || outline.last < kBehindMouth) return none;
-    const AxisFit fit = fitAxis(strip, outline.last, shape.rows - outline.last, 1.25 * outline.at(outline.last) + 6, kCoarseShift);
+    const AxisFit fit =
+        fitAxis(strip, outline.last, shape.rows - outline.last, 1.25 * outline.at(outline.last) + 6, kCoarseShift);
     if (round == 0 && fit.valid) {
       axis.point = strip.point(outline.last, fit.offset);
       axis.direction += std::atan(fit.slant);
@@ -310,7 +312,8 @@ PipetteDetection PipetteDetector::refine(const Frame& frame, PipetteAxis axis, c
   found.clearness = last.clearness;
   setCovariance(found, last.deviation, fit.offset_deviation);
   found.finding = last.deviation > kUnclear ? Finding::uncertain("the pipette's end is not clear") : Finding::found();
-  if (found.clearness < kSureClearness) found.finding = Finding::uncertain("the tip is not clear before its background");
+  if (found.clearness < kSureClearness)
+    found.finding = Finding::uncertain("the tip is not clear before its background");
   if (found.symmetry < kSureSymmetry) found.finding = Finding::uncertain("the pipette's walls are not symmetric");
   if (!frame.contains(found.end, 2)) found.finding = Finding::notFound("no pipette: its end is out of the image");
   return found;

@@ -6,10 +6,10 @@
 namespace microinjection {
 namespace {
 
-constexpr int kBlock = 3;              // rows whose edges are averaged
-constexpr double kMostGrowth = 0.03;   // columns per row
+constexpr int kBlock = 3;             // rows whose edges are averaged
+constexpr double kMostGrowth = 0.03;  // columns per row
 constexpr double kGrowthStep = 0.005;
-constexpr double kSeen = 0.25;         // of a block's strongest edge, that a wall has at least
+constexpr double kSeen = 0.25;  // of a block's strongest edge, that a wall has at least
 constexpr std::size_t kReferenceBlocks = 8;
 constexpr int kGap = 2;                // blocks without a wall that end it
 constexpr double kNearlyAsLong = 0.8;  // of the longest pair of lines, a wider pair is the outline

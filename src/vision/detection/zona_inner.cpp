@@ -17,7 +17,7 @@ constexpr double kLeastShare = 0.12, kSureShare = 0.2;        // of the rays, th
 constexpr double kLeastStrength = 0.3, kSureStrength = 0.45;  // mean over them
 constexpr double kBestRatio = 1.25;                           // of the strength to that of the next best thickness
 constexpr double kNeighbour = 4;                              // px, thicknesses that are the same line
-constexpr double kTilt = 0.006; // of the radius, standard deviation of a zona's change of thickness
+constexpr double kTilt = 0.006;  // of the radius, standard deviation of a zona's change of thickness
 
 /// Curvature of the grey value along the rays, positive on a dark line, relative to its usual size
 /// and cut; 0 where the ooplasm's rim covers it.
@@ -89,9 +89,7 @@ struct ThicknessFit {
   Eigen::Vector3d value{0, 0, 0};
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   double residual = 0;
-  double at(double direction) const {
-    return value.dot(Eigen::Vector3d(1, std::cos(direction), std::sin(direction)));
-  }
+  double at(double direction) const { return value.dot(Eigen::Vector3d(1, std::cos(direction), std::sin(direction))); }
 };
 
 ThicknessFit fitThickness(const std::vector<Place>& places, double column, double tilt) {
@@ -167,7 +165,7 @@ CellBorder findZonaInner(const Frame& frame, const CellBorder& outer, const Cell
   border.covariance.topLeftCorner<2, 2>() =
       kStep * kStep * fit.covariance.bottomRightCorner<2, 2>() + outer.covariance.topLeftCorner<2, 2>();
   border.covariance(2, 2) += outer.covariance(2, 2);
-  border.polarity = Polarity::kRising;
+  border.polarity = outer.polarity;
   border.residual = fit.residual * kStep;
   border.coverage = static_cast<double>(places.size()) / kRays;
   border.strength = mean[column];
@@ -179,7 +177,8 @@ CellBorder findZonaInner(const Frame& frame, const CellBorder& outer, const Cell
     border.inlier.push_back(std::abs(place.column - fit.at(place.direction)) < 3 / kStep);
   }
   const bool sure = share[column] > kSureShare && mean[column] > kSureStrength && next * kBestRatio < 1;
-  border.finding = sure ? Finding::found() : Finding::uncertain("the zona's inner border is faint or seen on a short arc");
+  border.finding =
+      sure ? Finding::found() : Finding::uncertain("the zona's inner border is faint or seen on a short arc");
   return border;
 }
 
