@@ -14,8 +14,9 @@ constexpr double kLeastCoverage = 0.3;
 constexpr int kBendRun = 45,
               kBendSides = 18;  // shares 1 / n of the border: of a bend, and of what belongs to it beside it
 constexpr double kLeastBend = 0.7, kBend = 3;  // px; of the median distance: what is off the ellipse
-constexpr double kLeastRest = 0.5;             // of the points, that an ellipse without the bends needs
-constexpr int kIndependentRays = 3;            // neighbours that the smoothing ties together
+constexpr int kMostBends = 1;
+constexpr double kLeastRest = 0.5;   // of the points, that an ellipse without the bends needs
+constexpr int kIndependentRays = 3;  // neighbours that the smoothing ties together
 
 void forbid(const PolarMap& map, const BorderBand& band, cv::Mat& strength) {
   for (int ray = 0; ray < map.rays(); ++ray) {
@@ -129,10 +130,13 @@ EllipseFit withoutBends(const std::vector<cv::Point2d>& points, const EllipseFit
     for (int k = i - least + 1 - sides; k <= i + sides; ++k) bent[(k + 2 * count) % count] = true;
   }
   std::vector<cv::Point2d> rest;
+  int bends = 0;
   for (int i = 0; i < count; ++i) {
     if (!bent[i]) rest.push_back(points[i]);
+    bends += bent[i] && !bent[(i + 1) % count] ? 1 : 0;
   }
-  if (rest.size() == points.size() || rest.size() < kLeastRest * points.size()) return fit;
+  // A border that is bent in many places is no ellipse: nothing tells which part to leave out.
+  if (bends == 0 || bends > kMostBends || rest.size() < kLeastRest * points.size()) return fit;
   EllipseFit better = fitEllipse(rest, fit.ellipse, tolerance);
   if (!better.valid) return fit;
   better.inlier.clear();

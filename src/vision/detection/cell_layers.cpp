@@ -59,7 +59,7 @@ CellBorder bestBorder(const Frame& frame, const PolarMap& map, const std::string
 
 bool isSecondBorder(const CellBorder& border) {
   return border.finding.hasValues() && border.coverage >= kLeastCoverage && border.consistency >= kLeastConsistency &&
-         border.strength >= kLeastStrength && border.outside < 0.5 && border.significance > kLeastSignificance;
+         border.strength >= kLeastStrength && border.outside < 0.5;
 }
 
 /// @param rim  px, widest dark rim
@@ -133,7 +133,7 @@ std::vector<CellBorder> bordersOutside(const Frame& frame, const CellBorder& mai
   double low = kGap;
   while (low + 0.03 < limit && found.size() < 3) {
     const CellBorder next = searchBand(frame, main, low, limit, look, kOutwards);
-    if (!isSecondBorder(next)) break;
+    if (!isSecondBorder(next) || next.significance < kLeastSignificance) break;
     // Near another border a halo of it may look like one.
     const bool near = radiusOf(next) < kNear * radiusOf(found.empty() ? main : found.back());
     if (near && next.strength < kNearStrength) break;

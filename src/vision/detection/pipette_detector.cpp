@@ -123,7 +123,8 @@ PipetteDetection PipetteDetector::detect(const Frame& frame) const {
                              static_cast<int>(config_.region[2]), static_cast<int>(config_.region[3]));
   }
   best.finding = Finding::notFound("no pipette: no two straight edges from the side that it comes from");
-  for (; search.finer < 2 && !best.finding.isFound(); ++search.finer) {
+  // A finer search costs four times as much: only for pipettes of which too little is seen.
+  for (; search.finer < 2 && !best.finding.hasValues(); ++search.finer) {
     for (const PipetteAxis& axis : findPipetteAxes(frame, search, config_.kind == "holding" ? kHoldingAxes : kAxes)) {
       if (best.finding.isFound() && outlineAt(axis, best.end) < kWider * best.half_width) continue;
       take(best, measure(frame, axis));
