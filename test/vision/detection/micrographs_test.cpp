@@ -3,8 +3,8 @@
 // Readings that the detectors miss today are not tested here; ./dev bench vision has them all: the DIC
 // pipette in focus (3.2 px, goal 2), plane 9 of the stacks (5 to 7 px, goal 5), the outer zona of
 // movo_308 (2.9 %, goal 2 %), the inner ones of movo_262 and movo_308 (3 and 9 %, uncertain), and the best
-// plane of the stacks, which findFocus refuses in two of three and puts 3 planes off in one. The readings were seen while the
-// constants were chosen.
+// plane of the stacks, which findFocus refuses in two of three and puts 3 planes off in one. The readings were seen
+// while the constants were chosen.
 
 #include <gtest/gtest.h>
 
