@@ -14,6 +14,7 @@ constexpr double kLeastCoverage = 0.3;
 constexpr int kBendRun = 45,
               kBendSides = 18;  // shares 1 / n of the border: of a bend, and of what belongs to it beside it
 constexpr double kLeastBend = 0.7, kBend = 3;  // px; of the median distance: what is off the ellipse
+constexpr double kBetter = 0.5;                // of the residual, that leaving bends out must leave at most
 constexpr int kMostBends = 1;
 constexpr double kLeastRest = 0.5;   // of the points, that an ellipse without the bends needs
 constexpr int kIndependentRays = 3;  // neighbours that the smoothing ties together
@@ -138,7 +139,7 @@ EllipseFit withoutBends(const std::vector<cv::Point2d>& points, const EllipseFit
   // A border that is bent in many places is no ellipse: nothing tells which part to leave out.
   if (bends == 0 || bends > kMostBends || rest.size() < kLeastRest * points.size()) return fit;
   EllipseFit better = fitEllipse(rest, fit.ellipse, tolerance);
-  if (!better.valid) return fit;
+  if (!better.valid || better.residual > kBetter * fit.residual) return fit;
   better.inlier.clear();
   for (const cv::Point2d& point : points)
     better.inlier.push_back(std::abs(better.ellipse.distance(point)) <= tolerance);
@@ -165,9 +166,8 @@ CellBorder findBorder(const Frame& frame, const PolarMap& map, Polarity polarity
   border.strength = points.strength;
   border.consistency = points.consistency;
   const Ellipse start{map.centre(), {points.mean_radius, points.mean_radius}, 0};
-  EllipseFit fit = fitEllipse(points.all, start, tolerance);
+  const EllipseFit fit = fitEllipse(points.all, start, tolerance);
   if (!fit.valid) return border;
-  fit = withoutBends(points.all, fit, tolerance);
   border.ellipse = fit.ellipse;
   border.covariance = fit.covariance;
   border.residual = fit.residual;
