@@ -77,8 +77,8 @@ void cellRows(const ImageRows& rows, const CellDetection& cell, const CellTruth&
   rows.add("ooplasm", cell.ooplasm.finding, 0.5 * std::abs(cell.ooplasm.ellipse.meanDiameter() - ooplasm), 0, kZona);
 }
 
-void pipetteRows(const ImageRows& rows, const std::string& what, const Frame& frame, const CameraView& view,
-                 const std::optional<PipetteTruth>& truth, double goal) {
+PipetteDetection pipetteRows(const ImageRows& rows, const std::string& what, const Frame& frame, const CameraView& view,
+                             const std::optional<PipetteTruth>& truth, double goal) {
   PipetteDetectorConfig config;
   config.kind = what == "tip" ? "injection" : "holding";
   const Eigen::Vector2d shaft = view.imageDirection({0, what == "tip" ? 1 : -1});
@@ -86,28 +86,27 @@ void pipetteRows(const ImageRows& rows, const std::string& what, const Frame& fr
   const PipetteDetector detector(config);
   double time = 0, following = 0;
   const PipetteDetection found = timed(time, [&] { return detector.detect(frame); });
-  if (!truth) return rows.addAbsent(what, found.finding, time);
-  if (!frame.contains({truth->end.x(), truth->end.y()}, 8)) return;
+  if (!truth) rows.addAbsent(what, found.finding, time);
+  if (!truth || !frame.contains({truth->end.x(), truth->end.y()}, 8)) return found;
   const double off = std::hypot(found.end.x - truth->end.x(), found.end.y - truth->end.y());
   rows.add(what, found.finding, off, 0, goal, time);
   const double turn = std::remainder(found.direction - std::atan2(truth->axis.y(), truth->axis.x()), 2 * M_PI);
   rows.add(what + "_axis", found.finding, std::abs(turn) * 180 / M_PI, 0, kAxis);
-  if (!found.finding.hasValues()) return;
+  if (!found.finding.hasValues()) return found;
   PipetteDetection before = found;
   before.end += kMoved;
   const PipetteDetection again = timed(following, [&] { return detector.track(frame, before, 8); });
   rows.add(what + "_tracked", again.finding, std::hypot(again.end.x - truth->end.x(), again.end.y - truth->end.y()), 0,
            goal, following);
+  return found;
 }
 
-void dimpleRow(const ImageRows& rows, const Frame& frame, const CellDetection& cell, const SceneTruth& truth) {
-  if (!truth.cell || !truth.cell->dimple_depth || !truth.injection || !cell.finding.hasValues()) return;
-  const PipetteTruth& needle = *truth.injection;
+/// The dimple under the needle that was found. What needs an uncertain needle is uncertain.
+void dimpleRow(const ImageRows& rows, const Frame& frame, const CellDetection& cell, const PipetteDetection& needle,
+               const SceneTruth& truth) {
+  if (!truth.cell || !truth.cell->dimple_depth || !cell.finding.hasValues()) return;
   double time = 0;
-  const Indentation found = timed(time, [&] {
-    return findIndentation(frame, cell.outer(), {needle.end.x(), needle.end.y()},
-                           std::atan2(needle.axis.y(), needle.axis.x()), 2 * needle.radius + 4);
-  });
+  const Indentation found = timed(time, [&] { return findIndentation(frame, cell.outer(), needle); });
   rows.add("dimple_depth", found.finding, std::abs(found.depth - *truth.cell->dimple_depth), *truth.cell->dimple_depth,
            kDimple, time);
 }
@@ -141,9 +140,9 @@ void renderedRows(const VisionCondition& condition, int images, const TakeRow& t
     } else {
       rows.addAbsent("cell", cell.finding, reading + time);
     }
-    pipetteRows(rows, "tip", frame, view, drawn.truth.injection, kTip);
+    const PipetteDetection needle = pipetteRows(rows, "tip", frame, view, drawn.truth.injection, kTip);
     pipetteRows(rows, "mouth", frame, view, drawn.truth.holding, kMouth);
-    dimpleRow(rows, frame, cell, drawn.truth);
+    dimpleRow(rows, frame, cell, needle, drawn.truth);
   }
 }
 

@@ -19,8 +19,8 @@
 namespace microinjection {
 namespace {
 
-constexpr double kPeriod = 0.02;        // s of wall time, of a step
-constexpr double kFar = 1;              // m, a border that the micromanipulator's own limits come before
+constexpr double kPeriod = 0.02;  // s of wall time, of a step
+constexpr double kFar = 1;        // m, a border that the micromanipulator's own limits come before
 
 std::string utcNow() {
   const std::time_t now = std::time(nullptr);
@@ -169,7 +169,8 @@ void CalibrationNode::step() {
 }
 
 void CalibrationNode::end() {
-  const CalibrationSetup setup{utcNow(), watch_.imageCentre(), calibration_ ? calibration_->tips : std::vector<TipRecord>()};
+  const CalibrationSetup setup{utcNow(), watch_.imageCentre(),
+                               calibration_ ? calibration_->tips : std::vector<TipRecord>()};
   const CalibrationOutcome outcome = calibrate(run_->observations(), parameters_.calibration.limits, setup);
   cell_microinjection::CalibrateResult result;
   if (!outcome.calibration) {

@@ -38,8 +38,8 @@ VisualServoNode::VisualServoNode(ros::NodeHandle node, ros::NodeHandle private_n
     : parameters_(readParameters(private_node)),
       node_(node),
       watch_(node, parameters_.input_timeout),
-      others_(subscribeGuarded<geometry_msgs::PoseStamped>(node, kSetpoints, 1,
-                                                           [](const geometry_msgs::PoseStamped&, const std::string&) {})),
+      others_(subscribeGuarded<geometry_msgs::PoseStamped>(
+          node, kSetpoints, 1, [](const geometry_msgs::PoseStamped&, const std::string&) {})),
       action_(node, "visual_servo/go_to_pixel", false),
       diagnostics_(node, private_node) {
   action_.registerGoalCallback([this] { onGoal(); });

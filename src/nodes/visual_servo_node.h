@@ -47,7 +47,7 @@ class VisualServoNode {
   Parameters parameters_;
   ros::NodeHandle node_;
   TipWatch watch_;
-  std::optional<CameraCalibration> calibration_;  ///< of the goal; none: no goal is active
+  std::optional<CameraCalibration> calibration_;     ///< of the goal; none: no goal is active
   Eigen::Vector2d pixel_ = Eigen::Vector2d::Zero();  ///< px, of the goal
   Eigen::Vector3d start_ = Eigen::Vector3d::Zero();  ///< m, of the goal
   ros::SteadyTime began_;

@@ -8,8 +8,8 @@
 namespace microinjection {
 namespace {
 
-constexpr double kArrived = 0.5e-6;    // m, of the motors from their goal
-constexpr double kBeyondPlay = 3e-6;   // m, by which a motion is longer than the backlash that it takes up
+constexpr double kArrived = 0.5e-6;   // m, of the motors from their goal
+constexpr double kBeyondPlay = 3e-6;  // m, by which a motion is longer than the backlash that it takes up
 
 }  // namespace
 
@@ -81,8 +81,8 @@ void ImageApproach::plan(const Input& input) {
   }
   last_stamp_ = input.tip->stamp;
   const TipFrame frame{++sequence_, input.tip->stamp, input.tip->pixel};
-  const ImageStep next = images_.step(frame, pixel_, calibration_, play_, input.now,
-                                      input.rested_since + config_.settle_time);
+  const ImageStep next =
+      images_.step(frame, pixel_, calibration_, play_, input.now, input.rested_since + config_.settle_time);
   distance_ = (input.tip->pixel - pixel_).norm();
   done_ = next.arrived;
   if (next.position) goal_ = *next.position;

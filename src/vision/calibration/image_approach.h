@@ -41,9 +41,9 @@ class ImageApproach {
   /// The set-point (m, of the motors); none once it is done or has failed.
   std::optional<Eigen::Vector3d> step(const Input& input);
 
-  bool done() const { return done_; }                      ///< the tip is seen at the target
-  const std::string& failure() const { return failure_; }  ///< empty: none
-  double distance() const { return distance_; }            ///< px, of the last image; NaN before
+  bool done() const { return done_; }                         ///< the tip is seen at the target
+  const std::string& failure() const { return failure_; }     ///< empty: none
+  double distance() const { return distance_; }               ///< px, of the last image; NaN before
   const std::string& waitsFor() const { return waits_for_; }  ///< empty while it moves
 
  private:

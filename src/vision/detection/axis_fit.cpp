@@ -41,7 +41,8 @@ AxisFit common(const std::vector<Block>& blocks, int most) {
       best.slant = slant;
     }
   }
-  best.valid = highest > kLeastSymmetry * static_cast<double>(blocks.size());
+  best.symmetry = highest / static_cast<double>(blocks.size());
+  best.valid = best.symmetry > kLeastSymmetry;
   return best;
 }
 

@@ -7,6 +7,7 @@ namespace microinjection {
 /// A straight axis in a strip, by the symmetry of its rows.
 struct AxisFit {
   bool valid = false;
+  double symmetry = 0;          ///< 0..1, mean over the rows
   double offset = 0;            ///< columns from the middle, at the first row
   double slant = 0;             ///< columns per row
   double offset_deviation = 0;  ///< columns

@@ -13,7 +13,7 @@ constexpr int kCandidates = 6;
 constexpr double kThinnestOoplasm = 0.55;  // of the outer border's diameter
 constexpr double kMostOutside = 0.4, kLeastOutside = 0.02;
 constexpr double kMostElongated = 1.5;  // ratio of a cell's axes
-constexpr double kLeastStrength = 0.6, kLeastConsistency = 0.6;
+constexpr double kLeastStrength = 0.6, kLeastConsistency = 0.6, kLeastSignificance = 3;
 
 }  // namespace
 
@@ -97,7 +97,7 @@ void CellDetector::take(CellDetection& detection, const CellLayers& layers) {
 
 bool CellDetector::isClear(const CellBorder& border) const {
   return border.finding.hasValues() && border.strength >= kLeastStrength && border.consistency >= kLeastConsistency &&
-         border.coverage >= config_.least_coverage &&
+         border.coverage >= config_.least_coverage && border.significance > kLeastSignificance &&
          border.ellipse.semi_axes[0] < kMostElongated * border.ellipse.semi_axes[1];
 }
 
@@ -111,7 +111,7 @@ Finding CellDetector::judge(const Frame& frame, const CellLayers& layers) const 
     return Finding::notFound("a round thing is a bubble: a wide dark rim and a bright middle");
   if (outer.outside > kMostOutside) return Finding::notFound("half of the border is outside of the image");
   if (outer.outside > config_.most_outside) return Finding::uncertain("a part of the border is outside of the image");
-  return Finding::found();
+  return outer.finding;
 }
 
 void CellDetector::addOther(CellDetection& detection, const CellLayers& layers) {

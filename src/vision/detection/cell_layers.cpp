@@ -16,16 +16,19 @@ constexpr double kFaded = 0.25;   // of a border's contrast, when it is lost
 constexpr double kInside = 0.93;  // ratio of a border inside of the main one, at most
 constexpr double kGap = 1.03;     // ratio of two borders' radii, at least
 constexpr double kLeastCoverage = 0.55, kLeastConsistency = 0.6, kLeastStrength = 0.55;  // of a second border
-constexpr double kClear = 0.8;         // of the main border's strength: an inner border as clear as the main one
-constexpr double kZonaPlace = 0.5;     // of the zona's outer border in its dark rim, see refineBorder()
-constexpr double kInnerPlace = 0.5;    // of the zona's inner border
-constexpr double kApart = 2;           // px, from the rim, that is another border
-constexpr double kOoplasmPlace = 1.0;  // of the ooplasm's: the rim is refracted beside it
-constexpr int kFreeChange = 4;         // columns from ray to ray
-constexpr double kFreeGain = 0.07;     // of strength, what a freer path must be better by
-constexpr double kSure = 0.9;          // strength that needs no freer path
-constexpr double kOutwards = 0.2;      // see BorderBand
-constexpr double kWidestRim = 0.2;     // of the radius
+constexpr double kLeastSignificance = 3;                                                 // of a second border
+constexpr double kClear = 0.8;       // of the main border's strength: an inner border as clear as the main one
+constexpr double kZonaPlace = 0.5;   // of the zona's outer border in its dark rim, see refineBorder()
+constexpr double kInnerPlace = 0.5;  // of the zona's inner border
+constexpr double kSharpRim = 6;      // px, line of a zona in focus, at most
+constexpr double kLeastResidual = 0.5, kMostResidual = 0.0025;  // px; of the diameter: of a sure ellipse
+constexpr double kApart = 2;                                    // px, from the rim, that is another border
+constexpr double kOoplasmPlace = 1.0;                           // of the ooplasm's: the rim is refracted beside it
+constexpr int kFreeChange = 4;                                  // columns from ray to ray
+constexpr double kFreeGain = 0.07;                              // of strength, what a freer path must be better by
+constexpr double kSure = 0.9;                                   // strength that needs no freer path
+constexpr double kOutwards = 0.2;                               // see BorderBand
+constexpr double kWidestRim = 0.2;                              // of the radius
 
 std::vector<Polarity> polaritiesOf(const std::string& look) {
   if (look == "dic") return {Polarity::kEither};
@@ -105,10 +108,16 @@ CellBorder wholeInnerBorder(const Frame& frame, const CellLayers& layers, const 
 /// the gap is thinner than the rim.
 CellBorder innerBorder(const Frame& frame, const CellLayers& layers, const std::string& look) {
   const double gap = radiusOf(layers.zona_outer) - radiusOf(layers.ooplasm);
-  const CellBorder whole = wholeInnerBorder(frame, layers, look);
+  CellBorder whole = wholeInnerBorder(frame, layers, look);
   const bool apart = radiusOf(whole) > radiusOf(layers.ooplasm) + layers.ooplasm.shift + kApart;
-  if (isSecondBorder(whole) && apart) return refined(frame, whole, kInnerPlace, 0.25 * gap);
+  const bool seen = isSecondBorder(whole) && apart;
   CellBorder border = findZonaInner(frame, layers.zona_outer, layers.ooplasm);
+  if (seen) {
+    whole = refined(frame, whole, kInnerPlace, 0.25 * gap);
+    const bool agree = border.finding.hasValues() && std::abs(radiusOf(whole) - radiusOf(border)) < kApart;
+    if (!agree) border.finding = whole.finding = Finding::uncertain("two lines may be the zona's inner border");
+    if (!border.finding.isFound()) return whole;
+  }
   if (border.finding.hasValues()) return border;
   border = layers.ooplasm;
   border.finding = Finding::uncertain("no gap between ooplasm and zona: the middle of the ooplasm's rim is given");
@@ -124,7 +133,7 @@ std::vector<CellBorder> bordersOutside(const Frame& frame, const CellBorder& mai
   double low = kGap;
   while (low + 0.03 < limit && found.size() < 3) {
     const CellBorder next = searchBand(frame, main, low, limit, look, kOutwards);
-    if (!isSecondBorder(next)) break;
+    if (!isSecondBorder(next) || next.significance < kLeastSignificance) break;
     // Near another border a halo of it may look like one.
     const bool near = radiusOf(next) < kNear * radiusOf(found.empty() ? main : found.back());
     if (near && next.strength < kNearStrength) break;
@@ -132,6 +141,25 @@ std::vector<CellBorder> bordersOutside(const Frame& frame, const CellBorder& mai
     low = radiusOf(next) / radiusOf(main) + 0.03;
   }
   return found;
+}
+
+/// Takes the certainty from borders whose places the image may have displaced.
+void warn(CellLayers& layers) {
+  const auto doubt = [](CellBorder& border, const std::string& reason) {
+    if (border.finding.isFound()) border.finding = Finding::uncertain(reason);
+  };
+  CellBorder* const all[] = {&layers.zona_outer, &layers.zona_inner, &layers.ooplasm};
+  const bool zona = layers.zona_outer.finding.hasValues();
+  if (zona && layers.ooplasm.rim == 0)
+    doubt(layers.ooplasm, "the ooplasm's dark rim is not seen: its border is up to a rim off");
+  if (zona && layers.zona_outer.rim == 0) doubt(layers.zona_outer, "the zona's outer border is not a dark line");
+  for (CellBorder* border : all) {
+    if (layers.zona_outer.rim > kSharpRim) doubt(*border, "the cell is out of focus: its borders are displaced");
+    if (border->polarity == Polarity::kEither) doubt(*border, "DIC shades borders: they are displaced");
+    if (border->residual > std::max(kLeastResidual, kMostResidual * border->ellipse.meanDiameter())) {
+      doubt(*border, "the border is not an ellipse");
+    }
+  }
 }
 
 }  // namespace
@@ -167,6 +195,7 @@ CellLayers findLayers(const Frame& frame, const CellBorder& main, const std::str
   }
   if (!layers.zona_outer.finding.hasValues()) {
     layers.ooplasm = refined(frame, ooplasm, 0, 0);
+    warn(layers);
     return layers;
   }
   const double gap = radiusOf(layers.zona_outer) - radiusOf(ooplasm);
@@ -175,6 +204,7 @@ CellLayers findLayers(const Frame& frame, const CellBorder& main, const std::str
   layers.main = ooplasm;
   layers.zona_inner = innerBorder(frame, layers, look);
   layers.main = main;
+  warn(layers);
   return layers;
 }
 
@@ -218,6 +248,7 @@ CellLayers followLayers(const Frame& frame, const CellLayers& previous, double r
     layers.zona_inner = previous.zona_inner;
     layers.zona_inner.ellipse.centre += layers.zona_outer.ellipse.centre - previous.zona_outer.ellipse.centre;
   }
+  warn(layers);
   return layers;
 }
 

@@ -8,12 +8,15 @@ namespace microinjection {
 namespace {
 
 constexpr double kFacing = 1.1;     // rad, half of the sector that faces the needle
-constexpr double kDisturbed = 0.9;  // rad from the needle, that a dimple reaches to
+constexpr double kDisturbed = 1.2;  // rad from the needle, that a dimple reaches to
 constexpr double kDeepest = 0.55;   // of the radius, a dimple
 constexpr double kFitted = 0.12;    // of the radius, half of the dimple's middle that gives the parabola, at least
-constexpr double kBelowTip = 7;     // px, that the border may be deeper than the tip
+constexpr double kBelowTip = 3;     // px, that the border may be deeper than the tip
+constexpr double kOutwards = 0.3;   // strength of the outermost column over the innermost
+constexpr float kSeen = 0.45F;      // strength of a border that is seen
+constexpr double kTouches = 4;      // px, of the contour from the tip that touches it
+constexpr double kThinnest = 14, kThickest = 20;  // px, of the needle near its tip
 constexpr int kRays = 240;
-constexpr double kFullBorder = 5;  // of the slopes' scale
 
 double angleBetween(double a, double b) { return std::abs(std::remainder(a - b, 2 * M_PI)); }
 
@@ -70,12 +73,16 @@ Indentation findIndentation(const Frame& frame, const CellBorder& border, const 
   Indentation result;
   result.finding = Finding::notFound("there is no outline of a cell");
   if (!border.finding.hasValues()) return result;
+  if (border.ellipse.distance(tip) > kTouches) {
+    result.finding = Finding::notFound("the tip is outside of the cell's outline: there is no dimple");
+    return result;
+  }
   const double radius = 0.5 * border.ellipse.meanDiameter(), low = -kDeepest * radius, high = 0.06 * radius;
   const int columns = static_cast<int>(high - low) + 1;
   const PolarMap map(frame, border.ellipse, {low, low + columns - 1, columns, kRays}, 1.5);
-  const double scale = std::max(slopeScale(map, 0, columns), 0.2 * frame.noise());
   const double facing = std::atan2(tip.y - border.ellipse.centre.y, tip.x - border.ellipse.centre.x);
-  cv::Mat strength = borderStrength(map, border.polarity, kFullBorder * scale);
+  // The border is as clear in the dimple as elsewhere; the ooplasm's, which is clearer, counts no more.
+  cv::Mat strength = borderStrength(map, border.polarity, std::max(border.contrast, frame.noise()));
   const cv::Point2d u(std::cos(direction), std::sin(direction)), v(-u.y, u.x);
   for (int ray = 0; ray < kRays; ++ray) {
     if (angleBetween(map.direction(ray), facing) > kFacing) {
@@ -86,11 +93,15 @@ Indentation findIndentation(const Frame& frame, const CellBorder& border, const 
       continue;
     }
     for (int i = 0; i < columns; ++i) {
-      // The needle's own walls are not the cell's border.
       const cv::Point2d d = map.point(ray, i) - tip;
-      if (d.dot(u) > -3 && std::abs(d.dot(v)) < width) strength.at<float>(ray, i) = 0;
-      // The ooplasm's border is deeper than the needle is.
-      if (d.dot(u) < -kBelowTip) strength.at<float>(ray, i) = kForbidden;
+      const double along = d.dot(u), across = std::abs(d.dot(v));
+      float& here = strength.at<float>(ray, i);
+      // The needle's own walls are not the cell's border, which passes below the tip.
+      if (along > -kTouches && across < width) here = 0;
+      if (across < 0.5 * width && std::abs(along) > kTouches) here = kForbidden;
+      // The ooplasm's border is deeper than the needle is. Of what is left the outer border counts more.
+      if (along < -kBelowTip) here = kForbidden;
+      here += static_cast<float>(kOutwards * i / columns);
     }
   }
   const ClosedPath path = closedPath(strength, 6);
@@ -98,7 +109,7 @@ Indentation findIndentation(const Frame& frame, const CellBorder& border, const 
   for (int ray = 0; ray < kRays; ++ray) {
     if (angleBetween(map.direction(ray), facing) > kFacing) continue;
     const int column = path.column[ray];
-    if (map.valid().at<unsigned char>(ray, column) == 0 || strength.at<float>(ray, column) < 0.3F) continue;
+    if (map.valid().at<unsigned char>(ray, column) == 0 || strength.at<float>(ray, column) < kSeen) continue;
     const cv::Point2d point = map.point(ray, column - border.shift);
     result.contour.push_back(point);
     const cv::Point2d d = point - tip;
@@ -108,16 +119,30 @@ Indentation findIndentation(const Frame& frame, const CellBorder& border, const 
   double place = 0;
   result.finding = Finding::notFound("the outline under the needle is not clear");
   if (!parabola(seen, place, result.deviation)) return result;
-  result.deepest = tip + place * u;
+  // The needle hides the border that it touches: where the contour on both sides of it leads to the
+  // tip, the tip is the deepest place.
+  const bool touches = std::abs(place) < std::max(kTouches, 3 * result.deviation);
+  result.deepest = touches ? tip : tip + place * u;
   result.undisturbed = undisturbed(border, facing);
   result.finding = Finding::notFound("too little of the outline is undisturbed");
   if (!result.undisturbed.valid) return result;
   // From the deepest place back along the needle to the undisturbed outline; 0 outside of it.
   result.depth = result.undisturbed.ellipse.reach(result.deepest, direction);
-  result.finding = Finding::found();
-  if (std::abs(place) > std::max(8.0, 0.1 * radius)) {
-    result.finding = Finding::uncertain("the outline under the needle is far from the tip: the needle may not touch");
-  }
+  result.finding = touches ? Finding::found()
+                           : Finding::uncertain("the outline under the needle is not at the tip: it may not touch");
+  return result;
+}
+
+Indentation findIndentation(const Frame& frame, const CellBorder& border, const PipetteDetection& needle) {
+  Indentation result;
+  result.finding = Finding::notFound("there is no needle that could indent the cell");
+  if (!needle.finding.hasValues()) return result;
+  // The half width is that of the shaft a little behind the tip.
+  const double width = std::clamp(2 * needle.half_width, kThinnest, kThickest);
+  result = findIndentation(frame, border, needle.end, needle.direction, width);
+  const Eigen::Vector2d along(std::cos(needle.direction), std::sin(needle.direction));
+  result.deviation = std::hypot(result.deviation, std::sqrt(along.dot(needle.covariance * along)));
+  if (result.finding.isFound() && !needle.finding.isFound()) result.finding = needle.finding;
   return result;
 }
 

@@ -6,6 +6,7 @@
 #include "vision/detection/cell_border.h"
 #include "vision/detection/finding.h"
 #include "vision/detection/frame.h"
+#include "vision/detection/pipette_detector.h"
 
 namespace microinjection {
 
@@ -20,13 +21,17 @@ struct Indentation {
 };
 
 /// Follows the outer border of a cell through the dimple under a needle. The needle hides the border
-/// at the tip itself and behind it: there the contour is the parabola through what is seen on both
-/// sides.
+/// at the tip itself and behind it. Where the parabola through what is seen on both sides leads to the
+/// tip, the needle touches and its tip is the deepest place; elsewhere the finding is uncertain.
 /// @param border     the undisturbed outline: its ellipse describes the rest of the cell
 /// @param tip        px
 /// @param direction  rad, from the tip towards the shaft, from x towards y
 /// @param width      px, of the needle near its tip
 Indentation findIndentation(const Frame& frame, const CellBorder& border, const cv::Point2d& tip, double direction,
                             double width);
+
+/// The same under a needle that was found: kNotFound without one, and at most kUncertain under one
+/// that is uncertain. The deviation includes that of the tip.
+Indentation findIndentation(const Frame& frame, const CellBorder& border, const PipetteDetection& needle);
 
 }  // namespace microinjection

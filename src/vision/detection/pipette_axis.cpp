@@ -173,7 +173,7 @@ std::vector<PipetteAxis> shared(const std::vector<PipetteAxis>& pairs, const cv:
 
 std::vector<PipetteAxis> findPipetteAxes(const Frame& frame, const AxisSearch& search, int most) {
   const double side = std::max(frame.width(), frame.height());
-  const int level = std::clamp(static_cast<int>(std::ceil(std::log2(side / kLongSide))), 0, 4);
+  const int level = std::clamp(static_cast<int>(std::ceil(std::log2(side / kLongSide))) - search.finer, 0, 4);
   const double scale = std::ldexp(1, level);
   cv::Mat image = frame.level(level);
   cv::Point2d corner(0, 0);

@@ -21,6 +21,7 @@ struct AxisSearch {
   double tolerance = 0.5;        ///< rad, of the direction
   double steepest_taper = 0.45;  ///< rad, of an outline's line to the axis
   double widest = 500;           ///< px, of an outline
+  int finer = 0;                 ///< levels of the frame above the usual one, for pipettes of which little is seen
   cv::Rect region;               ///< px, that is searched; empty: the half of the frame that the shaft comes from
 };
 

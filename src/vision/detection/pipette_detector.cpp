@@ -22,7 +22,8 @@ constexpr double kAxisMargin = 24;                         // px beside an outli
 constexpr double kWidestPoint = 14;                        // px from the axis, that a tip is looked for in
 constexpr double kTube = 0.1;                              // widening of a tube whose profile stays the same, at most
 constexpr double kAgree = 6;                               // px, between two ways to see a tip's end
-constexpr double kUnclear = 3;               // px, standard deviation of an end that needs a second witness
+constexpr double kApart = 0.25;  // standard deviation of an end over the distance between two ways to see it
+constexpr double kUnclear = 3;   // px, standard deviation of an end that needs a second witness
 constexpr int kFirstShift = 24, kShift = 8;  // px, that an axis may be off
 constexpr double kMargin = 6;                // px beside an outline
 constexpr double kCoarseLength = 430;        // rows of the strip that shows a whole holding pipette
@@ -33,6 +34,8 @@ constexpr double kHoldingStep = 2;           // px, of the strip that gives the 
 constexpr double kNearMouth = 8, kMouthRows = 36, kMouthBlur = 1.3;  // px, of the strip that shows the mouth
 constexpr double kWitnessReach = 14;                                 // px beside lips that are not clear
 constexpr int kMouthMargin = 18;                                     // px beside the walls
+constexpr double kSureClearness = 9;                                 // of a tip
+constexpr double kSureSymmetry = 0.9;                                // of the edges near a tip
 constexpr double kLeastSymmetry = 0.5;                               // of the edges of a whole pipette
 
 double outlineAt(const PipetteAxis& axis, const cv::Point2d& point) {
@@ -74,7 +77,7 @@ double secondWitness(const PipetteStrip& strip, const HoldingMouth& mouth) {
 }
 
 /// A cut tube ends at half of its profile. A point, or a tube that widens quickly, has no profile
-/// that stays the same; it ends where its edges do.
+/// that stays the same; it ends where its edges do. How far both are apart tells how certain each is.
 PipetteEnd tipIn(const PipetteStrip& strip, int row, double reach, double half_width) {
   const int half = static_cast<int>(std::min(0.6 * half_width + kMargin, kWidestPoint));
   const PipetteEnd point = pointNear(strip, row, reach, half);
@@ -84,8 +87,11 @@ PipetteEnd tipIn(const PipetteStrip& strip, int row, double reach, double half_w
     return fine.valid ? fine : tube;
   }
   const PipetteEnd cut = tipNear(strip, point.row, half);
-  const bool tube = widening(strip, point.row, 2 * half) < kTube;
-  return cut.valid && tube && std::abs(cut.row - point.row) < kAgree ? cut : point;
+  if (!cut.valid) return point;
+  const bool tube = widening(strip, point.row, 2 * half) < kTube && std::abs(cut.row - point.row) < kAgree;
+  PipetteEnd end = tube ? cut : point;
+  end.deviation = std::hypot(end.deviation, kApart * (cut.row - point.row));
+  return end;
 }
 
 }  // namespace
@@ -117,20 +123,29 @@ PipetteDetection PipetteDetector::detect(const Frame& frame) const {
                              static_cast<int>(config_.region[2]), static_cast<int>(config_.region[3]));
   }
   best.finding = Finding::notFound("no pipette: no two straight edges from the side that it comes from");
-  const bool holding = config_.kind == "holding";
-  for (const PipetteAxis& axis : findPipetteAxes(frame, search, holding ? kHoldingAxes : kAxes)) {
-    if (holding && best.finding.isFound() && outlineAt(axis, best.end) < kWider * best.half_width) continue;
-    const PipetteDetection found = measure(frame, axis);
-    if (!found.finding.hasValues()) {
-      if (!best.finding.hasValues()) best.finding = found.finding;
-      continue;
+  // A finer search costs four times as much: only for pipettes of which too little is seen.
+  for (; search.finer < 2 && !best.finding.hasValues(); ++search.finer) {
+    for (const PipetteAxis& axis : findPipetteAxes(frame, search, config_.kind == "holding" ? kHoldingAxes : kAxes)) {
+      if (best.finding.isFound() && outlineAt(axis, best.end) < kWider * best.half_width) continue;
+      take(best, measure(frame, axis));
+      if (best.finding.isFound() && config_.kind == "injection") return best;
     }
-    // A thick wall is symmetric to an axis of its own. The widest outline is that of the whole.
-    const bool wider = holding && found.half_width > kWider * best.half_width;
-    if (!best.finding.hasValues() || wider || (found.finding.isFound() && !best.finding.isFound())) best = found;
-    if (best.finding.isFound() && !holding) break;
   }
   return best;
+}
+
+/// A thick wall is symmetric to an axis of its own: the widest outline is that of the whole holding
+/// pipette. Of injection pipettes that are not certain the most symmetric one is taken.
+void PipetteDetector::take(PipetteDetection& best, const PipetteDetection& found) const {
+  if (!found.finding.hasValues()) {
+    if (!best.finding.hasValues()) best.finding = found.finding;
+    return;
+  }
+  const bool holding = config_.kind == "holding";
+  const bool better = holding ? found.half_width > kWider * best.half_width : found.symmetry > best.symmetry;
+  const bool surer = found.finding.isFound() && !best.finding.isFound();
+  const bool less_sure = !found.finding.isFound() && best.finding.isFound();
+  if (!best.finding.hasValues() || surer || (better && !less_sure)) best = found;
 }
 
 PipetteDetection PipetteDetector::track(const Frame& frame, const PipetteDetection& previous, double reach) const {
@@ -224,6 +239,7 @@ PipetteDetection PipetteDetector::refineHolding(const Frame& frame, PipetteAxis 
   found.direction_deviation = fit.slant_deviation;
   found.half_width = mouth.half_width;
   found.taper = axis.taper;
+  found.symmetry = fit.symmetry;
   found.clearness = mouth.score;
   setCovariance(found, mouth.deviation, fit.offset_deviation * kHoldingStep);
   found.finding = mouth.doubt.empty() ? Finding::found() : Finding::uncertain(mouth.doubt);
@@ -293,9 +309,13 @@ PipetteDetection PipetteDetector::refine(const Frame& frame, PipetteAxis axis, c
   found.direction_deviation = fit.slant_deviation;
   found.half_width = half_width;
   found.taper = axis.taper;
+  found.symmetry = fit.symmetry;
   found.clearness = last.clearness;
   setCovariance(found, last.deviation, fit.offset_deviation);
   found.finding = last.deviation > kUnclear ? Finding::uncertain("the pipette's end is not clear") : Finding::found();
+  if (found.clearness < kSureClearness)
+    found.finding = Finding::uncertain("the tip is not clear before its background");
+  if (found.symmetry < kSureSymmetry) found.finding = Finding::uncertain("the pipette's walls are not symmetric");
   if (!frame.contains(found.end, 2)) found.finding = Finding::notFound("no pipette: its end is out of the image");
   return found;
 }

@@ -31,6 +31,7 @@ struct PipetteDetection {
   double direction_deviation = 0;                        ///< rad, standard deviation
   double half_width = 0;                                 ///< px, of the outline near the end
   double taper = 0;                                      ///< growth of the half width along the axis
+  double symmetry = 0;                                   ///< 0..1, of the edges near the end
   double clearness = 0;                                  ///< of the end: edges before it over edges behind it
 };
 
@@ -47,6 +48,7 @@ class PipetteDetector {
 
  private:
   PipetteDetection measure(const Frame& frame, const PipetteAxis& axis) const;
+  void take(PipetteDetection& best, const PipetteDetection& found) const;
   PipetteDetection measureHolding(const Frame& frame, PipetteAxis axis) const;
   PipetteDetection refineHolding(const Frame& frame, PipetteAxis axis, const cv::Point2d& end, double reach,
                                  int rounds) const;

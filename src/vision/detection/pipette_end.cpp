@@ -6,7 +6,6 @@
 namespace microinjection {
 namespace {
 
-constexpr double kWallSlack = 8;       // px, of an outline
 constexpr double kHalf = 0.45;         // of the edges in the rows that follow, at a point
 constexpr int kRise = 9;               // of these rows
 constexpr double kClear = 3;           // of the background's edges, at a point
@@ -36,23 +35,6 @@ double meanOf(const std::vector<double>& values, int first, int last) {
 }
 
 }  // namespace
-
-std::vector<double> wallEdges(const PipetteStrip& strip, const std::vector<double>& half_width) {
-  std::vector<double> walls(strip.rows(), 0.0);
-  const int slack = std::max(2, static_cast<int>(kWallSlack / strip.shape().step));
-  for (int row = 0; row < strip.rows(); ++row) {
-    if (!strip.inside(row)) continue;
-    const float* d = strip.across().ptr<float>(row) + strip.half();
-    double side[2] = {0, 0};
-    const int middle = static_cast<int>(std::lround(half_width[row]));
-    for (int t = std::max(1, middle - slack); t <= std::min(strip.half() - 1, middle + slack); ++t) {
-      side[0] = std::max<double>(side[0], std::abs(d[t]));
-      side[1] = std::max<double>(side[1], std::abs(d[-t]));
-    }
-    walls[row] = std::min(side[0], side[1]);
-  }
-  return walls;
-}
 
 PipetteEnd coarseEnd(const PipetteStrip& strip, const std::vector<double>& edges, double ended) {
   PipetteEnd end;

@@ -15,9 +15,6 @@ struct PipetteEnd {
   double clearness = 0;  ///< edges shared by both sides before the end over those behind it
 };
 
-/// Size of the edges that both sides have at the outline, columns from the axis.
-std::vector<double> wallEdges(const PipetteStrip& strip, const std::vector<double>& half_width);
-
 /// The row where edges end, to a few rows, seen from the last row within the image.
 /// @param edges  size of each row's edges
 /// @param ended  of the edges before the end, what remains behind it at most

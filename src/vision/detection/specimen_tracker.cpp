@@ -43,7 +43,7 @@ Indentation indentationOf(const Frame& frame, const SpecimenView& view) {
     none.finding = Finding::notFound("the needle is not at the cell");
     return none;
   }
-  return findIndentation(frame, outer, view.injection.end, view.injection.direction, 2 * view.injection.half_width);
+  return findIndentation(frame, outer, view.injection);
 }
 
 }  // namespace

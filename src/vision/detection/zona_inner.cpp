@@ -165,7 +165,7 @@ CellBorder findZonaInner(const Frame& frame, const CellBorder& outer, const Cell
   border.covariance.topLeftCorner<2, 2>() =
       kStep * kStep * fit.covariance.bottomRightCorner<2, 2>() + outer.covariance.topLeftCorner<2, 2>();
   border.covariance(2, 2) += outer.covariance(2, 2);
-  border.polarity = Polarity::kRising;
+  border.polarity = outer.polarity;
   border.residual = fit.residual * kStep;
   border.coverage = static_cast<double>(places.size()) / kRays;
   border.strength = mean[column];

@@ -40,9 +40,8 @@ TEST(CalibrationConfig, TheFileHasTheDefaults) {
 
 TEST(CalibrationConfig, RefusesUnknownKeysAndBadValues) {
   for (const char* text : {"{patern: {}}", "{limits: {mirror: maybe}}", "{limits: {largest_backlash: -1}}",
-                           "{limits: {pixel_size: [2, 1]}}", "{drift: {window: 1}}", 
-                           "{touch: {false_rate: 0}}", "{focus: {least_contrast: 2}}",
-                           "{pattern: {depth: 1e-6}}", "{pattern: {speed: .nan}}"}) {
+                           "{limits: {pixel_size: [2, 1]}}", "{drift: {window: 1}}", "{touch: {false_rate: 0}}",
+                           "{focus: {least_contrast: 2}}", "{pattern: {depth: 1e-6}}", "{pattern: {speed: .nan}}"}) {
     EXPECT_THROW(fromText(text), ConfigError) << text;
   }
   EXPECT_NO_THROW(fromText("{}"));

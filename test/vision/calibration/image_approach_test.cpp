@@ -36,7 +36,8 @@ class ImageApproachTest : public testing::Test {
         needle_.moveTo(position);
         rested = now;
       }
-      if (std::fmod(now, 0.04) < kStep && sees_) tip = SeenTip{now, needle_.seenPixel() + wrong_, 0.04 * Eigen::Matrix2d::Identity()};
+      if (std::fmod(now, 0.04) < kStep && sees_)
+        tip = SeenTip{now, needle_.seenPixel() + wrong_, 0.04 * Eigen::Matrix2d::Identity()};
     }
   }
 
