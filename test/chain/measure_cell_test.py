@@ -94,7 +94,11 @@ class MeasureCellTest(unittest.TestCase):
 
     def test_measured_and_served(self):
         self.until(self.found, "the cell")
-        cell = self.seen["/vision/state"].cell
+        state = self.seen["/vision/state"]
+        self.assertEqual(state.injection_pipette.verdict, state.injection_pipette.FOUND, state.injection_pipette.reason)
+        tip = np.array([state.injection_pipette.x, state.injection_pipette.y])
+        self.assertLess(np.hypot(*(tip - ORIGIN + [0, CLEAR / PIXEL])), 1)
+        cell = state.cell
         self.assertLess(np.hypot(*(np.array([cell.x, cell.y]) - ORIGIN)), 0.5)
         scene = pathlib.Path(tempfile.mkdtemp()) / "measured.yaml"
         answer = self.measured(serve=True, scene=str(scene))
@@ -106,10 +110,8 @@ class MeasureCellTest(unittest.TestCase):
         self.drive(PRESSED)
         felt, true = self.force("/cell/predicted_cf"), self.force("/truth/predicted_cf")
         self.assertAlmostEqual(felt / true, 1, delta=0.03)
-        state = self.seen["/vision/state"]
         self.assertIn("overlay", self.seen)
         self.drive(CLEAR)
-        self.assertEqual(state.injection_pipette.verdict, state.injection_pipette.FOUND, state.injection_pipette.reason)
 
     def test_an_impossible_scene_file_changes_nothing(self):
         self.until(self.found, "the cell")
