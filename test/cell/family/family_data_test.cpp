@@ -81,6 +81,43 @@ TEST_F(FamilyOfSprings, KnownForcesOnTheAxisAreTheSizeOfTheForce) {
   }
 }
 
+TEST_F(FamilyOfSprings, KnownCurvesOnTheAxisAreTheForceThere) {
+  const ChebyshevGrid grid = axisForceGrid(data_.family());
+  // A spring that becomes stiffer with the depth, the more so the thicker the tip.
+  const auto curve = [](const Eigen::VectorXd& x, double s) {
+    return std::exp(0.5 + 0.3 * x[0]) * s * s * (1 + (0.2 + 0.1 * x[0]) * s * s);
+  };
+  Eigen::MatrixXd forces(grid.size(), kAxisDepths);
+  for (int i = 0; i < grid.size(); ++i) {
+    for (int k = 0; k < kAxisDepths; ++k) forces(i, k) = curve(grid.node(i), (k + 1.0) / kAxisDepths);
+  }
+  FamilyData data(homogeneous());
+  for (FamilyMember member : data_.members()) {
+    // The springs of the others resist sideways only; on the axis these have a force in proportion to the depth.
+    member.field.setZero();
+    member.field[member.field.size() - EnergyExpansion(EnergyScales(), {4, 4, 7, 1}).size()] = 1;
+    data.add(member, MadeUp(member.coordinates).surface);
+  }
+  data.setAxisForces(forces);
+  data.update();
+  data.save(path_);
+  const auto read = FamilyData::load(homogeneous(), path_);
+  ASSERT_TRUE(read) << read.reason;
+  EXPECT_TRUE(read.content->hasAxisCurves());
+  const Eigen::Vector3d x(0.4, -0.3, 0.6);
+  for (const FamilyData* known : std::initializer_list<const FamilyData*>{&data, &*read.content}) {
+    const SurrogateData cell = known->cell(x);
+    ForceField::Local local;
+    cell.field.makeLocal(0, local);
+    const double length = cell.range.axis_depth, unit = cell.energy.scales().energy / cell.energy.scales().length;
+    Eigen::Matrix3d jacobian;
+    for (const double s : {0.2, 0.5, 0.9}) {
+      const Eigen::Vector3d force = local.evaluate({0, 0, -s * s * length}, jacobian);
+      EXPECT_NEAR(force.norm() / unit, curve(x, s), 0.01 * curve(x, s)) << s;
+    }
+  }
+}
+
 TEST_F(FamilyOfSprings, TheRangeIsWhatTheMembersAroundReached) {
   const Eigen::Vector3d at(0.9, 0.9, 0.1);
   MadeUp shallow(at);
