@@ -10,7 +10,7 @@ import numpy as np
 import rospy
 import rostest
 import yaml
-from cell_microinjection.msg import CellState, CellInImage, VisionState
+from cell_microinjection.msg import CellState, CellInImage, InjectionStatus, VisionState
 from cell_microinjection.srv import MeasureCell
 from geometry_msgs.msg import PoseStamped, TransformStamped, WrenchStamped
 from sensor_msgs.msg import Image
@@ -37,6 +37,7 @@ class MeasureCellTest(unittest.TestCase):
     def setUpClass(cls):
         cls.seen, cls.height = {}, CLEAR
         cls.needle = rospy.Publisher("/needle/measured_cp", PoseStamped, queue_size=1)
+        cls.injection = rospy.Publisher("/controller/injection_state", InjectionStatus, queue_size=5)
         cls.tf = rospy.Publisher("/tf", TFMessage, queue_size=10)
         for topic, kind in (("/cell/predicted_cf", WrenchStamped), ("/truth/predicted_cf", WrenchStamped),
                             ("/cell/state", CellState), ("/vision/state", VisionState)):
@@ -112,6 +113,22 @@ class MeasureCellTest(unittest.TestCase):
         self.assertAlmostEqual(felt / true, 1, delta=0.03)
         self.assertIn("overlay", self.seen)
         self.drive(CLEAR)
+        self.check_record()
+
+    def check_record(self):
+        folder = pathlib.Path(rospy.get_param("/image_recorder/output_dir"))
+        for state in ("approach", "../approach"):  # the second is no name of a file
+            self.injection.publish(InjectionStatus(state=state))
+            time.sleep(0.2)
+        self.until(lambda: len(list(folder.glob("snapshot_*.png"))) == 2, "two snapshots")
+        self.assertEqual([path.name for path in sorted(folder.glob("snapshot_*"))],
+                         ["snapshot_000_approach.png", "snapshot_001_state.png"])
+        rows = (folder / "overlay.avi.csv").read_text().splitlines()
+        self.assertEqual(rows[0], "frame,stamp")
+        stamps = [float(row.split(",")[1]) for row in rows[1:]]
+        self.assertGreater(len(stamps), 10)
+        self.assertTrue(all(before < after for before, after in zip(stamps, stamps[1:])))
+        self.assertGreater((folder / "overlay.avi").stat().st_size, 1e4 * len(stamps))
 
     def test_an_impossible_scene_file_changes_nothing(self):
         self.until(self.found, "the cell")
