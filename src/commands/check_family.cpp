@@ -93,7 +93,7 @@ class FamilyCheck {
     writeFileAtomically(arguments_.reference, writeReferences(family_, arguments_.seed, places_));
   }
 
-  void report() const {
+  void report() {
     std::ostringstream table;
     table << "family,member,angle,depth,lateral,force_error,surface_error,force_share\n";
     std::vector<double> forces, surfaces;
@@ -110,11 +110,19 @@ class FamilyCheck {
     }
     if (!arguments_.csv.empty()) writeFileAtomically(arguments_.csv, table.str());
     std::printf("%s", table.str().c_str());
+    if (arguments_.record) record({quantile(forces, 0.5), quantile(forces, 0.9)}, members);
     std::printf(
         "prepare: %s: force error at %zu places of %zu members: median %.2g %%, nine of ten below %.2g %%, largest "
         "%.2g %%; surface: largest %.2g of the diameter\n",
         family_.name().c_str(), forces.size(), members.size(), 100 * quantile(forces, 0.5), 100 * quantile(forces, 0.9),
         100 * quantile(forces, 1), quantile(surfaces, 1));
+  }
+
+  void record(const ExpectedError& error, const std::set<int>& compared) {
+    std::vector<Eigen::VectorXd> coordinates;
+    for (const int member : compared) coordinates.push_back(members_.at(static_cast<std::size_t>(member)));
+    data_.setMeasuredError(error, coordinates);
+    data_.save(familyDataFile(arguments_.file));
   }
 
   FamilyArguments arguments_;

@@ -96,6 +96,8 @@ Arguments parse(int argc, char** argv) {
       "members", po::value(&family.members)->default_value(family.members), "members that the family shall have")(
       "check", po::value(&family.check)->default_value(0),
       "draws this many members of the family that were never solved, solves them and prints the family's errors")(
+      "record", po::bool_switch(&family.record),
+      "with --check: the family's data keep the errors, and cell_simulator then expects them")(
       "refit", po::bool_switch(&family.refit), "first fits the family's members anew to the forces that it keeps")(
       "seed", po::value(&family.seed)->default_value(family.seed), "of the draw")("csv", po::value(&family.csv),
                                                                                   "file for the table of the check")(

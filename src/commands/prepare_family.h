@@ -10,6 +10,7 @@ struct FamilyArguments {
   int members = 30;       ///< to have at the end
   int check = 0;          ///< members to draw and solve, instead
   bool refit = false;     ///< first fits the members anew to the forces that the data keep
+  bool record = false;    ///< the check's errors become those that the family expects
   int seed = 1;           ///< of the draw
   std::string csv;        ///< of the check's table; empty for none
   std::string reference;  ///< file of the check's solutions, read and completed; empty for none

@@ -53,7 +53,7 @@ std::string describe(const CameraCalibration& calibration) {
 const char* const CalibrationNode::kHelp =
     "calibration: calibrates the camera against the manipulator, and watches the calibration.\n"
     "In: vision/state, /needle/measured_cp, /needle/operating_state, /controller/operating_state.\n"
-    "Out: /needle/move_cp; action calibration/calibrate, service calibration/rezero.\n";
+    "Out: /needle/servo_cp; action calibration/calibrate, service calibration/rezero.\n";
 
 CalibrationNode::Parameters CalibrationNode::readParameters(const ros::NodeHandle& private_node) {
   Parameters parameters;
@@ -70,13 +70,24 @@ CalibrationNode::CalibrationNode(ros::NodeHandle node, ros::NodeHandle private_n
     : parameters_(readParameters(private_node)),
       watch_(node, parameters_.input_timeout),
       drift_(parameters_.calibration.drift),
-      move_(node.advertise<geometry_msgs::PoseStamped>("/needle/move_cp", 1)),
-      needle_command_(node.advertise<cell_microinjection::StringStamped>("/needle/state_command", 1)),
+      setpoints_(node.advertise<geometry_msgs::PoseStamped>("/needle/servo_cp", 1)),
+      commands_(subscribeGuarded<cell_microinjection::StringStamped>(
+          node, "/needle/state_command", 10,
+          [this](const cell_microinjection::StringStamped& message, const std::string&) {
+            commanded_ = message.string;
+          },
+          StampRule::kAny)),
       action_(node, "calibration/calibrate", false),
       diagnostics_(node, private_node) {
   if (std::filesystem::exists(parameters_.file)) take(readCalibration(parameters_.file));
-  watch_.on_motion = [this](const Eigen::Vector3d& position) {
-    if (play_) play_->moveTo(position);
+  watch_.on_motion = [this](const Eigen::Vector3d& position, bool followed) {
+    if (!calibration_) return;
+    // Where the backlash lies after a motion that nobody watched is not known.
+    if (play_ && followed) {
+      play_->moveTo(position);
+    } else {
+      play_.emplace(calibration_->backlash(), position);
+    }
   };
   watch_.on_tip = [this](const SeenTip& tip) { watchDrift(tip); };
   rezero_ = node.advertiseService("calibration/rezero", &CalibrationNode::rezero, this);
@@ -99,23 +110,30 @@ void CalibrationNode::watchDrift(const SeenTip& tip) {
 }
 
 CalibrationInput CalibrationNode::input() const {
-  return {ros::Time::now().toSec(), watch_.position(), static_cast<bool>(watch_.needle().is_busy), watch_.tip()};
+  return {ros::Time::now().toSec(), watch_.position(), setpoint_ != goal_, watch_.tip()};
+}
+
+std::string CalibrationNode::interruption() const {
+  const std::string& needle = watch_.needle().state;
+  const std::string& controller = watch_.controller().state;  // empty: there is none
+  if (needle != "ENABLED") return "the needle is " + (needle.empty() ? "not there" : needle) + ", must be ENABLED";
+  if (!controller.empty() && controller != "DISABLED")
+    return "the controller is " + controller + ", must be DISABLED: send disable on /controller/state_command";
+  return watch_.cellInTheWay();
 }
 
 std::string CalibrationNode::refusal() const {
-  const CalibrationInput present = input();
-  if (!present.position) return "/needle/measured_cp is silent or invalid";
-  if (watch_.needle().state != "ENABLED") return "the needle is " + watch_.needle().state + ", must be ENABLED";
-  if (watch_.controller().state == "ENABLED" || watch_.controller().state == "PAUSED")
-    return "the controller is " + watch_.controller().state +
-           ", must be DISABLED: send disable on /controller/state_command";
-  if (!present.tip) return "the tip is not seen: " + watch_.tipReason();
+  if (!watch_.position()) return "/needle/measured_cp is silent, old or invalid";
+  if (const std::string reason = interruption(); !reason.empty()) return reason;
+  if (!watch_.tip()) return "the tip is not seen: " + watch_.tipReason();
+  const double rest = ros::Time::now().toSec() - watch_.restedSince();
+  if (watch_.needle().is_busy || rest < parameters_.calibration.pattern.settle_time) return "the needle is moving";
   return "";
 }
 
 void CalibrationNode::onGoal() {
   const auto goal = action_.acceptNewGoal();
-  std::string reason = run_ ? "another calibration is under way" : refusal();
+  std::string reason = refusal();  // a run under way was preempted
   CalibrationPatternConfig pattern = parameters_.calibration.pattern;
   if (goal->field_x != 0) pattern.field.x() = goal->field_x;
   if (goal->field_z != 0) pattern.field.y() = goal->field_z;
@@ -129,6 +147,8 @@ void CalibrationNode::onGoal() {
       const TravelBox above{{-kFar, -kFar, start.z() - 1e-9}, {kFar, kFar, kFar}};
       plan = planCalibration(pattern, centre, start, above);
       for (const std::string& each : plan.refusals) reason += (reason.empty() ? "" : "; ") + each;
+      // Away from the cell before it goes across.
+      plan.waypoints.insert(plan.waypoints.begin(), {start + pattern.take_up * Eigen::Vector3d::UnitZ(), false, false});
     } catch (const ConfigError& error) {
       reason = error.what();
     }
@@ -139,6 +159,8 @@ void CalibrationNode::onGoal() {
     action_.setAborted(result, reason);
     return;
   }
+  setpoint_ = goal_ = *watch_.position();
+  commanded_.clear();
   run_ = std::make_unique<CalibrationRun>(pattern, plan);
 }
 
@@ -149,17 +171,11 @@ void CalibrationNode::step() {
     ros::requestShutdown();
   }
   if (!run_) return;
-  if (watch_.needle().state != "ENABLED") return fail("the needle is " + watch_.needle().state);
-  if (watch_.controller().state == "ENABLED") return fail("the controller was enabled");
-  if (const auto goal = run_->step(input())) {
-    geometry_msgs::PoseStamped move = toPose(*goal, ros::Time::now(), kWorldFrame);
-    move.pose.orientation.x = watch_.orientation().x();
-    move.pose.orientation.y = watch_.orientation().y();
-    move.pose.orientation.z = watch_.orientation().z();
-    move.pose.orientation.w = watch_.orientation().w();
-    move_.publish(move);
-  }
+  if (const std::string reason = interruption(); !reason.empty()) return fail(reason);
+  if (!commanded_.empty()) return fail("the needle had the command " + commanded_);
+  if (const auto goal = run_->step(input())) goal_ = *goal;
   if (!run_->failure().empty()) return fail(run_->failure());
+  stream(ros::Time::now());
   cell_microinjection::CalibrateFeedback feedback;
   feedback.waypoint = static_cast<int>(run_->waypoint());
   feedback.waypoints = static_cast<int>(run_->waypoints());
@@ -197,14 +213,15 @@ void CalibrationNode::end() {
     return;
   }
   take(found);
-  for (const TipObservation& observation : run_->observations()) play_->moveTo(observation.position);
+  if (play_) {
+    for (const TipObservation& observation : run_->observations()) play_->moveTo(observation.position);
+  }
   run_.reset();
   result.success = 1;
   action_.setSucceeded(result, result.message);
 }
 
 void CalibrationNode::fail(const std::string& reason) {
-  stopNeedle();
   run_.reset();
   cell_microinjection::CalibrateResult result;
   result.message = reason;
@@ -215,18 +232,25 @@ void CalibrationNode::fail(const std::string& reason) {
   }
 }
 
-void CalibrationNode::stopNeedle() {
-  cell_microinjection::StringStamped stop;
-  stop.header.stamp = ros::Time::now();
-  stop.string = "stop";
-  needle_command_.publish(stop);
+/// The next set-point on the way to the goal. Without one for command_timeout the needle stops.
+void CalibrationNode::stream(const ros::Time& now) {
+  const Eigen::Vector3d way = goal_ - setpoint_;
+  const double reach = parameters_.calibration.pattern.speed * kPeriod;
+  setpoint_ = way.norm() <= reach ? goal_ : Eigen::Vector3d(setpoint_ + reach * way.normalized());
+  geometry_msgs::PoseStamped message = toPose(setpoint_, now, kWorldFrame);
+  message.pose.orientation.x = watch_.orientation().x();
+  message.pose.orientation.y = watch_.orientation().y();
+  message.pose.orientation.z = watch_.orientation().z();
+  message.pose.orientation.w = watch_.orientation().w();
+  setpoints_.publish(message);
 }
 
 void CalibrationNode::take(const CameraCalibration& calibration) {
   calibration_ = calibration;
   drift_.reset();
   drift_report_ = DriftReport();
-  play_.emplace(calibration.backlash(), watch_.position().value_or(calibration.origin));
+  play_.reset();
+  if (const auto position = watch_.position()) play_.emplace(calibration.backlash(), *position);
 }
 
 bool CalibrationNode::rezero(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
@@ -235,6 +259,8 @@ bool CalibrationNode::rezero(std_srvs::Trigger::Request&, std_srvs::Trigger::Res
     response.message = "there is no calibration: run calibration/calibrate first";
   } else if (run_) {
     response.message = "a calibration is under way";
+  } else if (!present.position || !play_) {
+    response.message = "/needle/measured_cp is silent, old or invalid";
   } else if (!present.tip || present.tip->stamp < watch_.restedSince() + parameters_.calibration.pattern.settle_time) {
     response.message = present.tip ? "the needle has just moved" : "the tip is not seen: " + watch_.tipReason();
   } else {

@@ -21,13 +21,15 @@ namespace microinjection {
 /// Calibrates the camera against the manipulator, and watches the calibration.
 ///
 /// In:  vision/state, /needle/measured_cp, /needle/operating_state, /controller/operating_state
-/// Out: /needle/move_cp, and `stop` on /needle/state_command when a run is cancelled; the action
-///      calibration/calibrate (Calibrate), the service calibration/rezero (Trigger)
+/// Out: /needle/servo_cp during a run; the action calibration/calibrate (Calibrate), the service
+///      calibration/rezero (Trigger)
 ///
 /// Parameters: config/calibration.yaml
 ///
-/// The micromanipulator keeps its limits and obstacles. A run needs a needle that is ENABLED and a
-/// controller that is not: two nodes must not command it.
+/// The needle is streamed at pattern/speed. So it stops when this node ends or hangs, and the
+/// micromanipulator keeps its limits and obstacles. A run needs a needle that is ENABLED and clear of
+/// the cell, and a controller that is DISABLED: two nodes must not command it. Any command to the
+/// needle from elsewhere ends the run.
 class CalibrationNode {
  public:
   static const char* const kHelp;
@@ -45,12 +47,13 @@ class CalibrationNode {
   static Parameters readParameters(const ros::NodeHandle& private_node);
 
   void onGoal();
-  std::string refusal() const;  ///< why no run may begin; empty: it may
+  std::string refusal() const;       ///< why no run may begin; empty: it may
+  std::string interruption() const;  ///< why a run must not go on; empty: it may
   void step();
   CalibrationInput input() const;
   void end();
   void fail(const std::string& reason);
-  void stopNeedle();
+  void stream(const ros::Time& now);
   void take(const CameraCalibration& calibration);
   bool rezero(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   void watchDrift(const SeenTip& tip);
@@ -63,9 +66,12 @@ class CalibrationNode {
   DriftWatch drift_;
   DriftReport drift_report_;
   std::unique_ptr<CalibrationRun> run_;
+  Eigen::Vector3d setpoint_ = Eigen::Vector3d::Zero(), goal_ = Eigen::Vector3d::Zero();  ///< m, of the run
+  std::string commanded_;  ///< to the needle, from elsewhere, during the run
 
   MasterMonitor master_{true};
-  ros::Publisher move_, needle_command_;
+  ros::Publisher setpoints_;
+  ros::Subscriber commands_;
   ros::ServiceServer rezero_;
   actionlib::SimpleActionServer<cell_microinjection::CalibrateAction> action_;
   diagnostic_updater::Updater diagnostics_;

@@ -12,6 +12,7 @@ namespace microinjection {
 namespace {
 
 constexpr double kReportPeriod = 0.2;    // s of wall time
+constexpr double kRepeated = 0.005;      // s, after a frame that was repeated
 constexpr double kRetry = 0.5;           // s, before a device is opened again
 constexpr double kLargestExposure = 10;  // s ago; a larger difference means that the driver has another clock
 
@@ -70,13 +71,15 @@ void CameraNode::grab() {
     const CameraStreamState state = stream_->state();
     if (state.ended) return;
     if (!frame) {
-      if (state.repeated == repeated) ros::WallDuration(kRetry).sleep();
+      ros::WallDuration(state.repeated == repeated ? kRetry : kRepeated).sleep();
       continue;
     }
     due = std::max(due + period, std::chrono::steady_clock::now() - period);  // after a stall: do not catch up
     std::this_thread::sleep_until(due);
-    runGuarded("microscope/image_raw", [&] { images_.publish(frame->image, exposureTime(*frame, stream_->period())); });
-    published_ = static_cast<std::int64_t>(ros::SteadyTime::now().toNSec());
+    runGuarded("microscope/image_raw", [&] {
+      images_.publish(frame->image, exposureTime(*frame, stream_->period()));
+      published_ = static_cast<std::int64_t>(ros::SteadyTime::now().toNSec());
+    });
   }
 }
 

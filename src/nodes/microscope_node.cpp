@@ -78,7 +78,15 @@ void MicroscopeNode::onState(const cell_microinjection::CellState& message) {
   received_ = ros::SteadyTime::now();
 }
 
-void MicroscopeNode::onNeedle(const geometry_msgs::PoseStamped& message) { specimen_.needle = validPose(&message); }
+void MicroscopeNode::onNeedle(const geometry_msgs::PoseStamped& message) {
+  specimen_.needle = validPose(&message);
+  if (secondsBetween(message.header.stamp, ros::Time::now()) > parameters_.state_timeout) specimen_.needle.reset();
+  needle_received_ = ros::SteadyTime::now();
+}
+
+bool MicroscopeNode::needleIsFresh() const {
+  return specimen_.needle && secondsBetween(needle_received_, ros::SteadyTime::now()) <= parameters_.state_timeout;
+}
 
 void MicroscopeNode::onFocus(const sensor_msgs::JointState& message) {
   const Eigen::Vector2d& range = parameters_.focus.range;
@@ -106,6 +114,7 @@ void MicroscopeNode::step() {
   publishFocus(now);
   if (images_.wanted() && missingInput().empty()) {
     Specimen specimen = specimen_;
+    if (!needleIsFresh()) specimen.needle.reset();
     const Eigen::Isometry3d cell = *frames_.find("world", cell_frame_);
     for (Eigen::Vector3d& vertex : specimen.vertices) vertex = cell * vertex;
     specimen.holder = frames_.find("world", "holding_pipette");
@@ -140,7 +149,8 @@ void MicroscopeNode::report(diagnostic_updater::DiagnosticStatusWrapper& status)
   if (images_.wanted() && missing.empty() && rate < 0.5 * parameters_.rate)
     status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "slow");
   if (!missing.empty()) status.mergeSummary(diagnostic_msgs::DiagnosticStatus::ERROR, "no image: " + missing);
-  if (!specimen_.needle) status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "no needle: its pose is invalid");
+  if (!needleIsFresh())
+    status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "no needle: its pose is silent, old or invalid");
   if (!frames_.find("world", "holding_pipette"))
     status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "no holding pipette: tf lacks it");
   MessageRefusals::ofProcess().report(status);

@@ -49,6 +49,7 @@ class MicroscopeNode {
   void onState(const cell_microinjection::CellState& message);
   void onNeedle(const geometry_msgs::PoseStamped& message);
   void onFocus(const sensor_msgs::JointState& message);
+  bool needleIsFresh() const;
   std::string missingInput() const;  ///< why there is no image; empty when there is one
   void step();
   void publishFocus(const ros::Time& now);
@@ -63,7 +64,7 @@ class MicroscopeNode {
   Specimen specimen_;       ///< vertices in cell_frame_
   std::string cell_frame_;  ///< of the last state
   std::string defect_;      ///< of the last state; empty: it can be drawn
-  ros::SteadyTime received_, stepped_, reported_;
+  ros::SteadyTime received_, needle_received_, stepped_, reported_;
   std::uint64_t frame_ = 0;    ///< number of images, which seeds their noise
   unsigned rendered_ = 0;      ///< since reported_
   double longest_render_ = 0;  ///< s, since reported_

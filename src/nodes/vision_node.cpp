@@ -26,9 +26,10 @@ namespace {
 
 constexpr char kImageTopic[] = "microscope/image_raw";
 constexpr char kCellService[] = "/cell_simulator/set_cell_parameters";
-constexpr double kReportPeriod = 0.2;    // s of wall time
-constexpr std::size_t kLeastImages = 3;  // of a measurement
-constexpr int kQueue = 1;                // an image that waited is of no use
+constexpr double kReportPeriod = 0.2;          // s of wall time
+constexpr std::size_t kLeastImages = 3;        // of a measurement
+constexpr std::uint32_t kLargestSide = 16384;  // px
+constexpr int kQueue = 1;                      // an image that waited is of no use
 
 /// The pixels of a message, which are not copied; empty: their format is not known.
 cv::Mat pixelsOf(const sensor_msgs::Image& message) {
@@ -95,6 +96,10 @@ void VisionNode::run() { ros::spin(); }
 
 std::string VisionNode::refusalOf(const sensor_msgs::Image& message, const ros::Time& now) const {
   const ros::Time& stamp = message.header.stamp;
+  // cv_bridge compares the length in 32 bits, and would read beyond a short one.
+  if (message.width > kLargestSide || message.height > kLargestSide ||
+      std::uint64_t{message.height} * message.step != message.data.size())
+    return "its size or length is wrong";
   if (isAhead(stamp, now)) return "its stamp is ahead of now";
   const double age = secondsBetween(stamp, now);
   if (age > parameters_.image_timeout) return "it is " + std::to_string(age) + " s old";
@@ -180,6 +185,8 @@ std::string VisionNode::serve(const cell_microinjection::MeasureCell::Response& 
   change.request.name = {"diameter"};
   change.request.value = {size.diameter};
   if (std::isfinite(size.zona_thickness)) {
+    if (!parameters_.scene.empty() && layersOf(loadYamlMap(parameters_.scene)) != 2)
+      throw ConfigError("the image shows a zona, and the served cell has none: start with a scene of two layers");
     change.request.name.push_back("shell_thickness");
     change.request.value.push_back(size.zona_thickness);
   }
@@ -192,8 +199,9 @@ bool VisionNode::measureCell(cell_microinjection::MeasureCell::Request& request,
                              cell_microinjection::MeasureCell::Response& response) {
   try {
     fillSizes(response);
-    if (!request.scene.empty()) writeScene(request.scene, response);
+    if (!request.scene.empty()) requireWritableFolder(std::filesystem::absolute(request.scene).parent_path());
     if (request.serve) response.message += "; served: " + serve(response);
+    if (!request.scene.empty()) writeScene(request.scene, response);
     response.success = 1;
   } catch (const std::exception& error) {
     response.success = 0;

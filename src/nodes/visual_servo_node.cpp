@@ -13,6 +13,7 @@
 namespace microinjection {
 namespace {
 
+constexpr double kPatience = 10;   // s, for the controller to connect
 constexpr double kEngaging = 0.5;  // s: the controller counts a hand's targets from the first that it has received
 constexpr double kPeriod = 0.005;  // s of wall time: the controller takes a target of 0.05 s ago for stale
 constexpr char kSetpoints[] = "/teleop/servo_cp";
@@ -72,18 +73,20 @@ void VisualServoNode::begin(const Eigen::Vector2d& pixel) {
   if (watch_.controller().state != "ENABLED")
     throw ConfigError("the controller is " + watch_.controller().state + ", must be ENABLED");
   if (others_.getNumPublishers() > 0) throw ConfigError(std::string("another node publishes ") + kSetpoints);
+  if (const std::string reason = watch_.cellInTheWay(); !reason.empty()) throw ConfigError(reason);
   const std::optional<Eigen::Vector3d> position = watch_.position();
   if (!position) throw ConfigError("/needle/measured_cp is silent or invalid");
   if (!watch_.tip()) throw ConfigError("the tip is not seen: " + watch_.tipReason());
   calibration_ = readCalibration(calibrationPath(parameters_.calibration));
   pixel_ = pixel;
   start_ = *position;
-  began_ = ros::SteadyTime::now();
+  accepted_ = began_ = ros::SteadyTime::now();
   setpoints_ = node_.advertise<geometry_msgs::PoseStamped>(kSetpoints, 1);
 }
 
 bool VisualServoNode::isEngaged() {
-  if (setpoints_.getNumSubscribers() == 0) began_ = ros::SteadyTime::now();
+  // This node's own subscription is one of them.
+  if (setpoints_.getNumSubscribers() < 2) began_ = ros::SteadyTime::now();
   return secondsBetween(began_, ros::SteadyTime::now()) > kEngaging;
 }
 
@@ -104,9 +107,12 @@ void VisualServoNode::step() {
   }
   if (!calibration_) return;
   if (watch_.controller().state != "ENABLED") return finish(false, "the controller is " + watch_.controller().state);
+  if (others_.getNumPublishers() > 1) return finish(false, std::string("another node publishes ") + kSetpoints);
   const ros::Time now = ros::Time::now();
   if (!approach_) {
     publish(start_, now);
+    if (secondsBetween(accepted_, ros::SteadyTime::now()) > kPatience)
+      return finish(false, "the controller does not follow " + std::string(kSetpoints) + ": its mode must be manual");
     if (!isEngaged()) return;
     approach_ = std::make_unique<ImageApproach>(parameters_.approach, *calibration_, pixel_, start_, now.toSec());
   }

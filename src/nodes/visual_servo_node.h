@@ -50,10 +50,10 @@ class VisualServoNode {
   std::optional<CameraCalibration> calibration_;     ///< of the goal; none: no goal is active
   Eigen::Vector2d pixel_ = Eigen::Vector2d::Zero();  ///< px, of the goal
   Eigen::Vector3d start_ = Eigen::Vector3d::Zero();  ///< m, of the goal
-  ros::SteadyTime began_;
-  std::unique_ptr<ImageApproach> approach_;  ///< null: the controller has not engaged yet
-  ros::Publisher setpoints_;                 ///< while a goal is active, so that a hand finds the topic free
-  ros::Subscriber others_;                   ///< counts the publishers of the set-points
+  ros::SteadyTime accepted_, began_;                 ///< of the goal, and of the connection to the controller
+  std::unique_ptr<ImageApproach> approach_;          ///< null: the controller has not engaged yet
+  ros::Publisher setpoints_;                         ///< while a goal is active, so that a hand finds the topic free
+  ros::Subscriber others_;                           ///< counts the publishers of the set-points
   MasterMonitor master_{true};
   actionlib::SimpleActionServer<cell_microinjection::GoToPixelAction> action_;
   diagnostic_updater::Updater diagnostics_;

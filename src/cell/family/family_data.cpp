@@ -70,6 +70,18 @@ FamilyMember readMember(ByteReader& reader, Eigen::Index dimension) {
   return member;
 }
 
+MeasuredError readMeasuredError(ByteReader& reader) {
+  MeasuredError measured;
+  measured.members = reader.number<std::int32_t>();
+  if (measured.members < 0 || measured.members > kMostMembers)
+    throw std::runtime_error("a number of members cannot be");
+  for (double* x : {&measured.error.median, &measured.error.common, &measured.deviation}) {
+    *x = reader.number<double>();
+    if (!(std::isfinite(*x) && *x >= 0)) throw std::runtime_error("a measured error cannot be");
+  }
+  return measured;
+}
+
 std::uint64_t readCount(ByteReader& reader) {
   const auto count = reader.number<std::uint64_t>();
   if (count > kMostMembers) throw std::runtime_error("a number of members cannot be");
@@ -113,6 +125,7 @@ void FamilyData::update() {
   }
   const LeaveOneOut left_out(family_, members_, scales, curves);
   covariance_ = chooseCovariance(points(), left_out);
+  measured_ = {};
   prepare();
   std::vector<double> all, relative;
   const Eigen::MatrixXd known = points();
@@ -163,8 +176,18 @@ bool FamilyData::serves(const Eigen::VectorXd& coordinates) const {
   return std::all_of(failed_.begin(), failed_.end(), [&](const auto& point) { return distance(point) > nearest; });
 }
 
+void FamilyData::setMeasuredError(const ExpectedError& error, const std::vector<Eigen::VectorXd>& members) {
+  measured_ = {static_cast<int>(members.size()), error, 0};
+  for (const Eigen::VectorXd& member : members)
+    measured_.deviation = std::max(measured_.deviation, kriging_->deviation(member));
+}
+
 ExpectedError FamilyData::expectedError(const Eigen::VectorXd& coordinates) const {
   const double deviation = kriging_->deviation(coordinates);
+  if (measured_.members > 0) {
+    const double factor = measured_.deviation > 0 ? std::max(1.0, deviation / measured_.deviation) : 1;
+    return {factor * measured_.error.median, factor * measured_.error.common};
+  }
   return {std::hypot(fit_.median, per_deviation_.median * deviation),
           std::hypot(fit_.common, per_deviation_.common * deviation)};
 }
@@ -205,8 +228,8 @@ SurrogateData FamilyData::cell(const Eigen::VectorXd& coordinates) const {
     own_field.setCoefficients(member.field);
     if (curve) {
       const AxisCurve ratio = curveRatio(curve, member, own_field, plan.scales);
-      own_energy.scaleAlongPaths(ratio);
-      own_field.scaleAlongPaths(ratio);
+      own_energy.scaleAlongPaths(ratio, curve);
+      own_field.scaleAlongPaths(ratio, curve);
     }
     energy += weight * own_energy.coefficients();
     field += weight * own_field.coefficients();
@@ -247,6 +270,8 @@ void FamilyData::save(const std::string& path) const {
   writer.array(Eigen::VectorXf(Eigen::Map<const Eigen::VectorXf>(modes.data(), modes.size())));
   for (std::size_t i = 0; i < members_.size(); ++i) writeMember(writer, members_[i], surfaces_.amplitudes()[i]);
   for (const FamilyMember& member : members_) write(writer, member.paths);
+  writer.number<std::int32_t>(measured_.members);
+  for (const double x : {measured_.error.median, measured_.error.common, measured_.deviation}) writer.number(x);
   writeCacheFile(path, family_.description() + kVersion, writer.bytes());
 }
 
@@ -287,6 +312,7 @@ FamilyData FamilyData::decode(const Family& family, const std::string& bytes) {
     surfaces.push_back(readSurface(reader, places, modes.size() / entries));
   }
   for (FamilyMember& member : data.members_) member.paths = readPathForces(reader);
+  if (!reader.atEnd()) data.measured_ = readMeasuredError(reader);  // older data end here
   if (!reader.atEnd()) throw std::runtime_error("there is more than was written");
   data.surfaces_.set(Eigen::Map<const Eigen::MatrixXf>(modes.data(), entries, modes.size() / entries), surfaces);
   data.prepare();

@@ -19,6 +19,13 @@ struct ExpectedError {
   double common = 0;  ///< exceeded by one of ten places
 };
 
+/// Errors that were measured at converged places of members that the family has not.
+struct MeasuredError {
+  int members = 0;  ///< drawn at random; 0: nothing was measured
+  ExpectedError error;
+  double deviation = 0;  ///< kriging's largest estimate among these members
+};
+
 /// The solved members of a family, from which it makes any other one.
 class FamilyData {
  public:
@@ -42,8 +49,12 @@ class FamilyData {
   bool hasAxisCurves() const { return log_axis_forces_.cols() == kAxisDepths; }
   /// Fits all members anew whose paths are known, and returns their number. A second for each.
   int refit();
-  /// Chooses the covariance and estimates the errors anew. Call it after the last add().
+  /// Chooses the covariance and estimates the errors anew. Call it after the last add(). Measured
+  /// errors are forgotten.
   void update();
+  /// Takes the errors that were measured at these members' coordinates.
+  void setMeasuredError(const ExpectedError& error, const std::vector<Eigen::VectorXd>& members);
+  const MeasuredError& measuredError() const { return measured_; }
 
   /// A column for each member and each failed one.
   Eigen::MatrixXd knownPoints() const;
@@ -56,6 +67,9 @@ class FamilyData {
   /// Whether there is a converged solution around these coordinates, because the nearest member did
   /// not fail, and members enough around them: nine of ten places are expected within a tenth.
   bool serves(const Eigen::VectorXd& coordinates) const;
+  /// The measured errors; larger, in proportion, where kriging is less certain than at any member
+  /// that was compared. Without a measurement: that of the members' own fits and kriging's estimate,
+  /// scaled by leaving members out.
   ExpectedError expectedError(const Eigen::VectorXd& coordinates) const;
   /// The member at any coordinates, without dimension. Its range is the part that its neighbours
   /// reached, its errors are those of expectedError(). Takes milliseconds.
@@ -79,6 +93,7 @@ class FamilyData {
   std::vector<Eigen::VectorXd> failed_;
   Eigen::MatrixXd log_axis_forces_;
   SurfaceModes surfaces_;
+  MeasuredError measured_;
   Covariance covariance_;
   ExpectedError left_out_, fit_;  ///< of the prediction, and of the members' own fits
   ExpectedError per_deviation_;   ///< of the prediction, over Kriging::deviation

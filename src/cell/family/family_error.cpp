@@ -57,7 +57,7 @@ LeaveOneOut::LeaveOneOut(const Family& family, const std::vector<FamilyMember>& 
       ForceField field(plan.scales);
       field.setCoefficients(other.field);
       if (&other == &at) member.own = forcesAt(field, places);
-      if (with_curves_) field.scaleAlongPaths(curveRatio(curves[i], other, field, plan.scales));
+      if (with_curves_) field.scaleAlongPaths(curveRatio(curves[i], other, field, plan.scales), curves[i]);
       member.forces.push_back(forcesAt(field, places));
     }
     members_.push_back(std::move(member));

@@ -14,7 +14,8 @@ constexpr int kMost = 16;              ///< largest number of terms of a polynom
 constexpr double kLargestRoot = 1.05;  ///< s of the longest displacement, with a margin
 constexpr double kNothing = 1e-9;      ///< t below which the displacement is zero
 constexpr int kFitPoints = 24;         ///< of s, where a product is approximated
-constexpr double kSmallRoot = 0.05;    ///< s below which an approximation need not become more exact
+constexpr double kSmallRoot = 0.08;    ///< s below which an approximation need not become more exact
+constexpr double kBeyond = 0.1;        ///< weight of an approximation beyond the longest displacement
 
 using Series = std::array<double, kMost>;
 
@@ -172,12 +173,14 @@ void EnergyExpansion::makeLocal(double angle, Local& local) const {
   }
 }
 
-void EnergyExpansion::scaleAlongPaths(const std::function<double(double)>& factor) {
+void EnergyExpansion::scaleAlongPaths(const std::function<double(double)>& factor,
+                                      const std::function<double(double)>& size) {
   const int count = degrees_.distance + 1;
   Eigen::MatrixXd basis(kFitPoints, count), product(kFitPoints, count);
   for (int i = 0; i < kFitPoints; ++i) {
     const double s = 0.5 * kLargestRoot * (1 - std::cos(M_PI * (i + 0.5) / kFitPoints));
-    const double weight = 1 / ((s + kSmallRoot) * (s + kSmallRoot));  // a force over t is small near the touch
+    // The terms are forces over t, or s^2. Near the touch and beyond the range little counts.
+    const double weight = (s > 1 ? kBeyond : 1) * s * s / std::max(size(s), size(kSmallRoot));
     basis.row(i) = weight * alongPath(degrees_.root, s, degrees_.distance);
     product.row(i) = factor(s) * basis.row(i);
   }

@@ -74,8 +74,9 @@ class EnergyExpansion {
 
   /// Multiplies the force along every straight path by a function of s: that of an expansion of a
   /// force itself, and the derivative by the length of an expansion of an energy. The product is
-  /// approximated by a polynomial in s of the same degree, best at small s.
-  void scaleAlongPaths(const std::function<double(double)>& factor);
+  /// approximated by a polynomial in s of the same degree, with errors relative to `size`, which the
+  /// force along a path has at s in some unit.
+  void scaleAlongPaths(const std::function<double(double)>& factor, const std::function<double(double)>& size);
 
  private:
   struct Term {

@@ -55,8 +55,9 @@ void ForceField::fit(const std::vector<TrainingSample>& samples) {
   axial_.setCoefficients(solveRegularised(along, along_right));
 }
 
-void ForceField::scaleAlongPaths(const std::function<double(double)>& factor) {
-  for (EnergyExpansion* expansion : {&away_, &lateral_, &axial_}) expansion->scaleAlongPaths(factor);
+void ForceField::scaleAlongPaths(const std::function<double(double)>& factor,
+                                 const std::function<double(double)>& size) {
+  for (EnergyExpansion* expansion : {&away_, &lateral_, &axial_}) expansion->scaleAlongPaths(factor, size);
 }
 
 void ForceField::makeLocal(double angle, Local& local) const {

@@ -31,7 +31,7 @@ class ForceField {
   void fit(const std::vector<TrainingSample>& samples);
 
   /// Multiplies the force by a function of s, see EnergyExpansion.
-  void scaleAlongPaths(const std::function<double(double)>& factor);
+  void scaleAlongPaths(const std::function<double(double)>& factor, const std::function<double(double)>& size);
 
   /// The field at one contact point. Only the first makeLocal allocates.
   class Local {

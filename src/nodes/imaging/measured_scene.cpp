@@ -27,4 +27,9 @@ YAML::Node withMeasuredSize(const YAML::Node& scene, double diameter, double zon
   return result;
 }
 
+std::size_t layersOf(const YAML::Node& scene) {
+  const YAML::Node layers = scene["cell"] ? scene["cell"]["layers"] : YAML::Node();
+  return layers && layers.IsSequence() ? layers.size() : 1;
+}
+
 }  // namespace microinjection

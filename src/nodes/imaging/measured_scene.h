@@ -9,4 +9,7 @@ namespace microinjection {
 /// a diameter or layers, and for a thickness that leaves no inner layer.
 YAML::Node withMeasuredSize(const YAML::Node& scene, double diameter, double zona_thickness);
 
+/// Layers of a scene's cell; 1 for a cell with a diameter.
+std::size_t layersOf(const YAML::Node& scene);
+
 }  // namespace microinjection

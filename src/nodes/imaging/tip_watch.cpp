@@ -1,5 +1,7 @@
 #include "nodes/imaging/tip_watch.h"
 
+#include <cmath>
+
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/message_guard.h"
 
@@ -7,6 +9,14 @@ namespace microinjection {
 namespace {
 
 constexpr double kResolution = 0.2e-6;  // m, within which a needle rests
+constexpr double kClockSkew = 0.05;     // s, by which a stamp may be ahead
+
+/// Empty, or why the tip is not above the cell: it must be farther out along the shaft than the cell reaches.
+std::string besideCell(const cell_microinjection::CellInImage& cell, const cell_microinjection::PipetteInImage& tip) {
+  if (cell.verdict == cell.NOT_FOUND) return "";
+  const double above = (tip.x - cell.x) * std::cos(tip.direction) + (tip.y - cell.y) * std::sin(tip.direction);
+  return above > cell.diameter / 2 ? "" : "the tip is beside the cell or in it, by the image";
+}
 
 }  // namespace
 
@@ -25,7 +35,29 @@ TipWatch::TipWatch(const ros::NodeHandle& node, double timeout) : timeout_(timeo
           [this](const OperatingState& message, const std::string&) { needle_state_ = message; }),
       subscribeGuarded<OperatingState>(
           node, "/controller/operating_state", kQueue,
-          [this](const OperatingState& message, const std::string&) { controller_state_ = message; })};
+          [this](const OperatingState& message, const std::string&) { controller_state_ = message; }),
+      subscribeGuarded<cell_microinjection::CellState>(
+          node, "/cell/state", kQueue,
+          [this](const cell_microinjection::CellState& message, const std::string&) {
+            touches_ = message.in_contact || message.inside;
+          }),
+      subscribeGuarded<cell_microinjection::InjectionStatus>(
+          node, "/controller/injection_state", kQueue,
+          [this](const cell_microinjection::InjectionStatus& message, const std::string&) {
+            injects_ = message.state != "idle" && message.state != "approach" && message.state != "fault";
+          })};
+}
+
+std::string TipWatch::cellInTheWay() const {
+  if (injects_) return "the needle is at the cell or in it, by the controller: withdraw it";
+  if (touches_) return "the needle touches the cell, by cell_simulator: withdraw it";
+  return beside_;
+}
+
+/// The older of stamp and arrival counts: a relay that repeats an old message must not keep it fresh.
+bool TipWatch::isOld(const ros::Time& stamp) const {
+  const double age = secondsBetween(stamp, ros::Time::now());
+  return age > timeout_ || age < -kClockSkew;
 }
 
 std::optional<Eigen::Vector3d> TipWatch::position() const {
@@ -40,22 +72,25 @@ std::optional<SeenTip> TipWatch::tip() const {
 
 void TipWatch::onNeedle(const geometry_msgs::PoseStamped& message) {
   const std::optional<Eigen::Isometry3d> pose = validPose(&message);
+  const bool followed = position().has_value();
   position_.reset();
-  if (!pose) return;
+  if (!pose || isOld(message.header.stamp)) return;
   position_ = pose->translation();
   orientation_ = Eigen::Quaterniond(pose->linear());
   position_received_ = ros::SteadyTime::now();
-  if ((*position_ - resting_place_).norm() <= kResolution) return;
+  if (followed && (*position_ - resting_place_).norm() <= kResolution) return;
   resting_place_ = *position_;
   rested_ = ros::Time::now().toSec();
-  if (on_motion) on_motion(*position_);
+  if (on_motion) on_motion(*position_, followed);
 }
 
 void TipWatch::onVision(const cell_microinjection::VisionState& message) {
   tip_.reset();
+  beside_.clear();
   tip_received_ = ros::SteadyTime::now();
   const auto& tip = message.injection_pipette;
-  tip_reason_ = tip.reason;
+  tip_reason_ = isOld(message.header.stamp) ? "the image is old, or stamped ahead" : tip.reason;
+  if (isOld(message.header.stamp)) return;
   image_centre_ = Eigen::Vector2d(message.width - 1.0, message.height - 1.0) / 2;
   if (tip.verdict != tip.FOUND) return;
   SeenTip seen;
@@ -67,6 +102,7 @@ void TipWatch::onVision(const cell_microinjection::VisionState& message) {
     return;
   }
   tip_ = seen;
+  beside_ = besideCell(message.cell, tip);
   if (on_tip) on_tip(seen);
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cell_microinjection/CellState.h>
+#include <cell_microinjection/InjectionStatus.h>
 #include <cell_microinjection/OperatingState.h>
 #include <cell_microinjection/VisionState.h>
 #include <geometry_msgs/PoseStamped.h>
@@ -32,13 +34,18 @@ class TipWatch {
   const cell_microinjection::OperatingState& needle() const { return needle_state_; }
   const cell_microinjection::OperatingState& controller() const { return controller_state_; }
 
-  /// Called when the needle has moved to another place (m).
-  std::function<void(const Eigen::Vector3d&)> on_motion;
+  /// Why the needle must not be moved across: it touches the cell or is in it, by the controller, by
+  /// cell_simulator or by the image. Empty: it is clear above the cell, as far as is known.
+  std::string cellInTheWay() const;
+
+  /// Called when the needle has moved to another place (m). `followed`: it was watched all the way.
+  std::function<void(const Eigen::Vector3d&, bool followed)> on_motion;
   /// Called for each image in which the tip was found.
   std::function<void(const SeenTip&)> on_tip;
 
  private:
   void onNeedle(const geometry_msgs::PoseStamped& message);
+  bool isOld(const ros::Time& stamp) const;
   void onVision(const cell_microinjection::VisionState& message);
 
   double timeout_;
@@ -50,6 +57,8 @@ class TipWatch {
   std::optional<SeenTip> tip_;
   std::string tip_reason_ = "no image was received";
   Eigen::Vector2d image_centre_ = Eigen::Vector2d::Zero();
+  std::string beside_;  ///< by the newest image: why the tip is not clear above the cell; else empty
+  bool touches_ = false, injects_ = false;  ///< by cell_simulator and by the controller
   cell_microinjection::OperatingState needle_state_, controller_state_;
   std::vector<ros::Subscriber> subscribers_;
 };

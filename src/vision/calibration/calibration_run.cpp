@@ -1,6 +1,7 @@
 #include "vision/calibration/calibration_run.h"
 
 #include <sstream>
+#include <string>
 
 namespace microinjection {
 namespace {
@@ -22,12 +23,16 @@ std::optional<Eigen::Vector3d> CalibrationRun::step(const CalibrationInput& inpu
   if (done() || !failure_.empty()) return std::nullopt;
   const CalibrationWaypoint& waypoint = plan_.waypoints[next_];
   const double elapsed = input.now - since_;
+  if (!input.position) {
+    failure_ = "the needle's position is not known";
+    return std::nullopt;
+  }
+  if ((phase_ == Phase::kSettle || phase_ == Phase::kObserve) && !arrived(input)) {
+    failure_ = "the needle has left waypoint " + std::to_string(next_ + 1) + " by itself";
+    return std::nullopt;
+  }
   switch (phase_) {
     case Phase::kCommand:
-      if (!input.position) {
-        failure_ = "the needle's position is not known";
-        return std::nullopt;
-      }
       allowed_ = kPatience + kSlow * (waypoint.position - *input.position).norm() / config_.speed;
       since_ = input.now;
       phase_ = Phase::kMove;
@@ -60,7 +65,7 @@ std::optional<Eigen::Vector3d> CalibrationRun::step(const CalibrationInput& inpu
 }
 
 void CalibrationRun::collect(const CalibrationInput& input) {
-  if (!input.tip || input.tip->stamp < since_) return;
+  if (!input.tip || input.tip->stamp < since_ || input.tip->stamp > input.now) return;
   if (!tips_.empty() && input.tip->stamp <= tips_.back().stamp) return;
   tips_.push_back(*input.tip);
 }

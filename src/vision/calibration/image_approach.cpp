@@ -8,6 +8,7 @@
 namespace microinjection {
 namespace {
 
+constexpr double kLongest = 0.05;     // s, that the set-point advances in a step: a stall must not become a jump
 constexpr double kArrived = 0.5e-6;   // m, of the motors from their goal
 constexpr double kBeyondPlay = 3e-6;  // m, by which a motion is longer than the backlash that it takes up
 
@@ -40,7 +41,7 @@ ImageApproach::ImageApproach(const ImageApproachConfig& config, const CameraCali
 
 std::optional<Eigen::Vector3d> ImageApproach::step(const Input& input) {
   if (done_ || !failure_.empty()) return std::nullopt;
-  const double duration = std::max(0.0, input.now - stepped_);
+  const double duration = std::clamp(input.now - stepped_, 0.0, kLongest);
   stepped_ = input.now;
   if (input.now - began_ > config_.time_limit) {
     std::ostringstream text;
@@ -49,13 +50,15 @@ std::optional<Eigen::Vector3d> ImageApproach::step(const Input& input) {
     failure_ = text.str();
     return std::nullopt;
   }
+  if (!input.position) {
+    waits_for_ = "the needle's position is not known";
+    return setpoint_;
+  }
   const Eigen::Vector3d way = goal_ - setpoint_;
   const double reach = config_.speed * duration;
   setpoint_ = way.norm() <= reach ? goal_ : Eigen::Vector3d(setpoint_ + reach * way.normalized());
   waits_for_.clear();
-  if (!input.position) {
-    waits_for_ = "the needle's position is not known";
-  } else if (setpoint_ == goal_ && (*input.position - goal_).norm() > kArrived) {
+  if (setpoint_ == goal_ && (*input.position - goal_).norm() > kArrived) {
     waits_for_ = "the needle does not follow";
   } else if (setpoint_ == goal_ && input.now - input.rested_since >= config_.settle_time) {
     plan(input);

@@ -38,12 +38,17 @@ std::optional<CameraFrame> CameraStream::next() {
   if (!source_) {
     try {
       open();
-    } catch (const ConfigError& error) {
+    } catch (const std::exception& error) {
       note(error.what());
       return std::nullopt;
     }
   }
-  std::optional<CameraFrame> frame = source_->next();
+  std::optional<CameraFrame> frame;
+  try {
+    frame = source_->next();
+  } catch (const std::exception& error) {  // OpenCV's, or of memory
+    note(error.what());
+  }
   for (const std::string& report : source_->takeReports()) note(report);
   if (!frame && is_device_) {
     source_.reset();
@@ -52,6 +57,7 @@ std::optional<CameraFrame> CameraStream::next() {
   if (frame && is_device_ && repeats(*frame)) return std::nullopt;
   const std::lock_guard<std::mutex> lock(mutex_);
   if (frame) {
+    if (is_device_) state_.report.clear();  // it has recovered
     ++state_.frames;
   } else {
     state_.ended = true;

@@ -36,7 +36,7 @@ TEST(AxisForce, AnExpansionOfAForceIsScaledAlongStraightPaths) {
   EnergyExpansion force(scales, {4, 4, 7, 1});
   force.setCoefficients(roughCoefficients(force.size(), 7));
   EnergyExpansion scaled = force;
-  scaled.scaleAlongPaths(linear);
+  scaled.scaleAlongPaths(linear, hertz);
   EnergyExpansion::Local before, after;
   force.makeLocal(0.3, before);
   scaled.makeLocal(0.3, after);
@@ -51,7 +51,7 @@ TEST(AxisForce, AnEnergyIsScaledByTheForceAlongStraightPaths) {
   EnergyExpansion energy(scales, EnergyDegrees());
   energy.setCoefficients(roughCoefficients(energy.size(), EnergyDegrees().distance));
   EnergyExpansion scaled = energy;
-  scaled.scaleAlongPaths(linear);
+  scaled.scaleAlongPaths(linear, hertz);
   EnergyExpansion::Local before, after;
   energy.makeLocal(0.3, before);
   scaled.makeLocal(0.3, after);
@@ -71,7 +71,7 @@ TEST(AxisForce, AFieldThatIsScaledToACurveHasItsForceOnTheAxis) {
   field.setCoefficients(coefficients);
   // As two members differ: a factor, and a slope with the depth.
   const AxisCurve wanted = [](double s) { return 1.5 * s * s * (1 + 0.2 * s * s); };
-  field.scaleAlongPaths(axisRatio(wanted, axisCurve(field, scales), 1));
+  field.scaleAlongPaths(axisRatio(wanted, axisCurve(field, scales), 1), wanted);
   const AxisCurve scaled = axisCurve(field, scales);
   // Where the ratio becomes constant, at the deepest, it has a kink that a polynomial rounds.
   for (double s = root(0); s < 1; s += 0.02) EXPECT_NEAR(scaled(s) / wanted(s), 1, 0.005) << s;

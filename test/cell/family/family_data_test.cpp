@@ -64,6 +64,23 @@ TEST_F(FamilyOfSprings, TheErrorsAreThoseOfFitAndPrediction) {
   EXPECT_EQ(data_.cell(Eigen::Vector3d(0.5, 0.5, 0)).common_error, between.common);
 }
 
+TEST_F(FamilyOfSprings, MeasuredErrorsAreExpectedUntilThereIsAnotherMember) {
+  const Eigen::Vector3d compared(0.3, 0.2, -0.4), far(0.5, -0.5, 0);
+  data_.setMeasuredError({0.004, 0.015}, {compared});
+  EXPECT_EQ(data_.expectedError(compared).median, 0.004);
+  EXPECT_EQ(data_.expectedError(compared).common, 0.015);
+  EXPECT_EQ(data_.expectedError(Eigen::Vector3d(1, 1, 1)).common, 0.015);  // a member: no less
+  EXPECT_GT(data_.expectedError(far).common, 0.015);
+  data_.save(path_);
+  const auto read = FamilyData::load(homogeneous(), path_);
+  ASSERT_TRUE(read) << read.reason;
+  EXPECT_EQ(read.content->measuredError().members, 1);
+  EXPECT_EQ(read.content->expectedError(far).common, data_.expectedError(far).common);
+  data_.update();
+  EXPECT_EQ(data_.measuredError().members, 0);
+  EXPECT_NE(data_.expectedError(compared).median, 0.004);
+}
+
 TEST_F(FamilyOfSprings, KnownForcesOnTheAxisAreTheSizeOfTheForce) {
   const ChebyshevGrid grid = axisForceGrid(data_.family());
   Eigen::VectorXd forces(grid.size());
@@ -237,6 +254,7 @@ TEST_F(FamilyOfSprings, ValuesThatCannotBeAreDamagedWhateverTheChecksum) {
   const std::size_t numbers = lengths + sizeof(std::uint64_t) + 3 * sizeof(double);
   const std::size_t axis = numbers + 5 * sizeof(double), failed = axis + sizeof(std::uint64_t);
   const std::size_t members = failed + sizeof(std::uint64_t);
+  constexpr std::size_t measured = sizeof(std::int32_t) + 3 * sizeof(double);
   const std::vector<std::pair<const char*, std::function<void(std::string&)>>> changes = {
       {"short", [](std::string& body) { body.pop_back(); }},
       {"long", [](std::string& body) { body += 'x'; }},
@@ -245,7 +263,9 @@ TEST_F(FamilyOfSprings, ValuesThatCannotBeAreDamagedWhateverTheChecksum) {
       {"axis", [=](std::string& body) { overwrite<std::uint64_t>(body, axis, 1); }},
       {"failed", [=](std::string& body) { overwrite<std::uint64_t>(body, failed, ~std::uint64_t{0}); }},
       {"no member", [=](std::string& body) { overwrite<std::uint64_t>(body, members, 0); }},
-      {"amplitude", [](std::string& body) { overwrite(body, body.size() - sizeof(float), static_cast<float>(kNan)); }}};
+      {"paths",
+       [](std::string& body) { overwrite(body, body.size() - measured - sizeof(std::uint64_t), ~std::uint64_t{0}); }},
+      {"measured error", [](std::string& body) { overwrite(body, body.size() - sizeof(double), kNan); }}};
   for (const auto& [what, change] : changes) {
     data_.save(path_);
     changeBody(path_, change);

@@ -109,11 +109,38 @@ TEST_F(CalibrationRunTest, FailsWhenAMoveDoesNotArrive) {
   EXPECT_NE(run_.failure().find("was not reached"), std::string::npos) << run_.failure();
 }
 
-TEST_F(CalibrationRunTest, FailsWhenThePositionIsLost) {
+TEST_F(CalibrationRunTest, FailsAtOnceWhenThePositionIsLost) {
+  for (const int steps : {300, 305, 310, 315, 320}) {  // in all phases of a waypoint
+    CalibrationRun run(config_.pattern, plan());
+    Rig rig(drawnNeedle(4), start_);
+    for (int i = 0; i < steps; ++i) {
+      if (const auto goal = run.step(rig.input())) rig.command(*goal);
+      rig.step();
+    }
+    rig.known_ = false;
+    EXPECT_FALSE(run.step(rig.input()));
+    EXPECT_NE(run.failure().find("position"), std::string::npos);
+  }
+}
+
+TEST_F(CalibrationRunTest, FailsWhenTheNeedleLeavesAWaypoint) {
   run(300);
-  rig_.known_ = false;
+  const std::size_t waypoint = run_.waypoint();
+  while (run_.waypoint() == waypoint) run(1);
+  do {
+    run(1);
+  } while (rig_.input().busy);
+  run(2);  // it settles at the next one
+  rig_.command(start_);
+  run(3);
+  EXPECT_NE(run_.failure().find("by itself"), std::string::npos) << run_.failure();
+}
+
+TEST_F(CalibrationRunTest, TakesNoImageOfTheFuture) {
+  rig_.late_ = -10;
   run();
-  EXPECT_FALSE(run_.failure().empty());
+  ASSERT_TRUE(run_.done());
+  EXPECT_EQ(run_.seen(), 0);
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ class ImageApproachTest : public testing::Test {
     std::optional<SeenTip> tip;
     double rested = 0;
     for (double now = 0; now < duration && !approach.done() && approach.failure().empty(); now += kStep) {
-      const auto setpoint = approach.step({now, known_ ? std::optional(position) : std::nullopt, rested, tip});
+      const auto setpoint = approach.step({now, position, rested, tip});
       if (setpoint && follows_ && *setpoint != position) {
         largest_step_ = std::max(largest_step_, (*setpoint - position).norm());
         lowest_ = std::min(lowest_, setpoint->z());
@@ -47,7 +47,7 @@ class ImageApproachTest : public testing::Test {
   SimulatedNeedle needle_;
   CameraCalibration calibration_;
   Eigen::Vector2d wrong_{0, 0};  ///< px
-  bool follows_ = true, sees_ = true, known_ = true;
+  bool follows_ = true, sees_ = true;
   double largest_step_ = 0, lowest_ = 1;
 };
 
@@ -97,10 +97,21 @@ TEST_F(ImageApproachTest, DoesNotFollowSomethingElse) {
 
 TEST_F(ImageApproachTest, HoldsWithoutAPosition) {
   ImageApproach approach = this->approach(needle_.truePixel());
-  known_ = false;
-  run(approach);
-  EXPECT_NE(approach.failure().find("position"), std::string::npos) << approach.failure();
-  EXPECT_EQ(largest_step_, 0);
+  Eigen::Vector3d position = start_;
+  for (double now = 0; now < 0.2; now += kStep) position = approach.step({now, position, 0, std::nullopt}).value();
+  EXPECT_NE(position, start_);  // it is under way
+  for (double now = 0.2; now < 1; now += kStep)
+    EXPECT_EQ(approach.step({now, std::nullopt, 0, std::nullopt}).value(), position);
+  EXPECT_NE(approach.waitsFor().find("position"), std::string::npos);
+}
+
+TEST_F(ImageApproachTest, AStallIsNoJump) {
+  ImageApproach approach = this->approach(needle_.truePixel());
+  const Eigen::Vector3d before = approach.step({0, start_, 0, std::nullopt}).value();
+  approach.step({1, before, 0, std::nullopt});
+  const Eigen::Vector3d begun = approach.step({1.01, before, 0, std::nullopt}).value();
+  const Eigen::Vector3d after = approach.step({11, begun, 0, std::nullopt}).value();
+  EXPECT_LE((after - begun).norm(), 0.05 * config_.speed * (1 + 1e-9));
 }
 
 }  // namespace
