@@ -9,6 +9,7 @@ to `out`. Ends with status 1 when something does not fit: roslaunch then stops.
 scene, urdf, haptic_config, overrides: paths; the last two may be empty. camera: as in session.launch. force_sources: those of controller and hand.
 """
 
+import os
 import pathlib
 import re
 import sys
@@ -41,6 +42,10 @@ FORCES = {"injection_controller": ("force_limit", "lateral_force_limit")}
 PER_FORCE = {"haptic_bridge": ("force_gain",), "display": ("force_scale",)}
 SPEEDS = (("micromanipulator", "servo_speed_limit"), ("injection_controller", "speed_limit"),
           ("injection_controller", "motion/stab_speed"), ("haptic_bridge", "rate_mode/speed_limit"))
+
+
+SIMULATED_CALIBRATION = str(pathlib.Path(os.environ.get("XDG_DATA_HOME") or pathlib.Path.home() / ".local/share") /
+                            "cell_microinjection/calibration_simulated.yaml")
 
 
 class Loader(yaml.SafeLoader):
@@ -245,6 +250,8 @@ def fit_session(arguments):
     fit = Fit(cell, read(haptic) if pathlib.Path(haptic).is_file() else {}, rig.axis_speed)
     if arguments["camera"] == "sim":  # of another camera only a calibration knows it
         put(fit.changed, "vision/pixel_size", fit.get("microscope", "camera/pixel_size"))
+        for node, key in (("calibration", "file"), ("vision", "calibration"), ("visual_servo", "calibration")):
+            put(fit.changed, f"{node}/{key}", SIMULATED_CALIBRATION)  # that of a real camera stays
     if arguments["overrides"]:
         override(fit, rig, arguments["overrides"])
     measured = arguments["sensor"] == "simulated" and "measured" in arguments["force_sources"]

@@ -30,8 +30,8 @@ def run(name, action, goal, describe):
     client.send_goal(goal, feedback_cb=lambda feedback: print(f"\r{describe(feedback)}  ", end="", flush=True))
     client.wait_for_result()
     result = client.get_result()
-    print(f"\n{result.message}")
-    return result.success
+    print(f"\n{result.message if result else 'cancelled'}")
+    return result is not None and result.success
 
 
 def calibrate(field_x, field_z):

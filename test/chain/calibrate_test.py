@@ -25,12 +25,13 @@ FIELD_X, FIELD_Z = 60e-6, 45e-6  # m
 class CalibrateTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.seen, cls.heights = {}, []
+        cls.seen, cls.places = {}, []
         for topic, kind in (("/needle/operating_state", OperatingState), ("/controller/operating_state", OperatingState),
                             ("/vision/state", VisionState)):
             rospy.Subscriber(topic, kind, lambda message, topic=topic: cls.seen.update({topic: message}), queue_size=1)
         rospy.Subscriber("/needle/measured_cp", PoseStamped,
-                         lambda message: cls.heights.append(message.pose.position.z), queue_size=1)
+                         lambda message: cls.places.append((message.pose.position.x, message.pose.position.z)),
+                         queue_size=1)
         cls.needle = rospy.Publisher("/needle/state_command", StringStamped, queue_size=1)
         cls.controller = rospy.Publisher("/controller/state_command", StringStamped, queue_size=1)
         cls.action = actionlib.SimpleActionClient("/calibration/calibrate", CalibrateAction)
@@ -63,19 +64,19 @@ class CalibrateTest(unittest.TestCase):
     def setUp(self):
         self.command(self.controller, "/controller/operating_state", "disable", "DISABLED")
         self.command(self.needle, "/needle/operating_state", "enable", "ENABLED")
-        self.until(lambda: self.tip_is_seen(), "the tip")
+        self.until(self.tip_is_seen, "the tip")
+        self.until(lambda: self.places, "the needle")
 
     def tip_is_seen(self):
         state = self.seen.get("/vision/state")
         return state and state.injection_pipette.verdict == state.injection_pipette.FOUND
 
     def test_finds_scale_angle_and_backlash(self):
-        lowest = self.heights[-1]
-        self.heights.clear()
+        lowest, begin = self.places[-1][1], len(self.places)
         self.goal()
         result = self.result()
         self.assertTrue(result.success, result.message)
-        self.assertGreaterEqual(min(self.heights), lowest - 1e-8)  # never below where it began
+        self.assertGreaterEqual(min(place[1] for place in self.places[begin:]), lowest - 1e-8)  # never below where it began
         self.assertAlmostEqual(result.pixel_size / PIXEL, 1, delta=1e-3)
         self.assertLess(result.pixel_size_interval, 2e-3 * PIXEL)
         self.assertAlmostEqual(np.degrees(result.angle), 0, delta=0.1)
@@ -123,12 +124,30 @@ class CalibrateTest(unittest.TestCase):
             self.assertTrue(result.message)
 
     def test_stops_when_cancelled(self):
-        self.goal()
-        self.until(lambda: self.seen["/needle/operating_state"].is_busy, "a move")
+        wide, start = 800e-6, self.places[-1]  # its first point is 4 s away
+        self.goal(field_x=wide)
+        self.until(lambda: abs(self.places[-1][0] - start[0]) > 3e-6, "a motion")
         self.action.cancel_goal()
         self.assertEqual(self.result().message, "cancelled")
         self.assertEqual(self.action.get_state(), GoalStatus.PREEMPTED)
-        self.until(lambda: not self.seen["/needle/operating_state"].is_busy, "the needle's rest")
+        self.rest()
+        self.assertLess(abs(self.places[-1][0] - start[0]), wide / 2)
+
+    def test_another_command_ends_it(self):
+        self.goal(field_x=800e-6)
+        start = self.places[-1]
+        self.until(lambda: abs(self.places[-1][0] - start[0]) > 3e-6, "a motion")
+        self.needle.publish(StringStamped(string="stop"))
+        self.assertIn("command stop", self.result().message)
+        self.rest()
+
+    def rest(self):
+        """Waits until the needle has not moved for 500 of its poses."""
+        def still():
+            last = self.places[-500:]
+            return len(last) == 500 and max(abs(place[0] - last[0][0]) for place in last) < 1e-7
+        begin = len(self.places)
+        self.until(lambda: len(self.places) > begin + 500 and still(), "the needle's rest")
 
 
 if __name__ == "__main__":

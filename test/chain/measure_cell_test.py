@@ -136,6 +136,8 @@ class MeasureCellTest(unittest.TestCase):
         answer = self.measured(serve=True, scene="/proc/nowhere/scene.yaml")
         self.assertFalse(answer.success)
         self.assertIn("/proc/nowhere", answer.message)
+        answered = rospy.Time.now()
+        self.until(lambda: (self.seen["/cell/state"].header.stamp - answered).to_sec() > 0.2, "later states of the cell")
         self.assertEqual(before["diameter"], dict(zip(self.seen["/cell/state"].parameter_names,
                                                       self.seen["/cell/state"].parameter_values))["diameter"])
 
