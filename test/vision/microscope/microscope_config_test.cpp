@@ -24,7 +24,7 @@ std::string errorOf(const std::string& yaml) {
 TEST(MicroscopeConfig, ItsFileHasTheDefaults) {
   const std::string path = std::string(MICROINJECTION_SOURCE_DIR) + "/config/microscope.yaml";
   YAML::Node file = loadYamlMap(path);
-  for (const char* key : {"rate", "state_timeout", "focus", "specimen"}) file.remove(key);  // of the node
+  for (const char* key : {"rate", "needle", "state_timeout", "focus", "specimen"}) file.remove(key);  // of the node
   ConfigReader reader(file, path);
   const MicroscopeConfig config = MicroscopeConfig::read(reader), built_in;
   reader.finish();
