@@ -13,6 +13,7 @@
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/message_guard.h"
 #include "nodes/runtime/node_parameters.h"
+#include "nodes/runtime/orphan.h"
 #include "nodes/runtime/run_node.h"
 #include "vision/calibration/calibration_file.h"
 
@@ -166,10 +167,7 @@ void CalibrationNode::onGoal() {
 
 void CalibrationNode::step() {
   diagnostics_.update();
-  if (master_.masterLostForLong()) {
-    ROS_ERROR("the ROS master has been away for too long: this node ends");
-    ros::requestShutdown();
-  }
+  endIfOrphaned(master_);
   if (!run_) return;
   if (const std::string reason = interruption(); !reason.empty()) return fail(reason);
   if (!commanded_.empty()) return fail("the needle had the command " + commanded_);
@@ -237,12 +235,7 @@ void CalibrationNode::stream(const ros::Time& now) {
   const Eigen::Vector3d way = goal_ - setpoint_;
   const double reach = parameters_.calibration.pattern.speed * kPeriod;
   setpoint_ = way.norm() <= reach ? goal_ : Eigen::Vector3d(setpoint_ + reach * way.normalized());
-  geometry_msgs::PoseStamped message = toPose(setpoint_, now, kWorldFrame);
-  message.pose.orientation.x = watch_.orientation().x();
-  message.pose.orientation.y = watch_.orientation().y();
-  message.pose.orientation.z = watch_.orientation().z();
-  message.pose.orientation.w = watch_.orientation().w();
-  setpoints_.publish(message);
+  setpoints_.publish(toPose(watch_.poseAt(setpoint_), now, kWorldFrame));
 }
 
 void CalibrationNode::take(const CameraCalibration& calibration) {

@@ -6,6 +6,7 @@
 
 #include "nodes/runtime/message_guard.h"
 #include "nodes/runtime/node_parameters.h"
+#include "nodes/runtime/orphan.h"
 #include "nodes/runtime/run_node.h"
 
 namespace microinjection {
@@ -47,9 +48,7 @@ CameraNode::CameraNode(ros::NodeHandle node, ros::NodeHandle private_node)
   published_ = static_cast<std::int64_t>(reported_.toNSec());
   timer_ = node.createSteadyTimer(ros::WallDuration(kReportPeriod), [this](const ros::SteadyTimerEvent&) {
     diagnostics_.update();
-    if (!master_.masterLostForLong()) return;
-    ROS_ERROR("the ROS master has been away for too long: this node ends");
-    ros::requestShutdown();
+    endIfOrphaned(master_);
   });
   thread_ = std::thread([this] { grab(); });
 }

@@ -11,6 +11,7 @@
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/message_guard.h"
 #include "nodes/runtime/node_parameters.h"
+#include "nodes/runtime/orphan.h"
 #include "nodes/runtime/run_node.h"
 
 namespace microinjection {
@@ -161,10 +162,7 @@ void DisplayNode::draw() {
     fixed_markers_.publish(markers);
     fixed_drawn_ = start;
   }
-  if (master_.masterLostForLong()) {
-    ROS_ERROR("the ROS master has been away for too long: this node ends");
-    ros::requestShutdown();
-  }
+  endIfOrphaned(master_);
   ++drawings_;
   longest_drawing_ = std::max(longest_drawing_, secondsBetween(start, ros::WallTime::now()));
   diagnostics_.update();

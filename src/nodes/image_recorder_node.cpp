@@ -11,6 +11,7 @@
 #include "base/errors.h"
 #include "nodes/runtime/message_guard.h"
 #include "nodes/runtime/node_parameters.h"
+#include "nodes/runtime/orphan.h"
 #include "nodes/runtime/run_node.h"
 
 namespace microinjection {
@@ -50,9 +51,7 @@ ImageRecorderNode::ImageRecorderNode(ros::NodeHandle node, ros::NodeHandle priva
   });
   timer_ = node.createSteadyTimer(ros::WallDuration(kReportPeriod), [this](const ros::SteadyTimerEvent&) {
     diagnostics_.update();
-    if (!master_.masterLostForLong()) return;
-    ROS_ERROR("the ROS master has been away for too long: this node ends");
-    ros::requestShutdown();
+    endIfOrphaned(master_);
   });
 }
 

@@ -8,6 +8,7 @@
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/message_guard.h"
 #include "nodes/runtime/node_parameters.h"
+#include "nodes/runtime/orphan.h"
 #include "nodes/runtime/run_node.h"
 
 namespace microinjection {
@@ -125,10 +126,7 @@ void MicroscopeNode::step() {
     });
     longest_render_ = std::max(longest_render_, secondsBetween(start, ros::SteadyTime::now()));
   }
-  if (master_.masterLostForLong()) {
-    ROS_ERROR("the ROS master has been away for too long: this node ends");
-    ros::requestShutdown();
-  }
+  endIfOrphaned(master_);
   diagnostics_.update();
 }
 

@@ -18,6 +18,7 @@
 #include "nodes/imaging/vision_messages.h"
 #include "nodes/runtime/message_guard.h"
 #include "nodes/runtime/node_parameters.h"
+#include "nodes/runtime/orphan.h"
 #include "nodes/runtime/run_node.h"
 #include "vision/calibration/calibration_file.h"
 
@@ -86,9 +87,7 @@ VisionNode::VisionNode(ros::NodeHandle node, ros::NodeHandle private_node)
   });
   timer_ = node.createSteadyTimer(ros::WallDuration(kReportPeriod), [this](const ros::SteadyTimerEvent&) {
     diagnostics_.update();
-    if (!master_.masterLostForLong()) return;
-    ROS_ERROR("the ROS master has been away for too long: this node ends");
-    ros::requestShutdown();
+    endIfOrphaned(master_);
   });
 }
 

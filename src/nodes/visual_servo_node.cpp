@@ -7,6 +7,7 @@
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/message_guard.h"
 #include "nodes/runtime/node_parameters.h"
+#include "nodes/runtime/orphan.h"
 #include "nodes/runtime/run_node.h"
 #include "vision/calibration/calibration_file.h"
 
@@ -91,20 +92,12 @@ bool VisualServoNode::isEngaged() {
 }
 
 void VisualServoNode::publish(const Eigen::Vector3d& setpoint, const ros::Time& now) {
-  geometry_msgs::PoseStamped message = toPose(setpoint, now, kWorldFrame);
-  message.pose.orientation.x = watch_.orientation().x();
-  message.pose.orientation.y = watch_.orientation().y();
-  message.pose.orientation.z = watch_.orientation().z();
-  message.pose.orientation.w = watch_.orientation().w();
-  setpoints_.publish(message);
+  setpoints_.publish(toPose(watch_.poseAt(setpoint), now, kWorldFrame));
 }
 
 void VisualServoNode::step() {
   diagnostics_.update();
-  if (master_.masterLostForLong()) {
-    ROS_ERROR("the ROS master has been away for too long: this node ends");
-    ros::requestShutdown();
-  }
+  endIfOrphaned(master_);
   if (!calibration_) return;
   if (watch_.controller().state != "ENABLED") return finish(false, "the controller is " + watch_.controller().state);
   if (others_.getNumPublishers() > 1) return finish(false, std::string("another node publishes ") + kSetpoints);

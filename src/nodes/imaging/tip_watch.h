@@ -25,7 +25,10 @@ class TipWatch {
   TipWatch(const ros::NodeHandle& node, double timeout);
 
   std::optional<Eigen::Vector3d> position() const;  ///< m, `world`; none: silent or invalid
-  Eigen::Quaterniond orientation() const { return orientation_; }
+  /// A pose of the needle at another position (m), with the measured orientation.
+  Eigen::Isometry3d poseAt(const Eigen::Vector3d& position) const {
+    return Eigen::Translation3d(position) * orientation_;
+  }
   std::optional<SeenTip> tip() const;  ///< none: not found in the newest image, or that is old
   const std::string& tipReason() const { return tip_reason_; }
   /// s of ROS time, since when the needle has been at one place within 0.2 um.
