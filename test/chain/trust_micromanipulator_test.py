@@ -105,11 +105,11 @@ class TrustTest(unittest.TestCase):
         """Of a second and more, up to the last one that there is; it used to end the node."""
         self.world.run(200)
         for seconds in (2, 3600, 2 ** 31 + 1, 2 ** 32 - 2):
-            stamp = rospy.Time(int(min(self.world.now.to_sec() + seconds, 2 ** 32 - 1)), 999999999)
             move, velocity = pose(20e-6, -10e-6, 70e-6), TwistStamped()
             velocity.twist.linear.x = 50e-6
             for publisher, message in ((self.move, move), (self.velocity, velocity)):
-                message.header.stamp = stamp
+                # Of this message's time: the diagnostics of the one before take up to a second.
+                message.header.stamp = rospy.Time(int(min(self.world.now.to_sec() + seconds, 2 ** 32 - 1)), 999999999)
                 publisher.publish(message)
                 topic = publisher.name[1:]
                 self.tick_until(lambda: f"{topic}: refused, its stamp is" in
