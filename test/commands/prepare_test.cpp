@@ -8,9 +8,11 @@
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "base/cache_file.h"
 #include "cell/surrogate/surrogate_data.h"
+#include "commands/solve_paths.h"
 
 namespace microinjection {
 namespace {
@@ -49,6 +51,15 @@ class PrepareCommand : public testing::Test {
     return preparedFile(scene, Preparation::plan(scene, PreparationRange::standard(scene)));
   }
 
+  /// The solved paths of all cells in the cache.
+  std::vector<fs::path> storedPaths() const {
+    std::vector<fs::path> result;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(directory_)) {
+      if (entry.path().filename().string().rfind("path_", 0) == 0) result.push_back(entry.path());
+    }
+    return result;
+  }
+
   bool said(const std::string& text) const { return said_.find(text) != std::string::npos; }
 
   const std::string directory_ = testing::TempDir() + "microinjection_prepare/",
@@ -84,6 +95,24 @@ TEST_F(PrepareCommand, DamagedDataAreNamedAndMadeAnew) {
   EXPECT_EQ(prepare(full_disk_, scene_), 2) << said_;
   EXPECT_TRUE(said(preparedPath() + ": is damaged: ")) << said_;
   EXPECT_TRUE(said("it is replaced")) << said_;
+}
+
+/// Two processes that make one family come to the same path at the same time.
+TEST_F(PrepareCommand, APathOfAFamilyIsSolvedByOneOfTwoProcesses) {
+  const std::string family = "--family " MICROINJECTION_SOURCE_DIR "/config/families/homogeneous.yaml ";
+  const std::string path = family + "--at=1,1,0 --ray 40";
+  const std::string other = "{ " MICROINJECTION_PREPARE " " + path + "; echo other $? >&2; } & ";
+  const int first = prepare(other, path + "; here=$?; wait; (exit $here)");
+  const std::size_t said_by_other = said_.find("other ");
+  ASSERT_NE(said_by_other, std::string::npos) << said_;
+  const int second = std::atoi(said_.c_str() + said_by_other + 6);
+  for (const int status : {first, second}) EXPECT_TRUE(status == 0 || status == kBusyStatus) << said_;
+  EXPECT_TRUE(first == 0 || second == 0) << said_;
+  const std::vector<fs::path> solved = storedPaths();
+  ASSERT_EQ(solved.size(), 1u);
+  const auto written = fs::last_write_time(solved.front());
+  EXPECT_EQ(prepare("", path), 0) << said_;
+  EXPECT_EQ(fs::last_write_time(solved.front()), written);
 }
 
 TEST_F(PrepareCommand, ItsHelpNeedsAnOutput) {

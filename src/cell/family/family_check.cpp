@@ -19,6 +19,10 @@ constexpr double kSteepness = 0.5;                  ///< least depth over latera
 /// Change from the fine mesh to the limit, over that from the coarse to the fine one. `./dev bench mesh_limit` has 0.2
 /// at small depths and on the axis, and 0.5 deep beside it.
 constexpr double kExtrapolation = 0.5;
+/// A path below this length, over the tip's radius, touches a few elements of the fine mesh: its force is up to 6 % off.
+/// Half a level finer it is 0.2 % from that of two levels finer (`prepare --check`, member 1 of seed 1).
+constexpr double kShallow = 0.8;
+constexpr double kShallowLevel = 0.5;
 constexpr int kNodeStride = 23;    ///< of the grid's nodes that references have
 constexpr double kOverlap = 0.02;  ///< least overlap of tip and cell, over the cell's radius
 
@@ -66,6 +70,18 @@ std::optional<CheckedPlace> compare(const SurrogateData& cell, const ReferencePl
   return place;
 }
 
+/// A path for each point of the fine paths in the plane of symmetry that is nearer than `length`. Beside the plane the
+/// mesh is a whole one, and too expensive.
+std::vector<TrainingRay> shallowMotions(const std::vector<TrainingRay>& rays, double length) {
+  std::vector<TrainingRay> result;
+  for (const TrainingRay& ray : rays) {
+    for (int i = 0; i < ray.points && ray.level == kFineLevel && ray.target.y() == 0; ++i) {
+      if (ray.at(i).norm() < length) result.push_back({ray.angle, ray.at(i), 1, kShallowLevel});
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 std::vector<Eigen::VectorXd> drawMembers(const Family& family, int count, int seed) {
@@ -97,6 +113,8 @@ Preparation drawMotions(const Family& family, const Eigen::VectorXd& coordinates
     ++count;
     for (const double level : {kFineLevel, kCoarseLevel}) motions.rays.push_back({angle, end, kPoints, level});
   }
+  const std::vector<TrainingRay> shallow = shallowMotions(motions.rays, kShallow * member.needle.tip.radius);
+  motions.rays.insert(motions.rays.end(), shallow.begin(), shallow.end());
   return motions;
 }
 
@@ -109,8 +127,10 @@ std::vector<int> referenceNodes() {
 std::vector<ReferencePlace> referencePlaces(int member, const Eigen::VectorXd& coordinates, const Preparation& motions,
                                             const std::vector<TrainingResult>& results) {
   std::vector<MeshCorrection::Pair> pairs;
-  for (std::size_t i = 0; i + 1 < results.size(); i += 2) {
-    pairs.push_back({&results[i + 1].samples, &results[i].samples});
+  std::vector<const TrainingSample*> shallow;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    if (motions.rays[i].level == kFineLevel) pairs.push_back({&results[i + 1].samples, &results[i].samples});
+    if (motions.rays[i].level == kShallowLevel && results[i].reason.empty()) shallow.push_back(&results[i].samples[0]);
   }
   const MeshCorrection correction(motions.scales, pairs);
   std::vector<ReferencePlace> places;
@@ -118,8 +138,12 @@ std::vector<ReferencePlace> referencePlaces(int member, const Eigen::VectorXd& c
     for (std::size_t k = 0; k < std::min(fine->size(), coarse->size()); ++k) {
       const TrainingSample& truth = (*fine)[k];
       const double to_fine = correction.factor(truth.angle, truth.displacement);
+      const auto finer = std::find_if(shallow.begin(), shallow.end(), [&](const TrainingSample* sample) {
+        return sample->angle == truth.angle && sample->displacement == truth.displacement;
+      });
+      const Eigen::Vector3d limit = truth.force * std::pow(to_fine, kExtrapolation);
       places.push_back({member, coordinates, truth.angle, truth.displacement,
-                        truth.force * std::pow(to_fine, kExtrapolation), atReferenceNodes((*coarse)[k].surface)});
+                        finer == shallow.end() ? limit : (*finer)->force, atReferenceNodes((*coarse)[k].surface)});
     }
   }
   return places;

@@ -13,7 +13,7 @@ std::vector<Eigen::VectorXd> drawMembers(const Family& family, int count, int se
 /// Converged paths to random places in a member's planned range, up to 56 degrees, 0.3 diameters deep and
 /// 0.08 diameters sideways; two places on each. For odd seeds, one of five is out of the plane of
 /// symmetry, where a path costs ten times as much. Each path is there on the fine mesh and, with its
-/// surface, on the coarse one.
+/// surface, on the coarse one. Places near the first contact have a path on a finer mesh.
 Preparation drawMotions(const Family& family, const Eigen::VectorXd& coordinates, int seed);
 
 /// A place where a family's cell is compared with the converged solution.
