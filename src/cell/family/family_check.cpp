@@ -19,8 +19,8 @@ constexpr double kSteepness = 0.5;                  ///< least depth over latera
 /// Change from the fine mesh to the limit, over that from the coarse to the fine one. `./dev bench mesh_limit` has 0.2
 /// at small depths and on the axis, and 0.5 deep beside it.
 constexpr double kExtrapolation = 0.5;
-/// A path below this length, over the tip's radius, touches a few elements of the fine mesh: its force is up to 6 % off.
-/// Half a level finer it is 0.2 % from that of two levels finer (`prepare --check`, member 1 of seed 1).
+/// A path below this length, over the tip's radius, touches a few elements of the fine mesh: its force is up to 6 %
+/// off. Half a level finer it is 0.2 % from that of two levels finer (`prepare --check`, member 1 of seed 1).
 constexpr double kShallow = 0.8;
 constexpr double kShallowLevel = 0.5;
 constexpr int kNodeStride = 23;    ///< of the grid's nodes that references have

@@ -9,7 +9,7 @@
 namespace microinjection {
 namespace {
 
-constexpr double kLengths[] = {1, 1.5, 2, 3, 4.5, 9}, kNoises[] = {1e-6, 1e-4, 1e-3};
+constexpr double kLengths[] = {1, 1.5, 2, 3, 4.5, 9}, kNoises[] = {1e-6, 1e-4, 1e-3, 3e-3, 1e-2, 3e-2};
 constexpr double kDefaultLength = 2;
 constexpr double kLarge = 0.02;   ///< of the largest force: smaller ones have no error
 constexpr double kOutlier = 0.1;  ///< error above which a place does not count more

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace microinjection {
+
+/// A record of a needle that is pushed into a cell, sample by sample.
+struct ForceCurve {
+  std::vector<double> time;        ///< s
+  std::vector<double> position;    ///< m, of the tip along its axis, growing into the cell; its zero is arbitrary
+  std::vector<double> force;       ///< N, of the cell on the tip, growing with the depth; with any offset
+  bool timed = true;               ///< else `time` counts samples
+  std::vector<std::string> notes;  ///< what was done to the record, for the user
+
+  std::size_t size() const { return force.size(); }
+};
+
+struct ForceCurveConfig {
+  /// Column (name or number from 1) and unit of time, position, deflection and force, as "name:unit".
+  /// What is not named is searched by its name; see readForceCurve.
+  std::map<std::string, std::string> columns;
+  bool whole = false;  ///< also what follows the deepest point
+};
+
+/// Reads columns of numbers (comma, semicolon, tab or blanks between them; # begins a comment) below
+/// a line of names. Names begin with time or t; position, tip, depth, indentation, height or z;
+/// deflection; force or f, and end with the unit: force_nN, "height (um)", z[m]. With a deflection,
+/// the tip's position is height minus deflection. Rows without a number are left out; sign and
+/// direction are found from the record, because laboratories differ in them. Throws ConfigError that
+/// names file, column and what is allowed.
+ForceCurve readForceCurve(const std::string& path, const ForceCurveConfig& config);
+
+/// Means of neighbouring samples, so that at most `count` are left.
+ForceCurve averaged(const ForceCurve& curve, std::size_t count);
+
+}  // namespace microinjection

@@ -1,0 +1,182 @@
+#include "cell/identification/identification.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "base/errors.h"
+#include "cell/identification/contact_guess.h"
+#include "cell/identification/profile_interval.h"
+
+namespace microinjection {
+namespace {
+
+constexpr std::size_t kMostSamples = 2000;
+constexpr double kChiSquared95 = 3.841;  ///< one degree of freedom
+constexpr double kDeviations95 = 1.96;
+constexpr double kTrimmed = 0.02;
+constexpr double kInseparable = 0.97;  ///< correlation of two unknowns
+constexpr double kLeastMisfit = 0.03;  ///< of the force: a smaller one is no reason to doubt a model
+constexpr double kSignificant = 3;     ///< misfit over what noise alone would leave
+constexpr int kBlocks = 12;            ///< of the part in contact, whose means are its smooth part
+
+/// Deviation of a sample, from its neighbours: no model changes it.
+double whiteNoise(const ForceCurve& curve) {
+  std::vector<double> differences;
+  for (std::size_t i = 1; i + 1 < curve.size(); ++i) {
+    differences.push_back(std::abs(curve.force[i] - 0.5 * (curve.force[i - 1] + curve.force[i + 1])));
+  }
+  std::nth_element(differences.begin(), differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2),
+                   differences.end());
+  return 1.4826 / std::sqrt(1.5) * differences[differences.size() / 2];
+}
+
+/// Rms of the blocks' medians of the residuals in contact, and what noise alone leaves of it.
+struct Misfit {
+  double found = 0, expected = 0;
+};
+
+Misfit misfitOf(const ForceCurve& curve, const Eigen::VectorXd& residuals, double contact, double noise) {
+  std::vector<double> inside;
+  for (std::size_t i = 0; i < curve.size(); ++i) {
+    if (curve.position[i] > contact) inside.push_back(residuals[static_cast<Eigen::Index>(i)]);
+  }
+  const std::size_t length = inside.size() / kBlocks;
+  if (length < 2) return {};
+  double squares = 0;
+  for (int block = 0; block < kBlocks; ++block) {
+    std::vector<double> part(inside.begin() + static_cast<std::ptrdiff_t>(block * length),
+                             inside.begin() + static_cast<std::ptrdiff_t>((block + 1) * length));
+    std::nth_element(part.begin(), part.begin() + part.size() / 2, part.end());
+    squares += part[part.size() / 2] * part[part.size() / 2];
+  }
+  return {std::sqrt(squares / kBlocks), 1.25 * noise / std::sqrt(static_cast<double>(length))};
+}
+
+double trimmedDeviation(const Eigen::VectorXd& residuals) {
+  std::vector<double> squares(static_cast<std::size_t>(residuals.size()));
+  Eigen::Map<Eigen::VectorXd>(squares.data(), residuals.size()) = residuals.cwiseAbs2();
+  std::sort(squares.begin(), squares.end());
+  const auto kept = static_cast<std::size_t>((1 - kTrimmed) * static_cast<double>(squares.size()));
+  double sum = 0;
+  for (std::size_t i = 0; i < kept; ++i) sum += squares[i];
+  return std::sqrt(sum / static_cast<double>(kept));
+}
+
+std::vector<std::string> inseparable(const CurveModel& model, const CurveFit& fit) {
+  std::vector<std::string> result;
+  const auto& unknowns = model.unknowns();
+  for (std::size_t p = 0; p < unknowns.size(); ++p) {
+    for (std::size_t q = 0; q < p; ++q) {
+      const auto i = static_cast<Eigen::Index>(p), j = static_cast<Eigen::Index>(q);
+      const double scale = std::sqrt(fit.covariance(i, i) * fit.covariance(j, j));
+      const double correlation = scale > 0 ? fit.covariance(i, j) / scale : 0;
+      if (std::abs(correlation) < kInseparable) continue;
+      char text[200];
+      std::snprintf(text, sizeof(text), "%s and %s cannot be told apart by this record (correlation %.3f)",
+                    unknowns[q].name.c_str(), unknowns[p].name.c_str(), correlation);
+      result.emplace_back(text);
+    }
+  }
+  return result;
+}
+
+Eigen::VectorXd residualsOf(CurveModel& model, const Eigen::VectorXd& internal) {
+  Eigen::VectorXd force;
+  Eigen::MatrixXd jacobian;
+  model.predict(internal, force, jacobian);
+  return Eigen::Map<const Eigen::VectorXd>(model.curve().force.data(), force.size()) - force;
+}
+
+Estimate estimateOf(CurveModel& model, const CurveFit& fit, int p, double correlation, bool profile) {
+  const CurveModel::Unknown& unknown = model.unknowns()[static_cast<std::size_t>(p)];
+  const double deviation = std::sqrt(correlation * fit.covariance(p, p));
+  ProfileInterval interval{fit.internal[p] - kDeviations95 * deviation, fit.internal[p] + kDeviations95 * deviation};
+  if (profile && deviation > 0) interval = profileInterval(model, fit, p, 0.5 * kChiSquared95 * correlation, deviation);
+  // What the law is off by is the modulus's, too.
+  if (unknown.name == "young_modulus") {
+    const double law = kDeviations95 * model.law().error();
+    interval.low = fit.internal[p] - std::hypot(fit.internal[p] - interval.low, law);
+    interval.high = fit.internal[p] + std::hypot(interval.high - fit.internal[p], law);
+  }
+  return {
+      unknown.name,    unknown.unit, unknown.si(fit.internal[p]), unknown.si(interval.low), unknown.si(interval.high),
+      interval.bounded};
+}
+
+/// `drift`: of the sensor.
+Identification identifyWith(const ForceCurve& curve, const std::shared_ptr<ElasticLaw>& law,
+                            const IdentificationConfig& config, bool drift) {
+  const ContactGuess guess = guessContact(curve, drift);
+  if (!guess.touched) throw ConfigError(guess.reason + (drift ? "; a drift is allowed for, see --drift off" : ""));
+  Eigen::VectorXd none;
+  CurveModel model(curve, law, {drift, config.prony_terms});
+  model.start(guess.size / law->force(guess.depth, none).force, guess.contact, guess.offset, guess.drift);
+  const CurveFit fit = fitCurveAndNoise(model, guess.noise);
+  if (!fit.converged) throw ConfigError("the fit does not converge: " + fit.reason);
+
+  Identification result;
+  result.model = law->description();
+  result.noise = fit.noise;
+  result.residuals = residualsOf(model, fit.internal);
+  const double correlation = correlationLength(result.residuals.cwiseMax(-5 * fit.noise).cwiseMin(5 * fit.noise));
+  result.independent = static_cast<double>(curve.size()) / correlation;
+  for (std::size_t p = 0; p < model.unknowns().size(); ++p) {
+    if (model.unknowns()[p].low == model.unknowns()[p].high) continue;
+    result.estimates.push_back(estimateOf(model, fit, static_cast<int>(p), correlation, config.intervals));
+    if (result.estimates.back().bounded) continue;
+    result.warnings.push_back(result.estimates.back().name + " is not bounded by this record on one side");
+  }
+  const double contact = result.find("contact")->value;
+  result.depth = *std::max_element(curve.position.begin(), curve.position.end()) - contact;
+  result.size = result.find("young_modulus")->value * law->force(result.depth, none).force;
+  const Misfit misfit = misfitOf(curve, result.residuals, contact, whiteNoise(curve));
+  result.misfit = misfit.found;
+  result.scatter = misfit.expected;
+  result.deviation = trimmedDeviation(result.residuals);
+  for (const std::string& pair : inseparable(model, fit)) result.warnings.push_back(pair);
+  if (result.depth > law->deepest()) {
+    char text[160];
+    std::snprintf(text, sizeof(text), "the record is %.3g um deep, the model %.3g um: below that it goes on straight",
+                  1e6 * result.depth, 1e6 * law->deepest());
+    result.warnings.emplace_back(text);
+  }
+  return result;
+}
+
+}  // namespace
+
+bool Identification::consistent() const { return misfit < kLeastMisfit * size || misfit < kSignificant * scatter; }
+
+const Estimate* Identification::find(const std::string& name) const {
+  const auto found = std::find_if(estimates.begin(), estimates.end(), [&](const auto& x) { return x.name == name; });
+  return found == estimates.end() ? nullptr : &*found;
+}
+
+ForceCurve identifiedCurve(const ForceCurve& record) { return averaged(record, kMostSamples); }
+
+Identification identify(const ForceCurve& curve, const std::shared_ptr<ElasticLaw>& law,
+                        const IdentificationConfig& config) {
+  if (config.drift != Drift::kAuto) return identifyWith(curve, law, config, config.drift == Drift::kOn);
+  IdentificationConfig quick = config;
+  quick.intervals = false;
+  // A force that rises from the first sample on may be a drift: then there is no contact to be sure of.
+  const Identification drifting = identifyWith(curve, law, quick, true);
+  const Estimate& drift = *drifting.find("drift");
+  const double deviation = (drift.high - drift.low) / (2 * kDeviations95);
+  const bool drifts = std::abs(drift.value) > 3 * deviation;
+  return identifyWith(curve, law, config, drifts);
+}
+
+std::vector<double> informationCriteria(const std::vector<Identification>& models) {
+  double count = 0;
+  for (const Identification& model : models) count = std::max(count, model.independent);
+  std::vector<double> result;
+  for (const Identification& model : models) {
+    result.push_back(2 * count * std::log(model.deviation) +
+                     static_cast<double>(model.estimates.size()) * std::log(count));
+  }
+  return result;
+}
+
+}  // namespace microinjection

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "cell/identification/curve_fit.h"
+
+namespace microinjection {
+
+/// Interval of an unknown, internal units.
+struct ProfileInterval {
+  double low = 0, high = 0;
+  bool bounded = true;  ///< else a border is that of the search
+};
+
+/// Where the best fit with this unknown held has a cost that is `rise` above the smallest one (profile
+/// likelihood; Raue et al., Bioinformatics 25 (2009) 1923). `deviation`: where to look first.
+ProfileInterval profileInterval(CurveModel& model, const CurveFit& best, int unknown, double rise, double deviation);
+
+}  // namespace microinjection

@@ -1,0 +1,124 @@
+#include "commands/identify_arguments.h"
+
+#include <boost/program_options.hpp>
+#include <cmath>
+#include <iostream>
+#include <sstream>
+
+#include "base/config_errors.h"
+#include "base/errors.h"
+
+namespace microinjection {
+namespace {
+
+constexpr char kHelp[] = R"help(identify: which cell is it? Fits a recorded force to models of a cell.
+
+Usage: identify --record FILE [--scene FILE] [--model M1,M2,...] [--out SCENE] [...]
+
+The record is a table: a line of column names, then numbers. Names and units are found by themselves: time_s,
+"height (um)", force_nN, deflection_m, ... ; otherwise name them: --column force=Fz:uN. Signs, a sensor's offset and
+drift, outliers and missing rows may be as they come. Only the way in is used.
+
+Models (each is fitted, and compared with the others):
+  family    the converged force of the scene's cell; its modulus, and ratios that --free names
+  hertz     a paraboloid on a half space, with a scene on a ball of the cell's size
+  cone      Sneddon; needs --half-angle
+  shell     a point load on a thin shell; needs a scene with a shell
+  membrane  see `indent --model membrane`; needs cell/biomembrane in the scene
+
+Every value has an interval of 95 %. Pairs that the record cannot tell apart are named.
+
+Examples:
+  identify --record curve.csv --scene config/cells/mouse_oocyte_zona.yaml --out my_cell.yaml
+  identify --record afm.csv --model hertz --tip-radius 10e-6 --poisson-ratio 0.5
+
+Exit status: 0 the first model follows the record; 2 bad usage, or output that cannot be written; 3 the record holds no
+contact, or the fit fails; 4 the first model does not follow the record: do not use its values.
+
+Options)help";
+
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> items;
+  std::istringstream in(text);
+  for (std::string item; std::getline(in, item, ',');) {
+    if (!item.empty()) items.push_back(item);
+  }
+  return items;
+}
+
+void requirePositive(const std::string& option, double value) {
+  if (std::isfinite(value) && value > 0) return;
+  std::ostringstream message;
+  message << "--" << option << " = " << value << ": must be a number > 0";
+  throw ConfigError(message.str());
+}
+
+Drift parseDrift(const std::string& text) {
+  if (text == "auto") return Drift::kAuto;
+  if (text == "on") return Drift::kOn;
+  if (text == "off") return Drift::kOff;
+  throw ConfigError("--drift = " + text + ": must be auto, on or off");
+}
+
+void addColumn(const std::string& text, ForceCurveConfig& config) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos) throw ConfigError("--column " + text + ": must be QUANTITY=NAME:UNIT");
+  config.columns[text.substr(0, equals)] = text.substr(equals + 1);
+}
+
+}  // namespace
+
+std::optional<IdentifyArguments> parseIdentifyArguments(int argc, char** argv) {
+  namespace po = boost::program_options;
+  IdentifyArguments arguments;
+  std::string models, free, drift = "auto";
+  std::vector<std::string> columns;
+  double poisson_ratio = -1;
+  po::options_description options(kHelp);
+  auto add = options.add_options();
+  add("help", "this text");
+  add("record", po::value(&arguments.record), "file with the record");
+  add("scene", po::value(&arguments.scene), "file with the cell's sizes and the tip, SI units");
+  add("model", po::value(&models), "models, the first one for --out; default: family,hertz with a scene, else hertz");
+  add("free", po::value(&free), "ratios of the family to find, too: core_modulus, shell_thickness, tip_radius, ...");
+  add("prony", po::value(&arguments.identification.prony_terms)->default_value(0),
+      "number of relaxation times to find");
+  add("drift", po::value(&drift)->default_value("auto"), "of the sensor: auto, on or off");
+  add("column", po::value(&columns), "QUANTITY=NAME:UNIT; QUANTITY time, position, deflection or force");
+  add("whole", po::bool_switch(&arguments.curve.whole), "use what follows the deepest sample, too");
+  add("tip-radius", po::value(&arguments.geometry.tip_radius), "m, of the tip for hertz");
+  add("half-angle", po::value(&arguments.geometry.half_angle), "rad, of the cone");
+  add("poisson-ratio", po::value(&poisson_ratio), "of the formulas; default that of the scene, else 0.5");
+  add("families", po::value(&arguments.families), "folder of the families' files");
+  add("out", po::value(&arguments.out), "scene file to write, with what was found by the first model");
+  add("residuals", po::value(&arguments.residuals), "CSV file to write: measured, fitted and their difference");
+  add("no-intervals", "intervals from the curvature alone: quicker");
+  po::variables_map values;
+  const po::positional_options_description none;
+  po::store(po::command_line_parser(argc, argv).options(options).positional(none).run(), values);
+  po::notify(values);
+  if (values.count("help") != 0) {
+    std::cout << options;
+    return std::nullopt;
+  }
+  if (arguments.record.empty()) throw ConfigError("--record is missing: the file with the record");
+  for (const char* option : {"tip-radius", "half-angle"}) {
+    if (values.count(option) != 0) requirePositive(option, values[option].as<double>());
+  }
+  if (values.count("poisson-ratio") != 0 && !(poisson_ratio > -1 && poisson_ratio <= 0.5)) {
+    throw ConfigError("--poisson-ratio = " + std::to_string(poisson_ratio) + ": must be in (-1, 0.5]");
+  }
+  if (arguments.identification.prony_terms < 0 || arguments.identification.prony_terms > 3) {
+    throw ConfigError("--prony = " + std::to_string(arguments.identification.prony_terms) + ": must be 0 to 3");
+  }
+  if (!arguments.out.empty() && arguments.scene.empty()) throw ConfigError("--out: needs --scene, which it changes");
+  arguments.geometry.poisson_ratio = poisson_ratio;
+  arguments.models = split(models.empty() ? (arguments.scene.empty() ? "hertz" : "family,hertz") : models);
+  arguments.free = split(free);
+  arguments.identification.drift = parseDrift(drift);
+  arguments.identification.intervals = values.count("no-intervals") == 0;
+  for (const std::string& column : columns) addColumn(column, arguments.curve);
+  return arguments;
+}
+
+}  // namespace microinjection

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cell/identification/force_curve.h"
+#include "cell/identification/formula_law.h"
+#include "cell/identification/identification.h"
+
+namespace microinjection {
+
+/// Command line of `identify`.
+struct IdentifyArguments {
+  std::string record;               ///< file
+  std::string scene;                ///< file; empty: none
+  std::vector<std::string> models;  ///< of the list in the help
+  std::vector<std::string> free;    ///< ratios of a family
+  FormulaGeometry geometry;         ///< given by options; 0 or, for Poisson's ratio, -1: that of the scene
+  std::string families;             ///< folder
+  ForceCurveConfig curve;
+  IdentificationConfig identification;
+  std::string out;        ///< scene file; empty: none
+  std::string residuals;  ///< CSV file; empty: none
+};
+
+/// Returns nothing after printing the help. Throws ConfigError, or an exception of
+/// boost::program_options, on bad usage.
+std::optional<IdentifyArguments> parseIdentifyArguments(int argc, char** argv);
+
+}  // namespace microinjection
