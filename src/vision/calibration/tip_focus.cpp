@@ -197,7 +197,7 @@ int secondPeak(const std::vector<FocusSample>& samples, int best, double foot, d
 /// Height of the valley between two peaks near each other; NaN without one. A transparent tip has such a
 /// pair: its contrast vanishes in focus and is reversed beyond it. A single bad plane is not a peak.
 double valleyBetween(const Stack& stack, const TipFocusConfig& config) {
-  constexpr double kSupported = 0.7;  // of a peak, that one of the planes beside it has
+  constexpr double kSupported = 0.5;  // of a peak, that one of the planes beside it has
   constexpr double kValley = 0.8;     // of the lower peak, that a valley has at most
   const int last = static_cast<int>(stack.samples.size()) - 1;
   const auto above = [&](int i) { return stack.samples[i].sharpness - stack.foot; };
