@@ -100,6 +100,16 @@ VisionRow cellRow(const std::string& set, const Reading& reading, cv::Mat image)
   return row;
 }
 
+/// The median of each coordinate.
+cv::Point2d middleOf(const std::vector<cv::Point2d>& points) {
+  std::vector<double> x, y;
+  for (const cv::Point2d& point : points) {
+    x.push_back(point.x);
+    y.push_back(point.y);
+  }
+  return {medianOf(x), medianOf(y)};
+}
+
 /// Tips of the stages' stacks in every plane, and the best plane, from those images alone.
 void stackRows(const std::string& folder, const std::vector<Reading>& all, const TakeRow& take) {
   PipetteDetectorConfig config;
@@ -109,12 +119,14 @@ void stackRows(const std::string& folder, const std::vector<Reading>& all, const
   for (const int stage : {0, 3, 6}) {
     const std::string set = stage == 3 ? "real_held" : "real_tune", stack = "holypipette/stack" + std::to_string(stage);
     std::vector<FocusSample> planes;
+    std::vector<Frame> frames;
+    std::vector<cv::Point2d> ends;
     for (int plane = 0; plane <= 16; ++plane) {
       const std::string name = stack + "." + std::to_string(plane) + ".jpg";
       const Frame frame(cv::imread(folder + "/" + name, cv::IMREAD_UNCHANGED));
       const PipetteDetection found = detector.detect(frame);
-      // The planes are 1 um apart.
-      if (found.finding.hasValues()) planes.push_back({1e-6 * plane, tipSharpness(frame, found.end, found.direction)});
+      frames.push_back(frame);
+      if (found.finding.isFound()) ends.push_back(found.end);
       if (plane == 8) tips[stage] = found.end;
       for (const Reading& reading : all) {
         if (reading.file != stack + ".8.jpg" || std::abs(plane - 8) > 5) continue;
@@ -122,6 +134,10 @@ void stackRows(const std::string& folder, const std::vector<Reading>& all, const
         take(judged(set, {name, "tip_in_plane_" + std::to_string(plane)}, found.finding, error, 5, std::nan("")));
       }
     }
+    // The stage stands still: one window for all planes, which are 1 um apart.
+    for (std::size_t plane = 0; plane < frames.size() && !ends.empty(); ++plane)
+      planes.push_back(
+          {1e-6 * static_cast<double>(plane), tipSharpness(frames[plane], middleOf(ends), config.direction)});
     const FocusReport best = findFocus(planes, {});
     const Finding finding = best.verdict == FocusVerdict::kFocus    ? Finding::found()
                             : best.verdict == FocusVerdict::kUnsure ? Finding::uncertain(best.text)

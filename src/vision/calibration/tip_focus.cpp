@@ -13,6 +13,7 @@ namespace {
 constexpr int kParameters = 4;                                        ///< base, peak, middle, log width
 constexpr int kLeastPlanes = 7;                                       ///< that a fit needs
 constexpr double kFarthest = 1000, kNarrowest = 0.2, kWidest = 1000;  ///< planes, of middle and width
+constexpr int kMostApart = 8;                                         ///< planes, of the peaks of a transparent tip
 constexpr double kConfidence = 0.95;
 constexpr double kOutlierChance = 1e-4;
 
@@ -193,6 +194,36 @@ int secondPeak(const std::vector<FocusSample>& samples, int best, double foot, d
   return -1;
 }
 
+/// Height of the valley between two peaks near each other; NaN without one. A transparent tip has such a
+/// pair: its contrast vanishes in focus and is reversed beyond it. A single bad plane is not a peak.
+double valleyBetween(const Stack& stack, const TipFocusConfig& config) {
+  constexpr double kSupported = 0.5;  // of a peak, that one of the planes beside it has
+  constexpr double kValley = 0.8;     // of the lower peak, that a valley has at most
+  const int last = static_cast<int>(stack.samples.size()) - 1;
+  const auto above = [&](int i) { return stack.samples[i].sharpness - stack.foot; };
+  const auto isPeak = [&](int i) {
+    return i > 0 && i < last && above(i) >= above(i - 1) && above(i) >= above(i + 1) &&
+           std::max(above(i - 1), above(i + 1)) > kSupported * above(i);
+  };
+  // The sharpest of three is beside the peak when the planes on one side are sharper.
+  int best = stack.best;
+  for (const int i : {stack.best - 1, stack.best + 1}) {
+    if (i >= 0 && i <= last && above(i) > above(best)) best = i;
+  }
+  if (!isPeak(best)) return std::nan("");
+  for (int other = std::max(0, best - kMostApart); other <= std::min(last, best + kMostApart); ++other) {
+    if (std::abs(other - best) < 3 || !isPeak(other) || above(other) < config.second_peak * above(best)) continue;
+    int low = std::min(other, best) + 1;
+    for (int i = low; i < std::max(other, best); ++i) {
+      if (above(i) < above(low)) low = i;
+    }
+    if (above(low) > kValley * std::min(above(other), above(best))) continue;
+    const double a = above(low - 1), b = above(low), c = above(low + 1);
+    return stack.samples[low].height + stack.step * 0.5 * (a - c) / std::max(a - 2 * b + c, 1e-12);
+  }
+  return std::nan("");
+}
+
 /// Judges what was fitted; empty when it is a focus.
 std::string doubtsOf(const Stack& stack, const FocusReport& report, const TipFocusConfig& config) {
   std::ostringstream text;
@@ -242,6 +273,16 @@ FocusReport findFocus(std::vector<FocusSample> samples, const TipFocusConfig& co
   report.verdict = FocusVerdict::kNoPeak;
   report.text = "no peak: the planes do not differ";
   if (!(stack.range > config.least_contrast * std::abs(samples[stack.best].sharpness))) return report;
+  const double valley = valleyBetween(stack, config);
+  if (std::isfinite(valley)) {
+    report.verdict = FocusVerdict::kUnsure;
+    report.height = valley;
+    report.interval = {valley - stack.step, valley + stack.step};
+    std::ostringstream text;
+    text << "two peaks, as a transparent tip has them: its focus is between them, at " << 1e6 * valley << " um";
+    report.text = text.str();
+    return report;
+  }
   std::vector<Point> points = pointsBeside(stack, config);
   const Fit result = fitBell(points, config);
   if (result.good && !bellIsNeeded(points, result, config.false_rate)) return report;

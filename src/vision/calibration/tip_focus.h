@@ -43,6 +43,10 @@ struct FocusReport {
 /// Best focus of the tip: the middle c of a bell fitted (Ceres) to the planes beside the sharpest,
 ///     sharpness = base + height exp(-(h - c)^2 / (2 w^2)).
 /// Cauchy's loss first, then least squares without outliers; scaled by the residuals.
+///
+/// A transparent tip in bright field has no bell: its contrast vanishes in focus and is reversed beyond it.
+/// Two peaks within 8 planes give the height of the valley between them as kUnsure, with an interval of
+/// one plane to both sides. Only an image can show that the contrast is reversed.
 FocusReport findFocus(std::vector<FocusSample> samples, const TipFocusConfig& config);
 
 }  // namespace microinjection

@@ -171,6 +171,19 @@ std::vector<PipetteAxis> shared(const std::vector<PipetteAxis>& pairs, const cv:
 
 }  // namespace
 
+double PipetteAxis::outlineAt(const cv::Point2d& place) const {
+  const cv::Point2d d = place - point;
+  return std::max(0.0, half_width + taper * (d.x * std::cos(direction) + d.y * std::sin(direction)));
+}
+
+cv::Point2d PipetteAxis::entry(const Frame& frame) const {
+  const cv::Point2d u(std::cos(direction), std::sin(direction));
+  cv::Point2d place = point;
+  while (frame.contains(place, 1)) place += u;
+  while (!frame.contains(place, 1) && cv::norm(place - point) < 4000) place -= u;
+  return place;
+}
+
 std::vector<PipetteAxis> findPipetteAxes(const Frame& frame, const AxisSearch& search, int most) {
   const double side = std::max(frame.width(), frame.height());
   const int level = std::clamp(static_cast<int>(std::ceil(std::log2(side / kLongSide))) - search.finer, 0, 4);

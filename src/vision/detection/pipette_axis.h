@@ -14,6 +14,11 @@ struct PipetteAxis {
   double half_width = 0;  ///< px, of the outline at `point`
   double taper = 0;       ///< growth of the half width along the direction
   double weight = 0;      ///< of its edges
+
+  /// px, half width of the outline beside a place.
+  double outlineAt(const cv::Point2d& place) const;
+  /// px, where the axis, followed from its point towards the shaft, leaves the frame.
+  cv::Point2d entry(const Frame& frame) const;
 };
 
 struct AxisSearch {

@@ -1,14 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <opencv2/core.hpp>
 #include <string>
-#include <vector>
 
 #include "base/config_reader.h"
-#include "vision/detection/finding.h"
 #include "vision/detection/pipette_axis.h"
-#include "vision/detection/pipette_strip.h"
+#include "vision/detection/pipette_detection.h"
 
 namespace microinjection {
 
@@ -21,18 +18,6 @@ struct PipetteDetectorConfig {
                                                      ///< pipette; width 0: the half that the shaft comes from
 
   static PipetteDetectorConfig read(ConfigReader& reader);
-};
-
-struct PipetteDetection {
-  Finding finding;
-  cv::Point2d end;                                       ///< px, tip, or middle of the mouth
-  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< px^2, of the end
-  double direction = 0;                                  ///< rad, from the end towards the shaft, from x towards y
-  double direction_deviation = 0;                        ///< rad, standard deviation
-  double half_width = 0;                                 ///< px, of the outline near the end
-  double taper = 0;                                      ///< growth of the half width along the axis
-  double symmetry = 0;                                   ///< 0..1, of the edges near the end
-  double clearness = 0;                                  ///< of the end: edges before it over edges behind it
 };
 
 /// Finds a pipette that enters the frame through its border: its axis of symmetry, and the place
@@ -49,10 +34,6 @@ class PipetteDetector {
  private:
   PipetteDetection measure(const Frame& frame, const PipetteAxis& axis) const;
   void take(PipetteDetection& best, const PipetteDetection& found) const;
-  PipetteDetection measureHolding(const Frame& frame, PipetteAxis axis) const;
-  PipetteDetection refineHolding(const Frame& frame, PipetteAxis axis, const cv::Point2d& end, double reach,
-                                 int rounds) const;
-  PipetteDetection refine(const Frame& frame, PipetteAxis axis, const cv::Point2d& end, double reach) const;
 
   PipetteDetectorConfig config_;
 };

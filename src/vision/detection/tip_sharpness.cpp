@@ -19,7 +19,7 @@ double tipSharpness(const Frame& frame, const cv::Point2d& tip, double direction
   shape.rows = static_cast<int>(length) + kBefore;
   shape.origin = tip - kBefore * cv::Point2d(std::cos(direction), std::sin(direction));
   const PipetteStrip strip(frame, shape, 0.8, 0.8);
-  double sum = 0;
+  double sum = 0, brightness = 0;
   int count = 0;
   for (int row = 1; row + 1 < strip.rows(); ++row) {
     if (!strip.inside(row)) continue;
@@ -28,9 +28,10 @@ double tipSharpness(const Frame& frame, const cv::Point2d& tip, double direction
     for (int i = 1; i + 1 < strip.grey().cols; ++i, ++count) {
       const double across = here[i - 1] - 2 * here[i] + here[i + 1], along = above[i] - 2 * here[i] + below[i];
       sum += across * across + along * along;
+      brightness += here[i];
     }
   }
-  return count > 0 ? sum / (count * frame.noise() * frame.noise()) : 0;
+  return brightness > 0 ? sum * count / (brightness * brightness) : 0;
 }
 
 }  // namespace microinjection

@@ -6,8 +6,9 @@
 
 namespace microinjection {
 
-/// Sharpness of the image of a tip, per squared pixel of the frame's noise: mean square of the
-/// second derivatives along and across the axis, in a window behind the tip. It is the sharpness that
+/// Sharpness of the image of a tip: mean square of the second derivatives along and across the axis, in
+/// a window behind the tip, over its squared mean brightness. The noise of an 8-bit frame is no measure
+/// to divide by: it jumps from plane to plane. It is the sharpness that
 /// a search of the focus takes (calibration's findFocus). The window has the tip only: a measure of
 /// the whole frame has its peak on the sharpest dust. 0 for a window outside of the image.
 /// @param tip        px

@@ -111,6 +111,21 @@ TEST_F(TipFocus, TwoPeaksAreUnsure) {
   EXPECT_EQ(report.text.find("two peaks"), 0u) << report.text;
 }
 
+TEST_F(TipFocus, ATransparentTipIsInFocusBetweenItsTwoPeaks) {
+  for (int i = 0; i < 100; ++i) {
+    Planes before, behind;
+    before.width = behind.width = 1.2e-6;
+    before.focus = -2e-6;
+    behind.focus = 2.2e-6;
+    std::vector<FocusSample> samples = before.make(random);
+    const std::vector<FocusSample> other = behind.make(random);
+    for (std::size_t k = 0; k < samples.size(); ++k) samples[k].sharpness += other[k].sharpness;
+    const FocusReport report = findFocus(samples, config);
+    ASSERT_EQ(report.verdict, FocusVerdict::kUnsure) << report.text;
+    EXPECT_NEAR(report.height, 0.1e-6, 0.7e-6) << report.text;
+  }
+}
+
 TEST_F(TipFocus, AVagueHeightIsUnsure) {
   config.largest_interval = 0.01e-6;
   const FocusReport report = findFocus(Planes().make(random), config);

@@ -49,6 +49,34 @@ void expectEnd(const PipetteDetection& found, const PipetteTruth& truth, double 
   EXPECT_NEAR(std::remainder(found.direction - std::atan2(truth.axis.y(), truth.axis.x()), 2 * M_PI), 0, 0.005);
 }
 
+double errorOf(const PipetteDetection& found, const PipetteTruth& truth) {
+  return std::hypot(found.end.x - truth.end.x(), found.end.y - truth.end.y());
+}
+
+/// Tips of seeds 1 to 12, before a cell that a holding pipette holds.
+void expectTips(double focus, double rms, double worst, int sure) {
+  SceneDrawConfig draw;
+  draw.dimple = 0;
+  draw.holding = draw.injection = 1;
+  double squares = 0;
+  int count = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    const Rendered rendered = render(draw, seed, {}, focus);
+    const PipetteDetection found = detect(rendered, "injection");
+    if (!found.finding.isFound()) continue;
+    const double error = errorOf(found, *rendered.truth.injection);
+    EXPECT_LT(error, worst) << seed;
+    squares += error * error;
+    ++count;
+  }
+  EXPECT_GE(count, sure);
+  EXPECT_LT(std::sqrt(squares / count), rms);
+}
+
+TEST(PipetteDetector, TipsInFocus) { expectTips(0, 0.3, 0.8, 11); }
+
+TEST(PipetteDetector, TipsTenMicrometresOutOfFocus) { expectTips(10e-6, 0.4, 1, 11); }
+
 TEST(PipetteDetector, FindsTheTip) {
   // A needle of less than 3 px in radius has hardly an end.
   for (const std::uint64_t seed : {1, 4, 5, 6, 9, 13}) {

@@ -1,0 +1,159 @@
+#include "vision/detection/injection_pipette.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "vision/detection/axis_fit.h"
+#include "vision/detection/pipette_end.h"
+#include "vision/detection/tip_fit.h"
+
+namespace microinjection {
+namespace {
+
+constexpr double kLeastClearness = 3;                      // of the shared edges at the end
+constexpr int kAxisRows = 160;                             // px behind the end, whose symmetry gives the axis
+constexpr double kAcross = 1.5;                            // px, blur of the derivative across the axis
+constexpr double kEdgesEnded = 0.15, kSharedEnded = 0.25;  // see coarseEnd()
+constexpr double kEmpty = 8;                               // clearness of a tip before an empty background
+constexpr double kAxisMargin = 24;                         // px beside an outline, that shows the symmetry
+constexpr double kWidestPoint = 14;                        // px from the axis, that a tip is looked for in
+constexpr double kTube = 0.1;                              // widening of a tube whose profile stays the same, at most
+constexpr double kAgree = 6;                               // px, between two ways to see a tip's end
+constexpr double kApart = 0.25;  // standard deviation of an end over the distance between two ways to see it
+constexpr double kUnclear = 3;   // px, standard deviation of an end that needs a second witness
+constexpr int kFirstShift = 24, kShift = 8;  // px, that an axis may be off
+constexpr double kMargin = 6;                // px beside an outline
+constexpr double kSureClearness = 9;         // of a tip
+constexpr double kSureSymmetry = 0.9;        // of the edges near a tip
+constexpr int kRounds = 3;
+constexpr double kFitBehind = 48;  // px before an end, in the strip of its fit
+constexpr int kFitRows = 100, kFitHalf = 24;
+constexpr double kFitBlur = 0.4;        // px
+constexpr double kPlain = 1.5;          // misfit of a fit before a plain background, at most
+constexpr double kFitAgrees = 2;        // px, of a fit and an edge before another background
+constexpr double kSureDeviation = 0.6;  // px, of a fitted end
+
+std::vector<double> outlines(const PipetteStrip& strip, const PipetteAxis& axis, double factor, double margin) {
+  std::vector<double> half;
+  for (int row = 0; row < strip.rows(); ++row) {
+    half.push_back((factor * axis.outlineAt(strip.point(row, 0)) + margin) / strip.shape().step);
+  }
+  return half;
+}
+
+/// A cut tube ends at half of its profile. A point, or a tube that widens quickly, has no profile
+/// that stays the same; it ends where its edges do. How far both are apart tells how certain each is.
+PipetteEnd tipIn(const PipetteStrip& strip, int row, double reach, double half_width) {
+  const int half = static_cast<int>(std::min(0.6 * half_width + kMargin, kWidestPoint));
+  const PipetteEnd point = pointNear(strip, row, reach, half);
+  if (!point.valid || point.clearness < kEmpty) {
+    const PipetteEnd tube = tubeNear(strip, row, reach, half);
+    const PipetteEnd fine = tube.valid ? tipNear(strip, tube.row, half) : tube;
+    return fine.valid ? fine : tube;
+  }
+  const PipetteEnd cut = tipNear(strip, point.row, half);
+  if (!cut.valid) return point;
+  const bool tube = widening(strip, point.row, 2 * half) < kTube && std::abs(cut.row - point.row) < kAgree;
+  PipetteEnd end = tube ? cut : point;
+  end.deviation = std::hypot(end.deviation, kApart * (cut.row - point.row));
+  return end;
+}
+
+/// Replaces the end by that of a fit to its grey values, where the background is plain enough for it.
+void fitEnd(const Frame& frame, const PipetteAxis& axis, PipetteDetection& found, double across) {
+  PipetteStrip::Shape shape;
+  shape.direction = axis.direction;
+  const cv::Point2d u(std::cos(axis.direction), std::sin(axis.direction));
+  shape.origin = axis.point + ((found.end - axis.point).dot(u) - kFitBehind) * u;
+  shape.rows = kFitRows;
+  shape.half = kFitHalf;
+  const PipetteStrip strip(frame, shape, kFitBlur, kFitBlur);
+  const TipFit fit = fitTip(strip, kFitBehind, frame.noise());
+  if (!fit.valid || (fit.misfit > kPlain && std::abs(fit.row - kFitBehind) > kFitAgrees)) {
+    found.finding = Finding::uncertain("the tip fades into its background");
+    return;
+  }
+  if (fit.misfit > kPlain) return;
+  found.end = strip.point(fit.row, 0);
+  found.setCovariance(fit.deviation, across);
+  if (found.clearness < kSureClearness) return;
+  found.finding =
+      fit.deviation > kSureDeviation ? Finding::uncertain("the tip fades into its background") : Finding::found();
+}
+
+}  // namespace
+
+PipetteDetection refineInjection(const Frame& frame, PipetteAxis axis, const cv::Point2d& end, double reach,
+                                 double widest, int rounds) {
+  PipetteDetection found;
+  found.finding = Finding::notFound("no pipette: its end is not clear");
+  cv::Point2d place = end;
+  AxisFit fit;
+  PipetteEnd last;
+  double half_width = 0;
+  for (int round = 0; round < rounds; ++round) {
+    const double back = reach + 24;
+    half_width = std::max(
+        4.0, axis.outlineAt(place + 0.3 * kAxisRows * cv::Point2d(std::cos(axis.direction), std::sin(axis.direction))));
+    PipetteStrip::Shape shape;
+    shape.direction = axis.direction;
+    shape.origin = place - back * cv::Point2d(std::cos(axis.direction), std::sin(axis.direction));
+    shape.rows = static_cast<int>(back) + kAxisRows + 40;
+    const int most = round == 0 ? kFirstShift : kShift;
+    shape.half = static_cast<int>(std::min(0.5 * widest, 1.25 * half_width + kAxisMargin)) + most + 2;
+    const PipetteStrip strip(frame, shape, kAcross, 1.0);
+    const int row = static_cast<int>(back);
+    fit = fitAxis(strip, row + 4, kAxisRows, 1.25 * half_width + kAxisMargin, most);
+    if (!fit.valid) return found;
+    // The strip of the axis as it is now.
+    axis.point = strip.point(row + 4, fit.offset);
+    axis.direction += std::atan(fit.slant);
+    PipetteStrip::Shape straight = shape;
+    straight.direction = axis.direction;
+    straight.origin = axis.point - (back + 4) * cv::Point2d(std::cos(axis.direction), std::sin(axis.direction));
+    const PipetteStrip aligned(frame, straight, kAcross, 1.0);
+    last = tipIn(aligned, row, round == 0 ? reach : 30, half_width);
+    if (!last.valid) return found;
+    axis.half_width = half_width;
+    place = aligned.point(last.row, 0);
+  }
+  found.end = place;
+  found.direction = axis.direction;
+  found.direction_deviation = fit.slant_deviation;
+  found.half_width = half_width;
+  found.taper = axis.taper;
+  found.symmetry = fit.symmetry;
+  found.clearness = last.clearness;
+  found.setCovariance(last.deviation, fit.offset_deviation);
+  found.finding = Finding::found();
+  if (last.deviation > kUnclear) found.finding = Finding::uncertain("the pipette's end is not clear");
+  if (found.clearness < kSureClearness)
+    found.finding = Finding::uncertain("the tip is not clear before its background");
+  fitEnd(frame, axis, found, fit.offset_deviation);
+  if (found.symmetry < kSureSymmetry) found.finding = Finding::uncertain("the pipette's walls are not symmetric");
+  if (!frame.contains(found.end, 2)) found.finding = Finding::notFound("no pipette: its end is out of the image");
+  return found;
+}
+
+PipetteDetection measureInjection(const Frame& frame, const PipetteAxis& axis, double widest) {
+  // At half the resolution, with room for an axis that is a little off.
+  const cv::Point2d border = axis.entry(frame);
+  const double length = std::hypot(frame.width(), frame.height());
+  PipetteStrip::Shape shape;
+  shape.step = 2;
+  shape.direction = axis.direction;
+  shape.rows = static_cast<int>(length / shape.step);
+  shape.origin = border - length * cv::Point2d(std::cos(axis.direction), std::sin(axis.direction));
+  shape.half = static_cast<int>(std::min(0.5 * widest, 1.2 * axis.outlineAt(border) + 16) / shape.step);
+  const PipetteStrip strip(frame, shape, 1.0, 2.5);
+  // Before an empty background all edges end; before a cell those that are symmetric to the axis.
+  const std::vector<double> half = outlines(strip, axis, 1.2, kMargin);
+  PipetteEnd end = coarseEnd(strip, allEdges(strip, half), kEdgesEnded);
+  if (!end.valid || end.clearness < kLeastClearness) end = coarseEnd(strip, sharedEdges(strip, half), kSharedEnded);
+  PipetteDetection none;
+  none.finding = Finding::notFound("no pipette: an axis without an end in the image");
+  if (!end.valid || end.clearness < kLeastClearness) return none;
+  return refineInjection(frame, axis, strip.point(end.row, 0), 60, widest, kRounds);
+}
+
+}  // namespace microinjection

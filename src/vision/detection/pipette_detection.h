@@ -1,0 +1,26 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+#include "vision/detection/finding.h"
+
+namespace microinjection {
+
+struct PipetteDetection {
+  Finding finding;
+  cv::Point2d end;                                       ///< px, tip, or middle of the mouth
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< px^2, of the end
+  double direction = 0;                                  ///< rad, from the end towards the shaft, from x towards y
+  double direction_deviation = 0;                        ///< rad, standard deviation
+  double half_width = 0;                                 ///< px, of the outline near the end
+  double taper = 0;                                      ///< growth of the half width along the axis
+  double symmetry = 0;                                   ///< 0..1, of the edges near the end
+  double clearness = 0;                                  ///< of the end: edges before it over edges behind it
+
+  /// Sets the covariance of the end for the direction as it is.
+  /// @param along, across  px, standard deviations
+  void setCovariance(double along, double across);
+};
+
+}  // namespace microinjection

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "vision/detection/pipette_strip.h"
+
+namespace microinjection {
+
+/// Where a tube ends, by a fit to the grey values around its end.
+struct TipFit {
+  bool valid = false;
+  double row = 0;
+  double deviation = 0;  ///< rows, standard deviation
+  double misfit = 0;     ///< variance of the residuals over that of the noise and the model
+};
+
+/// Finds the end of a tube by the model of tip_model.h, in focus or out of focus, whichever leaves
+/// less. The deviation is that of the end's likelihood. It grows when a point fades into its
+/// background.
+/// @param coarse  row where the tube ends, to a few rows
+/// @param noise   standard deviation of a pixel
+TipFit fitTip(const PipetteStrip& strip, double coarse, double noise);
+
+}  // namespace microinjection
