@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vision/detection/zona_inner.h"
+#include "vision/detection/fitted_layers.h"
 
 namespace microinjection {
 namespace {
@@ -17,12 +17,11 @@ constexpr double kInside = 0.93;  // ratio of a border inside of the main one, a
 constexpr double kGap = 1.03;     // ratio of two borders' radii, at least
 constexpr double kLeastCoverage = 0.55, kLeastConsistency = 0.6, kLeastStrength = 0.55;  // of a second border
 constexpr double kLeastSignificance = 3;                                                 // of a second border
+constexpr double kRingSignificance = 4, kRingCoverage = 0.45;  // of a faint ring
 constexpr double kClear = 0.8;       // of the main border's strength: an inner border as clear as the main one
 constexpr double kZonaPlace = 0.5;   // of the zona's outer border in its dark rim, see refineBorder()
-constexpr double kInnerPlace = 0.5;  // of the zona's inner border
 constexpr double kSharpRim = 6;      // px, line of a zona in focus, at most
 constexpr double kLeastResidual = 0.5, kMostResidual = 0.0025;  // px; of the diameter: of a sure ellipse
-constexpr double kApart = 2;                                    // px, from the rim, that is another border
 constexpr double kOoplasmPlace = 1.0;                           // of the ooplasm's: the rim is refracted beside it
 constexpr int kFreeChange = 4;                                  // columns from ray to ray
 constexpr double kFreeGain = 0.07;                              // of strength, what a freer path must be better by
@@ -93,38 +92,6 @@ CellBorder settled(const Frame& frame, const CellBorder& border, double inner) {
 
 double radiusOf(const CellBorder& border) { return 0.5 * border.ellipse.meanDiameter(); }
 
-/// A zona has nearly the same thickness everywhere, so its inner border is straight in a map about the
-/// outer one. It is outside of the ooplasm's rim.
-CellBorder wholeInnerBorder(const Frame& frame, const CellLayers& layers, const std::string& look) {
-  const double outer = radiusOf(layers.zona_outer), inner = radiusOf(layers.ooplasm);
-  const double low = std::max(0.6, inner / outer - 0.05);
-  const Ellipse rim = scaled(layers.main.ellipse, 1 + std::max(2.0, 0.02 * outer) / radiusOf(layers.main));
-  if (rim.meanDiameter() >= 0.96 * layers.zona_outer.ellipse.meanDiameter()) return {};
-  const PolarMap map = mapAbout(frame, layers.zona_outer.ellipse, low, 0.97);
-  return bestBorder(frame, map, look, outer, {rim, {}, 0, kFreeChange});
-}
-
-/// The zona's inner border: all round, or as the line beside the ooplasm's rim. Where neither is seen,
-/// the gap is thinner than the rim.
-CellBorder innerBorder(const Frame& frame, const CellLayers& layers, const std::string& look) {
-  const double gap = radiusOf(layers.zona_outer) - radiusOf(layers.ooplasm);
-  CellBorder whole = wholeInnerBorder(frame, layers, look);
-  const bool apart = radiusOf(whole) > radiusOf(layers.ooplasm) + layers.ooplasm.shift + kApart;
-  const bool seen = isSecondBorder(whole) && apart;
-  CellBorder border = findZonaInner(frame, layers.zona_outer, layers.ooplasm);
-  if (seen) {
-    whole = refined(frame, whole, kInnerPlace, 0.25 * gap);
-    const bool agree = border.finding.hasValues() && std::abs(radiusOf(whole) - radiusOf(border)) < kApart;
-    if (!agree) border.finding = whole.finding = Finding::uncertain("two lines may be the zona's inner border");
-    if (!border.finding.isFound()) return whole;
-  }
-  if (border.finding.hasValues()) return border;
-  border = layers.ooplasm;
-  border.finding = Finding::uncertain("no gap between ooplasm and zona: the middle of the ooplasm's rim is given");
-  border.ellipse = scaled(layers.ooplasm.ellipse, 1 + 0.5 * layers.ooplasm.rim / radiusOf(layers.ooplasm));
-  return border;
-}
-
 /// Borders that are farther out, up to `limit` (ratio to the main one's radius): the last is the
 /// zona's outer border, one before it the inner.
 std::vector<CellBorder> bordersOutside(const Frame& frame, const CellBorder& main, double limit,
@@ -141,6 +108,11 @@ std::vector<CellBorder> bordersOutside(const Frame& frame, const CellBorder& mai
     low = radiusOf(next) / radiusOf(main) + 0.03;
   }
   return found;
+}
+
+/// Whether a faint ring is there at all.
+bool isRing(const CellBorder& border) {
+  return border.finding.hasValues() && border.significance > kRingSignificance && border.coverage > kRingCoverage;
 }
 
 /// Takes the certainty from borders whose places the image may have displaced.
@@ -186,6 +158,7 @@ CellLayers findLayers(const Frame& frame, const CellBorder& main, const std::str
   const double limit = std::min(kOutermost, largest / main.ellipse.meanDiameter());
   const std::vector<CellBorder> outside = bordersOutside(frame, main, limit, look);
   const CellBorder inside = searchBand(frame, main, 0.6, kInside, look);
+  const CellBorder beyond = outside.empty() ? searchBand(frame, main, kGap, limit, look, kOutwards) : CellBorder();
   CellBorder ooplasm = main;
   if (!outside.empty()) {
     layers.zona_outer = outside.back();
@@ -193,18 +166,24 @@ CellLayers findLayers(const Frame& frame, const CellBorder& main, const std::str
     layers.zona_outer = main;
     ooplasm = inside;
   }
+  if (!layers.zona_outer.finding.hasValues() && isRing(inside)) {
+    CellLayers within = layers;
+    within.zona_outer = refined(frame, main, kZonaPlace, 0.35 * (radiusOf(main) - radiusOf(inside)));
+    within.ooplasm = refined(frame, inside, kOoplasmPlace, kWidestRim * radiusOf(inside));
+    if (fitLayersTo(frame, look, within) && within.ooplasm.finding.isFound()) return within;
+  }
   if (!layers.zona_outer.finding.hasValues()) {
     layers.ooplasm = refined(frame, ooplasm, 0, 0);
     warn(layers);
+    if (layers.ooplasm.finding.isFound() && (isRing(inside) || isRing(beyond)))
+      layers.ooplasm.finding = Finding::uncertain("a faint second ring is seen: this may be a zona's border");
     return layers;
   }
   const double gap = radiusOf(layers.zona_outer) - radiusOf(ooplasm);
   layers.ooplasm = refined(frame, ooplasm, kOoplasmPlace, std::min(kWidestRim * radiusOf(ooplasm), 0.8 * gap));
   layers.zona_outer = refined(frame, layers.zona_outer, kZonaPlace, 0.35 * gap);
-  layers.main = ooplasm;
-  layers.zona_inner = innerBorder(frame, layers, look);
-  layers.main = main;
   warn(layers);
+  fitLayersTo(frame, look, layers);
   return layers;
 }
 

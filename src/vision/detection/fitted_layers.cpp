@@ -1,0 +1,88 @@
+#include "vision/detection/fitted_layers.h"
+
+#include <cmath>
+
+#include "vision/detection/layer_fit.h"
+
+namespace microinjection {
+namespace {
+
+constexpr double kSharpBlur = 1.8;      // px, of a cell in focus
+constexpr double kLeastUsed = 0.5;      // share of the directions
+constexpr double kSureRadius = 0.45;    // px, standard deviation of a radius that is sure
+constexpr double kSureCentre = 0.3;     // px, of a centre
+constexpr double kOuterMisfit = 0.03;   // of the contrast, see LayerFit
+constexpr double kOoplasmMisfit = 0.017;
+constexpr double kLeastLead = 2;        // of chi^2, of the inner border over the next best place
+constexpr double kAgree = 1;            // px, of two measurements of a radius
+constexpr double kFarthest = 0.05;      // of the radius, that the fit may be from the first borders
+
+double radiusOf(const Ellipse& ellipse) { return 0.5 * ellipse.meanDiameter(); }
+
+void take(CellBorder& border, const LayerFit::Border& fit, const Finding& finding) {
+  border.finding = finding;
+  border.ellipse = fit.ellipse;
+  border.covariance = fit.covariance;
+  border.polarity = border.polarity == Polarity::kEither ? Polarity::kEither : Polarity::kRising;
+}
+
+double centreDeviation(const LayerFit::Border& fit) { return std::sqrt(fit.covariance(0, 0) + fit.covariance(1, 1)); }
+
+bool describesOuter(const LayerFit& fit, const CellLayers& layers) {
+  const double first = radiusOf(layers.zona_outer.ellipse);
+  return fit.valid && fit.outer.line < 0 && fit.used >= kLeastUsed && fit.outer.deviation() < kSureRadius &&
+         fit.outer.misfit < kOuterMisfit && std::abs(radiusOf(fit.outer.ellipse) - first) < kFarthest * first;
+}
+
+void takeOoplasm(const LayerFit& fit, CellLayers& layers) {
+  const bool sure = fit.ooplasm.line < 0 && fit.ooplasm.deviation() < kSureRadius &&
+                    fit.ooplasm.misfit < kOoplasmMisfit && centreDeviation(fit.ooplasm) < 2 * kSureRadius;
+  if (sure) {
+    take(layers.ooplasm, fit.ooplasm, Finding::found());
+    layers.ooplasm.shift = layers.ooplasm.rim = fit.ooplasm.width;
+    return;
+  }
+  const bool agree = std::abs(radiusOf(fit.ooplasm.ellipse) - radiusOf(layers.ooplasm.ellipse)) < kAgree;
+  if (layers.ooplasm.finding.isFound() && !agree)
+    layers.ooplasm.finding = Finding::uncertain("the ooplasm's border is not separate from other lines beside it");
+}
+
+void takeInner(const LayerFit& fit, CellLayers& layers) {
+  const bool sure = fit.inner.line < 0 && fit.inner.deviation() < kSureRadius &&
+                    (1 - fit.rival) * fit.inner_gain > kLeastLead;
+  take(layers.zona_inner, fit.inner,
+       sure ? Finding::found() : Finding::uncertain("the zona's inner line is faint beside the ooplasm's rim"));
+  layers.zona_inner.rim = fit.inner.width;
+  layers.zona_inner.coverage = fit.used;
+}
+
+}  // namespace
+
+bool fitLayersTo(const Frame& frame, const std::string& look, CellLayers& layers) {
+  const LayerFit fit = fitLayers(frame, layers.zona_outer.ellipse, layers.ooplasm.ellipse, layers.ooplasm.rim, look);
+  layers.zona_inner = {};
+  layers.zona_inner.finding = Finding::notFound("the borders are not those of a zona in focus");
+  const bool described = describesOuter(fit, layers);
+  const bool sharp = fit.valid && fit.blur < kSharpBlur;
+  if (described && sharp) {
+    const bool bright = look != "dic" && look != "phase";
+    if (!bright || !layers.zona_outer.finding.isFound() || layers.zona_outer.rim == 0)
+      take(layers.zona_outer, fit.outer, Finding::found());
+    takeOoplasm(fit, layers);
+    takeInner(fit, layers);
+    return true;
+  }
+  const Finding doubt = Finding::uncertain(sharp ? "the grey values across the zona's border are unlike those of one"
+                                                 : "the cell is out of focus: its borders are displaced");
+  for (CellBorder* border : {&layers.zona_outer, &layers.ooplasm}) {
+    if (border->finding.isFound()) border->finding = doubt;
+  }
+  // Defocus displaces a border on all sides alike: the centre of its circle stays.
+  if (fit.valid && !sharp && fit.used >= kLeastUsed && centreDeviation(fit.outer) < kSureCentre) {
+    layers.zona_outer.ellipse.centre = fit.outer.ellipse.centre;
+    layers.zona_outer.covariance.topLeftCorner<2, 2>() = fit.outer.covariance.topLeftCorner<2, 2>();
+  }
+  return described;
+}
+
+}  // namespace microinjection

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <string>
+
+#include "vision/detection/ellipse.h"
+#include "vision/detection/frame.h"
+
+namespace microinjection {
+
+/// The borders of a cell with a zona by one fit to all grey values about them, see LayerModel.
+struct LayerFit {
+  struct Border {
+    Ellipse ellipse;
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of centre x, centre y, mean diameter, px^2
+    double line = 0;    ///< amplitude of its line or rim, of full scale: negative when dark
+    double width = 0;   ///< px, of its line or rim
+    double misfit = 0;  ///< of the contrast of its lines: what the model leaves in all directions alike, rms
+    double deviation() const { return 0.5 * std::sqrt(covariance(2, 2)); }  ///< px, of the mean radius
+  };
+  bool valid = false;
+  Border outer, inner, ooplasm;
+  double used = 0;        ///< share of the directions that the model describes
+  double blur = 0;        ///< px, standard deviation
+  double inner_gain = 0;  ///< chi^2 that the inner border explains
+  double rival = 0;       ///< share of it that another place explains too
+};
+
+/// @param outer, ooplasm  first ellipses, within about a rim of the borders
+/// @param rim             px, expected width of the ooplasm's dark rim
+LayerFit fitLayers(const Frame& frame, const Ellipse& outer, const Ellipse& ooplasm, double rim,
+                   const std::string& look);
+
+}  // namespace microinjection
