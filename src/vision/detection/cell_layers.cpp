@@ -20,6 +20,9 @@ constexpr double kLeastSignificance = 3;                                        
 constexpr double kRingSignificance = 4, kRingCoverage = 0.45;  // of a faint ring
 constexpr double kClear = 0.8;       // of the main border's strength: an inner border as clear as the main one
 constexpr double kZonaPlace = 0.5;   // of the zona's outer border in its dark rim, see refineBorder()
+constexpr double kInnerPlace = 0.5;  // of the zona's inner border
+constexpr double kOff = 0.8;         // px, of a border from where it was searched
+constexpr double kApart = 2;         // px, from the rim, that is another border
 constexpr double kSharpRim = 6;      // px, line of a zona in focus, at most
 constexpr double kLeastResidual = 0.5, kMostResidual = 0.0025;  // px; of the diameter: of a sure ellipse
 constexpr double kOoplasmPlace = 1.0;                           // of the ooplasm's: the rim is refracted beside it
@@ -66,7 +69,15 @@ CellBorder refined(const Frame& frame, const CellBorder& border, double place, d
   if (!border.finding.hasValues()) return border;
   const double radius = 0.5 * border.ellipse.meanDiameter();
   const double blur = std::clamp(0.006 * radius, 1.0, 2.5);
-  return refineBorder(frame, border, {rim, place}, std::max(3.0, 0.04 * radius), blur, kFineRays);
+  const double window = std::max(3.0, 0.04 * radius);
+  const CellBorder fine = refineBorder(frame, border, {rim, place}, window, blur, kFineRays);
+  // The flanks are searched near their mean places: a first ellipse that was off displaces them.
+  const double off = cv::norm(fine.ellipse.centre - border.ellipse.centre) +
+                     (fine.ellipse.semi_axes - border.ellipse.semi_axes).cwiseAbs().maxCoeff() - fine.shift;
+  if (off < kOff) return fine;
+  CellBorder again = fine;
+  again.ellipse = scaled(fine.ellipse, 1 + fine.shift / radius);
+  return refineBorder(frame, again, {rim, place}, window, blur, kFineRays);
 }
 
 CellBorder searchBand(const Frame& frame, const CellBorder& main, double low, double high, const std::string& look,
@@ -91,6 +102,26 @@ CellBorder settled(const Frame& frame, const CellBorder& border, double inner) {
 }
 
 double radiusOf(const CellBorder& border) { return 0.5 * border.ellipse.meanDiameter(); }
+
+/// The zona's inner border as a line of its own, for cells that the joint fit does not describe: nearly
+/// straight in a map about the outer one, outside of the ooplasm's rim. Uncertain.
+CellBorder innerBorder(const Frame& frame, const CellLayers& layers, const std::string& look) {
+  const double outer = radiusOf(layers.zona_outer), inner = radiusOf(layers.ooplasm);
+  const Ellipse rim = scaled(layers.ooplasm.ellipse, 1 + (layers.ooplasm.shift + std::max(2.0, 0.02 * outer)) / inner);
+  if (rim.meanDiameter() < 0.96 * layers.zona_outer.ellipse.meanDiameter()) {
+    const PolarMap map = mapAbout(frame, layers.zona_outer.ellipse, std::max(0.6, inner / outer - 0.05), 0.97);
+    CellBorder whole = bestBorder(frame, map, look, outer, {rim, {}, 0, kFreeChange});
+    if (isSecondBorder(whole) && radiusOf(whole) > inner + layers.ooplasm.shift + kApart) {
+      whole = refined(frame, whole, kInnerPlace, 0.25 * (outer - inner));
+      whole.finding = Finding::uncertain("other lines may be the zona's inner border");
+      return whole;
+    }
+  }
+  CellBorder border = layers.ooplasm;
+  border.finding = Finding::uncertain("no gap between ooplasm and zona: the middle of the ooplasm's rim is given");
+  border.ellipse = scaled(layers.ooplasm.ellipse, 1 + 0.5 * layers.ooplasm.rim / inner);
+  return border;
+}
 
 /// Borders that are farther out, up to `limit` (ratio to the main one's radius): the last is the
 /// zona's outer border, one before it the inner.
@@ -175,7 +206,7 @@ CellLayers findLayers(const Frame& frame, const CellBorder& main, const std::str
   if (!layers.zona_outer.finding.hasValues()) {
     layers.ooplasm = refined(frame, ooplasm, 0, 0);
     warn(layers);
-    if (layers.ooplasm.finding.isFound() && (isRing(inside) || isRing(beyond)))
+    if (layers.ooplasm.finding.isFound() && (isRing(inside) || (isRing(beyond) && beyond.polarity != Polarity::kFalling)))
       layers.ooplasm.finding = Finding::uncertain("a faint second ring is seen: this may be a zona's border");
     return layers;
   }
@@ -183,7 +214,7 @@ CellLayers findLayers(const Frame& frame, const CellBorder& main, const std::str
   layers.ooplasm = refined(frame, ooplasm, kOoplasmPlace, std::min(kWidestRim * radiusOf(ooplasm), 0.8 * gap));
   layers.zona_outer = refined(frame, layers.zona_outer, kZonaPlace, 0.35 * gap);
   warn(layers);
-  fitLayersTo(frame, look, layers);
+  if (!fitLayersTo(frame, look, layers)) layers.zona_inner = innerBorder(frame, layers, look);
   return layers;
 }
 
@@ -210,7 +241,7 @@ CellBorder follow(const Frame& frame, const CellBorder& previous, const cv::Poin
 
 }  // namespace
 
-CellLayers followLayers(const Frame& frame, const CellLayers& previous, double reach) {
+CellLayers followLayers(const Frame& frame, const CellLayers& previous, const std::string& look, double reach) {
   CellLayers layers;
   const bool zona = previous.zona_outer.finding.hasValues();
   const double gap = zona ? radiusOf(previous.zona_outer) - radiusOf(previous.ooplasm) : 0;
@@ -222,12 +253,12 @@ CellLayers followLayers(const Frame& frame, const CellLayers& previous, double r
   // The clearest border tells how far the cell moved; the others are then near.
   const cv::Point2d moved = layers.ooplasm.ellipse.centre - previous.ooplasm.ellipse.centre;
   layers.zona_outer = follow(frame, previous.zona_outer, moved, 6, kZonaPlace, 0.35 * gap);
-  if (zona) {
-    // The zona keeps its thickness from frame to frame.
-    layers.zona_inner = previous.zona_inner;
-    layers.zona_inner.ellipse.centre += layers.zona_outer.ellipse.centre - previous.zona_outer.ellipse.centre;
-  }
   warn(layers);
+  if (!zona || !layers.zona_outer.finding.hasValues()) return layers;
+  // The zona keeps its thickness from frame to frame.
+  layers.zona_inner = previous.zona_inner;
+  layers.zona_inner.ellipse.centre += layers.zona_outer.ellipse.centre - previous.zona_outer.ellipse.centre;
+  refitLayersTo(frame, look, layers);
   return layers;
 }
 

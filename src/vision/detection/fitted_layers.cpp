@@ -15,6 +15,7 @@ constexpr double kOuterMisfit = 0.03;   // of the contrast, see LayerFit
 constexpr double kOoplasmMisfit = 0.017;
 constexpr double kLeastLead = 2;        // of chi^2, of the inner border over the next best place
 constexpr double kAgree = 1;            // px, of two measurements of a radius
+constexpr double kApart = 3;            // px, of the zona's line from the ooplasm's rim
 constexpr double kFarthest = 0.05;      // of the radius, that the fit may be from the first borders
 
 double radiusOf(const Ellipse& ellipse) { return 0.5 * ellipse.meanDiameter(); }
@@ -34,55 +35,81 @@ bool describesOuter(const LayerFit& fit, const CellLayers& layers) {
          fit.outer.misfit < kOuterMisfit && std::abs(radiusOf(fit.outer.ellipse) - first) < kFarthest * first;
 }
 
-void takeOoplasm(const LayerFit& fit, CellLayers& layers) {
+/// @return true: the fit describes the ooplasm's border roughly at least
+bool takeOoplasm(const LayerFit& fit, const std::string& look, CellLayers& layers) {
   const bool sure = fit.ooplasm.line < 0 && fit.ooplasm.deviation() < kSureRadius &&
                     fit.ooplasm.misfit < kOoplasmMisfit && centreDeviation(fit.ooplasm) < 2 * kSureRadius;
-  if (sure) {
+  const bool agree = std::abs(radiusOf(fit.ooplasm.ellipse) - radiusOf(layers.ooplasm.ellipse)) < kAgree;
+  // In phase contrast the ooplasm is about as dark as its rim: one measurement alone may be a rim off.
+  if (sure && (look != "phase" || (agree && layers.ooplasm.finding.isFound()))) {
     take(layers.ooplasm, fit.ooplasm, Finding::found());
     layers.ooplasm.shift = layers.ooplasm.rim = fit.ooplasm.width;
-    return;
+    return true;
   }
-  const bool agree = std::abs(radiusOf(fit.ooplasm.ellipse) - radiusOf(layers.ooplasm.ellipse)) < kAgree;
-  if (layers.ooplasm.finding.isFound() && !agree)
+  if (layers.ooplasm.finding.isFound() && (!agree || look == "phase"))
     layers.ooplasm.finding = Finding::uncertain("the ooplasm's border is not separate from other lines beside it");
+  return fit.ooplasm.line < 0 && fit.ooplasm.deviation() < 1.5 * kSureRadius &&
+         fit.ooplasm.misfit < 3 * kOoplasmMisfit;
 }
 
-void takeInner(const LayerFit& fit, CellLayers& layers) {
-  const bool sure = fit.inner.line < 0 && fit.inner.deviation() < kSureRadius &&
-                    (1 - fit.rival) * fit.inner_gain > kLeastLead;
+/// @param leads      the inner border's place is the best by far
+/// @param described  the fit describes the ooplasm
+void takeInner(const LayerFit& fit, bool leads, bool described, CellLayers& layers) {
+  // Where the ooplasm's border is not sure, only a line that is well outside of it is.
+  const double apart = radiusOf(fit.inner.ellipse) - radiusOf(fit.ooplasm.ellipse) - fit.ooplasm.width -
+                       cv::norm(fit.ooplasm.ellipse.centre - fit.inner.ellipse.centre);
+  const bool clear = described || apart > kApart;
+  const bool sure = leads && clear && fit.inner.line < 0 && fit.inner.deviation() < kSureRadius;
   take(layers.zona_inner, fit.inner,
        sure ? Finding::found() : Finding::uncertain("the zona's inner line is faint beside the ooplasm's rim"));
   layers.zona_inner.rim = fit.inner.width;
   layers.zona_inner.coverage = fit.used;
 }
 
-}  // namespace
+bool isSharp(const LayerFit& fit) { return fit.valid && fit.blur < kSharpBlur; }
 
-bool fitLayersTo(const Frame& frame, const std::string& look, CellLayers& layers) {
-  const LayerFit fit = fitLayers(frame, layers.zona_outer.ellipse, layers.ooplasm.ellipse, layers.ooplasm.rim, look);
-  layers.zona_inner = {};
-  layers.zona_inner.finding = Finding::notFound("the borders are not those of a zona in focus");
-  const bool described = describesOuter(fit, layers);
-  const bool sharp = fit.valid && fit.blur < kSharpBlur;
-  if (described && sharp) {
-    const bool bright = look != "dic" && look != "phase";
-    if (!bright || !layers.zona_outer.finding.isFound() || layers.zona_outer.rim == 0)
-      take(layers.zona_outer, fit.outer, Finding::found());
-    takeOoplasm(fit, layers);
-    takeInner(fit, layers);
-    return true;
-  }
-  const Finding doubt = Finding::uncertain(sharp ? "the grey values across the zona's border are unlike those of one"
-                                                 : "the cell is out of focus: its borders are displaced");
-  for (CellBorder* border : {&layers.zona_outer, &layers.ooplasm}) {
+/// Takes what the fit describes in focus: true.
+bool takeSharp(const LayerFit& fit, const std::string& look, bool leads, CellLayers& layers) {
+  if (!isSharp(fit) || !describesOuter(fit, layers)) return false;
+  const bool bright = look != "dic" && look != "phase";
+  if (!bright || !layers.zona_outer.finding.isFound() || layers.zona_outer.rim == 0)
+    take(layers.zona_outer, fit.outer, Finding::found());
+  // In phase contrast the ooplasm's border may be a rim off, the zona's line is not.
+  takeInner(fit, leads, takeOoplasm(fit, look, layers) || look == "phase", layers);
+  return true;
+}
+
+void doubtAll(const LayerFit& fit, CellLayers& layers) {
+  const Finding doubt = Finding::uncertain(isSharp(fit) ? "the grey values across the zona's border are unlike those of one"
+                                                        : "the cell is out of focus: its borders are displaced");
+  for (CellBorder* border : {&layers.zona_outer, &layers.zona_inner, &layers.ooplasm}) {
     if (border->finding.isFound()) border->finding = doubt;
   }
   // Defocus displaces a border on all sides alike: the centre of its circle stays.
-  if (fit.valid && !sharp && fit.used >= kLeastUsed && centreDeviation(fit.outer) < kSureCentre) {
+  if (fit.valid && !isSharp(fit) && fit.used >= kLeastUsed && centreDeviation(fit.outer) < kSureCentre) {
     layers.zona_outer.ellipse.centre = fit.outer.ellipse.centre;
     layers.zona_outer.covariance.topLeftCorner<2, 2>() = fit.outer.covariance.topLeftCorner<2, 2>();
   }
-  return described;
+}
+
+}  // namespace
+
+bool fitLayersTo(const Frame& frame, const std::string& look, CellLayers& layers) {
+  const LayerFit fit =
+      fitLayers(frame, {layers.zona_outer.ellipse, layers.ooplasm.ellipse, layers.ooplasm.rim, 0}, look);
+  const bool leads = (1 - fit.rival) * fit.inner_gain > kLeastLead;
+  if (takeSharp(fit, look, leads, layers)) return true;
+  doubtAll(fit, layers);
+  return false;
+}
+
+void refitLayersTo(const Frame& frame, const std::string& look, CellLayers& layers) {
+  const double thickness = radiusOf(layers.zona_outer.ellipse) - radiusOf(layers.zona_inner.ellipse);
+  if (!layers.zona_inner.finding.hasValues() || thickness <= 0) return;
+  const bool leads = layers.zona_inner.finding.isFound();
+  const LayerFit fit =
+      fitLayers(frame, {layers.zona_outer.ellipse, layers.ooplasm.ellipse, layers.ooplasm.rim, thickness}, look);
+  if (!takeSharp(fit, look, leads, layers)) doubtAll(fit, layers);
 }
 
 }  // namespace microinjection

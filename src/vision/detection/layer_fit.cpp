@@ -10,10 +10,11 @@
 namespace microinjection {
 namespace {
 
-constexpr int kSectors = 72, kCoarse = 3;
+constexpr int kSectors = 72, kCoarse = 3, kTrackedSectors = 36;
 constexpr double kInside = 13, kOutside = 10;  // px, of the samples, beyond ooplasm and zona
 constexpr double kThinnestZona = 4;            // px
-constexpr int kCoarseSteps = 6, kTrialSteps = 5, kFineSteps = 6;
+constexpr int kCoarseSteps = 6, kTrialSteps = 5, kFineSteps = 4, kTrackedSteps = 3;
+constexpr double kOtherPlaces[] = {-8, -5, 5};  // px, of the ooplasm, when the first one is not described
 constexpr std::size_t kTrials = 3;   // places of the inner border that are refined
 constexpr double kSamePlace = 1;     // px
 constexpr double kPoorFit = 0.06;    // misfit over the line's contrast: the first borders may be others
@@ -92,23 +93,15 @@ bool isPoor(const LayerSolver& solver, const LayerModel& model, const Vector& p)
          solver.misfit(model, p, 2) > kPoorFit * model.contrast(p, 2);
 }
 
-}  // namespace
-
-LayerFit fitLayers(const Frame& frame, const Ellipse& outer, const Ellipse& ooplasm, double rim,
-                   const std::string& look) {
-  LayerFit result;
-  double low = 0;
-  for (int i = 0; i < kSectors; ++i) {
-    const double angle = 2 * M_PI * i / kSectors;
-    low = std::min(low, ooplasm.reach(outer.centre, angle) - outer.radius(angle));
-  }
-  const LayerSamples samples(frame, outer, low - kInside, kOutside, kSectors);
-  const LayerModel without(look, false), with(look, true);
-  LayerSolver coarse(samples, ooplasm, rim, kCoarse);
+/// The places of all borders by every third sector.
+bool search(const LayerSamples& samples, const LayerGuess& guess, const std::string& look, const LayerModel& with,
+            Vector& parameters, LayerFit& result) {
+  const LayerModel without(look, false);
+  LayerSolver coarse(samples, guess.ooplasm, guess.rim, kCoarse);
   Vector start = coarseFit(coarse, without, 0);
   double cost = coarse.cost();
   if (isPoor(coarse, without, start)) {
-    for (const double shift : {-8.0, -5.0, 5.0}) {
+    for (const double shift : kOtherPlaces) {
       const Vector other = coarseFit(coarse, without, shift);
       if (coarse.cost() >= cost) continue;
       cost = coarse.cost();
@@ -119,27 +112,30 @@ LayerFit fitLayers(const Frame& frame, const Ellipse& outer, const Ellipse& oopl
   const double chi_without = coarse.chi2(without, start);
   Vector first = Vector::Zero(with.size());
   first.head(LayerModel::kShapes) = start.head(LayerModel::kShapes);
-  const double thickest = 0.5 * (outer.meanDiameter() - ooplasm.meanDiameter()) + start[LayerModel::kOuter] -
-                          start[LayerModel::kOoplasm] + 1;
+  const double thickest = 0.5 * (guess.outer.meanDiameter() - guess.ooplasm.meanDiameter()) +
+                          start[LayerModel::kOuter] - start[LayerModel::kOoplasm] + 1;
   double second = 1e300;
-  Trial best = searchInner(coarse, with, first, thickest, second);
-  if (best.parameters.size() == 0) return result;
+  const Trial best = searchInner(coarse, with, first, thickest, second);
+  if (best.parameters.size() == 0) return false;
+  parameters = best.parameters;
   const double gain = std::max(chi_without - best.chi2, 1e-9);
   result.inner_gain = kCoarse * gain / coarse.correlated();
   result.rival = second < 1e299 ? std::max(0.0, (chi_without - second) / gain) : 0;
-  LayerSolver fine(samples, ooplasm, rim, 1);
-  Vector& p = best.parameters;
-  fine.iterate(with, p, kFineSteps, true);
-  const Eigen::MatrixXd covariance = fine.covariance(with, p);
-  result.valid = true;
+  return true;
+}
+
+void describe(LayerSolver& solver, const LayerModel& model, const Vector& p, const LayerGuess& guess,
+              LayerFit& result) {
+  const Eigen::MatrixXd covariance = solver.covariance(model, p);
   const auto outerAt = [&](const LayerModel::Harmonics& h) { return h.sum(p, LayerModel::kOuter, 5); };
-  result.outer.ellipse = ellipseOf(outer, [&](double a) { return outerAt(LayerModel::Harmonics(a)); });
-  result.inner.ellipse = ellipseOf(outer, [&](double a) {
+  result.outer.ellipse = ellipseOf(guess.outer, [&](double a) { return outerAt(LayerModel::Harmonics(a)); });
+  result.inner.ellipse = ellipseOf(guess.outer, [&](double a) {
     const LayerModel::Harmonics h(a);
     return outerAt(h) - h.sum(p, LayerModel::kThickness, 3);
   });
-  result.ooplasm.ellipse = ellipseOf(outer, [&](double a) {
-    return ooplasm.reach(outer.centre, a) - outer.radius(a) + LayerModel::Harmonics(a).sum(p, LayerModel::kOoplasm, 5);
+  result.ooplasm.ellipse = ellipseOf(guess.outer, [&](double a) {
+    return guess.ooplasm.reach(guess.outer.centre, a) - guess.outer.radius(a) +
+           LayerModel::Harmonics(a).sum(p, LayerModel::kOoplasm, 5);
   });
   result.outer.covariance = covarianceOf(covariance, LayerModel::kOuter);
   result.inner.covariance = covarianceOf(covariance, LayerModel::kOuter, LayerModel::kThickness);
@@ -150,10 +146,37 @@ LayerFit fitLayers(const Frame& frame, const Ellipse& outer, const Ellipse& oopl
   result.outer.width = 2 * p[LayerModel::kOuterLine];
   result.inner.width = 2 * p[LayerModel::kInnerLine];
   result.ooplasm.width = p[LayerModel::kRim];
-  result.outer.misfit = fine.misfit(with, p, 0) / std::max(with.contrast(p, 0), 1e-6);
-  result.ooplasm.misfit = fine.misfit(with, p, 2) / std::max(with.contrast(p, 2), 1e-6);
-  result.used = fine.used();
+  result.outer.misfit = solver.misfit(model, p, 0) / std::max(model.contrast(p, 0), 1e-6);
+  result.ooplasm.misfit = solver.misfit(model, p, 2) / std::max(model.contrast(p, 2), 1e-6);
+  result.used = solver.used();
   result.blur = p[LayerModel::kBlur];
+  result.valid = true;
+}
+
+}  // namespace
+
+LayerFit fitLayers(const Frame& frame, const LayerGuess& guess, const std::string& look) {
+  LayerFit result;
+  double low = 0;
+  for (int i = 0; i < kSectors; ++i) {
+    const double angle = 2 * M_PI * i / kSectors;
+    low = std::min(low, guess.ooplasm.reach(guess.outer.centre, angle) - guess.outer.radius(angle));
+  }
+  const bool known = guess.thickness > 0;
+  const LayerSamples samples(frame, guess.outer, low - kInside, kOutside, known ? kTrackedSectors : kSectors);
+  const LayerModel with(look, true);
+  Vector parameters;
+  if (known) {
+    LayerSolver solver(samples, guess.ooplasm, guess.rim, 1);
+    parameters = solver.start(with, guess.thickness, 0);
+    solver.iterate(with, parameters, kTrackedSteps, true);
+    describe(solver, with, parameters, guess, result);
+    return result;
+  }
+  if (!search(samples, guess, look, with, parameters, result)) return result;
+  LayerSolver solver(samples, guess.ooplasm, guess.rim, 1, parameters);
+  solver.iterate(with, parameters, kFineSteps, true);
+  describe(solver, with, parameters, guess, result);
   return result;
 }
 

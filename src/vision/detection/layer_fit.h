@@ -27,9 +27,14 @@ struct LayerFit {
   double rival = 0;       ///< share of it that another place explains too
 };
 
-/// @param outer, ooplasm  first ellipses, within about a rim of the borders
-/// @param rim             px, expected width of the ooplasm's dark rim
-LayerFit fitLayers(const Frame& frame, const Ellipse& outer, const Ellipse& ooplasm, double rim,
-                   const std::string& look);
+/// First values of a fit: ellipses of outer border and ooplasm, px of the ooplasm's dark rim, and, when it
+/// is known from the frame before, the thickness of the zona (px; 0: it is searched).
+struct LayerGuess {
+  Ellipse outer, ooplasm;
+  double rim = 0, thickness = 0;
+};
+
+/// @param guess  with borders within about a rim of those in the frame
+LayerFit fitLayers(const Frame& frame, const LayerGuess& guess, const std::string& look);
 
 }  // namespace microinjection

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "vision/detection/polar_map.h"
 
@@ -10,7 +11,6 @@ namespace {
 
 constexpr double kRayDistance = 1.5;  // px, of neighbours on the ellipse
 constexpr int kFewestRays = 5;        // of a sector
-constexpr int kExtremes = 5;          // one of so many rays does not count on both sides
 
 }  // namespace
 
@@ -18,7 +18,6 @@ LayerSamples::LayerSamples(const Frame& frame, const Ellipse& base, double low, 
     : base_(base), low_(low) {
   const int columns = static_cast<int>(high - low) + 1;
   const int rays = std::max(kFewestRays, static_cast<int>(M_PI * base.meanDiameter() / sectors / kRayDistance));
-  const int left_out = rays / kExtremes;
   const PolarMap map(frame, base, {low, low + columns - 1, columns, sectors * rays}, 1.0);
   std::vector<float> values(rays);
   grey_ = cv::Mat(sectors, columns, CV_32F, cv::Scalar(0));
@@ -32,10 +31,9 @@ LayerSamples::LayerSamples(const Frame& frame, const Ellipse& base, double low, 
         if (map.valid().at<unsigned char>(ray, i) == 0) valid_.at<unsigned char>(sector, i) = 0;
         values[k] = map.grey().at<float>(ray, i);
       }
-      std::sort(values.begin(), values.end());
-      float sum = 0;
-      for (int k = left_out; k < rays - left_out; ++k) sum += values[k];
-      grey_.at<float>(sector, i) = sum / static_cast<float>(rays - 2 * left_out);
+      const auto [least, most] = std::minmax_element(values.begin(), values.end());
+      const float sum = std::accumulate(values.begin(), values.end(), 0.0F) - *least - *most;
+      grey_.at<float>(sector, i) = sum / static_cast<float>(rays - 2);
     }
   }
 }

@@ -8,7 +8,7 @@
 namespace microinjection {
 
 /// Grey values in a band about an ellipse, averaged over sectors of directions. A sector's mean leaves
-/// out its extreme rays, so that a granule or a speck of dust does not count.
+/// out its darkest and its brightest ray, so that a speck of dust counts less.
 class LayerSamples {
  public:
   /// @param low, high  px from the ellipse, positive outwards, in steps of 1 px

@@ -15,6 +15,7 @@ constexpr double kTilt = 0.006;      // of the radius, standard deviation of a z
 constexpr double kUsualWidth = 2, kUsualBlur = 1.3, kWidthShare = 0.5;  // px; standard deviation over the value
 constexpr double kSameWidth = 0.4;  // px, standard deviation of the difference of the zona's lines
 constexpr double kLeastWidth = 0.5, kLeastBlur = 0.7;                   // px
+constexpr double kNear = 8;  // px, of samples that show a border
 constexpr double kBand = 8;  // px to both sides of a border, see misfit()
 
 double medianOf(std::vector<double> values) {
@@ -27,9 +28,18 @@ double medianOf(std::vector<double> values) {
 /// Tukey's biweight.
 double tukey(double d) { return std::abs(d) < 1 ? (1 - d * d) * (1 - d * d) : 0; }
 
+/// Whether a sample between the borders tells nothing of them.
+bool isFar(const Eigen::VectorXd& p, const LayerModel::Sample& sample) {
+  const double outer = sample.harmonics.sum(p, LayerModel::kOuter, 5) - sample.place;
+  const double inner = outer - sample.harmonics.sum(p, LayerModel::kThickness, 3);
+  const double ooplasm = sample.ooplasm + sample.harmonics.sum(p, LayerModel::kOoplasm, 5) - sample.place;
+  return outer > kNear && std::abs(inner) > kNear && ooplasm < -kNear - p[LayerModel::kRim];
+}
+
 }  // namespace
 
-LayerSolver::LayerSolver(const LayerSamples& samples, const Ellipse& ooplasm, double rim, int every)
+LayerSolver::LayerSolver(const LayerSamples& samples, const Ellipse& ooplasm, double rim, int every,
+                         const Eigen::VectorXd& near)
     : sectors_(samples.sectors()), radius_(0.5 * samples.base().meanDiameter()),
       widths_{kUsualWidth, kUsualWidth, std::max(rim, kUsualWidth), std::max(0.5 * rim, kUsualWidth), kUsualBlur} {
   for (int s = 0; s < samples.sectors(); s += every) {
@@ -38,6 +48,7 @@ LayerSolver::LayerSolver(const LayerSamples& samples, const Ellipse& ooplasm, do
     for (int i = 0; i < samples.columns(); ++i) {
       if (!samples.valid(s, i) || samples.place(i) < place - kInside) continue;
       const LayerModel::Sample sample{LayerModel::Harmonics(direction), samples.place(i), samples.radius(s), place};
+      if (near.size() > 0 && isFar(near, sample)) continue;
       points_.push_back({sample, samples.grey(s, i), s, samples.place(i) < place});
     }
   }

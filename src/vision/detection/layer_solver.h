@@ -15,7 +15,9 @@ class LayerSolver {
   /// @param ooplasm  first ellipse of the ooplasm
   /// @param rim      px, expected width of the ooplasm's dark rim
   /// @param every    takes each n-th sector only
-  LayerSolver(const LayerSamples& samples, const Ellipse& ooplasm, double rim, int every);
+  /// @param near     parameters whose borders are known: samples far from them are left out; empty: none
+  LayerSolver(const LayerSamples& samples, const Ellipse& ooplasm, double rim, int every,
+              const Eigen::VectorXd& near = {});
 
   /// Parameters with the expected widths, borders on their first ellipses, and amplitudes.
   /// @param shift  px, of the ooplasm from its first ellipse, outwards
