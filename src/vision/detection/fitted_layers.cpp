@@ -1,6 +1,8 @@
 #include "vision/detection/fitted_layers.h"
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "vision/detection/layer_fit.h"
 
@@ -14,6 +16,8 @@ constexpr double kSureCentre = 0.3;     // px, of a centre
 constexpr double kOuterMisfit = 0.03;   // of the contrast, see LayerFit
 constexpr double kOoplasmMisfit = 0.017;
 constexpr double kLeastLead = 2;        // of chi^2, of the inner border over the next best place
+constexpr double kOnEllipse = 0.4, kNearEllipse = 0.8;  // px, of a border's points
+constexpr double kMore = 0.04, kLeastOn = 0.5, kFewest = 0.4;  // shares of the points
 constexpr double kAgree = 1;            // px, of two measurements of a radius
 constexpr double kApart = 3;            // px, of the zona's line from the ooplasm's rim
 constexpr double kFarthest = 0.05;      // of the radius, that the fit may be from the first borders
@@ -68,12 +72,41 @@ void takeInner(const LayerFit& fit, bool leads, bool described, CellLayers& laye
 
 bool isSharp(const LayerFit& fit) { return fit.valid && fit.blur < kSharpBlur; }
 
+double shareOn(const std::vector<cv::Point2d>& points, const Ellipse& ellipse) {
+  const auto on = std::count_if(points.begin(), points.end(), [&](const cv::Point2d& point) {
+    return std::abs(ellipse.distance(point)) < kOnEllipse;
+  });
+  return static_cast<double>(on) / std::max<double>(1, static_cast<double>(points.size()));
+}
+
+/// Where a needle bends the border, its points alone may give an ellipse that leans into the dimple. The
+/// fit has left out the directions that are bent: of both ellipses, and that of the points near the
+/// fit's, the one that most points are on is taken.
+void settleOuter(const LayerFit& fit, CellBorder& border) {
+  std::vector<cv::Point2d> near;
+  for (const cv::Point2d& point : border.points) {
+    if (std::abs(fit.outer.ellipse.distance(point)) < kNearEllipse) near.push_back(point);
+  }
+  const double before = shareOn(border.points, border.ellipse);
+  const EllipseFit again = fitEllipse(near, fit.outer.ellipse, kOnEllipse);
+  double most = before;
+  if (again.valid && near.size() > kFewest * border.points.size() && shareOn(border.points, again.ellipse) > most + kMore) {
+    most = shareOn(border.points, again.ellipse);
+    border.ellipse = again.ellipse;
+    border.covariance = again.covariance;
+    border.residual = again.residual;
+  }
+  if (most < kLeastOn) border.finding = Finding::uncertain("the border is bent over half of its length");
+}
+
 /// Takes what the fit describes in focus: true.
 bool takeSharp(const LayerFit& fit, const std::string& look, bool leads, CellLayers& layers) {
   if (!isSharp(fit) || !describesOuter(fit, layers)) return false;
   const bool bright = look != "dic" && look != "phase";
   if (!bright || !layers.zona_outer.finding.isFound() || layers.zona_outer.rim == 0)
     take(layers.zona_outer, fit.outer, Finding::found());
+  else
+    settleOuter(fit, layers.zona_outer);
   // In phase contrast the ooplasm's border may be a rim off, the zona's line is not.
   takeInner(fit, leads, takeOoplasm(fit, look, layers) || look == "phase", layers);
   return true;
