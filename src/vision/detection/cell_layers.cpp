@@ -17,7 +17,7 @@ constexpr double kInside = 0.93;  // ratio of a border inside of the main one, a
 constexpr double kGap = 1.03;     // ratio of two borders' radii, at least
 constexpr double kLeastCoverage = 0.55, kLeastConsistency = 0.6, kLeastStrength = 0.55;  // of a second border
 constexpr double kLeastSignificance = 3;                                                 // of a second border
-constexpr double kRingSignificance = 4, kRingCoverage = 0.45;  // of a faint ring
+constexpr double kRingSignificance = 4, kRingCoverage = 0.45;                            // of a faint ring
 constexpr double kClear = 0.8;       // of the main border's strength: an inner border as clear as the main one
 constexpr double kZonaPlace = 0.5;   // of the zona's outer border in its dark rim, see refineBorder()
 constexpr double kInnerPlace = 0.5;  // of the zona's inner border
@@ -206,7 +206,8 @@ CellLayers findLayers(const Frame& frame, const CellBorder& main, const std::str
   if (!layers.zona_outer.finding.hasValues()) {
     layers.ooplasm = refined(frame, ooplasm, 0, 0);
     warn(layers);
-    if (layers.ooplasm.finding.isFound() && (isRing(inside) || (isRing(beyond) && beyond.polarity != Polarity::kFalling)))
+    if (layers.ooplasm.finding.isFound() &&
+        (isRing(inside) || (isRing(beyond) && beyond.polarity != Polarity::kFalling)))
       layers.ooplasm.finding = Finding::uncertain("a faint second ring is seen: this may be a zona's border");
     return layers;
   }

@@ -9,18 +9,18 @@
 namespace microinjection {
 namespace {
 
-constexpr double kSharpBlur = 1.8;      // px, of a cell in focus
-constexpr double kLeastUsed = 0.5;      // share of the directions
-constexpr double kSureRadius = 0.45;    // px, standard deviation of a radius that is sure
-constexpr double kSureCentre = 0.3;     // px, of a centre
-constexpr double kOuterMisfit = 0.03;   // of the contrast, see LayerFit
+constexpr double kSharpBlur = 1.8;     // px, of a cell in focus
+constexpr double kLeastUsed = 0.5;     // share of the directions
+constexpr double kSureRadius = 0.45;   // px, standard deviation of a radius that is sure
+constexpr double kSureCentre = 0.3;    // px, of a centre
+constexpr double kOuterMisfit = 0.03;  // of the contrast, see LayerFit
 constexpr double kOoplasmMisfit = 0.017;
-constexpr double kLeastLead = 2;        // of chi^2, of the inner border over the next best place
-constexpr double kOnEllipse = 0.4, kNearEllipse = 0.8;  // px, of a border's points
+constexpr double kLeastLead = 2;                               // of chi^2, of the inner border over the next best place
+constexpr double kOnEllipse = 0.4, kNearEllipse = 0.8;         // px, of a border's points
 constexpr double kMore = 0.04, kLeastOn = 0.5, kFewest = 0.4;  // shares of the points
-constexpr double kAgree = 1;            // px, of two measurements of a radius
-constexpr double kApart = 3;            // px, of the zona's line from the ooplasm's rim
-constexpr double kFarthest = 0.05;      // of the radius, that the fit may be from the first borders
+constexpr double kAgree = 1;                                   // px, of two measurements of a radius
+constexpr double kApart = 3;                                   // px, of the zona's line from the ooplasm's rim
+constexpr double kFarthest = 0.05;  // of the radius, that the fit may be from the first borders
 
 double radiusOf(const Ellipse& ellipse) { return 0.5 * ellipse.meanDiameter(); }
 
@@ -52,8 +52,7 @@ bool takeOoplasm(const LayerFit& fit, const std::string& look, CellLayers& layer
   }
   if (layers.ooplasm.finding.isFound() && (!agree || look == "phase"))
     layers.ooplasm.finding = Finding::uncertain("the ooplasm's border is not separate from other lines beside it");
-  return fit.ooplasm.line < 0 && fit.ooplasm.deviation() < 1.5 * kSureRadius &&
-         fit.ooplasm.misfit < 3 * kOoplasmMisfit;
+  return fit.ooplasm.line < 0 && fit.ooplasm.deviation() < 1.5 * kSureRadius && fit.ooplasm.misfit < 3 * kOoplasmMisfit;
 }
 
 /// @param leads      the inner border's place is the best by far
@@ -90,7 +89,8 @@ void settleOuter(const LayerFit& fit, CellBorder& border) {
   const double before = shareOn(border.points, border.ellipse);
   const EllipseFit again = fitEllipse(near, fit.outer.ellipse, kOnEllipse);
   double most = before;
-  if (again.valid && near.size() > kFewest * border.points.size() && shareOn(border.points, again.ellipse) > most + kMore) {
+  if (again.valid && near.size() > kFewest * border.points.size() &&
+      shareOn(border.points, again.ellipse) > most + kMore) {
     most = shareOn(border.points, again.ellipse);
     border.ellipse = again.ellipse;
     border.covariance = again.covariance;
@@ -112,11 +112,21 @@ bool takeSharp(const LayerFit& fit, const std::string& look, bool leads, CellLay
   return true;
 }
 
+/// Takes the certainty from what the fit does not describe. A border in focus that was found by itself
+/// keeps it where the fit agrees.
 void doubtAll(const LayerFit& fit, CellLayers& layers) {
-  const Finding doubt = Finding::uncertain(isSharp(fit) ? "the grey values across the zona's border are unlike those of one"
-                                                        : "the cell is out of focus: its borders are displaced");
+  const auto agrees = [&](const CellBorder& border, const LayerFit::Border& measured) {
+    return std::abs(radiusOf(border.ellipse) - radiusOf(measured.ellipse)) < kAgree &&
+           cv::norm(border.ellipse.centre - measured.ellipse.centre) < kAgree;
+  };
+  const bool outer = isSharp(fit) && fit.outer.line < 0 && agrees(layers.zona_outer, fit.outer);
+  const bool ooplasm = outer && fit.ooplasm.line < 0 && agrees(layers.ooplasm, fit.ooplasm);
+  const Finding doubt =
+      Finding::uncertain(isSharp(fit) ? "the grey values across the zona's border are unlike those of one"
+                                      : "the cell is out of focus: its borders are displaced");
   for (CellBorder* border : {&layers.zona_outer, &layers.zona_inner, &layers.ooplasm}) {
-    if (border->finding.isFound()) border->finding = doubt;
+    const bool agreed = border == &layers.ooplasm ? ooplasm : border == &layers.zona_outer && outer;
+    if (border->finding.isFound() && !agreed) border->finding = doubt;
   }
   // Defocus displaces a border on all sides alike: the centre of its circle stays.
   if (fit.valid && !isSharp(fit) && fit.used >= kLeastUsed && centreDeviation(fit.outer) < kSureCentre) {

@@ -7,13 +7,13 @@
 namespace microinjection {
 namespace {
 
-constexpr double kFacing = 1.1;     // rad, half of the sector that faces the needle
-constexpr double kDeepest = 0.55;   // of the radius, a dimple
-constexpr double kFitted = 0.12;    // of the radius, half of the dimple's middle that gives the parabola, at least
-constexpr double kBelowTip = 3;     // px, that the border may be deeper than the tip
-constexpr double kOutwards = 0.3;   // strength of the outermost column over the innermost
-constexpr float kSeen = 0.45F;      // strength of a border that is seen
-constexpr double kTouches = 4;      // px, of the contour from the tip that touches it
+constexpr double kFacing = 1.1;    // rad, half of the sector that faces the needle
+constexpr double kDeepest = 0.55;  // of the radius, a dimple
+constexpr double kFitted = 0.12;   // of the radius, half of the dimple's middle that gives the parabola, at least
+constexpr double kBelowTip = 3;    // px, that the border may be deeper than the tip
+constexpr double kOutwards = 0.3;  // strength of the outermost column over the innermost
+constexpr float kSeen = 0.45F;     // strength of a border that is seen
+constexpr double kTouches = 4;     // px, of the contour from the tip that touches it
 constexpr double kThinnest = 14, kThickest = 20;  // px, of the needle near its tip
 constexpr int kRays = 240;
 

@@ -15,9 +15,9 @@ constexpr double kInside = 13, kOutside = 10;  // px, of the samples, beyond oop
 constexpr double kThinnestZona = 4;            // px
 constexpr int kCoarseSteps = 6, kTrialSteps = 5, kFineSteps = 4, kTrackedSteps = 3;
 constexpr double kOtherPlaces[] = {-8, -5, 5};  // px, of the ooplasm, when the first one is not described
-constexpr std::size_t kTrials = 3;   // places of the inner border that are refined
-constexpr double kSamePlace = 1;     // px
-constexpr double kPoorFit = 0.06;    // misfit over the line's contrast: the first borders may be others
+constexpr std::size_t kTrials = 3;              // places of the inner border that are refined
+constexpr double kSamePlace = 1;                // px
+constexpr double kPoorFit = 0.06;               // misfit over the line's contrast: the first borders may be others
 
 using Vector = Eigen::VectorXd;
 
@@ -69,8 +69,8 @@ Trial searchInner(LayerSolver& solver, const LayerModel& model, const Vector& st
     solver.solveAmplitudes(model, trial);
     solver.iterate(model, trial, kTrialSteps, false);
     const double chi2 = solver.chi2(model, trial);
-    const bool same = best.parameters.size() > 0 && std::abs(trial[LayerModel::kThickness] -
-                                                             best.parameters[LayerModel::kThickness]) < kSamePlace;
+    const bool same = best.parameters.size() > 0 &&
+                      std::abs(trial[LayerModel::kThickness] - best.parameters[LayerModel::kThickness]) < kSamePlace;
     if (!same) second = std::min(second, std::max(chi2, best.chi2));
     if (chi2 < best.chi2) {
       if (!same && best.chi2 < 1e299) second = best.chi2;

@@ -6,12 +6,12 @@
 namespace microinjection {
 namespace {
 
-constexpr double kHaloBlur = 16;    // px rms, of the halo of phase contrast
-constexpr double kShadedLine = 1;   // px, half the width of a line of DIC before it is blurred
-constexpr double kRampLength = 10;  // px, on which the ooplasm darkens by a ramp's amplitude
+constexpr double kHaloBlur = 16;     // px rms, of the halo of phase contrast
+constexpr double kShadedLine = 1;    // px, half the width of a line of DIC before it is blurred
+constexpr double kRampLength = 10;   // px, on which the ooplasm darkens by a ramp's amplitude
 constexpr double kTiltLength = 100;  // px, on which the illumination changes by a tilt's amplitude
-constexpr int kPerBlur = 128;       // entries of the table of a blurred edge
-constexpr double kFar = 5;          // blurs, beyond which an edge is its limit
+constexpr int kPerBlur = 128;        // entries of the table of a blurred edge
+constexpr double kFar = 5;           // blurs, beyond which an edge is its limit
 
 struct Edge {
   double rise = 0, density = 0;  ///< 0..1 inwards, and its derivative
@@ -64,10 +64,9 @@ double LayerModel::Harmonics::sum(const Eigen::VectorXd& parameters, int first, 
 }
 
 LayerModel::LayerModel(const std::string& look, bool inner) : inner_(inner) {
-  terms_ = {{Kind::kOne, 0, 0, -1},          {Kind::kTilt, 0, 1, -1},
-            {Kind::kTilt, 0, 2, -1},         {Kind::kStep, 0, 0, -1},
-            {Kind::kLine, 0, 0, kOuterLine}, {Kind::kStep, 2, 0, -1},
-            {Kind::kOutside, 2, 0, kRim},    {Kind::kInside, 2, 0, kBrightLine}};
+  terms_ = {{Kind::kOne, 0, 0, -1},       {Kind::kTilt, 0, 1, -1},           {Kind::kTilt, 0, 2, -1},
+            {Kind::kStep, 0, 0, -1},      {Kind::kLine, 0, 0, kOuterLine},   {Kind::kStep, 2, 0, -1},
+            {Kind::kOutside, 2, 0, kRim}, {Kind::kInside, 2, 0, kBrightLine}};
   if (inner) {
     terms_.push_back({Kind::kStep, 1, 0, -1});
     terms_.push_back({Kind::kLine, 1, 0, kInnerLine});
@@ -111,9 +110,12 @@ LayerModel::Response LayerModel::respond(Kind kind, double distance, double widt
                     ((distance - last) * b.density - (distance - first) * a.density) / blur};
   };
   switch (kind) {
-    case Kind::kLine: return box(-width, width, -1, 1);
-    case Kind::kOutside: return box(-width, 0, -1, 0);
-    case Kind::kInside: return box(0, width, 0, 1);
+    case Kind::kLine:
+      return box(-width, width, -1, 1);
+    case Kind::kOutside:
+      return box(-width, 0, -1, 0);
+    case Kind::kInside:
+      return box(0, width, 0, 1);
     case Kind::kStep: {
       const Edge edge = edgeAt(distance, blur);
       return {edge.rise, edge.density, 0, -distance / blur * edge.density};
@@ -127,7 +129,8 @@ LayerModel::Response LayerModel::respond(Kind kind, double distance, double widt
       return {(distance * edge.rise + blur * blur * edge.density) / kRampLength, edge.rise / kRampLength, 0,
               blur * edge.density / kRampLength};
     }
-    default: return {1, 0, 0, 0};
+    default:
+      return {1, 0, 0, 0};
   }
 }
 
@@ -136,8 +139,8 @@ void LayerModel::terms(const Eigen::VectorXd& p, const Sample& sample, double* v
   placeBorders(p, sample, distance);
   for (const Term& term : terms_) {
     const double width = term.width < 0 ? kShadedLine : p[term.width];
-    const double value = term.kind == Kind::kTilt ? tiltAt(sample)
-                                                  : respond(term.kind, distance[term.border], width, p[kBlur]).value;
+    const double value =
+        term.kind == Kind::kTilt ? tiltAt(sample) : respond(term.kind, distance[term.border], width, p[kBlur]).value;
     *values++ = sample.harmonics.at[term.harmonic] * value;
   }
 }

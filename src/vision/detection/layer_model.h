@@ -17,7 +17,17 @@ class LayerModel {
   /// Parameters before the amplitudes. Places are px from the base of the samples: outer border and
   /// ooplasm as harmonics 1, cos, sin, cos 2, sin 2 of the direction, thickness of the zona as 1, cos,
   /// sin. Widths of lines and blur (standard deviation): px.
-  enum Index { kOuter = 0, kThickness = 5, kOoplasm = 8, kOuterLine = 13, kInnerLine, kRim, kBrightLine, kBlur, kShapes };
+  enum Index {
+    kOuter = 0,
+    kThickness = 5,
+    kOoplasm = 8,
+    kOuterLine = 13,
+    kInnerLine,
+    kRim,
+    kBrightLine,
+    kBlur,
+    kShapes
+  };
   /// Parameters of the amplitudes that every look has, in grey values.
   enum Amplitude { kOuterLineDepth = kShapes + 4, kRimDepth = kShapes + 6, kInnerLineDepth = kShapes + 9 };
 

@@ -18,8 +18,8 @@ class LayerSamples {
   int columns() const { return grey_.cols; }
   float grey(int sector, int column) const { return grey_.at<float>(sector, column); }
   bool valid(int sector, int column) const { return valid_.at<unsigned char>(sector, column) != 0; }
-  double place(int column) const { return low_ + column; }  ///< px from the ellipse
-  double direction(int sector) const;                       ///< rad, of the sector's middle
+  double place(int column) const { return low_ + column; }     ///< px from the ellipse
+  double direction(int sector) const;                          ///< rad, of the sector's middle
   double radius(int sector) const { return radius_[sector]; }  ///< px, of the ellipse
   const Ellipse& base() const { return base_; }
 

@@ -7,16 +7,16 @@
 namespace microinjection {
 namespace {
 
-constexpr double kInside = 12;     // px, of the samples inside of the ooplasm
-constexpr double kTukey = 4.685;   // 95 % efficiency for normal residuals
-constexpr double kOddSector = 2.2;  // of the median residual of a sector: something else is there
+constexpr double kInside = 12;       // px, of the samples inside of the ooplasm
+constexpr double kTukey = 4.685;     // 95 % efficiency for normal residuals
+constexpr double kOddSector = 2.2;   // of the median residual of a sector: something else is there
 constexpr double kMostResidual = 6;  // deviations, that one sample counts in its sector
 constexpr double kTilt = 0.006;      // of the radius, standard deviation of a zona's change of thickness
 constexpr double kUsualWidth = 2, kUsualBlur = 1.3, kWidthShare = 0.5;  // px; standard deviation over the value
-constexpr double kSameWidth = 0.4;  // px, standard deviation of the difference of the zona's lines
-constexpr double kLeastWidth = 0.5, kLeastBlur = 0.7;                   // px
-constexpr double kNear = 8;  // px, of samples that show a border
-constexpr double kBand = 8;  // px to both sides of a border, see misfit()
+constexpr double kSameWidth = 0.4;                     // px, standard deviation of the difference of the zona's lines
+constexpr double kLeastWidth = 0.5, kLeastBlur = 0.7;  // px
+constexpr double kNear = 8;                            // px, of samples that show a border
+constexpr double kBand = 8;                            // px to both sides of a border, see misfit()
 
 double medianOf(std::vector<double> values) {
   if (values.empty()) return 0;
@@ -40,7 +40,8 @@ bool isFar(const Eigen::VectorXd& p, const LayerModel::Sample& sample) {
 
 LayerSolver::LayerSolver(const LayerSamples& samples, const Ellipse& ooplasm, double rim, int every,
                          const Eigen::VectorXd& near)
-    : sectors_(samples.sectors()), radius_(0.5 * samples.base().meanDiameter()),
+    : sectors_(samples.sectors()),
+      radius_(0.5 * samples.base().meanDiameter()),
       widths_{kUsualWidth, kUsualWidth, std::max(rim, kUsualWidth), std::max(0.5 * rim, kUsualWidth), kUsualBlur} {
   for (int s = 0; s < samples.sectors(); s += every) {
     const double direction = samples.direction(s);
@@ -167,7 +168,8 @@ std::vector<double> LayerSolver::scan(const LayerModel& model, const Eigen::Vect
     const double root = std::sqrt(weight_[static_cast<std::size_t>(i)]);
     model.terms(p, point.sample, values.data());
     for (int term = 0, k = 0; term < n; ++term) {
-      const bool is_inner = std::find(model.innerTerms().begin(), model.innerTerms().end(), term) != model.innerTerms().end();
+      const bool is_inner =
+          std::find(model.innerTerms().begin(), model.innerTerms().end(), term) != model.innerTerms().end();
       if (!is_inner) others(k++, i) = root * values[term];
     }
     grey[i] = root * point.grey;
@@ -245,10 +247,14 @@ double LayerSolver::misfit(const LayerModel& model, const Eigen::VectorXd& param
 
 double LayerSolver::priorWeight(const LayerModel& model, int index) const {
   double deviation = 0;
-  if (index >= LayerModel::kShapes) deviation = model.usualAmplitude(index - LayerModel::kShapes);
-  else if (index >= LayerModel::kOuterLine) deviation = kWidthShare * widths_[index - LayerModel::kOuterLine];
-  else if (index == LayerModel::kThickness + 1 || index == LayerModel::kThickness + 2) deviation = kTilt * radius_;
-  else if (index == LayerModel::kThickness && !model.hasInner()) deviation = 1;
+  if (index >= LayerModel::kShapes)
+    deviation = model.usualAmplitude(index - LayerModel::kShapes);
+  else if (index >= LayerModel::kOuterLine)
+    deviation = kWidthShare * widths_[index - LayerModel::kOuterLine];
+  else if (index == LayerModel::kThickness + 1 || index == LayerModel::kThickness + 2)
+    deviation = kTilt * radius_;
+  else if (index == LayerModel::kThickness && !model.hasInner())
+    deviation = 1;
   return deviation > 0 ? 1 / (deviation * deviation) : 1e-9;
 }
 

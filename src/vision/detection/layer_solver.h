@@ -39,7 +39,8 @@ class LayerSolver {
   /// Number of samples that deviate together.
   double correlated() const;
   /// rms over the band about a border of what the residuals have in common in all directions, and of
-  /// what follows the cosine or sine of the direction (grey values): 0 for a model that describes it. `border`: 0 outer, 2 ooplasm.
+  /// what follows the cosine or sine of the direction (grey values): 0 for a model that describes it. `border`: 0
+  /// outer, 2 ooplasm.
   double misfit(const LayerModel& model, const Eigen::VectorXd& parameters, int border) const;
   double noise() const { return scale_[0]; }  ///< robust standard deviation outside of the ooplasm
   double used() const { return used_; }       ///< share of the sectors that count

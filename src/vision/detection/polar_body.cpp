@@ -11,18 +11,18 @@ namespace {
 constexpr double kSmallest = 0.08, kLargest = 0.165;  // of the zona's inner radius, a polar body's radius
 constexpr int kDirections = 180, kPoints = 24;
 constexpr int kClimb = 4;
-constexpr double kTurn = 0.012;  // rad
+constexpr double kTurn = 0.012;                   // rad
 constexpr double kRadiusStep = 2, kRoomStep = 3;  // px
-constexpr double kBlur = 1.2;          // px, of the grey values' derivative
-constexpr double kFullEdge = 4;        // of the median derivative between ooplasm and zona: a full edge
-constexpr double kRoom = 6;            // px inside of the zona, where a polar body may end
-constexpr double kOther = 0.5;         // rad, of another polar body
+constexpr double kBlur = 1.2;                     // px, of the grey values' derivative
+constexpr double kFullEdge = 4;                   // of the median derivative between ooplasm and zona: a full edge
+constexpr double kRoom = 6;                       // px inside of the zona, where a polar body may end
+constexpr double kOther = 0.5;                    // rad, of another polar body
 constexpr double kLeastScore = 0.45, kSureScore = 0.6;
 constexpr double kSureLead = 0.18, kSureLeadOfOtherLooks = 0.28;  // over another direction
-constexpr double kShade = M_PI / 2;    // makes the score of a fully shaded border 1
-constexpr double kReach = 4;           // px, of the points that refine the circle
-constexpr double kFollowed = 0.25;     // rad, that it may turn from frame to frame
-constexpr double kSureDeviation = 0.02;  // rad
+constexpr double kShade = M_PI / 2;                               // makes the score of a fully shaded border 1
+constexpr double kReach = 4;                                      // px, of the points that refine the circle
+constexpr double kFollowed = 0.25;                                // rad, that it may turn from frame to frame
+constexpr double kSureDeviation = 0.02;                           // rad
 
 struct Circle {
   double direction = 0, away = 0, radius = 0, score = -1;
@@ -43,7 +43,8 @@ class Gradient {
   }
   /// Decrease of the grey value along a unit vector (per px).
   double fall(const cv::Point2d& point, const cv::Point2d& along) const {
-    const int x = static_cast<int>(std::lround(point.x - origin_.x)), y = static_cast<int>(std::lround(point.y - origin_.y));
+    const int x = static_cast<int>(std::lround(point.x - origin_.x)),
+              y = static_cast<int>(std::lround(point.y - origin_.y));
     return -x_.at<float>(y, x) * along.x - y_.at<float>(y, x) * along.y;
   }
 
@@ -55,8 +56,10 @@ class Gradient {
 class Search {
  public:
   Search(const Frame& frame, const CellLayers& layers, const std::string& look)
-      : layers_(layers), shaded_(look == "dic"),
-        lead_(shaded_ || look == "phase" ? kSureLeadOfOtherLooks : kSureLead), centre_(layers.zona_outer.ellipse.centre) {
+      : layers_(layers),
+        shaded_(look == "dic"),
+        lead_(shaded_ || look == "phase" ? kSureLeadOfOtherLooks : kSureLead),
+        centre_(layers.zona_outer.ellipse.centre) {
     const Ellipse& outer = layers.zona_outer.ellipse;
     const bool known = layers.zona_inner.finding.isFound();
     limit_ = known ? layers.zona_inner.ellipse : scaled(outer, 0.99);
@@ -99,12 +102,10 @@ class Search {
     body.deviation = std::sqrt(across.dot(fit.covariance.topLeftCorner<2, 2>() * across)) / cv::norm(away);
     const bool sure = first.score > kSureScore && first.score - second > lead_ && body.deviation < kSureDeviation;
     const bool zona = layers_.zona_inner.finding.isFound() || layers_.ooplasm.finding.isFound();
-    body.finding = sure && zona ? Finding::found() : Finding::uncertain("the polar body's border is faint or one of several");
-    score_ = first.score;
-    second_ = second;
+    body.finding =
+        sure && zona ? Finding::found() : Finding::uncertain("the polar body's border is faint or one of several");
     return body;
   }
-  double score_ = 0, second_ = 0;
 
  private:
   cv::Point2d place(const Circle& circle) const {
@@ -166,7 +167,8 @@ class Search {
   double score(const Gradient& gradient, const Circle& circle) const {
     static const std::vector<cv::Point2d> directions = [] {
       std::vector<cv::Point2d> all;
-      for (int i = 0; i < kPoints; ++i) all.emplace_back(std::cos(2 * M_PI * i / kPoints), std::sin(2 * M_PI * i / kPoints));
+      for (int i = 0; i < kPoints; ++i)
+        all.emplace_back(std::cos(2 * M_PI * i / kPoints), std::sin(2 * M_PI * i / kPoints));
       return all;
     }();
     const cv::Point2d centre = place(circle);
@@ -220,10 +222,7 @@ PolarBody search(const Frame& frame, const CellLayers& layers, const std::string
     none.finding = Finding::notFound("a polar body is searched inside of a zona only");
     return none;
   }
-  Search search(frame, layers, look);
-  PolarBody b = search.run(frame, towards, within);
-  if (getenv("VCDBG")) printf("PB score %.2f second %.2f dev %.4f %s\n", search.score_, search.second_, b.deviation, nameOf(b.finding.verdict));
-  return b;
+  return Search(frame, layers, look).run(frame, towards, within);
 }
 
 }  // namespace
