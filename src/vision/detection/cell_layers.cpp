@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "vision/detection/fitted_layers.h"
+#include "vision/detection/zona_inner.h"
 
 namespace microinjection {
 namespace {
@@ -21,6 +22,7 @@ constexpr double kRingSignificance = 4, kRingCoverage = 0.45;                   
 constexpr double kClear = 0.8;       // of the main border's strength: an inner border as clear as the main one
 constexpr double kZonaPlace = 0.5;   // of the zona's outer border in its dark rim, see refineBorder()
 constexpr double kInnerPlace = 0.5;  // of the zona's inner border
+constexpr double kWhole = 0.97;      // coverage of a border without a dent
 constexpr double kOff = 0.8;         // px, of a border from where it was searched
 constexpr double kApart = 2;         // px, from the rim, that is another border
 constexpr double kSharpRim = 6;      // px, line of a zona in focus, at most
@@ -74,7 +76,7 @@ CellBorder refined(const Frame& frame, const CellBorder& border, double place, d
   // The flanks are searched near their mean places: a first ellipse that was off displaces them.
   const double off = cv::norm(fine.ellipse.centre - border.ellipse.centre) +
                      (fine.ellipse.semi_axes - border.ellipse.semi_axes).cwiseAbs().maxCoeff() - fine.shift;
-  if (off < kOff) return fine;
+  if (off < kOff || fine.coverage > kWhole) return fine;
   CellBorder again = fine;
   again.ellipse = scaled(fine.ellipse, 1 + fine.shift / radius);
   return refineBorder(frame, again, {rim, place}, window, blur, kFineRays);
@@ -103,23 +105,24 @@ CellBorder settled(const Frame& frame, const CellBorder& border, double inner) {
 
 double radiusOf(const CellBorder& border) { return 0.5 * border.ellipse.meanDiameter(); }
 
-/// The zona's inner border as a line of its own, for cells that the joint fit does not describe: nearly
-/// straight in a map about the outer one, outside of the ooplasm's rim. Uncertain.
-CellBorder innerBorder(const Frame& frame, const CellLayers& layers, const std::string& look) {
+/// The zona's inner border as a line of its own, for cells that the joint fit does not describe. Uncertain.
+CellBorder innerBorder(const Frame& frame, const CellLayers& layers, const Ellipse& first, const std::string& look) {
   const double outer = radiusOf(layers.zona_outer), inner = radiusOf(layers.ooplasm);
-  const Ellipse rim = scaled(layers.ooplasm.ellipse, 1 + (layers.ooplasm.shift + std::max(2.0, 0.02 * outer)) / inner);
+  const Ellipse rim = scaled(first, 1 + 2 * std::max(2.0, 0.02 * outer) / first.meanDiameter());
+  CellBorder border;
   if (rim.meanDiameter() < 0.96 * layers.zona_outer.ellipse.meanDiameter()) {
     const PolarMap map = mapAbout(frame, layers.zona_outer.ellipse, std::max(0.6, inner / outer - 0.05), 0.97);
-    CellBorder whole = bestBorder(frame, map, look, outer, {rim, {}, 0, kFreeChange});
-    if (isSecondBorder(whole) && radiusOf(whole) > inner + layers.ooplasm.shift + kApart) {
-      whole = refined(frame, whole, kInnerPlace, 0.25 * (outer - inner));
-      whole.finding = Finding::uncertain("other lines may be the zona's inner border");
-      return whole;
-    }
+    border = bestBorder(frame, map, look, outer, {rim, {}, 0, kFreeChange});
   }
-  CellBorder border = layers.ooplasm;
-  border.finding = Finding::uncertain("no gap between ooplasm and zona: the middle of the ooplasm's rim is given");
-  border.ellipse = scaled(layers.ooplasm.ellipse, 1 + 0.5 * layers.ooplasm.rim / inner);
+  if (isSecondBorder(border) && radiusOf(border) > inner + layers.ooplasm.shift + kApart)
+    border = refined(frame, border, kInnerPlace, 0.25 * (outer - inner));
+  else
+    border = findZonaInner(frame, layers.zona_outer, layers.ooplasm);
+  if (!border.finding.hasValues()) {
+    border = layers.ooplasm;
+    border.ellipse = scaled(layers.ooplasm.ellipse, 1 + 0.5 * layers.ooplasm.rim / inner);
+  }
+  border.finding = Finding::uncertain("the zona's inner border is one of several lines");
   return border;
 }
 
@@ -215,7 +218,7 @@ CellLayers findLayers(const Frame& frame, const CellBorder& main, const std::str
   layers.ooplasm = refined(frame, ooplasm, kOoplasmPlace, std::min(kWidestRim * radiusOf(ooplasm), 0.8 * gap));
   layers.zona_outer = refined(frame, layers.zona_outer, kZonaPlace, 0.35 * gap);
   warn(layers);
-  if (!fitLayersTo(frame, look, layers)) layers.zona_inner = innerBorder(frame, layers, look);
+  if (!fitLayersTo(frame, look, layers)) layers.zona_inner = innerBorder(frame, layers, ooplasm.ellipse, look);
   return layers;
 }
 

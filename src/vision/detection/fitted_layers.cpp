@@ -12,6 +12,7 @@ namespace {
 constexpr double kSharpBlur = 1.8;     // px, of a cell in focus
 constexpr double kLeastUsed = 0.5;     // share of the directions
 constexpr double kSureRadius = 0.45;   // px, standard deviation of a radius that is sure
+constexpr double kSeenRadius = 1;      // px, of one that is seen at all
 constexpr double kSureCentre = 0.3;    // px, of a centre
 constexpr double kOuterMisfit = 0.03;  // of the contrast, see LayerFit
 constexpr double kOoplasmMisfit = 0.017;
@@ -40,12 +41,14 @@ bool describesOuter(const LayerFit& fit, const CellLayers& layers) {
 }
 
 /// @return true: the fit describes the ooplasm's border roughly at least
-bool takeOoplasm(const LayerFit& fit, const std::string& look, CellLayers& layers) {
+bool takeOoplasm(const LayerFit& fit, const std::string& look, bool leads, CellLayers& layers) {
   const bool sure = fit.ooplasm.line < 0 && fit.ooplasm.deviation() < kSureRadius &&
                     fit.ooplasm.misfit < kOoplasmMisfit && centreDeviation(fit.ooplasm) < 2 * kSureRadius;
   const bool agree = std::abs(radiusOf(fit.ooplasm.ellipse) - radiusOf(layers.ooplasm.ellipse)) < kAgree;
   // In phase contrast the ooplasm is about as dark as its rim: one measurement alone may be a rim off.
-  if (sure && (look != "phase" || (agree && layers.ooplasm.finding.isFound()))) {
+  // Without a clear inner line of the zona the fit's rim and that line stand for each other.
+  const bool own = layers.ooplasm.finding.isFound() && agree && !leads && look != "dic";
+  if (sure && !own && (look != "phase" || (agree && layers.ooplasm.finding.isFound()))) {
     take(layers.ooplasm, fit.ooplasm, Finding::found());
     layers.ooplasm.shift = layers.ooplasm.rim = fit.ooplasm.width;
     return true;
@@ -65,6 +68,15 @@ void takeInner(const LayerFit& fit, bool leads, bool described, CellLayers& laye
   const bool sure = leads && clear && fit.inner.line < 0 && fit.inner.deviation() < kSureRadius;
   take(layers.zona_inner, fit.inner,
        sure ? Finding::found() : Finding::uncertain("the zona's inner line is faint beside the ooplasm's rim"));
+  // A line that is not one, or not the only one, is no measurement: then there may be no gap at all.
+  const bool seen = leads && fit.inner.line < 0 && fit.inner.deviation() < kSeenRadius;
+  if (!seen) {
+    const Ellipse& ooplasm = layers.ooplasm.ellipse;
+    layers.zona_inner.ellipse = scaled(ooplasm, 1 + 0.5 * layers.ooplasm.rim / radiusOf(ooplasm));
+    layers.zona_inner.covariance = layers.ooplasm.covariance;
+    layers.zona_inner.finding =
+        Finding::uncertain("the zona's inner line is not seen: the middle of the ooplasm's rim is given");
+  }
   layers.zona_inner.rim = fit.inner.width;
   layers.zona_inner.coverage = fit.used;
 }
@@ -108,7 +120,7 @@ bool takeSharp(const LayerFit& fit, const std::string& look, bool leads, CellLay
   else
     settleOuter(fit, layers.zona_outer);
   // In phase contrast the ooplasm's border may be a rim off, the zona's line is not.
-  takeInner(fit, leads, takeOoplasm(fit, look, layers) || look == "phase", layers);
+  takeInner(fit, leads, takeOoplasm(fit, look, leads, layers) || look == "phase", layers);
   return true;
 }
 

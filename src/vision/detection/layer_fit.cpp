@@ -13,7 +13,7 @@ namespace {
 constexpr int kSectors = 72, kCoarse = 3, kTrackedSectors = 36;
 constexpr double kInside = 13, kOutside = 10;  // px, of the samples, beyond ooplasm and zona
 constexpr double kThinnestZona = 4;            // px
-constexpr int kCoarseSteps = 6, kTrialSteps = 5, kFineSteps = 4, kTrackedSteps = 3;
+constexpr int kCoarseSteps = 6, kTrialSteps = 5, kFineSteps = 4, kTrackedSteps = 5;
 constexpr double kOtherPlaces[] = {-8, -5, 5};  // px, of the ooplasm, when the first one is not described
 constexpr std::size_t kTrials = 3;              // places of the inner border that are refined
 constexpr double kSamePlace = 1;                // px
