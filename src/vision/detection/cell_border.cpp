@@ -236,7 +236,8 @@ CellBorder refineBorder(const Frame& frame, const CellBorder& coarse, const Bord
   const double tolerance = std::max(1.0, 0.01 * coarse.ellipse.meanDiameter());
   EllipseFit fit = fitEllipse(fine.points, coarse.ellipse, tolerance);
   if (!fit.valid) return coarse;
-  fit = withoutDents(fine.points, fit, tolerance);
+  // A border that should have a dark rim and shows none is not clear enough to tell a dent.
+  if (rim.widest == 0 || fine.rim > 0) fit = withoutDents(fine.points, fit, tolerance);
   fine.ellipse = fit.ellipse;
   fine.covariance = fit.covariance;
   fine.residual = fit.residual;

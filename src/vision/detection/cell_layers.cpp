@@ -22,7 +22,7 @@ constexpr double kRingSignificance = 4, kRingCoverage = 0.45;                   
 constexpr double kClear = 0.8;       // of the main border's strength: an inner border as clear as the main one
 constexpr double kZonaPlace = 0.5;   // of the zona's outer border in its dark rim, see refineBorder()
 constexpr double kInnerPlace = 0.5;  // of the zona's inner border
-constexpr double kWhole = 0.97;      // coverage of a border without a dent
+constexpr double kWhole = 0.92;      // coverage of a border without a dent
 constexpr double kOff = 0.8;         // px, of a border from where it was searched
 constexpr double kApart = 2;         // px, from the rim, that is another border
 constexpr double kSharpRim = 6;      // px, line of a zona in focus, at most
