@@ -77,7 +77,7 @@ void cellRows(const ImageRows& rows, const CellDetection& cell, const CellTruth&
   rows.add("ooplasm", cell.ooplasm.finding, 0.5 * std::abs(cell.ooplasm.ellipse.meanDiameter() - ooplasm), 0, kZona);
 }
 
-/// Degrees. A cell without a polar body, or whose zona is missed, has none to be found.
+/// The angle in degrees; where the cell has no polar body, whether one is claimed.
 void polarBodyRow(const ImageRows& rows, const PolarBody& body, const CellTruth& truth) {
   if (!truth.polar_body_angle) {
     rows.addAbsent("polar_body_absent", body.finding, std::numeric_limits<double>::quiet_NaN());

@@ -11,7 +11,7 @@ constexpr int kRun = 45;                         // share 1 / n of the border: t
 constexpr double kLeastDent = 0.7, kDent = 3;    // px; of the median distance: what is off the ellipse
 constexpr double kLeastRest = 0.45;              // of the points, that an ellipse needs
 constexpr double kBeside[] = {0.17, 0.4, 0.65};  // rad to both sides of a dent, that it may reach
-constexpr double kBetter = 0.6;                   // of the residual, that leaving dents out must leave at most
+constexpr double kBetter = 0.6;                  // of the residual, that leaving dents out must leave at most
 constexpr double kAsGood = 1.15;                 // of the smallest residual, one that is as good
 
 double angleBetween(double a, double b) { return std::abs(std::remainder(a - b, 2 * M_PI)); }
