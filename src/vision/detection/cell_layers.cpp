@@ -253,6 +253,8 @@ CellLayers followLayers(const Frame& frame, const CellLayers& previous, const st
   const double rim = zona ? std::min(kWidestRim * radiusOf(previous.ooplasm), 0.8 * gap) : 0;
   layers.ooplasm = follow(frame, previous.ooplasm, {0, 0}, reach + 4, place, rim);
   if (!layers.ooplasm.finding.hasValues()) return layers;
+  // What was doubtful in the frame before is so here.
+  if (previous.ooplasm.finding.verdict == Verdict::kUncertain) layers.ooplasm.finding = previous.ooplasm.finding;
   layers.main = layers.ooplasm;
   // The clearest border tells how far the cell moved; the others are then near.
   const cv::Point2d moved = layers.ooplasm.ellipse.centre - previous.ooplasm.ellipse.centre;
