@@ -58,6 +58,7 @@ class Search {
   Search(const Frame& frame, const CellLayers& layers, const std::string& look)
       : layers_(layers),
         shaded_(look == "dic"),
+        haloed_(look == "phase"),
         lead_(shaded_ || look == "phase" ? kSureLeadOfOtherLooks : kSureLead),
         centre_(layers.zona_outer.ellipse.centre) {
     const Ellipse& outer = layers.zona_outer.ellipse;
@@ -208,7 +209,7 @@ class Search {
   }
 
   const CellLayers& layers_;
-  bool shaded_;
+  bool shaded_, haloed_;
   double lead_;
   cv::Point2d centre_;
   Ellipse limit_;
