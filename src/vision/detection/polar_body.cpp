@@ -103,8 +103,9 @@ class Search {
     body.deviation = std::sqrt(across.dot(fit.covariance.topLeftCorner<2, 2>() * across)) / cv::norm(away);
     const bool sure = first.score > kSureScore && first.score - second > lead_ && body.deviation < kSureDeviation;
     const bool zona = layers_.zona_inner.finding.isFound() || layers_.ooplasm.finding.isFound();
-    body.finding =
-        sure && zona ? Finding::found() : Finding::uncertain("the polar body's border is faint or one of several");
+    // In phase contrast the halo of a border looks like that of a small circle.
+    body.finding = sure && zona && !haloed_ ? Finding::found()
+                                            : Finding::uncertain("the polar body's border is faint or one of several");
     return body;
   }
 
