@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "base/errors.h"
-#include "nodes/imaging/calibration_path.h"
+#include "vision/calibration/calibration_path.h"
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/message_guard.h"
 #include "nodes/runtime/node_parameters.h"
