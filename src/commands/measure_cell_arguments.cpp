@@ -61,7 +61,8 @@ std::optional<MeasureCellArguments> parseMeasureCellArguments(int argc, char** a
   add("out", po::value(&arguments.out)->value_name("FILE"), "scene file to write");
   add("overlay", po::value(&arguments.overlay)->value_name("FILE"),
       "picture to write: the measured image with what was found");
-  add("families", po::value(&arguments.families)->value_name("FOLDER"), "folder of the families, such as config/families");
+  add("families", po::value(&arguments.families)->value_name("FOLDER"),
+      "folder of the families, such as config/families");
   po::variables_map given;
   try {
     po::positional_options_description first;

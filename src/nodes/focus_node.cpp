@@ -15,9 +15,9 @@ namespace microinjection {
 namespace {
 
 constexpr char kImageTopic[] = "microscope/image_raw";
-constexpr double kPeriod = 0.02;        // s of wall time, of a step
-constexpr double kClockSkew = 0.05;     // s, by which a stamp may be ahead
-constexpr double kFarWindow = 2;        // px, of the window from the tip
+constexpr double kPeriod = 0.02;     // s of wall time, of a step
+constexpr double kClockSkew = 0.05;  // s, by which a stamp may be ahead
+constexpr double kFarWindow = 2;     // px, of the window from the tip
 constexpr int kQueue = 1;
 
 }  // namespace
@@ -175,7 +175,8 @@ void FocusNode::verify(double now) {
   const bool seen = tip_ && tip_->stamp > *verified_since_ + parameters_.search.settle_time && tip_->stamp <= now;
   if (!seen || !tip_->found) {
     if (now - *verified_since_ > parameters_.search.image_time)
-      end(false, "the tip is not found in the best plane: " + (tip_reason_.empty() ? "the images are stale" : tip_reason_));
+      end(false,
+          "the tip is not found in the best plane: " + (tip_reason_.empty() ? "the images are stale" : tip_reason_));
     return;
   }
   const double beside = cv::norm(tip_->window.tip - window_.tip);

@@ -69,12 +69,12 @@ class FocusNode {
   Parameters parameters_;
   ros::NodeHandle node_;
   image_transport::ImageTransport transport_;
-  std::unique_ptr<FocusSearch> search_;  ///< null: no goal is active
-  TipWindow window_;                     ///< of the search
-  double start_ = 0;                     ///< m, position of the focus at the start of the goal
-  bool repeated_ = false;                ///< the planes are seen for the second time
-  std::optional<double> verified_since_;  ///< s, when the focus was in the best plane
-  std::size_t planes_ = 0;               ///< of an earlier search of this goal
+  std::unique_ptr<FocusSearch> search_;                      ///< null: no goal is active
+  TipWindow window_;                                         ///< of the search
+  double start_ = 0;                                         ///< m, position of the focus at the start of the goal
+  bool repeated_ = false;                                    ///< the planes are seen for the second time
+  std::optional<double> verified_since_;                     ///< s, when the focus was in the best plane
+  std::size_t planes_ = 0;                                   ///< of an earlier search of this goal
   std::optional<Eigen::Vector3d> needle_, needle_at_start_;  ///< m; none: not known
 
   std::optional<double> focus_;  ///< m
@@ -83,7 +83,7 @@ class FocusNode {
   std::string tip_reason_ = "no image was received";
   std::optional<FocusSearch::Reading> reading_;
   ros::SteadyTime reading_received_;
-  std::string blind_;                    ///< why the newest image is not usable; empty: it is
+  std::string blind_;                     ///< why the newest image is not usable; empty: it is
   std::vector<unsigned char> last_data_;  ///< of the last image: a frozen camera repeats it
   std::string outcome_ = "no goal yet";
 

@@ -24,8 +24,8 @@ namespace microinjection {
 namespace {
 
 constexpr char kImageTopic[] = "microscope/image_raw";
-constexpr double kReportPeriod = 0.2;          // s of wall time
-constexpr int kQueue = 1;                      // an image that waited is of no use
+constexpr double kReportPeriod = 0.2;  // s of wall time
+constexpr int kQueue = 1;              // an image that waited is of no use
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
@@ -65,7 +65,8 @@ VisionNode::VisionNode(ros::NodeHandle node, ros::NodeHandle private_node)
   cv::setNumThreads(1);  // the other cores belong to the nodes at 1 kHz
   diagnostics_.setHardwareID("none");
   diagnostics_.add("images", this, &VisionNode::report);
-  diagnostics_.add("served cell", [this](diagnostic_updater::DiagnosticStatusWrapper& status) { served_.report(status); });
+  diagnostics_.add("served cell",
+                   [this](diagnostic_updater::DiagnosticStatusWrapper& status) { served_.report(status); });
   images_ = transport_.subscribe(kImageTopic, kQueue, [this](const sensor_msgs::ImageConstPtr& message) {
     runGuarded(kImageTopic, [&] { onImage(*message); });
   });

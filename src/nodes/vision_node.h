@@ -61,14 +61,14 @@ class VisionNode {
   ros::Publisher state_;
   image_transport::Publisher overlay_;
   image_transport::Subscriber images_;
-  ros::Time stamp_;  ///< of the last accepted image
+  ros::Time stamp_;           ///< of the last accepted image
   mutable std::mutex mutex_;  ///< of what follows, which the service reads
   CellReadings readings_;
   ros::SteadyTime received_;  ///< last accepted image
   std::string refusal_;       ///< of the last image; empty: accepted
 
-  unsigned accepted_ = 0;     ///< since reported_
-  double longest_ = 0;        ///< s of processor time, since reported_
+  unsigned accepted_ = 0;  ///< since reported_
+  double longest_ = 0;     ///< s of processor time, since reported_
   ros::SteadyTime reported_;
   diagnostic_updater::Updater diagnostics_;
   ros::SteadyTimer timer_;

@@ -8,9 +8,9 @@ namespace microinjection {
 
 /// Where a needle's tip is in an image.
 struct TipWindow {
-  cv::Point2d tip;        ///< px
-  double direction = 0;   ///< rad, from the tip towards the shaft, from x towards y
-  int core = 3;           ///< px, half width of the bright core: about 0.3 of the tip's outer radius
+  cv::Point2d tip;       ///< px
+  double direction = 0;  ///< rad, from the tip towards the shaft, from x towards y
+  int core = 3;          ///< px, half width of the bright core: about 0.3 of the tip's outer radius
 };
 
 /// Sharpness of the bright core of a needle just behind its tip, per squared pixel of the frame's

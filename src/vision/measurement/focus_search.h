@@ -75,7 +75,7 @@ class FocusSearch {
   std::deque<Target> targets_;       ///< the first one is under way
   bool returning_ = false;           ///< the last target is the best plane
   Phase phase_ = Phase::kCommand;
-  double since_ = 0;  ///< s, begin of the phase
+  double since_ = 0;               ///< s, begin of the phase
   std::vector<Reading> readings_;  ///< of this plane
   std::vector<FocusSample> samples_;
   FocusReport report_;
