@@ -70,9 +70,10 @@ class MeasureCellCommand : public testing::Test {
 TEST_F(MeasureCellCommand, MakesASceneOfAStack) {
   render(38.4e-6);
   std::ofstream(directory_ + "stack/broken.png") << "no image";
-  const Outcome result = run("stack --pixel-size 0.25e-6 --scene " + kSource +
-                             "/config/cells/mouse_oocyte_zona.yaml --out measured.yaml --overlay overlay.png --families " +
-                             kSource + "/config/families");
+  const Outcome result =
+      run("stack --pixel-size 0.25e-6 --scene " + kSource +
+          "/config/cells/mouse_oocyte_zona.yaml --out measured.yaml --overlay overlay.png --families " + kSource +
+          "/config/families");
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_NE(result.out.find("image: plane8.png, 3 of 5"), std::string::npos) << result.out;
   EXPECT_NE(result.out.find("verdict: found\n"), std::string::npos) << result.out;

@@ -72,13 +72,15 @@ TEST(MeasuredScene, HasTheMeasuredLengthsAndNothingElse) {
   CellMeasurement cell;
   cell.diameter = {80e-6, 1e-7};
   cell.zona_thickness = MeasuredLength{7e-6, 1e-7};
-  const YAML::Node layered = YAML::Load("{cell: {layers: [{outer_radius: 38e-6}, {outer_radius: 32e-6}]}, mesh: {size: 1}}");
+  const YAML::Node layered =
+      YAML::Load("{cell: {layers: [{outer_radius: 38e-6}, {outer_radius: 32e-6}]}, mesh: {size: 1}}");
   const YAML::Node result = withMeasuredSize(layered, cell);
   EXPECT_NEAR(result["cell"]["layers"][0]["outer_radius"].as<double>(), 40e-6, 1e-12);
   EXPECT_NEAR(result["cell"]["layers"][1]["outer_radius"].as<double>(), 33e-6, 1e-12);
   EXPECT_EQ(result["mesh"]["size"].as<int>(), 1);
   EXPECT_NEAR(layered["cell"]["layers"][0]["outer_radius"].as<double>(), 38e-6, 1e-12);  // it is a copy
-  EXPECT_NEAR(withMeasuredSize(YAML::Load("{cell: {diameter: 1}}"), cell)["cell"]["diameter"].as<double>(), 80e-6, 1e-12);
+  EXPECT_NEAR(withMeasuredSize(YAML::Load("{cell: {diameter: 1}}"), cell)["cell"]["diameter"].as<double>(), 80e-6,
+              1e-12);
   cell.zona_thickness->value = 41e-6;
   EXPECT_THROW(withMeasuredSize(layered, cell), ConfigError);
   EXPECT_THROW(withMeasuredSize(YAML::Load("{needle: 1}"), cell), ConfigError);

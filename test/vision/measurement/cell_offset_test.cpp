@@ -23,9 +23,9 @@ PipetteDetection holderAt(double x, double y, double direction) {
 }
 
 TEST(CellOffset, IsPositiveToTheRightSeenFromShaftToMouth) {
-  EXPECT_NEAR(cellOffset(cellAt(503, 300), holderAt(500, 400, M_PI / 2))->lateral, 3, 1e-9);  // from below
+  EXPECT_NEAR(cellOffset(cellAt(503, 300), holderAt(500, 400, M_PI / 2))->lateral, 3, 1e-9);    // from below
   EXPECT_NEAR(cellOffset(cellAt(503, 500), holderAt(500, 400, -M_PI / 2))->lateral, -3, 1e-9);  // from above
-  EXPECT_NEAR(cellOffset(cellAt(600, 404), holderAt(500, 400, M_PI))->lateral, 4, 1e-9);  // from the left
+  EXPECT_NEAR(cellOffset(cellAt(600, 404), holderAt(500, 400, M_PI))->lateral, 4, 1e-9);        // from the left
 }
 
 TEST(CellOffset, HasTheDeviationsOfCentreMouthAndDirection) {

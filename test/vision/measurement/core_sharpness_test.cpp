@@ -41,7 +41,8 @@ TEST(CoreSharpness, HasItsPeakInTheTipsFocus) {
 TEST(CoreSharpness, IsZeroOutsideOfTheImage) {
   cv::Mat image(300, 400, CV_8U, cv::Scalar(100));
   for (int y = 0; y < image.rows; ++y) {
-    for (int x = 0; x < image.cols; ++x) image.at<unsigned char>(y, x) = static_cast<unsigned char>(90 + (7 * x + y) % 9);
+    for (int x = 0; x < image.cols; ++x)
+      image.at<unsigned char>(y, x) = static_cast<unsigned char>(90 + (7 * x + y) % 9);
   }
   EXPECT_EQ(coreSharpness(Frame(image), {{900, 900}, 0, 3}), 0);
 }
