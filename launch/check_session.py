@@ -32,7 +32,7 @@ def choices():
         "force_source": ["predicted", "measured"],
         "hand_force": ["predicted", "measured", "blend"],
         "link": ["none", "wave"],
-        "camera": ["none", "sim", "device", "folder", "video"],
+        "camera": ["none", "sim", "device", "folder", "video", "topic"],
         "clock": ["wall", "lockstep", "external"],
         **{flag: boolean for flag in flags}}
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 
 #include "nodes/runtime/message_guard.h"
 #include "nodes/runtime/node_parameters.h"
@@ -14,6 +15,7 @@ namespace {
 
 constexpr double kReportPeriod = 0.2;    // s of wall time
 constexpr double kRepeated = 0.005;      // s, after a frame that was repeated
+constexpr double kEndPatience = 1;       // s, at the end, for a read that is under way
 constexpr double kRetry = 0.5;           // s, before a device is opened again
 constexpr double kLargestExposure = 10;  // s ago; a larger difference means that the driver has another clock
 
@@ -50,11 +52,22 @@ CameraNode::CameraNode(ros::NodeHandle node, ros::NodeHandle private_node)
     diagnostics_.update();
     endIfOrphaned(master_);
   });
-  thread_ = std::thread([this] { grab(); });
+  thread_ = std::thread([this] {
+    grab();
+    stopped_ = true;
+  });
 }
 
 CameraNode::~CameraNode() {
   stop_ = true;
+  const ros::SteadyTime begin = ros::SteadyTime::now();
+  while (thread_.joinable() && !stopped_ && secondsBetween(begin, ros::SteadyTime::now()) < kEndPatience)
+    ros::WallDuration(kRepeated).sleep();
+  if (thread_.joinable() && !stopped_) {
+    ROS_WARN("the camera's read does not return: this process ends without it");
+    ros::shutdown();
+    std::_Exit(EXIT_SUCCESS);  // no destructors: the thread still uses what they would destroy
+  }
   if (thread_.joinable()) thread_.join();
 }
 

@@ -26,6 +26,7 @@ class CameraNode {
   static const char* const kHelp;
   /// @throws ConfigError when a parameter is unknown or out of range, or the source cannot be opened.
   CameraNode(ros::NodeHandle node, ros::NodeHandle private_node);
+  /// Ends the process when the device's read still blocks after a second: nothing can interrupt it.
   ~CameraNode();
   CameraNode(const CameraNode&) = delete;
   CameraNode& operator=(const CameraNode&) = delete;
@@ -44,7 +45,7 @@ class CameraNode {
   ros::SteadyTime reported_;
   diagnostic_updater::Updater diagnostics_;
   ros::SteadyTimer timer_;
-  std::atomic<bool> stop_{false};
+  std::atomic<bool> stop_{false}, stopped_{false};
   std::thread thread_;
 };
 

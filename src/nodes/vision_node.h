@@ -4,13 +4,16 @@
 #include <cell_microinjection/VisionState.h>
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <image_transport/image_transport.h>
+#include <ros/callback_queue.h>
 #include <ros/ros.h>
 
+#include <mutex>
 #include <string>
 
+#include "nodes/imaging/served_cell.h"
 #include "nodes/runtime/master_monitor.h"
-#include "vision/detection/cell_size.h"
-#include "vision/detection/specimen_tracker.h"
+#include "vision/measurement/cell_measurement.h"
+#include "vision/measurement/vision_config.h"
 
 namespace microinjection {
 
@@ -23,7 +26,8 @@ namespace microinjection {
 /// Parameters: config/vision.yaml
 ///
 /// An image that is too old, out of order or cannot be read is refused: it changes nothing and is
-/// not answered.
+/// not answered. The service has its own thread, so that images are served while it waits for
+/// cell_simulator.
 class VisionNode {
  public:
   static const char* const kHelp;
@@ -33,13 +37,9 @@ class VisionNode {
 
  private:
   struct Parameters {
-    std::string scene;           ///< path of the session's scene; empty: none, measure_cell writes no scene
-    std::string calibration;     ///< file, see calibrationPath()
-    double pixel_size = 0;       ///< m of the specimen; 0: that of the calibration
-    double image_timeout = 0.5;  ///< s
-    bool overlay = true;
-    int measured_images = 15;
-    SpecimenTrackerConfig tracker;
+    std::string scene;     ///< path of the session's scene; empty: none, measure_cell writes no scene
+    std::string families;  ///< folder; empty: none
+    VisionConfig vision;
   };
   static Parameters readParameters(const ros::NodeHandle& private_node);
 
@@ -48,31 +48,33 @@ class VisionNode {
   void publish(const std_msgs::Header& header, const Frame& frame, double processing_time);
   bool measureCell(cell_microinjection::MeasureCell::Request& request,
                    cell_microinjection::MeasureCell::Response& response);
-  double pixelSize() const;  ///< m; throws ConfigError when it is not known
-  /// The sizes in metres; throws ConfigError with the reason why there are none.
-  void fillSizes(cell_microinjection::MeasureCell::Response& response) const;
-  void writeScene(const std::string& path, const cell_microinjection::MeasureCell::Response& size) const;
-  std::string serve(const cell_microinjection::MeasureCell::Response& size);
+  CellMeasurement measure() const;  ///< throws ConfigError with the reason why there is none
+  std::string serve(const CellMeasurement& cell);
+  std::string familyOf(const CellMeasurement& cell) const;  ///< a line for the user
   void report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   Parameters parameters_;
   SpecimenTracker tracker_;
-  CellSizeReadings readings_;
+  ServedCell served_;
   MasterMonitor master_{true};
   image_transport::ImageTransport transport_;
   ros::Publisher state_;
   image_transport::Publisher overlay_;
   image_transport::Subscriber images_;
-  ros::ServiceServer measure_;
-  ros::ServiceClient cell_;
   ros::Time stamp_;           ///< of the last accepted image
+  mutable std::mutex mutex_;  ///< of what follows, which the service reads
+  CellReadings readings_;
   ros::SteadyTime received_;  ///< last accepted image
   std::string refusal_;       ///< of the last image; empty: accepted
-  unsigned accepted_ = 0;     ///< since reported_
-  double longest_ = 0;        ///< s of processor time, since reported_
+
+  unsigned accepted_ = 0;  ///< since reported_
+  double longest_ = 0;     ///< s of processor time, since reported_
   ros::SteadyTime reported_;
   diagnostic_updater::Updater diagnostics_;
   ros::SteadyTimer timer_;
+  ros::CallbackQueue service_queue_;
+  ros::ServiceServer measure_;
+  ros::AsyncSpinner service_thread_;  ///< last member: starts after the others, and ends first
 };
 
 }  // namespace microinjection

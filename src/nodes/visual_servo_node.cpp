@@ -3,13 +3,13 @@
 #include <limits>
 
 #include "base/errors.h"
-#include "nodes/imaging/calibration_path.h"
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/message_guard.h"
 #include "nodes/runtime/node_parameters.h"
 #include "nodes/runtime/orphan.h"
 #include "nodes/runtime/run_node.h"
 #include "vision/calibration/calibration_file.h"
+#include "vision/calibration/calibration_path.h"
 
 namespace microinjection {
 namespace {

@@ -1,13 +1,13 @@
 #!/usr/bin/python3
-"""Calibrates the camera against the manipulator, or only the tip's place after a pipette change; brings the tip to a pixel:
-doc/guide/calibrate.md."""
+"""Calibrates the camera against the manipulator, or only the tip's place after a pipette change; brings the tip to a pixel, or
+into focus: doc/guide/calibrate.md."""
 
 import argparse
 import sys
 
 import actionlib
 import rospy
-from cell_microinjection.msg import CalibrateAction, CalibrateGoal, GoToPixelAction, GoToPixelGoal
+from cell_microinjection.msg import CalibrateAction, CalibrateGoal, FindFocusAction, FindFocusGoal, GoToPixelAction, GoToPixelGoal
 from std_srvs.srv import Trigger
 
 MICROMETRE = 1e-6  # m
@@ -45,6 +45,10 @@ def go_to(x, y):
                lambda at: f"{at.distance:.1f} px away" + (f", {at.waits_for}" if at.waits_for else ""))
 
 
+def focus():
+    return run("/focus/find", FindFocusAction, FindFocusGoal(), lambda at: f"plane {at.plane} of {at.planes}")
+
+
 def main():
     parser = argparse.ArgumentParser(description="Calibrates the microscope's camera against the manipulator.")
     parser.add_argument("--field-x", type=float, default=0, metavar="UM", help="extent of the pattern across the needle; "
@@ -52,10 +56,13 @@ def main():
     parser.add_argument("--field-z", type=float, default=0, metavar="UM", help="extent along the needle")
     parser.add_argument("--rezero", action="store_true", help="keep the axes; only the tip's place is new")
     parser.add_argument("--go-to", type=float, nargs=2, metavar=("X", "Y"), help="bring the tip to this pixel")
+    parser.add_argument("--focus", action="store_true", help="bring the tip into focus")
     arguments = parser.parse_args(rospy.myargv()[1:])
     rospy.init_node("calibrate", anonymous=True)
     try:
-        if arguments.go_to:
+        if arguments.focus:
+            succeeded = focus()
+        elif arguments.go_to:
             succeeded = go_to(*arguments.go_to)
         else:
             succeeded = rezero() if arguments.rezero else calibrate(arguments.field_x, arguments.field_z)

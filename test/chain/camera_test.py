@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """A folder of images plays as the microscope's camera: in order, with the file's format, without what cannot be read."""
 
+import os
 import pathlib
 import subprocess
 import sys
@@ -47,7 +48,7 @@ class CameraTest(unittest.TestCase):
     def play(self, **parameters):
         arguments = [f"_{key}:={value}" for key, value in
                      {"source": "folder", "path": self.folder, "rate": 20, **parameters}.items()]
-        process = subprocess.Popen([str(CAMERA), *arguments, "__name:=camera"])
+        self.process = process = subprocess.Popen([str(CAMERA), *arguments, "__name:=camera"])
 
         def end():
             process.terminate()
@@ -80,6 +81,14 @@ class CameraTest(unittest.TestCase):
         self.assertIn("plane10a.png", self.camera_status().message)
         values = {value.key: value.value for value in self.camera_status().values}
         self.assertEqual(values["frames"], str(len(LEVELS)))
+
+    def test_ends_although_a_read_blocks(self):
+        blocked = pathlib.Path(tempfile.mkdtemp())
+        os.mkfifo(blocked / "plane1.png")  # nobody writes it: who opens it for reading waits for ever
+        self.play(path=blocked)
+        self.until(lambda: self.camera_status() and "no frame" in self.camera_status().message, "a camera that waits")
+        self.process.terminate()
+        self.assertEqual(self.process.wait(PATIENCE), 0)
 
 
 if __name__ == "__main__":

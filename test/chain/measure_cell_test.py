@@ -1,35 +1,34 @@
 #!/usr/bin/python3
 """A cell of unknown size is measured in the microscope's image and served: the felt force is that of the true cell."""
 
+import os
 import pathlib
+import signal
 import tempfile
 import time
 import unittest
+import xmlrpc.client
 
 import numpy as np
+import rosgraph
 import rospy
 import rostest
 import yaml
 from cell_microinjection.msg import CellState, CellInImage, InjectionStatus, VisionState
 from cell_microinjection.srv import MeasureCell
-from geometry_msgs.msg import PoseStamped, TransformStamped, WrenchStamped
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from geometry_msgs.msg import PoseStamped, WrenchStamped
 from sensor_msgs.msg import Image
 from tf2_msgs.msg import TFMessage
+
+from specimen import transform
 
 PATIENCE = 60  # s
 PIXEL = 0.25e-6  # m
 DIAMETER = 62e-6  # m, of the true cell
 ORIGIN = np.array([695.5, 519.5])  # px, of the image, where the world's origin is seen
+OFFSET = 2e-6  # m, of the cell from the holding pipette's axis
 CLEAR, PRESSED = 60e-6, 0.5 * DIAMETER - 8e-6  # m, heights of the tip
-
-
-def transform(child, position):
-    message = TransformStamped(child_frame_id=child)
-    message.header.frame_id, message.header.stamp = "world", rospy.Time.now()
-    t = message.transform.translation
-    t.x, t.y, t.z = position
-    message.transform.rotation.w = 1
-    return message
 
 
 class MeasureCellTest(unittest.TestCase):
@@ -44,6 +43,8 @@ class MeasureCellTest(unittest.TestCase):
             rospy.Subscriber(topic, kind, lambda message, topic=topic: cls.seen.update({topic: message}), queue_size=1)
         rospy.Subscriber("/vision/image_overlay", Image, lambda message: cls.seen.update(overlay=message),
                          queue_size=1, buff_size=1 << 24)
+        rospy.Subscriber("/diagnostics", DiagnosticArray,
+                         lambda message: cls.seen.update({status.name: status for status in message.status}))
         rospy.wait_for_service("/vision/measure_cell", PATIENCE)
         cls.measure = staticmethod(rospy.ServiceProxy("/vision/measure_cell", MeasureCell))
         cls.world = rospy.Timer(rospy.Duration(0.005), cls.publish)
@@ -55,7 +56,9 @@ class MeasureCellTest(unittest.TestCase):
         pose.header.frame_id, pose.header.stamp = "world", rospy.Time.now()
         pose.pose.position.z, pose.pose.orientation.w = cls.height, 1
         cls.needle.publish(pose)
-        cls.tf.publish(TFMessage([transform("cell", (0, 0, 0))]))
+        holder = transform("holding_pipette", (-OFFSET, 0, -0.5 * DIAMETER))
+        holder.transform.rotation.x, holder.transform.rotation.w = 1, 0  # its z points away from the cell
+        cls.tf.publish(TFMessage([transform("cell", (0, 0, 0)), holder]))
 
     def until(self, condition, what):
         end = time.monotonic() + PATIENCE
@@ -107,6 +110,9 @@ class MeasureCellTest(unittest.TestCase):
         self.assertAlmostEqual(answer.diameter, DIAMETER, delta=max(answer.diameter_interval, 3e-3 * DIAMETER))
         self.assertLess(answer.diameter_interval, 1e-2 * DIAMETER)
         self.assertTrue(np.isnan(answer.zona_thickness))
+        self.assertAlmostEqual(answer.offset, OFFSET, delta=max(answer.offset_interval, 0.3e-6))
+        self.assertLess(answer.offset_interval, 1e-6)
+        self.assertIn("family homogeneous", answer.family)
         self.assertAlmostEqual(yaml.safe_load(scene.read_text())["cell"]["diameter"], answer.diameter, delta=1e-9)
         self.drive(PRESSED)
         felt, true = self.force("/cell/predicted_cf"), self.force("/truth/predicted_cf")
@@ -140,6 +146,25 @@ class MeasureCellTest(unittest.TestCase):
         self.until(lambda: (self.seen["/cell/state"].header.stamp - answered).to_sec() > 0.2, "later states of the cell")
         self.assertEqual(before["diameter"], dict(zip(self.seen["/cell/state"].parameter_names,
                                                       self.seen["/cell/state"].parameter_values))["diameter"])
+
+    def test_images_are_served_while_cell_simulator_hangs(self):
+        self.until(self.found, "the cell")
+        uri = rosgraph.Master("/needle").lookupNode("/cell_simulator")
+        hung = xmlrpc.client.ServerProxy(uri).getPid("/needle")[2]
+        os.kill(hung, signal.SIGSTOP)
+        self.addCleanup(os.kill, hung, signal.SIGCONT)
+        before = self.seen["/vision/state"].header.stamp
+        answer = self.measured(serve=True)
+        self.assertFalse(answer.success)
+        self.assertIn("does not answer within", answer.message)
+        after = self.seen["/vision/state"].header.stamp
+        self.assertGreater((after - before).to_sec(), 0.5 * rospy.get_param("/vision/serve_timeout"))
+        self.until(lambda: self.seen["vision: served cell"].level == DiagnosticStatus.ERROR, "an error on diagnostics")
+        self.assertIn("has not answered an earlier request", self.measured(serve=True).message)
+        os.kill(hung, signal.SIGCONT)
+        self.until(lambda: self.seen["vision: served cell"].level == DiagnosticStatus.OK, "the end of the error")
+        answer = self.measured(serve=True)
+        self.assertTrue(answer.success, answer.message)
 
 
 if __name__ == "__main__":

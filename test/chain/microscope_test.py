@@ -7,58 +7,25 @@ import unittest
 import numpy as np
 import rospy
 import rostest
-from geometry_msgs.msg import Point32, PoseStamped, TransformStamped
+from geometry_msgs.msg import PoseStamped
 from sensor_msgs.msg import CameraInfo, Image, JointState
 from tf2_msgs.msg import TFMessage
 
 from cell_microinjection.msg import CellState
 
+from specimen import sphere, transform
+
 PATIENCE = 30  # s
 PIXEL = 0.25e-6  # m
 CENTRE = np.array([695.5, 519.5])  # px, of the world's origin
 RADIUS = 40e-6  # m
-RINGS, SECTORS = 24, 48
-
-
-def sphere():
-    state = CellState()
-    state.header.frame_id = "cell"
-    places = [(0, 0, 1)]
-    for ring in range(1, RINGS):
-        polar = np.pi * ring / RINGS
-        for sector in range(SECTORS):
-            turn = 2 * np.pi * (sector + 0.5) / SECTORS
-            places.append((np.sin(polar) * np.cos(turn), np.sin(polar) * np.sin(turn), np.cos(polar)))
-    places.append((0, 0, -1))
-    state.vertices = [Point32(*(RADIUS * np.array(place))) for place in places]
-    last = len(places) - 1
-    for sector in range(SECTORS):
-        beside = (sector + 1) % SECTORS
-        state.triangles += [0, 1 + sector, 1 + beside]
-        bottom = 1 + (RINGS - 2) * SECTORS
-        state.triangles += [last, bottom + beside, bottom + sector]
-        for ring in range(RINGS - 2):
-            a, b = 1 + ring * SECTORS, 1 + (ring + 1) * SECTORS
-            state.triangles += [a + sector, b + sector, a + beside, a + beside, b + sector, b + beside]
-    state.displacement = [0] * len(places)
-    state.parameter_names, state.parameter_values = ["diameter"], [2 * RADIUS]
-    return state
-
-
-def transform(child, position):
-    message = TransformStamped(child_frame_id=child)
-    message.header.frame_id, message.header.stamp = "world", rospy.Time.now()
-    t = message.transform.translation
-    t.x, t.y, t.z = position
-    message.transform.rotation.w = 1
-    return message
 
 
 class MicroscopeTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.images, cls.infos, cls.focus = [], [], []
-        cls.state = sphere()
+        cls.state = sphere(RADIUS)
         cls.tip = np.array([20e-6, 0, 60e-6])
         cls.shown = True
         cls.tf = rospy.Publisher("/tf", TFMessage, queue_size=10)

@@ -103,4 +103,10 @@ std::optional<FamilyCell> findFamilyCell(const std::string& folder, const Scene&
   return best;
 }
 
+std::string describeFamilyOf(const Scene& scene, const std::string& folder) {
+  std::string reason;
+  const auto cell = findFamilyCell(folder, scene, reason);
+  return cell ? cell->description : "in no family" + (reason.empty() ? "" : ": " + reason);
+}
+
 }  // namespace microinjection

@@ -23,4 +23,7 @@ std::optional<FamilyCell> makeFamilyCell(const std::shared_ptr<const FamilyData>
 /// Searches the families of a folder (*.yaml with their data beside them; an empty name for none).
 std::optional<FamilyCell> findFamilyCell(const std::string& folder, const Scene& scene, std::string& reason);
 
+/// One line for the user: the family of a scene's cell with the expected error, or why it has none.
+std::string describeFamilyOf(const Scene& scene, const std::string& folder);
+
 }  // namespace microinjection

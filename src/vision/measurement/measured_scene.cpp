@@ -1,6 +1,7 @@
-#include "nodes/imaging/measured_scene.h"
+#include "vision/measurement/measured_scene.h"
 
 #include <cmath>
+#include <limits>
 
 #include "base/errors.h"
 
@@ -25,6 +26,17 @@ YAML::Node withMeasuredSize(const YAML::Node& scene, double diameter, double zon
     layers[1]["outer_radius"] = diameter / 2 - zona_thickness;
   }
   return result;
+}
+
+YAML::Node withMeasuredSize(const YAML::Node& scene, const CellMeasurement& cell) {
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  return withMeasuredSize(scene, cell.diameter.value, cell.zona_thickness ? cell.zona_thickness->value : none);
+}
+
+std::string measuredSceneText(const YAML::Node& scene, const std::string& measured, const std::string& from) {
+  YAML::Emitter text;
+  text << scene;
+  return "# Measured: " + measured + ". From " + from + "\n" + text.c_str() + "\n";
 }
 
 std::size_t layersOf(const YAML::Node& scene) {

@@ -1,4 +1,4 @@
-#include "nodes/imaging/calibration_path.h"
+#include "vision/calibration/calibration_path.h"
 
 #include <cstdlib>
 

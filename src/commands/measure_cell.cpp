@@ -1,0 +1,134 @@
+// Measures a cell in images and writes its scene; see --help.
+
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <opencv2/core/utility.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/atomic_file.h"
+#include "base/errors.h"
+#include "base/standard_output.h"
+#include "cell/family/family_cell.h"
+#include "cell/model/scene.h"
+#include "commands/measure_cell_arguments.h"
+#include "vision/camera/folder_source.h"
+#include "vision/camera/image_file.h"
+#include "vision/camera/video_source.h"
+#include "vision/detection/overlay.h"
+#include "vision/measurement/cell_measurement.h"
+#include "vision/measurement/measured_scene.h"
+#include "vision/measurement/sharpest_plane.h"
+
+namespace microinjection {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kFound = 0, kBadUsage = 2, kNotFound = 3;
+constexpr double kAnyRate = 30;  // 1/s: the time of a frame does not matter here
+
+void addSource(FrameSource& source, SharpestPlane& search) {
+  while (const std::optional<CameraFrame> frame = source.next()) search.add(*frame);
+  for (const std::string& report : source.takeReports()) std::cerr << "measure_cell: " << report << '\n';
+}
+
+void addImages(const std::string& input, SharpestPlane& search) {
+  if (!fs::exists(input)) throw ConfigError(input + ": no such image, folder or video");
+  if (fs::is_directory(input)) {
+    FolderSource folder(input, kAnyRate, false);
+    addSource(folder, search);
+  } else if (hasImageName(input)) {
+    const LoadedImage loaded = loadImage(input);
+    if (!loaded.refusal.empty()) throw ConfigError(input + ": " + loaded.refusal);
+    search.add({loaded.image, std::nullopt, fs::path(input).filename().string()});
+  } else {
+    VideoSource video(input, kAnyRate, false);
+    addSource(video, search);
+  }
+  if (!search.best()) throw ConfigError(input + ": has no image that can be read");
+}
+
+void writeOverlay(const std::string& path, const CellPlane& plane) {
+  std::vector<unsigned char> bytes;
+  cv::imencode(fs::path(path).extension().string(), drawOverlay(Frame(plane.image), plane.view.overlay()), bytes);
+  writeFileAtomically(path, std::string(bytes.begin(), bytes.end()));
+}
+
+std::string verdictOf(const Finding& finding) {
+  return std::string(nameOf(finding.verdict)) + (finding.reason.empty() ? "" : ": " + finding.reason);
+}
+
+void printPlane(const CellPlane& plane, const SharpestPlane& search) {
+  std::cout << "image: " << plane.name << ", " << plane.number << " of " << search.planes() << ", cell found in "
+            << search.found() << '\n';
+  if (search.isAtAnEnd())
+    std::cerr << "measure_cell: the sharpest image is the " << (plane.number == 1 ? "first" : "last")
+              << " one: the focus may lie beyond it\n";
+  std::cout << "verdict: " << verdictOf(plane.view.cell.finding) << '\n';
+}
+
+void printLengths(const CellMeasurement& cell, const CellPlane& plane) {
+  std::cout << "diameter: " << inMicrometres(cell.diameter) << '\n';
+  std::cout << "zona: " << (cell.zona_thickness ? inMicrometres(*cell.zona_thickness) : "none was found") << '\n';
+  std::cout << "offset: "
+            << (cell.offset ? inMicrometres(*cell.offset)
+                            : "not known: holding pipette " + verdictOf(plane.view.holding.finding))
+            << '\n';
+  std::cout << "polar body: its side is not known\n";
+}
+
+/// The scene of --scene with the measured lengths.
+YAML::Node sceneOf(const MeasureCellArguments& arguments, const CellMeasurement& cell) {
+  const YAML::Node base = loadYamlMap(arguments.scene);
+  if (cell.zona_thickness && layersOf(base) != 2)
+    std::cerr << "measure_cell: the image shows a zona, and " << arguments.scene
+              << " has none: take a scene of two layers\n";
+  return withMeasuredSize(base, cell);
+}
+
+int run(int argc, char** argv) {
+  const std::optional<MeasureCellArguments> parsed = parseMeasureCellArguments(argc, argv);
+  if (!parsed) return kFound;  // the help
+  const MeasureCellArguments& arguments = *parsed;
+  const double pixel_size = arguments.vision.pixelSize();
+  if (!arguments.out.empty()) requireWritableFolder(fs::absolute(arguments.out).parent_path());
+  SharpestPlane search(arguments.vision.tracker);
+  addImages(arguments.input, search);
+  const CellPlane& plane = *search.best();
+  printPlane(plane, search);
+  if (!arguments.overlay.empty()) writeOverlay(arguments.overlay, plane);
+  CellReadings readings(1);
+  readings.add(plane.view);
+  std::string reason;
+  const std::optional<CellMeasurement> cell = readings.measure(1, pixel_size, reason);
+  if (!cell) {
+    flushStandardOutput();
+    return kNotFound;
+  }
+  printLengths(*cell, plane);
+  if (!arguments.scene.empty()) {
+    const YAML::Node node = sceneOf(arguments, *cell);
+    const Scene scene = parseScene(node, arguments.scene + " with the measured lengths");
+    if (!arguments.families.empty()) std::cout << "family: " << describeFamilyOf(scene, arguments.families) << '\n';
+    if (!arguments.out.empty())
+      writeFileAtomically(arguments.out, measuredSceneText(node, cell->describe(), arguments.scene));
+  }
+  flushStandardOutput();
+  return kFound;
+}
+
+}  // namespace
+}  // namespace microinjection
+
+int main(int argc, char** argv) {
+  try {
+    return microinjection::run(argc, argv);
+  } catch (const std::exception& exception) {
+    std::cerr << "measure_cell: " << exception.what() << '\n';
+    return microinjection::kBadUsage;
+  }
+}

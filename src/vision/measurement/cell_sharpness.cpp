@@ -1,0 +1,36 @@
+#include "vision/measurement/cell_sharpness.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace microinjection {
+namespace {
+
+constexpr int kStep = 2;         // px, of the differences
+constexpr double kMargin = 8;    // px inside of the border, which has a rim
+constexpr double kLeast = 0.25;  // of the border's radius, that is left inside of the margin
+
+}  // namespace
+
+double cellSharpness(const Frame& frame, const CellDetection& cell) {
+  if (!cell.finding.hasValues() || !cell.ooplasm.finding.hasValues()) return 0;
+  const Ellipse& border = cell.ooplasm.ellipse;
+  const double margin = std::min(kMargin, (1 - kLeast) * border.semi_axes[1]);
+  const cv::Mat& grey = frame.grey();
+  const auto within = [](double value, int size) { return std::clamp(static_cast<int>(value), kStep, size - kStep); };
+  const double reach = border.semi_axes[0];
+  double sum = 0;
+  long count = 0;
+  for (int y = within(border.centre.y - reach, grey.rows); y < within(border.centre.y + reach, grey.rows); ++y) {
+    const float *above = grey.ptr<float>(y - kStep), *here = grey.ptr<float>(y), *below = grey.ptr<float>(y + kStep);
+    for (int x = within(border.centre.x - reach, grey.cols); x < within(border.centre.x + reach, grey.cols); ++x) {
+      if (border.distance(cv::Point2d(x, y)) > -margin) continue;
+      const double across = here[x - kStep] - 2 * here[x] + here[x + kStep], along = above[x] - 2 * here[x] + below[x];
+      sum += across * across + along * along;
+      ++count;
+    }
+  }
+  return count > 0 ? sum / (static_cast<double>(count) * frame.noise() * frame.noise()) : 0;
+}
+
+}  // namespace microinjection

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "vision/calibration/touch_by_vision.h"
+
+namespace microinjection {
+
+struct TouchSearchConfig {
+  double step = 0.3e-6;           ///< m, along the needle
+  double speed = 10e-6;           ///< m/s, of the set-point
+  double largest_travel = 40e-6;  ///< m, from the start
+  double largest_force = 2e-6;    ///< N, above that at the start
+  double settle_time = 0.1;       ///< s, at rest before an image counts
+  double image_time = 3;          ///< s, in which a fresh image must come
+  double move_time = 3;           ///< s, in which the needle must arrive at a step
+  TouchByVisionConfig touch;
+
+  /// Reads the keys above and the section `curve`.
+  static TouchSearchConfig read(ConfigReader& reader);
+};
+
+/// Lowers the needle step by step along its axis and watches the dimple under it, until findTouch
+/// sees the touch. A stream of set-points for a controller that follows them.
+///
+/// An image counts when it was exposed at rest, settle_time after the needle has arrived. The search
+/// fails, and its set-points end, when the needle does not arrive, its position or the force is lost,
+/// no fresh image comes, the force exceeds its limit, or the travel ends without a touch.
+class TouchSearch {
+ public:
+  struct Sight {
+    double stamp = 0;   ///< s, exposure of the image
+    double dimple = 0;  ///< px, depth along the needle; 0 above the cell
+  };
+  /// What a step knows. Times are of one clock, s.
+  struct Input {
+    double now = 0;
+    std::optional<Eigen::Vector3d> position;  ///< m, of the needle; none: not known now
+    double rested_since = 0;                  ///< s
+    std::optional<Sight> sight;               ///< of the newest image; none: it does not show the dimple
+    std::string blind;                        ///< why not
+    std::optional<double> force;              ///< N along the needle; none: not known now
+  };
+
+  /// `start`: where the needle rests; `direction`: unit vector of the approach; `now`: s. A force that
+  /// is known at the start must stay known.
+  TouchSearch(const TouchSearchConfig& config, const Eigen::Vector3d& start, const Eigen::Vector3d& direction,
+              const Input& input);
+
+  /// The set-point (m); none once it is done or has failed.
+  std::optional<Eigen::Vector3d> step(const Input& input);
+
+  bool done() const { return report_.verdict == TouchVerdict::kTouch; }
+  const std::string& failure() const { return failure_; }     ///< empty: none
+  const std::string& waitsFor() const { return waits_for_; }  ///< empty while it moves
+  double travel() const { return travel_; }                   ///< m, of the set-point
+  double dimple() const { return dimple_; }                   ///< px, in the last image used
+  double touchTravel() const { return report_.height; }       ///< m, from the start; once done
+  double interval() const { return report_.interval.half(); }
+  Eigen::Vector3d contact() const { return start_ + report_.height * direction_; }  ///< m; once done
+  std::optional<double> force() const { return force_; }                            ///< N, above that at the start
+  const std::string& text() const { return report_.text; }
+
+ private:
+  void watch(const Input& input);
+  void take(const Sight& sight, double now);
+
+  TouchSearchConfig config_;
+  Eigen::Vector3d start_, direction_;
+  std::optional<double> force_at_start_, force_;
+  double travel_ = 0, goal_ = 0;  ///< m, of the set-point
+  double stepped_, since_;        ///< s, of the last step(), and of the present step of the needle
+  double dimple_ = 0;
+  std::vector<TouchSample> samples_;
+  TouchReport report_;
+  std::string failure_, waits_for_;
+};
+
+}  // namespace microinjection

@@ -1,0 +1,37 @@
+#include "vision/measurement/vision_config.h"
+
+#include <filesystem>
+
+#include "base/errors.h"
+#include "vision/calibration/calibration_file.h"
+#include "vision/calibration/calibration_path.h"
+
+namespace microinjection {
+
+VisionConfig VisionConfig::read(ConfigReader& reader) {
+  VisionConfig config;
+  reader.text("calibration", config.calibration);
+  reader.number("pixel_size", config.pixel_size, Range::closed(0, 1e-4));
+  reader.number("image_timeout", config.image_timeout, Range::positive());
+  reader.number("serve_timeout", config.serve_timeout, Range::positive());
+  reader.boolean("overlay", config.overlay);
+  reader.integer("measured_images", config.measured_images, Range::closed(kLeastImages, 1000));
+  config.tracker = SpecimenTrackerConfig::read(reader);
+  return config;
+}
+
+VisionConfig VisionConfig::standard() {
+  ConfigReader nothing(YAML::Node(YAML::NodeType::Map), "");
+  return read(nothing);
+}
+
+double VisionConfig::pixelSize() const {
+  if (pixel_size > 0) return pixel_size;
+  const std::string path = calibrationPath(calibration);
+  if (!std::filesystem::exists(path))
+    throw ConfigError("pixel_size = 0: unknown, and there is no calibration " + path +
+                      ": calibrate, or set pixel_size");
+  return readCalibration(path).value[kPixelSize];
+}
+
+}  // namespace microinjection

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+
+#include "vision/detection/specimen_tracker.h"
+
+namespace microinjection {
+
+/// How cells are found and measured in images: config/vision.yaml. The node `vision` and the command
+/// `measure_cell` take the same file.
+struct VisionConfig {
+  std::string calibration;     ///< file, see calibrationPath()
+  double pixel_size = 0;       ///< m of the specimen; 0: that of the calibration
+  double image_timeout = 0.5;  ///< s
+  double serve_timeout = 5;    ///< s, in which cell_simulator answers
+  bool overlay = true;
+  int measured_images = 15;
+  SpecimenTrackerConfig tracker;
+
+  static constexpr int kLeastImages = 3;  ///< of a measurement in a stream of images
+
+  /// What read() gives without any key. The pipettes' detectors have other defaults.
+  static VisionConfig standard();
+  static VisionConfig read(ConfigReader& reader);
+  /// m of the specimen. Throws ConfigError when it is not known.
+  double pixelSize() const;
+};
+
+}  // namespace microinjection

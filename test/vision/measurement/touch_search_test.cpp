@@ -1,0 +1,140 @@
+#include "vision/measurement/touch_search.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace microinjection {
+namespace {
+
+/// A needle that follows its set-points, a cell `gap` (m) below it, and a camera with noise.
+class Rig {
+ public:
+  explicit Rig(double gap) : gap_(gap) {}
+
+  TouchSearch::Input input() const {
+    TouchSearch::Input input{now_, position_, rested_, sight_, blind_, force_};
+    if (!known_) input.position.reset();
+    return input;
+  }
+  void run(TouchSearch& search) {
+    for (int i = 0; i < 100000 && !search.done() && search.failure().empty(); ++i) {
+      const auto setpoint = search.step(input());
+      now_ += 0.005;
+      if (setpoint && !stuck_ && *setpoint != position_) {
+        position_ = *setpoint;
+        rested_ = now_;
+      }
+      const double depth = std::max(0.0, start_.z() - position_.z() - gap_);
+      if (force_) force_ = 0.1e-6 + stiffness_ * depth;
+      deepest_ = std::max(deepest_, depth);
+      if (frozen_ || now_ - exposed_ < 0.033) continue;
+      exposed_ = now_;
+      sight_ = TouchSearch::Sight{now_ - late_, depth / 0.25e-6 + noise_(random_)};
+    }
+  }
+
+  Eigen::Vector3d start_{0, 0, 60e-6}, position_ = start_;
+  double gap_, now_ = 10, rested_ = 9, exposed_ = 0, late_ = 0, stiffness_ = 0.1, deepest_ = 0;
+  bool known_ = true, stuck_ = false, frozen_ = false;
+  std::optional<double> force_ = 0.1e-6;
+  std::optional<TouchSearch::Sight> sight_;
+  std::string blind_;
+
+ private:
+  std::mt19937 random_{5};
+  std::normal_distribution<double> noise_{0, 0.2};
+};
+
+TouchSearch searchOf(const Rig& rig, const TouchSearchConfig& config = {}) {
+  return {config, rig.start_, -Eigen::Vector3d::UnitZ(), rig.input()};
+}
+
+TEST(TouchSearch, FindsTheTouchAndStopsThere) {
+  for (const double gap : {4.1e-6, 12.7e-6}) {
+    Rig rig(gap);
+    TouchSearch search = searchOf(rig);
+    rig.run(search);
+    ASSERT_TRUE(search.done()) << search.failure();
+    EXPECT_NEAR(search.touchTravel(), gap, 0.3e-6);
+    EXPECT_NEAR(search.contact().z(), rig.start_.z() - gap, 0.3e-6);
+    EXPECT_LT(rig.deepest_, 2.5e-6);
+    EXPECT_NEAR(*search.force(), rig.stiffness_ * rig.deepest_, 1e-9);
+  }
+}
+
+TEST(TouchSearch, EndsWithItsTravel) {
+  Rig rig(100e-6);
+  TouchSearchConfig config;
+  config.largest_travel = 10e-6;
+  TouchSearch search = searchOf(rig, config);
+  rig.run(search);
+  EXPECT_NE(search.failure().find("no touch within 10 um"), std::string::npos) << search.failure();
+  EXPECT_GE(rig.position_.z(), rig.start_.z() - 10e-6 - 1e-9);
+}
+
+TEST(TouchSearch, EndsWithTheForce) {
+  Rig rig(4e-6);
+  rig.stiffness_ = 10;
+  TouchSearch search = searchOf(rig);
+  rig.run(search);
+  EXPECT_NE(search.failure().find("uN, allowed"), std::string::npos) << search.failure();
+  EXPECT_LT(rig.deepest_, 0.5e-6);
+  EXPECT_FALSE(search.step(rig.input()));
+}
+
+TEST(TouchSearch, EndsWhenAForceIsLost) {
+  Rig rig(4e-6);
+  TouchSearch search = searchOf(rig);
+  rig.force_.reset();
+  rig.run(search);
+  EXPECT_NE(search.failure().find("force is not known"), std::string::npos) << search.failure();
+}
+
+TEST(TouchSearch, EndsWithoutFreshImages) {
+  Rig late(4e-6), frozen(4e-6), blind(4e-6);
+  late.late_ = 100;
+  frozen.frozen_ = blind.frozen_ = true;
+  frozen.sight_ = TouchSearch::Sight{9.9, 0};
+  blind.blind_ = "the cell is not seen";
+  for (Rig* rig : {&late, &frozen, &blind}) {
+    TouchSearch search = searchOf(*rig);
+    rig->run(search);
+    EXPECT_NE(search.failure().find("no fresh image"), std::string::npos) << search.failure();
+    EXPECT_NE(search.failure().find(rig->blind_), std::string::npos) << search.failure();
+    EXPECT_EQ(rig->position_, rig->start_);
+  }
+}
+
+TEST(TouchSearch, EndsWhenTheNeedleDoesNotFollow) {
+  Rig rig(4e-6);
+  rig.stuck_ = true;
+  TouchSearch search = searchOf(rig);
+  rig.run(search);
+  EXPECT_NE(search.failure().find("does not follow"), std::string::npos) << search.failure();
+  Rig lost(4e-6);
+  TouchSearch second = searchOf(lost);
+  lost.known_ = false;
+  lost.run(second);
+  EXPECT_NE(second.failure().find("position is not known"), std::string::npos) << second.failure();
+  Rig aside(4e-6);
+  TouchSearch third = searchOf(aside);
+  aside.position_.x() += 2e-6;
+  third.step(aside.input());
+  EXPECT_NE(third.failure().find("left the line"), std::string::npos) << third.failure();
+}
+
+TEST(TouchSearch, RefusesWhatIsNotFinite) {
+  Rig rig(4e-6);
+  rig.frozen_ = true;
+  rig.sight_ = TouchSearch::Sight{11, std::numeric_limits<double>::quiet_NaN()};
+  TouchSearch search = searchOf(rig);
+  rig.run(search);
+  EXPECT_NE(search.failure().find("not finite"), std::string::npos) << search.failure();
+}
+
+}  // namespace
+}  // namespace microinjection
