@@ -2,11 +2,13 @@
 
 #include <boost/program_options.hpp>
 #include <cmath>
+#include <filesystem>
 #include <iostream>
 #include <sstream>
 
 #include "base/config_errors.h"
 #include "base/errors.h"
+#include "base/worker_processes.h"
 
 namespace microinjection {
 namespace {
@@ -53,6 +55,14 @@ void requirePositive(const std::string& option, double value) {
   throw ConfigError(message.str());
 }
 
+/// The families that are installed with this program, or else those of the working directory.
+std::string defaultFamilies() {
+  const std::filesystem::path installed =
+      std::filesystem::path(thisProgram()).parent_path().parent_path().parent_path() /
+      "share/cell_microinjection/config/families";
+  return std::filesystem::is_directory(installed) ? installed.string() : "config/families";
+}
+
 Drift parseDrift(const std::string& text) {
   if (text == "auto") return Drift::kAuto;
   if (text == "on") return Drift::kOn;
@@ -74,6 +84,7 @@ std::optional<IdentifyArguments> parseIdentifyArguments(int argc, char** argv) {
   std::string models, free, drift = "auto";
   std::vector<std::string> columns;
   double poisson_ratio = -1;
+  bool quick = false;
   po::options_description options(kHelp);
   auto add = options.add_options();
   add("help", "this text");
@@ -89,10 +100,10 @@ std::optional<IdentifyArguments> parseIdentifyArguments(int argc, char** argv) {
   add("tip-radius", po::value(&arguments.geometry.tip_radius), "m, of the tip for hertz");
   add("half-angle", po::value(&arguments.geometry.half_angle), "rad, of the cone");
   add("poisson-ratio", po::value(&poisson_ratio), "of the formulas; default that of the scene, else 0.5");
-  add("families", po::value(&arguments.families), "folder of the families' files");
+  add("families", po::value(&arguments.families)->default_value(defaultFamilies()), "folder of the families' files");
   add("out", po::value(&arguments.out), "scene file to write, with what was found by the first model");
   add("residuals", po::value(&arguments.residuals), "CSV file to write: measured, fitted and their difference");
-  add("no-intervals", "intervals from the curvature alone: quicker");
+  add("no-intervals", po::bool_switch(&quick), "intervals from the curvature alone: quicker");
   po::variables_map values;
   const po::positional_options_description none;
   po::store(po::command_line_parser(argc, argv).options(options).positional(none).run(), values);
@@ -116,7 +127,7 @@ std::optional<IdentifyArguments> parseIdentifyArguments(int argc, char** argv) {
   arguments.models = split(models.empty() ? (arguments.scene.empty() ? "hertz" : "family,hertz") : models);
   arguments.free = split(free);
   arguments.identification.drift = parseDrift(drift);
-  arguments.identification.intervals = values.count("no-intervals") == 0;
+  arguments.identification.intervals = !quick;
   for (const std::string& column : columns) addColumn(column, arguments.curve);
   return arguments;
 }
