@@ -1,5 +1,6 @@
 #include "commands/identify_arguments.h"
 
+#include <algorithm>
 #include <boost/program_options.hpp>
 #include <cmath>
 #include <filesystem>
@@ -53,6 +54,15 @@ void requirePositive(const std::string& option, double value) {
   std::ostringstream message;
   message << "--" << option << " = " << value << ": must be a number > 0";
   throw ConfigError(message.str());
+}
+
+/// An output must not replace what was measured or written by hand.
+void requireNoInput(const std::string& option, const std::string& path, const IdentifyArguments& arguments) {
+  std::error_code none;
+  for (const std::string& input : {arguments.record, arguments.scene}) {
+    if (path.empty() || input.empty() || !std::filesystem::equivalent(path, input, none)) continue;
+    throw ConfigError("--" + option + " = " + path + ": must be another file than the input");
+  }
 }
 
 /// The families that are installed with this program, or else those of the working directory.
@@ -123,9 +133,18 @@ std::optional<IdentifyArguments> parseIdentifyArguments(int argc, char** argv) {
     throw ConfigError("--prony = " + std::to_string(arguments.identification.prony_terms) + ": must be 0 to 3");
   }
   if (!arguments.out.empty() && arguments.scene.empty()) throw ConfigError("--out: needs --scene, which it changes");
+  requireNoInput("out", arguments.out, arguments);
+  requireNoInput("residuals", arguments.residuals, arguments);
   arguments.geometry.poisson_ratio = poisson_ratio;
   arguments.models = split(models.empty() ? (arguments.scene.empty() ? "hertz" : "family,hertz") : models);
   arguments.free = split(free);
+  if (arguments.models.empty()) throw ConfigError("--model = " + models + ": must name a model");
+  const bool family = std::find(arguments.models.begin(), arguments.models.end(), "family") != arguments.models.end();
+  if (!arguments.free.empty() && !family) throw ConfigError("--free: needs --model family");
+  if (!arguments.out.empty() && arguments.models.front() != "family") {
+    throw ConfigError("--out: the first model is " + arguments.models.front() +
+                      ": must be family, whose modulus is that of the scene's cell");
+  }
   arguments.identification.drift = parseDrift(drift);
   arguments.identification.intervals = !quick;
   for (const std::string& column : columns) addColumn(column, arguments.curve);

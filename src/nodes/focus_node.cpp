@@ -90,6 +90,7 @@ void FocusNode::onFocus(const sensor_msgs::JointState& message) {
 void FocusNode::onNeedle(const geometry_msgs::PoseStamped& message) {
   const auto pose = validPose(&message);
   needle_ = pose ? std::optional<Eigen::Vector3d>(pose->translation()) : std::nullopt;
+  needle_received_ = ros::SteadyTime::now();
 }
 
 void FocusNode::onVision(const cell_microinjection::VisionState& message) {
@@ -140,7 +141,7 @@ void FocusNode::begin(double start, const Tip& tip) {
   window_ = tip.window;
   reading_.reset();
   verified_since_.reset();
-  search_ = std::make_unique<FocusSearch>(parameters_.search, start);
+  search_ = std::make_unique<FocusSearch>(parameters_.search, start, start_);
 }
 
 void FocusNode::move(double position) {
@@ -155,6 +156,8 @@ void FocusNode::step() {
   diagnostics_.update();
   endIfOrphaned(master_);
   if (!search_) return;
+  const bool silent = secondsBetween(needle_received_, ros::SteadyTime::now()) > parameters_.image_timeout;
+  if (needle_at_start_ && (silent || !needle_)) return end(false, "the needle's position is not known any more");
   if (needle_ && needle_at_start_ && (*needle_ - *needle_at_start_).norm() > parameters_.largest_motion)
     return end(false, "the needle moves: it must rest during the search");
   const double now = ros::Time::now().toSec();

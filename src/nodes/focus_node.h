@@ -76,6 +76,7 @@ class FocusNode {
   std::optional<double> verified_since_;                     ///< s, when the focus was in the best plane
   std::size_t planes_ = 0;                                   ///< of an earlier search of this goal
   std::optional<Eigen::Vector3d> needle_, needle_at_start_;  ///< m; none: not known
+  ros::SteadyTime needle_received_;
 
   std::optional<double> focus_;  ///< m
   ros::SteadyTime focus_received_;

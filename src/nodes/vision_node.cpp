@@ -88,6 +88,7 @@ std::string VisionNode::refusalOf(const sensor_msgs::Image& message, const ros::
   if (isAhead(stamp, now)) return "its stamp is ahead of now";
   const double age = secondsBetween(stamp, now);
   if (age > parameters_.vision.image_timeout) return "it is " + std::to_string(age) + " s old";
+  if (message.data == last_data_) return "the camera repeats its last image";
   // A clock that was set back by more than an image's age begins a new series.
   if (!stamp_.isZero() && stamp <= stamp_ && secondsBetween(stamp, stamp_) <= parameters_.vision.image_timeout)
     return "it is not newer than the last one";
@@ -111,6 +112,7 @@ void VisionNode::onImage(const sensor_msgs::Image& message) {
   refuse("");
   tracker_.next(frame);
   stamp_ = message.header.stamp;
+  last_data_ = message.data;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     readings_.add(tracker_.view());

@@ -7,8 +7,10 @@
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
 
+#include <cstdint>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "nodes/imaging/served_cell.h"
 #include "nodes/runtime/master_monitor.h"
@@ -61,8 +63,9 @@ class VisionNode {
   ros::Publisher state_;
   image_transport::Publisher overlay_;
   image_transport::Subscriber images_;
-  ros::Time stamp_;           ///< of the last accepted image
-  mutable std::mutex mutex_;  ///< of what follows, which the service reads
+  std::vector<std::uint8_t> last_data_;  ///< of the last image: noise changes each one of a camera that lives
+  ros::Time stamp_;                      ///< of the last accepted image
+  mutable std::mutex mutex_;             ///< of what follows, which the service reads
   CellReadings readings_;
   ros::SteadyTime received_;  ///< last accepted image
   std::string refusal_;       ///< of the last image; empty: accepted

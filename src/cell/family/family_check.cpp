@@ -129,8 +129,10 @@ std::vector<ReferencePlace> referencePlaces(int member, const Eigen::VectorXd& c
   std::vector<MeshCorrection::Pair> pairs;
   std::vector<const TrainingSample*> shallow;
   for (std::size_t i = 0; i < results.size(); ++i) {
-    if (motions.rays[i].level == kFineLevel) pairs.push_back({&results[i + 1].samples, &results[i].samples});
-    if (motions.rays[i].level == kShallowLevel && results[i].reason.empty()) shallow.push_back(&results[i].samples[0]);
+    if (motions.rays[i].level == kFineLevel && i + 1 < results.size())
+      pairs.push_back({&results[i + 1].samples, &results[i].samples});
+    if (motions.rays[i].level == kShallowLevel && !results[i].samples.empty())
+      shallow.push_back(&results[i].samples[0]);
   }
   const MeshCorrection correction(motions.scales, pairs);
   std::vector<ReferencePlace> places;

@@ -12,6 +12,7 @@ namespace microinjection {
 namespace {
 
 constexpr double kOutlier = 3;         ///< residual over noise from which a sample loses weight
+constexpr double kLeastNoise = 1e-5;   ///< over the record's range: a record without noise is divided by it
 constexpr double kNoiseFactor = 1.05;  ///< a noise that changes less is kept
 
 /// The model's forces and derivatives, once for all samples: a member of a family takes milliseconds.
@@ -94,7 +95,8 @@ double noiseOf(const ForceCurve& curve, double contact, const Eigen::VectorXd& f
   for (std::size_t i = 0; i < curve.size(); ++i) {
     (curve.position[i] < contact ? before : behind).push_back(curve.force[i] - force[static_cast<Eigen::Index>(i)]);
   }
-  return std::max({robustDeviation(before), robustDeviation(behind), std::numeric_limits<double>::min()});
+  const auto [least, most] = std::minmax_element(curve.force.begin(), curve.force.end());
+  return std::max({robustDeviation(before), robustDeviation(behind), kLeastNoise * (*most - *least)});
 }
 
 }  // namespace

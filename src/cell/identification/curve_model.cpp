@@ -28,7 +28,8 @@ CurveModel::CurveModel(const ForceCurve& curve, std::shared_ptr<ElasticLaw> law,
   if (!config.drift) unknowns_.back().low = unknowns_.back().high = 0;
   ratios_ = static_cast<int>(unknowns_.size());
   for (const ElasticLaw::Parameter& ratio : law_->parameters()) {
-    unknowns_.push_back({ratio.name, "", true, std::log(ratio.value), 1, std::log(ratio.low), std::log(ratio.high)});
+    const double low = std::log(ratio.low), high = std::log(ratio.high);
+    unknowns_.push_back({ratio.name, "", true, std::clamp(std::log(ratio.value), low, high), 1, low, high});
   }
   prony_ = static_cast<int>(unknowns_.size());
   for (int k = 0; k < terms_; ++k) {

@@ -63,7 +63,8 @@ std::size_t indexOf(const std::string& wanted, const std::vector<std::string>& t
   const auto found = std::find(titles.begin(), titles.end(), wanted);
   if (found != titles.end()) return static_cast<std::size_t>(found - titles.begin());
   const bool number = !wanted.empty() && std::all_of(wanted.begin(), wanted.end(), ::isdigit);
-  if (number && std::stoul(wanted) >= 1 && std::stoul(wanted) <= titles.size()) return std::stoul(wanted) - 1;
+  if (number && wanted.size() < 6 && std::stoul(wanted) >= 1 && std::stoul(wanted) <= titles.size())
+    return std::stoul(wanted) - 1;
   throw ConfigError(where + ": the file has no column '" + wanted + "'");
 }
 

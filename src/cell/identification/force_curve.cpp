@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <limits>
+#include <numeric>
 #include <sstream>
 
 #include "base/errors.h"
@@ -14,7 +15,7 @@ namespace microinjection {
 namespace {
 
 constexpr std::size_t kFewest = 20;  ///< samples
-constexpr double kEnd = 0.2;         ///< share of the samples by which sign and direction are judged
+constexpr double kBent = 0.1;        ///< of its rise: a straighter record is in contact from its begin
 
 std::vector<std::string> splitRow(const std::string& line) {
   const char separator = line.find(',') != std::string::npos    ? ','
@@ -39,23 +40,39 @@ double number(const std::vector<std::string>& row, const ForceColumn& column) {
   return *end == '\0' ? column.unit * value : kNone;
 }
 
-/// Mean of the last samples minus that of the first ones.
-double rise(const std::vector<double>& values) {
-  const auto count =
-      std::max<std::ptrdiff_t>(1, static_cast<std::ptrdiff_t>(kEnd * static_cast<double>(values.size())));
-  const auto half = [&](auto from) {
-    std::vector<double> part(from, from + count);
-    std::nth_element(part.begin(), part.begin() + count / 2, part.end());
-    return part[static_cast<std::size_t>(count / 2)];
+double medianOf(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Value at the deepest samples minus that of the straight line through those of the first half, which is
+/// a drift; for a straight record, its whole rise.
+double rise(const ForceCurve& curve, const std::vector<double>& values) {
+  std::vector<std::size_t> order(values.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return curve.position[a] < curve.position[b]; });
+  const std::size_t quarter = std::max<std::size_t>(2, order.size() / 4),
+                    few = std::max<std::size_t>(2, order.size() / 50);
+  const auto middle = [&](const std::vector<double>& of, std::size_t from, std::size_t count) {
+    std::vector<double> part;
+    for (std::size_t i = from; i < from + count; ++i) part.push_back(of[order[i]]);
+    return medianOf(part);
   };
-  return half(values.end() - count) - half(values.begin());
+  const double x0 = middle(curve.position, 0, quarter), x1 = middle(curve.position, quarter, quarter),
+               x2 = middle(curve.position, order.size() - few, few);
+  const double y0 = middle(values, 0, quarter), y1 = middle(values, quarter, quarter),
+               y2 = middle(values, order.size() - few, few);
+  const double slope = x1 > x0 ? (y1 - y0) / (x1 - x0) : 0;
+  const double beyond = y2 - y0 - slope * (x2 - x0);
+  return std::abs(beyond) > kBent * std::abs(y2 - y0) ? beyond : y2 - y0;
 }
 
 void keepFirst(ForceCurve& curve, std::size_t count) {
   for (std::vector<double>* values : {&curve.time, &curve.position, &curve.force}) values->resize(count);
 }
 
-/// Both signs follow from the record: the tip goes into the cell, and the cell pushes it back.
+/// The height grows towards the cell.
 void orient(ForceCurve& curve) {
   const auto farthest = std::max_element(curve.position.begin(), curve.position.end(), [&](double a, double b) {
     return std::abs(a - curve.position[0]) < std::abs(b - curve.position[0]);
@@ -67,7 +84,7 @@ void orient(ForceCurve& curve) {
 }
 
 void orientForce(ForceCurve& curve) {
-  if (rise(curve.force) >= 0) return;
+  if (rise(curve, curve.force) >= 0) return;
   for (double& x : curve.force) x = -x;
   curve.notes.emplace_back("the force falls on the way in: its sign is turned");
 }
@@ -89,12 +106,15 @@ ForceCurve readForceCurve(const std::string& path, const ForceCurveConfig& confi
   std::vector<std::string> titles;
   std::map<std::string, ForceColumn> columns;
   ForceCurve curve;
+  std::vector<double> deflections;
   std::size_t dropped = 0;
   for (std::string line; std::getline(file, line);) {
     if (line.find_first_not_of(" \t\r") == std::string::npos || line[line.find_first_not_of(" \t")] == '#') continue;
     const std::vector<std::string> row = splitRow(line);
     if (titles.empty()) {
       titles = row;
+      constexpr char kByteOrderMark[] = "\xEF\xBB\xBF";
+      if (titles.front().rfind(kByteOrderMark, 0) == 0) titles.front().erase(0, 3);
       columns = findForceColumns(titles, config.columns, path);
       curve.timed = columns.count("time") > 0;
       continue;
@@ -107,7 +127,8 @@ ForceCurve readForceCurve(const std::string& path, const ForceCurveConfig& confi
       continue;
     }
     curve.time.push_back(time);
-    curve.position.push_back(height - deflection);
+    curve.position.push_back(height);
+    deflections.push_back(deflection);
     curve.force.push_back(force);
   }
   if (titles.empty()) throw ConfigError(path + ": is empty");
@@ -116,7 +137,11 @@ ForceCurve readForceCurve(const std::string& path, const ForceCurveConfig& confi
     throw ConfigError(path + ": " + std::to_string(curve.size()) + " rows of numbers: must be at least " +
                       std::to_string(kFewest));
   }
+  if (!curve.timed) curve.notes.emplace_back("there is no column of the time: a drift is one a sample");
   orient(curve);
+  // The lever bends away from the cell: the tip goes less far than its base.
+  const double sign = rise(curve, deflections) < 0 ? -1 : 1;
+  for (std::size_t i = 0; i < curve.size(); ++i) curve.position[i] -= sign * deflections[i];
   if (!config.whole) cutRetract(curve);
   if (curve.size() < kFewest) throw ConfigError(path + ": has no way in: its first samples are its deepest");
   orientForce(curve);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 
 #include "base/errors.h"
 #include "cell/identification/contact_guess.h"
@@ -18,7 +19,8 @@ constexpr double kTrimmed = 0.02;
 constexpr double kInseparable = 0.97;  ///< correlation of two unknowns
 constexpr double kLeastMisfit = 0.03;  ///< of the force: a smaller one is no reason to doubt a model
 constexpr double kSignificant = 3;     ///< misfit over what noise alone would leave
-constexpr int kBlocks = 12;            ///< of the part in contact, whose means are its smooth part
+constexpr std::size_t kFewestInContact = 24;
+constexpr int kBlocks = 12;  ///< of the part in contact, whose means are its smooth part
 
 /// Deviation of a sample, from its neighbours: no model changes it.
 double whiteNoise(const ForceCurve& curve) {
@@ -41,8 +43,11 @@ Misfit misfitOf(const ForceCurve& curve, const Eigen::VectorXd& residuals, doubl
   for (std::size_t i = 0; i < curve.size(); ++i) {
     if (curve.position[i] > contact) inside.push_back(residuals[static_cast<Eigen::Index>(i)]);
   }
+  if (inside.size() < kFewestInContact) {
+    throw ConfigError("only " + std::to_string(inside.size()) + " samples are in contact: must be at least " +
+                      std::to_string(kFewestInContact));
+  }
   const std::size_t length = inside.size() / kBlocks;
-  if (length < 2) return {};
   double squares = 0;
   for (int block = 0; block < kBlocks; ++block) {
     std::vector<double> part(inside.begin() + static_cast<std::ptrdiff_t>(block * length),
@@ -88,14 +93,15 @@ Eigen::VectorXd residualsOf(CurveModel& model, const Eigen::VectorXd& internal) 
   return Eigen::Map<const Eigen::VectorXd>(model.curve().force.data(), force.size()) - force;
 }
 
-Estimate estimateOf(CurveModel& model, const CurveFit& fit, int p, double correlation, bool profile) {
+Estimate estimateOf(CurveModel& model, const CurveFit& fit, int p, double correlation, double law_error, bool profile) {
   const CurveModel::Unknown& unknown = model.unknowns()[static_cast<std::size_t>(p)];
   const double deviation = std::sqrt(correlation * fit.covariance(p, p));
   ProfileInterval interval{fit.internal[p] - kDeviations95 * deviation, fit.internal[p] + kDeviations95 * deviation};
   if (profile && deviation > 0) interval = profileInterval(model, fit, p, 0.5 * kChiSquared95 * correlation, deviation);
   // What the law is off by is the modulus's, too.
   if (unknown.name == "young_modulus") {
-    const double law = kDeviations95 * model.law().error();
+    constexpr double kDeviationOfMedian = 1.4826;  // of normal values, over the median of their sizes
+    const double law = kDeviations95 * kDeviationOfMedian * law_error;
     interval.low = fit.internal[p] - std::hypot(fit.internal[p] - interval.low, law);
     interval.high = fit.internal[p] + std::hypot(interval.high - fit.internal[p], law);
   }
@@ -110,6 +116,10 @@ Identification identifyWith(const ForceCurve& curve, const std::shared_ptr<Elast
   const ContactGuess guess = guessContact(curve, drift);
   if (!guess.touched) throw ConfigError(guess.reason + (drift ? "; a drift is allowed for, see --drift off" : ""));
   Eigen::VectorXd none;
+  const bool rises = std::is_sorted(curve.time.begin(), curve.time.end(), std::less_equal<>());
+  if (config.prony_terms > 0 && !(curve.timed && rises)) {
+    throw ConfigError("--prony = " + std::to_string(config.prony_terms) + ": the record must have a time that rises");
+  }
   CurveModel model(curve, law, {drift, config.prony_terms});
   model.start(guess.size / law->force(guess.depth, none).force, guess.contact, guess.offset, guess.drift);
   const CurveFit fit = fitCurveAndNoise(model, guess.noise);
@@ -119,14 +129,16 @@ Identification identifyWith(const ForceCurve& curve, const std::shared_ptr<Elast
   result.model = law->description();
   result.noise = fit.noise;
   result.residuals = residualsOf(model, fit.internal);
+  const double law_error = law->error();
   const double correlation = correlationLength(result.residuals.cwiseMax(-5 * fit.noise).cwiseMin(5 * fit.noise));
   result.independent = static_cast<double>(curve.size()) / correlation;
   for (std::size_t p = 0; p < model.unknowns().size(); ++p) {
     if (model.unknowns()[p].low == model.unknowns()[p].high) continue;
-    result.estimates.push_back(estimateOf(model, fit, static_cast<int>(p), correlation, config.intervals));
+    result.estimates.push_back(estimateOf(model, fit, static_cast<int>(p), correlation, law_error, config.intervals));
     if (result.estimates.back().bounded) continue;
     result.warnings.push_back(result.estimates.back().name + " is not bounded by this record on one side");
   }
+  residualsOf(model, fit.internal);  // the law is that of the best fit again
   const double contact = result.find("contact")->value;
   result.depth = *std::max_element(curve.position.begin(), curve.position.end()) - contact;
   result.size = result.find("young_modulus")->value * law->force(result.depth, none).force;

@@ -35,7 +35,12 @@ void setProny(YAML::Node material, const Identification& identification) {
     terms.push_back(term);
     if (number.empty()) break;
   }
-  if (terms.size() > 0) material["viscoelasticity"]["prony"] = terms;
+  // Without terms, the record was fitted as elastic: so is the scene.
+  if (terms.size() > 0) {
+    material["viscoelasticity"]["prony"] = terms;
+  } else {
+    material.remove("viscoelasticity");
+  }
 }
 
 }  // namespace

@@ -27,6 +27,8 @@ ProfileInterval profileInterval(CurveModel& model, const CurveFit& best, int unk
     for (int step = 0; step < kSteps; ++step) {
       start[unknown] = centre + side * distance;
       const CurveFit held = fitCurve(model, start, best.noise, {unknown});
+      open = !held.converged;
+      if (open) break;
       const double root = std::sqrt(std::max(0.0, held.cost - best.cost));
       if (std::abs(root / wanted - 1) < kExact) break;
       if (root < wanted) {

@@ -27,6 +27,7 @@ constexpr double kSureClearness = 9;         // of a tip
 constexpr double kSureSymmetry = 0.9;        // of the edges near a tip
 constexpr int kRounds = 3;
 constexpr double kFitBehind = 48;  // px before an end, in the strip of its fit
+constexpr int kFitBefore = 18;     // px of the background that the fit needs
 constexpr int kFitRows = 100, kFitHalf = 24;
 constexpr double kFitBlur = 0.4;        // px
 constexpr double kPlain = 1.5;          // misfit of a fit before a plain background, at most
@@ -68,6 +69,11 @@ void fitEnd(const Frame& frame, const PipetteAxis& axis, PipetteDetection& found
   shape.rows = kFitRows;
   shape.half = kFitHalf;
   const PipetteStrip strip(frame, shape, kFitBlur, kFitBlur);
+  // Beyond the frame's border its last pixels are repeated, and a fit to these is too good.
+  if (!strip.inside(static_cast<int>(kFitBehind) - kFitBefore)) {
+    found.finding = Finding::uncertain("the tip is at the border of the frame");
+    return;
+  }
   const TipFit fit = fitTip(strip, kFitBehind, frame.noise());
   if (!fit.valid || (fit.misfit > kPlain && std::abs(fit.row - kFitBehind) > kFitAgrees)) {
     found.finding = Finding::uncertain("the tip fades into its background");

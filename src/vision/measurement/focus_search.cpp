@@ -35,14 +35,15 @@ FocusSearchConfig FocusSearchConfig::read(ConfigReader& reader) {
   return config;
 }
 
-FocusSearch::FocusSearch(const FocusSearchConfig& config, double start) : config_(config), start_(start) {
+FocusSearch::FocusSearch(const FocusSearchConfig& config, double start, double origin)
+    : config_(config), origin_(origin) {
   if (!std::isfinite(start)) {
     failure_ = "the focus' position is not finite";
     return;
   }
   const double half = 0.5 * (config.planes - 1) * config.step;
-  lowest_ = start - half;
-  highest_ = start + half;
+  lowest_ = std::max(start - half, origin_ - config.reach);
+  highest_ = std::min(start + half, origin_ + config.reach);
   addPlanes(lowest_, highest_);
 }
 
@@ -139,8 +140,8 @@ void FocusSearch::evaluate() {
   failure_ = report_.text;
   if (report_.verdict != FocusVerdict::kBorder) return;
   const double more = 0.5 * config_.planes * config_.step, slack = kRounding * config_.step;
-  const double low = std::max(lowest_ - more, start_ - config_.reach);
-  const double high = std::min(highest_ + more, start_ + config_.reach);
+  const double low = std::max(lowest_ - more, origin_ - config_.reach);
+  const double high = std::min(highest_ + more, origin_ + config_.reach);
   if (report_.towards > 0 && high - highest_ > config_.step - slack) {
     addPlanes(highest_ + config_.step, high);
     highest_ = targets_.back().height;

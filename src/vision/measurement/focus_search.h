@@ -12,7 +12,7 @@ namespace microinjection {
 struct FocusSearchConfig {
   double step = 1e-6;        ///< m, between planes
   int planes = 21;           ///< about the plane at the start
-  double reach = 60e-6;      ///< m, farthest plane from the start
+  double reach = 60e-6;      ///< m, farthest plane from the start; less take_up below it
   double take_up = 3e-6;     ///< m, by which the focus goes below a plane, so that it comes from below
   int images = 3;            ///< in each plane
   double settle_time = 0.1;  ///< s, at rest before an image counts
@@ -45,8 +45,10 @@ class FocusSearch {
     std::string blind;               ///< why it is not
   };
 
-  /// `start`: m, position of the focus.
-  FocusSearch(const FocusSearchConfig& config, double start);
+  /// `start`: m, position of the focus. `origin`: m, from which the reach counts; that of an earlier
+  /// search of the same tip, if there was one.
+  FocusSearch(const FocusSearchConfig& config, double start) : FocusSearch(config, start, start) {}
+  FocusSearch(const FocusSearchConfig& config, double start, double origin);
 
   /// Returns a position (m) of the focus when a move is to be commanded, once each.
   std::optional<double> step(const Input& input);
@@ -70,7 +72,7 @@ class FocusSearch {
   void evaluate();
 
   FocusSearchConfig config_;
-  double start_;
+  double origin_;
   double lowest_ = 0, highest_ = 0;  ///< m, of the planes
   std::deque<Target> targets_;       ///< the first one is under way
   bool returning_ = false;           ///< the last target is the best plane
