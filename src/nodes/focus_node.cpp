@@ -17,7 +17,7 @@ namespace {
 constexpr char kImageTopic[] = "microscope/image_raw";
 constexpr double kPeriod = 0.02;     // s of wall time, of a step
 constexpr double kClockSkew = 0.05;  // s, by which a stamp may be ahead
-constexpr double kFarWindow = 2;     // px, of the window from the tip
+constexpr double kFarWindow = 1;     // px, of the window from the tip
 constexpr int kQueue = 1;
 
 }  // namespace
@@ -141,6 +141,7 @@ void FocusNode::begin(double start, const Tip& tip) {
   window_ = tip.window;
   reading_.reset();
   verified_since_.reset();
+  rough_.reset();
   search_ = std::make_unique<FocusSearch>(parameters_.search, start, start_);
 }
 
@@ -161,10 +162,17 @@ void FocusNode::step() {
   if (needle_ && needle_at_start_ && (*needle_ - *needle_at_start_).norm() > parameters_.largest_motion)
     return end(false, "the needle moves: it must rest during the search");
   const double now = ros::Time::now().toSec();
+  if (rough_) return verify(now);
   const bool fresh = secondsBetween(reading_received_, ros::SteadyTime::now()) <= parameters_.image_timeout;
   const auto goal = search_->step({now, position(), fresh ? reading_ : std::nullopt, blind_});
   if (goal) move(*goal);
-  if (!search_->failure().empty()) return end(false, search_->failure());
+  if (!search_->failure().empty()) {
+    rough_ = repeated_ ? std::nullopt : search_->sharpest();
+    if (!rough_) return end(false, search_->failure());
+    move(*rough_);
+    verified_since_ = now;
+    return;
+  }
   cell_microinjection::FindFocusFeedback feedback;
   feedback.plane = static_cast<int>(planes_ + search_->plane());
   feedback.planes = static_cast<int>(planes_ + search_->planes());
@@ -183,7 +191,7 @@ void FocusNode::verify(double now) {
     return;
   }
   const double beside = cv::norm(tip_->window.tip - window_.tip);
-  if (beside <= kFarWindow) return end(true, search_->report().text);
+  if (beside <= kFarWindow && !rough_) return end(true, search_->report().text);
   if (repeated_) {
     std::ostringstream text;
     text << "the tip is seen at another place in each plane: " << beside << " px beside";
@@ -191,7 +199,7 @@ void FocusNode::verify(double now) {
   }
   repeated_ = true;
   planes_ += search_->plane();
-  begin(search_->report().height, *tip_);
+  begin(rough_.value_or(search_->report().height), *tip_);
 }
 
 void FocusNode::stopSearch() {

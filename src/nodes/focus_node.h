@@ -73,6 +73,7 @@ class FocusNode {
   TipWindow window_;                                         ///< of the search
   double start_ = 0;                                         ///< m, position of the focus at the start of the goal
   bool repeated_ = false;                                    ///< the planes are seen for the second time
+  std::optional<double> rough_;                              ///< m, plane about which the search begins again
   std::optional<double> verified_since_;                     ///< s, when the focus was in the best plane
   std::size_t planes_ = 0;                                   ///< of an earlier search of this goal
   std::optional<Eigen::Vector3d> needle_, needle_at_start_;  ///< m; none: not known

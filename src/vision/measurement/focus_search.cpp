@@ -130,6 +130,13 @@ void FocusSearch::next(const Input& input) {
   }
 }
 
+std::optional<double> FocusSearch::sharpest() const {
+  if (failure_.empty() || report_.verdict != FocusVerdict::kUnsure || samples_.empty()) return std::nullopt;
+  return std::max_element(samples_.begin(), samples_.end(),
+                          [](const FocusSample& a, const FocusSample& b) { return a.sharpness < b.sharpness; })
+      ->height;
+}
+
 void FocusSearch::evaluate() {
   report_ = findFocus(samples_, config_.focus);
   if (report_.verdict == FocusVerdict::kFocus) {

@@ -55,9 +55,12 @@ class FocusSearch {
 
   bool done() const { return phase_ == Phase::kDone; }
   const std::string& failure() const { return failure_; }  ///< empty: none
-  const FocusReport& report() const { return report_; }    ///< of the last fit
-  std::size_t plane() const { return samples_.size(); }    ///< planes that are done
-  std::size_t planes() const;                              ///< and those that are planned with them
+  /// After a failure: the sharpest plane (m), if the planes differ and only no bell fits them. The tip's
+  /// place was seen out of focus; a search about that plane, with the place seen there, may succeed.
+  std::optional<double> sharpest() const;
+  const FocusReport& report() const { return report_; }  ///< of the last fit
+  std::size_t plane() const { return samples_.size(); }  ///< planes that are done
+  std::size_t planes() const;                            ///< and those that are planned with them
 
  private:
   struct Target {
