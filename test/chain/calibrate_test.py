@@ -20,23 +20,34 @@ from std_srvs.srv import Trigger
 PATIENCE = 300  # s
 PIXEL, BACKLASH = 0.25e-6, 2e-6  # m, of config/microscope.yaml and the test's rig
 FIELD_X, FIELD_Z = 60e-6, 45e-6  # m
+SETTLE = 1.0  # s, several times what config/calibration.yaml asks
 
 
 class CalibrateTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.seen, cls.places = {}, []
+        cls.seen, cls.places, cls.moved = {}, [], rospy.Time()
         for topic, kind in (("/needle/operating_state", OperatingState), ("/controller/operating_state", OperatingState),
                             ("/vision/state", VisionState)):
             rospy.Subscriber(topic, kind, lambda message, topic=topic: cls.seen.update({topic: message}), queue_size=1)
         rospy.Subscriber("/needle/measured_cp", PoseStamped,
-                         lambda message: cls.places.append((message.pose.position.x, message.pose.position.z)),
-                         queue_size=1)
+                         lambda message: cls.add_place(message), queue_size=1)
         cls.needle = rospy.Publisher("/needle/state_command", StringStamped, queue_size=1)
         cls.controller = rospy.Publisher("/controller/state_command", StringStamped, queue_size=1)
         cls.action = actionlib.SimpleActionClient("/calibration/calibrate", CalibrateAction)
         assert cls.action.wait_for_server(rospy.Duration(PATIENCE))
         cls.rezero = staticmethod(rospy.ServiceProxy("/calibration/rezero", Trigger))
+
+    @classmethod
+    def add_place(cls, message):
+        place = message.pose.position.x, message.pose.position.z
+        if not cls.places or np.hypot(*np.subtract(place, cls.rested_at)) > 0.1e-6:
+            cls.moved, cls.rested_at = message.header.stamp, place
+        cls.places.append(place)
+
+    def rests(self):
+        """The tip is seen in an image since which the needle has long settled."""
+        return self.tip_is_seen() and self.seen["/vision/state"].header.stamp > self.moved + rospy.Duration(SETTLE)
 
     def until(self, condition, what):
         end = time.monotonic() + PATIENCE
@@ -86,6 +97,7 @@ class CalibrateTest(unittest.TestCase):
         path = pathlib.Path(rospy.get_param("/calibration/file"))
         written = yaml.safe_load(path.read_text())
         self.assertAlmostEqual(written["parameters"]["pixel_size"]["value"], result.pixel_size, delta=1e-12)
+        self.until(self.rests, "an image of the resting needle")
         answer = self.rezero()
         self.assertTrue(answer.success, answer.message)
         self.check_go_to_pixel()

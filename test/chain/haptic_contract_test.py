@@ -100,7 +100,8 @@ class HapticContractTest(unittest.TestCase):
 
     def check_injection(self):
         before = self.world.seen["/injector/state"].pulses
-        self.assertEqual(self.states[-1], "punctured")
+        # The stick's button is down as soon as the phase begins, and may be heard before it.
+        self.assertEqual([state for state in self.states if state != "inject"][-1], "punctured")
         if self.driver not in STICKS:
             self.commands.publish(StringStamped(string="inject"))
         self.until("retract")

@@ -241,6 +241,8 @@ class KillCase(unittest.TestCase):
 
     def check_goes_on(self, killed):
         """The needle follows the hand, and it feels the cell, as if nothing had been."""
+        for topic in (NEEDLE, FELT):
+            self.session.catch_up(topic)
         times, places = self.session.series(NEEDLE, position)
         self.assertGreater(np.ptp(places[times > killed + 0.06][:, 2]), 0.5e-6)
         times, forces = self.session.series(FELT, force)
