@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Strangers send each node of a live session what nobody should, on every topic that it listens to: at least 250 kinds
-a topic, on four topics at a time. No node ends, none publishes a number that is not finite, and the loop closes again,
+a topic, on eight topics at a time. No node ends, none publishes a number that is not finite, and the loop closes again,
 by itself or when it is enabled again after it has said what it waits for."""
 
 import math
@@ -28,7 +28,7 @@ from live_chain import RATE, TIMEOUT, Hand, LiveChain, Master, until
 MAY_BE_NAN = {"puncture_force", "puncture_depth"}
 FARTHER = 1.5 * TIMEOUT * Hand.SPEED * 1e-3  # m, of the needle, which is a thousandth of the hand
 PAUSE = 0.002  # s between two messages on a topic, so that none is lost in a queue
-GROUP = 4  # topics that are attacked together; the loop is looked at after each group
+GROUP = 8  # topics that are attacked together; the loop is looked at after each group
 
 
 def classes(kind):

@@ -9,6 +9,7 @@ namespace {
 constexpr double kArrived = 1e-6;  // m, from the target: motors differ from a command by their resolution
 constexpr double kSlow = 4;        // times the planned duration of a move, before it counts as failed
 constexpr double kPatience = 3;    // s, on top: a device needs time to begin and to report
+constexpr double kUnseen = 5;      // times observation_time, in which a tip that was not seen may still come
 
 }  // namespace
 
@@ -58,7 +59,7 @@ std::optional<Eigen::Vector3d> CalibrationRun::step(const CalibrationInput& inpu
       return std::nullopt;
     case Phase::kObserve:
       collect(input);
-      if (elapsed >= config_.observation_time) finish();
+      if (elapsed >= config_.observation_time * (tips_.empty() ? kUnseen : 1)) finish();
       return std::nullopt;
   }
   return std::nullopt;

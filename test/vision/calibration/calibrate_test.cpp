@@ -93,9 +93,9 @@ void checkCoverage(int trials, double outlier_share, bool focus, double stated_d
 }
 
 TEST(Calibrate, IntervalsCover95Percent) { checkCoverage(1000, 0, false, 0.2); }
-TEST(Calibrate, IntervalsCoverWhenTheStatedNoiseIsThreeTimesTooSmall) { checkCoverage(1000, 0, false, 0.2 / 3); }
+TEST(Calibrate, IntervalsCoverWhenTheStatedNoiseIsThreeTimesTooSmall) { checkCoverage(500, 0, false, 0.2 / 3); }
 TEST(Calibrate, IntervalsCoverWithOutliers) { checkCoverage(1000, 0.05, false, 0.2); }
-TEST(Calibrate, IntervalsCoverWithFocusReadings) { checkCoverage(4000, 0, true, 0.3); }
+TEST(Calibrate, IntervalsCoverWithFocusReadings) { checkCoverage(1500, 0, true, 0.3); }
 
 TEST(Calibrate, NamesTheOutliers) {
   std::vector<TipObservation> observations = observationsOf(drawnNeedle(3));

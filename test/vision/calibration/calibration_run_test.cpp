@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kStep = 0.02;             // s
 constexpr double kImagePeriod = 1 / 30.0;  // s
+constexpr int kBlind = 10000;              // steps of a run that waits for a tip at each waypoint
 
 /// A rig whose needle moves at the pattern's speed, and a camera.
 class Rig {
@@ -88,14 +89,21 @@ TEST_F(CalibrationRunTest, GivesTheFitWhatItNeeds) {
 
 TEST_F(CalibrationRunTest, TakesNoImageOfBeforeTheNeedleRests) {
   rig_.late_ = 10;  // s: every image is of an earlier place
-  run();
+  run(kBlind);
   ASSERT_TRUE(run_.done());
   EXPECT_EQ(run_.seen(), 0);
 }
 
+TEST_F(CalibrationRunTest, ALateImageIsWaitedFor) {
+  rig_.late_ = 2 * config_.pattern.observation_time;
+  run();
+  ASSERT_TRUE(run_.done());
+  EXPECT_EQ(run_.seen(), 60);
+}
+
 TEST_F(CalibrationRunTest, WithoutATipThereIsNothingToFit) {
   rig_.blind_ = true;
-  run();
+  run(kBlind);
   ASSERT_TRUE(run_.done());
   EXPECT_EQ(run_.seen(), 0);
   EXPECT_FALSE(calibrate(run_.observations(), config_.limits, {"2026-01-01T00:00:00Z", {}, {}}).refusals.empty());
@@ -138,7 +146,7 @@ TEST_F(CalibrationRunTest, FailsWhenTheNeedleLeavesAWaypoint) {
 
 TEST_F(CalibrationRunTest, TakesNoImageOfTheFuture) {
   rig_.late_ = -10;
-  run();
+  run(kBlind);
   ASSERT_TRUE(run_.done());
   EXPECT_EQ(run_.seen(), 0);
 }

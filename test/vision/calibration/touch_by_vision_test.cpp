@@ -53,7 +53,7 @@ TEST_F(TouchByVision, FindsTheTouchWithin500Nanometres) {
 TEST_F(TouchByVision, IntervalsCover) {
   for (const double slope : {0.5, 2.0}) {
     int held = 0;
-    constexpr int kTrials = 1000;
+    constexpr int kTrials = 500;
     for (int i = 0; i < kTrials; ++i) {
       Approach approach;
       approach.slope = slope;
