@@ -10,7 +10,8 @@
 namespace microinjection {
 namespace {
 
-constexpr double kWarnPeriod = 5;  // s
+constexpr double kWarnPeriod = 5;    // s
+constexpr double kRepeatPeriod = 1;  // s
 const ros::WallDuration kWait(0.1);
 
 }  // namespace
@@ -50,9 +51,14 @@ void LockstepPacing::run(const CycleSteps& steps) {
   waitForPublishers(steps);
   ROS_INFO("ready for the first tick");
   acknowledge(ros::Time());
+  ros::SteadyTime acknowledged = ros::SteadyTime::now();
   while (steps.should_continue()) {
     ports_.queue.callAvailable(kWait);
     if (isReady()) stepTick(steps);
+    // A subscriber that connects in the middle of publish() may get neither the message nor the latched one.
+    if (!tick_.isZero() || secondsBetween(acknowledged, ros::SteadyTime::now()) < kRepeatPeriod) continue;
+    acknowledged = ros::SteadyTime::now();
+    acknowledge(ros::Time());
   }
 }
 
