@@ -10,8 +10,8 @@
 namespace microinjection {
 namespace {
 
-constexpr double kWarnPeriod = 5;    // s
-constexpr double kRepeatPeriod = 1;  // s
+constexpr double kWarnPeriod = 5;      // s
+constexpr double kGreetingPeriod = 1;  // s
 const ros::WallDuration kWait(0.1);
 
 }  // namespace
@@ -47,19 +47,25 @@ void LockstepPacing::run(const CycleSteps& steps) {
   const ros::Subscriber left = ports_.node.subscribe<std_msgs::String>(
       kLeftTopic, 10, [this](const std_msgs::StringConstPtr& message) { departed_ = message->data; });
   acknowledgement_ = ports_.node.advertise<std_msgs::Header>(kAcknowledgementTopic, 10, true);
-  for (auto& output : ports_.outputs) output->announce();
+  greet(false);
   waitForPublishers(steps);
   ROS_INFO("ready for the first tick");
-  acknowledge(ros::Time());
-  ros::SteadyTime acknowledged = ros::SteadyTime::now();
+  greet(true);
   while (steps.should_continue()) {
     ports_.queue.callAvailable(kWait);
     if (isReady()) stepTick(steps);
-    // A subscriber that connects in the middle of publish() may get neither the message nor the latched one.
-    if (!tick_.isZero() || secondsBetween(acknowledged, ros::SteadyTime::now()) < kRepeatPeriod) continue;
-    acknowledged = ros::SteadyTime::now();
-    acknowledge(ros::Time());
+    if (tick_.isZero()) greetAgain(true);
   }
+}
+
+void LockstepPacing::greet(bool ready) {
+  for (auto& output : ports_.outputs) output->announce();
+  if (ready) acknowledge(ros::Time());
+  greeted_ = ros::SteadyTime::now();
+}
+
+void LockstepPacing::greetAgain(bool ready) {
+  if (secondsBetween(greeted_, ros::SteadyTime::now()) >= kGreetingPeriod) greet(ready);
 }
 
 void LockstepPacing::waitForPublishers(const CycleSteps& steps) {
@@ -67,6 +73,7 @@ void LockstepPacing::waitForPublishers(const CycleSteps& steps) {
   std::string missing;
   while (steps.should_continue() && !(missing = inputsWithoutPublisher()).empty()) {
     ports_.queue.callAvailable(kWait);
+    greetAgain(false);
     if (secondsBetween(warned, ros::SteadyTime::now()) < kWarnPeriod) continue;
     warned = ros::SteadyTime::now();
     ROS_WARN_STREAM("waits for the publishers of:" << missing);

@@ -39,6 +39,12 @@ class LockstepPacing {
   /// Topics whose publishers have not sent their greeting yet, each with a space before it.
   std::string inputsWithoutPublisher() const;
   void waitForPublishers(const CycleSteps& steps);
+  /// Publishes what others wait for before the first tick: the greetings of all outputs and, when
+  /// this node is ready, the acknowledgement of tick 0.
+  void greet(bool ready);
+  /// Once a second until the first tick: roscpp keeps a message for later subscribers only after it
+  /// has sent it, so one that connects in between gets neither.
+  void greetAgain(bool ready);
   void stepTick(const CycleSteps& steps);
   void acknowledge(const ros::Time& now);
 
@@ -46,6 +52,7 @@ class LockstepPacing {
   ros::Time tick_;          // the clock's newest
   ros::Time stepped_tick_;  // the last acknowledged one
   std::string departed_;    // as on kLeftTopic
+  ros::SteadyTime greeted_;
   ros::Publisher acknowledgement_;
 };
 

@@ -30,8 +30,8 @@ struct CalibrationInput {
 /// A tip counts when its image was exposed at rest, after settle_time. The waypoint's pixel is the
 /// mean of the images of observation_time; its covariance is the mean of the stated ones, not
 /// divided: what misleads the detector in one image misleads it in the next, and the fit scales it.
-/// A late tip is waited for, up to 5 observation_time. A waypoint without one has no pixel. The run fails when a move
-/// does not arrive, the position is lost, or the needle leaves a waypoint by itself.
+/// A late tip is waited for, up to 5 observation_time. A waypoint without one has no pixel. The run
+/// fails when a move does not arrive, the position is lost, or the needle leaves a waypoint by itself.
 class CalibrationRun {
  public:
   /// `plan` has waypoints.
