@@ -42,9 +42,9 @@ std::shared_ptr<const FamilyData> load(const std::string& name) {
 
 /// A cell that was drawn, and its converged force on the axis: of the section, solved for this cell.
 struct Truth {
-  Scene scene;                 ///< with its modulus
-  double surface = 0;          ///< m, of the cell above where it is modelled
-  double length = 0, unit = 0; ///< m, of the range on the axis; N of the curve
+  Scene scene;                  ///< with its modulus
+  double surface = 0;           ///< m, of the cell above where it is modelled
+  double length = 0, unit = 0;  ///< m, of the range on the axis; N of the curve
   AxisCurve curve;
 
   double force(double depth) const { return depth > 0 ? unit * curve(std::sqrt(depth / length)) : 0; }
@@ -55,8 +55,10 @@ class TwinTable {
   explicit TwinTable(const Options& options) : options_(options) {}
 
   std::string rows() {
-    add("trial,kind,factor,modulus_error,modulus_covered,converged_at_m,force_error,contact_error_m,misfit,update_s,verdict\n");
-    for (const char* kind : {"homogeneous", "zona", "stiffer", "outliers", "dropouts", "freeze", "drift", "wrong_model"}) {
+    add("trial,kind,factor,modulus_error,modulus_covered,converged_at_m,force_error,contact_error_m,misfit,update_s,"
+        "verdict\n");
+    for (const char* kind :
+         {"homogeneous", "zona", "stiffer", "outliers", "dropouts", "freeze", "drift", "wrong_model"}) {
       const bool main = std::string(kind) == "homogeneous" || std::string(kind) == "zona";
       for (int trial = 0; trial < (main ? options_.trials : options_.trials / 4); ++trial) run(kind, trial);
     }
@@ -167,9 +169,9 @@ class TwinTable {
     std::sort(times.begin(), times.end());
     const CellEstimate& last = estimator.estimate();
     char row[240];
-    std::snprintf(row, sizeof(row), "%d,%s,%.3f,%.5f,%d,%.3g,%.5f,%.3g,%.5f,%.5f,%s\n", trial, kind.c_str(), factor, error,
-                  covered, converged, force_error, last.contact - truth.surface, last.misfit, times[times.size() * 99 / 100],
-                  inconsistent ? "inconsistent" : toText(last.verdict));
+    std::snprintf(row, sizeof(row), "%d,%s,%.3f,%.5f,%d,%.3g,%.5f,%.3g,%.5f,%.5f,%s\n", trial, kind.c_str(), factor,
+                  error, covered, converged, force_error, last.contact - truth.surface, last.misfit,
+                  times[times.size() * 99 / 100], inconsistent ? "inconsistent" : toText(last.verdict));
     add(row);
   }
 
@@ -190,6 +192,7 @@ int main(int argc, char** argv) {
                      "cells of each family, and a quarter for each kind of bad record")(
       "seed", po::value(&options.seed)->default_value(options.seed), "of the first cell");
   return microinjection::benchMain(
-      argc, argv, "twin: error, coverage and time of the modulus that is found while a needle indents a cell at 20 um/s",
+      argc, argv,
+      "twin: error, coverage and time of the modulus that is found while a needle indents a cell at 20 um/s",
       [&] { return microinjection::TwinTable(options).rows(); }, more);
 }

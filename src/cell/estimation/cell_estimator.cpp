@@ -12,20 +12,20 @@ namespace microinjection {
 namespace {
 
 constexpr int kIterations = 6;
-constexpr double kOutlier = 3;          ///< residual over its deviation from which a sample loses weight
-constexpr double kStep = 5e-9;          ///< m, of the contact's height, for the derivative
-constexpr double kSmall = 1e-3;         ///< change of the state, in deviations, that ends the fit
+constexpr double kOutlier = 3;   ///< residual over its deviation from which a sample loses weight
+constexpr double kStep = 5e-9;   ///< m, of the contact's height, for the derivative
+constexpr double kSmall = 1e-3;  ///< change of the state, in deviations, that ends the fit
 constexpr double kDeviations95 = 1.96;
 constexpr double kDeviationOfMedian = 1.4826;
-constexpr double kLearned = 0.5;        ///< of the prior's variance: with more left, nothing was learned
-constexpr int kFewest = 24;             ///< samples in contact, of a contradiction
+constexpr double kLearned = 0.5;  ///< of the prior's variance: with more left, nothing was learned
+constexpr int kFewest = 24;       ///< samples in contact, of a contradiction
 constexpr int kBlocks = 8;
-constexpr int kPersistent = 3;          ///< updates in a row that must contradict
-constexpr double kSignificant = 4;      ///< of a smooth residual, over what noise leaves of it
-constexpr double kFarOff = 6;           ///< of a reading from its neighbours, over the noise
-constexpr int kFrozen = 20;             ///< equal readings: a sensor that hangs
-constexpr double kApproach = 1.0;       ///< s before the contact that are kept, for the offset
-constexpr double kFewestFree = 12;      ///< samples before contact from which a drift is judged
+constexpr int kPersistent = 3;      ///< updates in a row that must contradict
+constexpr double kSignificant = 4;  ///< of a smooth residual, over what noise leaves of it
+constexpr double kFarOff = 6;       ///< of a reading from its neighbours, over the noise
+constexpr int kFrozen = 20;         ///< equal readings: a sensor that hangs
+constexpr double kApproach = 1.0;   ///< s before the contact that are kept, for the offset
+constexpr double kFewestFree = 12;  ///< samples before contact from which a drift is judged
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -125,8 +125,8 @@ void CellEstimator::linearise(const State& state, Fit& fit, Eigen::MatrixXd& jac
   for (Eigen::Index i = 0; i < count; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const double force = factor * points_[k].force;
-    const double deviation =
-        std::hypot(noise / std::sqrt(samples[k].readings), std::hypot(config_.sensor_floor, config_.force_error * force));
+    const double deviation = std::hypot(noise / std::sqrt(samples[k].readings),
+                                        std::hypot(config_.sensor_floor, config_.force_error * force));
     fit.deviations[i] = deviation;
     if (!points_[k].prepared) {  // there is no prediction to learn from
       fit.residuals[i] = 0;
@@ -271,7 +271,8 @@ std::string CellEstimator::drifts() const {
   // The samples at the tail of the approach may already feel a cell that is higher than modelled.
   const double margin = 3 * config_.contact_deviation;
   const auto first = std::find_if(points_.begin(), points_.end(), [](const auto& point) { return point.touches; });
-  const double surface = first == points_.end() ? -1e300 : samples[static_cast<std::size_t>(first - points_.begin())].tip.z();
+  const double surface =
+      first == points_.end() ? -1e300 : samples[static_cast<std::size_t>(first - points_.begin())].tip.z();
   for (std::size_t i = 0; i < samples.size() && points_.begin() + static_cast<std::ptrdiff_t>(i) != first; ++i) {
     if (samples[i].tip.z() < surface + margin) continue;
     const double t = samples[i].time - samples.front().time, f = samples[i].force;

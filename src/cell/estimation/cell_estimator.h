@@ -14,15 +14,15 @@ namespace microinjection {
 
 /// Beliefs before the needle touches, and what a verdict needs.
 struct CellEstimatorConfig {
-  double modulus_deviation = 0.8;      ///< of the modulus's logarithm: moduli of one species differ by factors
-  double contact_deviation = 0.5e-6;   ///< m, of the cell's height
-  double offset_deviation = 50e-9;     ///< N, of the tared sensor
-  double sensor_noise = 10e-9;         ///< N, of a reading, until the readings themselves show it
-  double sensor_floor = 3e-9;          ///< N, of what does not average out: drift, 1/f noise
-  double force_error = 0.01;           ///< relative, of the model from sample to sample
-  double converged_interval = 0.05;    ///< relative half width of the modulus's 95 % interval
-  double misfit = 0.03;                ///< of the largest force: a smaller smooth residual is no contradiction
-  double drift_limit = 20e-9;          ///< N/s, of the force before contact
+  double modulus_deviation = 0.8;     ///< of the modulus's logarithm: moduli of one species differ by factors
+  double contact_deviation = 0.5e-6;  ///< m, of the cell's height
+  double offset_deviation = 50e-9;    ///< N, of the tared sensor
+  double sensor_noise = 10e-9;        ///< N, of a reading, until the readings themselves show it
+  double sensor_floor = 3e-9;         ///< N, of what does not average out: drift, 1/f noise
+  double force_error = 0.01;          ///< relative, of the model from sample to sample
+  double converged_interval = 0.05;   ///< relative half width of the modulus's 95 % interval
+  double misfit = 0.03;               ///< of the largest force: a smaller smooth residual is no contradiction
+  double drift_limit = 20e-9;         ///< N/s, of the force before contact
   SampleHistoryConfig history;
 
   void read(ConfigReader& reader);
@@ -40,13 +40,13 @@ const char* toText(EstimateVerdict verdict);
 
 struct CellEstimate {
   EstimateVerdict verdict = EstimateVerdict::kPrior;
-  std::string reason;                                          ///< for people
-  double modulus = 0, modulus_low = 0, modulus_high = 0;       ///< Pa, of the outermost layer; interval of 95 %
-  double contact = 0;                                          ///< m, of the cell's surface above where it is modelled
-  double offset = 0;                                           ///< N, of the sensor
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();    ///< of ln(modulus), contact (m), offset (N)
-  double depth = 0;                                            ///< m, deepest so far
-  int samples = 0;                                             ///< in contact
+  std::string reason;                                        ///< for people
+  double modulus = 0, modulus_low = 0, modulus_high = 0;     ///< Pa, of the outermost layer; interval of 95 %
+  double contact = 0;                                        ///< m, of the cell's surface above where it is modelled
+  double offset = 0;                                         ///< N, of the sensor
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();  ///< of ln(modulus), contact (m), offset (N)
+  double depth = 0;                                          ///< m, deepest so far
+  int samples = 0;                                           ///< in contact
   double misfit = 0;  ///< smooth part of the residuals in contact over the largest force: what the model cannot follow
 };
 
@@ -110,7 +110,7 @@ class CellEstimator {
   static constexpr std::size_t kWindow = 7;
   std::array<double, kWindow> window_{};  ///< N, the newest readings, in a ring
   std::size_t received_ = 0;
-  int repeated_ = 0;  ///< equal readings in a row
+  int repeated_ = 0;        ///< equal readings in a row
   int contradictions_ = 0;  ///< updates in a row
 };
 

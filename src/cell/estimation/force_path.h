@@ -18,8 +18,8 @@ class ForcePath {
       : contact_(scene, std::move(cell)), memory_(scene.cell.material().viscoelasticity.prony) {}
 
   struct Point {
-    double force = 0;      ///< N, along the pipette, with its relaxation
-    double depth = 0;      ///< m, past the contact point
+    double force = 0;  ///< N, along the pipette, with its relaxation
+    double depth = 0;  ///< m, past the contact point
     bool touches = false;
     bool prepared = true;  ///< false: outside of the prepared range, where the force is none to learn from
   };

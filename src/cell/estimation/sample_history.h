@@ -47,7 +47,7 @@ class SampleHistory {
   SampleHistoryConfig config_;
   double spacing_;  ///< m, present
   std::vector<Sample> samples_;
-  double begun_ = 0;                                ///< s, of the newest sample
+  double begun_ = 0;                                 ///< s, of the newest sample
   Eigen::Vector3d start_ = Eigen::Vector3d::Zero();  ///< m, same
 };
 

@@ -26,8 +26,8 @@ std::shared_ptr<const SurrogateData> memberOf(const Scene& scene) {
 /// A session whose prior is another cell than the one under the needle.
 struct Session {
   Scene prior = loadScene(kCell);
-  double factor = 1;   ///< true modulus over the prior's
-  double surface = 0;  ///< m
+  double factor = 1;                            ///< true modulus over the prior's
+  double surface = 0;                           ///< m
   double offset = 0, drift = 0, noise = 10e-9;  ///< N, N/s, N
   unsigned seed = 1;
   CellEstimatorConfig config;
