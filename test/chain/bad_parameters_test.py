@@ -19,13 +19,16 @@ from live_chain import until
 NODES = pathlib.Path(sys.argv[0]).parent  # this program is found beside them
 SCENE = rospkg.RosPack().get_path("cell_microinjection") + "/test/chain/coarse_oocyte.yaml"
 ROUNDED = rospkg.RosPack().get_path("cell_microinjection") + "/config/cells/mouse_oocyte_pipette.yaml"
+FAMILIES = rospkg.RosPack().get_path("cell_microinjection") + "/config/families"
 MOTION = rospkg.RosPack().get_path("cell_microinjection") + "/config/hand_motions/indent_and_retract.yaml"
 EMPTY = tempfile.mkdtemp()  # no mesh, nothing prepared
 GOOD = {  # what each node cannot do without
     "calibration": {},
     "camera": {"source": "folder", "path": tempfile.mkdtemp()},
+    "cell_estimator": {"scene": ROUNDED, "families": FAMILIES},
     "cell_simulator": {"scene": SCENE},
     "display": {},
+    "focus": {},
     "force_sensor": {},
     "force_watchdog": {},
     "haptic_bridge": {},
@@ -46,6 +49,9 @@ BAD = [  # node, wrong parameters, what the message must say
     ("camera", {"path": "/nowhere"}, ["/nowhere"]),
     ("camera", {"rate": -1}, ["rate = -1"]),
     ("camera", {"source": "television"}, ["source = television", "device, folder, video"]),
+    ("cell_estimator", {"estimator/modulus_deviation": 0}, ["modulus_deviation = 0", "[0.01, 3]"]),
+    ("cell_estimator", {"estimator/history/capacity": 2}, ["history/capacity = 2", "[40, 2000]"]),
+    ("cell_estimator", {"scene": SCENE}, ["coarse_oocyte.yaml", "needs a cell of a family"]),
     ("cell_simulator", {"scene": "/nowhere.yaml"}, ["/nowhere.yaml"]),
     ("cell_simulator", {"model": "prepared"}, ["model = prepared", "needle/tip/shape = disc"]),
     ("cell_simulator", {"model": "prepared", "scene": ROUNDED}, ["model = prepared", "prepare --scene"]),
@@ -53,6 +59,7 @@ BAD = [  # node, wrong parameters, what the message must say
     ("cell_simulator", {"rate": 1e6}, ["rate = 1e+06", "[50, 5000]"]),
     ("cell_simulator", {"extrapolation_limit": 0.0}, ["extrapolation_limit = 0", "(0, inf)"]),
     ("display", {"rate": -1}, ["rate = -1"]),
+    ("focus", {"step": 0}, ["step = 0"]),
     ("force_sensor", {"simulated/bits": 2}, ["simulated/bits = 2", "[4, 32]"]),
     ("force_sensor", {"simulated/axial_range": "wide"}, ["axial_range = wide", "number"]),
     ("force_sensor", {"source": "guessed"}, ["source = guessed", "simulated, serial, topic"]),
