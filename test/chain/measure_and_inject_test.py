@@ -1,0 +1,133 @@
+#!/usr/bin/python3
+"""A cell of unknown size and place is measured in the image, served, and injected: the felt force is the true cell's."""
+
+import time
+import unittest
+
+import actionlib
+import numpy as np
+import rospy
+import rostest
+from actionlib_msgs.msg import GoalStatus
+from cell_microinjection.msg import (CellInImage, InjectAction, InjectGoal, OperatingState, StringStamped, VisionState)
+from cell_microinjection.srv import MeasureCell
+from geometry_msgs.msg import PoseStamped, WrenchStamped
+
+from messages import force, pose, position
+
+PATIENCE = 300  # s
+PIXEL = 0.25e-6  # m
+DIAMETER, BESIDE = 62e-6, 6e-6  # m, of the true cell; from the needle's axis
+PUNCTURE = 1.5e-6  # N, of its zona
+
+
+class MeasureAndInjectTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.seen, cls.forces = {}, {"/cell/predicted_cf": {}, "/true_cell/predicted_cf": {}}
+        for topic, kind in (("/vision/state", VisionState), ("/needle/measured_cp", PoseStamped),
+                            ("/needle/operating_state", OperatingState), ("/controller/operating_state", OperatingState)):
+            rospy.Subscriber(topic, kind, lambda message, topic=topic: cls.seen.update({topic: message}), queue_size=1)
+        for topic in cls.forces:
+            rospy.Subscriber(topic, WrenchStamped, lambda message, topic=topic: cls.on_force(topic, message),
+                             queue_size=2000, tcp_nodelay=True)
+        cls.commands = rospy.Publisher("/controller/state_command", StringStamped, queue_size=1)
+        cls.moves = rospy.Publisher("/needle/move_cp", PoseStamped, queue_size=1)
+        cls.client = actionlib.SimpleActionClient("/controller/inject", InjectAction)
+        assert cls.client.wait_for_server(rospy.Duration(PATIENCE))
+        rospy.wait_for_service("/vision/measure_cell", PATIENCE)
+        cls.measure = staticmethod(rospy.ServiceProxy("/vision/measure_cell", MeasureCell))
+
+    @classmethod
+    def on_force(cls, topic, message):
+        """Both forces have the stamp of the needle's pose that they are of."""
+        if not message.header.stamp.is_zero():
+            cls.forces[topic][message.header.stamp.to_nsec()] = force(message)[2]
+
+    def until(self, condition, what):
+        end = time.monotonic() + PATIENCE
+        while not condition():
+            self.assertLess(time.monotonic(), end, f"{what}: not within {PATIENCE} s")
+            time.sleep(0.05)
+
+    def needle(self):
+        return position(self.seen["/needle/measured_cp"])
+
+    def command(self, command, state):
+        def reached():
+            message = self.seen.get("/controller/operating_state")
+            if message and message.state == state:
+                return True
+            self.commands.publish(StringStamped(string=command))
+            time.sleep(0.2)
+            return False
+        self.until(reached, state)
+
+    def move_to(self, place):
+        """With the controller disabled: two must not command the needle."""
+        self.command("disable", "DISABLED")
+        time.sleep(0.5)  # its last set-point grows stale
+        target = pose(*place)
+        target.header.stamp = rospy.Time.now()
+        self.moves.publish(target)
+        self.until(lambda: np.allclose(self.needle(), place, atol=5e-8), f"the needle at {place}")
+        self.until(lambda: not self.seen["/needle/operating_state"].is_busy, "the end of the move")
+        self.command("enable", "ENABLED")
+
+    def image(self):
+        """Of the needle at rest: both are found in it."""
+        since = rospy.Time.now()
+
+        def found():
+            state = self.seen.get("/vision/state")
+            return (state and state.header.stamp > since and state.cell.verdict == CellInImage.FOUND
+                    and state.injection_pipette.verdict == state.injection_pipette.FOUND)
+        self.until(found, "cell and tip")
+        return self.seen["/vision/state"]
+
+    def measured(self):
+        answer = None
+
+        def enough():
+            nonlocal answer
+            answer = self.measure(serve=True, scene="")
+            return answer.images >= 10 and answer.success
+        self.until(enough, "ten images of the cell")
+        return answer
+
+    def test_measured_served_and_injected(self):
+        self.until(lambda: {"/needle/measured_cp", "/needle/operating_state"} <= set(self.seen), "the rig")
+        self.move_to(self.needle() + [BESIDE, 0, 0])
+        # Place: by what the image shows, without knowing where the cell is.
+        state = self.image()
+        beside = PIXEL * (state.injection_pipette.x - state.cell.x)
+        self.move_to(self.needle() - [beside, 0, 0])
+        self.assertAlmostEqual(self.needle()[0], 0, delta=0.3e-6)
+        # Size: measured and served.
+        answer = self.measured()
+        self.assertAlmostEqual(answer.diameter, DIAMETER, delta=3e-3 * DIAMETER)
+        for forces in self.forces.values():
+            forces.clear()
+        self.client.send_goal(InjectGoal(puncture=True, layers=1, depth=25e-6, margin=2e-6, pressure=20e3, duration=0.3))
+        self.assertTrue(self.client.wait_for_result(rospy.Duration(PATIENCE)))
+        result = self.client.get_result()
+        self.assertEqual((self.client.get_state(), result.outcome, result.reason),
+                         (GoalStatus.SUCCEEDED, "injected", ""))
+        self.assertGreater(result.volume, 0)
+        self.check_forces()
+
+    def check_forces(self):
+        """Up to the puncture, within 3 %."""
+        felt, true = self.forces["/cell/predicted_cf"], self.forces["/true_cell/predicted_cf"]
+        stamps = sorted(set(felt) & set(true))
+        pairs = np.array([(felt[stamp], true[stamp]) for stamp in stamps])
+        peak = int(np.argmin(pairs[:, 1] < 0.98 * PUNCTURE))
+        pairs = pairs[:peak]
+        pairs = pairs[pairs[:, 1] > 0.2 * PUNCTURE]
+        self.assertGreater(len(pairs), 30)
+        np.testing.assert_allclose(pairs[:, 0] / pairs[:, 1], 1, atol=0.03)
+
+
+if __name__ == "__main__":
+    rospy.init_node("operator")
+    rostest.rosrun("cell_microinjection", "measure_and_inject", MeasureAndInjectTest)
