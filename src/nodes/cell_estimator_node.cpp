@@ -25,7 +25,7 @@ bool isModulus(const std::string& name) { return name == "young_modulus" || name
 const char* const CellEstimatorNode::kHelp =
     "cell_estimator: the online twin. Finds the modulus of the cell under the needle and has cell_simulator serve it.\n"
     "In: /needle/measured_cp, /force_sensor/measured_cf, /controller/injection_state, /cell/state.\n"
-    "Out: /cell/estimate, /cell/set_parameters.\n";
+    "Out: /cell/estimate, /cell/set_parameters, /cell/puncture_score.\n";
 
 CellEstimatorNode::Parameters CellEstimatorNode::Parameters::read(const ros::NodeHandle& private_node) {
   Parameters parameters;
@@ -38,12 +38,14 @@ CellEstimatorNode::Parameters CellEstimatorNode::Parameters::read(const ros::Nod
   reader.number("force_timeout", parameters.force_timeout, Range::positive());
   reader.number("controller_timeout", parameters.controller_timeout, Range::positive());
   reader.number("largest_tilt", parameters.largest_tilt, Range::closed(0, 0.2));
+  reader.number("largest_speed", parameters.largest_speed, Range::positive());
   reader.number("largest_force", parameters.largest_force, Range::positive());
   reader.number("clear_distance", parameters.clear_distance, Range::positive());
   reader.boolean("serve", parameters.serve);
   reader.number("serve_period", parameters.serve_period, Range::closed(0.02, 10));
   reader.number("least_change", parameters.least_change, Range::closed(1e-4, 0.5));
   reader.number("largest_change", parameters.largest_change, Range::closed(0.01, 2));
+  reader.number("puncture_deviation", parameters.puncture_deviation, Range::closed(0, 2));
   ConfigReader estimator = reader.section("estimator");
   parameters.estimator.read(estimator);
   reader.finish();
@@ -61,7 +63,8 @@ CellEstimatorNode::CellEstimatorNode(ros::NodeHandle node, ros::NodeHandle priva
       controller_(cycle_.input<cell_microinjection::InjectionStatus>(
           "controller/injection_state", InputPhase::kPreviousTick, parameters_.controller_timeout)),
       estimate_(cycle_.output<cell_microinjection::CellEstimate>("cell/estimate")),
-      change_(cycle_.output<cell_microinjection::CellParameters>("cell/set_parameters")) {
+      change_(cycle_.output<cell_microinjection::CellParameters>("cell/set_parameters")),
+      score_(cycle_.output<cell_microinjection::PunctureScore>("cell/puncture_score", true)) {
   makeEstimator();
   served_ = scene_.cell.material().young_modulus;
   cell_ = subscribeGuarded<cell_microinjection::CellState>(
@@ -79,6 +82,8 @@ void CellEstimatorNode::makeEstimator() {
   }
   member_ = *found;
   estimator_ = std::make_unique<CellEstimator>(scene_, member_.data, parameters_.estimator);
+  predictor_ = std::make_unique<PuncturePredictor>(scene_, member_.data, parameters_.puncture_deviation);
+  predictions_.clear();
 }
 
 /// Another cell, measured in the image, say: what was learned is of the one before.
@@ -106,30 +111,56 @@ std::string CellEstimatorNode::interruption(const ros::Time& now) const {
   return finished_ ? "the cell is punctured" : "";
 }
 
+/// Where the indentation begins and ends, how deep it is, and whether the cell has failed in it.
+void CellEstimatorNode::followIndentation(const Eigen::Vector3d& tip, const ros::Time& now) {
+  if (tip.norm() > scene_.radius() + parameters_.clear_distance && std::exchange(touched_, false)) {
+    estimator_->beginNext();
+    predictions_.clear();
+    finished_ = false;
+    peak_ = 0;
+  }
+  if (!touched_) surface_ = lowest_ = tip.z();
+  // A fast needle touches before anything is learned.
+  touched_ = touched_ || tip.norm() < scene_.radius() + estimator_->estimate().contact;
+  if (!finished_) lowest_ = std::min(lowest_, tip.z());
+  const auto* status = controller_.get(now);
+  if (!status) return;
+  if (!touched_) punctures_before_ = status->punctures;
+  if (finished_ || status->punctures <= punctures_before_) return;
+  finished_ = true;
+  score(now);
+}
+
 std::string CellEstimatorNode::learn(const ros::Time& now) {
   const auto needle = validPose(needle_.get(now));
   if (!needle) return "no valid needle pose";
   const Eigen::Vector3d axis = needle->linear().col(2), tip = needle->translation();
-  if (tip.norm() > scene_.radius() + parameters_.clear_distance && std::exchange(touched_, false)) {
-    estimator_->reset();
-    finished_ = false;
-  }
-  if (const auto* status = controller_.get(now)) {
-    if (!touched_) punctures_before_ = status->punctures;
-    finished_ = finished_ || status->punctures > punctures_before_;
-  }
+  followIndentation(tip, now);
+  followSpeed(tip, now);
   const std::string interrupted = interruption(now);
   if (!interrupted.empty()) return interrupted;
   if (std::acos(std::clamp(axis.z(), -1.0, 1.0)) > parameters_.largest_tilt) return "the needle is tilted";
   const auto* message = force_.get(now);
   const auto force = validForce(message, needle->linear());
   if (!force) return "no valid force of the sensor";
+  const double along = axis.dot(*force);
+  if (touched_) peak_ = std::max(peak_, along - estimator_->estimate().offset);
+  if (speed_ > parameters_.largest_speed) return "the needle is fast: the sensor's delay would count";
   if (message->header.stamp == last_force_) return held_;  // heard before
   last_force_ = message->header.stamp;
-  const double along = axis.dot(*force);
   if (std::abs(along) > parameters_.largest_force) return "the force sensor is saturated";
   estimator_->add(message->header.stamp.toSec(), tip, along);
   return "";
+}
+
+/// Over a while: the noise of two neighbouring positions would be a speed.
+void CellEstimatorNode::followSpeed(const Eigen::Vector3d& tip, const ros::Time& now) {
+  constexpr double kWhile = 0.01;  // s
+  const double passed = secondsBetween(marked_, now);
+  if (!marked_.isZero() && passed < kWhile) return;
+  speed_ = marked_.isZero() ? 0 : (tip - mark_).norm() / passed;
+  mark_ = tip;
+  marked_ = now;
 }
 
 void CellEstimatorNode::step(const Cycle::Tick& tick) {
@@ -137,7 +168,11 @@ void CellEstimatorNode::step(const Cycle::Tick& tick) {
   if (secondsBetween(updated_, tick.now) < parameters_.update_period && !updated_.isZero()) return;
   updated_ = tick.now;
   const double start = threadCpuTime();
-  if (held_.empty()) touched_ = estimator_->update().samples > 0 || touched_;
+  if (held_.empty() && estimator_->update().samples > 0) {
+    touched_ = true;
+    surface_ = lowest_ + estimator_->estimate().depth;
+  }
+  if (!finished_) predict();
   const double taken = threadCpuTime() - start;
   serve(tick.now);
   publish(tick.now, taken);
@@ -164,6 +199,40 @@ void CellEstimatorNode::serve(const ros::Time& now) {
   change_.publish(parameters);
 }
 
+void CellEstimatorNode::predict() {
+  const CellEstimate& found = estimator_->estimate();
+  cell_microinjection::PuncturePrediction message;
+  if (const auto expected = predictor_->predict(found.modulus, std::sqrt(found.covariance(0, 0)), depth())) {
+    message.depth = expected->depth;
+    message.depth_low = expected->depth_low;
+    message.depth_high = expected->depth_high;
+    message.force = expected->force;
+    message.force_low = expected->force_low;
+    message.force_high = expected->force_high;
+    message.beyond = expected->beyond;
+  }
+  if (predictions_.empty() || predictions_.back().first != depth()) predictions_.emplace_back(depth(), message);
+  predictions_.back().second = message;
+}
+
+/// What was predicted when the needle was at half of the depth of the puncture that has happened now.
+void CellEstimatorNode::score(const ros::Time& now) {
+  cell_microinjection::PunctureScore message;
+  message.header.stamp = now;
+  message.depth = depth();
+  message.force = peak_;
+  for (const auto& [reached, prediction] : predictions_) {
+    if (reached > 0.5 * message.depth) break;
+    message.predicted = prediction;
+  }
+  const auto& expected = message.predicted;
+  ROS_INFO(
+      "punctured at %.3g um and %.3g uN; expected at half the depth: %.3g um (%.3g to %.3g), %.3g uN (%.3g to %.3g)",
+      1e6 * message.depth, 1e6 * message.force, 1e6 * expected.depth, 1e6 * expected.depth_low,
+      1e6 * expected.depth_high, 1e6 * expected.force, 1e6 * expected.force_low, 1e6 * expected.force_high);
+  score_.publish(message);
+}
+
 void CellEstimatorNode::publish(const ros::Time& now, double update_time) {
   const CellEstimate& found = estimator_->estimate();
   cell_microinjection::CellEstimate message;
@@ -180,6 +249,7 @@ void CellEstimatorNode::publish(const ros::Time& now, double update_time) {
   message.depth = found.depth;
   message.misfit = found.misfit;
   message.samples = static_cast<std::uint32_t>(found.samples);
+  if (!finished_ && !predictions_.empty()) message.puncture = predictions_.back().second;
   message.served_modulus = served_;
   message.update_time = update_time;
   estimate_.publish(message);
@@ -194,6 +264,9 @@ void CellEstimatorNode::report(diagnostic_updater::DiagnosticStatusWrapper& stat
   status.summary(bad ? diagnostic_msgs::DiagnosticStatus::WARN : diagnostic_msgs::DiagnosticStatus::OK, text);
   status.add("modulus (Pa)", found.modulus);
   status.add("served modulus (Pa)", served_);
+  if (predictions_.empty()) return;
+  status.add("expected puncture: depth (m)", predictions_.back().second.depth);
+  status.add("expected puncture: force (N)", predictions_.back().second.force);
   status.add("misfit", found.misfit);
 }
 

@@ -4,6 +4,7 @@
 #include <cell_microinjection/CellParameters.h>
 #include <cell_microinjection/CellState.h>
 #include <cell_microinjection/InjectionStatus.h>
+#include <cell_microinjection/PunctureScore.h>
 #include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/WrenchStamped.h>
 #include <ros/ros.h>
@@ -11,8 +12,11 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "cell/estimation/cell_estimator.h"
+#include "cell/estimation/puncture_prediction.h"
 #include "cell/family/family_cell.h"
 #include "nodes/runtime/cycle.h"
 
@@ -23,7 +27,8 @@ namespace microinjection {
 ///
 /// In:  /needle/measured_cp, /force_sensor/measured_cf, /controller/injection_state, /cell/state
 ///      (the sizes of the served cell)
-/// Out: /cell/estimate (CellEstimate), /cell/set_parameters (CellParameters)
+/// Out: /cell/estimate (CellEstimate), /cell/set_parameters (CellParameters), /cell/puncture_score
+///      (PunctureScore)
 ///
 /// Parameters: config/cell_estimator.yaml
 class CellEstimatorNode {
@@ -40,11 +45,13 @@ class CellEstimatorNode {
     double update_period = 0.02;
     double needle_timeout = 0.05, force_timeout = 0.05, controller_timeout = 0.5;
     double largest_tilt = 0.035;
+    double largest_speed = 60e-6;
     double largest_force = 450e-6;
     double clear_distance = 5e-6;
     bool serve = true;
     double serve_period = 0.03;
     double least_change = 0.005, largest_change = 0.15;
+    double puncture_deviation = 0.2;
     CellEstimatorConfig estimator;
     static Parameters read(const ros::NodeHandle& private_node);
   };
@@ -54,8 +61,13 @@ class CellEstimatorNode {
   void step(const Cycle::Tick& tick);
   /// Learns from the newest reading. Returns why not; empty if it did.
   std::string learn(const ros::Time& now);
+  void followIndentation(const Eigen::Vector3d& tip, const ros::Time& now);
+  void followSpeed(const Eigen::Vector3d& tip, const ros::Time& now);
   std::string interruption(const ros::Time& now) const;
   void serve(const ros::Time& now);
+  double depth() const { return touched_ ? surface_ - lowest_ : 0; }  ///< m, deepest
+  void predict();
+  void score(const ros::Time& now);
   void publish(const ros::Time& now, double update_time);
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
@@ -63,16 +75,26 @@ class CellEstimatorNode {
   Scene scene_;  ///< the prior
   FamilyCell member_;
   std::unique_ptr<CellEstimator> estimator_;
+  std::unique_ptr<PuncturePredictor> predictor_;
   Cycle cycle_;
   Input<geometry_msgs::PoseStamped>& needle_;
   Input<geometry_msgs::WrenchStamped>& force_;
   Input<cell_microinjection::InjectionStatus>& controller_;
   Output<cell_microinjection::CellEstimate>& estimate_;
   Output<cell_microinjection::CellParameters>& change_;
+  Output<cell_microinjection::PunctureScore>& score_;
   ros::Subscriber cell_;
   std::string held_;
-  ros::Time last_force_, updated_, served_at_;
-  double served_ = 0;                   ///< Pa
+  ros::Time last_force_, updated_, served_at_, marked_;
+  Eigen::Vector3d mark_ = Eigen::Vector3d::Zero();  ///< m, of the tip at marked_
+  double speed_ = 0;                                ///< m/s
+  double served_ = 0;                               ///< Pa
+  // Of the present indentation:
+  double peak_ = 0;     ///< N, largest force
+  double surface_ = 0;  ///< m, height of the tip at first contact
+  double lowest_ = 0;   ///< m, lowest height of the tip
+  /// Depth (m) and prediction of the updates of the present indentation, one for each depth.
+  std::vector<std::pair<double, cell_microinjection::PuncturePrediction>> predictions_;
   bool touched_ = false;                ///< in the present indentation
   bool finished_ = false;               ///< it was punctured: nothing to learn until the needle is clear
   std::uint32_t punctures_before_ = 0;  ///< of the present indentation

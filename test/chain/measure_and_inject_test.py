@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """A cell of unknown size and place is measured in the image, served, and injected: the felt force is the true cell's."""
 
+import sys
 import time
 import unittest
 
@@ -9,7 +10,8 @@ import numpy as np
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
-from cell_microinjection.msg import (CellInImage, InjectAction, InjectGoal, OperatingState, StringStamped, VisionState)
+from cell_microinjection.msg import (CellEstimate, CellInImage, CellParameters, InjectAction, InjectGoal, OperatingState,
+                                     PunctureScore, StringStamped, VisionState)
 from cell_microinjection.srv import MeasureCell
 from geometry_msgs.msg import PoseStamped, WrenchStamped
 
@@ -19,6 +21,8 @@ PATIENCE = 300  # s
 PIXEL = 0.25e-6  # m
 DIAMETER, BESIDE = 62e-6, 6e-6  # m, of the true cell; from the needle's axis
 PUNCTURE = 1.5e-6  # N, of its zona
+TWIN = "true" in sys.argv[1:]
+TRUE_MODULUS = 30e3  # Pa, with the twin; the session believes in 17.9e3
 
 
 class MeasureAndInjectTest(unittest.TestCase):
@@ -26,7 +30,8 @@ class MeasureAndInjectTest(unittest.TestCase):
     def setUpClass(cls):
         cls.seen, cls.forces = {}, {"/cell/predicted_cf": {}, "/true_cell/predicted_cf": {}}
         for topic, kind in (("/vision/state", VisionState), ("/needle/measured_cp", PoseStamped),
-                            ("/needle/operating_state", OperatingState), ("/controller/operating_state", OperatingState)):
+                            ("/needle/operating_state", OperatingState), ("/controller/operating_state", OperatingState),
+                            ("/cell/estimate", CellEstimate), ("/cell/puncture_score", PunctureScore)):
             rospy.Subscriber(topic, kind, lambda message, topic=topic: cls.seen.update({topic: message}), queue_size=1)
         for topic in cls.forces:
             rospy.Subscriber(topic, WrenchStamped, lambda message, topic=topic: cls.on_force(topic, message),
@@ -106,15 +111,37 @@ class MeasureAndInjectTest(unittest.TestCase):
         # Size: measured and served.
         answer = self.measured()
         self.assertAlmostEqual(answer.diameter, DIAMETER, delta=3e-3 * DIAMETER)
+        if TWIN:
+            self.learn()
         for forces in self.forces.values():
             forces.clear()
-        self.client.send_goal(InjectGoal(puncture=True, layers=1, depth=25e-6, margin=2e-6, pressure=20e3, duration=0.3))
-        self.assertTrue(self.client.wait_for_result(rospy.Duration(PATIENCE)))
-        result = self.client.get_result()
-        self.assertEqual((self.client.get_state(), result.outcome, result.reason),
-                         (GoalStatus.SUCCEEDED, "injected", ""))
+        result = self.run_goal("injected", puncture=True, layers=1, depth=25e-6, margin=2e-6, pressure=20e3, duration=0.3)
         self.assertGreater(result.volume, 0)
         self.check_forces()
+        if TWIN:
+            self.check_score(result)
+
+    def run_goal(self, outcome, **goal):
+        self.client.send_goal(InjectGoal(**goal))
+        self.assertTrue(self.client.wait_for_result(rospy.Duration(PATIENCE)))
+        result = self.client.get_result()
+        self.assertEqual((self.client.get_state(), result.outcome, result.reason), (GoalStatus.SUCCEEDED, outcome, ""))
+        return result
+
+    def learn(self):
+        """A touch of 6 um, for half a second."""
+        changes = rospy.Publisher("/true_cell/set_parameters", CellParameters, queue_size=1, latch=True)
+        changes.publish(CellParameters(name=["young_modulus"], value=[TRUE_MODULUS]))
+        time.sleep(1)
+        self.run_goal("indented", puncture=False, layers=1, depth=6e-6, hold_time=0.5)
+        self.assertAlmostEqual(self.seen["/cell/estimate"].served_modulus / TRUE_MODULUS, 1, delta=0.03)
+
+    def check_score(self, result):
+        score = self.seen["/cell/puncture_score"]
+        self.assertAlmostEqual(score.force / result.puncture_force, 1, delta=0.1)
+        self.assertLess(score.predicted.force_low, score.force)
+        self.assertLess(score.force, score.predicted.force_high)
+        self.assertAlmostEqual(score.predicted.depth / score.depth, 1, delta=0.2)
 
     def check_forces(self):
         """Up to the puncture, within 3 %."""

@@ -79,10 +79,11 @@ class TwinTest(unittest.TestCase):
         self.assertAlmostEqual(self.estimate().modulus / modulus, 1, delta=0.02)
         self.chain.run(200, self.hand)
 
-    def test_4_the_next_indentation_begins_anew_with_the_cell_that_was_found(self):
+    def test_4_the_next_indentation_begins_with_the_cell_that_was_found(self):
         self.move(SURFACE + 12e-6, 50e-6)
         self.chain.run(300, self.hand)
         self.assertEqual(self.estimate().verdict, "prior")
+        self.assertAlmostEqual(self.estimate().modulus / TRUE, 1, delta=0.03)
         self.assertAlmostEqual(self.estimate().served_modulus / TRUE, 1, delta=0.03)
 
     def test_5_a_cell_of_another_size_is_unknown(self):

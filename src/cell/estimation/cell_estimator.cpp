@@ -18,6 +18,7 @@ constexpr double kSmall = 1e-3;  ///< change of the state, in deviations, that e
 constexpr double kDeviations95 = 1.96;
 constexpr double kDeviationOfMedian = 1.4826;
 constexpr double kLearned = 0.5;  ///< of the prior's variance: with more left, nothing was learned
+constexpr double kConflict = 3;   ///< of the prior's deviations, from what was learned of a cell before
 constexpr int kFewest = 24;       ///< samples in contact, of a contradiction
 constexpr int kBlocks = 8;
 constexpr int kPersistent = 3;      ///< updates in a row that must contradict
@@ -51,6 +52,7 @@ const char* toText(EstimateVerdict verdict) {
 
 void CellEstimatorConfig::read(ConfigReader& reader) {
   reader.number("modulus_deviation", modulus_deviation, Range::closed(0.01, 3));
+  reader.number("next_deviation", next_deviation, Range::closed(0.01, 3));
   reader.number("contact_deviation", contact_deviation, Range::closed(1e-9, 20e-6));
   reader.number("offset_deviation", offset_deviation, Range::positive());
   reader.number("sensor_noise", sensor_noise, Range::positive());
@@ -66,15 +68,26 @@ void CellEstimatorConfig::read(ConfigReader& reader) {
 CellEstimator::CellEstimator(const Scene& scene, std::shared_ptr<const SurrogateData> cell,
                              const CellEstimatorConfig& config)
     : config_(config),
-      prior_modulus_(scene.cell.material().young_modulus),
+      scene_modulus_(scene.cell.material().young_modulus),
       law_error_(cell->median_error),
+      prior_modulus_(scene_modulus_),
+      prior_deviation_(config.modulus_deviation),
       path_(scene, cell),
       shifted_(scene, cell),
       history_(config.history) {
   setPrior(EstimateVerdict::kPrior, "the needle has not touched the cell");
 }
 
-void CellEstimator::reset() {
+void CellEstimator::beginNext() {
+  const bool known =
+      estimate_.verdict == EstimateVerdict::kLearning || estimate_.verdict == EstimateVerdict::kConverged;
+  if (known) {
+    prior_modulus_ = estimate_.modulus;
+    prior_deviation_ = std::max(config_.next_deviation, std::sqrt(estimate_.covariance(0, 0)));
+  } else if (estimate_.verdict == EstimateVerdict::kInconsistent) {
+    prior_modulus_ = scene_modulus_;
+    prior_deviation_ = config_.modulus_deviation;
+  }
   history_.clear();
   state_.setZero();
   contradictions_ = repeated_ = 0;
@@ -82,17 +95,23 @@ void CellEstimator::reset() {
   setPrior(EstimateVerdict::kPrior, "the needle has not touched the cell");
 }
 
+double CellEstimator::modulusOf(const State& state) const {
+  return prior_modulus_ * std::exp(prior_deviation_ * state[0]);
+}
+
 void CellEstimator::setPrior(EstimateVerdict verdict, const std::string& reason) {
   estimate_ = {};
   estimate_.verdict = verdict;
   estimate_.reason = reason;
-  const double factor = std::exp(kDeviations95 * config_.modulus_deviation);
-  estimate_.modulus = prior_modulus_;
-  estimate_.modulus_low = prior_modulus_ / factor;
-  estimate_.modulus_high = prior_modulus_ * factor;
-  estimate_.covariance = Eigen::Vector3d(config_.modulus_deviation, config_.contact_deviation, config_.offset_deviation)
-                             .cwiseAbs2()
-                             .asDiagonal();
+  // A contradiction takes away what was believed of a cell before, too.
+  const bool contradicted = verdict == EstimateVerdict::kInconsistent;
+  const double deviation = contradicted ? config_.modulus_deviation : prior_deviation_;
+  const double factor = std::exp(kDeviations95 * deviation);
+  estimate_.modulus = contradicted ? scene_modulus_ : prior_modulus_;
+  estimate_.modulus_low = estimate_.modulus / factor;
+  estimate_.modulus_high = estimate_.modulus * factor;
+  estimate_.covariance =
+      Eigen::Vector3d(deviation, config_.contact_deviation, config_.offset_deviation).cwiseAbs2().asDiagonal();
 }
 
 void CellEstimator::add(double time, const Eigen::Vector3d& tip, double force) {
@@ -113,7 +132,7 @@ bool CellEstimator::isOutlier(double force) const {
 void CellEstimator::linearise(const State& state, Fit& fit, Eigen::MatrixXd& jacobian) {
   const auto& samples = history_.samples();
   const double shift = config_.contact_deviation * state[1];
-  const double factor = std::exp(config_.modulus_deviation * state[0]);
+  const double factor = modulusOf(state) / scene_modulus_;
   path_.predict(samples, shift, points_);
   shifted_.predict(samples, shift + kStep, shifted_points_);
   const double known = history_.noise(), noise = known > 0 ? known : config_.sensor_noise;
@@ -134,7 +153,7 @@ void CellEstimator::linearise(const State& state, Fit& fit, Eigen::MatrixXd& jac
       continue;
     }
     fit.residuals[i] = (samples[k].force - force - config_.offset_deviation * state[2]) / deviation;
-    jacobian(i, 0) = config_.modulus_deviation * force / deviation;
+    jacobian(i, 0) = prior_deviation_ * force / deviation;
     jacobian(i, 1) =
         config_.contact_deviation * factor * (shifted_points_[k].force - points_[k].force) / kStep / deviation;
     jacobian(i, 2) = config_.offset_deviation / deviation;
@@ -183,10 +202,16 @@ const CellEstimate& CellEstimator::update() {
   if (history_.samples().empty()) return estimate_;
   const Fit fit = this->fit(state_);
   if (!fit.state.allFinite()) {
-    reset();
+    beginNext();
     return estimate_;
   }
   state_ = fit.state;
+  if (std::abs(state_[0]) > kConflict && prior_deviation_ < config_.modulus_deviation) {
+    // It is not the cell of before: only that the modulus may be anything is believed still.
+    state_[0] *= prior_deviation_ / config_.modulus_deviation;
+    prior_deviation_ = config_.modulus_deviation;
+    return update();
+  }
   judge(fit);
   const bool touched = std::any_of(points_.begin(), points_.end(), [](const auto& point) { return point.touches; });
   if (!touched) history_.forgetBefore(history_.samples().back().time - kApproach);
@@ -207,14 +232,14 @@ void CellEstimator::judge(const Fit& fit) {
 
   // Residuals that follow each other say less than their number.
   const double correlation = correlationLength(fit.residuals);
-  const Eigen::Vector3d units(config_.modulus_deviation, config_.contact_deviation, config_.offset_deviation);
+  const Eigen::Vector3d units(prior_deviation_, config_.contact_deviation, config_.offset_deviation);
   Eigen::Matrix3d information = (fit.normal - Eigen::Matrix3d::Identity()) / correlation + Eigen::Matrix3d::Identity();
   Eigen::Matrix3d covariance = information.inverse();
   CellEstimate next;
   next.covariance = units.asDiagonal() * covariance * units.asDiagonal();
   next.covariance(0, 0) += std::pow(kDeviationOfMedian * law_error_, 2);
   const double half = kDeviations95 * std::sqrt(next.covariance(0, 0));
-  next.modulus = prior_modulus_ * std::exp(units[0] * fit.state[0]);
+  next.modulus = modulusOf(fit.state);
   next.modulus_low = next.modulus * std::exp(-half);
   next.modulus_high = next.modulus * std::exp(half);
   next.contact = units[1] * fit.state[1];
@@ -241,7 +266,7 @@ void CellEstimator::judge(const Fit& fit) {
 CellEstimator::Misfit CellEstimator::misfitOf(const Fit& fit) const {
   std::vector<double> residuals, deviations;
   double largest = 0;
-  const double factor = std::exp(config_.modulus_deviation * fit.state[0]);
+  const double factor = modulusOf(fit.state) / scene_modulus_;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     largest = std::max(largest, factor * points_[i].force);
     if (!points_[i].touches || !points_[i].prepared) continue;

@@ -15,6 +15,7 @@ namespace microinjection {
 /// Beliefs before the needle touches, and what a verdict needs.
 struct CellEstimatorConfig {
   double modulus_deviation = 0.8;     ///< of the modulus's logarithm: moduli of one species differ by factors
+  double next_deviation = 0.05;       ///< same, from one indentation to the next
   double contact_deviation = 0.5e-6;  ///< m, of the cell's height
   double offset_deviation = 50e-9;    ///< N, of the tared sensor
   double sensor_noise = 10e-9;        ///< N, of a reading, until the readings themselves show it
@@ -71,11 +72,12 @@ class CellEstimator {
   /// Fits; milliseconds.
   const CellEstimate& update();
   const CellEstimate& estimate() const { return estimate_; }
-  /// Another cell, of the same prior.
-  void reset();
+  /// The same cell again, or one like it: what was learned of the modulus is the next prior, with a
+  /// deviation of at least next_deviation. A force that contradicts it makes that prior wide again.
+  void beginNext();
 
  private:
-  /// (ln(E / prior), z_0, offset) in units of the prior's deviations.
+  /// (ln(E / prior), z_0, offset) in units of the priors' deviations.
   using State = Eigen::Vector3d;
 
   struct Fit {
@@ -99,9 +101,11 @@ class CellEstimator {
   Misfit misfitOf(const Fit& fit) const;
   std::string drifts() const;
   void setPrior(EstimateVerdict verdict, const std::string& reason);
+  double modulusOf(const State& state) const;  ///< Pa
 
   CellEstimatorConfig config_;
-  double prior_modulus_, law_error_;
+  double scene_modulus_, law_error_;        ///< Pa; relative
+  double prior_modulus_, prior_deviation_;  ///< Pa; of the logarithm
   ForcePath path_, shifted_;
   SampleHistory history_;
   State state_ = State::Zero();

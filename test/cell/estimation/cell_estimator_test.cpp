@@ -35,11 +35,16 @@ struct Session {
 
   /// Indents from 5 um above to `depth` (m), updating every 20 ms.
   CellEstimator indent(double depth) const {
+    CellEstimator estimator(prior, memberOf(prior), config);
+    indent(depth, estimator);
+    return estimator;
+  }
+
+  void indent(double depth, CellEstimator& estimator) const {
     Scene truth = prior;
     for (Scene::Layer& layer : truth.cell.layers) layer.material.young_modulus *= factor;
     SurrogateContact cell(truth, memberOf(truth));
     ForceMemory memory(truth.cell.material().viscoelasticity.prony);
-    CellEstimator estimator(prior, memberOf(prior), config);
     std::mt19937 random(seed);
     std::normal_distribution<double> normal(0, noise);
     constexpr double kAbove = 5e-6, kPeriod = 1e-3;
@@ -53,7 +58,6 @@ struct Session {
       if (i % 20 == 0) estimator.update();
     }
     estimator.update();
-    return estimator;
   }
 };
 
@@ -146,12 +150,35 @@ TEST(CellEstimator, KnowsThatACellRelaxes) {
   expectModulus(session, session.indent(8e-6).estimate(), 0.02);
 }
 
-TEST(CellEstimator, ResetForgetsTheCell) {
+TEST(CellEstimator, WhatWasLearnedIsTheNextPrior) {
   Session session;
   session.factor = 2;
   CellEstimator estimator = session.indent(8e-6);
-  estimator.reset();
+  const double learned = estimator.estimate().modulus;
+  estimator.beginNext();
   EXPECT_EQ(estimator.update().verdict, EstimateVerdict::kPrior);
+  EXPECT_EQ(estimator.estimate().modulus, learned);
+  EXPECT_NEAR(std::sqrt(estimator.estimate().covariance(0, 0)), session.config.next_deviation, 1e-12);
+}
+
+TEST(CellEstimator, ANewCellIsToldFromTheOneBefore) {
+  Session session;
+  session.factor = 3;
+  CellEstimator estimator = session.indent(8e-6);
+  estimator.beginNext();
+  session.factor = 0.8;
+  session.indent(8e-6, estimator);
+  EXPECT_EQ(estimator.estimate().verdict, EstimateVerdict::kConverged);
+  expectModulus(session, estimator.estimate(), 0.02);
+}
+
+TEST(CellEstimator, AfterAContradictionThePriorIsTheScenesAgain) {
+  Session session;
+  session.factor = 2;
+  session.sensor = [](double time, double force) { return std::min(force, 0.8e-6) + 1e-9 * std::sin(1e5 * time); };
+  CellEstimator estimator = session.indent(8e-6);
+  ASSERT_EQ(estimator.estimate().verdict, EstimateVerdict::kInconsistent);
+  estimator.beginNext();
   EXPECT_EQ(estimator.estimate().modulus, session.prior.cell.material().young_modulus);
 }
 
