@@ -7,7 +7,8 @@ import sys
 
 import actionlib
 import rospy
-from cell_microinjection.msg import CalibrateAction, CalibrateGoal, FindFocusAction, FindFocusGoal, GoToPixelAction, GoToPixelGoal
+from cell_microinjection.msg import (CalibrateAction, CalibrateGoal, FindFocusAction, FindFocusGoal, FindTouchAction,
+                                     FindTouchGoal, GoToPixelAction, GoToPixelGoal)
 from std_srvs.srv import Trigger
 
 MICROMETRE = 1e-6  # m
@@ -49,6 +50,11 @@ def focus():
     return run("/focus/find", FindFocusAction, FindFocusGoal(), lambda at: f"plane {at.plane} of {at.planes}")
 
 
+def touch():
+    return run("/touch/find", FindTouchAction, FindTouchGoal(),
+               lambda at: f"{at.travel / MICROMETRE:.1f} um down, outline displaced by {at.displacement:.1f} px")
+
+
 def main():
     parser = argparse.ArgumentParser(description="Calibrates the microscope's camera against the manipulator.")
     parser.add_argument("--field-x", type=float, default=0, metavar="UM", help="extent of the pattern across the needle; "
@@ -57,11 +63,14 @@ def main():
     parser.add_argument("--rezero", action="store_true", help="keep the axes; only the tip's place is new")
     parser.add_argument("--go-to", type=float, nargs=2, metavar=("X", "Y"), help="bring the tip to this pixel")
     parser.add_argument("--focus", action="store_true", help="bring the tip into focus")
+    parser.add_argument("--touch", action="store_true", help="lower the needle to the cell, by the image")
     arguments = parser.parse_args(rospy.myargv()[1:])
     rospy.init_node("calibrate", anonymous=True)
     try:
         if arguments.focus:
             succeeded = focus()
+        elif arguments.touch:
+            succeeded = touch()
         elif arguments.go_to:
             succeeded = go_to(*arguments.go_to)
         else:

@@ -55,6 +55,10 @@ cell_microinjection::PipetteInImage toMessage(const PipetteDetection& pipette) {
 cell_microinjection::IndentationInImage toMessage(const Indentation& indentation) {
   cell_microinjection::IndentationInImage message;
   setFinding(indentation.finding, message);
+  const BorderDisplacement& beside = indentation.displacement;
+  message.gap = beside.finding.hasValues() ? beside.gap : kNone;
+  message.displacement = beside.finding.hasValues() ? beside.depth : kNone;
+  message.displacement_deviation = beside.finding.hasValues() ? beside.deviation : kNone;
   if (!indentation.finding.hasValues()) return message;
   message.x = indentation.deepest.x;
   message.y = indentation.deepest.y;

@@ -140,6 +140,7 @@ Indentation findIndentation(const Frame& frame, const CellBorder& border, const 
   // The half width is that of the shaft a little behind the tip.
   const double width = std::clamp(2 * needle.half_width, kThinnest, kThickest);
   result = findIndentation(frame, border, needle.end, needle.direction, width);
+  if (border.finding.hasValues()) result.displacement = findDisplacement(frame, border, needle.end, needle.direction);
   const Eigen::Vector2d along(std::cos(needle.direction), std::sin(needle.direction));
   result.deviation = std::hypot(result.deviation, std::sqrt(along.dot(needle.covariance * along)));
   if (result.finding.isFound() && !needle.finding.isFound()) result.finding = needle.finding;

@@ -3,6 +3,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "vision/detection/border_displacement.h"
 #include "vision/detection/cell_border.h"
 #include "vision/detection/finding.h"
 #include "vision/detection/frame.h"
@@ -18,6 +19,7 @@ struct Indentation {
   cv::Point2d deepest;               ///< px
   EllipseFit undisturbed;            ///< outline without the dimple: of the border's points that do not face the needle
   std::vector<cv::Point2d> contour;  ///< px, of the part that faces the needle
+  BorderDisplacement displacement;   ///< of the outline beside the needle; it has its own finding
 };
 
 /// Follows the outer border of a cell through the dimple under a needle. The needle hides the border
@@ -31,7 +33,8 @@ Indentation findIndentation(const Frame& frame, const CellBorder& border, const 
                             double width);
 
 /// The same under a needle that was found: kNotFound without one, and at most kUncertain under one
-/// that is uncertain. The deviation includes that of the tip.
+/// that is uncertain. The deviation includes that of the tip. The displacement is measured above the
+/// cell too.
 Indentation findIndentation(const Frame& frame, const CellBorder& border, const PipetteDetection& needle);
 
 }  // namespace microinjection

@@ -33,8 +33,8 @@ bool belongsTo(const PipetteDetection& pipette, const Ellipse& thing) {
 
 Indentation indentationOf(const Frame& frame, const SpecimenView& view) {
   Indentation none;
-  if (!view.cell.finding.isFound() || !view.injection.finding.isFound()) {
-    none.finding = Finding::notFound(view.cell.finding.isFound() ? "no tip was found" : "no cell was found");
+  if (!view.cell.finding.hasValues() || !view.injection.finding.hasValues()) {
+    none.finding = Finding::notFound(view.cell.finding.hasValues() ? "no tip was found" : "no cell was found");
     return none;
   }
   const CellBorder& outer = view.cell.outer();
@@ -43,7 +43,9 @@ Indentation indentationOf(const Frame& frame, const SpecimenView& view) {
     none.finding = Finding::notFound("the needle is not at the cell");
     return none;
   }
-  return findIndentation(frame, outer, view.injection);
+  Indentation found = findIndentation(frame, outer, view.injection);
+  if (found.finding.isFound() && !view.cell.finding.isFound()) found.finding = view.cell.finding;
+  return found;
 }
 
 }  // namespace

@@ -4,12 +4,19 @@
 #include <cmath>
 #include <sstream>
 
+#include "vision/calibration/least_distances.h"
+
 namespace microinjection {
 namespace {
 
-constexpr double kLongest = 0.05;    // s, that the set-point advances in a step: a stall must not become a jump
-constexpr double kArrived = 0.1e-6;  // m, of the needle from its set-point
-constexpr double kAside = 1e-6;      // m, across the approach: the needle left its line
+constexpr double kLongest = 0.05;         // s, that the set-point advances in a step: a stall must not become a jump
+constexpr double kArrived = 0.1e-6;       // m, of the needle from its set-point
+constexpr double kAside = 1e-6;           // m, across the approach: the needle left its line
+constexpr double kLeastDeviation = 0.05;  // px: no image is better
+constexpr std::size_t kLeastGaps = 5;     // that tell where the tip meets the outline
+constexpr double kStray = 3;              // px, of an uncertain tip from its place by the travel
+constexpr int kRobustIterations = 15;
+constexpr std::size_t kNewest = 40;  // samples of the fit: older ones cost time and add little
 
 }  // namespace
 
@@ -19,6 +26,8 @@ TouchSearchConfig TouchSearchConfig::read(ConfigReader& reader) {
   reader.number("speed", config.speed, Range{0, 100e-6, true, false});
   reader.number("largest_travel", config.largest_travel, Range{0, 500e-6, true, false});
   reader.number("largest_force", config.largest_force, Range::positive());
+  reader.number("largest_depth", config.largest_depth, Range::positive());
+  reader.number("largest_offset", config.largest_offset, Range::positive());
   reader.number("settle_time", config.settle_time, Range::closed(0, 10));
   reader.number("image_time", config.image_time, Range::positive());
   reader.number("move_time", config.move_time, Range::positive());
@@ -52,14 +61,31 @@ std::optional<Eigen::Vector3d> TouchSearch::step(const Input& input) {
   if ((*input.position - setpoint).norm() > kArrived) {
     waits_for_ = "the needle does not follow";
     if (elapsed > config_.move_time + config_.step / config_.speed) failure_ = waits_for_;
-  } else if (const double rested = std::max(input.rested_since, since_) + config_.settle_time;
-             input.sight && input.sight->stamp > rested && input.sight->stamp <= input.now) {
-    take(*input.sight, input.now);
-  } else {
-    waits_for_ = input.blind.empty() ? "a fresh image" : input.blind;
-    if (elapsed > config_.move_time + config_.image_time) failure_ = "no fresh image of the dimple: " + waits_for_;
+  } else if (!look(input)) {
+    if (elapsed > config_.move_time + config_.image_time) failure_ = "no fresh image of cell and tip: " + waits_for_;
   }
   return failure_.empty() && !done() ? std::optional(setpoint) : std::nullopt;
+}
+
+/// Takes the newest image if it counts; else sets what it waits for.
+bool TouchSearch::look(const Input& input) {
+  const double rested = std::max(input.rested_since, since_) + config_.settle_time;
+  if (!input.sight || input.sight->stamp <= rested || input.sight->stamp > input.now) {
+    waits_for_ = input.blind.empty() ? "a fresh image" : input.blind;
+  } else if (!input.sight->certain && !gapLine()) {
+    waits_for_ = "a certain cell and tip";
+  } else {
+    take(*input.sight, input.now);
+    return true;
+  }
+  return false;
+}
+
+/// The gap of an image, if its tip is certain or where the travel has it.
+double TouchSearch::trustedGap(const Sight& sight) const {
+  const std::optional<Eigen::Vector2d> line = sight.certain ? std::nullopt : gapLine();
+  const bool stray = line && std::abs(line->x() + 1e6 * travel_ * line->y() - sight.gap) > kStray;
+  return stray ? std::nan("") : sight.gap;
 }
 
 /// What must hold at all times.
@@ -84,20 +110,70 @@ void TouchSearch::watch(const Input& input) {
 }
 
 void TouchSearch::take(const Sight& sight, double now) {
-  if (!std::isfinite(sight.dimple)) {
-    failure_ = "the dimple's depth is not finite";
+  if (!std::isfinite(sight.displacement) || !std::isfinite(sight.deviation) || !std::isfinite(sight.gap)) {
+    failure_ = "what the image shows is not finite";
     return;
   }
-  dimple_ = sight.dimple;
-  samples_.push_back({travel_, {sight.dimple, 0}});
-  report_ = findTouch(samples_, config_.touch);
-  if (done()) return;
+  if (samples_.empty() && sight.gap <= 0) {
+    failure_ = "the tip is at the cell's outline already: begin above it";
+    return;
+  }
+  const double gap = trustedGap(sight);
+  displacement_ = sight.displacement;
+  samples_.push_back({travel_, {sight.displacement, 0}, std::max(sight.deviation, kLeastDeviation)});
+  gaps_.push_back(gap);
+  const std::size_t newest = std::min(samples_.size(), kNewest);
+  report_ = findTouch({samples_.end() - static_cast<std::ptrdiff_t>(newest), samples_.end()}, config_.touch,
+                      TouchCoordinates::kOne);
+  compareWithOutline();
+  if (done() || !failure_.empty()) return;
   goal_ = travel_ + config_.step;
   since_ = now;
-  if (goal_ <= config_.largest_travel) return;
-  std::ostringstream text;
-  text << "no touch within " << 1e6 * config_.largest_travel << " um: " << report_.text;
-  failure_ = text.str();
+  if (goal_ > config_.largest_travel) fail("no touch within ", config_.largest_travel, " um: " + report_.text);
+}
+
+void TouchSearch::compareWithOutline() {
+  const std::optional<double> outline = outlineTravel();
+  if (!outline) return;
+  const double past = travel_ - *outline;
+  if (report_.verdict == TouchVerdict::kTouch) {
+    const double offset = report_.height - *outline;
+    if (std::abs(offset) > config_.largest_offset)
+      fail("the outline gives way ", offset, " um after the tip has met it in the image: this is another contact");
+  } else if (past > config_.largest_depth) {
+    fail("the tip is ", past, " um past the outline, which does not give way: it may be before or behind the cell");
+  }
+}
+
+std::optional<double> TouchSearch::outlineTravel() const {
+  const std::optional<Eigen::Vector2d> line = gapLine();
+  if (!line || !(line->y() < 0)) return std::nullopt;  // the tip does not come nearer: noise
+  return -1e-6 * line->x() / line->y();
+}
+
+/// The gap as a line over the travel: px, px/um.
+std::optional<Eigen::Vector2d> TouchSearch::gapLine() const {
+  std::vector<Eigen::Vector2d> points;
+  for (std::size_t i = 0; i < gaps_.size(); ++i) {
+    if (std::isfinite(gaps_[i])) points.emplace_back(1e6 * samples_[i].height, gaps_[i]);
+  }
+  if (points.size() < kLeastGaps) return std::nullopt;
+  Eigen::MatrixXd rows(points.size(), 2);
+  Eigen::VectorXd gaps(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    rows.row(static_cast<Eigen::Index>(i)) << 1, points[i].x();
+    gaps[static_cast<Eigen::Index>(i)] = points[i].y();
+  }
+  const Eigen::MatrixXd line = leastDistances(rows, gaps, kRobustIterations);
+  if (line.size() == 0) return std::nullopt;
+  return Eigen::Vector2d(line(0, 0), line(1, 0));
+}
+
+/// `value`: m, given in um.
+void TouchSearch::fail(const std::string& text, double value, const std::string& rest) {
+  std::ostringstream whole;
+  whole << text << 1e6 * value << rest;
+  failure_ = whole.str();
 }
 
 }  // namespace microinjection

@@ -65,6 +65,29 @@ TEST_F(TouchByVision, IntervalsCover) {
   }
 }
 
+TEST_F(TouchByVision, OneCoordinateWithKnownDeviationsHasTrueIntervals) {
+  int held = 0, weighted_better = 0;
+  constexpr int kTrials = 300;
+  for (int i = 0; i < kTrials; ++i) {
+    Approach approach;
+    approach.touch = 6e-6 + 6e-6 * random.uniform();
+    std::vector<TouchSample> samples = approach.make(random);
+    for (TouchSample& each : samples) {
+      each.deviation = random.uniform() < 0.3 ? 1.5 : 0.3;
+      each.pixel.x() += each.deviation * random.normal();
+      each.pixel.y() = 1e3 * random.normal();  // not measured
+    }
+    const TouchReport report = findTouch(samples, config, TouchCoordinates::kOne);
+    held += report.interval.contains(approach.touch) ? 1 : 0;
+    for (TouchSample& each : samples) each.deviation = 1;
+    const TouchReport plain = findTouch(samples, config, TouchCoordinates::kOne);
+    weighted_better += std::abs(report.height - approach.touch) < std::abs(plain.height - approach.touch) ? 1 : 0;
+  }
+  EXPECT_GT(held, 0.92 * kTrials);
+  EXPECT_LT(held, 0.98 * kTrials);
+  EXPECT_GT(weighted_better, 0.55 * kTrials);
+}
+
 TEST_F(TouchByVision, NoTouchInThisRangeIsAnAnswer) {
   Approach approach;
   approach.touch = -1;
@@ -129,6 +152,9 @@ TEST_F(TouchByVision, RefusesUnusableSamples) {
   EXPECT_EQ(findTouch(samples, config).text, "height 4: the heights must go in one direction");
   samples[3].pixel.x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(findTouch(samples, config).text, "a height or a pixel is not finite");
+  samples = Approach().make(random);
+  samples[3].deviation = 0;
+  EXPECT_EQ(findTouch(samples, config).text, "a deviation is not positive and finite");
   EXPECT_EQ(findTouch({}, config).verdict, TouchVerdict::kInvalid);
 }
 

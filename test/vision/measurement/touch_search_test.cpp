@@ -10,7 +10,8 @@
 namespace microinjection {
 namespace {
 
-/// A needle that follows its set-points, a cell `gap` (m) below it, and a camera with noise.
+/// A needle that follows its set-points, a cell `gap` (m) below it, and a camera with noise. In the image the
+/// outline is `seen_lower_` (m) below the cell.
 class Rig {
  public:
   explicit Rig(double gap) : gap_(gap) {}
@@ -33,20 +34,25 @@ class Rig {
       deepest_ = std::max(deepest_, depth);
       if (frozen_ || now_ - exposed_ < 0.033) continue;
       exposed_ = now_;
-      sight_ = TouchSearch::Sight{now_ - late_, depth / 0.25e-6 + noise_(random_)};
+      const double above = position_.z() - start_.z() + gap_ + seen_lower_;
+      sight_ = TouchSearch::Sight{now_ - late_, kPixels * give_ * depth + noise_(random_), kNoise,
+                                  kPixels * above + noise_(random_), above > certain_from_};
+      if (!sight_->certain) sight_->gap += astray_;
     }
   }
 
   Eigen::Vector3d start_{0, 0, 60e-6}, position_ = start_;
   double gap_, now_ = 10, rested_ = 9, exposed_ = 0, late_ = 0, stiffness_ = 0.1, deepest_ = 0;
+  double give_ = 0.8, seen_lower_ = 0, certain_from_ = -1, astray_ = 0;  ///< 1, m, m above the outline, px
   bool known_ = true, stuck_ = false, frozen_ = false;
   std::optional<double> force_ = 0.1e-6;
   std::optional<TouchSearch::Sight> sight_;
   std::string blind_;
 
  private:
+  static constexpr double kPixels = 4e6, kNoise = 0.2;  // px/m, px
   std::mt19937 random_{5};
-  std::normal_distribution<double> noise_{0, 0.2};
+  std::normal_distribution<double> noise_{0, kNoise};
 };
 
 TouchSearch searchOf(const Rig& rig, const TouchSearchConfig& config = {}) {
@@ -64,6 +70,58 @@ TEST(TouchSearch, FindsTheTouchAndStopsThere) {
     EXPECT_LT(rig.deepest_, 2.5e-6);
     EXPECT_NEAR(*search.force(), rig.stiffness_ * rig.deepest_, 1e-9);
   }
+}
+
+TEST(TouchSearch, ANeedleBeforeOrBehindTheCellIsHeld) {
+  Rig rig(4e-6);
+  rig.give_ = 0;
+  TouchSearch search = searchOf(rig);
+  rig.run(search);
+  EXPECT_FALSE(search.done());
+  EXPECT_NE(search.failure().find("does not give way"), std::string::npos) << search.failure();
+  EXPECT_LT(rig.deepest_, TouchSearchConfig().largest_depth + 0.5e-6);
+}
+
+TEST(TouchSearch, ATouchFarFromTheOutlineIsAnotherContact) {
+  Rig rig(4e-6);
+  rig.seen_lower_ = 6e-6;
+  TouchSearch search = searchOf(rig);
+  rig.run(search);
+  EXPECT_FALSE(search.done());
+  EXPECT_NE(search.failure().find("another contact"), std::string::npos) << search.failure();
+}
+
+TEST(TouchSearch, AnUncertainTipCountsWhereTheTravelHasIt) {
+  Rig rig(4.1e-6);
+  rig.certain_from_ = 2e-6;
+  TouchSearch search = searchOf(rig);
+  rig.run(search);
+  ASSERT_TRUE(search.done()) << search.failure();
+  EXPECT_NEAR(search.touchTravel(), rig.gap_, 0.3e-6);
+  // What is seen in place of the tip has another gap.
+  Rig astray(4.1e-6);
+  astray.certain_from_ = 2e-6;
+  astray.astray_ = -23;
+  TouchSearch second = searchOf(astray);
+  astray.run(second);
+  ASSERT_TRUE(second.done()) << second.failure();
+  EXPECT_NEAR(second.touchTravel(), astray.gap_, 0.3e-6);
+  EXPECT_NEAR(*second.outlineTravel(), astray.gap_, 0.3e-6);
+  Rig never(4.1e-6);
+  never.certain_from_ = 1;
+  TouchSearch third = searchOf(never);
+  never.run(third);
+  EXPECT_NE(third.failure().find("a certain cell and tip"), std::string::npos) << third.failure();
+  EXPECT_EQ(never.position_, never.start_);
+}
+
+TEST(TouchSearch, DoesNotBeginAtTheCell) {
+  Rig rig(4e-6);
+  rig.seen_lower_ = -5e-6;
+  TouchSearch search = searchOf(rig);
+  rig.run(search);
+  EXPECT_NE(search.failure().find("begin above it"), std::string::npos) << search.failure();
+  EXPECT_EQ(rig.position_, rig.start_);
 }
 
 TEST(TouchSearch, EndsWithItsTravel) {
@@ -98,7 +156,7 @@ TEST(TouchSearch, EndsWithoutFreshImages) {
   Rig late(4e-6), frozen(4e-6), blind(4e-6);
   late.late_ = 100;
   frozen.frozen_ = blind.frozen_ = true;
-  frozen.sight_ = TouchSearch::Sight{9.9, 0};
+  frozen.sight_ = TouchSearch::Sight{9.9, 0, 0.2, 16};
   blind.blind_ = "the cell is not seen";
   for (Rig* rig : {&late, &frozen, &blind}) {
     TouchSearch search = searchOf(*rig);
@@ -128,12 +186,16 @@ TEST(TouchSearch, EndsWhenTheNeedleDoesNotFollow) {
 }
 
 TEST(TouchSearch, RefusesWhatIsNotFinite) {
-  Rig rig(4e-6);
-  rig.frozen_ = true;
-  rig.sight_ = TouchSearch::Sight{11, std::numeric_limits<double>::quiet_NaN()};
-  TouchSearch search = searchOf(rig);
-  rig.run(search);
-  EXPECT_NE(search.failure().find("not finite"), std::string::npos) << search.failure();
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  for (const TouchSearch::Sight& sight : {TouchSearch::Sight{11, kNan, 0.2, 16}, TouchSearch::Sight{11, 0, kNan, 16},
+                                          TouchSearch::Sight{11, 0, 0.2, kNan}}) {
+    Rig rig(4e-6);
+    rig.frozen_ = true;
+    rig.sight_ = sight;
+    TouchSearch search = searchOf(rig);
+    rig.run(search);
+    EXPECT_NE(search.failure().find("not finite"), std::string::npos) << search.failure();
+  }
 }
 
 }  // namespace
