@@ -59,6 +59,7 @@ CellDetection CellDetector::detect(const Frame& frame) const {
     }
     detection.finding = finding;
     take(detection, layers);
+    detection.polar_body = findPolarBody(frame, layers, config_.look);
   }
   if (detection.finding.isFound() && !detection.others.empty()) {
     detection.finding = Finding::uncertain(CellDetection::kTwoCells);
@@ -75,7 +76,7 @@ CellDetection CellDetector::track(const Frame& frame, const CellDetection& previ
   before.ooplasm = previous.ooplasm;
   before.zona_inner = previous.zona_inner;
   before.zona_outer = previous.zona_outer;
-  const CellLayers layers = followLayers(frame, before, reach);
+  const CellLayers layers = followLayers(frame, before, config_.look, reach);
   const bool lost = !layers.ooplasm.finding.hasValues() ||
                     (previous.zona_outer.finding.hasValues() && !layers.zona_outer.finding.hasValues());
   if (lost) {
@@ -84,6 +85,7 @@ CellDetection CellDetector::track(const Frame& frame, const CellDetection& previ
   }
   detection.finding = judge(frame, layers);
   take(detection, layers);
+  detection.polar_body = followPolarBody(frame, layers, config_.look, previous.polar_body);
   return detection;
 }
 

@@ -8,6 +8,7 @@
 
 #include "base/config_reader.h"
 #include "vision/detection/cell_layers.h"
+#include "vision/detection/polar_body.h"
 
 namespace microinjection {
 
@@ -26,7 +27,8 @@ struct CellDetection {
   cv::Point2d centre;                                           ///< px
   Eigen::Matrix2d centre_covariance = Eigen::Matrix2d::Zero();  ///< px^2
   CellBorder zona_outer, zona_inner, ooplasm;                   ///< a cell without zona has only the last
-  std::vector<Ellipse> others;                                  ///< other whole cells
+  PolarBody polar_body;
+  std::vector<Ellipse> others;  ///< other whole cells
 
   /// Removes the others for which `part_of_another_thing` is true. Without others the one cell is
   /// certain again.
