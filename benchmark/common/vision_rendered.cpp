@@ -66,8 +66,7 @@ void cellRows(const ImageRows& rows, const CellDetection& cell, const CellTruth&
   const double off = std::hypot(cell.centre.x - truth.centre.x(), cell.centre.y - truth.centre.y());
   rows.add("cell_centre", cell.finding, off, truth.diameter, kCentre, time);
   const double diameter = cell.finding.hasValues() ? cell.outer().ellipse.meanDiameter() : 0;
-  rows.add("cell_diameter", cell.finding, std::abs(diameter - truth.diameter), truth.diameter,
-           kDiameter * truth.diameter);
+  rows.add("cell_diameter", cell.size, std::abs(diameter - truth.diameter), truth.diameter, kDiameter * truth.diameter);
   if (!(truth.zona_inner[0] > 0)) return;
   const double inner = meanDiameter(truth.zona_inner), ooplasm = meanDiameter(truth.ooplasm);
   rows.add("zona_outer", cell.zona_outer.finding,

@@ -72,14 +72,16 @@ CellBorder refined(const Frame& frame, const CellBorder& border, double place, d
   const double radius = 0.5 * border.ellipse.meanDiameter();
   const double blur = std::clamp(0.006 * radius, 1.0, 2.5);
   const double window = std::max(3.0, 0.04 * radius);
-  const CellBorder fine = refineBorder(frame, border, {rim, place}, window, blur, kFineRays);
+  CellBorder fine = refineBorder(frame, border, {rim, place}, window, blur, kFineRays);
   // The flanks are searched near their mean places: a first ellipse that was off displaces them.
   const double off = cv::norm(fine.ellipse.centre - border.ellipse.centre) +
                      (fine.ellipse.semi_axes - border.ellipse.semi_axes).cwiseAbs().maxCoeff() - fine.shift;
-  if (off < kOff || fine.coverage > kWhole) return fine;
-  CellBorder again = fine;
-  again.ellipse = scaled(fine.ellipse, 1 + fine.shift / radius);
-  return refineBorder(frame, again, {rim, place}, window, blur, kFineRays);
+  if (off >= kOff && fine.coverage <= kWhole) {
+    fine.ellipse = scaled(fine.ellipse, 1 + fine.shift / radius);
+    fine = refineBorder(frame, fine, {rim, place}, window, blur, kFineRays);
+  }
+  fine.line = fine.ellipse;
+  return fine;
 }
 
 CellBorder searchBand(const Frame& frame, const CellBorder& main, double low, double high, const std::string& look,
@@ -151,20 +153,22 @@ bool isRing(const CellBorder& border) {
 
 /// Takes the certainty from borders whose places the image may have displaced.
 void warn(CellLayers& layers) {
-  const auto doubt = [](CellBorder& border, const std::string& reason) {
-    if (border.finding.isFound()) border.finding = Finding::uncertain(reason);
+  const auto doubt = [](CellBorder& border, const std::string& reason, bool centred) {
+    if (!border.finding.isFound()) return;
+    border.finding = Finding::uncertain(reason);
+    border.centred = centred;
   };
   CellBorder* const all[] = {&layers.zona_outer, &layers.zona_inner, &layers.ooplasm};
   const bool zona = layers.zona_outer.finding.hasValues();
   if (zona && layers.ooplasm.rim == 0)
-    doubt(layers.ooplasm, "the ooplasm's dark rim is not seen: its border is up to a rim off");
-  if (zona && layers.zona_outer.rim == 0) doubt(layers.zona_outer, "the zona's outer border is not a dark line");
+    doubt(layers.ooplasm, "the ooplasm's dark rim is not seen: its border is up to a rim off", true);
+  if (zona && layers.zona_outer.rim == 0) doubt(layers.zona_outer, "the zona's outer border is not a dark line", true);
   for (CellBorder* border : all) {
-    if (layers.zona_outer.rim > kSharpRim) doubt(*border, "the cell is out of focus: its borders are displaced");
-    if (border->polarity == Polarity::kEither) doubt(*border, "DIC shades borders: they are displaced");
+    if (border->polarity == Polarity::kEither) doubt(*border, "DIC shades borders: they are displaced", false);
     if (border->residual > std::max(kLeastResidual, kMostResidual * border->ellipse.meanDiameter())) {
-      doubt(*border, "the border is not an ellipse");
+      doubt(*border, "the border is not an ellipse", false);
     }
+    if (layers.zona_outer.rim > kSharpRim) doubt(*border, "the cell is out of focus: its borders are displaced", true);
   }
 }
 
@@ -209,9 +213,11 @@ CellLayers findLayers(const Frame& frame, const CellBorder& main, const std::str
   if (!layers.zona_outer.finding.hasValues()) {
     layers.ooplasm = refined(frame, ooplasm, 0, 0);
     warn(layers);
-    if (layers.ooplasm.finding.isFound() &&
-        (isRing(inside) || (isRing(beyond) && beyond.polarity != Polarity::kFalling)))
+    const bool ring = isRing(inside) || (isRing(beyond) && beyond.polarity != Polarity::kFalling);
+    if (ring && layers.ooplasm.finding.isFound()) {
       layers.ooplasm.finding = Finding::uncertain("a faint second ring is seen: this may be a zona's border");
+      layers.ooplasm.centred = true;
+    }
     return layers;
   }
   const double gap = radiusOf(layers.zona_outer) - radiusOf(ooplasm);
@@ -228,6 +234,7 @@ CellBorder follow(const Frame& frame, const CellBorder& previous, const cv::Poin
                   double rim) {
   if (!previous.finding.hasValues()) return {};
   CellBorder base = previous;
+  base.ellipse = previous.line;
   base.ellipse.centre += moved;
   // The flank that is searched is at the outer end of the rim.
   const double radius = radiusOf(previous), flank = 1 + place * previous.rim / radius;
@@ -254,17 +261,20 @@ CellLayers followLayers(const Frame& frame, const CellLayers& previous, const st
   layers.ooplasm = follow(frame, previous.ooplasm, {0, 0}, reach + 4, place, rim);
   if (!layers.ooplasm.finding.hasValues()) return layers;
   // What was doubtful in the frame before is so here.
-  if (previous.ooplasm.finding.verdict == Verdict::kUncertain) layers.ooplasm.finding = previous.ooplasm.finding;
+  if (previous.ooplasm.finding.verdict == Verdict::kUncertain) {
+    layers.ooplasm.finding = previous.ooplasm.finding;
+    layers.ooplasm.centred = previous.ooplasm.centred;
+  }
   layers.main = layers.ooplasm;
   // The clearest border tells how far the cell moved; the others are then near.
-  const cv::Point2d moved = layers.ooplasm.ellipse.centre - previous.ooplasm.ellipse.centre;
+  const cv::Point2d moved = layers.ooplasm.line.centre - previous.ooplasm.line.centre;
   layers.zona_outer = follow(frame, previous.zona_outer, moved, 6, kZonaPlace, 0.35 * gap);
   warn(layers);
   if (!zona || !layers.zona_outer.finding.hasValues()) return layers;
   // The zona keeps its thickness from frame to frame.
   layers.zona_inner = previous.zona_inner;
-  layers.zona_inner.ellipse.centre += layers.zona_outer.ellipse.centre - previous.zona_outer.ellipse.centre;
-  refitLayersTo(frame, look, layers);
+  layers.zona_inner.ellipse.centre += layers.zona_outer.line.centre - previous.zona_outer.line.centre;
+  refitLayersTo(frame, look, previous, layers);
   return layers;
 }
 

@@ -21,6 +21,7 @@ constexpr double kOnEllipse = 0.4, kNearEllipse = 0.8;         // px, of a borde
 constexpr double kMore = 0.04, kLeastOn = 0.5, kFewest = 0.4;  // shares of the points
 constexpr double kAgree = 1;                                   // px, of two measurements of a radius
 constexpr double kApart = 3;                                   // px, of the zona's line from the ooplasm's rim
+constexpr double kSameSize = 0.01;                             // of the radius, from frame to frame
 constexpr double kFarthest = 0.05;  // of the radius, that the fit may be from the first borders
 
 double radiusOf(const Ellipse& ellipse) { return 0.5 * ellipse.meanDiameter(); }
@@ -138,13 +139,32 @@ void doubtAll(const LayerFit& fit, CellLayers& layers) {
                                       : "the cell is out of focus: its borders are displaced");
   for (CellBorder* border : {&layers.zona_outer, &layers.zona_inner, &layers.ooplasm}) {
     const bool agreed = border == &layers.ooplasm ? ooplasm : border == &layers.zona_outer && outer;
-    if (border->finding.isFound() && !agreed) border->finding = doubt;
+    if (!border->finding.isFound() || agreed) continue;
+    border->finding = doubt;
+    border->centred = border->polarity != Polarity::kEither;
   }
   // Defocus displaces a border on all sides alike: the centre of its circle stays.
   if (fit.valid && !isSharp(fit) && fit.used >= kLeastUsed && centreDeviation(fit.outer) < kSureCentre) {
     layers.zona_outer.ellipse.centre = fit.outer.ellipse.centre;
     layers.zona_outer.covariance.topLeftCorner<2, 2>() = fit.outer.covariance.topLeftCorner<2, 2>();
   }
+}
+
+/// The fit that starts from the ellipses of the frame before, moved (px).
+LayerFit refit(const Frame& frame, const std::string& look, const CellLayers& previous, const cv::Point2d& moved) {
+  LayerGuess guess{previous.zona_outer.ellipse, previous.ooplasm.ellipse, previous.ooplasm.rim,
+                   radiusOf(previous.zona_outer.ellipse) - radiusOf(previous.zona_inner.ellipse)};
+  guess.outer.centre += moved;
+  guess.ooplasm.centre += moved;
+  return fitLayers(frame, guess, look);
+}
+
+/// A cell keeps its size from frame to frame: what does not is another border.
+void requireSameSize(const CellBorder& previous, CellBorder& border) {
+  const double before = radiusOf(previous.ellipse);
+  if (!previous.finding.isFound() || !border.finding.isFound()) return;
+  if (std::abs(radiusOf(border.ellipse) - before) > kSameSize * before)
+    border.finding = Finding::uncertain("the cell has changed its size: this may be another border");
 }
 
 }  // namespace
@@ -158,13 +178,29 @@ bool fitLayersTo(const Frame& frame, const std::string& look, CellLayers& layers
   return false;
 }
 
-void refitLayersTo(const Frame& frame, const std::string& look, CellLayers& layers) {
-  const double thickness = radiusOf(layers.zona_outer.ellipse) - radiusOf(layers.zona_inner.ellipse);
-  if (!layers.zona_inner.finding.hasValues() || thickness <= 0) return;
+void refitLayersTo(const Frame& frame, const std::string& look, const CellLayers& previous, CellLayers& layers) {
+  CellBorder& outer = layers.zona_outer;
+  if (!layers.zona_inner.finding.hasValues() ||
+      previous.zona_inner.ellipse.meanDiameter() >= previous.zona_outer.ellipse.meanDiameter()) {
+    outer.finding = previous.zona_outer.finding;
+    outer.centred = previous.zona_outer.centred;
+    return;
+  }
   const bool leads = layers.zona_inner.finding.isFound();
-  const LayerFit fit =
-      fitLayers(frame, {layers.zona_outer.ellipse, layers.ooplasm.ellipse, layers.ooplasm.rim, thickness}, look);
+  const cv::Point2d moved = outer.line.centre - previous.zona_outer.line.centre;
+  if (look == "dic" || look == "phase") {
+    // One line among others may not be the same in each frame: a cell that rests is fitted where it was.
+    const LayerFit rests = refit(frame, look, previous, {0, 0});
+    if (takeSharp(rests, look, leads, layers)) {
+      outer.line = previous.zona_outer.line;
+      outer.line.centre += outer.ellipse.centre - previous.zona_outer.ellipse.centre;
+      requireSameSize(previous.zona_outer, outer);
+      return;
+    }
+  }
+  const LayerFit fit = refit(frame, look, previous, moved);
   if (!takeSharp(fit, look, leads, layers)) doubtAll(fit, layers);
+  requireSameSize(previous.zona_outer, outer);
 }
 
 }  // namespace microinjection

@@ -13,6 +13,6 @@ bool fitLayersTo(const Frame& frame, const std::string& look, CellLayers& layers
 
 /// The same in the next frame, from borders that were followed and the zona's inner border of the frame
 /// before, whose verdict stays when it is seen again.
-void refitLayersTo(const Frame& frame, const std::string& look, CellLayers& layers);
+void refitLayersTo(const Frame& frame, const std::string& look, const CellLayers& previous, CellLayers& layers);
 
 }  // namespace microinjection

@@ -13,7 +13,7 @@ namespace {
 constexpr int kSectors = 72, kCoarse = 3, kTrackedSectors = 36;
 constexpr double kInside = 13, kOutside = 10;  // px, of the samples, beyond ooplasm and zona
 constexpr double kThinnestZona = 4;            // px
-constexpr int kCoarseSteps = 6, kTrialSteps = 5, kFineSteps = 4, kTrackedSteps = 5;
+constexpr int kCoarseSteps = 6, kTrialSteps = 5, kFineSteps = 4, kTrackedSteps = 3;
 constexpr double kOtherPlaces[] = {-8, -5, 5};  // px, of the ooplasm, when the first one is not described
 constexpr std::size_t kTrials = 3;              // places of the inner border that are refined
 constexpr double kSamePlace = 1;                // px
@@ -167,7 +167,10 @@ LayerFit fitLayers(const Frame& frame, const LayerGuess& guess, const std::strin
   const LayerModel with(look, true);
   Vector parameters;
   if (known) {
-    LayerSolver solver(samples, guess.ooplasm, guess.rim, 1);
+    Vector near = Vector::Zero(with.size());
+    near[LayerModel::kThickness] = guess.thickness;
+    near[LayerModel::kRim] = guess.rim;
+    LayerSolver solver(samples, guess.ooplasm, guess.rim, 1, near);
     parameters = solver.start(with, guess.thickness, 0);
     solver.iterate(with, parameters, kTrackedSteps, true);
     describe(solver, with, parameters, guess, result);

@@ -13,30 +13,6 @@ constexpr double kTiltLength = 100;  // px, on which the illumination changes by
 constexpr int kPerBlur = 128;        // entries of the table of a blurred edge
 constexpr double kFar = 5;           // blurs, beyond which an edge is its limit
 
-struct Edge {
-  double rise = 0, density = 0;  ///< 0..1 inwards, and its derivative
-};
-
-/// A step that is blurred by a Gaussian, from a table: the error function took most of a fit's time.
-Edge edgeAt(double distance, double blur) {
-  static const auto table = [] {
-    std::array<Edge, 2 * static_cast<std::size_t>(kFar * kPerBlur) + 2> entries;
-    for (std::size_t i = 0; i < entries.size(); ++i) {
-      const double u = static_cast<double>(i) / kPerBlur - kFar;
-      entries[i] = {0.5 * std::erfc(-u * M_SQRT1_2), std::exp(-0.5 * u * u) / std::sqrt(2 * M_PI)};
-    }
-    return entries;
-  }();
-  const double u = distance / blur;
-  if (u >= kFar) return {1, 0};
-  if (u <= -kFar) return {0, 0};
-  const double place = (u + kFar) * kPerBlur;
-  const auto i = static_cast<std::size_t>(place);
-  const double t = place - static_cast<double>(i);
-  const Edge &a = table[i], &b = table[i + 1];
-  return {a.rise + t * (b.rise - a.rise), (a.density + t * (b.density - a.density)) / blur};
-}
-
 void placeBorders(const Eigen::VectorXd& p, const LayerModel::Sample& sample, double* distance) {
   const double outer = sample.harmonics.sum(p, LayerModel::kOuter, 5) - sample.place;
   distance[0] = outer;
@@ -75,12 +51,14 @@ LayerModel::LayerModel(const std::string& look, bool inner) : inner_(inner) {
   if (look == "phase") {
     for (const int border : {0, 2}) terms_.push_back({Kind::kHalo, border, 0, -1});
   }
-  for (const int harmonic : {1, 2}) {
-    if (look != "dic") break;
-    terms_.push_back({Kind::kLine, 0, harmonic, -1});
-    if (inner) terms_.push_back({Kind::kLine, 1, harmonic, -1});
-    terms_.push_back({Kind::kLine, 2, harmonic, -1});
-    terms_.push_back({Kind::kRamp, 2, harmonic, -1});
+  if (look == "dic") {
+    // Terms that differ in their harmonic only are neighbours: their response is computed once.
+    for (const int border : {0, 1, 2}) {
+      for (const int harmonic : {1, 2}) {
+        if (border != 1 || inner) terms_.push_back({Kind::kLine, border, harmonic, -1});
+      }
+    }
+    for (const int harmonic : {1, 2}) terms_.push_back({Kind::kRamp, 2, harmonic, -1});
   }
   for (int i = 0; i < terms(); ++i) {
     if (terms_[static_cast<std::size_t>(i)].border == 1) inner_terms_.push_back(i);
@@ -103,9 +81,32 @@ double LayerModel::usualAmplitude(int term) const {
   return it.kind == Kind::kLine ? 0.1 : 0.2;
 }
 
-LayerModel::Response LayerModel::respond(Kind kind, double distance, double width, double blur) {
+/// A step that is blurred by a Gaussian, from a table: the error function took most of a fit's time.
+LayerModel::Edge LayerModel::edgeAt(double distance, double blur) {
+  static const auto table = [] {
+    std::array<Edge, 2 * static_cast<std::size_t>(kFar * kPerBlur) + 2> entries;
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      const double u = static_cast<double>(i) / kPerBlur - kFar;
+      entries[i] = {0.5 * std::erfc(-u * M_SQRT1_2), std::exp(-0.5 * u * u) / std::sqrt(2 * M_PI)};
+    }
+    return entries;
+  }();
+  const double u = distance / blur;
+  if (u >= kFar) return {1, 0};
+  if (u <= -kFar) return {0, 0};
+  const double place = (u + kFar) * kPerBlur;
+  const auto i = static_cast<std::size_t>(place);
+  const double t = place - static_cast<double>(i);
+  const Edge &a = table[i], &b = table[i + 1];
+  return {a.rise + t * (b.rise - a.rise), (a.density + t * (b.density - a.density)) / blur};
+}
+
+template <bool derivatives>
+LayerModel::Response LayerModel::respond(Kind kind, double distance, const Edge& edge, double width, double blur) {
   const auto box = [&](double first, double last, double first_slope, double last_slope) {
-    const Edge a = edgeAt(distance - first, blur), b = edgeAt(distance - last, blur);
+    const Edge a = first == 0 ? edge : edgeAt(distance - first, blur);
+    const Edge b = last == 0 ? edge : edgeAt(distance - last, blur);
+    if constexpr (!derivatives) return Response{a.rise - b.rise, 0, 0, 0};
     return Response{a.rise - b.rise, a.density - b.density, last_slope * b.density - first_slope * a.density,
                     ((distance - last) * b.density - (distance - first) * a.density) / blur};
   };
@@ -116,42 +117,56 @@ LayerModel::Response LayerModel::respond(Kind kind, double distance, double widt
       return box(-width, 0, -1, 0);
     case Kind::kInside:
       return box(0, width, 0, 1);
-    case Kind::kStep: {
-      const Edge edge = edgeAt(distance, blur);
-      return {edge.rise, edge.density, 0, -distance / blur * edge.density};
-    }
+    case Kind::kStep:
+      return {edge.rise, edge.density, 0, derivatives ? -distance / blur * edge.density : 0};
     case Kind::kHalo: {
-      const Edge edge = edgeAt(distance, kHaloBlur);
-      return {edge.rise, edge.density, 0, 0};
+      const Edge halo = edgeAt(distance, kHaloBlur);
+      return {halo.rise, halo.density, 0, 0};
     }
-    case Kind::kRamp: {
-      const Edge edge = edgeAt(distance, blur);
+    case Kind::kRamp:
       return {(distance * edge.rise + blur * blur * edge.density) / kRampLength, edge.rise / kRampLength, 0,
               blur * edge.density / kRampLength};
-    }
     default:
       return {1, 0, 0, 0};
   }
 }
 
-void LayerModel::terms(const Eigen::VectorXd& p, const Sample& sample, double* values) const {
-  double distance[3];
-  placeBorders(p, sample, distance);
-  for (const Term& term : terms_) {
-    const double width = term.width < 0 ? kShadedLine : p[term.width];
-    const double value =
-        term.kind == Kind::kTilt ? tiltAt(sample) : respond(term.kind, distance[term.border], width, p[kBlur]).value;
-    *values++ = sample.harmonics.at[term.harmonic] * value;
+LayerModel::Place LayerModel::placeOf(const Eigen::VectorXd& p, const Sample& sample) const {
+  Place place;
+  placeBorders(p, sample, place.distance);
+  for (const int border : {0, 1, 2}) {
+    if (border != 1 || inner_) place.edge[border] = edgeAt(place.distance[border], p[kBlur]);
   }
+  return place;
+}
+
+template <bool derivatives>
+const LayerModel::Response& LayerModel::respond(const Eigen::VectorXd& p, const Term& term, const Sample& sample,
+                                                Place& place) {
+  const Term* const last = place.last;
+  place.last = &term;
+  if (last && last->kind == term.kind && last->border == term.border && last->width == term.width)
+    return place.response;
+  const double width = term.width < 0 ? kShadedLine : p[term.width];
+  place.response = term.kind == Kind::kTilt ? Response{tiltAt(sample), 0, 0, 0}
+                                            : respond<derivatives>(term.kind, place.distance[term.border],
+                                                                   place.edge[term.border], width, p[kBlur]);
+  return place.response;
+}
+
+void LayerModel::terms(const Eigen::VectorXd& p, const Sample& sample, double* values) const {
+  Place place = placeOf(p, sample);
+  for (const Term& term : terms_)
+    *values++ = sample.harmonics.at[term.harmonic] * respond<false>(p, term, sample, place).value;
 }
 
 void LayerModel::innerTerms(const Eigen::VectorXd& p, const Sample& sample, double weight, double* values) const {
-  double distance[3];
-  placeBorders(p, sample, distance);
+  Place place;
+  placeBorders(p, sample, place.distance);
+  place.edge[1] = edgeAt(place.distance[1], p[kBlur]);
   for (const int i : inner_terms_) {
     const Term& term = terms_[static_cast<std::size_t>(i)];
-    const double width = term.width < 0 ? kShadedLine : p[term.width];
-    *values++ = weight * sample.harmonics.at[term.harmonic] * respond(term.kind, distance[1], width, p[kBlur]).value;
+    *values++ = weight * sample.harmonics.at[term.harmonic] * respond<false>(p, term, sample, place).value;
   }
 }
 
@@ -163,16 +178,15 @@ double LayerModel::value(const Eigen::VectorXd& p, const Sample& sample) const {
 }
 
 double LayerModel::value(const Eigen::VectorXd& p, const Sample& sample, Eigen::VectorXd& slope) const {
-  double distance[3], moved[3] = {0, 0, 0}, sum = 0;
-  placeBorders(p, sample, distance);
+  double moved[3] = {0, 0, 0}, sum = 0;
+  Place place = placeOf(p, sample);
   const double* const harmonic = sample.harmonics.at;
   slope.setZero(size());
   for (std::size_t i = 0; i < terms_.size(); ++i) {
     const Term& term = terms_[i];
     const int index = kShapes + static_cast<int>(i);
-    const double width = term.width < 0 ? kShadedLine : p[term.width], weight = harmonic[term.harmonic];
-    const Response response = term.kind == Kind::kTilt ? Response{tiltAt(sample), 0, 0, 0}
-                                                       : respond(term.kind, distance[term.border], width, p[kBlur]);
+    const double weight = harmonic[term.harmonic];
+    const Response& response = respond<true>(p, term, sample, place);
     slope[index] = weight * response.value;
     sum += p[index] * slope[index];
     const double amplitude = p[index] * weight;

@@ -74,7 +74,25 @@ class LayerModel {
   struct Response {
     double value = 0, distance = 0, width = 0, blur = 0;  ///< and its derivatives
   };
-  static Response respond(Kind kind, double distance, double width, double blur);
+  struct Edge {
+    double rise = 0, density = 0;  ///< 0..1 inwards, and its derivative
+  };
+  /// The borders' distances from a sample, the edges there, and the last response.
+  struct Place {
+    double distance[3];
+    Edge edge[3];
+    const Term* last = nullptr;
+    Response response;
+  };
+  static Edge edgeAt(double distance, double blur);
+  /// Without derivatives the value alone, in half of the time.
+  template <bool derivatives>
+  static Response respond(Kind kind, double distance, const Edge& edge, double width, double blur);
+  Place placeOf(const Eigen::VectorXd& parameters, const Sample& sample) const;
+  /// Of a term, without its harmonic. Terms that differ in that only have the same.
+  template <bool derivatives>
+  static const Response& respond(const Eigen::VectorXd& parameters, const Term& term, const Sample& sample,
+                                 Place& place);
 
   bool inner_;
   std::vector<Term> terms_;

@@ -18,7 +18,7 @@ LayerSamples::LayerSamples(const Frame& frame, const Ellipse& base, double low, 
     : base_(base), low_(low) {
   const int columns = static_cast<int>(high - low) + 1;
   const int rays = std::max(kFewestRays, static_cast<int>(M_PI * base.meanDiameter() / sectors / kRayDistance));
-  const PolarMap map(frame, base, {low, low + columns - 1, columns, sectors * rays}, 1.0);
+  const PolarMap map(frame, base, {low, low + columns - 1, columns, sectors * rays}, 0);
   std::vector<float> values(rays);
   grey_ = cv::Mat(sectors, columns, CV_32F, cv::Scalar(0));
   valid_ = cv::Mat(sectors, columns, CV_8U, cv::Scalar(255));

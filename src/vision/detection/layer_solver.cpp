@@ -16,6 +16,7 @@ constexpr double kUsualWidth = 2, kUsualBlur = 1.3, kWidthShare = 0.5;  // px; s
 constexpr double kSameWidth = 0.4;                     // px, standard deviation of the difference of the zona's lines
 constexpr double kLeastWidth = 0.5, kLeastBlur = 0.7;  // px
 constexpr double kNear = 8;                            // px, of samples that show a border
+constexpr double kSmallestStep = 2e-3;                 // px, of the borders, that goes on
 
 double medianOf(std::vector<double> values) {
   if (values.empty()) return 0;
@@ -54,6 +55,7 @@ LayerSolver::LayerSolver(const LayerSamples& samples, const Ellipse& ooplasm, do
   }
   weight_.assign(points_.size(), 1.0);
   residual_.assign(points_.size(), 0.0);
+  trial_ = residual_;
 }
 
 Eigen::VectorXd LayerSolver::start(const LayerModel& model, double thickness, double shift) {
@@ -85,12 +87,25 @@ void LayerSolver::solveAmplitudes(const LayerModel& model, Eigen::VectorXd& para
   parameters.tail(n) = matrix.selfadjointView<Eigen::Lower>().ldlt().solve(right);
 }
 
+void LayerSolver::rest(const LayerModel& model, const Eigen::VectorXd& parameters, std::vector<double>& rest) const {
+  for (std::size_t i = 0; i < points_.size(); ++i)
+    rest[i] = points_[i].grey - model.value(parameters, points_[i].sample);
+}
+
+double LayerSolver::weighted(const std::vector<double>& rest) const {
+  double sum = 0;
+  for (std::size_t i = 0; i < points_.size(); ++i) sum += weight_[i] * rest[i] * rest[i];
+  return sum;
+}
+
 void LayerSolver::weigh(const LayerModel& model, const Eigen::VectorXd& parameters) {
+  rest(model, parameters, residual_);
+  reweigh();
+}
+
+void LayerSolver::reweigh() {
   std::vector<double> out, in;
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    residual_[i] = points_[i].grey - model.value(parameters, points_[i].sample);
-    (points_[i].inside ? in : out).push_back(std::abs(residual_[i]));
-  }
+  for (std::size_t i = 0; i < points_.size(); ++i) (points_[i].inside ? in : out).push_back(std::abs(residual_[i]));
   scale_[0] = std::max(1.4826 * medianOf(std::move(out)), 1e-4);
   scale_[1] = std::max(1.4826 * medianOf(std::move(in)), scale_[0]);
   std::vector<double> sum(sectors_, 0.0), count(sectors_, 0.0), rms(sectors_, 1e9), seen;
@@ -127,27 +142,34 @@ double LayerSolver::chi2(const LayerModel& model, const Eigen::VectorXd& paramet
   return sum;
 }
 
+double LayerSolver::step(const LayerModel& model, Eigen::VectorXd& parameters, double& damping) {
+  normal(model, parameters);
+  for (int attempt = 0; attempt < 5; ++attempt) {
+    Eigen::MatrixXd damped = matrix_;
+    damped.diagonal() *= 1 + damping;
+    Eigen::VectorXd next = parameters + damped.ldlt().solve(right_);
+    for (int i = LayerModel::kOuterLine; i < LayerModel::kBlur; ++i) next[i] = std::max(next[i], kLeastWidth);
+    next[LayerModel::kBlur] = std::max(next[LayerModel::kBlur], kLeastBlur);
+    rest(model, next, trial_);
+    if (weighted(trial_) + prior(model, next) < chi_) {
+      const double change = (next - parameters).head(LayerModel::kOuterLine).norm();
+      parameters = next;
+      residual_.swap(trial_);
+      damping = std::max(1e-6, 0.1 * damping);
+      return change;
+    }
+    damping *= 10;
+  }
+  return -1;
+}
+
 void LayerSolver::iterate(const LayerModel& model, Eigen::VectorXd& parameters, int steps, bool renew) {
   double damping = 1e-2;
-  for (int step = 0; step < steps; ++step) {
-    if (renew) weigh(model, parameters);
-    normal(model, parameters);
-    double change = 0;
-    for (int attempt = 0; attempt < 5; ++attempt) {
-      Eigen::MatrixXd damped = matrix_;
-      damped.diagonal() *= 1 + damping;
-      Eigen::VectorXd next = parameters + damped.ldlt().solve(right_);
-      for (int i = LayerModel::kOuterLine; i < LayerModel::kBlur; ++i) next[i] = std::max(next[i], kLeastWidth);
-      next[LayerModel::kBlur] = std::max(next[LayerModel::kBlur], kLeastBlur);
-      if (chi2(model, next) + prior(model, next) < chi_) {
-        change = (next - parameters).head(LayerModel::kOuterLine).norm();
-        parameters = next;
-        damping = std::max(1e-6, 0.1 * damping);
-        break;
-      }
-      damping *= 10;
-    }
-    if (change < 2e-3) break;
+  for (int i = 0; i < steps; ++i) {
+    // After a step the residuals are those of the new parameters.
+    if (renew && i == 0) weigh(model, parameters);
+    if (renew && i > 0) reweigh();
+    if (step(model, parameters, damping) < kSmallestStep) break;
   }
 }
 

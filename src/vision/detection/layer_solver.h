@@ -57,9 +57,15 @@ class LayerSolver {
   double priorPlace(int index) const;
   double prior(const LayerModel& model, const Eigen::VectorXd& parameters) const;
   void normal(const LayerModel& model, const Eigen::VectorXd& parameters);
+  void rest(const LayerModel& model, const Eigen::VectorXd& parameters, std::vector<double>& rest) const;
+  double weighted(const std::vector<double>& rest) const;  ///< sum of squares
+  void reweigh();                                          ///< by the present residuals
+  /// One damped step that lowers chi^2.
+  /// @return px, change of the borders' parameters; negative: no step does
+  double step(const LayerModel& model, Eigen::VectorXd& parameters, double& damping);
 
   std::vector<Point> points_;
-  std::vector<double> weight_, residual_;
+  std::vector<double> weight_, residual_, trial_;
   int sectors_;
   double radius_, widths_[5];
   double scale_[2] = {1, 1}, used_ = 0, chi_ = 0;

@@ -61,6 +61,8 @@ void drawCell(cv::Mat& image, const CellDetection& cell, Legend& legend) {
                  (cell.finding.reason.empty() ? "" : ": " + cell.finding.reason),
              kText);
   if (!cell.finding.hasValues()) return;
+  if (cell.finding.isFound() && !cell.size.isFound())
+    legend.add("its diameter is uncertain: " + cell.size.reason, kText);
   border(image, cell.ooplasm, kOoplasm);
   border(image, cell.zona_inner, kInner);
   border(image, cell.zona_outer, kZona);
