@@ -20,7 +20,7 @@ def choices():
     injectors = stems("config/injectors", "*.yaml")
     boolean = ["true", "false"]
     flags = ("allow_network", "require_operator", "inject", "link_emulated", "auto_enable", "display", "rviz", "bag",
-             "end_when_done", "wait_for_go")
+             "end_when_done", "wait_for_go", "twin")
     return {
         "model": ["auto", "prepared", "live", "explicit"],
         "rig": ["sim", *rigs, *(f"emulated_{name}" for name in rigs)],
@@ -47,6 +47,12 @@ def problems(arguments):
     if not pathlib.Path(arguments["scene"]).is_file():
         names = ", ".join(stems("config/cells", "*.yaml"))
         found.append(f"cell, scene = '{arguments['scene']}': no such file; the cells are: {names}")
+    if arguments["hidden"] and not pathlib.Path(arguments["hidden"]).is_file():
+        found.append(f"hidden = '{arguments['hidden']}': no such file")
+    if arguments["hidden"] and arguments["modelled"].lower() != "true":
+        found.append(f"hidden with rig = '{arguments['rig']}': must be with sim or an emulated rig; a real one has its own cell")
+    if arguments["twin"].lower() == "true" and arguments["sensor"] == "none":
+        found.append("twin = 'true' with sensor = 'none': must be with a force sensor: without one the modulus cannot be known")
     if arguments["clock"] == "lockstep" and arguments["haptic"] not in ("operator", "none"):
         found.append(f"clock = 'lockstep' with haptic = '{arguments['haptic']}': must be with operator or none, "
                      "which keep the clock's time")

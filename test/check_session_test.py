@@ -15,7 +15,7 @@ GOOD = {'model': 'auto', 'rig': 'sim', 'sensor': 'simulated', 'injector': 'simul
         'clock': 'wall', 'camera': 'sim', 'scene': str(LAUNCH.parent / 'config/cells/mouse_oocyte.yaml'),
         'operator': '', 'record': '', 'allow_network': 'True', 'require_operator': 'true', 'inject': 'True', 'link_emulated': 'False',
         'auto_enable': 'True', 'display': 'true', 'rviz': 'false', 'bag': 'true', 'end_when_done': 'false',
-        'wait_for_go': 'false'}
+        'wait_for_go': 'false', 'twin': 'false', 'hidden': '', 'modelled': 'True'}
 
 
 class CheckSessionTest(unittest.TestCase):
@@ -36,6 +36,9 @@ class CheckSessionTest(unittest.TestCase):
         for changes, what in (({'scene': '/nowhere.yaml'}, "scene = '/nowhere.yaml': no such file; the cells are: mouse"),
                               ({'clock': 'lockstep', 'haptic': 'omni'}, "clock = 'lockstep' with haptic = 'omni'"),
                               ({'mode': 'automatic'}, "mode = 'automatic': must be with haptic:=none"),
+                              ({'hidden': '/nowhere.yaml'}, "hidden = '/nowhere.yaml': no such file"),
+                              ({'hidden': GOOD['scene'], 'modelled': 'False', 'rig': 'zaber'}, "hidden with rig = 'zaber': must be with sim"),
+                              ({'twin': 'true', 'sensor': 'none'}, "twin = 'true' with sensor = 'none': must be with a force"),
                               ({'operator': 'ann'}, "operator: must be with record:=FOLDER")):
             with self.subTest(what):
                 found = problems({**GOOD, **changes})

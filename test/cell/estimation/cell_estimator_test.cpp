@@ -1,0 +1,168 @@
+#include "cell/estimation/cell_estimator.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include "cell/family/family_cell.h"
+#include "cell/surrogate/force_memory.h"
+
+namespace microinjection {
+namespace {
+
+constexpr char kFamilies[] = MICROINJECTION_SOURCE_DIR "/config/families";
+constexpr char kCell[] = MICROINJECTION_SOURCE_DIR "/config/cells/mouse_oocyte_injection.yaml";
+constexpr double kSpeed = 20e-6;  // m/s
+
+std::shared_ptr<const SurrogateData> memberOf(const Scene& scene) {
+  std::string reason;
+  const auto cell = findFamilyCell(kFamilies, scene, reason);
+  EXPECT_TRUE(cell) << reason;
+  return cell->data;
+}
+
+/// A session whose prior is another cell than the one under the needle.
+struct Session {
+  Scene prior = loadScene(kCell);
+  double factor = 1;                            ///< true modulus over the prior's
+  double surface = 0;                           ///< m
+  double offset = 0, drift = 0, noise = 10e-9;  ///< N, N/s, N
+  unsigned seed = 1;
+  CellEstimatorConfig config;
+  std::function<double(double time, double force)> sensor = [](double, double force) { return force; };
+
+  /// Indents from 5 um above to `depth` (m), updating every 20 ms.
+  CellEstimator indent(double depth) const {
+    Scene truth = prior;
+    for (Scene::Layer& layer : truth.cell.layers) layer.material.young_modulus *= factor;
+    SurrogateContact cell(truth, memberOf(truth));
+    ForceMemory memory(truth.cell.material().viscoelasticity.prony);
+    CellEstimator estimator(prior, memberOf(prior), config);
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal(0, noise);
+    constexpr double kAbove = 5e-6, kPeriod = 1e-3;
+    const int count = static_cast<int>((kAbove + depth) / (kSpeed * kPeriod));
+    for (int i = 0; i <= count; ++i) {
+      const double time = i * kPeriod;
+      const Eigen::Vector3d tip(0, 0, prior.radius() + surface + kAbove - kSpeed * time);
+      const Eigen::Vector3d elastic = cell.step(tip - surface * Eigen::Vector3d::UnitZ()).force;
+      const double force = elastic.z() + memory.step(elastic, kPeriod).z();
+      estimator.add(time, tip, sensor(time, force + offset + drift * time + normal(random)));
+      if (i % 20 == 0) estimator.update();
+    }
+    estimator.update();
+    return estimator;
+  }
+};
+
+void expectModulus(const Session& session, const CellEstimate& estimate, double error) {
+  const double truth = session.factor * session.prior.cell.material().young_modulus;
+  EXPECT_NEAR(estimate.modulus / truth, 1, error) << toText(estimate.verdict) << ": " << estimate.reason;
+}
+
+TEST(CellEstimator, FindsACellThatIsThreeTimesStifferAndLies) {
+  Session session;
+  session.factor = 3;
+  session.surface = 0.3e-6;
+  session.offset = 40e-9;
+  const CellEstimate found = session.indent(8e-6).estimate();
+  EXPECT_EQ(found.verdict, EstimateVerdict::kConverged) << found.reason;
+  expectModulus(session, found, 0.02);
+  EXPECT_NEAR(found.contact, session.surface, 0.05e-6);
+  EXPECT_NEAR(found.offset, session.offset, 5e-9);
+  EXPECT_NEAR(found.depth, 8e-6, 0.1e-6);
+}
+
+TEST(CellEstimator, KnowsOnlyThePriorBeforeContact) {
+  Session session;
+  session.factor = 3;
+  const CellEstimate found = session.indent(-2e-6).estimate();
+  EXPECT_EQ(found.verdict, EstimateVerdict::kPrior);
+  EXPECT_NEAR(found.modulus / session.prior.cell.material().young_modulus, 1, 0.01);
+  EXPECT_GT(found.modulus_high / found.modulus_low, 10);
+}
+
+TEST(CellEstimator, LearnsBeforeItConverges) {
+  Session session;
+  session.factor = 0.5;
+  EXPECT_EQ(session.indent(2e-6).estimate().verdict, EstimateVerdict::kLearning);
+}
+
+TEST(CellEstimator, IntervalsCover) {
+  int covered = 0;
+  constexpr int kTrials = 60;
+  for (unsigned seed = 1; seed <= kTrials; ++seed) {
+    Session session;
+    session.seed = seed;
+    session.factor = std::exp(0.03 * (static_cast<int>(seed) - 30));
+    const CellEstimate found = session.indent(4e-6).estimate();
+    const double truth = session.factor * session.prior.cell.material().young_modulus;
+    covered += found.modulus_low <= truth && truth <= found.modulus_high;
+  }
+  // 95 %: fewer than 52 of 60 have a probability below 1 %.
+  EXPECT_GE(covered, 52);
+}
+
+TEST(CellEstimator, IsNotMisledByOutliersAndFrozenReadings) {
+  Session session;
+  session.factor = 2;
+  std::mt19937 random(3);
+  session.sensor = [&](double, double force) { return random() % 30 == 0 ? force + 1e-6 : force; };
+  expectModulus(session, session.indent(8e-6).estimate(), 0.03);
+  double held = 0;
+  session.sensor = [&](double time, double force) {
+    if (time < 0.45 || time > 0.5) held = force;
+    return held;
+  };
+  expectModulus(session, session.indent(8e-6).estimate(), 0.03);
+}
+
+TEST(CellEstimator, DoesNotLearnFromASensorThatDrifts) {
+  Session session;
+  session.factor = 2;
+  session.drift = 200e-9;
+  const CellEstimate found = session.indent(5e-6).estimate();
+  EXPECT_EQ(found.verdict, EstimateVerdict::kPrior);
+  EXPECT_NE(found.reason.find("the sensor drifts"), std::string::npos) << found.reason;
+  EXPECT_EQ(found.modulus, session.prior.cell.material().young_modulus);
+}
+
+TEST(CellEstimator, AForceThatNoCellOfThisModelHasIsInconsistent) {
+  Session session;
+  // A tip that slips, with what is left of the noise.
+  session.sensor = [](double time, double force) { return std::min(force, 0.4e-6) + 1e-9 * std::sin(1e5 * time); };
+  const CellEstimate found = session.indent(8e-6).estimate();
+  EXPECT_EQ(found.verdict, EstimateVerdict::kInconsistent);
+  EXPECT_EQ(found.modulus, session.prior.cell.material().young_modulus);
+  EXPECT_FALSE(found.reason.empty());
+}
+
+TEST(CellEstimator, KnowsThatACellRelaxes) {
+  Session session;
+  session.factor = 2;
+  session.prior.cell.material().viscoelasticity.prony = {{0.5, 0.1}};
+  expectModulus(session, session.indent(8e-6).estimate(), 0.02);
+}
+
+TEST(CellEstimator, ResetForgetsTheCell) {
+  Session session;
+  session.factor = 2;
+  CellEstimator estimator = session.indent(8e-6);
+  estimator.reset();
+  EXPECT_EQ(estimator.update().verdict, EstimateVerdict::kPrior);
+  EXPECT_EQ(estimator.estimate().modulus, session.prior.cell.material().young_modulus);
+}
+
+TEST(CellEstimator, SurvivesForcesOfAnySize) {
+  for (const double size : {1e-30, 1e-3, 1.0, 1e300}) {
+    Session session;
+    session.sensor = [size](double time, double) { return size * std::sin(100 * time); };
+    const CellEstimate found = session.indent(5e-6).estimate();
+    EXPECT_TRUE(std::isfinite(found.modulus) && found.covariance.allFinite()) << size;
+  }
+}
+
+}  // namespace
+}  // namespace microinjection
