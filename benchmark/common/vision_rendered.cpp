@@ -144,7 +144,9 @@ void renderedRows(const VisionCondition& condition, std::uint64_t first, int ima
       polarBodyRow(rows, cell.polar_body, *drawn.truth.cell);
       if (cell.finding.hasValues()) {
         const CellDetection again = timed(following, [&] { return detector.track(frame, cell, 8); });
-        rows.add("cell_tracked", again.finding, cv::norm(again.centre - cell.centre), 0, kCentre, reading + following);
+        const Eigen::Vector2d& centre = drawn.truth.cell->centre;
+        rows.add("cell_tracked", again.finding, std::hypot(again.centre.x - centre.x(), again.centre.y - centre.y()), 0,
+                 kCentre, reading + following);
       }
     } else {
       rows.addAbsent("cell", cell.finding, reading + time);

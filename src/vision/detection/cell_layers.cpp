@@ -19,13 +19,15 @@ constexpr double kGap = 1.03;     // ratio of two borders' radii, at least
 constexpr double kLeastCoverage = 0.55, kLeastConsistency = 0.6, kLeastStrength = 0.55;  // of a second border
 constexpr double kLeastSignificance = 3;                                                 // of a second border
 constexpr double kRingSignificance = 4, kRingCoverage = 0.45;                            // of a faint ring
-constexpr double kClear = 0.8;       // of the main border's strength: an inner border as clear as the main one
-constexpr double kZonaPlace = 0.5;   // of the zona's outer border in its dark rim, see refineBorder()
-constexpr double kInnerPlace = 0.5;  // of the zona's inner border
-constexpr double kWhole = 0.92;      // coverage of a border without a dent
-constexpr double kOff = 0.8;         // px, of a border from where it was searched
-constexpr double kApart = 2;         // px, from the rim, that is another border
-constexpr double kSharpRim = 6;      // px, line of a zona in focus, at most
+constexpr double kRingContrast = 0.2;  // of the border inside, of a clear ring
+constexpr double kClear = 0.8;         // of the main border's strength: an inner border as clear as the main one
+constexpr double kZonaPlace = 0.5;     // of the zona's outer border in its dark rim, see refineBorder()
+constexpr double kInnerPlace = 0.5;    // of the zona's inner border
+constexpr double kSameSize = 0.01;     // of the diameter, from frame to frame
+constexpr double kWhole = 0.92;        // coverage of a border without a dent
+constexpr double kOff = 0.8;           // px, of a border from where it was searched
+constexpr double kApart = 2;           // px, from the rim, that is another border
+constexpr double kSharpRim = 6;        // px, line of a zona in focus, at most
 constexpr double kLeastResidual = 0.5, kMostResidual = 0.0025;  // px; of the diameter: of a sure ellipse
 constexpr double kOoplasmPlace = 1.0;                           // of the ooplasm's: the rim is refracted beside it
 constexpr int kFreeChange = 4;                                  // columns from ray to ray
@@ -172,6 +174,17 @@ void warn(CellLayers& layers) {
   }
 }
 
+/// Takes the certainty from an outer border that has a ring about it: it may be the zona's inner one.
+void doubtWithinRing(const Frame& frame, const std::string& look, CellBorder& outer, double largest) {
+  const double limit = std::min(kOutermost, largest / outer.ellipse.meanDiameter());
+  if (!outer.finding.isFound() || limit < kGap + 0.03) return;
+  const CellBorder beyond = searchBand(frame, outer, kGap, limit, look, kOutwards);
+  const bool clear = beyond.consistency > kLeastConsistency && beyond.contrast > kRingContrast * outer.contrast;
+  if (!isRing(beyond) || !clear || beyond.polarity == Polarity::kFalling) return;
+  outer.finding = Finding::uncertain("a ring is seen outside of the border: it may be the zona's inner one");
+  outer.centred = true;
+}
+
 }  // namespace
 
 CellBorder findMainBorder(const Frame& frame, const cv::Point2d& centre, double radius, const std::string& look) {
@@ -225,6 +238,7 @@ CellLayers findLayers(const Frame& frame, const CellBorder& main, const std::str
   layers.zona_outer = refined(frame, layers.zona_outer, kZonaPlace, 0.35 * gap);
   warn(layers);
   if (!fitLayersTo(frame, look, layers)) layers.zona_inner = innerBorder(frame, layers, ooplasm.ellipse, look);
+  doubtWithinRing(frame, look, layers.zona_outer, largest);
   return layers;
 }
 
@@ -252,6 +266,18 @@ CellBorder follow(const Frame& frame, const CellBorder& previous, const cv::Poin
 
 }  // namespace
 
+namespace {
+
+/// A line keeps its size from frame to frame: another line has another centre.
+void requireSameLine(const CellBorder& previous, CellBorder& border) {
+  const double before = previous.line.meanDiameter();
+  if (!border.finding.hasValues() || std::abs(border.line.meanDiameter() - before) < kSameSize * before) return;
+  border.finding = Finding::uncertain("the border has changed its size: it may be another one");
+  border.centred = false;
+}
+
+}  // namespace
+
 CellLayers followLayers(const Frame& frame, const CellLayers& previous, const std::string& look, double reach) {
   CellLayers layers;
   const bool zona = previous.zona_outer.finding.hasValues();
@@ -269,6 +295,7 @@ CellLayers followLayers(const Frame& frame, const CellLayers& previous, const st
   // The clearest border tells how far the cell moved; the others are then near.
   const cv::Point2d moved = layers.ooplasm.line.centre - previous.ooplasm.line.centre;
   layers.zona_outer = follow(frame, previous.zona_outer, moved, 6, kZonaPlace, 0.35 * gap);
+  requireSameLine(zona ? previous.zona_outer : previous.ooplasm, zona ? layers.zona_outer : layers.ooplasm);
   warn(layers);
   if (!zona || !layers.zona_outer.finding.hasValues()) return layers;
   // The zona keeps its thickness from frame to frame.
