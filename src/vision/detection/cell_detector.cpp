@@ -129,6 +129,9 @@ Finding CellDetector::judge(const Frame& frame, const CellLayers& layers) const 
   }
   if (isBubble(frame, layers))
     return Finding::notFound("a round thing is a bubble: a wide dark rim and a bright middle");
+  CellLayers without_zona;  // rings of light in a bubble look like a zona
+  without_zona.main = layers.main;
+  if (isBubble(frame, without_zona)) return Finding::uncertain("the rim is as wide and dark as that of a bubble");
   if (outer.outside > kMostOutside) return Finding::notFound("half of the border is outside of the image");
   if (outer.outside > config_.most_outside) return Finding::uncertain("a part of the border is outside of the image");
   return outer.finding;

@@ -23,7 +23,6 @@ constexpr double kRingContrast = 0.2;  // of the border inside, of a clear ring
 constexpr double kClear = 0.8;         // of the main border's strength: an inner border as clear as the main one
 constexpr double kZonaPlace = 0.5;     // of the zona's outer border in its dark rim, see refineBorder()
 constexpr double kInnerPlace = 0.5;    // of the zona's inner border
-constexpr double kSameSize = 0.01;     // of the diameter, from frame to frame
 constexpr double kWhole = 0.92;        // coverage of a border without a dent
 constexpr double kOff = 0.8;           // px, of a border from where it was searched
 constexpr double kApart = 2;           // px, from the rim, that is another border
@@ -177,12 +176,12 @@ void warn(CellLayers& layers) {
 /// Takes the certainty from an outer border that has a ring about it: it may be the zona's inner one.
 void doubtWithinRing(const Frame& frame, const std::string& look, CellBorder& outer, double largest) {
   const double limit = std::min(kOutermost, largest / outer.ellipse.meanDiameter());
-  if (!outer.finding.isFound() || limit < kGap + 0.03) return;
+  if (!(outer.finding.isFound() || outer.centred) || limit < kGap + 0.03) return;
   const CellBorder beyond = searchBand(frame, outer, kGap, limit, look, kOutwards);
   const bool clear = beyond.consistency > kLeastConsistency && beyond.contrast > kRingContrast * outer.contrast;
   if (!isRing(beyond) || !clear || beyond.polarity == Polarity::kFalling) return;
   outer.finding = Finding::uncertain("a ring is seen outside of the border: it may be the zona's inner one");
-  outer.centred = true;
+  outer.centred = false;
 }
 
 }  // namespace
@@ -227,10 +226,9 @@ CellLayers findLayers(const Frame& frame, const CellBorder& main, const std::str
     layers.ooplasm = refined(frame, ooplasm, 0, 0);
     warn(layers);
     const bool ring = isRing(inside) || (isRing(beyond) && beyond.polarity != Polarity::kFalling);
-    if (ring && layers.ooplasm.finding.isFound()) {
+    // The ooplasm is not always in the middle of its zona: the centre is in doubt too.
+    if (ring && layers.ooplasm.finding.isFound())
       layers.ooplasm.finding = Finding::uncertain("a faint second ring is seen: this may be a zona's border");
-      layers.ooplasm.centred = true;
-    }
     return layers;
   }
   const double gap = radiusOf(layers.zona_outer) - radiusOf(ooplasm);
@@ -262,18 +260,6 @@ CellBorder follow(const Frame& frame, const CellBorder& previous, const cv::Poin
   fine.contrast = previous.contrast;
   fine.consistency = found.consistency;
   return fine;
-}
-
-}  // namespace
-
-namespace {
-
-/// A line keeps its size from frame to frame: another line has another centre.
-void requireSameLine(const CellBorder& previous, CellBorder& border) {
-  const double before = previous.line.meanDiameter();
-  if (!border.finding.hasValues() || std::abs(border.line.meanDiameter() - before) < kSameSize * before) return;
-  border.finding = Finding::uncertain("the border has changed its size: it may be another one");
-  border.centred = false;
 }
 
 }  // namespace

@@ -169,6 +169,13 @@ void requireSameSize(const CellBorder& previous, CellBorder& border) {
 
 }  // namespace
 
+void requireSameLine(const CellBorder& previous, CellBorder& border) {
+  const double before = previous.line.meanDiameter();
+  if (!border.finding.hasValues() || std::abs(border.line.meanDiameter() - before) < kSameSize * before) return;
+  border.finding = Finding::uncertain("the border has changed its size: it may be another one");
+  border.centred = false;
+}
+
 bool fitLayersTo(const Frame& frame, const std::string& look, CellLayers& layers) {
   const LayerFit fit =
       fitLayers(frame, {layers.zona_outer.ellipse, layers.ooplasm.ellipse, layers.ooplasm.rim, 0}, look);

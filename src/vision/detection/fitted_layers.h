@@ -15,4 +15,7 @@ bool fitLayersTo(const Frame& frame, const std::string& look, CellLayers& layers
 /// before, whose verdict stays when it is seen again.
 void refitLayersTo(const Frame& frame, const std::string& look, const CellLayers& previous, CellLayers& layers);
 
+/// A line keeps its size from frame to frame: where it does not, it is another line with another centre.
+void requireSameLine(const CellBorder& previous, CellBorder& border);
+
 }  // namespace microinjection

@@ -17,8 +17,8 @@ constexpr double kBlur = 1.2;                     // px, of the grey values' der
 constexpr double kFullEdge = 4;                   // of the median derivative between ooplasm and zona: a full edge
 constexpr double kRoom = 6;                       // px inside of the zona, where a polar body may end
 constexpr double kOther = 0.5;                    // rad, of another polar body
-constexpr double kLeastScore = 0.45, kSureScore = 0.6;
-constexpr double kSureLead = 0.18, kSureLeadOfOtherLooks = 0.28;  // over another direction
+constexpr double kLeastScore = 0.45, kSureScore = 0.75;
+constexpr double kSureLead = 0.32, kSureLeadOfOtherLooks = 0.35;  // over another direction
 constexpr double kShade = M_PI / 2;                               // makes the score of a fully shaded border 1
 constexpr double kReach = 4;                                      // px, of the points that refine the circle
 constexpr double kFollowed = 0.25;                                // rad, that it may turn from frame to frame
