@@ -176,7 +176,9 @@ void warn(CellLayers& layers) {
 /// Takes the certainty from an outer border that has a ring about it: it may be the zona's inner one.
 void doubtWithinRing(const Frame& frame, const std::string& look, CellBorder& outer, double largest) {
   const double limit = std::min(kOutermost, largest / outer.ellipse.meanDiameter());
-  if (!(outer.finding.isFound() || outer.centred) || limit < kGap + 0.03) return;
+  // Out of focus a border has fringes about it.
+  const bool trusted = outer.finding.isFound() || (outer.centred && outer.rim == 0);
+  if (!trusted || limit < kGap + 0.03) return;
   const CellBorder beyond = searchBand(frame, outer, kGap, limit, look, kOutwards);
   const bool clear = beyond.consistency > kLeastConsistency && beyond.contrast > kRingContrast * outer.contrast;
   if (!isRing(beyond) || !clear || beyond.polarity == Polarity::kFalling) return;
