@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,8 @@ struct VisionCondition {
 
 std::vector<VisionCondition> visionConditions();
 
-/// Rows of `images` rendered images.
-void renderedRows(const VisionCondition& condition, int images, const TakeRow& take);
+/// Rows of `images` rendered images, with the seeds from `first` on. The constants were chosen with seeds
+/// below 100000.
+void renderedRows(const VisionCondition& condition, std::uint64_t first, int images, const TakeRow& take);
 
 }  // namespace microinjection

@@ -12,7 +12,7 @@ namespace microinjection {
 namespace {
 
 // The goals, px and degrees.
-constexpr double kCentre = 0.15, kZona = 0.5, kTip = 0.2, kMouth = 0.5, kAxis = 0.2, kDimple = 0.3;
+constexpr double kCentre = 0.15, kZona = 0.5, kTip = 0.2, kMouth = 0.5, kAxis = 0.2, kDimple = 0.3, kPolarBody = 2;
 constexpr double kDiameter = 0.003;  // of the diameter
 const cv::Point2d kMoved(4, -3);     // px, that a pipette is thought to be off before it is tracked
 
@@ -66,8 +66,7 @@ void cellRows(const ImageRows& rows, const CellDetection& cell, const CellTruth&
   const double off = std::hypot(cell.centre.x - truth.centre.x(), cell.centre.y - truth.centre.y());
   rows.add("cell_centre", cell.finding, off, truth.diameter, kCentre, time);
   const double diameter = cell.finding.hasValues() ? cell.outer().ellipse.meanDiameter() : 0;
-  rows.add("cell_diameter", cell.finding, std::abs(diameter - truth.diameter), truth.diameter,
-           kDiameter * truth.diameter);
+  rows.add("cell_diameter", cell.size, std::abs(diameter - truth.diameter), truth.diameter, kDiameter * truth.diameter);
   if (!(truth.zona_inner[0] > 0)) return;
   const double inner = meanDiameter(truth.zona_inner), ooplasm = meanDiameter(truth.ooplasm);
   rows.add("zona_outer", cell.zona_outer.finding,
@@ -75,6 +74,16 @@ void cellRows(const ImageRows& rows, const CellDetection& cell, const CellTruth&
   rows.add("zona_inner", cell.zona_inner.finding, 0.5 * std::abs(cell.zona_inner.ellipse.meanDiameter() - inner), 0,
            kZona);
   rows.add("ooplasm", cell.ooplasm.finding, 0.5 * std::abs(cell.ooplasm.ellipse.meanDiameter() - ooplasm), 0, kZona);
+}
+
+/// The angle in degrees; where the cell has no polar body, whether one is claimed.
+void polarBodyRow(const ImageRows& rows, const PolarBody& body, const CellTruth& truth) {
+  if (!truth.polar_body_angle) {
+    rows.addAbsent("polar_body_absent", body.finding, std::numeric_limits<double>::quiet_NaN());
+    return;
+  }
+  const double turn = std::remainder(body.angle - *truth.polar_body_angle, 2 * M_PI);
+  rows.add("polar_body_angle", body.finding, std::abs(turn) * 180 / M_PI, 0, kPolarBody);
 }
 
 PipetteDetection pipetteRows(const ImageRows& rows, const std::string& what, const Frame& frame, const CameraView& view,
@@ -113,7 +122,7 @@ void dimpleRow(const ImageRows& rows, const Frame& frame, const CellDetection& c
 
 }  // namespace
 
-void renderedRows(const VisionCondition& condition, int images, const TakeRow& take) {
+void renderedRows(const VisionCondition& condition, std::uint64_t first, int images, const TakeRow& take) {
   cv::setNumThreads(1);
   Microscope microscope(condition.microscope);
   CellDetectorConfig config;
@@ -123,8 +132,7 @@ void renderedRows(const VisionCondition& condition, int images, const TakeRow& t
   const CellDetector detector(config);
   const CameraView& view = condition.microscope.camera;
   for (int i = 0; i < images; ++i) {
-    // The constants were chosen with the seeds from 1 on.
-    const std::uint64_t seed = 100001 + static_cast<std::uint64_t>(i);
+    const std::uint64_t seed = first + static_cast<std::uint64_t>(i);
     const DrawnScene drawn = drawScene(condition.draw, view, seed);
     const cv::Mat image = microscope.render(drawn.scene, condition.focus, seed);
     const ImageRows rows(condition.name, seed, take);
@@ -133,9 +141,12 @@ void renderedRows(const VisionCondition& condition, int images, const TakeRow& t
     const CellDetection cell = timed(time, [&] { return detector.detect(frame); });
     if (drawn.truth.cell) {
       cellRows(rows, cell, *drawn.truth.cell, reading + time);
+      polarBodyRow(rows, cell.polar_body, *drawn.truth.cell);
       if (cell.finding.hasValues()) {
         const CellDetection again = timed(following, [&] { return detector.track(frame, cell, 8); });
-        rows.add("cell_tracked", again.finding, cv::norm(again.centre - cell.centre), 0, kCentre, reading + following);
+        const Eigen::Vector2d& centre = drawn.truth.cell->centre;
+        rows.add("cell_tracked", again.finding, std::hypot(again.centre.x - centre.x(), again.centre.y - centre.y()), 0,
+                 kCentre, reading + following);
       }
     } else {
       rows.addAbsent("cell", cell.finding, reading + time);

@@ -1,5 +1,6 @@
 // Measures a cell in images and writes its scene; see --help.
 
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -29,7 +30,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kFound = 0, kBadUsage = 2, kNotFound = 3;
-constexpr double kAnyRate = 30;  // 1/s: the time of a frame does not matter here
+constexpr double kDegrees = 180 / M_PI, kNormal95 = 1.96;  // standard deviations, of the half width of an interval
+constexpr double kAnyRate = 30;                            // 1/s: the time of a frame does not matter here
 
 void addSource(FrameSource& source, SharpestPlane& search) {
   while (const std::optional<CameraFrame> frame = source.next()) search.add(*frame);
@@ -63,12 +65,12 @@ std::string verdictOf(const Finding& finding) {
 }
 
 void printPlane(const CellPlane& plane, const SharpestPlane& search) {
-  std::cout << "image: " << plane.name << ", " << plane.number << " of " << search.planes() << ", cell found in "
+  std::cout << "image: " << plane.name << ", " << plane.number << " of " << search.planes() << ", cell measured in "
             << search.found() << '\n';
   if (search.isAtAnEnd())
     std::cerr << "measure_cell: the sharpest image is the " << (plane.number == 1 ? "first" : "last")
               << " one: the focus may lie beyond it\n";
-  std::cout << "verdict: " << verdictOf(plane.view.cell.finding) << '\n';
+  std::cout << "verdict: " << verdictOf(plane.view.cell.size) << '\n';
 }
 
 void printLengths(const CellMeasurement& cell, const CellPlane& plane) {
@@ -78,7 +80,12 @@ void printLengths(const CellMeasurement& cell, const CellPlane& plane) {
             << (cell.offset ? inMicrometres(*cell.offset)
                             : "not known: holding pipette " + verdictOf(plane.view.holding.finding))
             << '\n';
-  std::cout << "polar body: its side is not known\n";
+  const PolarBody& body = plane.view.cell.polar_body;
+  std::cout << "polar body: ";
+  if (body.finding.isFound())
+    std::cout << "at " << body.angle * kDegrees << " +- " << kNormal95 * body.deviation * kDegrees << " degrees\n";
+  else
+    std::cout << "not known: " << verdictOf(body.finding) << '\n';
 }
 
 /// The scene of --scene with the measured lengths.

@@ -18,10 +18,10 @@ Usage: measure_cell INPUT --pixel-size M [--scene FILE --out FILE] [--overlay PI
 INPUT is an image, a folder of images or a video. Of several images, the one is measured in which the cell is the
 sharpest: a stack of planes needs no choice. An image out of focus gives a wrong diameter, which its interval leaves out.
 It prints, a line each:
-  image      name of the measured image, its number, and in how many images the cell was found
+  image      name of the measured image, its number, and in how many images the cell was measured
   verdict    found, uncertain or not found, with the reason
   diameter, zona, offset    with half widths of 95 % intervals, which leave out the error of the pixel size
-  polar body its side: the detector does not search it, so that it is not known
+  polar body its direction from the cell's centre, from the image's x towards y (down), if it is sure
   family     with --scene and --families: the family that serves this cell without preparation, with the expected error
 offset: of the cell's centre from the axis of the holding pipette, positive to the right, seen from shaft to mouth.
 

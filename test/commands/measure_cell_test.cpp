@@ -78,6 +78,7 @@ TEST_F(MeasureCellCommand, MakesASceneOfAStack) {
   EXPECT_NE(result.out.find("image: plane8.png, 3 of 5"), std::string::npos) << result.out;
   EXPECT_NE(result.out.find("verdict: found\n"), std::string::npos) << result.out;
   EXPECT_NE(result.out.find("offset: not known"), std::string::npos) << result.out;  // there is no holding pipette
+  EXPECT_NE(result.out.find("polar body: not known: "), std::string::npos) << result.out;
   EXPECT_NE(result.out.find("family: family zona"), std::string::npos) << result.out;
   EXPECT_NE(result.err.find("broken.png"), std::string::npos) << result.err;
   EXPECT_NEAR(number(result.out, "diameter"), 76.8, 0.3);

@@ -31,10 +31,14 @@ cell_microinjection::CellInImage toMessage(const CellDetection& cell) {
   message.y = cell.centre.y;
   setCovariance(cell.centre_covariance, message);
   message.diameter = cell.outer().ellipse.meanDiameter();
-  message.diameter_deviation = std::sqrt(cell.outer().covariance(2, 2));
+  message.diameter_deviation = cell.size.isFound() ? std::sqrt(cell.outer().covariance(2, 2)) : kNone;
+  if (cell.finding.isFound()) message.reason = cell.size.reason;
   const std::optional<ZonaThickness> zona = zonaThickness(cell);
   message.zona_thickness = zona ? zona->thickness : kNone;
   message.zona_thickness_deviation = zona ? zona->deviation : kNone;
+  const PolarBody& body = cell.polar_body;
+  message.polar_body_angle = body.finding.isFound() ? body.angle : kNone;
+  message.polar_body_angle_deviation = body.finding.isFound() ? body.deviation : kNone;
   message.others = static_cast<std::uint32_t>(cell.others.size());
   return message;
 }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "vision/detection/border_dent.h"
+
 namespace microinjection {
 namespace {
 
@@ -11,12 +13,6 @@ constexpr double kFullBorder = 6;  // of the slopes' scale, a slope that counts 
 constexpr int kClimb = 8;          // columns
 constexpr double kBorder = 0.5;    // strength of a ray that sees a border
 constexpr double kLeastCoverage = 0.3;
-constexpr int kBendRun = 45,
-              kBendSides = 18;  // shares 1 / n of the border: of a bend, and of what belongs to it beside it
-constexpr double kLeastBend = 0.7, kBend = 3;  // px; of the median distance: what is off the ellipse
-constexpr double kBetter = 0.5;                // of the residual, that leaving bends out must leave at most
-constexpr int kMostBends = 1;
-constexpr double kLeastRest = 0.5;   // of the points, that an ellipse without the bends needs
 constexpr int kIndependentRays = 3;  // neighbours that the smoothing ties together
 
 void forbid(const PolarMap& map, const BorderBand& band, cv::Mat& strength) {
@@ -112,38 +108,6 @@ Points pointsOf(const PolarMap& map, const ClosedPath& path, const cv::Mat& stre
   points.strength /= count;
   points.consistency /= count;
   return points;
-}
-
-/// Where several neighbours are off the ellipse something bends the border, more of it than what is
-/// clearly off: the ellipse of the rest.
-EllipseFit withoutBends(const std::vector<cv::Point2d>& points, const EllipseFit& fit, double tolerance) {
-  const int count = static_cast<int>(points.size());
-  std::vector<double> off;
-  for (const cv::Point2d& point : points) off.push_back(std::abs(fit.ellipse.distance(point)));
-  std::vector<double> sorted = off;
-  std::nth_element(sorted.begin(), sorted.begin() + count / 2, sorted.end());
-  const double limit = std::max(kLeastBend, kBend * sorted[count / 2]);
-  std::vector<bool> bent(points.size(), false);
-  const int least = std::max(3, count / kBendRun), sides = count / kBendSides;
-  for (int i = 0, run = 0; i < count + least; ++i) {
-    run = off[i % count] > limit ? run + 1 : 0;
-    if (run < least) continue;
-    for (int k = i - least + 1 - sides; k <= i + sides; ++k) bent[(k + 2 * count) % count] = true;
-  }
-  std::vector<cv::Point2d> rest;
-  int bends = 0;
-  for (int i = 0; i < count; ++i) {
-    if (!bent[i]) rest.push_back(points[i]);
-    bends += bent[i] && !bent[(i + 1) % count] ? 1 : 0;
-  }
-  // A border that is bent in many places is no ellipse: nothing tells which part to leave out.
-  if (bends == 0 || bends > kMostBends || rest.size() < kLeastRest * points.size()) return fit;
-  EllipseFit better = fitEllipse(rest, fit.ellipse, tolerance);
-  if (!better.valid || better.residual > kBetter * fit.residual) return fit;
-  better.inlier.clear();
-  for (const cv::Point2d& point : points)
-    better.inlier.push_back(std::abs(better.ellipse.distance(point)) <= tolerance);
-  return better;
 }
 
 }  // namespace
@@ -272,7 +236,8 @@ CellBorder refineBorder(const Frame& frame, const CellBorder& coarse, const Bord
   const double tolerance = std::max(1.0, 0.01 * coarse.ellipse.meanDiameter());
   EllipseFit fit = fitEllipse(fine.points, coarse.ellipse, tolerance);
   if (!fit.valid) return coarse;
-  for (int round = 0; round < 2; ++round) fit = withoutBends(fine.points, fit, tolerance);
+  // A border that should have a dark rim and shows none is not clear enough to tell a dent.
+  if (rim.widest == 0 || fine.rim > 0) fit = withoutDents(fine.points, fit, tolerance);
   fine.ellipse = fit.ellipse;
   fine.covariance = fit.covariance;
   fine.residual = fit.residual;

@@ -12,8 +12,15 @@ namespace {
 constexpr int kCandidates = 6;
 constexpr double kThinnestOoplasm = 0.55;  // of the outer border's diameter
 constexpr double kMostOutside = 0.4, kLeastOutside = 0.02;
+constexpr double kSureCentre = 0.3;     // px, standard deviation
 constexpr double kMostElongated = 1.5;  // ratio of a cell's axes
 constexpr double kLeastStrength = 0.6, kLeastConsistency = 0.6, kLeastSignificance = 3;
+
+/// What overlaps the cell that was found is a part of it.
+bool isWithin(const CellDetection& found, const Ellipse& other) {
+  const Ellipse& first = found.outer().ellipse;
+  return cv::norm(other.centre - first.centre) < 0.4 * (other.meanDiameter() + first.meanDiameter());
+}
 
 }  // namespace
 
@@ -35,7 +42,7 @@ CellDetector::CellDetector(const CellDetectorConfig& config) : config_(config) {
 CellDetection CellDetector::detect(const Frame& frame) const {
   CellDetection detection;
   if (!frame.refusal().empty()) {
-    detection.finding = Finding::notFound(frame.refusal());
+    detection.finding = detection.size = Finding::notFound(frame.refusal());
     return detection;
   }
   const double low = 0.5 * kThinnestOoplasm * config_.smallest_diameter, high = 0.5 * config_.largest_diameter;
@@ -45,54 +52,67 @@ CellDetection CellDetector::detect(const Frame& frame) const {
     if (isClear(border)) borders.push_back(border);
   }
   std::sort(borders.begin(), borders.end(), [](const auto& a, const auto& b) { return worthOf(a) > worthOf(b); });
-  detection.finding = Finding::notFound("no closed border of the size that is asked for");
+  detection.finding = detection.size = Finding::notFound("no closed border of the size that is asked for");
   for (const CellBorder& border : borders) {
+    if (detection.finding.hasValues() && isWithin(detection, border.ellipse)) continue;
     const CellLayers layers = findLayers(frame, border, config_.look, config_.largest_diameter);
     const Finding finding = judge(frame, layers);
     if (!finding.hasValues()) {
-      if (!detection.finding.hasValues()) detection.finding = finding;
+      if (!detection.finding.hasValues()) detection.finding = detection.size = finding;
       continue;
     }
     if (detection.finding.hasValues()) {
       addOther(detection, layers);
       continue;
     }
-    detection.finding = finding;
-    take(detection, layers);
+    take(detection, layers, finding);
+    detection.polar_body = findPolarBody(frame, layers, config_.look);
   }
-  if (detection.finding.isFound() && !detection.others.empty()) {
-    detection.finding = Finding::uncertain(CellDetection::kTwoCells);
-  }
+  doubtOneOfTwo(detection);
   return detection;
 }
 
 CellDetection CellDetector::track(const Frame& frame, const CellDetection& previous, double reach) const {
   CellDetection detection;
-  detection.finding = Finding::notFound("there is no earlier cell to follow");
-  if (!frame.refusal().empty()) detection.finding = Finding::notFound(frame.refusal());
+  detection.finding = detection.size = Finding::notFound("there is no earlier cell to follow");
+  if (!frame.refusal().empty()) detection.finding = detection.size = Finding::notFound(frame.refusal());
   if (!frame.refusal().empty() || !previous.finding.hasValues()) return detection;
   CellLayers before;
   before.ooplasm = previous.ooplasm;
   before.zona_inner = previous.zona_inner;
   before.zona_outer = previous.zona_outer;
-  const CellLayers layers = followLayers(frame, before, reach);
+  const CellLayers layers = followLayers(frame, before, config_.look, reach);
   const bool lost = !layers.ooplasm.finding.hasValues() ||
                     (previous.zona_outer.finding.hasValues() && !layers.zona_outer.finding.hasValues());
   if (lost) {
-    detection.finding = Finding::notFound("the cell is lost: its border is not where it was");
+    detection.finding = detection.size = Finding::notFound("the cell is lost: its border is not where it was");
     return detection;
   }
-  detection.finding = judge(frame, layers);
-  take(detection, layers);
+  take(detection, layers, judge(frame, layers));
+  // Others are searched in the whole frame only.
+  detection.others = previous.others;
+  doubtOneOfTwo(detection);
+  detection.polar_body = followPolarBody(frame, layers, config_.look, previous.polar_body);
   return detection;
 }
 
-void CellDetector::take(CellDetection& detection, const CellLayers& layers) {
+void CellDetector::take(CellDetection& detection, const CellLayers& layers, const Finding& size) {
   detection.ooplasm = layers.ooplasm;
   detection.zona_inner = layers.zona_inner;
   detection.zona_outer = layers.zona_outer;
-  detection.centre = detection.outer().ellipse.centre;
-  detection.centre_covariance = detection.outer().covariance.topLeftCorner<2, 2>();
+  const CellBorder& outer = detection.outer();
+  detection.centre = outer.ellipse.centre;
+  detection.centre_covariance = outer.covariance.topLeftCorner<2, 2>();
+  detection.finding = detection.size = size;
+  const bool centred = outer.centred && std::sqrt(detection.centre_covariance.trace()) < kSureCentre;
+  if (size.hasValues() && centred && size.reason == outer.finding.reason) detection.finding = Finding::found();
+}
+
+void CellDetector::doubtOneOfTwo(CellDetection& detection) {
+  if (detection.others.empty()) return;
+  for (Finding* certain : {&detection.finding, &detection.size}) {
+    if (certain->isFound()) *certain = Finding::uncertain(CellDetection::kTwoCells);
+  }
 }
 
 bool CellDetector::isClear(const CellBorder& border) const {
@@ -109,6 +129,9 @@ Finding CellDetector::judge(const Frame& frame, const CellLayers& layers) const 
   }
   if (isBubble(frame, layers))
     return Finding::notFound("a round thing is a bubble: a wide dark rim and a bright middle");
+  CellLayers without_zona;  // rings of light in a bubble look like a zona
+  without_zona.main = layers.main;
+  if (isBubble(frame, without_zona)) return Finding::uncertain("the rim is as wide and dark as that of a bubble");
   if (outer.outside > kMostOutside) return Finding::notFound("half of the border is outside of the image");
   if (outer.outside > config_.most_outside) return Finding::uncertain("a part of the border is outside of the image");
   return outer.finding;
@@ -116,10 +139,7 @@ Finding CellDetector::judge(const Frame& frame, const CellLayers& layers) const 
 
 void CellDetector::addOther(CellDetection& detection, const CellLayers& layers) {
   const CellBorder& outer = layers.zona_outer.finding.hasValues() ? layers.zona_outer : layers.ooplasm;
-  const Ellipse& first = detection.outer().ellipse;
-  // What overlaps the first one is a part of it.
-  if (cv::norm(outer.ellipse.centre - first.centre) < 0.4 * (outer.ellipse.meanDiameter() + first.meanDiameter()))
-    return;
+  if (isWithin(detection, outer.ellipse)) return;
   if (outer.outside < kLeastOutside) detection.others.push_back(outer.ellipse);
 }
 

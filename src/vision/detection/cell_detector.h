@@ -8,6 +8,7 @@
 
 #include "base/config_reader.h"
 #include "vision/detection/cell_layers.h"
+#include "vision/detection/polar_body.h"
 
 namespace microinjection {
 
@@ -22,18 +23,22 @@ struct CellDetectorConfig {
 };
 
 struct CellDetection {
-  Finding finding;
+  Finding finding;                                              ///< of the cell and of its centre
+  Finding size;                                                 ///< of its diameter: never surer than the cell
   cv::Point2d centre;                                           ///< px
   Eigen::Matrix2d centre_covariance = Eigen::Matrix2d::Zero();  ///< px^2
   CellBorder zona_outer, zona_inner, ooplasm;                   ///< a cell without zona has only the last
-  std::vector<Ellipse> others;                                  ///< other whole cells
+  PolarBody polar_body;
+  std::vector<Ellipse> others;  ///< other whole cells
 
   /// Removes the others for which `part_of_another_thing` is true. Without others the one cell is
   /// certain again.
   template <typename Predicate>
   void dismissOthers(const Predicate& part_of_another_thing) {
     others.erase(std::remove_if(others.begin(), others.end(), part_of_another_thing), others.end());
-    if (others.empty() && finding.reason == kTwoCells) finding = Finding::found();
+    for (Finding* doubted : {&finding, &size}) {
+      if (others.empty() && doubted->reason == kTwoCells) *doubted = Finding::found();
+    }
   }
 
   static constexpr const char* kTwoCells = "two cells: the clearest is given";
@@ -57,8 +62,11 @@ class CellDetector {
 
  private:
   bool isClear(const CellBorder& border) const;
+  /// Verdict of the diameter.
   Finding judge(const Frame& frame, const CellLayers& layers) const;
-  static void take(CellDetection& detection, const CellLayers& layers);
+  /// @param size  verdict of the diameter
+  static void take(CellDetection& detection, const CellLayers& layers, const Finding& size);
+  static void doubtOneOfTwo(CellDetection& detection);
   static void addOther(CellDetection& detection, const CellLayers& layers);
 
   CellDetectorConfig config_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vision/detection/fitted_layers.h"
 #include "vision/detection/zona_inner.h"
 
 namespace microinjection {
@@ -17,12 +18,16 @@ constexpr double kInside = 0.93;  // ratio of a border inside of the main one, a
 constexpr double kGap = 1.03;     // ratio of two borders' radii, at least
 constexpr double kLeastCoverage = 0.55, kLeastConsistency = 0.6, kLeastStrength = 0.55;  // of a second border
 constexpr double kLeastSignificance = 3;                                                 // of a second border
-constexpr double kClear = 0.8;       // of the main border's strength: an inner border as clear as the main one
-constexpr double kZonaPlace = 0.5;   // of the zona's outer border in its dark rim, see refineBorder()
-constexpr double kInnerPlace = 0.5;  // of the zona's inner border
-constexpr double kSharpRim = 6;      // px, line of a zona in focus, at most
+constexpr double kRingSignificance = 4, kRingCoverage = 0.45;                            // of a faint ring
+constexpr double kRingContrast = 0.2;  // of the border inside, of a clear ring
+constexpr double kClear = 0.8;         // of the main border's strength: an inner border as clear as the main one
+constexpr double kZonaPlace = 0.5;     // of the zona's outer border in its dark rim, see refineBorder()
+constexpr double kInnerPlace = 0.5;    // of the zona's inner border
+constexpr double kWhole = 0.92;        // coverage of a border without a dent
+constexpr double kOff = 0.8;           // px, of a border from where it was searched
+constexpr double kApart = 2;           // px, from the rim, that is another border
+constexpr double kSharpRim = 6;        // px, line of a zona in focus, at most
 constexpr double kLeastResidual = 0.5, kMostResidual = 0.0025;  // px; of the diameter: of a sure ellipse
-constexpr double kApart = 2;                                    // px, from the rim, that is another border
 constexpr double kOoplasmPlace = 1.0;                           // of the ooplasm's: the rim is refracted beside it
 constexpr int kFreeChange = 4;                                  // columns from ray to ray
 constexpr double kFreeGain = 0.07;                              // of strength, what a freer path must be better by
@@ -67,7 +72,17 @@ CellBorder refined(const Frame& frame, const CellBorder& border, double place, d
   if (!border.finding.hasValues()) return border;
   const double radius = 0.5 * border.ellipse.meanDiameter();
   const double blur = std::clamp(0.006 * radius, 1.0, 2.5);
-  return refineBorder(frame, border, {rim, place}, std::max(3.0, 0.04 * radius), blur, kFineRays);
+  const double window = std::max(3.0, 0.04 * radius);
+  CellBorder fine = refineBorder(frame, border, {rim, place}, window, blur, kFineRays);
+  // The flanks are searched near their mean places: a first ellipse that was off displaces them.
+  const double off = cv::norm(fine.ellipse.centre - border.ellipse.centre) +
+                     (fine.ellipse.semi_axes - border.ellipse.semi_axes).cwiseAbs().maxCoeff() - fine.shift;
+  if (off >= kOff && fine.coverage <= kWhole) {
+    fine.ellipse = scaled(fine.ellipse, 1 + fine.shift / radius);
+    fine = refineBorder(frame, fine, {rim, place}, window, blur, kFineRays);
+  }
+  fine.line = fine.ellipse;
+  return fine;
 }
 
 CellBorder searchBand(const Frame& frame, const CellBorder& main, double low, double high, const std::string& look,
@@ -93,35 +108,24 @@ CellBorder settled(const Frame& frame, const CellBorder& border, double inner) {
 
 double radiusOf(const CellBorder& border) { return 0.5 * border.ellipse.meanDiameter(); }
 
-/// A zona has nearly the same thickness everywhere, so its inner border is straight in a map about the
-/// outer one. It is outside of the ooplasm's rim.
-CellBorder wholeInnerBorder(const Frame& frame, const CellLayers& layers, const std::string& look) {
+/// The zona's inner border as a line of its own, for cells that the joint fit does not describe. Uncertain.
+CellBorder innerBorder(const Frame& frame, const CellLayers& layers, const Ellipse& first, const std::string& look) {
   const double outer = radiusOf(layers.zona_outer), inner = radiusOf(layers.ooplasm);
-  const double low = std::max(0.6, inner / outer - 0.05);
-  const Ellipse rim = scaled(layers.main.ellipse, 1 + std::max(2.0, 0.02 * outer) / radiusOf(layers.main));
-  if (rim.meanDiameter() >= 0.96 * layers.zona_outer.ellipse.meanDiameter()) return {};
-  const PolarMap map = mapAbout(frame, layers.zona_outer.ellipse, low, 0.97);
-  return bestBorder(frame, map, look, outer, {rim, {}, 0, kFreeChange});
-}
-
-/// The zona's inner border: all round, or as the line beside the ooplasm's rim. Where neither is seen,
-/// the gap is thinner than the rim.
-CellBorder innerBorder(const Frame& frame, const CellLayers& layers, const std::string& look) {
-  const double gap = radiusOf(layers.zona_outer) - radiusOf(layers.ooplasm);
-  CellBorder whole = wholeInnerBorder(frame, layers, look);
-  const bool apart = radiusOf(whole) > radiusOf(layers.ooplasm) + layers.ooplasm.shift + kApart;
-  const bool seen = isSecondBorder(whole) && apart;
-  CellBorder border = findZonaInner(frame, layers.zona_outer, layers.ooplasm);
-  if (seen) {
-    whole = refined(frame, whole, kInnerPlace, 0.25 * gap);
-    const bool agree = border.finding.hasValues() && std::abs(radiusOf(whole) - radiusOf(border)) < kApart;
-    if (!agree) border.finding = whole.finding = Finding::uncertain("two lines may be the zona's inner border");
-    if (!border.finding.isFound()) return whole;
+  const Ellipse rim = scaled(first, 1 + 2 * std::max(2.0, 0.02 * outer) / first.meanDiameter());
+  CellBorder border;
+  if (rim.meanDiameter() < 0.96 * layers.zona_outer.ellipse.meanDiameter()) {
+    const PolarMap map = mapAbout(frame, layers.zona_outer.ellipse, std::max(0.6, inner / outer - 0.05), 0.97);
+    border = bestBorder(frame, map, look, outer, {rim, {}, 0, kFreeChange});
   }
-  if (border.finding.hasValues()) return border;
-  border = layers.ooplasm;
-  border.finding = Finding::uncertain("no gap between ooplasm and zona: the middle of the ooplasm's rim is given");
-  border.ellipse = scaled(layers.ooplasm.ellipse, 1 + 0.5 * layers.ooplasm.rim / radiusOf(layers.ooplasm));
+  if (isSecondBorder(border) && radiusOf(border) > inner + layers.ooplasm.shift + kApart)
+    border = refined(frame, border, kInnerPlace, 0.25 * (outer - inner));
+  else
+    border = findZonaInner(frame, layers.zona_outer, layers.ooplasm);
+  if (!border.finding.hasValues()) {
+    border = layers.ooplasm;
+    border.ellipse = scaled(layers.ooplasm.ellipse, 1 + 0.5 * layers.ooplasm.rim / inner);
+  }
+  border.finding = Finding::uncertain("the zona's inner border is one of several lines");
   return border;
 }
 
@@ -143,23 +147,43 @@ std::vector<CellBorder> bordersOutside(const Frame& frame, const CellBorder& mai
   return found;
 }
 
+/// Whether a faint ring is there at all.
+bool isRing(const CellBorder& border) {
+  return border.finding.hasValues() && border.significance > kRingSignificance && border.coverage > kRingCoverage;
+}
+
 /// Takes the certainty from borders whose places the image may have displaced.
 void warn(CellLayers& layers) {
-  const auto doubt = [](CellBorder& border, const std::string& reason) {
-    if (border.finding.isFound()) border.finding = Finding::uncertain(reason);
+  const auto doubt = [](CellBorder& border, const std::string& reason, bool centred) {
+    if (!border.finding.isFound()) return;
+    border.finding = Finding::uncertain(reason);
+    border.centred = centred;
   };
   CellBorder* const all[] = {&layers.zona_outer, &layers.zona_inner, &layers.ooplasm};
   const bool zona = layers.zona_outer.finding.hasValues();
   if (zona && layers.ooplasm.rim == 0)
-    doubt(layers.ooplasm, "the ooplasm's dark rim is not seen: its border is up to a rim off");
-  if (zona && layers.zona_outer.rim == 0) doubt(layers.zona_outer, "the zona's outer border is not a dark line");
+    doubt(layers.ooplasm, "the ooplasm's dark rim is not seen: its border is up to a rim off", true);
+  if (zona && layers.zona_outer.rim == 0) doubt(layers.zona_outer, "the zona's outer border is not a dark line", true);
   for (CellBorder* border : all) {
-    if (layers.zona_outer.rim > kSharpRim) doubt(*border, "the cell is out of focus: its borders are displaced");
-    if (border->polarity == Polarity::kEither) doubt(*border, "DIC shades borders: they are displaced");
+    if (border->polarity == Polarity::kEither) doubt(*border, "DIC shades borders: they are displaced", false);
     if (border->residual > std::max(kLeastResidual, kMostResidual * border->ellipse.meanDiameter())) {
-      doubt(*border, "the border is not an ellipse");
+      doubt(*border, "the border is not an ellipse", false);
     }
+    if (layers.zona_outer.rim > kSharpRim) doubt(*border, "the cell is out of focus: its borders are displaced", true);
   }
+}
+
+/// Takes the certainty from an outer border that has a ring about it: it may be the zona's inner one.
+void doubtWithinRing(const Frame& frame, const std::string& look, CellBorder& outer, double largest) {
+  const double limit = std::min(kOutermost, largest / outer.ellipse.meanDiameter());
+  // Out of focus a border has fringes about it.
+  const bool trusted = outer.finding.isFound() || (outer.centred && outer.rim == 0);
+  if (!trusted || limit < kGap + 0.03) return;
+  const CellBorder beyond = searchBand(frame, outer, kGap, limit, look, kOutwards);
+  const bool clear = beyond.consistency > kLeastConsistency && beyond.contrast > kRingContrast * outer.contrast;
+  if (!isRing(beyond) || !clear || beyond.polarity == Polarity::kFalling) return;
+  outer.finding = Finding::uncertain("a ring is seen outside of the border: it may be the zona's inner one");
+  outer.centred = false;
 }
 
 }  // namespace
@@ -186,6 +210,7 @@ CellLayers findLayers(const Frame& frame, const CellBorder& main, const std::str
   const double limit = std::min(kOutermost, largest / main.ellipse.meanDiameter());
   const std::vector<CellBorder> outside = bordersOutside(frame, main, limit, look);
   const CellBorder inside = searchBand(frame, main, 0.6, kInside, look);
+  const CellBorder beyond = outside.empty() ? searchBand(frame, main, kGap, limit, look, kOutwards) : CellBorder();
   CellBorder ooplasm = main;
   if (!outside.empty()) {
     layers.zona_outer = outside.back();
@@ -193,18 +218,27 @@ CellLayers findLayers(const Frame& frame, const CellBorder& main, const std::str
     layers.zona_outer = main;
     ooplasm = inside;
   }
+  if (!layers.zona_outer.finding.hasValues() && isRing(inside)) {
+    CellLayers within = layers;
+    within.zona_outer = refined(frame, main, kZonaPlace, 0.35 * (radiusOf(main) - radiusOf(inside)));
+    within.ooplasm = refined(frame, inside, kOoplasmPlace, kWidestRim * radiusOf(inside));
+    if (fitLayersTo(frame, look, within) && within.ooplasm.finding.isFound()) return within;
+  }
   if (!layers.zona_outer.finding.hasValues()) {
     layers.ooplasm = refined(frame, ooplasm, 0, 0);
     warn(layers);
+    const bool ring = isRing(inside) || (isRing(beyond) && beyond.polarity != Polarity::kFalling);
+    // The ooplasm is not always in the middle of its zona: the centre is in doubt too.
+    if (ring && layers.ooplasm.finding.isFound())
+      layers.ooplasm.finding = Finding::uncertain("a faint second ring is seen: this may be a zona's border");
     return layers;
   }
   const double gap = radiusOf(layers.zona_outer) - radiusOf(ooplasm);
   layers.ooplasm = refined(frame, ooplasm, kOoplasmPlace, std::min(kWidestRim * radiusOf(ooplasm), 0.8 * gap));
   layers.zona_outer = refined(frame, layers.zona_outer, kZonaPlace, 0.35 * gap);
-  layers.main = ooplasm;
-  layers.zona_inner = innerBorder(frame, layers, look);
-  layers.main = main;
   warn(layers);
+  if (!fitLayersTo(frame, look, layers)) layers.zona_inner = innerBorder(frame, layers, ooplasm.ellipse, look);
+  doubtWithinRing(frame, look, layers.zona_outer, largest);
   return layers;
 }
 
@@ -214,6 +248,7 @@ CellBorder follow(const Frame& frame, const CellBorder& previous, const cv::Poin
                   double rim) {
   if (!previous.finding.hasValues()) return {};
   CellBorder base = previous;
+  base.ellipse = previous.line;
   base.ellipse.centre += moved;
   // The flank that is searched is at the outer end of the rim.
   const double radius = radiusOf(previous), flank = 1 + place * previous.rim / radius;
@@ -231,7 +266,7 @@ CellBorder follow(const Frame& frame, const CellBorder& previous, const cv::Poin
 
 }  // namespace
 
-CellLayers followLayers(const Frame& frame, const CellLayers& previous, double reach) {
+CellLayers followLayers(const Frame& frame, const CellLayers& previous, const std::string& look, double reach) {
   CellLayers layers;
   const bool zona = previous.zona_outer.finding.hasValues();
   const double gap = zona ? radiusOf(previous.zona_outer) - radiusOf(previous.ooplasm) : 0;
@@ -239,56 +274,23 @@ CellLayers followLayers(const Frame& frame, const CellLayers& previous, double r
   const double rim = zona ? std::min(kWidestRim * radiusOf(previous.ooplasm), 0.8 * gap) : 0;
   layers.ooplasm = follow(frame, previous.ooplasm, {0, 0}, reach + 4, place, rim);
   if (!layers.ooplasm.finding.hasValues()) return layers;
+  // What was doubtful in the frame before is so here.
+  if (previous.ooplasm.finding.verdict == Verdict::kUncertain) {
+    layers.ooplasm.finding = previous.ooplasm.finding;
+    layers.ooplasm.centred = previous.ooplasm.centred;
+  }
   layers.main = layers.ooplasm;
   // The clearest border tells how far the cell moved; the others are then near.
-  const cv::Point2d moved = layers.ooplasm.ellipse.centre - previous.ooplasm.ellipse.centre;
+  const cv::Point2d moved = layers.ooplasm.line.centre - previous.ooplasm.line.centre;
   layers.zona_outer = follow(frame, previous.zona_outer, moved, 6, kZonaPlace, 0.35 * gap);
-  if (zona) {
-    // The zona keeps its thickness from frame to frame.
-    layers.zona_inner = previous.zona_inner;
-    layers.zona_inner.ellipse.centre += layers.zona_outer.ellipse.centre - previous.zona_outer.ellipse.centre;
-  }
+  requireSameLine(zona ? previous.zona_outer : previous.ooplasm, zona ? layers.zona_outer : layers.ooplasm);
   warn(layers);
+  if (!zona || !layers.zona_outer.finding.hasValues()) return layers;
+  // The zona keeps its thickness from frame to frame.
+  layers.zona_inner = previous.zona_inner;
+  layers.zona_inner.ellipse.centre += layers.zona_outer.line.centre - previous.zona_outer.line.centre;
+  refitLayersTo(frame, look, previous, layers);
   return layers;
-}
-
-namespace {
-
-/// Median grey value of each column over the rays within the image.
-std::vector<double> medianGrey(const PolarMap& map) {
-  std::vector<double> median(map.columns(), 0.0);
-  for (int i = 0; i < map.columns(); ++i) {
-    std::vector<float> values;
-    for (int ray = 0; ray < map.rays(); ++ray) {
-      if (map.valid().at<unsigned char>(ray, i) != 0) values.push_back(map.grey().at<float>(ray, i));
-    }
-    if (values.empty()) continue;
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-    median[i] = values[values.size() / 2];
-  }
-  return median;
-}
-
-constexpr double kBubbleDepth = 0.5, kBlackDepth = 0.7;  // of the light outside, that the rim takes
-constexpr double kBubbleRim = 0.11;                      // of the radius, a bubble's rim at half its depth
-
-}  // namespace
-
-bool isBubble(const Frame& frame, const CellLayers& layers) {
-  const PolarMap map = mapAbout(frame, layers.main.ellipse, 0.1, 1.2);
-  const std::vector<double> grey = medianGrey(map);
-  const auto columnOf = [&](double ratio) { return static_cast<int>((ratio - 0.1) / 1.1 * (map.columns() - 1)); };
-  const double outside = *std::max_element(grey.begin() + columnOf(1.02), grey.end());
-  const auto darkest = std::min_element(grey.begin() + columnOf(0.4), grey.begin() + columnOf(1.0));
-  const double middle = *std::max_element(grey.begin(), darkest + 1);
-  const double depth = (outside - *darkest) / std::max(outside, 1e-6), half = 0.5 * (outside + *darkest);
-  auto first = darkest, last = darkest;
-  while (first != grey.begin() && *first < half) --first;
-  while (last + 1 != grey.end() && *last < half) ++last;
-  const double width = static_cast<double>(last - first) / columnOf(1.1);
-  const bool bright = middle > *darkest + 0.6 * (outside - *darkest);
-  const bool zona = layers.zona_outer.finding.hasValues();
-  return bright && width > kBubbleRim && depth > (zona ? kBlackDepth : kBubbleDepth);
 }
 
 }  // namespace microinjection

@@ -14,7 +14,7 @@ struct CellLayers {
 
 /// Finds the same borders in another frame, moved by at most `reach` (px). A border that is lost has
 /// the verdict kNotFound.
-CellLayers followLayers(const Frame& frame, const CellLayers& previous, double reach);
+CellLayers followLayers(const Frame& frame, const CellLayers& previous, const std::string& look, double reach);
 
 /// Whether the round thing is a bubble: its rim is wide and nearly black, its middle bright.
 bool isBubble(const Frame& frame, const CellLayers& layers);

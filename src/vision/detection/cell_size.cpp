@@ -35,8 +35,8 @@ MeasuredLength combine(const std::vector<MeasuredLength>& readings) {
 }  // namespace
 
 void CellSizeReadings::add(const CellDetection& cell) {
-  if (!cell.finding.isFound()) {
-    lost_ = cell.finding.reason;
+  if (!cell.size.isFound()) {
+    lost_ = cell.size.reason;
     readings_.clear();
     return;
   }

@@ -30,7 +30,7 @@ class CellSizeReadings {
  public:
   explicit CellSizeReadings(std::size_t images) : largest_(images) {}
 
-  /// A cell that is not found clears the readings, and so does one of another size (by more than 5
+  /// A cell whose diameter is not sure clears the readings, and so does one of another size (by more than 5
   /// %) than the last: it is another cell.
   void add(const CellDetection& cell);
   void clear() { readings_.clear(); }

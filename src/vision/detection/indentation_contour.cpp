@@ -7,14 +7,13 @@
 namespace microinjection {
 namespace {
 
-constexpr double kFacing = 1.1;     // rad, half of the sector that faces the needle
-constexpr double kDisturbed = 1.2;  // rad from the needle, that a dimple reaches to
-constexpr double kDeepest = 0.55;   // of the radius, a dimple
-constexpr double kFitted = 0.12;    // of the radius, half of the dimple's middle that gives the parabola, at least
-constexpr double kBelowTip = 3;     // px, that the border may be deeper than the tip
-constexpr double kOutwards = 0.3;   // strength of the outermost column over the innermost
-constexpr float kSeen = 0.45F;      // strength of a border that is seen
-constexpr double kTouches = 4;      // px, of the contour from the tip that touches it
+constexpr double kFacing = 1.1;    // rad, half of the sector that faces the needle
+constexpr double kDeepest = 0.55;  // of the radius, a dimple
+constexpr double kFitted = 0.12;   // of the radius, half of the dimple's middle that gives the parabola, at least
+constexpr double kBelowTip = 3;    // px, that the border may be deeper than the tip
+constexpr double kOutwards = 0.3;  // strength of the outermost column over the innermost
+constexpr float kSeen = 0.45F;     // strength of a border that is seen
+constexpr double kTouches = 4;     // px, of the contour from the tip that touches it
 constexpr double kThinnest = 14, kThickest = 20;  // px, of the needle near its tip
 constexpr int kRays = 240;
 
@@ -54,16 +53,6 @@ bool parabola(const std::vector<Seen>& points, double& value, double& deviation)
   value = coefficients[0];
   deviation = scale * std::sqrt(std::max(0.0, matrix.inverse()(0, 0)));
   return true;
-}
-
-/// The border's ellipse from the points that do not face the needle.
-EllipseFit undisturbed(const CellBorder& border, double facing) {
-  std::vector<cv::Point2d> points;
-  for (const cv::Point2d& point : border.points) {
-    const cv::Point2d d = point - border.ellipse.centre;
-    if (angleBetween(std::atan2(d.y, d.x), facing) > kDisturbed) points.push_back(point);
-  }
-  return fitEllipse(points, border.ellipse, 1.0);
 }
 
 }  // namespace
@@ -123,11 +112,8 @@ Indentation findIndentation(const Frame& frame, const CellBorder& border, const 
   // tip, the tip is the deepest place.
   const bool touches = std::abs(place) < std::max(kTouches, 3 * result.deviation);
   result.deepest = touches ? tip : tip + place * u;
-  result.undisturbed = undisturbed(border, facing);
-  result.finding = Finding::notFound("too little of the outline is undisturbed");
-  if (!result.undisturbed.valid) return result;
-  // From the deepest place back along the needle to the undisturbed outline; 0 outside of it.
-  result.depth = result.undisturbed.ellipse.reach(result.deepest, direction);
+  // The border's ellipse leaves the dimple out. From the deepest place back along the needle; 0 outside of it.
+  result.depth = border.ellipse.reach(result.deepest, direction);
   result.finding = touches ? Finding::found()
                            : Finding::uncertain("the outline under the needle is not at the tip: it may not touch");
   return result;

@@ -17,7 +17,6 @@ struct Indentation {
   double depth = 0;                  ///< px, along the needle, from the undisturbed outline to the deepest place
   double deviation = 0;              ///< px, standard deviation
   cv::Point2d deepest;               ///< px
-  EllipseFit undisturbed;            ///< outline without the dimple: of the border's points that do not face the needle
   std::vector<cv::Point2d> contour;  ///< px, of the part that faces the needle
   BorderDisplacement displacement;   ///< of the outline beside the needle; it has its own finding
 };

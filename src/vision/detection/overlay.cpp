@@ -7,6 +7,7 @@
 namespace microinjection {
 namespace {
 
+constexpr double kDegrees = 180 / M_PI;
 constexpr int kShift = 4;  // fractional bits of the drawn places
 const cv::Scalar kOoplasm(80, 220, 80), kZona(60, 160, 255), kInner(255, 180, 60), kNeedle(80, 80, 255),
     kHolding(255, 255, 80), kText(255, 255, 255);
@@ -60,9 +61,20 @@ void drawCell(cv::Mat& image, const CellDetection& cell, Legend& legend) {
                  (cell.finding.reason.empty() ? "" : ": " + cell.finding.reason),
              kText);
   if (!cell.finding.hasValues()) return;
+  if (cell.finding.isFound() && !cell.size.isFound())
+    legend.add("its diameter is uncertain: " + cell.size.reason, kText);
   border(image, cell.ooplasm, kOoplasm);
   border(image, cell.zona_inner, kInner);
   border(image, cell.zona_outer, kZona);
+  if (cell.polar_body.finding.hasValues()) {
+    CellBorder body;
+    body.finding = cell.polar_body.finding;
+    body.ellipse = cell.polar_body.outline;
+    border(image, body, kInner);
+    legend.add(format("polar body at %.1f +- %.1f degrees", cell.polar_body.angle * kDegrees,
+                      cell.polar_body.deviation * kDegrees),
+               kInner);
+  }
   line(image, cell.centre - cv::Point2d(6, 0), cell.centre + cv::Point2d(6, 0), kText);
   line(image, cell.centre - cv::Point2d(0, 6), cell.centre + cv::Point2d(0, 6), kText);
   legend.add(format("centre %.1f, %.1f px", cell.centre.x, cell.centre.y), kText);

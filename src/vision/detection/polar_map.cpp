@@ -45,7 +45,7 @@ PolarMap::PolarMap(const Frame& frame, const Ellipse& base, const Range& range, 
     }
   }
   cv::remap(image, grey_, x, y, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
-  derive(grey_, valid_, smoothing, slope_);
+  if (smoothing > 0) derive(grey_, valid_, smoothing, slope_);
 }
 
 double PolarMap::direction(int ray) const { return 2 * M_PI * ray / rays(); }

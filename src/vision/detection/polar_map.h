@@ -22,7 +22,7 @@ class PolarMap {
     int columns = 0, rays = 0;
   };
 
-  /// @param smoothing  standard deviation (columns) of the Gaussian along the radius
+  /// @param smoothing  standard deviation (columns) of the Gaussian along the radius; 0: the derivative is left out
   PolarMap(const Frame& frame, const Ellipse& base, const Range& range, double smoothing);
   PolarMap(const Frame& frame, const cv::Point2d& centre, const Range& range, double smoothing)
       : PolarMap(frame, Ellipse{centre, {0, 0}, 0}, range, smoothing) {}

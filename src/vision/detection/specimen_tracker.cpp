@@ -14,11 +14,11 @@ PipetteDetectorConfig readPipette(ConfigReader& reader, const std::string& kind,
   return config;
 }
 
-/// The thing near its last place, else anywhere.
-template <typename Detection, typename Detector>
-Detection follow(const Detector& detector, const Frame& frame, const Detection& last, double reach) {
+/// The pipette near its last place, else anywhere.
+PipetteDetection follow(const PipetteDetector& detector, const Frame& frame, const PipetteDetection& last,
+                        double reach) {
   if (last.finding.isFound()) {
-    const Detection tracked = detector.track(frame, last, reach);
+    const PipetteDetection tracked = detector.track(frame, last, reach);
     if (tracked.finding.isFound()) return tracked;
   }
   return detector.detect(frame);
@@ -64,9 +64,19 @@ SpecimenTrackerConfig SpecimenTrackerConfig::read(ConfigReader& reader) {
 SpecimenTracker::SpecimenTracker(const SpecimenTrackerConfig& config)
     : config_(config), cell_(config.cell), injection_(config.injection), holding_(config.holding) {}
 
+CellDetection SpecimenTracker::followCell(const Frame& frame) {
+  ++since_search_;
+  if (view_.cell.finding.hasValues()) {
+    const CellDetection tracked = cell_.track(frame, view_.cell, config_.reach);
+    if (tracked.size.isFound() || (tracked.finding.hasValues() && since_search_ < kSearchEvery)) return tracked;
+  }
+  since_search_ = 0;
+  return cell_.detect(frame);
+}
+
 const SpecimenView& SpecimenTracker::next(const Frame& frame) {
   SpecimenView view;
-  view.cell = follow(cell_, frame, view_.cell, config_.reach);
+  view.cell = followCell(frame);
   view.injection = follow(injection_, frame, view_.injection, config_.reach);
   view.holding = follow(holding_, frame, view_.holding, config_.reach);
   if (view.holding.finding.isFound())

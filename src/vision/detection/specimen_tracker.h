@@ -27,7 +27,9 @@ struct SpecimenView {
 };
 
 /// Follows cell and pipettes from frame to frame. What was found is searched near its last place;
-/// what is lost is searched in the whole frame.
+/// what is lost is searched in the whole frame. A cell whose diameter is uncertain is followed too, and
+/// the whole frame is searched for a better one in each `kSearchEvery`-th frame only: a search takes as
+/// long as some images.
 class SpecimenTracker {
  public:
   explicit SpecimenTracker(const SpecimenTrackerConfig& config);
@@ -36,11 +38,16 @@ class SpecimenTracker {
   const SpecimenView& next(const Frame& frame);
   const SpecimenView& view() const { return view_; }  ///< of the last frame
 
+  static constexpr int kSearchEvery = 30;
+
  private:
+  CellDetection followCell(const Frame& frame);
+
   SpecimenTrackerConfig config_;
   CellDetector cell_;
   PipetteDetector injection_, holding_;
   SpecimenView view_;
+  int since_search_ = 0;  ///< frames, since the whole one was searched for a cell
 };
 
 }  // namespace microinjection

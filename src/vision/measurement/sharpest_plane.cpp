@@ -9,7 +9,7 @@ void SharpestPlane::add(const CameraFrame& frame) {
   SpecimenTracker tracker(config_);
   const Frame image(frame.image);
   const SpecimenView view = tracker.next(image);
-  if (view.cell.finding.isFound()) ++found_;
+  if (view.cell.size.isFound()) ++found_;
   const double sharpness = cellSharpness(image, view.cell);
   const bool has_values = view.cell.finding.hasValues();
   if (best_ && (!has_values || (best_->view.cell.finding.hasValues() && sharpness <= best_->sharpness))) return;

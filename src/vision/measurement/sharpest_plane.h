@@ -27,7 +27,7 @@ class SharpestPlane {
 
   void add(const CameraFrame& frame);
   std::size_t planes() const { return planes_; }                  ///< that were added
-  std::size_t found() const { return found_; }                    ///< in which the cell was found
+  std::size_t found() const { return found_; }                    ///< in which the cell's diameter is sure
   const std::optional<CellPlane>& best() const { return best_; }  ///< none: nothing was added
   /// Whether the best plane is the first or the last one: the focus may lie beyond it.
   bool isAtAnEnd() const { return best_ && planes_ > 1 && (best_->number == 1 || best_->number == planes_); }

@@ -31,10 +31,10 @@ struct Rendered {
   SceneTruth truth;
 };
 
-Rendered render(const SceneDrawConfig& draw, std::uint64_t seed, MicroscopeConfig config = {}) {
+Rendered render(const SceneDrawConfig& draw, std::uint64_t seed, MicroscopeConfig config = {}, double focus = 0) {
   Microscope microscope(config);
   const DrawnScene drawn = drawScene(draw, config.camera, seed);
-  return {microscope.render(drawn.scene, 0, seed), drawn.truth};
+  return {microscope.render(drawn.scene, focus, seed), drawn.truth};
 }
 
 void expectTruth(const CellDetection& cell, const CellTruth& truth, double tolerance) {
@@ -116,7 +116,28 @@ TEST(CellDetector, TwoCellsAreUncertain) {
   cv::hconcat(middle, middle, both);
   const CellDetection cell = CellDetector(forRendered()).detect(Frame(both));
   EXPECT_EQ(cell.finding.verdict, Verdict::kUncertain);
+  EXPECT_EQ(cell.size.verdict, Verdict::kUncertain);
   EXPECT_EQ(cell.others.size(), 1U);
+  CellDetection followed = CellDetector(forRendered()).track(Frame(both), cell, 8);
+  EXPECT_EQ(followed.finding.verdict, Verdict::kUncertain) << "the other one is still there";
+  EXPECT_EQ(followed.size.verdict, Verdict::kUncertain);
+  followed.dismissOthers([](const Ellipse&) { return true; });
+  EXPECT_TRUE(followed.finding.isFound()) << followed.finding.reason;
+}
+
+TEST(CellDetector, OutOfFocusTheCentreMayBeSureAndTheDiameterIsNot) {
+  int sure = 0;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const Rendered rendered = render(oneCell(), seed, {}, 10e-6);
+    const CellDetection cell = CellDetector(forRendered()).detect(Frame(rendered.image));
+    EXPECT_EQ(cell.size.verdict, Verdict::kUncertain) << seed;
+    EXPECT_FALSE(cell.size.reason.empty());
+    if (!cell.finding.isFound()) continue;
+    ++sure;
+    const Eigen::Vector2d& centre = rendered.truth.cell->centre;
+    EXPECT_LT(std::hypot(cell.centre.x - centre.x(), cell.centre.y - centre.y()), 1) << seed;
+  }
+  EXPECT_GE(sure, 1);
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ CellBorder border(double diameter, double deviation) {
 
 CellDetection cell(double zona, double ooplasm, double deviation = 0.1) {
   CellDetection detection;
-  detection.finding = Finding::found();
+  detection.finding = detection.size = Finding::found();
   if (zona > 0) detection.zona_outer = border(zona, deviation);
   detection.ooplasm = border(ooplasm, deviation);
   return detection;
@@ -54,12 +54,22 @@ TEST(CellSizeReadings, NeedImagesInSuccession) {
   readings.add(cell(200, 150));
   readings.add(cell(200, 150));
   CellDetection lost;
-  lost.finding = Finding::notFound("it is dark");
+  lost.finding = lost.size = Finding::notFound("it is dark");
   readings.add(lost);
   readings.add(cell(200, 150));
   EXPECT_FALSE(readings.measure(3, reason));
   EXPECT_NE(reason.find("1 of 3"), std::string::npos);
   EXPECT_NE(reason.find("it is dark"), std::string::npos);
+}
+
+TEST(CellSizeReadings, ADiameterInDoubtIsNoReading) {
+  CellSizeReadings readings(10);
+  CellDetection blurred = cell(200, 150);
+  blurred.size = Finding::uncertain("it is out of focus");
+  for (int i = 0; i < 3; ++i) readings.add(blurred);
+  std::string reason;
+  EXPECT_FALSE(readings.measure(1, reason));
+  EXPECT_NE(reason.find("it is out of focus"), std::string::npos);
 }
 
 TEST(CellSizeReadings, AnotherCellBeginsAnew) {

@@ -75,6 +75,24 @@ TEST_F(SpecimenTrackerTest, TheLipsOfAThickPipetteAreNoCells) {
   EXPECT_TRUE(view.cell.others.empty());
 }
 
+TEST_F(SpecimenTrackerTest, AnUncertainCellIsFollowedAndSometimesSearched) {
+  const double focus = 10e-6;
+  MicroscopeScene scene;
+  scene.cells.push_back(CellScene::round({-70e-6, 0}, kRadius, 6e-6, 0));
+  const SpecimenView& view = tracker_.next(Frame(microscope_.render(scene, focus, 1)));
+  ASSERT_TRUE(view.cell.finding.hasValues()) << view.cell.finding.reason;
+  ASSERT_FALSE(view.cell.size.isFound());
+  // A second cell is seen by a search of the whole frame only.
+  scene.cells.push_back(CellScene::round({70e-6, 0}, kRadius, 6e-6, 0));
+  const Frame both(microscope_.render(scene, focus, 2));
+  for (int i = 1; i < SpecimenTracker::kSearchEvery; ++i) {
+    tracker_.next(both);
+    ASSERT_TRUE(view.cell.others.empty()) << i;
+    ASSERT_LT(cv::norm(view.cell.centre - pixel(-70e-6, 0)), 1) << i;
+  }
+  EXPECT_EQ(tracker_.next(both).cell.others.size(), 1U);
+}
+
 TEST_F(SpecimenTrackerTest, AnEmptyFrameFindsNothingAndTheNextOneEverything) {
   ASSERT_TRUE(see(heldOocyte(60e-6)).cell.finding.isFound());
   EXPECT_FALSE(tracker_.next(Frame(cv::Mat())).cell.finding.hasValues());

@@ -20,7 +20,7 @@ CellBorder border(double diameter, double deviation) {
 
 SpecimenView view(double offset, bool held = true) {
   SpecimenView view;
-  view.cell.finding = Finding::found();
+  view.cell.finding = view.cell.size = Finding::found();
   view.cell.zona_outer = border(300, 0.2);
   view.cell.ooplasm = border(250, 0.2);
   view.cell.centre = {500 + offset, 300};
@@ -59,7 +59,7 @@ TEST(CellMeasurement, OfAnotherCellBeginsAnew) {
   CellReadings readings(5);
   for (int i = 0; i < 3; ++i) readings.add(view(40));
   SpecimenView lost = view(0);
-  lost.cell.finding = Finding::notFound("it is dark");
+  lost.cell.finding = lost.cell.size = Finding::notFound("it is dark");
   readings.add(lost);
   readings.add(view(4));
   std::string reason;

@@ -1,0 +1,51 @@
+#include <algorithm>
+#include <vector>
+
+#include "vision/detection/cell_layers.h"
+
+namespace microinjection {
+namespace {
+
+constexpr int kRays = 96, kColumns = 110;
+constexpr double kSmoothing = 1.2;  // columns
+
+/// Median grey value of each column over the rays within the image.
+std::vector<double> medianGrey(const PolarMap& map) {
+  std::vector<double> median(map.columns(), 0.0);
+  for (int i = 0; i < map.columns(); ++i) {
+    std::vector<float> values;
+    for (int ray = 0; ray < map.rays(); ++ray) {
+      if (map.valid().at<unsigned char>(ray, i) != 0) values.push_back(map.grey().at<float>(ray, i));
+    }
+    if (values.empty()) continue;
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+    median[i] = values[values.size() / 2];
+  }
+  return median;
+}
+
+constexpr double kBubbleDepth = 0.5, kBlackDepth = 0.7;  // of the light outside, that the rim takes
+constexpr double kBubbleRim = 0.11;                      // of the radius, a bubble's rim at half its depth
+
+}  // namespace
+
+bool isBubble(const Frame& frame, const CellLayers& layers) {
+  const Ellipse& main = layers.main.ellipse;
+  const double radius = 0.5 * main.meanDiameter();
+  const PolarMap map(frame, main, {-0.9 * radius, 0.2 * radius, kColumns, kRays}, kSmoothing);
+  const std::vector<double> grey = medianGrey(map);
+  const auto columnOf = [&](double ratio) { return static_cast<int>((ratio - 0.1) / 1.1 * (map.columns() - 1)); };
+  const double outside = *std::max_element(grey.begin() + columnOf(1.02), grey.end());
+  const auto darkest = std::min_element(grey.begin() + columnOf(0.4), grey.begin() + columnOf(1.0));
+  const double middle = *std::max_element(grey.begin(), darkest + 1);
+  const double depth = (outside - *darkest) / std::max(outside, 1e-6), half = 0.5 * (outside + *darkest);
+  auto first = darkest, last = darkest;
+  while (first != grey.begin() && *first < half) --first;
+  while (last + 1 != grey.end() && *last < half) ++last;
+  const double width = static_cast<double>(last - first) / columnOf(1.1);
+  const bool bright = middle > *darkest + 0.6 * (outside - *darkest);
+  const bool zona = layers.zona_outer.finding.hasValues();
+  return bright && width > kBubbleRim && depth > (zona ? kBlackDepth : kBubbleDepth);
+}
+
+}  // namespace microinjection
