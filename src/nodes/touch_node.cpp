@@ -89,8 +89,8 @@ void TouchNode::onVision(const cell_microinjection::VisionState& message) {
   sight_received_ = ros::SteadyTime::now();
 }
 
+/// An invalid reading is as none: force_timeout after the last valid one the search fails.
 void TouchNode::onForce(const geometry_msgs::WrenchStamped& message) {
-  force_.reset();
   const double age = secondsBetween(message.header.stamp, ros::Time::now());
   const std::optional<Eigen::Vector3d> force = finiteForce(&message);
   if (message.header.stamp.isZero() || age > parameters_.force_timeout || !force) return;

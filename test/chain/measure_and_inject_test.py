@@ -1,6 +1,8 @@
 #!/usr/bin/python3
 """A cell of unknown size and place is measured in the image, served, and injected: the felt force is the true cell's."""
 
+import csv
+import pathlib
 import sys
 import time
 import unittest
@@ -120,6 +122,7 @@ class MeasureAndInjectTest(unittest.TestCase):
         self.check_forces()
         if TWIN:
             self.check_score(result)
+        self.check_notebook(result)
 
     def run_goal(self, outcome, **goal):
         self.client.send_goal(InjectGoal(**goal))
@@ -142,6 +145,20 @@ class MeasureAndInjectTest(unittest.TestCase):
         self.assertLess(score.predicted.force_low, score.force)
         self.assertLess(score.force, score.predicted.force_high)
         self.assertAlmostEqual(score.predicted.depth / score.depth, 1, delta=0.2)
+
+    def check_notebook(self, result):
+        """A row for each cell that was touched; here twice the same one."""
+        path = pathlib.Path(rospy.get_param("/notebook/file"))
+        self.until(lambda: path.is_file() and len(path.read_text().splitlines()) == 2 + TWIN, "the notebook")
+        *touch, row = csv.DictReader(path.read_text().splitlines())
+        self.assertEqual([row["outcome"] for row in touch], ["indented"] * TWIN)
+        self.assertEqual((row["outcome"], row["punctures"], row["cell"]), ("injected", "1", "mouse_oocyte_injection"))
+        self.assertAlmostEqual(float(row["diameter_m"]), DIAMETER, delta=3e-3 * DIAMETER)
+        self.assertAlmostEqual(float(row["volume_m3"]) / result.volume, 1, delta=0.1)
+        if TWIN:
+            self.assertAlmostEqual(float(touch[0]["modulus_Pa"]) / TRUE_MODULUS, 1, delta=0.03)
+            self.assertAlmostEqual(float(row["puncture_force_N"]) / result.puncture_force, 1, delta=0.1)
+            self.assertGreater(float(row["expected_force_high_N"]), float(row["puncture_force_N"]))
 
     def check_forces(self):
         """Up to the puncture, within 3 %."""

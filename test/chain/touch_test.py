@@ -112,7 +112,9 @@ class TouchTest(unittest.TestCase):
     def test_stops_when_cancelled(self):
         self.command("enable", "ENABLED")
         self.action.send_goal(FindTouchGoal())
-        self.until(lambda: self.height() < RADIUS + ABOVE - 1e-6, "a motion")
+        ended = (GoalStatus.ABORTED, GoalStatus.REJECTED)
+        self.until(lambda: self.height() < RADIUS + ABOVE - 1e-6 or self.action.get_state() in ended, "a motion")
+        self.assertNotIn(self.action.get_state(), ended, self.action.get_result())
         self.action.cancel_goal()
         self.assertTrue(self.action.wait_for_result(rospy.Duration(PATIENCE)))
         self.assertEqual(self.action.get_state(), GoalStatus.PREEMPTED)

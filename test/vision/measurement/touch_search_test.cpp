@@ -75,6 +75,7 @@ TEST(TouchSearch, FindsTheTouchAndStopsThere) {
 TEST(TouchSearch, ANeedleBeforeOrBehindTheCellIsHeld) {
   Rig rig(4e-6);
   rig.give_ = 0;
+  rig.stiffness_ = 0.05;  // the depth ends it, not the force
   TouchSearch search = searchOf(rig);
   rig.run(search);
   EXPECT_FALSE(search.done());
