@@ -9,6 +9,7 @@ namespace microinjection {
 namespace {
 
 constexpr double kLongest = 0.05;     // s, that the set-point advances in a step: a stall must not become a jump
+constexpr double kHeld = 1;           // s behind a resting set-point, from which the needle counts as held
 constexpr double kArrived = 0.5e-6;   // m, of the motors from their goal
 constexpr double kBeyondPlay = 3e-6;  // m, by which a motion is longer than the backlash that it takes up
 
@@ -35,6 +36,7 @@ ImageApproach::ImageApproach(const ImageApproachConfig& config, const CameraCali
       goal_(position),
       began_(now),
       stepped_(now),
+      follows_(now),
       distance_(std::numeric_limits<double>::quiet_NaN()) {
   if (!target.allFinite()) failure_ = "the target's pixel is not finite";
 }
@@ -58,8 +60,14 @@ std::optional<Eigen::Vector3d> ImageApproach::step(const Input& input) {
   const double reach = config_.speed * duration;
   setpoint_ = way.norm() <= reach ? goal_ : Eigen::Vector3d(setpoint_ + reach * way.normalized());
   waits_for_.clear();
-  if (setpoint_ == goal_ && (*input.position - goal_).norm() > kArrived) {
+  const bool behind = setpoint_ == goal_ && (*input.position - goal_).norm() > kArrived;
+  if (!behind) follows_ = input.now;
+  if (behind) {
     waits_for_ = "the needle does not follow";
+    if (input.now - follows_ < kHeld) return setpoint_;
+    // After late set-points the controller holds the needle until one begins where it is.
+    setpoint_ = *input.position;
+    follows_ = input.now;
   } else if (setpoint_ == goal_ && input.now - input.rested_since >= config_.settle_time) {
     plan(input);
   }

@@ -56,6 +56,7 @@ class ImageApproach {
   Play play_;
   Eigen::Vector3d setpoint_, goal_;  ///< m
   double began_, stepped_;           ///< s
+  double follows_;                   ///< s, when the needle last was at the goal, or on its way
   std::uint64_t sequence_ = 0;       ///< of the images that were offered
   double last_stamp_ = -1;           ///< s
   int taken_up_ = 0;                 ///< motions that take up the backlash, of 2
