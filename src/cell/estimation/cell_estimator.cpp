@@ -17,22 +17,11 @@ constexpr double kStep = 5e-9;   ///< m, of the contact's height, for the deriva
 constexpr double kSmall = 1e-3;  ///< change of the state, in deviations, that ends the fit
 constexpr double kDeviations95 = 1.96;
 constexpr double kDeviationOfMedian = 1.4826;
-constexpr double kLearned = 0.5;  ///< of the prior's variance: with more left, nothing was learned
-constexpr double kConflict = 3;   ///< of the prior's deviations, from what was learned of a cell before
-constexpr int kFewest = 24;       ///< samples in contact, of a contradiction
-constexpr int kBlocks = 8;
+constexpr double kLearned = 0.5;    ///< of the prior's variance: with more left, nothing was learned
+constexpr double kConflict = 3;     ///< of the prior's deviations, from what was learned of a cell before
 constexpr int kPersistent = 3;      ///< updates in a row that must contradict
 constexpr double kSignificant = 4;  ///< of a smooth residual, over what noise leaves of it
-constexpr double kFarOff = 6;       ///< of a reading from its neighbours, over the noise
-constexpr int kFrozen = 20;         ///< equal readings: a sensor that hangs
 constexpr double kApproach = 1.0;   ///< s before the contact that are kept, for the offset
-constexpr double kFewestFree = 12;  ///< samples before contact from which a drift is judged
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 }  // namespace
 
@@ -90,8 +79,8 @@ void CellEstimator::beginNext() {
   }
   history_.clear();
   state_.setZero();
-  contradictions_ = repeated_ = 0;
-  received_ = 0;
+  contradictions_ = 0;
+  filter_.reset();
   setPrior(EstimateVerdict::kPrior, "the needle has not touched the cell");
 }
 
@@ -114,18 +103,20 @@ void CellEstimator::setPrior(EstimateVerdict verdict, const std::string& reason)
       Eigen::Vector3d(deviation, config_.contact_deviation, config_.offset_deviation).cwiseAbs2().asDiagonal();
 }
 
-void CellEstimator::add(double time, const Eigen::Vector3d& tip, double force) {
-  const double last = window_[(received_ + kWindow - 1) % kWindow];
-  repeated_ = received_ > 0 && force == last ? repeated_ + 1 : 0;
-  window_[received_++ % kWindow] = force;
-  if (repeated_ < kFrozen && !isOutlier(force)) history_.add(time, tip, force);
+std::string CellEstimator::add(double time, const Eigen::Vector3d& tip, double force) {
+  const double noise = std::max(config_.sensor_noise, history_.noise());
+  if (filter_.judge(time, force, noise) == ReadingFilter::Verdict::kGood) history_.add(time, tip, force);
+  return filter_.complaint();
 }
 
-bool CellEstimator::isOutlier(double force) const {
-  if (received_ < kWindow) return true;  // nobody knows
-  std::array<double, kWindow> sorted = window_;
-  std::nth_element(sorted.begin(), sorted.begin() + kWindow / 2, sorted.end());
-  return std::abs(force - sorted[kWindow / 2]) > kFarOff * std::max(config_.sensor_noise, history_.noise());
+void CellEstimator::forgetSince(double time) {
+  history_.forgetSince(time);
+  contradictions_ = 0;  // it may have been of these readings
+  update();
+}
+
+bool CellEstimator::Fit::touches() const {
+  return std::any_of(points.begin(), points.end(), [](const auto& point) { return point.touches; });
 }
 
 /// Deviations: the sensor's and, of the last state's force, the model's.
@@ -133,7 +124,7 @@ void CellEstimator::linearise(const State& state, Fit& fit, Eigen::MatrixXd& jac
   const auto& samples = history_.samples();
   const double shift = config_.contact_deviation * state[1];
   const double factor = modulusOf(state) / scene_modulus_;
-  path_.predict(samples, shift, points_);
+  path_.predict(samples, shift, fit.points);
   shifted_.predict(samples, shift + kStep, shifted_points_);
   const double known = history_.noise(), noise = known > 0 ? known : config_.sensor_noise;
   const auto count = static_cast<Eigen::Index>(samples.size());
@@ -143,11 +134,11 @@ void CellEstimator::linearise(const State& state, Fit& fit, Eigen::MatrixXd& jac
   jacobian.resize(count, 3);
   for (Eigen::Index i = 0; i < count; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    const double force = factor * points_[k].force;
+    const double force = factor * fit.points[k].force;
     const double deviation = std::hypot(noise / std::sqrt(samples[k].readings),
                                         std::hypot(config_.sensor_floor, config_.force_error * force));
     fit.deviations[i] = deviation;
-    if (!points_[k].prepared) {  // there is no prediction to learn from
+    if (!fit.points[k].prepared) {  // there is no prediction to learn from
       fit.residuals[i] = 0;
       jacobian.row(i).setZero();
       continue;
@@ -155,7 +146,7 @@ void CellEstimator::linearise(const State& state, Fit& fit, Eigen::MatrixXd& jac
     fit.residuals[i] = (samples[k].force - force - config_.offset_deviation * state[2]) / deviation;
     jacobian(i, 0) = prior_deviation_ * force / deviation;
     jacobian(i, 1) =
-        config_.contact_deviation * factor * (shifted_points_[k].force - points_[k].force) / kStep / deviation;
+        config_.contact_deviation * factor * (shifted_points_[k].force - fit.points[k].force) / kStep / deviation;
     jacobian(i, 2) = config_.offset_deviation / deviation;
   }
 }
@@ -207,34 +198,55 @@ const CellEstimate& CellEstimator::update() {
   }
   state_ = fit.state;
   if (std::abs(state_[0]) > kConflict && prior_deviation_ < config_.modulus_deviation) {
-    // It is not the cell of before: only that the modulus may be anything is believed still.
+    // It is not the cell of before: the prior is as wide as for an unknown one.
     state_[0] *= prior_deviation_ / config_.modulus_deviation;
     prior_deviation_ = config_.modulus_deviation;
     return update();
   }
   judge(fit);
-  const bool touched = std::any_of(points_.begin(), points_.end(), [](const auto& point) { return point.touches; });
-  if (!touched) history_.forgetBefore(history_.samples().back().time - kApproach);
+  if (!fit.touches()) history_.forgetBefore(history_.samples().back().time - kApproach);
   return estimate_;
 }
 
 void CellEstimator::judge(const Fit& fit) {
-  const std::string drift = drifts();
-  if (!drift.empty()) return setPrior(EstimateVerdict::kPrior, drift);
-  const Misfit misfit = misfitOf(fit);
-  contradictions_ = misfit.contradicts ? contradictions_ + 1 : 0;
-  if (contradictions_ >= kPersistent) {
-    char text[120];
-    std::snprintf(text, sizeof(text), "the force differs from this model's by %.2g %% of it, smoothly over the depth",
-                  100 * misfit.found);
-    return setPrior(EstimateVerdict::kInconsistent, text);
+  const std::string reason = drift(fit);
+  if (!reason.empty()) return setPrior(EstimateVerdict::kPrior, reason);
+  const Misfit misfit = misfitOf(fit.points, modulusOf(fit.state) / scene_modulus_,
+                                 fit.residuals.cwiseProduct(fit.deviations), fit.deviations);
+  // A contradiction stays until the next indentation: the served cell must not go to and fro.
+  if (contradictions_ < kPersistent) contradictions_ = contradicts(misfit) ? contradictions_ + 1 : 0;
+  if (contradictions_ < kPersistent) {
+    estimate_ = estimateOf(fit, misfit);
+    return;
   }
+  char text[120];
+  std::snprintf(text, sizeof(text), "the force differs from this model's by %.2g %% of it, smoothly over the depth",
+                100 * misfit.found);
+  setPrior(EstimateVerdict::kInconsistent, text);
+}
 
+bool CellEstimator::contradicts(const Misfit& misfit) const {
+  return misfit.found > config_.misfit && misfit.found > kSignificant * misfit.expected;
+}
+
+std::string CellEstimator::drift(const Fit& fit) const {
+  // The samples at the tail of the approach may already feel a cell that is higher than modelled.
+  const double margin = 3 * config_.contact_deviation;
+  const SensorDrift drift = driftBeforeContact(history_.samples(), fit.points, margin, fit.deviations);
+  if (std::abs(drift.rate) <= config_.drift_limit + 3 * drift.deviation) return "";
+  char text[120];
+  std::snprintf(text, sizeof(text), "the sensor drifts by %.2g nN/s before contact: allowed %.2g", 1e9 * drift.rate,
+                1e9 * config_.drift_limit);
+  return text;
+}
+
+CellEstimate CellEstimator::estimateOf(const Fit& fit, const Misfit& misfit) const {
   // Residuals that follow each other say less than their number.
   const double correlation = correlationLength(fit.residuals);
   const Eigen::Vector3d units(prior_deviation_, config_.contact_deviation, config_.offset_deviation);
-  Eigen::Matrix3d information = (fit.normal - Eigen::Matrix3d::Identity()) / correlation + Eigen::Matrix3d::Identity();
-  Eigen::Matrix3d covariance = information.inverse();
+  const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d information = (fit.normal - identity) / correlation + identity;
+  const Eigen::Matrix3d covariance = information.inverse();
   CellEstimate next;
   next.covariance = units.asDiagonal() * covariance * units.asDiagonal();
   next.covariance(0, 0) += std::pow(kDeviationOfMedian * law_error_, 2);
@@ -245,7 +257,7 @@ void CellEstimator::judge(const Fit& fit) {
   next.contact = units[1] * fit.state[1];
   next.offset = units[2] * fit.state[2];
   next.misfit = misfit.found;
-  for (const ForcePath::Point& point : points_) {
+  for (const ForcePath::Point& point : fit.points) {
     next.samples += point.touches;
     next.depth = std::max(next.depth, point.depth);
   }
@@ -257,65 +269,8 @@ void CellEstimator::judge(const Fit& fit) {
     next.reason = "the interval of the modulus is still wide";
   } else {
     next.verdict = EstimateVerdict::kConverged;
-    next.reason = "";
   }
-  estimate_ = next;
-}
-
-/// Of the blocks' medians of the residuals in contact.
-CellEstimator::Misfit CellEstimator::misfitOf(const Fit& fit) const {
-  std::vector<double> residuals, deviations;
-  double largest = 0;
-  const double factor = modulusOf(fit.state) / scene_modulus_;
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    largest = std::max(largest, factor * points_[i].force);
-    if (!points_[i].touches || !points_[i].prepared) continue;
-    const auto k = static_cast<Eigen::Index>(i);
-    residuals.push_back(fit.residuals[k] * fit.deviations[k]);
-    deviations.push_back(fit.deviations[k]);
-  }
-  if (residuals.size() < kFewest || !(largest > 0)) return {};
-  const std::size_t length = residuals.size() / kBlocks;
-  double squares = 0, expected = 0;
-  for (int block = 0; block < kBlocks; ++block) {
-    const auto begin = static_cast<std::ptrdiff_t>(block * length), end = begin + static_cast<std::ptrdiff_t>(length);
-    const double middle = median({residuals.begin() + begin, residuals.begin() + end});
-    const double deviation = median({deviations.begin() + begin, deviations.begin() + end});
-    squares += middle * middle;
-    expected += deviation * deviation / static_cast<double>(length);
-  }
-  constexpr double kOfMedian = 1.25;  // deviation of a median over that of a mean
-  Misfit misfit{std::sqrt(squares / kBlocks) / largest, kOfMedian * std::sqrt(expected / kBlocks) / largest};
-  misfit.contradicts = misfit.found > config_.misfit && misfit.found > kSignificant * misfit.expected;
-  return misfit;
-}
-
-std::string CellEstimator::drifts() const {
-  double count = 0, time = 0, force = 0, times = 0, both = 0;
-  const auto& samples = history_.samples();
-  // The samples at the tail of the approach may already feel a cell that is higher than modelled.
-  const double margin = 3 * config_.contact_deviation;
-  const auto first = std::find_if(points_.begin(), points_.end(), [](const auto& point) { return point.touches; });
-  const double surface =
-      first == points_.end() ? -1e300 : samples[static_cast<std::size_t>(first - points_.begin())].tip.z();
-  for (std::size_t i = 0; i < samples.size() && points_.begin() + static_cast<std::ptrdiff_t>(i) != first; ++i) {
-    if (samples[i].tip.z() < surface + margin) continue;
-    const double t = samples[i].time - samples.front().time, f = samples[i].force;
-    ++count;
-    time += t;
-    force += f;
-    times += t * t;
-    both += t * f;
-  }
-  const double spread = times - time * time / std::max(count, 1.0);
-  if (count < kFewestFree || !(spread > 0)) return "";
-  const double rate = (both - time * force / count) / spread;
-  const double deviation = config_.sensor_floor / std::sqrt(spread);
-  if (std::abs(rate) < config_.drift_limit + 3 * deviation) return "";
-  char text[120];
-  std::snprintf(text, sizeof(text), "the sensor drifts by %.2g nN/s before contact: allowed %.2g", 1e9 * rate,
-                1e9 * config_.drift_limit);
-  return text;
+  return next;
 }
 
 }  // namespace microinjection

@@ -1,13 +1,14 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "base/config_reader.h"
 #include "cell/estimation/force_path.h"
+#include "cell/estimation/misfit.h"
+#include "cell/estimation/reading_filter.h"
 #include "cell/estimation/sample_history.h"
 
 namespace microinjection {
@@ -67,11 +68,13 @@ class CellEstimator {
   CellEstimator(const Scene& scene, std::shared_ptr<const SurrogateData> cell, const CellEstimatorConfig& config);
 
   /// A new reading. `tip`: m, relative to the cell's centre. `force`: N, of the cell on the tip along
-  /// the pipette. Cheap; does not fit.
-  void add(double time, const Eigen::Vector3d& tip, double force);
+  /// the pipette. Cheap; does not fit. Returns why such readings are not learned from; empty if they are.
+  std::string add(double time, const Eigen::Vector3d& tip, double force);
   /// Fits; milliseconds.
   const CellEstimate& update();
   const CellEstimate& estimate() const { return estimate_; }
+  /// Takes back the readings since `time` (s), as after a puncture, and fits again.
+  void forgetSince(double time);
   /// The same cell again, or one like it: what was learned of the modulus is the next prior, with a
   /// deviation of at least next_deviation. A force that contradicts it makes that prior wide again.
   void beginNext();
@@ -83,23 +86,20 @@ class CellEstimator {
   struct Fit {
     State state = State::Zero();
     Eigen::Matrix3d normal = Eigen::Matrix3d::Identity();  ///< J^T W J with the prior
+    std::vector<ForcePath::Point> points;                  ///< of the scene's modulus
     Eigen::VectorXd residuals;                             ///< over their deviations, measured - predicted
     Eigen::VectorXd deviations;                            ///< N
+    bool touches() const;
   };
 
-  /// Whether a reading is far from the median of the newest ones (Hampel's filter).
-  bool isOutlier(double force) const;
   Fit fit(const State& start);
   void linearise(const State& state, Fit& fit, Eigen::MatrixXd& jacobian);
   double cost(const Fit& fit, double scale) const;
   void judge(const Fit& fit);
-  struct Misfit {
-    double found = 0;     ///< over the largest force
-    double expected = 0;  ///< same, of noise alone
-    bool contradicts = false;
-  };
-  Misfit misfitOf(const Fit& fit) const;
-  std::string drifts() const;
+  /// Why the force before contact cannot be learned from; empty if it can.
+  std::string drift(const Fit& fit) const;
+  bool contradicts(const Misfit& misfit) const;
+  CellEstimate estimateOf(const Fit& fit, const Misfit& misfit) const;
   void setPrior(EstimateVerdict verdict, const std::string& reason);
   double modulusOf(const State& state) const;  ///< Pa
 
@@ -110,12 +110,9 @@ class CellEstimator {
   SampleHistory history_;
   State state_ = State::Zero();
   CellEstimate estimate_;
-  std::vector<ForcePath::Point> points_, shifted_points_;
-  static constexpr std::size_t kWindow = 7;
-  std::array<double, kWindow> window_{};  ///< N, the newest readings, in a ring
-  std::size_t received_ = 0;
-  int repeated_ = 0;        ///< equal readings in a row
-  int contradictions_ = 0;  ///< updates in a row
+  std::vector<ForcePath::Point> shifted_points_;
+  ReadingFilter filter_;
+  int contradictions_ = 0;  ///< updates in a row; from kPersistent on they stay
 };
 
 }  // namespace microinjection

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace microinjection {
 namespace {
@@ -57,6 +58,12 @@ void SampleHistory::forgetBefore(double time) {
   const auto first = std::find_if(samples_.begin(), samples_.end(), [&](const Sample& s) { return s.time >= time; });
   if (first == samples_.begin()) return;
   samples_.erase(samples_.begin(), std::prev(first));
+}
+
+void SampleHistory::forgetSince(double time) {
+  while (!samples_.empty() && samples_.back().time >= time) samples_.pop_back();
+  if (samples_.empty()) return;
+  begun_ = -std::numeric_limits<double>::infinity();  // the next reading begins a sample
 }
 
 void SampleHistory::clear() {

@@ -35,6 +35,8 @@ class SampleHistory {
   void add(double time, const Eigen::Vector3d& tip, double force);
   /// Forgets what is older than `time` (s) except the newest sample of it.
   void forgetBefore(double time);
+  /// Forgets the samples that end after `time` (s).
+  void forgetSince(double time);
   void clear();
 
   const std::vector<Sample>& samples() const { return samples_; }

@@ -9,7 +9,6 @@ namespace microinjection {
 namespace {
 
 constexpr double kLongest = 0.05;     // s, that the set-point advances in a step: a stall must not become a jump
-constexpr double kHeld = 1;           // s behind a resting set-point, from which the needle counts as held
 constexpr double kArrived = 0.5e-6;   // m, of the motors from their goal
 constexpr double kBeyondPlay = 3e-6;  // m, by which a motion is longer than the backlash that it takes up
 
@@ -32,11 +31,11 @@ ImageApproach::ImageApproach(const ImageApproachConfig& config, const CameraCali
       pixel_(target),
       images_(config.target),
       play_(calibration.backlash(), position),
+      stream_(position, kArrived, now),
       setpoint_(position),
       goal_(position),
       began_(now),
       stepped_(now),
-      follows_(now),
       distance_(std::numeric_limits<double>::quiet_NaN()) {
   if (!target.allFinite()) failure_ = "the target's pixel is not finite";
 }
@@ -56,20 +55,12 @@ std::optional<Eigen::Vector3d> ImageApproach::step(const Input& input) {
     waits_for_ = "the needle's position is not known";
     return setpoint_;
   }
-  const Eigen::Vector3d way = goal_ - setpoint_;
-  const double reach = config_.speed * duration;
-  setpoint_ = way.norm() <= reach ? goal_ : Eigen::Vector3d(setpoint_ + reach * way.normalized());
+  setpoint_ = stream_.advance(goal_, config_.speed * duration);
   waits_for_.clear();
-  const bool behind = setpoint_ == goal_ && (*input.position - goal_).norm() > kArrived;
-  if (!behind) follows_ = input.now;
-  if (behind) {
+  if (stream_.arrived(*input.position, input.now)) {
+    if (input.now - input.rested_since >= config_.settle_time) plan(input);
+  } else if (stream_.waits()) {
     waits_for_ = "the needle does not follow";
-    if (input.now - follows_ < kHeld) return setpoint_;
-    // After late set-points the controller holds the needle until one begins where it is.
-    setpoint_ = *input.position;
-    follows_ = input.now;
-  } else if (setpoint_ == goal_ && input.now - input.rested_since >= config_.settle_time) {
-    plan(input);
   }
   return done_ ? std::nullopt : std::optional(setpoint_);
 }

@@ -7,6 +7,7 @@
 #include "vision/calibration/calibration_run.h"
 #include "vision/calibration/image_target.h"
 #include "vision/calibration/play.h"
+#include "vision/calibration/setpoint_stream.h"
 
 namespace microinjection {
 
@@ -54,9 +55,9 @@ class ImageApproach {
   Eigen::Vector2d pixel_;
   ImageTarget images_;
   Play play_;
+  SetpointStream stream_;
   Eigen::Vector3d setpoint_, goal_;  ///< m
   double began_, stepped_;           ///< s
-  double follows_;                   ///< s, when the needle last was at the goal, or on its way
   std::uint64_t sequence_ = 0;       ///< of the images that were offered
   double last_stamp_ = -1;           ///< s
   int taken_up_ = 0;                 ///< motions that take up the backlash, of 2

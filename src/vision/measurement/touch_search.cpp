@@ -40,6 +40,7 @@ TouchSearch::TouchSearch(const TouchSearchConfig& config, const Eigen::Vector3d&
                          const Eigen::Vector3d& direction, const Input& input)
     : config_(config),
       start_(start),
+      stream_(start, kArrived, input.now),
       direction_(direction),
       force_at_start_(input.force),
       stepped_(input.now),
@@ -55,10 +56,11 @@ std::optional<Eigen::Vector3d> TouchSearch::step(const Input& input) {
   if (!failure_.empty()) return std::nullopt;
   travel_ = std::min(goal_, travel_ + config_.speed * duration);
   waits_for_.clear();
-  const Eigen::Vector3d setpoint = start_ + travel_ * direction_;
+  const Eigen::Vector3d setpoint = stream_.advance(start_ + travel_ * direction_, config_.speed * duration);
+  const bool arrived = stream_.arrived(*input.position, input.now);
   if (travel_ < goal_) return setpoint;
   const double elapsed = input.now - since_;
-  if ((*input.position - setpoint).norm() > kArrived) {
+  if (!arrived) {
     waits_for_ = "the needle does not follow";
     if (elapsed > config_.move_time + config_.step / config_.speed) failure_ = waits_for_;
   } else if (!look(input)) {

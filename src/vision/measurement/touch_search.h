@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "vision/calibration/setpoint_stream.h"
 #include "vision/calibration/touch_by_vision.h"
 
 namespace microinjection {
@@ -94,7 +95,9 @@ class TouchSearch {
   void fail(const std::string& text, double value, const std::string& rest);
 
   TouchSearchConfig config_;
-  Eigen::Vector3d start_, direction_;
+  Eigen::Vector3d start_;
+  SetpointStream stream_;
+  Eigen::Vector3d direction_;
   std::optional<double> force_at_start_, force_;
   double travel_ = 0, goal_ = 0;  ///< m, of the set-point
   double stepped_, since_;        ///< s, of the last step(), and of the present step of the needle

@@ -14,7 +14,6 @@ namespace {
 
 constexpr char kFamilies[] = MICROINJECTION_SOURCE_DIR "/config/families";
 constexpr char kCell[] = MICROINJECTION_SOURCE_DIR "/config/cells/mouse_oocyte_injection.yaml";
-constexpr double kSpeed = 20e-6;  // m/s
 
 std::shared_ptr<const SurrogateData> memberOf(const Scene& scene) {
   std::string reason;
@@ -29,6 +28,7 @@ struct Session {
   double factor = 1;                            ///< true modulus over the prior's
   double surface = 0;                           ///< m
   double offset = 0, drift = 0, noise = 10e-9;  ///< N, N/s, N
+  double speed = 20e-6, rate = 1000;            ///< m/s, Hz of readings
   unsigned seed = 1;
   CellEstimatorConfig config;
   std::function<double(double time, double force)> sensor = [](double, double force) { return force; };
@@ -47,13 +47,14 @@ struct Session {
     ForceMemory memory(truth.cell.material().viscoelasticity.prony);
     std::mt19937 random(seed);
     std::normal_distribution<double> normal(0, noise);
-    constexpr double kAbove = 5e-6, kPeriod = 1e-3;
-    const int count = static_cast<int>((kAbove + depth) / (kSpeed * kPeriod));
+    constexpr double kAbove = 5e-6;
+    const double period = 1 / rate;
+    const int count = static_cast<int>((kAbove + depth) / (speed * period));
     for (int i = 0; i <= count; ++i) {
-      const double time = i * kPeriod;
-      const Eigen::Vector3d tip(0, 0, prior.radius() + surface + kAbove - kSpeed * time);
+      const double time = i * period;
+      const Eigen::Vector3d tip(0, 0, prior.radius() + surface + kAbove - speed * time);
       const Eigen::Vector3d elastic = cell.step(tip - surface * Eigen::Vector3d::UnitZ()).force;
-      const double force = elastic.z() + memory.step(elastic, kPeriod).z();
+      const double force = elastic.z() + memory.step(elastic, period).z();
       estimator.add(time, tip, sensor(time, force + offset + drift * time + normal(random)));
       if (i % 20 == 0) estimator.update();
     }
@@ -121,6 +122,46 @@ TEST(CellEstimator, IsNotMisledByOutliersAndFrozenReadings) {
     return held;
   };
   expectModulus(session, session.indent(8e-6).estimate(), 0.03);
+}
+
+TEST(CellEstimator, FindsAStiffCellWithAFastNeedleAndWithASlowSensor) {
+  Session session;
+  session.factor = 3;
+  session.speed = 60e-6;
+  expectModulus(session, session.indent(8e-6).estimate(), 0.03);
+  session.speed = 20e-6;
+  session.rate = 100;
+  expectModulus(session, session.indent(8e-6).estimate(), 0.03);
+}
+
+TEST(CellEstimator, AFrozenSensorTeachesNothingAndIsNamed) {
+  Session session;
+  session.factor = 2;
+  session.sensor = [](double, double) { return 0.3e-6; };
+  CellEstimator estimator = session.indent(8e-6);
+  EXPECT_EQ(estimator.estimate().verdict, EstimateVerdict::kPrior);
+  EXPECT_NE(estimator.add(10, {0, 0, 0}, 0.3e-6).find("repeats the same reading"), std::string::npos);
+}
+
+TEST(CellEstimator, AContradictionStaysUntilTheNextIndentation) {
+  Session session;
+  // A tip that slips, and then holds again.
+  session.sensor = [](double time, double force) {
+    return (time < 0.5 ? std::min(force, 0.25e-6) : force) + 1e-9 * std::sin(1e5 * time);
+  };
+  CellEstimator estimator = session.indent(6e-6);
+  if (estimator.estimate().verdict != EstimateVerdict::kInconsistent) session.indent(8e-6, estimator);
+  EXPECT_EQ(estimator.estimate().verdict, EstimateVerdict::kInconsistent);
+}
+
+TEST(CellEstimator, WhatIsTakenBackIsNotLearned) {
+  Session session;
+  session.factor = 2;
+  session.sensor = [](double time, double force) { return time < 0.55 ? force : 0.2 * force; };  // punctured at 6 um
+  CellEstimator estimator = session.indent(8e-6);
+  estimator.forgetSince(0.54);
+  EXPECT_NE(estimator.estimate().verdict, EstimateVerdict::kInconsistent);
+  expectModulus(session, estimator.estimate(), 0.05);
 }
 
 TEST(CellEstimator, DoesNotLearnFromASensorThatDrifts) {
