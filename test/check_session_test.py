@@ -39,6 +39,7 @@ class CheckSessionTest(unittest.TestCase):
                               ({'hidden': '/nowhere.yaml'}, "hidden = '/nowhere.yaml': no such file"),
                               ({'hidden': GOOD['scene'], 'modelled': 'False', 'rig': 'zaber'}, "hidden with rig = 'zaber': must be with sim"),
                               ({'twin': 'true', 'sensor': 'none'}, "twin = 'true' with sensor = 'none': must be with a force"),
+                              ({'twin': 'true', 'modelled': 'False', 'sensor': 'serial'}, "twin = 'true' with force_source = 'predicted'"),
                               ({'operator': 'ann'}, "operator: must be with record:=FOLDER")):
             with self.subTest(what):
                 found = problems({**GOOD, **changes})

@@ -8,6 +8,7 @@
 #include "base/errors.h"
 #include "cell/model/cell_parameters.h"
 #include "nodes/cell/cell_state_reader.h"
+#include "nodes/cell/estimate_messages.h"
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/node_parameters.h"
 #include "nodes/runtime/run_node.h"
@@ -16,6 +17,14 @@ namespace microinjection {
 namespace {
 
 constexpr double kSameSize = 1e-6;  ///< relative, of a parameter that has not changed
+constexpr double kDetection = 0.1;  ///< s, in which a puncture is detected: its readings are no cell's
+constexpr double kApart = 0.3e-6;   ///< m, of the needle between the times of position and force
+constexpr double kPatience = 0.5;   ///< s, after which a change that is not served is asked for again
+
+/// Whether `period` (s) has passed; also when time was set back.
+bool isDue(const ros::Time& last, const ros::Time& now, double period) {
+  return last.isZero() || now < last || secondsBetween(last, now) >= period;
+}
 
 /// Moduli are what is estimated; the others are where the prior is.
 bool isModulus(const std::string& name) { return name == "young_modulus" || name == "core_modulus"; }
@@ -40,6 +49,7 @@ CellEstimatorNode::Parameters CellEstimatorNode::Parameters::read(const ros::Nod
   reader.number("largest_tilt", parameters.largest_tilt, Range::closed(0, 0.2));
   reader.number("largest_speed", parameters.largest_speed, Range::positive());
   reader.number("largest_force", parameters.largest_force, Range::positive());
+  reader.number("largest_sideways", parameters.largest_sideways, Range::positive());
   reader.number("clear_distance", parameters.clear_distance, Range::positive());
   reader.boolean("serve", parameters.serve);
   reader.number("serve_period", parameters.serve_period, Range::closed(0.02, 10));
@@ -54,7 +64,6 @@ CellEstimatorNode::Parameters CellEstimatorNode::Parameters::read(const ros::Nod
 
 CellEstimatorNode::CellEstimatorNode(ros::NodeHandle node, ros::NodeHandle private_node)
     : parameters_(Parameters::read(private_node)),
-      scene_(loadScene(parameters_.scene)),
       cycle_(node, parameters_.rate),
       needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", InputPhase::kPreviousTick,
                                                        parameters_.needle_timeout)),
@@ -65,29 +74,36 @@ CellEstimatorNode::CellEstimatorNode(ros::NodeHandle node, ros::NodeHandle priva
       estimate_(cycle_.output<cell_microinjection::CellEstimate>("cell/estimate")),
       change_(cycle_.output<cell_microinjection::CellParameters>("cell/set_parameters")),
       score_(cycle_.output<cell_microinjection::PunctureScore>("cell/puncture_score", true)) {
-  makeEstimator();
+  const Scene scene = loadScene(parameters_.scene);
+  std::string reason;
+  auto member = findFamilyCell(parameters_.families, scene, reason);
+  if (!member) {
+    throw ConfigError(parameters_.scene + ": the twin needs a cell of a family, and this is of none" +
+                      (reason.empty() ? "" : ": " + reason));
+  }
+  take(scene, std::move(*member));
   served_ = scene_.cell.material().young_modulus;
   cell_ = subscribeGuarded<cell_microinjection::CellState>(
       cycle_.node(), "cell/state", 1,
       [this](const cell_microinjection::CellState& message, const std::string&) { onCell(message); });
+  force_.onMessage([this](const geometry_msgs::WrenchStamped& message, const ros::Time&) { followForce(message); });
   cycle_.diagnostics().add("cell under the needle", [this](auto& status) { report(status); });
 }
 
-void CellEstimatorNode::makeEstimator() {
-  std::string reason;
-  const auto found = findFamilyCell(parameters_.families, scene_, reason);
-  if (!found) {
-    throw ConfigError(parameters_.scene + ": the twin needs a cell of a family, and this is of none" +
-                      (reason.empty() ? "" : ": " + reason));
-  }
-  member_ = *found;
-  estimator_ = std::make_unique<CellEstimator>(scene_, member_.data, parameters_.estimator);
-  predictor_ = std::make_unique<PuncturePredictor>(scene_, member_.data, parameters_.puncture_deviation);
-  predictions_.clear();
+/// Everything of another cell; the present one stays when that fails.
+void CellEstimatorNode::take(const Scene& scene, FamilyCell member) {
+  auto estimator = std::make_unique<CellEstimator>(scene, member.data, parameters_.estimator);
+  auto predictor = std::make_unique<PuncturePredictor>(scene, member.data, parameters_.puncture_deviation);
+  scene_ = scene;
+  member_ = std::move(member);
+  estimator_ = std::move(estimator);
+  predictor_ = std::move(predictor);
+  indentation_ = {};
 }
 
 /// Another cell, measured in the image, say: what was learned is of the one before.
 void CellEstimatorNode::onCell(const cell_microinjection::CellState& message) {
+  served_ = cellParameter(message, "young_modulus").value_or(served_);
   std::vector<CellParameter> changed;
   for (const CellParameter& known : cellParameters(scene_)) {
     if (isModulus(known.name)) continue;
@@ -95,10 +111,20 @@ void CellEstimatorNode::onCell(const cell_microinjection::CellState& message) {
     if (value && std::abs(*value - known.value) > kSameSize * std::abs(known.value))
       changed.push_back({known.name, *value});
   }
-  if (changed.empty()) return;
-  scene_ = withParameters(scene_, changed);
-  makeEstimator();
-  touched_ = finished_ = false;
+  if (changed.empty()) {
+    foreign_.clear();
+    return;
+  }
+  if (!foreign_.empty() && message.parameter_values == foreign_values_) return;  // refused before
+  foreign_values_ = message.parameter_values;
+  const Scene next = withParameters(scene_, changed);
+  auto member = makeFamilyCell(member_.family, next, foreign_);
+  if (!member) {
+    if (foreign_.empty()) foreign_ = "it is of another form";
+    return;
+  }
+  foreign_.clear();
+  take(next, std::move(*member));
   ROS_INFO_STREAM("another cell is served; nothing is known of it yet: " << member_.description);
 }
 
@@ -107,90 +133,101 @@ void CellEstimatorNode::run() {
 }
 
 std::string CellEstimatorNode::interruption(const ros::Time& now) const {
+  if (!foreign_.empty()) return "the family does not contain the served cell: " + foreign_;
   if (!controller_.fresh(now)) return "no state of the injection_controller: nobody knows of a puncture";
-  return finished_ ? "the cell is punctured" : "";
+  if (!indentation_.clear()) return "the needle has not been clear of this cell";
+  return indentation_.punctured() ? "the cell is punctured" : "";
 }
 
-/// Where the indentation begins and ends, how deep it is, and whether the cell has failed in it.
 void CellEstimatorNode::followIndentation(const Eigen::Vector3d& tip, const ros::Time& now) {
-  if (tip.norm() > scene_.radius() + parameters_.clear_distance && std::exchange(touched_, false)) {
-    estimator_->beginNext();
-    predictions_.clear();
-    finished_ = false;
-    peak_ = 0;
-  }
-  if (!touched_) surface_ = lowest_ = tip.z();
-  // A fast needle touches before anything is learned.
-  touched_ = touched_ || tip.norm() < scene_.radius() + estimator_->estimate().contact;
-  if (!finished_) lowest_ = std::min(lowest_, tip.z());
   const auto* status = controller_.get(now);
-  if (!status) return;
-  if (!touched_) punctures_before_ = status->punctures;
-  if (finished_ || status->punctures <= punctures_before_) return;
-  finished_ = true;
-  score(now);
+  const double surface = scene_.radius() + estimator_->estimate().contact;
+  switch (indentation_.follow(tip, {surface, scene_.radius() + parameters_.clear_distance},
+                              status ? std::optional(status->punctures) : std::nullopt)) {
+    case Indentation::Event::kEnded:
+      estimator_->beginNext();
+      break;
+    case Indentation::Event::kPunctured:
+      score(now);
+      estimator_->forgetSince(now.toSec() - kDetection);
+      break;
+    case Indentation::Event::kNone:
+      break;
+  }
+}
+
+/// Of each reading: the largest before a puncture may be replaced by a newer one before the next step.
+void CellEstimatorNode::followForce(const geometry_msgs::WrenchStamped& message) {
+  const auto force = validForce(&message, orientation_);
+  if (force) indentation_.addForce(orientation_.col(2).dot(*force) - estimator_->estimate().offset);
 }
 
 std::string CellEstimatorNode::learn(const ros::Time& now) {
   const auto needle = validPose(needle_.get(now));
   if (!needle) return "no valid needle pose";
-  const Eigen::Vector3d axis = needle->linear().col(2), tip = needle->translation();
+  orientation_ = needle->linear();
+  const Eigen::Vector3d axis = orientation_.col(2), tip = needle->translation();
   followIndentation(tip, now);
   followSpeed(tip, now);
   const std::string interrupted = interruption(now);
   if (!interrupted.empty()) return interrupted;
   if (std::acos(std::clamp(axis.z(), -1.0, 1.0)) > parameters_.largest_tilt) return "the needle is tilted";
+  if (indentation_.sideways(tip) > parameters_.largest_sideways) return "the needle has moved sideways in the cell";
   const auto* message = force_.get(now);
-  const auto force = validForce(message, needle->linear());
+  const auto force = validForce(message, orientation_);
   if (!force) return "no valid force of the sensor";
   const double along = axis.dot(*force);
-  if (touched_) peak_ = std::max(peak_, along - estimator_->estimate().offset);
   if (speed_ > parameters_.largest_speed) return "the needle is fast: the sensor's delay would count";
   if (message->header.stamp == last_force_) return held_;  // heard before
   last_force_ = message->header.stamp;
   if (std::abs(along) > parameters_.largest_force) return "the force sensor is saturated";
-  estimator_->add(message->header.stamp.toSec(), tip, along);
-  return "";
+  const double apart = std::abs(secondsBetween(needle_.get(now)->header.stamp, message->header.stamp));
+  if (speed_ * apart > kApart) return "position and force are of different times for a needle of this speed";
+  return estimator_->add(message->header.stamp.toSec(), tip, along);
 }
 
 /// Over a while: the noise of two neighbouring positions would be a speed.
 void CellEstimatorNode::followSpeed(const Eigen::Vector3d& tip, const ros::Time& now) {
   constexpr double kWhile = 0.01;  // s
+  if (!isDue(marked_, now, kWhile)) return;
   const double passed = secondsBetween(marked_, now);
-  if (!marked_.isZero() && passed < kWhile) return;
-  speed_ = marked_.isZero() ? 0 : (tip - mark_).norm() / passed;
+  speed_ = marked_.isZero() || passed <= 0 ? 0 : (tip - mark_).norm() / passed;
   mark_ = tip;
   marked_ = now;
 }
 
 void CellEstimatorNode::step(const Cycle::Tick& tick) {
+  if (!last_step_.isZero() && tick.now < last_step_) {  // time was set back: the samples are ahead of it
+    estimator_->beginNext();
+    indentation_ = {};
+  }
+  last_step_ = tick.now;
   held_ = learn(tick.now);
-  if (secondsBetween(updated_, tick.now) < parameters_.update_period && !updated_.isZero()) return;
+  if (!isDue(updated_, tick.now, parameters_.update_period)) return;
   updated_ = tick.now;
   const double start = threadCpuTime();
-  if (held_.empty() && estimator_->update().samples > 0) {
-    touched_ = true;
-    surface_ = lowest_ + estimator_->estimate().depth;
-  }
-  if (!finished_) predict();
+  if (held_.empty() && estimator_->update().samples > 0) indentation_.learn(estimator_->estimate().depth);
+  if (!indentation_.punctured()) predict();
   const double taken = threadCpuTime() - start;
   serve(tick.now);
   publish(tick.now, taken);
 }
 
 /// In small steps towards what was found: towards the prior when the force contradicts the model, and
-/// nowhere while nothing is known.
+/// nowhere while nothing is known. The next step waits until cell_simulator serves the last one.
 void CellEstimatorNode::serve(const ros::Time& now) {
   const CellEstimate& found = estimator_->estimate();
   if (!parameters_.serve || found.verdict == EstimateVerdict::kPrior) return;
-  if (!served_at_.isZero() && secondsBetween(served_at_, now) < parameters_.serve_period) return;
+  const bool confirmed = asked_ == 0 || std::abs(served_ / asked_ - 1) < kSameSize;
+  if (!isDue(asked_at_, now, confirmed ? parameters_.serve_period : kPatience)) return;
   const double change = std::log(found.modulus / served_);
   if (std::abs(change) < parameters_.least_change) return;
-  served_at_ = now;
-  served_ *= std::exp(std::clamp(change, -parameters_.largest_change, parameters_.largest_change));
+  refused_ = !confirmed;
+  asked_at_ = now;
+  asked_ = served_ * std::exp(std::clamp(change, -parameters_.largest_change, parameters_.largest_change));
   cell_microinjection::CellParameters parameters;
   parameters.header.stamp = now;
-  const double factor = served_ / scene_.cell.material().young_modulus;
+  const double factor = asked_ / scene_.cell.material().young_modulus;
   for (const CellParameter& known : cellParameters(scene_)) {
     if (!isModulus(known.name)) continue;
     parameters.name.push_back(known.name);
@@ -201,30 +238,16 @@ void CellEstimatorNode::serve(const ros::Time& now) {
 
 void CellEstimatorNode::predict() {
   const CellEstimate& found = estimator_->estimate();
-  cell_microinjection::PuncturePrediction message;
-  if (const auto expected = predictor_->predict(found.modulus, std::sqrt(found.covariance(0, 0)), depth())) {
-    message.depth = expected->depth;
-    message.depth_low = expected->depth_low;
-    message.depth_high = expected->depth_high;
-    message.force = expected->force;
-    message.force_low = expected->force_low;
-    message.force_high = expected->force_high;
-    message.beyond = expected->beyond;
-  }
-  if (predictions_.empty() || predictions_.back().first != depth()) predictions_.emplace_back(depth(), message);
-  predictions_.back().second = message;
+  expected_ = predictor_->predict(found.modulus, std::sqrt(found.covariance(0, 0)), indentation_.depth());
+  if (expected_) indentation_.expect(*expected_);
 }
 
-/// What was predicted when the needle was at half of the depth of the puncture that has happened now.
 void CellEstimatorNode::score(const ros::Time& now) {
   cell_microinjection::PunctureScore message;
   message.header.stamp = now;
-  message.depth = depth();
-  message.force = peak_;
-  for (const auto& [reached, prediction] : predictions_) {
-    if (reached > 0.5 * message.depth) break;
-    message.predicted = prediction;
-  }
+  message.depth = indentation_.depth();
+  message.force = indentation_.peak();
+  message.predicted = toMessage(indentation_.expectedAtHalf());
   const auto& expected = message.predicted;
   ROS_INFO(
       "punctured at %.3g um and %.3g uN; expected at half the depth: %.3g um (%.3g to %.3g), %.3g uN (%.3g to %.3g)",
@@ -234,22 +257,10 @@ void CellEstimatorNode::score(const ros::Time& now) {
 }
 
 void CellEstimatorNode::publish(const ros::Time& now, double update_time) {
-  const CellEstimate& found = estimator_->estimate();
-  cell_microinjection::CellEstimate message;
+  cell_microinjection::CellEstimate message = toMessage(estimator_->estimate());
   message.header.stamp = now;
-  message.verdict = toText(found.verdict);
-  message.reason = found.reason;
   message.held = held_;
-  message.modulus = found.modulus;
-  message.modulus_low = found.modulus_low;
-  message.modulus_high = found.modulus_high;
-  message.contact = found.contact;
-  message.offset = found.offset;
-  std::copy_n(found.covariance.data(), 9, message.covariance.begin());  // symmetric
-  message.depth = found.depth;
-  message.misfit = found.misfit;
-  message.samples = static_cast<std::uint32_t>(found.samples);
-  if (!finished_ && !predictions_.empty()) message.puncture = predictions_.back().second;
+  if (!indentation_.punctured()) message.puncture = toMessage(expected_);
   message.served_modulus = served_;
   message.update_time = update_time;
   estimate_.publish(message);
@@ -257,17 +268,18 @@ void CellEstimatorNode::publish(const ros::Time& now, double update_time) {
 
 void CellEstimatorNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) const {
   const CellEstimate& found = estimator_->estimate();
-  const bool bad = found.verdict == EstimateVerdict::kInconsistent;
+  const bool bad = found.verdict == EstimateVerdict::kInconsistent || refused_;
   std::string text = toText(found.verdict);
   if (!found.reason.empty()) text += ": " + found.reason;
   if (!held_.empty()) text += "; not learning: " + held_;
+  if (refused_) text += "; cell_simulator does not serve what it was asked to";
   status.summary(bad ? diagnostic_msgs::DiagnosticStatus::WARN : diagnostic_msgs::DiagnosticStatus::OK, text);
   status.add("modulus (Pa)", found.modulus);
   status.add("served modulus (Pa)", served_);
-  if (predictions_.empty()) return;
-  status.add("expected puncture: depth (m)", predictions_.back().second.depth);
-  status.add("expected puncture: force (N)", predictions_.back().second.force);
   status.add("misfit", found.misfit);
+  if (!expected_) return;
+  status.add("expected puncture: depth (m)", expected_->depth);
+  status.add("expected puncture: force (N)", expected_->force);
 }
 
 }  // namespace microinjection

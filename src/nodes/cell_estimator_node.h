@@ -9,13 +9,13 @@
 #include <geometry_msgs/WrenchStamped.h>
 #include <ros/ros.h>
 
-#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "cell/estimation/cell_estimator.h"
+#include "cell/estimation/indentation.h"
 #include "cell/estimation/puncture_prediction.h"
 #include "cell/family/family_cell.h"
 #include "nodes/runtime/cycle.h"
@@ -47,25 +47,26 @@ class CellEstimatorNode {
     double largest_tilt = 0.035;
     double largest_speed = 60e-6;
     double largest_force = 450e-6;
+    double largest_sideways = 3e-6;
     double clear_distance = 5e-6;
     bool serve = true;
     double serve_period = 0.03;
-    double least_change = 0.005, largest_change = 0.15;
+    double least_change = 0.005, largest_change = 0.25;
     double puncture_deviation = 0.2;
     CellEstimatorConfig estimator;
     static Parameters read(const ros::NodeHandle& private_node);
   };
 
-  void makeEstimator();
+  void take(const Scene& scene, FamilyCell member);
   void onCell(const cell_microinjection::CellState& message);
   void step(const Cycle::Tick& tick);
+  void followForce(const geometry_msgs::WrenchStamped& message);
   /// Learns from the newest reading. Returns why not; empty if it did.
   std::string learn(const ros::Time& now);
   void followIndentation(const Eigen::Vector3d& tip, const ros::Time& now);
   void followSpeed(const Eigen::Vector3d& tip, const ros::Time& now);
   std::string interruption(const ros::Time& now) const;
   void serve(const ros::Time& now);
-  double depth() const { return touched_ ? surface_ - lowest_ : 0; }  ///< m, deepest
   void predict();
   void score(const ros::Time& now);
   void publish(const ros::Time& now, double update_time);
@@ -85,19 +86,17 @@ class CellEstimatorNode {
   Output<cell_microinjection::PunctureScore>& score_;
   ros::Subscriber cell_;
   std::string held_;
-  ros::Time last_force_, updated_, served_at_, marked_;
-  Eigen::Vector3d mark_ = Eigen::Vector3d::Zero();  ///< m, of the tip at marked_
-  double speed_ = 0;                                ///< m/s
-  double served_ = 0;                               ///< Pa
-  // Of the present indentation:
-  double peak_ = 0;     ///< N, largest force
-  double surface_ = 0;  ///< m, height of the tip at first contact
-  double lowest_ = 0;   ///< m, lowest height of the tip
-  /// Depth (m) and prediction of the updates of the present indentation, one for each depth.
-  std::vector<std::pair<double, cell_microinjection::PuncturePrediction>> predictions_;
-  bool touched_ = false;                ///< in the present indentation
-  bool finished_ = false;               ///< it was punctured: nothing to learn until the needle is clear
-  std::uint32_t punctures_before_ = 0;  ///< of the present indentation
+  std::string foreign_;                 ///< why the served cell is none of the family; empty: it is one
+  std::vector<double> foreign_values_;  ///< its parameters
+  Indentation indentation_;
+  std::optional<PuncturePrediction> expected_;
+  double served_ = 0;     ///< Pa, as /cell/state has it
+  double asked_ = 0;      ///< Pa; 0: nothing yet
+  bool refused_ = false;  ///< what was asked for is not served
+  ros::Time last_step_, last_force_, updated_, asked_at_, marked_;
+  Eigen::Vector3d mark_ = Eigen::Vector3d::Zero();             ///< m, of the tip at marked_
+  double speed_ = 0;                                           ///< m/s
+  Eigen::Matrix3d orientation_ = Eigen::Matrix3d::Identity();  ///< of the needle in the world, the last valid one
 };
 
 }  // namespace microinjection

@@ -205,6 +205,8 @@ class KillCase(unittest.TestCase):
     def in_phase(self, phase, ticks):
         """Some ticks into a phase of the hand's motion."""
         self.session.until(lambda: self.session.says("/operator/phase", "string", phase), phase)
+        late = self.session.chain.now - self.session.chain.seen["/operator/phase"].header.stamp
+        self.assertLessEqual(late.to_sec(), 2 * TICK, f"{phase} began before the session was ready")
         self.session.chain.run(ticks)
 
     def in_state(self, state, ticks):

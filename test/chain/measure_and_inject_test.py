@@ -12,7 +12,7 @@ import numpy as np
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
-from cell_microinjection.msg import (CellEstimate, CellInImage, CellParameters, InjectAction, InjectGoal, OperatingState,
+from cell_microinjection.msg import (CellEstimate, CellInImage, CellState, CellParameters, InjectAction, InjectGoal, OperatingState,
                                      PunctureScore, StringStamped, VisionState)
 from cell_microinjection.srv import MeasureCell
 from geometry_msgs.msg import PoseStamped, WrenchStamped
@@ -33,7 +33,7 @@ class MeasureAndInjectTest(unittest.TestCase):
         cls.seen, cls.forces = {}, {"/cell/predicted_cf": {}, "/true_cell/predicted_cf": {}}
         for topic, kind in (("/vision/state", VisionState), ("/needle/measured_cp", PoseStamped),
                             ("/needle/operating_state", OperatingState), ("/controller/operating_state", OperatingState),
-                            ("/cell/estimate", CellEstimate), ("/cell/puncture_score", PunctureScore)):
+                            ("/cell/estimate", CellEstimate), ("/true_cell/state", CellState), ("/cell/puncture_score", PunctureScore)):
             rospy.Subscriber(topic, kind, lambda message, topic=topic: cls.seen.update({topic: message}), queue_size=1)
         for topic in cls.forces:
             rospy.Subscriber(topic, WrenchStamped, lambda message, topic=topic: cls.on_force(topic, message),
@@ -135,9 +135,13 @@ class MeasureAndInjectTest(unittest.TestCase):
         """A touch of 6 um, for half a second."""
         changes = rospy.Publisher("/true_cell/set_parameters", CellParameters, queue_size=1, latch=True)
         changes.publish(CellParameters(name=["young_modulus"], value=[TRUE_MODULUS]))
-        time.sleep(1)
+        self.until(lambda: self.true_modulus() == TRUE_MODULUS, "the stiffer cell")
         self.run_goal("indented", puncture=False, layers=1, depth=6e-6, hold_time=0.5)
         self.assertAlmostEqual(self.seen["/cell/estimate"].served_modulus / TRUE_MODULUS, 1, delta=0.03)
+
+    def true_modulus(self):
+        state = self.seen.get("/true_cell/state")
+        return state and dict(zip(state.parameter_names, state.parameter_values))["young_modulus"]
 
     def check_score(self, result):
         score = self.seen["/cell/puncture_score"]

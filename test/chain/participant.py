@@ -1,5 +1,6 @@
 """A Python participant of the lock step: a test that plays the part of one or more nodes, tick by tick."""
 
+import collections
 import queue
 import threading
 
@@ -29,7 +30,9 @@ class Participant:
         self._outputs = {topic: self._advertise(topic, kind) for topic, kind in outputs.items()}
         self._silences = {topic: self._advertise(topic + "/silent", Header) for topic in outputs}
         self._acknowledgement = self._advertise("/lockstep/acknowledgement", Header)
-        self._heard, self._left, self._feeders = {}, "", {}
+        # topic -> stamps; a node is never more than a tick ahead.
+        self._heard = collections.defaultdict(lambda: collections.deque(maxlen=4))
+        self._left, self._feeders = "", {}
         self._changed = threading.Condition()
         self._subscribers = [rospy.Subscriber(topic, kind, self._see, topic) for topic, kind in inputs.items()]
         self._subscribers += [rospy.Subscriber(topic + "/silent", Header, self._hear_silence, topic) for topic in inputs]
@@ -65,7 +68,7 @@ class Participant:
 
     def _hear(self, topic, stamp):
         with self._changed:
-            self._heard[topic] = max(self._heard.get(topic, rospy.Time()), stamp)
+            self._heard[topic].append(stamp)
             self._changed.notify_all()
 
     def _on_left(self, message):
@@ -79,9 +82,10 @@ class Participant:
         return {topic: publishers[topic + "/silent"][0] for topic in topics if publishers.get(topic + "/silent")}
 
     def _await_inputs(self, tick):
-        """Until `seen` has what was said in this tick: this process may hear of the next one first."""
+        """Until `seen` has what was said in this tick. Messages and silences have connections of their own: the next
+        tick's silence may come before this one's message."""
         def complete():
-            return all(self._heard.get(topic, rospy.Time()) >= tick or f"{node} " in self._left
+            return all(tick in self._heard[topic] or f"{node} " in self._left
                        for topic, node in self._feeders.items())
         with self._changed:
             if not self._changed.wait_for(complete, self._patience):

@@ -33,10 +33,11 @@ class TrustTest(unittest.TestCase):
         self.assertEqual(self.estimate().held, "")
 
     def messages(self, **others):
-        """Of a cell that is a spring of 0.05 N/m."""
+        """Of a cell that is a spring of 0.05 N/m. No two readings of a sensor are the same."""
         depth = max(0.0, SURFACE - self.height)
+        noise = 1e-10 * math.sin(1e4 * self.world.now.to_sec())
         return {"/needle/measured_cp": pose(0, 0, self.height),
-                "/force_sensor/measured_cf": wrench(0, 0, 0.05 * depth, "needle_tip"),
+                "/force_sensor/measured_cf": wrench(0, 0, 0.05 * depth + noise, "needle_tip"),
                 "/controller/injection_state": InjectionStatus(state="indent", punctures=self.punctures), **others}
 
     def estimate(self):
@@ -86,19 +87,19 @@ class TrustTest(unittest.TestCase):
                 self.assertIn(why, self.estimate().held)
 
     def test_a_puncture_ends_the_lesson_until_the_needle_is_clear(self):
-        self.lower(SURFACE - 2e-6)
+        self.lower(SURFACE - 3e-6)
         self.assertEqual(self.estimate().held, "")
         learned = self.estimate().samples
         self.assertGreater(learned, 10)
         self.punctures = 1
-        self.lower(SURFACE - 4e-6)
+        self.lower(SURFACE - 5e-6)
         self.assertIn("punctured", self.estimate().held)
         self.assertLessEqual(self.estimate().samples, learned + 1)
         self.height = SURFACE + 20e-6  # the count stays until the needle starts anew
         self.world.run(100, self.messages)
         self.assertEqual(self.estimate().held, "")
         self.assertEqual(self.estimate().verdict, "prior")
-        self.lower(SURFACE - 2e-6)
+        self.lower(SURFACE - 3e-6)
         self.assertGreater(self.estimate().samples, 10)
 
     def test_a_force_of_no_such_cell_is_inconsistent_and_the_prior_is_served(self):

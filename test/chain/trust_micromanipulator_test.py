@@ -58,12 +58,20 @@ class TrustTest(unittest.TestCase):
                 return
         self.fail("did not happen within 20 s of ROS time")
 
+    def tick_commanding(self, publisher, command, condition):
+        """Commands again in each tick: they are no part of the lock step, and some may be late."""
+        for _ in range(20000):
+            command.header.stamp = self.world.now
+            publisher.publish(command)
+            self.world.tick()
+            if condition():
+                return
+        self.fail("did not happen within 20 s of ROS time")
+
     def test_stale_velocity_stops(self):
         command = TwistStamped()
-        command.header.stamp = self.world.now
         command.twist.linear.x = 50e-6
-        self.velocity.publish(command)
-        self.tick_until(lambda: self.needle()[0] > 1e-6)
+        self.tick_commanding(self.velocity, command, lambda: self.needle()[0] > 1e-6)
         self.world.run(300)
         held = self.needle()
         self.world.run(300)
@@ -92,7 +100,6 @@ class TrustTest(unittest.TestCase):
         self.tick_until_refused("servo_cv refused: not a valid velocity")
         self.forget_the_refusal()
         command.twist.linear.x = 50e-6
-        command.header.stamp = self.world.now
         command.header.frame_id = "camera"
         self.velocity.publish(command)
         self.tick_until_refused("servo_cv refused: not a valid velocity")
@@ -110,7 +117,7 @@ class TrustTest(unittest.TestCase):
     def test_refuses_stamps_that_are_ahead(self):
         """Of a second and more, up to the last one that there is; it used to end the node."""
         self.world.run(200)
-        for seconds in (2, 3600, 2 ** 31 + 1, 2 ** 32 - 2):
+        for seconds in (30, 3600, 2 ** 31 + 1, 2 ** 32 - 2):
             move, velocity = pose(20e-6, -10e-6, 70e-6), TwistStamped()
             velocity.twist.linear.x = 50e-6
             for publisher, message in ((self.move, move), (self.velocity, velocity)):
@@ -133,13 +140,10 @@ class TrustTest(unittest.TestCase):
         self.assertLess(fastest, 200e-6 * 1.001)
         self.assertGreater(fastest, 200e-6 * 0.9)
         command = TwistStamped()
-        command.header.stamp = self.world.now
         command.twist.linear.x = 250e-6
         self.world.run(200)
-        command.header.stamp = self.world.now
-        self.velocity.publish(command)
-        self.tick_until(lambda: "allowed at most servo_speed_limit" in
-                        self.world.diagnostics[STATUS].message)
+        self.tick_commanding(self.velocity, command, lambda: "allowed at most servo_speed_limit" in
+                             self.world.diagnostics[STATUS].message)
 
     def test_second_publisher_is_a_fault_until_enable(self):
         """It is another node, since this one may publish on as many topics as it likes."""
@@ -170,8 +174,7 @@ class TrustTest(unittest.TestCase):
 
     def test_move_arrives(self):
         command = pose(20e-6, -10e-6, 70e-6)
-        command.header.stamp = self.world.now
-        self.move.publish(command)
+        self.tick_commanding(self.move, command, lambda: self.world.seen["/needle/operating_state"].is_busy)
         self.tick_until(lambda: np.allclose(self.needle(), [20e-6, -10e-6, 70e-6], atol=1e-9))
 
 

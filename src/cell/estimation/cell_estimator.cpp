@@ -209,12 +209,13 @@ const CellEstimate& CellEstimator::update() {
 }
 
 void CellEstimator::judge(const Fit& fit) {
+  // A contradiction stays until the next indentation: the served cell must not go to and fro.
+  if (contradictions_ == kPersistent) return;
   const std::string reason = drift(fit);
   if (!reason.empty()) return setPrior(EstimateVerdict::kPrior, reason);
   const Misfit misfit = misfitOf(fit.points, modulusOf(fit.state) / scene_modulus_,
                                  fit.residuals.cwiseProduct(fit.deviations), fit.deviations);
-  // A contradiction stays until the next indentation: the served cell must not go to and fro.
-  if (contradictions_ < kPersistent) contradictions_ = contradicts(misfit) ? contradictions_ + 1 : 0;
+  contradictions_ = contradicts(misfit) ? contradictions_ + 1 : 0;
   if (contradictions_ < kPersistent) {
     estimate_ = estimateOf(fit, misfit);
     return;

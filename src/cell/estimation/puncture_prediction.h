@@ -20,8 +20,8 @@ struct PuncturePrediction {
 ///
 /// The limits of the scene's outermost layer (force, depth, strain; the first one to be reached counts)
 /// have a common log-normal factor: how much stronger this cell's membrane is than the scene's. The
-/// modulus is log-normal, too. Draws that would have failed before the present depth are left out: this
-/// cell has not. Without force memory: slow relaxation moves a force limit deeper.
+/// modulus is log-normal, too. Draws that fail before the present depth are left out, since this cell has
+/// not failed there. Without force memory: slow relaxation moves a force limit deeper.
 class PuncturePredictor {
  public:
   /// `cell`: the member of a family that `scene` is. `deviation`: prior standard deviation of the
