@@ -1,7 +1,5 @@
 // How well `identify` finds a cell's modulus and its contact point from a record of the virtual force sensor.
 
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <random>
@@ -11,45 +9,24 @@
 #include "base/cpu_time.h"
 #include "base/errors.h"
 #include "benchmark/bench_main.h"
-#include "cell/family/axis_force.h"
-#include "cell/family/family_file.h"
-#include "cell/family/family_member.h"
+#include "benchmark/common/drawn_cell.h"
+#include "benchmark/common/faulty_sensor.h"
 #include "cell/identification/family_law.h"
 #include "cell/identification/identification.h"
-#include "rig/sensor/force_sensor.h"
 
 namespace microinjection {
 namespace {
 
-constexpr char kFamilies[] = MICROINJECTION_SOURCE_DIR "/config/families/";
-constexpr double kSpeed = 20e-6, kDeep = 5e-6;      // m/s, m
-constexpr double kSoftest = 5e3, kStiffest = 25e3;  // Pa
-constexpr double kRate = 1000;                      // Hz, of the record
+constexpr double kSpeed = 20e-6;  // m/s
 
 struct Options {
   int trials = 200, seed = 100001;
-};
-
-std::shared_ptr<const FamilyData> load(const std::string& name) {
-  const std::string file = kFamilies + name + ".yaml";
-  auto read = FamilyData::load(Family::load(file), familyDataFile(file));
-  if (!read) throw ConfigError(read.reason);
-  return std::make_shared<const FamilyData>(std::move(*read.content));
-}
-
-/// A cell that was drawn, and its converged force: of the section, solved for this cell.
-struct Truth {
-  Scene scene;  ///< without a modulus: it is 1 Pa
-  double modulus = 0, contact = 0;
-  double length = 0, unit = 0;  ///< m, of the range on the axis; N/Pa of the curve
-  AxisCurve curve;
-
-  double force(double depth) const { return depth > 0 ? modulus * unit * curve(std::sqrt(depth / length)) : 0; }
+  double deep = 5;  // um
 };
 
 class IdentifyTable {
  public:
-  explicit IdentifyTable(const Options& options) : options_(options) {}
+  explicit IdentifyTable(const Options& options) : options_(options), deep_(1e-6 * options.deep) {}
 
   std::string rows() {
     add("trial,kind,modulus_error,modulus_covered,contact_error_m,puncture_error,time_s,verdict\n");
@@ -67,68 +44,20 @@ class IdentifyTable {
     table_ += text;
   }
 
-  double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
-
-  /// A member at random coordinates, in the size of a mouse's oocyte.
-  Truth draw(const FamilyData& data, double radius) {
-    const Family& family = data.family();
-    for (;;) {
-      Eigen::VectorXd coordinates(family.dimension());
-      for (double& x : coordinates) x = uniform(-1, 1);
-      const Scene member = family.member(coordinates);
-      const Preparation plan = planMember(family, member);
-      Truth truth;
-      truth.length = plan.range.axis_depth * radius;
-      if (truth.length < kDeep) continue;
-      try {
-        truth.curve = axisCurve(solveAxisForces(family, coordinates).array().log().matrix());
-      } catch (const std::runtime_error&) {
-        continue;
-      }
-      truth.unit = plan.scales.energy / plan.scales.length * radius * radius;
-      truth.scene = scaledScene(member, radius);
-      truth.modulus = std::exp(uniform(std::log(kSoftest), std::log(kStiffest)));
-      truth.contact = uniform(2e-6, 6e-6);
-      return truth;
-    }
-  }
-
-  static Scene scaledScene(Scene scene, double radius) {
-    for (Scene::Layer& layer : scene.cell.layers) layer.outer_radius *= radius;
-    scene.needle.tip.radius *= radius;
-    scene.needle.tip.edge_radius *= radius;
-    scene.holding_pipette.contact_radius *= radius;
-    return scene;
-  }
-
-  ForceCurve record(const Truth& truth, const std::string& kind, int seed) {
-    ForceSensorConfig config;
-    config.seed = seed;
-    ForceSensor sensor(config);
-    const double offset = uniform(-100e-9, 100e-9);
+  /// `contact`: m, position at first contact.
+  ForceCurve record(const DrawnCell& truth, double contact, const std::string& kind, int seed) {
+    FaultySensor sensor(kind, 0.1 * truth.force(deep_), seed);
+    const double offset = uniform(-100e-9, 100e-9, random_);
     ForceCurve curve;
-    double frozen = 0;
-    int hold = 0;
-    const int count = static_cast<int>(kRate * (truth.contact + kDeep) / kSpeed);
-    const double outlier = 0.1 * truth.force(kDeep);
+    const int count = static_cast<int>(FaultySensor::kRate * (contact + deep_) / kSpeed);
     for (int i = 0; i < count; ++i) {
-      const double time = i / kRate;
-      double reading = offset;
-      for (int k = 1; k <= 10; ++k) {
-        const double at = time + (k - 10) * 1e-4;
-        reading = offset + sensor.sample({truth.force(kSpeed * at - truth.contact), 0}, 1e-4)[0];
-      }
-      if (kind == "outliers" && uniform(0, 1) < 0.03) reading += outlier * (uniform(0, 1) < 0.5 ? -1 : 1);
-      if (kind == "dropouts" && uniform(0, 1) < 0.01) hold = 20;
-      if (kind == "freeze" && hold == 0 && uniform(0, 1) < 0.002) {
-        hold = 30;
-        frozen = reading;
-      }
-      const bool held = hold > 0 && hold-- > 0;
-      if (held && kind == "dropouts") continue;
+      const double time = i / FaultySensor::kRate;
+      const auto reading = sensor.read(
+          time, [&](double at) { return truth.force(kSpeed * at - contact); }, random_);
+      if (!reading) continue;
       curve.time.push_back(time);
       curve.position.push_back(kSpeed * time);
-      curve.force.push_back(held ? frozen : reading);
+      curve.force.push_back(*reading + offset);
     }
     return curve;
   }
@@ -138,9 +67,10 @@ class IdentifyTable {
     random_.seed(static_cast<unsigned>(seed) + 7919U * static_cast<unsigned>(kind.size()));
     const bool zona = kind == "zona" || kind == "wrong_model";
     const auto& data = zona ? zona_ : homogeneous_;
-    const Truth truth = draw(*data, zona ? 38e-6 : 28e-6);
-    const ForceCurve curve = record(truth, kind, seed);
-    Scene known = truth.scene;
+    const DrawnCell truth = drawCell(*data, zona ? 38e-6 : 28e-6, deep_, random_);
+    const double contact = uniform(2e-6, 6e-6, random_);
+    const ForceCurve curve = record(truth, contact, kind, seed);
+    Scene known = truth.withModulus(1);  // it is not known
     if (kind == "wrong_model") known.cell.layers.resize(1);
     const double start = threadCpuTime();
     char row[200];
@@ -148,11 +78,10 @@ class IdentifyTable {
       const auto law =
           std::make_shared<FamilyLaw>(kind == "wrong_model" ? homogeneous_ : data, known, std::vector<std::string>{});
       const Identification found = identify(identifiedCurve(curve), law, {});
-      const Estimate &modulus = *found.find("young_modulus"), &contact = *found.find("contact");
+      const Estimate &modulus = *found.find("young_modulus"), &place = *found.find("contact");
       std::snprintf(row, sizeof(row), "%d,%s,%.5f,%d,%.3g,,%.3f,%s\n", trial, kind.c_str(),
                     modulus.value / truth.modulus - 1, modulus.low <= truth.modulus && truth.modulus <= modulus.high,
-                    contact.value - truth.contact, threadCpuTime() - start,
-                    found.consistent() ? "consistent" : "inconsistent");
+                    place.value - contact, threadCpuTime() - start, found.consistent() ? "consistent" : "inconsistent");
     } catch (const ConfigError& error) {
       std::snprintf(row, sizeof(row), "%d,%s,,,,,%.3f,refused\n", trial, kind.c_str(), threadCpuTime() - start);
       std::fprintf(stderr, "%s\n", error.what());
@@ -161,7 +90,8 @@ class IdentifyTable {
   }
 
   Options options_;
-  std::shared_ptr<const FamilyData> homogeneous_ = load("homogeneous"), zona_ = load("zona");
+  double deep_;  ///< m
+  std::shared_ptr<const FamilyData> homogeneous_ = loadFamilyData("homogeneous"), zona_ = loadFamilyData("zona");
   std::mt19937 random_;
   std::string table_;
 };
@@ -175,7 +105,8 @@ int main(int argc, char** argv) {
   po::options_description more;
   more.add_options()("trials", po::value(&options.trials)->default_value(options.trials),
                      "cells; half of each family, and a fifth for each kind of bad record")(
-      "seed", po::value(&options.seed)->default_value(options.seed), "of the first cell");
+      "seed", po::value(&options.seed)->default_value(options.seed), "of the first cell")(
+      "deep", po::value(&options.deep)->default_value(options.deep), "um, of the record in contact");
   return microinjection::benchMain(
       argc, argv, "identify: error and coverage of modulus and contact point over cells drawn at random",
       [&] { return microinjection::IdentifyTable(options).rows(); }, more);

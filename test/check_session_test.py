@@ -33,7 +33,7 @@ class CheckSessionTest(unittest.TestCase):
                 self.assertRegex('\n'.join(problems({**GOOD, name: 'wrong'})), rf"^{name} = 'wrong': must be one of: \w+")
 
     def test_names_what_does_not_go_together(self):
-        for changes, what in (({'scene': '/nowhere.yaml'}, "scene = '/nowhere.yaml': no such file; the cells are: mouse"),
+        for changes, what in (({'scene': '/nowhere.yaml'}, "scene = '/nowhere.yaml': no such file; the cells are: human_oocyte, mouse"),
                               ({'clock': 'lockstep', 'haptic': 'omni'}, "clock = 'lockstep' with haptic = 'omni'"),
                               ({'mode': 'automatic'}, "mode = 'automatic': must be with haptic:=none"),
                               ({'hidden': '/nowhere.yaml'}, "hidden = '/nowhere.yaml': no such file"),

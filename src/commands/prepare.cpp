@@ -3,16 +3,14 @@
 #include <malloc.h>
 #include <sys/prctl.h>
 
-#include <boost/program_options.hpp>
+#include <boost/program_options/errors.hpp>
 #include <csignal>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <iostream>
 #include <optional>
-#include <sstream>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "base/atomic_file.h"
@@ -28,108 +26,18 @@
 #include "cell/surrogate/surrogate_data.h"
 #include "cell/surrogate/training_ray.h"
 #include "commands/path_store.h"
+#include "commands/prepare_arguments.h"
 #include "commands/prepare_family.h"
 #include "commands/solve_paths.h"
 
 namespace microinjection {
 namespace {
 
-namespace po = boost::program_options;
-
 constexpr int kDone = 0, kBadUsage = 2, kFailed = 3;
-
-constexpr char kHelp[] =
-    R"(prepare: the off-line stage. Solves a scene's cell at many contact points and displacements, and stores the data
-with which a live session evaluates a converged force in microseconds.
-
-Usage: prepare --scene FILE [--jobs N] [...]
-       prepare --family FILE [--members N | --check N] [--jobs N]
-
-Takes minutes, shows its progress, and may be interrupted: the next call continues from the finished paths. The data are
-in $XDG_CACHE_HOME (else ~/.cache) under cell_microinjection/prepared, in a folder named after the cell, the tip and
-the program's version. Cells that differ in scale, or whose moduli and tensions differ by one factor, have the same data.
-Another tip, another ratio of lengths or another ratio of moduli needs its own; another needle offset does not.
-
-With --family it solves members of a family of cells, each in minutes, and stores the family's data beside its file (NAME.data
-beside NAME.yaml). Every cell inside of the family is then served at once, without a preparation. The members are where
-the prediction from the solved ones is least certain. Several processes with one cache share the work.
-
-Data that are damaged, or of another version, are reported and replaced.
-
-Where the cell has no solution in a part of the range, the range shrinks, which is reported.
-
-Exit status: 0 prepared (or was already); 2 bad usage, a scene that cannot be prepared (friction, adhesion, a viscosity
-that does not relax, a sharp disc on a nonlinear cell, tensegrity: the message names it), or data or output that cannot
-be written (the message names the path and the reason; the folder is checked first); 3 a path ends before a fifth of its
-length: nothing is stored.
-
-Options)";
-
-struct Arguments {
-  std::string scene;
-  std::string families;
-  FamilyArguments family;
-  int jobs = 1;
-  int ray = -1;
-  std::string at;  ///< coordinates of a family's member
-  int member = -1;
-  int axis = -1;
-  bool again = false;
-  bool show_help = false;
-  std::string options;
-};
-
-void requireAtLeast(const std::string& option, int value, int least) {
-  if (value >= least) return;
-  throw ConfigError("--" + option + " = " + std::to_string(value) + ": must be " + std::to_string(least) + " or more");
-}
-
-Arguments parse(int argc, char** argv) {
-  Arguments arguments;
-  const int processors = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  po::options_description visible, all;
-  FamilyArguments& family = arguments.family;
-  visible.add_options()("help", "this text")("scene", po::value(&arguments.scene), "scene file (YAML, SI units)")(
-      "families", po::value(&arguments.families),
-      "prepares nothing when a family of this folder serves the scene as exactly as its requirements ask for")(
-      "family", po::value(&family.file), "family file (YAML), instead of a scene")(
-      "members", po::value(&family.members)->default_value(family.members), "members that the family shall have")(
-      "check", po::value(&family.check)->default_value(0),
-      "draws this many members of the family that were never solved, solves them and prints the family's errors")(
-      "record", po::bool_switch(&family.record),
-      "with --check: the family's data keep the errors, and cell_simulator then expects them")(
-      "refit", po::bool_switch(&family.refit), "first fits the family's members anew to the forces that it keeps")(
-      "seed", po::value(&family.seed)->default_value(family.seed), "of the draw")("csv", po::value(&family.csv),
-                                                                                  "file for the table of the check")(
-      "reference", po::value(&family.reference),
-      "file of the check's solutions: those that it has are not solved again, the others are added")(
-      "jobs", po::value(&arguments.jobs)->default_value(processors), "paths solved at a time, each on one core")(
-      "again", po::bool_switch(&arguments.again), "replaces data that were prepared before");
-  po::options_description hidden;
-  hidden.add_options()("ray", po::value(&arguments.ray), "solves only this path, as a worker process")(
-      "at", po::value(&arguments.at), "of the family's member at these coordinates")(
-      "member", po::value(&arguments.member), "of this member of the check")(
-      "axis", po::value(&arguments.axis), "solves only this node of the family's grid on the axis");
-  all.add(visible).add(hidden);
-  po::variables_map values;
-  po::store(po::command_line_parser(argc, argv).options(all).positional({}).run(), values);
-  po::notify(values);
-  std::ostringstream options;
-  options << visible;
-  arguments.options = options.str();
-  arguments.show_help = values.count("help") != 0;
-  if (arguments.show_help) return arguments;
-  if (arguments.scene.empty() == family.file.empty()) throw ConfigError("one of --scene and --family must be given");
-  requireAtLeast("jobs", arguments.jobs, 1);
-  requireAtLeast("members", family.members, 1);
-  requireAtLeast("check", family.check, 0);
-  family.jobs = arguments.jobs;
-  return arguments;
-}
 
 class Preparing {
  public:
-  explicit Preparing(const Arguments& arguments)
+  explicit Preparing(const PrepareArguments& arguments)
       : arguments_(arguments),
         scene_(loadScene(arguments.scene)),
         solved_(withoutDimension(scene_)),
@@ -239,7 +147,7 @@ class Preparing {
                  1e6 * scene_.radius() * reached, 1e6 * scene_.radius() * ray.target.norm(), result.reason.c_str());
   }
 
-  Arguments arguments_;
+  PrepareArguments arguments_;
   Scene scene_;
   Scene solved_;      ///< the same without dimension
   Preparation plan_;  ///< of it
@@ -247,7 +155,7 @@ class Preparing {
 };
 
 /// Solves one path, as a process that ends when the preparation is killed.
-int work(const Arguments& arguments) {
+int work(const PrepareArguments& arguments) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   // The solver allocates and releases large blocks in every step: the system need not have them back.
   mallopt(M_TRIM_THRESHOLD, 1 << 30);
@@ -268,7 +176,7 @@ int work(const Arguments& arguments) {
 }
 
 /// Whether a family serves the scene to its requirements.
-bool isServed(const Arguments& arguments) {
+bool isServed(const PrepareArguments& arguments) {
   if (arguments.families.empty() || arguments.again) return false;
   const Scene scene = loadScene(arguments.scene);
   std::string reason;
@@ -282,7 +190,7 @@ bool isServed(const Arguments& arguments) {
   return true;
 }
 
-int prepare(const Arguments& arguments) {
+int prepare(const PrepareArguments& arguments) {
   if (arguments.family.file.empty()) return isServed(arguments) ? kDone : Preparing(arguments).run();
   arguments.family.check > 0 ? checkFamily(arguments.family) : prepareFamily(arguments.family);
   return kDone;
@@ -290,16 +198,16 @@ int prepare(const Arguments& arguments) {
 
 int run(int argc, char** argv) {
   try {
-    const Arguments arguments = parse(argc, argv);
+    const PrepareArguments arguments = parsePrepareArguments(argc, argv);
     if (arguments.show_help) {
-      std::cout << kHelp << arguments.options;
+      std::cout << arguments.help;
       flushStandardOutput();
       return kDone;
     }
     const int status = arguments.ray >= 0 || arguments.axis >= 0 ? work(arguments) : prepare(arguments);
     flushStandardOutput();
     return status;
-  } catch (const po::error& error) {
+  } catch (const boost::program_options::error& error) {
     std::cerr << "prepare: " << error.what() << "; see --help\n";
     return kBadUsage;
   } catch (const UserError& error) {

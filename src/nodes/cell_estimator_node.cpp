@@ -7,6 +7,7 @@
 #include "base/cpu_time.h"
 #include "base/errors.h"
 #include "cell/model/cell_parameters.h"
+#include "cell/model/placed_cell.h"
 #include "nodes/cell/cell_state_reader.h"
 #include "nodes/cell/estimate_messages.h"
 #include "nodes/runtime/conversions.h"
@@ -19,7 +20,6 @@ namespace {
 constexpr double kSameSize = 1e-6;  ///< relative, of a parameter that has not changed
 constexpr double kDetection = 0.1;  ///< s, in which a puncture is detected: its readings are no cell's
 constexpr double kApart = 0.3e-6;   ///< m, of the needle between the times of position and force
-constexpr double kPatience = 0.5;   ///< s, after which a change that is not served is asked for again
 
 /// Whether `period` (s) has passed; also when time was set back.
 bool isDue(const ros::Time& last, const ros::Time& now, double period) {
@@ -32,7 +32,8 @@ bool isModulus(const std::string& name) { return name == "young_modulus" || name
 }  // namespace
 
 const char* const CellEstimatorNode::kHelp =
-    "cell_estimator: the online twin. Finds the modulus of the cell under the needle and has cell_simulator serve it.\n"
+    "cell_estimator: the online twin. Finds modulus and height of the cell under the needle and has cell_simulator\n"
+    "serve them.\n"
     "In: /needle/measured_cp, /force_sensor/measured_cf, /controller/injection_state, /cell/state.\n"
     "Out: /cell/estimate, /cell/set_parameters, /cell/puncture_score.\n";
 
@@ -52,9 +53,7 @@ CellEstimatorNode::Parameters CellEstimatorNode::Parameters::read(const ros::Nod
   reader.number("largest_sideways", parameters.largest_sideways, Range::positive());
   reader.number("clear_distance", parameters.clear_distance, Range::positive());
   reader.boolean("serve", parameters.serve);
-  reader.number("serve_period", parameters.serve_period, Range::closed(0.02, 10));
-  reader.number("least_change", parameters.least_change, Range::closed(1e-4, 0.5));
-  reader.number("largest_change", parameters.largest_change, Range::closed(0.01, 2));
+  parameters.served.read(reader);
   reader.number("puncture_deviation", parameters.puncture_deviation, Range::closed(0, 2));
   ConfigReader estimator = reader.section("estimator");
   parameters.estimator.read(estimator);
@@ -73,8 +72,12 @@ CellEstimatorNode::CellEstimatorNode(ros::NodeHandle node, ros::NodeHandle priva
           "controller/injection_state", InputPhase::kPreviousTick, parameters_.controller_timeout)),
       estimate_(cycle_.output<cell_microinjection::CellEstimate>("cell/estimate")),
       change_(cycle_.output<cell_microinjection::CellParameters>("cell/set_parameters")),
-      score_(cycle_.output<cell_microinjection::PunctureScore>("cell/puncture_score", true)) {
+      score_(cycle_.output<cell_microinjection::PunctureScore>("cell/puncture_score", true)),
+      served_(parameters_.served, 1) {
   const Scene scene = loadScene(parameters_.scene);
+  CellFollowerConfig served = parameters_.served;
+  served.largest_height = std::min(served.largest_height, PlacedCell::kHighest * scene.radius());
+  served_ = CellFollower(served, scene.cell.material().young_modulus);
   std::string reason;
   auto member = findFamilyCell(parameters_.families, scene, reason);
   if (!member) {
@@ -82,7 +85,6 @@ CellEstimatorNode::CellEstimatorNode(ros::NodeHandle node, ros::NodeHandle priva
                       (reason.empty() ? "" : ": " + reason));
   }
   take(scene, std::move(*member));
-  served_ = scene_.cell.material().young_modulus;
   cell_ = subscribeGuarded<cell_microinjection::CellState>(
       cycle_.node(), "cell/state", 1,
       [this](const cell_microinjection::CellState& message, const std::string&) { onCell(message); });
@@ -103,7 +105,8 @@ void CellEstimatorNode::take(const Scene& scene, FamilyCell member) {
 
 /// Another cell, measured in the image, say: what was learned is of the one before.
 void CellEstimatorNode::onCell(const cell_microinjection::CellState& message) {
-  served_ = cellParameter(message, "young_modulus").value_or(served_);
+  served_.setServed({cellParameter(message, "young_modulus").value_or(served_.served().modulus),
+                     cellParameter(message, PlacedCell::kName).value_or(served_.served().height)});
   std::vector<CellParameter> changed;
   for (const CellParameter& known : cellParameters(scene_)) {
     if (isModulus(known.name)) continue;
@@ -125,6 +128,7 @@ void CellEstimatorNode::onCell(const cell_microinjection::CellState& message) {
   }
   foreign_.clear();
   take(next, std::move(*member));
+  other_cell_ = true;
   ROS_INFO_STREAM("another cell is served; nothing is known of it yet: " << member_.description);
 }
 
@@ -144,20 +148,22 @@ void CellEstimatorNode::followIndentation(const Eigen::Vector3d& tip, const ros:
   const double surface = scene_.radius() + estimator_->estimate().contact;
   switch (indentation_.follow(tip, {surface, scene_.radius() + parameters_.clear_distance},
                               status ? std::optional(status->punctures) : std::nullopt)) {
-    case Indentation::Event::kEnded:
+    case IndentationCourse::Event::kEnded:
       estimator_->beginNext();
       break;
-    case Indentation::Event::kPunctured:
-      score(now);
+    case IndentationCourse::Event::kPunctured:
+      punctured_at_ = now;
+      is_scored_ = false;
       estimator_->forgetSince(now.toSec() - kDetection);
       break;
-    case Indentation::Event::kNone:
+    case IndentationCourse::Event::kNone:
       break;
   }
 }
 
-/// Of each reading: the largest before a puncture may be replaced by a newer one before the next step.
+/// Of each reading up to the puncture, which may come later than the controller's word of it.
 void CellEstimatorNode::followForce(const geometry_msgs::WrenchStamped& message) {
+  if (indentation_.punctured() && message.header.stamp > punctured_at_) return;
   const auto force = validForce(&message, orientation_);
   if (force) indentation_.addForce(orientation_.col(2).dot(*force) - estimator_->estimate().offset);
 }
@@ -203,6 +209,7 @@ void CellEstimatorNode::step(const Cycle::Tick& tick) {
   }
   last_step_ = tick.now;
   held_ = learn(tick.now);
+  if (!is_scored_ && indentation_.punctured() && secondsBetween(punctured_at_, tick.now) >= kDetection) score(tick.now);
   if (!isDue(updated_, tick.now, parameters_.update_period)) return;
   updated_ = tick.now;
   const double start = threadCpuTime();
@@ -213,26 +220,27 @@ void CellEstimatorNode::step(const Cycle::Tick& tick) {
   publish(tick.now, taken);
 }
 
-/// In small steps towards what was found: towards the prior when the force contradicts the model, and
-/// nowhere while nothing is known. The next step waits until cell_simulator serves the last one.
+/// What was found; the prior when the force contradicts the model. While nothing is known, nothing but
+/// another cell's place. A punctured cell stays where it is: the needle is in its hole.
 void CellEstimatorNode::serve(const ros::Time& now) {
   const CellEstimate& found = estimator_->estimate();
-  if (!parameters_.serve || found.verdict == EstimateVerdict::kPrior) return;
-  const bool confirmed = asked_ == 0 || std::abs(served_ / asked_ - 1) < kSameSize;
-  if (!isDue(asked_at_, now, confirmed ? parameters_.serve_period : kPatience)) return;
-  const double change = std::log(found.modulus / served_);
-  if (std::abs(change) < parameters_.least_change) return;
-  refused_ = !confirmed;
-  asked_at_ = now;
-  asked_ = served_ * std::exp(std::clamp(change, -parameters_.largest_change, parameters_.largest_change));
+  const bool known = found.verdict != EstimateVerdict::kPrior;
+  if (!parameters_.serve || indentation_.punctured() || !(known || other_cell_)) return;
+  other_cell_ = !known && served_.served().height != 0;
+  const CellFollower::Properties other{served_.served().modulus, 0}, learned{found.modulus, found.contact};
+  const auto asked = served_.ask(known ? learned : other, now.toSec());
+  if (!asked) return;
   cell_microinjection::CellParameters parameters;
   parameters.header.stamp = now;
-  const double factor = asked_ / scene_.cell.material().young_modulus;
-  for (const CellParameter& known : cellParameters(scene_)) {
-    if (!isModulus(known.name)) continue;
-    parameters.name.push_back(known.name);
-    parameters.value.push_back(factor * known.value);
+  const auto add = [&](const std::string& name, double value) {
+    parameters.name.push_back(name);
+    parameters.value.push_back(value);
+  };
+  const double factor = asked->modulus / scene_.cell.material().young_modulus;
+  for (const CellParameter& own : cellParameters(scene_)) {
+    if (isModulus(own.name)) add(own.name, factor * own.value);
   }
+  add(PlacedCell::kName, asked->height);
   change_.publish(parameters);
 }
 
@@ -243,6 +251,7 @@ void CellEstimatorNode::predict() {
 }
 
 void CellEstimatorNode::score(const ros::Time& now) {
+  is_scored_ = true;
   cell_microinjection::PunctureScore message;
   message.header.stamp = now;
   message.depth = indentation_.depth();
@@ -261,21 +270,23 @@ void CellEstimatorNode::publish(const ros::Time& now, double update_time) {
   message.header.stamp = now;
   message.held = held_;
   if (!indentation_.punctured()) message.puncture = toMessage(expected_);
-  message.served_modulus = served_;
+  message.served_modulus = served_.served().modulus;
+  message.served_height = served_.served().height;
   message.update_time = update_time;
   estimate_.publish(message);
 }
 
 void CellEstimatorNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) const {
   const CellEstimate& found = estimator_->estimate();
-  const bool bad = found.verdict == EstimateVerdict::kInconsistent || refused_;
+  const bool bad = found.verdict == EstimateVerdict::kInconsistent || served_.refused();
   std::string text = toText(found.verdict);
   if (!found.reason.empty()) text += ": " + found.reason;
   if (!held_.empty()) text += "; not learning: " + held_;
-  if (refused_) text += "; cell_simulator does not serve what it was asked to";
+  if (served_.refused()) text += "; cell_simulator does not serve what it was asked to";
   status.summary(bad ? diagnostic_msgs::DiagnosticStatus::WARN : diagnostic_msgs::DiagnosticStatus::OK, text);
   status.add("modulus (Pa)", found.modulus);
-  status.add("served modulus (Pa)", served_);
+  status.add("served modulus (Pa)", served_.served().modulus);
+  status.add("served height (m)", served_.served().height);
   status.add("misfit", found.misfit);
   if (!expected_) return;
   status.add("expected puncture: depth (m)", expected_->depth);

@@ -15,15 +15,16 @@
 #include <vector>
 
 #include "cell/estimation/cell_estimator.h"
-#include "cell/estimation/indentation.h"
+#include "cell/estimation/cell_follower.h"
+#include "cell/estimation/indentation_course.h"
 #include "cell/estimation/puncture_prediction.h"
 #include "cell/family/family_cell.h"
 #include "nodes/runtime/cycle.h"
 
 namespace microinjection {
 
-/// The online twin: finds the modulus of the cell that the needle indents, see CellEstimator, and
-/// has cell_simulator serve it.
+/// The online twin: finds modulus and height of the cell that the needle indents, see
+/// CellEstimator, and has cell_simulator serve them.
 ///
 /// In:  /needle/measured_cp, /force_sensor/measured_cf, /controller/injection_state, /cell/state
 ///      (the sizes of the served cell)
@@ -50,8 +51,7 @@ class CellEstimatorNode {
     double largest_sideways = 3e-6;
     double clear_distance = 5e-6;
     bool serve = true;
-    double serve_period = 0.03;
-    double least_change = 0.005, largest_change = 0.25;
+    CellFollowerConfig served;
     double puncture_deviation = 0.2;
     CellEstimatorConfig estimator;
     static Parameters read(const ros::NodeHandle& private_node);
@@ -88,12 +88,12 @@ class CellEstimatorNode {
   std::string held_;
   std::string foreign_;                 ///< why the served cell is none of the family; empty: it is one
   std::vector<double> foreign_values_;  ///< its parameters
-  Indentation indentation_;
+  IndentationCourse indentation_;
   std::optional<PuncturePrediction> expected_;
-  double served_ = 0;     ///< Pa, as /cell/state has it
-  double asked_ = 0;      ///< Pa; 0: nothing yet
-  bool refused_ = false;  ///< what was asked for is not served
-  ros::Time last_step_, last_force_, updated_, asked_at_, marked_;
+  CellFollower served_;
+  bool other_cell_ = false;  ///< is served, at the height of the one before
+  bool is_scored_ = true;    ///< the last puncture
+  ros::Time punctured_at_, last_step_, last_force_, updated_, marked_;
   Eigen::Vector3d mark_ = Eigen::Vector3d::Zero();             ///< m, of the tip at marked_
   double speed_ = 0;                                           ///< m/s
   Eigen::Matrix3d orientation_ = Eigen::Matrix3d::Identity();  ///< of the needle in the world, the last valid one

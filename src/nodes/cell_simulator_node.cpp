@@ -41,13 +41,13 @@ CellSimulatorNode::CellSimulatorNode(ros::NodeHandle node, ros::NodeHandle priva
   parameters_.models.online.fixed_period = cycle_.deterministic();
   const Scene scene = loadScene(parameters_.scene);
   chosen_ = makeCell(scene);
-  cell_ = chosen_.cell.get();
+  cell_ = std::make_unique<PlacedCell>(*chosen_.cell);
   invalid_reason_.reserve(200);  // no allocation in a step
   using Thread = CellStatePublisher::Thread;
   const auto thread = cycle_.deterministic() ? Thread::kOfTheStep : Thread::kOwn;
   state_publisher_ = std::make_unique<CellStatePublisher>(*cell_, scene, state_, parameters_.state_rate, thread);
-  parameter_server_ =
-      std::make_unique<CellParameterServer>(chosen_.change.get(), chosen_.unchangeable, cycle_, private_node);
+  parameter_server_ = std::make_unique<CellParameterServer>(chosen_.change.get(), chosen_.unchangeable, *cell_,
+                                                            scene.radius(), cycle_, private_node);
   cycle_.diagnostics().add("solver", [this](auto& status) { report(status); });
 }
 

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "cell/choice/make_cell_model.h"
-#include "cell/model/cell_model.h"
+#include "cell/model/placed_cell.h"
 #include "cell_microinjection/CellState.h"
 #include "nodes/cell/cell_parameter_server.h"
 #include "nodes/cell/cell_state_publisher.h"
@@ -51,7 +51,7 @@ class CellSimulatorNode {
   Parameters parameters_;
   Cycle cycle_;
   ChosenCellModel chosen_;
-  CellModel* cell_ = nullptr;
+  std::unique_ptr<PlacedCell> cell_;
   Input<geometry_msgs::PoseStamped>& needle_;
   Output<geometry_msgs::WrenchStamped>& force_;
   Output<cell_microinjection::CellState>& state_;

@@ -56,8 +56,8 @@ DisplayConfig readConfig(const ros::NodeHandle& private_node) {
 
 const char* const DisplayNode::kHelp =
     "display: shows the scene in rviz, ten thousand times enlarged.\n"
-    "In: /cell/state /force_sensor/measured_cf /haptic/measured_cp /controller/injection_state, tf of world, cell, "
-    "needle_tip and the rig.\n"
+    "In: /cell/state /force_sensor/measured_cf /haptic/measured_cp /controller/injection_state /cell/estimate,\n"
+    "tf of world, cell, needle_tip and the rig.\n"
     "Out: viz/markers viz/still (MarkerArray), tf below viz/world.\n";
 
 DisplayNode::DisplayNode(ros::NodeHandle node, ros::NodeHandle private_node)
@@ -67,7 +67,8 @@ DisplayNode::DisplayNode(ros::NodeHandle node, ros::NodeHandle private_node)
       inputs_{{{"/cell/state", true},
                {"/force_sensor/measured_cf", true},
                {"/haptic/measured_cp", false},
-               {"/controller/injection_state", false}}},
+               {"/controller/injection_state", false},
+               {"/cell/estimate", false}}},
       reported_(ros::WallTime::now()),
       diagnostics_(node, private_node) {
   state_.readout.state = "waiting for the cell";
@@ -77,6 +78,7 @@ DisplayNode::DisplayNode(ros::NodeHandle node, ros::NodeHandle private_node)
   subscribe(node, kMeasured, &DisplayNode::onMeasuredForce);
   subscribe(node, kHand, &DisplayNode::onHand);
   subscribe(node, kInjection, &DisplayNode::onInjection);
+  subscribe(node, kEstimate, &DisplayNode::onEstimate);
   diagnostics_.setHardwareID("none");
   diagnostics_.add("drawing", this, &DisplayNode::reportDrawing);
   diagnostics_.add("inputs", this, &DisplayNode::reportInputs);
@@ -135,6 +137,16 @@ void DisplayNode::onInjection(const cell_microinjection::InjectionStatus& messag
   count(kInjection, true);
 }
 
+void DisplayNode::onEstimate(const cell_microinjection::CellEstimate& message) {
+  const auto& puncture = message.puncture;
+  state_.readout.puncture = std::nullopt;
+  if (isValid(message) && puncture.depth > 0) {
+    state_.readout.puncture = {puncture.depth, puncture.depth_low, puncture.depth_high, puncture.force,
+                               puncture.beyond >= 0.5};
+  }
+  count(kEstimate, isValid(message));
+}
+
 void DisplayNode::onMeasuredForce(const geometry_msgs::WrenchStamped& message) {
   const Eigen::Isometry3d tip = state_.tip.value_or(Eigen::Isometry3d::Identity());
   state_.measured = isValid(message) ? validForce(&message, tip.linear()) : std::nullopt;
@@ -146,6 +158,7 @@ void DisplayNode::draw() {
   const ros::WallTime start = ros::WallTime::now();
   frames_.update();
   findTipTransform();
+  if (secondsBetween(inputs_[kEstimate].received, start) > kStaleAge) state_.readout.puncture = std::nullopt;
   if (state_.tip) frames_.publishNeedleTip(*state_.tip);
   if (markers_.getNumSubscribers() > 0) {
     visualization_msgs::MarkerArray markers;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cell_microinjection/CellEstimate.h>
 #include <cell_microinjection/CellState.h>
 #include <cell_microinjection/InjectionStatus.h>
 #include <diagnostic_updater/diagnostic_updater.h>
@@ -20,7 +21,7 @@ namespace microinjection {
 /// Shows the scene in rviz, enlarged. For people only: no node that controls reads its topics.
 ///
 /// In:  /cell/state (with the predicted force), /force_sensor/measured_cf, /haptic/measured_cp,
-///      /controller/injection_state, and from tf the frames of the rig with needle_tip, which saves
+///      /controller/injection_state, /cell/estimate, and from tf the frames of the rig with needle_tip, which saves
 ///      poses at 1 kHz
 /// Out: viz/markers, viz/still (MarkerArray; the second, for rare changes, is latched: an rviz that
 ///      draws slowly skips messages of the first), tf of viz/{cell, holding_pipette,
@@ -39,7 +40,7 @@ class DisplayNode {
   void run();
 
  private:
-  enum InputId { kState, kMeasured, kHand, kInjection, kInputs };
+  enum InputId { kState, kMeasured, kHand, kInjection, kEstimate, kInputs };
   struct Input {
     Input(const std::string& input_topic, bool is_needed) : topic(input_topic), needed(is_needed) {}
     std::string topic;
@@ -50,6 +51,7 @@ class DisplayNode {
 
   void onState(const cell_microinjection::CellState& message);
   void onInjection(const cell_microinjection::InjectionStatus& message);
+  void onEstimate(const cell_microinjection::CellEstimate& message);
   void onHand(const geometry_msgs::PoseStamped& message);
   void onMeasuredForce(const geometry_msgs::WrenchStamped& message);
   template <typename Message>

@@ -42,7 +42,7 @@ class ChangeCellTest(unittest.TestCase):
 
     def setUp(self):
         self.world.run(50, self.needle(-5e-6))
-        self.assertTrue(self.change(["young_modulus", "diameter"], [MODULUS, DIAMETER], self.needle(-5e-6)).success)
+        self.assertTrue(self.change(["young_modulus", "diameter", "height"], [MODULUS, DIAMETER, 0], self.needle(-5e-6)).success)
         for step in range(100):
             self.world.tick(self.needle(step * 0.01 * DEPTH))
         self.world.run(50, self.needle)
@@ -98,6 +98,21 @@ class ChangeCellTest(unittest.TestCase):
         self.world.run(20, self.needle(-1e-6))  # below the surface that the larger cell has now
         self.assertGreater(self.predicted(), 10e-9)
 
+    def test_another_height_is_another_depth(self):
+        before = self.predicted()
+        answer = self.change(["height"], [0.3e-6])
+        self.assertTrue(answer.success, answer.message)
+        forces = self.follow()
+        self.check_steady(before, forces)
+        self.assertEqual(self.felt("height"), 0.3e-6)
+        higher = self.predicted()
+        self.world.run(50, lambda: self.needle(DEPTH))
+        self.assertTrue(self.change(["height"], [0.0]).success)
+        self.follow()
+        self.assertAlmostEqual(self.predicted() / before, 1, delta=1e-6)
+        self.world.run(20, lambda: self.needle(DEPTH + 0.3e-6))
+        self.assertAlmostEqual(self.predicted() / higher, 1, delta=1e-3)
+
     def test_what_is_wrong_changes_nothing(self):
         before = self.predicted()
         for names, values, reason in ((["young_modulus"], [0.0], "young_modulus = 0: must be"),
@@ -106,6 +121,8 @@ class ChangeCellTest(unittest.TestCase):
                                       (["poisson_ratio"], [0.3], "outside of family homogeneous: "),
                                       (["diameter"], [150e-6], "outside of family homogeneous: "),
                                       (["core_modulus"], [1e3], "core_modulus: is no parameter of this cell; these are: "),
+                                      (["height"], [math.nan], "height = nan m: must be within"),
+                                      (["young_modulus", "height"], [15e3, 20e-6], "height = 2e-05 m: must be within"),
                                       (["young_modulus"], [], "must have one for each of the 1 names"),
                                       ([], [], "must have at least one")):
             with case(names, values):
@@ -114,6 +131,7 @@ class ChangeCellTest(unittest.TestCase):
                 self.assertIn(reason, answer.message)
         self.assertEqual(self.follow()[-1], before)
         self.assertEqual(self.felt("young_modulus"), MODULUS)
+        self.assertEqual(self.felt("height"), 0)
 
     def test_a_message_that_is_wrong_is_reported(self):
         before = self.predicted()

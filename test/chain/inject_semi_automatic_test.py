@@ -11,7 +11,7 @@ from injection_chain import InjectionChainTest
 class InjectSemiAutomaticTest(InjectionChainTest):
     def setUp(self):
         type(self).states = ["idle"]
-        self.start = self.needle()
+        self.start = self.resting()
 
     def await_word_in(self, state):
         """It goes on to `state` and waits there, with the needle at rest."""

@@ -52,7 +52,7 @@ class InjectPulseTest(InjectionChainTest):
         return self.client.get_state(), self.client.get_result()
 
     def test_3_a_whole_injection(self):
-        start, before = self.needle(), self.chain.seen["/injector/state"]
+        start, before = self.resting(), self.chain.seen["/injector/state"]
         self.send()
         state, result = self.result()
         self.assertEqual((state, result.outcome, result.reason), (GoalStatus.SUCCEEDED, "injected", ""))
@@ -73,7 +73,7 @@ class InjectPulseTest(InjectionChainTest):
 
     def test_4_cancelled_while_it_injects_the_pulse_stops_and_it_withdraws(self):
         self.move_aside(8e-6)  # of the hole
-        start, pulses = self.needle(), self.chain.seen["/injector/state"].pulses
+        start, pulses = self.resting(), self.chain.seen["/injector/state"].pulses
         self.send(duration=30.0)
         self.tick_until(lambda: self.chain.seen["/injector/state"].busy, "a pulse")
         self.chain.run(100)
@@ -93,7 +93,7 @@ class InjectTest(InjectPulseTest):
     """And what it has none in."""
 
     def test_1_a_goal_that_cannot_be_is_aborted_with_the_reason(self):
-        start = self.needle()
+        start = self.resting()
         for changes, why in (({"layers": 0}, "layers = 0"), ({"depth": 200e-6}, "allowed up to depth_limit = "),
                              ({"depth": float("nan")}, "depth = nan"),
                              ({"depth": 1.0}, "depth = 1 m, allowed (0, 0.001] m"),
@@ -110,7 +110,7 @@ class InjectTest(InjectPulseTest):
         np.testing.assert_array_equal(self.needle(), start)
 
     def test_1_stamps_ahead_of_the_time_cost_their_own_message_only(self):
-        start, results, known = self.needle(), {}, set()
+        start, results, known = self.resting(), {}, set()
         listeners = [rospy.Subscriber("/controller/inject/result", InjectActionResult,
                                       lambda message: results.update({message.status.goal_id.id: message})),
                      rospy.Subscriber("/controller/inject/status", GoalStatusArray,
@@ -158,7 +158,7 @@ class InjectTest(InjectPulseTest):
         check_served()
 
     def test_2_a_newer_goal_replaces_the_one_that_runs(self):
-        start = self.needle()
+        start = self.resting()
         self.send()
         self.tick_until(lambda: self.status().state == "indent", "an indentation")
         results = []
@@ -174,7 +174,7 @@ class InjectTest(InjectPulseTest):
         self.check_out(start)
 
     def test_2_cancelled_while_it_indents_it_withdraws(self):
-        start = self.needle()
+        start = self.resting()
         self.send()
         self.tick_until(lambda: self.status().state == "indent" and self.status().depth > 1e-6, "an indentation")
         self.assertGreater(self.chain.seen["/cell/state"].force.z, 0)
@@ -194,7 +194,7 @@ class InjectTest(InjectPulseTest):
     def test_5_through_two_membranes(self):
         """States and feedback tell of each; the injector works behind the last."""
         self.move_aside(-16e-6)  # where no hole is
-        start, pulses = self.needle(), self.chain.seen["/injector/state"].pulses
+        start, pulses = self.resting(), self.chain.seen["/injector/state"].pulses
         self.send(layers=2)
         # The state between the membranes lasts one tick; the count stays.
         self.tick_until(lambda: self.status().punctures > 0, "the first puncture")

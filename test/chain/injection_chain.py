@@ -49,6 +49,15 @@ class InjectionChainTest(unittest.TestCase):
             self.chain.tick()
         self.fail(f"{what}: not within {ticks} ticks; the injection is in {self.status()}")
 
+    def resting(self):
+        """@returns where the needle rests, once it does: the injection before may have ended when its set-point did."""
+        for _ in range(1000):
+            before = self.needle()
+            self.chain.run(30)  # some of the rig's time constants, and of its reports
+            if np.allclose(self.needle(), before, rtol=0, atol=0.02e-6):
+                return self.needle()
+        return self.fail(f"the needle does not rest: {before}, {self.needle()}")
+
     def say(self, word):
         self.commands.publish(StringStamped(string=word))
 

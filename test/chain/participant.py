@@ -30,7 +30,7 @@ class Participant:
         self._outputs = {topic: self._advertise(topic, kind) for topic, kind in outputs.items()}
         self._silences = {topic: self._advertise(topic + "/silent", Header) for topic in outputs}
         self._acknowledgement = self._advertise("/lockstep/acknowledgement", Header)
-        # topic -> stamps; a node is never more than a tick ahead.
+        # topic -> its newest stamps, each once; a node is never more than a tick ahead.
         self._heard = collections.defaultdict(lambda: collections.deque(maxlen=4))
         self._left, self._feeders = "", {}
         self._changed = threading.Condition()
@@ -68,7 +68,8 @@ class Participant:
 
     def _hear(self, topic, stamp):
         with self._changed:
-            self._heard[topic].append(stamp)
+            if stamp not in self._heard[topic]:  # some say several things in a tick
+                self._heard[topic].append(stamp)
             self._changed.notify_all()
 
     def _on_left(self, message):

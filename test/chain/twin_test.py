@@ -6,7 +6,7 @@ import unittest
 import numpy as np
 import rospy
 import rostest
-from cell_microinjection.msg import CellEstimate, CellParameters
+from cell_microinjection.msg import CellEstimate, CellParameters, CellState
 from geometry_msgs.msg import PoseStamped, WrenchStamped
 from sensor_msgs.msg import Joy
 
@@ -14,7 +14,8 @@ from messages import force, pose, position
 from participant import INVALID, Participant
 
 SCALE = 1e-3  # of the needle's motion over the hand's
-SURFACE = 28e-6  # m, of both cells
+SURFACE = 28e-6  # m, of the cell that the session believes in
+HIGHER = 0.3e-6  # m, of the true one
 PRIOR, TRUE = 17.9e3, 53.7e3  # Pa
 FORCE_RATE_LIMIT = 100.0  # N/s, config/haptic_bridge.yaml
 TICK = 1e-3  # s
@@ -27,10 +28,20 @@ class TwinTest(unittest.TestCase):
         cls.chain = Participant(
             {"/haptic/measured_cp": PoseStamped, "/haptic/clutch": Joy},
             {"/haptic/servo_cf": WrenchStamped, "/cell/predicted_cf": WrenchStamped, "/cell/estimate": CellEstimate,
-             "/true_cell/predicted_cf": WrenchStamped, "/needle/measured_cp": PoseStamped})
+             "/true_cell/predicted_cf": WrenchStamped, "/needle/measured_cp": PoseStamped, "/true_cell/state": CellState})
+        changes = rospy.Publisher("/true_cell/set_parameters", CellParameters, queue_size=1, latch=True)
+        cls.chain.await_links()
+        changes.publish(CellParameters(name=["height"], value=[HIGHER]))
         cls.z = 0.0  # m, of the hand
+        while cls.true_height() != HIGHER:
+            cls.chain.tick(cls.hand())
         cls.chain.run(150, cls.hand)  # the loop closes and its ramp is over
         cls.rows = []  # depth, predicted, true and hand's force, modulus
+
+    @classmethod
+    def true_height(cls):
+        state = cls.chain.seen.get("/true_cell/state")
+        return state and dict(zip(state.parameter_names, state.parameter_values))["height"]
 
     @classmethod
     def hand(cls):
@@ -76,6 +87,7 @@ class TwinTest(unittest.TestCase):
         self.assertLess((np.abs(np.diff(predicted)) / np.maximum(predicted[:-1], 1e-9))[felt[:-1]].max(), LARGEST_STEP)
         self.assertEqual(self.estimate().verdict, "converged")
         self.assertTrue(self.estimate().modulus_low <= TRUE <= self.estimate().modulus_high)
+        self.assertAlmostEqual(self.estimate().served_height, HIGHER, delta=0.05e-6)
 
     def test_3_a_hand_that_is_gone_teaches_nothing(self):
         modulus = self.estimate().modulus
@@ -98,10 +110,12 @@ class TwinTest(unittest.TestCase):
             self.chain.tick(self.hand())
             if self.estimate().modulus == PRIOR and self.estimate().verdict == "prior":
                 break
+        self.chain.run(200, self.hand)
+        self.assertEqual(self.estimate().served_height, 0)  # the height was that of the cell before
         self.move(30e-6 - 6e-6, 20e-6)
         self.chain.run(100, self.hand)
-        # Modelled 2 um too high: that is found, too, since the prior of the surface's height is wide enough.
-        self.assertAlmostEqual(self.estimate().contact, SURFACE - 30e-6, delta=0.1e-6)
+        # Modelled 1.7 um too high: that is found, too, since the prior of the surface's height is wide enough.
+        self.assertAlmostEqual(self.estimate().contact, SURFACE + HIGHER - 30e-6, delta=0.1e-6)
         self.assertAlmostEqual(self.estimate().modulus / TRUE, 1, delta=0.05)
 
 

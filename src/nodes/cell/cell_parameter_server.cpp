@@ -1,6 +1,10 @@
 #include "nodes/cell/cell_parameter_server.h"
 
+#include <cmath>
+#include <cstdio>
 #include <exception>
+#include <optional>
+#include <sstream>
 
 #include "base/errors.h"
 #include "nodes/runtime/message_guard.h"
@@ -22,11 +26,36 @@ std::vector<CellParameter> pairs(const std::vector<std::string>& names, const st
   return parameters;
 }
 
+/// Removes the height from the parameters, of which the last one counts.
+std::optional<double> takeHeight(std::vector<CellParameter>& parameters, double highest) {
+  std::optional<double> height;
+  for (auto it = parameters.begin(); it != parameters.end();) {
+    if (it->name != PlacedCell::kName) {
+      ++it;
+      continue;
+    }
+    if (!(std::abs(it->value) <= highest)) {
+      std::ostringstream message;
+      message << "height = " << it->value << " m: must be within " << highest << " m";
+      throw ConfigError(message.str());
+    }
+    height = it->value;
+    it = parameters.erase(it);
+  }
+  return height;
+}
+
+std::string describeHeight(double height) {
+  char text[60];
+  std::snprintf(text, sizeof(text), "%.3g um above its place in the scene", 1e6 * height);
+  return text;
+}
+
 }  // namespace
 
-CellParameterServer::CellParameterServer(MemberChange* change, const std::string& unchangeable, Cycle& cycle,
-                                         ros::NodeHandle private_node)
-    : change_(change), unchangeable_(unchangeable) {
+CellParameterServer::CellParameterServer(MemberChange* change, const std::string& unchangeable, PlacedCell& place,
+                                         double radius, Cycle& cycle, ros::NodeHandle private_node)
+    : change_(change), unchangeable_(unchangeable), place_(place), highest_(PlacedCell::kHighest * radius) {
   ros::NodeHandle node = cycle.node();
   if (!cycle.deterministic()) node.setCallbackQueue(&queue_);
   private_node.setCallbackQueue(node.getCallbackQueue());
@@ -67,12 +96,21 @@ bool CellParameterServer::call(cell_microinjection::SetCellParameters::Request& 
 }
 
 std::string CellParameterServer::change(const std::vector<std::string>& names, const std::vector<double>& values) {
-  const std::vector<CellParameter> parameters = pairs(names, values);
-  if (!change_) throw ConfigError("the cell cannot change while it is served: " + unchangeable_);
-  const std::string outcome = change_->change(parameters);
+  std::vector<CellParameter> parameters = pairs(names, values);
+  const std::optional<double> height = takeHeight(parameters, highest_);
+  std::string outcome = parameters.empty() ? "" : changeCell(parameters);
+  if (height) {
+    place_.moveTo(*height);
+    outcome += (outcome.empty() ? "" : "; ") + describeHeight(*height);
+  }
   const std::lock_guard<std::mutex> lock(mutex_);
   ++changes_;
   return outcome_ = outcome;
+}
+
+std::string CellParameterServer::changeCell(const std::vector<CellParameter>& parameters) {
+  if (!change_) throw ConfigError("the cell cannot change while it is served: " + unchangeable_);
+  return change_->change(parameters);
 }
 
 /// Refused messages are in the diagnostics of the inputs.

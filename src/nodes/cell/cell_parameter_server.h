@@ -13,11 +13,12 @@
 #include <vector>
 
 #include "cell/choice/make_cell_model.h"
+#include "cell/model/placed_cell.h"
 #include "nodes/runtime/cycle.h"
 
 namespace microinjection {
 
-/// Changes parameters of the cell while it is served, see MemberChange. Live it makes the new cell
+/// Changes parameters of the cell while it is served, see MemberChange and PlacedCell. Live it makes the new cell
 /// in its own thread of ordinary priority, so that no step is delayed. In lock step it does so
 /// right before a step, so that all runs are the same.
 ///
@@ -25,10 +26,11 @@ namespace microinjection {
 /// Service: ~set_cell_parameters (SetCellParameters)
 class CellParameterServer {
  public:
-  /// `change` and `cycle` outlive it. A null `change` refuses everything, with the reason
+  /// `change`, `place` and `cycle` outlive it. A null `change` refuses everything, with the reason
   /// `unchangeable`.
-  CellParameterServer(MemberChange* change, const std::string& unchangeable, Cycle& cycle,
-                      ros::NodeHandle private_node);
+  /// `place` takes the height, with any model; `radius` (m) bounds it.
+  CellParameterServer(MemberChange* change, const std::string& unchangeable, PlacedCell& place, double radius,
+                      Cycle& cycle, ros::NodeHandle private_node);
   ~CellParameterServer();
   CellParameterServer(const CellParameterServer&) = delete;
   CellParameterServer& operator=(const CellParameterServer&) = delete;
@@ -41,8 +43,12 @@ class CellParameterServer {
   std::string change(const std::vector<std::string>& names, const std::vector<double>& values);
   void report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
+  std::string changeCell(const std::vector<CellParameter>& parameters);
+
   MemberChange* change_;
   std::string unchangeable_;
+  PlacedCell& place_;
+  double highest_;  ///< m, of the cell above its place in the scene
   ros::CallbackQueue queue_;
   ros::Subscriber subscriber_;
   ros::ServiceServer service_;

@@ -21,7 +21,7 @@ void CellMoment::setReason(const std::string& text) {
   reason[length] = '\0';
 }
 
-CellStatePublisher::CellStatePublisher(CellModel& cell, const Scene& scene,
+CellStatePublisher::CellStatePublisher(PlacedCell& cell, const Scene& scene,
                                        Output<cell_microinjection::CellState>& output, double rate, Thread thread)
     : cell_(cell), scene_(scene), output_(output), period_(1 / rate) {
   undeformed_.header.frame_id = kCellFrame;
@@ -70,6 +70,8 @@ void CellStatePublisher::fillSurface(cell_microinjection::CellState& state) {
     state.parameter_names.push_back(parameter.name);
     state.parameter_values.push_back(parameter.value);
   }
+  state.parameter_names.push_back(PlacedCell::kName);
+  state.parameter_values.push_back(cell_.height());
   for (const Eigen::Vector3d& hole : picture.holes) state.holes.push_back(toMessage<geometry_msgs::Point>(hole));
   for (const CellModel::Member& member : picture.members) {
     state.member_points.push_back(toMessage<geometry_msgs::Point32>(member.from));

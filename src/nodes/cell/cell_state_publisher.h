@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "base/latest_value.h"
-#include "cell/model/cell_model.h"
+#include "cell/model/placed_cell.h"
 #include "cell/model/scene.h"
 #include "cell_microinjection/CellState.h"
 #include "nodes/runtime/ports.h"
@@ -38,7 +38,7 @@ class CellStatePublisher {
 
   /// @param scene  of the start
   /// @param rate   Hz. `cell` and `output` outlive it.
-  CellStatePublisher(CellModel& cell, const Scene& scene, Output<cell_microinjection::CellState>& output, double rate,
+  CellStatePublisher(PlacedCell& cell, const Scene& scene, Output<cell_microinjection::CellState>& output, double rate,
                      Thread thread);
   ~CellStatePublisher();
   CellStatePublisher(const CellStatePublisher&) = delete;
@@ -52,7 +52,7 @@ class CellStatePublisher {
   void publish(const CellMoment& moment);
   void fillSurface(cell_microinjection::CellState& state);
 
-  CellModel& cell_;
+  PlacedCell& cell_;
   Scene scene_;
   Output<cell_microinjection::CellState>& output_;
   double period_;                              ///< s

@@ -23,6 +23,8 @@ constexpr float kMembrane = 0.25f;                          // opacity, of a cel
 constexpr double kForceAbove = 0.2;                         // display units, from the tip to a force's arrow
 constexpr double kHole = 0.03;                              // display units; not to scale
 constexpr double kStrutWidth = 0.016, kCableWidth = 0.006;  // display units; not to scale
+constexpr double kGaugeHeight = 0.4;                        // display units, of the expected puncture's depth
+const Eigen::Vector3d kGaugeTop(0.68, 0, -0.42);            // display units
 const std::string kWorld = "viz/world";
 
 }  // namespace
@@ -49,12 +51,33 @@ void DisplayScene::drawMoving(const DisplayedState& state, visualization_msgs::M
   const double beside = 1.6 * config_.injection_pipette.shaft_radius;
   drawForce("predicted_force", state, state.predicted, -beside, kPredicted, markers);
   drawForce("measured_force", state, state.measured, beside, kMeasured, markers);
+  drawPuncture(state, markers);
   drawReadout(state, markers);
+}
+
+void DisplayScene::drawPuncture(const DisplayedState& state, visualization_msgs::MarkerArray& markers) const {
+  constexpr int kLabels = 6;
+  std::optional<DepthGauge> gauge;
+  if (state.readout.puncture)
+    gauge = depthGauge(kGaugeTop, kGaugeHeight, *state.readout.puncture, state.readout.indentation);
+  const auto add = [&](const std::string& part, int id, const auto& marker) {
+    const MarkerName name{kWorld, "puncture_" + part, id};
+    markers.markers.push_back(gauge ? marker(name) : noMarker(name));
+  };
+  add("scale", 0, [&](const MarkerName& name) { return lineMarker(name, gauge->scale, 0.004, kText); });
+  add("interval", 0, [&](const MarkerName& name) { return lineMarker(name, gauge->interval, 0.018, kAlarm); });
+  add("expected", 0, [&](const MarkerName& name) { return sphereMarker(name, gauge->expected, 0.035, kAlarm); });
+  add("depth", 0, [&](const MarkerName& name) { return sphereMarker(name, gauge->present, 0.03, kText); });
+  for (int i = 0; i < kLabels; ++i) {
+    add("labels", i, [&](const MarkerName& name) {
+      return textMarker(name, gauge->labels[i].position, gauge->labels[i].text, 0.04, kText);
+    });
+  }
 }
 
 void DisplayScene::drawReadout(const DisplayedState& state, visualization_msgs::MarkerArray& markers) const {
   using About = ReadoutLine::About;
-  constexpr int kMostLines = 10;
+  constexpr int kMostLines = 12;
   const std::vector<ReadoutLine> shown = lines(state.readout);
   for (int i = 0; i < kMostLines; ++i) {
     const MarkerName name{kWorld, "readout", i};

@@ -34,7 +34,7 @@ class DisplayScene {
  public:
   explicit DisplayScene(const DisplayConfig& config);
 
-  /// The moving markers except the cell: forces and readout.
+  /// The moving markers except the cell: forces, expected puncture and readout.
   void drawMoving(const DisplayedState& state, visualization_msgs::MarkerArray& markers) const;
   /// The cell's surface, edges, members and contact.
   void drawCell(const DisplayedState& state, visualization_msgs::MarkerArray& markers);
@@ -46,6 +46,7 @@ class DisplayScene {
  private:
   void drawForce(const std::string& name, const DisplayedState& state, const std::optional<Eigen::Vector3d>& force,
                  double beside, const Colour& colour, visualization_msgs::MarkerArray& markers) const;
+  void drawPuncture(const DisplayedState& state, visualization_msgs::MarkerArray& markers) const;
   void drawReadout(const DisplayedState& state, visualization_msgs::MarkerArray& markers) const;
   void drawMembers(const CellMembers& members, const std::string& frame, visualization_msgs::MarkerArray& markers);
   void drawLegend(visualization_msgs::MarkerArray& markers) const;

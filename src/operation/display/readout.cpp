@@ -52,6 +52,15 @@ std::vector<ReadoutLine> lines(const Readout& readout) {
   result.push_back({About::kMotion, "depth " + fixedFigure(readout.indentation, 1e-6, 2) + " um"});
   result.push_back({About::kPredicted, "predicted " + fixedFigure(readout.predicted, 1e-6, 3) + " uN"});
   result.push_back({About::kMeasured, "measured " + fixedFigure(readout.measured, 1e-6, 3) + " uN"});
+  if (readout.puncture) {
+    const ExpectedPuncture& puncture = *readout.puncture;
+    if (puncture.beyond) {
+      result.push_back({About::kMotion, "puncture below " + micro(puncture.low, 3) + " um"});
+    } else {
+      result.push_back({About::kMotion, "puncture at " + micro(puncture.depth, 3) + " um"});
+      result.push_back({About::kMotion, "  and " + micro(puncture.force, 3) + " uN"});
+    }
+  }
   if (readout.hand) result.push_back({About::kMotion, "hand " + fixedFigure(readout.hand->z(), 1e-3, 1) + " mm"});
   return result;
 }

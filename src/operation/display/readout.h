@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "operation/display/depth_gauge.h"
+
 namespace microinjection {
 
 /// The values of the text beside the cell; an absent value is invalid or was never received.
@@ -13,8 +15,9 @@ struct Readout {
   std::optional<double> predicted;      ///< N, magnitude
   std::optional<double> measured;       ///< N, magnitude
   std::optional<Eigen::Vector3d> hand;  ///< m, position of the haptic device
-  std::string state;                    ///< for example "in contact"
-  std::string injection;                ///< for example "indent"; empty: unknown
+  std::optional<ExpectedPuncture> puncture;
+  std::string state;      ///< for example "in contact"
+  std::string injection;  ///< for example "indent"; empty: unknown
 };
 
 /// A value in millionths with at most this many significant digits: micro(12.5e-6, 3) is "12.5".

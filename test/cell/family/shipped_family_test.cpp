@@ -5,9 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "cell/family/family_cell.h"
 #include "cell/family/family_data.h"
 #include "cell/family/family_file.h"
 #include "cell/family/family_reference.h"
+#include "cell/model/scene.h"
 #include "cell/surrogate/axis_ray.h"
 
 namespace microinjection {
@@ -100,6 +102,21 @@ TEST_P(ReferencedFamily, HasTheConvergedForcesOfMembersThatItHasNot) {
   EXPECT_LT(quantile(surfaces, 1), 0.01);
 }
 
+/// Scenes of config/cells whose force is right without a preparation.
+class ServedScene : public testing::TestWithParam<const char*> {};
+
+TEST_P(ServedScene, IsInAFamily) {
+  const Scene scene = loadScene(MICROINJECTION_SOURCE_DIR "/config/cells/" + std::string(GetParam()) + ".yaml");
+  std::string reason;
+  const auto cell = findFamilyCell(MICROINJECTION_SOURCE_DIR "/config/families", scene, reason);
+  ASSERT_TRUE(cell) << reason;
+  EXPECT_LT(cell->data->common_error, 0.05) << cell->description;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ServedScene,
+                         testing::Values("mouse_oocyte_pipette", "mouse_oocyte_injection", "mouse_oocyte_zona",
+                                         "mouse_oocyte_gv", "mouse_oocyte_mii", "mouse_zygote", "human_oocyte",
+                                         "porcine_oocyte", "zebrafish_embryo"));
 INSTANTIATE_TEST_SUITE_P(All, ShippedFamily, testing::Values("homogeneous", "zona"));
 INSTANTIATE_TEST_SUITE_P(All, ReferencedFamily, testing::Values("homogeneous", "zona"));
 

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "operation/display/depth_gauge.h"
 #include "operation/display/force_arrow.h"
 #include "operation/display/legend.h"
 #include "operation/display/readout.h"
@@ -66,6 +67,36 @@ TEST(Readout, ShowsMicrometresAndMicronewtons) {
   readout.injection = "indent";
   EXPECT_EQ(lines(readout).size(), 5U);
   EXPECT_EQ(lines(readout)[1].text, "indent");
+}
+
+TEST(Readout, NamesTheExpectedPuncture) {
+  Readout readout;
+  readout.puncture = ExpectedPuncture{9.71e-6, 7e-6, 13.6e-6, 1.5e-6};
+  const std::vector<ReadoutLine> shown = lines(readout);
+  ASSERT_EQ(shown.size(), 5U);
+  EXPECT_EQ(shown[3].text, "puncture at 9.71 um");
+  EXPECT_EQ(shown[4].text, "  and 1.5 uN");
+  readout.puncture->beyond = true;
+  EXPECT_EQ(lines(readout)[3].text, "puncture below 7 um");
+  EXPECT_TRUE(depthGauge({0, 0, 0}, 1, *readout.puncture, 1e-6).expected.empty());
+}
+
+TEST(DepthGauge, RunsDownwardsFromTheContact) {
+  const DepthGauge gauge = depthGauge({1, 0, 2}, 0.5, {10e-6, 8e-6, 18e-6, 1e-6}, 5e-6);
+  EXPECT_NEAR(gauge.scale[0].z(), 2, 1e-12);
+  EXPECT_NEAR(gauge.scale[1].z(), 1.5, 1e-12) << "20 um";
+  ASSERT_EQ(gauge.interval.size(), 2U);
+  EXPECT_NEAR(gauge.interval[0].z(), 2 - 0.5 * 8 / 20, 1e-12);
+  EXPECT_NEAR(gauge.interval[1].z(), 2 - 0.5 * 18 / 20, 1e-12);
+  EXPECT_NEAR(gauge.expected.at(0).z(), 1.75, 1e-12);
+  EXPECT_NEAR(gauge.present.at(0).z(), 2 - 0.125, 1e-12);
+  EXPECT_EQ(gauge.labels[4].text, "20");
+  EXPECT_TRUE(depthGauge({1, 0, 2}, 0.5, {10e-6, 8e-6, 18e-6, 1e-6}, std::nullopt).present.empty());
+}
+
+TEST(DepthGauge, HoldsANeedleThatIsDeeperThanExpected) {
+  const DepthGauge gauge = depthGauge({0, 0, 0}, 1, {1e-6, 0.5e-6, 2e-6, 1e-6}, 30e-6);
+  EXPECT_GE(gauge.present.at(0).z(), -1);
 }
 
 TEST(Readout, BreaksALongState) {

@@ -11,7 +11,7 @@ namespace microinjection {
 
 /// Where an indentation begins and ends, how deep it is, whether the cell has failed in it, and what was
 /// expected of that. One object serves one indentation after the other.
-class Indentation {
+class IndentationCourse {
  public:
   struct Cell {
     double surface = 0;  ///< m, distance of the surface from the cell's centre

@@ -1,4 +1,4 @@
-#include "cell/estimation/indentation.h"
+#include "cell/estimation/indentation_course.h"
 
 #include <algorithm>
 
@@ -9,8 +9,8 @@ constexpr double kDepthStep = 50e-9;  // m, between two predictions that are kep
 
 }  // namespace
 
-Indentation::Event Indentation::follow(const Eigen::Vector3d& tip, const Cell& cell,
-                                       std::optional<unsigned> punctures) {
+IndentationCourse::Event IndentationCourse::follow(const Eigen::Vector3d& tip, const Cell& cell,
+                                                   std::optional<unsigned> punctures) {
   Event event = Event::kNone;
   if (tip.norm() > cell.clear) {
     if (touched_) {
@@ -33,24 +33,24 @@ Indentation::Event Indentation::follow(const Eigen::Vector3d& tip, const Cell& c
   return Event::kPunctured;
 }
 
-void Indentation::learn(double depth) {
+void IndentationCourse::learn(double depth) {
   touched_ = true;
   surface_ = lowest_ + depth;
 }
 
-void Indentation::addForce(double force) {
-  if (touched_ && !punctured_) peak_ = std::max(peak_, force);
+void IndentationCourse::addForce(double force) {
+  if (touched_) peak_ = std::max(peak_, force);
 }
 
-void Indentation::expect(const PuncturePrediction& prediction) {
+void IndentationCourse::expect(const PuncturePrediction& prediction) {
   if (expected_.empty() || depth() > expected_.back().first + kDepthStep) expected_.emplace_back(depth(), prediction);
 }
 
-double Indentation::sideways(const Eigen::Vector3d& tip) const {
+double IndentationCourse::sideways(const Eigen::Vector3d& tip) const {
   return touched_ ? (tip - start_).head<2>().norm() : 0;
 }
 
-std::optional<PuncturePrediction> Indentation::expectedAtHalf() const {
+std::optional<PuncturePrediction> IndentationCourse::expectedAtHalf() const {
   std::optional<PuncturePrediction> result;
   for (const auto& [reached, prediction] : expected_) {
     if (reached > 0.5 * depth()) break;

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+
+#include "commands/prepare_family.h"
+
+namespace microinjection {
+
+/// Of the command `prepare`; its --help explains them.
+struct PrepareArguments {
+  std::string scene;
+  std::string families;
+  FamilyArguments family;
+  int jobs = 1;
+  int ray = -1;
+  std::string at;  ///< coordinates of a family's member
+  int member = -1;
+  int axis = -1;
+  bool again = false;
+  bool show_help = false;
+  std::string help;  ///< of the command, with its options
+};
+
+/// Throws ConfigError, or a boost::program_options error, that names the option.
+PrepareArguments parsePrepareArguments(int argc, char** argv);
+
+}  // namespace microinjection
