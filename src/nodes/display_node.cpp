@@ -45,6 +45,13 @@ std::optional<double> magnitude(const std::optional<Eigen::Vector3d>& vector) {
   return vector->norm();
 }
 
+/// Depths in order, of a cell that can be.
+bool isDrawable(const cell_microinjection::PuncturePrediction& puncture) {
+  constexpr double kDeepest = 0.01;  // m
+  return 0 <= puncture.depth_low && puncture.depth_low <= puncture.depth && puncture.depth <= puncture.depth_high &&
+         0 < puncture.depth_high && puncture.depth_high < kDeepest && std::abs(puncture.force) < kLargestForce;
+}
+
 DisplayConfig readConfig(const ros::NodeHandle& private_node) {
   ConfigReader reader = parameterReader(private_node);
   const DisplayConfig config = DisplayConfig::read(reader);
@@ -139,12 +146,14 @@ void DisplayNode::onInjection(const cell_microinjection::InjectionStatus& messag
 
 void DisplayNode::onEstimate(const cell_microinjection::CellEstimate& message) {
   const auto& puncture = message.puncture;
+  const bool none = puncture.depth == 0;
+  const bool drawn = isValid(message) && (none || isDrawable(puncture));
   state_.readout.puncture = std::nullopt;
-  if (isValid(message) && puncture.depth > 0) {
+  if (drawn && !none) {
     state_.readout.puncture = {puncture.depth, puncture.depth_low, puncture.depth_high, puncture.force,
                                puncture.beyond >= 0.5};
   }
-  count(kEstimate, isValid(message));
+  count(kEstimate, drawn);
 }
 
 void DisplayNode::onMeasuredForce(const geometry_msgs::WrenchStamped& message) {
