@@ -37,14 +37,7 @@ class Lines {
 
   /// Where the line leaves the outline towards the shaft; none: it does not meet it.
   std::optional<double> crossing(double across) const {
-    const double c = std::cos(outline_.angle), s = std::sin(outline_.angle);
-    const auto inAxes = [&](const cv::Point2d& v) {
-      return Eigen::Vector2d((c * v.x + s * v.y) / outline_.semi_axes[0], (c * v.y - s * v.x) / outline_.semi_axes[1]);
-    };
-    const Eigen::Vector2d from = inAxes(tip_ + across * v() - outline_.centre), along = inAxes(u_);
-    const double a = along.squaredNorm(), b = from.dot(along), root = b * b - a * (from.squaredNorm() - 1);
-    if (!(root > 0)) return std::nullopt;
-    return (std::sqrt(root) - b) / a;
+    return outline_.exit(tip_ + across * v(), std::atan2(u_.y, u_.x));
   }
 
   /// Reads the lines at these distances from the axis, from `low` to `high` px beside the outline.

@@ -27,7 +27,29 @@ std::vector<double> medianGrey(const PolarMap& map) {
 constexpr double kBubbleDepth = 0.5, kBlackDepth = 0.7;  // of the light outside, that the rim takes
 constexpr double kBubbleRim = 0.11;                      // of the radius, a bubble's rim at half its depth
 
+constexpr double kBlackFrom = 0.75, kBlackTo = 0.9;  // of the radius, the ring that a bubble has black
+constexpr double kBlack = 0.16;      // of the light beside it; the darkest oocytes, full of lipid, keep a fifth
+constexpr double kBlackShare = 0.8;  // of the directions within the image
+constexpr int kRingColumns = 8;
+
 }  // namespace
+
+bool isBlack(const Frame& frame, const Ellipse& border) {
+  const double radius = 0.5 * border.meanDiameter();
+  const PolarMap map(frame, border, {(kBlackFrom - 1) * radius, (kBlackTo - 1) * radius, kRingColumns, kRays}, 0);
+  int seen = 0, black = 0;
+  for (int ray = 0; ray < map.rays(); ++ray) {
+    double sum = 0;
+    bool valid = true;
+    for (int i = 0; i < map.columns(); ++i) {
+      valid = valid && map.valid().at<unsigned char>(ray, i) != 0;
+      sum += map.grey().at<float>(ray, i);
+    }
+    seen += valid ? 1 : 0;
+    black += valid && sum < kBlack * frame.background() * map.columns() ? 1 : 0;
+  }
+  return seen > kRays / 8 && black > kBlackShare * seen;
+}
 
 bool isBubble(const Frame& frame, const CellLayers& layers) {
   const Ellipse& main = layers.main.ellipse;

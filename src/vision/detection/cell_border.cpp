@@ -217,6 +217,7 @@ CellBorder refineBorder(const Frame& frame, const CellBorder& coarse, const Bord
   CellBorder fine = coarse;
   fine.points.clear();
   fine.rim = fine.shift = 0;
+  fine.place = rim.place;
   if (rim.widest > 0 && coarse.polarity == Polarity::kRising) {
     const std::vector<double> slope = meanSlope(map);
     const int rising = steepestColumn(slope, std::max(0, flank - half), std::min(columns, flank + half + 1));

@@ -27,6 +27,7 @@ struct CellBorder {
   Polarity polarity = Polarity::kRising;
   double shift = 0;                 ///< px, that the border is inside of the rising flank that shows it
   double rim = 0;                   ///< px, mean width of the dark rim along it; 0: none was seen
+  double place = 0;                 ///< of the border in such a rim: 0 at its outer, 1 at its inner flank
   std::vector<cv::Point2d> points;  ///< px, in order of direction
   std::vector<bool> inlier;         ///< of each point
 };

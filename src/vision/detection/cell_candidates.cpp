@@ -48,8 +48,8 @@ cv::Mat votes(const std::vector<Edge>& edges, const cv::Size& size, double low, 
     for (int sign = -1; sign <= 1; sign += 2) {
       for (int i = 0; i < steps; ++i) {
         const double r = sign * (low + (i + 0.5) * (high - low) / steps);
-        const int x = static_cast<int>(std::lround(edge.x + r * edge.ux));
-        const int y = static_cast<int>(std::lround(edge.y + r * edge.uy));
+        const int x = cvRound(edge.x + r * edge.ux);
+        const int y = cvRound(edge.y + r * edge.uy);
         if (x >= 0 && y >= 0 && x < size.width && y < size.height)
           count.at<float>(y, x) += 1.F / static_cast<float>(steps);
       }

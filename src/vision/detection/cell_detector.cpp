@@ -14,6 +14,7 @@ constexpr double kThinnestOoplasm = 0.55;  // of the outer border's diameter
 constexpr double kMostOutside = 0.4, kLeastOutside = 0.02;
 constexpr double kSureCentre = 0.3;     // px, standard deviation
 constexpr double kMostElongated = 1.5;  // ratio of a cell's axes
+const char* const kBubble = "a round thing is a bubble: its rim is wide and black";
 constexpr double kLeastStrength = 0.6, kLeastConsistency = 0.6, kLeastSignificance = 3;
 
 /// What overlaps the cell that was found is a part of it.
@@ -47,12 +48,18 @@ CellDetection CellDetector::detect(const Frame& frame) const {
   }
   const double low = 0.5 * kThinnestOoplasm * config_.smallest_diameter, high = 0.5 * config_.largest_diameter;
   std::vector<CellBorder> borders;
+  bool black = false;
   for (const CellCandidate& candidate : findCellCandidates(frame, low, high, kCandidates)) {
     const CellBorder border = findMainBorder(frame, candidate.centre, candidate.radius, config_.look);
-    if (isClear(border)) borders.push_back(border);
+    if (!isClear(border)) continue;
+    if (isBlack(frame, border.ellipse))
+      black = true;
+    else
+      borders.push_back(border);
   }
   std::sort(borders.begin(), borders.end(), [](const auto& a, const auto& b) { return worthOf(a) > worthOf(b); });
-  detection.finding = detection.size = Finding::notFound("no closed border of the size that is asked for");
+  detection.finding = detection.size =
+      Finding::notFound(black ? kBubble : "no closed border of the size that is asked for");
   for (const CellBorder& border : borders) {
     if (detection.finding.hasValues() && isWithin(detection, border.ellipse)) continue;
     const CellLayers layers = findLayers(frame, border, config_.look, config_.largest_diameter);
@@ -127,8 +134,7 @@ Finding CellDetector::judge(const Frame& frame, const CellLayers& layers) const 
   if (diameter < config_.smallest_diameter || diameter > config_.largest_diameter) {
     return Finding::notFound("no closed border of the size that is asked for");
   }
-  if (isBubble(frame, layers))
-    return Finding::notFound("a round thing is a bubble: a wide dark rim and a bright middle");
+  if (isBubble(frame, layers)) return Finding::notFound(kBubble);
   CellLayers without_zona;  // rings of light in a bubble look like a zona
   without_zona.main = layers.main;
   if (isBubble(frame, without_zona)) return Finding::uncertain("the rim is as wide and dark as that of a bubble");

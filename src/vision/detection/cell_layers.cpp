@@ -55,8 +55,9 @@ double scaleOf(const Frame& frame, const PolarMap& map) {
 CellBorder bestBorder(const Frame& frame, const PolarMap& map, const std::string& look, double radius,
                       const BorderBand& band = {}) {
   CellBorder best;
+  const double scale = scaleOf(frame, map);
   for (const Polarity polarity : polaritiesOf(look)) {
-    const CellBorder border = findBorder(frame, map, polarity, band, scaleOf(frame, map), toleranceFor(radius));
+    const CellBorder border = findBorder(frame, map, polarity, band, scale, toleranceFor(radius));
     if (worthOf(border) > worthOf(best)) best = border;
   }
   return best;

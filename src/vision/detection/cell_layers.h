@@ -18,6 +18,9 @@ CellLayers followLayers(const Frame& frame, const CellLayers& previous, const st
 
 /// Whether the round thing is a bubble: its rim is wide and nearly black, its middle bright.
 bool isBubble(const Frame& frame, const CellLayers& layers);
+/// Whether the thing within a border is as black all round as no cell is: air turns away nearly all light.
+/// Holds for bubbles before others too, whose middles are not bright.
+bool isBlack(const Frame& frame, const Ellipse& border);
 
 /// The clearest closed border about a place: its centre within `radius` / 4, its radius within 0.5 to
 /// 1.5 times `radius` (px).

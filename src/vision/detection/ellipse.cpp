@@ -130,12 +130,18 @@ double Ellipse::radius(double direction) const {
   return 1 / std::hypot(std::cos(t) / semi_axes[0], std::sin(t) / semi_axes[1]);
 }
 
-double Ellipse::reach(const cv::Point2d& from, double direction) const {
+std::optional<double> Ellipse::exit(const cv::Point2d& from, double direction) const {
   const Eigen::Matrix2d root = shapeOf(*this).root;
   const Eigen::Vector2d start = root * Eigen::Vector2d(from.x - centre.x, from.y - centre.y);
   const Eigen::Vector2d along = root * Eigen::Vector2d(std::cos(direction), std::sin(direction));
-  const double a = along.squaredNorm(), b = along.dot(start), c = start.squaredNorm() - 1;
-  return c < 0 ? (-b + std::sqrt(b * b - a * c)) / a : 0;
+  const double a = along.squaredNorm(), b = along.dot(start), square = b * b - a * (start.squaredNorm() - 1);
+  if (!(square > 0)) return std::nullopt;
+  return (std::sqrt(square) - b) / a;
+}
+
+double Ellipse::reach(const cv::Point2d& from, double direction) const {
+  const Eigen::Vector2d start = shapeOf(*this).root * Eigen::Vector2d(from.x - centre.x, from.y - centre.y);
+  return start.squaredNorm() < 1 ? exit(from, direction).value_or(0) : 0;
 }
 
 double Ellipse::distance(const cv::Point2d& point) const {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <vector>
 
 namespace microinjection {
@@ -19,6 +20,9 @@ struct Ellipse {
   double radius(double direction) const;
   /// The same from another point inside of the ellipse; 0 when `from` is outside.
   double reach(const cv::Point2d& from, double direction) const;
+  /// Distance (px, of either sign) from a point along a direction to where that line leaves the ellipse;
+  /// none: the line misses it.
+  std::optional<double> exit(const cv::Point2d& from, double direction) const;
   /// Signed distance (px, first order) of a point: positive outside.
   double distance(const cv::Point2d& point) const;
 };

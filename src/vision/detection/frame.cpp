@@ -80,6 +80,7 @@ Frame::Frame(const cv::Mat& image) {
   const double top = image.depth() == CV_32F ? 1 : 0.999;
   const auto saturated = std::count_if(values.begin(), values.end(), [top](float value) { return value >= top; });
   const float low = quantileOf(values, 0.005), high = quantileOf(values, 0.995);
+  background_ = quantileOf(values, 0.75);
   if (static_cast<double>(saturated) > kMostSaturated * static_cast<double>(values.size())) {
     refusal_ = "the frame is over-exposed: almost every pixel is saturated";
   } else if (high - low < kLeastContrast) {

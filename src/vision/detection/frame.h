@@ -16,10 +16,11 @@ class Frame {
 
   /// Empty, or why nothing can be detected: no image, too small, all one grey, over-exposed, black.
   const std::string& refusal() const { return refusal_; }
-  const cv::Mat& grey() const { return grey_; }  ///< CV_32F, full scale of the format is 1
-  double noise() const { return noise_; }        ///< standard deviation of a pixel, of full scale
-  double width() const { return grey_.cols; }    ///< px
-  double height() const { return grey_.rows; }   ///< px
+  const cv::Mat& grey() const { return grey_; }      ///< CV_32F, full scale of the format is 1
+  double noise() const { return noise_; }            ///< standard deviation of a pixel, of full scale
+  double background() const { return background_; }  ///< grey value that a quarter of the pixels exceed
+  double width() const { return grey_.cols; }        ///< px
+  double height() const { return grey_.rows; }       ///< px
   bool contains(const cv::Point2d& point, double margin = 0) const;
 
   /// The frame reduced by 2^level by averaging squares of pixels; level 0 is the frame. Made when it
@@ -32,7 +33,7 @@ class Frame {
  private:
   std::string refusal_;
   cv::Mat grey_;
-  double noise_ = 0;
+  double noise_ = 0, background_ = 0;
   mutable std::vector<cv::Mat> levels_;
 };
 

@@ -17,6 +17,7 @@ struct Indentation {
   double depth = 0;                  ///< px, along the needle, from the undisturbed outline to the deepest place
   double deviation = 0;              ///< px, standard deviation
   cv::Point2d deepest;               ///< px
+  Ellipse outline;                   ///< px, undisturbed
   std::vector<cv::Point2d> contour;  ///< px, of the part that faces the needle
   BorderDisplacement displacement;   ///< of the outline beside the needle; it has its own finding
 };

@@ -57,23 +57,29 @@ cv::Point2d PolarMap::point(int ray, double column) const {
 
 ClosedPath closedPath(const cv::Mat& value, int max_change) {
   const int rays = value.rows, columns = value.cols, turns = 2 * rays;
-  std::vector<float> sum(value.ptr<float>(0), value.ptr<float>(0) + columns), next(sum.size());
+  // Margins that no path enters: the loop over the columns has no branches.
+  std::vector<float> padded(static_cast<std::size_t>(columns) + 2 * max_change, -1e30F), next(columns);
+  float* const sum = padded.data() + max_change;
+  std::copy_n(value.ptr<float>(0), columns, sum);
   cv::Mat from(turns, columns, CV_16S);
   for (int i = 1; i < turns; ++i) {
     const float* gain = value.ptr<float>(i % rays);
     short* origin = from.ptr<short>(i);
-    for (int c = 0; c < columns; ++c) {
-      int best = c;
-      for (int k = std::max(0, c - max_change); k <= std::min(columns - 1, c + max_change); ++k) {
-        // A small price for each change keeps the path straight where nothing guides it.
-        if (sum[k] - 0.05F * std::abs(k - c) > sum[best] - 0.05F * std::abs(best - c)) best = k;
+    std::copy_n(sum, columns, next.begin());
+    for (int c = 0; c < columns; ++c) origin[c] = static_cast<short>(c);
+    for (int change = -max_change; change <= max_change; ++change) {
+      // A small price for each change keeps the path straight where nothing guides it.
+      const float price = 0.05F * static_cast<float>(std::abs(change));
+      for (int c = 0; c < columns; ++c) {
+        const float there = sum[c + change] - price;
+        const bool better = there > next[c];
+        next[c] = better ? there : next[c];
+        origin[c] = better ? static_cast<short>(c + change) : origin[c];
       }
-      next[c] = sum[best] - 0.05F * std::abs(best - c) + gain[c];
-      origin[c] = static_cast<short>(best);
     }
-    sum.swap(next);
+    for (int c = 0; c < columns; ++c) sum[c] = next[c] + gain[c];
   }
-  int column = static_cast<int>(std::max_element(sum.begin(), sum.end()) - sum.begin());
+  int column = static_cast<int>(std::max_element(sum, sum + columns) - sum);
   std::vector<int> whole(turns);
   for (int i = turns - 1; i >= 0; --i) {
     whole[i] = column;

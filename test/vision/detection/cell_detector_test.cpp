@@ -83,6 +83,33 @@ TEST(CellDetector, ClaimsNothingWithoutACell) {
   }
 }
 
+TEST(CellDetector, BubblesBeforeEachOtherAreNoCells) {
+  MicroscopeScene scene;
+  const auto bubble = [&](double x, double y, double z, double radius) {
+    scene.debris.push_back({Debris::Kind::kBubble, {x, y, z}, radius});
+  };
+  bubble(-36e-6, 5.8e-6, 40e-6, 41e-6);
+  bubble(21e-6, -3.7e-6, 31e-6, 68e-6);
+  bubble(-110e-6, -4.5e-6, -60e-6, 67e-6);
+  bubble(-60e-6, -4.3e-6, -70e-6, 26e-6);
+  const CellDetection cell =
+      CellDetector(forRendered()).detect(Frame(Microscope(MicroscopeConfig()).render(scene, 0, 1)));
+  EXPECT_FALSE(cell.finding.hasValues()) << cell.finding.reason;
+  EXPECT_NE(cell.finding.reason.find("bubble"), std::string::npos) << cell.finding.reason;
+}
+
+TEST(CellDetector, AnOocyteFullOfLipidIsNoBubble) {
+  MicroscopeScene scene;
+  scene.cells.push_back(CellScene::round({0, 0}, 55e-6, 7e-6, 2e-6));
+  BodyOptics& ooplasm = scene.cells[0].cytoplasm;
+  ooplasm.absorption = 0.75;
+  ooplasm.rim *= 0.3;
+  ooplasm.granules = 0.18;
+  const CellDetection cell =
+      CellDetector(forRendered()).detect(Frame(Microscope(MicroscopeConfig()).render(scene, 0, 1)));
+  EXPECT_TRUE(cell.finding.hasValues()) << cell.finding.reason;
+}
+
 TEST(CellDetector, RefusesUselessFramesWithAReason) {
   const cv::Mat frames[] = {cv::Mat(),
                             cv::Mat(10, 500, CV_8U, cv::Scalar(3)),

@@ -83,7 +83,7 @@ TEST(Indentation, MeasuresTheDimple) {
   const Indentation found = findIndentation(Frame(scene.image), cell.outer(), {needle.end.x(), needle.end.y()},
                                             std::atan2(needle.axis.y(), needle.axis.x()), 2 * needle.radius + 4);
   ASSERT_TRUE(found.finding.hasValues()) << found.finding.reason;
-  EXPECT_NEAR(found.depth, *scene.truth.cell->dimple_depth, 3);
+  EXPECT_NEAR(found.depth, *scene.truth.cell->dimple_depth, 0.6);
 }
 
 TEST(Overlay, DrawsOnlyWhatIsThere) {

@@ -1,0 +1,303 @@
+#include "vision/detection/dented_ellipse.h"
+
+#include <ceres/jet.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "vision/detection/robust_loss.h"
+
+namespace microinjection {
+namespace {
+
+constexpr int kShape = 5, kDent = 3;                  // parameters
+constexpr double kStartWidths[] = {0.12, 0.25, 0.4};  // of the radius
+constexpr double kNarrowest = 0.02, kWidest = 0.6;    // of the radius
+constexpr double kDeepest = 0.7;                      // of the radius
+constexpr double kLeastTail = 1e-3, kUsualTail = 0.1, kTailDeviation = 0.3;
+constexpr double kCauchy = 1, kLeastScale = 0.08;  // px
+constexpr int kRounds = 3, kSteps = 20, kAttempts = 6;
+constexpr double kSmallestGain = 1e-5;  // of the cost, of a step that goes on
+constexpr std::size_t kLeastPoints = 40;
+
+/// The needle's frame about the start's centre, in units of its radius: across, along.
+struct Local {
+  Eigen::Vector2d origin, u, v;
+  double unit;
+
+  Local(const NeedleAxis& axis, const Ellipse& start)
+      : origin(start.centre.x, start.centre.y),
+        u(axis.along().x, axis.along().y),
+        v(axis.across().x, axis.across().y),
+        unit(0.5 * start.meanDiameter()) {}
+  Eigen::Vector2d of(const cv::Point2d& point) const {
+    const Eigen::Vector2d d = Eigen::Vector2d(point.x, point.y) - origin;
+    return Eigen::Vector2d(d.dot(v), d.dot(u)) / unit;
+  }
+};
+
+/// Share of the displacement at a height above the centre (in radii).
+double fadeAt(double height) {
+  const double h = std::clamp(height, 0.0, 1.0);
+  return 1 - (1 - h) * (1 - h) * (1 - h);
+}
+
+/// Displacement at a distance from the axis over that on it.
+template <typename T>
+T bell(const T& square, const T& tail) {
+  using std::exp;
+  using std::log;
+  return exp(-log(T(1) + tail * square) / (T(2) * tail));
+}
+
+/// Distance of a border's point from the model, in radii.
+struct Cost {
+  double across, along, side, fade, weight;  ///< side: distance from the axis
+  bool facing;
+
+  template <typename T>
+  bool operator()(const T* shape, const T* dent, T* residual) const {
+    using std::exp;
+    using std::sqrt;
+    T z = T(along);
+    if (facing) {
+      const T ratio = T(side) * exp(-dent[1]);
+      z += dent[0] * T(fade) * bell(T(ratio * ratio), dent[2]);
+    }
+    const T dx = T(across) - shape[0], dy = z - shape[1];
+    const T ux = shape[2] * dx + shape[4] * dy, uy = shape[4] * dx + shape[3] * dy;
+    const T length = sqrt(ux * ux + uy * uy);
+    const T vx = (shape[2] * ux + shape[4] * uy) / length, vy = (shape[4] * ux + shape[3] * uy) / length;
+    *residual = T(weight) * (length - T(1)) / sqrt(vx * vx + vy * vy);
+    return true;
+  }
+};
+
+using Vector = Eigen::Matrix<double, kShape + kDent, 1>;
+using Matrix = Eigen::Matrix<double, kShape + kDent, kShape + kDent>;
+using Jet = ceres::Jet<double, kShape + kDent>;
+enum Index { kDepth = kShape, kLogWidth, kTail };
+
+/// Residual with its derivatives for all parameters.
+Jet jetOf(const Cost& cost, const Vector& p) {
+  Jet variables[kShape + kDent], residual;
+  for (int i = 0; i < kShape + kDent; ++i) variables[i] = Jet(p[i], i);
+  cost(variables, variables + kShape, &residual);
+  return residual;
+}
+
+double residualOf(const Cost& cost, const Vector& p) {
+  double residual = 0;
+  cost(p.data(), p.data() + kShape, &residual);
+  return residual;
+}
+
+Vector startOf(const Ellipse& start, const Local& local) {
+  const Eigen::Matrix2d turn = Eigen::Rotation2Dd(start.angle).toRotationMatrix();
+  const Eigen::Matrix2d root = turn * start.semi_axes.cwiseInverse().asDiagonal() * turn.transpose() * local.unit;
+  Vector p;
+  p << 0, 0, local.v.dot(root * local.v), local.u.dot(root * local.u), local.v.dot(root * local.u), 0, 0, 0;
+  return p;
+}
+
+Ellipse ellipseOf(const Vector& p, const Local& local) {
+  Eigen::Matrix2d axes, root;
+  axes << local.v, local.u;
+  root << p[2], p[4], p[4], p[3];
+  const Eigen::Matrix2d image = axes * root * axes.transpose() / local.unit;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(image);
+  const Eigen::Vector2d major = solver.eigenvectors().col(0), centre = local.origin + local.unit * axes * p.head<2>();
+  return {{centre.x(), centre.y()}, solver.eigenvalues().cwiseInverse(), std::atan2(major.y(), major.x())};
+}
+
+/// Weight of what is known of the tail, where the residuals' deviation is 1 / kTukey of a loss's scale.
+double priorWeight() { return std::pow(RobustLoss::kTukey * kTailDeviation, -2); }
+
+/// Height at which the line `across` leaves the ellipse towards the shaft; below the centre's where it misses it.
+double heightAt(const Vector& p, double across) {
+  Eigen::Matrix2d root;
+  root << p[2], p[4], p[4], p[3];
+  const Eigen::Vector2d from = root * Eigen::Vector2d(across - p[0], -p[1]), along = root.col(1);
+  const double a = along.squaredNorm(), b = along.dot(from), c = from.squaredNorm() - 1, square = b * b - a * c;
+  return square > 0 ? (std::sqrt(square) - b) / a : 0;
+}
+
+class Fitter {
+ public:
+  Fitter(const std::vector<BorderPoint>& points, const NeedleAxis& axis, const Ellipse& start)
+      : local_(axis, start), tip_(local_.of(axis.tip)), first_(startOf(start, local_)) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (!points[i].trusted) continue;
+      const Eigen::Vector2d place = local_.of(points[i].place), normal(points[i].normal.x, points[i].normal.y);
+      // Where the dent is steep an error across the border is a larger one along the needle.
+      const double steep = std::abs(normal.dot(local_.u));
+      const double usual = std::sqrt(std::max(0.0, 1 - place.x() * place.x()));
+      Cost cost{place.x(), place.y(), place.x() - tip_.x(), 1, 1, points[i].facing};
+      if (points[i].facing) {
+        cost.fade = fadeAt(heightAt(first_, place.x()));
+        cost.weight = std::clamp(steep / std::max(usual, 0.2), 0.2, 1.0);
+      }
+      costs_.push_back(cost);
+      index_.push_back(i);
+    }
+  }
+
+  /// @param before  of an earlier fit, which gives the first dent when it is valid
+  DentedEllipse fit(std::size_t count, const DentedEllipse& before) {
+    DentedEllipse result;
+    if (costs_.size() < kLeastPoints) return result;
+    Vector best;
+    double least = 1e300;
+    const auto start = [&](double depth, double width, double tail) {
+      Vector p = first_;
+      p.tail<kDent>() << std::clamp(depth, 0.0, kDeepest), std::log(width), tail;
+      const double cost = solve(p, {kCauchy / local_.unit, false});
+      if (!(cost < least)) return;
+      least = cost;
+      best = p;
+    };
+    if (before.valid) {
+      start(before.depth / local_.unit, before.width / local_.unit, before.tail);
+    } else {
+      for (const double width : kStartWidths) start(heightAt(first_, tip_.x()) - tip_.y(), width, kUsualTail);
+    }
+    if (least > 1e299) return result;
+    for (int round = 0; round < kRounds; ++round) {
+      if (solve(best, {RobustLoss::kTukey * scaleOf(best), true}) > 1e299) return result;
+    }
+    describe(best, scaleOf(best), count, result);
+    return result;
+  }
+
+ private:
+  double costOf(const Vector& p, const RobustLoss& loss) const {
+    double sum = 0.5 * priorWeight() * (p[kTail] - kUsualTail) * (p[kTail] - kUsualTail);
+    for (const Cost& cost : costs_) sum += loss.value(residualOf(cost, p));
+    return std::isfinite(sum) && p[2] * p[3] > p[4] * p[4] ? sum : 1e300;
+  }
+
+  /// Levenberg and Marquardt's steps. Returns the cost; a huge one without a solution.
+  double solve(Vector& p, const RobustLoss& loss) const {
+    double now = costOf(p, loss), damping = 1e-3;
+    for (int step = 0; step < kSteps; ++step) {
+      Matrix matrix = Matrix::Zero();
+      Vector right = Vector::Zero();
+      matrix(kTail, kTail) = priorWeight();
+      right[kTail] = priorWeight() * (kUsualTail - p[kTail]);
+      for (const Cost& cost : costs_) {
+        const Jet residual = jetOf(cost, p);
+        const double weight = loss.weight(residual.a);
+        if (weight == 0) continue;
+        matrix.selfadjointView<Eigen::Lower>().rankUpdate(residual.v, weight);
+        right -= weight * residual.a * residual.v;
+      }
+      const double before = now;
+      for (int attempt = 0; attempt < kAttempts && now >= before; ++attempt) {
+        Matrix damped = matrix;
+        damped.diagonal() *= 1 + damping;
+        damped.diagonal().array() += 1e-9;
+        const Vector next = limited(p + damped.selfadjointView<Eigen::Lower>().ldlt().solve(right));
+        const double cost = costOf(next, loss);
+        damping *= cost < now ? 0.1 : 10;
+        if (cost >= now) continue;
+        p = next;
+        now = cost;
+      }
+      if (before - now < kSmallestGain * before) break;
+    }
+    return now;
+  }
+  static Vector limited(Vector p) {
+    p[kDepth] = std::clamp(p[kDepth], -0.1, kDeepest);
+    p[kLogWidth] = std::clamp(p[kLogWidth], std::log(kNarrowest), std::log(kWidest));
+    p[kTail] = std::clamp(p[kTail], kLeastTail, 1.0);
+    return p;
+  }
+
+  double scaleOf(const Vector& p) const {
+    std::vector<double> sizes;
+    for (const Cost& cost : costs_) sizes.push_back(std::abs(residualOf(cost, p)));
+    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+    std::nth_element(sizes.begin(), middle, sizes.end());
+    return std::max(1.4826 * *middle, kLeastScale / local_.unit);
+  }
+
+  /// Normal matrix of the points that the model describes, for neighbours that do not deviate together.
+  Matrix information(const Vector& p, double scale, std::vector<bool>& used) const {
+    const RobustLoss loss{RobustLoss::kTukey * scale, true};
+    Matrix matrix = Matrix::Zero();
+    matrix(kTail, kTail) = RobustLoss::kTukey * RobustLoss::kTukey * priorWeight();
+    double product = 0, square = 0, last = 0;
+    for (std::size_t i = 0; i < costs_.size(); ++i) {
+      const Jet residual = jetOf(costs_[i], p);
+      // Tukey's weights at a residual of 0 are 1 over the square of his scale.
+      const double weight = RobustLoss::kTukey * RobustLoss::kTukey * loss.weight(residual.a);
+      used[index_[i]] = weight > 0;
+      matrix += weight * residual.v * residual.v.transpose();
+      const double rest = std::clamp(residual.a, -3 * scale, 3 * scale);
+      product += last * rest;
+      square += rest * rest;
+      last = rest;
+    }
+    const double correlation = square > 0 ? std::clamp(product / square, 0.0, 0.95) : 0;
+    return matrix * (1 - correlation) / (1 + correlation);
+  }
+
+  void describe(const Vector& p, double scale, std::size_t count, DentedEllipse& result) const {
+    result.used.assign(count, false);
+    const Eigen::LDLT<Matrix> solver(information(p, scale, result.used));
+    const auto deviationOf = [&](const Vector& row) {
+      return local_.unit * std::sqrt(std::max(0.0, row.dot(solver.solve(row))));
+    };
+    // The ellipse's height on the axis, by the change of a distance there.
+    const double height = heightAt(p, tip_.x());
+    const Cost on{tip_.x(), height, 0, 0, 1, false}, above{tip_.x(), height + 1e-6, 0, 0, 1, false};
+    const Vector top = -jetOf(on, p).v * 1e-6 / (residualOf(above, p) - residualOf(on, p));
+    Vector depth = Vector::Zero();
+    depth[kDepth] = fadeAt(height);
+    result.valid = solver.info() == Eigen::Success;
+    result.ellipse = ellipseOf(p, local_);
+    result.depth = p[kDepth] * fadeAt(height) * local_.unit;
+    result.width = std::exp(p[kLogWidth]) * local_.unit;
+    result.tail = p[kTail];
+    result.residual = scale * local_.unit;
+    result.top_deviation = deviationOf(top);
+    result.depth_deviation = deviationOf(depth);
+  }
+
+  Local local_;
+  Eigen::Vector2d tip_;
+  Vector first_;
+  std::vector<Cost> costs_;
+  std::vector<std::size_t> index_;  ///< of each cost's point
+};
+
+}  // namespace
+
+cv::Point2d NeedleAxis::along() const { return {std::cos(direction), std::sin(direction)}; }
+cv::Point2d NeedleAxis::across() const { return {-std::sin(direction), std::cos(direction)}; }
+
+double DentedEllipse::top(const NeedleAxis& axis) const { return ellipse.exit(axis.tip, axis.direction).value_or(0); }
+
+double DentedEllipse::displacement(const NeedleAxis& axis, double across) const {
+  const double radius = 0.5 * ellipse.meanDiameter();
+  const auto fade = [&](double s) {
+    const cv::Point2d from = axis.tip + s * axis.across();
+    const cv::Point2d place = from + ellipse.exit(from, axis.direction).value_or(0) * axis.along();
+    return fadeAt((place - ellipse.centre).dot(axis.along()) / radius);
+  };
+  const double ratio = across / width;
+  return depth / std::max(fade(0), 0.1) * fade(across) * bell(ratio * ratio, tail);
+}
+
+DentedEllipse fitDentedEllipse(const std::vector<BorderPoint>& points, const NeedleAxis& axis, const Ellipse& start) {
+  return Fitter(points, axis, start).fit(points.size(), {});
+}
+
+DentedEllipse fitDentedEllipse(const std::vector<BorderPoint>& points, const NeedleAxis& axis,
+                               const DentedEllipse& start) {
+  return Fitter(points, axis, start.ellipse).fit(points.size(), start);
+}
+
+}  // namespace microinjection
