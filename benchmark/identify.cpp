@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <memory>
 #include <random>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,7 @@ constexpr double kSpeed = 20e-6;  // m/s
 
 struct Options {
   int trials = 200, seed = 100001;
+  std::string kinds = "homogeneous,zona,outliers,dropouts,freeze,wrong_model";
   double deep = 5;        // um
   double strength = 0.1;  // standard deviation of the logarithm of a membrane's strength
 };
@@ -34,8 +36,9 @@ class IdentifyTable {
     add("trial,kind,modulus_error,modulus_covered,contact_error_m,puncture_error,time_s,verdict,core_modulus,"
         "rival_advantage,lowest_modulus,highest_modulus,layers_known,puncture_law,puncture_depth_m,"
         "puncture_depth_error,force_in_50,force_in_90,depth_in_50,depth_in_90\n");
-    for (const char* kind : {"homogeneous", "zona", "outliers", "dropouts", "freeze", "wrong_model"}) {
-      const bool main = std::string(kind) == "homogeneous" || std::string(kind) == "zona";
+    std::istringstream kinds(options_.kinds);
+    for (std::string kind; std::getline(kinds, kind, ',');) {
+      const bool main = kind == "homogeneous" || kind == "zona";
       for (int trial = 0; trial < (main ? options_.trials / 2 : options_.trials / 5); ++trial) run(kind, trial);
     }
     return table_;
@@ -151,6 +154,7 @@ int main(int argc, char** argv) {
   po::options_description more;
   more.add_options()("trials", po::value(&options.trials)->default_value(options.trials),
                      "cells; half of each family, and a fifth for each kind of bad record")(
+      "kinds", po::value(&options.kinds)->default_value(options.kinds), "of trials, separated by commas")(
       "seed", po::value(&options.seed)->default_value(options.seed), "of the first cell")(
       "deep", po::value(&options.deep)->default_value(options.deep), "um, of the record in contact")(
       "strength", po::value(&options.strength)->default_value(options.strength),

@@ -6,9 +6,9 @@ SCENE = 'mouse_oocyte_pipette'
 RADIUS, HOLDING = '    radius: 3e-6', '  contact_radius: 10e-6'
 # name of the table: what is assumed, the line of the scene that changes, its new value
 VARIANTS = {'identified': ('tip of 3 um, holding radius 10 um', None, None),
-            'identified_tip_2': ('tip of 2 um', RADIUS, '    radius: 2e-6'),
+            'identified_tip_2_5': ('tip of 2.5 um', RADIUS, '    radius: 2.5e-6'),
             'identified_tip_4': ('tip of 4 um', RADIUS, '    radius: 4e-6'),
-            'identified_holding_7': ('holding radius 7 um', HOLDING, '  contact_radius: 7e-6'),
+            'identified_holding_8': ('holding radius 8 um', HOLDING, '  contact_radius: 8e-6'),
             'identified_holding_14': ('holding radius 14 um', HOLDING, '  contact_radius: 14e-6')}
 LIMIT = 300  # s
 
@@ -51,12 +51,12 @@ def items(data_dir, out_dir):
         return [missing(name, quantity, kilo(PAPER_MODULUS), 'kPa', 'identify')]
     value, low, high = found
     holds = low <= PAPER_MODULUS <= high
-    others = [modulus(data_dir, other) for other in VARIANTS if other != 'identified']
-    others = [other[0] for other in others if other is not None]
+    assumed = [modulus(data_dir, variant) for variant in VARIANTS]
+    moduli = [variant[0] for variant in assumed if variant is not None]
     why = 'neo-Hookean, solved to 45 um by `identify`; the interval is of 95 %, from the reading error'
-    if others:
+    if len(moduli) > 1:
         why += f'; the needle and the holding pipette, which the paper does not tell, move it from ' \
-               f'{kilo(min(others))} to {kilo(max(others))}'
+               f'{kilo(min(moduli))} to {kilo(max(moduli))}'
     return [item(name, quantity, kilo(PAPER_MODULUS), f'{kilo(value)} [{kilo(low)}, {kilo(high)}]', 'kPa',
                  REPRODUCED if holds else DIFFERENCE, why)]
 
