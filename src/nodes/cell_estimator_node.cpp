@@ -11,7 +11,6 @@
 #include "nodes/cell/cell_state_reader.h"
 #include "nodes/cell/estimate_messages.h"
 #include "nodes/runtime/conversions.h"
-#include "nodes/runtime/node_parameters.h"
 #include "nodes/runtime/run_node.h"
 
 namespace microinjection {
@@ -34,35 +33,11 @@ bool isModulus(const std::string& name) { return name == "young_modulus" || name
 const char* const CellEstimatorNode::kHelp =
     "cell_estimator: the online twin. Finds modulus and height of the cell under the needle and has cell_simulator\n"
     "serve them.\n"
-    "In: /needle/measured_cp, /force_sensor/measured_cf, /controller/injection_state, /cell/state.\n"
+    "In: /needle/measured_cp, /force_sensor/measured_cf, /controller/injection_state, /cell/state, /vision/state.\n"
     "Out: /cell/estimate, /cell/set_parameters, /cell/puncture_score.\n";
 
-CellEstimatorNode::Parameters CellEstimatorNode::Parameters::read(const ros::NodeHandle& private_node) {
-  Parameters parameters;
-  ConfigReader reader = parameterReader(private_node);
-  reader.text("scene", parameters.scene, ConfigReader::kRequired);
-  reader.text("families", parameters.families, ConfigReader::kRequired);
-  reader.number("rate", parameters.rate, Range::closed(50, 5000));
-  reader.number("update_period", parameters.update_period, Range::closed(0.005, 1));
-  reader.number("needle_timeout", parameters.needle_timeout, Range::positive());
-  reader.number("force_timeout", parameters.force_timeout, Range::positive());
-  reader.number("controller_timeout", parameters.controller_timeout, Range::positive());
-  reader.number("largest_tilt", parameters.largest_tilt, Range::closed(0, 0.2));
-  reader.number("largest_speed", parameters.largest_speed, Range::positive());
-  reader.number("largest_force", parameters.largest_force, Range::positive());
-  reader.number("largest_sideways", parameters.largest_sideways, Range::positive());
-  reader.number("clear_distance", parameters.clear_distance, Range::positive());
-  reader.boolean("serve", parameters.serve);
-  parameters.served.read(reader);
-  reader.number("puncture_deviation", parameters.puncture_deviation, Range::closed(0, 2));
-  ConfigReader estimator = reader.section("estimator");
-  parameters.estimator.read(estimator);
-  reader.finish();
-  return parameters;
-}
-
 CellEstimatorNode::CellEstimatorNode(ros::NodeHandle node, ros::NodeHandle private_node)
-    : parameters_(Parameters::read(private_node)),
+    : parameters_(CellEstimatorParameters::read(private_node)),
       cycle_(node, parameters_.rate),
       needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", InputPhase::kPreviousTick,
                                                        parameters_.needle_timeout)),
@@ -85,6 +60,7 @@ CellEstimatorNode::CellEstimatorNode(ros::NodeHandle node, ros::NodeHandle priva
     throw ConfigError(parameters_.scene + ": the twin needs a cell of a family, and this is of none" +
                       (reason.empty() ? "" : ": " + reason));
   }
+  if (parameters_.images) dimples_ = std::make_unique<DimpleReader>(cycle_.node(), parameters_.image);
   take(scene, std::move(*member));
   cell_ = subscribeGuarded<cell_microinjection::CellState>(
       cycle_.node(), "cell/state", 1,
@@ -103,6 +79,7 @@ void CellEstimatorNode::take(const Scene& scene, FamilyCell member) {
   estimator_ = std::move(estimator);
   predictor_ = std::move(predictor);
   indentation_ = {};
+  if (dimples_) dimples_->startCell(scene.radius());
 }
 
 /// Another cell, measured in the image, say: what was learned is of the one before.
@@ -152,6 +129,7 @@ void CellEstimatorNode::followIndentation(const Eigen::Vector3d& tip, const ros:
                               status ? std::optional(status->punctures) : std::nullopt)) {
     case IndentationCourse::Event::kEnded:
       estimator_->beginNext();
+      if (dimples_) dimples_->startCell(scene_.radius());
       break;
     case IndentationCourse::Event::kPunctured:
       punctured_at_ = now;
@@ -178,6 +156,7 @@ std::string CellEstimatorNode::learn(const ros::Time& now) {
   followIndentation(tip, now);
   followSpeed(tip, now);
   const std::string interrupted = interruption(now);
+  if (dimples_) dimples_->follow(needle_.get(now)->header.stamp, tip, interrupted.empty());
   if (!interrupted.empty()) return interrupted;
   if (std::acos(std::clamp(axis.z(), -1.0, 1.0)) > parameters_.largest_tilt) return "the needle is tilted";
   if (indentation_.sideways(tip) > parameters_.largest_sideways) return "the needle has moved sideways in the cell";
@@ -215,6 +194,7 @@ void CellEstimatorNode::step(const Cycle::Tick& tick) {
   if (!isDue(updated_, tick.now, parameters_.update_period)) return;
   updated_ = tick.now;
   const double start = threadCpuTime();
+  if (dimples_ && !indentation_.punctured()) estimator_->seeContact(dimples_->height());
   if (held_.empty() && estimator_->update().samples > 0) indentation_.learn(estimator_->estimate().depth);
   if (!indentation_.punctured()) predict();
   const double taken = threadCpuTime() - start;
@@ -222,14 +202,15 @@ void CellEstimatorNode::step(const Cycle::Tick& tick) {
   publish(tick.now, taken);
 }
 
-/// What was found; the prior when the force contradicts the model. While nothing is known, nothing but
-/// another cell's place. A punctured cell stays where it is: the needle is in its hole.
+/// What was found; the prior when the force contradicts the model. While no modulus is known, nothing but
+/// the place that images show, and another cell's place. A punctured cell stays where it is: the needle is in its hole.
 void CellEstimatorNode::serve(const ros::Time& now) {
   const CellEstimate& found = estimator_->estimate();
   const bool known = found.verdict != EstimateVerdict::kPrior;
-  if (!parameters_.serve || indentation_.punctured() || !(known || other_cell_)) return;
-  other_cell_ = !known && served_.served().height != 0;
-  const CellFollower::Properties other{served_.served().modulus, 0}, learned{found.modulus, found.contact};
+  const bool seen = dimples_ && dimples_->height();
+  if (!parameters_.serve || indentation_.punctured() || !(known || seen || other_cell_)) return;
+  other_cell_ = !known && !seen && served_.served().height != 0;
+  const CellFollower::Properties other{served_.served().modulus, found.contact}, learned{found.modulus, found.contact};
   const auto asked = served_.ask(known ? learned : other, now.toSec());
   if (!asked) return;
   cell_microinjection::CellParameters parameters;

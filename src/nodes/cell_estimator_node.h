@@ -19,6 +19,8 @@
 #include "cell/estimation/indentation_course.h"
 #include "cell/estimation/puncture_prediction.h"
 #include "cell/family/family_cell.h"
+#include "nodes/cell/cell_estimator_parameters.h"
+#include "nodes/cell/dimple_reader.h"
 #include "nodes/runtime/cycle.h"
 
 namespace microinjection {
@@ -27,7 +29,7 @@ namespace microinjection {
 /// CellEstimator, and has cell_simulator serve them.
 ///
 /// In:  /needle/measured_cp, /force_sensor/measured_cf, /controller/injection_state, /cell/state
-///      (the sizes of the served cell)
+///      (the sizes of the served cell), /vision/state (the dimple under the needle)
 /// Out: /cell/estimate (CellEstimate), /cell/set_parameters (CellParameters), /cell/puncture_score
 ///      (PunctureScore)
 ///
@@ -40,23 +42,6 @@ class CellEstimatorNode {
   void run();
 
  private:
-  struct Parameters {
-    std::string scene, families;
-    double rate = 1000;
-    double update_period = 0.02;
-    double needle_timeout = 0.05, force_timeout = 0.05, controller_timeout = 0.5;
-    double largest_tilt = 0.035;
-    double largest_speed = 60e-6;
-    double largest_force = 450e-6;
-    double largest_sideways = 3e-6;
-    double clear_distance = 5e-6;
-    bool serve = true;
-    CellFollowerConfig served;
-    double puncture_deviation = 0.2;
-    CellEstimatorConfig estimator;
-    static Parameters read(const ros::NodeHandle& private_node);
-  };
-
   void take(const Scene& scene, FamilyCell member);
   void onCell(const cell_microinjection::CellState& message);
   void step(const Cycle::Tick& tick);
@@ -72,7 +57,7 @@ class CellEstimatorNode {
   void publish(const ros::Time& now, double update_time);
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
-  Parameters parameters_;
+  CellEstimatorParameters parameters_;
   Scene scene_;                                              ///< the prior
   std::vector<std::shared_ptr<const FamilyData>> families_;  ///< of the rivals
   FamilyCell member_;
@@ -90,6 +75,7 @@ class CellEstimatorNode {
   std::string foreign_;                 ///< why the served cell is none of the family; empty: it is one
   std::vector<double> foreign_values_;  ///< its parameters
   IndentationCourse indentation_;
+  std::unique_ptr<DimpleReader> dimples_;  ///< null: images are not learned from
   std::optional<PuncturePrediction> expected_;
   CellFollower served_;
   bool other_cell_ = false;  ///< is served, at the height of the one before

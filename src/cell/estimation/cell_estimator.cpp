@@ -12,6 +12,9 @@
 namespace microinjection {
 namespace {
 
+constexpr char kUntouched[] = "the needle has not touched the cell";
+constexpr char kOnlySeen[] = "images show the contact only: without a force nothing is known of the modulus";
+
 constexpr int kIterations = 6;
 constexpr double kOutlier = 3;   ///< residual over its deviation from which a sample loses weight
 constexpr double kStep = 5e-9;   ///< m, of the contact's height, for the derivative
@@ -40,21 +43,6 @@ const char* toText(EstimateVerdict verdict) {
   return "inconsistent";
 }
 
-void CellEstimatorConfig::read(ConfigReader& reader) {
-  reader.number("modulus_deviation", modulus_deviation, Range::closed(0.01, 3));
-  reader.number("next_deviation", next_deviation, Range::closed(0.01, 3));
-  reader.number("contact_deviation", contact_deviation, Range::closed(1e-9, 20e-6));
-  reader.number("offset_deviation", offset_deviation, Range::positive());
-  reader.number("sensor_noise", sensor_noise, Range::positive());
-  reader.number("sensor_floor", sensor_floor, Range::positive());
-  reader.number("force_error", force_error, Range::closed(0, 0.2));
-  reader.number("converged_interval", converged_interval, Range::closed(0.001, 0.5));
-  reader.number("misfit", misfit, Range::closed(0.001, 1));
-  reader.number("drift_limit", drift_limit, Range::positive());
-  ConfigReader samples = reader.section("history");
-  history.read(samples);
-}
-
 CellEstimator::CellEstimator(const Scene& scene, std::shared_ptr<const SurrogateData> cell,
                              const CellEstimatorConfig& config, std::shared_ptr<const std::vector<RivalCell>> rivals)
     : config_(config),
@@ -66,7 +54,7 @@ CellEstimator::CellEstimator(const Scene& scene, std::shared_ptr<const Surrogate
       shifted_(scene, cell),
       history_(config.history),
       watch_(scene, cell, std::move(rivals), {config.contact_deviation, config.offset_deviation, config.sensor_floor}) {
-  setPrior(EstimateVerdict::kPrior, "the needle has not touched the cell");
+  setPrior(EstimateVerdict::kPrior, kUntouched);
 }
 
 void CellEstimator::beginNext() {
@@ -84,7 +72,7 @@ void CellEstimator::beginNext() {
   contradictions_ = 0;
   filter_.reset();
   watch_.reset();
-  setPrior(EstimateVerdict::kPrior, "the needle has not touched the cell");
+  setPrior(EstimateVerdict::kPrior, kUntouched);
 }
 
 double CellEstimator::modulusOf(const State& state) const {
@@ -104,6 +92,19 @@ void CellEstimator::setPrior(EstimateVerdict verdict, const std::string& reason)
   estimate_.modulus_high = estimate_.modulus * factor;
   estimate_.covariance =
       Eigen::Vector3d(deviation, config_.contact_deviation, config_.offset_deviation).cwiseAbs2().asDiagonal();
+  estimate_.contact = config_.contact_deviation * prior_.mean[1];
+  estimate_.covariance(1, 1) /= prior_.precision[1];
+}
+
+void CellEstimator::seeContact(const std::optional<ImageContact::Height>& seen) {
+  prior_ = {};
+  if (seen) {
+    const double information = std::pow(config_.contact_deviation / seen->deviation, 2);
+    prior_.precision[1] += information;
+    prior_.mean[1] = information / prior_.precision[1] * seen->value / config_.contact_deviation;
+  }
+  const bool unfelt = history_.samples().empty() && estimate_.verdict == EstimateVerdict::kPrior;
+  if (unfelt) setPrior(EstimateVerdict::kPrior, seen ? kOnlySeen : kUntouched);
 }
 
 std::string CellEstimator::add(double time, const Eigen::Vector3d& tip, double force) {
@@ -157,7 +158,7 @@ void CellEstimator::linearise(const State& state, Fit& fit, Eigen::MatrixXd& jac
 
 double CellEstimator::cost(const Fit& fit, double scale) const {
   const double square = scale * scale;
-  return 0.5 * square * (fit.residuals.array().square() / square).log1p().sum() + 0.5 * fit.state.squaredNorm();
+  return 0.5 * square * (fit.residuals.array().square() / square).log1p().sum() + prior_.cost(fit.state);
 }
 
 /// The weights' scale falls with the residuals: far from the solution all samples are far off, and
@@ -173,8 +174,10 @@ CellEstimator::Fit CellEstimator::fit(const State& start) {
     std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(0.9 * sizes.size()), sizes.end());
     const double scale = std::max(kOutlier, sizes[static_cast<std::size_t>(0.9 * sizes.size())]);
     const Eigen::VectorXd weights = (1 + (best.residuals.array() / scale).square()).inverse();
-    best.normal = jacobian.transpose() * weights.asDiagonal() * jacobian + Eigen::Matrix3d::Identity();
-    const State right = jacobian.transpose() * weights.cwiseProduct(best.residuals) - best.state;
+    best.normal = jacobian.transpose() * weights.asDiagonal() * jacobian;
+    best.normal.diagonal() += prior_.precision;
+    const State right = jacobian.transpose() * weights.cwiseProduct(best.residuals) -
+                        prior_.precision.cwiseProduct(best.state - prior_.mean);
     Eigen::Matrix3d damped = best.normal;
     damped.diagonal() *= 1 + damping;
     const State change = damped.ldlt().solve(right);
@@ -254,8 +257,8 @@ CellEstimate CellEstimator::estimateOf(const Fit& fit, const Misfit& misfit) con
   // Residuals that follow each other say less than their number.
   const double correlation = correlationLength(fit.residuals);
   const Eigen::Vector3d units(prior_deviation_, config_.contact_deviation, config_.offset_deviation);
-  const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
-  const Eigen::Matrix3d information = (fit.normal - identity) / correlation + identity;
+  const Eigen::Matrix3d prior = prior_.precision.asDiagonal();
+  const Eigen::Matrix3d information = (fit.normal - prior) / correlation + prior;
   const Eigen::Matrix3d covariance = information.inverse();
   CellEstimate next;
   next.covariance = units.asDiagonal() * covariance * units.asDiagonal();

@@ -7,6 +7,7 @@
 
 #include "base/config_reader.h"
 #include "cell/estimation/force_path.h"
+#include "cell/estimation/image_contact.h"
 #include "cell/estimation/misfit.h"
 #include "cell/estimation/reading_filter.h"
 #include "cell/estimation/rival_watch.h"
@@ -60,8 +61,8 @@ struct CellEstimate {
 ///     F_i = E f(z_i - z_0) + offset,
 ///
 /// with f the family's converged force for a modulus of 1 Pa on the tip's path, its relaxation
-/// included, and Gaussian priors of ln E, z_0 and the offset. Gauss-Newton with Cauchy's weights.
-/// Not thread-safe.
+/// included, and Gaussian priors of ln E, z_0 and the offset. Images that show the dimple narrow that of z_0.
+/// Gauss-Newton with Cauchy's weights. Not thread-safe.
 class CellEstimator {
  public:
   /// `scene`: the prior; `cell`: its member of a family, in SI units, whose expected error is
@@ -73,6 +74,8 @@ class CellEstimator {
   /// A new reading. `tip`: m, relative to the cell's centre. `force`: N, of the cell on the tip along
   /// the pipette. Cheap; does not fit. Returns why such readings are not learned from; empty if they are.
   std::string add(double time, const Eigen::Vector3d& tip, double force);
+  /// What images show of the surface's height, beside the force: a part of the prior. Empty: nothing.
+  void seeContact(const std::optional<ImageContact::Height>& seen);
   /// Fits; milliseconds.
   const CellEstimate& update();
   const CellEstimate& estimate() const { return estimate_; }
@@ -85,6 +88,12 @@ class CellEstimator {
  private:
   /// (ln(E / prior), z_0, offset) in units of the priors' deviations.
   using State = Eigen::Vector3d;
+
+  /// Gaussian, in these units.
+  struct Prior {
+    State mean = State::Zero(), precision = State::Ones();
+    double cost(const State& state) const { return 0.5 * (state - mean).cwiseAbs2().dot(precision); }
+  };
 
   struct Fit {
     State state = State::Zero();
@@ -112,6 +121,7 @@ class CellEstimator {
   ForcePath path_, shifted_;
   SampleHistory history_;
   State state_ = State::Zero();
+  Prior prior_;
   CellEstimate estimate_;
   std::vector<ForcePath::Point> shifted_points_;
   ReadingFilter filter_;

@@ -89,6 +89,35 @@ TEST(CellEstimator, KnowsOnlyThePriorBeforeContact) {
   EXPECT_GT(found.modulus_high / found.modulus_low, 10);
 }
 
+TEST(CellEstimator, WithoutAForceImagesTellTheContactOnly) {
+  Session session;
+  CellEstimator fresh(session.prior, memberOf(session.prior), session.config);
+  const CellEstimate before = fresh.estimate();
+  fresh.seeContact(ImageContact::Height{0.8e-6, 0.1e-6});
+  const CellEstimate& found = fresh.estimate();
+  EXPECT_EQ(found.verdict, EstimateVerdict::kPrior);
+  EXPECT_NE(found.reason.find("without a force"), std::string::npos) << found.reason;
+  EXPECT_NEAR(found.contact, 0.8e-6, 0.05e-6);  // the prior draws a little
+  EXPECT_LT(std::sqrt(found.covariance(1, 1)), 0.1e-6);
+  EXPECT_DOUBLE_EQ(found.modulus_high, before.modulus_high);
+  fresh.seeContact(std::nullopt);
+  EXPECT_EQ(fresh.estimate().contact, 0);
+}
+
+TEST(CellEstimator, AnImageOfTheDimpleNarrowsAShortIndentation) {
+  Session session;
+  session.surface = 0.6e-6;
+  const auto width = [](const CellEstimate& found) { return std::log(found.modulus_high / found.modulus_low); };
+  constexpr double kDepth = 1.2e-6;  // m, of the tip past where the surface is modelled
+  const CellEstimate felt = session.indent(kDepth).estimate();
+  CellEstimator estimator(session.prior, memberOf(session.prior), session.config);
+  estimator.seeContact(ImageContact::Height{session.surface, 0.1e-6});
+  session.indent(kDepth, estimator);
+  EXPECT_LT(width(estimator.estimate()), 0.9 * width(felt));
+  EXPECT_NEAR(estimator.estimate().contact, session.surface, 0.2e-6);
+  expectModulus(session, estimator.estimate(), 0.2);
+}
+
 TEST(CellEstimator, LearnsBeforeItConverges) {
   Session session;
   session.factor = 0.5;

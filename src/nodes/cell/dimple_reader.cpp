@@ -1,0 +1,55 @@
+#include "nodes/cell/dimple_reader.h"
+
+#include <algorithm>
+
+#include "nodes/runtime/message_guard.h"
+#include "nodes/runtime/stamps.h"
+
+namespace microinjection {
+namespace {
+
+constexpr std::size_t kPlaces = 400;        // 2 s of them: images come later than the needle's poses
+constexpr double kSpacing = 0.005;          // s, between two places that are kept
+constexpr double kFastest = 30e-6;          // m/s, of a needle whose place at the time of exposure is known
+constexpr double kFarthest = 2 * kSpacing;  // s, from a place to the time of exposure
+
+}  // namespace
+
+DimpleReader::DimpleReader(const ros::NodeHandle& node, const ImageContactConfig& config)
+    : config_(config), contact_(config, 1), places_(kPlaces) {
+  using cell_microinjection::VisionState;
+  states_ = subscribeGuarded<VisionState>(node, "vision/state", 1,
+                                          [this](const VisionState& message, const std::string&) { onState(message); });
+}
+
+void DimpleReader::startCell(double radius) {
+  contact_ = ImageContact(config_, radius);
+  places_.clear();
+}
+
+void DimpleReader::follow(const ros::Time& stamp, const Eigen::Vector3d& tip, bool learns) {
+  if (!places_.empty()) {
+    const double since = secondsBetween(places_.back().stamp, stamp);
+    if (since < 0) places_.clear();  // time was set back
+    if (since >= 0 && since < kSpacing) return;
+  }
+  places_.push_back({stamp, tip, learns});
+}
+
+void DimpleReader::onState(const cell_microinjection::VisionState& message) {
+  const auto& dimple = message.indentation;
+  const bool found = dimple.verdict == cell_microinjection::IndentationInImage::FOUND &&
+                     message.cell.verdict == cell_microinjection::CellInImage::FOUND;
+  if (!found || !(message.pixel_size > 0)) return;
+  const ros::Time& exposed = message.header.stamp;
+  const auto after = std::find_if(places_.begin(), places_.end(), [&](const Place& p) { return p.stamp >= exposed; });
+  if (after == places_.begin() || after == places_.end()) return;
+  const Place &next = *after, &last = *(after - 1);
+  const double step = secondsBetween(last.stamp, next.stamp);
+  if (step > kFarthest || !next.learns || !last.learns || (next.tip - last.tip).norm() > kFastest * step) return;
+  const double share = secondsBetween(last.stamp, exposed) / step;
+  contact_.add(last.tip + share * (next.tip - last.tip), message.pixel_size * dimple.depth,
+               message.pixel_size * dimple.deviation);
+}
+
+}  // namespace microinjection

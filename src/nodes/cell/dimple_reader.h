@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cell_microinjection/VisionState.h>
+#include <ros/ros.h>
+
+#include <Eigen/Core>
+#include <boost/circular_buffer.hpp>
+#include <optional>
+
+#include "cell/estimation/image_contact.h"
+
+namespace microinjection {
+
+/// Reads the dimple under the needle from /vision/state. An image counts only when cell and dimple are
+/// found in it, its pixel size is known, and the needle was slow and its place known at the time of
+/// exposure.
+class DimpleReader {
+ public:
+  DimpleReader(const ros::NodeHandle& node, const ImageContactConfig& config);
+
+  /// Another cell, or the needle has been clear of this one. `radius`: m.
+  void startCell(double radius);
+  /// A pose of the needle. `stamp`: its time; `tip`: m, relative to the cell's centre; `learns`: whether
+  /// images of this time count.
+  void follow(const ros::Time& stamp, const Eigen::Vector3d& tip, bool learns);
+  std::optional<ImageContact::Height> height() const { return contact_.height(); }
+
+ private:
+  struct Place {
+    ros::Time stamp;
+    Eigen::Vector3d tip;  ///< m
+    bool learns;
+  };
+  void onState(const cell_microinjection::VisionState& message);
+
+  ImageContactConfig config_;
+  ImageContact contact_;
+  boost::circular_buffer<Place> places_;
+  ros::Subscriber states_;
+};
+
+}  // namespace microinjection
