@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <memory>
 #include <random>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,6 +30,7 @@ constexpr int kUpdate = 20;                      // readings from one update to 
 
 struct Options {
   int trials = 100, seed = 200001;
+  std::string kinds = "homogeneous,zona,stiffer,outliers,dropouts,freeze,drift,wrong_model";
   double deep = 8;  // um
 };
 
@@ -40,9 +42,9 @@ class TwinTable {
     add("trial,kind,factor,modulus_error,modulus_covered,converged_at_m,force_error,force_error_without_height,contact_"
         "error_m,misfit,update_s,"
         "verdict,kalman_error,kalman_covered,kalman_s\n");
-    for (const char* kind :
-         {"homogeneous", "zona", "stiffer", "outliers", "dropouts", "freeze", "drift", "wrong_model"}) {
-      const bool main = std::string(kind) == "homogeneous" || std::string(kind) == "zona";
+    std::istringstream kinds(options_.kinds);
+    for (std::string kind; std::getline(kinds, kind, ',');) {
+      const bool main = kind == "homogeneous" || kind == "zona";
       for (int trial = 0; trial < (main ? options_.trials : options_.trials / 4); ++trial) run(kind, trial);
     }
     return table_;
@@ -161,6 +163,7 @@ int main(int argc, char** argv) {
   po::options_description more;
   more.add_options()("trials", po::value(&options.trials)->default_value(options.trials),
                      "cells of each family, and a quarter for each kind of bad record")(
+      "kinds", po::value(&options.kinds)->default_value(options.kinds), "of trials, separated by commas")(
       "seed", po::value(&options.seed)->default_value(options.seed), "of the first cell")(
       "deep", po::value(&options.deep)->default_value(options.deep), "um, of the indentation");
   return microinjection::benchMain(

@@ -8,6 +8,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent / 'benchmark' / 'p
 
 import dynamics  # noqa: E402
 import force_depth  # noqa: E402
+import identified  # noqa: E402
 import prestretch  # noqa: E402
 import report  # noqa: E402
 import table_3  # noqa: E402
@@ -48,6 +49,27 @@ class ReportTest(unittest.TestCase):
                         self.assertEqual(row['verdict'], NOT_REPRODUCIBLE)
                         self.assertIn('left no result', row['why'])
             self.assertTrue(module.section(self.data, self.out).startswith('## '), name)
+
+    def test_the_measured_puncture_has_a_modulus_with_an_interval(self):
+        def write(name, value):
+            (self.data / f'{name}.csv').write_text(
+                'model,quantity,value,low,high,unit,bounded\n'
+                f'solution,young_modulus,{value},{0.95 * value},{1.05 * value},Pa,1\n', encoding='utf-8')
+
+        write('identified', 17.5e3)
+        write('identified_tip_4', 15e3)
+        row, = identified.items(self.data, self.out)
+        self.assertEqual((row['ours'], row['verdict']), ('17.5 [16.6, 18.4]', REPRODUCED))
+        self.assertIn('from 15.0 to 17.5', row['why'])
+        write('identified', 15e3)
+        self.assertEqual(identified.items(self.data, self.out)[0]['verdict'], DIFFERENCE)
+
+    def test_the_scenes_of_the_puncture_differ_in_one_length(self):
+        root = Path(__file__).resolve().parent.parent
+        own = identified.scene_of('identified', root, self.data).read_text(encoding='utf-8').splitlines()
+        for name in identified.VARIANTS:
+            lines = identified.scene_of(name, root, self.data).read_text(encoding='utf-8').splitlines()
+            self.assertEqual(sum(a != b for a, b in zip(own, lines)), 0 if name == 'identified' else 1, name)
 
     def test_table_3_compares_times_and_sizes(self):
         (self.data / 'meshes.csv').write_text(MESHES, encoding='utf-8')
