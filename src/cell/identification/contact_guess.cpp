@@ -96,6 +96,12 @@ ContactGuess guessContact(const ForceCurve& whole, bool drift) {
                 "no contact: the force rises by %.3g nN, its scatter is %.3g nN; a contact explains %.0f %% of it",
                 1e9 * guess.size, 1e9 * best.noise, 100 * gain);
   guess.touched = guess.size > kLeastSize * best.noise && gain > kLeastGain;
+  if (guess.touched && guess.size < whole.drag) {
+    std::snprintf(text, sizeof(text),
+                  "no contact: the force rises by %.3g nN; far from the cell, ways in and out differ by %.3g nN",
+                  1e9 * guess.size, 1e9 * whole.drag);
+    guess.touched = false;
+  }
   if (!guess.touched) guess.reason = text;
   return guess;
 }

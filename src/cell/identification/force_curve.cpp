@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "base/errors.h"
+#include "cell/identification/drag.h"
 #include "cell/identification/force_columns.h"
 
 namespace microinjection {
@@ -142,6 +143,7 @@ ForceCurve readForceCurve(const std::string& path, const ForceCurveConfig& confi
   // The lever bends away from the cell: the tip goes less far than its base.
   const double sign = rise(curve, deflections) < 0 ? -1 : 1;
   for (std::size_t i = 0; i < curve.size(); ++i) curve.position[i] -= sign * deflections[i];
+  curve.drag = dragOf(curve);
   if (!config.whole) cutRetract(curve);
   if (curve.size() < kFewest) throw ConfigError(path + ": has no way in: its first samples are its deepest");
   orientForce(curve);
@@ -153,6 +155,7 @@ ForceCurve averaged(const ForceCurve& curve, std::size_t count) {
   if (block <= 1) return curve;
   ForceCurve result;
   result.timed = curve.timed;
+  result.drag = curve.drag;
   result.notes = curve.notes;
   const auto mean = [&](const std::vector<double>& values, std::size_t from) {
     double sum = 0;

@@ -11,6 +11,7 @@ struct ForceCurve {
   std::vector<double> time;        ///< s
   std::vector<double> position;    ///< m, of the tip along its axis, growing into the cell; its zero is arbitrary
   std::vector<double> force;       ///< N, of the cell on the tip, growing with the depth; with any offset
+  double drag = 0;                 ///< N, see dragOf(): no smaller force is that of a cell
   bool timed = true;               ///< else `time` counts samples
   std::vector<std::string> notes;  ///< what was done to the record, for the user
 
