@@ -22,12 +22,12 @@ constexpr double kTube = 0.1;                              // widening of a tube
 constexpr double kAgree = 6;                               // px, between two ways to see a tip's end
 constexpr double kApart = 0.25;  // standard deviation of an end over the distance between two ways to see it
 constexpr double kUnclear = 3;   // px, standard deviation of an end that needs a second witness
-constexpr double kThinnest = 4, kWidestTip = 40;  // px, half widths
-constexpr double kAhead = 48;                     // px behind the end, whose half width is that of the strips
-constexpr int kFirstShift = 24, kShift = 8;       // px, that an axis may be off
-constexpr double kMargin = 6;                     // px beside an outline
-constexpr double kSureClearness = 9;              // of a tip
-constexpr double kSureSymmetry = 0.9;             // of the edges near a tip
+constexpr double kThinnest = 4, kWidestTip = 40, kWidestSure = 34;  // px, half widths
+constexpr double kAhead = 48;                // px behind the end, whose half width is that of the strips
+constexpr int kFirstShift = 24, kShift = 8;  // px, that an axis may be off
+constexpr double kMargin = 6;                // px beside an outline
+constexpr double kSureClearness = 9;         // of a tip
+constexpr double kSureSymmetry = 0.9;        // of the edges near a tip
 constexpr int kRounds = 3;
 constexpr double kFitBehind = 48;  // px before an end, in the strip of its fit
 constexpr int kFitBefore = 18;     // px of the background that the fit needs
@@ -150,6 +150,7 @@ PipetteDetection refineInjection(const Frame& frame, PipetteAxis axis, const cv:
   if (found.clearness < kSureClearness)
     found.finding = Finding::uncertain("the tip is not clear before its background");
   fitEnd(frame, axis, outline, found, fit.offset_deviation);
+  if (found.half_width > kWidestSure) found.finding = Finding::uncertain("the pipette is too wide at its end");
   if (found.symmetry < kSureSymmetry) found.finding = Finding::uncertain("the pipette's walls are not symmetric");
   if (!frame.contains(found.end, 2)) found.finding = Finding::notFound("no pipette: its end is out of the image");
   return found;
