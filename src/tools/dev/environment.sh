@@ -9,6 +9,7 @@ prepare_environment() {
   # A decimal comma breaks the numbers that rviz and the URDF parser read.
   export LC_ALL=C.UTF-8
   export ROS_HOME="$ROOT/out/ros" ROS_LOG_DIR="$ROOT/out/ros/log"
+  mkdir -p "$ROS_LOG_DIR"  # rospack keeps its cache beside it, and complains where the folder is missing
   if [[ -z ${HOME:-} || ! -w $HOME ]]; then
     export HOME="$ROOT/out/home"
     mkdir -p "$HOME"
