@@ -27,14 +27,15 @@ Part partOf(const ForceCurve& curve, const std::vector<std::size_t>& samples, st
   Part part;
   part.count = end - begin;
   if (part.count == 0) return part;
-  std::vector<double> forces;
+  std::vector<double> forces, steps{0};  // a drift does not change the steps between neighbours
   for (std::size_t i = begin; i < end; ++i) {
     part.time += curve.time[samples[i]] / static_cast<double>(part.count);
+    if (!forces.empty()) steps.push_back(std::abs(curve.force[samples[i]] - forces.back()));
     forces.push_back(curve.force[samples[i]]);
   }
   part.force = medianOf(forces);
-  for (double& force : forces) force = std::abs(force - part.force);
-  part.deviation = kDeviationOfMedian * 1.4826 * medianOf(forces) / std::sqrt(static_cast<double>(part.count));
+  const double noise = 1.4826 / std::sqrt(2.0) * medianOf(steps);
+  part.deviation = kDeviationOfMedian * noise / std::sqrt(static_cast<double>(part.count));
   return part;
 }
 
