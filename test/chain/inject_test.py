@@ -226,6 +226,7 @@ class InjectTest(InjectPulseTest):
         self.assertLess(result.max_depth, 1e-6)
         self.say("withdraw")
         self.tick_until(lambda: self.status().state == "withdraw", "the withdrawal")
+        self.tick_until(lambda: self.status().state == "idle", "the end of the withdrawal")
         self.check_out(start)
         self.assertFalse(self.chain.seen["/cell/state"].punctured)
 
