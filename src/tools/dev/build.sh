@@ -30,7 +30,7 @@ link_package() {
   [[ ! -L $package ]] || rm "$package"  # of an older checkout
   mkdir -p "$package"
   find "$package" -maxdepth 1 -xtype l -delete
-  for part in CMakeLists.txt src benchmark msg srv action launch config urdf test; do
+  for part in CMakeLists.txt plugin_description.xml src benchmark msg srv action launch config urdf test; do
     ln -sfn "../../../$part" "$package/$part"
   done
   # catkin installs it as it is; -C: its time stays while nothing changes.
