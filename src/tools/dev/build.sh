@@ -30,11 +30,11 @@ link_package() {
   [[ ! -L $package ]] || rm "$package"  # of an older checkout
   mkdir -p "$package"
   find "$package" -maxdepth 1 -xtype l -delete
-  for part in CMakeLists.txt plugin_description.xml src benchmark msg srv action launch config urdf test; do
+  for part in CMakeLists.txt src benchmark msg srv action launch config urdf test; do
     ln -sfn "../../../$part" "$package/$part"
   done
-  # catkin installs it as it is; -C: its time stays while nothing changes.
-  install -C -m 644 "$ROOT/package.xml" "$package/package.xml"
+  # catkin installs them as they are; -C: their time stays while nothing changes.
+  install -C -m 644 "$ROOT"/{package,plugin_description}.xml "$package"
 }
 
 # Makes the given targets (by default everything but the tests, installed), then takes the workspace's environment on.
