@@ -21,8 +21,9 @@ constexpr char kStopStyle[] = "font-weight: bold; font-size: 20px;";
 
 }  // namespace
 
-CommandsWidget::CommandsWidget(std::function<void(const std::string&)> send, QWidget* parent)
-    : QWidget(parent), send_(std::move(send)) {
+CommandsWidget::CommandsWidget(std::function<SessionView()> newest, std::function<void(const std::string&)> send,
+                               QWidget* parent)
+    : QWidget(parent), newest_(std::move(newest)), send_(std::move(send)) {
   auto* layout = new QGridLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->setHorizontalSpacing(8);
@@ -58,16 +59,16 @@ CommandsWidget::CommandsWidget(std::function<void(const std::string&)> send, QWi
   const auto stop = [this] { press(rows_.size() - 1); };
   QObject::connect(space, &QShortcut::activated, this, stop);
   QObject::connect(space, &QShortcut::activatedAmbiguously, this, stop);
-  display(session_);
+  display({});
 }
 
 void CommandsWidget::press(std::size_t index) {
-  const CommandOffer offered = offer(kConsoleCommands[index], session_);
+  // What is displayed may be older: a stop during a pulse must not be that of the state before.
+  const CommandOffer offered = offer(kConsoleCommands[index], newest_());
   if (offered.refusal.empty()) send_(offered.command);
 }
 
 void CommandsWidget::display(const SessionView& session) {
-  session_ = session;
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     display(rows_[i], offer(kConsoleCommands[i], session), kConsoleCommands[i] == ConsoleCommand::kStop);
   }

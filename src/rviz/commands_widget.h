@@ -16,8 +16,10 @@ namespace microinjection {
 /// space.
 class CommandsWidget : public QWidget {
  public:
-  /// `send`: called with the command of a pressed button.
-  explicit CommandsWidget(std::function<void(const std::string&)> send, QWidget* parent = nullptr);
+  /// `newest`: gives the session at the moment of a press; `send`: called with the command of a
+  /// pressed button.
+  CommandsWidget(std::function<SessionView()> newest, std::function<void(const std::string&)> send,
+                 QWidget* parent = nullptr);
   void display(const SessionView& session);
 
  private:
@@ -29,9 +31,9 @@ class CommandsWidget : public QWidget {
   void press(std::size_t index);
   void display(Row& row, const CommandOffer& offer, bool is_stop);
 
+  std::function<SessionView()> newest_;
   std::function<void(const std::string&)> send_;
   std::array<Row, kConsoleCommands.size()> rows_;
-  SessionView session_;
 };
 
 }  // namespace microinjection

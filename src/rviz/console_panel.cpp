@@ -11,6 +11,7 @@
 #include <QTimer>
 #include <QVBoxLayout>
 #include <cmath>
+#include <utility>
 
 #include "operation/console/headline.h"
 #include "rviz/colours.h"
@@ -68,11 +69,14 @@ ConsolePanel::~ConsolePanel() = default;
 QSize ConsolePanel::sizeHint() const { return {640, 700}; }
 
 QWidget* ConsolePanel::makeLeft() {
-  commands_ = new CommandsWidget(
-      [this](const std::string& command) {
-        if (link_) link_->send(command);
-      },
-      this);
+  const auto newest = [this] {
+    if (link_) grown_ = link_->poll() || grown_;
+    return link_ ? link_->session() : SessionView();
+  };
+  const auto send = [this](const std::string& command) {
+    if (link_) link_->send(command);
+  };
+  commands_ = new CommandsWidget(newest, send, this);
   return commands_;
 }
 
@@ -141,9 +145,9 @@ std::optional<Eigen::Vector3d> ConsolePanel::pipetteAxis() const {
 }
 
 void ConsolePanel::tick() {
-  const bool grown = link_->poll();
+  grown_ = link_->poll() || grown_;
   if (ticks_++ % kStatePeriod == 0) showState();
-  if (grown && isVisible()) plot();
+  if (std::exchange(grown_, false) && isVisible()) plot();
 }
 
 void ConsolePanel::showState() {

@@ -42,6 +42,7 @@ class ConsolePanel : public rviz::Panel {
   std::unique_ptr<SessionLink> link_;
   QTimer* timer_;
   int ticks_ = 0;
+  bool grown_ = false;     ///< the history, since it was plotted
   unsigned contacts_ = 0;  ///< of the past lines that are plotted
 
   StepsWidget* steps_;
