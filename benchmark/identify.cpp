@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <memory>
 #include <random>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "benchmark/bench_main.h"
 #include "benchmark/common/drawn_cell.h"
 #include "benchmark/common/faulty_sensor.h"
+#include "benchmark/common/puncture_trial.h"
 #include "cell/identification/family_law.h"
 #include "cell/identification/identification.h"
 
@@ -21,7 +23,9 @@ constexpr double kSpeed = 20e-6;  // m/s
 
 struct Options {
   int trials = 200, seed = 100001;
-  double deep = 5;  // um
+  std::string kinds = "homogeneous,zona,outliers,dropouts,freeze,wrong_model";
+  double deep = 5;        // um
+  double strength = 0.1;  // standard deviation of the logarithm of a membrane's strength
 };
 
 class IdentifyTable {
@@ -29,9 +33,12 @@ class IdentifyTable {
   explicit IdentifyTable(const Options& options) : options_(options), deep_(1e-6 * options.deep) {}
 
   std::string rows() {
-    add("trial,kind,modulus_error,modulus_covered,contact_error_m,puncture_error,time_s,verdict\n");
-    for (const char* kind : {"homogeneous", "zona", "outliers", "dropouts", "freeze", "wrong_model"}) {
-      const bool main = std::string(kind) == "homogeneous" || std::string(kind) == "zona";
+    add("trial,kind,modulus_error,modulus_covered,contact_error_m,puncture_error,time_s,verdict,core_modulus,"
+        "rival_advantage,lowest_modulus,highest_modulus,layers_known,puncture_law,puncture_depth_m,"
+        "puncture_depth_error,force_in_50,force_in_90,depth_in_50,depth_in_90\n");
+    std::istringstream kinds(options_.kinds);
+    for (std::string kind; std::getline(kinds, kind, ',');) {
+      const bool main = kind == "homogeneous" || kind == "zona";
       for (int trial = 0; trial < (main ? options_.trials / 2 : options_.trials / 5); ++trial) run(kind, trial);
     }
     return table_;
@@ -70,23 +77,65 @@ class IdentifyTable {
     const DrawnCell truth = drawCell(*data, zona ? 38e-6 : 28e-6, deep_, random_);
     const double contact = uniform(2e-6, 6e-6, random_);
     const ForceCurve curve = record(truth, contact, kind, seed);
-    Scene known = truth.withModulus(1);  // it is not known
-    if (kind == "wrong_model") known.cell.layers.resize(1);
+    const bool punctured = options_.strength >= 0 && (kind == "homogeneous" || kind == "zona");
+    std::mt19937 own(static_cast<unsigned>(seed) + 104729U * static_cast<unsigned>(kind.size()));
+    const PunctureScore puncture =
+        punctured ? runPunctureTrial(truth, data, options_.strength, seed, own) : PunctureScore();
     const double start = threadCpuTime();
-    char row[200];
+    Found found;
     try {
-      const auto law =
-          std::make_shared<FamilyLaw>(kind == "wrong_model" ? homogeneous_ : data, known, std::vector<std::string>{});
-      const Identification found = identify(identifiedCurve(curve), law, {});
-      const Estimate &modulus = *found.find("young_modulus"), &place = *found.find("contact");
-      std::snprintf(row, sizeof(row), "%d,%s,%.5f,%d,%.3g,,%.3f,%s\n", trial, kind.c_str(),
-                    modulus.value / truth.modulus - 1, modulus.low <= truth.modulus && truth.modulus <= modulus.high,
-                    place.value - contact, threadCpuTime() - start, found.consistent() ? "consistent" : "inconsistent");
+      found = fit(kind, truth, contact, curve);
     } catch (const ConfigError& error) {
-      std::snprintf(row, sizeof(row), "%d,%s,,,,,%.3f,refused\n", trial, kind.c_str(), threadCpuTime() - start);
       std::fprintf(stderr, "%s\n", error.what());
     }
+    const double core = zona ? truth.scene.cell.layers[1].material.young_modulus / truth.modulus : 1;
+    char row[400];
+    std::snprintf(row, sizeof(row), "%d,%s,%s,%s,%.3f,%s,%.3g,%s,%s\n", trial, kind.c_str(), found.values.c_str(),
+                  puncture.predicted ? number(puncture.force_error).c_str() : "", threadCpuTime() - start,
+                  found.verdict.c_str(), core, found.rivals.c_str(), text(puncture).c_str());
     add(row);
+  }
+
+  /// Parts of a row.
+  struct Found {
+    std::string values = ",,", verdict = "refused", rivals = ",,,";
+  };
+
+  Found fit(const std::string& kind, const DrawnCell& truth, double contact, const ForceCurve& curve) const {
+    Scene known = truth.withModulus(1);  // it is not known
+    if (kind == "wrong_model") known.cell.layers.resize(1);
+    const auto& family = known.cell.layers.size() > 1 ? zona_ : homogeneous_;
+    IdentificationConfig config;
+    config.rivals = std::make_shared<const std::vector<RivalCell>>(rivalCells({homogeneous_, zona_}, known));
+    const auto law = std::make_shared<FamilyLaw>(family, known, std::vector<std::string>{});
+    const Identification found = identify(identifiedCurve(curve), law, config);
+    const Estimate &modulus = *found.find("young_modulus"), &place = *found.find("contact");
+    Found result;
+    const bool covered = modulus.low <= truth.modulus && truth.modulus <= modulus.high;
+    char part[120];
+    std::snprintf(part, sizeof(part), "%.5f,%d,%.3g", modulus.value / truth.modulus - 1, covered,
+                  place.value - contact);
+    result.values = part;
+    result.verdict = found.consistent() ? "consistent" : "inconsistent";
+    const RivalComparison& rivals = *found.rivals;
+    std::snprintf(part, sizeof(part), "%.1f,%.3f,%.3f,%d", rivals.advantage, rivals.modulus_low / rivals.own.modulus,
+                  rivals.modulus_high / rivals.own.modulus, rivals.layersAreKnown());
+    result.rivals = part;
+    return result;
+  }
+
+  static std::string number(double value) {
+    char text[32];
+    std::snprintf(text, sizeof(text), "%.5f", value);
+    return text;
+  }
+
+  static std::string text(const PunctureScore& score) {
+    if (!score.predicted) return score.law + ",,,,,,";
+    char text[120];
+    std::snprintf(text, sizeof(text), "%s,%.3g,%.5f,%d,%d,%d,%d", score.law.c_str(), score.depth, score.depth_error,
+                  score.force_in_50, score.force_in_90, score.depth_in_50, score.depth_in_90);
+    return text;
   }
 
   Options options_;
@@ -105,8 +154,11 @@ int main(int argc, char** argv) {
   po::options_description more;
   more.add_options()("trials", po::value(&options.trials)->default_value(options.trials),
                      "cells; half of each family, and a fifth for each kind of bad record")(
+      "kinds", po::value(&options.kinds)->default_value(options.kinds), "of trials, separated by commas")(
       "seed", po::value(&options.seed)->default_value(options.seed), "of the first cell")(
-      "deep", po::value(&options.deep)->default_value(options.deep), "um, of the record in contact");
+      "deep", po::value(&options.deep)->default_value(options.deep), "um, of the record in contact")(
+      "strength", po::value(&options.strength)->default_value(options.strength),
+      "standard deviation of the logarithm of the failure limits, hidden and assumed; negative: no punctures");
   return microinjection::benchMain(
       argc, argv, "identify: error and coverage of modulus and contact point over cells drawn at random",
       [&] { return microinjection::IdentifyTable(options).rows(); }, more);

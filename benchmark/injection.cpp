@@ -25,6 +25,9 @@ namespace {
 constexpr char kScene[] = MICROINJECTION_SOURCE_DIR "/config/cells/mouse_oocyte_pipette.yaml";
 constexpr char kRig[] = MICROINJECTION_SOURCE_DIR "/urdf/rig.urdf";
 constexpr double kLongest = 180;  ///< s of virtual time
+constexpr double kKnownTo = 0.2;  ///< deviation of the logarithm of an expected strength, in the profiles
+
+double known_to = 0;  ///< the same of the random cells; 0: nothing is expected
 
 struct Bench {
   Scene scene = loadScene(kScene);
@@ -59,6 +62,7 @@ Outcome inject(const Bench& bench, const InjectionCase& of, const InjectionRig::
   InjectionRig::Config config;
   config.controller = injectionSettings(of);
   config.disturbance = disturbance;
+  config.expected = expectedPuncture(of, known_to);
   config.sensor.seed = of.seed;
   config.manipulator = bench.manipulator;
   config.manipulator.seed = of.seed;
@@ -117,6 +121,8 @@ void summarise(const std::vector<Outcome>& all) {
                  [&](const Outcome& o) { return o.truth.peak_force / limits(o).force_limit; });
   medianAndWorst(all, "depth", "of the limit",
                  [&](const Outcome& o) { return o.truth.max_depth / limits(o).depth_limit; });
+  medianAndWorst(all, "zona fails", "diameters deep",
+                 [](const Outcome& o) { return o.truth.zona_depth.value_or(0) / o.of.cell.diameter; });
   medianAndWorst(all, "puncture felt after", "ms", [](const Outcome& o) { return 1e3 * o.truth.latency; });
   medianAndWorst(all, "duration", "s", [](const Outcome& o) { return o.result.duration; });
   for (const Outcome& o : all) {
@@ -140,36 +146,41 @@ InjectionCase oocyte() {
   return of;
 }
 
+/// @param fastest  m/s; 0: the controller's own profile
+/// @param known    deviation of the logarithm of the expected strength; 0: nothing is expected
+void profile(const Bench& bench, double fastest, double known) {
+  const InjectionCase of = oocyte();
+  ScaledCell cell(bench.scene, bench.prepared, of.cell);
+  InjectionRig::Config config;
+  config.controller = injectionSettings(of);
+  config.controller.goal.margin = 0;
+  config.controller.guards.speed_limit = 1e-3;
+  config.controller.guards.time_limit = 60;
+  auto& motion = config.controller.motion;
+  motion.stab_speed = fastest > 0 ? fastest : 500e-6;
+  if (fastest > 0) motion.indent_speed = fastest;
+  config.expected = expectedPuncture(of, known);
+  config.manipulator = bench.manipulator;
+  config.start = {0, 0, 0.5 * of.cell.diameter + of.gap};
+  InjectionRig rig(config, bench.geometry, cell);
+  rig.run(kLongest);
+  const auto& truth = rig.truth();
+  std::fprintf(stderr, "injection: %s %3.0f um/s: fails at %.2f um, rests at %.2f um, felt after %.0f ms, %s\n",
+               fastest > 0 ? "constant"
+               : known > 0 ? "expected, profile to"
+                           : "profile to",
+               1e6 * motion.stab_speed, 1e6 * truth.puncture_depth.value_or(NAN), 1e6 * truth.max_depth,
+               1e3 * truth.latency, toText(rig.controller().result().outcome));
+}
+
 /// How deep a needle at constant speed, or the controller's own profile, is when the zona fails,
 /// and where it stops.
 void profiles(const Bench& bench) {
   std::fprintf(stderr,
                "injection: a relaxing oocyte: depth where the zona fails, and where the needle comes to rest before "
                "the margin\n");
-  const InjectionCase of = oocyte();
-  for (const double fastest : {2e-6, 5e-6, 20e-6, 50e-6, 100e-6, 200e-6, 500e-6, 0.0}) {
-    ScaledCell cell(bench.scene, bench.prepared, of.cell);
-    InjectionRig::Config config;
-    config.controller = injectionSettings(of);
-    config.controller.goal.margin = 0;
-    config.controller.guards.speed_limit = 1e-3;
-    config.controller.guards.time_limit = 60;
-    auto& motion = config.controller.motion;
-    if (fastest > 0) {
-      motion.indent_speed = motion.stab_speed = fastest;
-    } else {
-      motion.stab_speed = 500e-6;
-    }
-    config.manipulator = bench.manipulator;
-    config.start = {0, 0, 0.5 * of.cell.diameter + of.gap};
-    InjectionRig rig(config, bench.geometry, cell);
-    rig.run(kLongest);
-    const auto& truth = rig.truth();
-    std::fprintf(stderr, "injection: %s %3.0f um/s: fails at %.2f um, rests at %.2f um, felt after %.0f ms, %s\n",
-                 fastest > 0 ? "constant" : "profile to", 1e6 * motion.stab_speed,
-                 1e6 * truth.puncture_depth.value_or(NAN), 1e6 * truth.max_depth, 1e3 * truth.latency,
-                 toText(rig.controller().result().outcome));
-  }
+  for (const double fastest : {2e-6, 5e-6, 20e-6, 50e-6, 100e-6, 200e-6, 500e-6, 0.0}) profile(bench, fastest, 0);
+  profile(bench, 0, kKnownTo);
 }
 
 /// Each disturbance at a moment of its own in each of the cells: the needle within its guards, and
@@ -236,6 +247,8 @@ int main(int argc, char** argv) {
   po::options_description options;
   options.add_options()("cells", po::value(&cells)->default_value(200), "how many")(
       "first-seed", po::value(&first_seed)->default_value(1), "of the cells; settings were chosen with those from 1")(
+      "known-to", po::value(&microinjection::known_to)->default_value(0),
+      "the controller expects the zona's force with this standard deviation of its logarithm; 0: it expects nothing")(
       "manipulator", po::value(&manipulator),
       "configuration file of the micromanipulator, e.g. config/rigs/imperfect.yaml; else an ideal one with a "
       "lag");

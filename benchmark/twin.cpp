@@ -90,7 +90,8 @@ class TwinTable {
   void indent(const Case& drawn, const Scene& prior, const std::shared_ptr<const SurrogateData>& cell) {
     const DrawnCell& truth = drawn.truth;
     FaultySensor sensor(drawn.kind, 0.1 * truth.force(deep_), options_.seed + drawn.trial);
-    CellEstimator estimator(prior, cell, {});
+    CellEstimator estimator(prior, cell, {},
+                            std::make_shared<const std::vector<RivalCell>>(rivalCells({homogeneous_, zona_}, prior)));
     KalmanTwin kalman(prior, cell, {});
     const double offset = uniform(-50e-9, 50e-9, random_), drift = drawn.kind == "drift" ? 100e-9 : 0;
     const auto travel = [](double time) { return kSpeed * time - kApproach; };  // m, past the contact

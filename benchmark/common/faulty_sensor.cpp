@@ -9,16 +9,18 @@ constexpr double kOutliers = 0.03, kDropouts = 0.01, kFreezes = 0.002;  // of th
 constexpr int kDropout = 20, kFreeze = 30;                              // readings
 constexpr int kSamples = 10;                                            // of the converter, for a reading
 
-ForceSensorConfig seeded(int seed) {
+ForceSensorConfig seeded(int seed, double noise) {
   ForceSensorConfig config;
+  config.density *= noise;
+  config.range *= noise;  // the converter's step is as fine
   config.seed = seed;
   return config;
 }
 
 }  // namespace
 
-FaultySensor::FaultySensor(const std::string& fault, double outlier, int seed)
-    : fault_(fault), outlier_(outlier), sensor_(seeded(seed)) {}
+FaultySensor::FaultySensor(const std::string& fault, double outlier, int seed, double noise)
+    : fault_(fault), outlier_(outlier), sensor_(seeded(seed, noise)) {}
 
 std::optional<double> FaultySensor::read(double time, const std::function<double(double)>& force,
                                          std::mt19937& random) {

@@ -54,4 +54,13 @@ InjectionControllerConfig injectionSettings(const InjectionCase& of) {
   return config;
 }
 
+std::optional<ExpectedPuncture> expectedPuncture(const InjectionCase& of, double deviation) {
+  if (deviation <= 0) return std::nullopt;
+  constexpr double kInterval = 1.96, kShallowest = 0.05, kDeepest = 0.4;  // of 95 %; in diameters
+  std::mt19937 random(static_cast<unsigned>(of.seed) + 500000);
+  const double off = std::normal_distribution<double>(0, deviation)(random);
+  const double force = of.cell.puncture.layers.front().force * std::exp(off), wide = std::exp(kInterval * deviation);
+  return ExpectedPuncture{force / wide, force * wide, kShallowest * of.cell.diameter, kDeepest * of.cell.diameter};
+}
+
 }  // namespace microinjection

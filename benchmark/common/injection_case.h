@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "benchmark/common/scaled_cell.h"
 #include "operation/control/injection_controller.h"
@@ -25,5 +26,9 @@ InjectionCase randomInjectionCase(int seed);
 /// What an operator sets for a kind of cell: its diameter is seen, its modulus is believed, the
 /// layers are known.
 InjectionControllerConfig injectionSettings(const InjectionCase& of);
+
+/// What a twin expects of the zona, which knows its strength with `deviation` (of its logarithm, 0: nothing
+/// is known). The depth is that of all cells. Empty when nothing is known.
+std::optional<ExpectedPuncture> expectedPuncture(const InjectionCase& of, double deviation);
 
 }  // namespace microinjection

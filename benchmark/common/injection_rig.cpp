@@ -14,7 +14,8 @@ InjectionRig::InjectionRig(const Config& config, const ManipulatorGeometry& geom
       injector_({}),
       controller_(config.controller),
       cell_(&cell),
-      disturbance_(config.disturbance) {
+      disturbance_(config.disturbance),
+      expected_(config.expected) {
   Eigen::Isometry3d pose = geometry.tip_at_zero;
   pose.translation() = config.start;
   const std::string refusal = manipulator_.movePosition(pose);
@@ -63,6 +64,7 @@ void InjectionRig::step() {
   input.force = Eigen::Vector3d(reading.y(), 0, reading.x());
   input.injector =
       InjectorReport{injector_.reading().busy, injector_.reading().volume, injector_.reading().last_id == pulses_};
+  input.expected = expected_;
   if (isIn(Disturbance::Kind::kForceLost) || !cell_->valid()) input.force.reset();  // as cell_simulator says it
   if (isIn(Disturbance::Kind::kNeedleLost)) input.needle.reset();
   const InjectionState before = controller_.injection();
@@ -93,6 +95,7 @@ void InjectionRig::monitor(const Eigen::Vector3d& force, const Eigen::Vector3d& 
   truth_.unfelt += truth_.punctures > felt_;
   truth_.punctures = cell_->layersPunctured();
   truth_.puncture_depth = truth_.depth;
+  if (!truth_.zona_depth) truth_.zona_depth = truth_.depth;
   failed_at_ = time_;
 }
 

@@ -26,6 +26,7 @@ class InjectionRig {
   struct Config {
     Disturbance disturbance;
     InjectionControllerConfig controller;
+    std::optional<ExpectedPuncture> expected;  ///< by the controller
     ForceSensorConfig sensor;
     SimulatedManipulatorConfig manipulator;
     Eigen::Vector3d start = Eigen::Vector3d::Zero();  ///< m, of the tip
@@ -44,6 +45,7 @@ class InjectionRig {
     double peak_force = 0;                 ///< N, along the pipette
     double max_depth = 0;                  ///< m past where the tip touched
     std::optional<double> puncture_depth;  ///< m, same, where the last membrane failed
+    std::optional<double> zona_depth;      ///< m, same, where the first one failed
     int punctures = 0;
     double latency = 0;        ///< s, longest from a membrane's failure to the controller's word
     int false_detections = 0;  ///< touches without contact, and punctures without a failure
@@ -71,6 +73,7 @@ class InjectionRig {
   InjectionController controller_;
   ScaledCell* cell_;
   Disturbance disturbance_;
+  std::optional<ExpectedPuncture> expected_;
   double began_ = 0;  ///< s
   double time_ = 0;   ///< s
   std::uint64_t pulses_ = 0;

@@ -6,6 +6,7 @@
 #include "vision/detection/cell_detector.h"
 #include "vision/detection/indentation_contour.h"
 #include "vision/detection/pipette_detector.h"
+#include "vision/detection/specimen_tracker.h"
 #include "vision/microscope/microscope.h"
 
 namespace microinjection {
@@ -118,6 +119,11 @@ void dimpleRow(const ImageRows& rows, const Frame& frame, const CellDetection& c
   const Indentation found = timed(time, [&] { return findIndentation(frame, cell.outer(), needle); });
   rows.add("dimple_depth", found.finding, std::abs(found.depth - *truth.cell->dimple_depth), *truth.cell->dimple_depth,
            kDimple, time);
+  if (!found.outline_found) return;
+  CellDetection undisturbed = cell;
+  takeUndisturbed(found, undisturbed);
+  const cv::Point2d off = undisturbed.centre - cv::Point2d(truth.cell->centre.x(), truth.cell->centre.y());
+  rows.add("centre_undisturbed", cell.finding, std::hypot(off.x, off.y), truth.cell->diameter, kCentre);
 }
 
 }  // namespace

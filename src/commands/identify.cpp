@@ -11,9 +11,13 @@
 #include "base/atomic_file.h"
 #include "base/errors.h"
 #include "base/standard_output.h"
+#include "cell/identification/contact_guess.h"
 #include "cell/identification/family_law.h"
 #include "cell/identification/identified_scene.h"
+#include "cell/identification/point_identification.h"
 #include "commands/identify_arguments.h"
+#include "commands/identify_report.h"
+#include "commands/scene_law.h"
 
 namespace microinjection {
 namespace {
@@ -29,37 +33,41 @@ FormulaGeometry geometryOf(const std::optional<Scene>& scene, const FormulaGeome
   return result;
 }
 
+bool isSolved(const std::string& model) { return model == "solution" || model == "live"; }
+
+/// `deepest`: m, of the record.
 std::shared_ptr<ElasticLaw> makeLaw(const std::string& model, const std::optional<Scene>& scene,
-                                    const IdentifyArguments& arguments) {
-  if (model != "family") return makeFormulaLaw(model, geometryOf(scene, arguments.geometry));
-  if (!scene) throw ConfigError("--model family: needs --scene");
+                                    const IdentifyArguments& arguments, double deepest) {
+  if (model != "family" && !isSolved(model)) return makeFormulaLaw(model, geometryOf(scene, arguments.geometry));
+  if (!scene) throw ConfigError("--model " + model + ": needs --scene");
+  if (isSolved(model)) return solveSceneLaw(*scene, model == "live", deepest);
   return std::make_shared<FamilyLaw>(findFamily(arguments.families, *scene), *scene, arguments.free);
 }
 
-void print(const std::string& model, const Identification& found) {
-  std::printf("%s: %s\n", model.c_str(), found.model.c_str());
-  for (const Estimate& estimate : found.estimates) {
-    std::printf("  %-18s %12.5g %-5s 95 %% interval [%.5g, %.5g]%s\n", estimate.name.c_str(), estimate.value,
-                estimate.unit.c_str(), estimate.low, estimate.high, estimate.bounded ? "" : ", open on one side");
-  }
-  std::printf("  depth %.4g um, force there %.4g nN, noise %.3g nN, %.0f independent samples\n", 1e6 * found.depth,
-              1e9 * found.size, 1e9 * found.noise, found.independent);
-  std::printf("  what the model cannot follow: %.3g nN, %.2g %% of the force: %s\n", 1e9 * found.misfit,
-              100 * found.misfit / found.size, found.consistent() ? "consistent" : "INCONSISTENT");
-  for (const std::string& warning : found.warnings) std::printf("  note: %s\n", warning.c_str());
+/// m, that a solution has to reach: somewhat more than the first estimate of the record's depth.
+double depthOf(const ForceCurve& curve) {
+  constexpr double kMore = 1.1;
+  const ContactGuess guess = guessContact(curve, false);
+  const auto [low, high] = std::minmax_element(curve.position.begin(), curve.position.end());
+  return guess.touched ? std::min(kMore * guess.depth, *high - *low) : *high - *low;
 }
 
-std::string residualTable(const ForceCurve& curve, const Identification& found) {
-  std::string table = "time_s,depth_m,force_N,fitted_N,residual_N\n";
-  const double contact = found.find("contact")->value;
-  for (std::size_t i = 0; i < curve.size(); ++i) {
-    const double residual = found.residuals[static_cast<Eigen::Index>(i)];
-    char row[160];
-    std::snprintf(row, sizeof(row), "%.9g,%.9g,%.9g,%.9g,%.9g\n", curve.time[i], curve.position[i] - contact,
-                  curve.force[i], curve.force[i] - residual, residual);
-    table += row;
+int fitPoint(const IdentifyArguments& arguments, const std::optional<Scene>& scene) {
+  std::optional<Identification> first;
+  std::string table = kEstimateColumns;
+  for (const std::string& model : arguments.models) {
+    const Identification found =
+        identifyPoint(*arguments.point, *makeLaw(model, scene, arguments, arguments.point->depth));
+    printIdentification(model, found);
+    table += estimateRows(model, found);
+    if (!first) first = found;
   }
-  return table;
+  flushStandardOutput();
+  if (!arguments.csv.empty()) writeFileAtomically(arguments.csv, table);
+  if (!arguments.out.empty()) {
+    writeFileAtomically(arguments.out, identifiedScene(arguments.scene, "one point", *first));
+  }
+  return kFits;
 }
 
 int run(int argc, char** argv) {
@@ -71,18 +79,24 @@ int run(int argc, char** argv) {
   const IdentifyArguments& arguments = *parsed;
   std::optional<Scene> scene;
   if (!arguments.scene.empty()) scene = loadScene(arguments.scene);
-  std::vector<std::shared_ptr<ElasticLaw>> laws;
-  for (const std::string& model : arguments.models) laws.push_back(makeLaw(model, scene, arguments));
+  if (arguments.point) return fitPoint(arguments, scene);
   const ForceCurve curve = identifiedCurve(readForceCurve(arguments.record, arguments.curve));
+  std::vector<std::shared_ptr<ElasticLaw>> laws;
+  for (const std::string& model : arguments.models) laws.push_back(makeLaw(model, scene, arguments, depthOf(curve)));
   for (const std::string& note : curve.notes) std::printf("%s: %s\n", arguments.record.c_str(), note.c_str());
 
   std::vector<Identification> fits;
   std::vector<std::string> names;
   for (std::size_t i = 0; i < laws.size(); ++i) {
     try {
-      fits.push_back(identify(curve, laws[i], arguments.identification));
+      IdentificationConfig config = arguments.identification;
+      if (arguments.models[i] == "family") {
+        config.rivals =
+            std::make_shared<const std::vector<RivalCell>>(rivalCells(loadFamilies(arguments.families), *scene));
+      }
+      fits.push_back(identify(curve, laws[i], config));
       names.push_back(arguments.models[i]);
-      print(names.back(), fits.back());
+      printIdentification(names.back(), fits.back());
     } catch (const ConfigError& error) {
       std::cerr << "identify: " << arguments.record << ": " << arguments.models[i] << ": " << error.what() << '\n';
       if (i == 0) return kFailed;
@@ -95,6 +109,9 @@ int run(int argc, char** argv) {
   }
   const Identification& first = fits.front();
   flushStandardOutput();
+  std::string table = kEstimateColumns;
+  for (std::size_t i = 0; i < fits.size(); ++i) table += estimateRows(names[i], fits[i]);
+  if (!arguments.csv.empty()) writeFileAtomically(arguments.csv, table);
   if (!arguments.residuals.empty()) writeFileAtomically(arguments.residuals, residualTable(curve, first));
   if (!first.consistent()) {
     std::cerr << "identify: " << arguments.models[0] << " does not follow the record: no scene is written\n";

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/program_options.hpp>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <sstream>
@@ -17,13 +18,17 @@ namespace {
 constexpr char kHelp[] = R"help(identify: which cell is it? Fits a recorded force to models of a cell.
 
 Usage: identify --record FILE [--scene FILE] [--model M1,M2,...] [--out SCENE] [...]
+       identify --point DEPTH,FORCE --reading-error E --scene FILE --model solution [...]
 
 The record is a table: a line of column names, then numbers. Names and units are found by themselves: time_s,
 "height (um)", force_nN, deflection_m, ... ; otherwise name them: --column force=Fz:uN. Signs, a sensor's offset and
 drift, outliers and missing rows may be as they come. Only the way in is used.
 
 Models (each is fitted, and compared with the others):
-  family    the converged force of the scene's cell; its modulus, and ratios that --free names
+  family    the converged force of the scene's cell; its modulus, and ratios that --free names; it is compared with
+            cells that have other layers
+  solution  the same for any scene of solids, solved as by `indent` to the record's depth, which takes a minute
+  live      same by the P1 tetrahedra of a live session, which are too stiff
   hertz     a paraboloid on a half space, with a scene on a ball of the cell's size
   cone      Sneddon; needs --half-angle
   shell     a point load on a thin shell; needs a scene with a shell
@@ -34,9 +39,11 @@ Every value has an interval of 95 %. Pairs that the record cannot tell apart are
 Examples:
   identify --record curve.csv --scene config/cells/mouse_oocyte_zona.yaml --out my_cell.yaml
   identify --record afm.csv --model hertz --tip-radius 10e-6 --poisson-ratio 0.5
+  identify --point 45e-6,7.5e-6 --reading-error 0.05 --scene config/cells/mouse_oocyte_pipette.yaml --model solution
 
 Exit status: 0 the first model follows the record; 2 bad usage, or output that cannot be written; 3 the record holds no
-contact, or the fit fails; 4 the first model does not follow the record: do not use its values.
+contact, or the fit fails; 4 the first model does not follow the record, or another cell follows it clearly better: do
+not use its values.
 
 Options)help";
 
@@ -86,19 +93,41 @@ void addColumn(const std::string& text, ForceCurveConfig& config) {
   config.columns[text.substr(0, equals)] = text.substr(equals + 1);
 }
 
+MeasuredPoint parsePoint(const std::string& text, double reading_error, double depth_error) {
+  MeasuredPoint point;
+  int used = 0;
+  const int read = std::sscanf(text.c_str(), "%lf,%lf%n", &point.depth, &point.force, &used);
+  if (read != 2 || static_cast<std::size_t>(used) != text.size()) {
+    throw ConfigError("--point = " + text + ": must be two numbers DEPTH,FORCE (m, N)");
+  }
+  requirePositive("point", point.depth);
+  requirePositive("point", point.force);
+  requirePositive("reading-error", reading_error);
+  if (!(std::isfinite(depth_error) && depth_error >= 0)) throw ConfigError("--depth-error: must be a number >= 0 (m)");
+  point.reading_error = reading_error;
+  point.depth_error = depth_error;
+  return point;
+}
+
+/// The scene has the modulus of these.
+bool isOfScene(const std::string& model) { return model == "family" || model == "solution" || model == "live"; }
+
 }  // namespace
 
 std::optional<IdentifyArguments> parseIdentifyArguments(int argc, char** argv) {
   namespace po = boost::program_options;
   IdentifyArguments arguments;
-  std::string models, free, drift = "auto";
+  std::string models, free, point, drift = "auto";
   std::vector<std::string> columns;
-  double poisson_ratio = -1;
+  double poisson_ratio = -1, reading_error = 0, depth_error = 0;
   bool quick = false;
   po::options_description options(kHelp);
   auto add = options.add_options();
   add("help", "this text");
   add("record", po::value(&arguments.record), "file with the record");
+  add("point", po::value(&point), "DEPTH,FORCE: one published point instead of a record, m, N; the contact is at 0");
+  add("reading-error", po::value(&reading_error), "of the point's force, relative: half of its interval of 95 %");
+  add("depth-error", po::value(&depth_error), "m, same, of the point's depth");
   add("scene", po::value(&arguments.scene), "file with the cell's sizes and the tip, SI units");
   add("model", po::value(&models), "models, the first one for --out; default: family,hertz with a scene, else hertz");
   add("free", po::value(&free), "ratios of the family to find, too: core_modulus, shell_thickness, tip_radius, ...");
@@ -113,6 +142,7 @@ std::optional<IdentifyArguments> parseIdentifyArguments(int argc, char** argv) {
   add("families", po::value(&arguments.families)->default_value(defaultFamilies()), "folder of the families' files");
   add("out", po::value(&arguments.out), "scene file to write, with what was found by the first model");
   add("residuals", po::value(&arguments.residuals), "CSV file to write: measured, fitted and their difference");
+  add("csv", po::value(&arguments.csv), "CSV file to write: what was found by each model");
   add("no-intervals", po::bool_switch(&quick), "intervals from the curvature alone: quicker");
   po::variables_map values;
   const po::positional_options_description none;
@@ -122,7 +152,14 @@ std::optional<IdentifyArguments> parseIdentifyArguments(int argc, char** argv) {
     std::cout << options;
     return std::nullopt;
   }
-  if (arguments.record.empty()) throw ConfigError("--record is missing: the file with the record");
+  if (arguments.record.empty() == point.empty()) {
+    throw ConfigError("--record, or else --point: one of them must be given, the file with the record");
+  }
+  if (!point.empty()) {
+    if (values.count("reading-error") == 0) throw ConfigError("--point: needs --reading-error");
+    if (!arguments.residuals.empty()) throw ConfigError("--residuals: needs --record");
+    arguments.point = parsePoint(point, reading_error, depth_error);
+  }
   for (const char* option : {"tip-radius", "half-angle"}) {
     if (values.count(option) != 0) requirePositive(option, values[option].as<double>());
   }
@@ -135,15 +172,16 @@ std::optional<IdentifyArguments> parseIdentifyArguments(int argc, char** argv) {
   if (!arguments.out.empty() && arguments.scene.empty()) throw ConfigError("--out: needs --scene, which it changes");
   requireNoInput("out", arguments.out, arguments);
   requireNoInput("residuals", arguments.residuals, arguments);
+  requireNoInput("csv", arguments.csv, arguments);
   arguments.geometry.poisson_ratio = poisson_ratio;
   arguments.models = split(models.empty() ? (arguments.scene.empty() ? "hertz" : "family,hertz") : models);
   arguments.free = split(free);
   if (arguments.models.empty()) throw ConfigError("--model = " + models + ": must name a model");
   const bool family = std::find(arguments.models.begin(), arguments.models.end(), "family") != arguments.models.end();
   if (!arguments.free.empty() && !family) throw ConfigError("--free: needs --model family");
-  if (!arguments.out.empty() && arguments.models.front() != "family") {
+  if (!arguments.out.empty() && !isOfScene(arguments.models.front())) {
     throw ConfigError("--out: the first model is " + arguments.models.front() +
-                      ": must be family, whose modulus is that of the scene's cell");
+                      ": must be family, solution or live, whose modulus is that of the scene's cell");
   }
   arguments.identification.drift = parseDrift(drift);
   arguments.identification.intervals = !quick;

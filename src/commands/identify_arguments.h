@@ -7,12 +7,14 @@
 #include "cell/identification/force_curve.h"
 #include "cell/identification/formula_law.h"
 #include "cell/identification/identification.h"
+#include "cell/identification/point_identification.h"
 
 namespace microinjection {
 
 /// Command line of `identify`.
 struct IdentifyArguments {
-  std::string record;               ///< file
+  std::string record;  ///< file; empty with a point
+  std::optional<MeasuredPoint> point;
   std::string scene;                ///< file; empty: none
   std::vector<std::string> models;  ///< of the list in the help
   std::vector<std::string> free;    ///< ratios of a family
@@ -22,6 +24,7 @@ struct IdentifyArguments {
   IdentificationConfig identification;
   std::string out;        ///< scene file; empty: none
   std::string residuals;  ///< CSV file; empty: none
+  std::string csv;        ///< same, of what was found
 };
 
 /// Returns nothing after printing the help. Throws ConfigError, or an exception of

@@ -78,6 +78,7 @@ CellEstimatorNode::CellEstimatorNode(ros::NodeHandle node, ros::NodeHandle priva
   CellFollowerConfig served = parameters_.served;
   served.largest_height = std::min(served.largest_height, PlacedCell::kHighest * scene.radius());
   served_ = CellFollower(served, scene.cell.material().young_modulus);
+  families_ = loadFamilies(parameters_.families);
   std::string reason;
   auto member = findFamilyCell(parameters_.families, scene, reason);
   if (!member) {
@@ -94,7 +95,8 @@ CellEstimatorNode::CellEstimatorNode(ros::NodeHandle node, ros::NodeHandle priva
 
 /// Everything of another cell; the present one stays when that fails.
 void CellEstimatorNode::take(const Scene& scene, FamilyCell member) {
-  auto estimator = std::make_unique<CellEstimator>(scene, member.data, parameters_.estimator);
+  auto rivals = std::make_shared<const std::vector<RivalCell>>(rivalCells(families_, scene));
+  auto estimator = std::make_unique<CellEstimator>(scene, member.data, parameters_.estimator, std::move(rivals));
   auto predictor = std::make_unique<PuncturePredictor>(scene, member.data, parameters_.puncture_deviation);
   scene_ = scene;
   member_ = std::move(member);

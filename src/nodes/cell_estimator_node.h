@@ -73,7 +73,8 @@ class CellEstimatorNode {
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
   Parameters parameters_;
-  Scene scene_;  ///< the prior
+  Scene scene_;                                              ///< the prior
+  std::vector<std::shared_ptr<const FamilyData>> families_;  ///< of the rivals
   FamilyCell member_;
   std::unique_ptr<CellEstimator> estimator_;
   std::unique_ptr<PuncturePredictor> predictor_;

@@ -1,6 +1,7 @@
 #include "nodes/injection_controller_node.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <sstream>
 #include <utility>
@@ -29,7 +30,8 @@ bool moves(const std::string& command) { return command == "home" || command == 
 const char* const InjectionControllerNode::kHelp =
     "injection_controller: controls the needle and holds it when an input is invalid.\n"
     "In: /teleop/servo_cp /needle/measured_cp, /cell/predicted_cf or /force_sensor/measured_cf, /injector/state,\n"
-    "/needle/abilities, /controller/state_command (enable, disable, pause, resume, home, unhome, approach, indent,\n"
+    "/needle/abilities, /cell/estimate, /controller/state_command (enable, disable, pause, resume, home, unhome, "
+    "approach, indent,\n"
     "inject, withdraw). Action: /controller/inject. Out: /needle/servo_cp /controller/operating_state\n"
     "/controller/injection_state /injector/pulse /injector/stop.\n";
 
@@ -71,6 +73,10 @@ InjectionControllerNode::InjectionControllerNode(ros::NodeHandle node, ros::Node
   abilities_ = subscribeGuarded<ManipulatorAbilities>(
       cycle_.node(), "needle/abilities", 1,
       [this](const ManipulatorAbilities& message, const std::string&) { adaptTo(message); });
+  using cell_microinjection::CellEstimate;
+  estimates_ =
+      subscribeGuarded<CellEstimate>(cycle_.node(), "cell/estimate", 1,
+                                     [this](const CellEstimate& message, const std::string&) { estimate_ = message; });
   cycle_.diagnostics().add("control", [this](auto& status) { report(status); });
   if (parameters_.auto_enable) execute("enable");
 }
@@ -142,12 +148,22 @@ void InjectionControllerNode::adaptTo(const cell_microinjection::ManipulatorAbil
   ROS_INFO_STREAM("rig: " << rig.device << ", driven at " << model_.speedLimit() << " m/s at the most");
 }
 
+/// Of a twin that is alive and not contradicted by the force. Its stamp is this computer's time.
+std::optional<ExpectedPuncture> InjectionControllerNode::expectedPuncture(const ros::Time& now) const {
+  if (!estimate_ || estimate_->verdict == "inconsistent") return std::nullopt;
+  const double age = secondsBetween(estimate_->header.stamp, now), timeout = parameters_.model.expectation.timeout;
+  if (!(std::abs(age) <= timeout)) return std::nullopt;
+  const auto& puncture = estimate_->puncture;
+  return ExpectedPuncture{puncture.force_low, puncture.force_high, puncture.depth_low, puncture.depth_high};
+}
+
 void InjectionControllerNode::step(const Cycle::Tick& tick) {
   const auto* target = target_ ? target_->get(tick.now) : nullptr;
   const auto needle = validPose(needle_.get(tick.now));
   InjectionController::Input input;
   input.target = validPosition(target, kWorldFrame);
   if (injector_) input.injector = injector_->report(tick.now);
+  input.expected = expectedPuncture(tick.now);
   if (needle) {
     input.needle = needle->translation();
     input.axis = needle->linear().col(2);

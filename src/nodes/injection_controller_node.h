@@ -9,6 +9,7 @@
 #include <string>
 
 #include "base/busy_report.h"
+#include "cell_microinjection/CellEstimate.h"
 #include "cell_microinjection/InjectionStatus.h"
 #include "cell_microinjection/ManipulatorAbilities.h"
 #include "cell_microinjection/OperatingState.h"
@@ -28,7 +29,8 @@ namespace microinjection {
 /// In:  /teleop/servo_cp (PoseStamped, `world`; with mode manual), /needle/measured_cp
 ///      (PoseStamped), /cell/predicted_cf or /force_sensor/measured_cf (WrenchStamped),
 ///      /controller/state_command (StringStamped), /needle/abilities (ManipulatorAbilities, to
-///      drive a slow rig slowly), /injector/state; the action Inject on /controller/inject
+///      drive a slow rig slowly), /injector/state, /cell/estimate (CellEstimate, the expected puncture);
+///      the action Inject on /controller/inject
 /// Out: /needle/servo_cp (PoseStamped, `world`), /controller/operating_state (OperatingState,
 ///      latched, on change and after each state_command), /controller/injection_state
 ///      (InjectionStatus, latched, on change and ten times a second), /injector/pulse,
@@ -58,6 +60,7 @@ class InjectionControllerNode {
   void receiveCommand(const cell_microinjection::StringStamped& message, bool latched, bool repeated);
   void execute(const std::string& command);
   void adaptTo(const cell_microinjection::ManipulatorAbilities& rig);
+  std::optional<ExpectedPuncture> expectedPuncture(const ros::Time& now) const;
   void step(const Cycle::Tick& tick);
   void logNotice();
   void publishState(const ros::Time& now);
@@ -80,8 +83,9 @@ class InjectionControllerNode {
   BusyReport busy_;
   bool state_command_received_ = false;
   ros::Subscriber commands_;
-  ros::Subscriber abilities_;
-  bool adapted_ = false;  ///< to a rig's abilities
+  ros::Subscriber abilities_, estimates_;
+  std::optional<cell_microinjection::CellEstimate> estimate_;  ///< the last of the twin
+  bool adapted_ = false;                                       ///< to a rig's abilities
   ros::Publisher state_;
   cell_microinjection::OperatingState last_published_state_;
   cell_microinjection::InjectionStatus last_published_injection_;

@@ -71,6 +71,7 @@ VisionNode::VisionNode(ros::NodeHandle node, ros::NodeHandle private_node)
     runGuarded(kImageTopic, [&] { onImage(*message); });
   });
   timer_ = node.createSteadyTimer(ros::WallDuration(kReportPeriod), [this](const ros::SteadyTimerEvent&) {
+    readPixelSize();
     diagnostics_.update();
     endIfOrphaned(master_);
   });
@@ -124,11 +125,21 @@ void VisionNode::onImage(const sensor_msgs::Image& message) {
   publish(message.header, frame, time);
 }
 
+/// A calibration may come, or change, while images do.
+void VisionNode::readPixelSize() {
+  try {
+    pixel_size_ = parameters_.vision.pixelSize();
+  } catch (const std::exception&) {
+    pixel_size_ = 0;  // measureCell() says why
+  }
+}
+
 void VisionNode::publish(const std_msgs::Header& header, const Frame& frame, double processing_time) {
   cell_microinjection::VisionState state = toMessage(tracker_.view());
   state.header = header;
   state.width = static_cast<std::uint32_t>(frame.width());
   state.height = static_cast<std::uint32_t>(frame.height());
+  state.pixel_size = pixel_size_;
   state.processing_time = processing_time;
   state_.publish(state);
   if (!parameters_.vision.overlay || overlay_.getNumSubscribers() == 0) return;

@@ -47,6 +47,7 @@ class VisionNode {
 
   void onImage(const sensor_msgs::Image& message);
   std::string refusalOf(const sensor_msgs::Image& message, const ros::Time& now) const;
+  void readPixelSize();
   void publish(const std_msgs::Header& header, const Frame& frame, double processing_time);
   bool measureCell(cell_microinjection::MeasureCell::Request& request,
                    cell_microinjection::MeasureCell::Response& response);
@@ -70,6 +71,7 @@ class VisionNode {
   ros::SteadyTime received_;  ///< last accepted image
   std::string refusal_;       ///< of the last image; empty: accepted
 
+  double pixel_size_ = 0;  ///< m; 0: not known
   unsigned accepted_ = 0;  ///< since reported_
   double longest_ = 0;     ///< s of processor time, since reported_
   ros::SteadyTime reported_;

@@ -9,7 +9,8 @@ import numpy as np
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
-from cell_microinjection.msg import InjectAction, InjectActionGoal, InjectActionResult, InjectGoal
+from cell_microinjection.msg import (CellEstimate, InjectAction, InjectActionGoal, InjectActionResult, InjectGoal,
+                                     PuncturePrediction)
 
 from injection_chain import InjectionChainTest
 
@@ -188,6 +189,43 @@ class InjectTest(InjectPulseTest):
         self.assertEqual(self.status().state, "withdraw")
         state, result = self.result()
         self.assertEqual((state, result.outcome, result.punctures), (GoalStatus.PREEMPTED, "preempted", 0))
+        self.check_out(start)
+        self.assertFalse(self.chain.seen["/cell/state"].punctured)
+
+    def test_2_a_puncture_that_the_twin_expects_beyond_the_limits_is_not_tried(self):
+        start, limit = self.resting(), rospy.get_param("/injection_controller/force_limit")
+        beyond = PuncturePrediction(force_low=1.1 * limit, force=1.2 * limit, force_high=1.3 * limit,
+                                    depth_low=1e-6, depth=2e-6, depth_high=3e-6)
+        estimates = rospy.Publisher("/cell/estimate", CellEstimate, queue_size=10)
+        self.tick_until(estimates.get_num_connections, "the connection")
+
+        def run_until(condition, what, verdict, age):
+            def told():
+                message = CellEstimate(verdict=verdict, puncture=beyond)
+                message.header.stamp = self.chain.now - rospy.Duration(age)
+                estimates.publish(message)
+                return condition()
+            self.tick_until(told, what)
+
+        def ended():
+            return self.client.get_state() in ENDED and self.client.get_result()
+
+        # A twin that is contradicted by the force, or has died, expects nothing.
+        for verdict, age in (("inconsistent", 0), ("converged", 1), ("converged", -1)):
+            self.send()
+            run_until(lambda: self.status().state == "indent" and self.status().depth > 1e-6, "an indentation",
+                      verdict, age)
+            self.client.cancel_goal()
+            self.assertEqual(self.result()[1].outcome, "preempted")
+            self.check_out(start)
+        self.send()
+        run_until(ended, "the result", "learning", 0)
+        result = self.client.get_result()
+        self.assertEqual((result.outcome, result.punctures), ("guard", 0))
+        self.assertIn("the puncture is expected above", result.reason)
+        self.assertLess(result.max_depth, 1e-6)
+        self.say("withdraw")
+        self.tick_until(lambda: self.status().state == "withdraw", "the withdrawal")
         self.check_out(start)
         self.assertFalse(self.chain.seen["/cell/state"].punctured)
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "cell/identification/curve_fit.h"
 
@@ -55,7 +56,7 @@ void CellEstimatorConfig::read(ConfigReader& reader) {
 }
 
 CellEstimator::CellEstimator(const Scene& scene, std::shared_ptr<const SurrogateData> cell,
-                             const CellEstimatorConfig& config)
+                             const CellEstimatorConfig& config, std::shared_ptr<const std::vector<RivalCell>> rivals)
     : config_(config),
       scene_modulus_(scene.cell.material().young_modulus),
       law_error_(cell->median_error),
@@ -63,7 +64,8 @@ CellEstimator::CellEstimator(const Scene& scene, std::shared_ptr<const Surrogate
       prior_deviation_(config.modulus_deviation),
       path_(scene, cell),
       shifted_(scene, cell),
-      history_(config.history) {
+      history_(config.history),
+      watch_(scene, cell, std::move(rivals), {config.contact_deviation, config.offset_deviation, config.sensor_floor}) {
   setPrior(EstimateVerdict::kPrior, "the needle has not touched the cell");
 }
 
@@ -81,6 +83,7 @@ void CellEstimator::beginNext() {
   state_.setZero();
   contradictions_ = 0;
   filter_.reset();
+  watch_.reset();
   setPrior(EstimateVerdict::kPrior, "the needle has not touched the cell");
 }
 
@@ -112,6 +115,7 @@ std::string CellEstimator::add(double time, const Eigen::Vector3d& tip, double f
 void CellEstimator::forgetSince(double time) {
   history_.forgetSince(time);
   contradictions_ = 0;  // it may have been of these readings
+  watch_.reset();
   update();
 }
 
@@ -218,7 +222,12 @@ void CellEstimator::judge(const Fit& fit) {
   contradictions_ = contradicts(misfit) ? contradictions_ + 1 : 0;
   if (contradictions_ < kPersistent) {
     estimate_ = estimateOf(fit, misfit);
-    return;
+    const double known = history_.noise(), noise = known > 0 ? known : config_.sensor_noise;
+    const std::string& better = watch_.follow(
+        history_.samples(), noise, {estimate_.modulus, estimate_.contact, estimate_.offset, estimate_.depth});
+    if (better.empty()) return;
+    contradictions_ = kPersistent;
+    return setPrior(EstimateVerdict::kInconsistent, "another cell has this force rather than this model: " + better);
   }
   char text[120];
   std::snprintf(text, sizeof(text), "the force differs from this model's by %.2g %% of it, smoothly over the depth",

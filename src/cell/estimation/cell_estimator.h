@@ -9,6 +9,7 @@
 #include "cell/estimation/force_path.h"
 #include "cell/estimation/misfit.h"
 #include "cell/estimation/reading_filter.h"
+#include "cell/estimation/rival_watch.h"
 #include "cell/estimation/sample_history.h"
 
 namespace microinjection {
@@ -64,8 +65,10 @@ struct CellEstimate {
 class CellEstimator {
  public:
   /// `scene`: the prior; `cell`: its member of a family, in SI units, whose expected error is
-  /// `member_error` (relative, median).
-  CellEstimator(const Scene& scene, std::shared_ptr<const SurrogateData> cell, const CellEstimatorConfig& config);
+  /// `member_error` (relative, median). `rivals`: cells with other layers; where one of them follows the
+  /// force clearly better, the estimate is inconsistent.
+  CellEstimator(const Scene& scene, std::shared_ptr<const SurrogateData> cell, const CellEstimatorConfig& config,
+                std::shared_ptr<const std::vector<RivalCell>> rivals = nullptr);
 
   /// A new reading. `tip`: m, relative to the cell's centre. `force`: N, of the cell on the tip along
   /// the pipette. Cheap; does not fit. Returns why such readings are not learned from; empty if they are.
@@ -112,6 +115,7 @@ class CellEstimator {
   CellEstimate estimate_;
   std::vector<ForcePath::Point> shifted_points_;
   ReadingFilter filter_;
+  RivalWatch watch_;
   int contradictions_ = 0;  ///< updates in a row; from kPersistent on they stay
 };
 

@@ -13,7 +13,6 @@ namespace {
 constexpr int kPoints = 128;
 constexpr int kDraws = 1000;
 constexpr int kFewest = 25;  ///< draws that are left: with fewer, the cell should have failed
-constexpr double kLow = 0.025, kHigh = 0.975;
 
 double quantile(std::vector<double>& values, double share) {
   const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1) + 0.5);
@@ -57,8 +56,8 @@ double PuncturePredictor::depthAt(double force) const {
   return depths_[i - 1] + share * (depths_[i] - depths_[i - 1]);
 }
 
-std::optional<PuncturePrediction> PuncturePredictor::predict(double modulus, double modulus_deviation,
-                                                             double depth) const {
+std::optional<PuncturePrediction> PuncturePredictor::predict(double modulus, double modulus_deviation, double depth,
+                                                             double share) const {
   if (!layer_) return std::nullopt;
   std::mt19937 random(1);  // the same draws each time: the prediction changes with what is known only
   std::normal_distribution<double> normal;
@@ -79,14 +78,15 @@ std::optional<PuncturePrediction> PuncturePredictor::predict(double modulus, dou
     forces.push_back(factor * forceAt(fails));
   }
   if (static_cast<int>(depths.size()) < kFewest) return std::nullopt;
+  const double low = 0.5 * (1 - share), high = 0.5 * (1 + share);
   PuncturePrediction result;
   result.beyond = beyond / static_cast<double>(depths.size());
   result.depth = quantile(depths, 0.5);
-  result.depth_low = quantile(depths, kLow);
-  result.depth_high = quantile(depths, kHigh);
+  result.depth_low = quantile(depths, low);
+  result.depth_high = quantile(depths, high);
   result.force = quantile(forces, 0.5);
-  result.force_low = quantile(forces, kLow);
-  result.force_high = quantile(forces, kHigh);
+  result.force_low = quantile(forces, low);
+  result.force_high = quantile(forces, high);
   return result;
 }
 

@@ -9,7 +9,7 @@
 
 namespace microinjection {
 
-/// Depth and force at which the outermost layer is expected to fail: medians and intervals of 95 %.
+/// Depth and force at which the outermost layer is expected to fail: medians and intervals.
 struct PuncturePrediction {
   double depth = 0, depth_low = 0, depth_high = 0;  ///< m, past the contact point
   double force = 0, force_low = 0, force_high = 0;  ///< N, along the pipette
@@ -28,9 +28,11 @@ class PuncturePredictor {
   /// logarithm of the failure law's factor.
   PuncturePredictor(const Scene& scene, std::shared_ptr<const SurrogateData> cell, double deviation);
 
-  /// `modulus`: Pa, median; `modulus_deviation`: of its logarithm; `depth`: m, deepest so far. Empty when
-  /// the cell cannot be punctured, or should have been. Tenths of a millisecond.
-  std::optional<PuncturePrediction> predict(double modulus, double modulus_deviation, double depth) const;
+  /// `modulus`: Pa, median; `modulus_deviation`: of its logarithm; `depth`: m, deepest so far;
+  /// `share`: probability of the intervals. Empty when the cell cannot be punctured, or should have been.
+  /// Tenths of a millisecond.
+  std::optional<PuncturePrediction> predict(double modulus, double modulus_deviation, double depth,
+                                            double share = 0.95) const;
 
  private:
   double forceAt(double depth) const;  ///< N, of the scene's modulus

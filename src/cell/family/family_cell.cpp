@@ -1,7 +1,5 @@
 #include "cell/family/family_cell.h"
 
-#include <algorithm>
-#include <filesystem>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -33,16 +31,6 @@ std::string describe(const Family& family, const Eigen::VectorXd& coordinates, c
   out.precision(3);
   out << 1e6 * cell.range.depth << " um deep, on the axis " << 1e6 * cell.range.axis_depth << " um";
   return out.str();
-}
-
-std::vector<std::string> familyFiles(const std::string& folder) {
-  std::vector<std::string> files;
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-    if (entry.path().extension() == ".yaml") files.push_back(entry.path().string());
-  }
-  std::sort(files.begin(), files.end());
-  return files;
 }
 
 void append(std::string& reasons, const std::string& reason) {

@@ -143,6 +143,11 @@ AxisCurve FamilyData::curveAt(const Eigen::VectorXd& coordinates) const {
   return axisCurve(log_forces);
 }
 
+AxisForce FamilyData::axisForce(const Eigen::VectorXd& coordinates) const {
+  const Preparation plan = planMember(family_, family_.member(coordinates));
+  return {curveAt(coordinates), plan.range.axis_depth, plan.scales.energy / plan.scales.length};
+}
+
 SurrogateData FamilyData::cell(const Eigen::VectorXd& coordinates) const {
   const Scene scene = family_.member(coordinates);
   const Preparation plan = planMember(family_, scene);

@@ -26,6 +26,13 @@ struct MeasuredError {
   double deviation = 0;  ///< kriging's largest estimate among these members
 };
 
+/// The force on the axis of a member, without dimension: unit curve(sqrt(depth / length)).
+struct AxisForce {
+  AxisCurve curve;
+  double length = 0;  ///< the depth of the range on the axis
+  double unit = 0;
+};
+
 /// The solved members of a family, from which it makes any other one.
 class FamilyData {
  public:
@@ -74,6 +81,8 @@ class FamilyData {
   /// The member at any coordinates, without dimension. Its range is the part that its neighbours
   /// reached, its errors are those of expectedError(). Takes milliseconds.
   SurrogateData cell(const Eigen::VectorXd& coordinates) const;
+  /// What cell() has on the axis, in a hundredth of its time. @pre hasAxisCurves()
+  AxisForce axisForce(const Eigen::VectorXd& coordinates) const;
 
   void save(const std::string& path) const;
   /// The state is kOther for data of another family or version, and kDamaged for an invalid size or

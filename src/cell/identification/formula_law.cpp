@@ -75,7 +75,7 @@ std::unique_ptr<ElasticLaw> makeFormulaLaw(const std::string& name, const Formul
     const Biomembrane membrane(1, nu, geometry.tip_radius, {geometry.shell_thickness, geometry.dimple_radius});
     return std::make_unique<PowerLaw>("Sun et al., membrane", membrane.force(1), 3);
   }
-  throw ConfigError("--model " + name + ": must be family, hertz, cone, shell or membrane");
+  throw ConfigError("--model " + name + ": must be family, solution, live, hertz, cone, shell or membrane");
 }
 
 }  // namespace microinjection

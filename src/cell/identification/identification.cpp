@@ -4,9 +4,11 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <limits>
 
 #include "base/errors.h"
 #include "cell/identification/contact_guess.h"
+#include "cell/identification/frozen_readings.h"
 #include "cell/identification/profile_interval.h"
 
 namespace microinjection {
@@ -22,15 +24,19 @@ constexpr double kSignificant = 3;     ///< misfit over what noise alone would l
 constexpr std::size_t kFewestInContact = 24;
 constexpr int kBlocks = 12;  ///< of the part in contact, whose means are its smooth part
 
-/// Deviation of a sample, from its neighbours: no model changes it.
+/// Deviation of a sample, from its neighbours: no model changes it. A converter's step adds its rounding.
 double whiteNoise(const ForceCurve& curve) {
   std::vector<double> differences;
+  double step = std::numeric_limits<double>::infinity();
   for (std::size_t i = 1; i + 1 < curve.size(); ++i) {
     differences.push_back(std::abs(curve.force[i] - 0.5 * (curve.force[i - 1] + curve.force[i + 1])));
+    const double change = std::abs(curve.force[i] - curve.force[i - 1]);
+    if (change > 0) step = std::min(step, change);
   }
   std::nth_element(differences.begin(), differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2),
                    differences.end());
-  return 1.4826 / std::sqrt(1.5) * differences[differences.size() / 2];
+  const double rounding = std::isfinite(step) ? step / std::sqrt(12) : 0;
+  return std::max(1.4826 / std::sqrt(1.5) * differences[differences.size() / 2], rounding);
 }
 
 /// Rms of the blocks' medians of the residuals in contact, and what noise alone leaves of it.
@@ -110,6 +116,34 @@ Estimate estimateOf(CurveModel& model, const CurveFit& fit, int p, double correl
       interval.bounded};
 }
 
+/// The law with the parameters of the best fit, against the rivals.
+RivalComparison compared(const CurveModel& model, const CurveFit& fit, double noise, const IdentificationConfig& known,
+                         bool drift) {
+  const ForceCurve& curve = model.curve();
+  const auto count = static_cast<Eigen::Index>(curve.size());
+  AxisSamples samples;
+  samples.time = Eigen::Map<const Eigen::VectorXd>(curve.time.data(), count);
+  samples.travel = Eigen::Map<const Eigen::VectorXd>(curve.position.data(), count);
+  samples.force = Eigen::Map<const Eigen::VectorXd>(curve.force.data(), count);
+  samples.deviation = Eigen::VectorXd::Constant(count, noise);
+  const auto value = [&](const char* name) {
+    const int p = model.index(name);
+    return model.unknowns()[static_cast<std::size_t>(p)].si(fit.internal[p]);
+  };
+  ShapeFit start;
+  start.modulus = value("young_modulus");
+  start.contact = value("contact");
+  start.offset = value("offset");
+  start.drift = drift ? value("drift") : 0;
+  ShapeFitConfig config;
+  config.drift = drift;
+  config.contact = known.contact;
+  config.contact_deviation = known.contact_deviation;
+  Eigen::VectorXd none;
+  const AxisShape shape([&](double depth) { return model.law().force(depth, none).force; }, model.law().deepest());
+  return compareWithRivals({shape, model.law().error()}, *known.rivals, samples, config, start);
+}
+
 /// `drift`: of the sensor.
 Identification identifyWith(const ForceCurve& curve, const std::shared_ptr<ElasticLaw>& law,
                             const IdentificationConfig& config, bool drift) {
@@ -147,6 +181,10 @@ Identification identifyWith(const ForceCurve& curve, const std::shared_ptr<Elast
   result.scatter = misfit.expected;
   result.deviation = trimmedDeviation(result.residuals);
   for (const std::string& pair : inseparable(model, fit)) result.warnings.push_back(pair);
+  if (config.rivals && !config.rivals->empty() && config.prony_terms == 0) {
+    const double noise = std::max(whiteNoise(curve), 1e-3 * fit.noise);
+    result.rivals = compared(model, fit, noise, config, drift);
+  }
   if (result.depth > law->deepest()) {
     char text[160];
     std::snprintf(text, sizeof(text), "the record is %.3g um deep, the model %.3g um: below that it goes on straight",
@@ -158,20 +196,24 @@ Identification identifyWith(const ForceCurve& curve, const std::shared_ptr<Elast
 
 }  // namespace
 
-bool Identification::consistent() const { return misfit < kLeastMisfit * size || misfit < kSignificant * scatter; }
+bool Identification::consistent() const {
+  if (rivals && rivals->contradicts()) return false;
+  return misfit < kLeastMisfit * size || misfit < kSignificant * scatter;
+}
 
 const Estimate* Identification::find(const std::string& name) const {
   const auto found = std::find_if(estimates.begin(), estimates.end(), [&](const auto& x) { return x.name == name; });
   return found == estimates.end() ? nullptr : &*found;
 }
 
-ForceCurve identifiedCurve(const ForceCurve& record) { return averaged(record, kMostSamples); }
+ForceCurve identifiedCurve(const ForceCurve& record) { return averaged(withoutFrozenReadings(record), kMostSamples); }
 
 Identification identify(const ForceCurve& curve, const std::shared_ptr<ElasticLaw>& law,
                         const IdentificationConfig& config) {
   if (config.drift != Drift::kAuto) return identifyWith(curve, law, config, config.drift == Drift::kOn);
   IdentificationConfig quick = config;
   quick.intervals = false;
+  quick.rivals = nullptr;
   // A force that rises from the first sample on may be a drift: then there is no contact to be sure of.
   const Identification drifting = identifyWith(curve, law, quick, true);
   const Estimate& drift = *drifting.find("drift");

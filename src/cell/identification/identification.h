@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -7,6 +8,7 @@
 
 #include "cell/identification/curve_fit.h"
 #include "cell/identification/curve_model.h"
+#include "cell/identification/rival_test.h"
 
 namespace microinjection {
 
@@ -31,8 +33,10 @@ struct Identification {
   double depth = 0;                   ///< m, of the deepest sample
   std::vector<std::string> warnings;  ///< what cannot be told apart, what is out of range
   Eigen::VectorXd residuals;          ///< N, of each sample
+  std::optional<RivalComparison> rivals;
 
-  /// Whether the model follows the record: the smooth part of the residuals is small.
+  /// Whether the model follows the record: the smooth part of the residuals is small, and no other cell
+  /// follows it clearly better.
   bool consistent() const;
   const Estimate* find(const std::string& name) const;
 };
@@ -48,9 +52,15 @@ struct IdentificationConfig {
   Drift drift = Drift::kAuto;
   int prony_terms = 0;
   bool intervals = true;  ///< by the profile of the likelihood; else from the Hessian alone
+  /// m, position of the contact that is known beforehand, and its standard deviation: only for the
+  /// comparison with the rivals, which would fit it elsewhere.
+  double contact = 0, contact_deviation = std::numeric_limits<double>::infinity();
+  /// Cells that a family's cell is compared with; none: no comparison. Not with Prony terms.
+  std::shared_ptr<const std::vector<RivalCell>> rivals;
 };
 
-/// The samples of a record that a fit uses: means of neighbours, when there are many.
+/// The samples of a record that a fit uses: none of a sensor that hangs, and means of neighbours, when
+/// there are many.
 ForceCurve identifiedCurve(const ForceCurve& record);
 
 /// Fits a law to identifiedCurve(). Throws ConfigError when there is no contact in it or the fit fails.

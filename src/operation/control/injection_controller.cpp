@@ -22,7 +22,7 @@ constexpr double kLatestRig = 10;     ///< s
 InjectionController::InjectionController(const InjectionControllerConfig& config)
     : config_(config),
       monitor_(config.detection),
-      run_(config.motion, config.guards, config.mode == "automatic"),
+      run_(config.motion, config.guards, config.expectation, config.mode == "automatic"),
       following_error_limit_(followingErrorLimit(config.guards, std::numeric_limits<double>::infinity())) {}
 
 std::string InjectionController::adaptTo(double speed, double lag) {
@@ -216,6 +216,7 @@ std::optional<Eigen::Vector3d> InjectionController::ownTarget(const Input& input
     stopNeedle(input);
     return std::nullopt;
   }
+  run_.expect(input.expected);
   const InjectionRun::Step step = run_.step(injection_, monitor_, input.injector, *setpoint_, input.axis, dt);
   if (applyStep(step)) return step.target;
   stopNeedle(input);

@@ -8,6 +8,7 @@
 
 #include "base/config_reader.h"
 #include "base/operating_state.h"
+#include "operation/control/expected_puncture.h"
 #include "operation/control/guards.h"
 #include "operation/control/hand_observer.h"
 #include "operation/control/injection_goal.h"
@@ -25,6 +26,7 @@ struct InjectionControllerConfig {
   GuardConfig guards;
   DetectionConfig detection;
   InjectionMotionConfig motion;
+  ExpectationConfig expectation;
   InjectionGoal goal;  ///< for injections started without one
 
   static InjectionControllerConfig read(ConfigReader& reader);
@@ -40,6 +42,7 @@ struct InjectionControllerConfig {
 ///
 ///     guard               by hand                       by itself
 ///     force, depth        may only be withdrawn         stops, except during withdrawal
+///     expected puncture   -                             indent: stops
 ///     time in a state     -                             stops, also during withdrawal
 ///     no valid force      held meanwhile                indent, inject: stops; withdraw: none;
 ///                                                       else held meanwhile
@@ -58,6 +61,7 @@ class InjectionController {
     std::optional<Eigen::Vector3d> needle;  ///< m, tip in `world`
     std::optional<Eigen::Vector3d> force;   ///< N, of the cell on the tip, `world`
     std::optional<InjectorReport> injector;
+    std::optional<ExpectedPuncture> expected;         ///< of the outermost membrane
     Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< of the pipette, out of the cell, `world`
   };
 

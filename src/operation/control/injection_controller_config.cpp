@@ -16,6 +16,8 @@ InjectionControllerConfig InjectionControllerConfig::read(ConfigReader& reader) 
                                    {"retract_speed", config.motion.retract_speed}}) {
     if (speed > config.guards.speed_limit) motion.error(key, "must not be above speed_limit");
   }
+  ConfigReader expectation = reader.section("expected_puncture");
+  config.expectation.read(expectation);
   ConfigReader goal = reader.section("goal");
   config.goal = InjectionGoal::read(goal);
   if (config.goal.depth > config.guards.depth_limit) goal.error("depth", "must not be above depth_limit");

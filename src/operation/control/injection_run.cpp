@@ -26,12 +26,13 @@ InjectionMotionConfig InjectionMotionConfig::read(ConfigReader& reader) {
   return config;
 }
 
-InjectionRun::InjectionRun(const InjectionMotionConfig& config, const GuardConfig& guards, bool automatic)
-    : config_(config), guards_(guards), automatic_(automatic) {}
+InjectionRun::InjectionRun(const InjectionMotionConfig& config, const GuardConfig& guards,
+                           const ExpectationConfig& expectation, bool automatic)
+    : config_(config), guards_(guards), expectation_(expectation), automatic_(automatic) {}
 
 void InjectionRun::start(const InjectionGoal& goal, const Eigen::Vector3d& tip) {
   const double speed_limit = speed_limit_;
-  *this = InjectionRun(config_, guards_, automatic_);
+  *this = InjectionRun(config_, guards_, expectation_, automatic_);
   speed_limit_ = speed_limit;
   goal_ = goal;
   start_ = tip;
@@ -156,11 +157,25 @@ void InjectionRun::contact(const NeedleMonitor& monitor, Step& step) {
   if (mayProceed(InjectionEvent::kIndent)) step.event = InjectionEvent::kIndent;
 }
 
+std::optional<ExpectedPuncture> InjectionRun::expected() const {
+  const bool known = goal_.puncture && result_.punctures == 0 && expected_ && expected_->plausible();
+  return known ? expected_ : std::nullopt;
+}
+
+std::string InjectionRun::unexpected(const NeedleMonitor& monitor) const {
+  const auto expected = this->expected();
+  if (!expected) return "";
+  const std::string reason = unreachable(*expected, guards_, goal_.depth);
+  return reason.empty() ? exceeded(*expected, expectation_, monitor.promptForce()) : reason;
+}
+
 double InjectionRun::stabSpeed(const NeedleMonitor& monitor, double dt) const {
   // A further membrane must not fail in the same fall of the force: its puncture would not be
   // detected.
   const double overshoot = (result_.punctures + 1 < goal_.layers ? 0.5 : 1) * config_.overshoot;
-  const double fast = overshoot / (monitor.latency() * dt + config_.stop_time);
+  const auto expected = this->expected();
+  const double failing = std::max(monitor.force(), expected ? expected->force_low : 0);
+  const double fast = overshoot / (monitor.latencyAt(failing) * dt + config_.stop_time);
   const double wanted = std::clamp(goal_.puncture ? fast : 0, config_.indent_speed, config_.stab_speed);
   const double faster = std::min(wanted, std::max(speed_, config_.indent_speed) + config_.stab_acceleration * dt);
   const double room = end_travel_ - travel_ - std::max(speed_, faster) * (config_.stop_time + dt);
@@ -171,6 +186,11 @@ double InjectionRun::stabSpeed(const NeedleMonitor& monitor, double dt) const {
 void InjectionRun::indent(const NeedleMonitor& monitor, double dt, Step& step) {
   if (monitor.punctured()) {
     countPuncture(monitor, step);
+    return;
+  }
+  step.reason = unexpected(monitor);
+  if (!step.reason.empty()) {
+    step.stop = InjectionOutcome::kGuard;
     return;
   }
   speed_ = stabSpeed(monitor, dt);

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/config_reader.h"
+#include "operation/control/expected_puncture.h"
 #include "operation/control/guards.h"
 #include "operation/control/injection_goal.h"
 #include "operation/control/injection_state.h"
@@ -21,7 +22,8 @@ namespace microinjection {
 /// Its speed is such that it moves on by at most `overshoot` if the membrane fails now: overshoot /
 /// (latency of the puncture detector at the present force + stop_time), between indent_speed and
 /// stab_speed. It starts slowly, while noise would hide a puncture, and slows down only to stop
-/// before the goal's depth.
+/// before the goal's depth. Where the puncture is expected, its force counts from the start: a fall
+/// from the low end of its interval is detected earlier.
 struct InjectionMotionConfig {
   double approach_speed = 20e-6;    ///< m/s, until contact
   double travel_limit = 60e-6;      ///< m, longest approach without contact
@@ -49,14 +51,17 @@ class InjectionRun {
   };
 
   /// `automatic` = false: waits for confirm() in contact, at depth and after the injection.
-  InjectionRun(const InjectionMotionConfig& config, const GuardConfig& guards, bool automatic);
+  InjectionRun(const InjectionMotionConfig& config, const GuardConfig& guards, const ExpectationConfig& expectation,
+               bool automatic);
 
   void start(const InjectionGoal& goal, const Eigen::Vector3d& tip);
   /// The operator's command for the next step (indent, inject). Returns empty, or the reason for
   /// the refusal.
   std::string confirm(InjectionEvent event, InjectionState state);
   void limitSpeed(double speed) { speed_limit_ = speed; }  ///< m/s
-  void resetSpeed() { speed_ = 0; }                        ///< after a rest: a stab starts slowly again
+  /// Of the outermost membrane; empty: nothing is expected. Call before each step.
+  void expect(const std::optional<ExpectedPuncture>& expected) { expected_ = expected; }
+  void resetSpeed() { speed_ = 0; }  ///< after a rest: a stab starts slowly again
   /// The withdrawal begins; the outcome is that of the completed steps.
   void withdraw();
   void end(InjectionOutcome outcome, const std::string& reason);
@@ -84,6 +89,8 @@ class InjectionRun {
   void through(const NeedleMonitor& monitor, double dt, Step& step);
   void inject(const std::optional<InjectorReport>& injector, double dt, Step& step);
   void retract(double dt, Step& step);
+  std::optional<ExpectedPuncture> expected() const;  ///< of the next membrane
+  std::string unexpected(const NeedleMonitor& monitor) const;
   double stabSpeed(const NeedleMonitor& monitor, double dt) const;
   void countPuncture(const NeedleMonitor& monitor, Step& step);
   bool mayProceed(InjectionEvent event);
@@ -92,7 +99,9 @@ class InjectionRun {
 
   InjectionMotionConfig config_;
   GuardConfig guards_;
+  ExpectationConfig expectation_;
   bool automatic_;
+  std::optional<ExpectedPuncture> expected_;
   InjectionGoal goal_;
   InjectionResult result_;
   bool active_ = false, awaits_command_ = false;

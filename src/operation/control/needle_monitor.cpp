@@ -11,6 +11,7 @@ namespace {
 constexpr double kSmallestNoise = 0.1;
 constexpr double kFalselyConfirmed = 1e-4;  ///< probability
 constexpr int kSmoothed = 32;               ///< samples
+constexpr int kPrompt = 4;                  ///< samples; a stab is 1 um deeper after five
 constexpr int kCrest = 8;                   ///< samples, for the crest of a force that rises in tens of milliseconds
 
 }  // namespace
@@ -48,6 +49,8 @@ void NeedleMonitor::skip() {
 }
 
 double NeedleMonitor::force() const { return puncture_ ? puncture_->meanForce(kSmoothed) : 0; }
+
+double NeedleMonitor::promptForce() const { return puncture_ ? puncture_->meanForce(kPrompt) : 0; }
 
 void NeedleMonitor::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, const Eigen::Vector3d& force) {
   const double axial = force.dot(axis);

@@ -40,6 +40,7 @@ class NeedleMonitor {
   bool ready() const { return noise_.ready(); }
   double offset() const { return contact_ ? contact_->offset() : noise_.offset(); }  ///< N, of the force at rest
   double force() const;                       ///< N, along the pipette above the offset, smoothed
+  double promptForce() const;                 ///< N, the same of the last few samples
   double peakForce() const { return peak_; }  ///< N, largest magnitude along the pipette
   bool touched() const { return contact_point_.has_value(); }
   double depth() const {
@@ -55,8 +56,8 @@ class NeedleMonitor {
   std::optional<bool> confirmed() const { return confirmed_; }
   bool punctured() const { return punctured_; }         ///< in the last step
   double forceBefore() const { return force_before_; }  ///< N, crest before the last puncture
-  /// Samples to detect a puncture at the present force.
-  double latency() const { return puncture_ ? puncture_->latency(force()) : 0; }
+  /// Samples to detect a puncture at a force (N, along the pipette above the offset).
+  double latencyAt(double force) const { return puncture_ ? puncture_->latency(force) : 0; }
 
  private:
   void confirmContact(double axial);

@@ -1,17 +1,17 @@
 #include "vision/detection/dented_ellipse.h"
 
-#include <ceres/jet.h>
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
+#include "vision/detection/dented_model.h"
 #include "vision/detection/robust_loss.h"
 
 namespace microinjection {
 namespace {
 
-constexpr int kShape = 5, kDent = 3;                  // parameters
+using namespace dented;
+
 constexpr double kStartWidths[] = {0.12, 0.25, 0.4};  // of the radius
 constexpr double kNarrowest = 0.02, kWidest = 0.6;    // of the radius
 constexpr double kDeepest = 0.7;                      // of the radius
@@ -21,107 +21,8 @@ constexpr int kRounds = 3, kSteps = 20, kAttempts = 6;
 constexpr double kSmallestGain = 1e-5;  // of the cost, of a step that goes on
 constexpr std::size_t kLeastPoints = 40;
 
-/// The needle's frame about the start's centre, in units of its radius: across, along.
-struct Local {
-  Eigen::Vector2d origin, u, v;
-  double unit;
-
-  Local(const NeedleAxis& axis, const Ellipse& start)
-      : origin(start.centre.x, start.centre.y),
-        u(axis.along().x, axis.along().y),
-        v(axis.across().x, axis.across().y),
-        unit(0.5 * start.meanDiameter()) {}
-  Eigen::Vector2d of(const cv::Point2d& point) const {
-    const Eigen::Vector2d d = Eigen::Vector2d(point.x, point.y) - origin;
-    return Eigen::Vector2d(d.dot(v), d.dot(u)) / unit;
-  }
-};
-
-/// Share of the displacement at a height above the centre (in radii).
-double fadeAt(double height) {
-  const double h = std::clamp(height, 0.0, 1.0);
-  return 1 - (1 - h) * (1 - h) * (1 - h);
-}
-
-/// Displacement at a distance from the axis over that on it.
-template <typename T>
-T bell(const T& square, const T& tail) {
-  using std::exp;
-  using std::log;
-  return exp(-log(T(1) + tail * square) / (T(2) * tail));
-}
-
-/// Distance of a border's point from the model, in radii.
-struct Cost {
-  double across, along, side, fade, weight;  ///< side: distance from the axis
-  bool facing;
-
-  template <typename T>
-  bool operator()(const T* shape, const T* dent, T* residual) const {
-    using std::exp;
-    using std::sqrt;
-    T z = T(along);
-    if (facing) {
-      const T ratio = T(side) * exp(-dent[1]);
-      z += dent[0] * T(fade) * bell(T(ratio * ratio), dent[2]);
-    }
-    const T dx = T(across) - shape[0], dy = z - shape[1];
-    const T ux = shape[2] * dx + shape[4] * dy, uy = shape[4] * dx + shape[3] * dy;
-    const T length = sqrt(ux * ux + uy * uy);
-    const T vx = (shape[2] * ux + shape[4] * uy) / length, vy = (shape[4] * ux + shape[3] * uy) / length;
-    *residual = T(weight) * (length - T(1)) / sqrt(vx * vx + vy * vy);
-    return true;
-  }
-};
-
-using Vector = Eigen::Matrix<double, kShape + kDent, 1>;
-using Matrix = Eigen::Matrix<double, kShape + kDent, kShape + kDent>;
-using Jet = ceres::Jet<double, kShape + kDent>;
-enum Index { kDepth = kShape, kLogWidth, kTail };
-
-/// Residual with its derivatives for all parameters.
-Jet jetOf(const Cost& cost, const Vector& p) {
-  Jet variables[kShape + kDent], residual;
-  for (int i = 0; i < kShape + kDent; ++i) variables[i] = Jet(p[i], i);
-  cost(variables, variables + kShape, &residual);
-  return residual;
-}
-
-double residualOf(const Cost& cost, const Vector& p) {
-  double residual = 0;
-  cost(p.data(), p.data() + kShape, &residual);
-  return residual;
-}
-
-Vector startOf(const Ellipse& start, const Local& local) {
-  const Eigen::Matrix2d turn = Eigen::Rotation2Dd(start.angle).toRotationMatrix();
-  const Eigen::Matrix2d root = turn * start.semi_axes.cwiseInverse().asDiagonal() * turn.transpose() * local.unit;
-  Vector p;
-  p << 0, 0, local.v.dot(root * local.v), local.u.dot(root * local.u), local.v.dot(root * local.u), 0, 0, 0;
-  return p;
-}
-
-Ellipse ellipseOf(const Vector& p, const Local& local) {
-  Eigen::Matrix2d axes, root;
-  axes << local.v, local.u;
-  root << p[2], p[4], p[4], p[3];
-  const Eigen::Matrix2d image = axes * root * axes.transpose() / local.unit;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(image);
-  const Eigen::Vector2d major = solver.eigenvectors().col(0), centre = local.origin + local.unit * axes * p.head<2>();
-  return {{centre.x(), centre.y()}, solver.eigenvalues().cwiseInverse(), std::atan2(major.y(), major.x())};
-}
-
 /// Weight of what is known of the tail, where the residuals' deviation is 1 / kTukey of a loss's scale.
 double priorWeight() { return std::pow(RobustLoss::kTukey * kTailDeviation, -2); }
-
-/// Height at which the line `across` leaves the ellipse towards the shaft; below the centre's where it misses it.
-double heightAt(const Vector& p, double across) {
-  Eigen::Matrix2d root;
-  root << p[2], p[4], p[4], p[3];
-  const Eigen::Vector2d from = root * Eigen::Vector2d(across - p[0], -p[1]), along = root.col(1);
-  const double a = along.squaredNorm(), b = along.dot(from), c = from.squaredNorm() - 1, square = b * b - a * c;
-  return square > 0 ? (std::sqrt(square) - b) / a : 0;
-}
 
 class Fitter {
  public:
@@ -264,6 +165,12 @@ class Fitter {
     result.residual = scale * local_.unit;
     result.top_deviation = deviationOf(top);
     result.depth_deviation = deviationOf(depth);
+    // Centre across and along the needle, turned into the image.
+    Eigen::Matrix2d axes;
+    axes << local_.v, local_.u;
+    const Eigen::Matrix<double, kShape + kDent, 2> columns =
+        solver.solve(Eigen::Matrix<double, kShape + kDent, 2>::Identity());
+    result.centre_covariance = local_.unit * local_.unit * axes * columns.topRows<2>() * axes.transpose();
   }
 
   Local local_;

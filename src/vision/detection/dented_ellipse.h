@@ -30,13 +30,14 @@ struct BorderPoint {
 /// towards the ellipse's sides.
 struct DentedEllipse {
   bool valid = false;
-  Ellipse ellipse;              ///< px, undisturbed
-  double depth = 0, width = 0;  ///< px
-  double tail = 0;              ///< 0..1
-  double residual = 0;          ///< px, robust standard deviation of the points
-  double top_deviation = 0;     ///< px, of the undisturbed border on the axis, along it
-  double depth_deviation = 0;   ///< px
-  std::vector<bool> used;       ///< of each point: the model describes it
+  Ellipse ellipse;                                              ///< px, undisturbed
+  double depth = 0, width = 0;                                  ///< px
+  double tail = 0;                                              ///< 0..1
+  double residual = 0;                                          ///< px, robust standard deviation of the points
+  double top_deviation = 0;                                     ///< px, of the undisturbed border on the axis, along it
+  double depth_deviation = 0;                                   ///< px
+  Eigen::Matrix2d centre_covariance = Eigen::Matrix2d::Zero();  ///< px^2, of the ellipse's centre
+  std::vector<bool> used;                                       ///< of each point: the model describes it
 
   /// px from the tip along the axis to the undisturbed border.
   double top(const NeedleAxis& axis) const;

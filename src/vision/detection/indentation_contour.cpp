@@ -18,6 +18,7 @@ constexpr double kAgree = 1.5;                            // px, of both depths,
 constexpr double kAgreeDeviations = 3;
 constexpr double kSureDeviation = 0.55;  // px
 constexpr double kSureUsed = 0.8;        // of the border's points
+constexpr double kSureCentre = 0.3;      // px
 
 /// The border with its dent: traced along the clearest path first, then along what was fitted.
 DentedEllipse fitOutline(const Frame& frame, const CellBorder& border, const NeedleShadow& needle,
@@ -64,6 +65,7 @@ Indentation indentationBy(const Frame& frame, const CellBorder& border, const Ne
   result.finding = Finding::notFound("the outline under the needle is not clear");
   if (!dented.valid) return result;
   result.outline = dented.ellipse;
+  result.centre_covariance = dented.centre_covariance;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (points[i].facing && dented.used[i]) result.contour.push_back(points[i].place);
   }
@@ -74,10 +76,13 @@ Indentation indentationBy(const Frame& frame, const CellBorder& border, const Ne
   result.depth = std::max(0.0, depth.value);
   result.deviation = depth.deviation;
   result.deepest = needle.axis.tip + (dented.top(needle.axis) - result.depth) * needle.axis.along();
-  const auto used = std::count(dented.used.begin(), dented.used.end(), true);
+  const bool described = static_cast<double>(std::count(dented.used.begin(), dented.used.end(), true)) >=
+                         kSureUsed * static_cast<double>(points.size());
+  result.outline_found =
+      described && border.finding.isFound() && std::sqrt(dented.centre_covariance.trace()) < kSureCentre;
   if (!touches)
     result.finding = Finding::uncertain("the outline under the needle is not at the tip: it may not touch");
-  else if (static_cast<double>(used) < kSureUsed * static_cast<double>(points.size()))
+  else if (!described)
     result.finding = Finding::uncertain("a part of the outline is not that of a cell with a dimple");
   else if (result.deviation > kSureDeviation)
     result.finding = Finding::uncertain("the outline beside the needle is not clear");

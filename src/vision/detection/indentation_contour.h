@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <opencv2/core.hpp>
 #include <vector>
 
@@ -14,12 +15,14 @@ namespace microinjection {
 /// The outline of a cell where a needle presses on it.
 struct Indentation {
   Finding finding;
-  double depth = 0;                  ///< px, along the needle, from the undisturbed outline to the deepest place
-  double deviation = 0;              ///< px, standard deviation
-  cv::Point2d deepest;               ///< px
-  Ellipse outline;                   ///< px, undisturbed
-  std::vector<cv::Point2d> contour;  ///< px, of the part that faces the needle
-  BorderDisplacement displacement;   ///< of the outline beside the needle; it has its own finding
+  double depth = 0;            ///< px, along the needle, from the undisturbed outline to the deepest place
+  double deviation = 0;        ///< px, standard deviation
+  cv::Point2d deepest;         ///< px
+  Ellipse outline;             ///< px, undisturbed
+  bool outline_found = false;  ///< the border is this outline with a dimple, whether the depth is sure or not
+  Eigen::Matrix2d centre_covariance = Eigen::Matrix2d::Zero();  ///< px^2, of the outline's centre
+  std::vector<cv::Point2d> contour;                             ///< px, of the part that faces the needle
+  BorderDisplacement displacement;  ///< of the outline beside the needle; it has its own finding
 };
 
 /// Follows the outer border of a cell through the dimple under a needle. The needle hides the border

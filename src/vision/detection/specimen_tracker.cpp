@@ -50,6 +50,12 @@ Indentation indentationOf(const Frame& frame, const SpecimenView& view) {
 
 }  // namespace
 
+void takeUndisturbed(const Indentation& indentation, CellDetection& cell) {
+  if (!indentation.outline_found) return;
+  cell.centre = indentation.outline.centre;
+  cell.centre_covariance = indentation.centre_covariance;
+}
+
 SpecimenTrackerConfig SpecimenTrackerConfig::read(ConfigReader& reader) {
   SpecimenTrackerConfig config;
   reader.number("reach", config.reach, Range::closed(2, 500));
@@ -82,6 +88,7 @@ const SpecimenView& SpecimenTracker::next(const Frame& frame) {
   if (view.holding.finding.isFound())
     view.cell.dismissOthers([&](const Ellipse& thing) { return belongsTo(view.holding, thing); });
   view.indentation = indentationOf(frame, view);
+  takeUndisturbed(view.indentation, view.cell);
   view_ = view;
   return view_;
 }

@@ -26,6 +26,10 @@ struct SpecimenView {
   OverlayContent overlay() const { return {&cell, &holding, &injection, &indentation}; }
 };
 
+/// A needle bends the border, and an ellipse through all of it leans into the dimple: the cell gets the
+/// centre of the undisturbed outline where that was found. Its borders stay.
+void takeUndisturbed(const Indentation& indentation, CellDetection& cell);
+
 /// Follows cell and pipettes from frame to frame. What was found is searched near its last place;
 /// what is lost is searched in the whole frame. A cell whose diameter is uncertain is followed too, and
 /// the whole frame is searched for a better one in each `kSearchEvery`-th frame only: a search takes as

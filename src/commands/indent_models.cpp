@@ -1,0 +1,142 @@
+#include "commands/indent_models.h"
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <memory>
+#include <string>
+
+#include "base/errors.h"
+#include "cell/model/biomembrane.h"
+#include "cell/model/indentation.h"
+#include "cell/model/p1_cell.h"
+#include "cell/model/tensegrity_cell.h"
+
+namespace microinjection {
+namespace {
+
+/// A deeper point straight below the last one continues from it. Any other point starts from rest.
+/// `solve` moves `path` to a displacement (m).
+template <typename Path, typename Solve>
+ForcePoint solveLive(Path& path, double depth, const Eigen::Vector2d& lateral, const Solve& solve) {
+  const auto start = std::chrono::steady_clock::now();
+  const bool on_path = lateral.isZero(0) && -path.tipDisplacement().z() <= depth;
+  if (!on_path) path.reset();
+  const IndentationSolution solution = solve(Eigen::Vector3d(lateral.x(), lateral.y(), -depth));
+  ForcePoint point;
+  point.depth = depth;
+  point.converged = solution.converged;
+  char reached[80];
+  std::snprintf(reached, sizeof(reached), "; reached (%.4g, %.4g, %.4g) um", 1e6 * solution.tip_displacement.x(),
+                1e6 * solution.tip_displacement.y(), 1e6 * solution.tip_displacement.z());
+  point.reason = solution.reason + reached;
+  point.force = solution.force;
+  point.wall_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return point;
+}
+
+TipPatch tipPatch(const DiscContactCell& cell) {
+  const Eigen::Vector2d& offset = cell.scene().needle.offset;
+  const TipPatch patch = cell.patchAt({offset.x(), offset.y(), cell.scene().radius()}, Eigen::Vector3d::UnitZ());
+  std::fprintf(stderr, "indent: %s; %zu vertices under the tip\n", cell.description().c_str(), patch.vertices.size());
+  return patch;
+}
+
+std::vector<ForcePoint> live(const Scene& scene, const Indenting& indenting) {
+  const auto cell = std::make_shared<const P1Cell>(scene);
+  Indentation indentation(cell, tipPatch(*cell));
+  std::vector<ForcePoint> points;
+  const auto solve = [&](const Eigen::Vector3d& target) { return indentation.solve(target); };
+  for (double depth : indenting.depths) points.push_back(solveLive(indentation, depth, indenting.lateral, solve));
+  return points;
+}
+
+std::vector<ForcePoint> tensegrity(const Scene& scene, const IndentArguments& arguments) {
+  const Indenting& indenting = arguments.indenting;
+  std::vector<std::string> options = arguments.converged_options, errors;
+  if (!indenting.withdrawal.empty()) options.push_back("--withdraw");
+  for (const std::string& option : options) {
+    errors.push_back(option + ": must be left out for a scene of cell/model = tensegrity");
+  }
+  if (!errors.empty()) throw ConfigError(errors);
+  const auto cell = std::make_shared<const TensegrityCell>(scene);
+  const std::unique_ptr<TensegrityIndentation> path = cell->indentation(tipPatch(*cell));
+  const auto solve = [&](const Eigen::Vector3d& target) {
+    constexpr double kUntilRelaxed = std::numeric_limits<double>::infinity();
+    const double distance = (target - path->tipDisplacement()).norm();
+    const IndentationSolution moved =
+        path->solve(target, distance > 0 && indenting.speed ? distance / *indenting.speed : kUntilRelaxed);
+    return moved.converged && indenting.hold > 0 ? path->solve(target, indenting.hold) : moved;
+  };
+  std::vector<ForcePoint> points;
+  for (double depth : indenting.depths) {
+    // After the straight path has ended, each further search takes seconds. It ends at the same
+    // point for deeper points.
+    const bool straight = indenting.lateral.isZero(0) && !points.empty();
+    if (straight && !points.back().converged && depth >= points.back().depth) {
+      points.push_back(points.back());
+      points.back().depth = depth;
+      points.back().wall_time = 0;
+    } else {
+      points.push_back(solveLive(*path, depth, indenting.lateral, solve));
+    }
+  }
+  return points;
+}
+
+void requireMembraneScene(const Scene& scene, const Indenting& indenting) {
+  scene.requireContinuum("--model membrane");
+  std::vector<std::string> errors;
+  if (!scene.cell.biomembrane) errors.push_back("cell/biomembrane is missing: thickness and dimple_radius, m");
+  if (!scene.needle.offset.isZero(0)) errors.push_back("needle/offset: must be 0 with --model membrane");
+  if (!indenting.lateral.isZero(0)) errors.push_back("--lateral: must be 0 with --model membrane");
+  if (indenting.speed || indenting.hold > 0) {
+    errors.push_back("--speed, --hold: must be left out with --model membrane, which has no time");
+  }
+  if (!errors.empty()) throw ConfigError(errors);
+}
+
+std::vector<ForcePoint> membrane(const Scene& scene, const Indenting& indenting) {
+  requireMembraneScene(scene, indenting);
+  const MaterialConfig& material = scene.cell.material();
+  const Biomembrane model(material.young_modulus, material.poisson_ratio, scene.needle.tip.radius,
+                          *scene.cell.biomembrane);
+  std::fprintf(stderr, "indent: membrane of %.4g um, dimple of %.4g um\n", 1e6 * scene.cell.biomembrane->thickness,
+               1e6 * scene.cell.biomembrane->dimple_radius);
+  std::vector<ForcePoint> points;
+  for (const double depth : indenting.depths) {
+    ForcePoint& point = points.emplace_back();
+    point.depth = depth;
+    point.converged = true;
+    point.force.z() = model.force(depth);
+    if (model.strain(depth) > 0.1) {
+      std::fprintf(stderr, "indent: depth %.4g um: the membrane's strain is %.2g, too large for this model\n",
+                   1e6 * depth, model.strain(depth));
+    }
+  }
+  return points;
+}
+
+std::vector<ForcePoint> converged(const Scene& scene, const IndentArguments& arguments) {
+  ConvergedForce solver(scene, arguments.indenting, arguments.converged);
+  std::fprintf(stderr, "indent: %s, %s elements, tolerance %.3g\n", solver.axisymmetric() ? "axisymmetric" : "spatial",
+               elementName(arguments.converged.element).c_str(), arguments.converged.tolerance);
+  return solver.solve([&](const LevelReport& report) {
+    std::fprintf(stderr, "indent: mesh %g, %zu elements, %d unknowns, %.1f s:", report.level, report.elements,
+                 report.unknowns, report.wall_time);
+    for (double force : report.forces) std::fprintf(stderr, " %.5g", 1e6 * force);
+    std::fprintf(stderr, " uN\n");
+  });
+}
+
+}  // namespace
+
+std::vector<ForcePoint> solveIndentation(const Scene& scene, const IndentArguments& arguments) {
+  if (arguments.membrane) return membrane(scene, arguments.indenting);
+  const bool default_model = arguments.live || arguments.converged.model == ConvergedForceConfig::Model::kAuto;
+  if (scene.cell.tensegrity && default_model) return tensegrity(scene, arguments);
+  return arguments.live ? live(scene, arguments.indenting) : converged(scene, arguments);
+}
+
+}  // namespace microinjection

@@ -1,0 +1,127 @@
+// The command as its users run it.
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char kCells[] = MICROINJECTION_SOURCE_DIR "/config/cells/";
+constexpr char kFamilies[] = MICROINJECTION_SOURCE_DIR "/config/families";
+
+struct Outcome {
+  int status;
+  std::string out, err;
+};
+
+class IdentifyCommand : public testing::Test {
+ protected:
+  void SetUp() override {
+    fs::remove_all(directory_);
+    fs::create_directories(directory_);
+  }
+  void TearDown() override { fs::remove_all(directory_); }
+
+  static std::string read(const std::string& path) {
+    std::ifstream file(path);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+  }
+
+  Outcome run(const std::string& arguments) const {
+    const std::string command = "cd " + directory_ + " && " MICROINJECTION_IDENTIFY " " + arguments + " --families " +
+                                kFamilies + " >out.txt 2>err.txt";
+    const int status = std::system(command.c_str());
+    return {WEXITSTATUS(status), read(directory_ + "out.txt"), read(directory_ + "err.txt")};
+  }
+
+  /// {value, low, high} of the modulus in the table of --csv.
+  std::vector<double> modulus(const std::string& model) const {
+    std::istringstream lines(read(directory_ + "found.csv"));
+    for (std::string line; std::getline(lines, line);) {
+      const std::string head = model + ",young_modulus,";
+      if (line.rfind(head, 0) != 0) continue;
+      std::vector<double> values;
+      std::istringstream cells(line.substr(head.size()));
+      for (std::string cell; values.size() < 3 && std::getline(cells, cell, ',');) values.push_back(std::stod(cell));
+      return values;
+    }
+    ADD_FAILURE() << "no modulus of " << model;
+    return {0, 0, 0};
+  }
+
+  /// A record of a linear cell under a disc, whose force is the slope times the depth.
+  void writeLinear(double slope) const {
+    std::mt19937 random(5);
+    std::normal_distribution<double> normal;
+    std::ofstream file(directory_ + "record.csv");
+    file.precision(12);
+    file << "time_s,position_m,force_N\n";
+    for (int i = 0; i < 400; ++i) {
+      const double position = 20e-9 * i, depth = position - 3e-6;
+      file << 1e-3 * i << ',' << position << ',' << slope * std::max(0.0, depth) + 1e-9 * normal(random) << '\n';
+    }
+  }
+
+  std::string directory_ = testing::TempDir() + "microinjection_identify/";
+};
+
+// `indent` gives the force of the scene, so that the modulus of the point is the scene's.
+TEST_F(IdentifyCommand, APointHasTheModulusOfTheSceneThatIndentSolves) {
+  const std::string scene = std::string(kCells) + "mouse_oocyte_pipette.yaml";
+  const std::string indent = "cd " + directory_ + " && " MICROINJECTION_INDENT " --scene " + scene +
+                             " --depths 8e-6 --csv force.csv 2>/dev/null";
+  ASSERT_EQ(std::system(indent.c_str()), 0);
+  std::istringstream lines(read(directory_ + "force.csv"));
+  std::string cell;
+  std::getline(lines, cell);
+  for (int i = 0; i < 4; ++i) std::getline(lines, cell, ',');
+  const Outcome outcome = run("--point 8e-6," + cell + " --reading-error 0.05 --model solution --scene " + scene +
+                              " --csv found.csv --out fitted.yaml");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const std::vector<double> found = modulus("solution");
+  EXPECT_NEAR(found[0], 17.9e3, 0.005 * 17.9e3);
+  EXPECT_NEAR(found[1], 0.95 * found[0], 0.005 * found[0]);
+  EXPECT_NEAR(found[2], 1.05 * found[0], 0.005 * found[0]);
+  EXPECT_NE(read(directory_ + "fitted.yaml").find("young_modulus: 17"), std::string::npos);
+  EXPECT_NE(outcome.out.find("not tested"), std::string::npos) << outcome.out;
+}
+
+TEST_F(IdentifyCommand, ARecordIsFittedByTheSolutionOfASceneThatIsInNoFamily) {
+  writeLinear(0.1);
+  const std::string scene = std::string(kCells) + "mouse_oocyte_linear.yaml";
+  const Outcome outcome = run("--record record.csv --no-intervals --model solution --csv found.csv --scene " + scene);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  // The paper's linear cell has 5.25 uN at 45 um with 17.9 kPa; see doc/reference/paper.md.
+  EXPECT_NEAR(modulus("solution")[0], 0.1 / (5.25e-6 / 45e-6) * 17.9e3, 0.01 * 17.9e3);
+}
+
+TEST_F(IdentifyCommand, BadPointsAreRefused) {
+  const std::string scene = " --model solution --scene " + std::string(kCells) + "mouse_oocyte_pipette.yaml";
+  EXPECT_EQ(run("--point 8e-6,1e-6" + scene).status, 2);
+  EXPECT_EQ(run("--point 8e-6 --reading-error 0.05" + scene).status, 2);
+  EXPECT_EQ(run("--point 8e-6,-1e-6 --reading-error 0.05" + scene).status, 2);
+  const Outcome both = run("--record a.csv --point 8e-6,1e-6 --reading-error 0.05" + scene);
+  EXPECT_EQ(both.status, 2);
+  EXPECT_NE(both.err.find("--record, or else --point"), std::string::npos) << both.err;
+}
+
+TEST_F(IdentifyCommand, TheForceOfATensegrityIsNoSolution) {
+  const Outcome outcome = run("--point 8e-6,1e-6 --reading-error 0.05 --model solution --scene " + std::string(kCells) +
+                              "mouse_oocyte_tensegrity.yaml");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.err.find("--model solution"), std::string::npos) << outcome.err;
+}
+
+}  // namespace
