@@ -27,6 +27,8 @@ namespace {
 constexpr int kPeriod = 16;      // ms: the plot at 60 Hz
 constexpr int kStatePeriod = 6;  // ticks: the texts at 10 Hz, which nobody reads faster
 
+constexpr double kDeepest = 50e-6;  // m, of the plot where the guard is not known
+
 QVBoxLayout* column(QWidget* parent) {
   auto* layout = new QVBoxLayout(parent);
   layout->setContentsMargins(0, 0, 0, 0);
@@ -111,7 +113,7 @@ QWidget* ConsolePanel::makePlots() {
   const QString time = "Force, uN, over time, s: " + coloured("predicted", kPredictedColour) + ", " +
                        coloured("measured", kMeasuredColour);
   const QString depth = "Over um deep: " + coloured("guard", kGuardColour) + ", " +
-                        coloured("expected puncture", kPunctureColour) + ", " + coloured("before", kPastTextColour);
+                        coloured("puncture", kPunctureColour) + ", " + coloured("before", kPastTextColour);
   int half = 0;
   for (const QString& text : {time, depth}) {
     auto* title = new QLabel(text, box);
@@ -121,6 +123,8 @@ QWidget* ConsolePanel::makePlots() {
   }
   layout->addWidget(over_time_ = new ForcePlot(box), 1, 0);
   layout->addWidget(over_depth_ = new ForcePlot(box), 1, 1);
+  over_time_->display({}, {}, -ForceHistory::kWindow, 0);
+  over_depth_->display({}, {}, 0, 1e6 * kDeepest);
   layout->setRowStretch(1, 1);
   box->setMinimumHeight(150);
   return box;
@@ -182,7 +186,7 @@ void ConsolePanel::plot() {
   over_time_->display(history.predictedOverTime(), history.measuredOverTime(), -ForceHistory::kWindow, 0);
   if (contacts_ != history.contacts()) over_depth_->showPast(history.past());
   contacts_ = history.contacts();
-  const double guard = link_->session().settings.depth_limit.value_or(50e-6);
+  const double guard = link_->session().settings.depth_limit.value_or(kDeepest);
   over_depth_->display(history.predictedOverDepth(), history.measuredOverDepth(), 0, 1.1e6 * guard);
 }
 
