@@ -15,7 +15,12 @@ constexpr double kFresh = 0.2;     // s, of a measured force in the plot
 constexpr double kOld = 2;         // s, of what is shown of twin and injector
 constexpr double kLargest = 1e-2;  // N and m: what is beyond is no force or depth of a cell
 
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+/// s. In simulated time that of the session, where nodes publish as often as time goes on; else of a
+/// clock that does not jump.
+double now() {
+  if (ros::Time::isSimTime()) return ros::Time::now().toSec();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 std::optional<OperatingState> operatingStateOf(const std::string& name) {
   for (const OperatingState state :
