@@ -19,7 +19,8 @@ from messages import position
 from processes import Child
 from screen import Screen
 
-PATIENCE = 150  # s of wall time; only a session or a console that hangs takes that long
+PATIENCE = 150        # s of wall time; only a session or a console that hangs takes that long
+START_PATIENCE = 400  # s, for rviz on a busy machine
 
 
 class ConsoleTest(unittest.TestCase):
@@ -52,13 +53,13 @@ class ConsoleTest(unittest.TestCase):
         if topic == "/controller/injection_state" and cls.states[-1:] != [state]:
             cls.states.append(state)
 
-    def until(self, condition, what):
-        end = time.monotonic() + PATIENCE
+    def until(self, condition, what, patience=PATIENCE):
+        end = time.monotonic() + patience
         while True:
             result = condition()
             if result:
                 return result
-            self.assertLess(time.monotonic(), end, f"{what}: not within {PATIENCE} s; {self.report()}")
+            self.assertLess(time.monotonic(), end, f"{what}: not within {patience} s; {self.report()}")
             time.sleep(0.05)
 
     def report(self):
@@ -71,12 +72,12 @@ class ConsoleTest(unittest.TestCase):
         except console_eye.NotSeen:
             return None
 
-    def shows(self, condition, what):
+    def shows(self, condition, what, patience=PATIENCE):
         """The console, as soon as it shows that."""
         def check():
             console = self.look()
             return console if console and condition(console) else None
-        return self.until(check, f"a console with {what}")
+        return self.until(check, f"a console with {what}", patience)
 
     def do(self, *words):
         subprocess.run(["xdotool", *map(str, words)], env=self.environment, check=True, timeout=60)
@@ -104,7 +105,7 @@ class ConsoleTest(unittest.TestCase):
         return position(self.seen["/needle/measured_cp"])
 
     def test_1_a_whole_injection_by_mouse(self):
-        console = self.shows(lambda seen: seen.offered["Enable"], "Enable")
+        console = self.shows(lambda seen: seen.offered["Enable"], "Enable", START_PATIENCE)
         self.assertEqual([name for name in console_eye.BUTTONS if console.offered[name]], ["Enable"])
         self.press("Enable")
         self.operating("ENABLED")
