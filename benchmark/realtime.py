@@ -5,7 +5,8 @@ A period is the time from one step of the cell simulator to its next, measured i
 pose through the whole chain from the hand, so that what any node of the chain is late by is in it. It is late by what it
 has more than 1 ms. The bare loop sleeps for 1 ms at a time in the session recorder's process, in real time (SCHED_RR) as
 the chain's nodes are, and shows what the machine allows. The prepared cell is indented and left again and again; rviz
-draws it. Also told: the resident memory of the cell simulator at begin and end.
+draws it, with the operator's console where one is named. Also told: the resident memory of the cell simulator at begin
+and end, and the processor time of the thread in which rviz draws and the console works.
 """
 import argparse
 import csv
@@ -39,6 +40,9 @@ def parse_arguments():
     parser.add_argument('--seconds', type=float, default=60, help='that are measured (default 60)')
     parser.add_argument('--cell', default='mouse_oocyte_pipette', help='name in config/cells (default %(default)s)')
     parser.add_argument('--model', default='prepared', choices=('prepared', 'live', 'auto'), help='default %(default)s')
+    parser.add_argument('--console', default='', help="rviz with the operator's console, name in config/console")
+    parser.add_argument('--rate', type=int, default=2, help='Hz, of the scene in rviz on a virtual display (default 2)')
+    parser.add_argument('--freeze', action='store_true', help='rviz is stopped (SIGSTOP) while it is measured')
     parser.add_argument('--no-rviz', action='store_true', help='display node, but nobody who draws')
     return parser.parse_args()
 
@@ -99,10 +103,11 @@ def resident_memory(node):
         return int(file.read().split()[1]) * os.sysconf('SC_PAGE_SIZE')
 
 
-def start_rviz(session, logs):
+def start_rviz(session, logs, console, rate):
     """Returns rviz, drawing, or None where it cannot."""
     try:
-        view = RvizView(ROOT / 'config' / 'session.rviz', logs)
+        config = f'console/{console}.rviz' if console else 'session.rviz'
+        view = RvizView(ROOT / 'config' / config, logs, rate)
     except RvizError as error:
         say(f'without rviz: {error}')
         return None
@@ -112,19 +117,26 @@ def start_rviz(session, logs):
     return view
 
 
-def measure(session, seconds):
-    """Returns the histograms of `seconds` of a session that has begun, and the memory (bytes) at begin and end."""
+def measure(session, seconds, view, freeze):
+    """Returns the histograms of `seconds` of a session that has begun, the memory (bytes) at begin and end, and the share
+    of a processor that rviz's first thread has used."""
     histograms = Histograms(SOURCES)
     time.sleep(SETTLE)
     if not wait_until(histograms.complete, 20):
         raise SessionError(f'no histograms came but of {sorted(histograms.newest)}')
+    if freeze:
+        view.freeze(True)
+    drawn = view.drawing_time() if view else 0
     before, memory = dict(histograms.newest), [resident_memory('/cell_simulator')]
     end = time.monotonic() + seconds
     while time.monotonic() < end:
         session.check()
         time.sleep(min(1, max(0, end - time.monotonic())))
     memory.append(resident_memory('/cell_simulator'))
-    return {source: difference(before[source], histograms.newest[source]) for source in SOURCES}, memory
+    share = (view.drawing_time() - drawn) / seconds if view else 0
+    if freeze:
+        view.freeze(False)
+    return {source: difference(before[source], histograms.newest[source]) for source in SOURCES}, memory, share
 
 
 def run(arguments, folder):
@@ -138,10 +150,10 @@ def run(arguments, folder):
     view = None
     try:
         session.wait_ready()
-        view = None if arguments.no_rviz else start_rviz(session, logs)
+        view = None if arguments.no_rviz else start_rviz(session, logs, arguments.console, arguments.rate)
         session.monitor.go()
         say(f'measuring for {arguments.seconds:g} s')
-        return measure(session, arguments.seconds)
+        return measure(session, arguments.seconds, view, arguments.freeze and view)
     finally:
         if view:
             view.close()
@@ -164,7 +176,7 @@ def write_table(path, measured):
     return shares
 
 
-def report(measured, memory, shares):
+def report(measured, memory, share, shares):
     for source, (count, late, bins) in measured.items():
         print(f'{source:<16} {count:7d} periods, {late:5d} late by more than 1 ms ({100 * shares[source]:.3f} %), '
               f'longest {1e3 * max(bins, default=0):.1f} ms')
@@ -172,6 +184,7 @@ def report(measured, memory, shares):
     verdict = 'within' if beyond <= ALLOWED else 'NOT within'
     print(f'difference       {100 * beyond:+.3f} %, {verdict} {100 * ALLOWED:g} %')
     print(f'cell_simulator: {memory[0] / 2**20:.1f} MiB resident at the begin, {memory[1] / 2**20:.1f} MiB at the end')
+    print(f"rviz: {100 * share:.1f} % of a processor in the thread that draws")
 
 
 def main():
@@ -181,10 +194,10 @@ def main():
         sys.exit(f'realtime: {scene} cannot be prepared, see above')
     with tempfile.TemporaryDirectory() as folder:
         try:
-            measured, memory = run(arguments, Path(folder))
+            measured, memory, share = run(arguments, Path(folder))
         except (SessionError, OSError) as error:
             sys.exit(f'realtime: {error}')
-    report(measured, memory, write_table(arguments.out / 'realtime.csv', measured))
+    report(measured, memory, share, write_table(arguments.out / 'realtime.csv', measured))
 
 
 if __name__ == '__main__':

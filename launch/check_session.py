@@ -32,6 +32,7 @@ def choices():
         "force_source": ["predicted", "measured"],
         "hand_force": ["predicted", "measured", "blend"],
         "link": ["none", "wave"],
+        "console": ["none", *stems("config/console", "*.rviz")],
         "camera": ["none", "sim", "device", "folder", "video", "topic"],
         "clock": ["wall", "lockstep", "external"],
         **{flag: boolean for flag in flags}}

@@ -14,7 +14,7 @@ GOOD = {'model': 'auto', 'rig': 'sim', 'sensor': 'simulated', 'injector': 'simul
         'position_type': '', 'mode': 'manual', 'force_source': 'predicted', 'hand_force': 'predicted', 'link': 'none',
         'clock': 'wall', 'camera': 'sim', 'scene': str(LAUNCH.parent / 'config/cells/mouse_oocyte.yaml'),
         'operator': '', 'record': '', 'allow_network': 'True', 'require_operator': 'true', 'inject': 'True', 'link_emulated': 'False',
-        'auto_enable': 'True', 'display': 'true', 'rviz': 'false', 'bag': 'true', 'end_when_done': 'false',
+        'auto_enable': 'True', 'display': 'true', 'rviz': 'false', 'console': 'none', 'bag': 'true', 'end_when_done': 'false',
         'wait_for_go': 'false', 'twin': 'false', 'hidden': '', 'modelled': 'True'}
 
 

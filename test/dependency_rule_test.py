@@ -2,7 +2,7 @@
 
 A room includes only itself and the rooms that its microinjection_room(... DEPENDS ...) names, directly or in turn. A
 room of one wing never depends on one of another. Only src/nodes includes ROS; nothing else includes src/nodes or
-benchmark. benchmark/emulated_haptic is a node and includes both.
+benchmark. benchmark/emulated_haptic is a node and includes both. src/rviz, a plugin of rviz, includes ROS and rooms.
 """
 import re
 import tempfile
@@ -13,8 +13,8 @@ ROOT = Path(__file__).resolve().parent.parent
 SOURCE = ROOT / 'src'
 
 # Folders that are programs and not rooms: they may include every room, and no room may include them.
-PROGRAMS = {'nodes', 'commands', 'tools', 'benchmark', 'benchmark/emulated_haptic'}
-KNOWS_ROS = {'nodes', 'benchmark/emulated_haptic'}
+PROGRAMS = {'nodes', 'rviz', 'commands', 'tools', 'benchmark', 'benchmark/emulated_haptic'}
+KNOWS_ROS = {'nodes', 'rviz', 'benchmark/emulated_haptic'}
 
 # First folders of the include paths of ROS, of its libraries and of generated messages (ours too).
 ROS_FOLDERS = re.compile(
@@ -57,7 +57,7 @@ def check_include(folder, target, allowed):
     if ROS_FOLDERS.match(target):
         return None if folder in KNOWS_ROS else 'only src/nodes may include ROS'
     if first in PROGRAMS and '/' in target:
-        if first == folder or (first == 'nodes' and folder in KNOWS_ROS):
+        if first == folder or (first == 'nodes' and folder == 'benchmark/emulated_haptic'):
             return None
         return f'nothing includes {"" if first.startswith("benchmark") else "src/"}{first}'
     if first in allowed and folder in allowed and first not in allowed[folder]:
@@ -79,6 +79,9 @@ def check_files(source, allowed):
                 continue
             target = include.group(1)
             problem = check_include(folder, target, allowed)
+            # In angle brackets it is a header of rviz itself.
+            if f'"{target}"' in line and target.startswith('rviz/') and folder != 'rviz':
+                problem = 'nothing includes src/rviz'
             own = f'"{target}"' in line and not ROS_FOLDERS.match(target)
             if not problem and own and not (source / target).is_file() and not (source.parent / target).is_file():
                 problem = 'own files are included as "room/file.h", libraries in angle brackets'
@@ -186,6 +189,16 @@ class TheRule(unittest.TestCase):
                 with self.subTest(header=header, name=name):
                     self.assert_reported(name, f'#include <{header}>', 'only src/nodes may include ROS')
                 (self.source / name).unlink()
+
+    def test_holds_for_the_plugin_of_rviz(self):
+        self.write('rviz/b.cpp', '#include "rviz/b.h"\n#include <rviz/panel.h>\n#include "cell/model/a.h"\n')
+        self.assertEqual(check_source(self.source), [])
+        for line, reason in (('#include "nodes/a.h"', 'nothing includes src/nodes'),
+                             ('#include "mesh.h"', 'included as "room/file.h"')):
+            with self.subTest(line=line):
+                self.assert_reported('rviz/c.cpp', line, reason)
+        (self.source / 'rviz/c.cpp').unlink()
+        self.assert_reported('nodes/b.cpp', '#include "rviz/b.h"', 'nothing includes src/rviz')
 
     def test_reports_an_include_of_the_nodes(self):
         self.assert_reported('cell/model/b.cpp', '#include "nodes/a.h"', 'nothing includes src/nodes')

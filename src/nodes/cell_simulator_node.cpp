@@ -103,6 +103,7 @@ void CellSimulatorNode::report(diagnostic_updater::DiagnosticStatusWrapper& stat
                          : cell_->contact()        ? "in contact"
                                                    : "free")
                       : invalid_reason_);
+  status.add("served cell", chosen_.description);
   if (const auto solution = cell_->solution(ros::Time::now().toSec())) {
     status.add("Newton iterations", solution->newton_iterations);
     status.add("solution time (s of CPU)", solution->cpu_time);

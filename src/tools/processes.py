@@ -66,6 +66,16 @@ class Child:
         except OSError:
             pass
 
+    def send_signal(self, number):
+        self._process.send_signal(number)
+
+    def first_thread_time(self):
+        """s of processor time that its first thread has used."""
+        pid = self._process.pid
+        with open(f'/proc/{pid}/task/{pid}/stat', encoding='utf-8', errors='replace') as file:
+            fields = file.read().rpartition(')')[2].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf('SC_CLK_TCK')
+
     def running(self):
         return self._process.poll() is None
 

@@ -1,6 +1,7 @@
 """rviz on the user's display, or on a virtual one, and pictures of what it shows."""
 import os
 import re
+import signal
 
 import screenshot
 from processes import Child
@@ -53,6 +54,14 @@ class RvizView:
 
     def running(self):
         return self._rviz.running()
+
+    def freeze(self, frozen):
+        """Stops the process as it is, or lets it go on."""
+        self._rviz.send_signal(signal.SIGSTOP if frozen else signal.SIGCONT)
+
+    def drawing_time(self):
+        """s of processor time that the first thread has used, in which rviz draws and its panels work."""
+        return self._rviz.first_thread_time()
 
     def check(self):
         """@raises RvizError when rviz has ended."""

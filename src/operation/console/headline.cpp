@@ -1,0 +1,50 @@
+#include "operation/console/headline.h"
+
+#include <string>
+
+namespace microinjection {
+namespace {
+
+std::string nextSteps(const SessionView& session) {
+  switch (*session.injection) {
+    case InjectionState::kContact:
+      return "waits for Indent or Withdraw";
+    case InjectionState::kPunctured:
+      return session.volume > 0 ? "waits for Withdraw" : "waits for Inject or Withdraw";
+    default:
+      return "waits for Withdraw";
+  }
+}
+
+std::string enabledText(const SessionView& session) {
+  if (session.waits) return nextSteps(session);
+  if (*session.injection == InjectionState::kIdle && !session.busy) {
+    if (session.byHand()) return session.hold_reason.empty() ? "follows the hand" : session.hold_reason;
+    return "ready: Approach starts an injection";
+  }
+  if (session.busy) return session.hold_reason.empty() ? "moves by itself" : session.hold_reason;
+  return session.hold_reason.empty() ? "follows the hand" : session.hold_reason;
+}
+
+}  // namespace
+
+Lamp headline(const SessionView& session) {
+  if (!session.connected()) return {Light::kRed, "No message of injection_controller"};
+  const std::string state = std::string(toText(*session.operating)) + ": ";
+  switch (*session.operating) {
+    case OperatingState::kDisabled:
+      return {Light::kGrey, state + "Enable lets the controller move the needle"};
+    case OperatingState::kFault:
+      return {Light::kRed, state + session.hold_reason};
+    case OperatingState::kPaused: {
+      const bool said = session.hold_reason.empty() || session.hold_reason == toText(OperatingState::kPaused);
+      return {Light::kYellow, state + (said ? "the needle is held; Resume, Withdraw or Home" : session.hold_reason)};
+    }
+    case OperatingState::kEnabled:
+      break;
+  }
+  if (!session.notice.empty()) return {Light::kYellow, state + session.notice};
+  return {Light::kGreen, state + enabledText(session)};
+}
+
+}  // namespace microinjection

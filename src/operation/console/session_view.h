@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "base/operating_state.h"
+#include "operation/control/injection_state.h"
+
+namespace microinjection {
+
+/// What the console knows of the injection controller's parameters. Its defaults refuse nothing that
+/// the controller may allow.
+struct ControllerSettings {
+  std::string mode;                   ///< manual, semi_automatic or automatic; empty: not known
+  bool has_pulse = true;              ///< the configured goal injects
+  std::optional<double> force_limit;  ///< N, along the pipette
+  std::optional<double> depth_limit;  ///< m past the contact point
+};
+
+/// What the console knows of the injection controller from its messages. An empty state: no message
+/// came, or none for too long.
+struct SessionView {
+  std::optional<OperatingState> operating;
+  std::optional<InjectionState> injection;
+  bool homed = true;
+  bool busy = false;        ///< the controller moves the needle by itself
+  bool waits = false;       ///< for the operator's command
+  double force = 0;         ///< N, along the pipette, above the offset at rest
+  double depth = 0;         ///< m past the contact point; 0 before the first contact
+  double volume = 0;        ///< m^3, injected since the needle started
+  std::string hold_reason;  ///< why the needle is held; empty: it follows, or not known
+  std::string notice;       ///< why the last command was refused; empty: it was not
+  ControllerSettings settings;
+
+  /// Messages arrive from the controller.
+  bool connected() const { return operating && injection; }
+  bool byHand() const { return settings.mode == "manual"; }
+};
+
+}  // namespace microinjection

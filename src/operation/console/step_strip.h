@@ -1,0 +1,30 @@
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "operation/control/injection_state.h"
+
+namespace microinjection {
+
+/// The steps of an injection, and which of them were passed since the needle started.
+class StepStrip {
+ public:
+  enum class Mark { kAhead, kPassed, kPresent };
+  static constexpr std::array<InjectionState, 7> kSteps = {
+      InjectionState::kIdle,      InjectionState::kApproach, InjectionState::kContact, InjectionState::kIndent,
+      InjectionState::kPunctured, InjectionState::kInject,   InjectionState::kWithdraw};
+
+  /// `state`: of the newest message; empty: not known, then no step is lit.
+  void update(std::optional<InjectionState> state);
+
+  const std::array<Mark, kSteps.size()>& marks() const { return marks_; }
+  /// No step is lit because the rig is at fault.
+  bool fault() const { return state_ == InjectionState::kFault; }
+
+ private:
+  std::array<Mark, kSteps.size()> marks_{};
+  std::optional<InjectionState> state_;
+};
+
+}  // namespace microinjection

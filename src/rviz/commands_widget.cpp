@@ -1,0 +1,94 @@
+#include "rviz/commands_widget.h"
+
+#include <QGridLayout>
+#include <QShortcut>
+#include <utility>
+
+#include "rviz/colours.h"
+
+namespace microinjection {
+namespace {
+
+QString styleOf(QRgb fill, QRgb text, const char* more = "") {
+  const QColor colour(fill);
+  return QString(
+             "QPushButton { background: %1; color: %2; border: none; border-radius: 4px; padding: 3px 8px; %3 }"
+             "QPushButton:pressed { background: %4; }")
+      .arg(colour.name(), QColor(text).name(), more, colour.darker(130).name());
+}
+
+constexpr char kStopStyle[] = "font-weight: bold; font-size: 20px;";
+
+}  // namespace
+
+CommandsWidget::CommandsWidget(std::function<SessionView()> newest, std::function<void(const std::string&)> send,
+                               QWidget* parent)
+    : QWidget(parent), newest_(std::move(newest)), send_(std::move(send)) {
+  auto* layout = new QGridLayout(this);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->setHorizontalSpacing(8);
+  layout->setVerticalSpacing(4);
+  layout->setColumnStretch(1, 1);
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    Row& row = rows_[i];
+    const bool is_stop = kConsoleCommands[i] == ConsoleCommand::kStop;
+    row.button = new QPushButton(this);
+    // A focused button would take the space bar.
+    row.button->setFocusPolicy(Qt::NoFocus);
+    row.text = new ElidedLabel(is_stop ? 1 : 2, this);
+    const int line = static_cast<int>(i);
+    layout->addWidget(row.button, line, 0, 1, is_stop ? 2 : 1);
+    layout->addWidget(row.text, is_stop ? line + 1 : line, is_stop ? 0 : 1, 1, is_stop ? 2 : 1);
+    if (is_stop) {
+      row.button->setFixedHeight(44);
+    } else {
+      row.button->setFixedSize(86, 28);
+    }
+    const auto pressed = [this, i] { press(i); };
+    if (is_stop) {
+      // At the press, not at the release: a stop must not wait for the finger.
+      QObject::connect(row.button, &QPushButton::pressed, this, pressed);
+    } else {
+      QObject::connect(row.button, &QPushButton::clicked, this, pressed);
+    }
+  }
+  auto* space = new QShortcut(QKeySequence(Qt::Key_Space), this);
+  space->setContext(Qt::ApplicationShortcut);
+  // A second press means disable, which a key that is held down must not.
+  space->setAutoRepeat(false);
+  const auto stop = [this] { press(rows_.size() - 1); };
+  QObject::connect(space, &QShortcut::activated, this, stop);
+  QObject::connect(space, &QShortcut::activatedAmbiguously, this, stop);
+  display({});
+}
+
+void CommandsWidget::press(std::size_t index) {
+  // What is displayed may be older: a stop during a pulse must not be that of the state before.
+  const CommandOffer offered = offer(kConsoleCommands[index], newest_());
+  if (offered.refusal.empty()) send_(offered.command);
+}
+
+void CommandsWidget::display(const SessionView& session) {
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    display(rows_[i], offer(kConsoleCommands[i], session), kConsoleCommands[i] == ConsoleCommand::kStop);
+  }
+}
+
+void CommandsWidget::display(Row& row, const CommandOffer& offer, bool is_stop) {
+  const bool first = row.shown.label.empty();
+  const bool enabled = offer.refusal.empty();
+  if (first || enabled != row.shown.refusal.empty()) {
+    row.button->setEnabled(enabled);
+    row.button->setStyleSheet(is_stop   ? styleOf(kStopColour, 0xffffffff, kStopStyle)
+                              : enabled ? styleOf(kOfferedColour, 0xffffffff)
+                                        : styleOf(kRefusedColour, kMutedColour));
+    row.text->setColour(enabled ? palette().color(QPalette::WindowText) : QColor(kMutedColour));
+  }
+  row.button->setText(QString::fromStdString(is_stop ? offer.label + "   (space bar)" : offer.label));
+  const QString text = QString::fromStdString(enabled ? offer.effect : offer.refusal);
+  if (first || text != row.button->toolTip()) row.button->setToolTip(text);
+  row.text->setText(text);
+  row.shown = offer;
+}
+
+}  // namespace microinjection

@@ -1,0 +1,195 @@
+#include "rviz/console_panel.h"
+
+#include <rviz/visualization_manager.h>
+#include <tf2_ros/buffer.h>
+#include <pluginlib/class_list_macros.hpp>
+
+#include <Eigen/Geometry>
+#include <QGridLayout>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QTimer>
+#include <QVBoxLayout>
+#include <cmath>
+#include <utility>
+
+#include "operation/console/headline.h"
+#include "rviz/colours.h"
+#include "rviz/commands_widget.h"
+#include "rviz/force_plot.h"
+#include "rviz/guard_row.h"
+#include "rviz/lamp_row.h"
+#include "rviz/steps_widget.h"
+
+namespace microinjection {
+namespace {
+
+constexpr int kPeriod = 16;      // ms: the plot at 60 Hz
+constexpr int kStatePeriod = 6;  // ticks: the texts at 10 Hz, which nobody reads faster
+
+constexpr double kDeepest = 50e-6;  // m, of the plot where the guard is not known
+
+QVBoxLayout* column(QWidget* parent) {
+  auto* layout = new QVBoxLayout(parent);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->setSpacing(4);
+  return layout;
+}
+
+QLabel* heading(const QString& text, QWidget* parent) {
+  auto* label = new QLabel("<b>" + text + "</b>", parent);
+  label->setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Fixed);
+  return label;
+}
+
+QString coloured(const QString& text, QRgb colour) {
+  return "<font color='" + QColor(colour).name() + "'>" + text + "</font>";
+}
+
+}  // namespace
+
+ConsolePanel::ConsolePanel(QWidget* parent)
+    : rviz::Panel(parent),
+      timer_(new QTimer(this)),
+      steps_(new StepsWidget(this)),
+      headline_(new LampRow("", 1, this)) {
+  auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(6, 4, 6, 4);
+  layout->setSpacing(6);
+  layout->addWidget(steps_);
+  layout->addWidget(headline_);
+  auto* middle = new QHBoxLayout;
+  middle->setSpacing(12);
+  middle->addWidget(makeLeft(), 1);
+  middle->addWidget(makeRight(), 1);
+  layout->addLayout(middle);
+  layout->addWidget(makePlots(), 1);
+}
+
+ConsolePanel::~ConsolePanel() = default;
+
+QSize ConsolePanel::sizeHint() const { return {640, 700}; }
+
+QWidget* ConsolePanel::makeLeft() {
+  const auto newest = [this] {
+    if (link_) grown_ = link_->poll() || grown_;
+    return link_ ? link_->session() : SessionView();
+  };
+  const auto send = [this](const std::string& command) {
+    if (link_) link_->send(command);
+  };
+  commands_ = new CommandsWidget(newest, send, this);
+  return commands_;
+}
+
+QWidget* ConsolePanel::makeRight() {
+  auto* box = new QWidget(this);
+  QVBoxLayout* layout = column(box);
+  layout->addWidget(heading("Devices", box));
+  for (const Device device : kDevices) {
+    auto* row = new LampRow(toText(device), 1, box);
+    devices_[static_cast<std::size_t>(device)] = row;
+    layout->addWidget(row);
+  }
+  layout->addWidget(injector_ = new LampRow("Injector", 1, box));
+  layout->addSpacing(4);
+  layout->addWidget(heading("Cell", box));
+  layout->addWidget(served_ = new ElidedLabel(2, box));
+  layout->addWidget(estimate_ = new LampRow("Estimate", 2, box));
+  layout->addWidget(puncture_ = new ElidedLabel(1, box));
+  layout->addSpacing(4);
+  layout->addWidget(heading("Guards", box));
+  layout->addWidget(force_guard_ = new GuardRow(box));
+  layout->addWidget(depth_guard_ = new GuardRow(box));
+  layout->addStretch(1);
+  return box;
+}
+
+QWidget* ConsolePanel::makePlots() {
+  auto* box = new QWidget(this);
+  auto* layout = new QGridLayout(box);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->setSpacing(4);
+  const QString time = "Force, uN, over time, s: " + coloured("predicted", kPredictedColour) + ", " +
+                       coloured("measured", kMeasuredColour);
+  const QString depth = "Over um deep: " + coloured("guard", kGuardColour) + ", " +
+                        coloured("puncture", kPunctureColour) + ", " + coloured("before", kPastTextColour);
+  int half = 0;
+  for (const QString& text : {time, depth}) {
+    auto* title = new QLabel(text, box);
+    title->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);
+    layout->addWidget(title, 0, half);
+    layout->setColumnStretch(half++, 1);
+  }
+  layout->addWidget(over_time_ = new ForcePlot(box), 1, 0);
+  layout->addWidget(over_depth_ = new ForcePlot(box), 1, 1);
+  over_time_->display({}, {}, -ForceHistory::kWindow, 0);
+  over_depth_->display({}, {}, 0, 1e6 * kDeepest);
+  layout->setRowStretch(1, 1);
+  box->setMinimumHeight(150);
+  return box;
+}
+
+void ConsolePanel::onInitialize() {
+  link_ = std::make_unique<SessionLink>([this] { return pipetteAxis(); });
+  connect(timer_, &QTimer::timeout, this, [this] { tick(); });
+  timer_->start(kPeriod);
+}
+
+/// rviz listens to tf already: another subscriber of the needle's pose at 1 kHz would only cost.
+std::optional<Eigen::Vector3d> ConsolePanel::pipetteAxis() const {
+  const auto buffer = vis_manager_->getTF2BufferPtr();
+  if (!buffer->canTransform("world", "needle_tip", ros::Time(0))) return std::nullopt;
+  try {
+    const auto q = buffer->lookupTransform("world", "needle_tip", ros::Time(0)).transform.rotation;
+    return Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized() * Eigen::Vector3d::UnitZ();
+  } catch (const tf2::TransformException&) {
+    return std::nullopt;
+  }
+}
+
+void ConsolePanel::tick() {
+  grown_ = link_->poll() || grown_;
+  if (ticks_++ % kStatePeriod == 0) showState();
+  if (std::exchange(grown_, false) && isVisible()) plot();
+}
+
+void ConsolePanel::showState() {
+  const SessionView session = link_->session();
+  steps_->display(session.injection);
+  headline_->display(headline(session));
+  commands_->display(session);
+  for (const Device device : kDevices) devices_[static_cast<std::size_t>(device)]->display(link_->lamp(device));
+  const auto estimate = link_->estimate();
+  estimate_->display(estimateLamp(estimate));
+  puncture_->setText(QString::fromStdString(punctureText(estimate)));
+  injector_->display(injectorLamp(link_->injector()));
+  const std::string served = link_->servedCell();
+  served_->setText(served.empty() ? "the served cell is not known" : QString::fromStdString(served));
+  force_guard_->display(forceMargin(session));
+  depth_guard_->display(depthMargin(session));
+
+  ForcePlot::Limits limits;
+  if (session.settings.force_limit) limits.force = *session.settings.force_limit * 1e6;
+  over_time_->showLimits(limits);
+  if (session.settings.depth_limit) limits.across = *session.settings.depth_limit * 1e6;
+  if (estimate && estimate->puncture_depth > 0) {
+    limits.puncture = estimate->puncture_depth * 1e6;
+    limits.puncture_low = estimate->puncture_low * 1e6;
+    limits.puncture_high = estimate->puncture_high * 1e6;
+  }
+  over_depth_->showLimits(limits);
+}
+
+void ConsolePanel::plot() {
+  const ForceHistory& history = link_->history();
+  over_time_->display(history.predictedOverTime(), history.measuredOverTime(), -ForceHistory::kWindow, 0);
+  if (contacts_ != history.contacts()) over_depth_->showPast(history.past());
+  contacts_ = history.contacts();
+  const double guard = link_->session().settings.depth_limit.value_or(kDeepest);
+  over_depth_->display(history.predictedOverDepth(), history.measuredOverDepth(), 0, 1.1e6 * guard);
+}
+
+}  // namespace microinjection
+
+PLUGINLIB_EXPORT_CLASS(microinjection::ConsolePanel, rviz::Panel)

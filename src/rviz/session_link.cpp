@@ -1,0 +1,194 @@
+#include "rviz/session_link.h"
+
+#include <cell_microinjection/StringStamped.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+namespace microinjection {
+namespace {
+
+constexpr double kSilence = 1;     // s, of the controller, which publishes ten times a second
+constexpr double kFresh = 0.2;     // s, of a measured force in the plot
+constexpr double kOld = 2;         // s, of what is shown of twin and injector
+constexpr double kLargest = 1e-2;  // N and m: what is beyond is no force or depth of a cell
+
+/// s. In simulated time that of the session, where nodes publish as often as time goes on; else of a
+/// clock that does not jump.
+double now() {
+  if (ros::Time::isSimTime()) return ros::Time::now().toSec();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+std::optional<OperatingState> operatingStateOf(const std::string& name) {
+  for (const OperatingState state :
+       {OperatingState::kDisabled, OperatingState::kEnabled, OperatingState::kPaused, OperatingState::kFault}) {
+    if (name == toText(state)) return state;
+  }
+  return std::nullopt;
+}
+
+std::optional<double> plausible(double value) {
+  return std::abs(value) < kLargest ? std::optional(value) : std::nullopt;
+}
+
+Eigen::Vector3d toVector(const geometry_msgs::Vector3& vector) { return {vector.x, vector.y, vector.z}; }
+
+}  // namespace
+
+SessionLink::SessionLink(std::function<std::optional<Eigen::Vector3d>()> axis) : axis_(std::move(axis)) {
+  node_.setCallbackQueue(&queue_);
+  commands_ = node_.advertise<cell_microinjection::StringStamped>("controller/state_command", 1);
+  subscribe("controller/operating_state", &SessionLink::onOperating);
+  subscribe("controller/injection_state", &SessionLink::onInjection);
+  subscribe("controller/loop_state", &SessionLink::onLoop);
+  subscribe("cell/state", &SessionLink::onCell);
+  subscribe("cell/estimate", &SessionLink::onEstimate);
+  subscribe("force_sensor/measured_cf", &SessionLink::onMeasured);
+  subscribe("injector/state", &SessionLink::onInjector);
+  subscribe("/diagnostics", &SessionLink::onDiagnostics);
+}
+
+template <typename Message>
+void SessionLink::subscribe(const std::string& topic, void (SessionLink::*receive)(const Message&)) {
+  const boost::function<void(const boost::shared_ptr<const Message>&)> callback =
+      [this, receive](const boost::shared_ptr<const Message>& message) { (this->*receive)(*message); };
+  // Each node reports its diagnostics by itself, within the same millisecond as others.
+  const std::uint32_t queue = topic == "/diagnostics" ? 50 : 1;
+  subscribers_.push_back(node_.subscribe<Message>(topic, queue, callback));
+}
+
+bool SessionLink::poll() {
+  queue_.callAvailable(ros::WallDuration(0));
+  return std::exchange(grown_, false);
+}
+
+void SessionLink::send(const std::string& command) {
+  cell_microinjection::StringStamped message;
+  message.header.stamp = ros::Time::now();
+  message.string = command;
+  commands_.publish(message);
+}
+
+/// The parameters are set before the controller starts. To read them waits for the master, which is
+/// why it is done only when a controller appears.
+void SessionLink::readSettings() {
+  ControllerSettings& settings = session_.settings;
+  settings = {};
+  ros::param::get("/injection_controller/mode", settings.mode);
+  double value = 0;
+  if (ros::param::get("/injection_controller/force_limit", value)) settings.force_limit = value;
+  if (ros::param::get("/injection_controller/depth_limit", value)) settings.depth_limit = value;
+  if (ros::param::get("/injection_controller/goal/pulse/duration", value)) settings.has_pulse = value > 0;
+}
+
+SessionView SessionLink::session() const {
+  SessionView view = session_;
+  if (heard_at_ && now() - *heard_at_ < kSilence) return view;
+  view.operating.reset();
+  view.injection.reset();
+  return view;
+}
+
+std::string SessionLink::servedCell() const {
+  const bool changed = !changed_.empty() && changed_ != "as at the start" && changed_ != "are changing";
+  return changed ? changed_ : served_;
+}
+
+Lamp SessionLink::lamp(Device device) const { return lamps_.lamp(device, now()); }
+
+std::optional<CellEstimateView> SessionLink::estimate() const {
+  return now() - estimate_.at < kOld ? estimate_.value : std::nullopt;
+}
+
+std::optional<InjectorView> SessionLink::injector() const {
+  return now() - injector_.at < kOld ? injector_.value : std::nullopt;
+}
+
+void SessionLink::onOperating(const cell_microinjection::OperatingState& message) {
+  session_.operating = operatingStateOf(message.state);
+  session_.homed = message.is_homed;
+  session_.busy = message.is_busy;
+}
+
+void SessionLink::onInjection(const cell_microinjection::InjectionStatus& message) {
+  if (!heard_at_ || now() - *heard_at_ > kSilence) readSettings();
+  heard_at_ = now();
+  session_.injection = injectionStateOf(message.state);
+  session_.waits = message.waits;
+  session_.force = message.force;
+  session_.depth = message.depth;
+  session_.volume = message.volume;
+  session_.notice = message.notice;
+}
+
+void SessionLink::onLoop(const cell_microinjection::LoopState& message) { session_.hold_reason = message.hold_reason; }
+
+void SessionLink::onCell(const cell_microinjection::CellState& message) {
+  ForceHistory::Sample sample;
+  sample.time = now();
+  const auto axis = axis_();
+  if (axis && message.converged) sample.predicted = plausible(toVector(message.force).dot(*axis));
+  if (sample.time - measured_.at < kFresh) sample.measured = measured_.value;
+  if (message.in_contact || message.inside) {
+    sample.depth = plausible(message.inside ? message.insertion_depth : message.indentation);
+  }
+  history_.add(sample);
+  grown_ = true;
+}
+
+void SessionLink::onMeasured(const geometry_msgs::WrenchStamped& message) {
+  measured_ = {std::nullopt, now()};
+  if (message.header.stamp.isZero()) return;
+  const Eigen::Vector3d force = toVector(message.wrench.force);
+  if (message.header.frame_id == "needle_tip") {
+    measured_.value = plausible(force.z());
+  } else if (const auto axis = axis_(); axis && message.header.frame_id == "world") {
+    measured_.value = plausible(force.dot(*axis));
+  }
+}
+
+void SessionLink::onEstimate(const cell_microinjection::CellEstimate& message) {
+  CellEstimateView view;
+  view.verdict = message.verdict;
+  view.reason = message.reason;
+  view.modulus = message.modulus;
+  view.low = message.modulus_low;
+  view.high = message.modulus_high;
+  view.served_modulus = message.served_modulus;
+  const auto& puncture = message.puncture;
+  const bool ordered = puncture.depth_low <= puncture.depth && puncture.depth <= puncture.depth_high;
+  if (ordered && plausible(puncture.depth_high) && plausible(puncture.force)) {
+    view.puncture_depth = puncture.depth;
+    view.puncture_low = puncture.depth_low;
+    view.puncture_high = puncture.depth_high;
+    view.puncture_force = puncture.force;
+  }
+  estimate_ = {view, now()};
+}
+
+void SessionLink::onInjector(const cell_microinjection::InjectorState& message) {
+  InjectorView view;
+  view.pressure = message.pressure;
+  view.volume = message.volume;
+  view.busy = message.busy;
+  view.pulses = message.pulses;
+  view.fault = message.fault;
+  view.refusal = message.refusal;
+  injector_ = {view, now()};
+}
+
+void SessionLink::onDiagnostics(const diagnostic_msgs::DiagnosticArray& message) {
+  for (const auto& status : message.status) {
+    lamps_.receive({status.name, status.level, status.message}, now());
+    if (status.name == "cell_simulator: cell parameters") changed_ = status.message;
+    if (status.name != "cell_simulator: solver") continue;
+    const auto served = std::find_if(status.values.begin(), status.values.end(),
+                                     [](const auto& value) { return value.key == "served cell"; });
+    if (served != status.values.end()) served_ = served->value;
+  }
+}
+
+}  // namespace microinjection

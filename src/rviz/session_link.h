@@ -1,0 +1,92 @@
+#pragma once
+
+#include <cell_microinjection/CellEstimate.h>
+#include <cell_microinjection/CellState.h>
+#include <cell_microinjection/InjectionStatus.h>
+#include <cell_microinjection/InjectorState.h>
+#include <cell_microinjection/LoopState.h>
+#include <cell_microinjection/OperatingState.h>
+#include <diagnostic_msgs/DiagnosticArray.h>
+#include <geometry_msgs/WrenchStamped.h>
+#include <ros/callback_queue.h>
+#include <ros/ros.h>
+
+#include <Eigen/Core>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "operation/console/cell_lines.h"
+#include "operation/console/device_lamps.h"
+#include "operation/console/force_history.h"
+#include "operation/console/session_view.h"
+
+namespace microinjection {
+
+/// What the console hears of a session, and its one publisher.
+///
+/// In:  /controller/operating_state, /controller/injection_state, /controller/loop_state,
+///      /cell/state, /cell/estimate, /force_sensor/measured_cf, /injector/state, /diagnostics
+/// Out: /controller/state_command (StringStamped)
+///
+/// All queues have length 1 and nothing latches: a console that hangs neither fills a queue of the
+/// loop nor leaves a command behind. The callbacks run in poll(), in the caller's thread.
+class SessionLink {
+ public:
+  /// `axis`: gives the pipette's axis (unit, out of the cell, `world`), or nothing where tf does not
+  /// have it.
+  explicit SessionLink(std::function<std::optional<Eigen::Vector3d>()> axis);
+
+  /// Runs the callbacks of the messages that came. Never waits for one. Returns whether the history
+  /// has grown.
+  bool poll();
+  /// Sends a command of the operator with the present stamp.
+  void send(const std::string& command);
+
+  SessionView session() const;
+  Lamp lamp(Device device) const;
+  std::optional<CellEstimateView> estimate() const;
+  std::optional<InjectorView> injector() const;
+  const ForceHistory& history() const { return history_; }
+  /// The model of the served cell with its expected error, or the last change of its parameters;
+  /// empty: not known.
+  std::string servedCell() const;
+
+ private:
+  template <typename Message>
+  void subscribe(const std::string& topic, void (SessionLink::*receive)(const Message&));
+  void onOperating(const cell_microinjection::OperatingState& message);
+  void onInjection(const cell_microinjection::InjectionStatus& message);
+  void onLoop(const cell_microinjection::LoopState& message);
+  void onCell(const cell_microinjection::CellState& message);
+  void onEstimate(const cell_microinjection::CellEstimate& message);
+  void onMeasured(const geometry_msgs::WrenchStamped& message);
+  void onInjector(const cell_microinjection::InjectorState& message);
+  void onDiagnostics(const diagnostic_msgs::DiagnosticArray& message);
+  void readSettings();
+
+  /// A value and the time (s) at which it came.
+  template <typename Value>
+  struct Received {
+    Value value;
+    double at = 0;
+  };
+
+  std::function<std::optional<Eigen::Vector3d>()> axis_;
+  ros::CallbackQueue queue_;
+  ros::NodeHandle node_;
+  std::vector<ros::Subscriber> subscribers_;
+  ros::Publisher commands_;
+  SessionView session_;
+  std::optional<double> heard_at_;  ///< s, of the controller's last message
+  Received<std::optional<double>> measured_;
+  Received<std::optional<CellEstimateView>> estimate_;
+  Received<std::optional<InjectorView>> injector_;
+  DeviceLamps lamps_;
+  ForceHistory history_;
+  bool grown_ = false;
+  std::string served_, changed_;  ///< of the cell simulator's reports
+};
+
+}  // namespace microinjection

@@ -1,0 +1,72 @@
+"""What a picture of the operator's console shows: which buttons are offered, where they are, and the lamps' colours.
+
+It knows the colours of src/rviz/colours.h and that the buttons stand in a column above STOP, and the lamps in one to the
+right of it. It sees what an operator sees: a button that another window hides is not there.
+"""
+
+import subprocess
+
+import matplotlib.image
+import numpy
+
+BUTTONS = ("Enable", "Home", "Approach", "Indent", "Inject", "Withdraw", "Disable")
+DEVICES = ("Rig", "Camera", "Sensor", "Hand", "Cell", "Injector", "Estimate")
+STOP, OFFERED, REFUSED = (0xC6, 0x28, 0x28), (0x2B, 0x6C, 0xB0), (0xD5, 0xD8, 0xDC)
+LAMPS = {"green": (0x2E, 0x9E, 0x4F), "yellow": (0xF2, 0xB1, 0x0E), "red": (0xD0, 0x2C, 0x2C),
+         "grey": (0xA8, 0xAD, 0xB3)}
+LEAST_STOP, LEAST_BUTTON, LEAST_LAMP = 30, 20, 5  # px of height; letters are smaller
+
+
+def runs(column, colour):
+    """[(first row, last row)] of a column of pixels that has this colour."""
+    same = numpy.concatenate(([False], numpy.all(abs(column - numpy.array(colour)) <= 3, axis=-1), [False]))
+    edges = numpy.flatnonzero(numpy.diff(same.astype(int)))
+    return [(int(a), int(b) - 1) for a, b in zip(edges[::2], edges[1::2])]
+
+
+class NotSeen(Exception):
+    """The picture does not show a console."""
+
+
+class Console:
+    """A picture's console. @raises NotSeen"""
+
+    def __init__(self, pixels):
+        rows, columns = numpy.nonzero(numpy.all(abs(pixels - numpy.array(STOP)) <= 3, axis=-1))
+        if rows.size == 0 or rows.max() - rows.min() < LEAST_STOP:
+            raise NotSeen("there is no stop button")
+        self.stop = (int(columns.min() + 20), int((rows.min() + rows.max()) // 2))
+        left, right = int(columns.min()) + 8, int(columns.max())
+        column = pixels[:int(rows.min()), left]
+        seen = [(rows_of, offered) for offered, colour in ((True, OFFERED), (False, REFUSED))
+                for rows_of in runs(column, colour) if rows_of[1] - rows_of[0] > LEAST_BUTTON]
+        # The strip of steps is above them.
+        seen = sorted(seen)[-len(BUTTONS):]
+        if len(seen) < len(BUTTONS):
+            raise NotSeen(f"there are {len(seen)} buttons")
+        self.place = {name: (left, (a + b) // 2) for name, ((a, b), _) in zip(BUTTONS, seen)}
+        self.offered = {name: offered for name, (_, offered) in zip(BUTTONS, seen)}
+        first = seen[0][0][0]
+        self.headline = self._lamps(pixels[first - 40:first, left - 8:left + 12])[-1:]
+        self.lamps = dict(zip(DEVICES, self._lamps(pixels[first:, right + 6:right + 34])))
+
+    @staticmethod
+    def _lamps(pixels):
+        """Colours from top to bottom of the lamps in a strip of pixels, by its column that has most of them."""
+        best = []
+        for column in numpy.moveaxis(pixels, 1, 0):
+            found = sorted((a, name) for name, colour in LAMPS.items() for a, b in runs(column, colour)
+                           if b - a >= LEAST_LAMP)
+            best = max(best, found, key=len)
+        return [name for _, name in best]
+
+
+def look(path, environment):
+    """The console on the screen. @raises NotSeen"""
+    try:
+        subprocess.run(["import", "-silent", "-window", "root", f"png24:{path}"], env=environment, check=True, timeout=60,
+                       stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        pixels = (255 * matplotlib.image.imread(str(path))[..., :3]).round().astype(int)
+    except (subprocess.SubprocessError, OSError) as error:
+        raise NotSeen(f"there is no picture: {error}") from error
+    return Console(pixels)

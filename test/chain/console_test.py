@@ -1,0 +1,171 @@
+#!/usr/bin/python3
+"""An injection from the console alone, by mouse and space bar, and what the console shows of it."""
+
+import os
+import subprocess
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+import numpy as np
+import rospy
+import rostest
+from cell_microinjection.msg import InjectionStatus, InjectorState, OperatingState, StringStamped
+from geometry_msgs.msg import PoseStamped
+
+import console_eye
+from messages import position
+from processes import Child
+from screen import Screen
+
+PATIENCE = 150        # s of wall time; only a session or a console that hangs takes that long
+START_PATIENCE = 400  # s, for rviz on a busy machine
+
+
+class ConsoleTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        os.environ.pop("DISPLAY", None)  # never the user's: the mouse is the test's
+        cls.folder = tempfile.TemporaryDirectory()
+        logs = Path(cls.folder.name)
+        cls.picture = logs / "screen.png"
+        cls.screen = Screen(logs / "xvfb.log", (1280, 800))
+        cls.environment = {**os.environ, **cls.screen.environment}
+        cls.rviz = Child(["roslaunch", "cell_microinjection", "display.launch", "console:=inject"], logs / "rviz.log",
+                         cls.environment)
+        cls.seen, cls.states, cls.sent = {}, [], []
+        for topic, kind in (("/controller/injection_state", InjectionStatus), ("/controller/operating_state", OperatingState),
+                            ("/injector/state", InjectorState), ("/needle/measured_cp", PoseStamped)):
+            rospy.Subscriber(topic, kind, cls.on_message, topic)
+        rospy.Subscriber("/controller/state_command", StringStamped, lambda message: cls.sent.append(message.string))
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.rviz.stop(10)
+        cls.screen.close()
+        cls.folder.cleanup()
+
+    @classmethod
+    def on_message(cls, message, topic):
+        cls.seen[topic] = message
+        state = getattr(message, "state", None)
+        if topic == "/controller/injection_state" and cls.states[-1:] != [state]:
+            cls.states.append(state)
+
+    def until(self, condition, what, patience=PATIENCE):
+        end = time.monotonic() + patience
+        while True:
+            result = condition()
+            if result:
+                return result
+            self.assertLess(time.monotonic(), end, f"{what}: not within {patience} s; {self.report()}")
+            time.sleep(0.05)
+
+    def report(self):
+        rviz = "" if self.rviz.running() else f"; rviz has ended: {self.rviz.tail(10)}"
+        return f"states {self.states}, sent {self.sent}{rviz}"
+
+    def look(self):
+        try:
+            return console_eye.look(self.picture, self.environment)
+        except console_eye.NotSeen:
+            return None
+
+    def shows(self, condition, what, patience=PATIENCE):
+        """The console, as soon as it shows that."""
+        def check():
+            console = self.look()
+            return console if console and condition(console) else None
+        return self.until(check, f"a console with {what}", patience)
+
+    def do(self, *words):
+        subprocess.run(["xdotool", *map(str, words)], env=self.environment, check=True, timeout=60)
+
+    def click(self, place):
+        self.do("mousemove", *place)
+        self.do("click", 1)
+
+    def press(self, button):
+        console = self.shows(lambda seen: seen.offered[button], f"{button} offered")
+        before = len(self.sent)
+        self.click(console.place[button])
+        self.until(lambda: len(self.sent) > before, f"a command of {button}")
+
+    def operating(self, state):
+        self.until(lambda: self.seen["/controller/operating_state"].state == state, state)
+
+    def waits_in(self, state):
+        def waits():
+            status = self.seen["/controller/injection_state"]
+            return status.state == state and status.waits
+        self.until(waits, f"waiting in {state}")
+
+    def needle(self):
+        return position(self.seen["/needle/measured_cp"])
+
+    def test_1_a_whole_injection_by_mouse(self):
+        console = self.shows(lambda seen: seen.offered["Enable"], "Enable", START_PATIENCE)
+        self.assertEqual([name for name in console_eye.BUTTONS if console.offered[name]], ["Enable"])
+        self.press("Enable")
+        self.operating("ENABLED")
+        self.press("Approach")
+        self.waits_in("contact")
+        console = self.shows(lambda seen: seen.offered["Indent"], "Indent")
+        self.assertFalse(console.offered["Inject"])
+        sent = len(self.sent)
+        self.click(console.place["Inject"])  # greyed
+        self.press("Indent")
+        self.assertEqual(self.sent[sent:], ["indent"])
+        self.waits_in("punctured")
+        self.press("Inject")
+        self.until(lambda: "inject" in self.states, "the pulse")
+        self.waits_in("punctured")
+        self.shows(lambda seen: not seen.offered["Inject"], "Inject greyed after the pulse")
+        self.press("Withdraw")
+        self.until(lambda: self.seen["/controller/injection_state"].outcome == "injected", "the outcome")
+        self.assertEqual(self.sent, ["enable", "approach", "indent", "inject", "withdraw"])
+        self.assertGreater(self.seen["/injector/state"].volume, 0)
+        self.assertEqual([state for state in self.states if state != "idle"],
+                         ["approach", "contact", "indent", "punctured", "inject", "punctured", "withdraw"])
+
+    def test_2_stop_by_mouse_and_by_space_bar(self):
+        self.until(lambda: self.states[-1:] == ["idle"], "idle")
+        before = len(self.states)
+        self.press("Approach")
+        self.until(lambda: "approach" in self.states[before:], "the approach")
+        console = self.shows(lambda seen: not seen.offered["Approach"], "Approach greyed")
+        self.click(console.stop)
+        self.operating("PAUSED")
+        self.shows(lambda seen: seen.headline == ["yellow"], "a yellow headline")
+        at = self.needle()
+        time.sleep(0.5)
+        np.testing.assert_allclose(self.needle(), at, atol=0.1e-6)
+        self.press("Enable")  # it is Resume now
+        self.operating("ENABLED")
+        self.assertEqual(self.sent[-2:], ["pause", "resume"])
+        self.do("key", "space")
+        self.operating("PAUSED")
+        self.shows(lambda seen: seen.headline == ["yellow"], "a yellow headline")
+        self.do("key", "space")
+        self.operating("DISABLED")
+        self.assertEqual(self.sent[-2:], ["pause", "disable"])
+        self.shows(lambda seen: seen.headline == ["grey"], "a grey headline")
+
+    def test_3_the_lamps_of_the_devices(self):
+        console = self.shows(lambda seen: len(seen.lamps) == len(console_eye.DEVICES), "all lamps")
+        self.assertEqual((console.lamps["Camera"], console.lamps["Hand"], console.lamps["Estimate"]), ("grey",) * 3)
+        self.assertIn(console.lamps["Sensor"], ("green", "yellow"))
+        subprocess.run(["rosnode", "kill", "/force_sensor"], check=True, timeout=60, stdout=subprocess.DEVNULL)
+        console = self.shows(lambda seen: seen.lamps.get("Sensor") == "red", "a red lamp of the sensor")
+        self.assertNotEqual(console.lamps["Rig"], "red")
+
+    def test_4_a_controller_that_dies(self):
+        subprocess.run(["rosnode", "kill", "/injection_controller"], check=True, timeout=60, stdout=subprocess.DEVNULL)
+        console = self.shows(lambda seen: seen.headline == ["red"], "a red headline")
+        self.assertFalse(any(console.offered.values()))
+
+
+if __name__ == "__main__":
+    rospy.init_node("operator_with_mouse")
+    rostest.rosrun("cell_microinjection", "console", ConsoleTest)

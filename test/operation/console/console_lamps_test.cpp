@@ -1,0 +1,145 @@
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "operation/console/cell_lines.h"
+#include "operation/console/device_lamps.h"
+#include "operation/console/guard_margins.h"
+#include "operation/console/headline.h"
+#include "operation/console/step_strip.h"
+
+namespace microinjection {
+namespace {
+
+using Mark = StepStrip::Mark;
+constexpr Mark kAhead = Mark::kAhead, kPassed = Mark::kPassed, kPresent = Mark::kPresent;
+
+TEST(StepStrip, LightsThePresentStepAndRemembersThePassedOnes) {
+  StepStrip strip;
+  strip.update(InjectionState::kIdle);
+  EXPECT_EQ(strip.marks()[0], kPresent);
+  for (const InjectionState state : {InjectionState::kApproach, InjectionState::kContact, InjectionState::kIndent,
+                                     InjectionState::kPunctured, InjectionState::kInject, InjectionState::kPunctured}) {
+    strip.update(state);
+  }
+  const std::array<Mark, 7> injected = {kAhead, kPassed, kPassed, kPassed, kPresent, kPassed, kAhead};
+  EXPECT_EQ(strip.marks(), injected);
+  strip.update(InjectionState::kWithdraw);
+  EXPECT_EQ(strip.marks()[6], kPresent);
+  strip.update(InjectionState::kIdle);
+  const std::array<Mark, 7> idle = {kPresent, kAhead, kAhead, kAhead, kAhead, kAhead, kAhead};
+  EXPECT_EQ(strip.marks(), idle);
+}
+
+TEST(StepStrip, LightsNothingInFaultOrWithoutAState) {
+  StepStrip strip;
+  strip.update(InjectionState::kApproach);
+  strip.update(InjectionState::kFault);
+  EXPECT_TRUE(strip.fault());
+  EXPECT_EQ(strip.marks()[1], kPassed);
+  strip.update(std::nullopt);
+  EXPECT_FALSE(strip.fault());
+  for (const Mark mark : strip.marks()) EXPECT_NE(mark, kPresent);
+}
+
+TEST(GuardMargins, TurnYellowNearTheLimitAndRedBeyondIt) {
+  EXPECT_EQ(guardMargin("Force", 7.9e-6, 10e-6, "uN").lamp.light, Light::kGreen);
+  EXPECT_EQ(guardMargin("Force", 8.1e-6, 10e-6, "uN").lamp.light, Light::kYellow);
+  // The guard of the controller acts above its limit, not at it.
+  EXPECT_EQ(guardMargin("Force", 10e-6, 10e-6, "uN").lamp.light, Light::kYellow);
+  EXPECT_EQ(guardMargin("Force", -10.1e-6, 10e-6, "uN").lamp.light, Light::kRed);
+  EXPECT_EQ(guardMargin("Force", 2.5e-6, 10e-6, "uN").lamp.text, "2.50 of 10.0 uN");
+  EXPECT_DOUBLE_EQ(guardMargin("Force", 2.5e-6, 10e-6, "uN").share, 0.25);
+}
+
+TEST(GuardMargins, AreGreyWithoutValueOrLimit) {
+  EXPECT_EQ(guardMargin("Force", 1e-6, std::nullopt, "uN").lamp.light, Light::kGrey);
+  EXPECT_EQ(guardMargin("Force", std::nullopt, 1e-6, "uN").lamp.light, Light::kGrey);
+  EXPECT_EQ(guardMargin("Force", std::numeric_limits<double>::quiet_NaN(), 1e-6, "uN").lamp.light, Light::kGrey);
+  SessionView session;
+  session.settings.depth_limit = 50e-6;
+  EXPECT_EQ(depthMargin(session).lamp.light, Light::kGrey);
+  session.operating = OperatingState::kEnabled;
+  session.injection = InjectionState::kIndent;
+  session.depth = -3e-6;  // above the contact point
+  EXPECT_DOUBLE_EQ(depthMargin(session).share, 0);
+}
+
+TEST(DeviceLamps, HaveTheWorstTasksColourAndText) {
+  DeviceLamps lamps;
+  EXPECT_EQ(lamps.lamp(Device::kRig, 0).light, Light::kGrey);
+  lamps.receive({"micromanipulator: cycle", 0, "runs at its rate"}, 0);
+  lamps.receive({"micromanipulator: commands", 0, "holds"}, 0);
+  EXPECT_EQ(lamps.lamp(Device::kRig, 1).light, Light::kGreen);
+  EXPECT_EQ(lamps.lamp(Device::kRig, 1).text, "holds");
+  lamps.receive({"micromanipulator: inputs", 1, "/needle/servo_cp is stale"}, 1);
+  EXPECT_EQ(lamps.lamp(Device::kRig, 1).light, Light::kYellow);
+  EXPECT_EQ(lamps.lamp(Device::kRig, 1).text, "/needle/servo_cp is stale");
+  lamps.receive({"micromanipulator: commands", 2, "the cable is out"}, 1);
+  EXPECT_EQ(lamps.lamp(Device::kRig, 1).light, Light::kRed);
+  EXPECT_EQ(lamps.lamp(Device::kRig, 1).text, "the cable is out");
+  lamps.receive({"display: drawing", 2, "slow"}, 1);
+  EXPECT_EQ(lamps.lamp(Device::kCell, 1).light, Light::kGrey);
+}
+
+TEST(DeviceLamps, TurnRedWhenANodeFallsSilent) {
+  DeviceLamps lamps;
+  lamps.receive({"force_sensor: sensor", 0, "measures"}, 10);
+  EXPECT_EQ(lamps.lamp(Device::kSensor, 10 + DeviceLamps::kSilence - 0.1).light, Light::kGreen);
+  EXPECT_EQ(lamps.lamp(Device::kSensor, 15).light, Light::kRed);
+  EXPECT_EQ(lamps.lamp(Device::kSensor, 15).text, "force_sensor is silent for 5 s");
+}
+
+TEST(Headline, SaysWhatHoldsTheNeedle) {
+  SessionView session;
+  session.operating = OperatingState::kPaused;
+  session.injection = InjectionState::kIndent;
+  session.hold_reason = "force along the pipette 2e-05 N, allowed 1.5e-05 N";
+  EXPECT_EQ(headline(session).light, Light::kYellow);
+  EXPECT_EQ(headline(session).text, "PAUSED: " + session.hold_reason);
+  session.operating = OperatingState::kEnabled;
+  session.hold_reason.clear();
+  session.waits = true;
+  session.injection = InjectionState::kContact;
+  EXPECT_EQ(headline(session).text, "ENABLED: waits for Indent or Withdraw");
+  session.notice = "inject refused: it is no step from contact";
+  EXPECT_EQ(headline(session).light, Light::kYellow);
+}
+
+TEST(CellLines, SayVerdictAndReason) {
+  EXPECT_EQ(estimateLamp(std::nullopt).light, Light::kGrey);
+  CellEstimateView estimate;
+  estimate.verdict = "learning";
+  estimate.reason = "the interval is wide";
+  estimate.modulus = 5.2e3;
+  estimate.low = 3e3;
+  estimate.high = 9e3;
+  EXPECT_EQ(estimateLamp(estimate).text, "5.20 kPa (3.00 to 9.00), learning: the interval is wide");
+  EXPECT_EQ(estimateLamp(estimate).light, Light::kYellow);
+  estimate.verdict = "converged";
+  EXPECT_EQ(estimateLamp(estimate).light, Light::kGreen);
+  estimate.verdict = "inconsistent";
+  EXPECT_EQ(estimateLamp(estimate).light, Light::kRed);
+  EXPECT_EQ(punctureText(estimate), "");
+  estimate.puncture_depth = 31.2e-6;
+  estimate.puncture_low = 27e-6;
+  estimate.puncture_high = 35.5e-6;
+  estimate.puncture_force = 1.3e-6;
+  EXPECT_EQ(punctureText(estimate), "puncture at 31.2 um (27.0 to 35.5), 1.30 uN");
+}
+
+TEST(CellLines, SayWhatTheInjectorDoes) {
+  EXPECT_EQ(injectorLamp(std::nullopt).light, Light::kGrey);
+  InjectorView injector;
+  injector.pressure = 2.46e3;
+  injector.volume = 1.2e-15;
+  injector.pulses = 1;
+  EXPECT_EQ(injectorLamp(injector).text, "2.46 kPa, 1.20 pL, 1 pulse");
+  injector.refusal = "busy";
+  EXPECT_EQ(injectorLamp(injector).light, Light::kYellow);
+  injector.fault = "the line is silent";
+  EXPECT_EQ(injectorLamp(injector).light, Light::kRed);
+}
+
+}  // namespace
+}  // namespace microinjection
