@@ -33,8 +33,8 @@ link_package() {
   for part in CMakeLists.txt src benchmark msg srv action launch config urdf test; do
     ln -sfn "../../../$part" "$package/$part"
   done
-  # catkin installs them as they are; -C: their time stays while nothing changes.
-  install -C -m 644 "$ROOT"/{package,plugin_description}.xml "$package"
+  # catkin installs it as it is; -C: its time stays while nothing changes.
+  install -C -m 644 "$ROOT/package.xml" "$package/package.xml"
 }
 
 # Makes the given targets (by default everything but the tests, installed), then takes the workspace's environment on.

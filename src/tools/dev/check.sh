@@ -48,7 +48,7 @@ check_package() {
   # Of a copy: its walk would see what was built.
   rm -rf "$copy"
   mkdir -p "$copy"
-  cp -r "$ROOT"/{package.xml,plugin_description.xml,CMakeLists.txt,src,benchmark,msg,srv,action,launch,config,urdf,test} "$copy"
+  cp -r "$ROOT"/{package.xml,CMakeLists.txt,src,benchmark,msg,srv,action,launch,config,urdf,test} "$copy"
   catkin_lint -W1 --strict --offline --ignore EXTERNAL_INTERFACE_PATH --ignore DUPLICATE_SUBDIR \
     --ignore MISSING_DEPEND --ignore UNINSTALLED_SCRIPT "$copy"
 }
