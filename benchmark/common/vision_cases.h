@@ -22,8 +22,6 @@ std::vector<VisionCondition> visionConditions();
 
 /// Rows of `images` rendered images, with the seeds from `first` on. The constants were chosen with seeds
 /// below 100000.
-/// @param pipettes_only  cells and dimples are not measured, which takes most of the time
-void renderedRows(const VisionCondition& condition, std::uint64_t first, int images, bool pipettes_only,
-                  const TakeRow& take);
+void renderedRows(const VisionCondition& condition, std::uint64_t first, int images, const TakeRow& take);
 
 }  // namespace microinjection
