@@ -120,9 +120,9 @@ class User:
         moving = [at for at, height in self.heights if at > pressed and abs(height - final) > REST]
         sent = self.commands[before][0]
         self.press('Withdraw')
-        self.wait(lambda: self.status.state == 'idle', 'the needle at its start')
-        if self.operating == 'PAUSED':  # it was paused by a person
-            self.press('Enable')
+        # It was paused by a person and is so again at its start.
+        self.wait(lambda: self.status.state == 'idle' and self.operating == 'PAUSED', 'the needle at its start')
+        self.press('Enable')
         return sent - pressed, max(moving, default=sent) - pressed
 
 
