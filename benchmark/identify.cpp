@@ -10,16 +10,14 @@
 #include "base/cpu_time.h"
 #include "base/errors.h"
 #include "benchmark/bench_main.h"
-#include "benchmark/common/drawn_cell.h"
-#include "benchmark/common/faulty_sensor.h"
+#include "benchmark/common/printed_table.h"
 #include "benchmark/common/puncture_trial.h"
+#include "benchmark/common/recorded_indentation.h"
 #include "cell/identification/family_law.h"
 #include "cell/identification/identification.h"
 
 namespace microinjection {
 namespace {
-
-constexpr double kSpeed = 20e-6;  // m/s
 
 struct Options {
   int trials = 200, seed = 100001;
@@ -33,7 +31,8 @@ class IdentifyTable {
   explicit IdentifyTable(const Options& options) : options_(options), deep_(1e-6 * options.deep) {}
 
   std::string rows() {
-    add("trial,kind,modulus_error,modulus_covered,contact_error_m,puncture_error,time_s,verdict,core_modulus,"
+    table_.add(
+        "trial,kind,modulus_error,modulus_covered,contact_error_m,puncture_error,time_s,verdict,core_modulus,"
         "rival_advantage,lowest_modulus,highest_modulus,layers_known,puncture_law,puncture_depth_m,"
         "puncture_depth_error,force_in_50,force_in_90,depth_in_50,depth_in_90\n");
     std::istringstream kinds(options_.kinds);
@@ -41,34 +40,10 @@ class IdentifyTable {
       const bool main = kind == "homogeneous" || kind == "zona";
       for (int trial = 0; trial < (main ? options_.trials / 2 : options_.trials / 5); ++trial) run(kind, trial);
     }
-    return table_;
+    return table_.text();
   }
 
  private:
-  void add(const std::string& text) {
-    std::fputs(text.c_str(), stdout);
-    std::fflush(stdout);
-    table_ += text;
-  }
-
-  /// `contact`: m, position at first contact.
-  ForceCurve record(const DrawnCell& truth, double contact, const std::string& kind, int seed) {
-    FaultySensor sensor(kind, 0.1 * truth.force(deep_), seed);
-    const double offset = uniform(-100e-9, 100e-9, random_);
-    ForceCurve curve;
-    const int count = static_cast<int>(FaultySensor::kRate * (contact + deep_) / kSpeed);
-    for (int i = 0; i < count; ++i) {
-      const double time = i / FaultySensor::kRate;
-      const auto reading = sensor.read(
-          time, [&](double at) { return truth.force(kSpeed * at - contact); }, random_);
-      if (!reading) continue;
-      curve.time.push_back(time);
-      curve.position.push_back(kSpeed * time);
-      curve.force.push_back(*reading + offset);
-    }
-    return curve;
-  }
-
   void run(const std::string& kind, int trial) {
     const int seed = options_.seed + trial;
     random_.seed(static_cast<unsigned>(seed) + 7919U * static_cast<unsigned>(kind.size()));
@@ -76,7 +51,8 @@ class IdentifyTable {
     const auto& data = zona ? zona_ : homogeneous_;
     const DrawnCell truth = drawCell(*data, zona ? 38e-6 : 28e-6, deep_, random_);
     const double contact = uniform(2e-6, 6e-6, random_);
-    const ForceCurve curve = record(truth, contact, kind, seed);
+    FaultySensor sensor(kind, 0.1 * truth.force(deep_), seed);
+    const ForceCurve curve = recordIndentation(truth, contact, deep_, sensor, random_);
     const bool punctured = options_.strength >= 0 && (kind == "homogeneous" || kind == "zona");
     std::mt19937 own(static_cast<unsigned>(seed) + 104729U * static_cast<unsigned>(kind.size()));
     const PunctureScore puncture =
@@ -93,7 +69,7 @@ class IdentifyTable {
     std::snprintf(row, sizeof(row), "%d,%s,%s,%s,%.3f,%s,%.3g,%s,%s\n", trial, kind.c_str(), found.values.c_str(),
                   puncture.predicted ? number(puncture.force_error).c_str() : "", threadCpuTime() - start,
                   found.verdict.c_str(), core, found.rivals.c_str(), text(puncture).c_str());
-    add(row);
+    table_.add(row);
   }
 
   /// Parts of a row.
@@ -142,7 +118,7 @@ class IdentifyTable {
   double deep_;  ///< m
   std::shared_ptr<const FamilyData> homogeneous_ = loadFamilyData("homogeneous"), zona_ = loadFamilyData("zona");
   std::mt19937 random_;
-  std::string table_;
+  PrintedTable table_;
 };
 
 }  // namespace

@@ -8,15 +8,14 @@
 
 #include "base/errors.h"
 #include "benchmark/bench_main.h"
-#include "benchmark/common/drawn_cell.h"
-#include "benchmark/common/faulty_sensor.h"
+#include "benchmark/common/printed_table.h"
+#include "benchmark/common/recorded_indentation.h"
 #include "cell/identification/family_law.h"
 #include "cell/identification/identification.h"
 
 namespace microinjection {
 namespace {
 
-constexpr double kSpeed = 20e-6;                          // m/s
 constexpr double kDepths[] = {5e-6, 8e-6, 11e-6, 14e-6};  // m
 constexpr double kNoises[] = {1, 0.2};                    // of the sensor's 10 nN
 constexpr double kKnown = 0.1e-6;                         // m, of a contact that is known by sight
@@ -31,51 +30,31 @@ class LayersTable {
   explicit LayersTable(const Options& options) : options_(options) {}
 
   std::string rows() {
-    add("trial,truth,believed,depth_m,noise_N,contact_known_m,core_modulus,shell_thickness,modulus_error,rival_"
+    table_.add(
+        "trial,truth,believed,depth_m,noise_N,contact_known_m,core_modulus,shell_thickness,modulus_error,rival_"
         "advantage,verdict,"
         "lowest_modulus,highest_modulus,layers_known\n");
     for (int trial = 0; trial < options_.trials; ++trial) {
       for (const bool layered : {true, false}) run(layered, trial);
     }
-    return table_;
+    return table_.text();
   }
 
  private:
-  void add(const std::string& text) {
-    std::fputs(text.c_str(), stdout);
-    std::fflush(stdout);
-    table_ += text;
-  }
-
   void run(bool layered, int trial) {
     random_.seed(static_cast<unsigned>(options_.seed + trial) + (layered ? 7919U : 0U));
     const DrawnCell truth = drawCell(layered ? *zona_ : *homogeneous_, layered ? 38e-6 : 28e-6, kDepths[3], random_);
     for (const double depth : kDepths) {
       for (const double noise : kNoises) {
-        const ForceCurve curve = record(truth, depth, noise, options_.seed + trial);
+        FaultySensor sensor("none", 0, options_.seed + trial, noise);
+        contact_ = uniform(2e-6, 6e-6, random_);
+        const ForceCurve curve = recordIndentation(truth, contact_, depth, sensor, random_);
         for (const double known : {0.0, kKnown}) {
           fit({trial, depth, noise, known, false}, truth, curve);
           if (layered) fit({trial, depth, noise, known, true}, truth, curve);
         }
       }
     }
-  }
-
-  ForceCurve record(const DrawnCell& truth, double depth, double noise, int seed) {
-    FaultySensor sensor("none", 0, seed, noise);
-    contact_ = uniform(2e-6, 6e-6, random_);
-    const double contact = contact_, offset = uniform(-100e-9, 100e-9, random_);
-    ForceCurve curve;
-    const int count = static_cast<int>(FaultySensor::kRate * (contact + depth) / kSpeed);
-    for (int i = 0; i < count; ++i) {
-      const double time = i / FaultySensor::kRate;
-      const auto reading = sensor.read(
-          time, [&](double at) { return truth.force(kSpeed * at - contact); }, random_);
-      curve.time.push_back(time);
-      curve.position.push_back(kSpeed * time);
-      curve.force.push_back(*reading + offset);
-    }
-    return curve;
   }
 
   struct Case {
@@ -114,14 +93,14 @@ class LayersTable {
     } catch (const ConfigError&) {
       std::snprintf(row, sizeof(row), ",,refused,,,\n");
     }
-    add(std::string(head) + row);
+    table_.add(std::string(head) + row);
   }
 
   Options options_;
   std::shared_ptr<const FamilyData> homogeneous_ = loadFamilyData("homogeneous"), zona_ = loadFamilyData("zona");
   std::mt19937 random_;
   double contact_ = 0;  ///< m, of the newest record
-  std::string table_;
+  PrintedTable table_;
 };
 
 }  // namespace

@@ -16,6 +16,7 @@
 #include "benchmark/common/drawn_cell.h"
 #include "benchmark/common/faulty_sensor.h"
 #include "benchmark/common/kalman_twin.h"
+#include "benchmark/common/printed_table.h"
 #include "cell/estimation/cell_estimator.h"
 #include "cell/estimation/force_path.h"
 #include "cell/family/family_cell.h"
@@ -39,7 +40,8 @@ class TwinTable {
   explicit TwinTable(const Options& options) : options_(options), deep_(1e-6 * options.deep) {}
 
   std::string rows() {
-    add("trial,kind,factor,modulus_error,modulus_covered,converged_at_m,force_error,force_error_without_height,contact_"
+    table_.add(
+        "trial,kind,factor,modulus_error,modulus_covered,converged_at_m,force_error,force_error_without_height,contact_"
         "error_m,misfit,update_s,"
         "verdict,kalman_error,kalman_covered,kalman_s\n");
     std::istringstream kinds(options_.kinds);
@@ -47,7 +49,7 @@ class TwinTable {
       const bool main = kind == "homogeneous" || kind == "zona";
       for (int trial = 0; trial < (main ? options_.trials : options_.trials / 4); ++trial) run(kind, trial);
     }
-    return table_;
+    return table_.text();
   }
 
  private:
@@ -58,12 +60,6 @@ class TwinTable {
     double surface = 0;  ///< m, of the cell above where it is modelled
     double factor = 1;   ///< of the prior's modulus
   };
-
-  void add(const std::string& text) {
-    std::fputs(text.c_str(), stdout);
-    std::fflush(stdout);
-    table_ += text;
-  }
 
   void run(const std::string& kind, int trial) {
     random_.seed(static_cast<unsigned>(options_.seed + trial) + 7919U * static_cast<unsigned>(kind.size()));
@@ -144,14 +140,14 @@ class TwinTable {
                   last.contact - drawn.surface, last.misfit, times[times.size() * 99 / 100],
                   inconsistent ? "inconsistent" : toText(last.verdict), kalman_error, kalman_covered,
                   kalman_times[kalman_times.size() * 99 / 100]);
-    add(row);
+    table_.add(row);
   }
 
   Options options_;
   double deep_;  ///< m
   std::shared_ptr<const FamilyData> homogeneous_ = loadFamilyData("homogeneous"), zona_ = loadFamilyData("zona");
   std::mt19937 random_;
-  std::string table_;
+  PrintedTable table_;
 };
 
 }  // namespace

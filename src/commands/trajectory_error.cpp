@@ -12,6 +12,7 @@
 
 #include "base/atomic_file.h"
 #include "base/errors.h"
+#include "base/median.h"
 #include "base/standard_output.h"
 #include "cell/model/cell_problem.h"
 #include "cell/model/contact_frame.h"
@@ -41,11 +42,6 @@ struct Arguments {
   int points = 6;
   double level = -0.5;
 };
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
 
 int compare(const Arguments& arguments) {
   Scene scene = loadScene(arguments.scene);
@@ -81,7 +77,7 @@ int compare(const Arguments& arguments) {
   std::printf(
       "force error along the session's way in, against the full solution with %zu tetrahedra: median %.2g %%, "
       "largest %.2g %%\n",
-      problem.body().mesh().elements.size(), 100 * median(errors),
+      problem.body().mesh().elements.size(), 100 * upperMedian(errors),
       100 * *std::max_element(errors.begin(), errors.end()));
   flushStandardOutput();
   return 0;

@@ -74,9 +74,9 @@ InjectionControllerNode::InjectionControllerNode(ros::NodeHandle node, ros::Node
       cycle_.node(), "needle/abilities", 1,
       [this](const ManipulatorAbilities& message, const std::string&) { adaptTo(message); });
   using cell_microinjection::CellEstimate;
-  estimates_ =
-      subscribeGuarded<CellEstimate>(cycle_.node(), "cell/estimate", 1,
-                                     [this](const CellEstimate& message, const std::string&) { estimate_ = message; });
+  estimates_ = subscribeGuarded<CellEstimate>(
+      cycle_.node(), "cell/estimate", 1,
+      [this](const CellEstimate& message, const std::string&) { receiveEstimate(message); });
   cycle_.diagnostics().add("control", [this](auto& status) { report(status); });
   if (parameters_.auto_enable) execute("enable");
 }
@@ -148,13 +148,19 @@ void InjectionControllerNode::adaptTo(const cell_microinjection::ManipulatorAbil
   ROS_INFO_STREAM("rig: " << rig.device << ", driven at " << model_.speedLimit() << " m/s at the most");
 }
 
-/// Of a twin that is alive and not contradicted by the force. Its stamp is this computer's time.
+/// A twin that is contradicted by the force expects nothing.
+void InjectionControllerNode::receiveEstimate(const cell_microinjection::CellEstimate& message) {
+  const auto& puncture = message.puncture;
+  estimated_ = message.header.stamp;
+  expected_ = ExpectedPuncture{puncture.force_low, puncture.force_high, puncture.depth_low, puncture.depth_high};
+  if (message.verdict == "inconsistent") expected_.reset();
+}
+
+/// While the twin is alive.
 std::optional<ExpectedPuncture> InjectionControllerNode::expectedPuncture(const ros::Time& now) const {
-  if (!estimate_ || estimate_->verdict == "inconsistent") return std::nullopt;
-  const double age = secondsBetween(estimate_->header.stamp, now), timeout = parameters_.model.expectation.timeout;
-  if (!(std::abs(age) <= timeout)) return std::nullopt;
-  const auto& puncture = estimate_->puncture;
-  return ExpectedPuncture{puncture.force_low, puncture.force_high, puncture.depth_low, puncture.depth_high};
+  if (!expected_) return std::nullopt;
+  const double age = secondsBetween(estimated_, now);
+  return std::abs(age) <= parameters_.model.expectation.timeout ? expected_ : std::nullopt;
 }
 
 void InjectionControllerNode::step(const Cycle::Tick& tick) {

@@ -60,6 +60,7 @@ class InjectionControllerNode {
   void receiveCommand(const cell_microinjection::StringStamped& message, bool latched, bool repeated);
   void execute(const std::string& command);
   void adaptTo(const cell_microinjection::ManipulatorAbilities& rig);
+  void receiveEstimate(const cell_microinjection::CellEstimate& message);
   std::optional<ExpectedPuncture> expectedPuncture(const ros::Time& now) const;
   void step(const Cycle::Tick& tick);
   void logNotice();
@@ -84,8 +85,9 @@ class InjectionControllerNode {
   bool state_command_received_ = false;
   ros::Subscriber commands_;
   ros::Subscriber abilities_, estimates_;
-  std::optional<cell_microinjection::CellEstimate> estimate_;  ///< the last of the twin
-  bool adapted_ = false;                                       ///< to a rig's abilities
+  std::optional<ExpectedPuncture> expected_;  ///< by the twin
+  ros::Time estimated_;                       ///< its time
+  bool adapted_ = false;                      ///< to a rig's abilities
   ros::Publisher state_;
   cell_microinjection::OperatingState last_published_state_;
   cell_microinjection::InjectionStatus last_published_injection_;

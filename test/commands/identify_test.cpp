@@ -1,50 +1,26 @@
 // The command as its users run it.
 
-#include <gtest/gtest.h>
-#include <sys/wait.h>
-
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <random>
 #include <sstream>
 #include <string>
 #include <vector>
 
-namespace {
+#include "commands/command_test.h"
 
-namespace fs = std::filesystem;
+namespace microinjection {
+namespace {
 
 constexpr char kCells[] = MICROINJECTION_SOURCE_DIR "/config/cells/";
 constexpr char kFamilies[] = MICROINJECTION_SOURCE_DIR "/config/families";
 
-struct Outcome {
-  int status;
-  std::string out, err;
-};
-
-class IdentifyCommand : public testing::Test {
+class IdentifyCommand : public CommandTest {
  protected:
-  void SetUp() override {
-    fs::remove_all(directory_);
-    fs::create_directories(directory_);
-  }
-  void TearDown() override { fs::remove_all(directory_); }
+  IdentifyCommand() : CommandTest(MICROINJECTION_IDENTIFY, "identify") {}
 
-  static std::string read(const std::string& path) {
-    std::ifstream file(path);
-    std::ostringstream text;
-    text << file.rdbuf();
-    return text.str();
-  }
-
-  Outcome run(const std::string& arguments) const {
-    const std::string command = "cd " + directory_ + " && " MICROINJECTION_IDENTIFY " " + arguments + " --families " +
-                                kFamilies + " >out.txt 2>err.txt";
-    const int status = std::system(command.c_str());
-    return {WEXITSTATUS(status), read(directory_ + "out.txt"), read(directory_ + "err.txt")};
-  }
+  Outcome run(const std::string& arguments) const { return CommandTest::run(arguments + " --families " + kFamilies); }
 
   /// {value, low, high} of the modulus in the table of --csv.
   std::vector<double> modulus(const std::string& model) const {
@@ -73,8 +49,6 @@ class IdentifyCommand : public testing::Test {
       file << 1e-3 * i << ',' << position << ',' << slope * std::max(0.0, depth) + 1e-9 * normal(random) << '\n';
     }
   }
-
-  std::string directory_ = testing::TempDir() + "microinjection_identify/";
 };
 
 // `indent` gives the force of the scene, so that the modulus of the point is the scene's.
@@ -125,3 +99,4 @@ TEST_F(IdentifyCommand, TheForceOfATensegrityIsNoSolution) {
 }
 
 }  // namespace
+}  // namespace microinjection

@@ -1,8 +1,5 @@
 // The command as its users run it.
 
-#include <gtest/gtest.h>
-#include <sys/wait.h>
-
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -13,24 +10,22 @@
 #include <utility>
 #include <vector>
 
+#include "commands/command_test.h"
+
+namespace microinjection {
 namespace {
 
 namespace fs = std::filesystem;
 
-struct Outcome {
-  int status;
-  std::string out, err;
-};
-
-class IndentCommand : public testing::Test {
+class IndentCommand : public CommandTest {
  protected:
+  IndentCommand() : CommandTest(MICROINJECTION_INDENT, "indent") {}
+
   void SetUp() override {
-    fs::remove_all(directory_);
-    fs::create_directories(directory_);
+    CommandTest::SetUp();
     write("scene.yaml", "linear", "");
     write("st_vk.yaml", "st_venant_kirchhoff", "");
   }
-  void TearDown() override { fs::remove_all(directory_); }
 
   void write(const std::string& name, const std::string& model, const std::string& more) const {
     std::ofstream(directory_ + name) << "cell: {diameter: 56e-6, material: {model: " << model
@@ -39,20 +34,6 @@ class IndentCommand : public testing::Test {
                                      << "needle: {tip: {shape: disc, radius: 3e-6}}\n"
                                      << "mesh: {size: 20e-6}\n"
                                      << more;
-  }
-
-  static std::string read(const std::string& path) {
-    std::ifstream file(path);
-    std::ostringstream text;
-    text << file.rdbuf();
-    return text.str();
-  }
-
-  Outcome run(const std::string& arguments) const {
-    const std::string command =
-        "cd " + directory_ + " && " MICROINJECTION_INDENT " " + arguments + " >out.txt 2>err.txt";
-    const int status = std::system(command.c_str());
-    return {WEXITSTATUS(status), read(directory_ + "out.txt"), read(directory_ + "err.txt")};
   }
 
   /// Numbers of the table; the header must be the one that is promised.
@@ -70,8 +51,6 @@ class IndentCommand : public testing::Test {
     }
     return rows;
   }
-
-  const std::string directory_ = testing::TempDir() + "microinjection_indent/";
 };
 
 TEST_F(IndentCommand, WritesARowADepthInTheOrderGiven) {
@@ -252,3 +231,4 @@ TEST_F(IndentCommand, ExplainsItself) {
 }
 
 }  // namespace
+}  // namespace microinjection

@@ -1,16 +1,12 @@
 // The command as its users run it: a rendered stack of planes becomes a scene.
 
-#include <gtest/gtest.h>
-#include <sys/wait.h>
-
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
-#include <sstream>
 #include <string>
 
 #include "cell/model/scene.h"
+#include "commands/command_test.h"
 #include "vision/microscope/microscope.h"
 
 namespace microinjection {
@@ -20,31 +16,13 @@ namespace fs = std::filesystem;
 
 const std::string kSource = MICROINJECTION_SOURCE_DIR;
 
-struct Outcome {
-  int status;
-  std::string out, err;
-};
-
-class MeasureCellCommand : public testing::Test {
+class MeasureCellCommand : public CommandTest {
  protected:
+  MeasureCellCommand() : CommandTest(MICROINJECTION_MEASURE_CELL, "measure_cell") {}
+
   void SetUp() override {
-    fs::remove_all(directory_);
+    CommandTest::SetUp();
     fs::create_directories(directory_ + "stack");
-  }
-  void TearDown() override { fs::remove_all(directory_); }
-
-  static std::string read(const std::string& path) {
-    std::ifstream file(path);
-    std::ostringstream text;
-    text << file.rdbuf();
-    return text.str();
-  }
-
-  Outcome run(const std::string& arguments) const {
-    const std::string command =
-        "cd " + directory_ + " && " MICROINJECTION_MEASURE_CELL " " + arguments + " >out.txt 2>err.txt";
-    const int status = std::system(command.c_str());
-    return {WEXITSTATUS(status), read(directory_ + "out.txt"), read(directory_ + "err.txt")};
   }
 
   /// Planes 4 um apart of a cell of `radius` (m) with a zona of 6 um.
@@ -63,8 +41,6 @@ class MeasureCellCommand : public testing::Test {
     const std::size_t place = out.find(name + ": ");
     return place == std::string::npos ? -1 : std::stod(out.substr(place + name.size() + 2));
   }
-
-  const std::string directory_ = testing::TempDir() + "microinjection_measure_cell/";
 };
 
 TEST_F(MeasureCellCommand, MakesASceneOfAStack) {

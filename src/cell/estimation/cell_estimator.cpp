@@ -75,6 +75,11 @@ void CellEstimator::beginNext() {
   setPrior(EstimateVerdict::kPrior, kUntouched);
 }
 
+double CellEstimator::noise() const {
+  const double known = history_.noise();
+  return known > 0 ? known : config_.sensor_noise;
+}
+
 double CellEstimator::modulusOf(const State& state) const {
   return prior_modulus_ * std::exp(prior_deviation_ * state[0]);
 }
@@ -131,7 +136,7 @@ void CellEstimator::linearise(const State& state, Fit& fit, Eigen::MatrixXd& jac
   const double factor = modulusOf(state) / scene_modulus_;
   path_.predict(samples, shift, fit.points);
   shifted_.predict(samples, shift + kStep, shifted_points_);
-  const double known = history_.noise(), noise = known > 0 ? known : config_.sensor_noise;
+  const double noise = this->noise();
   const auto count = static_cast<Eigen::Index>(samples.size());
   fit.state = state;
   fit.residuals.resize(count);
@@ -225,9 +230,8 @@ void CellEstimator::judge(const Fit& fit) {
   contradictions_ = contradicts(misfit) ? contradictions_ + 1 : 0;
   if (contradictions_ < kPersistent) {
     estimate_ = estimateOf(fit, misfit);
-    const double known = history_.noise(), noise = known > 0 ? known : config_.sensor_noise;
     const std::string& better = watch_.follow(
-        history_.samples(), noise, {estimate_.modulus, estimate_.contact, estimate_.offset, estimate_.depth});
+        history_.samples(), noise(), {estimate_.modulus, estimate_.contact, estimate_.offset, estimate_.depth});
     if (better.empty()) return;
     contradictions_ = kPersistent;
     return setPrior(EstimateVerdict::kInconsistent, "another cell has this force rather than this model: " + better);

@@ -113,6 +113,7 @@ class CellEstimator {
   bool contradicts(const Misfit& misfit) const;
   CellEstimate estimateOf(const Fit& fit, const Misfit& misfit) const;
   void setPrior(EstimateVerdict verdict, const std::string& reason);
+  double noise() const;                        ///< N, of a reading
   double modulusOf(const State& state) const;  ///< Pa
 
   CellEstimatorConfig config_;

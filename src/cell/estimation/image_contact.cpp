@@ -4,17 +4,13 @@
 #include <cmath>
 #include <vector>
 
+#include "base/median.h"
+
 namespace microinjection {
 namespace {
 
 constexpr double kBeside = 0.5;                // of the radius, of a tip that does not press from above
 constexpr double kDeviationOfMedian = 1.2533;  // over that of the mean
-
-double medianOf(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 }  // namespace
 
@@ -46,10 +42,10 @@ std::optional<ImageContact::Height> ImageContact::height() const {
     deviations.push_back(seen.deviation);
   }
   // The images' own deviations, or what they truly scatter: whichever is larger.
-  const double height = medianOf(heights);
+  const double height = upperMedian(heights);
   std::vector<double> away;
   for (const double each : heights) away.push_back(std::abs(each - height));
-  const double scatter = std::max(medianOf(deviations), 1.4826 * medianOf(away));
+  const double scatter = std::max(upperMedian(deviations), 1.4826 * upperMedian(away));
   const double mean = kDeviationOfMedian * scatter / std::sqrt(static_cast<double>(heights.size()));
   return Height{height, std::hypot(mean, config_.shared_error)};
 }

@@ -32,7 +32,6 @@ class ImageContact {
   /// along z; `depth`: m, along the needle, from the undisturbed outline; `deviation`: m. Depths that are
   /// not finite, not positive or too large do not count, nor does a tip beside the cell.
   void add(const Eigen::Vector3d& tip, double depth, double deviation);
-  void clear() { heights_.clear(); }
 
   /// Median of the newest images.
   std::optional<Height> height() const;

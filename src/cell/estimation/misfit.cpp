@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/median.h"
+
 namespace microinjection {
 namespace {
 
@@ -11,12 +13,6 @@ constexpr int kFewest = 24;  // samples in contact, of a misfit
 constexpr int kBlocks = 8;
 constexpr double kOfMedian = 1.25;  // deviation of a median over that of a mean
 constexpr int kFewestFree = 12;     // samples before contact, of a drift
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 }  // namespace
 
@@ -35,8 +31,8 @@ Misfit misfitOf(const std::vector<ForcePath::Point>& points, double factor, cons
   double squares = 0, expected = 0;
   for (int block = 0; block < kBlocks; ++block) {
     const auto begin = block * length, end = begin + length;
-    const double middle = median({inside.begin() + begin, inside.begin() + end});
-    const double deviation = median({spread.begin() + begin, spread.begin() + end});
+    const double middle = upperMedian({inside.begin() + begin, inside.begin() + end});
+    const double deviation = upperMedian({spread.begin() + begin, spread.begin() + end});
     squares += middle * middle;
     expected += deviation * deviation / static_cast<double>(length);
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,8 +42,8 @@ class RivalWatch {
  private:
   bool compare(const std::vector<SampleHistory::Sample>& samples, double noise, const Estimate& estimate);
 
-  double radius_;                       ///< m
-  std::vector<BelievedCell> believed_;  ///< one, or none when there is nothing to compare
+  double radius_;                         ///< m
+  std::optional<BelievedCell> believed_;  ///< empty when there is nothing to compare
   std::shared_ptr<const std::vector<RivalCell>> rivals_;
   Config config_;
   double compared_ = 0;  ///< m, depth

@@ -7,6 +7,8 @@
 #include <limits>
 #include <vector>
 
+#include "base/median.h"
+
 namespace microinjection {
 namespace {
 
@@ -24,17 +26,12 @@ struct Fit {
   double noise = 0;
 };
 
-double medianOf(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
-}
-
 /// Weights would take the few samples in contact for outliers, so that outliers are removed before.
 ForceCurve withoutOutliers(ForceCurve curve) {
   const std::vector<double> force = curve.force;
   for (std::size_t i = kFilter; i + kFilter < force.size(); ++i) {
     const auto at = force.begin() + static_cast<std::ptrdiff_t>(i);
-    curve.force[i] = medianOf({at - kFilter, at + kFilter + 1});
+    curve.force[i] = upperMedian({at - kFilter, at + kFilter + 1});
   }
   return curve;
 }
@@ -64,7 +61,7 @@ double noiseOf(const ForceCurve& curve) {
   for (std::size_t i = 1; i + 1 < curve.size(); ++i) {
     differences.push_back(std::abs(curve.force[i] - 0.5 * (curve.force[i - 1] + curve.force[i + 1])));
   }
-  return 1.4826 * medianOf(differences) / std::sqrt(1.5);
+  return 1.4826 * upperMedian(differences) / std::sqrt(1.5);
 }
 
 }  // namespace

@@ -7,6 +7,9 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <utility>
+
+#include "base/median.h"
 
 namespace microinjection {
 namespace {
@@ -82,11 +85,8 @@ Eigen::MatrixXd covarianceOf(const Predictions& at, const ForceCurve& curve, dou
 }
 
 double robustDeviation(std::vector<double> residuals) {
-  if (residuals.empty()) return 0;
   for (double& x : residuals) x = std::abs(x);
-  const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
-  std::nth_element(residuals.begin(), middle, residuals.end());
-  return 1.4826 * *middle;
+  return 1.4826 * upperMedian(std::move(residuals));
 }
 
 /// The larger one of both sides of the contact: samples that a model cannot follow are no outliers.

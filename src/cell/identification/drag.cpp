@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/median.h"
+
 namespace microinjection {
 namespace {
 
@@ -17,12 +19,6 @@ struct Part {
   double time = 0, force = 0, deviation = 0;
 };
 
-double medianOf(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 Part partOf(const ForceCurve& curve, const std::vector<std::size_t>& samples, std::size_t begin, std::size_t end) {
   Part part;
   part.count = end - begin;
@@ -33,8 +29,8 @@ Part partOf(const ForceCurve& curve, const std::vector<std::size_t>& samples, st
     if (!forces.empty()) steps.push_back(std::abs(curve.force[samples[i]] - forces.back()));
     forces.push_back(curve.force[samples[i]]);
   }
-  part.force = medianOf(forces);
-  const double noise = 1.4826 / std::sqrt(2.0) * medianOf(steps);
+  part.force = upperMedian(forces);
+  const double noise = 1.4826 / std::sqrt(2.0) * upperMedian(steps);
   part.deviation = kDeviationOfMedian * noise / std::sqrt(static_cast<double>(part.count));
   return part;
 }

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "base/errors.h"
+#include "base/median.h"
 #include "cell/identification/drag.h"
 #include "cell/identification/force_columns.h"
 
@@ -41,12 +42,6 @@ double number(const std::vector<std::string>& row, const ForceColumn& column) {
   return *end == '\0' ? column.unit * value : kNone;
 }
 
-double medianOf(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Value at the deepest samples minus that of the straight line through those of the first half, which is
 /// a drift; for a straight record, its whole rise.
 double rise(const ForceCurve& curve, const std::vector<double>& values) {
@@ -58,7 +53,7 @@ double rise(const ForceCurve& curve, const std::vector<double>& values) {
   const auto middle = [&](const std::vector<double>& of, std::size_t from, std::size_t count) {
     std::vector<double> part;
     for (std::size_t i = from; i < from + count; ++i) part.push_back(of[order[i]]);
-    return medianOf(part);
+    return upperMedian(part);
   };
   const double x0 = middle(curve.position, 0, quarter), x1 = middle(curve.position, quarter, quarter),
                x2 = middle(curve.position, order.size() - few, few);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/median.h"
+
 namespace microinjection {
 namespace {
 
@@ -22,9 +24,7 @@ Steps stepsOf(const std::vector<double>& force) {
     if (force[i] != force[i - 1]) steps.push_back(std::abs(force[i] - force[i - 1]));
   }
   if (steps.empty()) return {};
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return {*middle, *std::min_element(steps.begin(), steps.end())};
+  return {upperMedian(steps), *std::min_element(steps.begin(), steps.end())};
 }
 
 }  // namespace

@@ -5,8 +5,10 @@
 #include <cstdio>
 #include <functional>
 #include <limits>
+#include <utility>
 
 #include "base/errors.h"
+#include "base/median.h"
 #include "cell/identification/contact_guess.h"
 #include "cell/identification/frozen_readings.h"
 #include "cell/identification/profile_interval.h"
@@ -33,10 +35,8 @@ double whiteNoise(const ForceCurve& curve) {
     const double change = std::abs(curve.force[i] - curve.force[i - 1]);
     if (change > 0) step = std::min(step, change);
   }
-  std::nth_element(differences.begin(), differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2),
-                   differences.end());
   const double rounding = std::isfinite(step) ? step / std::sqrt(12) : 0;
-  return std::max(1.4826 / std::sqrt(1.5) * differences[differences.size() / 2], rounding);
+  return std::max(1.4826 / std::sqrt(1.5) * upperMedian(std::move(differences)), rounding);
 }
 
 /// Rms of the blocks' medians of the residuals in contact, and what noise alone leaves of it.
@@ -56,10 +56,9 @@ Misfit misfitOf(const ForceCurve& curve, const Eigen::VectorXd& residuals, doubl
   const std::size_t length = inside.size() / kBlocks;
   double squares = 0;
   for (int block = 0; block < kBlocks; ++block) {
-    std::vector<double> part(inside.begin() + static_cast<std::ptrdiff_t>(block * length),
-                             inside.begin() + static_cast<std::ptrdiff_t>((block + 1) * length));
-    std::nth_element(part.begin(), part.begin() + part.size() / 2, part.end());
-    squares += part[part.size() / 2] * part[part.size() / 2];
+    const auto begin = inside.begin() + static_cast<std::ptrdiff_t>(block * length);
+    const double middle = upperMedian({begin, begin + static_cast<std::ptrdiff_t>(length)});
+    squares += middle * middle;
   }
   return {std::sqrt(squares / kBlocks), 1.25 * noise / std::sqrt(static_cast<double>(length))};
 }

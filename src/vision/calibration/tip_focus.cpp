@@ -1,128 +1,17 @@
 #include "vision/calibration/tip_focus.h"
 
-#include <ceres/ceres.h>
-
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 
+#include "vision/calibration/bell_fit.h"
+
 namespace microinjection {
 namespace {
 
-constexpr int kParameters = 4;                                        ///< base, peak, middle, log width
-constexpr int kLeastPlanes = 7;                                       ///< that a fit needs
-constexpr double kFarthest = 1000, kNarrowest = 0.2, kWidest = 1000;  ///< planes, of middle and width
-constexpr int kMostApart = 8;                                         ///< planes, of the peaks of a transparent tip
+constexpr int kLeastPlanes = 7;  ///< that a fit needs
+constexpr int kMostApart = 8;    ///< planes, of the peaks of a transparent tip
 constexpr double kConfidence = 0.95;
-constexpr double kOutlierChance = 1e-4;
-
-using Bell = Eigen::Vector4d;
-
-/// Heights in steps of the planes from the sharpest one, sharpness in units of the range.
-struct Point {
-  double height, sharpness;
-  bool used = true;
-};
-
-struct BellCost {
-  Point point;
-  template <typename T>
-  bool operator()(const T* p, T* residual) const {
-    using std::exp;
-    const T distance = (T(point.height) - p[2]) * exp(-p[3]);
-    *residual = p[0] + p[1] * exp(T(-0.5) * distance * distance) - T(point.sharpness);
-    return true;
-  }
-};
-
-double errorOf(const Point& point, const Bell& bell) {
-  double error = 0;
-  BellCost{point}(bell.data(), &error);
-  return error;
-}
-
-/// Fits the used points; returns whether it converged.
-bool fit(const std::vector<Point>& points, double loss, Bell& bell) {
-  ceres::Problem problem;
-  for (const Point& point : points) {
-    if (!point.used) continue;
-    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<BellCost, 1, kParameters>(new BellCost{point}),
-                             loss > 0 ? new ceres::CauchyLoss(loss) : nullptr, bell.data());
-  }
-  // Beyond these the bell is a line or a single plane, and its middle is not determined.
-  problem.SetParameterLowerBound(bell.data(), 2, -kFarthest);
-  problem.SetParameterUpperBound(bell.data(), 2, kFarthest);
-  problem.SetParameterLowerBound(bell.data(), 3, std::log(kNarrowest));
-  problem.SetParameterUpperBound(bell.data(), 3, std::log(kWidest));
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_QR;
-  options.max_num_iterations = 200;
-  options.function_tolerance = 1e-12;
-  options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
-  return summary.IsSolutionUsable() && bell.allFinite() && bell[1] > 0;
-}
-
-double robustScale(const std::vector<Point>& points, const Bell& bell) {
-  std::vector<double> errors;
-  for (const Point& point : points) errors.push_back(std::abs(errorOf(point, bell)));
-  const auto n = static_cast<double>(points.size());
-  return 1.4826 * medianOf(errors) * std::sqrt(n / (n - kParameters));
-}
-
-struct Fit {
-  Bell bell = Bell::Zero();
-  double squares = 0;  ///< of the used points
-  int used = 0;
-  double deviation = 0;  ///< of the middle, steps
-  bool good = false;
-  int freedom() const { return used - kParameters; }
-};
-
-/// Sums of the residuals and the covariance of the middle.
-void finish(const std::vector<Point>& points, Fit& result) {
-  Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
-  for (const Point& point : points) {
-    if (!point.used) continue;
-    using Jet = ceres::Jet<double, kParameters>;
-    Jet p[kParameters], residual;
-    for (int i = 0; i < kParameters; ++i) p[i] = Jet(result.bell[i], i);
-    BellCost{point}(p, &residual);
-    normal += residual.v * residual.v.transpose();
-    result.squares += residual.a * residual.a;
-    ++result.used;
-  }
-  const Eigen::FullPivLU<Eigen::Matrix4d> lu(normal);
-  result.good = result.freedom() >= 2 && lu.isInvertible();
-  if (!result.good) return;
-  result.deviation = std::sqrt(lu.inverse()(2, 2) * result.squares / result.freedom());
-}
-
-Fit fitBell(std::vector<Point>& points, const TipFocusConfig& config) {
-  Fit result;
-  result.bell << 0, 1, 0, std::log(0.5 * config.planes_beside);
-  constexpr double kStartLoss = 0.1;
-  if (!fit(points, kStartLoss, result.bell)) return result;
-  const auto freedom = static_cast<double>(points.size()) - kParameters;
-  const double limit = studentLimit(1 - kOutlierChance, freedom) * robustScale(points, result.bell);
-  for (Point& point : points) point.used = std::abs(errorOf(point, result.bell)) <= limit;
-  if (std::count_if(points.begin(), points.end(), [](const Point& p) { return p.used; }) < kParameters + 2)
-    return result;
-  if (!fit(points, 0, result.bell)) return result;
-  finish(points, result);
-  return result;
-}
-
-bool bellIsNeeded(const std::vector<Point>& points, const Fit& result, double false_rate) {
-  double sum = 0, squares = 0;
-  for (const Point& point : points) sum += point.used ? point.sharpness : 0;
-  for (const Point& point : points) squares += point.used ? std::pow(point.sharpness - sum / result.used, 2) : 0;
-  constexpr double kMore = kParameters - 1;
-  const double noise = std::max(result.squares / result.freedom(), 1e-300);
-  return (squares - result.squares) / kMore / noise > fisherLimit(1 - false_rate, kMore, result.freedom());
-}
 
 std::string refusalOf(const std::vector<FocusSample>& samples) {
   if (samples.size() < kLeastPlanes) {
@@ -166,11 +55,11 @@ struct Stack {
 };
 
 /// The planes to fit. Their number stays the same at a border, where they reach further inwards.
-std::vector<Point> pointsBeside(const Stack& stack, const TipFocusConfig& config) {
+std::vector<BellPoint> pointsBeside(const Stack& stack, const TipFocusConfig& config) {
   const int count = static_cast<int>(stack.samples.size());
   const int width = std::min(count, std::max(kLeastPlanes, 2 * config.planes_beside + 1));
   const int first = std::clamp(stack.best - width / 2, 0, count - width);
-  std::vector<Point> points;
+  std::vector<BellPoint> points;
   for (int i = first; i < first + width; ++i) {
     const FocusSample& each = stack.samples[i];
     const double height = (each.height - stack.samples[stack.best].height) / stack.step;
@@ -283,8 +172,8 @@ FocusReport findFocus(std::vector<FocusSample> samples, const TipFocusConfig& co
     report.text = text.str();
     return report;
   }
-  std::vector<Point> points = pointsBeside(stack, config);
-  const Fit result = fitBell(points, config);
+  std::vector<BellPoint> points = pointsBeside(stack, config);
+  const BellFit result = fitBell(points, 0.5 * config.planes_beside);
   if (result.good && !bellIsNeeded(points, result, config.false_rate)) return report;
   const double middle = samples[stack.best].height + stack.step * result.bell[2];
   const int last = static_cast<int>(samples.size()) - 1;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/median.h"
 #include "vision/detection/zona_thickness.h"
 
 namespace microinjection {
@@ -12,12 +13,6 @@ namespace {
 constexpr double kOther = 0.05;     // relative change of the diameter: another cell
 constexpr double kNormal95 = 1.96;  // standard deviations, of the half width of a 95 % interval
 
-double medianOf(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 MeasuredLength combine(const std::vector<MeasuredLength>& readings) {
   std::vector<double> values, differences;
   double stated = 0;
@@ -25,9 +20,9 @@ MeasuredLength combine(const std::vector<MeasuredLength>& readings) {
     values.push_back(reading.value);
     stated += reading.interval * reading.interval / static_cast<double>(readings.size());
   }
-  const double median = medianOf(values);
+  const double median = upperMedian(values);
   for (const double value : values) differences.push_back(std::abs(value - median));
-  const double scatter = 1.4826 * medianOf(differences);  // standard deviation of normal readings
+  const double scatter = 1.4826 * upperMedian(differences);  // standard deviation of normal readings
   const double count = static_cast<double>(readings.size());
   return {median, kNormal95 * std::sqrt(M_PI / 2 * scatter * scatter / count + stated)};
 }

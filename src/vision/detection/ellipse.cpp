@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/median.h"
+
 namespace microinjection {
 namespace {
 
@@ -44,17 +46,11 @@ double distanceOf(const Shape& shape, const cv::Point2d& point, Parameters& slop
   return (length - 1) / grade;
 }
 
-double medianOf(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 double scaleOf(const std::vector<double>& residuals) {
   std::vector<double> sizes;
   sizes.reserve(residuals.size());
   for (const double residual : residuals) sizes.push_back(std::abs(residual));
-  return std::max(1.4826 * medianOf(std::move(sizes)), 0.02);
+  return std::max(1.4826 * upperMedian(std::move(sizes)), 0.02);
 }
 
 /// Number of neighbouring points that deviate together: of the residuals' correlation at lag 1.

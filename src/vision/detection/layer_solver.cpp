@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/median.h"
+
 namespace microinjection {
 namespace {
 
@@ -17,13 +19,6 @@ constexpr double kSameWidth = 0.4;                     // px, standard deviation
 constexpr double kLeastWidth = 0.5, kLeastBlur = 0.7;  // px
 constexpr double kNear = 8;                            // px, of samples that show a border
 constexpr double kSmallestStep = 2e-3;                 // px, of the borders, that goes on
-
-double medianOf(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Tukey's biweight.
 double tukey(double d) { return std::abs(d) < 1 ? (1 - d * d) * (1 - d * d) : 0; }
@@ -106,8 +101,8 @@ void LayerSolver::weigh(const LayerModel& model, const Eigen::VectorXd& paramete
 void LayerSolver::reweigh() {
   std::vector<double> out, in;
   for (std::size_t i = 0; i < points_.size(); ++i) (points_[i].inside ? in : out).push_back(std::abs(residual_[i]));
-  scale_[0] = std::max(1.4826 * medianOf(std::move(out)), 1e-4);
-  scale_[1] = std::max(1.4826 * medianOf(std::move(in)), scale_[0]);
+  scale_[0] = std::max(1.4826 * upperMedian(std::move(out)), 1e-4);
+  scale_[1] = std::max(1.4826 * upperMedian(std::move(in)), scale_[0]);
   std::vector<double> sum(sectors_, 0.0), count(sectors_, 0.0), rms(sectors_, 1e9), seen;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const double r = std::min(std::abs(residual_[i]) / scale_[points_[i].inside ? 1 : 0], kMostResidual);
@@ -119,7 +114,7 @@ void LayerSolver::reweigh() {
     rms[s] = std::sqrt(sum[s] / count[s]);
     seen.push_back(rms[s]);
   }
-  const double usual = std::max(medianOf(seen), 1e-9);
+  const double usual = std::max(upperMedian(seen), 1e-9);
   int counted = 0;
   for (int s = 0; s < sectors_; ++s) {
     counted += rms[s] < 0.9 * kOddSector * usual ? 1 : 0;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "base/median.h"
+
 namespace microinjection {
 namespace {
 
@@ -91,13 +93,6 @@ class Profiles {
   cv::Mat slope_;
 };
 
-double medianOf(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 }  // namespace
 
 bool NeedleShadow::hides(const cv::Point2d& point) const {
@@ -167,7 +162,7 @@ std::vector<BorderPoint> traceOutline(const Frame& frame, const CellBorder& bord
       rims.push_back(rim[i]);
     }
   }
-  const double usual = medianOf(slopes), usual_rim = 2 * rims.size() > slopes.size() ? medianOf(rims) : 0;
+  const double usual = upperMedian(slopes), usual_rim = 2 * rims.size() > slopes.size() ? upperMedian(rims) : 0;
   for (std::size_t i = 0; i < path.size(); ++i) {
     const bool own = std::abs(rim[i] - usual_rim) < kSameRim * usual_rim;
     points[i].place = path[i] + (outer[i] - border.place * (own ? rim[i] : usual_rim)) * points[i].normal;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/median.h"
+
 namespace microinjection {
 namespace {
 
@@ -18,13 +20,6 @@ constexpr double kLeastRamp = 0.12;    // of the contrast in these rows, a fadin
 constexpr double kFirst = 0.6;         // of the strongest edge along a column, the first that counts
 constexpr int kWideningRows = 16;
 constexpr double kWall = 0.35;  // of the half width, the outer part of a mouth that is wall
-
-double medianOf(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 double meanOf(const std::vector<double>& values, int first, int last) {
   double sum = 0;
@@ -43,7 +38,7 @@ PipetteEnd coarseEnd(const PipetteStrip& strip, const std::vector<double>& edges
   for (int row = last - kReference / 2; row > kBehind; --row) {
     if (!strip.inside(row - kBehind)) break;
     const int until = std::min(last + 1, row + kReference);
-    const double before = medianOf({edges.begin() + row, edges.begin() + until});
+    const double before = upperMedian({edges.begin() + row, edges.begin() + until});
     const double behind = meanOf(edges, row - kBehind, row);
     if (behind > ended * before || edges[row] > 0.5 * before) continue;
     end.valid = true;
@@ -62,7 +57,7 @@ PipetteEnd pointNear(const PipetteStrip& strip, double coarse, double reach, int
             high = std::min(strip.rows() - kRise - 1, static_cast<int>(coarse + reach));
   const int behind = std::min(static_cast<int>(0.4 * reach), 20);
   if (high - low < 2 * behind || !strip.inside(low)) return end;
-  const double background = medianOf({edges.begin() + low, edges.begin() + low + behind});
+  const double background = upperMedian({edges.begin() + low, edges.begin() + low + behind});
   for (int row = low + behind; row <= high; ++row) {
     const double next = *std::max_element(edges.begin() + row, edges.begin() + row + kRise);
     if (edges[row] < kClear * background || edges[row] < kHalf * next) continue;
