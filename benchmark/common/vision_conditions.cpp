@@ -27,6 +27,9 @@ std::vector<VisionCondition> visionConditions() {
   all.back().microscope.sensor.gain = 8;
   all.push_back(condition("defocus", usual()));
   all.back().focus = 10e-6;
+  // A needle just behind the plane in focus has fringes that look like the rim of an end in focus.
+  all.push_back(condition("defocus_near", usual()));
+  all.back().focus = -2e-6;
   SceneDrawConfig debris = usual();
   debris.dust = 25;
   all.push_back(condition("debris", debris));

@@ -197,6 +197,8 @@ HoldingMouth findMouth(const PipetteStrip& strip, double coarse, double reach, d
   mouth.half_width = half_width;
   if (edgeWidth(strip, shaft, half_width) > kWidestSure)
     mouth.doubt = "the pipette is out of focus: its mouth is displaced";
+  // In DIC an edge is a line, whose steepest slope lies beside it.
+  if (!walls.is_signed) mouth.doubt = "the walls are shaded from one side: the mouth is displaced";
   if (mouth.score < kSureScore) mouth.doubt = "the lips of the mouth are not clear";
   if (std::abs(mouth.slant) > kMostUneven) mouth.doubt = "the lips are not at the same place of the axis";
   return mouth;

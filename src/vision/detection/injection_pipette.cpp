@@ -6,6 +6,7 @@
 #include "vision/detection/axis_fit.h"
 #include "vision/detection/pipette_end.h"
 #include "vision/detection/tip_fit.h"
+#include "vision/detection/tip_outline.h"
 
 namespace microinjection {
 namespace {
@@ -21,6 +22,8 @@ constexpr double kTube = 0.1;                              // widening of a tube
 constexpr double kAgree = 6;                               // px, between two ways to see a tip's end
 constexpr double kApart = 0.25;  // standard deviation of an end over the distance between two ways to see it
 constexpr double kUnclear = 3;   // px, standard deviation of an end that needs a second witness
+constexpr double kThinnest = 4, kWidestTip = 40, kWidestSure = 34;  // px, half widths
+constexpr double kAhead = 48;                // px behind the end, whose half width is that of the strips
 constexpr int kFirstShift = 24, kShift = 8;  // px, that an axis may be off
 constexpr double kMargin = 6;                // px beside an outline
 constexpr double kSureClearness = 9;         // of a tip
@@ -28,9 +31,9 @@ constexpr double kSureSymmetry = 0.9;        // of the edges near a tip
 constexpr int kRounds = 3;
 constexpr double kFitBehind = 48;  // px before an end, in the strip of its fit
 constexpr int kFitBefore = 18;     // px of the background that the fit needs
-constexpr int kFitRows = 100, kFitHalf = 24;
+constexpr int kFitRows = 110, kFitHalf = 24;
 constexpr double kFitBlur = 0.4;        // px
-constexpr double kPlain = 1.5;          // misfit of a fit before a plain background, at most
+constexpr double kPlain = 0.5;          // misfit of a fit before a plain background, at most
 constexpr double kFitAgrees = 2;        // px, of a fit and an edge before another background
 constexpr double kSureDeviation = 0.6;  // px, of a fitted end
 
@@ -61,7 +64,8 @@ PipetteEnd tipIn(const PipetteStrip& strip, int row, double reach, double half_w
 }
 
 /// Replaces the end by that of a fit to its grey values, where the background is plain enough for it.
-void fitEnd(const Frame& frame, const PipetteAxis& axis, PipetteDetection& found, double across) {
+void fitEnd(const Frame& frame, const PipetteAxis& axis, const TipOutline& outline, PipetteDetection& found,
+            double across) {
   PipetteStrip::Shape shape;
   shape.direction = axis.direction;
   const cv::Point2d u(std::cos(axis.direction), std::sin(axis.direction));
@@ -74,8 +78,8 @@ void fitEnd(const Frame& frame, const PipetteAxis& axis, PipetteDetection& found
     found.finding = Finding::uncertain("the tip is at the border of the frame");
     return;
   }
-  const TipFit fit = fitTip(strip, kFitBehind, frame.noise());
-  if (!fit.valid || (fit.misfit > kPlain && std::abs(fit.row - kFitBehind) > kFitAgrees)) {
+  const TipFit fit = fitTip(strip, outline, kFitBehind, frame.noise());
+  if (!fit.valid || (fit.misfit > kPlain && (fit.ambiguous || std::abs(fit.row - kFitBehind) > kFitAgrees))) {
     found.finding = Finding::uncertain("the tip fades into its background");
     return;
   }
@@ -83,6 +87,10 @@ void fitEnd(const Frame& frame, const PipetteAxis& axis, PipetteDetection& found
   found.end = strip.point(fit.row, 0);
   found.setCovariance(fit.deviation, across);
   if (found.clearness < kSureClearness) return;
+  if (fit.ambiguous) {
+    found.finding = Finding::uncertain("in focus and out of focus the tip has other places");
+    return;
+  }
   found.finding =
       fit.deviation > kSureDeviation ? Finding::uncertain("the tip fades into its background") : Finding::found();
 }
@@ -96,11 +104,11 @@ PipetteDetection refineInjection(const Frame& frame, PipetteAxis axis, const cv:
   cv::Point2d place = end;
   AxisFit fit;
   PipetteEnd last;
-  double half_width = 0;
+  TipOutline outline;
   for (int round = 0; round < rounds; ++round) {
     const double back = reach + 24;
-    half_width = std::max(
-        4.0, axis.outlineAt(place + 0.3 * kAxisRows * cv::Point2d(std::cos(axis.direction), std::sin(axis.direction))));
+    double half_width = std::max(
+        kThinnest, axis.outlineAt(place + kAhead * cv::Point2d(std::cos(axis.direction), std::sin(axis.direction))));
     PipetteStrip::Shape shape;
     shape.direction = axis.direction;
     shape.origin = place - back * cv::Point2d(std::cos(axis.direction), std::sin(axis.direction));
@@ -118,15 +126,21 @@ PipetteDetection refineInjection(const Frame& frame, PipetteAxis axis, const cv:
     straight.direction = axis.direction;
     straight.origin = axis.point - (back + 4) * cv::Point2d(std::cos(axis.direction), std::sin(axis.direction));
     const PipetteStrip aligned(frame, straight, kAcross, 1.0);
+    // Lines of a whole shaft do not show how thin it is at its end.
+    const TipOutline before = measureOutline(aligned, row, kWidestTip);
+    if (before.valid) half_width = std::max(kThinnest, before.half_width + kAhead * before.growth);
     last = tipIn(aligned, row, round == 0 ? reach : 30, half_width);
     if (!last.valid) return found;
-    axis.half_width = half_width;
     place = aligned.point(last.row, 0);
+    outline = measureOutline(aligned, last.row, kWidestTip);
+    axis.point = place;
+    if (outline.valid) axis.half_width = outline.half_width;
+    if (outline.valid) axis.taper = outline.growth;
   }
   found.end = place;
   found.direction = axis.direction;
   found.direction_deviation = fit.slant_deviation;
-  found.half_width = half_width;
+  found.half_width = axis.half_width;
   found.taper = axis.taper;
   found.symmetry = fit.symmetry;
   found.clearness = last.clearness;
@@ -135,7 +149,8 @@ PipetteDetection refineInjection(const Frame& frame, PipetteAxis axis, const cv:
   if (last.deviation > kUnclear) found.finding = Finding::uncertain("the pipette's end is not clear");
   if (found.clearness < kSureClearness)
     found.finding = Finding::uncertain("the tip is not clear before its background");
-  fitEnd(frame, axis, found, fit.offset_deviation);
+  fitEnd(frame, axis, outline, found, fit.offset_deviation);
+  if (found.half_width > kWidestSure) found.finding = Finding::uncertain("the pipette is too wide at its end");
   if (found.symmetry < kSureSymmetry) found.finding = Finding::uncertain("the pipette's walls are not symmetric");
   if (!frame.contains(found.end, 2)) found.finding = Finding::notFound("no pipette: its end is out of the image");
   return found;

@@ -11,7 +11,6 @@ namespace {
 
 constexpr int kAxes = 5, kHoldingAxes = 8;
 constexpr double kWider = 1.38;                    // ratio of two outlines' widths that tells them apart
-constexpr double kAhead = 48;                      // px behind the end, where the axis of an earlier frame is taken
 constexpr double kTipReach = 10, kMouthReach = 8;  // px beside the reach of tracking
 constexpr int kRoundsOfTracking = 2;
 
@@ -75,14 +74,13 @@ PipetteDetection PipetteDetector::track(const Frame& frame, const PipetteDetecti
   if (!frame.refusal().empty()) found.finding = Finding::notFound(frame.refusal());
   if (!frame.refusal().empty() || !previous.finding.hasValues()) return found;
   PipetteAxis axis;
-  axis.point = previous.end + kAhead * cv::Point2d(std::cos(previous.direction), std::sin(previous.direction));
+  axis.point = previous.end;
   axis.direction = previous.direction;
   axis.half_width = previous.half_width;
   axis.taper = previous.taper;
   if (config_.kind == "injection") {
     return refineInjection(frame, axis, previous.end, reach + kTipReach, config_.widest, kRoundsOfTracking);
   }
-  axis.point = previous.end;
   return refineHolding(frame, axis, previous.end, reach + kMouthReach, 1);
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vision/detection/tip_model.h"
+#include "vision/detection/tip_trial.h"
 
 namespace microinjection {
 namespace {
@@ -13,150 +13,143 @@ struct Extent {
   int before, behind, columns;
 };
 
-constexpr Extent kSharp{14, 17, 13}, kNear{14, 14, 13}, kBlurred{18, 26, 18};
-constexpr Extent kCommon{18, 20, 18};  // in which both models are compared
-const std::vector<double> kSharpBlurs = {1.0, 1.25, 1.6}, kBlurredBlurs = {1.8, 2.5, 3.4, 4.6, 6.2};
-const std::vector<double> kRims = {0, 0.7, 1.4, 2.2, 3.2, 4.5}, kNoRim = {0}, kFewRims = {0, 1.2, 2.8};
-constexpr double kReach = 4;  // rows, that an end may be off
-constexpr int kMostRounds = 8;
-constexpr double kBesideEdges = 7;            // rows, of a second start out of focus
-constexpr double kFarthest = 8;               // rows, that an end may move in all
-constexpr double kModelErrorOfRange = 0.006;  // of the range of grey values, rms, in an image without noise
-constexpr double kClearlyBetter = 1.4;        // residuals in focus over those out of focus, of a tube out of focus
+/// The window in which all models are compared, and the rows that an end may be off.
+struct Place {
+  Extent extent;
+  double reach;
+};
+
+constexpr Place kUsual{{18, 20, 16}, 8}, kTight{{11, 16, 14}, 3};
+constexpr double kMostSure = 2.5;              // fringes; more of them stand for something else
+constexpr double kFarthest = 14;               // rows, that an end may move in all
+constexpr double kApart = 0.8;                 // rows, between two ends that are not the same
+constexpr double kAmbiguousUndescribed = 1.5;  // the same, where neither describes the image
+constexpr double kClearlyBetter = 1.115;       // what a tube in focus may leave over what one out of focus leaves
+constexpr double kAmbiguous = 1.03;            // beside that, what does not tell them apart
+constexpr double kBesideEdges = 9;             // rows, of a second start
+constexpr double kDescribed = 0.5;             // misfit of an end that needs none
+constexpr double kDescribedBeside = 0.42;      // from another start
+constexpr double kOther = 2;                   // misfit of what is not an end before a plain background
+constexpr double kWitness = 1.5;               // rows
+constexpr double kLocalReach = 1.5;            // rows, of the likelihood
+constexpr double kModelErrorOfRange = 0.006;   // of the range of grey values, rms, in an image without noise
+// Compression takes the noise away, and leaves its own errors where there are edges.
+constexpr double kNoiseless = 0.4 / 255, kCompressedErrorOfRange = 0.03;
 constexpr double kModelError = 0.1, kModelErrorOfBlur = 0.08;  // rows, of the blur: deviation without noise
 
-/// Likelihood of the end, over all blurs and rims that were tried.
+struct Tube {
+  const PipetteStrip& strip;
+  TipOutline outline;
+};
+
+bool fits(const Tube& tube, const Extent& extent, double end, double reach) {
+  return end - reach - extent.before >= 0 && end + reach + extent.behind < tube.strip.rows() &&
+         extent.columns <= tube.strip.half();
+}
+
+TipWindow windowAt(const Tube& tube, const Extent& extent, double end, double reach) {
+  return {tube.strip,
+          static_cast<int>(end - reach - extent.before),
+          static_cast<int>(end + reach + extent.behind),
+          extent.columns,
+          tube.outline,
+          end};
+}
+
 struct Likelihood {
-  double mean = 0, deviation = 0, lowest = 1e30, blur = 0, rim = 0, freedom = 1, range = 0;
-  double variance() const { return lowest / freedom; }  ///< of the residuals
+  double mean = 0, deviation = 0, variance = 0, range = 0;
 };
 
-struct Search {
-  TipModel model;
-  double reach;
-  std::vector<double> blurs, rims;
-  int ends;  ///< that are tried on each side
-};
-
-bool fits(const PipetteStrip& strip, const Extent& extent, double end, double reach) {
-  return end - reach - extent.before >= 0 && end + reach + extent.behind < strip.rows() &&
-         extent.columns <= strip.half();
-}
-
-TipWindow windowAt(const PipetteStrip& strip, const Extent& extent, double end, double reach) {
-  return {strip, static_cast<int>(end - reach - extent.before), static_cast<int>(end + reach + extent.behind),
-          extent.columns};
-}
-
-Likelihood likelihoodOf(const TipWindow& window, const Search& search, double about, double noise) {
+/// Of the end, over all shapes beside that of a trial.
+Likelihood likelihoodOf(const TipWindow& window, const TipTrial& trial, TipKind kind, double noise) {
   Likelihood result;
-  std::vector<double> ends, squares;
-  for (const double blur : search.blurs) {
-    const std::vector<double> face = endFace(window, about, blur);
-    for (int i = -search.ends; i <= search.ends; ++i) {
-      const double end = about + search.reach * i / search.ends;
-      const std::vector<double> values = tipResiduals(window, search.model, end, blur, face, search.rims);
-      for (std::size_t k = 0; k < values.size(); ++k) {
-        ends.push_back(end);
-        squares.push_back(values[k]);
-        if (values[k] >= result.lowest) continue;
-        result.lowest = values[k];
-        result.blur = blur;
-        result.rim = search.rims[k];
-      }
-    }
-  }
   result.range = window.range();
-  result.freedom = std::max(1.0, (window.rows() - search.model.terms()) * (window.columns() - 0.5));
-  // Two pixels are folded into one. Residuals are less than the noise where the strip is smoothed.
-  const double variance = std::max(result.variance(), 0.5 * noise * noise);
-  double weights = 0, first = 0, second = 0;
-  for (std::size_t i = 0; i < squares.size(); ++i) {
-    const double weight = std::exp(-0.5 * (squares[i] - result.lowest) / variance);
-    weights += weight;
-    first += weight * ends[i];
-    second += weight * ends[i] * ends[i];
+  double reach = 0.8, about = trial.end;
+  for (int round = 0; round < 2; ++round) {
+    const std::vector<TipTrial> all = trialsBeside(window, trial, kind, about, reach);
+    result.variance = bestOf(all).rest;
+    // Two pixels are folded into one. Residuals are less than the noise where the strip is smoothed.
+    const double variance = std::max(result.variance, 0.5 * noise * noise);
+    double weights = 0, first = 0, second = 0;
+    for (const TipTrial& each : all) {
+      const double weight = std::exp(-0.5 * (each.rest - result.variance) * freedomOf(window, each.model) / variance);
+      weights += weight;
+      first += weight * each.end;
+      second += weight * each.end * each.end;
+    }
+    result.mean = first / weights;
+    result.deviation = std::sqrt(std::max(0.0, second / weights - result.mean * result.mean));
+    about = result.mean;
+    reach = std::clamp(4 * result.deviation, 0.4, kLocalReach);
   }
-  result.mean = first / weights;
-  result.deviation = std::sqrt(std::max(0.0, second / weights - result.mean * result.mean));
   return result;
 }
 
-std::vector<double> around(double value, double ratio, int steps) {
-  std::vector<double> values;
-  for (int i = -steps; i <= steps; ++i) values.push_back(value * std::pow(ratio, i));
-  return values;
+Extent extentFor(const TipModel& model, const Extent& most) {
+  const int blur = static_cast<int>(std::lround(3 * model.blur * std::sqrt(1 + model.fringes)));
+  return {std::min(10 + blur, most.before + 4), std::min(11 + blur, 26), model.blur < 1.75 ? 13 : 18};
 }
 
-/// The most likely end near a place; NaN when it moves away.
-Likelihood search(const PipetteStrip& strip, const Extent& extent, double coarse, double noise, bool blurred) {
-  Search search{{blurred}, kReach, blurred ? kBlurredBlurs : kSharpBlurs, blurred ? kNoRim : kRims, 8};
-  Likelihood found;
-  found.mean = coarse;
-  int settled = 0;
-  for (int round = 0; round < kMostRounds && settled < 3; ++round) {
-    const double before = found.mean;
-    if (!fits(strip, extent, before, search.reach) || std::abs(before - coarse) > kFarthest) {
-      settled = 0;
-      break;
-    }
-    found = likelihoodOf(windowAt(strip, extent, before, search.reach), search, before, noise);
-    if (std::abs(found.mean - before) > 0.7 * search.reach) continue;
-    ++settled;
-    search.ends = 10;
-    search.reach = std::clamp(4 * found.deviation, 1.0, kReach);
-    search.blurs = around(found.blur, 1.13, 1);
-    if (found.rim > 0) {
-      search.rims = around(found.rim, 1.19, 2);
-      search.rims.push_back(0);
-    }
-  }
-  if (settled == 0 || std::abs(found.mean - coarse) > kFarthest) found.mean = std::nan("");
-  return found;
-}
-
-TipFit fitOf(const Likelihood& found, double noise) {
+TipFit fitNear(const Tube& tube, const Place& place, double coarse, double noise) {
   TipFit fit;
-  fit.valid = std::isfinite(found.mean);
-  fit.row = found.mean;
-  fit.deviation = std::hypot(found.deviation, kModelError, kModelErrorOfBlur * found.blur);
-  fit.misfit = found.variance() / (0.5 * noise * noise + std::pow(kModelErrorOfRange * found.range, 2));
-  return fit;
-}
-
-/// Whether the model of a tube out of focus leaves much less in the same window.
-bool blurredIsBetter(const PipetteStrip& strip, double end, double noise) {
-  if (!fits(strip, kCommon, end, kReach)) return false;
-  const TipWindow window = windowAt(strip, kCommon, end, kReach);
-  double rest[2];
-  for (const bool blurred : {false, true}) {
-    const Search each{{blurred}, kReach, blurred ? kBlurredBlurs : kSharpBlurs, blurred ? kNoRim : kFewRims, 6};
-    const Likelihood found = likelihoodOf(window, each, end, noise);
-    rest[blurred] = found.variance();
+  TipTrial kinds[3];
+  double about = coarse;
+  for (int round = 0; round < 2; ++round) {
+    if (!fits(tube, place.extent, about, place.reach) || std::abs(about - coarse) > kFarthest) return fit;
+    const TipWindow window = windowAt(tube, place.extent, about, place.reach);
+    double end = about, least = 1e30;
+    for (const TipKind kind : {TipKind::kSharp, TipKind::kFringed, TipKind::kBlurred}) {
+      TipTrial& best = kinds[static_cast<int>(kind)];
+      best = bestOfKind(window, kind, about, place.reach);
+      if (best.rest < least) end = best.end;
+      least = std::min(least, best.rest);
+    }
+    if (std::abs(end - about) < 0.5 * place.reach) break;
+    about = end;
   }
-  return rest[0] > kClearlyBetter * rest[1];
+  const TipTrial &sharp = kinds[0], &fringed = kinds[1], &blurred = kinds[2];
+  const TipKind kind_of_blur = fringed.rest < blurred.rest ? TipKind::kFringed : TipKind::kBlurred;
+  const TipTrial& out = fringed.rest < blurred.rest ? fringed : blurred;
+  const TipKind kind = sharp.rest < kClearlyBetter * out.rest ? TipKind::kSharp : kind_of_blur;
+  const TipTrial& best = kind == TipKind::kSharp ? sharp : out;
+  const double rival = sharp.rest / out.rest;
+  const double apart = sharp.end - out.end;
+  const Extent extent = extentFor(best.model, place.extent);
+  if (!fits(tube, extent, best.end, kLocalReach)) return fit;
+  const TipWindow window = windowAt(tube, extent, best.end, kLocalReach);
+  const Likelihood found = likelihoodOf(window, refined(window, best, kind), kind, noise);
+  fit.valid = std::abs(found.mean - coarse) < kFarthest && best.model.fringes < kMostSure;
+  fit.row = found.mean;
+  fit.deviation = std::hypot(found.deviation, kModelError, kModelErrorOfBlur * best.model.blur);
+  fit.misfit =
+      found.variance / (0.5 * noise * noise +
+                        std::pow((noise < kNoiseless ? kCompressedErrorOfRange : kModelErrorOfRange) * found.range, 2));
+  const double alike = fit.misfit < kDescribed && noise > kNoiseless ? kAmbiguous : kAmbiguousUndescribed;
+  // Neither describes a background that is not plain.
+  fit.ambiguous =
+      std::abs(apart) > kApart && fit.misfit < kOther && std::abs(std::log(rival / kClearlyBetter)) < std::log(alike);
+  return fit;
 }
 
 }  // namespace
 
-TipFit fitTip(const PipetteStrip& strip, double coarse, double noise) {
-  const Likelihood sharp = search(strip, kSharp, coarse, noise, false);
-  if (std::isfinite(sharp.mean)) {
-    for (const double row : {coarse, sharp.mean}) {
-      if (blurredIsBetter(strip, row, noise)) continue;
-      // A polynomial fits fewer rows better, but more of them find the end from farther away.
-      const Likelihood near = search(strip, kNear, sharp.mean, noise, false);
-      return fitOf(std::isfinite(near.mean) ? near : sharp, noise);
-    }
+TipFit fitTip(const PipetteStrip& strip, const TipOutline& outline, double coarse, double noise) {
+  const Tube tube{strip, outline};
+  TipFit best = fitNear(tube, kUsual, coarse, noise);
+  // The edges of a tube out of focus may end far before or behind its end.
+  for (const double beside : {-kBesideEdges, kBesideEdges}) {
+    if (noise < kNoiseless || (best.valid && (best.misfit < kDescribed || best.misfit > kOther))) break;
+    const TipFit fit = fitNear(tube, kUsual, coarse + beside, noise);
+    if (fit.valid && fit.misfit < (best.valid ? std::min(kDescribedBeside, best.misfit) : kDescribedBeside)) best = fit;
   }
-  // The edges of a tube out of focus may end before or behind its end.
-  Likelihood best;
-  best.mean = std::nan("");
-  for (const double start : {coarse, coarse - kBesideEdges}) {
-    const Likelihood found = search(strip, kBlurred, start, noise, true);
-    if (std::isfinite(found.mean) && (!std::isfinite(best.mean) || found.variance() < best.variance())) best = found;
-  }
-  return fitOf(best, noise);
+  if (noise < kNoiseless || (best.valid && best.misfit < kDescribed)) return best;
+  // What is before the end may be near it.
+  const TipFit tight = fitNear(tube, kTight, coarse, noise);
+  const double apart = std::abs(tight.row - coarse);
+  if (tight.valid && tight.misfit < kDescribedBeside && apart < kTight.reach) return tight;
+  // Before a cell no fit is good. One that finds the end of the edges again is a witness of it.
+  const bool before_other = !best.valid || best.misfit > kOther;
+  return before_other && tight.valid && apart < kWitness ? tight : best;
 }
 
 }  // namespace microinjection

@@ -4,37 +4,48 @@
 #include <array>
 #include <cmath>
 
+#include "vision/detection/tip_edge.h"
+
 namespace microinjection {
 namespace {
 
-constexpr int kMostRows = 96, kMostTerms = 5, kMostShared = 3;
-constexpr double kScale = 12;  // rows, in which powers of s are of the size of 1
-constexpr int kFaceRows = 6;   // behind the end, that show the outline
+constexpr int kMostRows = TipWindow::kMostRows, kMostTerms = 4, kMostShared = 4;
+constexpr int kLanes = 8;        // sums that a processor makes at a time
+constexpr double kScale = 12;    // rows, in which powers of s are of the size of 1
+constexpr int kNarrower = 3;     // columns
+constexpr double kWideTube = 8;  // columns, half width
+constexpr double kThinnest = 2;  // columns, half width of an outline
+constexpr int kFaceRows = 6;     // behind the end, that show the outline
 
 double stepAt(double s) { return 0.5 * std::erfc(-s / std::sqrt(2.0)); }
 
 using Column = std::array<float, kMostRows>;
 
+/// Behind the last row all values are 0.
 float product(const float* a, const float* b, int rows) {
+  std::array<float, kLanes> sums{};
+  for (int i = 0; i < rows; i += kLanes) {
+    for (int k = 0; k < kLanes; ++k) sums[k] += a[i + k] * b[i + k];
+  }
   float sum = 0;
-  for (int i = 0; i < rows; ++i) sum += a[i] * b[i];
+  for (const float lane : sums) sum += lane;
   return sum;
 }
 
 /// Terms that each column has with a factor of its own. They are orthonormal.
 class OwnTerms {
  public:
-  OwnTerms(const TipWindow& window, const TipModel& model, double end, double blur)
-      : rows_(window.rows()), count_(model.terms()) {
+  OwnTerms(const TipWindow& window, const TipModel& model, double end)
+      : rows_(window.rows()), count_(termsOf(window, model)) {
+    const TipEdge edge(model.blur, model.fringes);
     for (int i = 0; i < rows_; ++i) {
-      const double s = (window.first() + i - end) / blur, step = stepAt(s), far = s * blur / kScale;
-      terms_[0][i] = static_cast<float>(step);
-      terms_[1][i] = static_cast<float>(far * step);
-      terms_[2][i] = static_cast<float>(far * far * step);
-      if (!model.fringes) continue;
-      const double bell = std::exp(-0.5 * s * s);
-      terms_[3][i] = static_cast<float>(s * bell);
-      terms_[4][i] = static_cast<float>((s * s * s - 3 * s) * bell);
+      const double s = window.first() + i - end, far = s / kScale;
+      const std::complex<float> value = edge.at(s);
+      terms_[0][i] = value.real();
+      terms_[1][i] = static_cast<float>(far) * value.real();
+      terms_[2][i] = static_cast<float>(far * far) * value.real();
+      if (count_ == 4) terms_[3][i] = static_cast<float>(far * far * far) * value.real();
+      if (model.fringes > 0) terms_[3][i] = value.imag();
     }
     for (int k = 0; k < count_; ++k) {
       // Once more, because single precision leaves a rest of nearly parallel terms.
@@ -62,7 +73,7 @@ class OwnTerms {
   }
 
   int rows_, count_;
-  std::array<Column, kMostTerms> terms_;
+  std::array<Column, kMostTerms> terms_{};
 };
 
 /// Terms that all columns share, beside their own ones: normal equations for their few factors.
@@ -116,7 +127,7 @@ class SharedTerms {
   const TipWindow& window_;
   const OwnTerms& own_;
   int count_ = 0;
-  std::array<Column, kMostShared> along_;
+  std::array<Column, kMostShared> along_{};
   std::array<const std::vector<double>*, kMostShared> across_{};
   std::array<std::array<double, kMostShared>, kMostShared> matrix_{};
   std::array<double, kMostShared> right_{};
@@ -124,22 +135,40 @@ class SharedTerms {
 
 }  // namespace
 
-TipWindow::TipWindow(const PipetteStrip& strip, int first, int last, int columns)
-    : first_(first), rows_(std::min(last - first, kMostRows)), columns_(columns) {
+TipWindow::TipWindow(const PipetteStrip& strip, int first, int last, int columns, const TipOutline& outline, double end)
+    : first_(first),
+      rows_(std::min(last - first, kMostRows)),
+      columns_(columns),
+      degree_(outline.half_width < kWideTube ? 2 : 3) {
   double mean = 0;
-  for (int t = 0; t < columns_; ++t) {
-    for (int row = first_; row < first_ + rows_; ++row) {
-      const float* grey = strip.grey().ptr<float>(row) + strip.half();
-      grey_.push_back(0.5F * (grey[t] + grey[-t]));
-      mean += grey_.back() / (columns_ * rows_);
+  grey_.assign(static_cast<std::size_t>(columns_) * kMostRows, 0.0F);
+  const double growth = outline.valid ? outline.growth / std::max(outline.half_width, kThinnest) : 0;
+  for (int i = 0; i < rows_; ++i) {
+    const float* grey = strip.grey().ptr<float>(first_ + i) + strip.half();
+    const double widening = 1 + growth * std::max(0.0, first_ + i - end);
+    for (int t = 0; t < columns_; ++t) {
+      const double place = std::min(t * widening, strip.half() - 1.001);
+      const int k = static_cast<int>(place);
+      const auto share = static_cast<float>(place - k);
+      grey_[t * kMostRows + i] = 0.5F * ((1 - share) * (grey[k] + grey[-k]) + share * (grey[k + 1] + grey[-k - 1]));
+      mean += grey_[t * kMostRows + i] / (columns_ * rows_);
     }
   }
   // Numbers near zero are exact in single precision.
-  for (float& grey : grey_) grey -= static_cast<float>(mean);
-  const auto extremes = std::minmax_element(grey_.begin(), grey_.end());
-  range_ = *extremes.second - *extremes.first;
-  for (int t = 0; t < columns_; ++t) squares_.push_back(product(column(t), column(t), rows_));
+  float least = 1e9F, largest = -least;
+  for (int t = 0; t < columns_; ++t) {
+    for (int i = 0; i < rows_; ++i) {
+      float& grey = grey_[t * kMostRows + i];
+      grey -= static_cast<float>(mean);
+      least = std::min(least, grey);
+      largest = std::max(largest, grey);
+    }
+    squares_.push_back(product(column(t), column(t), rows_));
+  }
+  range_ = largest - least;
 }
+
+int termsOf(const TipWindow& window, const TipModel& model) { return model.fringes > 0 ? 4 : window.degree() + 1; }
 
 std::vector<double> endFace(const TipWindow& window, double end, double blur) {
   const int behind = std::clamp(static_cast<int>(end + 2 + blur) - window.first(), 0, window.rows() - kFaceRows);
@@ -162,32 +191,51 @@ std::vector<double> endFace(const TipWindow& window, double end, double blur) {
   return face;
 }
 
-std::vector<double> tipResiduals(const TipWindow& window, const TipModel& model, double end, double blur,
+namespace {
+
+/// The face of a tube that is narrower by kNarrower columns.
+std::vector<double> shifted(const std::vector<double>& face) {
+  std::vector<double> result(face.begin() + std::min<std::ptrdiff_t>(kNarrower, face.size()), face.end());
+  result.resize(face.size(), 0.0);
+  return result;
+}
+
+}  // namespace
+
+std::vector<double> tipResiduals(const TipWindow& window, const TipModel& model, double end,
                                  const std::vector<double>& face, const std::vector<double>& rims) {
-  const OwnTerms own(window, model, end, blur);
+  const OwnTerms own(window, model, end);
   double rest = 0;
   for (int t = 0; t < window.columns(); ++t)
     rest += window.weight(t) * (window.square(t) - own.explained(window.column(t)));
   const std::vector<double> ones(window.columns(), 1.0);
   SharedTerms shared(window, own);
   Column values{};
-  values.fill(1);
+  std::fill_n(values.begin(), window.rows(), 1.0F);
   shared.add(values, ones);
   for (int i = 0; i < window.rows(); ++i) values[i] = static_cast<float>(i) / static_cast<float>(window.rows()) - 0.5F;
   shared.add(values, ones);
+  const std::vector<double> narrower = shifted(face);
   double last = 0;
   const double plain = rest - shared.explained(last);
   std::vector<double> result;
+  const TipEdge edge(model.blur, model.fringes);
   for (const double rim : rims) {
     result.push_back(plain);
     if (!(rim > 0)) continue;
     for (int i = 0; i < window.rows(); ++i) {
       const double s = window.first() + i - end;
-      values[i] = static_cast<float>(stepAt(s / blur) - stepAt((s - rim) / blur));
+      values[i] = edge.at(s).real() - edge.at(s - rim).real();
     }
     shared.add(values, face);
     const double value = rest - shared.explained(last);
     if (last < 0) result.back() = value;
+    if (last < 0 && model.fringes > 0) {
+      // Becke's line displaces the outline, and with it the face.
+      shared.add(values, narrower);
+      result.back() = rest - shared.explained(last);
+      shared.dropLast();
+    }
     shared.dropLast();
   }
   return result;

@@ -3,50 +3,59 @@
 #include <vector>
 
 #include "vision/detection/pipette_strip.h"
+#include "vision/detection/tip_outline.h"
 
 namespace microinjection {
 
-/// The image of a tube that ends in a blurred step. Of a strip that is folded about the tube's axis,
-/// with s = row - end and the column t:
-///     grey(s, t) = a + b s + [p0(t) + p1(t) s + p2(t) s^2] step(s / blur) + d face(t) rim(s).
-/// The profile p is free in each column; the background a + b s is the same in all columns. In focus the
-/// end face has a dark rim that is as wide as the wall. Out of focus the step has fringes instead:
-/// odd terms [q1(t) s + q3(t) (s^3 - 3 s)] bell(s), which do not displace the end. For an end, a blur
-/// and a width of the rim all else follows by linear least squares.
+/// The image of a tube that ends in a straight edge. Of a strip that is folded about the tube's axis, with
+/// s = row - end and the column t:
+///     grey(s, t) = a + b s + [p0(t) + p1(t) s + p2(t) s^2 + p3(t) s^3] Re edge(s) + q(t) Im edge(s) + d face(t)
+///     rim(s).
+/// p3 is 0 for thin tubes and where there are fringes. The profile p and the pair of lines q are free in each column;
+/// the background a + b s is the same in all columns. q is 0 in focus. The end face has a dark rim that is as wide as
+/// the wall. For an end, a blur, fringes and a width of the rim all else follows by linear least squares. See
+/// tip_edge.h.
 struct TipModel {
-  bool fringes = false;
-  int terms() const { return fringes ? 5 : 3; }  ///< that each column has
+  double blur = 1;     ///< rows, rms
+  double fringes = 0;  ///< see TipEdge; 0: in focus
 };
 
 /// The rows and columns of a strip that a model is fitted to, folded about the axis.
 class TipWindow {
  public:
-  /// Rows [first, last), at most 96, and `columns` from the axis outwards; all in the strip.
-  TipWindow(const PipetteStrip& strip, int first, int last, int columns);
+  static constexpr int kMostRows = 96;
+  /// Rows [first, last), at most kMostRows, and `columns` from the axis outwards; all in the strip.
+  /// The columns widen with the outline behind the end, so that a wall stays in its column.
+  TipWindow(const PipetteStrip& strip, int first, int last, int columns, const TipOutline& outline, double end);
 
   int first() const { return first_; }
   int rows() const { return rows_; }
   int columns() const { return columns_; }
-  const float* column(int t) const { return grey_.data() + static_cast<std::ptrdiff_t>(t) * rows_; }
+  const float* column(int t) const { return grey_.data() + static_cast<std::ptrdiff_t>(t) * kMostRows; }
   double weight(int t) const { return t == 0 ? 0.5 : 1; }  ///< the axis is one column, all others are two
-  double range() const { return range_; }                  ///< largest less least value
-  double square(int t) const { return squares_[t]; }       ///< sum of the squared values of a column
+  /// Of the profile's polynomial in s without fringes. A cubic follows a wide tube; for the few edges of a thin one it
+  /// is too free.
+  int degree() const { return degree_; }
+  double range() const { return range_; }             ///< largest less least value
+  double square(int t) const { return squares_[t]; }  ///< sum of the squared values of a column
 
  private:
-  int first_, rows_, columns_;
+  int first_, rows_, columns_, degree_;
   double range_ = 0;
-  std::vector<float> grey_;  ///< column after column, less the mean of all
+  std::vector<float> grey_;  ///< column after column, less the mean of all; 0 behind the last row
   std::vector<double> squares_;
 };
 
 /// The end face across: 1 within the outline that the rows behind `end` have, blurred.
 std::vector<double> endFace(const TipWindow& window, double end, double blur);
 
+/// Number of terms that each column has.
+int termsOf(const TipWindow& window, const TipModel& model);
+
 /// Sums of the squared residuals of a fit, one for each width of the rim; 0: without a rim.
-/// @param blur  rows, rms
 /// @param face  endFace() of all columns
 /// @param rims  rows; a rim that turns out bright is left out
-std::vector<double> tipResiduals(const TipWindow& window, const TipModel& model, double end, double blur,
+std::vector<double> tipResiduals(const TipWindow& window, const TipModel& model, double end,
                                  const std::vector<double>& face, const std::vector<double>& rims);
 
 }  // namespace microinjection
