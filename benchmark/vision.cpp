@@ -17,6 +17,7 @@ namespace {
 int images = 40;
 std::uint64_t seed = 100001;
 std::string only;
+bool pipettes_only = false;
 
 double quantileOf(std::vector<double> values, double share) {
   if (values.empty()) return std::nan("");
@@ -85,7 +86,7 @@ std::string table() {
     if (std::isfinite(row.time)) summary.times.push_back(row.time);
   };
   for (const VisionCondition& condition : visionConditions()) {
-    if (only.empty() || condition.name == only) renderedRows(condition, seed, images, take);
+    if (only.empty() || condition.name == only) renderedRows(condition, seed, images, pipettes_only, take);
   }
   if (only.empty() || only == "real") realRows(take);
   printSummary(all);
@@ -102,7 +103,8 @@ int main(int argc, char** argv) {
                      "rendered images of each condition")("only", po::value(&microinjection::only),
                                                           "one set: the name of a condition as in the table, or real")(
       "seed", po::value(&microinjection::seed)->default_value(100001),
-      "of the first image; constants are chosen with seeds below 100000");
+      "of the first image; constants are chosen with seeds below 100000")(
+      "pipettes", po::bool_switch(&microinjection::pipettes_only), "rendered images: measures the pipettes only");
   return microinjection::benchMain(argc, argv,
                                    "bench_vision: errors of the vision on rendered images, and on real ones where "
                                    "MICROINJECTION_MICROGRAPHS names their folder.",

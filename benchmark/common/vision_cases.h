@@ -22,6 +22,8 @@ std::vector<VisionCondition> visionConditions();
 
 /// Rows of `images` rendered images, with the seeds from `first` on. The constants were chosen with seeds
 /// below 100000.
-void renderedRows(const VisionCondition& condition, std::uint64_t first, int images, const TakeRow& take);
+/// @param pipettes_only  cells and dimples are not measured, which takes most of the time
+void renderedRows(const VisionCondition& condition, std::uint64_t first, int images, bool pipettes_only,
+                  const TakeRow& take);
 
 }  // namespace microinjection

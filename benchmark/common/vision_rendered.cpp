@@ -126,9 +126,29 @@ void dimpleRow(const ImageRows& rows, const Frame& frame, const CellDetection& c
   rows.add("centre_undisturbed", cell.finding, std::hypot(off.x, off.y), truth.cell->diameter, kCentre);
 }
 
+/// @param reading  s of processor time, that the frame took
+CellDetection seenCell(const ImageRows& rows, const CellDetector& detector, const Frame& frame, const SceneTruth& truth,
+                       double reading) {
+  double time = 0, following = 0;
+  const CellDetection cell = timed(time, [&] { return detector.detect(frame); });
+  if (!truth.cell) {
+    rows.addAbsent("cell", cell.finding, reading + time);
+    return cell;
+  }
+  cellRows(rows, cell, *truth.cell, reading + time);
+  polarBodyRow(rows, cell.polar_body, *truth.cell);
+  if (!cell.finding.hasValues()) return cell;
+  const CellDetection again = timed(following, [&] { return detector.track(frame, cell, 8); });
+  const Eigen::Vector2d& centre = truth.cell->centre;
+  rows.add("cell_tracked", again.finding, std::hypot(again.centre.x - centre.x(), again.centre.y - centre.y()), 0,
+           kCentre, reading + following);
+  return cell;
+}
+
 }  // namespace
 
-void renderedRows(const VisionCondition& condition, std::uint64_t first, int images, const TakeRow& take) {
+void renderedRows(const VisionCondition& condition, std::uint64_t first, int images, bool pipettes_only,
+                  const TakeRow& take) {
   cv::setNumThreads(1);
   Microscope microscope(condition.microscope);
   CellDetectorConfig config;
@@ -142,21 +162,10 @@ void renderedRows(const VisionCondition& condition, std::uint64_t first, int ima
     const DrawnScene drawn = drawScene(condition.draw, view, seed);
     const cv::Mat image = microscope.render(drawn.scene, condition.focus, seed);
     const ImageRows rows(condition.name, seed, take);
-    double time = 0, following = 0, reading = 0;
+    double reading = 0;
     const Frame frame = timed(reading, [&] { return Frame(image); });
-    const CellDetection cell = timed(time, [&] { return detector.detect(frame); });
-    if (drawn.truth.cell) {
-      cellRows(rows, cell, *drawn.truth.cell, reading + time);
-      polarBodyRow(rows, cell.polar_body, *drawn.truth.cell);
-      if (cell.finding.hasValues()) {
-        const CellDetection again = timed(following, [&] { return detector.track(frame, cell, 8); });
-        const Eigen::Vector2d& centre = drawn.truth.cell->centre;
-        rows.add("cell_tracked", again.finding, std::hypot(again.centre.x - centre.x(), again.centre.y - centre.y()), 0,
-                 kCentre, reading + following);
-      }
-    } else {
-      rows.addAbsent("cell", cell.finding, reading + time);
-    }
+    CellDetection cell;
+    if (!pipettes_only) cell = seenCell(rows, detector, frame, drawn.truth, reading);
     const PipetteDetection needle = pipetteRows(rows, "tip", frame, view, drawn.truth.injection, kTip);
     pipetteRows(rows, "mouth", frame, view, drawn.truth.holding, kMouth);
     dimpleRow(rows, frame, cell, needle, drawn.truth);
