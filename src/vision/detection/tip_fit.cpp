@@ -30,6 +30,7 @@ constexpr double kBesideEdges = 9;             // rows, of a second start
 constexpr double kDescribed = 0.5;             // misfit of an end that needs none
 constexpr double kDescribedBeside = 0.42;      // from another start
 constexpr double kOther = 2;                   // misfit of what is not an end before a plain background
+constexpr double kHopeless = 3;                // the same on the coarse grid, where no refinement helps
 constexpr double kWitness = 1.5;               // rows
 constexpr double kLocalReach = 1.5;            // rows, of the likelihood
 constexpr double kModelErrorOfRange = 0.006;   // of the range of grey values, rms, in an image without noise
@@ -90,6 +91,14 @@ Extent extentFor(const TipModel& model, const Extent& most) {
   return {std::min(10 + blur, most.before + 4), std::min(11 + blur, 26), model.blur < 1.75 ? 13 : 18};
 }
 
+/// Variance of the residuals of an end that the model describes.
+double describedVariance(double range, double noise) {
+  const double model = noise < kNoiseless ? kCompressedErrorOfRange : kModelErrorOfRange;
+  return 0.5 * noise * noise + std::pow(model * range, 2);
+}
+
+constexpr TipKind kKinds[] = {TipKind::kSharp, TipKind::kFringed, TipKind::kBlurred};
+
 TipFit fitNear(const Tube& tube, const Place& place, double coarse, double noise) {
   TipFit fit;
   TipTrial kinds[3];
@@ -97,10 +106,24 @@ TipFit fitNear(const Tube& tube, const Place& place, double coarse, double noise
   for (int round = 0; round < 2; ++round) {
     if (!fits(tube, place.extent, about, place.reach) || std::abs(about - coarse) > kFarthest) return fit;
     const TipWindow window = windowAt(tube, place.extent, about, place.reach);
+    std::vector<TipTrial> trials[3];
+    TipTrial first;
+    for (const TipKind kind : kKinds) {
+      std::vector<TipTrial>& all = trials[static_cast<int>(kind)];
+      all = coarseTrials(window, kind, about, place.reach);
+      if (const TipTrial best = bestOf(all); best.rest < first.rest) first = best;
+    }
+    const double misfit = first.rest / describedVariance(window.range(), noise);
+    if (misfit > kHopeless) {
+      fit.valid = std::abs(first.end - coarse) < kFarthest;
+      fit.row = first.end;
+      fit.misfit = misfit;
+      return fit;
+    }
     double end = about, least = 1e30;
-    for (const TipKind kind : {TipKind::kSharp, TipKind::kFringed, TipKind::kBlurred}) {
+    for (const TipKind kind : kKinds) {
       TipTrial& best = kinds[static_cast<int>(kind)];
-      best = bestOfKind(window, kind, about, place.reach);
+      best = refinedBest(window, kind, trials[static_cast<int>(kind)]);
       if (best.rest < least) end = best.end;
       least = std::min(least, best.rest);
     }
@@ -121,9 +144,7 @@ TipFit fitNear(const Tube& tube, const Place& place, double coarse, double noise
   fit.valid = std::abs(found.mean - coarse) < kFarthest && best.model.fringes < kMostSure;
   fit.row = found.mean;
   fit.deviation = std::hypot(found.deviation, kModelError, kModelErrorOfBlur * best.model.blur);
-  fit.misfit =
-      found.variance / (0.5 * noise * noise +
-                        std::pow((noise < kNoiseless ? kCompressedErrorOfRange : kModelErrorOfRange) * found.range, 2));
+  fit.misfit = found.variance / describedVariance(found.range, noise);
   const double alike = fit.misfit < kDescribed && noise > kNoiseless ? kAmbiguous : kAmbiguousUndescribed;
   // Neither describes a background that is not plain.
   fit.ambiguous =

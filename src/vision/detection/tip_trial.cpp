@@ -44,21 +44,6 @@ bool isOf(TipKind kind, const TipModel& model) {
   return std::abs(model.fringes) < kSharpFringes && (model.blur < kSharpBlur) == (kind == TipKind::kSharp);
 }
 
-std::vector<TipTrial> coarseTrials(const TipWindow& window, TipKind kind, double about, double most) {
-  std::vector<TipTrial> all;
-  const auto add = [&](const TipModel& model, double reach, const std::vector<double>& rims) {
-    tryEnds(window, model, endsAbout(about, std::min(reach, most), kStepOfBlur * model.blur), rims, all);
-  };
-  if (kind == TipKind::kSharp)
-    for (const double blur : kSharpBlurs) add({blur, 0}, kSharpReach, kFewRims);
-  if (kind == TipKind::kBlurred)
-    for (const double blur : kWideBlurs) add({blur, 0}, kFringedReach, kNoRim);
-  if (kind == TipKind::kFringed)
-    for (const double blur : kBlurs)
-      for (const double fringes : kFringes) add({blur, fringes}, kFringedReach, kFewRims);
-  return all;
-}
-
 /// Models beside that of a trial, of its kind.
 std::vector<TipModel> modelsBeside(const TipModel& model, TipKind kind) {
   std::vector<TipModel> models;
@@ -114,8 +99,22 @@ TipTrial refined(const TipWindow& window, TipTrial trial, TipKind kind) {
   return trial;
 }
 
-TipTrial bestOfKind(const TipWindow& window, TipKind kind, double about, double reach) {
-  const std::vector<TipTrial> all = coarseTrials(window, kind, about, reach);
+std::vector<TipTrial> coarseTrials(const TipWindow& window, TipKind kind, double about, double most) {
+  std::vector<TipTrial> all;
+  const auto add = [&](const TipModel& model, double reach, const std::vector<double>& rims) {
+    tryEnds(window, model, endsAbout(about, std::min(reach, most), kStepOfBlur * model.blur), rims, all);
+  };
+  if (kind == TipKind::kSharp)
+    for (const double blur : kSharpBlurs) add({blur, 0}, kSharpReach, kFewRims);
+  if (kind == TipKind::kBlurred)
+    for (const double blur : kWideBlurs) add({blur, 0}, kFringedReach, kNoRim);
+  if (kind == TipKind::kFringed)
+    for (const double blur : kBlurs)
+      for (const double fringes : kFringes) add({blur, fringes}, kFringedReach, kFewRims);
+  return all;
+}
+
+TipTrial refinedBest(const TipWindow& window, TipKind kind, const std::vector<TipTrial>& all) {
   TipTrial best;
   std::vector<double> ends;
   for (int start = 0; start < kStarts; ++start) {

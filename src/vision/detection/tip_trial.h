@@ -26,8 +26,11 @@ std::vector<TipTrial> trialsBeside(const TipWindow& window, const TipTrial& tria
 /// The best trial beside another one: one step in all of its numbers at a time.
 TipTrial refined(const TipWindow& window, TipTrial trial, TipKind kind);
 
-/// The best trial of a kind, from several starts within `reach` rows of a place.
-TipTrial bestOfKind(const TipWindow& window, TipKind kind, double about, double reach);
+/// Trials of a kind on a grid within `reach` rows of a place.
+std::vector<TipTrial> coarseTrials(const TipWindow& window, TipKind kind, double about, double reach);
+
+/// The best trial of a kind, refined from several of the coarse ones.
+TipTrial refinedBest(const TipWindow& window, TipKind kind, const std::vector<TipTrial>& coarse);
 
 TipTrial bestOf(const std::vector<TipTrial>& all);
 
