@@ -54,8 +54,16 @@ class MeasureAndInjectTest(unittest.TestCase):
     def until(self, condition, what):
         end = time.monotonic() + PATIENCE
         while not condition():
-            self.assertLess(time.monotonic(), end, f"{what}: not within {PATIENCE} s")
+            self.assertLess(time.monotonic(), end, f"{what}: not within {PATIENCE} s; vision: {self.vision()}")
             time.sleep(0.05)
+
+    def vision(self):
+        """What the last image showed, and how old it is; for a failure's message."""
+        state = self.seen.get("/vision/state")
+        if not state:
+            return "no image"
+        return (f"{(rospy.Time.now() - state.header.stamp).to_sec():.1f} s ago, cell: {state.cell.verdict} {state.cell.reason}, "
+                f"tip: {state.injection_pipette.verdict} {state.injection_pipette.reason}")
 
     def needle(self):
         return position(self.seen["/needle/measured_cp"])

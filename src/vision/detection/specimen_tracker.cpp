@@ -14,13 +14,19 @@ PipetteDetectorConfig readPipette(ConfigReader& reader, const std::string& kind,
   return config;
 }
 
-/// The pipette near its last place, else anywhere.
-PipetteDetection follow(const PipetteDetector& detector, const Frame& frame, const PipetteDetection& last,
-                        double reach) {
-  if (last.finding.isFound()) {
-    const PipetteDetection tracked = detector.track(frame, last, reach);
-    if (tracked.finding.isFound()) return tracked;
+/// What a later search cannot better: a pipette that was found, a cell whose diameter was.
+bool isSure(const PipetteDetection& pipette) { return pipette.finding.isFound(); }
+bool isSure(const CellDetection& cell) { return cell.size.isFound(); }
+
+/// The thing near its last place, else anywhere. `age`: frames since the whole one was searched for it.
+template <typename Detector, typename Detection>
+Detection follow(const Detector& detector, const Frame& frame, const Detection& last, double reach, int& age) {
+  ++age;
+  if (last.finding.hasValues()) {
+    const Detection tracked = detector.track(frame, last, reach);
+    if (isSure(tracked) || (tracked.finding.hasValues() && age < SpecimenTracker::kSearchEvery)) return tracked;
   }
+  age = 0;
   return detector.detect(frame);
 }
 
@@ -70,21 +76,11 @@ SpecimenTrackerConfig SpecimenTrackerConfig::read(ConfigReader& reader) {
 SpecimenTracker::SpecimenTracker(const SpecimenTrackerConfig& config)
     : config_(config), cell_(config.cell), injection_(config.injection), holding_(config.holding) {}
 
-CellDetection SpecimenTracker::followCell(const Frame& frame) {
-  ++since_search_;
-  if (view_.cell.finding.hasValues()) {
-    const CellDetection tracked = cell_.track(frame, view_.cell, config_.reach);
-    if (tracked.size.isFound() || (tracked.finding.hasValues() && since_search_ < kSearchEvery)) return tracked;
-  }
-  since_search_ = 0;
-  return cell_.detect(frame);
-}
-
 const SpecimenView& SpecimenTracker::next(const Frame& frame) {
   SpecimenView view;
-  view.cell = followCell(frame);
-  view.injection = follow(injection_, frame, view_.injection, config_.reach);
-  view.holding = follow(holding_, frame, view_.holding, config_.reach);
+  view.cell = follow(cell_, frame, view_.cell, config_.reach, cell_age_);
+  view.injection = follow(injection_, frame, view_.injection, config_.reach, injection_age_);
+  view.holding = follow(holding_, frame, view_.holding, config_.reach, holding_age_);
   if (view.holding.finding.isFound())
     view.cell.dismissOthers([&](const Ellipse& thing) { return belongsTo(view.holding, thing); });
   view.indentation = indentationOf(frame, view);

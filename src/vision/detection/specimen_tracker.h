@@ -31,9 +31,9 @@ struct SpecimenView {
 void takeUndisturbed(const Indentation& indentation, CellDetection& cell);
 
 /// Follows cell and pipettes from frame to frame. What was found is searched near its last place;
-/// what is lost is searched in the whole frame. A cell whose diameter is uncertain is followed too, and
-/// the whole frame is searched for a better one in each `kSearchEvery`-th frame only: a search takes as
-/// long as some images.
+/// what is lost is searched in the whole frame. A pipette that is uncertain is followed too, and so is a
+/// cell whose diameter is. The whole frame is then searched for a better one in each `kSearchEvery`-th
+/// frame only, since a search takes as long as some images.
 class SpecimenTracker {
  public:
   explicit SpecimenTracker(const SpecimenTrackerConfig& config);
@@ -45,13 +45,11 @@ class SpecimenTracker {
   static constexpr int kSearchEvery = 30;
 
  private:
-  CellDetection followCell(const Frame& frame);
-
   SpecimenTrackerConfig config_;
   CellDetector cell_;
   PipetteDetector injection_, holding_;
   SpecimenView view_;
-  int since_search_ = 0;  ///< frames, since the whole one was searched for a cell
+  int cell_age_ = 0, injection_age_ = 0, holding_age_ = 0;  ///< frames, since the whole one was searched
 };
 
 }  // namespace microinjection
