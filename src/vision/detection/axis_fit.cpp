@@ -7,6 +7,9 @@ namespace microinjection {
 namespace {
 
 constexpr int kBlock = 10;           // rows that are compared together
+constexpr int kShortBlock = 5;       // the same, of a short shaft
+constexpr int kShort = 40;           // rows of it
+constexpr int kLeastBlocks = 3;
 constexpr double kMostSlant = 0.16;  // columns per row
 constexpr double kSlantStep = 0.005;
 constexpr double kLeastSymmetry = 0.45;
@@ -67,16 +70,17 @@ std::vector<Place> placesBeside(const std::vector<Block>& blocks, const AxisFit&
 
 AxisFit fitAxis(const PipetteStrip& strip, int first, int rows, double half_width, int most) {
   std::vector<Block> blocks;
-  for (int row = first; row + kBlock <= std::min(strip.rows(), first + rows) && strip.inside(row + kBlock - 1);
-       row += kBlock) {
-    Block block{row + 0.5 * (kBlock - 1) - first, mirrored(strip, row, row + kBlock, half_width, most)};
+  const int last = std::min(strip.rows(), first + rows);
+  const int together = first + kShort <= last && strip.inside(first + kShort - 1) ? kBlock : kShortBlock;
+  for (int row = first; row + together <= last && strip.inside(row + together - 1); row += together) {
+    Block block{row + 0.5 * (together - 1) - first, mirrored(strip, row, row + together, half_width, most)};
     if (!block.mirrored.empty()) blocks.push_back(std::move(block));
   }
-  if (blocks.size() < 3) return {};
+  if (blocks.size() < kLeastBlocks) return {};
   AxisFit fit = common(blocks, most);
   if (!fit.valid) return fit;
   const std::vector<Place> places = placesBeside(blocks, fit, most);
-  if (places.size() < 3) {
+  if (places.size() < kLeastBlocks) {
     fit.offset_deviation = 1;
     fit.slant_deviation = kSlantStep;
     return fit;

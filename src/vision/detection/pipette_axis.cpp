@@ -12,6 +12,7 @@ constexpr int kLongSide = 360;  // px, at most, of the reduced frame
 constexpr int kAngles = 180;    // of lines, over half a turn
 constexpr int kLines = 32;
 constexpr double kEdgeNoise = 5;                           // of the gradient's noise
+constexpr double kLeastNoise = 1.2e-3;                     // of the range, of a gradient; compression has its own
 constexpr double kLeastLength = 18;                        // px in the reduced frame
 constexpr double kSameDirection = 0.03, kSamePlace = 2.5;  // rad, px in the reduced frame
 
@@ -51,18 +52,19 @@ class LineVotes {
     }
   }
 
-  void add(const cv::Mat& image, double noise, const cv::Point2d& corner, const cv::Point2d& centre, bool half) {
+  /// @param whole  of the reduced frame, of which the image is a part
+  void add(const cv::Mat& image, double noise, const cv::Point2d& corner, const cv::Size2d& whole, double scale) {
     cv::Mat smooth, gx, gy, size;
     cv::GaussianBlur(image, smooth, cv::Size(5, 5), 1);
     cv::Sobel(smooth, gx, CV_32F, 1, 0, 3, 0.125);
     cv::Sobel(smooth, gy, CV_32F, 0, 1, 3, 0.125);
     cv::magnitude(gx, gy, size);
-    const double ux = std::cos(search_.direction), uy = std::sin(search_.direction), least = kEdgeNoise * noise;
+    const double least = kEdgeNoise * noise;
     for (int y = 2; y < image.rows - 2; ++y) {
       for (int x = 2; x < image.cols - 2; ++x) {
         const double g = size.at<float>(y, x);
         if (g < least) continue;
-        if (half && (x + corner.x - centre.x) * ux + (y + corner.y - centre.y) * uy < 0) continue;
+        if (search_.region.empty() && !isSearched(cv::Point2d(x, y) + corner, whole, scale)) continue;
         const float nx = gx.at<float>(y, x), ny = gy.at<float>(y, x);
         const int dx = static_cast<int>(std::lround(nx / g)), dy = static_cast<int>(std::lround(ny / g));
         if (size.at<float>(y + dy, x + dx) > g || size.at<float>(y - dy, x - dx) >= g) continue;
@@ -75,6 +77,13 @@ class LineVotes {
   double shift() const { return shift_; }
 
  private:
+  bool isSearched(const cv::Point2d& place, const cv::Size2d& whole, double scale) const {
+    const cv::Point2d u(std::cos(search_.direction), std::sin(search_.direction));
+    if ((place - 0.5 * cv::Point2d(whole.width, whole.height)).dot(u) < 0) return false;
+    const cv::Point2d beyond = place + search_.from_border / scale * u;
+    return search_.from_border == 0 || beyond.x < 0 || beyond.y < 0 || beyond.x >= whole.width || beyond.y >= whole.height;
+  }
+
   void addEdge(int x, int y, double normal, float weight) {
     const double angle = halfTurn(normal);
     if (std::abs(turn(angle - M_PI / 2, search_.direction)) > search_.tolerance + search_.steepest_taper) return;
@@ -198,10 +207,8 @@ std::vector<PipetteAxis> findPipetteAxes(const Frame& frame, const AxisSearch& s
     image = image(part & whole);
     corner = (part & whole).tl();
   }
-  const cv::Size2d whole = frame.level(level).size();
   LineVotes votes(image.size(), search);
-  votes.add(image, std::max(0.25 * frame.noise() / scale, 3e-4), corner, {0.5 * whole.width, 0.5 * whole.height},
-            search.region.empty());
+  votes.add(image, std::max(0.25 * frame.noise(), kLeastNoise) / scale, corner, frame.level(level).size(), scale);
   const std::vector<Line> lines = linesOf(votes);
   const cv::Point2d origin(0.5 * (image.cols - 1), 0.5 * (image.rows - 1));
   std::vector<PipetteAxis> pairs;

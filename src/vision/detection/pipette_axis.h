@@ -28,6 +28,7 @@ struct AxisSearch {
   double widest = 500;           ///< px, of an outline
   int finer = 0;                 ///< levels of the frame above the usual one, for pipettes of which little is seen
   cv::Rect region;               ///< px, that is searched; empty: the half of the frame that the shaft comes from
+  double from_border = 0;        ///< px along the direction, of that half, beside the frame's border; 0: all of it
 };
 
 /// Finds axes by straight edges (Hough) and the axis of symmetry of each two of them. Best first.

@@ -13,6 +13,8 @@ constexpr int kAxes = 5, kHoldingAxes = 8;
 constexpr double kWider = 1.38;                    // ratio of two outlines' widths that tells them apart
 constexpr double kTipReach = 10, kMouthReach = 8;  // px beside the reach of tracking
 constexpr int kRoundsOfTracking = 2;
+constexpr int kFinest = 1, kFinestBesideBorder = 2;  // see AxisSearch::finer
+constexpr double kBesideBorder = 120;                // px
 
 }  // namespace
 
@@ -43,8 +45,12 @@ PipetteDetection PipetteDetector::detect(const Frame& frame) const {
                              static_cast<int>(config_.region[2]), static_cast<int>(config_.region[3]));
   }
   best.finding = Finding::notFound("no pipette: no two straight edges from the side that it comes from");
-  // A finer search costs four times as much: only for pipettes of which too little is seen.
-  for (; search.finer < 2 && !best.finding.hasValues(); ++search.finer) {
+  const bool whole = search.region.empty();
+  const int finest = config_.kind == "injection" && whole ? kFinestBesideBorder : kFinest;
+  // A finer search costs four times as much: only for pipettes of which too little is seen. The finest
+  // one is for a needle that has just come into the frame.
+  for (; search.finer <= finest && !best.finding.hasValues(); ++search.finer) {
+    if (search.finer == kFinestBesideBorder) search.from_border = kBesideBorder;
     for (const PipetteAxis& axis : findPipetteAxes(frame, search, config_.kind == "holding" ? kHoldingAxes : kAxes)) {
       if (best.finding.isFound() && axis.outlineAt(best.end) < kWider * best.half_width) continue;
       take(best, measure(frame, axis));

@@ -12,6 +12,7 @@ constexpr double kHalf = 0.45;         // of the edges in the rows that follow, 
 constexpr int kRise = 9;               // of these rows
 constexpr double kClear = 3;           // of the background's edges, at a point
 constexpr int kReference = 50;         // rows, whose median is before the end
+constexpr int kLeastShaft = 8;          // rows in the frame, of a pipette that is seen
 constexpr int kBehind = 16;            // rows behind the end that have none
 constexpr int kLag = 4, kLagRows = 8;  // rows before a row that show what its profile should be
 constexpr double kUnlike = 0.3;        // mean likeness of the rows behind a tip, at most
@@ -35,7 +36,7 @@ PipetteEnd coarseEnd(const PipetteStrip& strip, const std::vector<double>& edges
   PipetteEnd end;
   int last = strip.rows() - 1;
   while (last > 0 && !strip.inside(last)) --last;
-  for (int row = last - kReference / 2; row > kBehind; --row) {
+  for (int row = last - kLeastShaft; row > kBehind; --row) {
     if (!strip.inside(row - kBehind)) break;
     const int until = std::min(last + 1, row + kReference);
     const double before = upperMedian({edges.begin() + row, edges.begin() + until});
