@@ -52,11 +52,15 @@ def problems(arguments):
         found.append(f"hidden = '{arguments['hidden']}': no such file")
     if arguments["hidden"] and arguments["modelled"].lower() != "true":
         found.append(f"hidden with rig = '{arguments['rig']}': must be with sim or an emulated rig; a real one has its own cell")
-    if arguments["twin"].lower() == "true" and arguments["sensor"] == "none":
-        found.append("twin = 'true' with sensor = 'none': must be with a force sensor: without one the modulus cannot be known")
+    if arguments["twin"].lower() == "true" and arguments["sensor"] == "none" and arguments["camera"] == "none":
+        found.append("twin = 'true' with sensor = 'none' and camera = 'none': must be with a force sensor, which shows modulus "
+                     "and height of the cell, or with a camera, which shows the height")
     if arguments["twin"].lower() == "true" and arguments["modelled"].lower() != "true" and arguments["force_source"] != "measured":
         found.append(f"twin = 'true' with force_source = '{arguments['force_source']}': must be measured on a real rig, "
                      "whose puncture the predicted force does not show")
+    if arguments["clock"] == "lockstep" and arguments["twin"].lower() == "true" and arguments["sensor"] == "none":
+        found.append("clock = 'lockstep' with twin = 'true' and sensor = 'none': must be with a force sensor, for which the twin "
+                     "waits in each step")
     if arguments["clock"] == "lockstep" and arguments["haptic"] not in ("operator", "none"):
         found.append(f"clock = 'lockstep' with haptic = '{arguments['haptic']}': must be with operator or none, "
                      "which keep the clock's time")

@@ -21,6 +21,7 @@ GOOD = {'model': 'auto', 'rig': 'sim', 'sensor': 'simulated', 'injector': 'simul
 class CheckSessionTest(unittest.TestCase):
     def test_accepts_what_is_right(self):
         self.assertEqual(problems(GOOD), [])
+        self.assertEqual(problems({**GOOD, 'twin': 'true', 'sensor': 'none'}), [])  # it has a camera
         for name, allowed in choices().items():
             others = {'mode': {'haptic': 'none'}}.get(name, {})
             for value in allowed:
@@ -38,7 +39,8 @@ class CheckSessionTest(unittest.TestCase):
                               ({'mode': 'automatic'}, "mode = 'automatic': must be with haptic:=none"),
                               ({'hidden': '/nowhere.yaml'}, "hidden = '/nowhere.yaml': no such file"),
                               ({'hidden': GOOD['scene'], 'modelled': 'False', 'rig': 'zaber'}, "hidden with rig = 'zaber': must be with sim"),
-                              ({'twin': 'true', 'sensor': 'none'}, "twin = 'true' with sensor = 'none': must be with a force"),
+                              ({'twin': 'true', 'sensor': 'none', 'camera': 'none'}, "twin = 'true' with sensor = 'none' and camera = 'none': must be with"),
+                              ({'twin': 'true', 'sensor': 'none', 'clock': 'lockstep'}, "clock = 'lockstep' with twin = 'true' and sensor = 'none'"),
                               ({'twin': 'true', 'modelled': 'False', 'sensor': 'serial'}, "twin = 'true' with force_source = 'predicted'"),
                               ({'operator': 'ann'}, "operator: must be with record:=FOLDER")):
             with self.subTest(what):

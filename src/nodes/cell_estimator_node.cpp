@@ -162,7 +162,7 @@ std::string CellEstimatorNode::learn(const ros::Time& now) {
   if (indentation_.sideways(tip) > parameters_.largest_sideways) return "the needle has moved sideways in the cell";
   const auto* message = force_.get(now);
   const auto force = validForce(message, orientation_);
-  if (!force) return "no valid force of the sensor";
+  if (!force) return "no valid force of the sensor: the modulus cannot be known without it";
   const double along = axis.dot(*force);
   if (speed_ > parameters_.largest_speed) return "the needle is fast: the sensor's delay would count";
   if (message->header.stamp == last_force_) return held_;  // heard before
