@@ -6,9 +6,9 @@
 namespace microinjection {
 namespace {
 
-constexpr int kBlock = 10;           // rows that are compared together
-constexpr int kShortBlock = 5;       // the same, of a short shaft
-constexpr int kShort = 40;           // rows of it
+constexpr int kBlock = 10;      // rows that are compared together
+constexpr int kShortBlock = 5;  // the same, of a short shaft
+constexpr int kShort = 40;      // rows of it
 constexpr int kLeastBlocks = 3;
 constexpr double kMostSlant = 0.16;  // columns per row
 constexpr double kSlantStep = 0.005;

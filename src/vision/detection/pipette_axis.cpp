@@ -81,7 +81,8 @@ class LineVotes {
     const cv::Point2d u(std::cos(search_.direction), std::sin(search_.direction));
     if ((place - 0.5 * cv::Point2d(whole.width, whole.height)).dot(u) < 0) return false;
     const cv::Point2d beyond = place + search_.from_border / scale * u;
-    return search_.from_border == 0 || beyond.x < 0 || beyond.y < 0 || beyond.x >= whole.width || beyond.y >= whole.height;
+    return search_.from_border == 0 || beyond.x < 0 || beyond.y < 0 || beyond.x >= whole.width ||
+           beyond.y >= whole.height;
   }
 
   void addEdge(int x, int y, double normal, float weight) {

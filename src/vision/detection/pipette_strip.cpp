@@ -19,12 +19,14 @@ PipetteStrip::PipetteStrip(const Frame& frame, const Shape& shape, double across
   const int columns = 2 * shape.half + 1;
   cv::Mat x(shape.rows, columns, CV_32F), y(shape.rows, columns, CV_32F);
   const int level = shape.step < 2 ? 0 : static_cast<int>(std::log2(shape.step));
+  const cv::Point2d aside = Frame::toLevel(point(0, 1), level) - Frame::toLevel(point(0, 0), level);
   for (int row = 0; row < shape.rows; ++row) {
     inside_.push_back(frame.contains(point(row, 0), 1));
-    for (int i = 0; i < columns; ++i) {
-      const cv::Point2d place = Frame::toLevel(point(row, i - shape.half), level);
-      x.at<float>(row, i) = static_cast<float>(place.x);
-      y.at<float>(row, i) = static_cast<float>(place.y);
+    const cv::Point2d middle = Frame::toLevel(point(row, 0), level);
+    float *to_x = x.ptr<float>(row) + shape.half, *to_y = y.ptr<float>(row) + shape.half;
+    for (int side = -shape.half; side <= shape.half; ++side) {
+      to_x[side] = static_cast<float>(middle.x + side * aside.x);
+      to_y[side] = static_cast<float>(middle.y + side * aside.y);
     }
   }
   cv::Mat raw;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "vision/detection/tip_edge.h"
 
@@ -41,7 +42,7 @@ class OwnTerms {
     for (int i = 0; i < rows_; ++i) {
       const double s = window.first() + i - end, far = s / kScale;
       const std::complex<float> value = edge.at(s);
-      terms_[0][i] = value.real();
+      step_[i] = terms_[0][i] = value.real();
       terms_[1][i] = static_cast<float>(far) * value.real();
       terms_[2][i] = static_cast<float>(far * far) * value.real();
       if (count_ == 4) terms_[3][i] = static_cast<float>(far * far * far) * value.real();
@@ -56,6 +57,7 @@ class OwnTerms {
       for (int i = 0; i < rows_; ++i) terms_[k][i] *= scale;
     }
   }
+  const Column& step() const { return step_; }  ///< real part of the edge
   void remove(Column& values) const { remove(values, count_); }
   /// Of a column, what the terms explain of its squares.
   double explained(const float* column) const {
@@ -73,6 +75,7 @@ class OwnTerms {
   }
 
   int rows_, count_;
+  Column step_{};
   std::array<Column, kMostTerms> terms_{};
 };
 
@@ -81,18 +84,15 @@ class SharedTerms {
  public:
   SharedTerms(const TipWindow& window, const OwnTerms& own) : window_(window), own_(own) {}
 
-  /// @param across  factor of each column; it must outlive this object
-  void add(const Column& along, const std::vector<double>& across) {
+  /// `across` must outlive this object.
+  void add(const Column& along, const SharedColumns& across) {
     along_[count_] = along;
     own_.remove(along_[count_]);
     across_[count_] = &across;
-    right_[count_] = 0;
-    for (int t = 0; t < window_.columns(); ++t)
-      right_[count_] +=
-          window_.weight(t) * across[t] * product(along_[count_].data(), window_.column(t), window_.rows());
+    right_[count_] = product(along_[count_].data(), across.sum.data(), window_.rows());
     for (int i = 0; i <= count_; ++i) {
       double sum = 0;
-      for (int t = 0; t < window_.columns(); ++t) sum += window_.weight(t) * (*across_[i])[t] * across[t];
+      for (int t = 0; t < window_.columns(); ++t) sum += window_.weight(t) * across_[i]->factor[t] * across.factor[t];
       matrix_[count_][i] = matrix_[i][count_] =
           sum * product(along_[i].data(), along_[count_].data(), window_.rows()) * (i == count_ ? 1 + 1e-6 : 1);
     }
@@ -128,7 +128,7 @@ class SharedTerms {
   const OwnTerms& own_;
   int count_ = 0;
   std::array<Column, kMostShared> along_{};
-  std::array<const std::vector<double>*, kMostShared> across_{};
+  std::array<const SharedColumns*, kMostShared> across_{};
   std::array<std::array<double, kMostShared>, kMostShared> matrix_{};
   std::array<double, kMostShared> right_{};
 };
@@ -166,11 +166,21 @@ TipWindow::TipWindow(const PipetteStrip& strip, int first, int last, int columns
     squares_.push_back(product(column(t), column(t), rows_));
   }
   range_ = largest - least;
+  all_ = sharedBy(std::vector<double>(columns_, 1.0));
+}
+
+SharedColumns TipWindow::sharedBy(std::vector<double> factor) const {
+  SharedColumns shared{std::move(factor), std::vector<float>(kMostRows, 0.0F)};
+  for (int t = 0; t < columns_; ++t) {
+    const auto share = static_cast<float>(weight(t) * shared.factor[t]);
+    for (int i = 0; i < rows_; ++i) shared.sum[i] += share * column(t)[i];
+  }
+  return shared;
 }
 
 int termsOf(const TipWindow& window, const TipModel& model) { return model.fringes > 0 ? 4 : window.degree() + 1; }
 
-std::vector<double> endFace(const TipWindow& window, double end, double blur) {
+EndFace::EndFace(const TipWindow& window, double end, double blur) {
   const int behind = std::clamp(static_cast<int>(end + 2 + blur) - window.first(), 0, window.rows() - kFaceRows);
   const int before = std::clamp(static_cast<int>(end - 4 - 2 * blur) - window.first(), 0, window.rows() - 4);
   std::vector<double> size;
@@ -188,34 +198,24 @@ std::vector<double> endFace(const TipWindow& window, double end, double blur) {
   if (outer + 1 < window.columns()) radius += (size[outer] - half) / std::max(size[outer] - size[outer + 1], 1e-9);
   std::vector<double> face;
   for (int t = 0; t < window.columns(); ++t) face.push_back(stepAt((radius - t) / blur) - stepAt((-radius - t) / blur));
-  return face;
+  whole = window.sharedBy(face);
+  face.erase(face.begin(), face.begin() + std::min<std::ptrdiff_t>(kNarrower, face.size()));
+  face.resize(window.columns(), 0.0);
+  narrower = window.sharedBy(std::move(face));
 }
 
-namespace {
-
-/// The face of a tube that is narrower by kNarrower columns.
-std::vector<double> shifted(const std::vector<double>& face) {
-  std::vector<double> result(face.begin() + std::min<std::ptrdiff_t>(kNarrower, face.size()), face.end());
-  result.resize(face.size(), 0.0);
-  return result;
-}
-
-}  // namespace
-
-std::vector<double> tipResiduals(const TipWindow& window, const TipModel& model, double end,
-                                 const std::vector<double>& face, const std::vector<double>& rims) {
+std::vector<double> tipResiduals(const TipWindow& window, const TipModel& model, double end, const EndFace& face,
+                                 const std::vector<double>& rims) {
   const OwnTerms own(window, model, end);
   double rest = 0;
   for (int t = 0; t < window.columns(); ++t)
     rest += window.weight(t) * (window.square(t) - own.explained(window.column(t)));
-  const std::vector<double> ones(window.columns(), 1.0);
   SharedTerms shared(window, own);
   Column values{};
   std::fill_n(values.begin(), window.rows(), 1.0F);
-  shared.add(values, ones);
+  shared.add(values, window.all());
   for (int i = 0; i < window.rows(); ++i) values[i] = static_cast<float>(i) / static_cast<float>(window.rows()) - 0.5F;
-  shared.add(values, ones);
-  const std::vector<double> narrower = shifted(face);
+  shared.add(values, window.all());
   double last = 0;
   const double plain = rest - shared.explained(last);
   std::vector<double> result;
@@ -225,14 +225,14 @@ std::vector<double> tipResiduals(const TipWindow& window, const TipModel& model,
     if (!(rim > 0)) continue;
     for (int i = 0; i < window.rows(); ++i) {
       const double s = window.first() + i - end;
-      values[i] = edge.at(s).real() - edge.at(s - rim).real();
+      values[i] = own.step()[i] - edge.at(s - rim).real();
     }
-    shared.add(values, face);
+    shared.add(values, face.whole);
     const double value = rest - shared.explained(last);
     if (last < 0) result.back() = value;
     if (last < 0 && model.fringes > 0) {
       // Becke's line displaces the outline, and with it the face.
-      shared.add(values, narrower);
+      shared.add(values, face.narrower);
       result.back() = rest - shared.explained(last);
       shared.dropLast();
     }

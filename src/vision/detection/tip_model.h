@@ -20,6 +20,12 @@ struct TipModel {
   double fringes = 0;  ///< see TipEdge; 0: in focus
 };
 
+/// A factor of each column, of a term that all columns share, and the sum of a window's columns with these factors.
+struct SharedColumns {
+  std::vector<double> factor;
+  std::vector<float> sum;  ///< a value a row; 0 behind the last row
+};
+
 /// The rows and columns of a strip that a model is fitted to, folded about the axis.
 class TipWindow {
  public:
@@ -38,24 +44,30 @@ class TipWindow {
   int degree() const { return degree_; }
   double range() const { return range_; }             ///< largest less least value
   double square(int t) const { return squares_[t]; }  ///< sum of the squared values of a column
+  const SharedColumns& all() const { return all_; }   ///< each with the factor 1
+  SharedColumns sharedBy(std::vector<double> factor) const;
 
  private:
   int first_, rows_, columns_, degree_;
   double range_ = 0;
   std::vector<float> grey_;  ///< column after column, less the mean of all; 0 behind the last row
   std::vector<double> squares_;
+  SharedColumns all_;
 };
 
 /// The end face across: 1 within the outline that the rows behind `end` have, blurred.
-std::vector<double> endFace(const TipWindow& window, double end, double blur);
+struct EndFace {
+  SharedColumns whole, narrower;  ///< the second of a tube that is a little narrower
+
+  EndFace(const TipWindow& window, double end, double blur);
+};
 
 /// Number of terms that each column has.
 int termsOf(const TipWindow& window, const TipModel& model);
 
 /// Sums of the squared residuals of a fit, one for each width of the rim; 0: without a rim.
-/// @param face  endFace() of all columns
 /// @param rims  rows; a rim that turns out bright is left out
-std::vector<double> tipResiduals(const TipWindow& window, const TipModel& model, double end,
-                                 const std::vector<double>& face, const std::vector<double>& rims);
+std::vector<double> tipResiduals(const TipWindow& window, const TipModel& model, double end, const EndFace& face,
+                                 const std::vector<double>& rims);
 
 }  // namespace microinjection

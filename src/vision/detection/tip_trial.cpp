@@ -23,7 +23,7 @@ constexpr double kFirstStep = 0.6, kLastStep = 0.3;  // rows
 /// Ends about a place, a trial for each end and rim.
 void tryEnds(const TipWindow& window, const TipModel& model, const std::vector<double>& ends,
              const std::vector<double>& rims, std::vector<TipTrial>& all) {
-  const std::vector<double> face = endFace(window, ends[ends.size() / 2], model.blur);
+  const EndFace face(window, ends[ends.size() / 2], model.blur);
   for (const double end : ends) {
     const std::vector<double> values = tipResiduals(window, model, end, face, rims);
     for (std::size_t k = 0; k < values.size(); ++k)
