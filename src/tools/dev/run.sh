@@ -30,6 +30,7 @@ command_bench() {
   else
     /usr/bin/python3 "$ROOT/benchmark/$name.py" --out "$folder" "$@"
   fi
+  [[ " $* " == *" --help "* ]] && return
   [[ -s $folder/$name.csv ]] || fail "the benchmark left no $folder/$name.csv"
   if [[ -f $ROOT/benchmark/plot_$name.py ]]; then
     /usr/bin/python3 "$ROOT/benchmark/plot_$name.py" "$folder/$name.csv" "$folder/$name.png"

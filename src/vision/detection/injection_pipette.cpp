@@ -32,10 +32,11 @@ constexpr int kRounds = 3;
 constexpr double kFitBehind = 48;  // px before an end, in the strip of its fit
 constexpr int kFitBefore = 18;     // px of the background that the fit needs
 constexpr int kFitRows = 110, kFitHalf = 24;
-constexpr double kFitBlur = 0.4;        // px
-constexpr double kPlain = 0.5;          // misfit of a fit before a plain background, at most
-constexpr double kFitAgrees = 2;        // px, of a fit and an edge before another background
-constexpr double kSureDeviation = 0.6;  // px, of a fitted end
+constexpr double kFitBlur = 0.4;            // px
+constexpr double kPlain = 0.5;              // misfit of a fit before a plain background, at most
+constexpr double kFitAgrees = 2;            // px, of a fit and an edge before another background
+constexpr double kSureDeviation = 0.6;      // px, of a fitted end
+constexpr double kFar = 5, kSureFar = 0.4;  // px, from where the edges end, and the deviation of an end that far
 
 std::vector<double> outlines(const PipetteStrip& strip, const PipetteAxis& axis, double factor, double margin) {
   std::vector<double> half;
@@ -91,8 +92,8 @@ void fitEnd(const Frame& frame, const PipetteAxis& axis, const TipOutline& outli
     found.finding = Finding::uncertain("in focus and out of focus the tip has other places");
     return;
   }
-  found.finding =
-      fit.deviation > kSureDeviation ? Finding::uncertain("the tip fades into its background") : Finding::found();
+  const double most = std::abs(fit.row - kFitBehind) > kFar ? kSureFar : kSureDeviation;
+  found.finding = fit.deviation > most ? Finding::uncertain("the tip fades into its background") : Finding::found();
 }
 
 }  // namespace

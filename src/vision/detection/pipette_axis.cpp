@@ -14,6 +14,7 @@ constexpr int kLines = 32;
 constexpr double kEdgeNoise = 5;                           // of the gradient's noise
 constexpr double kLeastNoise = 1.2e-3;                     // of the range, of a gradient; compression has its own
 constexpr double kLeastLength = 18;                        // px in the reduced frame
+constexpr double kLeastLengthAtBorder = 10;                // the same, of a needle that has just come into it
 constexpr double kSameDirection = 0.03, kSamePlace = 2.5;  // rad, px in the reduced frame
 
 /// A line of edges: normal (cos a, sin a), a in [0, pi); n . p = offset.
@@ -102,7 +103,7 @@ class LineVotes {
   std::array<double, kAngles> cosine_, sine_;
 };
 
-std::vector<Line> linesOf(const LineVotes& accumulator) {
+std::vector<Line> linesOf(const LineVotes& accumulator, double least_length) {
   cv::Mat votes;
   cv::GaussianBlur(accumulator.votes(), votes, cv::Size(3, 3), 0.8);
   cv::Mat highest;
@@ -111,7 +112,7 @@ std::vector<Line> linesOf(const LineVotes& accumulator) {
   for (int row = 0; row < votes.rows; ++row) {
     for (int column = 0; column < votes.cols; ++column) {
       const float value = votes.at<float>(row, column);
-      if (value < 0.3 * kLeastLength || value < highest.at<float>(row, column)) continue;
+      if (value < 0.3 * least_length || value < highest.at<float>(row, column)) continue;
       lines.push_back({(row + 0.5) * M_PI / kAngles, column - accumulator.shift(), value});
     }
   }
@@ -210,7 +211,7 @@ std::vector<PipetteAxis> findPipetteAxes(const Frame& frame, const AxisSearch& s
   }
   LineVotes votes(image.size(), search);
   votes.add(image, std::max(0.25 * frame.noise(), kLeastNoise) / scale, corner, frame.level(level).size(), scale);
-  const std::vector<Line> lines = linesOf(votes);
+  const std::vector<Line> lines = linesOf(votes, search.from_border > 0 ? kLeastLengthAtBorder : kLeastLength);
   const cv::Point2d origin(0.5 * (image.cols - 1), 0.5 * (image.rows - 1));
   std::vector<PipetteAxis> pairs;
   for (std::size_t i = 0; i < lines.size(); ++i) {
