@@ -55,13 +55,13 @@ class IdentifyCommand : public CommandTest {
 TEST_F(IdentifyCommand, APointHasTheModulusOfTheSceneThatIndentSolves) {
   const std::string scene = std::string(kCells) + "mouse_oocyte_pipette.yaml";
   const std::string indent = "cd " + directory_ + " && " MICROINJECTION_INDENT " --scene " + scene +
-                             " --depths 8e-6 --csv force.csv 2>/dev/null";
+                             " --depths 3e-6 --csv force.csv 2>/dev/null";
   ASSERT_EQ(std::system(indent.c_str()), 0);
   std::istringstream lines(read(directory_ + "force.csv"));
   std::string cell;
   std::getline(lines, cell);
   for (int i = 0; i < 4; ++i) std::getline(lines, cell, ',');
-  const Outcome outcome = run("--point 8e-6," + cell + " --reading-error 0.05 --model solution --scene " + scene +
+  const Outcome outcome = run("--point 3e-6," + cell + " --reading-error 0.05 --model solution --scene " + scene +
                               " --csv found.csv --out fitted.yaml");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const std::vector<double> found = modulus("solution");
