@@ -40,9 +40,11 @@ std::string describe(const cell_microinjection::CellState& message) {
   return message.in_contact ? "in contact" : "no contact";
 }
 
-std::optional<double> magnitude(const std::optional<Eigen::Vector3d>& vector) {
-  if (!vector) return std::nullopt;
-  return vector->norm();
+/// The needle's axis is world's z until its pose is known.
+std::optional<ForceParts> partsOnTip(const std::optional<Eigen::Vector3d>& force,
+                                     const std::optional<Eigen::Isometry3d>& tip) {
+  if (!force) return std::nullopt;
+  return partsOf(*force, tip.value_or(Eigen::Isometry3d::Identity()).linear().col(2));
 }
 
 /// Depths in order, of a cell that can be.
@@ -118,7 +120,7 @@ void DisplayNode::onState(const cell_microinjection::CellState& message) {
   const Eigen::Vector3d force = toVector(message.force);
   state_.predicted = std::nullopt;
   if (message.converged && isWithin(force, kLargestForce)) state_.predicted = force;
-  state_.readout.predicted = magnitude(state_.predicted);
+  state_.readout.predicted = partsOnTip(state_.predicted, state_.tip);
   if (!defect.empty()) return;
   state_.cell_frame = message.header.frame_id.empty() ? "cell" : message.header.frame_id;
   state_.surface = std::move(surface);
@@ -159,7 +161,7 @@ void DisplayNode::onEstimate(const cell_microinjection::CellEstimate& message) {
 void DisplayNode::onMeasuredForce(const geometry_msgs::WrenchStamped& message) {
   const Eigen::Isometry3d tip = state_.tip.value_or(Eigen::Isometry3d::Identity());
   state_.measured = isValid(message) ? validForce(&message, tip.linear()) : std::nullopt;
-  state_.readout.measured = magnitude(state_.measured);
+  state_.readout.measured = partsOnTip(state_.measured, state_.tip);
   count(kMeasured, state_.measured.has_value());
 }
 

@@ -77,7 +77,7 @@ void DisplayScene::drawPuncture(const DisplayedState& state, visualization_msgs:
 
 void DisplayScene::drawReadout(const DisplayedState& state, visualization_msgs::MarkerArray& markers) const {
   using About = ReadoutLine::About;
-  constexpr int kMostLines = 12;
+  constexpr int kMostLines = 14;
   const std::vector<ReadoutLine> shown = lines(state.readout);
   for (int i = 0; i < kMostLines; ++i) {
     const MarkerName name{kWorld, "readout", i};
@@ -90,7 +90,7 @@ void DisplayScene::drawReadout(const DisplayedState& state, visualization_msgs::
                           : about == About::kMeasured             ? kMeasured
                           : about == About::kState && state.alarm ? kAlarm
                                                                   : kText;
-    const Eigen::Vector3d position(-0.72, 0, 0.30 - 0.10 * i);
+    const Eigen::Vector3d position(-0.72, 0, 0.40 - 0.10 * i);
     markers.markers.push_back(textMarker(name, position, shown[i].text, 0.055, colour));
   }
 }

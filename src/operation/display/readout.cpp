@@ -34,7 +34,21 @@ std::vector<std::string> wrapped(const std::string& text, std::size_t width, std
   return result;
 }
 
+void addForce(std::vector<ReadoutLine>& result, ReadoutLine::About about, const std::string& name,
+              const std::optional<ForceParts>& force) {
+  const auto figure = [&](double ForceParts::*part) {
+    return fixedFigure(force ? std::optional((*force).*part) : std::nullopt, 1e-6, 3) + " uN";
+  };
+  result.push_back({about, name + " " + figure(&ForceParts::along)});
+  result.push_back({about, "  across " + figure(&ForceParts::across)});
+}
+
 }  // namespace
+
+ForceParts partsOf(const Eigen::Vector3d& force, const Eigen::Vector3d& axis) {
+  const double along = force.dot(axis);
+  return {along, (force - along * axis).norm()};
+}
 
 std::string micro(double value, int digits) {
   char figure[64];
@@ -50,8 +64,8 @@ std::vector<ReadoutLine> lines(const Readout& readout) {
     result.push_back({About::kState, part});
   if (!readout.injection.empty()) result.push_back({About::kMotion, readout.injection});
   result.push_back({About::kMotion, "depth " + fixedFigure(readout.indentation, 1e-6, 2) + " um"});
-  result.push_back({About::kPredicted, "predicted " + fixedFigure(readout.predicted, 1e-6, 3) + " uN"});
-  result.push_back({About::kMeasured, "measured " + fixedFigure(readout.measured, 1e-6, 3) + " uN"});
+  addForce(result, About::kPredicted, "predicted", readout.predicted);
+  addForce(result, About::kMeasured, "measured", readout.measured);
   if (readout.puncture) {
     const ExpectedPuncture& puncture = *readout.puncture;
     if (puncture.beyond) {

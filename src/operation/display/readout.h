@@ -9,11 +9,20 @@
 
 namespace microinjection {
 
+/// A force on the tip, along the pipette towards its shaft and across it (its size), N. A single norm would
+/// show the noise of the lateral axes as a force.
+struct ForceParts {
+  double along = 0, across = 0;
+};
+
+/// @param axis  of unit length, from the tip to the shaft, in the frame of the force
+ForceParts partsOf(const Eigen::Vector3d& force, const Eigen::Vector3d& axis);
+
 /// The values of the text beside the cell; an absent value is invalid or was never received.
 struct Readout {
-  std::optional<double> indentation;    ///< m
-  std::optional<double> predicted;      ///< N, magnitude
-  std::optional<double> measured;       ///< N, magnitude
+  std::optional<double> indentation;  ///< m
+  std::optional<ForceParts> predicted;
+  std::optional<ForceParts> measured;
   std::optional<Eigen::Vector3d> hand;  ///< m, position of the haptic device
   std::optional<ExpectedPuncture> puncture;
   std::string state;      ///< for example "in contact"

@@ -52,32 +52,42 @@ TEST(Readout, ShowsMicrometresAndMicronewtons) {
   Readout readout;
   readout.state = "in contact";
   readout.indentation = 12.346e-6;
-  readout.predicted = 3.2101e-6;
+  readout.predicted = ForceParts{3.2101e-6, 0.04e-6};
   readout.hand = Eigen::Vector3d(0, 0, -44e-3);
   const std::vector<ReadoutLine> shown = lines(readout);
-  ASSERT_EQ(shown.size(), 5U);
+  ASSERT_EQ(shown.size(), 7U);
   EXPECT_EQ(shown[0].text, "in contact");
   EXPECT_EQ(shown[1].text, "depth 12.35 um");
   EXPECT_EQ(shown[2].text, "predicted 3.210 uN");
   EXPECT_EQ(shown[2].about, ReadoutLine::About::kPredicted);
-  EXPECT_EQ(shown[3].text, "measured - uN");
-  EXPECT_EQ(shown[4].text, "hand -44.0 mm");
+  EXPECT_EQ(shown[3].text, "  across 0.040 uN");
+  EXPECT_EQ(shown[4].text, "measured - uN");
+  EXPECT_EQ(shown[5].text, "  across - uN");
+  EXPECT_EQ(shown[6].text, "hand -44.0 mm");
   readout.hand.reset();
-  EXPECT_EQ(lines(readout).size(), 4U);
+  EXPECT_EQ(lines(readout).size(), 6U);
   readout.injection = "indent";
-  EXPECT_EQ(lines(readout).size(), 5U);
+  EXPECT_EQ(lines(readout).size(), 7U);
   EXPECT_EQ(lines(readout)[1].text, "indent");
+}
+
+TEST(Readout, PartsAForceAlongAndAcrossThePipette) {
+  const Eigen::Vector3d axis = Eigen::Vector3d(1, 0, 1).normalized();
+  const ForceParts parts = partsOf(3 * axis + 0.5 * Eigen::Vector3d::UnitY(), axis);
+  EXPECT_NEAR(parts.along, 3, 1e-12);
+  EXPECT_NEAR(parts.across, 0.5, 1e-12);
+  EXPECT_NEAR(partsOf(-axis, axis).along, -1, 1e-12);
 }
 
 TEST(Readout, NamesTheExpectedPuncture) {
   Readout readout;
   readout.puncture = ExpectedPuncture{9.71e-6, 7e-6, 13.6e-6, 1.5e-6};
   const std::vector<ReadoutLine> shown = lines(readout);
-  ASSERT_EQ(shown.size(), 5U);
-  EXPECT_EQ(shown[3].text, "puncture at 9.71 um");
-  EXPECT_EQ(shown[4].text, "  and 1.5 uN");
+  ASSERT_EQ(shown.size(), 7U);
+  EXPECT_EQ(shown[5].text, "puncture at 9.71 um");
+  EXPECT_EQ(shown[6].text, "  and 1.5 uN");
   readout.puncture->beyond = true;
-  EXPECT_EQ(lines(readout)[3].text, "puncture below 7 um");
+  EXPECT_EQ(lines(readout)[5].text, "puncture below 7 um");
   EXPECT_TRUE(depthGauge({0, 0, 0}, 1, *readout.puncture, 1e-6).expected.empty());
 }
 
@@ -103,14 +113,14 @@ TEST(Readout, BreaksALongState) {
   Readout readout;
   readout.state = "no solution: the contact is still being prepared";
   const std::vector<ReadoutLine> shown = lines(readout);
-  ASSERT_EQ(shown.size(), 3U + 3);
+  ASSERT_EQ(shown.size(), 3U + 5);
   EXPECT_EQ(shown[0].text, "no solution: the");
   EXPECT_EQ(shown[1].text, "contact is still");
   EXPECT_EQ(shown[2].text, "being prepared");
   EXPECT_EQ(shown[2].about, ReadoutLine::About::kState);
   readout.state = std::string(200, 'x') + " a b c" + std::string(300, ' ') + std::string(99, 'y') +
                   " z z zzzzzzzzzzzzzzzzzzzz" + " zzzzzzzzzzzzzzzzzzzz zzzzzzzzzzzzzzzzzzzz";
-  ASSERT_EQ(lines(readout).size(), 5U + 3);
+  ASSERT_EQ(lines(readout).size(), 5U + 5);
   EXPECT_EQ(lines(readout)[4].text, "zzzzzzzzzzzzzzzzzzzz ...");
 }
 
