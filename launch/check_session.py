@@ -55,7 +55,12 @@ def problems(arguments):
     if arguments["twin"].lower() == "true" and arguments["sensor"] == "none" and arguments["camera"] == "none":
         found.append("twin = 'true' with sensor = 'none' and camera = 'none': must be with a force sensor, which shows modulus "
                      "and height of the cell, or with a camera, which shows the height")
-    if arguments["twin"].lower() == "true" and arguments["modelled"].lower() != "true" and arguments["force_source"] != "measured":
+    if arguments["sensor"] == "none" and "measured" in (arguments["force_source"], arguments["hand_force"]):
+        found.append("force_source, hand_force = 'measured' with sensor = 'none': must be with a force sensor")
+    if arguments["twin"].lower() == "true" and arguments["modelled"].lower() != "true" and arguments["sensor"] == "none":
+        found.append(f"twin = 'true' with sensor = 'none' and rig = '{arguments['rig']}': must be with a force sensor on a real rig: "
+                     "an image does not show the puncture")
+    elif arguments["twin"].lower() == "true" and arguments["modelled"].lower() != "true" and arguments["force_source"] != "measured":
         found.append(f"twin = 'true' with force_source = '{arguments['force_source']}': must be measured on a real rig, "
                      "whose puncture the predicted force does not show")
     if arguments["clock"] == "lockstep" and arguments["twin"].lower() == "true" and arguments["sensor"] == "none":

@@ -20,7 +20,8 @@ from fit_rig import Rig
 
 PACKAGE = pathlib.Path(__file__).resolve().parents[1]
 NODES = ("micromanipulator", "haptic_bridge", "injection_controller", "display", "microscope")
-OVERRIDDEN = (*NODES, "vision", "calibration", "visual_servo", "haptic_device", "force_sensor", "injector", "cell_simulator", "operator", "teleoperation_follower")
+OVERRIDDEN = (*NODES, "vision", "calibration", "visual_servo", "focus", "touch", "cell_estimator", "haptic_device", "force_sensor",
+              "injector", "cell_simulator", "operator", "teleoperation_follower")
 
 RADIUS, MODULUS = 28e-6, 17.9e3  # m, Pa, of the cell that the files are for
 GUARD = 2  # times the largest puncture force

@@ -42,6 +42,8 @@ class CheckSessionTest(unittest.TestCase):
                               ({'twin': 'true', 'sensor': 'none', 'camera': 'none'}, "twin = 'true' with sensor = 'none' and camera = 'none': must be with"),
                               ({'twin': 'true', 'sensor': 'none', 'clock': 'lockstep'}, "clock = 'lockstep' with twin = 'true' and sensor = 'none'"),
                               ({'twin': 'true', 'modelled': 'False', 'sensor': 'serial'}, "twin = 'true' with force_source = 'predicted'"),
+                              ({'twin': 'true', 'modelled': 'False', 'sensor': 'none'}, "an image does not show the puncture"),
+                              ({'sensor': 'none', 'force_source': 'measured'}, "force_source, hand_force = 'measured' with sensor"),
                               ({'operator': 'ann'}, "operator: must be with record:=FOLDER")):
             with self.subTest(what):
                 found = problems({**GOOD, **changes})

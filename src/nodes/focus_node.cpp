@@ -127,6 +127,10 @@ void FocusNode::onGoal() {
   const std::optional<double> start = position();
   if (!start) return end(false, "the focus axis does not answer: /focus/measured_js is silent, old or invalid");
   if (!tip_ || isOld(ros::Time(tip_->stamp))) return end(false, "the tip is not seen: " + tip_reason_);
+  // Without any manipulator nothing moves the needle.
+  const bool known = needle_ && secondsBetween(needle_received_, ros::SteadyTime::now()) <= parameters_.image_timeout;
+  if (subscribers_.back().getNumPublishers() > 0 && !known)
+    return end(false, "/needle/measured_cp is silent or invalid: it is not known whether the needle rests");
   start_ = *start;
   repeated_ = false;
   planes_ = 0;

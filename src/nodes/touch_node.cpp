@@ -131,6 +131,8 @@ void TouchNode::begin(double travel) {
   if (!position) throw ConfigError("/needle/measured_cp is silent or invalid");
   const auto sight = input().sight;
   if (!sight) throw ConfigError("the image does not show the touch: " + blind_);
+  if (forces_.getNumPublishers() > 0 && !input().force)
+    throw ConfigError("/force_sensor/measured_cf is silent or invalid: the force could not be watched");
   if (!sight->certain) throw ConfigError("the cell or the tip is uncertain in the image");
   travel_ = travel > 0 ? travel : most;
   start_ = *position;

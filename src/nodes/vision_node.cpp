@@ -116,8 +116,13 @@ void VisionNode::onImage(const sensor_msgs::Image& message) {
   last_data_ = message.data;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    readings_.add(tracker_.view());
-    received_ = ros::SteadyTime::now();
+    const ros::SteadyTime now = ros::SteadyTime::now();
+    // Behind a pause may be another cell, and a needle makes the cell that it presses wider.
+    const bool paused = !received_.isZero() && secondsBetween(received_, now) > parameters_.vision.image_timeout;
+    if (paused) readings_ = CellReadings(static_cast<std::size_t>(parameters_.vision.measured_images));
+    pressed_ = tracker_.view().indentation.finding.isFound();
+    if (!pressed_) readings_.add(tracker_.view());
+    received_ = now;
   }
   ++accepted_;
   const double time = threadCpuTime() - start;
@@ -153,6 +158,7 @@ CellMeasurement VisionNode::measure() const {
   const double age = received_.isZero() ? -1 : secondsBetween(received_, ros::SteadyTime::now());
   if (age < 0 || age > parameters_.vision.image_timeout)
     throw ConfigError("there is no new image" + (refusal_.empty() ? "" : ": " + refusal_));
+  if (pressed_) throw ConfigError("the needle presses the cell, which is wider then: withdraw it");
   std::string reason;
   const auto cell = readings_.measure(VisionConfig::kLeastImages, pixel_size, reason);
   if (!cell) throw ConfigError(reason);

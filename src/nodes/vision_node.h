@@ -68,6 +68,7 @@ class VisionNode {
   ros::Time stamp_;                      ///< of the last accepted image
   mutable std::mutex mutex_;             ///< of what follows, which the service reads
   CellReadings readings_;
+  bool pressed_ = false;      ///< by the needle, in the newest image
   ros::SteadyTime received_;  ///< last accepted image
   std::string refusal_;       ///< of the last image; empty: accepted
 

@@ -78,6 +78,7 @@ void VisualServoNode::begin(const Eigen::Vector2d& pixel) {
   const std::optional<Eigen::Vector3d> position = watch_.position();
   if (!position) throw ConfigError("/needle/measured_cp is silent or invalid");
   if (!watch_.tip()) throw ConfigError("the tip is not seen: " + watch_.tipReason());
+  if (const std::string reason = watch_.cellOnTheWay(pixel); !reason.empty()) throw ConfigError(reason);
   calibration_ = readCalibration(calibrationPath(parameters_.calibration));
   pixel_ = pixel;
   start_ = *position;
@@ -101,6 +102,8 @@ void VisualServoNode::step() {
   if (!calibration_) return;
   if (watch_.controller().state != "ENABLED") return finish(false, "the controller is " + watch_.controller().state);
   if (others_.getNumPublishers() > 1) return finish(false, std::string("another node publishes ") + kSetpoints);
+  if (const std::string reason = watch_.cellInTheWay(); !reason.empty()) return finish(false, reason);
+  if (const std::string reason = watch_.cellOnTheWay(pixel_); !reason.empty()) return finish(false, reason);
   const ros::Time now = ros::Time::now();
   if (!approach_) {
     publish(start_, now);

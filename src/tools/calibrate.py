@@ -26,7 +26,7 @@ def run(name, action, goal, describe):
     """Runs an action to its end, with its progress in one line; Ctrl-C cancels it. @returns its success"""
     client = actionlib.SimpleActionClient(name, action)
     if not client.wait_for_server(rospy.Duration(SERVER_TIMEOUT)):
-        raise rospy.ROSException(f"no action {name}: start a session with camera:=sim or camera:=device")
+        raise rospy.ROSException(f"no action {name}: start a session with camera:=..., such as sim or device")
     rospy.on_shutdown(client.cancel_all_goals)
     client.send_goal(goal, feedback_cb=lambda feedback: print(f"\r{describe(feedback)}  ", end="", flush=True))
     client.wait_for_result()

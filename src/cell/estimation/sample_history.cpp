@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/median.h"
+
 namespace microinjection {
 namespace {
 
@@ -18,6 +20,10 @@ SampleHistory::Sample joined(const SampleHistory::Sample& a, const SampleHistory
   both.scatter = a.scatter + b.scatter;
   return both;
 }
+
+// Two samples at rest are apart as little as this share of two on the path: a needle that rests for a
+// minute must not drive out the path on which the force rose.
+constexpr double kRest = 0.01;
 
 }  // namespace
 
@@ -46,12 +52,22 @@ void SampleHistory::add(double time, const Eigen::Vector3d& tip, double force) {
 }
 
 void SampleHistory::thin() {
-  std::vector<Sample> half;
-  half.reserve(samples_.capacity());
-  for (std::size_t i = 0; i + 1 < samples_.size(); i += 2) half.push_back(joined(samples_[i], samples_[i + 1]));
-  if (samples_.size() % 2 == 1) half.push_back(samples_.back());
-  samples_ = std::move(half);
-  spacing_ *= 2;
+  const auto apart = [&](std::size_t i) {
+    const double path = (samples_[i + 1].tip - samples_[i].tip).norm() / spacing_;
+    return path + kRest * (samples_[i + 1].time - samples_[i].time) / config_.duration;
+  };
+  std::vector<double> distances;
+  for (std::size_t i = 0; i + 1 < samples_.size(); ++i) distances.push_back(apart(i));
+  const double near = upperMedian(distances);
+  std::vector<Sample> fewer;
+  fewer.reserve(samples_.capacity());
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    const bool join = i + 1 < samples_.size() && distances[i] <= near;
+    fewer.push_back(join ? joined(samples_[i], samples_[i + 1]) : samples_[i]);
+    if (join) ++i;
+  }
+  samples_ = std::move(fewer);
+  if (near > 0.5) spacing_ *= 2;
 }
 
 void SampleHistory::forgetBefore(double time) {

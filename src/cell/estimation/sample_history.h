@@ -12,7 +12,7 @@ namespace microinjection {
 struct SampleHistoryConfig {
   double spacing = 50e-9;  ///< m, of the tip's path: the readings on it become one sample
   double duration = 0.05;  ///< s, longest of a sample: a cell that relaxes changes its force at rest
-  int capacity = 160;      ///< samples; when they are full, neighbours become one
+  int capacity = 160;      ///< samples; when they are full, the nearest neighbours become one
 
   void read(ConfigReader& reader);
 };
@@ -44,7 +44,7 @@ class SampleHistory {
   double noise() const;
 
  private:
-  void thin();
+  void thin();  ///< joins about half of the neighbours, the nearest ones
 
   SampleHistoryConfig config_;
   double spacing_;  ///< m, present

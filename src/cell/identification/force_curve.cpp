@@ -19,11 +19,15 @@ namespace {
 constexpr std::size_t kFewest = 20;  ///< samples
 constexpr double kBent = 0.1;        ///< of its rise: a straighter record is in contact from its begin
 
-std::vector<std::string> splitRow(const std::string& line) {
-  const char separator = line.find(',') != std::string::npos    ? ','
-                         : line.find(';') != std::string::npos  ? ';'
-                         : line.find('\t') != std::string::npos ? '\t'
-                                                                : ' ';
+/// A title may have a comma, a number of some countries has one.
+char separatorOf(const std::string& titles) {
+  for (const char separator : {';', '\t', ','}) {
+    if (titles.find(separator) != std::string::npos) return separator;
+  }
+  return ' ';
+}
+
+std::vector<std::string> splitRow(const std::string& line, char separator) {
   std::vector<std::string> items;
   std::istringstream in(line);
   for (std::string item; std::getline(in, item, separator);) {
@@ -68,12 +72,30 @@ void keepFirst(ForceCurve& curve, std::size_t count) {
   for (std::vector<double>* values : {&curve.time, &curve.position, &curve.force}) values->resize(count);
 }
 
+/// The positions; one that is farther from its neighbours' median than any step is no place of the tip, and
+/// the median stands for it.
+std::vector<double> withoutSpikes(const std::vector<double>& values) {
+  constexpr std::size_t kBeside = 2;
+  constexpr double kFar = 3;  ///< steps
+  std::vector<double> medians;
+  double step = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::size_t from = i < kBeside ? 0 : i - kBeside, to = std::min(values.size(), i + kBeside + 1);
+    medians.push_back(upperMedian({values.data() + from, values.data() + to}));
+    if (i > 0) step = std::max(step, std::abs(medians[i] - medians[i - 1]));
+  }
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (std::abs(values[i] - medians[i]) <= kFar * step) medians[i] = values[i];
+  }
+  return medians;
+}
+
 /// The height grows towards the cell.
 void orient(ForceCurve& curve) {
-  const auto farthest = std::max_element(curve.position.begin(), curve.position.end(), [&](double a, double b) {
-    return std::abs(a - curve.position[0]) < std::abs(b - curve.position[0]);
-  });
-  if (*farthest < curve.position[0]) {
+  const std::vector<double> path = withoutSpikes(curve.position);
+  const auto farthest = std::max_element(
+      path.begin(), path.end(), [&](double a, double b) { return std::abs(a - path[0]) < std::abs(b - path[0]); });
+  if (*farthest < path[0]) {
     for (double& x : curve.position) x = -x;
     curve.notes.emplace_back("the position falls on the way in: its sign is turned");
   }
@@ -87,8 +109,9 @@ void orientForce(ForceCurve& curve) {
 
 /// Nothing is known about a record that turns back: only the way in is elastic.
 void cutRetract(ForceCurve& curve) {
-  const auto deepest = std::max_element(curve.position.begin(), curve.position.end());
-  const auto count = static_cast<std::size_t>(deepest - curve.position.begin()) + 1;
+  const std::vector<double> path = withoutSpikes(curve.position);
+  const auto deepest = std::max_element(path.begin(), path.end());
+  const auto count = static_cast<std::size_t>(deepest - path.begin()) + 1;
   if (count == curve.size()) return;
   curve.notes.push_back("the " + std::to_string(curve.size() - count) + " samples behind the deepest one are left out");
   keepFirst(curve, count);
@@ -104,9 +127,11 @@ ForceCurve readForceCurve(const std::string& path, const ForceCurveConfig& confi
   ForceCurve curve;
   std::vector<double> deflections;
   std::size_t dropped = 0;
+  char separator = ' ';
   for (std::string line; std::getline(file, line);) {
     if (line.find_first_not_of(" \t\r") == std::string::npos || line[line.find_first_not_of(" \t")] == '#') continue;
-    const std::vector<std::string> row = splitRow(line);
+    if (titles.empty()) separator = separatorOf(line);
+    const std::vector<std::string> row = splitRow(line, separator);
     if (titles.empty()) {
       titles = row;
       constexpr char kByteOrderMark[] = "\xEF\xBB\xBF";
@@ -131,7 +156,7 @@ ForceCurve readForceCurve(const std::string& path, const ForceCurveConfig& confi
   if (dropped > 0) curve.notes.push_back(std::to_string(dropped) + " rows without numbers are left out");
   if (curve.size() < kFewest) {
     throw ConfigError(path + ": " + std::to_string(curve.size()) + " rows of numbers: must be at least " +
-                      std::to_string(kFewest));
+                      std::to_string(kFewest) + (separator == ',' ? "" : "; the decimal sign is a point, not a comma"));
   }
   if (!curve.timed) curve.notes.emplace_back("there is no column of the time: a drift is one a sample");
   orient(curve);

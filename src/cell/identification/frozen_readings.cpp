@@ -9,9 +9,10 @@
 namespace microinjection {
 namespace {
 
-constexpr std::size_t kFewest = 10;  ///< equal readings in a row
-constexpr double kJump = 4;          ///< behind them, over the median step from reading to reading
-constexpr double kSteps = 3;         ///< same, over the converter's step
+constexpr std::size_t kFewest = 10;      ///< equal readings in a row
+constexpr std::size_t kLastFewest = 25;  ///< the same, at the end of a record
+constexpr double kJump = 4;              ///< behind them, over the median step from reading to reading
+constexpr double kSteps = 3;             ///< same, over the converter's step
 
 /// Median of the steps between readings that differ, and the smallest of them.
 struct Steps {
@@ -27,6 +28,13 @@ Steps stepsOf(const std::vector<double>& force) {
   return {upperMedian(steps), *std::min_element(steps.begin(), steps.end())};
 }
 
+/// Whether equal readings in a row are usual among the first `count`: the converter's step is above the noise.
+bool isCoarse(const std::vector<double>& force, std::size_t count) {
+  std::size_t equal = 0;
+  for (std::size_t i = 1; i < count; ++i) equal += force[i] == force[i - 1];
+  return 2 * equal > count;
+}
+
 }  // namespace
 
 ForceCurve withoutFrozenReadings(const ForceCurve& curve) {
@@ -40,7 +48,11 @@ ForceCurve withoutFrozenReadings(const ForceCurve& curve) {
     end = begin + 1;
     while (end < curve.size() && curve.force[end] == curve.force[begin]) ++end;
     const double jump = end < curve.size() ? std::abs(curve.force[end] - curve.force[begin]) : 0;
-    const bool hung = end - begin >= kFewest && jump > std::max(kJump * steps.median, kSteps * steps.least);
+    const bool jumps = jump > std::max(kJump * steps.median, kSteps * steps.least);
+    // A record that ends with a sensor that hangs has no jump. Elsewhere it had noise, and the tip still moves.
+    const double moved = std::abs(curve.position[end - 1] - curve.position[begin]);
+    const bool ends = end == curve.size() && end - begin >= kLastFewest && moved > 0 && end - begin < curve.size();
+    const bool hung = end - begin >= kFewest && (jumps || (ends && !isCoarse(curve.force, begin)));
     const std::size_t kept = hung ? begin + 1 : end;
     removed += end - kept;
     for (std::size_t i = begin; i < kept; ++i) {

@@ -1,5 +1,6 @@
 #include "nodes/imaging/tip_watch.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "nodes/runtime/conversions.h"
@@ -10,6 +11,7 @@ namespace {
 
 constexpr double kResolution = 0.2e-6;  // m, within which a needle rests
 constexpr double kClockSkew = 0.05;     // s, by which a stamp may be ahead
+constexpr double kSilent = 1;           // s, after which what simulator and controller said is not known any more
 
 /// Empty, or why the tip is not above the cell: it must be farther out along the shaft than the cell reaches.
 std::string besideCell(const cell_microinjection::CellInImage& cell, const cell_microinjection::PipetteInImage& tip) {
@@ -40,18 +42,34 @@ TipWatch::TipWatch(const ros::NodeHandle& node, double timeout) : timeout_(timeo
           node, "/cell/state", kQueue,
           [this](const cell_microinjection::CellState& message, const std::string&) {
             touches_ = message.in_contact || message.inside;
+            touch_received_ = ros::SteadyTime::now();
           }),
       subscribeGuarded<cell_microinjection::InjectionStatus>(
           node, "/controller/injection_state", kQueue,
           [this](const cell_microinjection::InjectionStatus& message, const std::string&) {
             injects_ = message.state != "idle" && message.state != "approach" && message.state != "fault";
+            injection_received_ = ros::SteadyTime::now();
           })};
 }
 
 std::string TipWatch::cellInTheWay() const {
+  const ros::SteadyTime now = ros::SteadyTime::now();
+  const auto silent = [&](const ros::SteadyTime& received) {
+    return !received.isZero() && secondsBetween(received, now) > kSilent;
+  };
+  if (silent(injection_received_)) return "/controller/injection_state is silent: the needle may be in the cell";
+  if (silent(touch_received_)) return "/cell/state is silent: the needle may touch the cell";
   if (injects_) return "the needle is at the cell or in it, by the controller: withdraw it";
   if (touches_) return "the needle touches the cell, by cell_simulator: withdraw it";
   return beside_;
+}
+
+std::string TipWatch::cellOnTheWay(const Eigen::Vector2d& pixel) const {
+  const std::optional<SeenTip> seen = tip();
+  if (!cell_ || !seen) return "";
+  const Eigen::Vector2d way = pixel - seen->pixel, from = cell_->centre - seen->pixel;
+  const double share = way.squaredNorm() > 0 ? std::clamp(from.dot(way) / way.squaredNorm(), 0.0, 1.0) : 0;
+  return (from - share * way).norm() > cell_->radius ? "" : "the straight way to the pixel is through the cell";
 }
 
 /// The older of stamp and arrival counts: a relay that repeats an old message must not keep it fresh.
@@ -86,12 +104,15 @@ void TipWatch::onNeedle(const geometry_msgs::PoseStamped& message) {
 
 void TipWatch::onVision(const cell_microinjection::VisionState& message) {
   tip_.reset();
-  beside_.clear();
   tip_received_ = ros::SteadyTime::now();
   const auto& tip = message.injection_pipette;
   tip_reason_ = isOld(message.header.stamp) ? "the image is old, or stamped ahead" : tip.reason;
   if (isOld(message.header.stamp)) return;
   image_centre_ = Eigen::Vector2d(message.width - 1.0, message.height - 1.0) / 2;
+  // Beside a cell the tip is often uncertain. What was known stays until an image shows the needle again.
+  if (tip.verdict != tip.NOT_FOUND) beside_ = besideCell(message.cell, tip);
+  if (message.cell.verdict != message.cell.NOT_FOUND)
+    cell_ = SeenCell{{message.cell.x, message.cell.y}, message.cell.diameter / 2};
   if (tip.verdict != tip.FOUND) return;
   SeenTip seen;
   seen.stamp = message.header.stamp.toSec();
@@ -102,7 +123,6 @@ void TipWatch::onVision(const cell_microinjection::VisionState& message) {
     return;
   }
   tip_ = seen;
-  beside_ = besideCell(message.cell, tip);
   if (on_tip) on_tip(seen);
 }
 

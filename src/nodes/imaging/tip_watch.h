@@ -40,6 +40,9 @@ class TipWatch {
   /// Why the needle must not be moved across: it touches the cell or is in it, by the controller, by
   /// cell_simulator or by the image. Empty: it is clear above the cell, as far as is known.
   std::string cellInTheWay() const;
+  /// Why the tip must not go straight to a pixel: the way is through the cell, by the newest image. Empty:
+  /// it is not, or the cell or the tip was not found.
+  std::string cellOnTheWay(const Eigen::Vector2d& pixel) const;
 
   /// Called when the needle has moved to another place (m). `followed`: it was watched all the way.
   std::function<void(const Eigen::Vector3d&, bool followed)> on_motion;
@@ -61,7 +64,13 @@ class TipWatch {
   std::string tip_reason_ = "no image was received";
   Eigen::Vector2d image_centre_ = Eigen::Vector2d::Zero();
   std::string beside_;  ///< by the newest image: why the tip is not clear above the cell; else empty
+  struct SeenCell {
+    Eigen::Vector2d centre{0, 0};  ///< px
+    double radius = 0;             ///< px
+  };
+  std::optional<SeenCell> cell_;            ///< in the newest image that shows one
   bool touches_ = false, injects_ = false;  ///< by cell_simulator and by the controller
+  ros::SteadyTime touch_received_, injection_received_;
   cell_microinjection::OperatingState needle_state_, controller_state_;
   std::vector<ros::Subscriber> subscribers_;
 };

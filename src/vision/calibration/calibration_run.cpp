@@ -9,6 +9,7 @@ namespace {
 constexpr double kArrived = 1e-6;  // m, from the target: motors differ from a command by their resolution
 constexpr double kSlow = 4;        // times the planned duration of a move, before it counts as failed
 constexpr double kPatience = 3;    // s, on top: a device needs time to begin and to report
+constexpr int kMostUnseen = 10;    // points in a row: one side of a pattern may lie outside of the image
 constexpr double kUnseen = 5;      // times observation_time, in which a tip that was not seen may still come
 
 }  // namespace
@@ -74,6 +75,9 @@ void CalibrationRun::collect(const CalibrationInput& input) {
 void CalibrationRun::finish() {
   TipObservation observation;
   observation.position = plan_.waypoints[next_].position;
+  if (plan_.waypoints[next_].observe) unseen_ = tips_.empty() ? unseen_ + 1 : 0;
+  if (unseen_ >= kMostUnseen)
+    failure_ = "the tip was not seen at " + std::to_string(unseen_) + " points in a row: the camera may have stopped";
   if (!tips_.empty()) {
     Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
     Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();

@@ -63,7 +63,7 @@ class CalibrationRun {
   double allowed_ = 0;         ///< s, of the move
   std::vector<SeenTip> tips_;  ///< of this waypoint
   std::vector<TipObservation> observations_;
-  int seen_ = 0;
+  int seen_ = 0, unseen_ = 0;  ///< points; the second: in a row
   std::string failure_;
 };
 

@@ -18,16 +18,18 @@ PipetteDetectorConfig readPipette(ConfigReader& reader, const std::string& kind,
 bool isSure(const PipetteDetection& pipette) { return pipette.finding.isFound(); }
 bool isSure(const CellDetection& cell) { return cell.size.isFound(); }
 
-/// The thing near its last place, else anywhere. `age`: frames since the whole one was searched for it.
+/// The thing near its last place, else anywhere. What is followed is not lost by a search that finds nothing.
+/// `age`: frames since the whole one was searched for it.
 template <typename Detector, typename Detection>
 Detection follow(const Detector& detector, const Frame& frame, const Detection& last, double reach, int& age) {
   ++age;
-  if (last.finding.hasValues()) {
-    const Detection tracked = detector.track(frame, last, reach);
-    if (isSure(tracked) || (tracked.finding.hasValues() && age < SpecimenTracker::kSearchEvery)) return tracked;
-  }
+  Detection tracked;
+  if (last.finding.hasValues()) tracked = detector.track(frame, last, reach);
+  const bool followed = last.finding.hasValues() && tracked.finding.hasValues();
+  if (followed && (isSure(tracked) || age < SpecimenTracker::kSearchEvery)) return tracked;
   age = 0;
-  return detector.detect(frame);
+  const Detection found = detector.detect(frame);
+  return followed && !found.finding.hasValues() ? tracked : found;
 }
 
 /// Whether the round thing is at the end of the pipette or behind it: lip or wall of a thick one.

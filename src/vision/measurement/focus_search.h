@@ -14,7 +14,7 @@ struct FocusSearchConfig {
   int planes = 21;           ///< about the plane at the start
   double reach = 60e-6;      ///< m, farthest plane from the start; less take_up below it
   double take_up = 3e-6;     ///< m, by which the focus goes below a plane, so that it comes from below
-  int images = 3;            ///< in each plane
+  int images = 6;            ///< in each plane
   double settle_time = 0.1;  ///< s, at rest before an image counts
   double image_time = 3;     ///< s, in which the images of a plane must come
   double move_time = 10;     ///< s, in which the focus must arrive

@@ -43,6 +43,19 @@ TEST(SampleHistory, ItsLengthIsBoundedAndNothingIsLost) {
   EXPECT_NEAR(kept, sum, 1e-9 * sum);
 }
 
+TEST(SampleHistory, ANeedleThatRestsForAMinuteKeepsThePathOnWhichTheForceRose) {
+  SampleHistory history({50e-9, 0.05, 160});
+  double time = 0;
+  for (int i = 0; i < 250; ++i, time += 1e-3) history.add(time, {0, 0, -20e-9 * i}, i);
+  const std::size_t path = history.samples().size();
+  ASSERT_GT(path, 80u);
+  for (; time < 60; time += 1e-3) history.add(time, {0, 0, -5e-6}, 250);
+  std::size_t rising = 0;
+  for (const auto& sample : history.samples()) rising += sample.tip.z() > -4.9e-6;
+  EXPECT_GT(rising, path / 2);
+  EXPECT_LE(history.samples().size(), 160u);
+}
+
 TEST(SampleHistory, TheNoiseIsThatOfTheReadingsNotOfTheSlope) {
   std::mt19937 random(1);
   std::normal_distribution<double> noise(0, 10e-9);

@@ -62,6 +62,16 @@ TEST_F(ForceCurveFile, FindsBothSigns) {
   EXPECT_DOUBLE_EQ(curve.force[10], 5);
 }
 
+TEST_F(ForceCurveFile, ASinglePositionFarOffIsNotTheDeepestOne) {
+  for (const double far : {500.0, -500.0}) {
+    write("time_s,height_m,force_N",
+          [&](int i) { return text(i) + "," + text(i == 20 ? far : 1.0 * i) + "," + text(0.5 * i); });
+    const ForceCurve curve = readForceCurve(path_, {});
+    EXPECT_EQ(curve.size(), 100u);
+    EXPECT_DOUBLE_EQ(curve.position[90], 90);
+  }
+}
+
 TEST_F(ForceCurveFile, TakesTheDeflectionOff) {
   write("time_s,height_um,deflection_um,force_N",
         [](int i) { return text(i) + "," + text(2.0 * i) + "," + text(0.5 * i) + "," + text(i); });

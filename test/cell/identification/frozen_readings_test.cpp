@@ -34,6 +34,14 @@ TEST(FrozenReadings, OfASensorThatHungTheFirstStays) {
   EXPECT_EQ(left.notes.size(), 1U);
 }
 
+TEST(FrozenReadings, ASensorThatHangsToTheEndIsLeftOut) {
+  ForceCurve curve = ramp();
+  for (std::size_t i = 301; i < 500; ++i) curve.force[i] = curve.force[300];
+  EXPECT_EQ(withoutFrozenReadings(curve).size(), 301U);
+  for (std::size_t i = 301; i < 500; ++i) curve.position[i] = curve.position[300];
+  EXPECT_EQ(withoutFrozenReadings(curve).size(), 500U) << "at rest the force may stay";
+}
+
 TEST(FrozenReadings, ACoarseConverterIsNotFrozen) {
   // Steps of twenty times the noise: most readings equal the one before.
   EXPECT_EQ(withoutFrozenReadings(ramp(20e-9)).size(), 500U);
