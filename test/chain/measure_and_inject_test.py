@@ -4,22 +4,18 @@
 import csv
 import pathlib
 import sys
-import time
-import unittest
 
 import actionlib
 import numpy as np
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
-from cell_microinjection.msg import (CellEstimate, CellInImage, CellState, CellParameters, InjectAction, InjectGoal, OperatingState,
-                                     PunctureScore, StringStamped, VisionState)
+from cell_microinjection.msg import (CellEstimate, CellInImage, CellState, CellParameters, InjectAction, InjectGoal,
+                                     PunctureScore)
 from cell_microinjection.srv import MeasureCell
-from geometry_msgs.msg import PoseStamped, WrenchStamped
 
-from messages import force, pose, position
+from controlled_needle import PATIENCE, ControlledNeedle
 
-PATIENCE = 300  # s
 PIXEL = 0.25e-6  # m
 DIAMETER, BESIDE = 62e-6, 6e-6  # m, of the true cell; from the needle's axis
 PUNCTURE = 1.5e-6  # N, of its zona
@@ -27,67 +23,17 @@ TWIN = "true" in sys.argv[1:]
 TRUE_MODULUS = 30e3  # Pa, with the twin; the session believes in 17.9e3
 
 
-class MeasureAndInjectTest(unittest.TestCase):
+class MeasureAndInjectTest(ControlledNeedle):
     @classmethod
     def setUpClass(cls):
-        cls.seen, cls.forces = {}, {"/cell/predicted_cf": {}, "/true_cell/predicted_cf": {}}
-        for topic, kind in (("/vision/state", VisionState), ("/needle/measured_cp", PoseStamped),
-                            ("/needle/operating_state", OperatingState), ("/controller/operating_state", OperatingState),
-                            ("/cell/estimate", CellEstimate), ("/true_cell/state", CellState), ("/cell/puncture_score", PunctureScore)):
-            rospy.Subscriber(topic, kind, lambda message, topic=topic: cls.seen.update({topic: message}), queue_size=1)
-        for topic in cls.forces:
-            rospy.Subscriber(topic, WrenchStamped, lambda message, topic=topic: cls.on_force(topic, message),
-                             queue_size=2000, tcp_nodelay=True)
-        cls.commands = rospy.Publisher("/controller/state_command", StringStamped, queue_size=1)
-        cls.moves = rospy.Publisher("/needle/move_cp", PoseStamped, queue_size=1)
+        super().setUpClass()
+        cls.see("/cell/estimate", CellEstimate)
+        cls.see("/true_cell/state", CellState)
+        cls.see("/cell/puncture_score", PunctureScore)
         cls.client = actionlib.SimpleActionClient("/controller/inject", InjectAction)
         assert cls.client.wait_for_server(rospy.Duration(PATIENCE))
         rospy.wait_for_service("/vision/measure_cell", PATIENCE)
         cls.measure = staticmethod(rospy.ServiceProxy("/vision/measure_cell", MeasureCell))
-
-    @classmethod
-    def on_force(cls, topic, message):
-        """Both forces have the stamp of the needle's pose that they are of."""
-        if not message.header.stamp.is_zero():
-            cls.forces[topic][message.header.stamp.to_nsec()] = force(message)[2]
-
-    def until(self, condition, what):
-        end = time.monotonic() + PATIENCE
-        while not condition():
-            self.assertLess(time.monotonic(), end, f"{what}: not within {PATIENCE} s; vision: {self.vision()}")
-            time.sleep(0.05)
-
-    def vision(self):
-        """What the last image showed, and how old it is; for a failure's message."""
-        state = self.seen.get("/vision/state")
-        if not state:
-            return "no image"
-        return (f"{(rospy.Time.now() - state.header.stamp).to_sec():.1f} s ago, cell: {state.cell.verdict} {state.cell.reason}, "
-                f"tip: {state.injection_pipette.verdict} {state.injection_pipette.reason}")
-
-    def needle(self):
-        return position(self.seen["/needle/measured_cp"])
-
-    def command(self, command, state):
-        def reached():
-            message = self.seen.get("/controller/operating_state")
-            if message and message.state == state:
-                return True
-            self.commands.publish(StringStamped(string=command))
-            time.sleep(0.2)
-            return False
-        self.until(reached, state)
-
-    def move_to(self, place):
-        """With the controller disabled: two must not command the needle."""
-        self.command("disable", "DISABLED")
-        time.sleep(0.5)  # its last set-point grows stale
-        target = pose(*place)
-        target.header.stamp = rospy.Time.now()
-        self.moves.publish(target)
-        self.until(lambda: np.allclose(self.needle(), place, atol=5e-8), f"the needle at {place}")
-        self.until(lambda: not self.seen["/needle/operating_state"].is_busy, "the end of the move")
-        self.command("enable", "ENABLED")
 
     def image(self):
         """Of the needle at rest: both are found in it."""

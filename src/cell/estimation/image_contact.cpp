@@ -27,7 +27,7 @@ ImageContact::ImageContact(const ImageContactConfig& config, double radius)
 
 void ImageContact::add(const Eigen::Vector3d& tip, double depth, double deviation) {
   const double beside = std::hypot(tip.x(), tip.y());
-  const bool sane = tip.allFinite() && depth > 0 && depth <= config_.largest_depth && deviation > 0 &&
+  const bool sane = tip.allFinite() && depth != 0 && std::abs(depth) <= config_.largest_depth && deviation > 0 &&
                     std::isfinite(deviation) && beside <= kBeside * radius_;
   if (!sane) return;
   const double surface = std::sqrt(radius_ * radius_ - beside * beside);

@@ -1,6 +1,7 @@
 #include "nodes/cell/dimple_reader.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "nodes/runtime/message_guard.h"
 #include "nodes/runtime/stamps.h"
@@ -12,6 +13,24 @@ constexpr std::size_t kPlaces = 400;        // 2 s of them: images come later th
 constexpr double kSpacing = 0.005;          // s, between two places that are kept
 constexpr double kFastest = 30e-6;          // m/s, of a needle whose place at the time of exposure is known
 constexpr double kFarthest = 2 * kSpacing;  // s, from a place to the time of exposure
+constexpr double kClearGap = 4;             // px
+
+/// Of the tip below the undisturbed outline, px; negative above it.
+struct Depth {
+  double value, deviation;
+};
+
+/// By the dimple, or, above the cell, by the gap: a needle that nearly touches may already press.
+std::optional<Depth> depthIn(const cell_microinjection::VisionState& message) {
+  const auto& tip = message.injection_pipette;
+  const auto& beside = message.indentation;
+  if (message.cell.verdict != message.cell.FOUND) return std::nullopt;
+  if (beside.verdict == beside.FOUND) return Depth{beside.depth, beside.deviation};
+  if (tip.verdict != tip.FOUND || !(beside.gap > kClearGap)) return std::nullopt;
+  const double x = std::cos(tip.direction), y = std::sin(tip.direction);
+  const double along = x * x * tip.covariance[0] + 2 * x * y * tip.covariance[1] + y * y * tip.covariance[3];
+  return Depth{-beside.gap, std::hypot(beside.displacement_deviation, std::sqrt(along))};
+}
 
 }  // namespace
 
@@ -37,10 +56,8 @@ void DimpleReader::follow(const ros::Time& stamp, const Eigen::Vector3d& tip, bo
 }
 
 void DimpleReader::onState(const cell_microinjection::VisionState& message) {
-  const auto& dimple = message.indentation;
-  const bool found = dimple.verdict == cell_microinjection::IndentationInImage::FOUND &&
-                     message.cell.verdict == cell_microinjection::CellInImage::FOUND;
-  if (!found || !(message.pixel_size > 0)) return;
+  const std::optional<Depth> depth = depthIn(message);
+  if (!depth || !(message.pixel_size > 0)) return;
   const ros::Time& exposed = message.header.stamp;
   const auto after = std::find_if(places_.begin(), places_.end(), [&](const Place& p) { return p.stamp >= exposed; });
   if (after == places_.begin() || after == places_.end()) return;
@@ -48,8 +65,8 @@ void DimpleReader::onState(const cell_microinjection::VisionState& message) {
   const double step = secondsBetween(last.stamp, next.stamp);
   if (step > kFarthest || !next.learns || !last.learns || (next.tip - last.tip).norm() > kFastest * step) return;
   const double share = secondsBetween(last.stamp, exposed) / step;
-  contact_.add(last.tip + share * (next.tip - last.tip), message.pixel_size * dimple.depth,
-               message.pixel_size * dimple.deviation);
+  contact_.add(last.tip + share * (next.tip - last.tip), message.pixel_size * depth->value,
+               message.pixel_size * depth->deviation);
 }
 
 }  // namespace microinjection

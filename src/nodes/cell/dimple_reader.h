@@ -11,9 +11,9 @@
 
 namespace microinjection {
 
-/// Reads the dimple under the needle from /vision/state. An image counts only when cell and dimple are
-/// found in it, its pixel size is known, and the needle was slow and its place known at the time of
-/// exposure.
+/// Reads the gap between needle and cell, and the dimple under the needle, from /vision/state. An image
+/// counts only when the cell is found in it, and the tip above it or the dimple; when its pixel size is
+/// known, and the needle was slow and its place known at the time of exposure.
 class DimpleReader {
  public:
   DimpleReader(const ros::NodeHandle& node, const ImageContactConfig& config);

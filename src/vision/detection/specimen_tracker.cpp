@@ -5,7 +5,7 @@
 namespace microinjection {
 namespace {
 
-constexpr double kNear = 1.3;  // over the cell's radius: a tip this near may indent it
+constexpr double kNear = 1.6;  // over the cell's radius: of a tip this near the gap or the dimple is measured
 
 PipetteDetectorConfig readPipette(ConfigReader& reader, const std::string& kind, double direction) {
   PipetteDetectorConfig config = PipetteDetectorConfig::read(reader);

@@ -32,6 +32,13 @@ TEST(ImageContact, IsTheTipsHeightAndTheDimplesDepth) {
   }
 }
 
+TEST(ImageContact, AboveTheCellItIsTheTipsHeightLessTheGap) {
+  ImageContact contact({}, kRadius);
+  for (int i = 1; i < 6; ++i) contact.add({0, 0, kRadius + kHeight + 1e-6 * i}, -1e-6 * i, kDeviation);
+  ASSERT_TRUE(contact.height());
+  EXPECT_NEAR(contact.height()->value, kHeight, 1e-12);
+}
+
 TEST(ImageContact, NeedsSomeImages) {
   EXPECT_FALSE(images(ImageContactConfig().least_images - 1).height());
   EXPECT_TRUE(images(ImageContactConfig().least_images).height());
@@ -59,6 +66,7 @@ TEST(ImageContact, WhatIsNoDimpleDoesNotCount) {
     contact.add({0, 0, kRadius}, 1e-6, 0);
     contact.add({0, 0, kRadius}, 0, kDeviation);
     contact.add({0, 0, kRadius}, 200e-6, kDeviation);
+    contact.add({0, 0, kRadius}, -200e-6, kDeviation);
     contact.add({0, 0, kNan}, 1e-6, kDeviation);
     contact.add({0.6 * kRadius, 0, 0.8 * kRadius}, 1e-6, kDeviation);
   }
