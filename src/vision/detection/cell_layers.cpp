@@ -228,7 +228,8 @@ CellLayers findLayers(const Frame& frame, const CellBorder& main, const std::str
   if (!layers.zona_outer.finding.hasValues()) {
     layers.ooplasm = refined(frame, ooplasm, 0, 0);
     warn(layers);
-    const bool ring = isRing(inside) || (isRing(beyond) && beyond.polarity != Polarity::kFalling);
+    const bool ring = isRing(inside) || (isSecondBorder(inside) && inside.significance > kLeastSignificance) ||
+                      (isRing(beyond) && beyond.polarity != Polarity::kFalling);
     // The ooplasm is not always in the middle of its zona: the centre is in doubt too.
     if (ring && layers.ooplasm.finding.isFound())
       layers.ooplasm.finding = Finding::uncertain("a faint second ring is seen: this may be a zona's border");
