@@ -12,7 +12,7 @@ constexpr double kHalf = 0.45;         // of the edges in the rows that follow, 
 constexpr int kRise = 9;               // of these rows
 constexpr double kClear = 3;           // of the background's edges, at a point
 constexpr int kReference = 50;         // rows, whose median is before the end
-constexpr int kLeastShaft = 8;          // rows in the frame, of a pipette that is seen
+constexpr int kLeastShaft = 8;         // rows in the frame, of a pipette that is seen
 constexpr int kBehind = 16;            // rows behind the end that have none
 constexpr int kLag = 4, kLagRows = 8;  // rows before a row that show what its profile should be
 constexpr double kUnlike = 0.3;        // mean likeness of the rows behind a tip, at most
