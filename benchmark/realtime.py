@@ -21,7 +21,9 @@ import yaml
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / 'src' / 'tools'))
+sys.path.insert(0, str(ROOT / 'launch'))
 
+import console_config  # noqa: E402
 import full_solution  # noqa: E402
 from demo_session import DemoSession, SessionError  # noqa: E402
 from processes import wait_until  # noqa: E402
@@ -106,8 +108,11 @@ def resident_memory(node):
 def start_rviz(session, logs, console, rate):
     """Returns rviz, drawing, or None where it cannot."""
     try:
-        config = f'console/{console}.rviz' if console else 'session.rviz'
-        view = RvizView(ROOT / 'config' / config, logs, rate)
+        config = ROOT / 'config' / 'session.rviz'
+        if console:
+            config = logs / f'console_{console}.rviz'
+            config.write_text(console_config.configuration(console), encoding='utf-8')
+        view = RvizView(config, logs, rate)
     except RvizError as error:
         say(f'without rviz: {error}')
         return None

@@ -32,7 +32,7 @@ def choices():
         "force_source": ["predicted", "measured"],
         "hand_force": ["predicted", "measured", "blend"],
         "link": ["none", "wave"],
-        "console": ["none", *stems("config/console", "*.rviz")],
+        "console": ["none", *stems("config/console", "*.yaml")],
         "camera": ["none", "sim", "device", "folder", "video", "topic"],
         "clock": ["wall", "lockstep", "external"],
         **{flag: boolean for flag in flags}}

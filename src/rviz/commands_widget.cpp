@@ -4,25 +4,16 @@
 #include <QShortcut>
 #include <utility>
 
-#include "rviz/colours.h"
+#include "rviz/button_style.h"
 
 namespace microinjection {
 namespace {
-
-QString styleOf(QRgb fill, QRgb text, const char* more = "") {
-  const QColor colour(fill);
-  return QString(
-             "QPushButton { background: %1; color: %2; border: none; border-radius: 4px; padding: 3px 8px; %3 }"
-             "QPushButton:pressed { background: %4; }")
-      .arg(colour.name(), QColor(text).name(), more, colour.darker(130).name());
-}
 
 constexpr char kStopStyle[] = "font-weight: bold; font-size: 20px;";
 
 }  // namespace
 
-CommandsWidget::CommandsWidget(std::function<SessionView()> newest, std::function<void(const std::string&)> send,
-                               QWidget* parent)
+CommandsWidget::CommandsWidget(std::function<SessionView()> newest, Send send, QWidget* parent)
     : QWidget(parent), newest_(std::move(newest)), send_(std::move(send)) {
   auto* layout = new QGridLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
@@ -65,7 +56,7 @@ CommandsWidget::CommandsWidget(std::function<SessionView()> newest, std::functio
 void CommandsWidget::press(std::size_t index) {
   // What is displayed may be older: a stop during a pulse must not be that of the state before.
   const CommandOffer offered = offer(kConsoleCommands[index], newest_());
-  if (offered.refusal.empty()) send_(offered.command);
+  if (offered.refusal.empty()) send_(kConsoleCommands[index], offered.command);
 }
 
 void CommandsWidget::display(const SessionView& session) {
@@ -79,9 +70,7 @@ void CommandsWidget::display(Row& row, const CommandOffer& offer, bool is_stop) 
   const bool enabled = offer.refusal.empty();
   if (first || enabled != row.shown.refusal.empty()) {
     row.button->setEnabled(enabled);
-    row.button->setStyleSheet(is_stop   ? styleOf(kStopColour, 0xffffffff, kStopStyle)
-                              : enabled ? styleOf(kOfferedColour, 0xffffffff)
-                                        : styleOf(kRefusedColour, kMutedColour));
+    row.button->setStyleSheet(is_stop ? buttonStyle(kStopColour, 0xffffffff, kStopStyle) : offerStyle(enabled));
     row.text->setColour(enabled ? palette().color(QPalette::WindowText) : QColor(kMutedColour));
   }
   row.button->setText(QString::fromStdString(is_stop ? offer.label + "   (space bar)" : offer.label));

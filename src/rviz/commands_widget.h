@@ -16,10 +16,11 @@ namespace microinjection {
 /// space.
 class CommandsWidget : public QWidget {
  public:
-  /// `newest`: gives the session at the moment of a press; `send`: called with the command of a
-  /// pressed button.
-  CommandsWidget(std::function<SessionView()> newest, std::function<void(const std::string&)> send,
-                 QWidget* parent = nullptr);
+  /// Called with the button that was pressed and its command.
+  using Send = std::function<void(ConsoleCommand button, const std::string& command)>;
+
+  /// `newest`: gives the session at the moment of a press.
+  CommandsWidget(std::function<SessionView()> newest, Send send, QWidget* parent = nullptr);
   void display(const SessionView& session);
 
  private:
@@ -32,7 +33,7 @@ class CommandsWidget : public QWidget {
   void display(Row& row, const CommandOffer& offer, bool is_stop);
 
   std::function<SessionView()> newest_;
-  std::function<void(const std::string&)> send_;
+  Send send_;
   std::array<Row, kConsoleCommands.size()> rows_;
 };
 

@@ -14,11 +14,14 @@
 #include <utility>
 
 #include "operation/console/headline.h"
+#include "rviz/calibration_box.h"
 #include "rviz/colours.h"
 #include "rviz/commands_widget.h"
 #include "rviz/force_plot.h"
 #include "rviz/guard_row.h"
+#include "rviz/hand_box.h"
 #include "rviz/lamp_row.h"
+#include "rviz/score_box.h"
 #include "rviz/steps_widget.h"
 
 namespace microinjection {
@@ -58,31 +61,54 @@ ConsolePanel::ConsolePanel(QWidget* parent)
   layout->setSpacing(6);
   layout->addWidget(steps_);
   layout->addWidget(headline_);
+  box(ConsolePart::kCommands) = makeCommands();
+  box(ConsolePart::kHand) = hand_ = new HandBox(this);
+  box(ConsolePart::kDevices) = makeDevices();
+  box(ConsolePart::kCell) = makeCell();
+  box(ConsolePart::kGuards) = makeGuards();
+  box(ConsolePart::kScore) = score_ = new ScoreBox(this);
+  box(ConsolePart::kCalibration) = calibration_ = new CalibrationBox([this] { return newest(); }, this);
+  box(ConsolePart::kPlots) = makePlots();
   auto* middle = new QHBoxLayout;
   middle->setSpacing(12);
-  middle->addWidget(makeLeft(), 1);
-  middle->addWidget(makeRight(), 1);
+  middle->addWidget(box(ConsolePart::kCommands), 1);
+  auto* right = new QVBoxLayout;
+  right->setSpacing(8);
+  for (const ConsolePart part : {ConsolePart::kHand, ConsolePart::kDevices, ConsolePart::kCell, ConsolePart::kGuards}) {
+    right->addWidget(box(part));
+  }
+  right->addStretch(1);
+  middle->addLayout(right, 1);
   layout->addLayout(middle);
-  layout->addWidget(makePlots(), 1);
+  layout->addWidget(box(ConsolePart::kScore));
+  layout->addWidget(box(ConsolePart::kCalibration));
+  layout->addWidget(box(ConsolePart::kPlots), 1);
+  showParts(words_);
 }
 
 ConsolePanel::~ConsolePanel() = default;
 
 QSize ConsolePanel::sizeHint() const { return {640, 700}; }
 
-QWidget* ConsolePanel::makeLeft() {
-  const auto newest = [this] {
-    if (link_) grown_ = link_->poll() || grown_;
-    return link_ ? link_->session() : SessionView();
+SessionView ConsolePanel::newest() {
+  if (link_) grown_ = link_->poll() || grown_;
+  return link_ ? link_->session() : SessionView();
+}
+
+QWidget* ConsolePanel::makeCommands() {
+  const auto send = [this](ConsoleCommand button, const std::string& command) {
+    if (!link_) return;
+    if (button == ConsoleCommand::kStop) {
+      link_->stop(command);
+    } else {
+      link_->send(command);
+    }
   };
-  const auto send = [this](const std::string& command) {
-    if (link_) link_->send(command);
-  };
-  commands_ = new CommandsWidget(newest, send, this);
+  commands_ = new CommandsWidget([this] { return newest(); }, send, this);
   return commands_;
 }
 
-QWidget* ConsolePanel::makeRight() {
+QWidget* ConsolePanel::makeDevices() {
   auto* box = new QWidget(this);
   QVBoxLayout* layout = column(box);
   layout->addWidget(heading("Devices", box));
@@ -92,16 +118,25 @@ QWidget* ConsolePanel::makeRight() {
     layout->addWidget(row);
   }
   layout->addWidget(injector_ = new LampRow("Injector", 1, box));
-  layout->addSpacing(4);
+  return box;
+}
+
+QWidget* ConsolePanel::makeCell() {
+  auto* box = new QWidget(this);
+  QVBoxLayout* layout = column(box);
   layout->addWidget(heading("Cell", box));
   layout->addWidget(served_ = new ElidedLabel(2, box));
   layout->addWidget(estimate_ = new LampRow("Estimate", 2, box));
   layout->addWidget(puncture_ = new ElidedLabel(1, box));
-  layout->addSpacing(4);
+  return box;
+}
+
+QWidget* ConsolePanel::makeGuards() {
+  auto* box = new QWidget(this);
+  QVBoxLayout* layout = column(box);
   layout->addWidget(heading("Guards", box));
   layout->addWidget(force_guard_ = new GuardRow(box));
   layout->addWidget(depth_guard_ = new GuardRow(box));
-  layout->addStretch(1);
   return box;
 }
 
@@ -131,18 +166,43 @@ QWidget* ConsolePanel::makePlots() {
 }
 
 void ConsolePanel::onInitialize() {
-  link_ = std::make_unique<SessionLink>([this] { return pipetteAxis(); });
+  link_ = std::make_unique<SessionLink>([this] { return pipette(); });
   connect(timer_, &QTimer::timeout, this, [this] { tick(); });
   timer_->start(kPeriod);
+  showParts(words_);
+}
+
+void ConsolePanel::load(const rviz::Config& config) {
+  rviz::Panel::load(config);
+  QString words;
+  if (config.mapGetString("Parts", &words)) showParts(words.toStdString());
+}
+
+void ConsolePanel::save(rviz::Config config) const {
+  rviz::Panel::save(config);
+  config.mapSetValue("Parts", QString::fromStdString(words_));
+}
+
+void ConsolePanel::showParts(const std::string& words) {
+  words_ = words;
+  parts_ = ConsoleParts::read(words);
+  for (const ConsolePart part : kConsoleParts) box(part)->setVisible(parts_.has(part));
+  if (!link_) return;
+  if (parts_.has(ConsolePart::kHand)) hand_->start();
+  if (parts_.has(ConsolePart::kCalibration)) calibration_->start();
+  if (parts_.has(ConsolePart::kScore)) score_->start(*link_);
 }
 
 /// rviz listens to tf already: another subscriber of the needle's pose at 1 kHz would only cost.
-std::optional<Eigen::Vector3d> ConsolePanel::pipetteAxis() const {
+std::optional<SessionLink::Pose> ConsolePanel::pipette() const {
   const auto buffer = vis_manager_->getTF2BufferPtr();
   if (!buffer->canTransform("world", "needle_tip", ros::Time(0))) return std::nullopt;
   try {
-    const auto q = buffer->lookupTransform("world", "needle_tip", ros::Time(0)).transform.rotation;
-    return Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized() * Eigen::Vector3d::UnitZ();
+    const auto transform = buffer->lookupTransform("world", "needle_tip", ros::Time(0)).transform;
+    const auto& q = transform.rotation;
+    const auto& p = transform.translation;
+    return SessionLink::Pose{{p.x, p.y, p.z},
+                             Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized() * Eigen::Vector3d::UnitZ()};
   } catch (const tf2::TransformException&) {
     return std::nullopt;
   }
@@ -151,13 +211,14 @@ std::optional<Eigen::Vector3d> ConsolePanel::pipetteAxis() const {
 void ConsolePanel::tick() {
   grown_ = link_->poll() || grown_;
   if (ticks_++ % kStatePeriod == 0) showState();
-  if (std::exchange(grown_, false) && isVisible()) plot();
+  if (std::exchange(grown_, false) && isVisible() && parts_.has(ConsolePart::kPlots)) plot();
 }
 
 void ConsolePanel::showState() {
   const SessionView session = link_->session();
   steps_->display(session.injection);
-  headline_->display(headline(session));
+  headline_->display(parts_.unknown.empty() ? headline(session)
+                                            : Lamp{Light::kRed, "the console has no part: " + parts_.unknown});
   commands_->display(session);
   for (const Device device : kDevices) devices_[static_cast<std::size_t>(device)]->display(link_->lamp(device));
   const auto estimate = link_->estimate();
@@ -168,6 +229,9 @@ void ConsolePanel::showState() {
   served_->setText(served.empty() ? "the served cell is not known" : QString::fromStdString(served));
   force_guard_->display(forceMargin(session));
   depth_guard_->display(depthMargin(session));
+  hand_->refresh();
+  calibration_->refresh(session);
+  score_->refresh();
 
   ForcePlot::Limits limits;
   if (session.settings.force_limit) limits.force = *session.settings.force_limit * 1e6;

@@ -2,12 +2,16 @@
 
 #include <QPainter>
 #include <algorithm>
+#include <utility>
 
 #include "rviz/colours.h"
 
 namespace microinjection {
 
-GuardRow::GuardRow(QWidget* parent) : QWidget(parent) { setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed); }
+GuardRow::GuardRow(QWidget* parent, QString name, QString text)
+    : QWidget(parent), longest_name_(std::move(name)), longest_text_(std::move(text)) {
+  setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+}
 
 void GuardRow::display(const GuardMargin& margin) {
   const bool same = margin.lamp.text == margin_.lamp.text && margin.lamp.light == margin_.lamp.light;
@@ -19,8 +23,8 @@ void GuardRow::display(const GuardMargin& margin) {
 
 void GuardRow::paintEvent(QPaintEvent*) {
   QPainter painter(this);
-  const int name_width = fontMetrics().horizontalAdvance("Estimate ") + 20;
-  const int text_width = fontMetrics().horizontalAdvance("00.00 of 00.0 uN ");
+  const int name_width = fontMetrics().horizontalAdvance(longest_name_) + 20;
+  const int text_width = fontMetrics().horizontalAdvance(longest_text_);
   const QRect bar(name_width, 4, std::max(10, width() - name_width - text_width - 8), height() - 8);
   painter.setPen(palette().color(QPalette::WindowText));
   painter.drawText(QRect(0, 0, name_width, height()), Qt::AlignVCenter, QString::fromStdString(margin_.name));

@@ -1,5 +1,6 @@
 #include "rviz/session_link.h"
 
+#include <actionlib_msgs/GoalID.h>
 #include <cell_microinjection/StringStamped.h>
 
 #include <algorithm>
@@ -14,6 +15,9 @@ constexpr double kSilence = 1;     // s, of the controller, which publishes ten 
 constexpr double kFresh = 0.2;     // s, of a measured force in the plot
 constexpr double kOld = 2;         // s, of what is shown of twin and injector
 constexpr double kLargest = 1e-2;  // N and m: what is beyond is no force or depth of a cell
+
+constexpr const char* kStoppedActions[] = {"calibration/calibrate", "focus/find", "touch/find",
+                                           "visual_servo/go_to_pixel"};
 
 /// s. In simulated time that of the session, where nodes publish as often as time goes on; else of a
 /// clock that does not jump.
@@ -38,9 +42,12 @@ Eigen::Vector3d toVector(const geometry_msgs::Vector3& vector) { return {vector.
 
 }  // namespace
 
-SessionLink::SessionLink(std::function<std::optional<Eigen::Vector3d>()> axis) : axis_(std::move(axis)) {
+SessionLink::SessionLink(std::function<std::optional<Pose>()> pipette) : pipette_(std::move(pipette)) {
   node_.setCallbackQueue(&queue_);
   commands_ = node_.advertise<cell_microinjection::StringStamped>("controller/state_command", 1);
+  for (const std::string action : kStoppedActions) {
+    cancels_.push_back(node_.advertise<actionlib_msgs::GoalID>(action + "/cancel", 1));
+  }
   subscribe("controller/operating_state", &SessionLink::onOperating);
   subscribe("controller/injection_state", &SessionLink::onInjection);
   subscribe("controller/loop_state", &SessionLink::onLoop);
@@ -70,6 +77,12 @@ void SessionLink::send(const std::string& command) {
   message.header.stamp = ros::Time::now();
   message.string = command;
   commands_.publish(message);
+}
+
+void SessionLink::stop(const std::string& command) {
+  send(command);
+  // An empty goal is every goal.
+  for (const ros::Publisher& cancel : cancels_) cancel.publish(actionlib_msgs::GoalID());
 }
 
 /// The parameters are set before the controller starts. To read them waits for the master, which is
@@ -122,6 +135,7 @@ void SessionLink::onInjection(const cell_microinjection::InjectionStatus& messag
   session_.depth = message.depth;
   session_.volume = message.volume;
   session_.notice = message.notice;
+  punctures_ = static_cast<int>(message.punctures);
 }
 
 void SessionLink::onLoop(const cell_microinjection::LoopState& message) { session_.hold_reason = message.hold_reason; }
@@ -129,25 +143,46 @@ void SessionLink::onLoop(const cell_microinjection::LoopState& message) { sessio
 void SessionLink::onCell(const cell_microinjection::CellState& message) {
   ForceHistory::Sample sample;
   sample.time = now();
-  const auto axis = axis_();
-  if (axis && message.converged) sample.predicted = plausible(toVector(message.force).dot(*axis));
-  if (sample.time - measured_.at < kFresh) sample.measured = measured_.value;
+  const auto pipette = pipette_();
+  if (pipette && message.converged) sample.predicted = plausible(toVector(message.force).dot(pipette->axis));
+  if (measured_.value && sample.time - measured_.at < kFresh) sample.measured = measured_.value->axial;
   if (message.in_contact || message.inside) {
     sample.depth = plausible(message.inside ? message.insertion_depth : message.indentation);
   }
   history_.add(sample);
   grown_ = true;
+  if (row_handler_) row_handler_(rowOf(message, pipette));
+}
+
+SessionTable::Row SessionLink::rowOf(const cell_microinjection::CellState& message,
+                                     const std::optional<Pose>& pipette) const {
+  SessionTable::Row row;
+  row.time = now();
+  row.needle = pipette;
+  if (pipette && message.converged) row.predicted = toVector(message.force);
+  if (row.time - measured_.at < kFresh) row.measured = measured_.value;
+  row.in_contact = message.in_contact;
+  if (message.in_contact || message.inside) row.depth = message.inside ? message.insertion_depth : message.indentation;
+  row.cell = {std::nullopt, message.punctured != 0, message.layers_punctured, message.holes.size()};
+  row.injection = session_.injection ? toText(*session_.injection) : "";
+  row.punctures = punctures_;
+  if (const auto last = injector()) row.volume = last->volume;
+  return row;
 }
 
 void SessionLink::onMeasured(const geometry_msgs::WrenchStamped& message) {
   measured_ = {std::nullopt, now()};
   if (message.header.stamp.isZero()) return;
   const Eigen::Vector3d force = toVector(message.wrench.force);
+  std::optional<double> axial;
   if (message.header.frame_id == "needle_tip") {
-    measured_.value = plausible(force.z());
-  } else if (const auto axis = axis_(); axis && message.header.frame_id == "world") {
-    measured_.value = plausible(force.dot(*axis));
+    axial = plausible(force.z());
+  } else if (const auto pipette = pipette_(); pipette && message.header.frame_id == "world") {
+    axial = plausible(force.dot(pipette->axis));
   }
+  if (!axial) return;
+  const double lateral = message.header.frame_id == "needle_tip" ? force.x() : 0;
+  measured_.value = SessionTable::Measured{*axial, lateral};
 }
 
 void SessionLink::onEstimate(const cell_microinjection::CellEstimate& message) {

@@ -15,12 +15,14 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "operation/console/cell_lines.h"
 #include "operation/console/device_lamps.h"
 #include "operation/console/force_history.h"
 #include "operation/console/session_view.h"
+#include "operation/record/session_table.h"
 
 namespace microinjection {
 
@@ -28,27 +30,34 @@ namespace microinjection {
 ///
 /// In:  /controller/operating_state, /controller/injection_state, /controller/loop_state,
 ///      /cell/state, /cell/estimate, /force_sensor/measured_cf, /injector/state, /diagnostics
-/// Out: /controller/state_command (StringStamped)
+/// Out: /controller/state_command (StringStamped); with a stop, the cancels of the actions that move
+///      the needle through vision (kStoppedActions)
 ///
 /// All queues have length 1 and nothing latches: a console that hangs neither fills a queue of the
 /// loop nor leaves a command behind. The callbacks run in poll(), in the caller's thread.
 class SessionLink {
  public:
-  /// `axis`: gives the pipette's axis (unit, out of the cell, `world`), or nothing where tf does not
-  /// have it.
-  explicit SessionLink(std::function<std::optional<Eigen::Vector3d>()> axis);
+  using Pose = SessionTable::Pose;
+
+  /// `pipette`: gives tip and axis in `world`, or nothing where tf does not have them.
+  explicit SessionLink(std::function<std::optional<Pose>()> pipette);
 
   /// Runs the callbacks of the messages that came. Never waits for one. Returns whether the history
   /// has grown.
   bool poll();
   /// Sends a command of the operator with the present stamp.
   void send(const std::string& command);
+  /// The same, and cancels what would move needle or focus on: these nodes do not hear the
+  /// controller's commands, and a calibration runs while the controller is DISABLED.
+  void stop(const std::string& command);
 
   SessionView session() const;
   Lamp lamp(Device device) const;
   std::optional<CellEstimateView> estimate() const;
   std::optional<InjectorView> injector() const;
   const ForceHistory& history() const { return history_; }
+  /// `handler` receives the session's values at each state of the cell.
+  void onRow(std::function<void(const SessionTable::Row&)> handler) { row_handler_ = std::move(handler); }
   /// The model of the served cell with its expected error, or the last change of its parameters;
   /// empty: not known.
   std::string servedCell() const;
@@ -73,14 +82,19 @@ class SessionLink {
     double at = 0;
   };
 
-  std::function<std::optional<Eigen::Vector3d>()> axis_;
+  SessionTable::Row rowOf(const cell_microinjection::CellState& message, const std::optional<Pose>& pipette) const;
+
+  std::function<std::optional<Pose>()> pipette_;
+  std::function<void(const SessionTable::Row&)> row_handler_;
   ros::CallbackQueue queue_;
   ros::NodeHandle node_;
   std::vector<ros::Subscriber> subscribers_;
   ros::Publisher commands_;
+  std::vector<ros::Publisher> cancels_;
   SessionView session_;
   std::optional<double> heard_at_;  ///< s, of the controller's last message
-  Received<std::optional<double>> measured_;
+  Received<std::optional<SessionTable::Measured>> measured_;
+  int punctures_ = 0;  ///< detected by the controller
   Received<std::optional<CellEstimateView>> estimate_;
   Received<std::optional<InjectorView>> injector_;
   DeviceLamps lamps_;

@@ -61,6 +61,12 @@ class Console:
         return [name for _, name in best]
 
 
+def share_of(colour, path):
+    """The share of a picture that has this colour."""
+    pixels = (255 * matplotlib.image.imread(str(path))[..., :3]).round().astype(int)
+    return float(numpy.mean(numpy.all(abs(pixels - numpy.array(colour)) <= 3, axis=-1)))
+
+
 def look(path, environment):
     """The console on the screen. @raises NotSeen"""
     try:

@@ -11,8 +11,10 @@ from pathlib import Path
 import numpy as np
 import rospy
 import rostest
+from actionlib_msgs.msg import GoalID
 from cell_microinjection.msg import InjectionStatus, InjectorState, OperatingState, StringStamped
 from geometry_msgs.msg import PoseStamped
+from sensor_msgs.msg import Image
 
 import console_eye
 from messages import position
@@ -21,6 +23,8 @@ from screen import Screen
 
 PATIENCE = 150        # s of wall time; only a session or a console that hangs takes that long
 START_PATIENCE = 400  # s, for rviz on a busy machine
+COLOUR = (200, 0, 200)  # of the test's image, which nothing else on the screen has
+LEAST_SHARE = 0.05      # of the screen that an image fills
 
 
 class ConsoleTest(unittest.TestCase):
@@ -34,11 +38,12 @@ class ConsoleTest(unittest.TestCase):
         cls.environment = {**os.environ, **cls.screen.environment}
         cls.rviz = Child(["roslaunch", "cell_microinjection", "display.launch", "console:=inject"], logs / "rviz.log",
                          cls.environment)
-        cls.seen, cls.states, cls.sent = {}, [], []
+        cls.seen, cls.states, cls.sent, cls.cancelled = {}, [], [], []
         for topic, kind in (("/controller/injection_state", InjectionStatus), ("/controller/operating_state", OperatingState),
                             ("/injector/state", InjectorState), ("/needle/measured_cp", PoseStamped)):
             rospy.Subscriber(topic, kind, cls.on_message, topic)
         rospy.Subscriber("/controller/state_command", StringStamped, lambda message: cls.sent.append(message.string))
+        rospy.Subscriber("/calibration/calibrate/cancel", GoalID, cls.cancelled.append)
 
     @classmethod
     def tearDownClass(cls):
@@ -135,8 +140,12 @@ class ConsoleTest(unittest.TestCase):
         self.press("Approach")
         self.until(lambda: "approach" in self.states[before:], "the approach")
         console = self.shows(lambda seen: not seen.offered["Approach"], "Approach greyed")
+        self.assertEqual(self.cancelled, [])
         self.click(console.stop)
         self.operating("PAUSED")
+        # A calibration would move the needle on: it runs while the controller is DISABLED.
+        self.until(lambda: self.cancelled, "a cancel of the calibration")
+        self.assertEqual(self.cancelled[0].id, "")
         self.shows(lambda seen: seen.headline == ["yellow"], "a yellow headline")
         at = self.needle()
         time.sleep(0.5)
@@ -160,7 +169,23 @@ class ConsoleTest(unittest.TestCase):
         console = self.shows(lambda seen: seen.lamps.get("Sensor") == "red", "a red lamp of the sensor")
         self.assertNotEqual(console.lamps["Rig"], "red")
 
-    def test_4_a_controller_that_dies(self):
+    def test_4_the_microscope_appears_with_its_first_image(self):
+        self.shows(lambda seen: True, "its buttons")
+        self.assertEqual(console_eye.share_of(COLOUR, self.picture), 0)
+        images = rospy.Publisher("/microscope/image_raw", Image, queue_size=1)
+        image = Image(width=64, height=48, encoding="rgb8", step=3 * 64, data=bytes(COLOUR) * (64 * 48))
+
+        def shown():
+            image.header.stamp = rospy.Time.now()
+            images.publish(image)
+            return self.look() and console_eye.share_of(COLOUR, self.picture) > LEAST_SHARE
+        self.until(shown, "an image beside a console whose buttons are all to be seen")
+        image.data = image.data[:100]  # shorter than it says
+        images.publish(image)
+        images.unregister()
+        self.shows(lambda seen: console_eye.share_of(COLOUR, self.picture) == 0, "no image, since none comes")
+
+    def test_5_a_controller_that_dies(self):
         subprocess.run(["rosnode", "kill", "/injection_controller"], check=True, timeout=60, stdout=subprocess.DEVNULL)
         console = self.shows(lambda seen: seen.headline == ["red"], "a red headline")
         self.assertFalse(any(console.offered.values()))

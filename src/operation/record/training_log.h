@@ -36,6 +36,8 @@ class TrainingLog {
 
   const TrainingConfig& config() const { return config_; }
   void add(const SessionTable::Row& row);
+  /// What the session would be scored if it ended now.
+  TrainingScore score() const { return session_.score(config_.task); }
   /// Call at the end; `session` is its name, for example its date. Each file is written even when
   /// another cannot be.
   Result finish(const std::string& folder, const std::string& session) const;

@@ -1,0 +1,64 @@
+#include "operation/console/camera_tasks.h"
+
+namespace microinjection {
+namespace {
+
+CommandOffer describe(CameraTask task) {
+  switch (task) {
+    case CameraTask::kFocus:
+      return {"Focus", "", "moves the focus until the tip is sharp", ""};
+    case CameraTask::kCalibrate:
+      return {"Calibrate", "", "moves the needle over a pattern above its place: pixel size, angle, backlash", ""};
+    case CameraTask::kRezero:
+      return {"Re-zero", "", "after a pipette change: the tip's new place, with the same axes", ""};
+    case CameraTask::kTouch:
+      break;
+  }
+  return {"Touch", "", "lowers the needle until the image shows that it touches the cell", ""};
+}
+
+const char* nodeOf(CameraTask task) {
+  if (task == CameraTask::kFocus) return "focus";
+  return task == CameraTask::kTouch ? "touch" : "calibration";
+}
+
+std::string refusalOf(CameraTask task, const SessionView& session) {
+  const bool disabled = !session.operating || session.operating == OperatingState::kDisabled;
+  if (task == CameraTask::kCalibrate && !disabled) {
+    return std::string("the controller is ") + toText(*session.operating) + ": press Disable first";
+  }
+  if (task != CameraTask::kTouch) return "";
+  if (session.operating != OperatingState::kEnabled) return "the controller must be ENABLED: press Enable first";
+  const std::string& mode = session.settings.mode;
+  return mode.empty() || session.byHand() ? "" : "mode is " + mode + ", must be manual";
+}
+
+}  // namespace
+
+const char* toText(CameraTask task) {
+  constexpr const char* kNames[] = {"Focus", "Calibrate", "Re-zero", "Touch"};
+  return kNames[static_cast<std::size_t>(task)];
+}
+
+CommandOffer offer(CameraTask task, const SessionView& session, bool there, std::optional<CameraTask> running) {
+  CommandOffer result = describe(task);
+  if (!there) {
+    result.refusal = std::string("no node ") + nodeOf(task) + ": start the session with camera:=";
+  } else if (running) {
+    result.refusal = std::string(toText(*running)) + " is under way";
+  } else {
+    result.refusal = refusalOf(task, session);
+  }
+  return result;
+}
+
+Lamp reportLamp(const CameraTaskReport& report) {
+  using State = CameraTaskReport::State;
+  if (report.state == State::kNone) return {Light::kGrey, "nothing was started"};
+  const Light light = report.state == State::kRunning     ? Light::kYellow
+                      : report.state == State::kSucceeded ? Light::kGreen
+                                                          : Light::kRed;
+  return {light, std::string(toText(report.task)) + ": " + report.text};
+}
+
+}  // namespace microinjection

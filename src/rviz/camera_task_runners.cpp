@@ -1,0 +1,125 @@
+#include "rviz/camera_task_runners.h"
+
+#include <cell_microinjection/CalibrateAction.h>
+#include <cell_microinjection/FindFocusAction.h>
+#include <cell_microinjection/FindTouchAction.h>
+#include <std_srvs/Trigger.h>
+
+#include <thread>
+
+#include "operation/console/figures.h"
+
+namespace microinjection {
+namespace {
+
+using cell_microinjection::CalibrateAction;
+using cell_microinjection::CalibrateFeedback;
+using cell_microinjection::CalibrateGoal;
+using cell_microinjection::CalibrateResult;
+using cell_microinjection::FindFocusAction;
+using cell_microinjection::FindFocusFeedback;
+using cell_microinjection::FindFocusGoal;
+using cell_microinjection::FindFocusResult;
+using cell_microinjection::FindTouchAction;
+using cell_microinjection::FindTouchFeedback;
+using cell_microinjection::FindTouchGoal;
+using cell_microinjection::FindTouchResult;
+
+std::string of(int number, int all) { return std::to_string(number) + " of " + std::to_string(all); }
+
+std::size_t indexOf(CameraTask task) { return static_cast<std::size_t>(task); }
+
+}  // namespace
+
+/// Filled by the thread that calls the service. It is shared with that thread: a call to a node that
+/// hangs may outlive the panel.
+struct CameraTaskRunners::RezeroAnswer {
+  std::atomic<bool> done{false};
+  bool success = false;
+  std::string message;
+};
+
+CameraTaskRunners::CameraTaskRunners() {
+  node_.setCallbackQueue(&queue_);
+  const auto add = [this](CameraTask task, const auto& make) {
+    runners_[indexOf(task)] =
+        make([this, task](const std::string& text) { progress(task, text); },
+             [this, task](bool success, const std::string& message) { end(task, success, message); });
+  };
+  add(CameraTask::kFocus, [this](auto progress, auto end) {
+    return std::make_unique<ActionRunner<FindFocusAction, FindFocusGoal, FindFocusFeedback, FindFocusResult>>(
+        node_, "focus/find", [](const FindFocusFeedback& at) { return "plane " + of(at.plane, at.planes); }, progress,
+        end);
+  });
+  add(CameraTask::kCalibrate, [this](auto progress, auto end) {
+    return std::make_unique<ActionRunner<CalibrateAction, CalibrateGoal, CalibrateFeedback, CalibrateResult>>(
+        node_, "calibration/calibrate",
+        [](const CalibrateFeedback& at) {
+          return "point " + of(at.waypoint, at.waypoints) + ", tip seen at " + std::to_string(at.seen);
+        },
+        progress, end);
+  });
+  add(CameraTask::kTouch, [this](auto progress, auto end) {
+    return std::make_unique<ActionRunner<FindTouchAction, FindTouchGoal, FindTouchFeedback, FindTouchResult>>(
+        node_, "touch/find",
+        [](const FindTouchFeedback& at) {
+          return micro(at.travel, 1) + " um down, outline displaced by " + figure(at.displacement, 1, 1) + " px";
+        },
+        progress, end);
+  });
+}
+
+CameraTaskRunners::~CameraTaskRunners() = default;
+
+void CameraTaskRunners::poll() {
+  queue_.callAvailable(ros::WallDuration(0));
+  if (!answer_ || !answer_->done) return;
+  const auto answer = std::move(answer_);
+  end(CameraTask::kRezero, answer->success, answer->message);
+}
+
+bool CameraTaskRunners::there(CameraTask task) const {
+  // Re-zero is a service of the node that calibrates.
+  return runners_[indexOf(task == CameraTask::kRezero ? CameraTask::kCalibrate : task)]->there();
+}
+
+std::optional<CameraTask> CameraTaskRunners::running() const {
+  return report_.state == CameraTaskReport::State::kRunning ? std::optional(report_.task) : std::nullopt;
+}
+
+void CameraTaskRunners::start(CameraTask task) {
+  report_ = {CameraTaskReport::State::kRunning, task, "begins"};
+  if (task == CameraTask::kRezero) {
+    startRezero();
+  } else {
+    runners_[indexOf(task)]->start();
+  }
+}
+
+void CameraTaskRunners::startRezero() {
+  answer_ = std::make_shared<RezeroAnswer>();
+  std::thread([answer = answer_] {
+    std_srvs::Trigger call;
+    const bool answered = ros::service::call("/calibration/rezero", call);
+    answer->success = answered && call.response.success;
+    answer->message = answered ? call.response.message : "/calibration/rezero does not answer";
+    answer->done = true;
+  }).detach();
+}
+
+void CameraTaskRunners::cancel() {
+  for (const auto& runner : runners_) {
+    if (runner) runner->cancel();
+  }
+}
+
+void CameraTaskRunners::progress(CameraTask task, const std::string& text) {
+  if (running() == task) report_.text = text;
+}
+
+void CameraTaskRunners::end(CameraTask task, bool success, const std::string& message) {
+  using State = CameraTaskReport::State;
+  report_ = {success ? State::kSucceeded : State::kFailed, task, message};
+}
+
+}  // namespace microinjection

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <ros/callback_queue.h>
+#include <ros/ros.h>
+
+#include <array>
+#include <atomic>
+#include <memory>
+#include <optional>
+
+#include "operation/console/camera_tasks.h"
+#include "rviz/task_runner.h"
+
+namespace microinjection {
+
+/// Starts the tasks of needle and camera, and follows them.
+///
+/// Actions: /focus/find, /calibration/calibrate, /touch/find; the service /calibration/rezero
+///
+/// Nothing here waits: the panel with the stop button lives in the same thread.
+class CameraTaskRunners {
+ public:
+  CameraTaskRunners();
+  ~CameraTaskRunners();
+
+  /// Runs the callbacks of the messages that came.
+  void poll();
+  bool there(CameraTask task) const;
+  /// The task under way, started here.
+  std::optional<CameraTask> running() const;
+  const CameraTaskReport& report() const { return report_; }
+  void start(CameraTask task);
+  void cancel();
+
+ private:
+  struct RezeroAnswer;
+  void end(CameraTask task, bool success, const std::string& message);
+  void progress(CameraTask task, const std::string& text);
+  void startRezero();
+
+  ros::CallbackQueue queue_;
+  ros::NodeHandle node_;
+  std::array<std::unique_ptr<TaskRunner>, kCameraTasks.size()> runners_;  ///< null: re-zero
+  std::shared_ptr<RezeroAnswer> answer_;                                  ///< of a call under way
+  CameraTaskReport report_;
+};
+
+}  // namespace microinjection

@@ -1,0 +1,86 @@
+#include "rviz/hand_box.h"
+
+#include <QLabel>
+#include <QVBoxLayout>
+
+#include "rviz/elided_label.h"
+#include "rviz/lamp_row.h"
+
+namespace microinjection {
+namespace {
+
+constexpr double kSilence = 3;  // s, of haptic_bridge, whose state comes with each change and each second
+
+bool firstButton(const sensor_msgs::Joy& message) { return !message.buttons.empty() && message.buttons[0] != 0; }
+
+std::optional<double> numberOf(const std::string& parameter) {
+  double value = 0;
+  return ros::param::get("/haptic_bridge/" + parameter, value) ? std::optional(value) : std::nullopt;
+}
+
+}  // namespace
+
+HandBox::HandBox(QWidget* parent)
+    : QWidget(parent),
+      follows_(new LampRow("Needle", 2, this)),
+      clutch_(new LampRow("Clutch", 1, this)),
+      present_(new LampRow("Switch", 1, this)),
+      position_(new ElidedLabel(1, this)),
+      force_(new ElidedLabel(1, this)) {
+  auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->setSpacing(4);
+  layout->addWidget(new QLabel("<b>Hand</b>", this));
+  for (QWidget* row : {static_cast<QWidget*>(follows_), static_cast<QWidget*>(clutch_), static_cast<QWidget*>(present_),
+                       static_cast<QWidget*>(position_), static_cast<QWidget*>(force_)}) {
+    layout->addWidget(row);
+  }
+}
+
+void HandBox::start() {
+  if (node_) return;
+  node_.emplace();
+  node_->setCallbackQueue(&queue_);
+  loop_ = node_->subscribe<cell_microinjection::LoopState>(
+      "haptic/loop_state", 1,
+      boost::function<void(const cell_microinjection::LoopState::ConstPtr&)>([this](const auto& message) {
+        const double now = ros::SteadyTime::now().toSec();
+        if (!heard_at_ || now - *heard_at_ > kSilence) readSettings();
+        heard_at_ = now;
+        hand_.hold_reason = message->follows ? "" : message->hold_reason;
+      }));
+  clutches_ = node_->subscribe<sensor_msgs::Joy>(
+      "haptic/clutch", 1, boost::function<void(const sensor_msgs::Joy::ConstPtr&)>([this](const auto& message) {
+        hand_.clutch = firstButton(*message);
+      }));
+  presences_ =
+      node_->subscribe<sensor_msgs::Joy>("haptic/operator_present", 1,
+                                         boost::function<void(const sensor_msgs::Joy::ConstPtr&)>(
+                                             [this](const auto& message) { hand_.present = firstButton(*message); }));
+}
+
+/// The parameters are set before the bridge starts. To read them waits for the master, which is why
+/// it is done only when a bridge appears.
+void HandBox::readSettings() {
+  HandSettings& settings = hand_.settings;
+  settings = {};
+  ros::param::get("/haptic_bridge/mode", settings.mode);
+  ros::param::get("/haptic_bridge/force_source", settings.force_source);
+  settings.position_scale = numberOf("position_scale");
+  settings.rate_gain = numberOf("rate_mode/gain");
+  settings.force_gain = numberOf("force_gain");
+}
+
+void HandBox::refresh() {
+  if (!node_) return;
+  queue_.callAvailable(ros::WallDuration(0));
+  HandView shown = hand_;
+  if (!heard_at_ || ros::SteadyTime::now().toSec() - *heard_at_ > kSilence) shown.hold_reason.reset();
+  follows_->display(followsLamp(shown));
+  clutch_->display(clutchLamp(shown));
+  present_->display(presentLamp(shown));
+  position_->setText(QString::fromStdString(positionScaleText(shown.settings)));
+  force_->setText(QString::fromStdString(forceScaleText(shown.settings)));
+}
+
+}  // namespace microinjection

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cell_microinjection/VisionState.h>
+
+#include <QImage>
+#include <QWidget>
+#include <functional>
+#include <optional>
+
+#include "operation/console/image_view.h"
+
+namespace microinjection {
+
+/// An image of the microscope with what vision found in it. The wheel magnifies, a drag moves the
+/// image, a double click shows all of it. At first it shows the cell that vision has found.
+class MicroscopeView : public QWidget {
+ public:
+  explicit MicroscopeView(QWidget* parent = nullptr);
+  /// `specimen`: what was found in this image, if anything is known.
+  void display(const QImage& image, const std::optional<cell_microinjection::VisionState>& specimen);
+  /// Instead of an image: why there is none.
+  void displayNone(const QString& reason);
+  QSize sizeHint() const override { return {640, 340}; }
+  QSize minimumSizeHint() const override { return {200, 120}; }
+
+ protected:
+  void paintEvent(QPaintEvent* event) override;
+  void resizeEvent(QResizeEvent* event) override;
+  void wheelEvent(QWheelEvent* event) override;
+  void mousePressEvent(QMouseEvent* event) override;
+  void mouseMoveEvent(QMouseEvent* event) override;
+  void mouseDoubleClickEvent(QMouseEvent* event) override;
+
+ private:
+  void showSpecimen();
+
+  ImageView view_;
+  QImage image_;
+  std::optional<cell_microinjection::VisionState> specimen_;
+  QString reason_ = "no image yet";
+  bool chosen_ = false;  ///< the part that is shown, by the operator
+  std::optional<QPoint> dragged_;
+};
+
+}  // namespace microinjection
