@@ -80,11 +80,7 @@ CalibrationNode::CalibrationNode(ros::NodeHandle node, ros::NodeHandle private_n
           StampRule::kAny)),
       action_(node, "calibration/calibrate", false),
       diagnostics_(node, private_node) {
-  try {
-    if (std::filesystem::exists(parameters_.file)) take(readCalibration(parameters_.file));
-  } catch (const std::exception& error) {  // a new calibration replaces the file
-    ROS_ERROR_STREAM("no calibration: " << error.what());
-  }
+  if (std::filesystem::exists(parameters_.file)) take(readCalibration(parameters_.file));
   watch_.on_motion = [this](const Eigen::Vector3d& position, bool followed) {
     if (!calibration_) return;
     // Where the backlash lies after a motion that nobody watched is not known.
