@@ -4,6 +4,7 @@ import re
 import sys
 import unittest
 from pathlib import Path
+from xml.etree import ElementTree
 
 import yaml
 
@@ -52,6 +53,14 @@ class ConsoleConfigTest(unittest.TestCase):
         for task in TASKS:
             for panel in yaml.safe_load(configuration(task))['Panels']:
                 self.assertIn(f'class name="{panel["Class"]}"', description)
+
+    def test_no_parameter_of_the_launch_file_is_a_nodes(self):
+        """A node refuses keys that it does not know."""
+        launch = ElementTree.parse(ROOT / 'launch/display.launch').getroot()
+        nodes = {node.get('name') for node in launch.iter('node')}
+        self.assertIn('display', nodes)
+        for parameter in launch.findall('param'):
+            self.assertNotIn(parameter.get('name').strip('/').split('/')[0], nodes)
 
 
 if __name__ == '__main__':
