@@ -120,7 +120,10 @@ void VisionNode::onImage(const sensor_msgs::Image& message) {
     // Behind a pause may be another cell, and a needle makes the cell that it presses wider.
     const bool paused = !received_.isZero() && secondsBetween(received_, now) > parameters_.vision.image_timeout;
     if (paused) readings_ = CellReadings(static_cast<std::size_t>(parameters_.vision.measured_images));
-    pressed_ = tracker_.view().indentation.finding.isFound();
+    // By the dimple, or by a tip within the outline where the needle hides the dimple.
+    const Indentation& indentation = tracker_.view().indentation;
+    const BorderDisplacement& beside = indentation.displacement;
+    pressed_ = indentation.finding.isFound() || (beside.finding.hasValues() && beside.gap < 0);
     if (!pressed_) readings_.add(tracker_.view());
     received_ = now;
   }
