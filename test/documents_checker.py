@@ -14,7 +14,7 @@ install/setup.bash catkin_make roslaunch rosrun rostopic rosservice rosbag rospa
 omni_msgs geomagic_control phantom_omni ros_falcon falconPos falconForce ulimit kill ROS_IP ROS_MASTER_URI HOME PWD
 sensor_msgs/Joy geometry_msgs/PoseStamped geometry_msgs/TwistStamped geometry_msgs/WrenchStamped std_msgs/Bool
 std_srvs/Trigger std_srvs/SetBool WrenchStamped PoseStamped TwistStamped JointState MarkerArray DiagnosticArray
-build/core build/core-address build/core-thread cp cv cf SIGSTOP NAMESPACE/body/servo_cf footpedals/clutch
+build/core/plain build/core/address build/core/thread cp cv cf SIGSTOP NAMESPACE/body/servo_cf footpedals/clutch
 footpedals/operator_present console/operator_present'''.split())
 PLACEHOLDER = re.compile(r'\b[A-Z][A-Z0-9_]*\b|(?<![A-Za-z])(?:NAME|KIND|RIG)(?=_)|\.\.\.|\*')
 IDENTIFIER = re.compile(r'[A-Za-z_]\w*(?:::\w+)*(?:\(\))?')

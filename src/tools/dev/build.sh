@@ -52,7 +52,7 @@ build_workspace() {
   source_workspace
 }
 
-# build_core [SANITIZER [TARGET...]]: into build/core, or build/core-SANITIZER; all targets when none is given.
+# build_core [SANITIZER [TARGET...]]: into build/core/plain, or build/core/SANITIZER; all targets when none is given.
 build_core() {
   local sanitizer=${1:-} folder
   folder=$(core_folder "$sanitizer")
@@ -66,7 +66,9 @@ build_core() {
     fail "the build of the core failed (messages above)"
 }
 
-core_folder() { echo "$CORE_BUILD${1:+-$1}"; }
+# As deep below the sources as the workspace's build: seen from both, a source has the same relative path, and the compiler
+# cache knows that it is the same.
+core_folder() { echo "$CORE_BUILD/${1:-plain}"; }
 
 # CMake refuses a build folder that was made elsewhere (a copied or moved checkout).
 forget_moved_build() {

@@ -14,12 +14,21 @@ prepare_environment() {
     export HOME="$ROOT/out/home"
     mkdir -p "$HOME"
   fi
+  use_compiler_cache
   # The user's choice where there is one: a haptic device may hang on another machine.
   [[ -n ${ROS_IP:-} || -n ${ROS_HOSTNAME:-} ]] || use_local_names
   export ROS_MASTER_URI="${ROS_MASTER_URI:-http://127.0.0.1:11311}"
   if [[ -f /opt/ros/noetic/setup.bash && ! -e /usr/share/roscpp/cmake ]]; then
     source_ros /opt/ros/noetic/setup.bash
   fi
+}
+
+# The core and the workspace compile the same sources: what one has compiled the other takes, where paths below ROOT are
+# the same.
+use_compiler_cache() {
+  command -v ccache >/dev/null || return 0
+  export CMAKE_CXX_COMPILER_LAUNCHER=ccache  # read by CMake 3.17 and newer
+  export CCACHE_DIR="$ROOT/build/ccache" CCACHE_BASEDIR="$ROOT" CCACHE_NOHASHDIR=1
 }
 
 # ROS's own scripts read variables that may be unset.

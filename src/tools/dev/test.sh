@@ -38,7 +38,7 @@ test_ros() {
 
 test_core() {
   build_core
-  run_core core "$CORE_BUILD" "$@"
+  run_core core "$(core_folder)" "$@"
 }
 
 # run_core KIND BUILD_FOLDER [TEST_FOLDER...]
