@@ -27,7 +27,7 @@ class ConsoleConfigTest(unittest.TestCase):
     def test_every_task_has_its_console_and_the_scene(self):
         session = yaml.safe_load((ROOT / 'config/session.rviz').read_text())
         names = {display['Name'] for display in session['Visualization Manager']['Displays']}
-        self.assertGreaterEqual(set(TASKS), {'inject', 'teleoperate', 'train', 'calibrate'})
+        self.assertGreaterEqual(set(TASKS), {'inject', 'teleoperate', 'train', 'calibrate', 'paper'})
         for task in TASKS:
             with self.subTest(task):
                 config = yaml.safe_load(configuration(task))

@@ -54,7 +54,7 @@ std::string describe(const CameraCalibration& calibration) {
 const char* const CalibrationNode::kHelp =
     "calibration: calibrates the camera against the manipulator, and watches the calibration.\n"
     "In: vision/state, /needle/measured_cp, /needle/operating_state, /controller/operating_state.\n"
-    "Out: /needle/servo_cp; action calibration/calibrate, service calibration/rezero.\n";
+    "Out: /needle/servo_cp; action calibration/calibrate, services calibration/rezero and calibration/undo.\n";
 
 CalibrationNode::Parameters CalibrationNode::readParameters(const ros::NodeHandle& private_node) {
   Parameters parameters;
@@ -92,6 +92,7 @@ CalibrationNode::CalibrationNode(ros::NodeHandle node, ros::NodeHandle private_n
   };
   watch_.on_tip = [this](const SeenTip& tip) { watchDrift(tip); };
   rezero_ = node.advertiseService("calibration/rezero", &CalibrationNode::rezero, this);
+  undo_ = node.advertiseService("calibration/undo", &CalibrationNode::undo, this);
   action_.registerGoalCallback([this] { onGoal(); });
   action_.registerPreemptCallback([this] {
     if (run_) fail("cancelled");
@@ -205,7 +206,7 @@ void CalibrationNode::end() {
   result.points = found.points;
   result.outliers = found.outliers;
   try {
-    writeCalibration(parameters_.file, found);
+    store(found);
   } catch (const std::exception& error) {
     fail(error.what());
     return;
@@ -238,6 +239,11 @@ void CalibrationNode::stream(const ros::Time& now) {
   setpoints_.publish(toPose(watch_.poseAt(setpoint_), now, kWorldFrame));
 }
 
+void CalibrationNode::store(const CameraCalibration& calibration) {
+  writeCalibration(parameters_.file, calibration);
+  replaced_ = calibration_;
+}
+
 void CalibrationNode::take(const CameraCalibration& calibration) {
   calibration_ = calibration;
   drift_.reset();
@@ -265,13 +271,34 @@ bool CalibrationNode::rezero(std_srvs::Trigger::Request&, std_srvs::Trigger::Res
     if (!result.warning.empty()) response.message += "; " + result.warning;
     if (!result.calibration) return true;
     try {
-      writeCalibration(parameters_.file, *result.calibration);
+      store(*result.calibration);
       calibration_ = *result.calibration;
       drift_.reset();
       response.success = 1;
     } catch (const std::exception& error) {
       response.message = error.what();
     }
+  }
+  return true;
+}
+
+bool CalibrationNode::undo(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+  if (run_) {
+    response.message = "a calibration is under way";
+    return true;
+  }
+  if (!replaced_) {
+    response.message = "this session has replaced no calibration";
+    return true;
+  }
+  try {
+    writeCalibration(parameters_.file, *replaced_);
+    take(*replaced_);
+    replaced_.reset();
+    response.success = 1;
+    response.message = "again that of " + calibration_->date + ": " + describe(*calibration_);
+  } catch (const std::exception& error) {
+    response.message = error.what();
   }
   return true;
 }

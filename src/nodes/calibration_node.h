@@ -22,7 +22,7 @@ namespace microinjection {
 ///
 /// In:  vision/state, /needle/measured_cp, /needle/operating_state, /controller/operating_state
 /// Out: /needle/servo_cp during a run; the action calibration/calibrate (Calibrate), the service
-///      calibration/rezero (Trigger)
+///      calibration/rezero (Trigger), calibration/undo (Trigger)
 ///
 /// Parameters: config/calibration.yaml
 ///
@@ -54,15 +54,19 @@ class CalibrationNode {
   void end();
   void fail(const std::string& reason);
   void stream(const ros::Time& now);
+  /// Writes a calibration that replaces the present one. @throws WriteError, and nothing has changed
+  void store(const CameraCalibration& calibration);
   void take(const CameraCalibration& calibration);
   bool rezero(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+  bool undo(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   void watchDrift(const SeenTip& tip);
   void report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   Parameters parameters_;
   TipWatch watch_;
   std::optional<CameraCalibration> calibration_;
-  std::optional<Play> play_;  ///< of the needle, by the calibration's backlash
+  std::optional<CameraCalibration> replaced_;  ///< by the last calibration or re-zero of this session
+  std::optional<Play> play_;                   ///< of the needle, by the calibration's backlash
   DriftWatch drift_;
   DriftReport drift_report_;
   std::unique_ptr<CalibrationRun> run_;
@@ -72,7 +76,7 @@ class CalibrationNode {
   MasterMonitor master_{true};
   ros::Publisher setpoints_;
   ros::Subscriber commands_;
-  ros::ServiceServer rezero_;
+  ros::ServiceServer rezero_, undo_;
   actionlib::SimpleActionServer<cell_microinjection::CalibrateAction> action_;
   diagnostic_updater::Updater diagnostics_;
   ros::SteadyTimer timer_;

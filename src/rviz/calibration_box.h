@@ -1,21 +1,20 @@
 #pragma once
 
-#include <QPushButton>
 #include <QWidget>
-#include <array>
 #include <functional>
 #include <memory>
+#include <vector>
 
 #include "operation/console/camera_tasks.h"
-#include "rviz/elided_label.h"
 #include "rviz/lamp_row.h"
+#include "rviz/offer_row.h"
 
 namespace microinjection {
 
 class CameraTaskRunners;
 
-/// Buttons for what is done with needle and camera before an injection: focus, calibrate, re-zero and
-/// touch, each with its effect or the reason why it is greyed; progress and result of the last one.
+/// Buttons for what is done with needle and camera before an injection: focus, calibrate, re-zero,
+/// undo and touch, each with its effect or the reason why it is greyed; progress and result of the last one.
 class CalibrationBox : public QWidget {
  public:
   /// `newest`: gives the session at the moment of a press.
@@ -27,18 +26,12 @@ class CalibrationBox : public QWidget {
   void refresh(const SessionView& session);
 
  private:
-  struct Row {
-    QPushButton* button = nullptr;
-    ElidedLabel* text = nullptr;
-    bool offered = false;
-  };
   void press(CameraTask task);
-  static void display(Row& row, bool offered, const std::string& text);
 
   std::function<SessionView()> newest_;
   std::unique_ptr<CameraTaskRunners> runners_;
-  std::array<Row, kCameraTasks.size()> rows_;
-  Row cancel_;
+  std::vector<OfferRow> rows_;  ///< of the tasks, in their order
+  std::unique_ptr<OfferRow> cancel_;
   LampRow* report_;
 };
 

@@ -33,7 +33,7 @@ std::size_t indexOf(CameraTask task) { return static_cast<std::size_t>(task); }
 
 /// Filled by the thread that calls the service. It is shared with that thread: a call to a node that
 /// hangs may outlive the panel.
-struct CameraTaskRunners::RezeroAnswer {
+struct CameraTaskRunners::ServiceAnswer {
   std::atomic<bool> done{false};
   bool success = false;
   std::string message;
@@ -75,12 +75,12 @@ void CameraTaskRunners::poll() {
   queue_.callAvailable(ros::WallDuration(0));
   if (!answer_ || !answer_->done) return;
   const auto answer = std::move(answer_);
-  end(CameraTask::kRezero, answer->success, answer->message);
+  end(report_.task, answer->success, answer->message);
 }
 
 bool CameraTaskRunners::there(CameraTask task) const {
-  // Re-zero is a service of the node that calibrates.
-  return runners_[indexOf(task == CameraTask::kRezero ? CameraTask::kCalibrate : task)]->there();
+  // The services are of the node that calibrates.
+  return runners_[indexOf(isService(task) ? CameraTask::kCalibrate : task)]->there();
 }
 
 std::optional<CameraTask> CameraTaskRunners::running() const {
@@ -89,20 +89,21 @@ std::optional<CameraTask> CameraTaskRunners::running() const {
 
 void CameraTaskRunners::start(CameraTask task) {
   report_ = {CameraTaskReport::State::kRunning, task, "begins"};
-  if (task == CameraTask::kRezero) {
-    startRezero();
+  if (isService(task)) {
+    call(task);
   } else {
     runners_[indexOf(task)]->start();
   }
 }
 
-void CameraTaskRunners::startRezero() {
-  answer_ = std::make_shared<RezeroAnswer>();
-  std::thread([answer = answer_] {
+void CameraTaskRunners::call(CameraTask task) {
+  const std::string service = task == CameraTask::kRezero ? "/calibration/rezero" : "/calibration/undo";
+  answer_ = std::make_shared<ServiceAnswer>();
+  std::thread([answer = answer_, service] {
     std_srvs::Trigger call;
-    const bool answered = ros::service::call("/calibration/rezero", call);
+    const bool answered = ros::service::call(service, call);
     answer->success = answered && call.response.success;
-    answer->message = answered ? call.response.message : "/calibration/rezero does not answer";
+    answer->message = answered ? call.response.message : service + " does not answer";
     answer->done = true;
   }).detach();
 }

@@ -15,7 +15,8 @@ namespace microinjection {
 
 /// Starts the tasks of needle and camera, and follows them.
 ///
-/// Actions: /focus/find, /calibration/calibrate, /touch/find; the service /calibration/rezero
+/// Actions: /focus/find, /calibration/calibrate, /touch/find; the services /calibration/rezero,
+/// /calibration/undo
 ///
 /// Nothing here waits: the panel with the stop button lives in the same thread.
 class CameraTaskRunners {
@@ -33,15 +34,15 @@ class CameraTaskRunners {
   void cancel();
 
  private:
-  struct RezeroAnswer;
+  struct ServiceAnswer;
   void end(CameraTask task, bool success, const std::string& message);
   void progress(CameraTask task, const std::string& text);
-  void startRezero();
+  void call(CameraTask task);
 
   ros::CallbackQueue queue_;
   ros::NodeHandle node_;
-  std::array<std::unique_ptr<TaskRunner>, kCameraTasks.size()> runners_;  ///< null: re-zero
-  std::shared_ptr<RezeroAnswer> answer_;                                  ///< of a call under way
+  std::array<std::unique_ptr<TaskRunner>, kCameraTasks.size()> runners_;  ///< null: of a service
+  std::shared_ptr<ServiceAnswer> answer_;                                 ///< of a call under way
   CameraTaskReport report_;
 };
 

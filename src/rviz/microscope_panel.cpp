@@ -11,6 +11,7 @@
 #include "rviz/image_conversion.h"
 #include "rviz/lamp_row.h"
 #include "rviz/microscope_view.h"
+#include "rviz/pixel_goal_bar.h"
 #include "rviz/specimen_painter.h"
 
 namespace microinjection {
@@ -29,7 +30,7 @@ Widget* parentOf(QWidget* widget) {
 }  // namespace
 
 MicroscopePanel::MicroscopePanel(QWidget* parent)
-    : rviz::Panel(parent), view_(new MicroscopeView(this)), timer_(new QTimer(this)) {
+    : rviz::Panel(parent), view_(new MicroscopeView(this)), goal_(new PixelGoalBar(this)), timer_(new QTimer(this)) {
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->setSpacing(2);
@@ -44,6 +45,11 @@ MicroscopePanel::MicroscopePanel(QWidget* parent)
     lines->addWidget(findings_[i], static_cast<int>(i) / 2, static_cast<int>(i) % 2);
   }
   layout->addLayout(lines);
+  layout->addWidget(goal_);
+  view_->onClick([this](const Eigen::Vector2d& pixel) {
+    goal_->propose(pixel);
+    view_->setGoal(goal_->pixel());
+  });
   showFindings(std::nullopt);
 }
 
@@ -51,6 +57,7 @@ MicroscopePanel::~MicroscopePanel() = default;
 
 void MicroscopePanel::onInitialize() {
   link_ = std::make_unique<MicroscopeLink>();
+  goal_->start();
   connect(timer_, &QTimer::timeout, this, [this] { tick(); });
   timer_->start(kPeriod);
 }
@@ -94,11 +101,14 @@ void MicroscopePanel::showFindings(const std::optional<cell_microinjection::Visi
 void MicroscopePanel::tick() {
   if (!appeared_ && link_->hasSource()) appear();
   if (appeared_) link_->listen(isVisible());
+  goal_->refresh();
+  view_->setGoal(goal_->pixel());
   const bool grown = link_->poll();
   if (!isVisible()) return;
   const auto image = link_->image();
   if (!image) {
     view_->displayNone("no image: see the lamp of the camera");
+    goal_->discard();  // what is not seen anymore is no place to go to
     shown_.reset();
     showFindings(std::nullopt);
     return;

@@ -14,8 +14,10 @@ namespace microinjection {
 
 class LampRow;
 class MicroscopeView;
+class PixelGoalBar;
 
-/// The microscope's image in a panel of rviz, below the scene. The panel appears with the first node
+/// The microscope's image in a panel of rviz, below the scene. A click proposes a place for the tip,
+/// which the needle is led to after Go. The panel appears with the first node
 /// that publishes images: a session without a camera has room for the scene.
 ///
 /// Its configuration: Share, of the window's height.
@@ -34,6 +36,7 @@ class MicroscopePanel : public rviz::Panel {
   void showFindings(const std::optional<cell_microinjection::VisionState>& specimen);
 
   MicroscopeView* view_;
+  PixelGoalBar* goal_;
   std::array<LampRow*, 4> findings_{};
   QTimer* timer_;
   std::unique_ptr<MicroscopeLink> link_;

@@ -13,6 +13,7 @@ namespace {
 constexpr double kAround = 2.2;     // diameters of the cell that are shown at first
 constexpr double kNotch = 120;      // eighths of a degree, of a wheel
 constexpr double kPerNotch = 1.25;  // magnification
+constexpr int kClick = 5;           // px of the widget, that a hand moves during a click
 
 Eigen::Vector2d toVector(const QPointF& point) { return {point.x(), point.y()}; }
 
@@ -69,9 +70,16 @@ void MicroscopeView::paintEvent(QPaintEvent*) {
   painter.drawImage(QRectF(corner.x(), corner.y(), image_.width() * view_.scale(), image_.height() * view_.scale()),
                     image_);
   painter.setRenderHint(QPainter::Antialiasing);
+  if (goal_) paintGoal(painter, view_, *goal_);
   if (!specimen_) return;
   paintFindings(painter, view_, *specimen_);
   paintScaleBar(painter, view_, specimen_->pixel_size);
+}
+
+void MicroscopeView::setGoal(const std::optional<Eigen::Vector2d>& pixel) {
+  if (pixel == goal_) return;
+  goal_ = pixel;
+  update();
 }
 
 void MicroscopeView::resizeEvent(QResizeEvent*) { view_.setWidget(width(), height()); }
@@ -83,15 +91,26 @@ void MicroscopeView::wheelEvent(QWheelEvent* event) {
 }
 
 void MicroscopeView::mousePressEvent(QMouseEvent* event) {
-  if (event->button() == Qt::LeftButton) dragged_ = event->pos();
+  if (event->button() == Qt::LeftButton) pressed_ = dragged_ = event->pos();
 }
 
 void MicroscopeView::mouseMoveEvent(QMouseEvent* event) {
   if (!dragged_ || !(event->buttons() & Qt::LeftButton)) return;
+  if (pressed_ && (event->pos() - *pressed_).manhattanLength() < kClick) return;
+  pressed_.reset();
   view_.pan(toVector(event->pos() - *dragged_));
   dragged_ = event->pos();
   chosen_ = true;
   update();
+}
+
+void MicroscopeView::mouseReleaseEvent(QMouseEvent* event) {
+  if (event->button() != Qt::LeftButton || !pressed_) return;
+  const bool stayed = (event->pos() - *pressed_).manhattanLength() < kClick;
+  pressed_.reset();
+  dragged_.reset();
+  const Eigen::Vector2d pixel = view_.toImage(toVector(event->pos()));
+  if (stayed && reason_.isEmpty() && view_.contains(pixel) && clicked_) clicked_(pixel);
 }
 
 void MicroscopeView::mouseDoubleClickEvent(QMouseEvent*) {

@@ -12,7 +12,8 @@
 namespace microinjection {
 
 /// An image of the microscope with what vision found in it. The wheel magnifies, a drag moves the
-/// image, a double click shows all of it. At first it shows the cell that vision has found.
+/// image, a double click shows all of it, a click proposes a place for the tip. At first it shows the
+/// cell that vision has found.
 class MicroscopeView : public QWidget {
  public:
   explicit MicroscopeView(QWidget* parent = nullptr);
@@ -20,6 +21,10 @@ class MicroscopeView : public QWidget {
   void display(const QImage& image, const std::optional<cell_microinjection::VisionState>& specimen);
   /// Instead of an image: why there is none.
   void displayNone(const QString& reason);
+  /// `clicked` is called with the pixel of a click into the image.
+  void onClick(std::function<void(const Eigen::Vector2d& pixel)> clicked) { clicked_ = std::move(clicked); }
+  /// The proposed place, px.
+  void setGoal(const std::optional<Eigen::Vector2d>& pixel);
   QSize sizeHint() const override { return {640, 340}; }
   QSize minimumSizeHint() const override { return {200, 120}; }
 
@@ -29,6 +34,7 @@ class MicroscopeView : public QWidget {
   void wheelEvent(QWheelEvent* event) override;
   void mousePressEvent(QMouseEvent* event) override;
   void mouseMoveEvent(QMouseEvent* event) override;
+  void mouseReleaseEvent(QMouseEvent* event) override;
   void mouseDoubleClickEvent(QMouseEvent* event) override;
 
  private:
@@ -39,7 +45,9 @@ class MicroscopeView : public QWidget {
   std::optional<cell_microinjection::VisionState> specimen_;
   QString reason_ = "no image yet";
   bool chosen_ = false;  ///< the part that is shown, by the operator
-  std::optional<QPoint> dragged_;
+  std::optional<QPoint> pressed_, dragged_;
+  std::optional<Eigen::Vector2d> goal_;
+  std::function<void(const Eigen::Vector2d&)> clicked_;
 };
 
 }  // namespace microinjection

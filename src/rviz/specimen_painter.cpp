@@ -2,6 +2,7 @@
 
 #include <QFontMetrics>
 #include <cmath>
+#include <utility>
 
 #include "operation/console/specimen_lines.h"
 #include "rviz/colours.h"
@@ -14,10 +15,11 @@ using cell_microinjection::PipetteInImage;
 using Eigen::Vector2d;
 
 constexpr QRgb kCellColour = 0xff50dc50, kZonaColour = 0xffffa03c, kNeedleColour = 0xffff5a5a,
-               kHoldingColour = 0xff50ffff, kDimpleColour = 0xffffffff, kShade = 0xb0101418;
-constexpr double kCross = 6;      // px of the widget
-constexpr double kAxis = 60;      // px of the widget, of a pipette's axis
-constexpr double kLargest = 1e6;  // px: what is beyond is no place in an image
+               kHoldingColour = 0xff50ffff, kDimpleColour = 0xffffffff, kGoalColour = 0xffff50ff, kShade = 0xb0101418;
+constexpr double kCross = 6;       // px of the widget
+constexpr double kGoalRadius = 9;  // px of the widget
+constexpr double kAxis = 60;       // px of the widget, of a pipette's axis
+constexpr double kLargest = 1e6;   // px: what is beyond is no place in an image
 
 QPointF toPoint(const Vector2d& place) { return {place.x(), place.y()}; }
 
@@ -71,6 +73,20 @@ void paintPipette(QPainter& painter, const ImageView& view, const PipetteInImage
 }
 
 }  // namespace
+
+void paintGoal(QPainter& painter, const ImageView& view, const Vector2d& pixel) {
+  const QPointF place = toPoint(view.toWidget(pixel));
+  painter.setBrush(Qt::NoBrush);
+  // A dark line below it: it is seen on every background.
+  for (const auto& [colour, width] : {std::pair(kShade, 4.0), std::pair(kGoalColour, 1.8)}) {
+    QPen pen(QColor::fromRgba(colour), width);
+    pen.setCosmetic(true);
+    painter.setPen(pen);
+    painter.drawEllipse(place, kGoalRadius, kGoalRadius);
+    for (const QPointF& along : {QPointF(1, 0), QPointF(-1, 0), QPointF(0, 1), QPointF(0, -1)})
+      painter.drawLine(place + 0.4 * kGoalRadius * along, place + 1.6 * kGoalRadius * along);
+  }
+}
 
 void paintFindings(QPainter& painter, const ImageView& view, const cell_microinjection::VisionState& state) {
   painter.setBrush(Qt::NoBrush);

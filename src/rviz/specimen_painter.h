@@ -17,6 +17,9 @@ void paintFindings(QPainter& painter, const ImageView& view, const cell_microinj
 /// The verdicts with lengths or reasons: cell, needle, holding pipette, dimple.
 std::array<Lamp, 4> findingLines(const cell_microinjection::VisionState& state);
 
+/// A place that is proposed for the tip, px.
+void paintGoal(QPainter& painter, const ImageView& view, const Eigen::Vector2d& pixel);
+
 /// A scale bar in the lower right corner. `pixel_size`: m, 0: not known.
 void paintScaleBar(QPainter& painter, const ImageView& view, double pixel_size);
 

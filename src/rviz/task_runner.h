@@ -32,9 +32,10 @@ class ActionRunner : public TaskRunner {
         end_(std::move(end)) {}
 
   bool there() const override { return client_.isServerConnected(); }
-  void start() override {
+  void start() override { start(Goal()); }
+  void start(const Goal& goal) {
     client_.sendGoal(
-        Goal(),
+        goal,
         [this](const actionlib::SimpleClientGoalState& state, const boost::shared_ptr<const Result>& result) {
           const bool has_text = result && !result->message.empty();
           end_(result && result->success, has_text ? result->message : state.toString() + " " + state.getText());

@@ -15,9 +15,11 @@ MICROMETRE = 1e-6  # m
 SERVER_TIMEOUT = 10  # s
 
 
-def rezero():
-    rospy.wait_for_service("/calibration/rezero", SERVER_TIMEOUT)
-    answer = rospy.ServiceProxy("/calibration/rezero", Trigger)()
+def ask(service):
+    """Calls a service of the node. @returns its success"""
+    name = f"/calibration/{service}"
+    rospy.wait_for_service(name, SERVER_TIMEOUT)
+    answer = rospy.ServiceProxy(name, Trigger)()
     print(answer.message)
     return answer.success
 
@@ -61,6 +63,7 @@ def main():
                         "0: that of config/calibration.yaml")
     parser.add_argument("--field-z", type=float, default=0, metavar="UM", help="extent along the needle")
     parser.add_argument("--rezero", action="store_true", help="keep the axes; only the tip's place is new")
+    parser.add_argument("--undo", action="store_true", help="take back this session's last calibration or re-zero")
     parser.add_argument("--go-to", type=float, nargs=2, metavar=("X", "Y"), help="bring the tip to this pixel")
     parser.add_argument("--focus", action="store_true", help="bring the tip into focus")
     parser.add_argument("--touch", action="store_true", help="lower the needle to the cell, by the image")
@@ -73,8 +76,10 @@ def main():
             succeeded = touch()
         elif arguments.go_to:
             succeeded = go_to(*arguments.go_to)
+        elif arguments.rezero or arguments.undo:
+            succeeded = ask("rezero" if arguments.rezero else "undo")
         else:
-            succeeded = rezero() if arguments.rezero else calibrate(arguments.field_x, arguments.field_z)
+            succeeded = calibrate(arguments.field_x, arguments.field_z)
     except (rospy.ROSException, rospy.ServiceException) as error:
         print(f"calibrate: {error}", file=sys.stderr)
         return 1

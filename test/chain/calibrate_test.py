@@ -37,6 +37,7 @@ class CalibrateTest(unittest.TestCase):
         cls.action = actionlib.SimpleActionClient("/calibration/calibrate", CalibrateAction)
         assert cls.action.wait_for_server(rospy.Duration(PATIENCE))
         cls.rezero = staticmethod(rospy.ServiceProxy("/calibration/rezero", Trigger))
+        cls.undo = staticmethod(rospy.ServiceProxy("/calibration/undo", Trigger))
 
     @classmethod
     def add_place(cls, message):
@@ -97,9 +98,16 @@ class CalibrateTest(unittest.TestCase):
         path = pathlib.Path(rospy.get_param("/calibration/file"))
         written = yaml.safe_load(path.read_text())
         self.assertAlmostEqual(written["parameters"]["pixel_size"]["value"], result.pixel_size, delta=1e-12)
+        self.assertFalse(self.undo().success)  # it has replaced none
+        calibrated = path.read_text()
         self.until(self.rests, "an image of the resting needle")
         answer = self.rezero()
         self.assertTrue(answer.success, answer.message)
+        self.assertNotEqual(path.read_text(), calibrated)
+        answer = self.undo()
+        self.assertTrue(answer.success, answer.message)
+        self.assertEqual(path.read_text(), calibrated)
+        self.assertFalse(self.undo().success)
         self.check_go_to_pixel()
 
     def check_go_to_pixel(self):

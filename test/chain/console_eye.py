@@ -32,7 +32,7 @@ class Console:
     """A picture's console. @raises NotSeen"""
 
     def __init__(self, pixels):
-        rows, columns = numpy.nonzero(numpy.all(abs(pixels - numpy.array(STOP)) <= 3, axis=-1))
+        rows, columns = numpy.nonzero(has(pixels, STOP))
         if rows.size == 0 or rows.max() - rows.min() < LEAST_STOP:
             raise NotSeen("there is no stop button")
         self.stop = (int(columns.min() + 20), int((rows.min() + rows.max()) // 2))
@@ -61,10 +61,34 @@ class Console:
         return [name for _, name in best]
 
 
+def pixels_of(path):
+    return (255 * matplotlib.image.imread(str(path))[..., :3]).round().astype(int)
+
+
+def has(pixels, colour):
+    """Which pixels have this colour."""
+    return numpy.all(abs(pixels - numpy.array(colour)) <= 3, axis=-1)
+
+
 def share_of(colour, path):
     """The share of a picture that has this colour."""
-    pixels = (255 * matplotlib.image.imread(str(path))[..., :3]).round().astype(int)
-    return float(numpy.mean(numpy.all(abs(pixels - numpy.array(colour)) <= 3, axis=-1)))
+    return float(numpy.mean(has(pixels_of(path), colour)))
+
+
+def box_of(colour, path):
+    """(left, top, right, bottom) of what has this colour. @raises NotSeen"""
+    rows, columns = numpy.nonzero(has(pixels_of(path), colour))
+    if rows.size == 0:
+        raise NotSeen(f"nothing has the colour {colour}")
+    return int(columns.min()), int(rows.min()), int(columns.max()), int(rows.max())
+
+
+def offered_below(row, left, path):
+    """Places of the offered buttons below a row and right of a column, from top to bottom."""
+    pixels = pixels_of(path)[row:, left:]
+    blue = has(pixels, OFFERED)
+    column = int(numpy.argmax(blue.sum(axis=0)))
+    return [(left + column, row + (a + b) // 2) for a, b in runs(pixels[:, column], OFFERED) if b - a > LEAST_BUTTON]
 
 
 def look(path, environment):
@@ -72,7 +96,7 @@ def look(path, environment):
     try:
         subprocess.run(["import", "-silent", "-window", "root", f"png24:{path}"], env=environment, check=True, timeout=60,
                        stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        pixels = (255 * matplotlib.image.imread(str(path))[..., :3]).round().astype(int)
+        pixels = pixels_of(path)
     except (subprocess.SubprocessError, OSError) as error:
         raise NotSeen(f"there is no picture: {error}") from error
     return Console(pixels)

@@ -8,11 +8,13 @@ import time
 import unittest
 from pathlib import Path
 
+import actionlib
 import numpy as np
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalID
-from cell_microinjection.msg import InjectionStatus, InjectorState, OperatingState, StringStamped
+from cell_microinjection.msg import (GoToPixelAction, GoToPixelFeedback, GoToPixelResult, InjectionStatus, InjectorState,
+                                     OperatingState, StringStamped)
 from geometry_msgs.msg import PoseStamped
 from sensor_msgs.msg import Image
 
@@ -24,6 +26,7 @@ from screen import Screen
 PATIENCE = 150        # s of wall time; only a session or a console that hangs takes that long
 START_PATIENCE = 400  # s, for rviz on a busy machine
 COLOUR = (200, 0, 200)  # of the test's image, which nothing else on the screen has
+GOAL = (255, 80, 255)   # of the mark at a proposed place
 LEAST_SHARE = 0.05      # of the screen that an image fills
 
 
@@ -189,6 +192,56 @@ class ConsoleTest(unittest.TestCase):
         subprocess.run(["rosnode", "kill", "/injection_controller"], check=True, timeout=60, stdout=subprocess.DEVNULL)
         console = self.shows(lambda seen: seen.headline == ["red"], "a red headline")
         self.assertFalse(any(console.offered.values()))
+
+    def test_6_a_click_into_the_image_leads_the_needle(self):
+        """There is no controller anymore: the test stands for it, and for the node that leads the needle by images."""
+        rospy.set_param("/injection_controller/mode", "manual")
+        image = Image(width=64, height=48, encoding="rgb8", step=3 * 64, data=bytes(COLOUR) * (64 * 48))
+        images = rospy.Publisher("/microscope/image_raw", Image, queue_size=1)
+        operating = rospy.Publisher("/controller/operating_state", OperatingState, queue_size=1)
+        goals, preempted = [], []
+
+        def lead(goal):
+            goals.append(goal)
+            server.publish_feedback(GoToPixelFeedback(distance=12.0))
+            while not server.is_preempt_requested():
+                time.sleep(0.02)
+            preempted.append(goal)
+            server.set_preempted(GoToPixelResult(success=False, message="as it was told"))
+        server = actionlib.SimpleActionServer("/visual_servo/go_to_pixel", GoToPixelAction, lead, auto_start=False)
+        server.start()
+
+        def offered_below_image():
+            image.header.stamp = rospy.Time.now()
+            images.publish(image)
+            operating.publish(OperatingState(state="ENABLED"))
+            if not self.look():
+                return None
+            try:
+                box = console_eye.box_of(COLOUR, self.picture)
+            except console_eye.NotSeen:
+                return None
+            return box, console_eye.offered_below(box[3] + 1, box[0], self.picture)
+
+        def shown(count):
+            def check():
+                seen = offered_below_image()
+                return seen if seen and len(seen[1]) == count else None
+            return self.until(check, f"an image above {count} offered buttons")
+        (left, top, right, bottom), _ = shown(0)
+        place = (left + round(0.3 * (right - left)), top + round(0.6 * (bottom - top)))
+        self.click(place)
+        _, (go, _) = shown(2)
+        self.assertGreater(console_eye.share_of(GOAL, self.picture), 0)
+        self.assertEqual(goals, [])  # before it is confirmed
+        self.click(go)
+        self.until(lambda: offered_below_image() and goals, "a goal")
+        self.assertAlmostEqual(goals[0].x, 64 * (place[0] + 0.5 - left) / (right + 1 - left) - 0.5, delta=0.3)
+        self.assertAlmostEqual(goals[0].y, 48 * (place[1] + 0.5 - top) / (bottom + 1 - top) - 0.5, delta=0.3)
+        _, (cancel,) = shown(1)
+        self.click(cancel)
+        self.until(lambda: offered_below_image() and preempted, "the end of the way")
+        self.assertEqual(len(goals), 1)
 
 
 if __name__ == "__main__":

@@ -1,9 +1,10 @@
 #!/usr/bin/python3
 """Strangers send each node of a live session what nobody should, on every topic that it listens to: at least 250 kinds
 a topic, on eight topics at a time. No node ends, none publishes a number that is not finite, and the loop closes again,
-by itself or when it is enabled again after it has said what it waits for."""
+by itself or when it is enabled again after it has said what it waits for. Usage: PART, of PARTS"""
 
 import math
+import sys
 import tempfile
 import unittest
 from itertools import zip_longest
@@ -169,6 +170,11 @@ class HostileTest(unittest.TestCase):
             check(group)
             self.assertEqual(self.watch.defects, [], f"after {group}")
 
+    def check_lives(self, topics):
+        self.assertEqual(self.nodes.dead(), [], f"after {topics}: {self.nodes.report()}")
+
+
+class ChainTest(HostileTest):
     def test_chain(self):
         recorder = {"output_dir": f"{self.folder.name}/record", "hand": True, "injector": True, "bag": True}
         self.begin({"session_recorder": recorder, "display": parameters("display"), "force_watchdog": {}})
@@ -186,6 +192,8 @@ class HostileTest(unittest.TestCase):
         until(lambda: "/cell/predicted_cf" in self.chain.newest and
               not self.chain.newest["/cell/predicted_cf"].header.stamp.is_zero(), "a valid predicted force")
 
+
+class LinkTest(HostileTest):
     def test_link(self):
         """Hand and rig apart: the bridge and the follower hear each other through the emulated network. Its plug is left
         alone: who pulls that means it."""
@@ -198,6 +206,8 @@ class HostileTest(unittest.TestCase):
         self.attack({topic: cls for topic, cls in self.topics().items() if topic.startswith("/link/") and topic != plug},
                     self.check_closes_again)
 
+
+class HapticDevicesTest(HostileTest):
     def test_haptic_devices(self):
         """Their adapters alone, each on the drivers' topics."""
         for kind in ("omni", "geomagic", "joy", "marker"):
@@ -213,9 +223,8 @@ class HostileTest(unittest.TestCase):
                     self.watch.close()
                     self.nodes.forget()
 
-    def check_lives(self, topics):
-        self.assertEqual(self.nodes.dead(), [], f"after {topics}: {self.nodes.report()}")
 
+PARTS = {"chain": ChainTest, "link": LinkTest, "haptic_devices": HapticDevicesTest}
 
 if __name__ == "__main__":
-    rostest.rosrun("cell_microinjection", "hostile", HostileTest)
+    rostest.rosrun("cell_microinjection", "hostile", PARTS[sys.argv[1]])

@@ -53,7 +53,7 @@ class IdentifyCommand : public CommandTest {
 
 // `indent` gives the force of the scene, so that the modulus of the point is the scene's.
 TEST_F(IdentifyCommand, APointHasTheModulusOfTheSceneThatIndentSolves) {
-  const std::string scene = std::string(kCells) + "mouse_oocyte_pipette.yaml";
+  const std::string scene = std::string(kCells) + "mouse_oocyte.yaml";
   const std::string indent = "cd " + directory_ + " && " MICROINJECTION_INDENT " --scene " + scene +
                              " --depths 3e-6 --csv force.csv 2>/dev/null";
   ASSERT_EQ(std::system(indent.c_str()), 0);

@@ -1,5 +1,7 @@
 #include "operation/console/camera_tasks.h"
 
+#include "operation/console/pixel_goal.h"
+
 namespace microinjection {
 namespace {
 
@@ -11,6 +13,8 @@ CommandOffer describe(CameraTask task) {
       return {"Calibrate", "", "moves the needle over a pattern above its place: pixel size, angle, backlash", ""};
     case CameraTask::kRezero:
       return {"Re-zero", "", "after a pipette change: the tip's new place, with the same axes", ""};
+    case CameraTask::kUndo:
+      return {"Undo", "", "the calibration before this session's last Calibrate or Re-zero", ""};
     case CameraTask::kTouch:
       break;
   }
@@ -27,18 +31,17 @@ std::string refusalOf(CameraTask task, const SessionView& session) {
   if (task == CameraTask::kCalibrate && !disabled) {
     return std::string("the controller is ") + toText(*session.operating) + ": press Disable first";
   }
-  if (task != CameraTask::kTouch) return "";
-  if (session.operating != OperatingState::kEnabled) return "the controller must be ENABLED: press Enable first";
-  const std::string& mode = session.settings.mode;
-  return mode.empty() || session.byHand() ? "" : "mode is " + mode + ", must be manual";
+  return task == CameraTask::kTouch ? refusalOfLeading(session) : "";
 }
 
 }  // namespace
 
 const char* toText(CameraTask task) {
-  constexpr const char* kNames[] = {"Focus", "Calibrate", "Re-zero", "Touch"};
+  constexpr const char* kNames[] = {"Focus", "Calibrate", "Re-zero", "Undo", "Touch"};
   return kNames[static_cast<std::size_t>(task)];
 }
+
+bool isService(CameraTask task) { return task == CameraTask::kRezero || task == CameraTask::kUndo; }
 
 CommandOffer offer(CameraTask task, const SessionView& session, bool there, std::optional<CameraTask> running) {
   CommandOffer result = describe(task);

@@ -10,10 +10,12 @@
 namespace microinjection {
 
 /// What the console starts with needle and camera, from top to bottom.
-enum class CameraTask { kFocus, kCalibrate, kRezero, kTouch };
-constexpr std::array<CameraTask, 4> kCameraTasks = {CameraTask::kFocus, CameraTask::kCalibrate, CameraTask::kRezero,
-                                                    CameraTask::kTouch};
+enum class CameraTask { kFocus, kCalibrate, kRezero, kUndo, kTouch };
+constexpr std::array<CameraTask, 5> kCameraTasks = {CameraTask::kFocus, CameraTask::kCalibrate, CameraTask::kRezero,
+                                                    CameraTask::kUndo, CameraTask::kTouch};
 const char* toText(CameraTask task);
+/// A service, which is over before a hand is at the button; the others are actions.
+bool isService(CameraTask task);
 
 /// What a task's button does now. The refusals are those that the console can know before; each node
 /// has more of its own, which its result reports.

@@ -3,6 +3,7 @@
 #include "operation/console/camera_tasks.h"
 #include "operation/console/console_parts.h"
 #include "operation/console/hand_lines.h"
+#include "operation/console/pixel_goal.h"
 #include "operation/console/score_lines.h"
 
 namespace microinjection {
@@ -147,6 +148,22 @@ TEST(ScoreLines, ShowPointsOnlyOfACompleteSession) {
   score.outcome = TrainingOutcome::kComplete;
   score.points = {25, 15, 20, 10, 10, 3};
   EXPECT_EQ(scoreText(score), "ended now: 83 of 100 points");
+}
+
+TEST(PixelGoal, IsOfferedOnlyAfterAClickAndWhenTheNeedleCanBeLed) {
+  SessionView session;
+  PixelGoal goal;
+  EXPECT_EQ(offer(goal, session, false).refusal, "no node visual_servo: start the session with camera:=");
+  EXPECT_EQ(offer(goal, session, true).refusal, "click where the tip shall go");
+  goal.pixel = Eigen::Vector2d(12.4, 700.6);
+  EXPECT_EQ(offer(goal, session, true).refusal, "the controller must be ENABLED: press Enable first");
+  session.operating = OperatingState::kEnabled;
+  EXPECT_EQ(offer(goal, session, true).refusal, "");
+  EXPECT_EQ(offer(goal, session, true).effect, "brings the tip to (12, 701) px");
+  session.settings.mode = "automatic";
+  EXPECT_EQ(offer(goal, session, true).refusal, "mode is automatic, must be manual");
+  goal.under_way = true;
+  EXPECT_EQ(offer(goal, session, true).refusal, "the needle is on its way");
 }
 
 }  // namespace

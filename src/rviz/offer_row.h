@@ -1,0 +1,25 @@
+#pragma once
+
+#include <QGridLayout>
+#include <QPushButton>
+#include <functional>
+
+#include "rviz/elided_label.h"
+
+namespace microinjection {
+
+/// A button, and beside it what it does or why it is greyed.
+class OfferRow {
+ public:
+  /// Adds both to a line of the layout of `parent`. `lines`: of the text.
+  OfferRow(const QString& name, int lines, QWidget* parent, QGridLayout* layout, int line,
+           const std::function<void()>& pressed);
+  void display(bool offered, const std::string& text);
+
+ private:
+  QPushButton* button_;
+  ElidedLabel* text_;
+  bool offered_ = false;
+};
+
+}  // namespace microinjection

@@ -1,0 +1,98 @@
+#include "rviz/pixel_goal_link.h"
+
+#include <cell_microinjection/GoToPixelAction.h>
+
+#include <chrono>
+
+#include "operation/console/figures.h"
+
+namespace microinjection {
+namespace {
+
+using cell_microinjection::GoToPixelAction;
+using cell_microinjection::GoToPixelFeedback;
+using cell_microinjection::GoToPixelGoal;
+using cell_microinjection::GoToPixelResult;
+
+constexpr double kSilence = 1;  // s, of the controller, which publishes ten times a second
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+std::string textOf(const GoToPixelFeedback& at) {
+  const std::string far = figure(at.distance, 1, 1) + " px away";
+  return at.waits_for.empty() ? far : far + ", waits: " + at.waits_for;
+}
+
+}  // namespace
+
+class PixelGoalLink::Runner : public ActionRunner<GoToPixelAction, GoToPixelGoal, GoToPixelFeedback, GoToPixelResult> {
+ public:
+  using ActionRunner::ActionRunner;
+};
+
+PixelGoalLink::PixelGoalLink() {
+  node_.setCallbackQueue(&queue_);
+  operating_ = node_.subscribe<cell_microinjection::OperatingState>(
+      "controller/operating_state", 1,
+      boost::function<void(const cell_microinjection::OperatingState::ConstPtr&)>(
+          [this](const auto& message) { onOperating(*message); }));
+  runner_ = std::make_unique<Runner>(
+      node_, "visual_servo/go_to_pixel", textOf,
+      [this](const std::string& text) {
+        if (goal_.under_way) report_ = {Light::kYellow, text};
+      },
+      [this](bool success, const std::string& message) { end(success, message); });
+}
+
+PixelGoalLink::~PixelGoalLink() = default;
+
+void PixelGoalLink::poll() { queue_.callAvailable(ros::WallDuration(0)); }
+
+SessionView PixelGoalLink::session() const { return now() - heard_at_ < kSilence ? session_ : SessionView(); }
+
+CommandOffer PixelGoalLink::offered() const { return offer(goal_, session(), runner_->there()); }
+
+void PixelGoalLink::propose(const Eigen::Vector2d& pixel) {
+  if (goal_.under_way) return;
+  goal_.pixel = pixel;
+  report_ = {};
+}
+
+void PixelGoalLink::discard() {
+  if (!goal_.under_way) goal_.pixel.reset();
+}
+
+void PixelGoalLink::go() {
+  poll();
+  if (!offered().refusal.empty()) return;
+  goal_.under_way = true;
+  report_ = {Light::kYellow, "begins"};
+  GoToPixelGoal goal;
+  goal.x = goal_.pixel->x();
+  goal.y = goal_.pixel->y();
+  runner_->start(goal);
+}
+
+void PixelGoalLink::cancel() {
+  if (goal_.under_way) runner_->cancel();
+}
+
+/// The mode is a parameter that is set before the controller starts. To read it waits for the master,
+/// which is why it is done only when a controller appears.
+void PixelGoalLink::onOperating(const cell_microinjection::OperatingState& message) {
+  if (now() - heard_at_ > kSilence) {
+    session_.settings.mode.clear();
+    ros::param::get("/injection_controller/mode", session_.settings.mode);
+  }
+  heard_at_ = now();
+  session_.operating =
+      message.state == toText(OperatingState::kEnabled) ? OperatingState::kEnabled : OperatingState::kDisabled;
+}
+
+void PixelGoalLink::end(bool success, const std::string& message) {
+  goal_.under_way = false;
+  if (success) goal_.pixel.reset();
+  report_ = {success ? Light::kGreen : Light::kRed, success ? "the tip is there" : message};
+}
+
+}  // namespace microinjection

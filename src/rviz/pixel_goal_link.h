@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cell_microinjection/OperatingState.h>
+#include <ros/callback_queue.h>
+#include <ros/ros.h>
+
+#include <memory>
+#include <string>
+
+#include "operation/console/light.h"
+#include "operation/console/pixel_goal.h"
+#include "rviz/task_runner.h"
+
+namespace microinjection {
+
+/// Has the needle led to a pixel, and follows it on its way.
+///
+/// In: controller/operating_state; action: /visual_servo/go_to_pixel
+///
+/// The callbacks run in poll(), in the caller's thread.
+class PixelGoalLink {
+ public:
+  PixelGoalLink();
+  ~PixelGoalLink();
+  void poll();
+
+  const PixelGoal& goal() const { return goal_; }
+  const Lamp& report() const { return report_; }  ///< of the last way
+  CommandOffer offered() const;
+
+  /// Nothing changes while the needle is on its way.
+  void propose(const Eigen::Vector2d& pixel);
+  void discard();
+  /// Does what is offered, or nothing.
+  void go();
+  void cancel();
+
+ private:
+  class Runner;
+  SessionView session() const;
+  void onOperating(const cell_microinjection::OperatingState& message);
+  void end(bool success, const std::string& message);
+
+  PixelGoal goal_;
+  Lamp report_;
+  SessionView session_;
+  double heard_at_ = -1e9;  ///< s, of a clock that does not jump
+  ros::CallbackQueue queue_;
+  ros::NodeHandle node_;
+  ros::Subscriber operating_;
+  std::unique_ptr<Runner> runner_;
+};
+
+}  // namespace microinjection
