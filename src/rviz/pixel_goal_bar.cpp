@@ -15,6 +15,9 @@ PixelGoalBar::PixelGoalBar(QWidget* parent) : QWidget(parent), report_(new LampR
   });
   cancel_ = std::make_unique<OfferRow>("Cancel", 1, this, layout, 1, [this] { cancel(); });
   layout->addWidget(report_, 0, 2, 2, 1);
+  QSizePolicy stays = report_->sizePolicy();
+  stays.setRetainSizeWhenHidden(true);
+  report_->setSizePolicy(stays);
   layout->setColumnStretch(2, 1);
 }
 
@@ -51,6 +54,7 @@ void PixelGoalBar::refresh() {
   cancel_->display(cancels, goal.under_way ? "stops the needle; STOP does so, too"
                             : goal.pixel   ? "forgets the place"
                                            : "");
+  report_->setVisible(!link_->report().text.empty());
   report_->display(link_->report());
 }
 

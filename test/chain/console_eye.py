@@ -83,12 +83,11 @@ def box_of(colour, path):
     return int(columns.min()), int(rows.min()), int(columns.max()), int(rows.max())
 
 
-def offered_below(row, left, path):
-    """Places of the offered buttons below a row and right of a column, from top to bottom."""
-    pixels = pixels_of(path)[row:, left:]
-    blue = has(pixels, OFFERED)
-    column = int(numpy.argmax(blue.sum(axis=0)))
-    return [(left + column, row + (a + b) // 2) for a, b in runs(pixels[:, column], OFFERED) if b - a > LEAST_BUTTON]
+def offered_below(row, path):
+    """Places of the offered buttons below a row, from top to bottom."""
+    pixels = pixels_of(path)[row:]
+    column = int(numpy.argmax(has(pixels, OFFERED).sum(axis=0)))
+    return [(column, row + (a + b) // 2) for a, b in runs(pixels[:, column], OFFERED) if b - a > LEAST_BUTTON]
 
 
 def look(path, environment):

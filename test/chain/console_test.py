@@ -221,7 +221,7 @@ class ConsoleTest(unittest.TestCase):
                 box = console_eye.box_of(COLOUR, self.picture)
             except console_eye.NotSeen:
                 return None
-            return box, console_eye.offered_below(box[3] + 1, box[0], self.picture)
+            return box, console_eye.offered_below(box[3] + 1, self.picture)
 
         def shown(count):
             def check():
