@@ -1,5 +1,5 @@
 # shellcheck shell=bash
-# ./dev demo, bench, paper and shell: programs of the workspace in its environment.
+# ./dev demo, pictures, bench, paper and shell: programs of the workspace in its environment.
 
 command_demo() {
   [[ ${1:-} != -- ]] || shift
@@ -8,6 +8,14 @@ command_demo() {
   use_private_master
   say "demo: src/tools/demo.py $*"
   exec /usr/bin/python3 "$ROOT/src/tools/demo.py" "$@"
+}
+
+command_pictures() {
+  [[ ${1:-} != -- ]] || shift
+  setup
+  build_workspace
+  use_private_master
+  exec /usr/bin/python3 "$ROOT/src/tools/pictures.py" "$@"
 }
 
 command_bench() {

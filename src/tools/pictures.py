@@ -1,0 +1,177 @@
+#!/usr/bin/env python3
+"""Makes the pictures of README.md: an injection in the scene and its plot, the console, and a short animation of it.
+
+Leaves scene.png and force_depth.png (of ./dev demo), console.png and injection.gif in the output folder. Draws on a virtual
+display, so that their size is the same everywhere.
+"""
+import argparse
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import screenshot
+from demo_session import DemoSession, SessionError
+from processes import Child, wait_until
+from screen import Screen
+
+ROOT = Path(os.environ.get('MICROINJECTION_ROOT') or Path(__file__).resolve().parents[2])
+SIZE = (1280, 800)    # px
+MENU = 62             # px above the panels
+SLOWER = 0.15         # real-time factor, so that a machine which draws in software shows all of it
+PERIOD = 0.3          # s of wall time between two frames, at least
+SLOW = 'injection_controller:\n  motion: {stab_speed: 2.0e-5, retract_speed: 8.0e-5}\n'  # m/s, or nobody sees the stab
+LARGEST = 3e6         # bytes, of the animation
+STEPS = ('approach', 'indent', 'inject', 'withdraw')
+PATIENCE = 240        # s of wall time, for rviz to come up, and for a step
+SETTLE = 6            # s, for rviz to draw the first images
+
+
+class PicturesError(Exception):
+    """What went wrong, for the user."""
+
+
+class Injection:
+    """The controller's messages, and commands to it. The session's monitor is this process' node."""
+
+    def __init__(self):
+        import rospy
+        from cell_microinjection.msg import InjectionStatus, StringStamped
+        self.status = None
+        self._stamped = StringStamped
+        self._commands = rospy.Publisher('/controller/state_command', StringStamped, queue_size=1)
+        rospy.Subscriber('/controller/injection_state', InjectionStatus, self._on_status)
+
+    def _on_status(self, message):
+        self.status = message
+
+    def say(self, command):
+        self._commands.publish(self._stamped(string=command))
+
+    def waits(self):
+        return self.status is not None and (self.status.waits or self.status.state == 'idle')
+
+
+class Recording:
+    """Frames of the whole display."""
+
+    def __init__(self, folder, environment):
+        self.frames = []  # of (state, path)
+        self._begin = self._end = None  # s of wall time
+        self._folder, self._environment = folder, environment
+
+    def take(self, state):
+        self._end = time.monotonic()
+        self._begin = self._begin or self._end
+        path = self._folder / f'{len(self.frames):03}.png'
+        if screenshot.take(path, env=self._environment):
+            self.frames.append((state, path))
+
+    def last_of(self, state):
+        """@raises PicturesError when no frame was taken in this state."""
+        path = next((path for name, path in reversed(self.frames) if name == state), None)
+        if path is None:
+            raise PicturesError(f'no frame was taken in the state {state}: the machine is too slow')
+        return path
+
+    def animate(self, path):
+        """@raises PicturesError when the animation is too large or convert fails."""
+        period = (self._end - self._begin) * SLOWER / max(1, len(self.frames) - 1)
+        command = ['convert', '-delay', str(round(100 * period)), '-loop', '0', *(str(frame) for _, frame in self.frames),
+                   '-crop', f'{SIZE[0]}x{SIZE[1] - MENU - 20}+0+{MENU}', '+repage', '-resize', '75%', '+dither', '-colors', '48',
+                   '-layers', 'optimize', str(path)]
+        if subprocess.run(command, check=False, timeout=600).returncode != 0:
+            raise PicturesError('ImageMagick could not make the animation')
+        if path.stat().st_size > LARGEST:
+            raise PicturesError(f'{path} has {path.stat().st_size} bytes, at most {LARGEST:.0f} are allowed')
+
+
+def say(text):
+    print(f'pictures: {text}', flush=True)
+
+
+def demo(out, logs):
+    say('the scene and the plot, by the demo')
+    command = [sys.executable, str(ROOT / 'src/tools/demo.py'), '--out', str(logs / 'demo'), '--close', '--no-judge']
+    environment = {name: value for name, value in os.environ.items() if name != 'DISPLAY'}
+    if subprocess.run(command, check=False, env=environment).returncode != 0:
+        raise PicturesError('the demo failed, see above')
+    for name in ('scene.png', 'force_depth.png'):
+        shutil.copyfile(logs / 'demo' / name, out / name)
+
+
+def record(session, recording):
+    """A whole injection, step by step."""
+    injection = Injection()
+    if not wait_until(injection.waits, PATIENCE):
+        raise PicturesError('the controller is silent')
+    time.sleep(SETTLE)
+    for step in STEPS:
+        say(step)
+        injection.say(step)
+        end, begun = time.monotonic() + PATIENCE, False
+        while not (begun and injection.waits()):
+            if time.monotonic() > end:
+                raise PicturesError(f'{step} does not end: {injection.status}')
+            session.check()
+            recording.take(injection.status.state)
+            begun = begun or not injection.waits() or injection.status.state == 'idle'
+            time.sleep(PERIOD)
+    recording.take('idle')
+    if injection.status.outcome != 'injected':
+        raise PicturesError(f'the injection ended with {injection.status.outcome}')
+
+
+def console(out, logs):
+    say('a session with the console')
+    os.environ.pop('DISPLAY', None)
+    screen = Screen(logs / 'xvfb.log', SIZE)
+    (logs / 'slow.yaml').write_text(SLOW, encoding='utf-8')
+    session = DemoSession(ROOT / 'launch/session.launch', logs, {
+        'clock': 'lockstep', 'real_time_factor': SLOWER, 'haptic': 'none', 'mode': 'semi_automatic', 'camera': 'sim',
+        'display': 'false', 'cell': 'mouse_oocyte_injection', 'overrides': logs / 'slow.yaml'})
+    view = None
+    try:
+        session.wait_ready()
+        view = Child(['roslaunch', str(ROOT / 'launch/display.launch'), 'console:=inject'], logs / 'rviz.log',
+                     {**os.environ, **screen.environment})
+        if not wait_until(lambda: session.monitor.has_subscriber('/viz/markers'), PATIENCE):
+            raise PicturesError(f'rviz does not start; {view.log} ends with\n{view.tail(8)}')
+        session.monitor.go()
+        recording = Recording(Path(tempfile.mkdtemp(dir=logs)), screen.environment)
+        record(session, recording)
+    finally:
+        if view:
+            view.stop(10)
+        session.stop()
+        screen.close()
+    shutil.copyfile(recording.last_of('indent'), out / 'console.png')
+    recording.animate(out / 'injection.gif')
+
+
+def main():
+    parser = argparse.ArgumentParser(prog='./dev pictures --', description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('--out', type=Path, default=ROOT / '.readme', help='folder of the pictures (%(default)s)')
+    parser.add_argument('--only-console', action='store_true', help='leave out what the demo makes')
+    arguments = parser.parse_args()
+    out, logs = arguments.out.resolve(), ROOT / 'out/pictures'
+    shutil.rmtree(logs, ignore_errors=True)
+    logs.mkdir(parents=True)
+    out.mkdir(parents=True, exist_ok=True)
+    try:
+        if not arguments.only_console:
+            demo(out, logs)
+        console(out, logs)
+    except (PicturesError, SessionError, RuntimeError, OSError) as error:
+        print(f'pictures: {error}', file=sys.stderr)
+        return 1
+    say(f'they are in {out}')
+    return 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())
