@@ -25,6 +25,7 @@ SLOWER = 0.15         # real-time factor, so that a machine which draws in softw
 PERIOD = 0.3          # s of wall time between two frames, at least
 SLOW = 'injection_controller:\n  motion: {stab_speed: 2.0e-5, retract_speed: 8.0e-5}\n'  # m/s, or nobody sees the stab
 LARGEST = 3e6         # bytes, of the animation
+PAUSE = '200'         # hundredths of a second, of its last frame
 STEPS = ('approach', 'indent', 'inject', 'withdraw')
 PATIENCE = 240        # s of wall time, for rviz to come up, and for a step
 SETTLE = 6            # s, for rviz to draw the first images
@@ -80,8 +81,9 @@ class Recording:
     def animate(self, path):
         """@raises PicturesError when the animation is too large or convert fails."""
         period = (self._end - self._begin) * SLOWER / max(1, len(self.frames) - 1)
-        command = ['convert', '-delay', str(round(100 * period)), '-loop', '0', *(str(frame) for _, frame in self.frames),
-                   '-crop', f'{SIZE[0]}x{SIZE[1] - MENU - 20}+0+{MENU}', '+repage', '-resize', '75%', '+dither', '-colors', '48',
+        frames = [str(frame) for _, frame in self.frames]
+        command = ['convert', '-loop', '0', '-delay', str(round(100 * period)), *frames[:-1], '-delay', PAUSE, frames[-1], '-crop',
+                   f'{SIZE[0]}x{SIZE[1] - MENU - 20}+0+{MENU}', '+repage', '-resize', '75%', '+dither', '-colors', '48',
                    '-layers', 'optimize', str(path)]
         if subprocess.run(command, check=False, timeout=600).returncode != 0:
             raise PicturesError('ImageMagick could not make the animation')
