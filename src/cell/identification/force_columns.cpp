@@ -19,10 +19,10 @@ const std::vector<Quantity>& quantities() {
   static const std::map<std::string, double> lengths = {{"m", 1}, {"mm", 1e-3}, {"um", 1e-6}, {"nm", 1e-9}};
   static const std::vector<Quantity> all = {
       {"time", {"time", "t"}, {{"s", 1}, {"ms", 1e-3}, {"us", 1e-6}}},
-      {"position", {"tip", "position", "depth", "indentation", "height", "z"}, lengths},
+      {"position", {"tip", "position", "tip_z", "depth", "indentation", "height", "z"}, lengths},
       {"deflection", {"deflection"}, lengths},
       {"force",
-       {"force", "force_z", "force_axial", "f"},
+       {"force", "force_z", "force_axial", "measured_axial", "f"},
        {{"N", 1}, {"mN", 1e-3}, {"uN", 1e-6}, {"nN", 1e-9}, {"pN", 1e-12}}}};
   return all;
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <string>
@@ -37,6 +38,17 @@ class ForceCurveFile : public testing::Test {
 };
 
 std::string text(double x) { return std::to_string(x); }
+
+TEST_F(ForceCurveFile, ReadsTheRecordOfASession) {
+  // The depth begins at the contact, and the predicted force is none that was measured.
+  write("time_s,depth_m,predicted_axial_N,measured_axial_N,tip_z_m", [](int i) {
+    return text(0.1 * i) + (i < 50 ? ",," : ",1e-6,") + "5," + text(2e-3 * i) + "," + text(1 - 1e-3 * i);
+  });
+  const ForceCurve curve = readForceCurve(path_, {});
+  ASSERT_EQ(curve.size(), 100u);
+  EXPECT_NEAR(curve.force[60], 0.12, 1e-9);
+  EXPECT_NEAR(std::abs(curve.position[60] - curve.position[10]), 0.05, 1e-9);
+}
 
 TEST_F(ForceCurveFile, FindsNamesAndUnits) {
   write("Time (ms), Height [um], force_nN", [](int i) { return text(i) + ", " + text(0.1 * i) + "," + text(2.0 * i); });
