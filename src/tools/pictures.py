@@ -83,7 +83,7 @@ class Recording:
         period = (self._end - self._begin) * SLOWER / max(1, len(self.frames) - 1)
         frames = [str(frame) for _, frame in self.frames]
         command = ['convert', '-loop', '0', '-delay', str(round(100 * period)), *frames[:-1], '-delay', PAUSE, frames[-1], '-crop',
-                   f'{SIZE[0]}x{SIZE[1] - MENU - 20}+0+{MENU}', '+repage', '-resize', '75%', '+dither', '-colors', '48',
+                   f'{SIZE[0]}x{SIZE[1] - MENU - 20}+0+{MENU}', '+repage', '-resize', '68%', '+dither', '-colors', '48',
                    '-layers', 'optimize', str(path)]
         if subprocess.run(command, check=False, timeout=600).returncode != 0:
             raise PicturesError('ImageMagick could not make the animation')
