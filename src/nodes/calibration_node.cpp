@@ -292,9 +292,9 @@ bool CalibrationNode::undo(std_srvs::Trigger::Request&, std_srvs::Trigger::Respo
     return true;
   }
   try {
-    writeCalibration(parameters_.file, *replaced_);
-    take(*replaced_);
-    replaced_.reset();
+    const CameraCalibration again = *replaced_;
+    store(again);
+    take(again);
     response.success = 1;
     response.message = "again that of " + calibration_->date + ": " + describe(*calibration_);
   } catch (const std::exception& error) {

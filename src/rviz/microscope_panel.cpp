@@ -98,6 +98,12 @@ void MicroscopePanel::showFindings(const std::optional<cell_microinjection::Visi
   for (std::size_t i = 0; i < findings_.size(); ++i) findings_[i]->display(lines[i]);
 }
 
+/// What is not seen anymore is no place to go to.
+void MicroscopePanel::displayNone(const QString& reason) {
+  view_->displayNone(reason);
+  goal_->discard();
+}
+
 void MicroscopePanel::tick() {
   if (!appeared_ && link_->hasSource()) appear();
   if (appeared_) link_->listen(isVisible());
@@ -107,20 +113,21 @@ void MicroscopePanel::tick() {
   if (!isVisible()) return;
   const auto image = link_->image();
   if (!image) {
-    view_->displayNone("no image: see the lamp of the camera");
-    goal_->discard();  // what is not seen anymore is no place to go to
+    displayNone("no image: see the lamp of the camera");
     shown_.reset();
     showFindings(std::nullopt);
     return;
   }
   if (!grown && image == shown_) return;
+  // A pixel of another image is another place.
+  if (shown_ && (shown_->width != image->width || shown_->height != image->height)) goal_->discard();
   shown_ = image;
   const auto specimen = link_->specimen();
   showFindings(specimen);
   QString defect;
   const QImage picture = toPicture(*image, defect);
   if (picture.isNull()) {
-    view_->displayNone("an image cannot be read: " + defect);
+    displayNone("an image cannot be read: " + defect);
   } else {
     view_->display(picture, specimen);
   }

@@ -33,6 +33,7 @@ class MicroscopePanel : public rviz::Panel {
  private:
   void tick();
   void appear();
+  void displayNone(const QString& reason);
   void showFindings(const std::optional<cell_microinjection::VisionState>& specimen);
 
   MicroscopeView* view_;

@@ -1,5 +1,6 @@
 #include "rviz/microscope_view.h"
 
+#include <QApplication>
 #include <QMouseEvent>
 #include <QPainter>
 #include <QWheelEvent>
@@ -30,6 +31,10 @@ QPointF placeOf(const QWheelEvent& event) {
 MicroscopeView::MicroscopeView(QWidget* parent) : QWidget(parent) {
   setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Expanding);
   setAttribute(Qt::WA_OpaquePaintEvent);
+  click_.setSingleShot(true);
+  QObject::connect(&click_, &QTimer::timeout, this, [this] {
+    if (reason_.isEmpty() && view_.contains(pressed_pixel_) && clicked_) clicked_(pressed_pixel_);
+  });
 }
 
 void MicroscopeView::display(const QImage& image, const std::optional<cell_microinjection::VisionState>& specimen) {
@@ -38,7 +43,7 @@ void MicroscopeView::display(const QImage& image, const std::optional<cell_micro
   specimen_ = specimen;
   reason_.clear();
   view_.setImage(image.width(), image.height());
-  if (!chosen_) showSpecimen();
+  if (!chosen_ && !pressed_) showSpecimen();
   update();
 }
 
@@ -91,7 +96,9 @@ void MicroscopeView::wheelEvent(QWheelEvent* event) {
 }
 
 void MicroscopeView::mousePressEvent(QMouseEvent* event) {
-  if (event->button() == Qt::LeftButton) pressed_ = dragged_ = event->pos();
+  if (event->button() != Qt::LeftButton) return;
+  pressed_ = dragged_ = event->pos();
+  pressed_pixel_ = view_.toImage(toVector(event->pos()));
 }
 
 void MicroscopeView::mouseMoveEvent(QMouseEvent* event) {
@@ -109,11 +116,11 @@ void MicroscopeView::mouseReleaseEvent(QMouseEvent* event) {
   const bool stayed = (event->pos() - *pressed_).manhattanLength() < kClick;
   pressed_.reset();
   dragged_.reset();
-  const Eigen::Vector2d pixel = view_.toImage(toVector(event->pos()));
-  if (stayed && reason_.isEmpty() && view_.contains(pixel) && clicked_) clicked_(pixel);
+  if (stayed) click_.start(QApplication::doubleClickInterval());
 }
 
 void MicroscopeView::mouseDoubleClickEvent(QMouseEvent*) {
+  click_.stop();
   view_.showAll();
   chosen_ = true;
   update();

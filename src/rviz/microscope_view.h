@@ -3,6 +3,7 @@
 #include <cell_microinjection/VisionState.h>
 
 #include <QImage>
+#include <QTimer>
 #include <QWidget>
 #include <functional>
 #include <optional>
@@ -46,6 +47,8 @@ class MicroscopeView : public QWidget {
   QString reason_ = "no image yet";
   bool chosen_ = false;  ///< the part that is shown, by the operator
   std::optional<QPoint> pressed_, dragged_;
+  Eigen::Vector2d pressed_pixel_ = Eigen::Vector2d::Zero();  ///< the view may move before the release
+  QTimer click_;                                             ///< until a click is no double click
   std::optional<Eigen::Vector2d> goal_;
   std::function<void(const Eigen::Vector2d&)> clicked_;
 };

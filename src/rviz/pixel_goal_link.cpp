@@ -2,9 +2,8 @@
 
 #include <cell_microinjection/GoToPixelAction.h>
 
-#include <chrono>
-
 #include "operation/console/figures.h"
+#include "rviz/session_clock.h"
 
 namespace microinjection {
 namespace {
@@ -14,9 +13,8 @@ using cell_microinjection::GoToPixelFeedback;
 using cell_microinjection::GoToPixelGoal;
 using cell_microinjection::GoToPixelResult;
 
-constexpr double kSilence = 1;  // s, of the controller, which publishes ten times a second
-
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+constexpr double kSilence = 1;     // s, of the controller, which publishes ten times a second
+constexpr double kForgotten = 60;  // s, after a click
 
 std::string textOf(const GoToPixelFeedback& at) {
   const std::string far = figure(at.distance, 1, 1) + " px away";
@@ -36,6 +34,10 @@ PixelGoalLink::PixelGoalLink() {
       "controller/operating_state", 1,
       boost::function<void(const cell_microinjection::OperatingState::ConstPtr&)>(
           [this](const auto& message) { onOperating(*message); }));
+  injection_ = node_.subscribe<cell_microinjection::InjectionStatus>(
+      "controller/injection_state", 1,
+      boost::function<void(const cell_microinjection::InjectionStatus::ConstPtr&)>(
+          [this](const auto&) { onInjection(); }));
   runner_ = std::make_unique<Runner>(
       node_, "visual_servo/go_to_pixel", textOf,
       [this](const std::string& text) {
@@ -46,15 +48,23 @@ PixelGoalLink::PixelGoalLink() {
 
 PixelGoalLink::~PixelGoalLink() = default;
 
-void PixelGoalLink::poll() { queue_.callAvailable(ros::WallDuration(0)); }
+void PixelGoalLink::poll() {
+  queue_.callAvailable(ros::WallDuration(0));
+  if (goal_.under_way && !runner_->there()) {
+    runner_->forget();
+    end(false, "visual_servo has ended");
+  }
+  if (sessionNow() - proposed_at_ > kForgotten) discard();
+}
 
-SessionView PixelGoalLink::session() const { return now() - heard_at_ < kSilence ? session_ : SessionView(); }
+SessionView PixelGoalLink::session() const { return sessionNow() - heard_at_ < kSilence ? session_ : SessionView(); }
 
 CommandOffer PixelGoalLink::offered() const { return offer(goal_, session(), runner_->there()); }
 
 void PixelGoalLink::propose(const Eigen::Vector2d& pixel) {
   if (goal_.under_way) return;
   goal_.pixel = pixel;
+  proposed_at_ = sessionNow();
   report_ = {};
 }
 
@@ -77,21 +87,25 @@ void PixelGoalLink::cancel() {
   if (goal_.under_way) runner_->cancel();
 }
 
+void PixelGoalLink::onOperating(const cell_microinjection::OperatingState& message) {
+  const bool enabled = message.state == toText(OperatingState::kEnabled);
+  session_.operating = enabled ? OperatingState::kEnabled : OperatingState::kDisabled;
+  if (!enabled) discard();
+}
+
 /// The mode is a parameter that is set before the controller starts. To read it waits for the master,
 /// which is why it is done only when a controller appears.
-void PixelGoalLink::onOperating(const cell_microinjection::OperatingState& message) {
-  if (now() - heard_at_ > kSilence) {
+void PixelGoalLink::onInjection() {
+  if (sessionNow() - heard_at_ > kSilence) {
     session_.settings.mode.clear();
     ros::param::get("/injection_controller/mode", session_.settings.mode);
   }
-  heard_at_ = now();
-  session_.operating =
-      message.state == toText(OperatingState::kEnabled) ? OperatingState::kEnabled : OperatingState::kDisabled;
+  heard_at_ = sessionNow();
 }
 
 void PixelGoalLink::end(bool success, const std::string& message) {
   goal_.under_way = false;
-  if (success) goal_.pixel.reset();
+  goal_.pixel.reset();
   report_ = {success ? Light::kGreen : Light::kRed, success ? "the tip is there" : message};
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cell_microinjection/InjectionStatus.h>
 #include <cell_microinjection/OperatingState.h>
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
@@ -15,7 +16,11 @@ namespace microinjection {
 
 /// Has the needle led to a pixel, and follows it on its way.
 ///
-/// In: controller/operating_state; action: /visual_servo/go_to_pixel
+/// In: controller/operating_state (at each change), controller/injection_state (ten times a second);
+///     action: /visual_servo/go_to_pixel
+///
+/// A place is forgotten when the way to it ends, however it ends, when the controller leaves ENABLED,
+/// and after a minute: nobody shall press Go for a click of long ago.
 ///
 /// The callbacks run in poll(), in the caller's thread.
 class PixelGoalLink {
@@ -39,15 +44,16 @@ class PixelGoalLink {
   class Runner;
   SessionView session() const;
   void onOperating(const cell_microinjection::OperatingState& message);
+  void onInjection();
   void end(bool success, const std::string& message);
 
   PixelGoal goal_;
   Lamp report_;
   SessionView session_;
-  double heard_at_ = -1e9;  ///< s, of a clock that does not jump
+  double heard_at_ = -1e9, proposed_at_ = -1e9;  ///< s, sessionNow()
   ros::CallbackQueue queue_;
   ros::NodeHandle node_;
-  ros::Subscriber operating_;
+  ros::Subscriber operating_, injection_;
   std::unique_ptr<Runner> runner_;
 };
 

@@ -4,9 +4,10 @@
 #include <cell_microinjection/StringStamped.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <utility>
+
+#include "rviz/session_clock.h"
 
 namespace microinjection {
 namespace {
@@ -18,13 +19,6 @@ constexpr double kLargest = 1e-2;  // N and m: what is beyond is no force or dep
 
 constexpr const char* kStoppedActions[] = {"calibration/calibrate", "focus/find", "touch/find",
                                            "visual_servo/go_to_pixel"};
-
-/// s. In simulated time that of the session, where nodes publish as often as time goes on; else of a
-/// clock that does not jump.
-double now() {
-  if (ros::Time::isSimTime()) return ros::Time::now().toSec();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 std::optional<OperatingState> operatingStateOf(const std::string& name) {
   for (const OperatingState state :
@@ -99,7 +93,7 @@ void SessionLink::readSettings() {
 
 SessionView SessionLink::session() const {
   SessionView view = session_;
-  if (heard_at_ && now() - *heard_at_ < kSilence) return view;
+  if (heard_at_ && sessionNow() - *heard_at_ < kSilence) return view;
   view.operating.reset();
   view.injection.reset();
   return view;
@@ -110,14 +104,14 @@ std::string SessionLink::servedCell() const {
   return changed ? changed_ : served_;
 }
 
-Lamp SessionLink::lamp(Device device) const { return lamps_.lamp(device, now()); }
+Lamp SessionLink::lamp(Device device) const { return lamps_.lamp(device, sessionNow()); }
 
 std::optional<CellEstimateView> SessionLink::estimate() const {
-  return now() - estimate_.at < kOld ? estimate_.value : std::nullopt;
+  return sessionNow() - estimate_.at < kOld ? estimate_.value : std::nullopt;
 }
 
 std::optional<InjectorView> SessionLink::injector() const {
-  return now() - injector_.at < kOld ? injector_.value : std::nullopt;
+  return sessionNow() - injector_.at < kOld ? injector_.value : std::nullopt;
 }
 
 void SessionLink::onOperating(const cell_microinjection::OperatingState& message) {
@@ -127,8 +121,8 @@ void SessionLink::onOperating(const cell_microinjection::OperatingState& message
 }
 
 void SessionLink::onInjection(const cell_microinjection::InjectionStatus& message) {
-  if (!heard_at_ || now() - *heard_at_ > kSilence) readSettings();
-  heard_at_ = now();
+  if (!heard_at_ || sessionNow() - *heard_at_ > kSilence) readSettings();
+  heard_at_ = sessionNow();
   session_.injection = injectionStateOf(message.state);
   session_.waits = message.waits;
   session_.force = message.force;
@@ -142,7 +136,7 @@ void SessionLink::onLoop(const cell_microinjection::LoopState& message) { sessio
 
 void SessionLink::onCell(const cell_microinjection::CellState& message) {
   ForceHistory::Sample sample;
-  sample.time = now();
+  sample.time = sessionNow();
   const auto pipette = pipette_();
   if (pipette && message.converged) sample.predicted = plausible(toVector(message.force).dot(pipette->axis));
   if (measured_.value && sample.time - measured_.at < kFresh) sample.measured = measured_.value->axial;
@@ -157,7 +151,7 @@ void SessionLink::onCell(const cell_microinjection::CellState& message) {
 SessionTable::Row SessionLink::rowOf(const cell_microinjection::CellState& message,
                                      const std::optional<Pose>& pipette) const {
   SessionTable::Row row;
-  row.time = now();
+  row.time = sessionNow();
   row.needle = pipette;
   if (pipette && message.converged) row.predicted = toVector(message.force);
   if (row.time - measured_.at < kFresh) row.measured = measured_.value;
@@ -171,7 +165,7 @@ SessionTable::Row SessionLink::rowOf(const cell_microinjection::CellState& messa
 }
 
 void SessionLink::onMeasured(const geometry_msgs::WrenchStamped& message) {
-  measured_ = {std::nullopt, now()};
+  measured_ = {std::nullopt, sessionNow()};
   if (message.header.stamp.isZero()) return;
   const Eigen::Vector3d force = toVector(message.wrench.force);
   std::optional<double> axial;
@@ -201,7 +195,7 @@ void SessionLink::onEstimate(const cell_microinjection::CellEstimate& message) {
     view.puncture_high = puncture.depth_high;
     view.puncture_force = puncture.force;
   }
-  estimate_ = {view, now()};
+  estimate_ = {view, sessionNow()};
 }
 
 void SessionLink::onInjector(const cell_microinjection::InjectorState& message) {
@@ -212,12 +206,12 @@ void SessionLink::onInjector(const cell_microinjection::InjectorState& message) 
   view.pulses = message.pulses;
   view.fault = message.fault;
   view.refusal = message.refusal;
-  injector_ = {view, now()};
+  injector_ = {view, sessionNow()};
 }
 
 void SessionLink::onDiagnostics(const diagnostic_msgs::DiagnosticArray& message) {
   for (const auto& status : message.status) {
-    lamps_.receive({status.name, status.level, status.message}, now());
+    lamps_.receive({status.name, status.level, status.message}, sessionNow());
     if (status.name == "cell_simulator: cell parameters") changed_ = status.message;
     if (status.name != "cell_simulator: solver") continue;
     const auto served = std::find_if(status.values.begin(), status.values.end(),

@@ -42,6 +42,8 @@ class ActionRunner : public TaskRunner {
         },
         {}, [this](const boost::shared_ptr<const Feedback>& feedback) { progress_(describe_(*feedback)); });
   }
+  /// Of a node that is gone nothing comes anymore.
+  void forget() { client_.stopTrackingGoal(); }
   void cancel() override {
     if (client_.isServerConnected()) client_.cancelAllGoals();
   }

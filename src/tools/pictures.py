@@ -114,13 +114,14 @@ def record(session, recording):
     for step in STEPS:
         say(step)
         injection.say(step)
+        before = injection.status.state
         end, begun = time.monotonic() + PATIENCE, False
         while not (begun and injection.waits()):
             if time.monotonic() > end:
                 raise PicturesError(f'{step} does not end: {injection.status}')
             session.check()
             recording.take(injection.status.state)
-            begun = begun or not injection.waits() or injection.status.state == 'idle'
+            begun = begun or injection.status.state != before
             time.sleep(PERIOD)
     recording.take('idle')
     if injection.status.outcome != 'injected':
@@ -130,13 +131,13 @@ def record(session, recording):
 def console(out, logs):
     say('a session with the console')
     os.environ.pop('DISPLAY', None)
-    screen = Screen(logs / 'xvfb.log', SIZE)
     (logs / 'slow.yaml').write_text(SLOW, encoding='utf-8')
-    session = DemoSession(ROOT / 'launch/session.launch', logs, {
-        'clock': 'lockstep', 'real_time_factor': SLOWER, 'haptic': 'none', 'mode': 'semi_automatic', 'camera': 'sim',
-        'display': 'false', 'cell': 'mouse_oocyte_injection', 'overrides': logs / 'slow.yaml'})
-    view = None
+    screen = Screen(logs / 'xvfb.log', SIZE)
+    session = view = None
     try:
+        session = DemoSession(ROOT / 'launch/session.launch', logs, {
+            'clock': 'lockstep', 'real_time_factor': SLOWER, 'haptic': 'none', 'mode': 'semi_automatic', 'camera': 'sim',
+            'display': 'false', 'cell': 'mouse_oocyte_injection', 'overrides': logs / 'slow.yaml'})
         session.wait_ready()
         view = Child(['roslaunch', str(ROOT / 'launch/display.launch'), 'console:=inject'], logs / 'rviz.log',
                      {**os.environ, **screen.environment})
@@ -148,10 +149,12 @@ def console(out, logs):
     finally:
         if view:
             view.stop(10)
-        session.stop()
+        if session:
+            session.stop()
         screen.close()
+    recording.animate(logs / 'injection.gif')
     shutil.copyfile(recording.last_of('indent'), out / 'console.png')
-    recording.animate(out / 'injection.gif')
+    shutil.copyfile(logs / 'injection.gif', out / 'injection.gif')
 
 
 def main():
@@ -168,7 +171,7 @@ def main():
         if not arguments.only_console:
             demo(out, logs)
         console(out, logs)
-    except (PicturesError, SessionError, RuntimeError, OSError) as error:
+    except (PicturesError, SessionError, RuntimeError, OSError, subprocess.SubprocessError) as error:
         print(f'pictures: {error}', file=sys.stderr)
         return 1
     say(f'they are in {out}')

@@ -96,7 +96,7 @@ TEST(ConsoleRelay, PassesOnWhatIsWrittenInItsOrder) {
     }
     std::printf("end\n");
     std::fflush(stdout);
-    self.awaitOrder();
+    EXPECT_TRUE(self.awaitOrder());
   });
   std::string expected;
   for (int i = 0; i < 1000; ++i) expected += "out " + std::to_string(i) + "\nerr " + std::to_string(i) + "\n";
@@ -129,7 +129,7 @@ TEST(ConsoleRelay, EndsAlthoughTheTerminalIsStopped) {
       std::printf("never seen\n");
     }
     self.say('e');
-    self.awaitOrder();
+    EXPECT_TRUE(self.awaitOrder());
   });
   EXPECT_EQ(program.next(), 'e');
 }

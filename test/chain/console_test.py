@@ -198,7 +198,12 @@ class ConsoleTest(unittest.TestCase):
         rospy.set_param("/injection_controller/mode", "manual")
         image = Image(width=64, height=48, encoding="rgb8", step=3 * 64, data=bytes(COLOUR) * (64 * 48))
         images = rospy.Publisher("/microscope/image_raw", Image, queue_size=1)
-        operating = rospy.Publisher("/controller/operating_state", OperatingState, queue_size=1)
+        # As the controller does: its operating state comes at a change only.
+        operating = rospy.Publisher("/controller/operating_state", OperatingState, queue_size=1, latch=True)
+        operating.publish(OperatingState(state="ENABLED"))
+        beats = rospy.Publisher("/controller/injection_state", InjectionStatus, queue_size=1)
+        beat = rospy.Timer(rospy.Duration(0.1), lambda _: beats.publish(InjectionStatus(state="idle")))
+        self.addCleanup(beat.shutdown)
         goals, preempted = [], []
 
         def lead(goal):
@@ -214,7 +219,6 @@ class ConsoleTest(unittest.TestCase):
         def offered_below_image():
             image.header.stamp = rospy.Time.now()
             images.publish(image)
-            operating.publish(OperatingState(state="ENABLED"))
             if not self.look():
                 return None
             try:
@@ -229,7 +233,17 @@ class ConsoleTest(unittest.TestCase):
                 return seen if seen and len(seen[1]) == count else None
             return self.until(check, f"an image above {count} offered buttons")
         (left, top, right, bottom), _ = shown(0)
+        self.do("mousemove", left + 40, top + 40)
+        self.do("click", "--repeat", 2, "--delay", 60, 1)  # a double click proposes nothing
+        time.sleep(2)  # more than a double click may take, and than a silent controller is believed
+        shown(0)
         place = (left + round(0.3 * (right - left)), top + round(0.6 * (bottom - top)))
+        self.click(place)
+        _, (go, _) = shown(2)
+        operating.publish(OperatingState(state="PAUSED"))
+        shown(0)  # who resumes does not resume what a click of before has proposed
+        operating.publish(OperatingState(state="ENABLED"))
+        shown(0)
         self.click(place)
         _, (go, _) = shown(2)
         self.assertGreater(console_eye.share_of(GOAL, self.picture), 0)

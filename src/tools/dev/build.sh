@@ -48,7 +48,7 @@ build_workspace() {
   [[ $# -gt 0 ]] || rm -rf "$WORKSPACE"/install/share/cell_microinjection/{launch,config,urdf}
   say "build: catkin_make in catkin_ws ($(jobs) jobs)"
   catkin_make -C "$WORKSPACE" -j"$(jobs)" -DPYTHON_EXECUTABLE=/usr/bin/python3 -DCMAKE_BUILD_TYPE=RelWithDebInfo \
-    -DCMAKE_EXPORT_COMPILE_COMMANDS=ON "${@:-install}" || fail "the build failed (messages above)"
+    -DCMAKE_EXPORT_COMPILE_COMMANDS=ON -DCMAKE_CXX_COMPILER_LAUNCHER="$COMPILER_LAUNCHER" "${@:-install}" || fail "the build failed (messages above)"
   source_workspace
 }
 
@@ -60,8 +60,8 @@ build_core() {
   forget_moved_build "$folder"
   say "build: core without ROS in ${folder#"$ROOT/"} ($(jobs) jobs)"
   cmake -S "$ROOT" -B "$folder" -DMICROINJECTION_WITH_ROS=OFF -DCMAKE_BUILD_TYPE=RelWithDebInfo \
-    -DMICROINJECTION_SANITIZE="$sanitizer" -DPYTHON_EXECUTABLE=/usr/bin/python3 ||
-    fail "configuring the core failed (messages above)"
+    -DMICROINJECTION_SANITIZE="$sanitizer" -DPYTHON_EXECUTABLE=/usr/bin/python3 \
+    -DCMAKE_CXX_COMPILER_LAUNCHER="$COMPILER_LAUNCHER" || fail "configuring the core failed (messages above)"
   cmake --build "$folder" --parallel "$(jobs)" ${1:+--target "$@"} ||
     fail "the build of the core failed (messages above)"
 }

@@ -26,9 +26,8 @@ prepare_environment() {
 # The core and the workspace compile the same sources: what one has compiled the other takes, where paths below ROOT are
 # the same.
 use_compiler_cache() {
-  command -v ccache >/dev/null || return 0
-  export CMAKE_CXX_COMPILER_LAUNCHER=ccache  # read by CMake 3.17 and newer
-  export CCACHE_DIR="$ROOT/build/ccache" CCACHE_BASEDIR="$ROOT" CCACHE_NOHASHDIR=1
+  COMPILER_LAUNCHER=$(command -v ccache || true)
+  export CCACHE_DIR="${CCACHE_DIR:-$ROOT/build/ccache}" CCACHE_BASEDIR="$ROOT" CCACHE_NOHASHDIR=1
 }
 
 # ROS's own scripts read variables that may be unset.
