@@ -49,12 +49,18 @@ class ChangeCellTest(unittest.TestCase):
         self.assertGreater(self.predicted(), 0.2e-6)
 
     def change(self, names, values, messages=None):
+        """A change may begin some ticks before its call returns: follow() gives their forces, too."""
+        self.forces = []
+
+        def pressed():
+            self.forces.append(self.predicted())
+            return self.needle()
         return self.world.call("/cell_simulator/set_cell_parameters", SetCellParameters, names, values,
-                               messages=messages or self.needle())
+                               messages=messages or pressed)
 
     def follow(self):
-        """@returns the force in each of the next ticks, with a pressed needle."""
-        forces = []
+        """@returns the force in each tick of the last call and in the next ones, with a pressed needle."""
+        forces = [*self.forces, self.predicted()]
         for _ in range(CHANGE):
             self.world.tick(self.needle())
             forces.append(self.predicted())

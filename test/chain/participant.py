@@ -152,7 +152,7 @@ class Participant:
         thread = threading.Thread(target=lambda: answers.append(rospy.ServiceProxy(service, kind)(*arguments)))
         thread.start()
         while thread.is_alive():
-            self.tick(messages)
+            self.run(1, messages)
         return answers[0]
 
     def status(self, name):
