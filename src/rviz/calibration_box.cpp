@@ -9,11 +9,11 @@
 namespace microinjection {
 
 CalibrationBox::CalibrationBox(std::function<SessionView()> newest, QWidget* parent)
-    : QWidget(parent), newest_(std::move(newest)), report_(new LampRow("", 4, this)) {
+    : QWidget(parent), newest_(std::move(newest)), report_(new LampRow("", 3, this)) {
   auto* layout = new QGridLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->setHorizontalSpacing(8);
-  layout->setVerticalSpacing(4);
+  layout->setVerticalSpacing(1);
   layout->setColumnStretch(1, 1);
   layout->addWidget(new QLabel("<b>Needle and camera</b>", this), 0, 0, 1, 2);
   int line = 1;
