@@ -2,13 +2,11 @@
 
 #include <cell_microinjection/StringStamped.h>
 
-#include <cmath>
 #include <ctime>
 #include <filesystem>
-#include <iomanip>
-#include <sstream>
 
 #include "base/errors.h"
+#include "nodes/imaging/calibration_messages.h"
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/message_guard.h"
 #include "nodes/runtime/node_parameters.h"
@@ -30,23 +28,6 @@ std::string utcNow() {
   char text[sizeof "YYYY-MM-DDTHH:MM:SSZ"];
   std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
   return text;
-}
-
-double halfWidth(const CameraCalibration& calibration, CalibrationParameter parameter) {
-  const Interval interval = calibration.interval(parameter);
-  return (interval.high - interval.low) / 2;
-}
-
-std::string describe(const CameraCalibration& calibration) {
-  std::ostringstream text;
-  text.precision(5);
-  text << "pixel size " << 1e6 * calibration.value[kPixelSize] << " um";
-  text << std::fixed << std::setprecision(3) << " +- "
-       << 100 * halfWidth(calibration, kPixelSize) / calibration.value[kPixelSize] << " %, angle "
-       << 180 / M_PI * calibration.value[kAngle] << " +- " << 180 / M_PI * halfWidth(calibration, kAngle)
-       << " degrees, " << (calibration.mirrored ? "mirrored" : "not mirrored") << ", residual " << calibration.residual
-       << " px";
-  return text.str();
 }
 
 }  // namespace
@@ -195,16 +176,8 @@ void CalibrationNode::end() {
     return;
   }
   const CameraCalibration& found = *outcome.calibration;
-  result.message = describe(found) + (outcome.warning.empty() ? "" : "; " + outcome.warning);
-  result.pixel_size = found.value[kPixelSize];
-  result.pixel_size_interval = halfWidth(found, kPixelSize);
-  result.angle = found.value[kAngle];
-  result.angle_interval = halfWidth(found, kAngle);
-  result.mirrored = static_cast<unsigned char>(found.mirrored);
-  for (int i = 0; i < 3; ++i) result.backlash[i] = found.estimated[kBacklashX + i] ? found.backlash()[i] : 0;
-  result.residual = found.residual;
-  result.points = found.points;
-  result.outliers = found.outliers;
+  result = toResult(found);
+  if (!outcome.warning.empty()) result.message += "; " + outcome.warning;
   try {
     store(found);
   } catch (const std::exception& error) {

@@ -113,8 +113,8 @@ def record(session, recording):
     time.sleep(SETTLE)
     for step in STEPS:
         say(step)
-        injection.say(step)
         before = injection.status.state
+        injection.say(step)
         end, begun = time.monotonic() + PATIENCE, False
         while not (begun and injection.waits()):
             if time.monotonic() > end:
