@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace microinjection {
 namespace {
 
-constexpr int kBlock = 10;      // rows that are compared together
-constexpr int kShortBlock = 5;  // the same, of a short shaft
-constexpr int kShort = 40;      // rows of it
+/// Rows that are compared together, of a shaft of at least so many rows.
+struct BlockSize {
+  int shaft, rows;
+};
+constexpr BlockSize kBlocks[] = {{40, 10}, {16, 5}, {0, 3}};
 constexpr int kLeastBlocks = 3;
 constexpr double kMostSlant = 0.16;  // columns per row
 constexpr double kSlantStep = 0.005;
@@ -71,7 +74,10 @@ std::vector<Place> placesBeside(const std::vector<Block>& blocks, const AxisFit&
 AxisFit fitAxis(const PipetteStrip& strip, int first, int rows, double half_width, int most) {
   std::vector<Block> blocks;
   const int last = std::min(strip.rows(), first + rows);
-  const int together = first + kShort <= last && strip.inside(first + kShort - 1) ? kBlock : kShortBlock;
+  const auto sees = [&](const BlockSize& size) {
+    return size.shaft == 0 || (first + size.shaft <= last && strip.inside(first + size.shaft - 1));
+  };
+  const int together = std::find_if(std::begin(kBlocks), std::end(kBlocks), sees)->rows;
   for (int row = first; row + together <= last && strip.inside(row + together - 1); row += together) {
     Block block{row + 0.5 * (together - 1) - first, mirrored(strip, row, row + together, half_width, most)};
     if (!block.mirrored.empty()) blocks.push_back(std::move(block));

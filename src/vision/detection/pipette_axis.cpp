@@ -14,7 +14,7 @@ constexpr int kLines = 32;
 constexpr double kEdgeNoise = 5;                           // of the gradient's noise
 constexpr double kLeastNoise = 1.2e-3;                     // of the range, of a gradient; compression has its own
 constexpr double kLeastLength = 18;                        // px in the reduced frame
-constexpr double kLeastLengthAtBorder = 10;                // the same, of a needle that has just come into it
+constexpr double kLeastLengthAtBorder = 7;                 // the same, of a needle that has just come into it
 constexpr double kSameDirection = 0.03, kSamePlace = 2.5;  // rad, px in the reduced frame
 
 /// A line of edges: normal (cos a, sin a), a in [0, pi); n . p = offset.

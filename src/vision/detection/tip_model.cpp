@@ -14,9 +14,10 @@ constexpr int kMostRows = TipWindow::kMostRows, kMostTerms = 4, kMostShared = 4;
 constexpr int kLanes = 8;        // sums that a processor makes at a time
 constexpr double kScale = 12;    // rows, in which powers of s are of the size of 1
 constexpr int kNarrower = 3;     // columns
-constexpr double kWideTube = 8;  // columns, half width
 constexpr double kThinnest = 2;  // columns, half width of an outline
 constexpr int kFaceRows = 6;     // behind the end, that show the outline
+constexpr double kWall = 0.2;    // size of the profile at a wall over its largest, at least
+constexpr double kWidestWall = 0.5, kLeastRim = 0.9, kFaceBlur = 1.5;  // of the radius; rows; of the blur
 
 double stepAt(double s) { return 0.5 * std::erfc(-s / std::sqrt(2.0)); }
 
@@ -36,8 +37,7 @@ float product(const float* a, const float* b, int rows) {
 /// Terms that each column has with a factor of its own. They are orthonormal.
 class OwnTerms {
  public:
-  OwnTerms(const TipWindow& window, const TipModel& model, double end)
-      : rows_(window.rows()), count_(termsOf(window, model)) {
+  OwnTerms(const TipWindow& window, const TipModel& model, double end) : rows_(window.rows()), count_(termsOf(model)) {
     const TipEdge edge(model.blur, model.fringes);
     for (int i = 0; i < rows_; ++i) {
       const double s = window.first() + i - end, far = s / kScale;
@@ -45,7 +45,6 @@ class OwnTerms {
       step_[i] = terms_[0][i] = value.real();
       terms_[1][i] = static_cast<float>(far) * value.real();
       terms_[2][i] = static_cast<float>(far * far) * value.real();
-      if (count_ == 4) terms_[3][i] = static_cast<float>(far * far * far) * value.real();
       if (model.fringes > 0) terms_[3][i] = value.imag();
     }
     for (int k = 0; k < count_; ++k) {
@@ -136,10 +135,7 @@ class SharedTerms {
 }  // namespace
 
 TipWindow::TipWindow(const PipetteStrip& strip, int first, int last, int columns, const TipOutline& outline, double end)
-    : first_(first),
-      rows_(std::min(last - first, kMostRows)),
-      columns_(columns),
-      degree_(outline.half_width < kWideTube ? 2 : 3) {
+    : first_(first), rows_(std::min(last - first, kMostRows)), columns_(columns) {
   double mean = 0;
   grey_.assign(static_cast<std::size_t>(columns_) * kMostRows, 0.0F);
   const double growth = outline.valid ? outline.growth / std::max(outline.half_width, kThinnest) : 0;
@@ -178,7 +174,7 @@ SharedColumns TipWindow::sharedBy(std::vector<double> factor) const {
   return shared;
 }
 
-int termsOf(const TipWindow& window, const TipModel& model) { return model.fringes > 0 ? 4 : window.degree() + 1; }
+int termsOf(const TipModel& model) { return model.fringes > 0 ? 4 : 3; }
 
 EndFace::EndFace(const TipWindow& window, double end, double blur) {
   const int behind = std::clamp(static_cast<int>(end + 2 + blur) - window.first(), 0, window.rows() - kFaceRows);
@@ -190,12 +186,18 @@ EndFace::EndFace(const TipWindow& window, double end, double blur) {
     for (int i = before; i < before + 4; ++i) sum -= window.column(t)[i] / 4;
     size.push_back(std::abs(sum));
   }
-  // The outline is where the profile, seen from outside, has half of its largest size.
-  const double half = 0.5 * *std::max_element(size.begin(), size.end());
-  int outer = window.columns() - 1;
-  while (outer > 0 && size[outer] < half) --outer;
+  // The outline is where the profile, seen from outside, has half of its size at the wall. A bright core may be far
+  // larger than that.
+  const double least = kWall * *std::max_element(size.begin(), size.end());
+  int wall = window.columns() - 1;
+  while (wall > 0 && (size[wall] < least || size[wall - 1] > size[wall])) --wall;
+  const double half = 0.5 * size[wall];
+  int outer = wall;
+  while (outer + 1 < window.columns() && size[outer + 1] >= half) ++outer;
   double radius = outer;
   if (outer + 1 < window.columns()) radius += (size[outer] - half) / std::max(size[outer] - size[outer + 1], 1e-9);
+  // The blur widens the outline of a thin tube.
+  widest_rim = std::max(kLeastRim, kWidestWall * (radius - kFaceBlur * blur));
   std::vector<double> face;
   for (int t = 0; t < window.columns(); ++t) face.push_back(stepAt((radius - t) / blur) - stepAt((-radius - t) / blur));
   whole = window.sharedBy(face);

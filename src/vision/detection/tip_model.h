@@ -9,12 +9,10 @@ namespace microinjection {
 
 /// The image of a tube that ends in a straight edge. Of a strip that is folded about the tube's axis, with
 /// s = row - end and the column t:
-///     grey(s, t) = a + b s + [p0(t) + p1(t) s + p2(t) s^2 + p3(t) s^3] Re edge(s) + q(t) Im edge(s) + d face(t)
-///     rim(s).
-/// p3 is 0 for thin tubes and where there are fringes. The profile p and the pair of lines q are free in each column;
-/// the background a + b s is the same in all columns. q is 0 in focus. The end face has a dark rim that is as wide as
-/// the wall. For an end, a blur, fringes and a width of the rim all else follows by linear least squares. See
-/// tip_edge.h.
+///     grey(s, t) = a + b s + [p0(t) + p1(t) s + p2(t) s^2] Re edge(s) + q(t) Im edge(s) + d face(t) rim(s).
+/// The profile p and the pair of lines q are free in each column; the background a + b s is the same in all columns.
+/// q is 0 in focus. The end face has a dark rim that is as wide as the wall. For an end, a blur, fringes and a width of
+/// the rim all else follows by linear least squares. A cubic profile would make the end less certain. See tip_edge.h.
 struct TipModel {
   double blur = 1;     ///< rows, rms
   double fringes = 0;  ///< see TipEdge; 0: in focus
@@ -39,16 +37,13 @@ class TipWindow {
   int columns() const { return columns_; }
   const float* column(int t) const { return grey_.data() + static_cast<std::ptrdiff_t>(t) * kMostRows; }
   double weight(int t) const { return t == 0 ? 0.5 : 1; }  ///< the axis is one column, all others are two
-  /// Of the profile's polynomial in s without fringes. A cubic follows a wide tube; for the few edges of a thin one it
-  /// is too free.
-  int degree() const { return degree_; }
-  double range() const { return range_; }             ///< largest less least value
-  double square(int t) const { return squares_[t]; }  ///< sum of the squared values of a column
-  const SharedColumns& all() const { return all_; }   ///< each with the factor 1
+  double range() const { return range_; }                  ///< largest less least value
+  double square(int t) const { return squares_[t]; }       ///< sum of the squared values of a column
+  const SharedColumns& all() const { return all_; }        ///< each with the factor 1
   SharedColumns sharedBy(std::vector<double> factor) const;
 
  private:
-  int first_, rows_, columns_, degree_;
+  int first_, rows_, columns_;
   double range_ = 0;
   std::vector<float> grey_;  ///< column after column, less the mean of all; 0 behind the last row
   std::vector<double> squares_;
@@ -58,12 +53,15 @@ class TipWindow {
 /// The end face across: 1 within the outline that the rows behind `end` have, blurred.
 struct EndFace {
   SharedColumns whole, narrower;  ///< the second of a tube that is a little narrower
+  /// rows, of a rim: half of the radius, since pulled glass keeps the ratio of its wall. A wider and fainter rim would
+  /// describe a thin tube as well, with an end that is farther out.
+  double widest_rim = 0;
 
   EndFace(const TipWindow& window, double end, double blur);
 };
 
 /// Number of terms that each column has.
-int termsOf(const TipWindow& window, const TipModel& model);
+int termsOf(const TipModel& model);
 
 /// Sums of the squared residuals of a fit, one for each width of the rim; 0: without a rim.
 /// @param rims  rows; a rim that turns out bright is left out

@@ -27,7 +27,7 @@ void tryEnds(const TipWindow& window, const TipModel& model, const std::vector<d
   for (const double end : ends) {
     const std::vector<double> values = tipResiduals(window, model, end, face, rims);
     for (std::size_t k = 0; k < values.size(); ++k)
-      all.push_back({end, values[k] / freedomOf(window, model), rims[k], model, true});
+      if (rims[k] < face.widest_rim) all.push_back({end, values[k] / freedomOf(window, model), rims[k], model, true});
   }
 }
 
@@ -67,7 +67,7 @@ std::vector<double> rimsBeside(double rim, TipKind kind) {
 }  // namespace
 
 double freedomOf(const TipWindow& window, const TipModel& model) {
-  return std::max(1.0, (window.rows() - termsOf(window, model)) * (window.columns() - 0.5));
+  return std::max(1.0, (window.rows() - termsOf(model)) * (window.columns() - 0.5));
 }
 
 TipTrial bestOf(const std::vector<TipTrial>& all) {
