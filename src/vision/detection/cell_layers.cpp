@@ -3,70 +3,31 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vision/detection/border_search.h"
 #include "vision/detection/fitted_layers.h"
+#include "vision/detection/lines_outside.h"
 #include "vision/detection/zona_inner.h"
 
 namespace microinjection {
 namespace {
 
-constexpr int kRays = 96, kFineRays = 180, kColumns = 110;
-constexpr double kSmoothing = 1.2;   // columns
-constexpr double kOutermost = 1.65;  // of the ooplasm's radius, a zona's outer border
-constexpr double kNear = 1.1, kNearStrength = 0.75;
-constexpr double kFaded = 0.25;   // of a border's contrast, when it is lost
-constexpr double kInside = 0.93;  // ratio of a border inside of the main one, at most
-constexpr double kGap = 1.03;     // ratio of two borders' radii, at least
-constexpr double kLeastCoverage = 0.55, kLeastConsistency = 0.6, kLeastStrength = 0.55;  // of a second border
-constexpr double kLeastSignificance = 3;                                                 // of a second border
-constexpr double kRingSignificance = 4, kRingCoverage = 0.45;                            // of a faint ring
-constexpr double kRingContrast = 0.2;  // of the border inside, of a clear ring
-constexpr double kClear = 0.8;         // of the main border's strength: an inner border as clear as the main one
-constexpr double kZonaPlace = 0.5;     // of the zona's outer border in its dark rim, see refineBorder()
-constexpr double kInnerPlace = 0.5;    // of the zona's inner border
-constexpr double kWhole = 0.92;        // coverage of a border without a dent
-constexpr double kOff = 0.8;           // px, of a border from where it was searched
-constexpr double kApart = 2;           // px, from the rim, that is another border
-constexpr double kSharpRim = 6;        // px, line of a zona in focus, at most
+constexpr int kFineRays = 180;
+constexpr double kOutermost = 1.65;                               // of the ooplasm's radius, a zona's outer border
+constexpr double kFaded = 0.25;                                   // of a border's contrast, when it is lost
+constexpr double kInside = 0.93;                                  // ratio of a border inside of the main one, at most
+constexpr double kLeastCoverage = 0.55, kLeastConsistency = 0.6;  // of a border that is followed, and of a clear ring
+constexpr double kRingContrast = 0.2;                             // of the border inside, of a clear ring
+constexpr double kClear = 0.8;       // of the main border's strength: an inner border as clear as the main one
+constexpr double kZonaPlace = 0.5;   // of the zona's outer border in its dark rim, see refineBorder()
+constexpr double kInnerPlace = 0.5;  // of the zona's inner border
+constexpr double kWhole = 0.92;      // coverage of a border without a dent
+constexpr double kOff = 0.8;         // px, of a border from where it was searched
+constexpr double kApart = 2;         // px, from the rim, that is another border
+constexpr double kSharpRim = 6;      // px, line of a zona in focus, at most
 constexpr double kLeastResidual = 0.5, kMostResidual = 0.0025;  // px; of the diameter: of a sure ellipse
 constexpr double kOoplasmPlace = 1.0;                           // of the ooplasm's: the rim is refracted beside it
-constexpr int kFreeChange = 4;                                  // columns from ray to ray
-constexpr double kFreeGain = 0.07;                              // of strength, what a freer path must be better by
-constexpr double kSure = 0.9;                                   // strength that needs no freer path
-constexpr double kOutwards = 0.2;                               // see BorderBand
+constexpr double kMixedLines = 0.23;                            // see linesOutside()
 constexpr double kWidestRim = 0.2;                              // of the radius
-
-std::vector<Polarity> polaritiesOf(const std::string& look) {
-  if (look == "dic") return {Polarity::kEither};
-  return {Polarity::kRising, Polarity::kFalling};
-}
-
-double toleranceFor(double radius) { return std::max(1.0, 0.03 * radius); }
-
-PolarMap mapAbout(const Frame& frame, const Ellipse& base, double low, double high) {
-  const double radius = 0.5 * base.meanDiameter();
-  return {frame, base, {(low - 1) * radius, (high - 1) * radius, kColumns, kRays}, kSmoothing};
-}
-
-/// Scale of the map's slopes, and at least what noise makes of them.
-double scaleOf(const Frame& frame, const PolarMap& map) {
-  return std::max(slopeScale(map, 0, map.columns()), 0.2 * frame.noise());
-}
-
-CellBorder bestBorder(const Frame& frame, const PolarMap& map, const std::string& look, double radius,
-                      const BorderBand& band = {}) {
-  CellBorder best;
-  const double scale = scaleOf(frame, map);
-  for (const Polarity polarity : polaritiesOf(look)) {
-    const CellBorder border = findBorder(frame, map, polarity, band, scale, toleranceFor(radius));
-    if (worthOf(border) > worthOf(best)) best = border;
-  }
-  return best;
-}
-
-bool isSecondBorder(const CellBorder& border) {
-  return border.finding.hasValues() && border.coverage >= kLeastCoverage && border.consistency >= kLeastConsistency &&
-         border.strength >= kLeastStrength && border.outside < 0.5;
-}
 
 /// @param rim  px, widest dark rim
 CellBorder refined(const Frame& frame, const CellBorder& border, double place, double rim) {
@@ -85,29 +46,6 @@ CellBorder refined(const Frame& frame, const CellBorder& border, double place, d
   fine.line = fine.ellipse;
   return fine;
 }
-
-CellBorder searchBand(const Frame& frame, const CellBorder& main, double low, double high, const std::string& look,
-                      double outwards = 0) {
-  const double radius = 0.5 * main.ellipse.meanDiameter();
-  const PolarMap map = mapAbout(frame, main.ellipse, low, high);
-  const CellBorder border = bestBorder(frame, map, look, radius, {{}, {}, outwards});
-  if (border.strength > kSure) return border;
-  // A border about another centre moves more from ray to ray; so does a path of noise.
-  const CellBorder freer = bestBorder(frame, map, look, radius, {{}, {}, outwards, kFreeChange});
-  return freer.strength > border.strength + kFreeGain ? freer : border;
-}
-
-/// The same border searched again in a map about itself: the first map was about another one.
-/// @param inner  px, radius of the next border inside
-CellBorder settled(const Frame& frame, const CellBorder& border, double inner) {
-  const double radius = 0.5 * border.ellipse.meanDiameter();
-  const double half = std::clamp(0.5 * (radius - inner) / radius, 0.015, 0.1);
-  const PolarMap map = mapAbout(frame, border.ellipse, 1 - half, 1 + half);
-  const CellBorder again = findBorder(frame, map, border.polarity, {}, scaleOf(frame, map), toleranceFor(radius));
-  return isSecondBorder(again) ? again : border;
-}
-
-double radiusOf(const CellBorder& border) { return 0.5 * border.ellipse.meanDiameter(); }
 
 /// The zona's inner border as a line of its own, for cells that the joint fit does not describe. Uncertain.
 CellBorder innerBorder(const Frame& frame, const CellLayers& layers, const Ellipse& first, const std::string& look) {
@@ -128,29 +66,6 @@ CellBorder innerBorder(const Frame& frame, const CellLayers& layers, const Ellip
   }
   border.finding = Finding::uncertain("the zona's inner border is one of several lines");
   return border;
-}
-
-/// Borders that are farther out, up to `limit` (ratio to the main one's radius): the last is the
-/// zona's outer border, one before it the inner.
-std::vector<CellBorder> bordersOutside(const Frame& frame, const CellBorder& main, double limit,
-                                       const std::string& look) {
-  std::vector<CellBorder> found;
-  double low = kGap;
-  while (low + 0.03 < limit && found.size() < 3) {
-    const CellBorder next = searchBand(frame, main, low, limit, look, kOutwards);
-    if (!isSecondBorder(next) || next.significance < kLeastSignificance) break;
-    // Near another border a halo of it may look like one.
-    const bool near = radiusOf(next) < kNear * radiusOf(found.empty() ? main : found.back());
-    if (near && next.strength < kNearStrength) break;
-    found.push_back(settled(frame, next, found.empty() ? radiusOf(main) : radiusOf(found.back())));
-    low = radiusOf(next) / radiusOf(main) + 0.03;
-  }
-  return found;
-}
-
-/// Whether a faint ring is there at all.
-bool isRing(const CellBorder& border) {
-  return border.finding.hasValues() && border.significance > kRingSignificance && border.coverage > kRingCoverage;
 }
 
 /// Takes the certainty from borders whose places the image may have displaced.
@@ -179,11 +94,18 @@ void doubtWithinRing(const Frame& frame, const std::string& look, CellBorder& ou
   const double limit = std::min(kOutermost, largest / outer.ellipse.meanDiameter());
   // Out of focus a border has fringes about it.
   const bool trusted = outer.finding.isFound() || (outer.centred && outer.rim == 0);
-  if (!trusted || limit < kGap + 0.03) return;
-  const CellBorder beyond = searchBand(frame, outer, kGap, limit, look, kOutwards);
+  if (!trusted || limit < kBorderGap + 0.03) return;
+  const CellBorder beyond = searchBand(frame, outer, kBorderGap, limit, look, kOutwards);
   const bool clear = beyond.consistency > kLeastConsistency && beyond.contrast > kRingContrast * outer.contrast;
   if (!isRing(beyond) || !clear || beyond.polarity == Polarity::kFalling) return;
   outer.finding = Finding::uncertain("a ring is seen outside of the border: it may be the zona's inner one");
+  outer.centred = false;
+}
+
+/// Takes the certainty in DIC from an outer border that is another line on each side.
+void doubtMixedLines(const Frame& frame, const std::string& look, CellBorder& outer) {
+  if (look != "dic" || !outer.finding.isFound() || linesOutside(frame, outer.ellipse) < kMixedLines) return;
+  outer.finding = Finding::uncertain("in DIC the border may be another line on each side");
   outer.centred = false;
 }
 
@@ -193,7 +115,7 @@ CellBorder findMainBorder(const Frame& frame, const cv::Point2d& centre, double 
   Ellipse base{centre, {radius, radius}, 0};
   CellBorder best;
   for (int round = 0; round < 2; ++round) {
-    const PolarMap map(frame, base, {-0.5 * radius, 0.5 * radius, kColumns, kRays}, kSmoothing);
+    const PolarMap map(frame, base, {-0.5 * radius, 0.5 * radius, kSearchColumns, kSearchRays}, kSearchSmoothing);
     // Dark inside: the rim of a cell is dark in every look. A border that is only bright inside is a
     // bubble's middle or a pipette's lumen.
     const Polarity polarity = look == "dic" ? Polarity::kEither : Polarity::kRising;
@@ -211,7 +133,8 @@ CellLayers findLayers(const Frame& frame, const CellBorder& main, const std::str
   const double limit = std::min(kOutermost, largest / main.ellipse.meanDiameter());
   const std::vector<CellBorder> outside = bordersOutside(frame, main, limit, look);
   const CellBorder inside = searchBand(frame, main, 0.6, kInside, look);
-  const CellBorder beyond = outside.empty() ? searchBand(frame, main, kGap, limit, look, kOutwards) : CellBorder();
+  const CellBorder beyond =
+      outside.empty() ? searchBand(frame, main, kBorderGap, limit, look, kOutwards) : CellBorder();
   CellBorder ooplasm = main;
   if (!outside.empty()) {
     layers.zona_outer = outside.back();
@@ -227,8 +150,11 @@ CellLayers findLayers(const Frame& frame, const CellBorder& main, const std::str
   }
   if (!layers.zona_outer.finding.hasValues()) {
     layers.ooplasm = refined(frame, ooplasm, 0, 0);
+    layers.zona_outer = faintBorder(frame, layers.ooplasm, limit * radiusOf(main));
+  }
+  if (!layers.zona_outer.finding.hasValues()) {
     warn(layers);
-    const bool ring = isRing(inside) || (isSecondBorder(inside) && inside.significance > kLeastSignificance) ||
+    const bool ring = isRing(inside) || (isSecondBorder(inside) && inside.significance > kBorderSignificance) ||
                       (isRing(beyond) && beyond.polarity != Polarity::kFalling);
     // The ooplasm is not always in the middle of its zona: the centre is in doubt too.
     if (ring && layers.ooplasm.finding.isFound())
@@ -241,6 +167,7 @@ CellLayers findLayers(const Frame& frame, const CellBorder& main, const std::str
   warn(layers);
   if (!fitLayersTo(frame, look, layers)) layers.zona_inner = innerBorder(frame, layers, ooplasm.ellipse, look);
   doubtWithinRing(frame, look, layers.zona_outer, largest);
+  doubtMixedLines(frame, look, layers.zona_outer);
   return layers;
 }
 
@@ -255,7 +182,8 @@ CellBorder follow(const Frame& frame, const CellBorder& previous, const cv::Poin
   // The flank that is searched is at the outer end of the rim.
   const double radius = radiusOf(previous), flank = 1 + place * previous.rim / radius;
   base.ellipse = scaled(base.ellipse, flank);
-  const PolarMap map(frame, base.ellipse, {-room, room, std::max(13, static_cast<int>(2 * room) + 1), kRays}, 2.0);
+  const PolarMap map(frame, base.ellipse, {-room, room, std::max(13, static_cast<int>(2 * room) + 1), kSearchRays},
+                     2.0);
   const CellBorder found = findBorder(frame, map, previous.polarity, {}, scaleOf(frame, map), toleranceFor(radius));
   const bool faded = found.contrast < kFaded * previous.contrast;
   if (!found.finding.hasValues() || found.coverage < kLeastCoverage || faded) return {};

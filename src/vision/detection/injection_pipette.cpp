@@ -22,12 +22,12 @@ constexpr double kTube = 0.1;                              // widening of a tube
 constexpr double kAgree = 6;                               // px, between two ways to see a tip's end
 constexpr double kApart = 0.25;  // standard deviation of an end over the distance between two ways to see it
 constexpr double kUnclear = 3;   // px, standard deviation of an end that needs a second witness
-constexpr double kThinnest = 4, kWidestTip = 40, kWidestSure = 34;  // px, half widths
+constexpr double kThinnest = 4, kWidestTip = 40, kWidestSure = 26;  // px, half widths
 constexpr double kAhead = 48;                // px behind the end, whose half width is that of the strips
 constexpr int kFirstShift = 24, kShift = 8;  // px, that an axis may be off
 constexpr double kMargin = 6;                // px beside an outline
 constexpr double kSureClearness = 9;         // of a tip
-constexpr double kSureSymmetry = 0.9;        // of the edges near a tip
+constexpr double kSureSymmetry = 0.93;       // of the edges near a tip
 constexpr int kRounds = 3;
 constexpr double kFitBehind = 48;  // px before an end, in the strip of its fit
 constexpr int kFitBefore = 18;     // px of the background that the fit needs
@@ -36,7 +36,8 @@ constexpr double kFitBlur = 0.4;            // px
 constexpr double kPlain = 0.5;              // misfit of a fit before a plain background, at most
 constexpr double kFitAgrees = 2;            // px, of a fit and an edge before another background
 constexpr double kSureDeviation = 0.6;      // px, of a fitted end
-constexpr double kFar = 5, kSureFar = 0.4;  // px, from where the edges end, and the deviation of an end that far
+constexpr double kSureCompressed = 0.25;    // px, the same of an end in a compressed image
+constexpr double kFar = 3, kSureFar = 0.4;  // px, from where the edges end, and the deviation of an end that far
 
 std::vector<double> outlines(const PipetteStrip& strip, const PipetteAxis& axis, double factor, double margin) {
   std::vector<double> half;
@@ -151,6 +152,8 @@ PipetteDetection refineInjection(const Frame& frame, PipetteAxis axis, const cv:
   if (found.clearness < kSureClearness)
     found.finding = Finding::uncertain("the tip is not clear before its background");
   fitEnd(frame, axis, outline, found, fit.offset_deviation);
+  if (isCompressed(frame.noise()) && found.deviationAlong() > kSureCompressed)
+    found.finding = Finding::uncertain("the image is compressed, and the tip fades into its background");
   if (found.half_width > kWidestSure) found.finding = Finding::uncertain("the pipette is too wide at its end");
   if (found.symmetry < kSureSymmetry) found.finding = Finding::uncertain("the pipette's walls are not symmetric");
   if (!frame.contains(found.end, 2)) found.finding = Finding::notFound("no pipette: its end is out of the image");

@@ -1,5 +1,6 @@
 #include "vision/detection/pipette_detection.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace microinjection {
@@ -9,6 +10,11 @@ void PipetteDetection::setCovariance(double along, double across) {
   Eigen::Matrix2d turn;
   turn << c, -s, s, c;
   covariance = turn * Eigen::Vector2d(along * along, across * across).asDiagonal() * turn.transpose();
+}
+
+double PipetteDetection::deviationAlong() const {
+  const Eigen::Vector2d axis(std::cos(direction), std::sin(direction));
+  return std::sqrt(std::max(0.0, axis.dot(covariance * axis)));
 }
 
 }  // namespace microinjection

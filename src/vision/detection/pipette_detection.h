@@ -21,6 +21,7 @@ struct PipetteDetection {
   /// Sets the covariance of the end for the direction as it is.
   /// @param along, across  px, standard deviations
   void setCovariance(double along, double across);
+  double deviationAlong() const;  ///< px, standard deviation of the end along the axis
 };
 
 }  // namespace microinjection

@@ -34,7 +34,6 @@ constexpr double kHopeless = 3;                // the same on the coarse grid, w
 constexpr double kWitness = 1.5;               // rows
 constexpr double kLocalReach = 1.5;            // rows, of the likelihood
 constexpr double kModelErrorOfRange = 0.006;   // of the range of grey values, rms, in an image without noise
-// Compression takes the noise away, and leaves its own errors where there are edges.
 constexpr double kNoiseless = 0.4 / 255, kCompressedErrorOfRange = 0.03;
 constexpr double kModelError = 0.1, kModelErrorOfBlur = 0.08;  // rows, of the blur: deviation without noise
 
@@ -93,7 +92,7 @@ Extent extentFor(const TipModel& model, const Extent& most) {
 
 /// Variance of the residuals of an end that the model describes.
 double describedVariance(double range, double noise) {
-  const double model = noise < kNoiseless ? kCompressedErrorOfRange : kModelErrorOfRange;
+  const double model = isCompressed(noise) ? kCompressedErrorOfRange : kModelErrorOfRange;
   return 0.5 * noise * noise + std::pow(model * range, 2);
 }
 
@@ -145,7 +144,7 @@ TipFit fitNear(const Tube& tube, const Place& place, double coarse, double noise
   fit.row = found.mean;
   fit.deviation = std::hypot(found.deviation, kModelError, kModelErrorOfBlur * best.model.blur);
   fit.misfit = found.variance / describedVariance(found.range, noise);
-  const double alike = fit.misfit < kDescribed && noise > kNoiseless ? kAmbiguous : kAmbiguousUndescribed;
+  const double alike = fit.misfit < kDescribed && !isCompressed(noise) ? kAmbiguous : kAmbiguousUndescribed;
   // Neither describes a background that is not plain.
   fit.ambiguous =
       std::abs(apart) > kApart && fit.misfit < kOther && std::abs(std::log(rival / kClearlyBetter)) < std::log(alike);
@@ -154,16 +153,18 @@ TipFit fitNear(const Tube& tube, const Place& place, double coarse, double noise
 
 }  // namespace
 
+bool isCompressed(double noise) { return noise < kNoiseless; }
+
 TipFit fitTip(const PipetteStrip& strip, const TipOutline& outline, double coarse, double noise) {
   const Tube tube{strip, outline};
   TipFit best = fitNear(tube, kUsual, coarse, noise);
   // The edges of a tube out of focus may end far before or behind its end.
   for (const double beside : {-kBesideEdges, kBesideEdges}) {
-    if (noise < kNoiseless || (best.valid && (best.misfit < kDescribed || best.misfit > kOther))) break;
+    if (isCompressed(noise) || (best.valid && (best.misfit < kDescribed || best.misfit > kOther))) break;
     const TipFit fit = fitNear(tube, kUsual, coarse + beside, noise);
     if (fit.valid && fit.misfit < (best.valid ? std::min(kDescribedBeside, best.misfit) : kDescribedBeside)) best = fit;
   }
-  if (noise < kNoiseless || (best.valid && best.misfit < kDescribed)) return best;
+  if (isCompressed(noise) || (best.valid && best.misfit < kDescribed)) return best;
   // What is before the end may be near it.
   const TipFit tight = fitNear(tube, kTight, coarse, noise);
   const double apart = std::abs(tight.row - coarse);

@@ -14,6 +14,10 @@ struct TipFit {
   bool ambiguous = false;  ///< in focus and out of focus explain the image as well, with other ends
 };
 
+/// Whether noise of this standard deviation is so small that a compression has taken it away. It leaves errors of its
+/// own at the edges.
+bool isCompressed(double noise);
+
 /// Finds the end of a tube by the model of tip_model.h, in focus or out of focus, whichever leaves
 /// less. The deviation is that of the end's likelihood. It grows when a point fades into its
 /// background.

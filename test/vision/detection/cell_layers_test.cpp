@@ -16,9 +16,10 @@ struct Seen {
   CellTruth truth;
 };
 
-Seen see(std::uint64_t seed, const std::string& look = "bright_field", double focus = 0) {
+Seen see(std::uint64_t seed, const std::string& look = "bright_field", double focus = 0, double gain = 40) {
   MicroscopeConfig microscope;
   microscope.look.kind = look;
+  microscope.sensor.gain = gain;
   SceneDrawConfig draw;
   draw.dimple = 0;
   draw.holding = draw.injection = 1;
@@ -55,6 +56,23 @@ TEST(CellLayers, DicShowsTheSameBorders) {
     EXPECT_LT(std::hypot(seen.cell.centre.x - seen.truth.centre.x(), seen.cell.centre.y - seen.truth.centre.y()), 0.15);
     ASSERT_TRUE(seen.cell.zona_inner.finding.isFound()) << seed << ": " << seen.cell.zona_inner.finding.reason;
     EXPECT_LT(errorOf(seen.cell.zona_inner, seen.truth.zona_inner), 0.5) << seed;
+  }
+}
+
+TEST(CellLayers, AnEllipseOnTwoLinesInDicIsNotSure) {
+  // The outer line of one side and the inner line of the other make an ellipse that is as clear as the right one.
+  for (const std::uint64_t seed : {119, 159, 593, 5058}) {
+    const CellDetection cell = see(seed, "dic").cell;
+    EXPECT_FALSE(cell.finding.isFound()) << seed;
+    EXPECT_FALSE(cell.size.isFound()) << seed;
+  }
+}
+
+TEST(CellLayers, TheZonasOuterBorderIsFoundUnderNoise) {
+  for (const std::uint64_t seed : {125, 130, 160, 183}) {
+    const Seen seen = see(seed, "bright_field", 0, 8);
+    ASSERT_TRUE(seen.cell.size.isFound()) << seed << ": " << seen.cell.size.reason;
+    EXPECT_NEAR(seen.cell.outer().ellipse.meanDiameter(), seen.truth.diameter, 0.003 * seen.truth.diameter) << seed;
   }
 }
 
