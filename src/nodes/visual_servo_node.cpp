@@ -23,8 +23,8 @@ constexpr char kSetpoints[] = "/teleop/servo_cp";
 
 const char* const VisualServoNode::kHelp =
     "visual_servo: brings the needle's tip to a pixel of the microscope's image.\n"
-    "In: vision/state, /needle/measured_cp, /controller/operating_state.\n"
-    "Out: /teleop/servo_cp; action visual_servo/go_to_pixel.\n";
+    "In: vision/state, /needle/measured_cp, /controller/operating_state, visual_servo/proposed_pixel.\n"
+    "Out: /teleop/servo_cp, visual_servo/proposed_point; action visual_servo/go_to_pixel.\n";
 
 VisualServoNode::Parameters VisualServoNode::readParameters(const ros::NodeHandle& private_node) {
   Parameters parameters;
@@ -40,6 +40,11 @@ VisualServoNode::VisualServoNode(ros::NodeHandle node, ros::NodeHandle private_n
     : parameters_(readParameters(private_node)),
       node_(node),
       watch_(node, parameters_.input_timeout),
+      proposed_point_(node.advertise<geometry_msgs::PointStamped>("visual_servo/proposed_point", 1, true)),
+      proposed_pixel_(subscribeGuarded<geometry_msgs::PointStamped>(
+          node, "visual_servo/proposed_pixel", 1,
+          [this](const geometry_msgs::PointStamped& message, const std::string&) { onProposal(message); },
+          StampRule::kAny)),
       others_(subscribeGuarded<geometry_msgs::PoseStamped>(
           node, kSetpoints, 1, [](const geometry_msgs::PoseStamped&, const std::string&) {})),
       action_(node, "visual_servo/go_to_pixel", false),
@@ -60,6 +65,24 @@ VisualServoNode::VisualServoNode(ros::NodeHandle node, ros::NodeHandle private_n
 }
 
 void VisualServoNode::run() { ros::spin(); }
+
+void VisualServoNode::onProposal(const geometry_msgs::PointStamped& message) {
+  geometry_msgs::PointStamped point;
+  point.header.frame_id = kWorldFrame;
+  const std::optional<Eigen::Vector3d> position = watch_.position();
+  const Eigen::Vector2d pixel(message.point.x, message.point.y);
+  // What is not known is not drawn; the action gives the reason when it is asked to go there.
+  if (!message.header.stamp.isZero() && pixel.allFinite() && position) {
+    try {
+      const CameraCalibration calibration = readCalibration(calibrationPath(parameters_.calibration));
+      point.point = toMessage<geometry_msgs::Point>(calibration.placeFor(pixel, position->y()));
+      point.header.stamp = ros::Time::now();
+    } catch (const ConfigError& error) {
+      ROS_WARN("a place is proposed, and the camera is not calibrated: %s", error.what());
+    }
+  }
+  proposed_point_.publish(point);
+}
 
 void VisualServoNode::onGoal() {
   const auto goal = action_.acceptNewGoal();

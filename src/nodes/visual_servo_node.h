@@ -3,6 +3,7 @@
 #include <actionlib/server/simple_action_server.h>
 #include <cell_microinjection/GoToPixelAction.h>
 #include <diagnostic_updater/diagnostic_updater.h>
+#include <geometry_msgs/PointStamped.h>
 #include <ros/ros.h>
 
 #include <memory>
@@ -18,8 +19,11 @@ namespace microinjection {
 /// Brings the tip to a pixel (visual servoing). It takes the hand's place: its set-points go through
 /// the controller, whose limits and guards hold.
 ///
-/// In:  vision/state, /needle/measured_cp, /controller/operating_state
-/// Out: /teleop/servo_cp while a goal is active; the action visual_servo/go_to_pixel (GoToPixel)
+/// In:  vision/state, /needle/measured_cp, /controller/operating_state; visual_servo/proposed_pixel, a place that
+///      nobody has confirmed yet (px; stamp 0: none)
+/// Out: /teleop/servo_cp while a goal is active; visual_servo/proposed_point, where the tip would be at the proposed
+///      pixel (m, world, at the needle's present y; stamp 0: none, or not known); the action visual_servo/go_to_pixel
+///      (GoToPixel)
 ///
 /// Parameters: config/visual_servo.yaml
 class VisualServoNode {
@@ -37,6 +41,7 @@ class VisualServoNode {
   };
   static Parameters readParameters(const ros::NodeHandle& private_node);
 
+  void onProposal(const geometry_msgs::PointStamped& message);
   void onGoal();
   void begin(const Eigen::Vector2d& pixel);  ///< throws ConfigError with the reason for a refusal
   bool isEngaged();
@@ -53,7 +58,9 @@ class VisualServoNode {
   ros::SteadyTime accepted_, began_;                 ///< of the goal, and of the connection to the controller
   std::unique_ptr<ImageApproach> approach_;          ///< null: the controller has not engaged yet
   ros::Publisher setpoints_;                         ///< while a goal is active, so that a hand finds the topic free
-  ros::Subscriber others_;                           ///< counts the publishers of the set-points
+  ros::Publisher proposed_point_;
+  ros::Subscriber proposed_pixel_;
+  ros::Subscriber others_;  ///< counts the publishers of the set-points
   MasterMonitor master_{true};
   actionlib::SimpleActionServer<cell_microinjection::GoToPixelAction> action_;
   diagnostic_updater::Updater diagnostics_;

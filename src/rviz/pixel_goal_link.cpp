@@ -1,6 +1,7 @@
 #include "rviz/pixel_goal_link.h"
 
 #include <cell_microinjection/GoToPixelAction.h>
+#include <geometry_msgs/PointStamped.h>
 
 #include "operation/console/figures.h"
 #include "rviz/session_clock.h"
@@ -38,6 +39,7 @@ PixelGoalLink::PixelGoalLink() {
       "controller/injection_state", 1,
       boost::function<void(const cell_microinjection::InjectionStatus::ConstPtr&)>(
           [this](const auto&) { onInjection(); }));
+  proposed_ = node_.advertise<geometry_msgs::PointStamped>("visual_servo/proposed_pixel", 1, true);
   runner_ = std::make_unique<Runner>(
       node_, "visual_servo/go_to_pixel", textOf,
       [this](const std::string& text) {
@@ -66,10 +68,23 @@ void PixelGoalLink::propose(const Eigen::Vector2d& pixel) {
   goal_.pixel = pixel;
   proposed_at_ = sessionNow();
   report_ = {};
+  publish();
 }
 
 void PixelGoalLink::discard() {
-  if (!goal_.under_way) goal_.pixel.reset();
+  if (goal_.under_way || !goal_.pixel) return;
+  goal_.pixel.reset();
+  publish();
+}
+
+void PixelGoalLink::publish() {
+  geometry_msgs::PointStamped message;
+  if (goal_.pixel) {
+    message.header.stamp = ros::Time::now();
+    message.point.x = goal_.pixel->x();
+    message.point.y = goal_.pixel->y();
+  }
+  proposed_.publish(message);
 }
 
 void PixelGoalLink::go() {
@@ -105,7 +120,7 @@ void PixelGoalLink::onInjection() {
 
 void PixelGoalLink::end(bool success, const std::string& message) {
   goal_.under_way = false;
-  goal_.pixel.reset();
+  discard();
   report_ = {success ? Light::kGreen : Light::kRed, success ? "the tip is there" : message};
 }
 

@@ -16,8 +16,9 @@ namespace microinjection {
 
 /// Has the needle led to a pixel, and follows it on its way.
 ///
-/// In: controller/operating_state (at each change), controller/injection_state (ten times a second);
-///     action: /visual_servo/go_to_pixel
+/// In:  controller/operating_state (at each change), controller/injection_state (ten times a second);
+///      action: /visual_servo/go_to_pixel
+/// Out: visual_servo/proposed_pixel (px; stamp 0: none), latched
 ///
 /// A place is forgotten when the way to it ends, however it ends, when the controller leaves ENABLED,
 /// and after a minute: nobody shall press Go for a click of long ago.
@@ -43,6 +44,7 @@ class PixelGoalLink {
  private:
   class Runner;
   SessionView session() const;
+  void publish();
   void onOperating(const cell_microinjection::OperatingState& message);
   void onInjection();
   void end(bool success, const std::string& message);
@@ -54,6 +56,7 @@ class PixelGoalLink {
   ros::CallbackQueue queue_;
   ros::NodeHandle node_;
   ros::Subscriber operating_, injection_;
+  ros::Publisher proposed_;
   std::unique_ptr<Runner> runner_;
 };
 

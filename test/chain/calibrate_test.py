@@ -14,7 +14,7 @@ import yaml
 from actionlib_msgs.msg import GoalStatus
 from cell_microinjection.msg import (CalibrateAction, CalibrateGoal, GoToPixelAction, GoToPixelGoal, OperatingState,
                                      StringStamped, VisionState)
-from geometry_msgs.msg import PoseStamped
+from geometry_msgs.msg import Point, PointStamped, PoseStamped
 from std_srvs.srv import Trigger
 
 PATIENCE = 300  # s
@@ -115,6 +115,7 @@ class CalibrateTest(unittest.TestCase):
         servo = actionlib.SimpleActionClient("/visual_servo/go_to_pixel", GoToPixelAction)
         self.assertTrue(servo.wait_for_server(rospy.Duration(PATIENCE)))
         target = GoToPixelGoal(x=640, y=200)
+        proposed = self.point_for(target)
 
         def go():
             servo.send_goal(target)
@@ -129,6 +130,24 @@ class CalibrateTest(unittest.TestCase):
         self.assertLess(result.distance, 1)
         tip = self.seen["/vision/state"].injection_pipette
         self.assertLess(np.hypot(tip.x - target.x, tip.y - target.y), 2)
+        needle = rospy.wait_for_message("/needle/measured_cp", PoseStamped, PATIENCE).pose.position
+        # The motors stand beside the tip by the backlash, at most.
+        self.assertLess(np.hypot(proposed.x - needle.x, proposed.z - needle.z), 1.5 * BACKLASH)
+
+    def point_for(self, pixel):
+        """Where the tip would be at a proposed pixel (m, world). What is proposed no more is no place."""
+        points = []
+        subscriber = rospy.Subscriber("/visual_servo/proposed_point", PointStamped, points.append)
+        pixels = rospy.Publisher("/visual_servo/proposed_pixel", PointStamped, queue_size=1, latch=True)
+        message = PointStamped(point=Point(pixel.x, pixel.y, 0))
+        message.header.stamp = rospy.Time.now()
+        pixels.publish(message)
+        self.until(lambda: points and not points[-1].header.stamp.is_zero(), "a proposed point")
+        point = points[-1].point
+        pixels.publish(PointStamped())
+        self.until(lambda: points[-1].header.stamp.is_zero(), "no proposed point")
+        subscriber.unregister()
+        return point
 
     def test_refuses_while_the_controller_may_command(self):
         self.command(self.controller, "/controller/operating_state", "enable", "ENABLED")
