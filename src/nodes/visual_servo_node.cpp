@@ -17,6 +17,8 @@ namespace {
 constexpr double kPatience = 10;   // s, for the controller to connect
 constexpr double kEngaging = 0.5;  // s: the controller counts a hand's targets from the first that it has received
 constexpr double kPeriod = 0.005;  // s of wall time: the controller takes a target of 0.05 s ago for stale
+constexpr double kForgotten = 60;  // s, after a click
+constexpr double kProposalPeriod = 0.2;  // s
 constexpr char kSetpoints[] = "/teleop/servo_cp";
 
 }  // namespace
@@ -43,8 +45,7 @@ VisualServoNode::VisualServoNode(ros::NodeHandle node, ros::NodeHandle private_n
       proposed_point_(node.advertise<geometry_msgs::PointStamped>("visual_servo/proposed_point", 1, true)),
       proposed_pixel_(subscribeGuarded<geometry_msgs::PointStamped>(
           node, "visual_servo/proposed_pixel", 1,
-          [this](const geometry_msgs::PointStamped& message, const std::string&) { onProposal(message); },
-          StampRule::kAny)),
+          [this](const geometry_msgs::PointStamped& message, const std::string&) { onProposal(message); })),
       others_(subscribeGuarded<geometry_msgs::PoseStamped>(
           node, kSetpoints, 1, [](const geometry_msgs::PoseStamped&, const std::string&) {})),
       action_(node, "visual_servo/go_to_pixel", false),
@@ -67,21 +68,35 @@ VisualServoNode::VisualServoNode(ros::NodeHandle node, ros::NodeHandle private_n
 void VisualServoNode::run() { ros::spin(); }
 
 void VisualServoNode::onProposal(const geometry_msgs::PointStamped& message) {
+  proposal_.reset();
+  const Eigen::Vector2d pixel(message.point.x, message.point.y);
+  if (!message.header.stamp.isZero() && pixel.allFinite())
+    proposal_ = {pixel, ros::SteadyTime::now(), readCalibration(calibrationPath(parameters_.calibration))};
+}
+
+std::optional<Eigen::Vector3d> VisualServoNode::proposedPoint() const {
+  const std::optional<Eigen::Vector3d> position = watch_.position();
+  if (!proposal_ || !position) return std::nullopt;
+  const CameraCalibration& calibration = proposal_->calibration;
+  const Eigen::Vector3d place = calibration.placeFor(proposal_->pixel, position->y());
+  // As for the way itself, the image says where the tip is now: it may have moved on its holder.
+  const std::optional<SeenTip> tip = watch_.tip();
+  return tip ? *position + place - calibration.placeFor(tip->pixel, position->y()) : place;
+}
+
+void VisualServoNode::publishProposal() {
+  const ros::SteadyTime now = ros::SteadyTime::now();
+  if (proposal_ && secondsBetween(proposal_->received, now) > kForgotten) proposal_.reset();
+  const std::optional<Eigen::Vector3d> place = proposedPoint();
+  if (!place && !proposal_published_) return;
+  if (place && secondsBetween(proposal_published_at_, now) < kProposalPeriod) return;
   geometry_msgs::PointStamped point;
   point.header.frame_id = kWorldFrame;
-  const std::optional<Eigen::Vector3d> position = watch_.position();
-  const Eigen::Vector2d pixel(message.point.x, message.point.y);
-  // What is not known is not drawn; the action gives the reason when it is asked to go there.
-  if (!message.header.stamp.isZero() && pixel.allFinite() && position) {
-    try {
-      const CameraCalibration calibration = readCalibration(calibrationPath(parameters_.calibration));
-      point.point = toMessage<geometry_msgs::Point>(calibration.placeFor(pixel, position->y()));
-      point.header.stamp = ros::Time::now();
-    } catch (const ConfigError& error) {
-      ROS_WARN("a place is proposed, and the camera is not calibrated: %s", error.what());
-    }
-  }
+  if (place) point.header.stamp = ros::Time::now();
+  if (place) point.point = toMessage<geometry_msgs::Point>(*place);
   proposed_point_.publish(point);
+  proposal_published_ = place.has_value();
+  proposal_published_at_ = now;
 }
 
 void VisualServoNode::onGoal() {
@@ -122,6 +137,7 @@ void VisualServoNode::publish(const Eigen::Vector3d& setpoint, const ros::Time& 
 void VisualServoNode::step() {
   diagnostics_.update();
   endIfOrphaned(master_);
+  publishProposal();
   if (!calibration_) return;
   if (watch_.controller().state != "ENABLED") return finish(false, "the controller is " + watch_.controller().state);
   if (others_.getNumPublishers() > 1) return finish(false, std::string("another node publishes ") + kSetpoints);

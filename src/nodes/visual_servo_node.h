@@ -19,11 +19,12 @@ namespace microinjection {
 /// Brings the tip to a pixel (visual servoing). It takes the hand's place: its set-points go through
 /// the controller, whose limits and guards hold.
 ///
-/// In:  vision/state, /needle/measured_cp, /controller/operating_state; visual_servo/proposed_pixel, a place that
-///      nobody has confirmed yet (px; stamp 0: none)
-/// Out: /teleop/servo_cp while a goal is active; visual_servo/proposed_point, where the tip would be at the proposed
-///      pixel (m, world, at the needle's present y; stamp 0: none, or not known); the action visual_servo/go_to_pixel
-///      (GoToPixel)
+/// In:  vision/state, /needle/measured_cp, /controller/operating_state; visual_servo/proposed_pixel, where a click
+/// wants
+///      the tip (px; stamp 0: nowhere; forgotten after a minute)
+/// Out: /teleop/servo_cp while a goal is active; visual_servo/proposed_point, the needle's position that has the tip at
+///      the proposed pixel (m, world, at its present y; stamp 0: none, or not known); the action
+///      visual_servo/go_to_pixel (GoToPixel)
 ///
 /// Parameters: config/visual_servo.yaml
 class VisualServoNode {
@@ -42,6 +43,8 @@ class VisualServoNode {
   static Parameters readParameters(const ros::NodeHandle& private_node);
 
   void onProposal(const geometry_msgs::PointStamped& message);
+  std::optional<Eigen::Vector3d> proposedPoint() const;  ///< m; none: nothing is proposed, or the place is not known
+  void publishProposal();
   void onGoal();
   void begin(const Eigen::Vector2d& pixel);  ///< throws ConfigError with the reason for a refusal
   bool isEngaged();
@@ -58,7 +61,15 @@ class VisualServoNode {
   ros::SteadyTime accepted_, began_;                 ///< of the goal, and of the connection to the controller
   std::unique_ptr<ImageApproach> approach_;          ///< null: the controller has not engaged yet
   ros::Publisher setpoints_;                         ///< while a goal is active, so that a hand finds the topic free
+  struct Proposal {
+    Eigen::Vector2d pixel{0, 0};  ///< px
+    ros::SteadyTime received;
+    CameraCalibration calibration;
+  };
+  std::optional<Proposal> proposal_;
   ros::Publisher proposed_point_;
+  bool proposal_published_ = false;
+  ros::SteadyTime proposal_published_at_;
   ros::Subscriber proposed_pixel_;
   ros::Subscriber others_;  ///< counts the publishers of the set-points
   MasterMonitor master_{true};

@@ -40,6 +40,7 @@ PixelGoalLink::PixelGoalLink() {
       boost::function<void(const cell_microinjection::InjectionStatus::ConstPtr&)>(
           [this](const auto&) { onInjection(); }));
   proposed_ = node_.advertise<geometry_msgs::PointStamped>("visual_servo/proposed_pixel", 1, true);
+  publish();  // what a console of before has proposed is forgotten
   runner_ = std::make_unique<Runner>(
       node_, "visual_servo/go_to_pixel", textOf,
       [this](const std::string& text) {
@@ -48,7 +49,7 @@ PixelGoalLink::PixelGoalLink() {
       [this](bool success, const std::string& message) { end(success, message); });
 }
 
-PixelGoalLink::~PixelGoalLink() = default;
+PixelGoalLink::~PixelGoalLink() { proposed_.publish(geometry_msgs::PointStamped()); }
 
 void PixelGoalLink::poll() {
   queue_.callAvailable(ros::WallDuration(0));

@@ -79,8 +79,10 @@ bool isRing(const CellBorder& border) {
   return border.finding.hasValues() && border.significance > kRingSignificance && border.coverage > kRingCoverage;
 }
 
-CellBorder faintBorder(const Frame& frame, const CellBorder& inner, double limit) {
-  const std::optional<double> ring = findFaintRing(frame, inner.ellipse, kBorderGap, limit / radiusOf(inner));
+CellBorder faintBorder(const Frame& frame, const CellBorder& inner, double least, double limit,
+                       const std::string& look) {
+  if (look == "dic") return {};
+  const std::optional<double> ring = findFaintRing(frame, inner.ellipse, least, limit / radiusOf(inner));
   if (!ring) return {};
   const Ellipse base = scaled(inner.ellipse, *ring);
   const PolarMap map(frame, base, {-kBesideRing, kBesideRing, static_cast<int>(2 * kBesideRing) + 1, kSearchRays},
@@ -97,7 +99,9 @@ std::vector<CellBorder> bordersOutside(const Frame& frame, const CellBorder& mai
   while (low + 0.03 < limit && found.size() < 3) {
     CellBorder next = searchBand(frame, main, low, limit, look, kOutwards);
     if (!isSecondBorder(next) || next.significance < kBorderSignificance) {
-      next = faintBorder(frame, found.empty() ? main : found.back(), limit * radiusOf(main));
+      // Near a zona's border that was found, a ring is its halo.
+      const CellBorder& inner = found.empty() ? main : found.back();
+      next = faintBorder(frame, inner, found.empty() ? kBorderGap : kNear, limit * radiusOf(main), look);
       if (next.finding.hasValues()) found.push_back(next);
       break;
     }

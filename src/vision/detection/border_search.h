@@ -34,9 +34,12 @@ bool isSecondBorder(const CellBorder& border);
 /// Whether a faint ring is there at all.
 bool isRing(const CellBorder& border);
 
-/// A border that noise hides in each direction alone, where all directions together show a ring about `inner`.
+/// A border that noise hides in each direction alone, where all directions together show a dark ring about `inner`. In
+/// DIC there is none: its two sides cancel.
+/// @param least  ratio to the radius of `inner`
 /// @param limit  px, largest radius
-CellBorder faintBorder(const Frame& frame, const CellBorder& inner, double limit);
+CellBorder faintBorder(const Frame& frame, const CellBorder& inner, double least, double limit,
+                       const std::string& look);
 /// Borders that are farther out, up to `limit` (ratio to the main one's radius): the last is the zona's outer border,
 /// one before it the inner.
 std::vector<CellBorder> bordersOutside(const Frame& frame, const CellBorder& main, double limit,

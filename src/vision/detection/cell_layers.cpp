@@ -109,6 +109,11 @@ void doubtMixedLines(const Frame& frame, const std::string& look, CellBorder& ou
   outer.centred = false;
 }
 
+void doubtOuter(const Frame& frame, const std::string& look, CellBorder& outer, double largest) {
+  doubtWithinRing(frame, look, outer, largest);
+  doubtMixedLines(frame, look, outer);
+}
+
 }  // namespace
 
 CellBorder findMainBorder(const Frame& frame, const cv::Point2d& centre, double radius, const std::string& look) {
@@ -146,11 +151,14 @@ CellLayers findLayers(const Frame& frame, const CellBorder& main, const std::str
     CellLayers within = layers;
     within.zona_outer = refined(frame, main, kZonaPlace, 0.35 * (radiusOf(main) - radiusOf(inside)));
     within.ooplasm = refined(frame, inside, kOoplasmPlace, kWidestRim * radiusOf(inside));
-    if (fitLayersTo(frame, look, within) && within.ooplasm.finding.isFound()) return within;
+    if (fitLayersTo(frame, look, within) && within.ooplasm.finding.isFound()) {
+      doubtOuter(frame, look, within.zona_outer, largest);
+      return within;
+    }
   }
   if (!layers.zona_outer.finding.hasValues()) {
     layers.ooplasm = refined(frame, ooplasm, 0, 0);
-    layers.zona_outer = faintBorder(frame, layers.ooplasm, limit * radiusOf(main));
+    layers.zona_outer = faintBorder(frame, layers.ooplasm, kBorderGap, limit * radiusOf(main), look);
   }
   if (!layers.zona_outer.finding.hasValues()) {
     warn(layers);
@@ -166,8 +174,7 @@ CellLayers findLayers(const Frame& frame, const CellBorder& main, const std::str
   layers.zona_outer = refined(frame, layers.zona_outer, kZonaPlace, 0.35 * gap);
   warn(layers);
   if (!fitLayersTo(frame, look, layers)) layers.zona_inner = innerBorder(frame, layers, ooplasm.ellipse, look);
-  doubtWithinRing(frame, look, layers.zona_outer, largest);
-  doubtMixedLines(frame, look, layers.zona_outer);
+  doubtOuter(frame, look, layers.zona_outer, largest);
   return layers;
 }
 
@@ -220,6 +227,7 @@ CellLayers followLayers(const Frame& frame, const CellLayers& previous, const st
   layers.zona_inner = previous.zona_inner;
   layers.zona_inner.ellipse.centre += layers.zona_outer.line.centre - previous.zona_outer.line.centre;
   refitLayersTo(frame, look, previous, layers);
+  doubtMixedLines(frame, look, layers.zona_outer);
   return layers;
 }
 

@@ -13,7 +13,7 @@ namespace {
 constexpr int kSectors = 12, kRaysOfSector = 15;
 constexpr int kLeastRays = 8;                     // inside of the image, of a sector
 constexpr int kInner = 1, kBeside = 4, kFar = 6;  // px, of a line and the background beside it
-constexpr double kLeastSize = 0.015;              // of the range of grey values, of a line
+constexpr double kLeastSize = 0.015;              // of the format's range of grey values, of a line
 constexpr double kLeastOfScatter = 7;             // the same, over what the profile has elsewhere
 constexpr double kNormal = 1.4826;                // standard deviation over the median of the sizes
 

@@ -31,6 +31,7 @@ constexpr double kSureSymmetry = 0.93;       // of the edges near a tip
 constexpr int kRounds = 3;
 constexpr double kFitBehind = 48;  // px before an end, in the strip of its fit
 constexpr int kFitBefore = 18;     // px of the background that the fit needs
+constexpr int kFitShaft = 14;      // px of the shaft
 constexpr int kFitRows = 110, kFitHalf = 24;
 constexpr double kFitBlur = 0.4;            // px
 constexpr double kPlain = 0.5;              // misfit of a fit before a plain background, at most
@@ -76,7 +77,8 @@ void fitEnd(const Frame& frame, const PipetteAxis& axis, const TipOutline& outli
   shape.half = kFitHalf;
   const PipetteStrip strip(frame, shape, kFitBlur, kFitBlur);
   // Beyond the frame's border its last pixels are repeated, and a fit to these is too good.
-  if (!strip.inside(static_cast<int>(kFitBehind) - kFitBefore)) {
+  if (!strip.inside(static_cast<int>(kFitBehind) - kFitBefore) ||
+      !strip.inside(static_cast<int>(kFitBehind) + kFitShaft)) {
     found.finding = Finding::uncertain("the tip is at the border of the frame");
     return;
   }
@@ -152,8 +154,8 @@ PipetteDetection refineInjection(const Frame& frame, PipetteAxis axis, const cv:
   if (found.clearness < kSureClearness)
     found.finding = Finding::uncertain("the tip is not clear before its background");
   fitEnd(frame, axis, outline, found, fit.offset_deviation);
-  if (isCompressed(frame.noise()) && found.deviationAlong() > kSureCompressed)
-    found.finding = Finding::uncertain("the image is compressed, and the tip fades into its background");
+  if (found.finding.isFound() && isCompressed(frame.noise()) && found.deviationAlong() > kSureCompressed)
+    found.finding = Finding::uncertain("the image has no noise, as a compressed one, and the tip is not clear");
   if (found.half_width > kWidestSure) found.finding = Finding::uncertain("the pipette is too wide at its end");
   if (found.symmetry < kSureSymmetry) found.finding = Finding::uncertain("the pipette's walls are not symmetric");
   if (!frame.contains(found.end, 2)) found.finding = Finding::notFound("no pipette: its end is out of the image");

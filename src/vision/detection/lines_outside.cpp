@@ -11,8 +11,9 @@ namespace microinjection {
 namespace {
 
 constexpr int kSectors = 12, kRaysOfSector = 15;
-constexpr int kBeside = 3;      // px, that the line of a border is wide, to both sides
-constexpr double kReach = 0.1;  // of the radius
+constexpr int kBeside = 3;       // px, that the line of a border is wide, to both sides
+constexpr int kLeastReach = 15;  // px
+constexpr double kReach = 0.1;   // of the radius
 constexpr int kThird = 2;
 constexpr double kSmoothing = 1;  // px
 
@@ -33,7 +34,7 @@ double largestSlope(const PolarMap& map, int sector, int first, int last) {
 }  // namespace
 
 double linesOutside(const Frame& frame, const Ellipse& border) {
-  const int reach = static_cast<int>(kReach * 0.5 * border.meanDiameter());
+  const int reach = std::max(kLeastReach, static_cast<int>(kReach * 0.5 * border.meanDiameter()));
   const int columns = kBeside + reach + 1;
   const PolarMap map(frame, border, {-kBeside, static_cast<double>(reach), columns, kSectors * kRaysOfSector},
                      kSmoothing);

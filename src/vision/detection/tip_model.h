@@ -53,8 +53,8 @@ class TipWindow {
 /// The end face across: 1 within the outline that the rows behind `end` have, blurred.
 struct EndFace {
   SharedColumns whole, narrower;  ///< the second of a tube that is a little narrower
-  /// rows, of a rim: half of the radius, since pulled glass keeps the ratio of its wall. A wider and fainter rim would
-  /// describe a thin tube as well, with an end that is farther out.
+  /// rows, of a rim: half of the radius less its blur. The wall of a pulled pipette is at most half of its radius, as
+  /// that of the capillary was. A wider and fainter rim would describe a thin tube as well, with an end farther out.
   double widest_rim = 0;
 
   EndFace(const TipWindow& window, double end, double blur);

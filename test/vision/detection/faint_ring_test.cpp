@@ -44,7 +44,7 @@ TEST(FaintRing, ABarAcrossIsNone) {
   EXPECT_FALSE(findFaintRing(Frame(bar), kBase, 1.03, 1.5));
 }
 
-TEST(FaintRing, NeedsRoom) { EXPECT_FALSE(findFaintRing(Frame(image(1.2, 12)), kBase, 1.19, 1.21)); }
+TEST(FaintRing, NeedsRoomBesideItself) { EXPECT_FALSE(findFaintRing(Frame(image(1.2, 12)), kBase, 1.12, 1.27)); }
 
 }  // namespace
 }  // namespace microinjection
