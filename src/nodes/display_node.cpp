@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -67,12 +69,14 @@ const char* const DisplayNode::kHelp =
     "display: shows the scene in rviz, ten thousand times enlarged.\n"
     "In: /cell/state /force_sensor/measured_cf /haptic/measured_cp /controller/injection_state /cell/estimate,\n"
     "tf of world, cell, needle_tip and the rig.\n"
-    "Out: viz/markers viz/still (MarkerArray), tf below viz/world.\n";
+    "Also viz/set_view (DisplayView).\n"
+    "Out: viz/markers viz/still (MarkerArray), viz/view, tf below viz/world.\n";
 
 DisplayNode::DisplayNode(ros::NodeHandle node, ros::NodeHandle private_node)
     : config_(readConfig(private_node)),
       scene_(config_),
       frames_(node, {"cell", "holding_pipette", "manipulator_base"}, config_.enlargement),
+      trail_(config_.trail),
       inputs_{{{"/cell/state", true},
                {"/force_sensor/measured_cf", true},
                {"/haptic/measured_cp", false},
@@ -83,6 +87,12 @@ DisplayNode::DisplayNode(ros::NodeHandle node, ros::NodeHandle private_node)
   state_.readout.state = "waiting for the cell";
   markers_ = node.advertise<visualization_msgs::MarkerArray>("viz/markers", 5);
   fixed_markers_ = node.advertise<visualization_msgs::MarkerArray>("viz/still", 1, true);
+  view_ = node.advertise<cell_microinjection::DisplayView>("viz/view", 1, true);
+  state_.colour = *surfaceQuantity(config_.colour);
+  state_.section = config_.section;
+  publishView();
+  const auto receiveView = [this](const auto& message, const std::string&) { onView(message); };
+  subscribers_.push_back(subscribeGuarded<cell_microinjection::DisplayView>(node, "viz/set_view", 1, receiveView));
   subscribe(node, kState, &DisplayNode::onState);
   subscribe(node, kMeasured, &DisplayNode::onMeasuredForce);
   subscribe(node, kHand, &DisplayNode::onHand);
@@ -125,9 +135,29 @@ void DisplayNode::onState(const cell_microinjection::CellState& message) {
   state_.cell_frame = message.header.frame_id.empty() ? "cell" : message.header.frame_id;
   state_.surface = std::move(surface);
   state_.members = std::move(members);
+  state_.solid = toSolid(message);
+  state_.borders = toBorders(message);
   state_.holes.clear();
   for (const auto& hole : message.holes) state_.holes.push_back(toVector(hole));
   cell_changed_ = true;
+}
+
+void DisplayNode::onView(const cell_microinjection::DisplayView& message) {
+  if (!message.colour.empty()) {
+    const auto colour = surfaceQuantity(message.colour);
+    if (!colour) throw std::runtime_error("there is no colour \"" + message.colour.substr(0, 40) + "\"");
+    state_.colour = *colour;
+  }
+  state_.section = message.section != 0;
+  cell_changed_ = true;
+  publishView();
+}
+
+void DisplayNode::publishView() {
+  cell_microinjection::DisplayView view;
+  view.colour = surfaceQuantities()[static_cast<std::size_t>(state_.colour)];
+  view.section = state_.section;
+  view_.publish(view);
 }
 
 void DisplayNode::findTipTransform() {
@@ -170,11 +200,16 @@ void DisplayNode::draw() {
   frames_.update();
   findTipTransform();
   if (secondsBetween(inputs_[kEstimate].received, start) > kStaleAge) state_.readout.puncture = std::nullopt;
-  if (state_.tip) frames_.publishNeedleTip(*state_.tip);
+  if (state_.tip) {
+    frames_.publishNeedleTip(*state_.tip);
+    if (config_.trail > 0) trail_.add(start.toSec(), state_.tip->translation());
+  }
   if (markers_.getNumSubscribers() > 0) {
     visualization_msgs::MarkerArray markers;
+    if (state_.section) state_.tip_in_cell = frames_.find(state_.cell_frame, "needle_tip");
     if (cell_changed_) scene_.drawCell(state_, markers);
     cell_changed_ = false;
+    state_.trail = trail_.lines(config_.enlargement);
     scene_.drawMoving(state_, markers);
     markers_.publish(markers);
   }
@@ -203,6 +238,7 @@ void DisplayNode::reportDrawing(diagnostic_updater::DiagnosticStatusWrapper& sta
   }
   status.add("rate (Hz of wall time)", rate);
   status.add("rate wanted (Hz)", config_.rate);
+  if (!scene_.colourReason().empty()) status.add("colour is the displacement's, because", scene_.colourReason());
   status.add("longest drawing (ms)", 1e3 * longest_drawing_);
   reported_ = now;
   drawings_ = 0;

@@ -2,6 +2,7 @@
 
 #include <cell_microinjection/CellEstimate.h>
 #include <cell_microinjection/CellState.h>
+#include <cell_microinjection/DisplayView.h>
 #include <cell_microinjection/InjectionStatus.h>
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <geometry_msgs/PoseStamped.h>
@@ -15,6 +16,7 @@
 #include "nodes/display/display_frames.h"
 #include "nodes/display/display_scene.h"
 #include "nodes/runtime/master_monitor.h"
+#include "operation/display/tip_trail.h"
 
 namespace microinjection {
 
@@ -22,8 +24,9 @@ namespace microinjection {
 ///
 /// In:  /cell/state (with the predicted force), /force_sensor/measured_cf, /haptic/measured_cp,
 ///      /controller/injection_state, /cell/estimate, and from tf the frames of the rig with needle_tip, which saves
-///      poses at 1 kHz
-/// Out: viz/markers, viz/still (MarkerArray; the second, for rare changes, is latched: an rviz that
+///      poses at 1 kHz; viz/set_view (DisplayView)
+/// Out: viz/view (DisplayView, latched), viz/markers, viz/still (MarkerArray; the second, for rare changes, is latched:
+/// an rviz that
 ///      draws slowly skips messages of the first), tf of viz/{cell, holding_pipette,
 ///      manipulator_base, needle_tip} below viz/world
 ///
@@ -53,6 +56,8 @@ class DisplayNode {
   void onInjection(const cell_microinjection::InjectionStatus& message);
   void onEstimate(const cell_microinjection::CellEstimate& message);
   void onHand(const geometry_msgs::PoseStamped& message);
+  void onView(const cell_microinjection::DisplayView& message);
+  void publishView();
   void onMeasuredForce(const geometry_msgs::WrenchStamped& message);
   template <typename Message>
   void subscribe(const ros::NodeHandle& node, InputId input, void (DisplayNode::*handler)(const Message&));
@@ -67,6 +72,7 @@ class DisplayNode {
   DisplayScene scene_;
   DisplayFrames frames_;
   DisplayedState state_;  ///< the latest input
+  TipTrail trail_;
   MasterMonitor master_{true};
   bool cell_changed_ = false;  ///< since the cell was drawn
   std::array<Input, kInputs> inputs_;
@@ -76,7 +82,7 @@ class DisplayNode {
   unsigned drawings_ = 0;       ///< since reported_
   double longest_drawing_ = 0;  ///< s of wall time, since reported_
 
-  ros::Publisher markers_, fixed_markers_;
+  ros::Publisher markers_, fixed_markers_, view_;
   std::vector<ros::Subscriber> subscribers_;
   diagnostic_updater::Updater diagnostics_;
   ros::WallTimer timer_;

@@ -23,6 +23,7 @@
 #include "rviz/lamp_row.h"
 #include "rviz/score_box.h"
 #include "rviz/steps_widget.h"
+#include "rviz/view_row.h"
 
 namespace microinjection {
 namespace {
@@ -125,6 +126,7 @@ QWidget* ConsolePanel::makeCell() {
   auto* box = new QWidget(this);
   QVBoxLayout* layout = column(box);
   layout->addWidget(heading("Cell", box));
+  layout->addWidget(view_ = new ViewRow(box));
   layout->addWidget(served_ = new ElidedLabel(2, box));
   layout->addWidget(estimate_ = new LampRow("Estimate", 2, box));
   layout->addWidget(puncture_ = new ElidedLabel(1, box));
@@ -188,6 +190,7 @@ void ConsolePanel::showParts(const std::string& words) {
   parts_ = ConsoleParts::read(words);
   for (const ConsolePart part : kConsoleParts) box(part)->setVisible(parts_.has(part));
   if (!link_) return;
+  if (parts_.has(ConsolePart::kCell)) view_->start();
   if (parts_.has(ConsolePart::kHand)) hand_->start();
   if (parts_.has(ConsolePart::kCalibration)) calibration_->start();
   if (parts_.has(ConsolePart::kScore)) score_->start(*link_);
@@ -229,6 +232,7 @@ void ConsolePanel::showState() {
   served_->setText(served.empty() ? "the served cell is not known" : QString::fromStdString(served));
   force_guard_->display(forceMargin(session));
   depth_guard_->display(depthMargin(session));
+  view_->refresh();
   hand_->refresh();
   calibration_->refresh(session);
   score_->refresh();

@@ -21,6 +21,7 @@ class HandBox;
 class LampRow;
 class ScoreBox;
 class StepsWidget;
+class ViewRow;
 
 /// The operator's console: a panel of rviz with the state of the injection, the commands with their
 /// reasons, lamps of the devices, guards, and the force against time and depth.
@@ -69,6 +70,7 @@ class ConsolePanel : public rviz::Panel {
   HandBox* hand_ = nullptr;
   CalibrationBox* calibration_ = nullptr;
   ScoreBox* score_ = nullptr;
+  ViewRow* view_ = nullptr;
   std::array<LampRow*, kDevices.size()> devices_{};
   ElidedLabel *served_ = nullptr, *puncture_ = nullptr;
   LampRow *estimate_ = nullptr, *injector_ = nullptr;

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A tilted needle is shown where it is, at x 1e4, with the force on it in its own direction."""
+"""A tilted needle is shown where it is, at x 1e4, with the force on it in its own direction; the cell as it is asked for."""
 
 import time
 import unittest
@@ -7,12 +7,14 @@ import unittest
 import numpy as np
 import rospy
 import rostest
-from geometry_msgs.msg import TransformStamped, WrenchStamped
+from cell_microinjection.msg import CellState, DisplayView
+from geometry_msgs.msg import Point32, TransformStamped, WrenchStamped
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker, MarkerArray
 
 PATIENCE = 30  # s
 SCALE = 1e4
+YOUNG, STRETCH = 10e3, 1.1  # Pa; 1
 TIP, TILT = np.array([5e-6, -3e-6, 40e-6]), 0.4  # m; rad about y
 AXIS = np.array([np.sin(TILT), 0, np.cos(TILT)])  # of the pipette, `world`
 
@@ -26,10 +28,27 @@ def transform(child, position=(0, 0, 0), tilt=0.0):
     return message
 
 
+def stretched(stretch):
+    """A cell, an octahedron of 28 um, that is that much larger than at rest: a shell of it is without pressure."""
+    state = CellState()
+    state.header.frame_id, state.header.stamp = "cell", rospy.Time.now()
+    corners = 28e-6 * np.array([[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]])
+    state.rest_vertices = [Point32(*corner) for corner in corners]
+    state.vertices = [Point32(*corner) for corner in stretch * corners]
+    state.triangles = [0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4, 1, 0, 5, 2, 1, 5, 3, 2, 5, 0, 3, 5]
+    state.displacement = [(stretch - 1) * 28e-6] * 6
+    state.parameter_names, state.parameter_values = ["young_modulus", "poisson_ratio"], [YOUNG, 0.49]
+    state.material, state.layer_radii, state.converged = "neo_hookean", [28e-6, 24e-6], True
+    return state
+
+
 class DisplayTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.frames, cls.markers = {}, {}
+        cls.frames, cls.markers, cls.texts, cls.view = {}, {}, {}, None
+        cls.cell = rospy.Publisher("/cell/state", CellState, queue_size=1)
+        cls.set_view = rospy.Publisher("/viz/set_view", DisplayView, queue_size=1)
+        rospy.Subscriber("/viz/view", DisplayView, cls.on_view)
         cls.tf = rospy.Publisher("/tf", TFMessage, queue_size=10)
         cls.force = rospy.Publisher("/force_sensor/measured_cf", WrenchStamped, queue_size=1)
         rospy.Subscriber("/tf", TFMessage, cls.on_frames)
@@ -43,12 +62,18 @@ class DisplayTest(unittest.TestCase):
     @classmethod
     def on_markers(cls, message):
         cls.markers.update({marker.ns: marker for marker in message.markers})
+        cls.texts.update({(marker.ns, marker.id): marker.text for marker in message.markers})
+        cls.markers.update({f"{marker.ns} {marker.id}": marker for marker in message.markers})
+
+    @classmethod
+    def on_view(cls, message):
+        cls.view = message
 
     def until(self, condition, what):
         end = time.monotonic() + PATIENCE
         while not condition():
             self.assertLess(time.monotonic(), end, f"{what}: not within {PATIENCE} s")
-            self.tf.publish(TFMessage([transform("needle_tip", TIP, TILT), transform("holding_pipette")]))
+            self.tf.publish(TFMessage([transform("needle_tip", TIP, TILT), transform("holding_pipette"), transform("cell")]))
             force = WrenchStamped()
             force.header.frame_id, force.header.stamp = "needle_tip", rospy.Time.now()
             force.wrench.force.z = 2e-6
@@ -68,6 +93,45 @@ class DisplayTest(unittest.TestCase):
         heights = np.array([point.z for point in pipette.points])
         self.assertAlmostEqual(heights.min(), 0, delta=0.1)  # it reaches from the tip out of the cell
         self.assertGreater(heights.max(), 1)
+
+    def is_drawn(self, marker):
+        return marker in self.markers and self.markers[marker].action == Marker.ADD
+
+    def show(self, view, title):
+        """Publishes a cell until the legend has this title."""
+        def shown():
+            self.cell.publish(stretched(STRETCH))
+            self.set_view.publish(view)
+            return title in self.texts.values()
+        self.until(shown, f"the legend of {title}")
+        self.until(lambda: self.view is not None and self.view.section == view.section, "the view")
+
+    def test_colour_is_that_of_the_stress(self):
+        self.show(DisplayView(colour="von_mises_stress"), "von Mises stress")
+        figures = [float(self.texts["legend_labels", i]) for i in range(5)]
+        # A sheet stretched by a in both directions, nearly incompressible: mu (a^2 - 1/a^4).
+        stress = YOUNG / 3 * (STRETCH**2 - STRETCH**-4) / 1e3
+        self.assertEqual(figures[0], 0)
+        self.assertGreater(figures[4], 0.97 * stress)
+        self.assertLess(figures[4], 1.5 * stress)
+        self.assertEqual(self.view.colour, "von_mises_stress")
+        self.show(DisplayView(colour="pressure"), "pressure")
+        self.assertLess(float(self.texts["legend_labels", 0]), 0)
+        # What there is not changes nothing.
+        self.set_view.publish(DisplayView(colour="temperature"))
+        self.show(DisplayView(colour="displacement"), "displacement")
+
+    def test_cut(self):
+        self.show(DisplayView(colour="displacement", section=True), "displacement")
+        self.until(lambda: self.is_drawn("section 1"), "the cut face of the second layer")
+        outer, inner = (np.array([[p.x, p.y, p.z] for p in self.markers[f"section {i}"].points]) for i in (0, 1))
+        self.assertAlmostEqual(abs(outer).max(), SCALE * STRETCH * 28e-6, delta=0.06)
+        self.assertLess(abs(inner).max(), abs(outer).max() - 0.01)  # a border of a facetted cell
+        tilted = np.array([TIP[0], TIP[1], TIP[2]])
+        for point in outer:  # in the plane through the tip that contains the pipette's axis and faces the viewer
+            self.assertAlmostEqual(point[1], SCALE * tilted[1], delta=0.01)
+        self.show(DisplayView(colour="displacement"), "displacement")
+        self.until(lambda: not self.is_drawn("section 0"), "the whole cell")
 
     def arrow(self):
         """One of a force that came when the needle's frame was known: before, it counts as along the world's axes."""

@@ -35,14 +35,21 @@ class CellModel {
     Eigen::Vector3d from = Eigen::Vector3d::Zero(), to = Eigen::Vector3d::Zero();  ///< m
     double force = 0;                                                              ///< N, positive in tension
   };
+  /// A triangle of the border between a layer and the one inside of it, if the model has any.
+  struct BorderTriangle {
+    std::array<int, 3> vertices;  ///< of DeformedSurface::border_vertices
+    int layer = 0;                ///< whose outer surface it is, 1 for the second from outside
+  };
   /// The deformed surface. Vertices correspond between calls.
   struct DeformedSurface {
-    std::vector<Eigen::Vector3d> vertices;        ///< m
-    std::vector<double> displacement;             ///< m, magnitude
-    std::vector<std::uint32_t> contact_vertices;  ///< vertices that move with the tip
-    std::vector<Member> members;                  ///< correspond between calls
-    std::vector<Eigen::Vector3d> holes;           ///< m, punctures of the outermost layer, positions at rest
-    std::shared_ptr<const Scene> scene;           ///< whose force is felt; null if it is that of the start
+    std::vector<Eigen::Vector3d> vertices;         ///< m
+    std::vector<Eigen::Vector3d> at_rest;          ///< m, the same vertices without a needle
+    std::vector<double> displacement;              ///< m, magnitude
+    std::vector<std::uint32_t> contact_vertices;   ///< vertices that move with the tip
+    std::vector<Member> members;                   ///< correspond between calls
+    std::vector<Eigen::Vector3d> border_vertices;  ///< m, of the borders between layers
+    std::vector<Eigen::Vector3d> holes;            ///< m, punctures of the outermost layer, positions at rest
+    std::shared_ptr<const Scene> scene;            ///< whose force is felt; null if it is that of the start
   };
   /// Progress of the needle into the cell.
   struct Insertion {
@@ -79,6 +86,7 @@ class CellModel {
 
   virtual std::vector<std::array<int, 3>> triangles() const = 0;  ///< of the surface, counter-clockwise outside
   virtual std::vector<std::uint32_t> held() const = 0;            ///< vertices of the surface in the holding pipette
+  virtual std::vector<BorderTriangle> borders() const { return {}; }  ///< between layers
   /// Surface at the last step. One thread of any priority may call it while another one steps;
   /// neither blocks.
   virtual DeformedSurface deformedSurface() = 0;

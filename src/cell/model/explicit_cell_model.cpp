@@ -182,7 +182,8 @@ CellModel::DeformedSurface ExplicitCellModel::deformedSurface() {
   shape_.update();
   const Shape& shape = shape_.value();
   DeformedSurface picture;
-  picture.vertices = cell_->surface().vertices;
+  picture.at_rest = cell_->surface().vertices;
+  picture.vertices = picture.at_rest;
   picture.displacement.resize(picture.vertices.size(), 0);
   for (std::size_t i = 0; i < shape.displacement.size(); ++i) {
     picture.vertices[i] += shape.displacement[i];

@@ -50,6 +50,8 @@ class TipPath {
   /// Struts and cables in the present state, if the cell has any, in the order of
   /// OnlineCell::undeformedMembers().
   virtual std::vector<CellModel::Member> members() const { return {}; }
+  /// Present positions of OnlineCell::Surface::border_vertices, m.
+  virtual std::vector<Eigen::Vector3d> borderVertices() const { return {}; }
 };
 
 /// A cell whose equations are solved while the needle moves. Immutable, safe to share between
@@ -61,6 +63,9 @@ class OnlineCell {
     std::vector<Eigen::Vector3d> vertices;      ///< m
     std::vector<std::array<int, 3>> triangles;  ///< counter-clockwise seen from outside
     std::vector<std::uint32_t> held;            ///< vertices in the holding pipette
+    /// Of the borders between layers, where the cell has them in its mesh.
+    std::vector<Eigen::Vector3d> border_vertices;  ///< m
+    std::vector<CellModel::BorderTriangle> borders;
   };
 
   virtual ~OnlineCell() = default;

@@ -154,9 +154,11 @@ CellModel::DeformedSurface OnlineCellModel::deformedSurface() {
     Eigen::Vector3d moved = Eigen::Vector3d::Zero();
     if (shape.solution) moved = shape.solution->displacement.segment<3>(3 * i);
     const bool own_rest = shape.solution && shape.solution->rest;
-    surface.vertices.emplace_back((own_rest ? (*shape.solution->rest)[i] : rest_.vertices[i]) + moved);
+    surface.at_rest.push_back(own_rest ? (*shape.solution->rest)[i] : rest_.vertices[i]);
+    surface.vertices.emplace_back(surface.at_rest[i] + moved);
     surface.displacement.push_back(moved.norm());
   }
+  surface.border_vertices = shape.solution ? shape.solution->border_vertices : rest_.border_vertices;
   surface.members = shape.solution ? shape.solution->members : members_at_rest_;
   if (shape.contact_point) surface.contact_vertices = cell_->onSurface(shape.contact_point->patch);
   return surface;

@@ -43,6 +43,7 @@ class OnlineCellModel : public CellModel {
   std::optional<Solution> solution(double time) const override;
   std::vector<std::array<int, 3>> triangles() const override;
   std::vector<std::uint32_t> held() const override;
+  std::vector<BorderTriangle> borders() const override { return rest_.borders; }
   DeformedSurface deformedSurface() override;
 
   const TipPatch& patch() const {

@@ -42,6 +42,13 @@ class SweptPath : public TipPath {
     auto rest = std::make_shared<std::vector<Eigen::Vector3d>>();
     for (int node : nodes_) rest->push_back(problem_.body().mesh().nodes[node]);
     rest_ = std::move(rest);
+    for (int layer = 1; layer < static_cast<int>(scene.cell.layers.size()); ++layer) {
+      const LayerSurface border = layerSurface(problem_.body().mesh(), layer);
+      const int first = static_cast<int>(border_nodes_.size());
+      border_nodes_.insert(border_nodes_.end(), border.nodes.begin(), border.nodes.end());
+      for (const Eigen::Vector3i& t : border.triangles)
+        borders_.push_back({{first + t[0], first + t[1], first + t[2]}, layer});
+    }
   }
 
   IndentationSolution follow(const TipMotion& move) override {
@@ -63,13 +70,24 @@ class SweptPath : public TipPath {
     return result;
   }
 
+  std::vector<Eigen::Vector3d> borderVertices() const override {
+    std::vector<Eigen::Vector3d> result;
+    for (int node : border_nodes_) {
+      result.emplace_back(problem_.body().mesh().nodes[node] + problem_.state().segment<3>(3 * node));
+    }
+    return result;
+  }
+
   const CellProblem<3>& problem() const { return problem_; }
+  const std::vector<CellModel::BorderTriangle>& borders() const { return borders_; }
 
  private:
   double piece_;  ///< m
   ContactTime clock_;
   CellProblem<3> problem_;
   std::vector<int> nodes_;  ///< of the outer surface
+  std::vector<int> border_nodes_;
+  std::vector<CellModel::BorderTriangle> borders_;
   std::shared_ptr<const std::vector<Eigen::Vector3d>> rest_;
 };
 
@@ -90,6 +108,8 @@ OnlineFemCell::OnlineFemCell(const Scene& scene) : scene_(scene) {
     surface_.vertices = *path.rest();
     const QuadraticMesh<3>& mesh = path.problem().body().mesh();
     for (const Eigen::Vector3i& t : outerTriangles(mesh)) surface_.triangles.push_back({t[0], t[1], t[2]});
+    surface_.border_vertices = path.borderVertices();
+    surface_.borders = path.borders();
     elements_ = static_cast<int>(mesh.elements.size());
     unknowns_ = path.problem().unknowns();
   } catch (const std::invalid_argument& error) {

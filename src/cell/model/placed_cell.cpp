@@ -22,6 +22,8 @@ CellModel::DeformedSurface PlacedCell::deformedSurface() {
   const Eigen::Vector3d shift(0, 0, height_);
   if (shift.isZero(0)) return surface;
   for (Eigen::Vector3d& vertex : surface.vertices) vertex += shift;
+  for (Eigen::Vector3d& vertex : surface.at_rest) vertex += shift;
+  for (Eigen::Vector3d& vertex : surface.border_vertices) vertex += shift;
   for (Eigen::Vector3d& hole : surface.holes) hole += shift;
   for (Member& member : surface.members) {
     member.from += shift;

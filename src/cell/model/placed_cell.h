@@ -37,6 +37,7 @@ class PlacedCell : public CellModel {
   std::optional<Solution> solution(double time) const override { return cell_.solution(time); }
   std::vector<std::array<int, 3>> triangles() const override { return cell_.triangles(); }
   std::vector<std::uint32_t> held() const override { return cell_.held(); }
+  std::vector<BorderTriangle> borders() const override { return cell_.borders(); }
   DeformedSurface deformedSurface() override;
 
  private:

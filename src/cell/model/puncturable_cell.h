@@ -48,6 +48,7 @@ class PuncturableCell : public CellModel {
   std::optional<Solution> solution(double time) const override;
   std::vector<std::array<int, 3>> triangles() const override { return cell_->triangles(); }
   std::vector<std::uint32_t> held() const override { return cell_->held(); }
+  std::vector<BorderTriangle> borders() const override { return cell_->borders(); }
   DeformedSurface deformedSurface() override;
 
  private:

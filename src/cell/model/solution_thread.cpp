@@ -86,6 +86,7 @@ std::shared_ptr<const CellSolution> SolutionThread::solve(const Request& request
   solution->rest = path_->rest();
   solution->displacement = path_->surfaceDisplacement();
   solution->members = path_->members();
+  solution->border_vertices = path_->borderVertices();
   const auto unused = [](const auto& given) { return given.use_count() == 1; };
   published_.erase(std::remove_if(published_.begin(), published_.end(), unused), published_.end());
   published_.push_back(solution);

@@ -20,6 +20,7 @@ struct CellSolution {
   std::shared_ptr<const std::vector<Eigen::Vector3d>> rest;  ///< see TipPath
   Eigen::VectorXd displacement;                              ///< m, xyz of each vertex of the surface
   std::vector<CellModel::Member> members;
+  std::vector<Eigen::Vector3d> border_vertices;  ///< m
 };
 
 /// Follows a tip in a separate thread, which also makes the equations of each contact point. The

@@ -144,6 +144,7 @@ CellModel::DeformedSurface SurrogateCellModel::deformedSurface() {
   DeformedSurface surface;
   surface.scene = drawn.scene;
   for (Eigen::Index i = 0; i < rest.cols(); ++i) {
+    surface.at_rest.emplace_back(rest.col(i));
     surface.vertices.emplace_back(rest.col(i) + displaced.col(i));
     surface.displacement.push_back(displaced.col(i).norm());
   }

@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "cell/model/cell_parameters.h"
+#include "cell/model/touching_vertices.h"
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/real_time.h"
 
@@ -11,6 +12,24 @@ namespace microinjection {
 namespace {
 
 constexpr char kCellFrame[] = "cell";
+
+std::vector<geometry_msgs::Point32> toPoints(const std::vector<Eigen::Vector3d>& vertices) {
+  std::vector<geometry_msgs::Point32> points(vertices.size());
+  std::transform(vertices.begin(), vertices.end(), points.begin(),
+                 [](const Eigen::Vector3d& vertex) { return toMessage<geometry_msgs::Point32>(vertex); });
+  return points;
+}
+
+void fillCell(const Scene& scene, cell_microinjection::CellState& state) {
+  for (const CellParameter& parameter : cellParameters(scene)) {
+    state.parameter_names.push_back(parameter.name);
+    state.parameter_values.push_back(parameter.value);
+  }
+  state.layer_radii = scene.cell.outerRadii();
+  if (scene.cell.tensegrity) return;
+  state.material = scene.cell.material().model;
+  state.mooney_ratio = scene.cell.material().mooney_ratio;
+}
 
 }  // namespace
 
@@ -27,6 +46,11 @@ CellStatePublisher::CellStatePublisher(PlacedCell& cell, const Scene& scene,
   undeformed_.header.frame_id = kCellFrame;
   for (const auto& triangle : cell_.triangles()) {
     undeformed_.triangles.insert(undeformed_.triangles.end(), triangle.begin(), triangle.end());
+  }
+  for (const CellModel::BorderTriangle& triangle : cell_.borders()) {
+    undeformed_.border_triangles.insert(undeformed_.border_triangles.end(), triangle.vertices.begin(),
+                                        triangle.vertices.end());
+    undeformed_.border_layers.push_back(static_cast<std::uint32_t>(triangle.layer));
   }
   undeformed_.held_vertices = cell_.held();
   undeformed_.layers = cell_.layers();
@@ -59,17 +83,19 @@ void CellStatePublisher::run() {
   }
 }
 
-void CellStatePublisher::fillSurface(cell_microinjection::CellState& state) {
+void CellStatePublisher::fillSurface(const CellMoment& moment, cell_microinjection::CellState& state) {
   const CellModel::DeformedSurface picture = cell_.deformedSurface();
-  state.vertices.resize(picture.vertices.size());
-  std::transform(picture.vertices.begin(), picture.vertices.end(), state.vertices.begin(),
-                 [](const Eigen::Vector3d& vertex) { return toMessage<geometry_msgs::Point32>(vertex); });
+  const Scene& scene = picture.scene ? *picture.scene : scene_;
+  state.vertices = toPoints(picture.vertices);
+  state.rest_vertices = toPoints(picture.at_rest);
+  state.border_vertices = toPoints(picture.border_vertices);
   state.displacement.assign(picture.displacement.begin(), picture.displacement.end());
   state.contact_vertices = picture.contact_vertices;
-  for (const CellParameter& parameter : cellParameters(picture.scene ? *picture.scene : scene_)) {
-    state.parameter_names.push_back(parameter.name);
-    state.parameter_values.push_back(parameter.value);
+  if (moment.contact && state.contact_vertices.empty() && !moment.insertion.inside) {
+    const Eigen::Vector3d tip = moment.contact->contact_point + moment.contact->displacement;
+    state.contact_vertices = touchingVertices(scene.needle.tip, tip, picture.vertices);
   }
+  fillCell(scene, state);
   state.parameter_names.push_back(PlacedCell::kName);
   state.parameter_values.push_back(cell_.height());
   for (const Eigen::Vector3d& hole : picture.holes) state.holes.push_back(toMessage<geometry_msgs::Point>(hole));
@@ -84,7 +110,7 @@ void CellStatePublisher::fillSurface(cell_microinjection::CellState& state) {
 void CellStatePublisher::publish(const CellMoment& moment) {
   cell_microinjection::CellState state = undeformed_;
   state.header.stamp = moment.now;
-  fillSurface(state);
+  fillSurface(moment, state);
   if (moment.contact) {
     state.in_contact = true;
     state.contact_point = toMessage<geometry_msgs::Point>(moment.contact->contact_point);

@@ -50,7 +50,7 @@ class CellStatePublisher {
  private:
   void run();
   void publish(const CellMoment& moment);
-  void fillSurface(cell_microinjection::CellState& state);
+  void fillSurface(const CellMoment& moment, cell_microinjection::CellState& state);
 
   PlacedCell& cell_;
   Scene scene_;

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <map>
+#include <utility>
 
 #include "nodes/runtime/conversions.h"
 
@@ -14,10 +17,27 @@ CellSurface toSurface(const cell_microinjection::CellState& message) {
     const auto* t = &message.triangles[i];
     surface.triangles.push_back({static_cast<int>(t[0]), static_cast<int>(t[1]), static_cast<int>(t[2])});
   }
+  for (const auto& p : message.rest_vertices) surface.at_rest.push_back(toVector(p));
   surface.displacement.assign(message.displacement.begin(), message.displacement.end());
   surface.contact_vertices.assign(message.contact_vertices.begin(), message.contact_vertices.end());
   surface.held_vertices.assign(message.held_vertices.begin(), message.held_vertices.end());
   return surface;
+}
+
+std::vector<CellBorder> toBorders(const cell_microinjection::CellState& message) {
+  std::map<int, CellBorder> borders;
+  for (std::size_t i = 0; i < message.border_layers.size() && 3 * i + 2 < message.border_triangles.size(); ++i) {
+    const auto* t = &message.border_triangles[3 * i];
+    const int layer = static_cast<int>(message.border_layers[i]);
+    borders[layer].triangles.push_back({static_cast<int>(t[0]), static_cast<int>(t[1]), static_cast<int>(t[2])});
+  }
+  std::vector<CellBorder> result;
+  for (auto& [layer, border] : borders) {
+    border.layer = layer;
+    for (const auto& p : message.border_vertices) border.vertices.push_back(toVector(p));
+    if (border.drawable()) result.push_back(std::move(border));
+  }
+  return result;
 }
 
 std::optional<double> cellParameter(const cell_microinjection::CellState& message, const std::string& name) {

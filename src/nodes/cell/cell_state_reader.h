@@ -4,13 +4,18 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "operation/display/cell_border.h"
 #include "operation/display/cell_surface.h"
 
 namespace microinjection {
 
 /// The deformed surface of a message, in its frame; see CellSurface::defect().
 CellSurface toSurface(const cell_microinjection::CellState& message);
+
+/// The borders between layers that the message has and that can be drawn.
+std::vector<CellBorder> toBorders(const cell_microinjection::CellState& message);
 
 /// Value (SI) of a parameter of the felt cell; empty when the message has no such name, or its value
 /// is not finite.

@@ -18,21 +18,28 @@ constexpr Colour kMeasured{0.95f, 0.40f, 0.80f, 1};
 constexpr Colour kText{0.92f, 0.94f, 0.97f, 1};
 constexpr Colour kAlarm{1.00f, 0.45f, 0.35f, 1};
 
-constexpr double kSmallestRange = 1e-6;                     // m, of the colour scale, above the noise
 constexpr float kMembrane = 0.25f;                          // opacity, of a cell with struts and cables inside
 constexpr double kForceAbove = 0.2;                         // display units, from the tip to a force's arrow
 constexpr double kHole = 0.03;                              // display units; not to scale
 constexpr double kStrutWidth = 0.016, kCableWidth = 0.006;  // display units; not to scale
+constexpr double kTrailWidth = 0.008;                       // display units; not to scale
 constexpr double kGaugeHeight = 0.4;                        // display units, of the expected puncture's depth
 const Eigen::Vector3d kGaugeTop(0.68, 0, -0.42);            // display units
 const std::string kWorld = "viz/world";
 
 }  // namespace
 
-DisplayScene::DisplayScene(const DisplayConfig& config)
-    : config_(config),
-      colour_range_(config.colour_range > 0 ? config.colour_range : kSmallestRange),
-      holding_(config.holding_pipette) {}
+DisplayScene::DisplayScene(const DisplayConfig& config) : config_(config), holding_(config.holding_pipette) {
+  chooseScale(SurfaceQuantity::kDisplacement, {});
+}
+
+void DisplayScene::chooseScale(SurfaceQuantity quantity, const std::vector<double>& values) {
+  const double given = quantity == SurfaceQuantity::kDisplacement ? config_.colour_range : config_.stress_range;
+  double& end = scale_ends_[static_cast<std::size_t>(quantity)];
+  end = given > 0 ? given : std::max(end, scaleEnd(quantity, values));
+  fixed_changed_ = fixed_changed_ || quantity != scale_.quantity || end != scale_.high;
+  scale_ = {quantity, end};
+}
 
 void DisplayScene::drawForce(const std::string& name, const DisplayedState& state,
                              const std::optional<Eigen::Vector3d>& force, double beside, const Colour& colour,
@@ -51,6 +58,7 @@ void DisplayScene::drawMoving(const DisplayedState& state, visualization_msgs::M
   const double beside = 1.6 * config_.injection_pipette.shaft_radius;
   drawForce("predicted_force", state, state.predicted, -beside, kPredicted, markers);
   drawForce("measured_force", state, state.measured, beside, kMeasured, markers);
+  markers.markers.push_back(lineMarker({kWorld, "trail"}, state.trail, kTrailWidth));
   drawPuncture(state, markers);
   drawReadout(state, markers);
 }
@@ -98,27 +106,51 @@ void DisplayScene::drawReadout(const DisplayedState& state, visualization_msgs::
 void DisplayScene::drawCell(const DisplayedState& state, visualization_msgs::MarkerArray& markers) {
   if (!state.surface) return;
   const CellSurface& surface = *state.surface;
-  if (config_.colour_range == 0) {
-    const double range = niceCeiling(std::max(kSmallestRange, surface.largestDisplacement()));
-    if (range > colour_range_) {
-      colour_range_ = range;
-      fixed_changed_ = true;
-    }
-  }
+  SurfaceQuantity quantity = state.colour;
+  std::optional<DisplayedStress> stress;
+  std::string reason;
+  const bool estimates_border = state.section && state.borders.empty();
+  if (quantity != SurfaceQuantity::kDisplacement || estimates_border)
+    stress = stressOf(surface, state.solid, state.predicted, reason);
+  colour_reason_ = quantity != SurfaceQuantity::kDisplacement ? reason : "";
+  const std::vector<double> values = valuesOf(surface, stress, quantity);
+  chooseScale(quantity, valuesForScale(surface, quantity, values));
+  drawSkin(state, stress, values, markers);
   const std::string frame = "viz/" + state.cell_frame;
-  TriangleSoup skin = colouredSurface(surface, colour_range_, config_.enlargement);
-  if (!state.members.kinds.empty()) {
-    for (Colour& colour : skin.colours) colour.a = kMembrane;
-    drawMembers(state.members, frame, markers);
-  }
-  markers.markers.push_back(triangleMarker({frame, "cell"}, skin, {1, 1, 1, 1}));
-  markers.markers.push_back(sphereMarker(
-      {frame, "contact"}, pointsAt(surface, surface.contact_vertices, config_.enlargement), 0.008, kContact));
+  if (!state.members.kinds.empty()) drawMembers(state.members, frame, markers);
   std::vector<Eigen::Vector3d> holes;
   for (const Eigen::Vector3d& hole : state.holes) holes.push_back(toDisplay(hole, config_.enlargement));
   markers.markers.push_back(sphereMarker({frame, "holes"}, holes, kHole, kAlarm));
-  if (config_.edges)
-    markers.markers.push_back(lineMarker({frame, "edges"}, edges(surface, 0.0015, config_.enlargement), 0.001, kEdge));
+}
+
+void DisplayScene::drawSkin(const DisplayedState& state, const std::optional<DisplayedStress>& stress,
+                            const std::vector<double>& values, visualization_msgs::MarkerArray& markers) {
+  const CellSurface& surface = *state.surface;
+  const std::string frame = "viz/" + state.cell_frame;
+  TriangleSoup skin = colouredSurface(surface, values, scale_, config_.enlargement);
+  LineList mesh;
+  if (config_.edges) mesh = edges(surface, 0.0015, config_.enlargement);
+  std::vector<Eigen::Vector3d> contact = pointsAt(surface, surface.contact_vertices, config_.enlargement);
+  // Members are inside of a membrane that is seen through, as it is.
+  if (!state.members.kinds.empty()) {
+    for (Colour& colour : skin.colours) colour.a = kMembrane;
+  }
+  if (state.section && state.members.kinds.empty()) {
+    const Eigen::Isometry3d tip = state.tip_in_cell.value_or(Eigen::Isometry3d::Identity());
+    CutPlane plane = CutPlane::along(tip.translation(), tip.linear().col(2));
+    drawSection(frame, surface, bordersOf(surface, state.borders, state.solid, stress), plane, config_.enlargement,
+                markers);
+    plane.point = toDisplay(plane.point, config_.enlargement);
+    skin = remains(skin, plane);
+    mesh = remains(mesh, plane);
+    const auto removed = [&](const Eigen::Vector3d& point) { return plane.height(point) > 0; };
+    contact.erase(std::remove_if(contact.begin(), contact.end(), removed), contact.end());
+  } else {
+    removeSection(frame, markers);
+  }
+  markers.markers.push_back(triangleMarker({frame, "cell"}, skin, {1, 1, 1, 1}));
+  markers.markers.push_back(sphereMarker({frame, "contact"}, contact, 0.005, kContact));
+  if (config_.edges) markers.markers.push_back(lineMarker({frame, "edges"}, mesh, 0.001, kEdge));
 }
 
 void DisplayScene::drawMembers(const CellMembers& members, const std::string& frame,
@@ -130,7 +162,7 @@ void DisplayScene::drawMembers(const CellMembers& members, const std::string& fr
 }
 
 void DisplayScene::drawLegend(visualization_msgs::MarkerArray& markers) const {
-  const Legend legend = displacementLegend({0.68, 0, -0.25}, 0.5, colour_range_);
+  const Legend legend = colourLegend({0.68, 0, -0.25}, 0.5, scale_);
   markers.markers.push_back(triangleMarker({kWorld, "legend"}, legend.bar, {1, 1, 1, 1}));
   int id = 0;
   for (const Legend::Label& label : legend.labels) {

@@ -23,6 +23,7 @@ std::string CellSurface::defect() const {
   const std::size_t size = vertices.size();
   if (size == 0 || triangles.empty()) return "surface is empty";
   if (displacement.size() != size) return "displacement has another length than vertices";
+  if (!at_rest.empty() && at_rest.size() != size) return "rest_vertices has another length than vertices";
   for (const auto& triangle : triangles) {
     if (!indicesFit({triangle.begin(), triangle.end()}, size)) return "triangles name a vertex that is not there";
   }
@@ -30,12 +31,9 @@ std::string CellSurface::defect() const {
   if (!indicesFit(held_vertices, size)) return "held_vertices name a vertex that is not there";
   for (std::size_t i = 0; i < size; ++i) {
     if (!vertices[i].allFinite() || !std::isfinite(displacement[i])) return "surface is not finite";
+    if (!at_rest.empty() && !at_rest[i].allFinite()) return "surface at rest is not finite";
   }
   return "";
-}
-
-double CellSurface::largestDisplacement() const {
-  return displacement.empty() ? 0 : *std::max_element(displacement.begin(), displacement.end());
 }
 
 std::vector<Eigen::Vector3d> vertexNormals(const CellSurface& surface) {
@@ -50,7 +48,8 @@ std::vector<Eigen::Vector3d> vertexNormals(const CellSurface& surface) {
   return normals;
 }
 
-TriangleSoup colouredSurface(const CellSurface& surface, double range, double enlargement) {
+TriangleSoup colouredSurface(const CellSurface& surface, const std::vector<double>& values, const ColourScale& scale,
+                             double enlargement) {
   const std::vector<Eigen::Vector3d> normals = vertexNormals(surface);
   TriangleSoup soup;
   soup.points.reserve(3 * surface.triangles.size());
@@ -58,8 +57,7 @@ TriangleSoup colouredSurface(const CellSurface& surface, double range, double en
   for (const auto& triangle : surface.triangles) {
     for (const int vertex : triangle) {
       soup.points.push_back(toDisplay(surface.vertices[vertex], enlargement));
-      soup.colours.push_back(
-          shaded(colourOfFraction(surface.displacement[vertex] / range), lampLight(normals[vertex])));
+      soup.colours.push_back(shaded(scale.colour(values[vertex]), lampLight(normals[vertex])));
     }
   }
   return soup;

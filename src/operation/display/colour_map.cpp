@@ -23,16 +23,32 @@ constexpr std::array<Colour, 13> kViridis = {{{0.230f, 0.322f, 0.546f},
                                               {0.846f, 0.887f, 0.100f},
                                               {0.993f, 0.906f, 0.144f}}};
 
-}  // namespace
+/// Moreland's map in steps of a quarter.
+constexpr std::array<Colour, 9> kDiverging = {{{0.230f, 0.299f, 0.754f},
+                                               {0.384f, 0.510f, 0.918f},
+                                               {0.552f, 0.691f, 0.996f},
+                                               {0.722f, 0.813f, 0.975f},
+                                               {0.865f, 0.865f, 0.865f},
+                                               {0.955f, 0.772f, 0.680f},
+                                               {0.958f, 0.604f, 0.482f},
+                                               {0.870f, 0.396f, 0.314f},
+                                               {0.706f, 0.016f, 0.150f}}};
 
-Colour colourOfFraction(double fraction) {
-  const double position = std::clamp(fraction, 0.0, 1.0) * (kViridis.size() - 1);
-  const std::size_t lower = std::min(static_cast<std::size_t>(position), kViridis.size() - 2);
+template <std::size_t Size>
+Colour interpolated(const std::array<Colour, Size>& table, double fraction) {
+  const double position = std::clamp(fraction, 0.0, 1.0) * (Size - 1);
+  const std::size_t lower = std::min(static_cast<std::size_t>(position), Size - 2);
   const float weight = static_cast<float>(position - static_cast<double>(lower));
-  const Colour& a = kViridis[lower];
-  const Colour& b = kViridis[lower + 1];
+  const Colour& a = table[lower];
+  const Colour& b = table[lower + 1];
   return {a.r + weight * (b.r - a.r), a.g + weight * (b.g - a.g), a.b + weight * (b.b - a.b), 1};
 }
+
+}  // namespace
+
+Colour colourOfFraction(double fraction) { return interpolated(kViridis, fraction); }
+
+Colour colourOfSignedFraction(double fraction) { return interpolated(kDiverging, (1 + fraction) / 2); }
 
 double niceCeiling(double value) {
   if (!(value > 0)) return 1;

@@ -15,6 +15,11 @@ struct Colour {
 /// visible on a dark background.
 Colour colourOfFraction(double fraction);
 
+/// Colour of a fraction in [-1, 1] (clamped), which shows the sign: blue, light grey at 0, red.
+/// Interpolated in Moreland's diverging map ("Diverging color maps for scientific visualization",
+/// ISVC 2009).
+Colour colourOfSignedFraction(double fraction);
+
 /// The readable end of a scale: the smallest of 1, 1.2, 1.6, 2, 2.4, 3.2, 4, 6, 8 times a power of
 /// ten that is not below `value` (within 0.1 %, more than rounding). Quarters of these have few
 /// digits. 1 for value <= 0.

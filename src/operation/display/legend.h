@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "operation/display/surface_quantity.h"
 #include "operation/display/triangle_soup.h"
 
 namespace microinjection {
@@ -15,12 +16,11 @@ struct Legend {
     std::string text;
   };
   TriangleSoup bar;
-  std::vector<Label> labels;  ///< title and figures in micrometres
+  std::vector<Label> labels;  ///< figures from below, then the title's lines
 };
 
 /// @param corner  lower left corner of the bar, display units
 /// @param height  of the bar, display units
-/// @param range   m, displacement at the upper end
-Legend displacementLegend(const Eigen::Vector3d& corner, double height, double range);
+Legend colourLegend(const Eigen::Vector3d& corner, double height, const ColourScale& scale);
 
 }  // namespace microinjection

@@ -248,11 +248,42 @@ TEST(OnlineFemCell, ShowsTheSurfaceAsSolved) {
   drive.rest(70);
   const CellModel::DeformedSurface pressed = drive.tracker.deformedSurface();
   ASSERT_EQ(pressed.vertices.size(), free.vertices.size());
+  for (std::size_t i = 0; i < pressed.vertices.size(); ++i) {
+    ASSERT_NEAR((pressed.vertices[i] - pressed.at_rest[i]).norm(), pressed.displacement[i], 1e-12);
+    ASSERT_NEAR(pressed.at_rest[i].norm(), pipette().radius(), 1e-9) << "at rest it is a ball";
+  }
   const auto deepest = std::max_element(pressed.displacement.begin(), pressed.displacement.end());
   const Eigen::Vector3d there = pressed.vertices[deepest - pressed.displacement.begin()];
   EXPECT_GT(*deepest, 3e-6);
   EXPECT_LT(*deepest, 4.3e-6);
   EXPECT_LT((there - (drive.tip + Eigen::Vector3d(0, 0, 1e-6))).norm(), 3e-6) << "it is under the tip";
+}
+
+TEST(OnlineFemCell, ShowsTheBordersBetweenItsLayers) {
+  Scene scene = pipette();
+  scene.cell.layers.push_back(scene.cell.layers.front());
+  scene.cell.layers[1].name = "cytoplasm";
+  scene.cell.layers[1].outer_radius = 22e-6;
+  scene.cell.layers[1].material.young_modulus = 2e3;
+  Driver drive(scene);
+  const auto borders = drive.tracker.borders();
+  ASSERT_FALSE(borders.empty());
+  const std::vector<Eigen::Vector3d> free = drive.tracker.deformedSurface().border_vertices;
+  for (const auto& border : borders) {  // seen from outside
+    ASSERT_EQ(border.layer, 1);
+    const auto& [a, b, c] = border.vertices;
+    ASSERT_GT((free[b] - free[a]).cross(free[c] - free[a]).dot(free[a] + free[b] + free[c]), 0);
+  }
+  for (const Eigen::Vector3d& vertex : free) ASSERT_NEAR(vertex.norm(), 22e-6, 1e-9);
+  drive.moveTo(Eigen::Vector3d(0, 0, 24e-6), 15e-6);
+  drive.rest(70);
+  const auto pressed = drive.tracker.deformedSurface().border_vertices;
+  ASSERT_EQ(pressed.size(), free.size());
+  const auto top =
+      std::max_element(free.begin(), free.end(), [](const auto& a, const auto& b) { return a.z() < b.z(); });
+  const double sunk = top->z() - pressed[top - free.begin()].z();
+  EXPECT_GT(sunk, 1e-6) << "less than the tip, which is 4 um deep";
+  EXPECT_LT(sunk, 4e-6);
 }
 
 TEST(OnlineFemCell, RefusesACellThatIsNotStableAtRest) {

@@ -63,6 +63,7 @@ TEST(PlacedCell, IsDrawnWhereItLies) {
     DeformedSurface deformedSurface() override {
       DeformedSurface surface;
       surface.vertices = {{1e-6, 2e-6, 3e-6}};
+      surface.at_rest = {{1e-6, 2e-6, 4e-6}};
       surface.holes = {{0, 0, kRadius}};
       surface.members.resize(1);
       return surface;
@@ -73,6 +74,7 @@ TEST(PlacedCell, IsDrawnWhereItLies) {
   for (int i = 0; i <= 200; ++i) cell.step({0, 0, 1}, kAxis, kTick * i);
   const CellModel::DeformedSurface surface = cell.deformedSurface();
   EXPECT_NEAR(surface.vertices[0].z(), 2e-6, 1e-15);
+  EXPECT_NEAR(surface.at_rest[0].z(), 3e-6, 1e-15);
   EXPECT_NEAR(surface.holes[0].z(), kRadius - 1e-6, 1e-15);
   EXPECT_NEAR(surface.members[0].to.z(), -1e-6, 1e-15);
 }

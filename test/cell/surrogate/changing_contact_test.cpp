@@ -66,6 +66,8 @@ TEST(ChangingContact, TheFeltSceneIsReported) {
   const auto surface = pressed.cell.deformedSurface();
   ASSERT_TRUE(surface.scene);
   EXPECT_EQ(surface.scene->cell.material().young_modulus, 3 * pipette().cell.material().young_modulus);
+  ASSERT_EQ(surface.at_rest.size(), surface.vertices.size());
+  for (const Eigen::Vector3d& vertex : surface.at_rest) EXPECT_NEAR(vertex.norm(), pipette().radius(), 1e-9);
 }
 
 /// Otherwise a better measured diameter would push the needle out.

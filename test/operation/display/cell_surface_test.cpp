@@ -23,6 +23,11 @@ CellSurface octahedron() {
   return surface;
 }
 
+TriangleSoup coloured(double range) {
+  const CellSurface surface = octahedron();
+  return colouredSurface(surface, surface.displacement, {SurfaceQuantity::kDisplacement, range});
+}
+
 TEST(CellSurface, NormalsPointOutwardsAtTheScaleOfMicrometres) {
   const CellSurface surface = octahedron();
   const auto normals = vertexNormals(surface);
@@ -32,13 +37,13 @@ TEST(CellSurface, NormalsPointOutwardsAtTheScaleOfMicrometres) {
 }
 
 TEST(CellSurface, IsDrawnTenThousandTimesAndFacesOutwards) {
-  const TriangleSoup soup = colouredSurface(octahedron(), 4e-6);
+  const TriangleSoup soup = coloured(4e-6);
   EXPECT_TRUE(isClosed(soup));
   EXPECT_NEAR(signedVolume(soup), 4.0 / 3 * 0.1 * 0.1 * 0.1, 1e-12);
 }
 
 TEST(CellSurface, ColourIsThatOfTheVertexsDisplacement) {
-  const TriangleSoup soup = colouredSurface(octahedron(), 8e-6);
+  const TriangleSoup soup = coloured(8e-6);
   ASSERT_EQ(soup.colours.size(), soup.points.size());
   const Colour top = shaded(colourOfFraction(0.5), lampLight({0, 0, 1}));
   const Colour right = shaded(colourOfFraction(0), lampLight({1, 0, 0}));
@@ -52,9 +57,8 @@ TEST(CellSurface, HasEachEdgeOnceAndLifted) {
   for (const Eigen::Vector3d& point : lines) EXPECT_NEAR(point.norm(), 0.1 + 0.01, 1e-9);
 }
 
-TEST(CellSurface, FindsItsPointsAndItsLargestDisplacement) {
+TEST(CellSurface, FindsItsPoints) {
   const CellSurface surface = octahedron();
-  EXPECT_DOUBLE_EQ(surface.largestDisplacement(), 4e-6);
   const auto points = pointsAt(surface, surface.contact_vertices);
   ASSERT_EQ(points.size(), 1U);
   EXPECT_NEAR((points[0] - Eigen::Vector3d(0, 0, 0.1)).norm(), 0, 1e-12);
@@ -81,6 +85,46 @@ TEST(CellSurface, SaysWhatCannotBeDrawn) {
   surface = octahedron();
   surface.held_vertices = {6};
   EXPECT_NE(surface.defect().find("held_vertices"), std::string::npos);
+}
+
+TEST(CellSurface, AtRestHasTheSameVertices) {
+  CellSurface surface = octahedron();
+  surface.at_rest = surface.vertices;
+  EXPECT_EQ(surface.defect(), "");
+  surface.at_rest.pop_back();
+  EXPECT_NE(surface.defect().find("rest_vertices"), std::string::npos);
+  surface.at_rest.emplace_back(0, std::numeric_limits<double>::infinity(), 0);
+  EXPECT_EQ(surface.defect(), "surface at rest is not finite");
+}
+
+TEST(SurfaceQuantity, IsFoundByItsName) {
+  for (const std::string& name : surfaceQuantities()) {
+    ASSERT_TRUE(surfaceQuantity(name));
+    EXPECT_EQ(surfaceQuantities()[static_cast<std::size_t>(*surfaceQuantity(name))], name);
+  }
+  EXPECT_FALSE(surfaceQuantity("colour"));
+}
+
+TEST(SurfaceQuantity, PressureHasASignAndWhatIsNotKnownIsGrey) {
+  const ColourScale pressure{SurfaceQuantity::kPressure, 2e3};
+  EXPECT_EQ(pressure.low(), -2e3);
+  EXPECT_EQ(pressure.figure(-2e3), "-2");
+  const Colour tension = pressure.colour(-2e3), none = pressure.colour(0), compression = pressure.colour(2e3);
+  EXPECT_GT(tension.b, 2 * tension.r);
+  EXPECT_GT(compression.r, 2 * compression.b);
+  EXPECT_EQ(none.r, none.b);
+  const ColourScale stress{SurfaceQuantity::kVonMisesStress, 2e3};
+  EXPECT_EQ(stress.low(), 0);
+  EXPECT_EQ(stress.colour(1e3).g, colourOfFraction(0.5).g);
+  const Colour grey = stress.colour(std::numeric_limits<double>::quiet_NaN());
+  EXPECT_NEAR(grey.r, grey.b, 0.05);
+}
+
+TEST(SurfaceQuantity, ScaleEndsAtAReadableFigure) {
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_DOUBLE_EQ(scaleEnd(SurfaceQuantity::kPressure, {100, -1900, unknown}), 2000);
+  EXPECT_DOUBLE_EQ(scaleEnd(SurfaceQuantity::kPressure, {unknown}), 10);
+  EXPECT_DOUBLE_EQ(scaleEnd(SurfaceQuantity::kDisplacement, {}), 1e-6);
 }
 
 TEST(Shading, IsBrightestTowardsTheLampAndNeverDark) {

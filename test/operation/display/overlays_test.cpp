@@ -31,7 +31,7 @@ TEST(ForceArrow, IsAbsentWithoutAForceToShow) {
 }
 
 TEST(Legend, RunsFromZeroToTheRange) {
-  const Legend legend = displacementLegend({1, 0, -0.5}, 1, 20e-6);
+  const Legend legend = colourLegend({1, 0, -0.5}, 1, {SurfaceQuantity::kDisplacement, 20e-6});
   double lowest = 1, highest = -1;
   for (std::size_t i = 0; i < legend.bar.points.size(); ++i) {
     const double z = legend.bar.points[i].z();
