@@ -224,7 +224,7 @@ void ConsolePanel::showState() {
   const auto estimate = link_->estimate();
   estimate_->display(estimateLamp(estimate));
   puncture_->setText(QString::fromStdString(punctureText(estimate)));
-  injector_->display(injectorLamp(link_->injector()));
+  injector_->display(injectorLamp(link_->injector(), link_->injectorHeard()));
   const std::string served = link_->servedCell();
   served_->setText(served.empty() ? "the served cell is not known" : QString::fromStdString(served));
   force_guard_->display(forceMargin(session));

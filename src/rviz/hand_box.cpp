@@ -47,6 +47,7 @@ void HandBox::start() {
         const double now = ros::SteadyTime::now().toSec();
         if (!heard_at_ || now - *heard_at_ > kSilence) readSettings();
         heard_at_ = now;
+        hand_.has_bridge = true;
         hand_.hold_reason = message->follows ? "" : message->hold_reason;
       }));
   clutches_ = node_->subscribe<sensor_msgs::Joy>(
