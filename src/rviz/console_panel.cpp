@@ -55,7 +55,7 @@ ConsolePanel::ConsolePanel(QWidget* parent)
     : rviz::Panel(parent),
       timer_(new QTimer(this)),
       steps_(new StepsWidget(this)),
-      headline_(new LampRow("", 1, this)) {
+      headline_(new LampRow("", 2, this)) {
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(6, 4, 6, 4);
   layout->setSpacing(6);

@@ -20,8 +20,9 @@ SETTLE = 6      # s of wall time, for rviz to draw it
 SLOWER = 0.3    # real-time factor, so that a machine which draws in software shows it
 STEPPED = {'haptic': 'none', 'mode': 'semi_automatic'}
 BY_HAND = {'haptic': 'operator', 'motion': ROOT / 'config/hand_motions/puncture_and_inject.yaml'}
+# Without a hand the clock of a lock step would wait for what leads the needle by images.
 CONSOLES = {'inject': {**STEPPED, 'camera': 'sim'}, 'teleoperate': {**BY_HAND, 'camera': 'sim'}, 'train': BY_HAND,
-            'paper': STEPPED, 'calibrate': {'haptic': 'none', 'mode': 'manual', 'camera': 'sim'}}
+            'paper': STEPPED, 'calibrate': {'haptic': 'none', 'mode': 'manual', 'camera': 'sim', 'clock': 'wall'}}
 
 
 class Operator:
@@ -76,8 +77,8 @@ def picture(name, size, out, logs):
     """@raises SessionError"""
     logs = logs / f'{name}_{size[0]}'
     logs.mkdir(parents=True)
-    arguments = {**CONSOLES[name], 'clock': 'lockstep', 'real_time_factor': SLOWER, 'display': 'true',
-                 'cell': 'mouse_oocyte_injection', 'layers': 2}
+    arguments = {'clock': 'lockstep', 'real_time_factor': SLOWER, 'display': 'true', 'cell': 'mouse_oocyte_injection', 'layers': 2,
+                 **CONSOLES[name]}
     if name == 'train':
         arguments.update(record=logs / 'record', bag='false', operator='ada', history=logs / 'training.csv')
     screen = Screen(logs / 'xvfb.log', size)
