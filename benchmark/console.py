@@ -4,7 +4,8 @@
 Each run starts session.launch with console:=inject on a virtual display, presses Approach, Indent, Inject and Withdraw as
 soon as each is offered in the picture, and waits for the outcome. Then it approaches again and again and presses STOP
 (in turn by mouse and by space bar) after a random time: counted from the press are the command's arrival and the last
-motion of the needle. rviz draws in software: the press waits for its frame.
+motion of the needle. rviz draws in software: the press waits for its frame. In the end a console is closed, one hangs
+(SIGSTOP) and one is killed, each while the needle is in the cell: the 1 kHz loop before and after, and the injection's end.
 """
 import argparse
 import csv
@@ -20,14 +21,18 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / 'src' / 'tools'))
 sys.path.insert(0, str(ROOT / 'test' / 'chain'))
+sys.path.insert(0, str(ROOT / 'benchmark' / 'common'))
+sys.path.insert(0, str(ROOT / 'launch'))
 
 import console_eye  # noqa: E402
+import console_faults  # noqa: E402
 from demo_session import DemoSession, SessionError  # noqa: E402
 from processes import wait_until  # noqa: E402
 from screen import Screen  # noqa: E402
 
 PATIENCE = 120   # s for each step of the user
 ALLOWED = 60     # s, from roslaunch to the outcome
+REACTION = 0.5   # s of a person, in which the console draws the state that has just changed
 REST = 0.1e-6    # m from where the needle rests in the end: nearer, it rests
 SEED = 100001
 
@@ -38,7 +43,8 @@ def parse_arguments():
     parser.add_argument('--runs', type=int, default=5, help='sessions (default 5)')
     parser.add_argument('--stops', type=int, default=10, help='of each session (default 10)')
     parser.add_argument('--cell', default='mouse_oocyte_injection', help='name in config/cells (default %(default)s)')
-    parser.add_argument('--only', type=int, help='run of this number; rospy knows one master in a process')
+    parser.add_argument('--seconds', type=float, default=20, help='before and after each fault of a console (default 20)')
+    parser.add_argument('--only', help='run of this number, or this fault; rospy knows one master in a process')
     return parser.parse_args()
 
 
@@ -122,21 +128,25 @@ class User:
         self.press('Withdraw')
         # It was paused by a person and is so again at its start.
         self.wait(lambda: self.status.state == 'idle' and self.operating == 'PAUSED', 'the needle at its start')
+        time.sleep(REACTION)
         self.press('Enable')
         return sent - pressed, max(moving, default=sent) - pressed
+
+
+def session_arguments(cell):
+    return {'cell': cell, 'layers': 2 if cell == 'mouse_oocyte_injection' else 1, 'rig': 'sim', 'haptic': 'none',
+            'mode': 'semi_automatic', 'clock': 'wall'}
 
 
 def run(arguments):
     """Returns {"injected": s to the injected cell, "stops": [(by key, s to the command, s to rest)]}."""
     logs = arguments.out / 'console_log' / str(arguments.only)
     logs.mkdir(parents=True, exist_ok=True)
-    rng = random.Random(SEED + arguments.only)
+    rng = random.Random(SEED + int(arguments.only))
     screen = Screen(logs / 'xvfb.log', (1280, 800))
     os.environ.update(screen.environment)
     begin = time.monotonic()
-    session = DemoSession(ROOT / 'launch' / 'session.launch', logs, {
-        'cell': arguments.cell, 'layers': 2 if arguments.cell == 'mouse_oocyte_injection' else 1, 'rig': 'sim',
-        'haptic': 'none', 'mode': 'semi_automatic', 'clock': 'wall', 'console': 'inject'})
+    session = DemoSession(ROOT / 'launch' / 'session.launch', logs, {**session_arguments(arguments.cell), 'console': 'inject'})
     user = None
     try:
         session.wait_ready()
@@ -154,16 +164,18 @@ def run(arguments):
         screen.close()
 
 
-def run_all(arguments):
+def run_all(arguments, names):
     """Each run in a process of its own. Returns the results of those that succeeded."""
     results = []
-    for number in range(arguments.runs):
-        done = subprocess.run([sys.executable, '-B', __file__, '--out', str(arguments.out), '--only', str(number), '--stops',
-                               str(arguments.stops), '--cell', arguments.cell], stdout=subprocess.PIPE, text=True)
+    for name in names:
+        done = subprocess.run([sys.executable, '-B', __file__, '--out', str(arguments.out), '--only', str(name), '--stops',
+                               str(arguments.stops), '--cell', arguments.cell, '--seconds', str(arguments.seconds)],
+                              stdout=subprocess.PIPE, text=True)
         if done.returncode:
             continue
         results.append(json.loads(done.stdout.splitlines()[-1]))
-        say(f'run {number}: injected after {results[-1]["injected"]:.1f} s')
+        if 'injected' in results[-1]:
+            say(f'run {name}: injected after {results[-1]["injected"]:.1f} s')
     return results
 
 
@@ -189,9 +201,16 @@ def main():
     arguments.out.mkdir(parents=True, exist_ok=True)
     os.environ.pop('DISPLAY', None)  # never the user's: the mouse is the benchmark's
     if arguments.only is None:
-        sys.exit(0 if report(arguments, run_all(arguments)) else 1)
+        good = report(arguments, run_all(arguments, range(arguments.runs)))
+        faults = run_all(arguments, console_faults.FAULTS)
+        good = console_faults.report(faults) and len(faults) == len(console_faults.FAULTS) and good
+        sys.exit(0 if good else 1)
     try:
-        print(json.dumps(run(arguments)))
+        if arguments.only in console_faults.FAULTS:
+            result = console_faults.run(arguments.out, session_arguments(arguments.cell), arguments.only, arguments.seconds)
+        else:
+            result = run(arguments)
+        print(json.dumps(result))
     except (SessionError, OSError, subprocess.SubprocessError) as error:
         sys.exit(f'console: run {arguments.only} failed: {error}')
 

@@ -1,5 +1,8 @@
 #include "nodes/force_sensor_node.h"
 
+#include <filesystem>
+
+#include "base/user_data.h"
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/frames.h"
 #include "nodes/runtime/node_parameters.h"
@@ -23,6 +26,9 @@ ForceSensorNode::Parameters ForceSensorNode::Parameters::read(const ros::NodeHan
   reader.number("averaging", parameters.averaging, Range::positive());
   reader.text("frame", parameters.frame);
   reader.number("frame_timeout", parameters.frame_timeout, Range::positive());
+  reader.text("file", parameters.file);
+  // A simulated sensor is another one in each session; a wrench is calibrated where it is measured.
+  if (parameters.file.empty() && parameters.source == "serial") parameters.file = userDataFile("force_sensor.yaml");
   ConfigReader simulated = reader.section("simulated");
   parameters.simulated = ForceSensorConfig::read(simulated);
   // Sections of unused sources may stay in a file; they are read as strictly.
@@ -48,6 +54,10 @@ ForceSensorNode::ForceSensorNode(ros::NodeHandle node, ros::NodeHandle private_n
       readout_(source_->range(), parameters_.averaging),
       measured_(cycle_.output<geometry_msgs::WrenchStamped>("force_sensor/measured_cf")),
       raw_(cycle_.output<geometry_msgs::WrenchStamped>("force_sensor/raw_cf")) {
+  if (!parameters_.file.empty() && source_->size() == 2) {
+    if (std::filesystem::exists(parameters_.file)) readout_.restore(readSensorCalibration(parameters_.file));
+    file_.emplace(parameters_.file);
+  }
   advertiseServices(private_node);
   cycle_.diagnostics().add("sensor", [this](auto& status) { report(status); });
 }
@@ -91,6 +101,7 @@ bool ForceSensorNode::calibrate(cell_microinjection::CalibrateForce::Request& re
   const Eigen::MatrixXd by_columns = readout_.gain().transpose();
   response.gain.assign(by_columns.data(), by_columns.data() + by_columns.size());
   response.residual = readout_.residual();
+  response.points = static_cast<std::uint32_t>(readout_.points());
   return true;
 }
 
@@ -106,8 +117,10 @@ std::string ForceSensorNode::act(const cell_microinjection::CalibrateForce::Requ
     case cell_microinjection::CalibrateForce::Request::CLEAR:
       readout_.clear();
       return "";
+    case cell_microinjection::CalibrateForce::Request::UNDO:
+      return readout_.undo();
     default:
-      return "action must be ADD, SOLVE or CLEAR";
+      return "action must be ADD, SOLVE, CLEAR or UNDO";
   }
 }
 
@@ -116,11 +129,18 @@ std::string ForceSensorNode::notReadyReason() const {
   return source_->invalidReason();
 }
 
+void ForceSensorNode::keepCalibration() {
+  if (!file_ || kept_changes_ == readout_.changes()) return;
+  kept_changes_ = readout_.changes();
+  file_->write(toYaml(readout_.calibration()));
+}
+
 void ForceSensorNode::run() {
   cycle_.run([this](const Cycle::Tick& tick) { step(tick); });
 }
 
 void ForceSensorNode::step(const Cycle::Tick& tick) {
+  keepCalibration();
   const auto signal = source_->read(tick);
   if (!source_->invalidReason().empty() || source_->overloaded()) return publishInvalid(tick);
   if (!signal) return;
@@ -145,16 +165,20 @@ geometry_msgs::WrenchStamped ForceSensorNode::atTip(const Eigen::VectorXd& force
 
 void ForceSensorNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) const {
   using diagnostic_msgs::DiagnosticStatus;
+  const std::string unwritten = file_ ? file_->error() : "";
   if (source_->overloaded()) {
     status.summary(DiagnosticStatus::ERROR, "overloaded; call the service ~reset");
   } else if (!source_->invalidReason().empty()) {
     status.summary(DiagnosticStatus::WARN, source_->invalidReason());
+  } else if (!unwritten.empty()) {
+    status.summary(DiagnosticStatus::WARN, unwritten);
   } else {
     status.summary(source_->saturated() ? DiagnosticStatus::WARN : DiagnosticStatus::OK,
                    source_->saturated() ? "saturated" : "measures");
   }
   status.add("tare and calibration", readout_.outcome());
   status.add("calibration points", readout_.points());
+  if (file_) status.add("calibration file", unwritten.empty() ? file_->path() : unwritten);
   source_->report(status);
 }
 

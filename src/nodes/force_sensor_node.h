@@ -6,8 +6,10 @@
 #include <std_srvs/Trigger.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "base/background_file.h"
 #include "nodes/needle/force_sources.h"
 #include "nodes/runtime/cycle.h"
 #include "rig/sensor/force_readout.h"
@@ -27,6 +29,7 @@ namespace microinjection {
 ///      both with stamp 0 without a valid input, and from an overload to a reset
 /// Services: ~tare, ~reset (std_srvs/Trigger), ~calibrate (CalibrateForce; two-axis sensors). A
 ///      service only starts an average; its outcome is on /diagnostics.
+/// File: tare and gain of a two-axis sensor, written after each change and read at the start
 ///
 /// Parameters: config/force_sensor.yaml
 class ForceSensorNode {
@@ -44,6 +47,7 @@ class ForceSensorNode {
     double averaging = 0.5;
     std::string frame = "force_sensor";
     double frame_timeout = 10;
+    std::string file;  ///< of tare and gain; empty: not kept
     ForceSensorConfig simulated;
     SerialPortConfig port;
     VoltReadingConfig voltages;
@@ -60,6 +64,7 @@ class ForceSensorNode {
                  cell_microinjection::CalibrateForce::Response& response);
   std::string act(const cell_microinjection::CalibrateForce::Request& request);
   std::string notReadyReason() const;
+  void keepCalibration();
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
   Parameters parameters_;
@@ -69,6 +74,8 @@ class ForceSensorNode {
   ForceReadout readout_;
   Output<geometry_msgs::WrenchStamped>& measured_;
   Output<geometry_msgs::WrenchStamped>& raw_;
+  std::optional<BackgroundFile> file_;
+  unsigned kept_changes_ = 0;  ///< of the readout, that are in the file
   ros::ServiceServer tare_, calibrate_, reset_;
 };
 

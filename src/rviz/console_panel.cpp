@@ -56,7 +56,7 @@ ConsolePanel::ConsolePanel(QWidget* parent)
     : rviz::Panel(parent),
       timer_(new QTimer(this)),
       steps_(new StepsWidget(this)),
-      headline_(new LampRow("", 1, this)) {
+      headline_(new LampRow("", 2, this)) {
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(6, 4, 6, 4);
   layout->setSpacing(6);
@@ -227,7 +227,7 @@ void ConsolePanel::showState() {
   const auto estimate = link_->estimate();
   estimate_->display(estimateLamp(estimate));
   puncture_->setText(QString::fromStdString(punctureText(estimate)));
-  injector_->display(injectorLamp(link_->injector()));
+  injector_->display(injectorLamp(link_->injector(), link_->injectorHeard()));
   const std::string served = link_->servedCell();
   served_->setText(served.empty() ? "the served cell is not known" : QString::fromStdString(served));
   force_guard_->display(forceMargin(session));

@@ -3,6 +3,7 @@
 #include <QLabel>
 #include <QVBoxLayout>
 
+#include "base/parse_number.h"
 #include "rviz/elided_label.h"
 #include "rviz/lamp_row.h"
 
@@ -13,9 +14,13 @@ constexpr double kSilence = 3;  // s, of haptic_bridge, whose state comes with e
 
 bool firstButton(const sensor_msgs::Joy& message) { return !message.buttons.empty() && message.buttons[0] != 0; }
 
+/// rosparam loads a number like 2.0e5, without a sign of the exponent, as text.
 std::optional<double> numberOf(const std::string& parameter) {
+  const std::string name = "/haptic_bridge/" + parameter;
   double value = 0;
-  return ros::param::get("/haptic_bridge/" + parameter, value) ? std::optional(value) : std::nullopt;
+  if (ros::param::get(name, value)) return value;
+  std::string text;
+  return ros::param::get(name, text) ? parseNumber<double>(text) : std::nullopt;
 }
 
 }  // namespace
@@ -47,6 +52,7 @@ void HandBox::start() {
         const double now = ros::SteadyTime::now().toSec();
         if (!heard_at_ || now - *heard_at_ > kSilence) readSettings();
         heard_at_ = now;
+        hand_.has_bridge = true;
         hand_.hold_reason = message->follows ? "" : message->hold_reason;
       }));
   clutches_ = node_->subscribe<sensor_msgs::Joy>(

@@ -1,5 +1,9 @@
 #include "rviz/microscope_panel.h"
 
+#include <rviz/properties/property.h>
+#include <rviz/view_controller.h>
+#include <rviz/view_manager.h>
+#include <rviz/visualization_manager.h>
 #include <pluginlib/class_list_macros.hpp>
 
 #include <QDockWidget>
@@ -17,7 +21,8 @@
 namespace microinjection {
 namespace {
 
-constexpr int kPeriod = 66;  // ms: 15 Hz, as the scene
+constexpr int kPeriod = 66;      // ms: 15 Hz, as the scene
+constexpr float kScene = 0.85F;  // of the window's height, that the scene has without an image
 
 template <typename Widget>
 Widget* parentOf(QWidget* widget) {
@@ -86,6 +91,11 @@ void MicroscopePanel::appear() {
   if (dock == nullptr || window == nullptr) return;
   dock->show();
   window->resizeDocks({dock}, {static_cast<int>(share_ * static_cast<float>(window->height()))}, Qt::Vertical);
+  // rviz scales the scene with its height: its letters would become too small to be read.
+  rviz::ViewController* view = vis_manager_ != nullptr ? vis_manager_->getViewManager()->getCurrent() : nullptr;
+  if (view == nullptr) return;
+  rviz::Property* distance = view->subProp("Distance");
+  distance->setValue(distance->getValue().toFloat() * kScene * (1 - share_));
 }
 
 void MicroscopePanel::showFindings(const std::optional<cell_microinjection::VisionState>& specimen) {

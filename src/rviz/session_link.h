@@ -54,7 +54,8 @@ class SessionLink {
   SessionView session() const;
   Lamp lamp(Device device) const;
   std::optional<CellEstimateView> estimate() const;
-  std::optional<InjectorView> injector() const;
+  std::optional<InjectorView> injector() const;                       ///< its newest state; empty: none for too long
+  bool injectorHeard() const { return injector_.value.has_value(); }  ///< the session has one
   const ForceHistory& history() const { return history_; }
   /// `handler` receives the session's values at each state of the cell.
   void onRow(std::function<void(const SessionTable::Row&)> handler) { row_handler_ = std::move(handler); }

@@ -13,6 +13,7 @@ import tempfile
 import time
 from pathlib import Path
 
+import console_pictures
 import screenshot
 from demo_session import DemoSession, SessionError
 from processes import Child, wait_until
@@ -157,20 +158,38 @@ def console(out, logs):
     shutil.copyfile(logs / 'injection.gif', out / 'injection.gif')
 
 
+def consoles(out, logs):
+    """Each in a process of its own. @raises PicturesError"""
+    failed = []
+    for name in console_pictures.CONSOLES:
+        for width, height in console_pictures.SIZES:
+            say(f'console:={name} at {width} x {height}')
+            command = [sys.executable, '-B', console_pictures.__file__, name, str(width), str(height), str(out), str(logs)]
+            if subprocess.run(command, check=False).returncode != 0:
+                failed.append(f'{name} at {width} x {height}')
+    if failed:
+        raise PicturesError(f'no picture of {", ".join(failed)}')
+
+
 def main():
     parser = argparse.ArgumentParser(prog='./dev pictures --', description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('--out', type=Path, default=ROOT / '.readme', help='folder of the pictures (%(default)s)')
+    parser.add_argument('--out', type=Path, help='folder of the pictures (.readme)')
     parser.add_argument('--only-console', action='store_true', help='leave out what the demo makes')
+    parser.add_argument('--consoles', action='store_true', help='instead: a picture of every console at 1280 x 800 and 1920 '
+                        'x 1080 with a session that runs, in out/consoles or --out')
     arguments = parser.parse_args()
-    out, logs = arguments.out.resolve(), ROOT / 'out/pictures'
+    out, logs = (arguments.out or ROOT / ('out/consoles' if arguments.consoles else '.readme')).resolve(), ROOT / 'out/pictures'
     shutil.rmtree(logs, ignore_errors=True)
     logs.mkdir(parents=True)
     out.mkdir(parents=True, exist_ok=True)
     try:
-        if not arguments.only_console:
-            demo(out, logs)
-        console(out, logs)
+        if arguments.consoles:
+            consoles(out, logs)
+        else:
+            if not arguments.only_console:
+                demo(out, logs)
+            console(out, logs)
     except (PicturesError, SessionError, RuntimeError, OSError, subprocess.SubprocessError) as error:
         print(f'pictures: {error}', file=sys.stderr)
         return 1

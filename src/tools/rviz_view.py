@@ -59,6 +59,9 @@ class RvizView:
         """Stops the process as it is, or lets it go on."""
         self._rviz.send_signal(signal.SIGSTOP if frozen else signal.SIGCONT)
 
+    def send_signal(self, number):
+        self._rviz.send_signal(number)
+
     def drawing_time(self):
         """s of processor time that the first thread has used, in which rviz draws and its panels work."""
         return self._rviz.first_thread_time()

@@ -1,7 +1,7 @@
 """What a picture of the operator's console shows: which buttons are offered, where they are, and the lamps' colours.
 
-It knows the colours of src/rviz/colours.h and that the buttons stand in a column above STOP, and the lamps in one to the
-right of it. It sees what an operator sees: a button that another window hides is not there.
+It knows the colours of src/rviz/colours.h and that the buttons stand in a column above STOP, and the lamps and below them
+the guards' bars in one to the right of it. It sees what an operator sees: a button that another window hides is not there.
 """
 
 import subprocess
@@ -10,11 +10,13 @@ import matplotlib.image
 import numpy
 
 BUTTONS = ("Enable", "Home", "Approach", "Indent", "Inject", "Withdraw", "Disable")
-DEVICES = ("Rig", "Camera", "Sensor", "Hand", "Cell", "Injector", "Estimate")
+DEVICES = ("Rig", "Camera", "Sensor", "Hand", "Cell", "Injector")
+ROWS = {"inject": (*DEVICES, "Estimate"), "teleoperate": ("Needle", "Clutch", "Switch", *DEVICES)}  # of lamps
+GUARDS = ("Force", "Depth")
 STOP, OFFERED, REFUSED = (0xC6, 0x28, 0x28), (0x2B, 0x6C, 0xB0), (0xD5, 0xD8, 0xDC)
 LAMPS = {"green": (0x2E, 0x9E, 0x4F), "yellow": (0xF2, 0xB1, 0x0E), "red": (0xD0, 0x2C, 0x2C),
          "grey": (0xA8, 0xAD, 0xB3)}
-LEAST_STOP, LEAST_BUTTON, LEAST_LAMP = 30, 20, 5  # px of height; letters are smaller
+LEAST_STOP, LEAST_BUTTON, LEAST_LAMP, LEAST_BAR = 30, 20, 5, 5  # px of height; letters are smaller
 
 
 def runs(column, colour):
@@ -29,9 +31,9 @@ class NotSeen(Exception):
 
 
 class Console:
-    """A picture's console. @raises NotSeen"""
+    """A picture's console; `name`: which of config/console. @raises NotSeen"""
 
-    def __init__(self, pixels):
+    def __init__(self, pixels, name="inject"):
         rows, columns = numpy.nonzero(has(pixels, STOP))
         if rows.size == 0 or rows.max() - rows.min() < LEAST_STOP:
             raise NotSeen("there is no stop button")
@@ -48,7 +50,19 @@ class Console:
         self.offered = {name: offered for name, (_, offered) in zip(BUTTONS, seen)}
         first = seen[0][0][0]
         self.headline = self._lamps(pixels[first - 40:first, left - 8:left + 12])[-1:]
-        self.lamps = dict(zip(DEVICES, self._lamps(pixels[first:, right + 6:right + 34])))
+        self.lamps = dict(zip(ROWS[name], self._lamps(pixels[first:, right + 6:right + 34])))
+        self.guards = dict(zip(GUARDS, self._bars(pixels[int(rows.min()):, right + 60:right + 200])))
+
+    @staticmethod
+    def _bars(pixels):
+        """Colours of the guards' bars at their left end, from top to bottom; "empty": nothing of a bar is filled."""
+        colours = {"empty": REFUSED, **LAMPS}
+        for column in numpy.moveaxis(pixels, 1, 0):
+            found = sorted((a, name) for name, colour in colours.items() for a, b in runs(column, colour)
+                           if b - a >= LEAST_BAR)
+            if len(found) >= len(GUARDS):
+                return [name for _, name in found]
+        return []
 
     @staticmethod
     def _lamps(pixels):
@@ -90,7 +104,7 @@ def offered_below(row, path):
     return [(column, row + (a + b) // 2) for a, b in runs(pixels[:, column], OFFERED) if b - a > LEAST_BUTTON]
 
 
-def look(path, environment):
+def look(path, environment, name="inject"):
     """The console on the screen. @raises NotSeen"""
     try:
         subprocess.run(["import", "-silent", "-window", "root", f"png24:{path}"], env=environment, check=True, timeout=60,
@@ -98,4 +112,4 @@ def look(path, environment):
         pixels = pixels_of(path)
     except (subprocess.SubprocessError, OSError) as error:
         raise NotSeen(f"there is no picture: {error}") from error
-    return Console(pixels)
+    return Console(pixels, name)

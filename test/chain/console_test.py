@@ -1,12 +1,9 @@
 #!/usr/bin/python3
 """An injection from the console alone, by mouse and space bar, and what the console shows of it."""
 
-import os
 import subprocess
-import tempfile
 import time
 import unittest
-from pathlib import Path
 
 import actionlib
 import numpy as np
@@ -14,45 +11,32 @@ import rospy
 import rostest
 from actionlib_msgs.msg import GoalID
 from cell_microinjection.msg import (GoToPixelAction, GoToPixelFeedback, GoToPixelResult, InjectionStatus, InjectorState,
-                                     OperatingState, StringStamped)
+                                     OperatingState)
 from geometry_msgs.msg import PoseStamped
 from sensor_msgs.msg import Image
 
 import console_eye
+from console_user import START_PATIENCE, ConsoleUser
 from messages import position
-from processes import Child
-from screen import Screen
 
-PATIENCE = 150        # s of wall time; only a session or a console that hangs takes that long
-START_PATIENCE = 400  # s, for rviz on a busy machine
 COLOUR = (200, 0, 200)  # of the test's image, which nothing else on the screen has
 GOAL = (255, 80, 255)   # of the mark at a proposed place
 LEAST_SHARE = 0.05      # of the screen that an image fills
 
 
-class ConsoleTest(unittest.TestCase):
+class ConsoleTest(ConsoleUser, unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        os.environ.pop("DISPLAY", None)  # never the user's: the mouse is the test's
-        cls.folder = tempfile.TemporaryDirectory()
-        logs = Path(cls.folder.name)
-        cls.picture = logs / "screen.png"
-        cls.screen = Screen(logs / "xvfb.log", (1280, 800))
-        cls.environment = {**os.environ, **cls.screen.environment}
-        cls.rviz = Child(["roslaunch", "cell_microinjection", "display.launch", "console:=inject"], logs / "rviz.log",
-                         cls.environment)
-        cls.seen, cls.states, cls.sent, cls.cancelled = {}, [], [], []
+        cls.open_console()
+        cls.seen, cls.states, cls.cancelled = {}, [], []
         for topic, kind in (("/controller/injection_state", InjectionStatus), ("/controller/operating_state", OperatingState),
                             ("/injector/state", InjectorState), ("/needle/measured_cp", PoseStamped)):
             rospy.Subscriber(topic, kind, cls.on_message, topic)
-        rospy.Subscriber("/controller/state_command", StringStamped, lambda message: cls.sent.append(message.string))
         rospy.Subscriber("/calibration/calibrate/cancel", GoalID, cls.cancelled.append)
 
     @classmethod
     def tearDownClass(cls):
-        cls.rviz.stop(10)
-        cls.screen.close()
-        cls.folder.cleanup()
+        cls.close_console()
 
     @classmethod
     def on_message(cls, message, topic):
@@ -61,44 +45,8 @@ class ConsoleTest(unittest.TestCase):
         if topic == "/controller/injection_state" and cls.states[-1:] != [state]:
             cls.states.append(state)
 
-    def until(self, condition, what, patience=PATIENCE):
-        end = time.monotonic() + patience
-        while True:
-            result = condition()
-            if result:
-                return result
-            self.assertLess(time.monotonic(), end, f"{what}: not within {patience} s; {self.report()}")
-            time.sleep(0.05)
-
     def report(self):
-        rviz = "" if self.rviz.running() else f"; rviz has ended: {self.rviz.tail(10)}"
-        return f"states {self.states}, sent {self.sent}{rviz}"
-
-    def look(self):
-        try:
-            return console_eye.look(self.picture, self.environment)
-        except console_eye.NotSeen:
-            return None
-
-    def shows(self, condition, what, patience=PATIENCE):
-        """The console, as soon as it shows that."""
-        def check():
-            console = self.look()
-            return console if console and condition(console) else None
-        return self.until(check, f"a console with {what}", patience)
-
-    def do(self, *words):
-        subprocess.run(["xdotool", *map(str, words)], env=self.environment, check=True, timeout=60)
-
-    def click(self, place):
-        self.do("mousemove", *place)
-        self.do("click", 1)
-
-    def press(self, button):
-        console = self.shows(lambda seen: seen.offered[button], f"{button} offered")
-        before = len(self.sent)
-        self.click(console.place[button])
-        self.until(lambda: len(self.sent) > before, f"a command of {button}")
+        return f"states {self.states}, {super().report()}"
 
     def operating(self, state):
         self.until(lambda: self.seen["/controller/operating_state"].state == state, state)
@@ -165,7 +113,7 @@ class ConsoleTest(unittest.TestCase):
         self.shows(lambda seen: seen.headline == ["grey"], "a grey headline")
 
     def test_3_the_lamps_of_the_devices(self):
-        console = self.shows(lambda seen: len(seen.lamps) == len(console_eye.DEVICES), "all lamps")
+        console = self.shows(lambda seen: len(seen.lamps) == len(console_eye.ROWS["inject"]), "all lamps")
         self.assertEqual((console.lamps["Camera"], console.lamps["Hand"], console.lamps["Estimate"]), ("grey",) * 3)
         self.assertIn(console.lamps["Sensor"], ("green", "yellow"))
         subprocess.run(["rosnode", "kill", "/force_sensor"], check=True, timeout=60, stdout=subprocess.DEVNULL)

@@ -3,11 +3,13 @@
 the pipette otherwise; it is tared and calibrated."""
 
 import math
+import pathlib
 import unittest
 
 import numpy as np
 import rospy
 import rostest
+import yaml
 from geometry_msgs.msg import PoseStamped, Vector3, WrenchStamped
 from std_srvs.srv import Trigger
 
@@ -88,9 +90,29 @@ class TrustTest(unittest.TestCase):
         self.assertTrue(answer.success, answer.message)
         np.testing.assert_allclose(np.reshape(answer.gain, (2, 2)), np.linalg.inv([[1, 0.02], [0.02, 1]]), atol=0.003)
         np.testing.assert_allclose(self.mean(wrench(110e-6, 0, 10e-6)), [80e-6, -40e-6], atol=300e-9)
+        self.check_file(answer)
+        self.assertEqual(self.calibrate(offset, CalibrateForceRequest.UNDO).gain, (1, 0, 0, 1))
+        again = self.calibrate(offset, CalibrateForceRequest.SOLVE)
+        self.assertEqual((again.gain, again.residual, again.points), (answer.gain, answer.residual, 2))
         self.assertFalse(self.calibrate(offset, 7).success)
         self.assertTrue(self.calibrate(offset, CalibrateForceRequest.CLEAR).success)
         self.tare(wrench(0, 0, 0))
+
+    def check_file(self, answer):
+        """A thread of the node's own writes it."""
+        path = pathlib.Path(rospy.get_param("/force_sensor/file"))
+        self.addCleanup(lambda: path.unlink(missing_ok=True))
+
+        def has_gain():
+            values = yaml.safe_load(path.read_text(encoding="utf-8")) if path.exists() else {}
+            return values.get("points") == 2
+        for _ in range(3000):
+            if has_gain():
+                break
+            rospy.rostime.wallsleep(0.01)
+        values = yaml.safe_load(path.read_text(encoding="utf-8"))
+        self.assertEqual((tuple(values["gain"]), values["residual"]), (answer.gain, answer.residual))
+        np.testing.assert_allclose(values["tare"], [50e-6, 30e-6], atol=2e-6)  # with the cross-axis share of 2 %
 
     def test_calibrations_that_no_sensor_needs_are_refused(self):
         nothing = wrench(0, 0, 0)

@@ -25,8 +25,8 @@ std::string injectorText(const InjectorView& injector) {
          std::to_string(injector.pulses) + (injector.pulses == 1 ? " pulse" : " pulses");
 }
 
-Lamp injectorLamp(const std::optional<InjectorView>& injector) {
-  if (!injector) return {Light::kGrey, "none"};
+Lamp injectorLamp(const std::optional<InjectorView>& injector, bool heard) {
+  if (!injector) return heard ? Lamp{Light::kRed, "injector is silent"} : Lamp{Light::kGrey, "none"};
   if (!injector->fault.empty()) return {Light::kRed, injector->fault};
   const std::string text = injectorText(*injector);
   if (!injector->refusal.empty()) return {Light::kYellow, text + "; refused: " + injector->refusal};

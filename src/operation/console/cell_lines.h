@@ -23,7 +23,7 @@ Lamp estimateLamp(const std::optional<CellEstimateView>& estimate);
 /// "puncture at 31.2 um (27.0 to 35.5), 1.30 uN"; empty: no prediction.
 std::string punctureText(const std::optional<CellEstimateView>& estimate);
 
-/// The state of the injector; grey without one, red with a fault, yellow after a refusal.
+/// The state of the injector.
 struct InjectorView {
   double pressure = 0;  ///< Pa, gauge
   double volume = 0;    ///< m^3, out of the tip since the last reset
@@ -31,7 +31,8 @@ struct InjectorView {
   unsigned pulses = 0;
   std::string fault, refusal;
 };
-Lamp injectorLamp(const std::optional<InjectorView>& injector);
+/// Red with a fault or when one that was heard is silent, yellow after a refusal, grey without one.
+Lamp injectorLamp(const std::optional<InjectorView>& injector, bool heard);
 /// "2.46 kPa, 1.2 pL, 1 pulse"
 std::string injectorText(const InjectorView& injector);
 

@@ -5,7 +5,7 @@
 namespace microinjection {
 
 Lamp followsLamp(const HandView& hand) {
-  if (!hand.hold_reason) return {Light::kGrey, "haptic_bridge is silent"};
+  if (!hand.hold_reason) return {hand.has_bridge ? Light::kRed : Light::kGrey, "haptic_bridge is silent"};
   if (hand.hold_reason->empty()) return {Light::kGreen, "the needle follows"};
   return {Light::kYellow, "held: " + *hand.hold_reason};
 }

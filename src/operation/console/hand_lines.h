@@ -20,10 +20,12 @@ struct HandView {
   std::optional<bool> clutch;              ///< pressed
   std::optional<bool> present;             ///< the dead-man switch is held
   std::optional<std::string> hold_reason;  ///< of haptic_bridge; an empty text: the needle follows
+  bool has_bridge = false;                 ///< haptic_bridge was heard
   HandSettings settings;
 };
 
-/// Green: the needle follows the hand. Yellow: it is held, with the reason. Grey: without a bridge.
+/// Green: the needle follows the hand. Yellow: it is held, with the reason. Red: the bridge has fallen silent. Grey:
+/// the session has none.
 Lamp followsLamp(const HandView& hand);
 /// Green: the hand leads. Yellow: the clutch is pressed. Grey: the device has none.
 Lamp clutchLamp(const HandView& hand);

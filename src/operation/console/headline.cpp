@@ -1,9 +1,21 @@
 #include "operation/console/headline.h"
 
+#include <algorithm>
+#include <array>
 #include <string>
 
 namespace microinjection {
 namespace {
+
+/// The controller's reasons to hold the needle that are no alarm: nobody moves it, or it moves by itself.
+constexpr std::array<const char*, 3> kCalm = {"no valid target", "no injection is under way", "homing"};
+
+/// The needle is held although the controller is ENABLED: by a guard, or for want of an input.
+bool heldByAlarm(const SessionView& session) {
+  const std::string& reason = session.hold_reason;
+  const auto same = [&reason](const char* calm) { return reason == calm; };
+  return !reason.empty() && std::none_of(kCalm.begin(), kCalm.end(), same);
+}
 
 std::string nextSteps(const SessionView& session) {
   switch (*session.injection) {
@@ -44,6 +56,7 @@ Lamp headline(const SessionView& session) {
       break;
   }
   if (!session.notice.empty()) return {Light::kYellow, state + session.notice};
+  if (heldByAlarm(session)) return {Light::kYellow, state + "held: " + session.hold_reason};
   return {Light::kGreen, state + enabledText(session)};
 }
 

@@ -1,9 +1,9 @@
 #include "rig/sensor/force_readout.h"
 
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 namespace microinjection {
 namespace {
@@ -15,27 +15,31 @@ constexpr double kIndependent = 0.05;
 // Transformation into the sensor's frame leaves this share of an axial force on the other axes.
 constexpr double kRounding = 1e-6;
 
-// A sensor outside this range is not wired or not configured as in the file.
-constexpr double kLargestGain = 100;  // of a force's size, and its inverse the smallest
 // A usable fit leaves a few percent; a gain of zero leaves 1.
 constexpr double kLargestResidual = 0.5;  // of the known forces, rms
+constexpr std::size_t kMostSteps = 100;   // that can be taken back
 
 double rmsOf(const Eigen::MatrixXd& forces) {
   return std::sqrt(forces.squaredNorm() / static_cast<double>(forces.size()));
 }
 
-/// Returns an empty text, or the reason why no sensor has this gain.
-std::string gainRefusal(const Eigen::MatrixXd& gain, double residual, double known) {
-  if (!gain.allFinite() || !std::isfinite(residual)) return "the gain that fits the points is not finite";
-  const Eigen::VectorXd factors = Eigen::JacobiSVD<Eigen::MatrixXd>(gain).singularValues();
+/// Returns an empty text, or the reason why points with these known forces (N rms) do not give this gain.
+std::string fitRefusal(const Eigen::MatrixXd& gain, double residual, double known) {
+  const std::string refusal = gainRefusal(gain);
+  if (!refusal.empty()) return refusal;
+  if (std::isfinite(residual) && residual <= kLargestResidual * known) return "";
   std::ostringstream text;
-  if (factors.maxCoeff() > kLargestGain || factors.minCoeff() < 1 / kLargestGain) {
-    text << "the gain that fits the points changes forces by factors from " << factors.minCoeff() << " to "
-         << factors.maxCoeff() << ", allowed [" << 1 / kLargestGain << ", " << kLargestGain << "]";
-  } else if (residual > kLargestResidual * known) {
-    text << "the points differ from the fit by " << residual << " N rms, allowed up to " << kLargestResidual * known
-         << " N, half of the known forces";
-  }
+  text << "the points differ from the fit by " << residual << " N rms, allowed up to " << kLargestResidual * known
+       << " N, half of the known forces";
+  return text.str();
+}
+
+/// For people: "1.23, 0.1 uN", along and across.
+std::string axesText(const Eigen::VectorXd& forces) {
+  std::ostringstream text;
+  text.precision(3);
+  for (Eigen::Index axis = 0; axis < forces.size(); ++axis) text << (axis > 0 ? ", " : "") << 1e6 * forces[axis];
+  text << " uN";
   return text.str();
 }
 
@@ -52,12 +56,19 @@ ForceReadout::ForceReadout(const Eigen::VectorXd& range, double averaging)
       duration_(averaging),
       tare_(Eigen::VectorXd::Zero(range.size())),
       gain_(Eigen::MatrixXd::Identity(range.size(), range.size())),
-      sum_(Eigen::VectorXd::Zero(range.size())) {}
+      sum_(Eigen::VectorXd::Zero(range.size())),
+      squares_(sum_),
+      first_(sum_),
+      noise_(sum_) {}
 
 Eigen::VectorXd ForceReadout::read(const Eigen::VectorXd& raw, double time) {
   if (averaging()) {
-    if (began_ < 0) began_ = time;
+    if (began_ < 0) {
+      began_ = time;
+      first_ = raw;
+    }
     sum_ += raw;
+    squares_ += (raw - first_).cwiseAbs2();
     ++count_;
     if (time - began_ >= duration_) finishAverage();
   }
@@ -70,6 +81,7 @@ std::string ForceReadout::begin(Purpose purpose) {
   began_ = -1;
   count_ = 0;
   sum_.setZero();
+  squares_.setZero();
   return "";
 }
 
@@ -105,14 +117,31 @@ void ForceReadout::interrupt() {
 void ForceReadout::finishAverage() {
   const Eigen::VectorXd mean = sum_ / count_;
   if (!mean.allFinite()) return interrupt();
+  noise_ = (squares_ / count_ - (mean - first_).cwiseAbs2()).cwiseMax(0).cwiseSqrt();
+  remember();
   if (purpose_ == Purpose::kTare) {
     tare_ = mean;
-    outcome_ = "tared";
+    ++changes_;
   } else {
     points_.push_back({mean, known_force_});
-    outcome_ = "has " + std::to_string(points()) + " calibration points";
   }
+  reportAverage();
   purpose_ = Purpose::kNone;
+}
+
+void ForceReadout::reportAverage() {
+  const std::string noise = "; noise " + axesText(noise_) + " rms";
+  if (purpose_ == Purpose::kTare) {
+    outcome_ = "tared" + noise;
+  } else {
+    outcome_ = "calibration point " + std::to_string(points()) + ": known " + axesText(known_force_) + ", measured " +
+               axesText(gain_ * (points_.back().raw - tare_)) + noise;
+  }
+}
+
+void ForceReadout::remember() {
+  if (steps_.size() == kMostSteps) steps_.erase(steps_.begin());
+  steps_.push_back({tare_, gain_, points_, residual_, fitted_});
 }
 
 std::string ForceReadout::solve() {
@@ -127,11 +156,16 @@ std::string ForceReadout::solve() {
   Eigen::MatrixXd gain = gain_;
   std::string refusal = whole ? solveMatrix(raw, force, gain) : solveAxes(raw, force, gain);
   const double residual = rmsOf(gain * raw - force);
-  if (refusal.empty()) refusal = gainRefusal(gain, residual, rmsOf(force));
+  if (refusal.empty()) refusal = fitRefusal(gain, residual, rmsOf(force));
   if (!refusal.empty()) return refusal;
+  remember();
   gain_ = gain;
   residual_ = residual;
-  outcome_ = whole ? "calibrated: whole matrix" : "calibrated: gain of each axis";
+  fitted_ = points();
+  ++changes_;
+  outcome_ = std::string("calibrated: ") + (whole ? "whole matrix" : "gain of each axis") + " from " +
+             std::to_string(points()) + " points, residual " + axesText(Eigen::VectorXd::Constant(1, residual)) +
+             " rms";
   return "";
 }
 
@@ -156,10 +190,37 @@ std::string ForceReadout::solveAxes(const Eigen::MatrixXd& raw, const Eigen::Mat
 }
 
 void ForceReadout::clear() {
+  remember();
   points_.clear();
   gain_.setIdentity();
   residual_ = 0;
+  fitted_ = 0;
+  ++changes_;
   outcome_ = "calibration cleared";
+}
+
+std::string ForceReadout::undo() {
+  if (averaging()) return "an average is under way";
+  if (steps_.empty()) return "there is no step of this session to take back";
+  const Step step = std::move(steps_.back());
+  steps_.pop_back();
+  if (step.tare != tare_ || step.gain != gain_) ++changes_;
+  tare_ = step.tare;
+  gain_ = step.gain;
+  points_ = step.points;
+  residual_ = step.residual;
+  fitted_ = step.fitted;
+  outcome_ = "the last step is taken back; " + std::to_string(points()) + " calibration points";
+  return "";
+}
+
+SensorCalibration ForceReadout::calibration() const { return {tare_, gain_, fitted_, residual_}; }
+
+void ForceReadout::restore(const SensorCalibration& calibration) {
+  tare_ = calibration.tare;
+  gain_ = calibration.gain;
+  residual_ = calibration.residual;
+  fitted_ = calibration.points;
 }
 
 }  // namespace microinjection

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "rig/sensor/sensor_calibration.h"
+
 namespace microinjection {
 
 /// Converts a sensor's raw readings to forces: force = gain (raw - tare). Tare and gain come from
@@ -37,12 +39,22 @@ class ForceReadout {
   std::string solve();
   /// Deletes the points and resets the gain to the identity. The tare stays.
   void clear();
+  /// Takes back the last step that is not taken back: a tare, a point, a gain, a clearing. Returns an empty text, or
+  /// the reason why nothing changed.
+  std::string undo();
+
+  SensorCalibration calibration() const;
+  /// Continues with a calibration of before. It has no points, and cannot be taken back.
+  void restore(const SensorCalibration& calibration);
+  /// Grows with each change of tare or gain but restore().
+  unsigned changes() const { return changes_; }
 
   bool averaging() const { return purpose_ != Purpose::kNone; }
   /// Result of the last average or calibration.
   const std::string& outcome() const { return outcome_; }
   const Eigen::MatrixXd& gain() const { return gain_; }
-  const Eigen::VectorXd& tare() const { return tare_; }  ///< N
+  const Eigen::VectorXd& tare() const { return tare_; }    ///< N
+  const Eigen::VectorXd& noise() const { return noise_; }  ///< N rms, of the readings of the last average
   int points() const { return static_cast<int>(points_.size()); }
   double residual() const { return residual_; }  ///< N rms over points and axes, of the last solve()
 
@@ -52,8 +64,19 @@ class ForceReadout {
     Eigen::VectorXd raw, force;  ///< N
   };
 
+  /// What undo() restores.
+  struct Step {
+    Eigen::VectorXd tare;
+    Eigen::MatrixXd gain;
+    std::vector<Point> points;
+    double residual;
+    int fitted;
+  };
+
   std::string begin(Purpose purpose);
   void finishAverage();
+  void remember();
+  void reportAverage();
   std::string solveMatrix(const Eigen::MatrixXd& raw, const Eigen::MatrixXd& force, Eigen::MatrixXd& gain) const;
   std::string solveAxes(const Eigen::MatrixXd& raw, const Eigen::MatrixXd& force, Eigen::MatrixXd& gain) const;
 
@@ -64,10 +87,14 @@ class ForceReadout {
   Purpose purpose_ = Purpose::kNone;
   double began_ = -1;  ///< s, time of the average's first reading; negative before it
   int count_ = 0;
-  Eigen::VectorXd sum_;
+  Eigen::VectorXd sum_, squares_, first_,
+      noise_;                    ///< of the average; squares of the differences from its first reading
   Eigen::VectorXd known_force_;  ///< N, of the point that is being averaged
   std::vector<Point> points_;
+  std::vector<Step> steps_;
+  unsigned changes_ = 0;
   double residual_ = 0;
+  int fitted_ = 0;  ///< points of the gain
   std::string outcome_;
 };
 

@@ -1,15 +1,11 @@
 #include "vision/calibration/calibration_path.h"
 
-#include <cstdlib>
+#include "base/user_data.h"
 
 namespace microinjection {
 
 std::string calibrationPath(const std::string& configured) {
-  if (!configured.empty()) return configured;
-  const char* data = std::getenv("XDG_DATA_HOME");
-  const char* home = std::getenv("HOME");
-  const std::string base = data && *data ? data : std::string(home ? home : "/tmp") + "/.local/share";
-  return base + "/cell_microinjection/calibration.yaml";
+  return configured.empty() ? userDataFile("calibration.yaml") : configured;
 }
 
 }  // namespace microinjection

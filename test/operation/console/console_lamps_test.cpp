@@ -106,6 +106,23 @@ TEST(Headline, SaysWhatHoldsTheNeedle) {
   EXPECT_EQ(headline(session).light, Light::kYellow);
 }
 
+TEST(Headline, IsYellowWhileAGuardOrAMissingInputHoldsTheNeedle) {
+  SessionView session;
+  session.operating = OperatingState::kEnabled;
+  session.injection = InjectionState::kIdle;
+  session.settings.mode = "manual";
+  for (const char* reason : {"no valid force", "no valid needle position", "the needle does not follow its set-point",
+                             "depth past the touch 6e-05 m, allowed 5e-05 m: the needle may only be withdrawn"}) {
+    session.hold_reason = reason;
+    EXPECT_EQ(headline(session).light, Light::kYellow) << reason;
+    EXPECT_EQ(headline(session).text, std::string("ENABLED: held: ") + reason);
+  }
+  for (const char* reason : {"", "no valid target", "no injection is under way", "homing"}) {
+    session.hold_reason = reason;
+    EXPECT_EQ(headline(session).light, Light::kGreen) << reason;
+  }
+}
+
 TEST(CellLines, SayVerdictAndReason) {
   EXPECT_EQ(estimateLamp(std::nullopt).light, Light::kGrey);
   CellEstimateView estimate;
@@ -129,16 +146,17 @@ TEST(CellLines, SayVerdictAndReason) {
 }
 
 TEST(CellLines, SayWhatTheInjectorDoes) {
-  EXPECT_EQ(injectorLamp(std::nullopt).light, Light::kGrey);
+  EXPECT_EQ(injectorLamp(std::nullopt, false).light, Light::kGrey);
+  EXPECT_EQ(injectorLamp(std::nullopt, true).light, Light::kRed);  // it was heard, and is silent
   InjectorView injector;
   injector.pressure = 2.46e3;
   injector.volume = 1.2e-15;
   injector.pulses = 1;
-  EXPECT_EQ(injectorLamp(injector).text, "2.46 kPa, 1.20 pL, 1 pulse");
+  EXPECT_EQ(injectorLamp(injector, true).text, "2.46 kPa, 1.20 pL, 1 pulse");
   injector.refusal = "busy";
-  EXPECT_EQ(injectorLamp(injector).light, Light::kYellow);
+  EXPECT_EQ(injectorLamp(injector, true).light, Light::kYellow);
   injector.fault = "the line is silent";
-  EXPECT_EQ(injectorLamp(injector).light, Light::kRed);
+  EXPECT_EQ(injectorLamp(injector, true).light, Light::kRed);
 }
 
 }  // namespace

@@ -39,6 +39,9 @@ TEST(HandLines, FollowTheBridge) {
   hand.hold_reason = "the operator is absent";
   EXPECT_EQ(followsLamp(hand).light, Light::kYellow);
   EXPECT_EQ(followsLamp(hand).text, "held: the operator is absent");
+  hand.hold_reason.reset();
+  hand.has_bridge = true;
+  EXPECT_EQ(followsLamp(hand).light, Light::kRed);
 }
 
 TEST(HandLines, ShowClutchAndDeadManSwitch) {

@@ -183,5 +183,67 @@ TEST_F(ForceReadoutTest, WhatIsNotFiniteIsNeitherTareNorPoint) {
   EXPECT_NE(readout.outcome().find("aborted"), std::string::npos);
 }
 
+TEST_F(ForceReadoutTest, ReportsTheNoiseOfAnAverage) {
+  readout.beginTare();
+  // A square wave of 1 nN and 3 nN about the offset has these as its rms.
+  for (int i = 0; i <= 100; ++i) {
+    const double side = i % 2 == 0 ? 1 : -1;
+    readout.read(offset + side * Eigen::Vector2d(1e-9, 3e-9), time += 1e-3);
+  }
+  EXPECT_NEAR(readout.noise()[0], 1e-9, 1e-11);
+  EXPECT_NEAR(readout.noise()[1], 3e-9, 3e-11);
+  EXPECT_NE(readout.outcome().find("noise"), std::string::npos);
+}
+
+TEST_F(ForceReadoutTest, EachStepIsTakenBackInTurn) {
+  EXPECT_EQ(readout.undo(), "there is no step of this session to take back");
+  readout.beginTare();
+  EXPECT_EQ(readout.undo(), "an average is under way");
+  readUnder({0, 0});
+  for (const double wrong : {1.0, 3.0}) {
+    readout.beginPoint(Eigen::Vector2d(50e-6 * wrong, 0));  // the second one is not the force that acts
+    readUnder({50e-6, 0});
+  }
+  EXPECT_EQ(readout.undo(), "");
+  EXPECT_EQ(readout.points(), 1);
+  EXPECT_EQ(readout.solve(), "");
+  EXPECT_NEAR(readout.gain()(0, 0), 1 / 1.1, 1e-12);
+  EXPECT_EQ(readout.calibration().points, 1);
+  EXPECT_EQ(readout.undo(), "");
+  EXPECT_TRUE(readout.gain().isIdentity());
+  EXPECT_EQ(readout.calibration().points, 0);
+  EXPECT_EQ(readout.undo(), "");
+  EXPECT_EQ(readout.points(), 0);
+  EXPECT_NE(readout.tare(), Eigen::Vector2d(0, 0));
+  EXPECT_EQ(readout.undo(), "");
+  EXPECT_EQ(readout.tare(), Eigen::Vector2d(0, 0));
+}
+
+TEST_F(ForceReadoutTest, CountsTheChangesOfTareAndGainOnly) {
+  readout.beginTare();
+  readUnder({0, 0});
+  EXPECT_EQ(readout.changes(), 1u);
+  readout.beginPoint(Eigen::Vector2d(50e-6, 0));
+  readUnder({50e-6, 0});
+  EXPECT_EQ(readout.changes(), 1u);
+  readout.undo();
+  EXPECT_EQ(readout.changes(), 1u);
+  readout.undo();
+  EXPECT_EQ(readout.changes(), 2u);
+}
+
+TEST_F(ForceReadoutTest, ARestoredCalibrationMeasuresTheSame) {
+  readout.beginTare();
+  readUnder({0, 0});
+  readout.beginPoint(Eigen::Vector2d(50e-6, 0));
+  readUnder({50e-6, 0});
+  ASSERT_EQ(readout.solve(), "");
+  ForceReadout next{kRange, kTime};
+  next.restore(readout.calibration());
+  EXPECT_EQ(next.changes(), 0u);
+  const Eigen::Vector2d raw = rawOf({7e-6, 2e-6});
+  EXPECT_EQ(next.read(raw, 0), readout.read(raw, time));
+}
+
 }  // namespace
 }  // namespace microinjection

@@ -1,0 +1,119 @@
+"""Pictures of every operator's console with a session that runs, on two sizes of screen: what to look at after a change."""
+import os
+import sys
+import time
+from pathlib import Path
+
+import screenshot
+from demo_session import DemoSession, SessionError
+from processes import Child, wait_until
+from screen import Screen
+
+ROOT = Path(os.environ.get('MICROINJECTION_ROOT') or Path(__file__).resolve().parents[2])
+sys.path.insert(0, str(ROOT / 'launch'))
+
+import console_config  # noqa: E402
+
+SIZES = ((1280, 800), (1920, 1080))  # px
+PATIENCE = 100  # s of wall time, for rviz to come up, and for the moment of the picture
+SETTLE = 6      # s of wall time, for rviz to draw it
+SLOWER = 0.3    # real-time factor, so that a machine which draws in software shows it
+STEPPED = {'haptic': 'none', 'mode': 'semi_automatic'}
+BY_HAND = {'haptic': 'operator', 'motion': ROOT / 'config/hand_motions/puncture_and_inject.yaml'}
+# Without a hand the clock of a lock step would wait for what leads the needle by images.
+CONSOLES = {'inject': {**STEPPED, 'camera': 'sim'}, 'teleoperate': {**BY_HAND, 'camera': 'sim'}, 'train': BY_HAND,
+            'paper': STEPPED, 'calibrate': {'haptic': 'none', 'mode': 'manual', 'camera': 'sim', 'clock': 'wall'}}
+
+
+class Operator:
+    """The controller's state, and commands to it."""
+
+    def __init__(self):
+        import rospy  # late: it takes the master's address from the environment at once
+        from cell_microinjection.msg import InjectionStatus, StringStamped
+        self.status = None
+        self._stamped = StringStamped
+        self._commands = rospy.Publisher('/controller/state_command', StringStamped, queue_size=1)
+        rospy.Subscriber('/controller/injection_state', InjectionStatus, lambda m: setattr(self, 'status', m))
+
+    def waits(self, state=None):
+        return self.status is not None and (self.status.waits if state else True) and self.status.state == (state or 'idle')
+
+    def connected(self):
+        return self._commands.get_num_connections() > 0
+
+    def say(self, command):
+        self._commands.publish(self._stamped(string=command))
+
+
+def await_moment(session, arguments):
+    """Until there is something to see. @raises SessionError"""
+    def wait(condition, what):
+        if not wait_until(condition, PATIENCE):
+            raise SessionError(f'{what}: not within {PATIENCE} s')
+    session.monitor.go()  # first: in lock step nothing comes before the hand
+    operator = Operator()
+    wait(lambda: operator.waits() and operator.connected(), 'a controller')
+    if arguments['haptic'] == 'operator':
+        wait(lambda: session.monitor.phase == 'hold', "the hand's rest in the cell")
+    elif arguments['mode'] == 'semi_automatic':
+        for command, state in (('approach', 'contact'), ('indent', 'punctured')):
+            operator.say(command)
+            wait(lambda state=state: operator.waits(state), command)
+    session.check()
+
+
+def start_rviz(name, size, logs, environment):
+    config = console_config.configuration(name)
+    for key, value in zip(('Width', 'Height'), size):
+        before = {'Width': 1280, 'Height': 800}[key]
+        config = config.replace(f'  {key}: {before}\n', f'  {key}: {value}\n')
+    path = logs / f'{name}.rviz'
+    path.write_text(config, encoding='utf-8')
+    return Child(['nice', '-n', '5', 'rviz', '-d', str(path)], logs / 'rviz.log', {**os.environ, **environment})
+
+
+def picture(name, size, out, logs):
+    """@raises SessionError"""
+    logs = logs / f'{name}_{size[0]}'
+    logs.mkdir(parents=True)
+    arguments = {'clock': 'lockstep', 'real_time_factor': SLOWER, 'display': 'true', 'cell': 'mouse_oocyte_injection', 'layers': 2,
+                 **CONSOLES[name]}
+    if name == 'train':
+        arguments.update(record=logs / 'record', bag='false', operator='ada', history=logs / 'training.csv')
+    screen = Screen(logs / 'xvfb.log', size)
+    session = view = None
+    try:
+        session = DemoSession(ROOT / 'launch/session.launch', logs, arguments)
+        session.wait_ready()
+        view = start_rviz(name, size, logs, screen.environment)
+        if not wait_until(lambda: session.monitor.has_subscriber('/viz/markers'), PATIENCE):
+            raise SessionError(f'rviz does not start; {view.log} ends with\n{view.tail(8)}')
+        await_moment(session, arguments)
+        time.sleep(SETTLE)
+        path = out / f'{name}_{size[0]}x{size[1]}.png'
+        if not screenshot.take(path, env={**os.environ, **screen.environment}):
+            raise SessionError('there is no picture of the screen')
+        return path
+    finally:
+        if view:
+            view.stop(10)
+        if session:
+            session.stop()
+        screen.close()
+
+
+def main():
+    """NAME WIDTH HEIGHT OUT LOGS: one picture; rospy knows one master in a process."""
+    name, width, height, out, logs = sys.argv[1:]
+    os.environ.pop('DISPLAY', None)
+    try:
+        print(picture(name, (int(width), int(height)), Path(out), Path(logs)))
+    except (SessionError, RuntimeError, OSError) as error:
+        print(f'{name}: {error}', file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())

@@ -1,0 +1,81 @@
+"""What the tests of the operator's console share: a virtual screen with the console, its mouse, and what is to be seen."""
+
+import os
+import subprocess
+import tempfile
+import time
+from pathlib import Path
+
+import rospy
+from cell_microinjection.msg import StringStamped
+
+import console_eye
+from processes import Child
+from screen import Screen
+
+PATIENCE = 150        # s of wall time; only a session or a console that hangs takes that long
+START_PATIENCE = 400  # s, for rviz on a busy machine
+SIZE = (1280, 800)    # px
+
+
+class ConsoleUser:
+    """For unittest.TestCase. `sent`: the commands on /controller/state_command."""
+
+    @classmethod
+    def open_console(cls, name="inject"):
+        cls.console = name
+        os.environ.pop("DISPLAY", None)  # never the user's: the mouse is the test's
+        cls.folder = tempfile.TemporaryDirectory()
+        logs = Path(cls.folder.name)
+        cls.picture = logs / "screen.png"
+        cls.screen = Screen(logs / "xvfb.log", SIZE)
+        cls.environment = {**os.environ, **cls.screen.environment}
+        cls.rviz = Child(["roslaunch", "cell_microinjection", "display.launch", f"console:={name}"], logs / "rviz.log",
+                         cls.environment)
+        cls.sent = []
+        rospy.Subscriber("/controller/state_command", StringStamped, lambda message: cls.sent.append(message.string))
+
+    @classmethod
+    def close_console(cls):
+        cls.rviz.stop(10)
+        cls.screen.close()
+        cls.folder.cleanup()
+
+    def report(self):
+        """For the message of a test that fails."""
+        return f"sent {self.sent}" + ("" if self.rviz.running() else f"; rviz has ended: {self.rviz.tail(10)}")
+
+    def until(self, condition, what, patience=PATIENCE):
+        end = time.monotonic() + patience
+        while True:
+            result = condition()
+            if result:
+                return result
+            self.assertLess(time.monotonic(), end, f"{what}: not within {patience} s; {self.report()}")
+            time.sleep(0.05)
+
+    def look(self):
+        try:
+            return console_eye.look(self.picture, self.environment, self.console)
+        except console_eye.NotSeen:
+            return None
+
+    def shows(self, condition, what, patience=PATIENCE):
+        """The console, as soon as it shows that."""
+        def check():
+            console = self.look()
+            return console if console and condition(console) else None
+        return self.until(check, f"a console with {what}", patience)
+
+    def do(self, *words):
+        subprocess.run(["xdotool", *map(str, words)], env=self.environment, check=True, timeout=60)
+
+    def click(self, place):
+        self.do("mousemove", *place)
+        self.do("click", 1)
+
+    def press(self, button):
+        console = self.shows(lambda seen: seen.offered[button], f"{button} offered")
+        before = len(self.sent)
+        self.click(console.place[button])
+        self.until(lambda: len(self.sent) > before, f"a command of {button}")
