@@ -67,7 +67,8 @@ DisplayConfig readConfig(const ros::NodeHandle& private_node) {
 
 const char* const DisplayNode::kHelp =
     "display: shows the scene in rviz, ten thousand times enlarged.\n"
-    "In: /cell/state /force_sensor/measured_cf /haptic/measured_cp /controller/injection_state /cell/estimate,\n"
+    "In: /cell/state /force_sensor/measured_cf /haptic/measured_cp /controller/injection_state /cell/estimate\n"
+    "/visual_servo/proposed_point,\n"
     "tf of world, cell, needle_tip and the rig.\n"
     "Also viz/set_view (DisplayView).\n"
     "Out: viz/markers viz/still (MarkerArray), viz/view, tf below viz/world.\n";
@@ -81,7 +82,8 @@ DisplayNode::DisplayNode(ros::NodeHandle node, ros::NodeHandle private_node)
                {"/force_sensor/measured_cf", true},
                {"/haptic/measured_cp", false},
                {"/controller/injection_state", false},
-               {"/cell/estimate", false}}},
+               {"/cell/estimate", false},
+               {"/visual_servo/proposed_point", false}}},
       reported_(ros::WallTime::now()),
       diagnostics_(node, private_node) {
   state_.readout.state = "waiting for the cell";
@@ -98,6 +100,7 @@ DisplayNode::DisplayNode(ros::NodeHandle node, ros::NodeHandle private_node)
   subscribe(node, kHand, &DisplayNode::onHand);
   subscribe(node, kInjection, &DisplayNode::onInjection);
   subscribe(node, kEstimate, &DisplayNode::onEstimate);
+  subscribe(node, kProposed, &DisplayNode::onProposed);
   diagnostics_.setHardwareID("none");
   diagnostics_.add("drawing", this, &DisplayNode::reportDrawing);
   diagnostics_.add("inputs", this, &DisplayNode::reportInputs);
@@ -171,6 +174,13 @@ void DisplayNode::onHand(const geometry_msgs::PoseStamped& message) {
   count(kHand, state_.readout.hand.has_value());
 }
 
+void DisplayNode::onProposed(const geometry_msgs::PointStamped& message) {
+  const Eigen::Vector3d place = toVector(message.point);
+  state_.proposed = std::nullopt;
+  if (isValid(message) && message.header.frame_id == "world" && place.allFinite()) state_.proposed = place;
+  count(kProposed, message.header.stamp.isZero() || state_.proposed.has_value());
+}
+
 void DisplayNode::onInjection(const cell_microinjection::InjectionStatus& message) {
   state_.readout.injection = message.state + (message.waits ? ", waits" : "");
   count(kInjection, true);
@@ -200,6 +210,7 @@ void DisplayNode::draw() {
   frames_.update();
   findTipTransform();
   if (secondsBetween(inputs_[kEstimate].received, start) > kStaleAge) state_.readout.puncture = std::nullopt;
+  if (secondsBetween(inputs_[kProposed].received, start) > kStaleAge) state_.proposed = std::nullopt;
   if (state_.tip) {
     frames_.publishNeedleTip(*state_.tip);
     if (config_.trail > 0) trail_.add(start.toSec(), state_.tip->translation());

@@ -5,6 +5,7 @@
 #include <cell_microinjection/DisplayView.h>
 #include <cell_microinjection/InjectionStatus.h>
 #include <diagnostic_updater/diagnostic_updater.h>
+#include <geometry_msgs/PointStamped.h>
 #include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/WrenchStamped.h>
 #include <ros/ros.h>
@@ -23,12 +24,11 @@ namespace microinjection {
 /// Shows the scene in rviz, enlarged. For people only: no node that controls reads its topics.
 ///
 /// In:  /cell/state (with the predicted force), /force_sensor/measured_cf, /haptic/measured_cp,
-///      /controller/injection_state, /cell/estimate, and from tf the frames of the rig with needle_tip, which saves
-///      poses at 1 kHz; viz/set_view (DisplayView)
+///      /controller/injection_state, /cell/estimate, /visual_servo/proposed_point, viz/set_view (DisplayView), and from
+///      tf the frames of the rig with needle_tip, which saves poses at 1 kHz
 /// Out: viz/view (DisplayView, latched), viz/markers, viz/still (MarkerArray; the second, for rare changes, is latched:
-/// an rviz that
-///      draws slowly skips messages of the first), tf of viz/{cell, holding_pipette,
-///      manipulator_base, needle_tip} below viz/world
+///      an rviz that draws slowly skips messages of the first), tf of viz/{cell, holding_pipette, manipulator_base,
+///      needle_tip} below viz/world
 ///
 /// Parameters: config/display.yaml
 ///
@@ -43,7 +43,7 @@ class DisplayNode {
   void run();
 
  private:
-  enum InputId { kState, kMeasured, kHand, kInjection, kEstimate, kInputs };
+  enum InputId { kState, kMeasured, kHand, kInjection, kEstimate, kProposed, kInputs };
   struct Input {
     Input(const std::string& input_topic, bool is_needed) : topic(input_topic), needed(is_needed) {}
     std::string topic;
@@ -55,6 +55,7 @@ class DisplayNode {
   void onState(const cell_microinjection::CellState& message);
   void onInjection(const cell_microinjection::InjectionStatus& message);
   void onEstimate(const cell_microinjection::CellEstimate& message);
+  void onProposed(const geometry_msgs::PointStamped& message);
   void onHand(const geometry_msgs::PoseStamped& message);
   void onView(const cell_microinjection::DisplayView& message);
   void publishView();

@@ -8,7 +8,7 @@ import numpy as np
 import rospy
 import rostest
 from cell_microinjection.msg import CellState, DisplayView
-from geometry_msgs.msg import Point32, TransformStamped, WrenchStamped
+from geometry_msgs.msg import Point, Point32, PointStamped, TransformStamped, WrenchStamped
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker, MarkerArray
 
@@ -132,6 +132,22 @@ class DisplayTest(unittest.TestCase):
             self.assertAlmostEqual(point[1], SCALE * tilted[1], delta=0.01)
         self.show(DisplayView(colour="displacement"), "displacement")
         self.until(lambda: not self.is_drawn("section 0"), "the whole cell")
+
+    def test_a_proposed_place_is_a_cross_until_it_is_forgotten(self):
+        places = rospy.Publisher("/visual_servo/proposed_point", PointStamped, queue_size=1)
+        place = PointStamped()
+        place.header.frame_id = "world"
+
+        def cross(stamp):
+            place.header.stamp = stamp
+            place.point = Point(*TIP)
+            places.publish(place)
+            return self.is_drawn("proposed_place")
+        self.until(lambda: cross(rospy.Time.now()), "a cross")
+        marker = self.markers["proposed_place"]
+        self.assertEqual(marker.header.frame_id, "viz/world")
+        np.testing.assert_allclose(np.mean([[p.x, p.y, p.z] for p in marker.points], axis=0), SCALE * TIP, atol=1e-9)
+        self.until(lambda: not cross(rospy.Time()), "no cross")
 
     def arrow(self):
         """One of a force that came when the needle's frame was known: before, it counts as along the world's axes."""

@@ -15,6 +15,7 @@ constexpr Colour kEdge{0.02f, 0.05f, 0.10f, 0.35f};
 constexpr Colour kContact{1.00f, 0.36f, 0.20f, 1};
 constexpr Colour kPredicted{1.00f, 0.70f, 0.20f, 1};
 constexpr Colour kMeasured{0.95f, 0.40f, 0.80f, 1};
+constexpr Colour kProposed{1.00f, 0.31f, 1.00f, 1};  // as in the microscope's image
 constexpr Colour kText{0.92f, 0.94f, 0.97f, 1};
 constexpr Colour kAlarm{1.00f, 0.45f, 0.35f, 1};
 
@@ -23,6 +24,7 @@ constexpr double kForceAbove = 0.2;                         // display units, fr
 constexpr double kHole = 0.03;                              // display units; not to scale
 constexpr double kStrutWidth = 0.016, kCableWidth = 0.006;  // display units; not to scale
 constexpr double kTrailWidth = 0.008;                       // display units; not to scale
+constexpr double kCross = 0.1;                              // display units, from a proposed place to each end
 constexpr double kGaugeHeight = 0.4;                        // display units, of the expected puncture's depth
 const Eigen::Vector3d kGaugeTop(0.68, 0, -0.42);            // display units
 const std::string kWorld = "viz/world";
@@ -59,8 +61,18 @@ void DisplayScene::drawMoving(const DisplayedState& state, visualization_msgs::M
   drawForce("predicted_force", state, state.predicted, -beside, kPredicted, markers);
   drawForce("measured_force", state, state.measured, beside, kMeasured, markers);
   markers.markers.push_back(lineMarker({kWorld, "trail"}, state.trail, kTrailWidth));
+  drawProposed(state, markers);
   drawPuncture(state, markers);
   drawReadout(state, markers);
+}
+
+void DisplayScene::drawProposed(const DisplayedState& state, visualization_msgs::MarkerArray& markers) const {
+  LineList cross;
+  for (int axis = 0; state.proposed && axis < 3; ++axis) {
+    for (const double end : {-kCross, kCross})
+      cross.push_back(config_.enlargement * *state.proposed + end * Eigen::Vector3d::Unit(axis));
+  }
+  markers.markers.push_back(lineMarker({kWorld, "proposed_place"}, cross, kTrailWidth, kProposed));
 }
 
 void DisplayScene::drawPuncture(const DisplayedState& state, visualization_msgs::MarkerArray& markers) const {

@@ -30,6 +30,7 @@ struct DisplayedState {
   std::optional<Eigen::Isometry3d> holding_from_cell;  ///< pose of cell_frame in holding_pipette
   std::optional<Eigen::Isometry3d> tip;                ///< pose of needle_tip in world
   std::optional<Eigen::Isometry3d> tip_in_cell;        ///< the same in cell_frame
+  std::optional<Eigen::Vector3d> proposed;             ///< m, place that a click has proposed for the tip, in world
   ColouredLines trail;                                 ///< of the tip, display units, in world
   std::optional<Eigen::Vector3d> predicted;            ///< N, of the cell on the tip, in world and cell_frame
   std::optional<Eigen::Vector3d> measured;             ///< N, as `predicted`
@@ -57,6 +58,7 @@ class DisplayScene {
  private:
   void drawForce(const std::string& name, const DisplayedState& state, const std::optional<Eigen::Vector3d>& force,
                  double beside, const Colour& colour, visualization_msgs::MarkerArray& markers) const;
+  void drawProposed(const DisplayedState& state, visualization_msgs::MarkerArray& markers) const;
   void drawPuncture(const DisplayedState& state, visualization_msgs::MarkerArray& markers) const;
   void drawReadout(const DisplayedState& state, visualization_msgs::MarkerArray& markers) const;
   void drawSkin(const DisplayedState& state, const std::optional<DisplayedStress>& stress,
