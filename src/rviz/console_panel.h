@@ -20,6 +20,7 @@ class GuardRow;
 class HandBox;
 class LampRow;
 class ScoreBox;
+class SensorBox;
 class StepsWidget;
 
 /// The operator's console: a panel of rviz with the state of the injection, the commands with their
@@ -69,6 +70,7 @@ class ConsolePanel : public rviz::Panel {
   HandBox* hand_ = nullptr;
   CalibrationBox* calibration_ = nullptr;
   ScoreBox* score_ = nullptr;
+  SensorBox* sensor_ = nullptr;
   std::array<LampRow*, kDevices.size()> devices_{};
   ElidedLabel *served_ = nullptr, *puncture_ = nullptr;
   LampRow *estimate_ = nullptr, *injector_ = nullptr;
