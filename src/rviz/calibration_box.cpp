@@ -18,8 +18,8 @@ CalibrationBox::CalibrationBox(std::function<SessionView()> newest, QWidget* par
   layout->addWidget(new QLabel("<b>Needle and camera</b>", this), 0, 0, 1, 2);
   int line = 1;
   for (const CameraTask task : kCameraTasks)
-    rows_.emplace_back(toText(task), 2, this, layout, line++, [this, task] { press(task); });
-  cancel_ = std::make_unique<OfferRow>("Cancel", 2, this, layout, line++, [this] {
+    rows_.emplace_back(toText(task), 1, this, layout, line++, [this, task] { press(task); });
+  cancel_ = std::make_unique<OfferRow>("Cancel", 1, this, layout, line++, [this] {
     if (runners_) runners_->cancel();
   });
   layout->addWidget(report_, line, 0, 1, 2);

@@ -22,6 +22,7 @@
 #include "rviz/hand_box.h"
 #include "rviz/lamp_row.h"
 #include "rviz/score_box.h"
+#include "rviz/sensor_box.h"
 #include "rviz/steps_widget.h"
 #include "rviz/view_row.h"
 
@@ -68,6 +69,7 @@ ConsolePanel::ConsolePanel(QWidget* parent)
   box(ConsolePart::kCell) = makeCell();
   box(ConsolePart::kGuards) = makeGuards();
   box(ConsolePart::kScore) = score_ = new ScoreBox(this);
+  box(ConsolePart::kSensor) = sensor_ = new SensorBox(this);
   box(ConsolePart::kCalibration) = calibration_ = new CalibrationBox([this] { return newest(); }, this);
   box(ConsolePart::kPlots) = makePlots();
   auto* middle = new QHBoxLayout;
@@ -75,7 +77,8 @@ ConsolePanel::ConsolePanel(QWidget* parent)
   middle->addWidget(box(ConsolePart::kCommands), 1);
   auto* right = new QVBoxLayout;
   right->setSpacing(8);
-  for (const ConsolePart part : {ConsolePart::kHand, ConsolePart::kDevices, ConsolePart::kCell, ConsolePart::kGuards}) {
+  for (const ConsolePart part :
+       {ConsolePart::kHand, ConsolePart::kDevices, ConsolePart::kCell, ConsolePart::kGuards, ConsolePart::kSensor}) {
     right->addWidget(box(part));
   }
   right->addStretch(1);
@@ -193,6 +196,7 @@ void ConsolePanel::showParts(const std::string& words) {
   if (parts_.has(ConsolePart::kCell)) view_->start();
   if (parts_.has(ConsolePart::kHand)) hand_->start();
   if (parts_.has(ConsolePart::kCalibration)) calibration_->start();
+  if (parts_.has(ConsolePart::kSensor)) sensor_->start();
   if (parts_.has(ConsolePart::kScore)) score_->start(*link_);
 }
 
@@ -236,6 +240,7 @@ void ConsolePanel::showState() {
   hand_->refresh();
   calibration_->refresh(session);
   score_->refresh();
+  sensor_->refresh();
 
   ForcePlot::Limits limits;
   if (session.settings.force_limit) limits.force = *session.settings.force_limit * 1e6;

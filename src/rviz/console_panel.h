@@ -20,6 +20,7 @@ class GuardRow;
 class HandBox;
 class LampRow;
 class ScoreBox;
+class SensorBox;
 class StepsWidget;
 class ViewRow;
 
@@ -71,6 +72,7 @@ class ConsolePanel : public rviz::Panel {
   CalibrationBox* calibration_ = nullptr;
   ScoreBox* score_ = nullptr;
   ViewRow* view_ = nullptr;
+  SensorBox* sensor_ = nullptr;
   std::array<LampRow*, kDevices.size()> devices_{};
   ElidedLabel *served_ = nullptr, *puncture_ = nullptr;
   LampRow *estimate_ = nullptr, *injector_ = nullptr;

@@ -36,8 +36,8 @@ class Operator:
         self._commands = rospy.Publisher('/controller/state_command', StringStamped, queue_size=1)
         rospy.Subscriber('/controller/injection_state', InjectionStatus, lambda m: setattr(self, 'status', m))
 
-    def waits(self, state=None):
-        return self.status is not None and (self.status.waits if state else True) and self.status.state == (state or 'idle')
+    def waits(self, state):
+        return self.status.waits and self.status.state == state
 
     def connected(self):
         return self._commands.get_num_connections() > 0
@@ -53,7 +53,7 @@ def await_moment(session, arguments):
             raise SessionError(f'{what}: not within {PATIENCE} s')
     session.monitor.go()  # first: in lock step nothing comes before the hand
     operator = Operator()
-    wait(lambda: operator.waits() and operator.connected(), 'a controller')
+    wait(lambda: operator.status is not None and operator.connected(), 'a controller')
     if arguments['haptic'] == 'operator':
         wait(lambda: session.monitor.phase == 'hold', "the hand's rest in the cell")
     elif arguments['mode'] == 'semi_automatic':

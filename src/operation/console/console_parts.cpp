@@ -5,7 +5,8 @@
 namespace microinjection {
 
 const char* toText(ConsolePart part) {
-  constexpr const char* kWords[] = {"commands", "hand", "devices", "cell", "guards", "score", "calibration", "plots"};
+  constexpr const char* kWords[] = {"commands", "hand",   "devices",     "cell", "guards",
+                                    "score",    "sensor", "calibration", "plots"};
   return kWords[static_cast<std::size_t>(part)];
 }
 

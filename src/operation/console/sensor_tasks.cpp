@@ -1,0 +1,45 @@
+#include "operation/console/sensor_tasks.h"
+
+namespace microinjection {
+namespace {
+
+CommandOffer describe(SensorTask task) {
+  switch (task) {
+    case SensorTask::kTare:
+      return {"Tare", "", "nothing touches the tip", ""};
+    case SensorTask::kPoint:
+      return {"Point", "", "the force below acts now", ""};
+    case SensorTask::kGain:
+      return {"Gain", "", "fits the gain to the points", ""};
+    case SensorTask::kUndo:
+      break;
+  }
+  return {"Undo", "", "takes back the last step", ""};
+}
+
+}  // namespace
+
+/// The node's words, of ForceReadout.
+bool SensorView::averaging() const { return outcome == "taring" || outcome == "averaging under the known force"; }
+
+CommandOffer offer(SensorTask task, const SensorView& sensor) {
+  CommandOffer result = describe(task);
+  if (!sensor.there) {
+    result.refusal = "no node force_sensor";
+  } else if (sensor.called) {
+    result.refusal = "the sensor is asked";
+  } else if (sensor.averaging()) {
+    result.refusal = "an average is under way";
+  } else if (task == SensorTask::kGain && sensor.points == 0) {
+    result.refusal = "add a point first";
+  }
+  return result;
+}
+
+Lamp sensorLamp(const SensorView& sensor) {
+  if (!sensor.refusal.empty()) return {Light::kRed, sensor.refusal};
+  if (!sensor.there || sensor.outcome.empty()) return {Light::kGrey, "nothing was calibrated in this session"};
+  return {sensor.averaging() ? Light::kYellow : Light::kGreen, sensor.outcome};
+}
+
+}  // namespace microinjection
