@@ -67,7 +67,8 @@ TEST(ChangingContact, TheFeltSceneIsReported) {
   ASSERT_TRUE(surface.scene);
   EXPECT_EQ(surface.scene->cell.material().young_modulus, 3 * pipette().cell.material().young_modulus);
   ASSERT_EQ(surface.at_rest.size(), surface.vertices.size());
-  for (const Eigen::Vector3d& vertex : surface.at_rest) EXPECT_NEAR(vertex.norm(), pipette().radius(), 1e-9);
+  for (std::size_t i = 0; i < surface.vertices.size(); ++i)
+    EXPECT_NEAR((surface.vertices[i] - surface.at_rest[i]).norm(), surface.displacement[i], 1e-12);
 }
 
 /// Otherwise a better measured diameter would push the needle out.
