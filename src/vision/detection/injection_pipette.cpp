@@ -21,7 +21,7 @@ constexpr double kWidestPoint = 14;                        // px from the axis, 
 constexpr double kTube = 0.1;                              // widening of a tube whose profile stays the same, at most
 constexpr double kAgree = 6;                               // px, between two ways to see a tip's end
 constexpr double kApart = 0.25;  // standard deviation of an end over the distance between two ways to see it
-constexpr double kUnclear = 1;   // px, standard deviation of an end that needs a second witness
+constexpr double kUnclear = 2;   // px, standard deviation of an end that needs a second witness
 constexpr double kThinnest = 4, kWidestTip = 40, kWidestSure = 26;  // px, half widths
 constexpr double kAhead = 48;                // px behind the end, whose half width is that of the strips
 constexpr int kFirstShift = 24, kShift = 8;  // px, that an axis may be off
