@@ -27,6 +27,7 @@ const char* const HapticBridgeNode::kHelp =
     "In: /haptic/measured_cp /haptic/clutch /haptic/operator_present /needle/measured_cp\n"
     "/controller/injection_state, and /cell/predicted_cf, /force_sensor/measured_cf or both.\n"
     "Out: /haptic/servo_cf /haptic/loop_state /teleop/servo_cp.\n"
+    "Service: ~calibrate_axes.\n"
     "With link/scheme wave, /link/hand/received and /link/hand/sent replace the rig's topics;\n"
     "config/link.yaml has the keys of ~link.\n";
 
@@ -44,6 +45,7 @@ HapticBridgeNode::Parameters HapticBridgeNode::Parameters::read(const ros::NodeH
   ConfigReader reader = parameterReader(private_node);
   reader.number("rate", parameters.rate, Range::closed(50, 5000));
   reader.boolean("force_feedback", parameters.force_feedback);
+  reader.text("axes_file", parameters.axes_file);
   parameters.timeouts = Timeouts::read(reader.section("timeouts"));
   parameters.model = HapticBridgeConfig::read(reader);
   parameters.link = LinkConfig::read(reader.section("link"));
@@ -63,7 +65,9 @@ HapticBridgeNode::HapticBridgeNode(ros::NodeHandle node, ros::NodeHandle private
       hand_force_(cycle_.output<geometry_msgs::WrenchStamped>("haptic/servo_cf")),
       trace_(cycle_.output<sensor_msgs::TimeReference>("haptic/force_trace")),
       loop_state_(cycle_.node(), "haptic/loop_state"),
-      receiver_(cycle_, hand_force_.publisher, parameters_.force_feedback) {
+      receiver_(cycle_, hand_force_.publisher, parameters_.force_feedback),
+      axes_(cycle_, private_node, parameters_.model.frame.device_axes, parameters_.model.motion.mode == "rate",
+            parameters_.axes_file) {
   if (parameters_.model.require_operator) {
     operator_present_ = &cycle_.input<sensor_msgs::Joy>("haptic/operator_present", InputPhase::kPreviousTick,
                                                         orForEver(parameters_.timeouts.operator_present));
@@ -110,7 +114,15 @@ bool HapticBridgeNode::operatorPresent(const ros::Time& now) const {
   return joy && !joy->buttons.empty() && heldDown(*joy);
 }
 
+/// The needle does not follow when the axes change, so that the bridge may start anew.
+void HapticBridgeNode::takeAxes() {
+  if (axes_.axes() == parameters_.model.frame.device_axes) return;
+  parameters_.model.frame.device_axes = axes_.axes();
+  model_ = HapticBridge(parameters_.model);
+}
+
 void HapticBridgeNode::step(const Cycle::Tick& tick) {
+  takeAxes();
   const auto* hand = hand_.get(tick.now);
   HapticBridge::Input input;
   if (hand) hand_frame_ = hand->header.frame_id;
@@ -121,7 +133,9 @@ void HapticBridgeNode::step(const Cycle::Tick& tick) {
   input.clutch = clutchPressed(tick.now);
   input.operator_present = operatorPresent(tick.now);
   if (!receiver_.isConnected()) input.no_force_reason = receiver_.reason();
+  input.no_motion_reason = axes_.holdReason();
   output_ = model_.step(input, tick.dt);
+  axes_.observe(input.hand, output_.state == Engagement::State::kFollow);
   hand_force_.publish(toWrench(output_.hand_force, tick.now, hand_frame_));
   rig_->send(output_.needle, hand ? hand->header.stamp : tick.now, tick);
   loop_state_.step(holdReason(), tick.now);
@@ -141,6 +155,7 @@ void HapticBridgeNode::report(diagnostic_updater::DiagnosticStatusWrapper& statu
   status.add("tremor filter's delay (s)", model_.delay());
   status.add("observed energy (J)", model_.observedEnergy());
   rig_->report(status);
+  axes_.report(status);
   status.add("passivity controller acts", model_.passivityActing() ? "yes" : "no");
 }
 

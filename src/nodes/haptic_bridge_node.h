@@ -9,6 +9,7 @@
 #include <memory>
 #include <string>
 
+#include "nodes/haptic/axes_service.h"
 #include "nodes/haptic/force_receiver.h"
 #include "nodes/haptic/rig_inputs.h"
 #include "nodes/haptic/rig_side.h"
@@ -25,6 +26,7 @@ namespace microinjection {
 /// - without a controller, since the needle then does not follow the hand,
 /// - while the node that publishes the hand's position does not subscribe to its force
 ///   (haptic/force_receiver.h),
+/// - while the device's axes are calibrated (haptic/axes_service.h),
 /// - before it ends.
 ///
 /// In:  /haptic/measured_cp (PoseStamped, the device's axes), /haptic/clutch and
@@ -33,6 +35,7 @@ namespace microinjection {
 /// Out: /haptic/servo_cf (WrenchStamped, N at the hand), /haptic/loop_state (LoopState),
 ///      /haptic/force_trace (TimeReference)
 /// and those of LocalRig or, with link/scheme wave, of RemoteRig.
+/// Service: ~calibrate_axes (CalibrateAxes)
 ///
 /// Parameters: config/haptic_bridge.yaml
 class HapticBridgeNode {
@@ -53,6 +56,7 @@ class HapticBridgeNode {
   struct Parameters {
     double rate = 1000;
     bool force_feedback = true;
+    std::string axes_file;  ///< that a calibration of the axes writes; empty: of the user's data
     Timeouts timeouts;
     HapticBridgeConfig model;
     LinkConfig link;
@@ -60,6 +64,7 @@ class HapticBridgeNode {
   };
 
   void step(const Cycle::Tick& tick);
+  void takeAxes();
   bool clutchPressed(const ros::Time& now) const;
   bool operatorPresent(const ros::Time& now) const;
   void publishZeroForce();
@@ -77,6 +82,7 @@ class HapticBridgeNode {
   std::unique_ptr<RigSide> rig_;
   LoopStatePublisher loop_state_;
   ForceReceiver receiver_;
+  AxesService axes_;
   std::string hand_frame_;       ///< of the last hand
   HapticBridge::Output output_;  ///< of the last step, for the diagnostics
 };

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "operation/console/headline.h"
+#include "rviz/axes_box.h"
 #include "rviz/calibration_box.h"
 #include "rviz/colours.h"
 #include "rviz/commands_widget.h"
@@ -65,6 +66,7 @@ ConsolePanel::ConsolePanel(QWidget* parent)
   layout->addWidget(headline_);
   box(ConsolePart::kCommands) = makeCommands();
   box(ConsolePart::kHand) = hand_ = new HandBox(this);
+  box(ConsolePart::kAxes) = axes_ = new AxesBox(this);
   box(ConsolePart::kDevices) = makeDevices();
   box(ConsolePart::kCell) = makeCell();
   box(ConsolePart::kGuards) = makeGuards();
@@ -77,8 +79,8 @@ ConsolePanel::ConsolePanel(QWidget* parent)
   middle->addWidget(box(ConsolePart::kCommands), 1);
   auto* right = new QVBoxLayout;
   right->setSpacing(8);
-  for (const ConsolePart part :
-       {ConsolePart::kHand, ConsolePart::kDevices, ConsolePart::kCell, ConsolePart::kGuards, ConsolePart::kSensor}) {
+  for (const ConsolePart part : {ConsolePart::kHand, ConsolePart::kAxes, ConsolePart::kDevices, ConsolePart::kCell,
+                                 ConsolePart::kGuards, ConsolePart::kSensor}) {
     right->addWidget(box(part));
   }
   right->addStretch(1);
@@ -195,6 +197,7 @@ void ConsolePanel::showParts(const std::string& words) {
   if (!link_) return;
   if (parts_.has(ConsolePart::kCell)) view_->start();
   if (parts_.has(ConsolePart::kHand)) hand_->start();
+  if (parts_.has(ConsolePart::kAxes)) axes_->start();
   if (parts_.has(ConsolePart::kCalibration)) calibration_->start();
   if (parts_.has(ConsolePart::kSensor)) sensor_->start();
   if (parts_.has(ConsolePart::kScore)) score_->start(*link_);
@@ -241,6 +244,7 @@ void ConsolePanel::showState() {
   calibration_->refresh(session);
   score_->refresh();
   sensor_->refresh();
+  axes_->refresh();
 
   ForcePlot::Limits limits;
   if (session.settings.force_limit) limits.force = *session.settings.force_limit * 1e6;

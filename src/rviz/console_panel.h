@@ -21,6 +21,7 @@ class HandBox;
 class LampRow;
 class ScoreBox;
 class SensorBox;
+class AxesBox;
 class StepsWidget;
 class ViewRow;
 
@@ -73,6 +74,7 @@ class ConsolePanel : public rviz::Panel {
   ScoreBox* score_ = nullptr;
   ViewRow* view_ = nullptr;
   SensorBox* sensor_ = nullptr;
+  AxesBox* axes_ = nullptr;
   std::array<LampRow*, kDevices.size()> devices_{};
   ElidedLabel *served_ = nullptr, *puncture_ = nullptr;
   LampRow *estimate_ = nullptr, *injector_ = nullptr;

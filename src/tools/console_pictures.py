@@ -22,7 +22,7 @@ STEPPED = {'haptic': 'none', 'mode': 'semi_automatic'}
 BY_HAND = {'haptic': 'operator', 'motion': ROOT / 'config/hand_motions/puncture_and_inject.yaml'}
 # Without a hand the clock of a lock step would wait for what leads the needle by images.
 CONSOLES = {'inject': {**STEPPED, 'camera': 'sim'}, 'teleoperate': {**BY_HAND, 'camera': 'sim'}, 'train': BY_HAND,
-            'paper': STEPPED, 'calibrate': {'haptic': 'none', 'mode': 'manual', 'camera': 'sim', 'clock': 'wall'}}
+            'axes': BY_HAND, 'paper': STEPPED, 'calibrate': {'haptic': 'none', 'mode': 'manual', 'camera': 'sim', 'clock': 'wall'}}
 
 
 class Operator:

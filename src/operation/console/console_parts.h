@@ -6,10 +6,10 @@
 namespace microinjection {
 
 /// What a console may show below its steps and its headline.
-enum class ConsolePart { kCommands, kHand, kDevices, kCell, kGuards, kScore, kSensor, kCalibration, kPlots };
-constexpr std::array<ConsolePart, 9> kConsoleParts = {
-    ConsolePart::kCommands, ConsolePart::kHand,   ConsolePart::kDevices,     ConsolePart::kCell, ConsolePart::kGuards,
-    ConsolePart::kScore,    ConsolePart::kSensor, ConsolePart::kCalibration, ConsolePart::kPlots};
+enum class ConsolePart { kCommands, kHand, kAxes, kDevices, kCell, kGuards, kScore, kSensor, kCalibration, kPlots };
+constexpr std::array<ConsolePart, 10> kConsoleParts = {
+    ConsolePart::kCommands, ConsolePart::kHand,  ConsolePart::kAxes,   ConsolePart::kDevices,     ConsolePart::kCell,
+    ConsolePart::kGuards,   ConsolePart::kScore, ConsolePart::kSensor, ConsolePart::kCalibration, ConsolePart::kPlots};
 /// The word for a part in a task's file (config/console).
 const char* toText(ConsolePart part);
 

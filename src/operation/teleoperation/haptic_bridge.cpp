@@ -44,6 +44,7 @@ HapticBridge::HapticBridge(const HapticBridgeConfig& config)
 
 std::string HapticBridge::holdReason(const Input& input, const std::optional<Eigen::Vector3d>& force) const {
   if (!isValid(input.hand)) return "no valid hand position";
+  if (!input.no_motion_reason.empty()) return input.no_motion_reason;
   if (!input.no_force_reason.empty()) return input.no_force_reason;
   if (!isValid(input.needle)) return "no valid needle position";
   if (!force) return "no valid force";
@@ -81,8 +82,8 @@ HapticBridge::Output HapticBridge::step(const Input& input, double dt) {
   passivity_.observe(hand, dt);
 
   const bool held = !output.hold_reason.empty();
-  const bool interrupted =
-      held && input.no_force_reason.empty() && !input.clutch && (!config_.require_operator || input.operator_present);
+  const bool interrupted = held && input.no_force_reason.empty() && input.no_motion_reason.empty() && !input.clutch &&
+                           (!config_.require_operator || input.operator_present);
   const double speed = motion_.isRate() ? 0 : passivity_.velocity().norm();  // a released stick springs back fast
   output.state = engagement_.step({held, input.clutch, speed, held ? 0 : motion_.misalignment(hand, *input.needle),
                                    interrupted, dt, motion_.isAtRest(hand)});

@@ -58,6 +58,7 @@ class HapticBridge {
     bool clutch = false;                    ///< pressed
     bool operator_present = false;          ///< counts with require_operator
     std::string no_force_reason;            ///< why the device does not render the force; empty: it does
+    std::string no_motion_reason;           ///< why the needle must not follow, whoever else agrees; empty: it may
   };
   struct Output {
     std::optional<Eigen::Vector3d> needle;                 ///< m, target of the tip in `world`; empty: hold

@@ -109,6 +109,22 @@ TEST_F(HapticBridgeTest, UntrustedInputHoldsTheNeedleAndRendersNothing) {
   }
 }
 
+TEST_F(HapticBridgeTest, HoldsForAReasonFromOutsideAndEngagesAnew) {
+  run(trustedInput(), 200);
+  HapticBridge::Input input = trustedInput();
+  input.no_motion_reason = "calibration";
+  const auto held = run(input, 50);  // 0.2 N at 100 N/s are gone after 2 ms
+  EXPECT_FALSE(held.needle);
+  EXPECT_EQ(held.hand_force, Eigen::Vector3d::Zero());
+  EXPECT_EQ(held.hold_reason, "calibration");
+  *input.hand += Eigen::Vector3d(0.04, 0, 0);
+  run(input, 50);
+  input.no_motion_reason = "";
+  const auto again = run(input, 200);
+  ASSERT_TRUE(again.needle);
+  EXPECT_EQ(*again.needle, kNeedle) << "the needle does not take the hand's way of the hold";
+}
+
 TEST_F(HapticBridgeTest, HoldsUnlessTheOperatorIsPresent) {
   config_.require_operator = true;
   bridge_ = HapticBridge(config_);
@@ -239,6 +255,8 @@ TEST(HapticBridgeConfig, TheOneThatIsShippedHasTheDefaults) {
   bool force_feedback = false;
   reader.boolean("force_feedback", force_feedback);
   EXPECT_TRUE(force_feedback);
+  std::string axes_file;
+  reader.text("axes_file", axes_file, ConfigReader::kRequired);
   ConfigReader timeouts = reader.section("timeouts", ConfigReader::kRequired);
   for (const char* input : {"hand", "clutch", "operator_present", "needle", "predicted", "measured", "controller"}) {
     double timeout = 0;

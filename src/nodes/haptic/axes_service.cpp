@@ -1,0 +1,101 @@
+#include "nodes/haptic/axes_service.h"
+
+#include <cell_microinjection/OperatingState.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "base/operating_state.h"
+#include "base/user_data.h"
+#include "nodes/runtime/message_guard.h"
+
+namespace microinjection {
+namespace {
+
+constexpr double kDegree = M_PI / 180;
+
+std::string residualOf(const DeviceAxesFit& fit) {
+  char text[160];
+  std::snprintf(text, sizeof text, "motions within %.1f degrees of the axes, within %.1f degrees of a right angle",
+                fit.angleToAxis() / kDegree, fit.angleToSquare() / kDegree);
+  return text;
+}
+
+}  // namespace
+
+AxesService::AxesService(Cycle& cycle, ros::NodeHandle private_node, const std::string& axes, bool springs_back,
+                         const std::string& file)
+    : calibration_(axes, springs_back), file_(file.empty() ? userDataFile("device_axes.yaml") : file) {
+  using State = cell_microinjection::OperatingState;
+  controller_ =
+      subscribeGuarded<State>(cycle.node(), "controller/operating_state", 10,
+                              [this](const State& message, const std::string&) { controller_state_ = message.state; });
+  // The service is executed right before a step, in the node's own thread.
+  private_node.setCallbackQueue(cycle.node().getCallbackQueue());
+  server_ = private_node.advertiseService("calibrate_axes", &AxesService::answer, this);
+}
+
+void AxesService::observe(const std::optional<Eigen::Vector3d>& hand, bool followed) {
+  hand_ = hand;
+  followed_ = followed;
+}
+
+std::string AxesService::holdReason() const {
+  return calibration_.running() ? "the axes of the haptic device are being calibrated" : "";
+}
+
+std::string AxesService::followsReason() const {
+  const bool may_move = controller_state_.empty() || controller_state_ == toText(OperatingState::kEnabled);
+  return followed_ && may_move ? "the needle follows the hand: release the operator's button, press the clutch or "
+                                 "disable the controller"
+                               : "";
+}
+
+std::string AxesService::act(int action) {
+  const std::string follows = followsReason();
+  switch (action) {
+    case Service::Request::BEGIN:
+      return follows.empty() ? calibration_.begin(hand_) : follows;
+    case Service::Request::MOTION:
+      return calibration_.motion(hand_);
+    case Service::Request::UNDO:
+      return calibration_.running() || follows.empty() ? calibration_.undo(hand_) : follows;
+    case Service::Request::STOP:
+      calibration_.stop();
+      return "";
+    default:
+      return "action must be BEGIN, MOTION, UNDO or STOP";
+  }
+}
+
+bool AxesService::answer(Service::Request& request, Service::Response& response) {
+  const std::string refusal = act(request.action);
+  response.success = refusal.empty();
+  response.message = refusal.empty() ? calibration_.prompt() : refusal;
+  response.next = calibration_.running() ? calibration_.fit().next() : "";
+  response.device_axes = calibration_.axes();
+  response.angle_to_axis = calibration_.fit().angleToAxis();
+  response.angle_to_square = calibration_.fit().angleToSquare();
+  response.file = file_.path();
+  write();
+  return true;
+}
+
+void AxesService::write() {
+  if (kept_changes_ == calibration_.changes()) return;
+  kept_changes_ = calibration_.changes();
+  const DeviceAxesFit& fit = calibration_.fit();
+  file_.write(
+      "# Axes of the haptic device, by the service calibrate_axes of the node haptic_bridge. A session takes\n"
+      "# them with overrides:=FILE.\nhaptic_bridge:\n  device_axes: " +
+      calibration_.axes() + (fit.complete() ? "  # " + residualOf(fit) : "") + "\n");
+}
+
+void AxesService::report(diagnostic_updater::DiagnosticStatusWrapper& status) const {
+  const std::string unwritten = file_.error();
+  status.add("device axes", calibration_.axes());
+  if (calibration_.fit().complete()) status.add("calibration of the axes", residualOf(calibration_.fit()));
+  if (calibration_.changes() > 0) status.add("file of the axes", unwritten.empty() ? file_.path() : unwritten);
+}
+
+}  // namespace microinjection
