@@ -5,6 +5,7 @@
 #include "base/user_data.h"
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/frames.h"
+#include "nodes/runtime/message_guard.h"
 #include "nodes/runtime/node_parameters.h"
 #include "nodes/runtime/run_node.h"
 
@@ -59,6 +60,7 @@ ForceSensorNode::ForceSensorNode(ros::NodeHandle node, ros::NodeHandle private_n
     file_.emplace(parameters_.file);
   }
   advertiseServices(private_node);
+  watchController();
   cycle_.diagnostics().add("sensor", [this](auto& status) { report(status); });
 }
 
@@ -78,7 +80,8 @@ void ForceSensorNode::advertiseServices(ros::NodeHandle private_node) {
   private_node.setCallbackQueue(cycle_.node().getCallbackQueue());
   tare_ = private_node.advertiseService<Trigger::Request, Trigger::Response>(
       "tare", [this](Trigger::Request&, Trigger::Response& response) {
-        const std::string refusal = notReadyReason().empty() ? readout_.beginTare() : notReadyReason();
+        const std::string reason = inUseReason().empty() ? notReadyReason() : inUseReason();
+        const std::string refusal = reason.empty() ? readout_.beginTare() : reason;
         response.success = refusal.empty();
         response.message = refusal.empty() ? readout_.outcome() : refusal;
         return true;
@@ -106,6 +109,8 @@ bool ForceSensorNode::calibrate(cell_microinjection::CalibrateForce::Request& re
 }
 
 std::string ForceSensorNode::act(const cell_microinjection::CalibrateForce::Request& request) {
+  const bool changes_force = request.action != cell_microinjection::CalibrateForce::Request::ADD;
+  if (changes_force && !inUseReason().empty()) return inUseReason();
   switch (request.action) {
     case cell_microinjection::CalibrateForce::Request::ADD: {
       if (!notReadyReason().empty()) return notReadyReason();
@@ -115,8 +120,7 @@ std::string ForceSensorNode::act(const cell_microinjection::CalibrateForce::Requ
     case cell_microinjection::CalibrateForce::Request::SOLVE:
       return readout_.solve();
     case cell_microinjection::CalibrateForce::Request::CLEAR:
-      readout_.clear();
-      return "";
+      return readout_.clear();
     case cell_microinjection::CalibrateForce::Request::UNDO:
       return readout_.undo();
     default:
@@ -126,7 +130,26 @@ std::string ForceSensorNode::act(const cell_microinjection::CalibrateForce::Requ
 
 std::string ForceSensorNode::notReadyReason() const {
   if (source_->overloaded()) return "the sensor is overloaded: reset it first";
-  return source_->invalidReason();
+  return source_->saturated() ? "the sensor is saturated" : source_->invalidReason();
+}
+
+void ForceSensorNode::watchController() {
+  using Operating = cell_microinjection::OperatingState;
+  using Injection = cell_microinjection::InjectionStatus;
+  controller_.push_back(subscribeGuarded<Operating>(
+      cycle_.node(), "controller/operating_state", 10,
+      [this](const Operating& message, const std::string&) { controller_state_ = message.state; }));
+  controller_.push_back(subscribeGuarded<Injection>(
+      cycle_.node(), "controller/injection_state", 1,
+      [this](const Injection& message, const std::string&) { injection_state_ = message.state; }));
+}
+
+/// The force guard and the hand take what is published: a new tare in contact would move both by the whole force.
+std::string ForceSensorNode::inUseReason() const {
+  const bool clear = injection_state_.empty() || injection_state_ == "idle" || injection_state_ == "approach";
+  return controller_state_ == "ENABLED" && !clear
+             ? "the needle is led in contact: withdraw it or disable the controller"
+             : "";
 }
 
 void ForceSensorNode::keepCalibration() {
@@ -144,12 +167,14 @@ void ForceSensorNode::step(const Cycle::Tick& tick) {
   const auto signal = source_->read(tick);
   if (!source_->invalidReason().empty() || source_->overloaded()) return publishInvalid(tick);
   if (!signal) return;
+  if (source_->saturated()) readout_.interrupt("the sensor was saturated");
+  if (!inUseReason().empty()) readout_.interrupt("the needle is led in contact");
   raw_.publish(signal->raw);
   measured_.publish(atTip(readout_.read(signal->values, tick.now.toSec()), signal->stamp));
 }
 
 void ForceSensorNode::publishInvalid(const Cycle::Tick& tick) {
-  readout_.interrupt();
+  readout_.interrupt("not every reading was valid");
   measured_.publishInvalid(toWrench(Eigen::Vector3d::Zero(), tick.now, kTipFrame));
   raw_.publishInvalid(toWrench(Eigen::Vector3d::Zero(), tick.now, parameters_.frame));
 }

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cell_microinjection/CalibrateForce.h>
+#include <cell_microinjection/InjectionStatus.h>
+#include <cell_microinjection/OperatingState.h>
 #include <geometry_msgs/WrenchStamped.h>
 #include <ros/ros.h>
 #include <std_srvs/Trigger.h>
@@ -8,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/background_file.h"
 #include "nodes/needle/force_sources.h"
@@ -24,6 +27,7 @@ namespace microinjection {
 ///                 for the pipette's axes)
 ///      topic:     /force_sensor/device_cf (WrenchStamped in any frame that tf connects to
 ///                 `needle_tip`)
+///      /controller/operating_state, /controller/injection_state: tare and gain stay while the needle is led in contact
 /// Out: /force_sensor/measured_cf (WrenchStamped at the tip in `needle_tip`, tared and calibrated)
 ///      /force_sensor/raw_cf (WrenchStamped in the sensor's frame; a two-axis sensor has no torque)
 ///      both with stamp 0 without a valid input, and from an overload to a reset
@@ -64,6 +68,8 @@ class ForceSensorNode {
                  cell_microinjection::CalibrateForce::Response& response);
   std::string act(const cell_microinjection::CalibrateForce::Request& request);
   std::string notReadyReason() const;
+  std::string inUseReason() const;  ///< why the force must not jump now; empty: it may
+  void watchController();
   void keepCalibration();
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
@@ -77,6 +83,8 @@ class ForceSensorNode {
   std::optional<BackgroundFile> file_;
   unsigned kept_changes_ = 0;  ///< of the readout, that are in the file
   ros::ServiceServer tare_, calibrate_, reset_;
+  std::string controller_state_, injection_state_;  ///< empty: there is no controller
+  std::vector<ros::Subscriber> controller_;
 };
 
 }  // namespace microinjection

@@ -56,6 +56,8 @@ def ask(name, kind, *request):
 def average(outcome, name, kind, *request):
     ask(name, kind, *request)
     values = outcome.after(time.monotonic())
+    if values["tare and calibration"].startswith("the average was aborted"):
+        raise SensorError(values["tare and calibration"])
     print(values["tare and calibration"])
     if "calibration file" in values:
         print(f"file: {values['calibration file']}")

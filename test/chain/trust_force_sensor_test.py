@@ -13,6 +13,7 @@ import yaml
 from geometry_msgs.msg import PoseStamped, Vector3, WrenchStamped
 from std_srvs.srv import Trigger
 
+from cell_microinjection.msg import InjectionStatus, OperatingState
 from cell_microinjection.srv import CalibrateForce, CalibrateForceRequest
 from messages import force, pose, wrench
 from participant import Participant
@@ -21,7 +22,9 @@ from participant import Participant
 class TrustTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.world = Participant({"/needle/measured_cp": PoseStamped, "/cell/predicted_cf": WrenchStamped},
+        cls.world = Participant({"/needle/measured_cp": PoseStamped, "/cell/predicted_cf": WrenchStamped,
+                                 "/controller/operating_state": OperatingState,
+                                 "/controller/injection_state": InjectionStatus},
                                 {"/force_sensor/measured_cf": WrenchStamped, "/force_sensor/raw_cf": WrenchStamped})
 
     def setUp(self):
@@ -57,6 +60,21 @@ class TrustTest(unittest.TestCase):
             self.assertTrue(self.reading().header.stamp.is_zero())
             self.assertNotEqual(level, 0)
             self.assertIn("no valid force", text)
+
+    def test_in_contact_neither_tare_nor_gain_moves_the_force(self):
+        """The force guard takes what is measured."""
+        def led(state):
+            return {**self.messages(wrench(0, 0, 10e-6)), "/controller/operating_state": OperatingState(state="ENABLED"),
+                    "/controller/injection_state": InjectionStatus(state=state)}
+        self.world.run(20, led("indent"))
+        refused = self.world.call("/force_sensor/tare", Trigger, messages=led("indent"))
+        self.assertFalse(refused.success)
+        self.assertIn("led in contact", refused.message)
+        request = CalibrateForceRequest(action=CalibrateForceRequest.CLEAR)
+        self.assertFalse(self.world.call("/force_sensor/calibrate", CalibrateForce, request,
+                                         messages=led("indent")).success)
+        self.world.run(20, led("idle"))
+        self.assertTrue(self.world.call("/force_sensor/tare", Trigger, messages=led("idle")).success)
 
     def mean(self, predicted, topic="/force_sensor/measured_cf", ticks=200):
         """(lateral, axial) under a force, averaged against the noise."""

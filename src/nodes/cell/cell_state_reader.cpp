@@ -9,6 +9,11 @@
 #include "nodes/runtime/conversions.h"
 
 namespace microinjection {
+namespace {
+
+constexpr int kMostBorders = 8;
+
+}  // namespace
 
 CellSurface toSurface(const cell_microinjection::CellState& message) {
   CellSurface surface;
@@ -29,6 +34,8 @@ std::vector<CellBorder> toBorders(const cell_microinjection::CellState& message)
   for (std::size_t i = 0; i < message.border_layers.size() && 3 * i + 2 < message.border_triangles.size(); ++i) {
     const auto* t = &message.border_triangles[3 * i];
     const int layer = static_cast<int>(message.border_layers[i]);
+    // A cell has few layers; a message with many would be copied as often.
+    if (layer < 0 || layer >= kMostBorders) continue;
     borders[layer].triangles.push_back({static_cast<int>(t[0]), static_cast<int>(t[1]), static_cast<int>(t[2])});
   }
   std::vector<CellBorder> result;

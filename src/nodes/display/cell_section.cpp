@@ -1,6 +1,8 @@
 #include "nodes/display/cell_section.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 #include "nodes/display/display_markers.h"
@@ -41,7 +43,10 @@ std::vector<CellBorder> bordersOf(const CellSurface& surface, const std::vector<
   if (!solved.empty() || !solid || surface.at_rest.empty()) return solved;
   std::vector<CellBorder> borders;
   const std::vector<double>& radii = solid->layer_radii;
-  for (std::size_t layer = 1; layer < radii.size(); ++layer) {
+  const auto drawn = std::min<std::size_t>(radii.size(), kMostLayers);
+  const auto positive = [](double radius) { return std::isfinite(radius) && radius > 0; };
+  if (!std::all_of(radii.begin(), radii.begin() + static_cast<std::ptrdiff_t>(drawn), positive)) return borders;
+  for (std::size_t layer = 1; layer < drawn; ++layer) {
     const bool first = layer == 1 && stress;
     borders.push_back(first ? borderBelow(surface, stress->field.normal_column, radii[0] - radii[1])
                             : borderAtRest(surface, static_cast<int>(layer), radii[layer] / radii[0], solid->centre));

@@ -2,9 +2,13 @@
 
 #include <cell_microinjection/OperatingState.h>
 
+#include <yaml-cpp/yaml.h>
+
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 
+#include "base/errors.h"
 #include "base/operating_state.h"
 #include "base/user_data.h"
 #include "nodes/runtime/message_guard.h"
@@ -21,11 +25,26 @@ std::string residualOf(const DeviceAxesFit& fit) {
   return text;
 }
 
+/// The file is written as a whole: one with other keys is the user's own.
+std::string ownFile(const std::string& path) {
+  if (!std::ifstream(path)) return path;
+  bool own = false;
+  try {
+    const YAML::Node root = YAML::LoadFile(path), bridge = root.IsMap() ? root["haptic_bridge"] : YAML::Node();
+    own = root.size() == 1 && bridge && bridge.IsMap() && bridge.size() == 1 && bridge["device_axes"];
+  } catch (const YAML::Exception&) {
+    own = false;
+  }
+  if (!own)
+    throw ConfigError("axes_file = " + path + ": has other keys than haptic_bridge/device_axes; name another file");
+  return path;
+}
+
 }  // namespace
 
 AxesService::AxesService(Cycle& cycle, ros::NodeHandle private_node, const std::string& axes, bool springs_back,
                          const std::string& file)
-    : calibration_(axes, springs_back), file_(file.empty() ? userDataFile("device_axes.yaml") : file) {
+    : calibration_(axes, springs_back), file_(ownFile(file.empty() ? userDataFile("device_axes.yaml") : file)) {
   using State = cell_microinjection::OperatingState;
   controller_ =
       subscribeGuarded<State>(cycle.node(), "controller/operating_state", 10,

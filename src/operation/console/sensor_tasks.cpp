@@ -36,9 +36,13 @@ CommandOffer offer(SensorTask task, const SensorView& sensor) {
   return result;
 }
 
+/// The node's words, of ForceReadout.
+bool SensorView::aborted() const { return outcome.rfind("the average was aborted", 0) == 0; }
+
 Lamp sensorLamp(const SensorView& sensor) {
   if (!sensor.refusal.empty()) return {Light::kRed, sensor.refusal};
   if (!sensor.there || sensor.outcome.empty()) return {Light::kGrey, "nothing was calibrated in this session"};
+  if (sensor.aborted()) return {Light::kRed, sensor.outcome};
   return {sensor.averaging() ? Light::kYellow : Light::kGreen, sensor.outcome};
 }
 

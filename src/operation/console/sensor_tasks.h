@@ -21,6 +21,7 @@ struct SensorView {
   int points = 0;       ///< known forces that the next gain takes
   std::string refusal;  ///< of the last step; empty: it was not refused
   bool averaging() const;
+  bool aborted() const;  ///< the last average
 };
 
 /// What a step's button does now, or why it is greyed. The node has refusals of its own, which sensorLamp() shows.

@@ -36,7 +36,7 @@ constexpr std::array<Colour, 9> kDiverging = {{{0.230f, 0.299f, 0.754f},
 
 template <std::size_t Size>
 Colour interpolated(const std::array<Colour, Size>& table, double fraction) {
-  const double position = std::clamp(fraction, 0.0, 1.0) * (Size - 1);
+  const double position = std::isfinite(fraction) ? std::clamp(fraction, 0.0, 1.0) * (Size - 1) : 0;
   const std::size_t lower = std::min(static_cast<std::size_t>(position), Size - 2);
   const float weight = static_cast<float>(position - static_cast<double>(lower));
   const Colour& a = table[lower];

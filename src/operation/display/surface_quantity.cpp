@@ -54,7 +54,7 @@ std::string ColourScale::figure(double value) const {
 double scaleEnd(SurfaceQuantity quantity, const std::vector<double>& values) {
   double largest = quantity == SurfaceQuantity::kDisplacement ? kSmallestDisplacement : kSmallestStress;
   for (const double value : values) {
-    if (!std::isnan(value)) largest = std::max(largest, std::abs(value));
+    if (std::isfinite(value)) largest = std::max(largest, std::abs(value));
   }
   return niceCeiling(largest);
 }

@@ -108,15 +108,15 @@ std::string ForceReadout::beginPoint(const Eigen::VectorXd& force) {
   return "";
 }
 
-void ForceReadout::interrupt() {
+void ForceReadout::interrupt(const std::string& reason) {
   if (!averaging()) return;
-  outcome_ = "the average was aborted: not every reading was valid";
+  outcome_ = "the average was aborted: " + reason;
   purpose_ = Purpose::kNone;
 }
 
 void ForceReadout::finishAverage() {
   const Eigen::VectorXd mean = sum_ / count_;
-  if (!mean.allFinite()) return interrupt();
+  if (!mean.allFinite()) return interrupt("not every reading was finite");
   noise_ = (squares_ / count_ - (mean - first_).cwiseAbs2()).cwiseMax(0).cwiseSqrt();
   remember();
   if (purpose_ == Purpose::kTare) {
@@ -189,7 +189,8 @@ std::string ForceReadout::solveAxes(const Eigen::MatrixXd& raw, const Eigen::Mat
   return "";
 }
 
-void ForceReadout::clear() {
+std::string ForceReadout::clear() {
+  if (averaging()) return "an average is under way";
   remember();
   points_.clear();
   gain_.setIdentity();
@@ -197,6 +198,7 @@ void ForceReadout::clear() {
   fitted_ = 0;
   ++changes_;
   outcome_ = "calibration cleared";
+  return "";
 }
 
 std::string ForceReadout::undo() {

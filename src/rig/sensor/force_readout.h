@@ -28,7 +28,7 @@ class ForceReadout {
   /// zero and within the range.
   std::string beginPoint(const Eigen::VectorXd& force);
   /// Aborts the average under way because no reading is valid.
-  void interrupt();
+  void interrupt(const std::string& reason);
 
   /// Fits force = gain (mean - tare) to the calibration points by least squares. Points that span
   /// all axes give the whole matrix, including the coupling between axes. Otherwise each axis with
@@ -38,7 +38,7 @@ class ForceReadout {
   /// nothing changed.
   std::string solve();
   /// Deletes the points and resets the gain to the identity. The tare stays.
-  void clear();
+  std::string clear();
   /// Takes back the last step that is not taken back: a tare, a point, a gain, a clearing. Returns an empty text, or
   /// the reason why nothing changed.
   std::string undo();

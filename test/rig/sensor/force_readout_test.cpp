@@ -47,7 +47,7 @@ TEST_F(ForceReadoutTest, TareIsTheMeanOverItsTime) {
 TEST_F(ForceReadoutTest, AnInterruptedTareChangesNothing) {
   readout.beginTare();
   readout.read(offset, 0);
-  readout.interrupt();
+  readout.interrupt("not every reading was valid");
   readout.read(offset, 1);
   EXPECT_EQ(readout.tare(), Eigen::Vector2d(0, 0));
   EXPECT_NE(readout.outcome().find("aborted"), std::string::npos);
