@@ -104,8 +104,11 @@ class User:
 
     def inject(self):
         self.press('Approach')
-        for button in ('Indent', 'Inject', 'Withdraw'):
+        for button in ('Indent', 'Inject'):
             self.press(button)
+        # Withdraw is offered all the time, and gives up what is under way: the user waits as the headline tells.
+        self.wait(lambda: self.status.waits and self.status.volume > 0, 'the injected cell')
+        self.press('Withdraw')
         self.wait(lambda: self.status.state == 'idle', 'the needle out of the cell')
         return self.status.outcome
 
