@@ -21,7 +21,7 @@ from messages import pose
 from processes import Child
 
 ABOVE, AT_CELL = 0.0, -30e-3  # m of the hand: 32 um and 2 um above the cell
-DEEPEST = -60e-3              # m of the hand
+FAR = 100e-3                  # m of the hand: through every guard, or out of the cell
 DEPTH_LIMIT = 3e-6            # m
 FORCE_LIMIT = 0.5e-6          # N: the cell yields 10 um until then
 NEEDLE_SPEED_LIMIT = 50e-6    # m/s
@@ -176,8 +176,12 @@ class ConsoleAlarmsTest(ConsoleUser, unittest.TestCase):
             self.assertEqual(self.held_by(), "no valid needle position")
         self.shows_red()
 
+    def press_down(self):
+        """From where the hand is: what it did while the needle was held has displaced it from the needle."""
+        self.hand.goal = self.hand.height - FAR
+
     def test_5_the_guard_of_the_depth(self):
-        self.hand.goal = DEEPEST
+        self.press_down()
         self.shows(lambda seen: seen.guards == {"Force": "green", "Depth": "red"} and seen.headline == ["yellow"],
                    "the depth's guard")
         self.assertIn("depth past the touch", self.held_by())
@@ -186,7 +190,7 @@ class ConsoleAlarmsTest(ConsoleUser, unittest.TestCase):
         self.press("Enable")
         self.operating("ENABLED")
         begin = self.chain.needle()[2]
-        self.hand.goal = ABOVE  # the only way that is left
+        self.hand.goal = self.hand.height + FAR  # the only way that is left
         self.shows(lambda seen: seen.guards["Depth"] in ("empty", "green") and seen.headline == ["green"], "a free needle")
         # Well out of the cell: the controller of the next test measures the force at rest.
         self.until(lambda: self.chain.needle()[2] - begin > 20e-6, "a needle above the cell")
@@ -197,7 +201,7 @@ class ConsoleAlarmsTest(ConsoleUser, unittest.TestCase):
         self.assertFalse(any(seen.offered.values()))
         self.restart_controller(force_limit=FORCE_LIMIT)
         self.shows(lambda seen: seen.headline == ["green"], "a controller that is back")
-        self.hand.goal = DEEPEST
+        self.press_down()
         self.shows(lambda seen: seen.guards["Force"] == "red" and seen.guards["Depth"] != "red" and seen.headline == ["yellow"],
                    "the force's guard")
         self.assertIn("force along the pipette", self.held_by())

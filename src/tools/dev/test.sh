@@ -95,10 +95,9 @@ run_tests() {
   echo "all passed; their full output is in $log"
 }
 
-# Sessions side by side need networks of their own; see in_own_network. Many of them wait for a time-out most of the time:
-# two cores have room for three.
+# Sessions side by side need networks of their own; see in_own_network.
 test_jobs() {
-  if "$ROOT/src/tools/dev/in_own_network" --possible; then echo $((($(jobs) * 3 + 1) / 2)); else echo 1; fi
+  if "$ROOT/src/tools/dev/in_own_network" --possible; then jobs; else echo 1; fi
 }
 
 # In the core, ctest's names begin with the folder of test/; with catkin they have it behind the kind of the test, except for
