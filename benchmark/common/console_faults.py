@@ -6,36 +6,12 @@ from pathlib import Path
 
 import realtime
 from demo_session import DemoSession, SessionError
-from processes import wait_until
+from session_operator import SessionOperator
 
 FAULTS = ('closed', 'frozen', 'killed')
 PATIENCE = 120   # s for each step of the injection
 ALLOWED = 1e-3   # share of late periods, beyond the bare loop's, that a fault may add
 DRAWN = 30       # Hz, as rviz draws by default
-
-
-class Operator:
-    """Commands from a terminal, as when the console is gone."""
-
-    def __init__(self):
-        import rospy  # late: it takes the master's address from the environment at once
-        from cell_microinjection.msg import InjectionStatus, StringStamped
-        self.status = None
-        self._stamped = StringStamped
-        self._commands = rospy.Publisher('/controller/state_command', StringStamped, queue_size=1)
-        rospy.Subscriber('/controller/injection_state', InjectionStatus, lambda m: setattr(self, 'status', m))
-        self.wait(lambda: self.status and self._commands.get_num_connections() > 0, 'the controller')
-
-    def wait(self, condition, what):
-        if not wait_until(condition, PATIENCE, period=0.02):
-            raise SessionError(f'{what}: not within {PATIENCE} s; {self.status}')
-
-    def say(self, command, condition):
-        self._commands.publish(self._stamped(string=command))
-        self.wait(condition, command)
-
-    def waits_in(self, state):
-        return self.status.state == state and self.status.waits
 
 
 def window(histograms, seconds):
@@ -57,7 +33,7 @@ def strike(view, fault):
 
 def injection(session, view, fault, seconds):
     """What is measured of one injection whose console fails in the cell."""
-    operator, histograms = Operator(), realtime.Histograms(realtime.SOURCES)
+    operator, histograms = SessionOperator(PATIENCE), realtime.Histograms(realtime.SOURCES)
     operator.say('approach', lambda: operator.waits_in('contact'))
     operator.say('indent', lambda: operator.waits_in('punctured'))
     operator.wait(histograms.complete, 'histograms of both loops')

@@ -145,11 +145,13 @@ void ForceSensorNode::watchController() {
 }
 
 /// The force guard and the hand take what is published: a new tare in contact would move both by the whole force.
-std::string ForceSensorNode::inUseReason() const {
+bool ForceSensorNode::inUse() const {
   const bool clear = injection_state_.empty() || injection_state_ == "idle" || injection_state_ == "approach";
-  return controller_state_ == "ENABLED" && !clear
-             ? "the needle is led in contact: withdraw it or disable the controller"
-             : "";
+  return controller_state_ == "ENABLED" && !clear;
+}
+
+std::string ForceSensorNode::inUseReason() const {
+  return inUse() ? "the needle is led in contact: withdraw it or disable the controller" : "";
 }
 
 void ForceSensorNode::keepCalibration() {
@@ -167,8 +169,8 @@ void ForceSensorNode::step(const Cycle::Tick& tick) {
   const auto signal = source_->read(tick);
   if (!source_->invalidReason().empty() || source_->overloaded()) return publishInvalid(tick);
   if (!signal) return;
-  if (source_->saturated()) readout_.interrupt("the sensor was saturated");
-  if (!inUseReason().empty()) readout_.interrupt("the needle is led in contact");
+  if (readout_.averaging() && source_->saturated()) readout_.interrupt("the sensor was saturated");
+  if (readout_.averaging() && inUse()) readout_.interrupt("the needle is led in contact");
   raw_.publish(signal->raw);
   measured_.publish(atTip(readout_.read(signal->values, tick.now.toSec()), signal->stamp));
 }

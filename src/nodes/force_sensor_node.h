@@ -68,7 +68,8 @@ class ForceSensorNode {
                  cell_microinjection::CalibrateForce::Response& response);
   std::string act(const cell_microinjection::CalibrateForce::Request& request);
   std::string notReadyReason() const;
-  std::string inUseReason() const;  ///< why the force must not jump now; empty: it may
+  bool inUse() const;  ///< the force must not jump now
+  std::string inUseReason() const;
   void watchController();
   void keepCalibration();
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;

@@ -2,17 +2,11 @@
 
 #include <QGridLayout>
 #include <QLabel>
-#include <thread>
-#include <utility>
-
-#include "rviz/session_clock.h"
 
 namespace microinjection {
 namespace {
 
 using cell_microinjection::CalibrateAxes;
-
-constexpr double kSilence = 3.5;  // s; the node reports each second
 
 std::uint8_t actionOf(AxesTask task, bool running) {
   if (task == AxesTask::kUndo) return CalibrateAxes::Request::UNDO;
@@ -21,13 +15,6 @@ std::uint8_t actionOf(AxesTask task, bool running) {
 }
 
 }  // namespace
-
-/// Filled by the thread that calls the service.
-struct AxesBox::Answer {
-  std::atomic<bool> done{false};
-  bool came = false;
-  CalibrateAxes::Response response;
-};
 
 AxesBox::AxesBox(QWidget* parent) : QWidget(parent), report_(new LampRow("", 2, this)) {
   auto* layout = new QGridLayout(this);
@@ -46,41 +33,22 @@ AxesBox::AxesBox(QWidget* parent) : QWidget(parent), report_(new LampRow("", 2, 
 
 AxesBox::~AxesBox() = default;
 
-void AxesBox::start() {
-  if (node_) return;
-  node_.emplace();
-  node_->setCallbackQueue(&queue_);
-  // Each node reports by itself, within the same millisecond as others.
-  reports_ = node_->subscribe<diagnostic_msgs::DiagnosticArray>(
-      "/diagnostics", 50,
-      boost::function<void(const diagnostic_msgs::DiagnosticArray::ConstPtr&)>(
-          [this](const auto& message) { onDiagnostics(*message); }));
-}
-
-void AxesBox::onDiagnostics(const diagnostic_msgs::DiagnosticArray& message) {
-  for (const auto& status : message.status) {
-    if (status.name == "haptic_bridge: loop") heard_at_ = sessionNow();
-  }
-}
-
 AxesView AxesBox::view() const {
   AxesView view = axes_;
-  view.there = heard_at_ && sessionNow() - *heard_at_ < kSilence;
-  view.called = answer_ != nullptr;
+  view.there = diagnostics_.isFresh();
+  view.called = call_.running();
   return view;
 }
 
 void AxesBox::press(AxesTask task) {
-  if (!node_ || !offer(task, view()).refusal.empty()) return;
+  if (!diagnostics_.started() || !offer(task, view()).refusal.empty()) return;
   axes_.refusal.clear();
-  answer_ = std::make_shared<Answer>();
-  std::thread([answer = answer_, action = actionOf(task, !axes_.next.empty())] {
+  call_.start([action = actionOf(task, !axes_.next.empty())] {
     CalibrateAxes step;
     step.request.action = action;
-    answer->came = ros::service::call("/haptic_bridge/calibrate_axes", step);
-    answer->response = step.response;
-    answer->done = true;
-  }).detach();
+    const bool came = ros::service::call("/haptic_bridge/calibrate_axes", step);
+    return Answer{came, step.response};
+  });
 }
 
 void AxesBox::take(const Answer& answer) {
@@ -97,14 +65,12 @@ void AxesBox::take(const Answer& answer) {
 }
 
 void AxesBox::refresh() {
-  if (!node_) return;
-  queue_.callAvailable(ros::WallDuration(0));
-  if (answer_ && answer_->done) take(*std::exchange(answer_, nullptr));
+  if (!diagnostics_.started()) return;
+  diagnostics_.poll();
+  if (const auto answer = call_.take()) take(*answer);
   const AxesView shown = view();
   for (const AxesTask task : kAxesTasks) {
-    const CommandOffer offered = offer(task, shown);
-    rows_[static_cast<std::size_t>(task)].display(offered.refusal.empty(),
-                                                  offered.refusal.empty() ? offered.effect : offered.refusal);
+    rows_[static_cast<std::size_t>(task)].display(offer(task, shown));
   }
   report_->display(axesLamp(shown));
 }

@@ -44,9 +44,7 @@ void CalibrationBox::refresh(const SessionView& session) {
   runners_->poll();
   const auto running = runners_->running();
   for (const CameraTask task : kCameraTasks) {
-    const CommandOffer offered = offer(task, session, runners_->there(task), running);
-    const bool offers = offered.refusal.empty();
-    rows_[static_cast<std::size_t>(task)].display(offers, offers ? offered.effect : offered.refusal);
+    rows_[static_cast<std::size_t>(task)].display(offer(task, session, runners_->there(task), running));
   }
   const bool cancels = running && !isService(*running);
   cancel_->display(cancels, cancels ? "ends the task under way; STOP does so, too" : "no task is under way");

@@ -4,6 +4,7 @@
 #include <QPushButton>
 #include <functional>
 
+#include "operation/console/console_commands.h"
 #include "rviz/elided_label.h"
 
 namespace microinjection {
@@ -15,6 +16,10 @@ class OfferRow {
   OfferRow(const QString& name, int lines, QWidget* parent, QGridLayout* layout, int line,
            const std::function<void()>& pressed);
   void display(bool offered, const std::string& text);
+  /// Its effect, or the reason for the refusal.
+  void display(const CommandOffer& offer) {
+    display(offer.refusal.empty(), offer.refusal.empty() ? offer.effect : offer.refusal);
+  }
 
  private:
   QPushButton* button_;

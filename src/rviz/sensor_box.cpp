@@ -6,18 +6,14 @@
 #include <QGridLayout>
 #include <QHBoxLayout>
 #include <QLabel>
-#include <thread>
-#include <utility>
 
 #include "base/parse_number.h"
-#include "rviz/session_clock.h"
 
 namespace microinjection {
 namespace {
 
 using cell_microinjection::CalibrateForce;
 
-constexpr double kSilence = 3.5;   // s; the node reports each second
 constexpr double kLargest = 1000;  // uN, that can be entered; the node refuses what is beyond its range
 
 QDoubleSpinBox* forceField(QWidget* parent) {
@@ -48,14 +44,12 @@ std::string call(SensorTask task, double along, double across) {
 
 }  // namespace
 
-/// Filled by the thread that calls the service.
-struct SensorBox::Answer {
-  std::atomic<bool> done{false};
-  std::string refusal;
-};
-
 SensorBox::SensorBox(QWidget* parent)
-    : QWidget(parent), along_(forceField(this)), across_(forceField(this)), report_(new LampRow("", 2, this)) {
+    : QWidget(parent),
+      diagnostics_("force_sensor: sensor", [this](const auto& status) { read(status); }),
+      along_(forceField(this)),
+      across_(forceField(this)),
+      report_(new LampRow("", 2, this)) {
   auto* layout = new QGridLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->setHorizontalSpacing(8);
@@ -78,54 +72,33 @@ SensorBox::SensorBox(QWidget* parent)
 
 SensorBox::~SensorBox() = default;
 
-void SensorBox::start() {
-  if (node_) return;
-  node_.emplace();
-  node_->setCallbackQueue(&queue_);
-  // Each node reports by itself, within the same millisecond as others.
-  reports_ = node_->subscribe<diagnostic_msgs::DiagnosticArray>(
-      "/diagnostics", 50,
-      boost::function<void(const diagnostic_msgs::DiagnosticArray::ConstPtr&)>(
-          [this](const auto& message) { onDiagnostics(*message); }));
-}
-
-void SensorBox::onDiagnostics(const diagnostic_msgs::DiagnosticArray& message) {
-  for (const auto& status : message.status) {
-    if (status.name != "force_sensor: sensor") continue;
-    heard_at_ = sessionNow();
-    for (const auto& value : status.values) {
-      if (value.key == "tare and calibration") sensor_.outcome = value.value;
-      if (value.key == "calibration points") sensor_.points = parseNumber<int>(value.value).value_or(0);
-    }
+void SensorBox::read(const diagnostic_msgs::DiagnosticStatus& status) {
+  for (const auto& value : status.values) {
+    if (value.key == "tare and calibration") sensor_.outcome = value.value;
+    if (value.key == "calibration points") sensor_.points = parseNumber<int>(value.value).value_or(0);
   }
 }
 
 SensorView SensorBox::view() const {
   SensorView view = sensor_;
-  view.there = heard_at_ && sessionNow() - *heard_at_ < kSilence;
-  view.called = answer_ != nullptr;
+  view.there = diagnostics_.isFresh();
+  view.called = call_.running();
   return view;
 }
 
 void SensorBox::press(SensorTask task) {
-  if (!node_ || !offer(task, view()).refusal.empty()) return;
+  if (!diagnostics_.started() || !offer(task, view()).refusal.empty()) return;
   sensor_.refusal.clear();
-  answer_ = std::make_shared<Answer>();
-  std::thread([answer = answer_, task, along = along_->value(), across = across_->value()] {
-    answer->refusal = call(task, along, across);
-    answer->done = true;
-  }).detach();
+  call_.start([task, along = along_->value(), across = across_->value()] { return call(task, along, across); });
 }
 
 void SensorBox::refresh() {
-  if (!node_) return;
-  queue_.callAvailable(ros::WallDuration(0));
-  if (answer_ && answer_->done) sensor_.refusal = std::exchange(answer_, nullptr)->refusal;
+  if (!diagnostics_.started()) return;
+  diagnostics_.poll();
+  if (const auto refusal = call_.take()) sensor_.refusal = *refusal;
   const SensorView shown = view();
   for (const SensorTask task : kSensorTasks) {
-    const CommandOffer offered = offer(task, shown);
-    rows_[static_cast<std::size_t>(task)].display(offered.refusal.empty(),
-                                                  offered.refusal.empty() ? offered.effect : offered.refusal);
+    rows_[static_cast<std::size_t>(task)].display(offer(task, shown));
   }
   report_->display(sensorLamp(shown));
 }

@@ -1,18 +1,15 @@
 #pragma once
 
 #include <cell_microinjection/CalibrateForce.h>
-#include <diagnostic_msgs/DiagnosticArray.h>
-#include <ros/callback_queue.h>
-#include <ros/ros.h>
 
 #include <QWidget>
-#include <atomic>
-#include <memory>
-#include <optional>
+#include <string>
 #include <vector>
 
 #include "operation/console/sensor_tasks.h"
+#include "rviz/background_call.h"
 #include "rviz/lamp_row.h"
+#include "rviz/node_diagnostics.h"
 #include "rviz/offer_row.h"
 
 class QDoubleSpinBox;
@@ -22,29 +19,24 @@ namespace microinjection {
 /// Buttons for tare and gain of the force sensor, each with its effect or the reason why it is greyed, and the residual
 /// of the last step.
 ///
-/// In: /diagnostics; services /force_sensor/tare, /force_sensor/calibrate, called from a thread: the stop button lives
-/// in the caller's.
+/// In: /diagnostics; services /force_sensor/tare, /force_sensor/calibrate, called as BackgroundCall.
 class SensorBox : public QWidget {
  public:
   explicit SensorBox(QWidget* parent = nullptr);
   ~SensorBox() override;
   /// Subscribes: other consoles have no use for the messages.
-  void start();
+  void start() { diagnostics_.start(); }
   /// Reads the messages that came, and shows the newest.
   void refresh();
 
  private:
-  struct Answer;
-  void onDiagnostics(const diagnostic_msgs::DiagnosticArray& message);
+  void read(const diagnostic_msgs::DiagnosticStatus& status);
   void press(SensorTask task);
   SensorView view() const;
 
-  ros::CallbackQueue queue_;
-  std::optional<ros::NodeHandle> node_;
-  ros::Subscriber reports_;
-  std::optional<double> heard_at_;  ///< s
+  NodeDiagnostics diagnostics_;
   SensorView sensor_;
-  std::shared_ptr<Answer> answer_;  ///< of a call under way; shared with its thread, which may outlive the panel
+  BackgroundCall<std::string> call_;  ///< the reason for a refusal
   std::vector<OfferRow> rows_;
   QDoubleSpinBox *along_, *across_;  ///< uN
   LampRow* report_;

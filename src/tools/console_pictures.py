@@ -8,6 +8,7 @@ import screenshot
 from demo_session import DemoSession, SessionError
 from processes import Child, wait_until
 from screen import Screen
+from session_operator import SessionOperator
 
 ROOT = Path(os.environ.get('MICROINJECTION_ROOT') or Path(__file__).resolve().parents[2])
 sys.path.insert(0, str(ROOT / 'launch'))
@@ -25,41 +26,15 @@ CONSOLES = {'inject': {**STEPPED, 'camera': 'sim'}, 'teleoperate': {**BY_HAND, '
             'axes': BY_HAND, 'paper': STEPPED, 'calibrate': {'haptic': 'none', 'mode': 'manual', 'camera': 'sim', 'clock': 'wall'}}
 
 
-class Operator:
-    """The controller's state, and commands to it."""
-
-    def __init__(self):
-        import rospy  # late: it takes the master's address from the environment at once
-        from cell_microinjection.msg import InjectionStatus, StringStamped
-        self.status = None
-        self._stamped = StringStamped
-        self._commands = rospy.Publisher('/controller/state_command', StringStamped, queue_size=1)
-        rospy.Subscriber('/controller/injection_state', InjectionStatus, lambda m: setattr(self, 'status', m))
-
-    def waits(self, state):
-        return self.status.waits and self.status.state == state
-
-    def connected(self):
-        return self._commands.get_num_connections() > 0
-
-    def say(self, command):
-        self._commands.publish(self._stamped(string=command))
-
-
 def await_moment(session, arguments):
     """Until there is something to see. @raises SessionError"""
-    def wait(condition, what):
-        if not wait_until(condition, PATIENCE):
-            raise SessionError(f'{what}: not within {PATIENCE} s')
     session.monitor.go()  # first: in lock step nothing comes before the hand
-    operator = Operator()
-    wait(lambda: operator.status is not None and operator.connected(), 'a controller')
+    operator = SessionOperator(PATIENCE)
     if arguments['haptic'] == 'operator':
-        wait(lambda: session.monitor.phase == 'hold', "the hand's rest in the cell")
+        operator.wait(lambda: session.monitor.phase == 'hold', "the hand's rest in the cell")
     elif arguments['mode'] == 'semi_automatic':
         for command, state in (('approach', 'contact'), ('indent', 'punctured')):
-            operator.say(command)
-            wait(lambda state=state: operator.waits(state), command)
+            operator.say(command, lambda state=state: operator.waits_in(state))
     session.check()
 
 

@@ -108,9 +108,9 @@ std::string ForceReadout::beginPoint(const Eigen::VectorXd& force) {
   return "";
 }
 
-void ForceReadout::interrupt(const std::string& reason) {
+void ForceReadout::interrupt(const char* reason) {
   if (!averaging()) return;
-  outcome_ = "the average was aborted: " + reason;
+  outcome_ = std::string("the average was aborted: ") + reason;
   purpose_ = Purpose::kNone;
 }
 

@@ -28,7 +28,7 @@ class ForceReadout {
   /// zero and within the range.
   std::string beginPoint(const Eigen::VectorXd& force);
   /// Aborts the average under way because no reading is valid.
-  void interrupt(const std::string& reason);
+  void interrupt(const char* reason);
 
   /// Fits force = gain (mean - tare) to the calibration points by least squares. Points that span
   /// all axes give the whole matrix, including the coupling between axes. Otherwise each axis with

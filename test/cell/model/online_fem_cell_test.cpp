@@ -8,7 +8,6 @@
 #include <memory>
 #include <string>
 
-#include "base/errors.h"
 #include "cell/model/cell_problem.h"
 #include "cell/model/contact_frame.h"
 #include "cell/model/converged_force.h"
@@ -284,35 +283,6 @@ TEST(OnlineFemCell, ShowsTheBordersBetweenItsLayers) {
   const double sunk = top->z() - pressed[top - free.begin()].z();
   EXPECT_GT(sunk, 1e-6) << "less than the tip, which is 4 um deep";
   EXPECT_LT(sunk, 4e-6);
-}
-
-TEST(OnlineFemCell, RefusesACellThatIsNotStableAtRest) {
-  Scene scene = pipette();
-  scene.cell.layers.front().surface_tension = -1;
-  EXPECT_THROW(OnlineFemCell{scene}, ConfigError);
-}
-
-TEST(OnlineFemCell, RefusesAdhesionWhichItWouldNotShow) {
-  Scene scene = pipette();
-  scene.needle.contact.adhesion_energy = 2e-3;
-  scene.needle.contact.adhesion_range = 0.5e-6;
-  scene.validate();  // it is a good scene
-  try {
-    makeOnlineCell(scene);
-    FAIL() << "was served without adhesion";
-  } catch (const ConfigError& error) {
-    EXPECT_NE(std::string(error.what()).find("needle/contact/adhesion"), std::string::npos) << error.what();
-  }
-}
-
-TEST(OnlineCell, IsOfLinearTetrahedraOnlyWhereThoseCan) {
-  Scene disc;
-  disc.mesh.size = 20e-6;
-  EXPECT_NE(makeOnlineCell(disc)->description().find("P1"), std::string::npos);
-  EXPECT_NE(makeOnlineCell(pipette())->description().find("P2-P0"), std::string::npos);
-  Scene relaxing = disc;
-  relaxing.cell.material().viscoelasticity.viscosity = 10;
-  EXPECT_NE(makeOnlineCell(relaxing)->description().find("P2-P0"), std::string::npos);
 }
 
 }  // namespace

@@ -1,0 +1,51 @@
+// Which cells are solved while the needle moves, by which elements, and which are refused.
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "base/errors.h"
+#include "cell/model/online_cell.h"
+#include "cell/model/online_fem_cell.h"
+
+namespace microinjection {
+namespace {
+
+Scene pipette() {
+  Scene scene;
+  scene.cell.material() = {"neo_hookean", 17.9e3, 0.49};
+  scene.needle.tip.shape = "hemisphere";
+  return scene;
+}
+
+TEST(OnlineFemCell, RefusesACellThatIsNotStableAtRest) {
+  Scene scene = pipette();
+  scene.cell.layers.front().surface_tension = -1;
+  EXPECT_THROW(OnlineFemCell{scene}, ConfigError);
+}
+
+TEST(OnlineFemCell, RefusesAdhesionWhichItWouldNotShow) {
+  Scene scene = pipette();
+  scene.needle.contact.adhesion_energy = 2e-3;
+  scene.needle.contact.adhesion_range = 0.5e-6;
+  scene.validate();  // it is a good scene
+  try {
+    makeOnlineCell(scene);
+    FAIL() << "was served without adhesion";
+  } catch (const ConfigError& error) {
+    EXPECT_NE(std::string(error.what()).find("needle/contact/adhesion"), std::string::npos) << error.what();
+  }
+}
+
+TEST(OnlineCell, IsOfLinearTetrahedraOnlyWhereThoseCan) {
+  Scene disc;
+  disc.mesh.size = 20e-6;
+  EXPECT_NE(makeOnlineCell(disc)->description().find("P1"), std::string::npos);
+  EXPECT_NE(makeOnlineCell(pipette())->description().find("P2-P0"), std::string::npos);
+  Scene relaxing = disc;
+  relaxing.cell.material().viscoelasticity.viscosity = 10;
+  EXPECT_NE(makeOnlineCell(relaxing)->description().find("P2-P0"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace microinjection
