@@ -126,6 +126,7 @@ void SessionLink::onInjection(const cell_microinjection::InjectionStatus& messag
   session_.injection = injectionStateOf(message.state);
   session_.waits = message.waits;
   session_.force = message.force;
+  session_.guard_force = message.guard_force;
   session_.depth = message.depth;
   session_.volume = message.volume;
   session_.notice = message.notice;

@@ -22,7 +22,7 @@ GuardMargin guardMargin(const std::string& name, std::optional<double> value, st
 }
 
 GuardMargin forceMargin(const SessionView& session) {
-  const auto value = session.connected() ? std::optional(session.force) : std::nullopt;
+  const auto value = session.connected() ? std::optional(session.guard_force) : std::nullopt;
   return guardMargin("Force", value, session.settings.force_limit, "uN");
 }
 

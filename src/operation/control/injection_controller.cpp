@@ -87,6 +87,7 @@ void InjectionController::engage(const Eigen::Vector3d& needle, const Eigen::Vec
 
 std::optional<Eigen::Vector3d> InjectionController::step(const Input& input, double dt) {
   const bool needle_valid = isValid(input.needle);
+  guard_force_.reset();
   needle_valid_ = needle_valid_ || needle_valid;
   if (state_ == OperatingState::kDisabled || state_ == OperatingState::kFault) {
     // Something else may have moved the needle out of the cell.
@@ -138,6 +139,7 @@ bool InjectionController::rigIsAtFault(const Eigen::Vector3d& needle, double dt)
 
 void InjectionController::observe(const Input& input, bool force_valid, double dt) {
   if (force_valid) {
+    guard_force_ = input.force->dot(input.axis);
     monitor_.step(*input.needle, input.axis, *input.force);
   } else {
     monitor_.skip();
@@ -159,6 +161,7 @@ void InjectionController::monitorPulse(const Input& input, double dt) {
 std::optional<Eigen::Vector3d> InjectionController::handTarget(const Input& input) {
   hold_reason_.clear();
   if (!isValid(input.target)) hold_reason_ = kNoTarget;
+  if (!monitor_.ready()) hold_reason_ = kMeasuresRest;
   if (!isValid(input.force)) hold_reason_ = "no valid force";
   if (!hold_reason_.empty()) {
     target_offset_.reset();

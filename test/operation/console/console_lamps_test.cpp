@@ -63,6 +63,10 @@ TEST(GuardMargins, AreGreyWithoutValueOrLimit) {
   session.injection = InjectionState::kIndent;
   session.depth = -3e-6;  // above the contact point
   EXPECT_DOUBLE_EQ(depthMargin(session).share, 0);
+  session.settings.force_limit = 10e-6;
+  session.force = 9.9e-6;  // whose offset the guard does not know
+  session.guard_force = 10.1e-6;
+  EXPECT_EQ(forceMargin(session).lamp.light, Light::kRed);
 }
 
 TEST(DeviceLamps, HaveTheWorstTasksColourAndText) {
@@ -117,7 +121,8 @@ TEST(Headline, IsYellowWhileAGuardOrAMissingInputHoldsTheNeedle) {
     EXPECT_EQ(headline(session).light, Light::kYellow) << reason;
     EXPECT_EQ(headline(session).text, std::string("ENABLED: held: ") + reason);
   }
-  for (const char* reason : {"", "no valid target", "no injection is under way", "homing"}) {
+  for (const char* reason :
+       {"", "no valid target", "no injection is under way", "homing", "measures the force at rest"}) {
     session.hold_reason = reason;
     EXPECT_EQ(headline(session).light, Light::kGreen) << reason;
   }

@@ -28,6 +28,12 @@ class InjectionControllerTest : public testing::Test {
     return setpoint;
   }
 
+  /// Enables, and waits until the force at rest is measured.
+  void enable() {
+    ASSERT_EQ(controller_.command("enable"), "");
+    run(config_.detection.noise_samples);
+  }
+
   InjectionControllerConfig config_;
   InjectionController controller_{config_};
   InjectionController::Input input_;
@@ -40,9 +46,24 @@ TEST_F(InjectionControllerTest, MovesNothingUntilItIsEnabled) {
   EXPECT_EQ(controller_.state(), OperatingState::kEnabled);
 }
 
-TEST_F(InjectionControllerTest, FollowsTheTargetWithinTheSpeedLimit) {
+TEST_F(InjectionControllerTest, HoldsTheNeedleUntilTheForceAtRestIsMeasured) {
   controller_.command("enable");
+  input_.target = kStart - Eigen::Vector3d(0, 0, 5e-6);
+  EXPECT_EQ(*run(config_.detection.noise_samples - 1), kStart);
+  EXPECT_EQ(controller_.holdReason(), "measures the force at rest");
   run(1);
+  EXPECT_TRUE(controller_.followsTarget());
+  EXPECT_EQ(*input_.needle, kStart) << "the hand's motion meanwhile is not caught up";
+  input_.force = Eigen::Vector3d(0, 0, 2e-6);
+  run(1);
+  EXPECT_EQ(controller_.guardForce(), 2e-6);
+  input_.force.reset();
+  run(1);
+  EXPECT_FALSE(controller_.guardForce());
+}
+
+TEST_F(InjectionControllerTest, FollowsTheTargetWithinTheSpeedLimit) {
+  enable();
   input_.target = Eigen::Vector3d(0, 0, 30e-6);
   EXPECT_NEAR(kStart.z() - run(1)->z(), config_.guards.speed_limit * kStep, 1e-15);
   EXPECT_LT((*run(1000) - *input_.target).norm(), 1e-15);
@@ -50,8 +71,7 @@ TEST_F(InjectionControllerTest, FollowsTheTargetWithinTheSpeedLimit) {
 }
 
 TEST_F(InjectionControllerTest, DrivesALateRigSlowlyAndNeverFasterThanConfigured) {
-  controller_.command("enable");
-  run(1);
+  enable();
   input_.target = Eigen::Vector3d(0, 0, 30e-6);
   controller_.adaptTo(44e-6, 0);
   const double before = input_.needle->z();
@@ -62,8 +82,7 @@ TEST_F(InjectionControllerTest, DrivesALateRigSlowlyAndNeverFasterThanConfigured
 }
 
 TEST_F(InjectionControllerTest, AbilitiesThatNoRigHasAreRefusedAndChangeNothing) {
-  controller_.command("enable");
-  run(1);
+  enable();
   input_.target = Eigen::Vector3d(0, 0, 30e-6);
   EXPECT_EQ(controller_.adaptTo(44e-6, 0), "");
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInfinite = std::numeric_limits<double>::infinity();
@@ -93,9 +112,7 @@ TEST_F(InjectionControllerTest, RefusesCommandsThatDoNotFitItsState) {
 }
 
 TEST_F(InjectionControllerTest, UnhomedItHoldsTheNeedleUntilItIsHome) {
-  controller_.command("enable");
-  input_.target = kStart;
-  run(10);
+  enable();
   EXPECT_TRUE(controller_.homed());
   EXPECT_EQ(controller_.command("unhome"), "");
   EXPECT_FALSE(controller_.homed());
@@ -114,8 +131,7 @@ TEST_F(InjectionControllerTest, UnhomedItHoldsTheNeedleUntilItIsHome) {
 }
 
 TEST_F(InjectionControllerTest, HoldsWhilePaused) {
-  controller_.command("enable");
-  run(1);
+  enable();
   controller_.command("pause");
   input_.target = Eigen::Vector3d(0, 0, 50e-6);
   EXPECT_EQ(*run(100), kStart);
@@ -123,8 +139,7 @@ TEST_F(InjectionControllerTest, HoldsWhilePaused) {
 
 TEST_F(InjectionControllerTest, HoldsWithoutATrustedInput) {
   const Eigen::Vector3d nan = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-  controller_.command("enable");
-  run(1);
+  enable();
   const Eigen::Vector3d lower(0, 0, 50e-6);
   for (int which = 0; which < 6; ++which) {
     input_.target = lower;
@@ -143,8 +158,8 @@ TEST_F(InjectionControllerTest, HoldsWithoutATrustedInput) {
 }
 
 TEST_F(InjectionControllerTest, TargetsCountFromWhereTheNeedleWasEnabledOrResumed) {
-  controller_.command("enable");
   input_.target = kStart + Eigen::Vector3d(0, 0, 40e-6);
+  enable();
   EXPECT_EQ(*run(100), kStart);
   controller_.command("pause");
   *input_.target += Eigen::Vector3d(7e-6, 0, 0);
@@ -156,16 +171,14 @@ TEST_F(InjectionControllerTest, TargetsCountFromWhereTheNeedleWasEnabledOrResume
 }
 
 TEST_F(InjectionControllerTest, DoesNotFollowATargetThatLeaps) {
-  controller_.command("enable");
-  run(1);
+  enable();
   input_.target = kStart + Eigen::Vector3d(0, 0, 1.01 * config_.guards.jump_limit);
   EXPECT_EQ(*run(10), kStart);
   EXPECT_NE(controller_.holdReason().find("away, allowed"), std::string::npos);
 }
 
 TEST_F(InjectionControllerTest, PastTheForceLimitOnlyWithdraws) {
-  controller_.command("enable");
-  run(1);
+  enable();
   input_.force = Eigen::Vector3d(0, 0, 1.01 * config_.guards.force_limit);
   input_.target = kStart + Eigen::Vector3d(5e-6, 0, -5e-6);
   EXPECT_EQ(*run(100), kStart);
@@ -175,8 +188,7 @@ TEST_F(InjectionControllerTest, PastTheForceLimitOnlyWithdraws) {
 }
 
 TEST_F(InjectionControllerTest, NeedleThatDoesNotFollowIsAFaultUntilItIsEnabled) {
-  controller_.command("enable");
-  run(1);
+  enable();
   input_.needle = kStart + Eigen::Vector3d(1.01 * config_.guards.tracking_limit, 0, 0);
   EXPECT_FALSE(controller_.step(input_, kStep));
   EXPECT_EQ(controller_.state(), OperatingState::kFault);
@@ -188,8 +200,7 @@ TEST_F(InjectionControllerTest, NeedleThatDoesNotFollowIsAFaultUntilItIsEnabled)
 }
 
 TEST_F(InjectionControllerTest, HomeWithdrawsAlongThePipetteFirstAlsoWithoutATrustedForce) {
-  controller_.command("enable");
-  run(1);
+  enable();
   input_.target = kStart + Eigen::Vector3d(5e-6, 0, -20e-6);
   run(1000);
   input_.force.reset();
@@ -205,8 +216,7 @@ TEST_F(InjectionControllerTest, HomeWithdrawsAlongThePipetteFirstAlsoWithoutATru
 }
 
 TEST_F(InjectionControllerTest, HomeNeverGoesDeeper) {
-  controller_.command("enable");
-  run(1);
+  enable();
   input_.target = kStart + Eigen::Vector3d(3e-6, 0, 20e-6);
   run(1000);
   controller_.command("home");
@@ -216,8 +226,7 @@ TEST_F(InjectionControllerTest, HomeNeverGoesDeeper) {
 }
 
 TEST_F(InjectionControllerTest, NeedleThatRunsAwayIsAFault) {
-  controller_.command("enable");
-  run(1);
+  enable();
   int steps = 0;
   while (controller_.state() == OperatingState::kEnabled && ++steps < 100) {
     *input_.needle += Eigen::Vector3d(0, 0, -1.1 * config_.guards.needle_speed_limit * kStep);
@@ -230,8 +239,7 @@ TEST_F(InjectionControllerTest, NeedleThatRunsAwayIsAFault) {
 }
 
 TEST_F(InjectionControllerTest, DoesNotCatchUpWithWhatTheForceLimitRefused) {
-  controller_.command("enable");
-  run(1);
+  enable();
   input_.force = Eigen::Vector3d(0, 0, 1.01 * config_.guards.force_limit);
   input_.target = kStart - Eigen::Vector3d(0, 0, 20e-6);
   run(100);
