@@ -218,7 +218,7 @@ void InjectionControllerNode::publishInjection(const ros::Time& now) {
   status.waits = model_.awaitsCommand();
   status.punctures = static_cast<std::uint32_t>(model_.punctures());
   status.force = feedback.force;
-  status.guard_force = model_.guardForce().value_or(std::numeric_limits<double>::quiet_NaN());
+  status.guard_force = model_.guardForce();
   status.depth = feedback.depth;
   status.volume = model_.injectedVolume();
   status.outcome = toText(model_.result().outcome);

@@ -8,8 +8,7 @@ namespace microinjection {
 namespace {
 
 /// The controller's reasons to hold the needle that are no alarm: nobody moves it, or it moves by itself.
-constexpr std::array<const char*, 4> kCalm = {"no valid target", "no injection is under way", "homing",
-                                              "measures the force at rest"};
+constexpr std::array<const char*, 3> kCalm = {"no valid target", "no injection is under way", "homing"};
 
 /// The needle is held although the controller is ENABLED: by a guard, or for want of an input.
 bool heldByAlarm(const SessionView& session) {

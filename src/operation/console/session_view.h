@@ -26,7 +26,7 @@ struct SessionView {
   bool busy = false;        ///< the controller moves the needle by itself
   bool waits = false;       ///< for the operator's command
   double force = 0;         ///< N, along the pipette, above the offset at rest
-  double guard_force = 0;   ///< N, along the pipette, as the force guard compares it; NaN: not known
+  double guard_force = 0;   ///< N, along the pipette, as the force guard compares it
   double depth = 0;         ///< m past the contact point; 0 before the first contact
   double volume = 0;        ///< m^3, injected since the needle started
   std::string hold_reason;  ///< why the needle is held; empty: it follows, or not known

@@ -87,7 +87,6 @@ void InjectionController::engage(const Eigen::Vector3d& needle, const Eigen::Vec
 
 std::optional<Eigen::Vector3d> InjectionController::step(const Input& input, double dt) {
   const bool needle_valid = isValid(input.needle);
-  guard_force_.reset();
   needle_valid_ = needle_valid_ || needle_valid;
   if (state_ == OperatingState::kDisabled || state_ == OperatingState::kFault) {
     // Something else may have moved the needle out of the cell.
@@ -161,7 +160,6 @@ void InjectionController::monitorPulse(const Input& input, double dt) {
 std::optional<Eigen::Vector3d> InjectionController::handTarget(const Input& input) {
   hold_reason_.clear();
   if (!isValid(input.target)) hold_reason_ = kNoTarget;
-  if (!monitor_.ready()) hold_reason_ = kMeasuresRest;
   if (!isValid(input.force)) hold_reason_ = "no valid force";
   if (!hold_reason_.empty()) {
     target_offset_.reset();

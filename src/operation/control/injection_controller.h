@@ -109,9 +109,9 @@ class InjectionController {
   /// Why the last command was refused, or its pulse by hand ended early; else empty.
   const std::string& notice() const { return notice_; }
   const NeedleMonitor& monitor() const { return monitor_; }
-  /// N along the pipette, which the force guard compares: the sensor's offset is in it. Empty: no
-  /// valid force, or no needle to guard.
-  std::optional<double> guardForce() const { return guard_force_; }
+  /// N along the pipette, of the last valid force, as the force guard compares it: the sensor's
+  /// offset is in it.
+  double guardForce() const { return guard_force_; }
 
   bool running() const { return run_.active(); }  ///< an injection is under way
   InjectionFeedback feedback() const;
@@ -125,8 +125,6 @@ class InjectionController {
   bool byHand() const { return config_.mode == "manual"; }
   /// By hand: nobody moves the needle. The operator may have released it to send a command.
   static constexpr const char* kNoTarget = "no valid target";
-  /// By hand: a needle that is moved into a cell meanwhile would make the cell's force the offset.
-  static constexpr const char* kMeasuresRest = "measures the force at rest";
   static constexpr const char* kNotHomed = "not homed; allowed after home";
 
   std::string execute(const std::string& command);
@@ -160,7 +158,7 @@ class InjectionController {
   OperatingState state_ = OperatingState::kDisabled;
   InjectionState injection_ = InjectionState::kIdle;
   NeedleMonitor monitor_;
-  std::optional<double> guard_force_;  ///< N
+  double guard_force_ = 0;  ///< N
   HandObserver observer_;
   InjectionRun run_;
   InjectorWait hand_pulse_;

@@ -29,7 +29,7 @@ DetectionConfig DetectionConfig::read(ConfigReader& reader) {
 }
 
 NeedleMonitor::NeedleMonitor(const DetectionConfig& config)
-    : config_(config), noise_(config.noise_samples, kSmallestNoise * config.contact_force) {}
+    : config_(config), noise_(config.noise_samples, kSmallestNoise * config.contact_force, config.contact_force) {}
 
 void NeedleMonitor::reset() { *this = NeedleMonitor(config_); }
 

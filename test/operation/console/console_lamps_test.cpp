@@ -121,8 +121,7 @@ TEST(Headline, IsYellowWhileAGuardOrAMissingInputHoldsTheNeedle) {
     EXPECT_EQ(headline(session).light, Light::kYellow) << reason;
     EXPECT_EQ(headline(session).text, std::string("ENABLED: held: ") + reason);
   }
-  for (const char* reason :
-       {"", "no valid target", "no injection is under way", "homing", "measures the force at rest"}) {
+  for (const char* reason : {"", "no valid target", "no injection is under way", "homing"}) {
     session.hold_reason = reason;
     EXPECT_EQ(headline(session).light, Light::kGreen) << reason;
   }

@@ -15,11 +15,12 @@ namespace {
 
 constexpr double kNoise = 10e-9;   // N rms
 constexpr double kOffset = 35e-9;  // N
+constexpr double kChange = 50e-9;  // N, that leaves the rest
 constexpr int kMillion = 1000000;
 
 class DetectorsTest : public testing::Test {
  protected:
-  explicit DetectorsTest(int samples = 200000) : noise_(samples, 1e-12) {
+  explicit DetectorsTest(int samples = 200000) : noise_(samples, 1e-12, kChange) {
     while (!noise_.ready()) noise_.add(sample());
   }
   double sample(double force = 0) { return kOffset + force + kNoise * deviate_(random_); }
@@ -34,10 +35,23 @@ class DetectorsTest : public testing::Test {
 TEST_F(DetectorsTest, NoiseAtRestIsMeasured) {
   EXPECT_NEAR(noise_.offset(), kOffset, 0.01 * kNoise);
   EXPECT_NEAR(noise_.deviation(), kNoise, 0.01 * kNoise);
-  ForceNoise few(100, 1e-12), silent(100, 3e-9);
+  ForceNoise few(100, 1e-12, kChange), silent(100, 3e-9, kChange);
   for (int i = 0; i < 100; ++i) few.add(sample()), silent.add(kOffset);
   EXPECT_GT(few.deviation(), 0.95 * kNoise) << "on the safe side";
   EXPECT_EQ(silent.deviation(), 3e-9);
+}
+
+TEST_F(DetectorsTest, AForceThatRisesEndsTheMeasurementAtRest) {
+  ForceNoise pushed(300, 5e-9, kChange);
+  for (int i = 0; i < 100; ++i) pushed.add(sample());
+  pushed.add(sample(80e-9));  // a spike
+  for (int i = 0; i < 10; ++i) pushed.add(sample());
+  EXPECT_FALSE(pushed.ready());
+  int steps = 0;
+  while (!pushed.ready()) pushed.add(sample(2e-9 * ++steps));  // 20 um/s into 0.1 N/m
+  EXPECT_LT(steps, 80);
+  EXPECT_NEAR(pushed.offset(), kOffset, 0.1 * kChange);
+  EXPECT_NEAR(pushed.deviation(), kNoise, 0.7 * kNoise);
 }
 
 TEST(NormalQuantile, KnownValues) {
@@ -159,7 +173,7 @@ TEST_F(DetectorsTest, StopRelaxationAndWithdrawalAreNoPuncture) {
 /// A hand that goes in at 5 to 20 um/s and trembles by 0.12 um rms, a soft and a stiff cell, a force that is 2 ms late.
 TEST_F(DetectorsTest, ATremblingHandIsNoPuncture) {
   const ForceNoise silent = [] {
-    ForceNoise noise(100, 5e-9);
+    ForceNoise noise(100, 5e-9, kChange);
     for (int i = 0; i < 100; ++i) noise.add(0);
     return noise;
   }();

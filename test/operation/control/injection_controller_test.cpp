@@ -28,12 +28,6 @@ class InjectionControllerTest : public testing::Test {
     return setpoint;
   }
 
-  /// Enables, and waits until the force at rest is measured.
-  void enable() {
-    ASSERT_EQ(controller_.command("enable"), "");
-    run(config_.detection.noise_samples);
-  }
-
   InjectionControllerConfig config_;
   InjectionController controller_{config_};
   InjectionController::Input input_;
@@ -46,24 +40,20 @@ TEST_F(InjectionControllerTest, MovesNothingUntilItIsEnabled) {
   EXPECT_EQ(controller_.state(), OperatingState::kEnabled);
 }
 
-TEST_F(InjectionControllerTest, HoldsTheNeedleUntilTheForceAtRestIsMeasured) {
+TEST_F(InjectionControllerTest, NamesTheForceThatItsGuardCompares) {
+  EXPECT_EQ(controller_.guardForce(), 0);
   controller_.command("enable");
-  input_.target = kStart - Eigen::Vector3d(0, 0, 5e-6);
-  EXPECT_EQ(*run(config_.detection.noise_samples - 1), kStart);
-  EXPECT_EQ(controller_.holdReason(), "measures the force at rest");
-  run(1);
-  EXPECT_TRUE(controller_.followsTarget());
-  EXPECT_EQ(*input_.needle, kStart) << "the hand's motion meanwhile is not caught up";
-  input_.force = Eigen::Vector3d(0, 0, 2e-6);
+  input_.force = Eigen::Vector3d(1e-6, 0, 2e-6);
   run(1);
   EXPECT_EQ(controller_.guardForce(), 2e-6);
   input_.force.reset();
   run(1);
-  EXPECT_FALSE(controller_.guardForce());
+  EXPECT_EQ(controller_.guardForce(), 2e-6);
 }
 
 TEST_F(InjectionControllerTest, FollowsTheTargetWithinTheSpeedLimit) {
-  enable();
+  controller_.command("enable");
+  run(1);
   input_.target = Eigen::Vector3d(0, 0, 30e-6);
   EXPECT_NEAR(kStart.z() - run(1)->z(), config_.guards.speed_limit * kStep, 1e-15);
   EXPECT_LT((*run(1000) - *input_.target).norm(), 1e-15);
@@ -71,7 +61,8 @@ TEST_F(InjectionControllerTest, FollowsTheTargetWithinTheSpeedLimit) {
 }
 
 TEST_F(InjectionControllerTest, DrivesALateRigSlowlyAndNeverFasterThanConfigured) {
-  enable();
+  controller_.command("enable");
+  run(1);
   input_.target = Eigen::Vector3d(0, 0, 30e-6);
   controller_.adaptTo(44e-6, 0);
   const double before = input_.needle->z();
@@ -82,7 +73,8 @@ TEST_F(InjectionControllerTest, DrivesALateRigSlowlyAndNeverFasterThanConfigured
 }
 
 TEST_F(InjectionControllerTest, AbilitiesThatNoRigHasAreRefusedAndChangeNothing) {
-  enable();
+  controller_.command("enable");
+  run(1);
   input_.target = Eigen::Vector3d(0, 0, 30e-6);
   EXPECT_EQ(controller_.adaptTo(44e-6, 0), "");
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInfinite = std::numeric_limits<double>::infinity();
@@ -112,7 +104,9 @@ TEST_F(InjectionControllerTest, RefusesCommandsThatDoNotFitItsState) {
 }
 
 TEST_F(InjectionControllerTest, UnhomedItHoldsTheNeedleUntilItIsHome) {
-  enable();
+  controller_.command("enable");
+  input_.target = kStart;
+  run(10);
   EXPECT_TRUE(controller_.homed());
   EXPECT_EQ(controller_.command("unhome"), "");
   EXPECT_FALSE(controller_.homed());
@@ -131,7 +125,8 @@ TEST_F(InjectionControllerTest, UnhomedItHoldsTheNeedleUntilItIsHome) {
 }
 
 TEST_F(InjectionControllerTest, HoldsWhilePaused) {
-  enable();
+  controller_.command("enable");
+  run(1);
   controller_.command("pause");
   input_.target = Eigen::Vector3d(0, 0, 50e-6);
   EXPECT_EQ(*run(100), kStart);
@@ -139,7 +134,8 @@ TEST_F(InjectionControllerTest, HoldsWhilePaused) {
 
 TEST_F(InjectionControllerTest, HoldsWithoutATrustedInput) {
   const Eigen::Vector3d nan = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-  enable();
+  controller_.command("enable");
+  run(1);
   const Eigen::Vector3d lower(0, 0, 50e-6);
   for (int which = 0; which < 6; ++which) {
     input_.target = lower;
@@ -158,8 +154,8 @@ TEST_F(InjectionControllerTest, HoldsWithoutATrustedInput) {
 }
 
 TEST_F(InjectionControllerTest, TargetsCountFromWhereTheNeedleWasEnabledOrResumed) {
+  controller_.command("enable");
   input_.target = kStart + Eigen::Vector3d(0, 0, 40e-6);
-  enable();
   EXPECT_EQ(*run(100), kStart);
   controller_.command("pause");
   *input_.target += Eigen::Vector3d(7e-6, 0, 0);
@@ -171,14 +167,16 @@ TEST_F(InjectionControllerTest, TargetsCountFromWhereTheNeedleWasEnabledOrResume
 }
 
 TEST_F(InjectionControllerTest, DoesNotFollowATargetThatLeaps) {
-  enable();
+  controller_.command("enable");
+  run(1);
   input_.target = kStart + Eigen::Vector3d(0, 0, 1.01 * config_.guards.jump_limit);
   EXPECT_EQ(*run(10), kStart);
   EXPECT_NE(controller_.holdReason().find("away, allowed"), std::string::npos);
 }
 
 TEST_F(InjectionControllerTest, PastTheForceLimitOnlyWithdraws) {
-  enable();
+  controller_.command("enable");
+  run(1);
   input_.force = Eigen::Vector3d(0, 0, 1.01 * config_.guards.force_limit);
   input_.target = kStart + Eigen::Vector3d(5e-6, 0, -5e-6);
   EXPECT_EQ(*run(100), kStart);
@@ -188,7 +186,8 @@ TEST_F(InjectionControllerTest, PastTheForceLimitOnlyWithdraws) {
 }
 
 TEST_F(InjectionControllerTest, NeedleThatDoesNotFollowIsAFaultUntilItIsEnabled) {
-  enable();
+  controller_.command("enable");
+  run(1);
   input_.needle = kStart + Eigen::Vector3d(1.01 * config_.guards.tracking_limit, 0, 0);
   EXPECT_FALSE(controller_.step(input_, kStep));
   EXPECT_EQ(controller_.state(), OperatingState::kFault);
@@ -200,7 +199,8 @@ TEST_F(InjectionControllerTest, NeedleThatDoesNotFollowIsAFaultUntilItIsEnabled)
 }
 
 TEST_F(InjectionControllerTest, HomeWithdrawsAlongThePipetteFirstAlsoWithoutATrustedForce) {
-  enable();
+  controller_.command("enable");
+  run(1);
   input_.target = kStart + Eigen::Vector3d(5e-6, 0, -20e-6);
   run(1000);
   input_.force.reset();
@@ -216,7 +216,8 @@ TEST_F(InjectionControllerTest, HomeWithdrawsAlongThePipetteFirstAlsoWithoutATru
 }
 
 TEST_F(InjectionControllerTest, HomeNeverGoesDeeper) {
-  enable();
+  controller_.command("enable");
+  run(1);
   input_.target = kStart + Eigen::Vector3d(3e-6, 0, 20e-6);
   run(1000);
   controller_.command("home");
@@ -226,7 +227,8 @@ TEST_F(InjectionControllerTest, HomeNeverGoesDeeper) {
 }
 
 TEST_F(InjectionControllerTest, NeedleThatRunsAwayIsAFault) {
-  enable();
+  controller_.command("enable");
+  run(1);
   int steps = 0;
   while (controller_.state() == OperatingState::kEnabled && ++steps < 100) {
     *input_.needle += Eigen::Vector3d(0, 0, -1.1 * config_.guards.needle_speed_limit * kStep);
@@ -239,7 +241,8 @@ TEST_F(InjectionControllerTest, NeedleThatRunsAwayIsAFault) {
 }
 
 TEST_F(InjectionControllerTest, DoesNotCatchUpWithWhatTheForceLimitRefused) {
-  enable();
+  controller_.command("enable");
+  run(1);
   input_.force = Eigen::Vector3d(0, 0, 1.01 * config_.guards.force_limit);
   input_.target = kStart - Eigen::Vector3d(0, 0, 20e-6);
   run(100);
