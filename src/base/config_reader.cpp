@@ -127,6 +127,30 @@ void ConfigReader::vector(const std::string& key, Eigen::Ref<Eigen::VectorXd> va
   value = read;
 }
 
+void ConfigReader::texts(const std::string& key, std::vector<std::string>& values, Presence presence) {
+  const YAML::Node node = find(key, presence);
+  if (!node.IsDefined()) return;
+  std::vector<std::string> read;
+  for (std::size_t i = 0; node.IsSequence() && i < node.size() && node[i].IsScalar(); ++i)
+    read.push_back(node[i].Scalar());
+  if (read.empty() || read.size() != node.size()) return error(key, "must be a list of one or more values");
+  values = read;
+}
+
+void ConfigReader::numbers(const std::string& key, std::vector<double>& values, const Range& range,
+                           Presence presence) {
+  const YAML::Node node = find(key, presence);
+  if (!node.IsDefined()) return;
+  const bool some = node.IsSequence() && node.size() > 0;
+  Eigen::VectorXd read(some ? static_cast<Eigen::Index>(node.size()) : 0);
+  for (Eigen::Index i = 0; i < read.size(); ++i) {
+    const bool good = YAML::convert<double>::decode(node[i], read[i]) && range.contains(read[i]);
+    if (!good) return error(key, "must be a list of numbers in " + range.text());
+  }
+  if (!some) return error(key, "must be a list of numbers in " + range.text());
+  values.assign(read.begin(), read.end());
+}
+
 YAML::Node ConfigReader::map(const std::string& key, Presence presence) {
   const YAML::Node node = find(key, presence);
   if (node.IsDefined() && node.IsMap()) return node;

@@ -41,6 +41,11 @@ class ConfigReader {
   /// A list of exactly value.size() numbers, each in `range`.
   void vector(const std::string& key, Eigen::Ref<Eigen::VectorXd> value, const Range& range = Range::finite(),
               Presence = kOptional);
+  /// A list of scalars as they stand in the file, at least one.
+  void texts(const std::string& key, std::vector<std::string>& values, Presence = kOptional);
+  /// A list of numbers in `range`, at least one.
+  void numbers(const std::string& key, std::vector<double>& values, const Range& range = Range::finite(),
+               Presence = kOptional);
   /// The map under `key`; an empty map when it is optional and absent.
   ConfigReader section(const std::string& key, Presence = kOptional);
   /// The maps in the list under `key`, one reader each; none when it is optional and absent.

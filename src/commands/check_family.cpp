@@ -15,7 +15,7 @@
 #include "cell/family/family_reference.h"
 #include "commands/path_store.h"
 #include "commands/prepare_family.h"
-#include "commands/solve_paths.h"
+#include "commands/run_tasks.h"
 
 namespace microinjection {
 namespace {
@@ -74,13 +74,13 @@ class FamilyCheck {
     const std::string title = "prepare: members " + std::to_string(batch.front() + 1) + " to " +
                               std::to_string(batch.back() + 1) + " of " + std::to_string(arguments_.check) +
                               ", never solved for";
-    solvePaths(title, arguments_.jobs, [&] {
-      std::vector<std::vector<std::string>> commands;
+    runTasks(title, "paths", arguments_.jobs, [&] {
+      std::vector<Work> commands;
       for (std::size_t i = 0; i < batch.size(); ++i) {
         for (const std::size_t ray : stores[i].missing()) {
-          commands.push_back({thisProgram(), "--family", arguments_.file, "--check", std::to_string(arguments_.check),
-                              "--seed", std::to_string(arguments_.seed), "--member", std::to_string(batch[i]), "--ray",
-                              std::to_string(ray)});
+          commands.push_back({{thisProgram(), "--family", arguments_.file, "--check", std::to_string(arguments_.check),
+                               "--seed", std::to_string(arguments_.seed), "--member", std::to_string(batch[i]), "--ray",
+                               std::to_string(ray)}});
         }
       }
       return commands;

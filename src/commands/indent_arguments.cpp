@@ -101,7 +101,6 @@ struct OptionTexts {
 };
 
 void interpret(const OptionTexts& texts, IndentArguments& arguments) {
-  using Model = ConvergedForceConfig::Model;
   arguments.indenting.depths = parseDepths(texts.depths);
   if (!texts.withdraw.empty()) {
     arguments.indenting.withdrawal = parseNumbers("withdraw", texts.withdraw, "numbers (m) separated by commas");
@@ -109,11 +108,9 @@ void interpret(const OptionTexts& texts, IndentArguments& arguments) {
   arguments.indenting.lateral = parseLateral(texts.lateral);
   if (!texts.speed.empty()) arguments.indenting.speed = parsePositive("speed", texts.speed, " (m/s)");
   arguments.indenting.hold = parsePositive("hold", texts.hold, " (s)", true);
-  const std::size_t model = parseChoice("model", texts.model, {"auto", "axisymmetric", "spatial", "live", "membrane"});
-  arguments.live = model == 3;
-  arguments.membrane = model == 4;
-  if (model < 3) arguments.converged.model = static_cast<Model>(model);
-  if (model >= 3 && !texts.withdraw.empty()) {
+  parseChoice("model", texts.model, indentModels());
+  arguments.setModel(texts.model);
+  if ((arguments.live || arguments.membrane) && !texts.withdraw.empty()) {
     throw ConfigError("--withdraw = " + texts.withdraw + ": must be left out with --model " + texts.model);
   }
   parseChoice("element", texts.element, elementNames());
@@ -122,14 +119,30 @@ void interpret(const OptionTexts& texts, IndentArguments& arguments) {
   if (arguments.tolerance_given) {
     arguments.converged.tolerance = parsePositive("tolerance", texts.tolerance, "");
   } else {
-    const Scene scene = loadScene(arguments.scene);
-    const bool on_axis = scene.needle.offset.isZero(0) && arguments.indenting.lateral.isZero(0);
-    arguments.converged.tolerance = on_axis && arguments.converged.model != Model::kSpatial ? 0.005 : 0.03;
+    arguments.converged.tolerance = defaultTolerance(loadScene(arguments.scene), arguments);
   }
   arguments.converged.time = parsePositive("time", texts.time, " (s)");
 }
 
 }  // namespace
+
+const std::vector<std::string>& indentModels() {
+  static const std::vector<std::string> names = {"auto", "axisymmetric", "spatial", "live", "membrane"};
+  return names;
+}
+
+void IndentArguments::setModel(const std::string& name) {
+  live = name == "live";
+  membrane = name == "membrane";
+  if (live || membrane) return;
+  using Model = ConvergedForceConfig::Model;
+  converged.model = name == "auto" ? Model::kAuto : name == "spatial" ? Model::kSpatial : Model::kAxisymmetric;
+}
+
+double defaultTolerance(const Scene& scene, const IndentArguments& arguments) {
+  const bool on_axis = scene.needle.offset.isZero(0) && arguments.indenting.lateral.isZero(0);
+  return on_axis && arguments.converged.model != ConvergedForceConfig::Model::kSpatial ? 0.005 : 0.03;
+}
 
 std::optional<IndentArguments> parseIndentArguments(int argc, char** argv) {
   namespace po = boost::program_options;

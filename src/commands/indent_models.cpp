@@ -16,6 +16,14 @@
 namespace microinjection {
 namespace {
 
+/// Text of at most 200 characters, as std::printf makes it.
+template <typename... Values>
+std::string line(const char* format, Values... values) {
+  char text[201];
+  std::snprintf(text, sizeof text, format, values...);
+  return text;
+}
+
 /// A deeper point straight below the last one continues from it. Any other point starts from rest.
 /// `solve` moves `path` to a displacement (m).
 template <typename Path, typename Solve>
@@ -36,23 +44,23 @@ ForcePoint solveLive(Path& path, double depth, const Eigen::Vector2d& lateral, c
   return point;
 }
 
-TipPatch tipPatch(const DiscContactCell& cell) {
+TipPatch tipPatch(const DiscContactCell& cell, const Report& report) {
   const Eigen::Vector2d& offset = cell.scene().needle.offset;
   const TipPatch patch = cell.patchAt({offset.x(), offset.y(), cell.scene().radius()}, Eigen::Vector3d::UnitZ());
-  std::fprintf(stderr, "indent: %s; %zu vertices under the tip\n", cell.description().c_str(), patch.vertices.size());
+  report(line("%s; %zu vertices under the tip", cell.description().c_str(), patch.vertices.size()));
   return patch;
 }
 
-std::vector<ForcePoint> live(const Scene& scene, const Indenting& indenting) {
+std::vector<ForcePoint> live(const Scene& scene, const Indenting& indenting, const Report& report) {
   const auto cell = std::make_shared<const P1Cell>(scene);
-  Indentation indentation(cell, tipPatch(*cell));
+  Indentation indentation(cell, tipPatch(*cell, report));
   std::vector<ForcePoint> points;
   const auto solve = [&](const Eigen::Vector3d& target) { return indentation.solve(target); };
   for (double depth : indenting.depths) points.push_back(solveLive(indentation, depth, indenting.lateral, solve));
   return points;
 }
 
-std::vector<ForcePoint> tensegrity(const Scene& scene, const IndentArguments& arguments) {
+std::vector<ForcePoint> tensegrity(const Scene& scene, const IndentArguments& arguments, const Report& report) {
   const Indenting& indenting = arguments.indenting;
   std::vector<std::string> options = arguments.converged_options, errors;
   if (!indenting.withdrawal.empty()) options.push_back("--withdraw");
@@ -61,7 +69,7 @@ std::vector<ForcePoint> tensegrity(const Scene& scene, const IndentArguments& ar
   }
   if (!errors.empty()) throw ConfigError(errors);
   const auto cell = std::make_shared<const TensegrityCell>(scene);
-  const std::unique_ptr<TensegrityIndentation> path = cell->indentation(tipPatch(*cell));
+  const std::unique_ptr<TensegrityIndentation> path = cell->indentation(tipPatch(*cell, report));
   const auto solve = [&](const Eigen::Vector3d& target) {
     constexpr double kUntilRelaxed = std::numeric_limits<double>::infinity();
     const double distance = (target - path->tipDisplacement()).norm();
@@ -97,13 +105,13 @@ void requireMembraneScene(const Scene& scene, const Indenting& indenting) {
   if (!errors.empty()) throw ConfigError(errors);
 }
 
-std::vector<ForcePoint> membrane(const Scene& scene, const Indenting& indenting) {
+std::vector<ForcePoint> membrane(const Scene& scene, const Indenting& indenting, const Report& report) {
   requireMembraneScene(scene, indenting);
   const MaterialConfig& material = scene.cell.material();
   const Biomembrane model(material.young_modulus, material.poisson_ratio, scene.needle.tip.radius,
                           *scene.cell.biomembrane);
-  std::fprintf(stderr, "indent: membrane of %.4g um, dimple of %.4g um\n", 1e6 * scene.cell.biomembrane->thickness,
-               1e6 * scene.cell.biomembrane->dimple_radius);
+  report(line("membrane of %.4g um, dimple of %.4g um", 1e6 * scene.cell.biomembrane->thickness,
+              1e6 * scene.cell.biomembrane->dimple_radius));
   std::vector<ForcePoint> points;
   for (const double depth : indenting.depths) {
     ForcePoint& point = points.emplace_back();
@@ -111,32 +119,34 @@ std::vector<ForcePoint> membrane(const Scene& scene, const Indenting& indenting)
     point.converged = true;
     point.force.z() = model.force(depth);
     if (model.strain(depth) > 0.1) {
-      std::fprintf(stderr, "indent: depth %.4g um: the membrane's strain is %.2g, too large for this model\n",
-                   1e6 * depth, model.strain(depth));
+      report(line("depth %.4g um: the membrane's strain is %.2g, too large for this model", 1e6 * depth,
+                  model.strain(depth)));
     }
   }
   return points;
 }
 
-std::vector<ForcePoint> converged(const Scene& scene, const IndentArguments& arguments) {
+std::vector<ForcePoint> converged(const Scene& scene, const IndentArguments& arguments, const Report& report) {
   ConvergedForce solver(scene, arguments.indenting, arguments.converged);
-  std::fprintf(stderr, "indent: %s, %s elements, tolerance %.3g\n", solver.axisymmetric() ? "axisymmetric" : "spatial",
-               elementName(arguments.converged.element).c_str(), arguments.converged.tolerance);
-  return solver.solve([&](const LevelReport& report) {
-    std::fprintf(stderr, "indent: mesh %g, %zu elements, %d unknowns, %.1f s:", report.level, report.elements,
-                 report.unknowns, report.wall_time);
-    for (double force : report.forces) std::fprintf(stderr, " %.5g", 1e6 * force);
-    std::fprintf(stderr, " uN\n");
+  report(line("%s, %s elements, tolerance %.3g", solver.axisymmetric() ? "axisymmetric" : "spatial",
+              elementName(arguments.converged.element).c_str(), arguments.converged.tolerance));
+  return solver.solve([&](const LevelReport& level) {
+    std::string text = line("mesh %g, %zu elements, %d unknowns, %.1f s:", level.level, level.elements, level.unknowns,
+                            level.wall_time);
+    for (double force : level.forces) text += line(" %.5g", 1e6 * force);
+    report(text + " uN");
   });
 }
 
 }  // namespace
 
-std::vector<ForcePoint> solveIndentation(const Scene& scene, const IndentArguments& arguments) {
-  if (arguments.membrane) return membrane(scene, arguments.indenting);
+void printProgress(const std::string& line) { std::fprintf(stderr, "indent: %s\n", line.c_str()); }
+
+std::vector<ForcePoint> solveIndentation(const Scene& scene, const IndentArguments& arguments, const Report& report) {
+  if (arguments.membrane) return membrane(scene, arguments.indenting, report);
   const bool default_model = arguments.live || arguments.converged.model == ConvergedForceConfig::Model::kAuto;
-  if (scene.cell.tensegrity && default_model) return tensegrity(scene, arguments);
-  return arguments.live ? live(scene, arguments.indenting) : converged(scene, arguments);
+  if (scene.cell.tensegrity && default_model) return tensegrity(scene, arguments, report);
+  return arguments.live ? live(scene, arguments.indenting, report) : converged(scene, arguments, report);
 }
 
 }  // namespace microinjection

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <string>
 #include <vector>
 
 #include "cell/model/scene.h"
@@ -7,8 +9,15 @@
 
 namespace microinjection {
 
-/// Forces of the scene at the depths of the arguments, by the model that they name. Reports its progress on
-/// the error output. Throws ConfigError when the scene does not have that model.
-std::vector<ForcePoint> solveIndentation(const Scene& scene, const IndentArguments& arguments);
+/// Takes a line of progress.
+using Report = std::function<void(const std::string& line)>;
+
+/// Prints a line on the error output, as `indent` does.
+void printProgress(const std::string& line);
+
+/// Forces of the scene at the depths of the arguments, by the model that they name. Throws
+/// ConfigError when the scene does not have that model.
+std::vector<ForcePoint> solveIndentation(const Scene& scene, const IndentArguments& arguments,
+                                         const Report& report = printProgress);
 
 }  // namespace microinjection

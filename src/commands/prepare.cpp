@@ -1,10 +1,6 @@
 // Prepares the surrogate cell of a scene from converged solutions; see --help.
 
-#include <malloc.h>
-#include <sys/prctl.h>
-
 #include <boost/program_options/errors.hpp>
-#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -20,7 +16,6 @@
 #include "base/worker_processes.h"
 #include "cell/choice/model_choice.h"
 #include "cell/family/family_cell.h"
-#include "cell/mechanics/symmetric_solver.h"
 #include "cell/model/scene.h"
 #include "cell/model/similarity.h"
 #include "cell/surrogate/surrogate_data.h"
@@ -28,7 +23,8 @@
 #include "commands/path_store.h"
 #include "commands/prepare_arguments.h"
 #include "commands/prepare_family.h"
-#include "commands/solve_paths.h"
+#include "commands/run_tasks.h"
+#include "commands/worker.h"
 
 namespace microinjection {
 namespace {
@@ -119,10 +115,10 @@ class Preparing {
   }
 
   void solveMissing() const {
-    solvePaths("prepare", arguments_.jobs, [&] {
-      std::vector<std::vector<std::string>> commands;
+    runTasks("prepare", "paths", arguments_.jobs, [&] {
+      std::vector<Work> commands;
       for (const std::size_t i : paths_.missing()) {
-        commands.push_back({thisProgram(), "--scene", arguments_.scene, "--ray", std::to_string(i)});
+        commands.push_back({{thisProgram(), "--scene", arguments_.scene, "--ray", std::to_string(i)}});
       }
       return commands;
     });
@@ -156,12 +152,9 @@ class Preparing {
 
 /// Solves one path, as a process that ends when the preparation is killed.
 int work(const PrepareArguments& arguments) {
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  // The solver allocates and releases large blocks in every step: the system need not have them back.
-  mallopt(M_TRIM_THRESHOLD, 1 << 30);
-  mallopt(M_MMAP_THRESHOLD, 1 << 30);
-  SymmetricSolver::useOneThread();  // the paths are solved side by side; more threads only wait for each other
+  prepareWorker(arguments.task < 0);
   try {
+    if (arguments.task >= 0) return solveFamilyTask(arguments.family, arguments.task);
     if (arguments.family.file.empty()) return Preparing(arguments).work();
     if (arguments.axis >= 0) {
       solveAxisNode(arguments.family.file, arguments.axis);
@@ -204,7 +197,7 @@ int run(int argc, char** argv) {
       flushStandardOutput();
       return kDone;
     }
-    const int status = arguments.ray >= 0 || arguments.axis >= 0 ? work(arguments) : prepare(arguments);
+    const int status = arguments.ray >= 0 || arguments.axis >= 0 || arguments.task >= 0 ? work(arguments) : prepare(arguments);
     flushStandardOutput();
     return status;
   } catch (const boost::program_options::error& error) {

@@ -16,6 +16,9 @@ with which a live session evaluates a converged force in microseconds.
 
 Usage: prepare --scene FILE [--jobs N] [...]
        prepare --family FILE [--members N | --check N] [--jobs N]
+       prepare --family FILE --members N --list PLAN      writes the tasks of the next round of members
+       prepare --family FILE --plan PLAN --task K         solves one of them
+       prepare --family FILE --members N --plan PLAN --gather   adds the members, when all tasks are done
 
 Takes minutes, shows its progress, and may be interrupted: the next call continues from the finished paths. The data are
 in $XDG_CACHE_HOME (else ~/.cache) under cell_microinjection/prepared, in a folder named after the cell, the tip and
@@ -24,7 +27,9 @@ Another tip, another ratio of lengths or another ratio of moduli needs its own; 
 
 With --family it solves members of a family of cells, each in minutes, and stores the family's data beside its file (NAME.data
 beside NAME.yaml). Every cell inside of the family is then served at once, without a preparation. The members are where
-the prediction from the solved ones is least certain. Several processes with one cache share the work.
+the prediction from the solved ones is least certain. Several processes with one cache share the work. With --list, --task
+and --gather a job scheduler does it, round by round: see doc/guide/cluster.md. A task that another process solves at
+the moment ends with status 4: try it again.
 
 Data that are damaged, or of another version, are reported and replaced.
 
@@ -64,6 +69,10 @@ PrepareArguments parsePrepareArguments(int argc, char** argv) {
                                                                                   "file for the table of the check")(
       "reference", po::value(&family.reference),
       "file of the check's solutions: those that it has are not solved again, the others are added")(
+      "list", po::value(&family.list), "file for the tasks of the family's next round; CSV")(
+      "plan", po::value(&family.plan), "file that --list has written")(
+      "task", po::value(&arguments.task), "of the plan to solve, from 0")(
+      "gather", po::bool_switch(&arguments.gather), "adds the plan's members to the family's data")(
       "jobs", po::value(&arguments.jobs)->default_value(processors), "paths solved at a time, each on one core")(
       "again", po::bool_switch(&arguments.again), "replaces data that were prepared before");
   po::options_description hidden;
@@ -81,6 +90,10 @@ PrepareArguments parsePrepareArguments(int argc, char** argv) {
   arguments.show_help = values.count("help") != 0;
   if (arguments.show_help) return arguments;
   if (arguments.scene.empty() == family.file.empty()) throw ConfigError("one of --scene and --family must be given");
+  if (family.plan.empty() != !(arguments.gather != (values.count("task") != 0)))
+    throw ConfigError("--plan needs one of --task and --gather");
+  if (family.file.empty() && !(family.plan + family.list).empty()) throw ConfigError("--list and --plan need --family");
+  if (values.count("task") != 0) requireAtLeast("task", arguments.task, 0);
   requireAtLeast("jobs", arguments.jobs, 1);
   requireAtLeast("members", family.members, 1);
   requireAtLeast("check", family.check, 0);

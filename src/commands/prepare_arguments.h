@@ -16,6 +16,8 @@ struct PrepareArguments {
   std::string at;  ///< coordinates of a family's member
   int member = -1;
   int axis = -1;
+  int task = -1;
+  bool gather = false;
   bool again = false;
   bool show_help = false;
   std::string help;  ///< of the command, with its options

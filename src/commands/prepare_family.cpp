@@ -1,7 +1,6 @@
 #include "commands/prepare_family.h"
 
 #include <cstdio>
-#include <ctime>
 #include <filesystem>
 #include <sstream>
 #include <utility>
@@ -10,32 +9,22 @@
 #include "base/atomic_file.h"
 #include "base/errors.h"
 #include "base/worker_processes.h"
+#include "cell/family/axis_force.h"
 #include "cell/family/family_data.h"
 #include "cell/family/family_file.h"
 #include "cell/family/next_members.h"
+#include "cell/mechanics/symmetric_solver.h"
 #include "commands/axis_store.h"
+#include "commands/family_plan.h"
 #include "commands/path_store.h"
-#include "commands/solve_paths.h"
+#include "commands/run_tasks.h"
 
 namespace microinjection {
 namespace {
 
 constexpr int kRound = 4;  ///< members that are solved before the next are chosen
 
-std::string text(const Eigen::VectorXd& coordinates) {
-  std::ostringstream out;
-  for (Eigen::Index i = 0; i < coordinates.size(); ++i) out << (i > 0 ? "," : "") << coordinates[i];
-  return out.str();
-}
-
-Eigen::VectorXd parse(const std::string& coordinates, int dimension) {
-  std::vector<double> values;
-  std::istringstream in(coordinates);
-  for (std::string item; std::getline(in, item, ',');) values.push_back(std::stod(item));
-  if (static_cast<int>(values.size()) != dimension)
-    throw ConfigError("--at = " + coordinates + ": wrong number of values");
-  return Eigen::Map<const Eigen::VectorXd>(values.data(), dimension);
-}
+std::string text(const Eigen::VectorXd& coordinates) { return coordinatesText(coordinates, ','); }
 
 PathStore storeOf(const Family& family, const Eigen::VectorXd& coordinates) {
   const Scene member = family.member(coordinates);
@@ -58,12 +47,44 @@ class FamilyPreparation {
       std::printf("prepare: %d members fitted anew\n", data_.refit());
       store();
     }
-    solveAxisForces();
-    while (count() < arguments_.members) {
-      const int round = std::min(kRound, arguments_.members - count());
-      solve(nextMembers(data_.knownPoints(), lengths(), round));
+    for (FamilyPlan plan = next(); !plan.tasks().empty(); plan = next()) {
+      solve(plan);
+      gather(plan);
     }
-    if (axis_forces_.size() > 0 && !data_.hasAxisCurves()) store();
+    report();
+  }
+
+  void list(const std::string& file) const {
+    const FamilyPlan plan = next();
+    plan.save(file);
+    std::printf("prepare: %d of %d members, %zu tasks in the next round: %s\n", count(), arguments_.members,
+                plan.tasks().size(), file.c_str());
+  }
+
+  int solveTask(const std::string& file, std::size_t number) const {
+    const FamilyPlan plan = read(file);
+    if (number >= plan.tasks().size()) {
+      throw ConfigError("--task = " + std::to_string(number) + ": must be below " +
+                        std::to_string(plan.tasks().size()) + ", the number of tasks");
+    }
+    const FamilyPlan::Task& task = plan.tasks()[number];
+    if (task.coordinates.size() == 0) {
+      AxisStore(family_).solve(task.piece);
+      return 0;
+    }
+    return storeOf(family_, task.coordinates).solve(static_cast<std::size_t>(task.piece)) == PathStore::Outcome::kBusy
+               ? kBusyStatus
+               : 0;
+  }
+
+  void gather(const std::string& file) {
+    const FamilyPlan plan = read(file);
+    const std::size_t missing = commandsFor(plan).size();
+    if (missing > 0) {
+      throw ConfigError(file + ": " + std::to_string(missing) + " of " + std::to_string(plan.tasks().size()) +
+                        " tasks are missing");
+    }
+    gather(plan);
     report();
   }
 
@@ -80,39 +101,59 @@ class FamilyPreparation {
     reportDamage(read.state, read.reason);
   }
 
-  void solveAxisForces() {
-    const AxisStore store(family_);
-    if (data_.hasAxisCurves()) return;
-    solvePaths("prepare: forces on the axis", arguments_.jobs, [&] {
-      std::vector<std::vector<std::string>> commands;
-      for (const int node : store.missing()) {
-        commands.push_back({thisProgram(), "--family", arguments_.file, "--axis", std::to_string(node)});
-      }
-      return commands;
-    });
-    axis_forces_ = store.loadAll();
-    if (axis_forces_.size() == 0) {
-      std::printf("prepare: some members have no solution on the axis: its force is interpolated between members\n");
-    }
+  /// The next round's tasks; none when the family is complete.
+  FamilyPlan next() const {
+    FamilyPlan plan(family_, count());
+    if (needsAxisForces()) plan.addAxisNodes(static_cast<int>(axisForceGrid(family_).size()));
+    const int round = std::min(kRound, arguments_.members - count());
+    if (round <= 0) return plan;
+    for (const Eigen::VectorXd& member : nextMembers(data_.knownPoints(), lengths(), round))
+      plan.addMember(member, storeOf(family_, member).plan().rays.size());
+    return plan;
   }
 
-  void solve(const std::vector<Eigen::VectorXd>& next) {
-    std::vector<PathStore> stores;
-    for (const Eigen::VectorXd& coordinates : next) stores.push_back(storeOf(family_, coordinates));
+  FamilyPlan read(const std::string& file) const {
+    FamilyPlan plan(family_, count());
+    plan.load(file);
+    return plan;
+  }
+
+  /// False also when some members are known to have no solution on the axis.
+  bool needsAxisForces() const {
+    const AxisStore store(family_);
+    return !data_.hasAxisCurves() && (!store.missing().empty() || store.loadAll().size() > 0);
+  }
+
+  std::vector<Work> commandsFor(const FamilyPlan& plan) const {
+    std::vector<Work> commands;
+    const auto add = [&](const std::vector<std::string>& piece) {
+      Work work{{thisProgram(), "--family", arguments_.file}};
+      work.command.insert(work.command.end(), piece.begin(), piece.end());
+      commands.push_back(work);
+    };
+    const bool axis = !plan.tasks().empty() && plan.tasks().front().coordinates.size() == 0;
+    if (axis) {
+      for (const int node : AxisStore(family_).missing()) add({"--axis", std::to_string(node)});
+    }
+    for (const Eigen::VectorXd& member : plan.members()) {
+      for (const std::size_t ray : storeOf(family_, member).missing())
+        add({"--at=" + text(member), "--ray", std::to_string(ray)});
+    }
+    return commands;
+  }
+
+  void solve(const FamilyPlan& plan) const {
     const std::string title = "prepare: members " + std::to_string(count() + 1) + " to " +
-                              std::to_string(count() + next.size()) + " of " + std::to_string(arguments_.members);
-    solvePaths(title, arguments_.jobs, [&] {
-      std::vector<std::vector<std::string>> commands;
-      for (std::size_t i = 0; i < next.size(); ++i) {
-        for (const std::size_t ray : stores[i].missing()) {
-          commands.push_back(
-              {thisProgram(), "--family", arguments_.file, "--at=" + text(next[i]), "--ray", std::to_string(ray)});
-        }
-      }
-      return commands;
-    });
-    reload();  // another process may have added members
-    for (std::size_t i = 0; i < next.size(); ++i) addMember(next[i], stores[i]);
+                              std::to_string(count() + plan.members().size()) + " of " +
+                              std::to_string(arguments_.members);
+    runTasks(plan.members().empty() ? "prepare: forces on the axis" : title, "paths", arguments_.jobs,
+             [&] { return commandsFor(plan); });
+  }
+
+  void gather(const FamilyPlan& plan) {
+    SymmetricSolver::useOneThread();  // the fit is the same bytes on any number of cores
+    reload();                         // another process may have added members
+    for (const Eigen::VectorXd& member : plan.members()) addMember(member, storeOf(family_, member));
     store();
     const ExpectedError error = data_.leaveOneOutError();
     std::printf("prepare: %zu members, %zu left out: each from the others: median %.2g %%, nine of ten below %.2g %%\n",
@@ -121,7 +162,15 @@ class FamilyPreparation {
   }
 
   void store() {
-    if (axis_forces_.size() > 0) data_.setAxisForces(axis_forces_);
+    const AxisStore axis(family_);
+    if (!data_.hasAxisCurves() && axis.missing().empty()) {
+      const Eigen::MatrixXd forces = axis.loadAll();
+      if (forces.size() > 0) {
+        data_.setAxisForces(forces);
+      } else {
+        std::printf("prepare: some members have no solution on the axis: its force is interpolated between members\n");
+      }
+    }
     data_.update();
     data_.setProvenance(provenance());
     data_.save(path_);
@@ -147,13 +196,9 @@ class FamilyPreparation {
   }
 
   std::string provenance() const {
-    char date[32];
-    const std::time_t now = std::time(nullptr);
-    std::strftime(date, sizeof(date), "%Y-%m-%d", std::gmtime(&now));
     std::ostringstream out;
     out << "made by: prepare --family " << std::filesystem::path(arguments_.file).filename().string() << " --members "
-        << arguments_.members << "\nversion: " << MICROINJECTION_VERSION << "\ndate: " << date
-        << "\nmembers: " << data_.members().size() << ", left out: " << data_.failed().size()
+        << arguments_.members << "\nversion: " << MICROINJECTION_VERSION << "\nmembers: " << data_.members().size() << ", left out: " << data_.failed().size()
         << "\nforce error of each member from the "
         << "others: median " << data_.leaveOneOutError().median << ", nine of ten below "
         << data_.leaveOneOutError().common << '\n';
@@ -169,18 +214,30 @@ class FamilyPreparation {
   Family family_;
   std::string path_;
   FamilyData data_;
-  Eigen::MatrixXd axis_forces_;  ///< that `data_` has not yet
 };
 
 }  // namespace
 
-void prepareFamily(const FamilyArguments& arguments) { FamilyPreparation(arguments).run(); }
+void prepareFamily(const FamilyArguments& arguments) {
+  FamilyPreparation family(arguments);
+  if (!arguments.list.empty()) return family.list(arguments.list);
+  if (!arguments.plan.empty()) return family.gather(arguments.plan);
+  family.run();
+}
+
+int solveFamilyTask(const FamilyArguments& arguments, int task) {
+  return FamilyPreparation(arguments).solveTask(arguments.plan, static_cast<std::size_t>(task));
+}
 
 void solveAxisNode(const std::string& file, int node) { AxisStore(Family::load(file)).solve(node); }
 
 int solveFamilyPath(const std::string& file, const std::string& coordinates, int ray) {
   const Family family = Family::load(file);
-  const PathStore store = storeOf(family, parse(coordinates, family.dimension()));
+  const auto parsed = parseCoordinates(coordinates, ',');
+  if (!parsed || parsed->size() != family.dimension()) {
+    throw ConfigError("--at = " + coordinates + ": must be " + std::to_string(family.dimension()) + " numbers");
+  }
+  const PathStore store = storeOf(family, *parsed);
   return store.solve(ray) == PathStore::Outcome::kBusy ? kBusyStatus : 0;
 }
 

@@ -13,13 +13,19 @@ struct FamilyArguments {
   bool record = false;    ///< the check's errors become those that the family expects
   int seed = 1;           ///< of the draw
   std::string csv;        ///< of the check's table; empty for none
+  std::string list;       ///< file for the tasks of the next round, instead
+  std::string plan;       ///< such a file: a task of it is solved, or its results are gathered
   std::string reference;  ///< file of the check's solutions, read and completed; empty for none
 };
 
 /// Solves members of a family until there are so many, and stores the family's data beside its file
 /// (.data for .yaml). Continues from members and paths that are there; several processes share the
-/// work. Throws ConfigError, WriteError and std::runtime_error with messages for the user.
+/// work. With `list` it only lists the tasks of the next round; with `plan` it adds the members of a
+/// round whose tasks are done. Throws ConfigError, WriteError and std::runtime_error with messages for the user.
 void prepareFamily(const FamilyArguments& arguments);
+
+/// Solves a task of arguments.plan. Exit status: 0, or kBusyStatus.
+int solveFamilyTask(const FamilyArguments& arguments, int task);
 
 /// Solves members that the family has not, at random coordinates, and prints how far its forces are
 /// off.

@@ -12,7 +12,7 @@
 
 #include "base/cache_file.h"
 #include "cell/surrogate/surrogate_data.h"
-#include "commands/solve_paths.h"
+#include "commands/run_tasks.h"
 
 namespace microinjection {
 namespace {

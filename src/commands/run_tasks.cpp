@@ -1,4 +1,4 @@
-#include "commands/solve_paths.h"
+#include "commands/run_tasks.h"
 
 #include <chrono>
 #include <cstdio>
@@ -14,16 +14,19 @@ namespace {
 constexpr int kBadUsage = 2;
 constexpr auto kWait = std::chrono::seconds(5);
 
-/// What is done of a number of paths, and the time left.
+/// What is done of a number of tasks, and the time left.
 class ProgressLine {
  public:
-  ProgressLine(const std::string& title, std::size_t paths) : title_(title), all_(paths) { show(); }
+  ProgressLine(const std::string& title, const std::string& unit, std::size_t tasks)
+      : title_(title), unit_(unit), all_(tasks) {
+    show();
+  }
   ~ProgressLine() { std::fprintf(stderr, "\n"); }
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  void advance() {
-    ++done_;
+  void advance(std::size_t tasks) {
+    done_ += tasks;
     show();
   }
 
@@ -32,32 +35,37 @@ class ProgressLine {
     constexpr std::size_t kWidth = 30;
     const std::string bar(kWidth * done_ / all_, '#');
     const double spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    std::fprintf(stderr, "\r%s: [%-*s] %zu of %zu paths, %.0f s", title_.c_str(), static_cast<int>(kWidth), bar.c_str(),
-                 done_, all_, spent);
+    std::fprintf(stderr, "\r%s: [%-*s] %zu of %zu %s, %.0f s", title_.c_str(), static_cast<int>(kWidth), bar.c_str(),
+                 done_, all_, unit_.c_str(), spent);
     const double left = spent * static_cast<double>(all_ - done_) / static_cast<double>(done_);
     if (done_ > 0) std::fprintf(stderr, ", about %.0f s left ", left);
     std::fflush(stderr);
   }
 
-  const std::string& title_;
+  const std::string &title_, &unit_;
   std::size_t done_ = 0, all_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
 }  // namespace
 
-void solvePaths(const std::string& title, int jobs,
-                const std::function<std::vector<std::vector<std::string>>()>& missing) {
-  for (auto commands = missing(); !commands.empty(); commands = missing()) {
-    std::size_t busy = 0;
+void runTasks(const std::string& title, const std::string& unit, int jobs,
+              const std::function<std::vector<Work>()>& missing) {
+  for (auto work = missing(); !work.empty(); work = missing()) {
+    std::vector<std::vector<std::string>> commands;
+    std::size_t tasks = 0, busy = 0;
+    for (const Work& each : work) {
+      commands.push_back(each.command);
+      tasks += each.tasks;
+    }
     {
-      ProgressLine progress(title, commands.size());
-      runWorkers(commands, jobs, [&](std::size_t, int status) {
-        const char* failed = "a path failed, see above";
+      ProgressLine progress(title, unit, tasks);
+      runWorkers(commands, jobs, [&](std::size_t index, int status) {
+        const char* failed = "a task failed, see above";
         if (status == kBadUsage) throw ConfigError(failed);
         if (status != 0 && status != kBusyStatus) throw std::runtime_error(failed);
         busy += status == kBusyStatus;
-        progress.advance();
+        progress.advance(work[index].tasks);
       });
     }
     if (busy == commands.size()) std::this_thread::sleep_for(kWait);
