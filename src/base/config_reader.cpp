@@ -137,8 +137,7 @@ void ConfigReader::texts(const std::string& key, std::vector<std::string>& value
   values = read;
 }
 
-void ConfigReader::numbers(const std::string& key, std::vector<double>& values, const Range& range,
-                           Presence presence) {
+void ConfigReader::numbers(const std::string& key, std::vector<double>& values, const Range& range, Presence presence) {
   const YAML::Node node = find(key, presence);
   if (!node.IsDefined()) return;
   const bool some = node.IsSequence() && node.size() > 0;

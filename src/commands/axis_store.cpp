@@ -40,6 +40,7 @@ std::vector<int> AxisStore::missing() const {
 }
 
 void AxisStore::solve(int node) const {
+  if (load(node)) return;
   Eigen::VectorXd forces;
   try {
     forces = solveAxisForces(family_, axisForceGrid(family_).node(node));

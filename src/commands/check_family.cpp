@@ -78,9 +78,9 @@ class FamilyCheck {
       std::vector<Work> commands;
       for (std::size_t i = 0; i < batch.size(); ++i) {
         for (const std::size_t ray : stores[i].missing()) {
-          commands.push_back({{thisProgram(), "--family", arguments_.file, "--check", std::to_string(arguments_.check),
-                               "--seed", std::to_string(arguments_.seed), "--member", std::to_string(batch[i]), "--ray",
-                               std::to_string(ray)}});
+          commands.push_back(
+              {{thisProgram(), "--family", arguments_.file, "--check", std::to_string(arguments_.check), "--seed",
+                std::to_string(arguments_.seed), "--member", std::to_string(batch[i]), "--ray", std::to_string(ray)}});
         }
       }
       return commands;

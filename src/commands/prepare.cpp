@@ -154,7 +154,7 @@ class Preparing {
 int work(const PrepareArguments& arguments) {
   prepareWorker(arguments.task < 0);
   try {
-    if (arguments.task >= 0) return solveFamilyTask(arguments.family, arguments.task);
+    if (arguments.task >= 0) return solveFamilyTasks(arguments.family, arguments.task, arguments.count);
     if (arguments.family.file.empty()) return Preparing(arguments).work();
     if (arguments.axis >= 0) {
       solveAxisNode(arguments.family.file, arguments.axis);
@@ -197,7 +197,8 @@ int run(int argc, char** argv) {
       flushStandardOutput();
       return kDone;
     }
-    const int status = arguments.ray >= 0 || arguments.axis >= 0 || arguments.task >= 0 ? work(arguments) : prepare(arguments);
+    const int status =
+        arguments.ray >= 0 || arguments.axis >= 0 || arguments.task >= 0 ? work(arguments) : prepare(arguments);
     flushStandardOutput();
     return status;
   } catch (const boost::program_options::error& error) {

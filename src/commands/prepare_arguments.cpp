@@ -17,7 +17,7 @@ with which a live session evaluates a converged force in microseconds.
 Usage: prepare --scene FILE [--jobs N] [...]
        prepare --family FILE [--members N | --check N] [--jobs N]
        prepare --family FILE --members N --list PLAN      writes the tasks of the next round of members
-       prepare --family FILE --plan PLAN --task K         solves one of them
+       prepare --family FILE --plan PLAN --task K [--count N]   solves some of them
        prepare --family FILE --members N --plan PLAN --gather   adds the members, when all tasks are done
 
 Takes minutes, shows its progress, and may be interrupted: the next call continues from the finished paths. The data are
@@ -70,9 +70,11 @@ PrepareArguments parsePrepareArguments(int argc, char** argv) {
       "reference", po::value(&family.reference),
       "file of the check's solutions: those that it has are not solved again, the others are added")(
       "list", po::value(&family.list), "file for the tasks of the family's next round; CSV")(
-      "plan", po::value(&family.plan), "file that --list has written")(
-      "task", po::value(&arguments.task), "of the plan to solve, from 0")(
-      "gather", po::bool_switch(&arguments.gather), "adds the plan's members to the family's data")(
+      "plan", po::value(&family.plan), "file that --list has written")("task", po::value(&arguments.task),
+                                                                       "of the plan to solve, from 0")(
+      "count", po::value(&arguments.count)->default_value(arguments.count),
+      "tasks to solve from there; the plan's end ends it")("gather", po::bool_switch(&arguments.gather),
+                                                           "adds the plan's members to the family's data")(
       "jobs", po::value(&arguments.jobs)->default_value(processors), "paths solved at a time, each on one core")(
       "again", po::bool_switch(&arguments.again), "replaces data that were prepared before");
   po::options_description hidden;
@@ -94,6 +96,7 @@ PrepareArguments parsePrepareArguments(int argc, char** argv) {
     throw ConfigError("--plan needs one of --task and --gather");
   if (family.file.empty() && !(family.plan + family.list).empty()) throw ConfigError("--list and --plan need --family");
   if (values.count("task") != 0) requireAtLeast("task", arguments.task, 0);
+  requireAtLeast("count", arguments.count, 1);
   requireAtLeast("jobs", arguments.jobs, 1);
   requireAtLeast("members", family.members, 1);
   requireAtLeast("check", family.check, 0);

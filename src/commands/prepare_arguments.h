@@ -17,6 +17,7 @@ struct PrepareArguments {
   int member = -1;
   int axis = -1;
   int task = -1;
+  int count = 1;
   bool gather = false;
   bool again = false;
   bool show_help = false;

@@ -1,5 +1,6 @@
 #include "commands/prepare_family.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <sstream>
@@ -61,20 +62,16 @@ class FamilyPreparation {
                 plan.tasks().size(), file.c_str());
   }
 
-  int solveTask(const std::string& file, std::size_t number) const {
+  int solveTasks(const std::string& file, std::size_t first, std::size_t count) const {
     const FamilyPlan plan = read(file);
-    if (number >= plan.tasks().size()) {
-      throw ConfigError("--task = " + std::to_string(number) + ": must be below " +
-                        std::to_string(plan.tasks().size()) + ", the number of tasks");
+    if (first >= plan.tasks().size()) {
+      throw ConfigError("--task = " + std::to_string(first) + ": must be below " + std::to_string(plan.tasks().size()) +
+                        ", the number of tasks");
     }
-    const FamilyPlan::Task& task = plan.tasks()[number];
-    if (task.coordinates.size() == 0) {
-      AxisStore(family_).solve(task.piece);
-      return 0;
-    }
-    return storeOf(family_, task.coordinates).solve(static_cast<std::size_t>(task.piece)) == PathStore::Outcome::kBusy
-               ? kBusyStatus
-               : 0;
+    int status = 0;
+    for (std::size_t i = first; i < std::min(plan.tasks().size(), first + count); ++i)
+      status = std::max(status, solveTask(plan.tasks()[i]));
+    return status;
   }
 
   void gather(const std::string& file) {
@@ -110,6 +107,15 @@ class FamilyPreparation {
     for (const Eigen::VectorXd& member : nextMembers(data_.knownPoints(), lengths(), round))
       plan.addMember(member, storeOf(family_, member).plan().rays.size());
     return plan;
+  }
+
+  int solveTask(const FamilyPlan::Task& task) const {
+    if (task.coordinates.size() == 0) {
+      AxisStore(family_).solve(task.piece);
+      return 0;
+    }
+    const PathStore store = storeOf(family_, task.coordinates);
+    return store.solve(static_cast<std::size_t>(task.piece)) == PathStore::Outcome::kBusy ? kBusyStatus : 0;
   }
 
   FamilyPlan read(const std::string& file) const {
@@ -198,8 +204,8 @@ class FamilyPreparation {
   std::string provenance() const {
     std::ostringstream out;
     out << "made by: prepare --family " << std::filesystem::path(arguments_.file).filename().string() << " --members "
-        << arguments_.members << "\nversion: " << MICROINJECTION_VERSION << "\nmembers: " << data_.members().size() << ", left out: " << data_.failed().size()
-        << "\nforce error of each member from the "
+        << arguments_.members << "\nversion: " << MICROINJECTION_VERSION << "\nmembers: " << data_.members().size()
+        << ", left out: " << data_.failed().size() << "\nforce error of each member from the "
         << "others: median " << data_.leaveOneOutError().median << ", nine of ten below "
         << data_.leaveOneOutError().common << '\n';
     return out.str();
@@ -225,8 +231,9 @@ void prepareFamily(const FamilyArguments& arguments) {
   family.run();
 }
 
-int solveFamilyTask(const FamilyArguments& arguments, int task) {
-  return FamilyPreparation(arguments).solveTask(arguments.plan, static_cast<std::size_t>(task));
+int solveFamilyTasks(const FamilyArguments& arguments, int first, int count) {
+  return FamilyPreparation(arguments).solveTasks(arguments.plan, static_cast<std::size_t>(first),
+                                                 static_cast<std::size_t>(count));
 }
 
 void solveAxisNode(const std::string& file, int node) { AxisStore(Family::load(file)).solve(node); }

@@ -24,8 +24,9 @@ struct FamilyArguments {
 /// round whose tasks are done. Throws ConfigError, WriteError and std::runtime_error with messages for the user.
 void prepareFamily(const FamilyArguments& arguments);
 
-/// Solves a task of arguments.plan. Exit status: 0, or kBusyStatus.
-int solveFamilyTask(const FamilyArguments& arguments, int task);
+/// Solves tasks of arguments.plan from `first` on. Exit status: 0, or kBusyStatus when another
+/// process is solving one of them.
+int solveFamilyTasks(const FamilyArguments& arguments, int first, int count);
 
 /// Solves members that the family has not, at random coordinates, and prints how far its forces are
 /// off.

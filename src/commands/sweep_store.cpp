@@ -57,8 +57,7 @@ std::vector<std::size_t> SweepStore::missing(std::size_t first, std::size_t coun
   for (std::size_t task = first; task < first + count; ++task) {
     const CacheRead<std::string> read = load(task);
     if (read) continue;
-    if (read.state != CacheState::kMissing)
-      std::fprintf(stderr, "sweep: %s; it is replaced\n", read.reason.c_str());
+    if (read.state != CacheState::kMissing) std::fprintf(stderr, "sweep: %s; it is replaced\n", read.reason.c_str());
     result.push_back(task);
   }
   return result;
