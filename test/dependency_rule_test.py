@@ -13,7 +13,7 @@ ROOT = Path(__file__).resolve().parent.parent
 SOURCE = ROOT / 'src'
 
 # Folders that are programs and not rooms: they may include every room, and no room may include them.
-PROGRAMS = {'nodes', 'rviz', 'commands', 'tools', 'benchmark', 'benchmark/emulated_haptic'}
+PROGRAMS = {'nodes', 'rviz', 'commands', 'tools', 'workflow', 'benchmark', 'benchmark/emulated_haptic'}
 KNOWS_ROS = {'nodes', 'rviz', 'benchmark/emulated_haptic'}
 
 # First folders of the include paths of ROS, of its libraries and of generated messages (ours too).

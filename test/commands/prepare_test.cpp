@@ -115,6 +115,39 @@ TEST_F(PrepareCommand, APathOfAFamilyIsSolvedByOneOfTwoProcesses) {
   EXPECT_EQ(fs::last_write_time(solved.front()), written);
 }
 
+/// Tasks of a family's next round, by number.
+TEST_F(PrepareCommand, ATaskOfAPlanIsSolvedOnceAndGatheringNeedsAll) {
+  fs::copy_file(MICROINJECTION_SOURCE_DIR "/config/families/homogeneous.yaml", directory_ + "family.yaml");
+  const std::string family = "--family " + directory_ + "family.yaml ", plan = directory_ + "plan.csv";
+  EXPECT_EQ(prepare("", family + "--members 1 --list " + plan), 0) << said_;
+  std::ifstream file(plan);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(file, line);) lines.push_back(line);
+  ASSERT_GT(lines.size(), 20u);
+  EXPECT_EQ(lines[1], "task,kind,coordinates,piece");
+  EXPECT_EQ(lines[2], "0,axis,,0");
+  const std::size_t last = lines.size() - 3;  // its number
+  EXPECT_EQ(lines.back().rfind(std::to_string(last) + ",path,", 0), 0u) << lines.back();
+
+  const std::string task = family + "--plan " + plan + " --task " + std::to_string(last - 1) + " --count 9";
+  EXPECT_EQ(prepare("", task), 0) << said_;
+  const std::vector<fs::path> solved = storedPaths();
+  ASSERT_EQ(solved.size(), 2u) << "up to the end of the plan";
+  const auto written = fs::last_write_time(solved.front());
+  EXPECT_EQ(prepare("", task), 0) << said_;
+  EXPECT_EQ(fs::last_write_time(solved.front()), written);
+
+  EXPECT_EQ(prepare("", family + "--members 1 --plan " + plan + " --gather"), 2);
+  EXPECT_TRUE(said(std::to_string(last - 1) + " of " + std::to_string(last + 1) + " tasks are missing")) << said_;
+  EXPECT_EQ(prepare("", family + "--plan " + plan + " --task " + std::to_string(last + 1)), 2);
+  EXPECT_TRUE(said("must be below")) << said_;
+  EXPECT_EQ(prepare("", family + "--plan " + plan), 2);
+  EXPECT_TRUE(said("--plan needs one of --task and --gather")) << said_;
+  std::ofstream(plan, std::ios::app) << "9,path,0 0 0,1\n";
+  EXPECT_EQ(prepare("", family + "--plan " + plan + " --task 0"), 2);
+  EXPECT_TRUE(said("is damaged, or of another family, or gathered before")) << said_;
+}
+
 TEST_F(PrepareCommand, ItsHelpNeedsAnOutput) {
   EXPECT_EQ(prepare("exec 3>/dev/full; ", "--help >&3"), 2) << said_;
   EXPECT_TRUE(said("prepare: the standard output: cannot be written: No space left")) << said_;

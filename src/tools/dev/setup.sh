@@ -1,9 +1,18 @@
 # shellcheck shell=bash
-# ./dev setup: the packages of dependencies.txt that this machine lacks.
+# ./dev setup: the packages of dependencies.txt that this machine lacks; --peers, --cluster: those of benchmark/peers
+# or src/workflow, too.
 
 command_setup() {
-  [[ $# -eq 0 ]] || misuse "setup takes no arguments"
+  [[ $* == "" || $* == --peers || $* == --cluster ]] || misuse "setup takes nothing, --peers or --cluster, not '$*'"
   setup
+  case $* in
+    --peers)
+      [[ $(package_column) == 1 ]] || fail "the programs of ./dev bench peers are packages of Debian 12"
+      install_list benchmark/peers/dependencies.txt 1
+      touch "$ROOT/benchmark/peers/CMakeLists.txt"  # the next build looks for Bullet again
+      ;;
+    --cluster) install_list src/workflow/dependencies.txt "$(package_column)" ;;
+  esac
 }
 
 setup() {
@@ -12,18 +21,22 @@ setup() {
     return
   fi
   resolve_localhost
-  local column missing
-  column=$(package_column)
-  missing=$(missing_packages "$column")
+  install_list dependencies.txt "$(package_column)"
+}
+
+# install_list FILE COLUMN: the packages of a list, named as for this system.
+install_list() {
+  local missing
+  missing=$(missing_packages "$@")
   if [[ -z $missing ]]; then
-    say "setup: all packages of dependencies.txt are there"
+    say "setup: all packages of $1 are there"
     return
   fi
   # shellcheck disable=SC2086
-  set -- $missing
-  say "setup: installing $# missing packages: $*"
-  install_packages "$@"
-  missing=$(missing_packages "$column")
+  set -- "$@" $missing
+  say "setup: installing $(($# - 2)) missing packages: ${*:3}"
+  install_packages "${@:3}"
+  missing=$(missing_packages "$1" "$2")
   [[ -z $missing ]] || fail "apt-get did not install:" "$missing"
   prepare_environment  # ROS may have arrived
 }
@@ -48,10 +61,10 @@ package_column() {
   esac
 }
 
-# The packages of column $1 that are not installed, on one line each.
+# The packages of column $2 of the list $1 that are not installed, on one line each.
 missing_packages() {
   local wanted installed
-  wanted=$(sed -e 's/#.*//' "$ROOT/dependencies.txt" | awk -v column="$1" 'NF && $column != "-" {print $column}' | sort -u)
+  wanted=$(sed -e 's/#.*//' "$ROOT/$1" | awk -v column="$2" 'NF && $column != "-" {print $column}' | sort -u)
   # dpkg-query fails when it has never heard of one of them, and still answers for the others.
   # shellcheck disable=SC2086
   installed=$(dpkg-query -W -f '${db:Status-Status} ${Package}\n' $wanted 2>/dev/null || true)

@@ -1,0 +1,337 @@
+"""./dev bench peers: the text of cases and results, the table's arithmetic, and a program that joins, however it ends."""
+import argparse
+import csv
+import math
+import stat
+import sys
+import tempfile
+import textwrap
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / 'benchmark'))
+sys.path.insert(0, str(ROOT / 'benchmark' / 'peers'))
+
+import calculix_cell  # noqa: E402
+import getfem_energy  # noqa: E402
+import numpy  # noqa: E402
+import peer_cases  # noqa: E402
+import peer_format  # noqa: E402
+import peer_process  # noqa: E402
+import peer_programs  # noqa: E402
+import peer_table  # noqa: E402
+import peers  # noqa: E402
+
+CASE = '''
+peer_case 1
+scene cell.yaml
+dimension 3
+order 1
+layers 1
+linear 17900 0.45
+nodes 4 4
+0 0 0
+1e-06 0 0
+0 1e-06 0
+0 0 1e-06
+elements 1
+0 0 1 2 3
+surface 1
+0 2 1
+held 1
+0   # a comment
+glued 1
+3
+tip disc sticking 3e-06 2.8e-05
+motion 2
+0 0 -1e-07
+0 0 -2e-07
+end
+'''
+
+# What --peer starts: reads the case, and answers with 0.1 N/m times the depth, or not.
+PEER = '''
+import os, sys, time
+mode, case, result = sys.argv[1:]
+steps = []
+lines = open(case).read().split('\\n')
+at = next(k for k, line in enumerate(lines) if line.startswith('motion'))
+for line in lines[at + 1:at + 1 + int(lines[at].split()[1])]:
+    steps.append(-float(line.split()[2]))
+if mode == 'hangs':
+    time.sleep(60)
+if mode == 'crashes':
+    os.abort()
+if mode == 'fails':
+    sys.exit('no licence')
+if mode == 'silent':
+    sys.exit()
+forces = [f'0 0 {"nan" if mode == "not_finite" and k else 0.1 * d} {100 if mode == "slow" else 0}' for k, d in enumerate(steps)]
+if mode == 'short':
+    forces.pop()
+if mode == 'words':
+    forces[-1] = '0 0 much 0'
+text = ['peer_result 1', 'program Fake 2.1', 'model spring', 'element none', 'law same']
+text += ['declined only springs'] if mode == 'declines' else [f'steps {len(steps)}', *forces]
+open(result, 'w').write('\\n'.join(text + ([] if mode == 'cut' else ['end', ''])))
+'''
+
+# Stands for peer_write_case, with one node.
+WRITER = '''
+import sys
+options = dict(word.lstrip('-').split('=') if '=' in word else (word.lstrip('-'), after)
+               for word, after in zip(sys.argv[1:], sys.argv[2:] + ['']) if word.startswith('--'))
+depths = options['depths'].split(',')
+open(options['out'], 'w').write('nodes 1 1\\nelements 0\\nmotion %d\\n' % len(depths)
+                                + ''.join('0 0 -%s\\n' % depth for depth in depths) + 'end\\n')
+'''
+
+
+class InAFolder(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def write(self, name, text):
+        path = self.folder / name
+        path.write_text(text, encoding='utf-8')
+        return path
+
+    def command(self, mode):
+        return f'{sys.executable} {self.write("peer.py", PEER)} {mode}'
+
+
+class TheFormat(InAFolder):
+    def test_of_a_case(self):
+        case = peer_format.read_case(self.write('case', CASE))
+        self.assertEqual(case.layers, [('linear', 17900.0, 0.45)])
+        self.assertEqual(case.nodes[3], [0, 0, 1e-6])
+        self.assertEqual(case.elements, [(0, [0, 1, 2, 3])])
+        self.assertEqual((case.held, case.glued, case.surface), ([0], [3], [[0, 2, 1]]))
+        self.assertEqual(case.motion[1], [0, 0, -2e-7])
+
+    def test_of_a_broken_case(self):
+        for piece, other in (('peer_case 1', 'peer_case 9'), ('0 0 1 2 3', '0 0 1 2'), ('held 1', 'held x'), ('end', '')):
+            with self.subTest(other), self.assertRaises(peer_format.FormatError):
+                peer_format.read_case(self.write('case', CASE.replace(piece, other)))
+
+    def test_of_a_result_is_read_as_written(self):
+        result = peer_format.Result('Peer 1.2', 'equilibrium, fast', 'p1', 'same', '', [(0, 0, 1 / 3e7), (0, 0, math.nan)],
+                                    [0.001, 0.002])
+        found = peer_format.read_result(peer_format.result_text(result), 2)
+        self.assertEqual((found.program, found.model, found.times), (result.program, result.model, result.times))
+        self.assertEqual(found.forces[0], result.forces[0])
+        self.assertTrue(math.isnan(found.forces[1][2]))
+
+    def test_of_a_result_that_declines(self):
+        text = peer_format.result_text(peer_format.Result('P', 'm', 'e', declined='no contact'))
+        self.assertEqual(peer_format.read_result(text, 5).declined, 'no contact')
+
+
+class TheTable(InAFolder):
+    def test_quantiles(self):
+        self.assertEqual(peer_table.quantile([3, 1, 2], 0.5), 2)
+        self.assertAlmostEqual(peer_table.quantile([0, 10], 0.1), 1)
+        self.assertTrue(math.isnan(peer_table.quantile([], 0.5)))
+
+    def test_errors(self):
+        self.assertAlmostEqual(peer_table.relative_error(1.2, 1), 0.2)
+        self.assertAlmostEqual(peer_table.mesh_error([1.3, 1.1, 1.05]), 0.2)  # the larger of two changes
+        self.assertAlmostEqual(peer_table.mesh_error([9, 1.1, 1.11, 1.0]), 0.11)
+        self.assertTrue(math.isnan(peer_table.mesh_error([1.1, 1.0])))
+        self.assertTrue(math.isnan(peer_table.mesh_error([1.1, math.nan, 1.0])))
+
+    def test_agreement(self):
+        self.assertTrue(peer_table.agree(1, 0.02, 1.04, 0.03))
+        self.assertFalse(peer_table.agree(1, 0.02, 1.06, 0.03))
+        self.assertFalse(peer_table.agree(1, math.nan, 1, 0.03))
+
+    def test_largest_step(self):
+        self.assertEqual(peer_table.largest_step({0.25: 1, 0.5: 1.04, 1: 1.06, 2: math.nan}), 0.5)
+        self.assertTrue(math.isnan(peer_table.largest_step({0.25: math.nan, 0.5: 1})))
+
+    def test_largest_depth(self):
+        self.assertEqual(peer_table.largest_depth([1, 2, 3, 4], [1, 2, 1.7, math.nan]), 3)
+        self.assertEqual(peer_table.largest_depth([1, 2, 3, 4], [1, 2, 1.5, 3]), 2)
+        self.assertEqual(peer_table.largest_depth([1], [math.nan]), 0)
+
+    def test_is_written(self):
+        path = self.folder / 'peers.csv'
+        peer_table.write([{'program': 'Fake', 'force_N': 1e-7, 'agrees': True, 'verdict': 'done'}], path)
+        with path.open(encoding='utf-8') as file:
+            row, = csv.DictReader(file)
+        self.assertEqual((row['force_N'], row['agrees'], row['depth_um'], row['verdict']), ('1e-07', 'yes', '', 'done'))
+        self.assertEqual(list(row)[:8], ['program', 'model', 'element', 'vertices', 'tetrahedra', 'time_ms_median', 'force_N',
+                                         'force_error'])
+
+
+class AProgram(InAFolder):
+    def verdict(self, mode, time_limit=30):
+        return peer_process.run(self.command(mode), self.write('case', CASE), 2, time_limit)
+
+    def test_that_answers(self):
+        outcome = self.verdict('right')
+        self.assertEqual(outcome.verdict, peer_process.DONE)
+        self.assertEqual(outcome.result.forces, [(0, 0, 0.1 * 1e-7), (0, 0, 0.1 * 2e-7)])
+
+    def test_that_finds_no_solution(self):
+        outcome = self.verdict('not_finite')
+        self.assertEqual(outcome.verdict, peer_process.DONE)
+        self.assertTrue(math.isnan(outcome.result.forces[1][2]))
+
+    def test_that_does_not(self):
+        for mode, verdict in (('declines', 'declined: only springs'), ('crashes', 'crashed: SIGABRT'),
+                              ('fails', 'failed: exit status 1: no licence'), ('silent', 'no result')):
+            with self.subTest(mode):
+                self.assertEqual(self.verdict(mode).verdict, verdict)
+        for mode in ('short', 'words', 'cut', 'slow'):
+            with self.subTest(mode):
+                self.assertTrue(self.verdict(mode).verdict.startswith(peer_process.WRONG), self.verdict(mode).verdict)
+
+    def test_that_hangs_is_ended(self):
+        self.assertEqual(self.verdict('hangs', 0.2).verdict, 'out of time: 0.2 s')
+
+    def test_that_is_not_there(self):
+        self.assertTrue(peer_process.run('/no/such/program', 'case', 2, 1).verdict.startswith('not started'))
+
+    def test_joins_by_name_and_command(self):
+        program = peer_programs.joined('Mine=./solve --fast=1')
+        self.assertEqual((program.name, program.command), ('Mine', './solve --fast=1'))
+        for text in ('Mine', '=./solve', 'Mine='):
+            with self.subTest(text), self.assertRaises(ValueError):
+                peer_programs.joined(text)
+
+
+class Impatient(peers.Bench):
+    """Waits for the program that hangs less long than for the others, which may be slow to start."""
+
+    def run(self, program, case, steps):
+        self.arguments.time_limit = 0.2 if program.name == 'hangs' else 60
+        return super().run(program, case, steps)
+
+
+class TheBench(InAFolder):
+    SCENES = {'scenes': {'spring': {'cell': 'spring', 'depths': [1, 2], 'levels': [0, 1, 2]}},
+              'equal': [{'scene': 'spring', 'mesh': 'paper', 'levels': [0], 'depth': 2}],
+              'stability': {'scene': 'spring', 'mesh': 'paper', 'level': 0, 'depth': 2, 'steps': [1, 2], 'deepest': 3,
+                            'step': 1}}
+
+    def rows(self, *modes):
+        """The rows of a first program, which is the reference, and of some others."""
+        (self.folder / 'cells').mkdir()
+        self.write('cells/spring.yaml', 'cell: {}')
+        writer = self.write('write_case', f'#!{sys.executable}\n' + textwrap.dedent(WRITER))
+        writer.chmod(writer.stat().st_mode | stat.S_IXUSR)
+        studies = (peer_programs.CONVERGED, peer_programs.EQUAL, peer_programs.STABILITY)
+        programs = [peer_programs.Program(mode, self.command(mode), studies) for mode in ('right', *modes)]
+        arguments = argparse.Namespace(out=self.folder, programs=self.folder, quick=False, core=None,
+                                       studies=studies)
+        bench = Impatient(arguments, self.SCENES, programs)
+        bench.cases = peer_cases.CaseWriter(writer, self.folder / 'peers', self.folder / 'cells', self.SCENES['scenes'])
+        bench.run_all()
+        return bench.rows
+
+    def test_reports_every_program(self):
+        rows = self.rows('crashes', 'not_finite', 'hangs', 'right')
+        for study in ('converged', 'equal', 'stability'):
+            verdicts = [(row['program'], row['verdict']) for row in rows if row['study'] == study]
+            with self.subTest(study):
+                self.assertIn(('crashes', 'crashed: SIGABRT'), verdicts)
+                self.assertIn(('hangs', 'out of time: 0.2 s'), verdicts)
+                self.assertEqual(verdicts[-1], ('Fake 2.1', 'done'))  # the last one is not spoilt by those before
+        agreeing = [row for row in rows if row['study'] == 'converged' and row.get('agrees')]
+        self.assertEqual({row['depth_um'] for row in agreeing}, {1, 2})
+        self.assertAlmostEqual(agreeing[0]['force_N'], 0.1e-6)
+        equal = [row for row in rows if row['study'] == 'equal' and row['program'] == 'Fake 2.1']
+        self.assertEqual([row['verdict'] for row in equal], ['done', 'no solution from 0.2 um', 'done'])
+        self.assertEqual(equal[-1]['force_error'], 0)
+        stable = [row for row in rows if row['study'] == 'stability' and row['program'] == 'Fake 2.1']
+        self.assertEqual((stable[-1]['largest_step_um'], stable[-1]['largest_depth_um']), (2, 3))
+        self.assertEqual(stable[1]['largest_depth_um'], 1)
+
+    def test_says_what_is_missing(self):
+        missing = peer_programs.programs(self.folder)
+        self.assertIn('libbullet-dev', {program.missing for program in missing if program.name.startswith('Bullet')})
+        self.assertTrue(all(not program.missing for program in missing if program.name.startswith('ours')))
+
+
+class TheScenes(unittest.TestCase):
+    def test_are_cells_of_the_repository_whose_keys_there_are(self):
+        import yaml
+        study = yaml.safe_load((ROOT / 'benchmark' / 'peers' / 'scenes.yaml').read_text(encoding='utf-8'))
+        self.assertGreaterEqual(len(study['scenes']), 6)
+        for name, scene in study['scenes'].items():
+            with self.subTest(name):
+                tree = yaml.safe_load((ROOT / 'config' / 'cells' / f'{scene["cell"]}.yaml').read_text(encoding='utf-8'))
+                peer_cases.changed(tree, scene.get('set', {}))
+                self.assertEqual(len(scene['levels']), 3)
+        for equal in study['equal']:
+            self.assertIn(equal['depth'], study['scenes'][equal['scene']]['depths'])
+
+    def test_change_a_key_that_there_is(self):
+        self.assertEqual(peer_cases.changed({'a': {'b': 1}}, {'a.b': 2}), {'a': {'b': 2}})
+        with self.assertRaises(KeyError):
+            peer_cases.changed({'a': {'b': 1}}, {'a.c': 2})
+
+
+class CalculiX(InAFolder):
+    def test_input_and_output(self):
+        case = peer_format.read_case(self.write('case', CASE))
+        text = calculix_cell.input_text(case)
+        self.assertIn('*ELEMENT,TYPE=C3D4,ELSET=L0\n1,1,2,3,4\n', text)
+        self.assertIn('*ELASTIC\n0.0179,0.45\n', text)
+        self.assertNotIn('NLGEOM', text)
+        self.assertEqual(text.count('*STEP'), 2)
+        self.assertIn('GLUED,3,3,-0.2\n', text)
+        output = ' total force (fx,fy,fz) for set HELD and time  0.1E+01\n\n   1.0E+00  2.0E+00  3.0E+00\n'
+        self.assertEqual(calculix_cell.read_forces(2 * output, 3), [3e-6, 3e-6])
+        self.assertAlmostEqual(calculix_cell.read_forces(output, 2)[0], 360e-6)
+
+    def test_the_law_is_the_isochoric_one_of_the_same_moduli(self):
+        lines = calculix_cell.material(0, 'neo_hookean', 3e6, 0.25)
+        self.assertEqual([float(value) for value in lines[2].split(',')], [0.6, 1.0])  # mu/2 and 2/K with mu 1.2, K 2
+
+
+class GetFEM(unittest.TestCase):
+    GRADIENT = numpy.array([[0.1, 0, 0.05], [0, -0.07, 0], [0.02, 0, 0.03]])  # without twist
+    MU, LAMBDA = 1.2, 0.9
+
+    def energy(self, law, dimension, mixed=False, pressure=0.0):
+        """The value of an energy in GetFEM's language, at a point of radius 2; that of a section is per angle."""
+        young = self.MU * (3 * self.LAMBDA + 2 * self.MU) / (self.LAMBDA + self.MU)
+        poisson = self.LAMBDA / (2 * (self.LAMBDA + self.MU))
+        text = getfem_energy.strain_energy(law, young, poisson, dimension, mixed)
+        gradient = self.GRADIENT if dimension == 3 else self.GRADIENT[numpy.ix_((0, 2), (0, 2))]
+        radius = 2.0
+        words = {'Id': lambda n: numpy.matrix(numpy.eye(n)), 'Grad_u': numpy.matrix(gradient), 'log': math.log, 'pow': pow,
+                 'Det': numpy.linalg.det, 'Trace': numpy.trace, 'Norm_sqr': lambda a: float(numpy.square(a).sum()),
+                 'Sym': lambda a: (a + a.T) / 2, 'sqr': lambda a: a * a, 'X': lambda k: radius, 'pi': math.pi, 'p': pressure,
+                 'u': lambda k: radius * self.GRADIENT[1, 1]}
+        value = eval(text.replace("'", '.T'), words)  # noqa: S307
+        return value / (2 * math.pi * radius) if dimension == 2 else value
+
+    def test_has_the_energies_of_the_materials(self):
+        gradient = numpy.eye(3) + self.GRADIENT
+        green, strain = (gradient.T @ gradient - numpy.eye(3)) / 2, (self.GRADIENT + self.GRADIENT.T) / 2
+        log = math.log(numpy.linalg.det(gradient))
+        expected = {
+            'linear': self.MU * (strain ** 2).sum() + self.LAMBDA / 2 * numpy.trace(strain) ** 2,
+            'st_venant_kirchhoff': self.MU * (green ** 2).sum() + self.LAMBDA / 2 * numpy.trace(green) ** 2,
+            'neo_hookean': self.MU / 2 * ((gradient ** 2).sum() - 3) - self.MU * log + self.LAMBDA / 2 * log ** 2,
+            'neo_hookean_isochoric': self.MU / 2 * (math.exp(-2 / 3 * log) * (gradient ** 2).sum() - 3)
+            + (self.LAMBDA / 2 + self.MU / 3) * (math.exp(log) - 1) ** 2}
+        for law, value in expected.items():
+            for dimension in (2, 3):
+                with self.subTest(f'{law}, {dimension}'):
+                    self.assertAlmostEqual(self.energy(law, dimension), value, 12)
+        self.assertIsNone(getfem_energy.strain_energy('corotated', 1, 0.3, 3, False))
+
+    def test_a_stationary_pressure_leaves_the_energy(self):
+        log = math.log(numpy.linalg.det(numpy.eye(3) + self.GRADIENT))
+        self.assertAlmostEqual(self.energy('neo_hookean', 3, True, self.LAMBDA * log), self.energy('neo_hookean', 3), 12)
+
+
+if __name__ == '__main__':
+    unittest.main()
