@@ -40,9 +40,11 @@ def rig():
 
 class KillableNodes:
     """{node: its parameters}. `participants` of the lock step; none: the session is live. `remaps`: {node: its
-    arguments}. `outputs`: {node: descriptor of its standard output and error} of those that do not write to a file."""
+    arguments}. `outputs`: {node: descriptor of its standard output and error} of those that do not write to a file. `enter`:
+    {node: a command that runs another one in its place, as on another host}."""
 
-    def __init__(self, nodes, participants=(), remaps=None, outputs=None):
+    def __init__(self, nodes, participants=(), remaps=None, outputs=None, enter=None):
+        self._enter = enter or {}
         rospy.set_param("/robot_description", (PACKAGE / "urdf/rig.urdf").read_text())
         rospy.set_param("/lockstep/participants", list(participants))
         self._running, self._frozen, self._outputs = {}, {}, {}
@@ -56,7 +58,7 @@ class KillableNodes:
 
     def start(self, node, *arguments, output=None):
         self._outputs[node] = tempfile.TemporaryFile()
-        self._running[node] = subprocess.Popen([PROGRAMS / node, *arguments], stdin=subprocess.DEVNULL,
+        self._running[node] = subprocess.Popen([*self._enter.get(node, ()), PROGRAMS / node, *arguments], stdin=subprocess.DEVNULL,
                                                stdout=output or self._outputs[node], stderr=subprocess.STDOUT)
 
     def names(self):

@@ -91,9 +91,9 @@ class Hand:
 
 class LiveChain:
     """`changes`: {node: parameters} beside or instead of those of chain_parameters(); `outputs`: {node: descriptor of its
-    standard output and error}; `hand`: what drives the needle, a class like Hand."""
+    standard output and error}; `hand`: what drives the needle, a class like Hand; `enter`: see KillableNodes."""
 
-    def __init__(self, changes=None, outputs=None, hand=Hand):
+    def __init__(self, changes=None, outputs=None, hand=Hand, enter=None):
         self.newest, self.counts, self.diagnostics = {}, {}, {}
         self._subscribers = [rospy.Subscriber("/diagnostics", DiagnosticArray, self._on_diagnostics)]
         self.follow("/needle/measured_cp", PoseStamped)
@@ -101,7 +101,7 @@ class LiveChain:
         self._frame = subprocess.Popen(
             ["rosrun", "tf2_ros", "static_transform_publisher", "0", "0", "0.04", "0", "0", "0", "needle_tip",
              "force_sensor", "__name:=force_sensor_frame"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        self.nodes = KillableNodes({**chain_parameters(), **(changes or {})}, outputs=outputs or {})
+        self.nodes = KillableNodes({**chain_parameters(), **(changes or {})}, outputs=outputs or {}, enter=enter)
         self.hand = hand()
 
     def follow(self, topic, kind):

@@ -1,0 +1,137 @@
+"""The chain over three hosts with a slow network that loses frames: rig (master, controller, micromanipulator), haptic (hand,
+bridge) and solver (cell). Each fault of the page on time-outs, and pulled cables: the needle has to rest."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import rospy
+
+import lossy_network
+from live_chain import TIMEOUT, LiveChain, until
+from lossy_network import HostNamespace, LossySwitch
+
+DELAY, LOSS = 0.02, 0.05  # s one way; share of the frames
+ADDRESSES = {"rig": "10.88.0.1", "haptic": "10.88.0.2", "solver": "10.88.0.3"}
+PORT = 11311
+PLACES = {"haptic_bridge": "haptic", "cell_simulator": "solver"}  # the other nodes are at the rig
+STILL = 20e-9       # m: the noise of the encoder, and no motion
+STOP_TIME = 0.5     # s that the controller, the needle and the news of it take
+OBSERVED = 1.5      # s
+MASTER_FROZEN = 5.0  # s, as the page says; 0.5 for a dead one
+FAULTS = [(how, who) for who in ("hand", "haptic_bridge", "injection_controller", "cell_simulator", "micromanipulator")
+          for how in ("killed", "frozen")] + [("pulled", host) for host in ADDRESSES] + [("frozen", "master")]
+
+
+class RemoteHand:
+    """live_chain.Hand in a process on the host `haptic`."""
+
+    place = None  # the host
+
+    def __init__(self):
+        self._start()
+
+    def _start(self, clock=0.0):
+        # `clock`: s that its host's clock is ahead. The bridge leads no needle without a device that takes the force.
+        code = (f"import rospy; now = rospy.Time.now; rospy.Time.now = lambda: now() + rospy.Duration({clock});"
+                "from geometry_msgs.msg import WrenchStamped; from live_chain import Hand;"
+                "rospy.init_node('hand', anonymous=True); rospy.Subscriber('/haptic/servo_cf', WrenchStamped, lambda _: None);"
+                "Hand(); rospy.spin()")
+        environment = {**os.environ, "ROS_IP": self.place.address,
+                       "PYTHONPATH": f"{Path(__file__).parent}:{os.environ.get('PYTHONPATH', '')}"}
+        self._process = subprocess.Popen([*self.place.enter, sys.executable, "-c", code], env=environment,
+                                         stdin=subprocess.DEVNULL)
+
+    def fail(self, how):
+        self._process.send_signal(signal.SIGKILL if how == "killed" else signal.SIGSTOP)
+
+    def recover(self, how):
+        if how == "frozen":
+            return self._process.send_signal(signal.SIGCONT)
+        self._process.wait()
+        self._start()
+
+    def set_clock(self, ahead):
+        """Starts anew on a host whose clock is so many s ahead."""
+        self.end()
+        self._start(ahead)
+
+    def end(self):
+        self._process.kill()
+        self._process.wait()
+
+
+class ThreeHosts:
+    def __init__(self, delay=DELAY, loss=LOSS):
+        self.hosts = {name: HostNamespace(address) for name, address in ADDRESSES.items()}
+        self.switch = LossySwitch(list(self.hosts.values()), delay, loss)
+        # The test is on the rig's host from here on, and so is what it starts.
+        lossy_network.enter(self.hosts["rig"])
+        os.environ.update(ROS_MASTER_URI=f"http://{ADDRESSES['rig']}:{PORT}", ROS_IP=ADDRESSES["rig"])
+        os.environ.pop("ROS_HOSTNAME", None)
+        self._master = subprocess.Popen(["rosmaster", "--core", "-p", str(PORT)], stdout=subprocess.DEVNULL,
+                                        stderr=subprocess.DEVNULL)
+        import rosgraph
+        until(rosgraph.is_master_online, "a master")
+        rospy.init_node("watcher_of_three_hosts")
+        RemoteHand.place = self.hosts["haptic"]
+        enter = {node: [*self.hosts[host].enter, "env", f"ROS_IP={ADDRESSES[host]}"] for node, host in PLACES.items()}
+        self.chain = LiveChain({}, hand=RemoteHand, enter=enter)
+        try:
+            self.chain.check_follows()
+        except BaseException:
+            self.close()
+            raise
+
+    def close(self):
+        self.chain.hand.end()
+        self.chain.nodes.stop()
+        self._master.kill()
+        self._master.wait()
+        self.switch.close()
+        for host in self.hosts.values():
+            host.close()
+
+    def fail(self, how, who):
+        if how == "pulled":
+            self.switch.pulled.add(ADDRESSES[who])
+        elif who == "master":
+            self._master.send_signal(signal.SIGSTOP)
+        elif who == "hand":
+            self.chain.hand.fail(how)
+        else:
+            self.chain.nodes.kill(who) if how == "killed" else self.chain.nodes.freeze(who)
+
+    def recover(self, how, who):
+        if how == "pulled":
+            self.switch.pulled.clear()
+        elif who == "master":
+            self._master.send_signal(signal.SIGCONT)
+        elif who == "hand":
+            self.chain.hand.recover(how)
+        elif how == "killed":
+            self.chain.nodes.start(who)
+        else:
+            self.chain.nodes.thaw(who)
+
+    def observe(self, seconds):
+        """Returns the largest distance between the needle's places in that time, m. Without news of it, it has not moved."""
+        places = []
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            places.append(self.chain.needle())
+            time.sleep(0.005)
+        return float(np.ptp(places, axis=0).max())
+
+    def measure(self, how, who):
+        """Returns the distance (m) that the needle moves after the time-outs of a fault; then it has to follow again."""
+        self.fail(how, who)
+        time.sleep((MASTER_FROZEN if who == "master" else TIMEOUT) + STOP_TIME)
+        moved = self.observe(OBSERVED)
+        self.recover(how, who)
+        self.chain.check_follows()
+        return moved

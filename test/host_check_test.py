@@ -1,0 +1,101 @@
+#!/usr/bin/env python3
+"""The hosts file, and what is checked between two hosts before a session."""
+import socket
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT / 'src' / 'tools'))
+
+import host_check  # noqa: E402
+import hosts_file  # noqa: E402
+
+VERSIONS = {'msg/A': '1', 'msg/B': '2'}
+HERE = '127.0.0.1'
+LIMIT = 0.005  # s
+
+
+class HostsFile(unittest.TestCase):
+    def load(self, text):
+        with tempfile.NamedTemporaryFile('w', suffix='.yaml') as file:
+            file.write(text)
+            file.flush()
+            return hosts_file.load(file.name)
+
+    def refused(self, text, *messages):
+        with self.assertRaises(hosts_file.HostsError) as caught:
+            self.load(text)
+        for message in messages:
+            self.assertIn(message, str(caught.exception))
+
+    def test_the_shipped_file_places_nodes(self):
+        hosts = hosts_file.load(ROOT / 'config/hosts.yaml')
+        self.assertEqual(hosts.of_node('cell_simulator').name, 'solver')
+        self.assertEqual(hosts.of_node('micromanipulator'), hosts.master)
+        with self.assertRaisesRegex(hosts_file.HostsError, '--host = moon: must be one of rig, haptic, solver'):
+            hosts.named('moon')
+
+    def test_all_errors_are_named(self):
+        self.refused('{master: a, hosts: {a: {address: rig.lab, colour: red}, b: {nodes: [x]}}, speed: 3}',
+                     'speed: unknown key', 'hosts/a/colour: unknown key', 'address = rig.lab: must be an IP address',
+                     'hosts/b/address is missing')
+        self.refused('{master: c, clock_limit: 0.5, hosts: {a: {address: 1.1.1.1, nodes: [x]}, b: {address: 1.1.1.1, '
+                     'nodes: [x]}}}', 'master = c: must be one of the hosts: a, b', 'clock_limit = 0.5: must be above 0',
+                     'x: two hosts run it', '1.1.1.1: two hosts have it')
+        self.refused('[]', 'must be a YAML map')
+        self.refused('{master: [', 'while parsing')
+
+
+class HostCheck(unittest.TestCase):
+    def check(self, own_clock=time.time, own_versions=None, server=True, door=True, **changes):
+        self.host = hosts_file.Host('here', HERE)
+        listener = socket.create_server((HERE, 0))
+        self.addCleanup(listener.close)
+        port = listener.getsockname()[1]
+        if not door:
+            listener.close()
+        answer = host_check.CheckServer(HERE, 0, **{'versions': VERSIONS, **changes})
+        self.addCleanup(answer.close)
+        if not server:
+            answer.close()
+        return host_check.check((HERE, answer.port), 'here', self.host, port, LIMIT, own_clock, own_versions or VERSIONS)
+
+    def test_good_hosts(self):
+        self.assertEqual(self.check(), [])
+
+    def test_clocks_that_are_apart(self):
+        for offset in (0.02, -0.02):
+            errors = self.check(clock=lambda offset=offset: time.time() + offset)
+            self.assertEqual(len(errors), 1)
+            self.assertRegex(errors[0], f'clock of here is {"[+]" if offset > 0 else "-"}(19|20|21)[.].* ms from the master')
+        self.assertEqual(self.check(clock=lambda: time.time() + 0.002), [])
+
+    def test_ways_that_are_closed(self):
+        self.assertRegex(self.check(server=False)[0], 'here does not reach 127.0.0.1:.*refused')
+        self.assertRegex(self.check(door=False)[0], 'the master\'s host does not reach here at 127.0.0.1')
+
+    def test_messages_of_another_version(self):
+        errors = self.check(own_versions={'msg/A': '1', 'msg/B': '3', 'msg/C': '4'})
+        self.assertEqual(errors, ['here has another version of msg/B, msg/C than the master\'s host: build both from one commit'])
+
+    def test_the_offset_is_that_of_the_fastest_exchange(self):
+        """A clock that is 7 ms ahead, behind a network that needs 1 to 20 ms to it and 1 ms back."""
+        now = [100.0]
+        delays = iter([0.02, 0.005, 0.001, 0.012])
+
+        def ask():
+            now[0] += next(delays)
+            reading = now[0] + 0.007
+            now[0] += 0.001
+            return reading
+
+        offset, uncertainty = host_check.clock_offset(ask, lambda: now[0], 4)
+        self.assertAlmostEqual(offset, 0.007)
+        self.assertAlmostEqual(uncertainty, 0.001)
+
+
+if __name__ == '__main__':
+    unittest.main()
