@@ -30,6 +30,10 @@ CellMembers toMembers(const cell_microinjection::CellState& message) {
   return members;
 }
 
+CellIdentity toIdentity(const cell_microinjection::CellState& message) {
+  return {message.parameter_names, message.parameter_values, message.layer_radii, message.material};
+}
+
 /// CRTK: a message with stamp 0 withdraws the last one.
 template <typename Message>
 bool isValid(const Message& message) {
@@ -136,6 +140,7 @@ void DisplayNode::onState(const cell_microinjection::CellState& message) {
   state_.readout.predicted = partsOnTip(state_.predicted, state_.tip);
   if (!defect.empty()) return;
   state_.cell_frame = message.header.frame_id.empty() ? "cell" : message.header.frame_id;
+  state_.cell = toIdentity(message);
   state_.surface = std::move(surface);
   state_.members = std::move(members);
   state_.solid = toSolid(message);

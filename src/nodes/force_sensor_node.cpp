@@ -1,5 +1,7 @@
 #include "nodes/force_sensor_node.h"
 
+#include <diagnostic_msgs/DiagnosticArray.h>
+
 #include <filesystem>
 
 #include "base/user_data.h"
@@ -10,6 +12,12 @@
 #include "nodes/runtime/run_node.h"
 
 namespace microinjection {
+
+namespace {
+
+constexpr char kStatus[] = "sensor";  // on /diagnostics
+
+}  // namespace
 
 const char* const ForceSensorNode::kHelp =
     "force_sensor: a simulated two-axis MEMS sensor at the pipette, voltages on a serial line, or another node's "
@@ -61,7 +69,8 @@ ForceSensorNode::ForceSensorNode(ros::NodeHandle node, ros::NodeHandle private_n
   }
   advertiseServices(private_node);
   watchController();
-  cycle_.diagnostics().add("sensor", [this](auto& status) { report(status); });
+  reports_ = node.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 10);
+  cycle_.diagnostics().add(kStatus, [this](auto& status) { report(status); });
 }
 
 std::unique_ptr<ForceSource> ForceSensorNode::makeSource() {
@@ -160,12 +169,27 @@ void ForceSensorNode::keepCalibration() {
   file_->write(toYaml(readout_.calibration()));
 }
 
+/// The operator waits for the end of an average: it must not wait for the next report of a second.
+void ForceSensorNode::reportOutcome(const ros::Time& now) {
+  if (reported_outcome_ == readout_.outcome()) return;
+  reported_outcome_ = readout_.outcome();
+  diagnostic_updater::DiagnosticStatusWrapper status;
+  status.name = ros::this_node::getName().substr(1) + ": " + kStatus;
+  status.hardware_id = "none";
+  report(status);
+  diagnostic_msgs::DiagnosticArray message;
+  message.header.stamp = now;
+  message.status.push_back(status);
+  reports_.publish(message);
+}
+
 void ForceSensorNode::run() {
   cycle_.run([this](const Cycle::Tick& tick) { step(tick); });
 }
 
 void ForceSensorNode::step(const Cycle::Tick& tick) {
   keepCalibration();
+  reportOutcome(tick.now);
   const auto signal = source_->read(tick);
   if (!source_->invalidReason().empty() || source_->overloaded()) return publishInvalid(tick);
   if (!signal) return;

@@ -72,6 +72,7 @@ class ForceSensorNode {
   std::string inUseReason() const;
   void watchController();
   void keepCalibration();
+  void reportOutcome(const ros::Time& now);
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
   Parameters parameters_;
@@ -82,7 +83,9 @@ class ForceSensorNode {
   Output<geometry_msgs::WrenchStamped>& measured_;
   Output<geometry_msgs::WrenchStamped>& raw_;
   std::optional<BackgroundFile> file_;
-  unsigned kept_changes_ = 0;  ///< of the readout, that are in the file
+  unsigned kept_changes_ = 0;     ///< of the readout, that are in the file
+  ros::Publisher reports_;        ///< of an outcome, at once
+  std::string reported_outcome_;  ///< of the readout
   ros::ServiceServer tare_, calibrate_, reset_;
   std::string controller_state_, injection_state_;  ///< empty: there is no controller
   std::vector<ros::Subscriber> controller_;

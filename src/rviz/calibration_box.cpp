@@ -9,7 +9,7 @@
 namespace microinjection {
 
 CalibrationBox::CalibrationBox(std::function<SessionView()> newest, QWidget* parent)
-    : QWidget(parent), newest_(std::move(newest)), report_(new LampRow("", 3, this)) {
+    : QWidget(parent), newest_(std::move(newest)), report_(new LampRow("", 2, this)) {
   auto* layout = new QGridLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->setHorizontalSpacing(8);
@@ -19,10 +19,13 @@ CalibrationBox::CalibrationBox(std::function<SessionView()> newest, QWidget* par
   int line = 1;
   for (const CameraTask task : kCameraTasks)
     rows_.emplace_back(toText(task), 1, this, layout, line++, [this, task] { press(task); });
-  cancel_ = std::make_unique<OfferRow>("Cancel", 1, this, layout, line++, [this] {
+  cancel_ = new OfferButton("Cancel", this, [this] {
     if (runners_) runners_->cancel();
   });
-  layout->addWidget(report_, line, 0, 1, 2);
+  cancel_->setFixedSize(86, 28);
+  cancel_->setToolTip("Ends the task under way; STOP does so, too");
+  layout->addWidget(cancel_, line, 0);
+  layout->addWidget(report_, line, 1);
   layout->setRowStretch(line + 1, 1);
 }
 
@@ -46,8 +49,7 @@ void CalibrationBox::refresh(const SessionView& session) {
   for (const CameraTask task : kCameraTasks) {
     rows_[static_cast<std::size_t>(task)].display(offer(task, session, runners_->there(task), running));
   }
-  const bool cancels = running && !isService(*running);
-  cancel_->display(cancels, cancels ? "ends the task under way; STOP does so, too" : "no task is under way");
+  cancel_->offer(running && !isService(*running));
   report_->display(reportLamp(runners_->report()));
 }
 

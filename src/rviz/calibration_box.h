@@ -14,7 +14,7 @@ namespace microinjection {
 class CameraTaskRunners;
 
 /// Buttons for what is done with needle and camera before an injection: focus, calibrate, re-zero,
-/// undo and touch, each with its effect or the reason why it is greyed; progress and result of the last one.
+/// undo, touch and measure, each with its effect or the reason why it is greyed; progress and result of the last one.
 class CalibrationBox : public QWidget {
  public:
   /// `newest`: gives the session at the moment of a press.
@@ -31,7 +31,7 @@ class CalibrationBox : public QWidget {
   std::function<SessionView()> newest_;
   std::unique_ptr<CameraTaskRunners> runners_;
   std::vector<OfferRow> rows_;  ///< of the tasks, in their order
-  std::unique_ptr<OfferRow> cancel_;
+  OfferButton* cancel_;
   LampRow* report_;
 };
 

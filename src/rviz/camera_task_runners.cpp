@@ -3,6 +3,8 @@
 #include <cell_microinjection/CalibrateAction.h>
 #include <cell_microinjection/FindFocusAction.h>
 #include <cell_microinjection/FindTouchAction.h>
+#include <cell_microinjection/MeasureCell.h>
+#include <cell_microinjection/VisionState.h>
 #include <std_srvs/Trigger.h>
 
 #include <thread>
@@ -39,8 +41,18 @@ struct CameraTaskRunners::ServiceAnswer {
   std::string message;
 };
 
+template <typename Service>
+void CameraTaskRunners::call(const std::string& name, Service& service, ServiceAnswer& answer) {
+  const bool answered = ros::service::call(name, service);
+  answer.success = answered && service.response.success;
+  answer.message = answered ? service.response.message : name + " does not answer";
+}
+
 CameraTaskRunners::CameraTaskRunners() {
   node_.setCallbackQueue(&queue_);
+  // Nobody reads it here: its publisher is the node that measures.
+  vision_ = node_.subscribe<cell_microinjection::VisionState>(
+      "vision/state", 1, boost::function<void(const cell_microinjection::VisionState::ConstPtr&)>([](const auto&) {}));
   const auto add = [this](CameraTask task, const auto& make) {
     runners_[indexOf(task)] =
         make([this, task](const std::string& text) { progress(task, text); },
@@ -79,7 +91,8 @@ void CameraTaskRunners::poll() {
 }
 
 bool CameraTaskRunners::there(CameraTask task) const {
-  // The services are of the node that calibrates.
+  if (task == CameraTask::kMeasure) return vision_.getNumPublishers() > 0;
+  // The other services are of the node that calibrates.
   return runners_[indexOf(isService(task) ? CameraTask::kCalibrate : task)]->there();
 }
 
@@ -97,13 +110,16 @@ void CameraTaskRunners::start(CameraTask task) {
 }
 
 void CameraTaskRunners::call(CameraTask task) {
-  const std::string service = task == CameraTask::kRezero ? "/calibration/rezero" : "/calibration/undo";
   answer_ = std::make_shared<ServiceAnswer>();
-  std::thread([answer = answer_, service] {
-    std_srvs::Trigger call;
-    const bool answered = ros::service::call(service, call);
-    answer->success = answered && call.response.success;
-    answer->message = answered ? call.response.message : service + " does not answer";
+  std::thread([answer = answer_, task] {
+    if (task == CameraTask::kMeasure) {
+      cell_microinjection::MeasureCell measurement;
+      measurement.request.serve = true;
+      call("/vision/measure_cell", measurement, *answer);
+    } else {
+      std_srvs::Trigger trigger;
+      call(task == CameraTask::kRezero ? "/calibration/rezero" : "/calibration/undo", trigger, *answer);
+    }
     answer->done = true;
   }).detach();
 }

@@ -16,7 +16,7 @@ namespace microinjection {
 /// Starts the tasks of needle and camera, and follows them.
 ///
 /// Actions: /focus/find, /calibration/calibrate, /touch/find; the services /calibration/rezero,
-/// /calibration/undo
+/// /calibration/undo, /vision/measure_cell
 ///
 /// Nothing here waits: the panel with the stop button lives in the same thread.
 class CameraTaskRunners {
@@ -38,9 +38,12 @@ class CameraTaskRunners {
   void end(CameraTask task, bool success, const std::string& message);
   void progress(CameraTask task, const std::string& text);
   void call(CameraTask task);
+  template <typename Service>
+  static void call(const std::string& name, Service& service, ServiceAnswer& answer);
 
   ros::CallbackQueue queue_;
   ros::NodeHandle node_;
+  ros::Subscriber vision_;
   std::array<std::unique_ptr<TaskRunner>, kCameraTasks.size()> runners_;  ///< null: of a service
   std::shared_ptr<ServiceAnswer> answer_;                                 ///< of a call under way
   CameraTaskReport report_;

@@ -43,6 +43,8 @@ CommandsWidget::CommandsWidget(std::function<SessionView()> newest, Send send, Q
       QObject::connect(row.button, &QPushButton::clicked, this, pressed);
     }
   }
+  // Buttons that stay where they are, whatever appears beside them.
+  layout->setRowStretch(layout->rowCount(), 1);
   auto* space = new QShortcut(QKeySequence(Qt::Key_Space), this);
   space->setContext(Qt::ApplicationShortcut);
   // A second press means disable, which a key that is held down must not.
@@ -55,8 +57,11 @@ CommandsWidget::CommandsWidget(std::function<SessionView()> newest, Send send, Q
 
 void CommandsWidget::press(std::size_t index) {
   // What is displayed may be older: a stop during a pulse must not be that of the state before.
-  const CommandOffer offered = offer(kConsoleCommands[index], newest_());
+  const SessionView session = newest_();
+  const CommandOffer offered = offer(kConsoleCommands[index], session);
   if (offered.refusal.empty()) send_(kConsoleCommands[index], offered.command);
+  // A refused press shows its reason at once.
+  display(session);
 }
 
 void CommandsWidget::display(const SessionView& session) {
@@ -66,6 +71,8 @@ void CommandsWidget::display(const SessionView& session) {
 }
 
 void CommandsWidget::display(Row& row, const CommandOffer& offer, bool is_stop) {
+  // Qt forgets a press whose button is greyed before the release, and the label must be the one that was pressed.
+  if (row.button->isDown()) return;
   const bool first = row.shown.label.empty();
   const bool enabled = offer.refusal.empty();
   if (first || enabled != row.shown.refusal.empty()) {
@@ -75,7 +82,6 @@ void CommandsWidget::display(Row& row, const CommandOffer& offer, bool is_stop) 
   }
   row.button->setText(QString::fromStdString(is_stop ? offer.label + "   (space bar)" : offer.label));
   const QString text = QString::fromStdString(enabled ? offer.effect : offer.refusal);
-  if (first || text != row.button->toolTip()) row.button->setToolTip(text);
   row.text->setText(text);
   row.shown = offer;
 }

@@ -11,6 +11,7 @@
 #include <QTimer>
 #include <QVBoxLayout>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "operation/console/headline.h"
@@ -21,7 +22,9 @@
 #include "rviz/force_plot.h"
 #include "rviz/guard_row.h"
 #include "rviz/hand_box.h"
+#include "rviz/injection_box.h"
 #include "rviz/lamp_row.h"
+#include "rviz/needle_bar.h"
 #include "rviz/score_box.h"
 #include "rviz/sensor_box.h"
 #include "rviz/steps_widget.h"
@@ -33,6 +36,7 @@ namespace {
 constexpr int kPeriod = 16;      // ms: the plot at 60 Hz
 constexpr int kStatePeriod = 6;  // ticks: the texts at 10 Hz, which nobody reads faster
 
+constexpr double kOldPose = 0.5;    // s, of the needle that is moved by steps
 constexpr double kDeepest = 50e-6;  // m, of the plot where the guard is not known
 
 QVBoxLayout* column(QWidget* parent) {
@@ -68,25 +72,29 @@ ConsolePanel::ConsolePanel(QWidget* parent)
   box(ConsolePart::kHand) = hand_ = new HandBox(this);
   box(ConsolePart::kAxes) = axes_ = new AxesBox(this);
   box(ConsolePart::kDevices) = makeDevices();
+  box(ConsolePart::kAutomatic) = injection_ = new InjectionBox([this] { return newest(); }, this);
   box(ConsolePart::kCell) = makeCell();
   box(ConsolePart::kGuards) = makeGuards();
   box(ConsolePart::kScore) = score_ = new ScoreBox(this);
   box(ConsolePart::kSensor) = sensor_ = new SensorBox(this);
   box(ConsolePart::kCalibration) = calibration_ = new CalibrationBox([this] { return newest(); }, this);
+  box(ConsolePart::kNeedle) = needle_ =
+      new NeedleBar([this] { return newest(); }, [this] { return needle(kOldPose); }, this);
   box(ConsolePart::kPlots) = makePlots();
   auto* middle = new QHBoxLayout;
   middle->setSpacing(12);
   middle->addWidget(box(ConsolePart::kCommands), 1);
   auto* right = new QVBoxLayout;
   right->setSpacing(8);
-  for (const ConsolePart part : {ConsolePart::kHand, ConsolePart::kAxes, ConsolePart::kDevices, ConsolePart::kCell,
-                                 ConsolePart::kGuards, ConsolePart::kSensor}) {
+  for (const ConsolePart part : {ConsolePart::kHand, ConsolePart::kAxes, ConsolePart::kDevices, ConsolePart::kAutomatic,
+                                 ConsolePart::kCell, ConsolePart::kGuards, ConsolePart::kSensor}) {
     right->addWidget(box(part));
   }
   right->addStretch(1);
   middle->addLayout(right, 1);
   layout->addLayout(middle);
   layout->addWidget(box(ConsolePart::kScore));
+  layout->addWidget(box(ConsolePart::kNeedle));
   layout->addWidget(box(ConsolePart::kCalibration));
   layout->addWidget(box(ConsolePart::kPlots), 1);
   showParts(words_);
@@ -106,6 +114,7 @@ QWidget* ConsolePanel::makeCommands() {
     if (!link_) return;
     if (button == ConsoleCommand::kStop) {
       link_->stop(command);
+      needle_->stop();
     } else {
       link_->send(command);
     }
@@ -200,22 +209,30 @@ void ConsolePanel::showParts(const std::string& words) {
   if (parts_.has(ConsolePart::kAxes)) axes_->start();
   if (parts_.has(ConsolePart::kCalibration)) calibration_->start();
   if (parts_.has(ConsolePart::kSensor)) sensor_->start();
+  if (parts_.has(ConsolePart::kNeedle)) needle_->start();
+  if (parts_.has(ConsolePart::kAutomatic)) injection_->start();
   if (parts_.has(ConsolePart::kScore)) score_->start(*link_);
 }
 
-/// rviz listens to tf already: another subscriber of the needle's pose at 1 kHz would only cost.
-std::optional<SessionLink::Pose> ConsolePanel::pipette() const {
+/// Pose of the needle's tip in `world`. rviz listens to tf already: another subscriber at 1 kHz would only cost.
+std::optional<Eigen::Isometry3d> ConsolePanel::needle(double largest_age) const {
   const auto buffer = vis_manager_->getTF2BufferPtr();
   if (!buffer->canTransform("world", "needle_tip", ros::Time(0))) return std::nullopt;
   try {
-    const auto transform = buffer->lookupTransform("world", "needle_tip", ros::Time(0)).transform;
-    const auto& q = transform.rotation;
-    const auto& p = transform.translation;
-    return SessionLink::Pose{{p.x, p.y, p.z},
-                             Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized() * Eigen::Vector3d::UnitZ()};
+    const auto stamped = buffer->lookupTransform("world", "needle_tip", ros::Time(0));
+    if (ros::Time::now().toSec() - stamped.header.stamp.toSec() > largest_age) return std::nullopt;
+    const auto& q = stamped.transform.rotation;
+    const auto& p = stamped.transform.translation;
+    return Eigen::Translation3d(p.x, p.y, p.z) * Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized();
   } catch (const tf2::TransformException&) {
     return std::nullopt;
   }
+}
+
+std::optional<SessionLink::Pose> ConsolePanel::pipette() const {
+  const auto pose = needle(std::numeric_limits<double>::infinity());
+  if (!pose) return std::nullopt;
+  return SessionLink::Pose{pose->translation(), pose->linear().col(2)};
 }
 
 void ConsolePanel::tick() {
@@ -245,6 +262,8 @@ void ConsolePanel::showState() {
   score_->refresh();
   sensor_->refresh();
   axes_->refresh();
+  needle_->refresh(session);
+  injection_->refresh(session);
 
   ForcePlot::Limits limits;
   if (session.settings.force_limit) limits.force = *session.settings.force_limit * 1e6;

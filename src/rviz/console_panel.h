@@ -2,6 +2,7 @@
 
 #include <rviz/panel.h>
 
+#include <Eigen/Geometry>
 #include <memory>
 #include <string>
 
@@ -18,7 +19,9 @@ class ElidedLabel;
 class ForcePlot;
 class GuardRow;
 class HandBox;
+class InjectionBox;
 class LampRow;
+class NeedleBar;
 class ScoreBox;
 class SensorBox;
 class AxesBox;
@@ -52,6 +55,7 @@ class ConsolePanel : public rviz::Panel {
   QWidget*& box(ConsolePart part) { return boxes_[static_cast<std::size_t>(part)]; }
   SessionView newest();
   void showParts(const std::string& words);
+  std::optional<Eigen::Isometry3d> needle(double largest_age) const;
   std::optional<SessionLink::Pose> pipette() const;
   void tick();
   void showState();
@@ -75,6 +79,8 @@ class ConsolePanel : public rviz::Panel {
   ViewRow* view_ = nullptr;
   SensorBox* sensor_ = nullptr;
   AxesBox* axes_ = nullptr;
+  NeedleBar* needle_ = nullptr;
+  InjectionBox* injection_ = nullptr;
   std::array<LampRow*, kDevices.size()> devices_{};
   ElidedLabel *served_ = nullptr, *puncture_ = nullptr;
   LampRow *estimate_ = nullptr, *injector_ = nullptr;

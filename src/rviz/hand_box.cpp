@@ -3,9 +3,9 @@
 #include <QLabel>
 #include <QVBoxLayout>
 
-#include "base/parse_number.h"
 #include "rviz/elided_label.h"
 #include "rviz/lamp_row.h"
+#include "rviz/session_parameters.h"
 
 namespace microinjection {
 namespace {
@@ -13,15 +13,6 @@ namespace {
 constexpr double kSilence = 3;  // s, of haptic_bridge, whose state comes with each change and each second
 
 bool firstButton(const sensor_msgs::Joy& message) { return !message.buttons.empty() && message.buttons[0] != 0; }
-
-/// rosparam loads a number like 2.0e5, without a sign of the exponent, as text.
-std::optional<double> numberOf(const std::string& parameter) {
-  const std::string name = "/haptic_bridge/" + parameter;
-  double value = 0;
-  if (ros::param::get(name, value)) return value;
-  std::string text;
-  return ros::param::get(name, text) ? parseNumber<double>(text) : std::nullopt;
-}
 
 }  // namespace
 
@@ -70,11 +61,13 @@ void HandBox::start() {
 void HandBox::readSettings() {
   HandSettings& settings = hand_.settings;
   settings = {};
-  ros::param::get("/haptic_bridge/mode", settings.mode);
-  ros::param::get("/haptic_bridge/force_source", settings.force_source);
-  settings.position_scale = numberOf("position_scale");
-  settings.rate_gain = numberOf("rate_mode/gain");
-  settings.force_gain = numberOf("force_gain");
+  SessionParameters parameters("/haptic_bridge");
+  settings.mode = parameters.text("mode");
+  settings.force_source = parameters.text("force_source");
+  settings.position_scale = parameters.number("position_scale");
+  settings.rate_gain = parameters.number("rate_mode/gain");
+  settings.force_gain = parameters.number("force_gain");
+  settings.error = parameters.error();
 }
 
 void HandBox::refresh() {

@@ -12,6 +12,7 @@
 #include <QTimer>
 #include <QVBoxLayout>
 
+#include "rviz/focus_bar.h"
 #include "rviz/image_conversion.h"
 #include "rviz/lamp_row.h"
 #include "rviz/microscope_view.h"
@@ -35,7 +36,11 @@ Widget* parentOf(QWidget* widget) {
 }  // namespace
 
 MicroscopePanel::MicroscopePanel(QWidget* parent)
-    : rviz::Panel(parent), view_(new MicroscopeView(this)), goal_(new PixelGoalBar(this)), timer_(new QTimer(this)) {
+    : rviz::Panel(parent),
+      view_(new MicroscopeView(this)),
+      goal_(new PixelGoalBar(this)),
+      focus_(new FocusBar(this)),
+      timer_(new QTimer(this)) {
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->setSpacing(2);
@@ -50,11 +55,13 @@ MicroscopePanel::MicroscopePanel(QWidget* parent)
     lines->addWidget(findings_[i], static_cast<int>(i) / 2, static_cast<int>(i) % 2);
   }
   layout->addLayout(lines);
+  layout->addWidget(focus_);
   layout->addWidget(goal_);
   view_->onClick([this](const Eigen::Vector2d& pixel) {
     goal_->propose(pixel);
     view_->setGoal(goal_->pixel());
   });
+  view_->onFocus([this](int steps) { focus_->move(steps); });
   showFindings(std::nullopt);
 }
 
@@ -63,6 +70,7 @@ MicroscopePanel::~MicroscopePanel() = default;
 void MicroscopePanel::onInitialize() {
   link_ = std::make_unique<MicroscopeLink>();
   goal_->start();
+  focus_->start();
   connect(timer_, &QTimer::timeout, this, [this] { tick(); });
   timer_->start(kPeriod);
 }
@@ -118,6 +126,7 @@ void MicroscopePanel::tick() {
   if (!appeared_ && link_->hasSource()) appear();
   if (appeared_) link_->listen(isVisible());
   goal_->refresh();
+  focus_->refresh();
   view_->setGoal(goal_->pixel());
   const bool grown = link_->poll();
   if (!isVisible()) return;

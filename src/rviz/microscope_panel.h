@@ -12,6 +12,7 @@ class QTimer;
 
 namespace microinjection {
 
+class FocusBar;
 class LampRow;
 class MicroscopeView;
 class PixelGoalBar;
@@ -38,6 +39,7 @@ class MicroscopePanel : public rviz::Panel {
 
   MicroscopeView* view_;
   PixelGoalBar* goal_;
+  FocusBar* focus_;
   std::array<LampRow*, 4> findings_{};
   QTimer* timer_;
   std::unique_ptr<MicroscopeLink> link_;

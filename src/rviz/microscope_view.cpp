@@ -90,7 +90,15 @@ void MicroscopeView::setGoal(const std::optional<Eigen::Vector2d>& pixel) {
 void MicroscopeView::resizeEvent(QResizeEvent*) { view_.setWidget(width(), height()); }
 
 void MicroscopeView::wheelEvent(QWheelEvent* event) {
-  view_.zoom(toVector(placeOf(*event)), std::pow(kPerNotch, event->angleDelta().y() / kNotch));
+  const double notches = event->angleDelta().y() / kNotch;
+  if (event->modifiers() & Qt::ControlModifier) {
+    turned_ += notches;
+    const int whole = static_cast<int>(turned_);
+    turned_ -= whole;
+    if (whole != 0 && focus_moved_) focus_moved_(whole);
+    return;
+  }
+  view_.zoom(toVector(placeOf(*event)), std::pow(kPerNotch, notches));
   chosen_ = true;
   update();
 }

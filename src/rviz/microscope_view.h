@@ -12,9 +12,9 @@
 
 namespace microinjection {
 
-/// An image of the microscope with what vision found in it. The wheel magnifies, a drag moves the
-/// image, a double click shows all of it, a click proposes a place for the tip. At first it shows the
-/// cell that vision has found.
+/// An image of the microscope with what vision found in it. The wheel magnifies, and moves the focus while Ctrl is
+/// held; a drag moves the image, a double click shows all of it, a click proposes a place for the tip. At first it
+/// shows the cell that vision has found.
 class MicroscopeView : public QWidget {
  public:
   explicit MicroscopeView(QWidget* parent = nullptr);
@@ -24,6 +24,8 @@ class MicroscopeView : public QWidget {
   void displayNone(const QString& reason);
   /// `clicked` is called with the pixel of a click into the image.
   void onClick(std::function<void(const Eigen::Vector2d& pixel)> clicked) { clicked_ = std::move(clicked); }
+  /// `moved` is called with the notches of the wheel that ask for another focus, positive away from the user.
+  void onFocus(std::function<void(int notches)> moved) { focus_moved_ = std::move(moved); }
   /// The proposed place, px.
   void setGoal(const std::optional<Eigen::Vector2d>& pixel);
   QSize sizeHint() const override { return {640, 340}; }
@@ -51,6 +53,8 @@ class MicroscopeView : public QWidget {
   QTimer click_;                                             ///< until a click is no double click
   std::optional<Eigen::Vector2d> goal_;
   std::function<void(const Eigen::Vector2d&)> clicked_;
+  std::function<void(int)> focus_moved_;
+  double turned_ = 0;  ///< notches of the wheel that are not a whole one yet
 };
 
 }  // namespace microinjection

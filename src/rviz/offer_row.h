@@ -1,11 +1,11 @@
 #pragma once
 
 #include <QGridLayout>
-#include <QPushButton>
 #include <functional>
 
 #include "operation/console/console_commands.h"
 #include "rviz/elided_label.h"
+#include "rviz/offer_button.h"
 
 namespace microinjection {
 
@@ -22,9 +22,8 @@ class OfferRow {
   }
 
  private:
-  QPushButton* button_;
+  OfferButton* button_;
   ElidedLabel* text_;
-  bool offered_ = false;
 };
 
 }  // namespace microinjection

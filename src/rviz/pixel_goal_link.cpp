@@ -5,6 +5,7 @@
 
 #include "operation/console/figures.h"
 #include "rviz/session_clock.h"
+#include "rviz/session_parameters.h"
 
 namespace microinjection {
 namespace {
@@ -113,8 +114,7 @@ void PixelGoalLink::onOperating(const cell_microinjection::OperatingState& messa
 /// which is why it is done only when a controller appears.
 void PixelGoalLink::onInjection() {
   if (sessionNow() - heard_at_ > kSilence) {
-    session_.settings.mode.clear();
-    ros::param::get("/injection_controller/mode", session_.settings.mode);
+    session_.settings.mode = SessionParameters("/injection_controller").text("mode");
   }
   heard_at_ = sessionNow();
 }

@@ -1,34 +1,36 @@
 #include "rviz/score_box.h"
 
-#include <ros/param.h>
-
 #include <QGridLayout>
 #include <QLabel>
+#include <type_traits>
 
 #include "operation/console/score_lines.h"
 #include "rviz/elided_label.h"
 #include "rviz/guard_row.h"
 #include "rviz/session_link.h"
+#include "rviz/session_parameters.h"
 
 namespace microinjection {
 namespace {
 
-constexpr char kParameters[] = "/session_recorder/training/";
-
-void read(const std::string& name, double& value) { ros::param::get(kParameters + ("task/" + name), value); }
-
-/// False: the session is not scored.
-bool readTraining(TrainingConfig& config) {
-  if (!ros::param::get(std::string(kParameters) + "operator", config.operator_name)) return false;
-  ros::param::get(std::string(kParameters) + "force", config.force);
-  ros::param::get(std::string(kParameters) + "punctures", config.punctures);
+/// `config.operator_name` stays empty where the session is not scored. Returns the values that are no numbers.
+std::string readTraining(TrainingConfig& config) {
+  SessionParameters parameters("/session_recorder/training");
+  config.operator_name = parameters.text("operator");
+  if (config.operator_name.empty()) return "";
+  if (const std::string force = parameters.text("force"); !force.empty()) config.force = force;
+  if (const std::string punctures = parameters.text("punctures"); !punctures.empty()) config.punctures = punctures;
+  const auto read = [&parameters](const char* key, auto& value) {
+    using Number = std::decay_t<decltype(value)>;
+    if (const auto number = parameters.number(std::string("task/") + key)) value = static_cast<Number>(*number);
+  };
   read("peak_force", config.task.peak_force);
   read("deformation", config.task.deformation);
   read("lateral_error", config.task.lateral_error);
   read("time", config.task.time);
   read("volume", config.task.volume);
-  ros::param::get(std::string(kParameters) + "task/punctures", config.task.punctures);
-  return true;
+  read("punctures", config.task.punctures);
+  return parameters.error();
 }
 
 }  // namespace
@@ -51,7 +53,11 @@ ScoreBox::ScoreBox(QWidget* parent) : QWidget(parent), text_(new ElidedLabel(1, 
 
 void ScoreBox::start(SessionLink& link) {
   TrainingConfig config;
-  if (log_ || !readTraining(config)) return;
+  if (log_) return;
+  const std::string error = readTraining(config);
+  // A score against another reference than the recorder's would be a wrong one.
+  if (!error.empty()) text_->setText(QString::fromStdString(error));
+  if (config.operator_name.empty() || !error.empty()) return;
   log_ = std::make_unique<TrainingLog>(config);
   link.onRow([this](const SessionTable::Row& row) { log_->add(row); });
 }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "rviz/session_clock.h"
+#include "rviz/session_parameters.h"
 
 namespace microinjection {
 namespace {
@@ -17,16 +18,10 @@ constexpr double kFresh = 0.2;     // s, of a measured force in the plot
 constexpr double kOld = 2;         // s, of what is shown of twin and injector
 constexpr double kLargest = 1e-2;  // N and m: what is beyond is no force or depth of a cell
 
+constexpr char kController[] = "/injection_controller";
+
 constexpr const char* kStoppedActions[] = {"calibration/calibrate", "focus/find", "touch/find",
                                            "visual_servo/go_to_pixel"};
-
-std::optional<OperatingState> operatingStateOf(const std::string& name) {
-  for (const OperatingState state :
-       {OperatingState::kDisabled, OperatingState::kEnabled, OperatingState::kPaused, OperatingState::kFault}) {
-    if (name == toText(state)) return state;
-  }
-  return std::nullopt;
-}
 
 std::optional<double> plausible(double value) {
   return std::abs(value) < kLargest ? std::optional(value) : std::nullopt;
@@ -38,7 +33,12 @@ Eigen::Vector3d toVector(const geometry_msgs::Vector3& vector) { return {vector.
 
 SessionLink::SessionLink(std::function<std::optional<Pose>()> pipette) : pipette_(std::move(pipette)) {
   node_.setCallbackQueue(&queue_);
-  commands_ = node_.advertise<cell_microinjection::StringStamped>("controller/state_command", 1);
+  const auto counts = [this](int change) {
+    return [this, change](const ros::SingleSubscriberPublisher& subscriber) {
+      if (subscriber.getSubscriberName() == kController) listening_ += change;
+    };
+  };
+  commands_ = node_.advertise<cell_microinjection::StringStamped>("controller/state_command", 1, counts(1), counts(-1));
   for (const std::string action : kStoppedActions) {
     cancels_.push_back(node_.advertise<actionlib_msgs::GoalID>(action + "/cancel", 1));
   }
@@ -84,15 +84,17 @@ void SessionLink::stop(const std::string& command) {
 void SessionLink::readSettings() {
   ControllerSettings& settings = session_.settings;
   settings = {};
-  ros::param::get("/injection_controller/mode", settings.mode);
-  double value = 0;
-  if (ros::param::get("/injection_controller/force_limit", value)) settings.force_limit = value;
-  if (ros::param::get("/injection_controller/depth_limit", value)) settings.depth_limit = value;
-  if (ros::param::get("/injection_controller/goal/pulse/duration", value)) settings.has_pulse = value > 0;
+  SessionParameters parameters(kController);
+  settings.mode = parameters.text("mode");
+  settings.force_limit = parameters.number("force_limit");
+  settings.depth_limit = parameters.number("depth_limit");
+  if (const auto duration = parameters.number("goal/pulse/duration")) settings.has_pulse = *duration > 0;
+  settings.error = parameters.error();
 }
 
 SessionView SessionLink::session() const {
   SessionView view = session_;
+  view.listens = listening_ > 0;
   if (heard_at_ && sessionNow() - *heard_at_ < kSilence) return view;
   view.operating.reset();
   view.injection.reset();

@@ -92,6 +92,7 @@ class SessionLink {
   std::vector<ros::Subscriber> subscribers_;
   ros::Publisher commands_;
   std::vector<ros::Publisher> cancels_;
+  int listening_ = 0;  ///< connections of the controller to commands_: what is sent before the first is lost
   SessionView session_;
   std::optional<double> heard_at_;  ///< s, of the controller's last message
   Received<std::optional<SessionTable::Measured>> measured_;

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 
 namespace microinjection {
 
@@ -19,6 +20,12 @@ class TaskRunner {
   virtual void start() = 0;
   virtual void cancel() = 0;  ///< also a goal of somebody else
 };
+
+/// Whether a result is a success, and its message; empty: it has none. To be specialized for results with other fields.
+template <typename Result>
+std::pair<bool, std::string> outcomeOf(const Result& result) {
+  return {result.success, result.message};
+}
 
 /// `describe`: the text of a feedback.
 template <typename Action, typename Goal, typename Feedback, typename Result>
@@ -37,8 +44,8 @@ class ActionRunner : public TaskRunner {
     client_.sendGoal(
         goal,
         [this](const actionlib::SimpleClientGoalState& state, const boost::shared_ptr<const Result>& result) {
-          const bool has_text = result && !result->message.empty();
-          end_(result && result->success, has_text ? result->message : state.toString() + " " + state.getText());
+          const auto [success, text] = result ? outcomeOf(*result) : std::pair(false, std::string());
+          end_(success, text.empty() ? state.toString() + " " + state.getText() : text);
         },
         {}, [this](const boost::shared_ptr<const Feedback>& feedback) { progress_(describe_(*feedback)); });
   }

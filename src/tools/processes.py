@@ -41,6 +41,12 @@ def _family(pid):
     return family
 
 
+def _processor_time(path):
+    with open(path, encoding='utf-8', errors='replace') as file:
+        fields = file.read().rpartition(')')[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf('SC_CLK_TCK')
+
+
 def gone(pid):
     """Returns whether a process has ended, be it that nobody has asked for its exit code."""
     stat = _stat(pid)
@@ -71,10 +77,11 @@ class Child:
 
     def first_thread_time(self):
         """s of processor time that its first thread has used."""
-        pid = self._process.pid
-        with open(f'/proc/{pid}/task/{pid}/stat', encoding='utf-8', errors='replace') as file:
-            fields = file.read().rpartition(')')[2].split()
-        return (int(fields[11]) + int(fields[12])) / os.sysconf('SC_CLK_TCK')
+        return _processor_time(f'/proc/{self._process.pid}/task/{self._process.pid}/stat')
+
+    def processor_time(self):
+        """s of processor time that all of its threads have used."""
+        return _processor_time(f'/proc/{self._process.pid}/stat')
 
     def running(self):
         return self._process.poll() is None

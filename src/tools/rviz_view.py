@@ -66,6 +66,10 @@ class RvizView:
         """s of processor time that the first thread has used, in which rviz draws and its panels work."""
         return self._rviz.first_thread_time()
 
+    def processor_time(self):
+        """s of processor time that all of its threads have used."""
+        return self._rviz.processor_time()
+
     def check(self):
         """@raises RvizError when rviz has ended."""
         if not self.running():

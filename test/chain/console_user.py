@@ -33,7 +33,8 @@ class ConsoleUser:
         cls.rviz = Child(["roslaunch", "cell_microinjection", "display.launch", f"console:={name}"], logs / "rviz.log",
                          cls.environment)
         cls.sent = []
-        rospy.Subscriber("/controller/state_command", StringStamped, lambda message: cls.sent.append(message.string))
+        cls.listener = rospy.Subscriber("/controller/state_command", StringStamped,
+                                        lambda message: cls.sent.append(message.string))
 
     @classmethod
     def close_console(cls):

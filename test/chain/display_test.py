@@ -121,6 +121,24 @@ class DisplayTest(unittest.TestCase):
         self.set_view.publish(DisplayView(colour="temperature"))
         self.show(DisplayView(colour="displacement"), "displacement")
 
+    def test_the_scale_begins_anew_with_another_cell(self):
+        """It grows while the cell is the same, so that a colour keeps its meaning."""
+        self.show(DisplayView(colour="displacement"), "displacement")
+
+        def shows(cell, end):
+            def shown():
+                self.cell.publish(cell)
+                return float(self.texts.get(("legend_labels", 4), "nan")) == end
+            self.until(shown, f"a scale that ends at {end} um")
+        shows(stretched(STRETCH), 3.2)
+        less = stretched(1.05)
+        for _ in range(20):
+            self.cell.publish(less)
+            time.sleep(0.05)
+        shows(less, 3.2)
+        less.parameter_values = [2 * YOUNG, 0.49]
+        shows(less, 1.6)
+
     def test_cut(self):
         self.show(DisplayView(colour="displacement", section=True), "displacement")
         self.until(lambda: self.is_drawn("section 1"), "the cut face of the second layer")

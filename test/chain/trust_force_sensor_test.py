@@ -10,6 +10,7 @@ import numpy as np
 import rospy
 import rostest
 import yaml
+from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseStamped, Vector3, WrenchStamped
 from std_srvs.srv import Trigger
 
@@ -115,6 +116,30 @@ class TrustTest(unittest.TestCase):
         self.assertFalse(self.calibrate(offset, 7).success)
         self.assertTrue(self.calibrate(offset, CalibrateForceRequest.CLEAR).success)
         self.tare(wrench(0, 0, 0))
+
+    def test_an_average_is_reported_when_it_ends(self):
+        """Not with the next of the reports that come once a second: the operator waits for it."""
+        reports = []
+
+        def receive(message):
+            for status in message.status:
+                outcome = next((v.value for v in status.values if v.key == "tare and calibration"), None)
+                if status.name == "force_sensor: sensor" and outcome not in [text for _, text in reports[-1:]]:
+                    reports.append((message.header.stamp.to_sec(), outcome))
+        subscriber = rospy.Subscriber("/diagnostics", DiagnosticArray, receive)
+        self.addCleanup(subscriber.unregister)
+        self.world.await_links()
+        nothing = wrench(0, 0, 0)
+        self.assertTrue(self.call(nothing, "tare", Trigger).success)
+        began = self.world.now.to_sec()
+        for _ in range(3000):  # the reports come over another connection than the ticks
+            self.world.run(1, self.messages(nothing))
+            if reports and reports[-1][1].startswith("tared"):
+                break
+        (begin, averaging), (end, tared) = reports[-2:]
+        self.assertEqual((averaging, tared[:5]), ("taring", "tared"))
+        self.assertAlmostEqual(begin, began, delta=0.02)
+        self.assertAlmostEqual(end - begin, 0.5, delta=0.02)
 
     def check_file(self, answer):
         """A thread of the node's own writes it."""

@@ -37,8 +37,7 @@ DisplayScene::DisplayScene(const DisplayConfig& config) : config_(config), holdi
 
 void DisplayScene::chooseScale(SurfaceQuantity quantity, const std::vector<double>& values) {
   const double given = quantity == SurfaceQuantity::kDisplacement ? config_.colour_range : config_.stress_range;
-  double& end = scale_ends_[static_cast<std::size_t>(quantity)];
-  end = given > 0 ? given : std::max(end, scaleEnd(quantity, values));
+  const double end = given > 0 ? given : ranges_.include(quantity, values);
   fixed_changed_ = fixed_changed_ || quantity != scale_.quantity || end != scale_.high;
   scale_ = {quantity, end};
 }
@@ -126,6 +125,7 @@ void DisplayScene::drawCell(const DisplayedState& state, visualization_msgs::Mar
     stress = stressOf(surface, state.solid, state.predicted, reason);
   colour_reason_ = quantity != SurfaceQuantity::kDisplacement ? reason : "";
   const std::vector<double> values = valuesOf(surface, stress, quantity);
+  ranges_.setCell(state.cell);
   chooseScale(quantity, valuesForScale(surface, quantity, values));
   drawSkin(state, stress, values, markers);
   const std::string frame = "viz/" + state.cell_frame;
@@ -167,9 +167,9 @@ void DisplayScene::drawSkin(const DisplayedState& state, const std::optional<Dis
 
 void DisplayScene::drawMembers(const CellMembers& members, const std::string& frame,
                                visualization_msgs::MarkerArray& markers) {
-  tension_range_ = std::max(tension_range_, members.largestTension());
+  const double range = ranges_.includeTension(members.largestTension());
   markers.markers.push_back(lineMarker({frame, "struts"}, strutLines(members, config_.enlargement), kStrutWidth));
-  const ColouredLines cables = cableLines(members, tension_range_ > 0 ? tension_range_ : 1, config_.enlargement);
+  const ColouredLines cables = cableLines(members, range > 0 ? range : 1, config_.enlargement);
   markers.markers.push_back(lineMarker({frame, "cables"}, cables, kCableWidth));
 }
 

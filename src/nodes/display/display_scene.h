@@ -3,7 +3,6 @@
 #include <visualization_msgs/MarkerArray.h>
 
 #include <Eigen/Geometry>
-#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "nodes/display/cell_stress.h"
 #include "operation/display/cell_members.h"
 #include "operation/display/cell_surface.h"
+#include "operation/display/colour_ranges.h"
 #include "operation/display/display_config.h"
 #include "operation/display/readout.h"
 
@@ -20,6 +20,7 @@ namespace microinjection {
 /// State of the displayed scene, SI units; absent values are unknown or invalid.
 struct DisplayedState {
   SurfaceQuantity colour = SurfaceQuantity::kDisplacement;  ///< wanted, of the surface
+  CellIdentity cell;
   std::optional<CellSurface> surface;
   std::optional<DisplayedSolid> solid;
   std::vector<CellBorder> borders;  ///< that the model has solved
@@ -69,8 +70,7 @@ class DisplayScene {
   void fitHoldingPipette(const DisplayedState& state);
 
   const DisplayConfig config_;
-  double tension_range_ = 0;            ///< N, largest tension so far
-  std::array<double, 4> scale_ends_{};  ///< SI, of each SurfaceQuantity, the largest so far; 0: none
+  ColourRanges ranges_;
   ColourScale scale_;
   std::string colour_reason_;
   DrawnHoldingPipette holding_;  ///< as configured, with the mouth at the contact with the cell

@@ -16,13 +16,16 @@ CommandOffer describe(CameraTask task) {
     case CameraTask::kUndo:
       return {"Undo", "", "the calibration before this session's last Calibrate or Re-zero", ""};
     case CameraTask::kTouch:
+      return {"Touch", "", "lowers the needle until the image shows that it touches the cell", ""};
+    case CameraTask::kMeasure:
       break;
   }
-  return {"Touch", "", "lowers the needle until the image shows that it touches the cell", ""};
+  return {"Measure", "", "measures the cell in the image, and has it served", ""};
 }
 
 const char* nodeOf(CameraTask task) {
   if (task == CameraTask::kFocus) return "focus";
+  if (task == CameraTask::kMeasure) return "vision";
   return task == CameraTask::kTouch ? "touch" : "calibration";
 }
 
@@ -37,11 +40,13 @@ std::string refusalOf(CameraTask task, const SessionView& session) {
 }  // namespace
 
 const char* toText(CameraTask task) {
-  constexpr const char* kNames[] = {"Focus", "Calibrate", "Re-zero", "Undo", "Touch"};
+  constexpr const char* kNames[] = {"Focus", "Calibrate", "Re-zero", "Undo", "Touch", "Measure"};
   return kNames[static_cast<std::size_t>(task)];
 }
 
-bool isService(CameraTask task) { return task == CameraTask::kRezero || task == CameraTask::kUndo; }
+bool isService(CameraTask task) {
+  return task == CameraTask::kRezero || task == CameraTask::kUndo || task == CameraTask::kMeasure;
+}
 
 CommandOffer offer(CameraTask task, const SessionView& session, bool there, std::optional<CameraTask> running) {
   CommandOffer result = describe(task);

@@ -10,9 +10,9 @@
 namespace microinjection {
 
 /// What the console starts with needle and camera, from top to bottom.
-enum class CameraTask { kFocus, kCalibrate, kRezero, kUndo, kTouch };
-constexpr std::array<CameraTask, 5> kCameraTasks = {CameraTask::kFocus, CameraTask::kCalibrate, CameraTask::kRezero,
-                                                    CameraTask::kUndo, CameraTask::kTouch};
+enum class CameraTask { kFocus, kCalibrate, kRezero, kUndo, kTouch, kMeasure };
+constexpr std::array<CameraTask, 6> kCameraTasks = {CameraTask::kFocus, CameraTask::kCalibrate, CameraTask::kRezero,
+                                                    CameraTask::kUndo,  CameraTask::kTouch,     CameraTask::kMeasure};
 const char* toText(CameraTask task);
 /// A service, which is over before a hand is at the button; the others are actions.
 bool isService(CameraTask task);

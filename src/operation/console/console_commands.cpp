@@ -4,6 +4,7 @@ namespace microinjection {
 namespace {
 
 constexpr char kNoController[] = "injection_controller is silent";
+constexpr char kDeaf[] = "injection_controller does not receive commands yet";
 
 std::string stateIs(const SessionView& session) { return std::string("state is ") + toText(*session.operating); }
 
@@ -116,6 +117,8 @@ CommandOffer offer(ConsoleCommand command, const SessionView& session) {
   CommandOffer result = command == ConsoleCommand::kEnable ? enableOffer(session) : describe(command);
   if (!session.connected()) {
     result.refusal = kNoController;
+  } else if (!session.listens) {
+    result.refusal = kDeaf;
   } else if (command != ConsoleCommand::kEnable) {
     result.refusal = refusalOf(command, session);
   }

@@ -5,8 +5,8 @@
 namespace microinjection {
 
 const char* toText(ConsolePart part) {
-  constexpr const char* kWords[] = {"commands", "hand",  "axes",   "devices",     "cell",
-                                    "guards",   "score", "sensor", "calibration", "plots"};
+  constexpr const char* kWords[] = {"commands", "hand",  "axes",   "devices", "automatic",   "cell",
+                                    "guards",   "score", "sensor", "needle",  "calibration", "plots"};
   return kWords[static_cast<std::size_t>(part)];
 }
 

@@ -6,10 +6,24 @@
 namespace microinjection {
 
 /// What a console may show below its steps and its headline.
-enum class ConsolePart { kCommands, kHand, kAxes, kDevices, kCell, kGuards, kScore, kSensor, kCalibration, kPlots };
-constexpr std::array<ConsolePart, 10> kConsoleParts = {
-    ConsolePart::kCommands, ConsolePart::kHand,  ConsolePart::kAxes,   ConsolePart::kDevices,     ConsolePart::kCell,
-    ConsolePart::kGuards,   ConsolePart::kScore, ConsolePart::kSensor, ConsolePart::kCalibration, ConsolePart::kPlots};
+enum class ConsolePart {
+  kCommands,
+  kHand,
+  kAxes,
+  kDevices,
+  kAutomatic,
+  kCell,
+  kGuards,
+  kScore,
+  kSensor,
+  kNeedle,
+  kCalibration,
+  kPlots
+};
+constexpr std::array<ConsolePart, 12> kConsoleParts = {
+    ConsolePart::kCommands,  ConsolePart::kHand,   ConsolePart::kAxes,        ConsolePart::kDevices,
+    ConsolePart::kAutomatic, ConsolePart::kCell,   ConsolePart::kGuards,      ConsolePart::kScore,
+    ConsolePart::kSensor,    ConsolePart::kNeedle, ConsolePart::kCalibration, ConsolePart::kPlots};
 /// The word for a part in a task's file (config/console).
 const char* toText(ConsolePart part);
 

@@ -21,6 +21,7 @@ Lamp presentLamp(const HandView& hand) {
 }
 
 std::string positionScaleText(const HandSettings& settings) {
+  if (!settings.error.empty()) return settings.error;
   if (settings.mode == "rate") {
     if (!settings.rate_gain) return "-";
     return "10 mm of the hand: " + micro(10e-3 * *settings.rate_gain, 1) + " um/s";

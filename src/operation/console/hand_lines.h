@@ -13,6 +13,7 @@ struct HandSettings {
   std::optional<double> position_scale;  ///< m of the needle per m of the hand
   std::optional<double> rate_gain;       ///< 1/s, speed of the needle per m of the hand past the dead zone
   std::optional<double> force_gain;      ///< N at the hand per N at the tip
+  std::string error;                     ///< values that are no numbers; empty: none
 };
 
 /// What the console knows of the hand. Empty: no message came.
@@ -32,7 +33,8 @@ Lamp clutchLamp(const HandView& hand);
 /// Green: held. Yellow: released. Grey: the device has none.
 Lamp presentLamp(const HandView& hand);
 
-/// "1 mm of the hand: 1.00 um", or in rate mode "10 mm of the hand: 20 um/s"; "-": not known.
+/// "1 mm of the hand: 1.00 um", or in rate mode "10 mm of the hand: 20 um/s"; "-": not known. The values that are no
+/// numbers come first.
 std::string positionScaleText(const HandSettings& settings);
 /// "1 uN at the tip: 0.20 N, predicted"; "-": not known.
 std::string forceScaleText(const HandSettings& settings);

@@ -55,6 +55,7 @@ Lamp headline(const SessionView& session) {
     case OperatingState::kEnabled:
       break;
   }
+  if (!session.settings.error.empty()) return {Light::kYellow, state + session.settings.error};
   if (!session.notice.empty()) return {Light::kYellow, state + session.notice};
   if (heldByAlarm(session)) return {Light::kYellow, state + "held: " + session.hold_reason};
   return {Light::kGreen, state + enabledText(session)};

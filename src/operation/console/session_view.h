@@ -8,6 +8,9 @@
 
 namespace microinjection {
 
+/// The state of that text of an operating_state; empty when there is none.
+std::optional<OperatingState> operatingStateOf(const std::string& text);
+
 /// What the console knows of the injection controller's parameters. Its defaults refuse nothing that
 /// the controller may allow.
 struct ControllerSettings {
@@ -15,6 +18,7 @@ struct ControllerSettings {
   bool has_pulse = true;              ///< the configured goal injects
   std::optional<double> force_limit;  ///< N, along the pipette
   std::optional<double> depth_limit;  ///< m past the contact point
+  std::string error;                  ///< values that are no numbers; empty: none
 };
 
 /// What the console knows of the injection controller from its messages. An empty state: no message
@@ -22,6 +26,7 @@ struct ControllerSettings {
 struct SessionView {
   std::optional<OperatingState> operating;
   std::optional<InjectionState> injection;
+  bool listens = true;  ///< the controller receives what the console sends
   bool homed = true;
   bool busy = false;        ///< the controller moves the needle by itself
   bool waits = false;       ///< for the operator's command

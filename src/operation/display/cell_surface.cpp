@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "operation/display/quadratic_facets.h"
 #include "operation/display/shading.h"
 
 namespace microinjection {
@@ -15,6 +16,17 @@ namespace {
 bool indicesFit(const std::vector<int>& indices, std::size_t size) {
   return std::all_of(indices.begin(), indices.end(),
                      [size](int index) { return index >= 0 && static_cast<std::size_t>(index) < size; });
+}
+
+/// Sums of the triangles' normals at each vertex, as long as their areas.
+std::vector<Eigen::Vector3d> flatNormals(const std::vector<Eigen::Vector3d>& vertices,
+                                         const std::vector<std::array<int, 3>>& triangles) {
+  std::vector<Eigen::Vector3d> normals(vertices.size(), Eigen::Vector3d::Zero());
+  for (const auto& [a, b, c] : triangles) {
+    const Eigen::Vector3d area = (vertices[b] - vertices[a]).cross(vertices[c] - vertices[a]);
+    for (const int vertex : {a, b, c}) normals[vertex] += area;
+  }
+  return normals;
 }
 
 }  // namespace
@@ -37,12 +49,9 @@ std::string CellSurface::defect() const {
 }
 
 std::vector<Eigen::Vector3d> vertexNormals(const CellSurface& surface) {
-  std::vector<Eigen::Vector3d> normals(surface.vertices.size(), Eigen::Vector3d::Zero());
-  for (const auto& [a, b, c] : surface.triangles) {
-    const Eigen::Vector3d& origin = surface.vertices[a];
-    const Eigen::Vector3d area = (surface.vertices[b] - origin).cross(surface.vertices[c] - origin);
-    for (const int vertex : {a, b, c}) normals[vertex] += area;
-  }
+  const std::vector<QuadraticFacet> facets = quadraticFacets(surface.triangles);
+  std::vector<Eigen::Vector3d> normals =
+      facets.empty() ? flatNormals(surface.vertices, surface.triangles) : quadraticNormals(surface.vertices, facets);
   // stableNormalize, because areas of square micrometres are below the threshold of normalize.
   for (Eigen::Vector3d& normal : normals) normal.stableNormalize();
   return normals;

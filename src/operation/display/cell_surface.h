@@ -25,8 +25,8 @@ struct CellSurface {
   std::string defect() const;
 };
 
-/// Outward unit normals at the vertices, weighted by the triangles' areas; zero at a vertex without
-/// triangles.
+/// Outward unit normals at the vertices; zero at a vertex without triangles. They are those of the curved facets of
+/// second order where the surface is made of them (quadraticFacets()), else the triangles' weighted by their areas.
 std::vector<Eigen::Vector3d> vertexNormals(const CellSurface& surface);
 
 /// The surface coloured by a value at each vertex, in display units. The colours include light from

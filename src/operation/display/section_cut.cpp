@@ -6,6 +6,8 @@
 #include <map>
 #include <utility>
 
+#include "operation/display/polygon_triangles.h"
+
 namespace microinjection {
 namespace {
 
@@ -31,40 +33,6 @@ std::vector<Corner> clipped(const std::array<Corner, 3>& triangle, const CutPlan
     if ((ha <= 0) != (hb <= 0)) result.push_back(between(a, b, ha / (ha - hb)));
   }
   return result;
-}
-
-double turn(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
-  return (b - a).x() * (c - a).y() - (b - a).y() * (c - a).x();
-}
-
-bool contains(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c, const Eigen::Vector2d& x) {
-  return turn(a, b, x) >= 0 && turn(b, c, x) >= 0 && turn(c, a, x) >= 0;
-}
-
-/// Triangles of a simple polygon, counter-clockwise, by cutting off its ears (Meisters 1975).
-std::vector<std::array<int, 3>> ears(const std::vector<Eigen::Vector2d>& polygon) {
-  std::vector<int> left;
-  for (std::size_t i = 0; i < polygon.size(); ++i) left.push_back(static_cast<int>(i));
-  const auto isEar = [&](std::size_t i) {
-    const std::size_t n = left.size();
-    const int a = left[(i + n - 1) % n], b = left[i], c = left[(i + 1) % n];
-    if (!(turn(polygon[a], polygon[b], polygon[c]) > 0)) return false;
-    for (const int other : left) {
-      if (other != a && other != b && other != c && contains(polygon[a], polygon[b], polygon[c], polygon[other]))
-        return false;
-    }
-    return true;
-  };
-  std::vector<std::array<int, 3>> triangles;
-  while (left.size() > 2) {
-    const std::size_t n = left.size();
-    std::size_t ear = 0;
-    while (ear < n && !isEar(ear)) ++ear;
-    if (ear == n) ear = 0;  // rounding, or a curve that crosses itself: go on with any corner
-    triangles.push_back({left[(ear + n - 1) % n], left[ear], left[(ear + 1) % n]});
-    left.erase(left.begin() + static_cast<std::ptrdiff_t>(ear));
-  }
-  return triangles;
 }
 
 double length(const std::vector<Eigen::Vector3d>& curve) {
@@ -159,7 +127,7 @@ TriangleSoup inside(const std::vector<Eigen::Vector3d>& curve, const CutPlane& p
     flat.assign(flat.rbegin(), flat.rend());
   }
   TriangleSoup soup;
-  for (const auto& [a, b, c] : ears(flat)) soup.add(ordered[a], ordered[b], ordered[c]);
+  for (const auto& [a, b, c] : polygonTriangles(flat)) soup.add(ordered[a], ordered[b], ordered[c]);
   soup.colours.assign(soup.points.size(), colour);
   return soup;
 }

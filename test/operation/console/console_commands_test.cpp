@@ -25,7 +25,8 @@ SessionView viewOf(const InjectionController& controller, const InjectionControl
   view.volume = controller.injectedVolume();
   view.hold_reason = controller.holdReason();
   view.notice = controller.notice();
-  view.settings = {config.mode, config.goal.pulse.duration > 0, config.guards.force_limit, config.guards.depth_limit};
+  view.settings = {config.mode, config.goal.pulse.duration > 0, config.guards.force_limit, config.guards.depth_limit,
+                   ""};
   return view;
 }
 
@@ -197,6 +198,19 @@ TEST_F(ConsoleBesideController, StopTwiceDisables) {
   EXPECT_EQ(controller_.state(), OperatingState::kPaused);
   press(ConsoleCommand::kStop);
   EXPECT_EQ(controller_.state(), OperatingState::kDisabled);
+}
+
+/// What is sent before the controller has connected is lost.
+TEST(ConsoleCommands, BeforeTheControllerListensOnlyStopIsOffered) {
+  SessionView session;
+  session.operating = OperatingState::kDisabled;
+  session.injection = InjectionState::kIdle;
+  EXPECT_EQ(offer(ConsoleCommand::kEnable, session).refusal, "");
+  session.listens = false;
+  for (const ConsoleCommand command : kConsoleCommands) {
+    const bool stop = command == ConsoleCommand::kStop;
+    EXPECT_EQ(offer(command, session).refusal, stop ? "" : "injection_controller does not receive commands yet");
+  }
 }
 
 TEST(ConsoleCommands, WithoutAControllerOnlyStopIsOffered) {

@@ -1,0 +1,88 @@
+#include "rviz/focus_bar.h"
+
+#include <QHBoxLayout>
+#include <cmath>
+
+#include "rviz/session_clock.h"
+
+namespace microinjection {
+namespace {
+
+constexpr double kSilence = 1;   // s, of a motor that has reported
+constexpr double kOnItsWay = 1;  // s after a step; then the place that the motor reports counts again
+
+}  // namespace
+
+FocusBar::FocusBar(QWidget* parent)
+    : QWidget(parent),
+      row_(new JogRow(
+          "Focus", {"-", "+"}, {0.5e-6, 1e-6, 5e-6, 20e-6}, [this](std::size_t button) { move(button == 0 ? -1 : 1); },
+          this)) {
+  auto* layout = new QHBoxLayout(this);
+  layout->setContentsMargins(6, 0, 6, 2);
+  layout->addWidget(row_);
+  setVisible(false);
+}
+
+FocusBar::~FocusBar() = default;
+
+void FocusBar::start() {
+  if (node_) return;
+  node_.emplace();
+  node_->setCallbackQueue(&queue_);
+  commands_ = node_->advertise<sensor_msgs::JointState>("focus/move_jp", 1);
+  search_ = std::make_unique<ActionWatch>(*node_, "focus/find");
+  positions_ =
+      node_->subscribe<sensor_msgs::JointState>("focus/measured_js", 1,
+                                                boost::function<void(const sensor_msgs::JointState::ConstPtr&)>(
+                                                    [this](const auto& message) { onPosition(*message); }));
+}
+
+void FocusBar::onPosition(const sensor_msgs::JointState& message) {
+  if (message.position.empty() || !std::isfinite(message.position[0])) return;
+  // The range is set before the virtual microscope starts; other motors have none that is known here.
+  std::vector<double> range;
+  if (!focus_.position && ros::param::get("/microscope/focus/range", range) && range.size() == 2) {
+    focus_.lowest = range[0];
+    focus_.highest = range[1];
+  }
+  focus_.position = message.position[0];
+  heard_at_ = sessionNow();
+  setVisible(true);
+}
+
+FocusView FocusBar::view() const {
+  FocusView view = focus_;
+  if (sessionNow() - heard_at_ > kSilence) view.position.reset();
+  if (sessionNow() - sent_at_ > kOnItsWay) view.goal.reset();
+  view.searched = search_ && search_->active();
+  return view;
+}
+
+void FocusBar::move(int steps) {
+  if (!node_) return;
+  queue_.callAvailable(ros::WallDuration(0));
+  const FocusView focus = view();
+  const double step = steps * row_->step();
+  if (!offerFocusStep(focus, step).refusal.empty()) return;
+  focus_.goal = focusGoal(focus, step);
+  sent_at_ = sessionNow();
+  sensor_msgs::JointState message;
+  message.header.stamp = ros::Time::now();
+  message.name = {"focus"};
+  message.position = {*focus_.goal};
+  commands_.publish(message);
+}
+
+void FocusBar::refresh() {
+  if (!node_) return;
+  queue_.callAvailable(ros::WallDuration(0));
+  const FocusView focus = view();
+  const CommandOffer down = offerFocusStep(focus, -row_->step()), up = offerFocusStep(focus, row_->step());
+  row_->offer(0, down.refusal.empty());
+  row_->offer(1, up.refusal.empty());
+  const std::string refusal = down.refusal.empty() ? up.refusal : down.refusal;
+  row_->setText(refusal.empty() ? up.effect + "; or Ctrl and the wheel" : refusal, !refusal.empty());
+}
+
+}  // namespace microinjection

@@ -1,0 +1,99 @@
+#include "rviz/needle_bar.h"
+
+#include <cell_microinjection/StringStamped.h>
+#include <geometry_msgs/PoseStamped.h>
+
+#include <QHBoxLayout>
+#include <utility>
+
+#include "rviz/session_clock.h"
+
+namespace microinjection {
+namespace {
+
+constexpr double kBegins = 0.5;  // s after a step, in which the micromanipulator reports that it moves
+
+}  // namespace
+
+NeedleBar::NeedleBar(std::function<SessionView()> newest, std::function<std::optional<Eigen::Isometry3d>()> pose,
+                     QWidget* parent)
+    : QWidget(parent),
+      newest_(std::move(newest)),
+      pose_(std::move(pose)),
+      row_(new JogRow(
+          "Needle", {"x -", "x +", "y -", "y +", "z -", "z +"}, {1e-6, 5e-6, 20e-6, 100e-6},
+          [this](std::size_t button) { press(button); }, this)) {
+  auto* layout = new QHBoxLayout(this);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addWidget(row_);
+}
+
+NeedleBar::~NeedleBar() = default;
+
+void NeedleBar::start() {
+  if (node_) return;
+  node_.emplace();
+  node_->setCallbackQueue(&queue_);
+  moves_ = node_->advertise<geometry_msgs::PoseStamped>("needle/move_cp", 1);
+  stops_ = node_->advertise<cell_microinjection::StringStamped>("needle/state_command", 1);
+  calibration_ = std::make_unique<ActionWatch>(*node_, "calibration/calibrate");
+  states_ = node_->subscribe<cell_microinjection::OperatingState>(
+      "needle/operating_state", 1,
+      boost::function<void(const cell_microinjection::OperatingState::ConstPtr&)>([this](const auto& message) {
+        needle_.state = operatingStateOf(message->state);
+        busy_ = message->is_busy;
+      }));
+}
+
+NeedleView NeedleBar::view() {
+  NeedleView view = needle_;
+  // A latched state outlives its node.
+  if (states_.getNumPublishers() == 0) view.state.reset();
+  if (const auto pose = pose_()) view.tip = pose->translation();
+  if (!busy_ && sessionNow() - sent_at_ > kBegins) view.goal.reset();
+  view.calibrating = calibration_ && calibration_->active();
+  return view;
+}
+
+void NeedleBar::press(std::size_t button) {
+  if (!node_) return;
+  queue_.callAvailable(ros::WallDuration(0));
+  const NeedleView needle = view();
+  const auto pose = pose_();
+  if (!pose || !offerNeedleStep(needle, newest_()).refusal.empty()) return;
+  const double step = (button % 2 == 0 ? -1 : 1) * row_->step();
+  needle_.goal = needleGoal(needle, step * Eigen::Vector3d::Unit(static_cast<Eigen::Index>(button) / 2));
+  sent_at_ = sessionNow();
+  geometry_msgs::PoseStamped message;
+  message.header.stamp = ros::Time::now();
+  message.header.frame_id = "world";
+  message.pose.position.x = needle_.goal->x();
+  message.pose.position.y = needle_.goal->y();
+  message.pose.position.z = needle_.goal->z();
+  const Eigen::Quaterniond turned(pose->linear());
+  message.pose.orientation.x = turned.x();
+  message.pose.orientation.y = turned.y();
+  message.pose.orientation.z = turned.z();
+  message.pose.orientation.w = turned.w();
+  moves_.publish(message);
+}
+
+void NeedleBar::stop() {
+  if (!node_ || !view().goal) return;
+  cell_microinjection::StringStamped message;
+  message.header.stamp = ros::Time::now();
+  message.string = "stop";
+  stops_.publish(message);
+  needle_.goal.reset();
+}
+
+void NeedleBar::refresh(const SessionView& session) {
+  if (!node_) return;
+  queue_.callAvailable(ros::WallDuration(0));
+  const CommandOffer offered = offerNeedleStep(view(), session);
+  const bool allowed = offered.refusal.empty();
+  for (std::size_t i = 0; i < 6; ++i) row_->offer(i, allowed);
+  row_->setText(allowed ? offered.effect : offered.refusal, !allowed);
+}
+
+}  // namespace microinjection

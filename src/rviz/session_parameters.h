@@ -1,0 +1,28 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace microinjection {
+
+/// The parameters of one node of the session, which are set before it starts. Each call waits for the master: read them
+/// when the node appears, not for each message.
+class SessionParameters {
+ public:
+  /// @param node  as "/injection_controller"
+  explicit SessionParameters(std::string node) : node_(std::move(node)) {}
+
+  /// Empty: it is not set, or no number. The second is an error().
+  std::optional<double> number(const std::string& key);
+  /// Empty: it is not set.
+  std::string text(const std::string& key) const;
+  /// The values that are no numbers; empty: none.
+  const std::string& error() const { return error_; }
+
+ private:
+  std::string node_;
+  std::string error_;
+};
+
+}  // namespace microinjection
