@@ -218,14 +218,14 @@ class TheBench(InAFolder):
               'stability': {'scene': 'spring', 'mesh': 'paper', 'level': 0, 'depth': 2, 'steps': [1, 2], 'deepest': 3,
                             'step': 1}}
 
-    def rows(self, *modes):
+    def rows(self, *modes, reference='right'):
         """The rows of a first program, which is the reference, and of some others."""
         (self.folder / 'cells').mkdir()
         self.write('cells/spring.yaml', 'cell: {}')
         writer = self.write('write_case', f'#!{sys.executable}\n' + textwrap.dedent(WRITER))
         writer.chmod(writer.stat().st_mode | stat.S_IXUSR)
         studies = (peer_programs.CONVERGED, peer_programs.EQUAL, peer_programs.STABILITY)
-        programs = [peer_programs.Program(mode, self.command(mode), studies) for mode in ('right', *modes)]
+        programs = [peer_programs.Program(mode, self.command(mode), studies) for mode in (reference, *modes)]
         arguments = argparse.Namespace(out=self.folder, programs=self.folder, quick=False, core=None,
                                        studies=studies)
         bench = Impatient(arguments, self.SCENES, programs)
@@ -250,6 +250,11 @@ class TheBench(InAFolder):
         stable = [row for row in rows if row['study'] == 'stability' and row['program'] == 'Fake 2.1']
         self.assertEqual((stable[-1]['largest_step_um'], stable[-1]['largest_depth_um']), (2, 3))
         self.assertEqual(stable[1]['largest_depth_um'], 1)
+
+    def test_compares_with_our_force_only(self):
+        rows = [row for row in self.rows('right', reference='crashes') if row['study'] == 'converged']
+        self.assertEqual([row['verdict'] for row in rows], ['crashed: SIGABRT', 'done', 'done'])
+        self.assertTrue(all(math.isnan(row['force_error']) and 'agrees' not in row for row in rows[1:]))
 
     def test_says_what_is_missing(self):
         missing = peer_programs.programs(self.folder)

@@ -45,7 +45,7 @@ def programs(folder):
 
 def law_command(law):
     """Returns the command that solves a case with another strain energy: what the law of a peer changes."""
-    return python('getfem_cell.py', 'p2_p1', law)
+    return python('getfem_cell.py', 'p2', law)
 
 
 def joined(text):
