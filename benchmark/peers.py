@@ -201,6 +201,7 @@ def choose(scenes, names):
 def main():
     arguments = parse_arguments()
     arguments.studies = arguments.studies.split(',')
+    arguments.out, arguments.programs = arguments.out.resolve(), arguments.programs.resolve()
     scenes = yaml.safe_load((ROOT / 'benchmark' / 'peers' / 'scenes.yaml').read_text(encoding='utf-8'))
     try:
         programs = peer_programs.programs(arguments.programs) + [peer_programs.joined(peer) for peer in arguments.peer]

@@ -2,6 +2,7 @@
 import argparse
 import csv
 import math
+import os
 import stat
 import sys
 import tempfile
@@ -199,6 +200,9 @@ class AProgram(InAFolder):
     def test_joins_by_name_and_command(self):
         program = peer_programs.joined('Mine=./solve --fast=1')
         self.assertEqual((program.name, program.command), ('Mine', './solve --fast=1'))
+        path = self.write('solve', '')
+        relative = os.path.relpath(path)
+        self.assertEqual(peer_programs.joined(f'Mine={relative} 1').command, f'{path.resolve()} 1')
         for text in ('Mine', '=./solve', 'Mine='):
             with self.subTest(text), self.assertRaises(ValueError):
                 peer_programs.joined(text)

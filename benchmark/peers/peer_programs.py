@@ -1,5 +1,6 @@
 """The programs that ./dev bench peers compares."""
 import importlib.util
+import shlex
 import shutil
 import sys
 from dataclasses import dataclass
@@ -49,8 +50,11 @@ def law_command(law):
 
 
 def joined(text):
-    """Returns the Program of --peer NAME=COMMAND. Raises ValueError."""
+    """Returns the Program of --peer NAME=COMMAND; it may be started from any folder. Raises ValueError."""
     name, equals, command = text.partition('=')
     if not name.strip() or not equals or not command.strip():
         raise ValueError(f"--peer '{text}': must be NAME=COMMAND")
-    return Program(name.strip(), command.strip(), (CONVERGED, EQUAL, STABILITY))
+    program, *rest = shlex.split(command)
+    if Path(program).is_file():
+        program = str(Path(program).resolve())
+    return Program(name.strip(), shlex.join([program, *rest]), (CONVERGED, EQUAL, STABILITY))
