@@ -325,7 +325,10 @@ class GetFEM(unittest.TestCase):
         gradient = numpy.eye(3) + self.GRADIENT
         green, strain = (gradient.T @ gradient - numpy.eye(3)) / 2, (self.GRADIENT + self.GRADIENT.T) / 2
         log = math.log(numpy.linalg.det(gradient))
+        first, jacobian, m = (gradient ** 2).sum(), math.exp(log), 4 / 3 * self.MU
         expected = {
+            'stable_neo_hookean': m / 2 * (first - 3) - m / 2 * math.log((first + 1) / 4) - 0.75 * m * (jacobian - 1)
+            + (self.LAMBDA + 5 / 6 * self.MU) / 2 * (jacobian - 1) ** 2,
             'linear': self.MU * (strain ** 2).sum() + self.LAMBDA / 2 * numpy.trace(strain) ** 2,
             'st_venant_kirchhoff': self.MU * (green ** 2).sum() + self.LAMBDA / 2 * numpy.trace(green) ** 2,
             'neo_hookean': self.MU / 2 * ((gradient ** 2).sum() - 3) - self.MU * log + self.LAMBDA / 2 * log ** 2,

@@ -16,6 +16,7 @@ class Program:
     command: str
     studies: tuple
     missing: str = ''  # the package that it needs and the machine lacks
+    preparation: tuple = ()  # a command for scenes of rounded tips, run once with the scene file behind it
 
 
 def python(script, *arguments):
@@ -34,7 +35,7 @@ def programs(folder):
         Program('ours p2', f'{ours} p2', (EQUAL,)),
         Program('ours explicit', f'{ours} explicit', (EQUAL,)),
         Program('ours family', f'{ours} family', (EQUAL,)),
-        Program('ours prepared', f'{ours} prepared', (EQUAL,)),
+        Program('ours prepared', f'{ours} prepared', (EQUAL,), preparation=(folder / 'prepare', '--scene')),
         Program('Bullet', f'{bullet} 1', (EQUAL, STABILITY), no_bullet),
         Program('Bullet, equilibrium', f'{bullet} 5', (EQUAL, STABILITY), no_bullet),
         Program('CalculiX', python('calculix_cell.py'), (CONVERGED, EQUAL, STABILITY), no_calculix),
