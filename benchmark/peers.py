@@ -7,6 +7,7 @@ import argparse
 import math
 import os
 import shutil
+import subprocess
 import sys
 from pathlib import Path
 
@@ -66,8 +67,12 @@ class Bench:
                 self.add_converged(program, common, [outcome.result for outcome in outcomes], k, depth, effects[k])
 
     def law_effects(self, law, path, depths):
-        """Returns by how much the force of another law is larger, at each depth; 0 for the case's own."""
-        getfem = [program for program in self.programs if program.name == 'GetFEM p2_p1' and not program.missing]
+        """Returns by how much the force of another law is larger, at each depth; 0 for the case's own.
+
+        With the element of the peer, quadratic without pressure: mixed elements approximate the pressure, whose part in
+        the energy differs from law to law.
+        """
+        getfem = [program for program in self.programs if program.name == 'GetFEM p2' and not program.missing]
         if law == 'same':
             return [0.0] * len(depths)
         found = []
@@ -85,12 +90,16 @@ class Bench:
         if not math.isfinite(forces[-1]):
             self.add(**{**row, 'verdict': 'no solution'})
             return
-        reference = self.converged.setdefault((common['scene'], depth), (forces[-1], error))
-        row.update(converged_N=reference[0], converged_error=abs(reference[1] / reference[0]))
-        if program is not self.of(CONVERGED)[0]:
+        own = program is self.of(CONVERGED)[0]
+        if own:
+            self.converged[common['scene'], depth] = (forces[-1], error)
+        reference, reference_error = self.converged.get((common['scene'], depth), (math.nan, math.nan))
+        row.update(converged_N=reference, converged_error=abs(reference_error / reference))
+        if not own:
             same_law = forces[-1] / (1 + (effect if math.isfinite(effect) else 0))
-            row.update(force_error=peer_table.relative_error(same_law, reference[0]),
-                       agrees=peer_table.agree(same_law, error, *reference))
+            row['force_error'] = peer_table.relative_error(same_law, reference)
+            if math.isfinite(error) and math.isfinite(reference_error):
+                row['agrees'] = peer_table.agree(same_law, error, reference, reference_error)
         self.add(**row)
 
     def reference(self, scene, depth):
@@ -112,6 +121,7 @@ class Bench:
         for level in levels:
             path = self.cases.write(equal['scene'], equal['mesh'], level, depths)
             for program in self.of(EQUAL):
+                self.prepare(program, equal['scene'], path)
                 outcome = self.run(program, path, STEPS)
                 common = {'study': EQUAL, 'scene': equal['scene'], 'mesh': f'{equal["mesh"]} {level}', **read_counts(path)}
                 if outcome.verdict.startswith(peer_process.DECLINED):
@@ -119,9 +129,15 @@ class Bench:
                 if outcome.verdict != peer_process.DONE:
                     self.add(program=program.name, **common, verdict=outcome.verdict)
                 else:
-                    self.add_equal(outcome.result, common, depths)
+                    self.add_equal(outcome, common, depths)
 
-    def add_equal(self, result, common, depths):
+    def prepare(self, program, scene, path):
+        """What a program needs once for a rounded tip, on all processors and without a limit: it takes minutes."""
+        if program.preparation and program.preparation[0].exists() and 'glued 0\n' in path.read_text(encoding='utf-8'):
+            subprocess.run([*program.preparation, self.cases.scene_file(scene)], check=False)
+
+    def add_equal(self, outcome, common, depths):
+        result = outcome.result
         times = [1e3 * time for time in result.times[WARM_UP:]]
         force, (converged, error) = result.forces[-1][2], self.reference(common['scene'], depths[-1])
         lost = next((depth for depth, found in zip(depths, result.forces) if not all(map(math.isfinite, found))), None)
@@ -129,7 +145,7 @@ class Bench:
                  time_ms_median=peer_table.quantile(times, 0.5), time_ms_low=peer_table.quantile(times, 0.1),
                  time_ms_high=peer_table.quantile(times, 0.9), depth_um=depths[-1], steps=len(depths), force_N=force,
                  force_error=peer_table.relative_error(force, converged), converged_N=converged,
-                 converged_error=abs(error / converged), law=result.law,
+                 converged_error=abs(error / converged), law=result.law, process_s=outcome.process_time,
                  verdict=peer_process.DONE if lost is None else f'no solution from {lost:g} um')
 
     def solve_stability(self):
@@ -170,7 +186,7 @@ def parse_arguments():
                         help='another program, called with a case and a result behind COMMAND; repeatable')
     parser.add_argument('--studies', default=f'{CONVERGED},{EQUAL},{STABILITY}', help='default %(default)s')
     parser.add_argument('--scenes', help='only these scenes of benchmark/peers/scenes.yaml, separated by commas')
-    parser.add_argument('--without', default='', help='names of programs to leave out, separated by commas')
+    parser.add_argument('--without', default='', help='names of programs to leave out, separated by commas; the reference, ours p2_p0, stays')
     parser.add_argument('--time-limit', type=float, default=600, help='s, for a program on one case (default %(default)s)')
     parser.add_argument('--quick', action='store_true', help='coarser meshes of the section, one equal mesh of each kind')
     parser.add_argument('--core', type=int, default=max(os.sched_getaffinity(0)),
@@ -192,6 +208,7 @@ def choose(scenes, names):
 def main():
     arguments = parse_arguments()
     arguments.studies = arguments.studies.split(',')
+    arguments.out, arguments.programs = arguments.out.resolve(), arguments.programs.resolve()
     scenes = yaml.safe_load((ROOT / 'benchmark' / 'peers' / 'scenes.yaml').read_text(encoding='utf-8'))
     try:
         programs = peer_programs.programs(arguments.programs) + [peer_programs.joined(peer) for peer in arguments.peer]
@@ -200,7 +217,8 @@ def main():
     except ValueError as error:
         print(f'peers: {error}', file=sys.stderr)
         return 2
-    programs = [program for program in programs if program.name not in arguments.without.split(',')]
+    # The first program's converged forces are what all others are compared with.
+    programs = programs[:1] + [program for program in programs[1:] if program.name not in arguments.without.split(',')]
     missing = sorted({program.missing for program in programs if program.missing})
     if missing:
         print(f'Not installed: {", ".join(missing)}. ./dev setup --peers installs them.', flush=True)

@@ -2,6 +2,7 @@
 import argparse
 import csv
 import math
+import os
 import stat
 import sys
 import tempfile
@@ -199,6 +200,9 @@ class AProgram(InAFolder):
     def test_joins_by_name_and_command(self):
         program = peer_programs.joined('Mine=./solve --fast=1')
         self.assertEqual((program.name, program.command), ('Mine', './solve --fast=1'))
+        path = self.write('solve', '')
+        relative = os.path.relpath(path)
+        self.assertEqual(peer_programs.joined(f'Mine={relative} 1').command, f'{path.resolve()} 1')
         for text in ('Mine', '=./solve', 'Mine='):
             with self.subTest(text), self.assertRaises(ValueError):
                 peer_programs.joined(text)
@@ -218,14 +222,14 @@ class TheBench(InAFolder):
               'stability': {'scene': 'spring', 'mesh': 'paper', 'level': 0, 'depth': 2, 'steps': [1, 2], 'deepest': 3,
                             'step': 1}}
 
-    def rows(self, *modes):
+    def rows(self, *modes, reference='right'):
         """The rows of a first program, which is the reference, and of some others."""
         (self.folder / 'cells').mkdir()
         self.write('cells/spring.yaml', 'cell: {}')
         writer = self.write('write_case', f'#!{sys.executable}\n' + textwrap.dedent(WRITER))
         writer.chmod(writer.stat().st_mode | stat.S_IXUSR)
         studies = (peer_programs.CONVERGED, peer_programs.EQUAL, peer_programs.STABILITY)
-        programs = [peer_programs.Program(mode, self.command(mode), studies) for mode in ('right', *modes)]
+        programs = [peer_programs.Program(mode, self.command(mode), studies) for mode in (reference, *modes)]
         arguments = argparse.Namespace(out=self.folder, programs=self.folder, quick=False, core=None,
                                        studies=studies)
         bench = Impatient(arguments, self.SCENES, programs)
@@ -250,6 +254,11 @@ class TheBench(InAFolder):
         stable = [row for row in rows if row['study'] == 'stability' and row['program'] == 'Fake 2.1']
         self.assertEqual((stable[-1]['largest_step_um'], stable[-1]['largest_depth_um']), (2, 3))
         self.assertEqual(stable[1]['largest_depth_um'], 1)
+
+    def test_compares_with_our_force_only(self):
+        rows = [row for row in self.rows('right', reference='crashes') if row['study'] == 'converged']
+        self.assertEqual([row['verdict'] for row in rows], ['crashed: SIGABRT', 'done', 'done'])
+        self.assertTrue(all(math.isnan(row['force_error']) and 'agrees' not in row for row in rows[1:]))
 
     def test_says_what_is_missing(self):
         missing = peer_programs.programs(self.folder)
@@ -316,7 +325,10 @@ class GetFEM(unittest.TestCase):
         gradient = numpy.eye(3) + self.GRADIENT
         green, strain = (gradient.T @ gradient - numpy.eye(3)) / 2, (self.GRADIENT + self.GRADIENT.T) / 2
         log = math.log(numpy.linalg.det(gradient))
+        first, jacobian, m = (gradient ** 2).sum(), math.exp(log), 4 / 3 * self.MU
         expected = {
+            'stable_neo_hookean': m / 2 * (first - 3) - m / 2 * math.log((first + 1) / 4) - 0.75 * m * (jacobian - 1)
+            + (self.LAMBDA + 5 / 6 * self.MU) / 2 * (jacobian - 1) ** 2,
             'linear': self.MU * (strain ** 2).sum() + self.LAMBDA / 2 * numpy.trace(strain) ** 2,
             'st_venant_kirchhoff': self.MU * (green ** 2).sum() + self.LAMBDA / 2 * numpy.trace(green) ** 2,
             'neo_hookean': self.MU / 2 * ((gradient ** 2).sum() - 3) - self.MU * log + self.LAMBDA / 2 * log ** 2,

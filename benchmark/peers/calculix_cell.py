@@ -17,7 +17,7 @@ sys.dont_write_bytecode = True
 import peer_format  # noqa: E402
 from calculix_tip import tip_input  # noqa: E402
 
-# 20 values a line are the most that CalculiX reads.
+# CalculiX reads at most 16 values a line and 20 characters a value.
 LINE = 12
 ELEMENTS = {(2, 2): ('CAX6', 'p2'), (3, 1): ('C3D4', 'p1'), (3, 2): ('C3D10', 'p2')}
 WEDGES = 180  # of 2 degrees in a turn: CalculiX turns a section into one of them
@@ -44,7 +44,7 @@ def mesh(case):
     lines = ['*NODE,NSET=CELL']
     for number, node in enumerate(case.nodes, 1):
         x, y, z = (1e6 * value for value in (*node, 0)[:3])
-        lines.append(f'{number},{x!r},{y!r},{z!r}')
+        lines.append(f'{number},{x:.12g},{y:.12g},{z:.12g}')
     kind = ELEMENTS[case.dimension, case.order][0]
     for layer in range(len(case.layers)):
         lines.append(f'*ELEMENT,TYPE={kind},ELSET=L{layer}')

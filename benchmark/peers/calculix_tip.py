@@ -31,7 +31,7 @@ def tip_input(case, listing):
     for numbers, places in ((outside, points), (inside, inner),
                             (middle, [((a + c) / 2, (b + d) / 2) for (a, b), (c, d) in zip(points, inner)])):
         # Middle nodes between those of an element's edge are not part of it.
-        lines += [f'{n},{r!r},{height + z!r},0.' for k, (n, (r, z)) in enumerate(zip(numbers, places))
+        lines += [f'{n},{r:.12g},{height + z:.12g},0.' for k, (n, (r, z)) in enumerate(zip(numbers, places))
                   if numbers is not middle or k % 2 == 0]
     lines.append('*ELEMENT,TYPE=CAX8,ELSET=NEEDLE')
     element = len(case.elements)

@@ -22,6 +22,10 @@ def strain_energy(law, young, poisson, dimension, mixed):
     elif law == 'neo_hookean':
         dilatation = f'log({jacobian})'
         distortion = f'{mu / 2!r}*({first}-3)-{mu!r}*{dilatation}'
+    elif law == 'stable_neo_hookean':
+        m, lam = 4 * mu / 3, lam + 5 * mu / 6
+        dilatation = f'({jacobian}-1)'
+        distortion = f'{m / 2!r}*({first}-3-log(({first}+1)/4))-{0.75 * m!r}*{dilatation}'
     elif law == 'neo_hookean_isochoric':  # mu/2 (J^(-2/3) I1 - 3) + K/2 (J - 1)^2: that of CalculiX
         dilatation = f'({jacobian}-1)'
         distortion = f'{mu / 2!r}*({first}*pow({jacobian},-2/3)-3)'

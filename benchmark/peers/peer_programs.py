@@ -1,5 +1,6 @@
 """The programs that ./dev bench peers compares."""
 import importlib.util
+import shlex
 import shutil
 import sys
 from dataclasses import dataclass
@@ -15,6 +16,7 @@ class Program:
     command: str
     studies: tuple
     missing: str = ''  # the package that it needs and the machine lacks
+    preparation: tuple = ()  # a command for scenes of rounded tips, run once with the scene file behind it
 
 
 def python(script, *arguments):
@@ -33,7 +35,7 @@ def programs(folder):
         Program('ours p2', f'{ours} p2', (EQUAL,)),
         Program('ours explicit', f'{ours} explicit', (EQUAL,)),
         Program('ours family', f'{ours} family', (EQUAL,)),
-        Program('ours prepared', f'{ours} prepared', (EQUAL,)),
+        Program('ours prepared', f'{ours} prepared', (EQUAL,), preparation=(folder / 'prepare', '--scene')),
         Program('Bullet', f'{bullet} 1', (EQUAL, STABILITY), no_bullet),
         Program('Bullet, equilibrium', f'{bullet} 5', (EQUAL, STABILITY), no_bullet),
         Program('CalculiX', python('calculix_cell.py'), (CONVERGED, EQUAL, STABILITY), no_calculix),
@@ -45,12 +47,15 @@ def programs(folder):
 
 def law_command(law):
     """Returns the command that solves a case with another strain energy: what the law of a peer changes."""
-    return python('getfem_cell.py', 'p2_p1', law)
+    return python('getfem_cell.py', 'p2', law)
 
 
 def joined(text):
-    """Returns the Program of --peer NAME=COMMAND. Raises ValueError."""
+    """Returns the Program of --peer NAME=COMMAND; it may be started from any folder. Raises ValueError."""
     name, equals, command = text.partition('=')
     if not name.strip() or not equals or not command.strip():
         raise ValueError(f"--peer '{text}': must be NAME=COMMAND")
-    return Program(name.strip(), command.strip(), (CONVERGED, EQUAL, STABILITY))
+    program, *rest = shlex.split(command)
+    if Path(program).is_file():
+        program = str(Path(program).resolve())
+    return Program(name.strip(), shlex.join([program, *rest]), (CONVERGED, EQUAL, STABILITY))

@@ -4,7 +4,7 @@ import math
 
 COLUMNS = ('program', 'model', 'element', 'vertices', 'tetrahedra', 'time_ms_median', 'force_N', 'force_error', 'study',
            'scene', 'mesh', 'depth_um', 'steps', 'time_ms_low', 'time_ms_high', 'error_estimate', 'converged_N',
-           'converged_error', 'law', 'law_effect', 'agrees', 'largest_step_um', 'largest_depth_um', 'verdict')
+           'converged_error', 'law', 'law_effect', 'agrees', 'largest_step_um', 'largest_depth_um', 'process_s', 'verdict')
 
 SAME_FORCE = 0.05  # relative, that a stable step may be off the force in the smallest steps
 SOUND = 0.8  # of the largest force before: a smaller one has lost the equilibrium
