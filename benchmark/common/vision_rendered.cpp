@@ -4,7 +4,6 @@
 #include "base/cpu_time.h"
 #include "benchmark/common/vision_cases.h"
 #include "vision/detection/cell_detector.h"
-#include "vision/detection/indentation_contour.h"
 #include "vision/detection/pipette_detector.h"
 #include "vision/detection/specimen_tracker.h"
 #include "vision/microscope/microscope.h"
@@ -111,38 +110,50 @@ PipetteDetection pipetteRows(const ImageRows& rows, const std::string& what, con
   return found;
 }
 
-/// The dimple under the needle that was found. What needs an uncertain needle is uncertain.
-void dimpleRow(const ImageRows& rows, const Frame& frame, const CellDetection& cell, const PipetteDetection& needle,
-               const SceneTruth& truth) {
-  if (!truth.cell || !truth.cell->dimple_depth || !cell.finding.hasValues()) return;
-  double time = 0;
-  const Indentation found = timed(time, [&] { return findIndentation(frame, cell.outer(), needle); });
-  rows.add("dimple_depth", found.finding, std::abs(found.depth - *truth.cell->dimple_depth), *truth.cell->dimple_depth,
-           kDimple, time);
-  if (!found.outline_found) return;
-  CellDetection undisturbed = cell;
-  takeUndisturbed(found, undisturbed);
-  const cv::Point2d off = undisturbed.centre - cv::Point2d(truth.cell->centre.x(), truth.cell->centre.y());
-  rows.add("centre_undisturbed", cell.finding, std::hypot(off.x, off.y), truth.cell->diameter, kCentre);
+/// A cell that was searched and then tracked, with the needle that may press it.
+struct SeenCell {
+  SpecimenView found, tracked;
+  double time = 0, following = 0, indentation = 0;  ///< s of processor time
+};
+
+/// The cell without the needle.
+SeenCell seenCell(const CellDetector& detector, const Frame& frame) {
+  SeenCell seen;
+  seen.found.cell = timed(seen.time, [&] { return detector.detect(frame); });
+  if (seen.found.cell.finding.hasValues())
+    seen.tracked.cell = timed(seen.following, [&] { return detector.track(frame, seen.found.cell, 8); });
+  return seen;
+}
+
+/// What the needle makes of the cell, as the node vision publishes it.
+void addNeedle(const Frame& frame, const PipetteDetection& needle, SeenCell& seen) {
+  const auto add = [&](SpecimenView& view) {
+    view.injection = needle;
+    measureIndentation(frame, view);
+    return true;
+  };
+  timed(seen.indentation, [&] { return add(seen.found); });
+  add(seen.tracked);
 }
 
 /// @param reading  s of processor time, that the frame took
-CellDetection seenCell(const ImageRows& rows, const CellDetector& detector, const Frame& frame, const SceneTruth& truth,
-                       double reading) {
-  double time = 0, following = 0;
-  const CellDetection cell = timed(time, [&] { return detector.detect(frame); });
+void seenRows(const ImageRows& rows, const SeenCell& seen, const SceneTruth& truth, double reading) {
+  const CellDetection& cell = seen.found.cell;
   if (!truth.cell) {
-    rows.addAbsent("cell", cell.finding, reading + time);
-    return cell;
+    rows.addAbsent("cell", cell.finding, reading + seen.time);
+    return;
   }
-  cellRows(rows, cell, *truth.cell, reading + time);
+  cellRows(rows, cell, *truth.cell, reading + seen.time);
   polarBodyRow(rows, cell.polar_body, *truth.cell);
-  if (!cell.finding.hasValues()) return cell;
-  const CellDetection again = timed(following, [&] { return detector.track(frame, cell, 8); });
+  if (!cell.finding.hasValues()) return;
+  const CellDetection& again = seen.tracked.cell;
   const Eigen::Vector2d& centre = truth.cell->centre;
   rows.add("cell_tracked", again.finding, std::hypot(again.centre.x - centre.x(), again.centre.y - centre.y()), 0,
-           kCentre, reading + following);
-  return cell;
+           kCentre, reading + seen.following);
+  if (!truth.cell->dimple_depth) return;
+  const double depth = *truth.cell->dimple_depth;
+  const Indentation& found = seen.found.indentation;
+  rows.add("dimple_depth", found.finding, std::abs(found.depth - depth), depth, kDimple, seen.indentation);
 }
 
 }  // namespace
@@ -164,11 +175,13 @@ void renderedRows(const VisionCondition& condition, std::uint64_t first, int ima
     const ImageRows rows(condition.name, seed, take);
     double reading = 0;
     const Frame frame = timed(reading, [&] { return Frame(image); });
-    CellDetection cell;
-    if (!pipettes_only) cell = seenCell(rows, detector, frame, drawn.truth, reading);
+    SeenCell seen;
+    if (!pipettes_only) seen = seenCell(detector, frame);
     const PipetteDetection needle = pipetteRows(rows, "tip", frame, view, drawn.truth.injection, kTip);
     pipetteRows(rows, "mouth", frame, view, drawn.truth.holding, kMouth);
-    dimpleRow(rows, frame, cell, needle, drawn.truth);
+    if (pipettes_only) continue;
+    addNeedle(frame, needle, seen);
+    seenRows(rows, seen, drawn.truth, reading);
   }
 }
 

@@ -49,7 +49,8 @@ struct CellDetection {
 
 /// Finds a cell in a frame: candidates by the votes of edges, closed borders by dynamic programming
 /// in polar maps about them, ellipses by robust least squares. The border is the steepest place of
-/// the grey value: from dark to bright outwards, in DIC either way.
+/// the grey value: from dark to bright outwards, in DIC either way. It does not know where needles are: under one
+/// the verdicts are those of measureIndentation() (specimen_tracker.h).
 class CellDetector {
  public:
   explicit CellDetector(const CellDetectorConfig& config);

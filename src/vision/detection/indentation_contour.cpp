@@ -60,6 +60,7 @@ Indentation indentationBy(const Frame& frame, const CellBorder& border, const Ne
   if (!border.finding.hasValues()) return result;
   result.finding = Finding::notFound("the tip is outside of the cell's outline: there is no dimple");
   if (border.ellipse.distance(needle.axis.tip) > kOutside) return result;
+  result.at_cell = true;
   std::vector<BorderPoint> points;
   const DentedEllipse dented = fitOutline(frame, border, needle, points);
   result.finding = Finding::notFound("the outline under the needle is not clear");

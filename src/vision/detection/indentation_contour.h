@@ -19,6 +19,7 @@ struct Indentation {
   double deviation = 0;        ///< px, standard deviation
   cv::Point2d deepest;         ///< px
   Ellipse outline;             ///< px, undisturbed
+  bool at_cell = false;        ///< the tip is at the border or within it, which it may bend
   bool outline_found = false;  ///< the border is this outline with a dimple, whether the depth is sure or not
   Eigen::Matrix2d centre_covariance = Eigen::Matrix2d::Zero();  ///< px^2, of the outline's centre
   std::vector<cv::Point2d> contour;                             ///< px, of the part that faces the needle

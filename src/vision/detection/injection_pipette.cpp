@@ -7,6 +7,7 @@
 #include "vision/detection/pipette_end.h"
 #include "vision/detection/tip_fit.h"
 #include "vision/detection/tip_outline.h"
+#include "vision/detection/tip_walls.h"
 
 namespace microinjection {
 namespace {
@@ -21,7 +22,6 @@ constexpr double kWidestPoint = 14;                        // px from the axis, 
 constexpr double kTube = 0.1;                              // widening of a tube whose profile stays the same, at most
 constexpr double kAgree = 6;                               // px, between two ways to see a tip's end
 constexpr double kApart = 0.25;  // standard deviation of an end over the distance between two ways to see it
-constexpr double kUnclear = 2;   // px, standard deviation of an end that needs a second witness
 constexpr double kThinnest = 4, kWidestTip = 40, kWidestSure = 26;  // px, half widths
 constexpr double kAhead = 48;                // px behind the end, whose half width is that of the strips
 constexpr int kFirstShift = 24, kShift = 8;  // px, that an axis may be off
@@ -36,9 +36,13 @@ constexpr int kFitRows = 110, kFitHalf = 24;
 constexpr double kFitBlur = 0.4;            // px
 constexpr double kPlain = 0.5;              // misfit of a fit before a plain background, at most
 constexpr double kFitAgrees = 2;            // px, of a fit and an edge before another background
-constexpr double kSureDeviation = 0.6;      // px, of a fitted end
+constexpr double kSureDeviation = 0.6;      // px, of an end
 constexpr double kSureCompressed = 0.25;    // px, the same of an end in a compressed image
 constexpr double kFar = 3, kSureFar = 0.4;  // px, from where the edges end, and the deviation of an end that far
+constexpr double kWallsKept = 0.15;         // of the walls' edges, that are left near an end
+constexpr double kShaded = 0.2;             // of walls that are not alike, as in DIC
+constexpr double kThinShaded = 7;           // px, half width of a profile that such walls displace
+constexpr double kOneSided = 0.8;           // shading of what is on one side of a needle only
 
 std::vector<double> outlines(const PipetteStrip& strip, const PipetteAxis& axis, double factor, double margin) {
   std::vector<double> half;
@@ -99,6 +103,18 @@ void fitEnd(const Frame& frame, const PipetteAxis& axis, const TipOutline& outli
   found.finding = fit.deviation > most ? Finding::uncertain("the tip fades into its background") : Finding::found();
 }
 
+/// Takes the certainty from an end that the walls behind it contradict.
+void doubtByWalls(const Frame& frame, PipetteDetection& found) {
+  if (!found.finding.isFound()) return;
+  const TipWalls walls = measureTipWalls(frame, found.end, found.direction);
+  // Under a needle the borders of a cell are straight and symmetric to its axis, as an end is.
+  if (walls.kept < kWallsKept) found.finding = Finding::uncertain("the pipette's walls begin behind its end");
+  // Both images of a thin needle in DIC are one, which is even about a place beside the axis.
+  if (walls.shading > kShaded && walls.half_width < kThinShaded)
+    found.finding = Finding::uncertain("the pipette is thin and shaded from one side, as in DIC");
+  if (walls.shading > kOneSided) found.finding = Finding::uncertain("something lies beside the tip");
+}
+
 }  // namespace
 
 PipetteDetection refineInjection(const Frame& frame, PipetteAxis axis, const cv::Point2d& end, double reach,
@@ -150,7 +166,7 @@ PipetteDetection refineInjection(const Frame& frame, PipetteAxis axis, const cv:
   found.clearness = last.clearness;
   found.setCovariance(last.deviation, fit.offset_deviation);
   found.finding = Finding::found();
-  if (last.deviation > kUnclear) found.finding = Finding::uncertain("the pipette's end is not clear");
+  if (last.deviation > kSureDeviation) found.finding = Finding::uncertain("the pipette's end is not clear");
   if (found.clearness < kSureClearness)
     found.finding = Finding::uncertain("the tip is not clear before its background");
   fitEnd(frame, axis, outline, found, fit.offset_deviation);
@@ -158,6 +174,7 @@ PipetteDetection refineInjection(const Frame& frame, PipetteAxis axis, const cv:
     found.finding = Finding::uncertain("the image has no noise, as a compressed one, and the tip is not clear");
   if (found.half_width > kWidestSure) found.finding = Finding::uncertain("the pipette is too wide at its end");
   if (found.symmetry < kSureSymmetry) found.finding = Finding::uncertain("the pipette's walls are not symmetric");
+  doubtByWalls(frame, found);
   if (!frame.contains(found.end, 2)) found.finding = Finding::notFound("no pipette: its end is out of the image");
   return found;
 }

@@ -56,12 +56,25 @@ Indentation indentationOf(const Frame& frame, const SpecimenView& view) {
   return found;
 }
 
+/// See measureIndentation().
+void takeUndisturbed(const Indentation& indentation, CellDetection& cell) {
+  if (!indentation.at_cell) return;
+  if (indentation.outline_found) {
+    cell.centre = indentation.outline.centre;
+    cell.centre_covariance = indentation.centre_covariance;
+    return;
+  }
+  for (Finding* bent : {&cell.finding, &cell.size}) {
+    if (bent->isFound())
+      *bent = Finding::uncertain("a needle bends the border, and the outline without it is not clear");
+  }
+}
+
 }  // namespace
 
-void takeUndisturbed(const Indentation& indentation, CellDetection& cell) {
-  if (!indentation.outline_found) return;
-  cell.centre = indentation.outline.centre;
-  cell.centre_covariance = indentation.centre_covariance;
+void measureIndentation(const Frame& frame, SpecimenView& view) {
+  view.indentation = indentationOf(frame, view);
+  takeUndisturbed(view.indentation, view.cell);
 }
 
 SpecimenTrackerConfig SpecimenTrackerConfig::read(ConfigReader& reader) {
@@ -85,8 +98,7 @@ const SpecimenView& SpecimenTracker::next(const Frame& frame) {
   view.holding = follow(holding_, frame, view_.holding, config_.reach, holding_age_);
   if (view.holding.finding.isFound())
     view.cell.dismissOthers([&](const Ellipse& thing) { return belongsTo(view.holding, thing); });
-  view.indentation = indentationOf(frame, view);
-  takeUndisturbed(view.indentation, view.cell);
+  measureIndentation(frame, view);
   view_ = view;
   return view_;
 }

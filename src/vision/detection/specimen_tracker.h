@@ -26,9 +26,10 @@ struct SpecimenView {
   OverlayContent overlay() const { return {&cell, &holding, &injection, &indentation}; }
 };
 
-/// A needle bends the border, and an ellipse through all of it leans into the dimple: the cell gets the
-/// centre of the undisturbed outline where that was found. Its borders stay.
-void takeUndisturbed(const Indentation& indentation, CellDetection& cell);
+/// Measures the indentation of a view's cell under its injection pipette, and what the cell is with it. A
+/// needle bends the border, and an ellipse through all of it leans into the dimple. The cell gets the centre
+/// of the undisturbed outline. Where that is not found, the cell is uncertain. Its borders stay.
+void measureIndentation(const Frame& frame, SpecimenView& view);
 
 /// Follows cell and pipettes from frame to frame. What was found is searched near its last place;
 /// what is lost is searched in the whole frame. A pipette that is uncertain is followed too, and so is a

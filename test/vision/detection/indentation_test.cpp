@@ -9,6 +9,7 @@
 
 #include "vision/detection/cell_detector.h"
 #include "vision/detection/dented_ellipse.h"
+#include "vision/detection/specimen_tracker.h"
 #include "vision/microscope/microscope.h"
 #include "vision/microscope/scene_draw.h"
 
@@ -161,6 +162,47 @@ TEST(Indentation, IsNoSurerThanTheOutlineItIsMeasuredFrom) {
   EXPECT_FALSE(scene.find().finding.isFound());
   scene.cell.zona_outer.finding = scene.cell.ooplasm.finding = Finding::notFound("nothing");
   EXPECT_FALSE(scene.find().finding.hasValues());
+}
+
+/// What the cell is with the needle.
+CellDetection withNeedle(const Pressed& scene) {
+  SpecimenView view;
+  view.cell = scene.cell;
+  view.injection = scene.needle;
+  measureIndentation(Frame(scene.image), view);
+  return view.cell;
+}
+
+double errorOf(const CellDetection& cell, const Pressed& scene) {
+  const Eigen::Vector2d& truth = scene.truth.cell->centre;
+  return std::hypot(cell.centre.x - truth.x(), cell.centre.y - truth.y());
+}
+
+TEST(Indentation, TheCellHasTheCentreOfItsUndisturbedOutline) {
+  for (const std::uint64_t seed : {58, 235, 362}) {
+    const Pressed scene(seed);
+    EXPECT_GT(errorOf(scene.cell, scene), 1) << seed << ": the ellipse leans into the dimple";
+    const CellDetection cell = withNeedle(scene);
+    ASSERT_TRUE(cell.finding.isFound()) << seed << ": " << cell.finding.reason;
+    EXPECT_LT(errorOf(cell, scene), 0.3) << seed;
+  }
+}
+
+TEST(Indentation, ACellWhoseUndisturbedOutlineIsNotFoundIsUncertain) {
+  const Pressed scene(39);
+  ASSERT_TRUE(scene.cell.finding.isFound());
+  EXPECT_GT(errorOf(scene.cell, scene), 1) << "the ellipse leans into the dimple";
+  const CellDetection cell = withNeedle(scene);
+  EXPECT_EQ(cell.finding.verdict, Verdict::kUncertain);
+  EXPECT_EQ(cell.size.verdict, Verdict::kUncertain);
+}
+
+TEST(Indentation, ANeedleBesideTheCellTakesNothingFromIt) {
+  const Pressed scene(3, 0);
+  ASSERT_TRUE(scene.cell.size.isFound());
+  const CellDetection cell = withNeedle(scene);
+  EXPECT_TRUE(cell.size.isFound());
+  EXPECT_EQ(cell.centre, scene.cell.centre);
 }
 
 }  // namespace
