@@ -1,3 +1,4 @@
+#!/usr/bin/env python3
 """The file that says which host runs which node: config/hosts.yaml."""
 import ipaddress
 from dataclasses import dataclass, field

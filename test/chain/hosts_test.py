@@ -2,9 +2,15 @@
 """The chain over three hosts and a network that is slow and loses frames: the needle rests while a part of it is away.
 ./dev bench hosts has all faults."""
 
+import sys
 import unittest
+from pathlib import Path
 
-import lossy_network
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "test/chain"), str(ROOT / "src/tools")]
+sys.argv[0] = str(ROOT / "catkin_ws/install/lib/cell_microinjection/hosts")  # the chain's programs are beside it
+
+import lossy_network  # noqa: E402
 
 
 @unittest.skipUnless(lossy_network.possible(), "no network namespaces: needs root, /dev/net/tun and a system that allows them")
