@@ -178,7 +178,7 @@ class Cell:
 
 def solve(case, element, law):
     """Returns the Result of a case."""
-    result = peer_format.Result('GetFEM', 'equilibrium', element, law or 'same')
+    result = peer_format.Result(f'GetFEM {getfem.getfem_env("version")}', 'equilibrium', element, law or 'same')
     if (case.order == 1) != (element == 'p1'):
         result.declined = 'the mesh is of another order'
     elif strain_energy(law or case.layers[0][0], 1, 0.3, case.dimension, False) is None:
