@@ -175,7 +175,7 @@ class Bench:
             self.solve_converged(name)
         for equal in self.scenes['equal'] if EQUAL in self.arguments.studies else ():
             self.solve_equal(equal)
-        if STABILITY in self.arguments.studies:
+        if STABILITY in self.arguments.studies and self.scenes['stability']:
             self.solve_stability()
 
 
@@ -202,7 +202,8 @@ def choose(scenes, names):
     if unknown:
         raise ValueError(f'no scene {", ".join(sorted(unknown))}; there are: {", ".join(scenes["scenes"])}')
     return {**scenes, 'scenes': {name: scenes['scenes'][name] for name in scenes['scenes'] if name in names},
-            'equal': [equal for equal in scenes['equal'] if equal['scene'] in names]}
+            'equal': [equal for equal in scenes['equal'] if equal['scene'] in names],
+            'stability': scenes['stability'] if scenes['stability']['scene'] in names else None}
 
 
 def main():
@@ -219,6 +220,9 @@ def main():
         return 2
     # The first program's converged forces are what all others are compared with.
     programs = programs[:1] + [program for program in programs[1:] if program.name not in arguments.without.split(',')]
+    if not (arguments.programs / 'peer_write_case').exists():
+        print(f'peers: {arguments.programs} has no peer_write_case: build the workspace first', file=sys.stderr)
+        return 2
     missing = sorted({program.missing for program in programs if program.missing})
     if missing:
         print(f'Not installed: {", ".join(missing)}. ./dev setup --peers installs them.', flush=True)

@@ -279,6 +279,13 @@ class TheScenes(unittest.TestCase):
         for equal in study['equal']:
             self.assertIn(equal['depth'], study['scenes'][equal['scene']]['depths'])
 
+    def test_are_chosen_by_name(self):
+        study = {'scenes': {'a': 1, 'b': 2}, 'equal': [{'scene': 'a'}, {'scene': 'b'}], 'stability': {'scene': 'a'}}
+        self.assertEqual(peers.choose(study, ['b']), {'scenes': {'b': 2}, 'equal': [{'scene': 'b'}], 'stability': None})
+        self.assertEqual(peers.choose(study, ['a'])['stability'], {'scene': 'a'})
+        with self.assertRaises(ValueError):
+            peers.choose(study, ['c'])
+
     def test_change_a_key_that_there_is(self):
         self.assertEqual(peer_cases.changed({'a': {'b': 1}}, {'a.b': 2}), {'a': {'b': 2}})
         with self.assertRaises(KeyError):
