@@ -24,7 +24,7 @@ class ConsoleClicksTest(ConsoleUser, unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.master = Master()
-        rospy.init_node("injection_controller")  # the console sends nothing before that one listens
+        rospy.init_node("injection_controller")  # which the .test names it, too: the console sends nothing to others
         cls.controller = ShownController(mode="automatic", force_limit="2e-5", depth_limit="60 um")
         cls.open_console()
 

@@ -79,7 +79,7 @@ class ConsoleStepsTest(ConsoleUser, unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.master = Master()
-        rospy.init_node("injection_controller")  # the console sends nothing before that one listens
+        rospy.init_node("injection_controller")  # which the .test names it, too: the console sends nothing to others
         rospy.set_param("/microscope/focus/range", [-1.5e-6, 50e-6])
         cls.controller = ShownController(mode="manual")
         cls.open_console("calibrate")

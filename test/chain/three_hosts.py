@@ -6,7 +6,6 @@ import signal
 import subprocess
 import sys
 import time
-from pathlib import Path
 
 import numpy as np
 import rospy
@@ -41,8 +40,7 @@ class RemoteHand:
                 "from geometry_msgs.msg import WrenchStamped; from live_chain import Hand;"
                 "rospy.init_node('hand', anonymous=True); rospy.Subscriber('/haptic/servo_cf', WrenchStamped, lambda _: None);"
                 "Hand(); rospy.spin()")
-        environment = {**os.environ, "ROS_IP": self.place.address,
-                       "PYTHONPATH": f"{Path(__file__).parent}:{os.environ.get('PYTHONPATH', '')}"}
+        environment = {**os.environ, "ROS_IP": self.place.address, "PYTHONPATH": os.pathsep.join(sys.path)}
         self._process = subprocess.Popen([*self.place.enter, sys.executable, "-c", code], env=environment,
                                          stdin=subprocess.DEVNULL)
 
