@@ -39,6 +39,8 @@ constexpr double kFitAgrees = 2;            // px, of a fit and an edge before a
 constexpr double kSureDeviation = 0.6;      // px, of an end
 constexpr double kSureCompressed = 0.25;    // px, the same of an end in a compressed image
 constexpr double kFar = 3, kSureFar = 0.4;  // px, from where the edges end, and the deviation of an end that far
+constexpr double kUnclear = 2;              // px, standard deviation of an end before nothing else
+constexpr double kNothingElse = 40;         // clearness of an end before nothing else
 constexpr double kWallsKept = 0.15;         // of the walls' edges, that are left near an end
 constexpr double kShaded = 0.2;             // of walls that are not alike, as in DIC
 constexpr double kThinShaded = 7;           // px, half width of a profile that such walls displace
@@ -108,7 +110,8 @@ void doubtByWalls(const Frame& frame, PipetteDetection& found) {
   if (!found.finding.isFound()) return;
   const TipWalls walls = measureTipWalls(frame, found.end, found.direction);
   // Under a needle the borders of a cell are straight and symmetric to its axis, as an end is.
-  if (walls.kept < kWallsKept) found.finding = Finding::uncertain("the pipette's walls begin behind its end");
+  if (walls.kept < kWallsKept && found.clearness < kNothingElse)
+    found.finding = Finding::uncertain("the pipette's walls begin behind its end");
   // Both images of a thin needle in DIC are one, which is even about a place beside the axis.
   if (walls.shading > kShaded && walls.half_width < kThinShaded)
     found.finding = Finding::uncertain("the pipette is thin and shaded from one side, as in DIC");
@@ -166,7 +169,8 @@ PipetteDetection refineInjection(const Frame& frame, PipetteAxis axis, const cv:
   found.clearness = last.clearness;
   found.setCovariance(last.deviation, fit.offset_deviation);
   found.finding = Finding::found();
-  if (last.deviation > kSureDeviation) found.finding = Finding::uncertain("the pipette's end is not clear");
+  const double unclear = found.clearness < kNothingElse ? kSureDeviation : kUnclear;
+  if (last.deviation > unclear) found.finding = Finding::uncertain("the pipette's end is not clear");
   if (found.clearness < kSureClearness)
     found.finding = Finding::uncertain("the tip is not clear before its background");
   fitEnd(frame, axis, outline, found, fit.offset_deviation);
