@@ -5,6 +5,7 @@
 
 #include "rviz/elided_label.h"
 #include "rviz/lamp_row.h"
+#include "rviz/link_box.h"
 #include "rviz/session_parameters.h"
 
 namespace microinjection {
@@ -22,13 +23,14 @@ HandBox::HandBox(QWidget* parent)
       clutch_(new LampRow("Clutch", 1, this)),
       present_(new LampRow("Switch", 1, this)),
       position_(new ElidedLabel(1, this)),
-      force_(new ElidedLabel(1, this)) {
+      force_(new ElidedLabel(1, this)),
+      link_(new LinkBox(this)) {
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->setSpacing(4);
   layout->addWidget(new QLabel("<b>Hand</b>", this));
   for (QWidget* row : {static_cast<QWidget*>(follows_), static_cast<QWidget*>(clutch_), static_cast<QWidget*>(present_),
-                       static_cast<QWidget*>(position_), static_cast<QWidget*>(force_)}) {
+                       static_cast<QWidget*>(position_), static_cast<QWidget*>(force_), static_cast<QWidget*>(link_)}) {
     layout->addWidget(row);
   }
 }
@@ -37,6 +39,7 @@ void HandBox::start() {
   if (node_) return;
   node_.emplace();
   node_->setCallbackQueue(&queue_);
+  link_->start();
   loop_ = node_->subscribe<cell_microinjection::LoopState>(
       "haptic/loop_state", 1,
       boost::function<void(const cell_microinjection::LoopState::ConstPtr&)>([this](const auto& message) {
@@ -80,6 +83,7 @@ void HandBox::refresh() {
   present_->display(presentLamp(shown));
   position_->setText(QString::fromStdString(positionScaleText(shown.settings)));
   force_->setText(QString::fromStdString(forceScaleText(shown.settings)));
+  link_->refresh();
 }
 
 }  // namespace microinjection

@@ -14,6 +14,7 @@ namespace microinjection {
 
 class ElidedLabel;
 class LampRow;
+class LinkBox;
 
 /// The haptic hand: whether the needle follows it, its clutch and dead-man switch, and its scales.
 ///
@@ -31,6 +32,7 @@ class HandBox : public QWidget {
 
   LampRow *follows_, *clutch_, *present_;
   ElidedLabel *position_, *force_;
+  LinkBox* link_;
   HandView hand_;
   std::optional<double> heard_at_;  ///< s, of haptic_bridge
   ros::CallbackQueue queue_;

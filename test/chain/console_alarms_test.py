@@ -12,6 +12,7 @@ import rostest
 from cell_microinjection.msg import InjectionStatus, LoopState, OperatingState
 from geometry_msgs.msg import PoseStamped
 from sensor_msgs.msg import Joy
+from std_msgs.msg import Bool
 
 import console_eye
 from console_user import ConsoleUser
@@ -220,6 +221,23 @@ class ConsoleAlarmsTest(ConsoleUser, unittest.TestCase):
         self.press("Enable")
         self.operating("ENABLED")
         self.shows(lambda seen: seen.headline == ["green"], "a needle that is free again")
+
+    def test_7b_the_cable_of_an_emulated_network(self):
+        """The test is that network: without one there are no such buttons."""
+        def offered(count):
+            def check():
+                console = self.look()
+                found = console_eye.offered_right_of(console.stop_right, self.picture) if console else []
+                return (found or [True])[0] if len(found) == count else None
+            return self.until(check, f"{count} offered buttons of a network")
+        offered(0)
+        said = []
+        network = rospy.Subscriber("/link/plugged", Bool, lambda message: said.append(message.data))
+        for wanted in ([False], [False, True]):  # the greyed one of the two is offered next
+            self.click(offered(1))
+            self.until(lambda wanted=wanted: said == wanted, f"{wanted} on /link/plugged")
+        network.unregister()
+        offered(0)
 
     def test_8_a_controller_that_hangs(self):
         with self.frozen("injection_controller"):

@@ -1,0 +1,45 @@
+#include "rviz/link_box.h"
+
+#include <QGridLayout>
+
+#include "rviz/offer_row.h"
+
+namespace microinjection {
+
+LinkBox::LinkBox(QWidget* parent) : QWidget(parent) {
+  auto* layout = new QGridLayout(this);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->setColumnStretch(1, 1);
+  unplug_ = std::make_unique<OfferRow>("Unplug", 1, this, layout, 0, [this] { plug(false); });
+  plug_in_ = std::make_unique<OfferRow>("Plug in", 1, this, layout, 1, [this] { plug(true); });
+  hide();
+}
+
+LinkBox::~LinkBox() = default;
+
+void LinkBox::start() {
+  if (node_) return;
+  node_.emplace();
+  node_->setCallbackQueue(&queue_);
+  publisher_ = node_->advertise<std_msgs::Bool>("link/plugged", 1);
+  subscriber_ = node_->subscribe<std_msgs::Bool>("link/plugged", 1,
+                                                 boost::function<void(const std_msgs::Bool::ConstPtr&)>(
+                                                     [this](const auto& message) { plugged_ = message->data; }));
+}
+
+void LinkBox::plug(bool in) {
+  std_msgs::Bool message;
+  message.data = static_cast<std_msgs::Bool::_data_type>(in);
+  publisher_.publish(message);
+}
+
+void LinkBox::refresh() {
+  if (!node_) return;
+  queue_.callAvailable(ros::WallDuration(0));
+  // One subscriber is this box itself.
+  setVisible(publisher_.getNumSubscribers() > 1);
+  unplug_->display(plugged_, plugged_ ? "the emulated network's cable" : "the network is unplugged");
+  plug_in_->display(!plugged_, plugged_ ? "the network is plugged in" : "the emulated network's cable");
+}
+
+}  // namespace microinjection
