@@ -224,20 +224,17 @@ class ConsoleAlarmsTest(ConsoleUser, unittest.TestCase):
 
     def test_7b_the_cable_of_an_emulated_network(self):
         """The test is that network: without one there are no such buttons."""
-        def offered(count):
-            def check():
-                console = self.look()
-                found = console_eye.offered_right_of(console.stop_right, self.picture) if console else []
-                return (found or [True])[0] if len(found) == count else None
-            return self.until(check, f"{count} offered buttons of a network")
-        offered(0)
+        def places():
+            return {place for row in console_eye.rows_of_offered(self.picture, 1) for place in row} if self.look() else set()
+        self.shows(lambda seen: seen.headline == ["green"], "a session at rest")
+        before = places()
         said = []
         network = rospy.Subscriber("/link/plugged", Bool, lambda message: said.append(message.data))
         for wanted in ([False], [False, True]):  # the greyed one of the two is offered next
-            self.click(offered(1))
+            place = self.until(lambda: (sorted(places() - before) or [None])[0], "another offered button")
+            self.click(place)
             self.until(lambda wanted=wanted: said == wanted, f"{wanted} on /link/plugged")
         network.unregister()
-        offered(0)
 
     def test_8_a_controller_that_hangs(self):
         with self.frozen("injection_controller"):
