@@ -8,6 +8,7 @@ import argparse
 import csv
 import os
 import sys
+import traceback
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -24,6 +25,24 @@ def parse_arguments():
     return parser.parse_args()
 
 
+def measure(session, three_hosts, path):
+    """Writes a row for each fault. Returns the exit status: 1 when the needle did not rest after one."""
+    status = 0
+    with open(path, 'w', newline='', encoding='utf-8') as file:
+        table = csv.writer(file)
+        table.writerow(('fault', 'who', 'moved_um', 'rests'))
+        for how, who in three_hosts.FAULTS:
+            moved = session.measure(how, who)
+            rests = moved < three_hosts.STILL
+            status = status if rests else 1
+            table.writerow((how, who, f'{1e6 * moved:.4f}', int(rests)))
+            file.flush()
+            print(f'{who} {how}: the needle moved {1e6 * moved:.4f} um: {"rests" if rests else "DOES NOT REST"}', flush=True)
+    frames = session.switch.lost + session.switch.passed
+    print(f'{frames} frames, {100 * session.switch.lost / frames:.1f} % lost')
+    return status
+
+
 def main():
     arguments = parse_arguments()
     sys.argv[0] = str(PROGRAMS / 'hosts')  # the chain's programs are beside it
@@ -31,23 +50,18 @@ def main():
     if not lossy_network.possible():
         sys.exit('hosts: needs root, /dev/net/tun and a system that allows network namespaces')
     import three_hosts
-    session = three_hosts.ThreeHosts(arguments.delay, arguments.loss)
     arguments.out.mkdir(parents=True, exist_ok=True)
+    status = 1
+    session = three_hosts.ThreeHosts(arguments.delay, arguments.loss)
     try:
-        with open(arguments.out / 'hosts.csv', 'w', newline='', encoding='utf-8') as file:
-            table = csv.writer(file)
-            table.writerow(('fault', 'who', 'moved_um', 'rests'))
-            for how, who in three_hosts.FAULTS:
-                moved = session.measure(how, who)
-                rests = moved < three_hosts.STILL
-                table.writerow((how, who, f'{1e6 * moved:.4f}', int(rests)))
-                file.flush()
-                print(f'{who} {how}: the needle moved {1e6 * moved:.3f} um: {"rests" if rests else "DOES NOT REST"}', flush=True)
-        share = session.switch.lost / (session.switch.lost + session.switch.passed)
-        print(f'{session.switch.passed + session.switch.lost} frames, {100 * share:.1f} % lost')
+        status = measure(session, three_hosts, arguments.out / 'hosts.csv')
+    except Exception:
+        traceback.print_exc()
     finally:
         session.close()
-        os._exit(0) if sys.exc_info()[0] is None else None  # rospy's threads wait for hosts that are gone
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(status)  # rospy's threads would wait for hosts that are gone
 
 
 if __name__ == '__main__':

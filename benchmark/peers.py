@@ -95,8 +95,9 @@ class Bench:
             self.converged[common['scene'], depth] = (forces[-1], error)
         reference, reference_error = self.converged.get((common['scene'], depth), (math.nan, math.nan))
         row.update(converged_N=reference, converged_error=abs(reference_error / reference))
-        if not own:
-            same_law = forces[-1] / (1 + (effect if math.isfinite(effect) else 0))
+        # Forces of two energies are not compared: without the effect of the law nothing is said of them.
+        if not own and math.isfinite(effect):
+            same_law = forces[-1] / (1 + effect)
             row['force_error'] = peer_table.relative_error(same_law, reference)
             if math.isfinite(error) and math.isfinite(reference_error):
                 row['agrees'] = peer_table.agree(same_law, error, reference, reference_error)

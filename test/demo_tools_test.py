@@ -1,11 +1,11 @@
 """Tests of the demo's tools below src/tools: pictures, plots, the summary and the taking down of child processes."""
 import os
 import sys
-import tempfile
 import unittest
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / 'src' / 'tools'))
+sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 import matplotlib.image  # noqa: E402
 import numpy  # noqa: E402
@@ -15,21 +15,10 @@ import plot_force_depth  # noqa: E402
 import plot_training  # noqa: E402
 import processes  # noqa: E402
 import screenshot  # noqa: E402
+from in_folder import InFolder  # noqa: E402
 
 HEADER = ('time_s,phase,depth_m,predicted_axial_N,measured_axial_N,measured_lateral_N,hand_force_N,in_contact,'
           'punctured\n')
-
-
-class InFolder(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
-
-    def write(self, name, text):
-        path = self.folder / name
-        path.write_text(text, encoding='utf-8')
-        return path
 
 
 class TrainingPlotTest(InFolder):

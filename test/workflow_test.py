@@ -4,25 +4,20 @@
 import os
 import subprocess
 import sys
-import tempfile
 import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / 'src' / 'workflow'))
+sys.path.insert(0, str(ROOT / 'test'))
 
 import programs  # noqa: E402
+from in_folder import InFolder  # noqa: E402
 
 
-class Workflow(unittest.TestCase):
-    def setUp(self):
-        self._folder = tempfile.TemporaryDirectory()
-        self.folder = Path(self._folder.name)
-        self.addCleanup(self._folder.cleanup)
-
+class Workflow(InFolder):
     def script(self, name, text):
-        path = self.folder / name
-        path.write_text(f'#!/bin/sh\n{text}\n', encoding='utf-8')
+        path = self.write(name, f'#!/bin/sh\n{text}\n')
         path.chmod(0o755)
         return path
 
@@ -45,6 +40,9 @@ class Workflow(unittest.TestCase):
         away = 'echo "slurm_load_jobs error: Unable to contact slurm controller (connect failure)" >&2; exit 1'
         self.assertEqual(self.status(away), 'running')
         self.assertEqual(self.status('echo "slurm_load_jobs error: Invalid job id specified" >&2; exit 1'), 'failed')
+        with self.assertRaises(subprocess.CalledProcessError) as caught:
+            self.status('echo "scontrol: fatal: Could not establish a configuration source" >&2; exit 1')
+        self.assertIn('Could not establish a configuration source', caught.exception.stderr)
 
     def test_a_job_of_the_array_does_its_block(self):
         program = self.script('sweep', 'echo "$@"')

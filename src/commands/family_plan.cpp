@@ -44,9 +44,6 @@ std::optional<Eigen::VectorXd> parseCoordinates(const std::string& text, char se
   return coordinates;
 }
 
-FamilyPlan::FamilyPlan(const Family& family, int members)
-    : name_(family.name()), state_(family.description() + " known " + std::to_string(members)) {}
-
 void FamilyPlan::addAxisNodes(int nodes) {
   for (int node = 0; node < nodes; ++node) tasks_.push_back({{}, node});
 }
@@ -57,7 +54,7 @@ void FamilyPlan::addMember(const Eigen::VectorXd& coordinates, std::size_t paths
 }
 
 std::string FamilyPlan::head(const std::string& body) const {
-  return "# a round of prepare --family " + name_ + ", checksum " + contentHash(state_ + body);
+  return "# a round of prepare --family " + name_ + ", checksum " + contentHash(family_ + body);
 }
 
 void FamilyPlan::save(const std::string& file) const {
@@ -79,7 +76,7 @@ void FamilyPlan::load(const std::string& file) {
   std::ostringstream rest;
   rest << in.rdbuf();
   if (first != head(rest.str())) {
-    throw ConfigError(file + ": is damaged, or of another family, or gathered before; make it with --list");
+    throw ConfigError(file + ": is damaged, or of another family; make it with --list");
   }
   std::istringstream rows(rest.str());
   std::getline(rows, row);  // the columns' names

@@ -20,8 +20,7 @@ class FamilyPlan {
     int piece = 0;                ///< path of the member, or node of the grid
   };
 
-  /// `members`: that the family has or has failed with now; they decide which come next.
-  FamilyPlan(const Family& family, int members);
+  explicit FamilyPlan(const Family& family) : name_(family.name()), family_(family.description()) {}
 
   void addAxisNodes(int nodes);
   void addMember(const Eigen::VectorXd& coordinates, std::size_t paths);
@@ -31,14 +30,13 @@ class FamilyPlan {
   const std::vector<Eigen::VectorXd>& members() const { return members_; }
 
   void save(const std::string& file) const;
-  /// Reads the tasks. Throws ConfigError when the file is damaged, or of another family or another
-  /// number of its members.
+  /// Reads the tasks. Throws ConfigError when the file is damaged, or of another family.
   void load(const std::string& file);
 
  private:
   std::string head(const std::string& body) const;
 
-  std::string name_, state_;
+  std::string name_, family_;
   std::vector<Task> tasks_;
   std::vector<Eigen::VectorXd> members_;
 };

@@ -76,6 +76,11 @@ class FamilyPreparation {
 
   void gather(const std::string& file) {
     const FamilyPlan plan = read(file);
+    const auto isKnown = [this](const Eigen::VectorXd& member) { return has(member); };
+    if (!plan.members().empty() && std::all_of(plan.members().begin(), plan.members().end(), isKnown)) {
+      std::printf("prepare: the members of %s were added before\n", file.c_str());
+      return;
+    }
     const std::size_t missing = commandsFor(plan).size();
     if (missing > 0) {
       throw ConfigError(file + ": " + std::to_string(missing) + " of " + std::to_string(plan.tasks().size()) +
@@ -100,7 +105,7 @@ class FamilyPreparation {
 
   /// The next round's tasks; none when the family is complete.
   FamilyPlan next() const {
-    FamilyPlan plan(family_, count());
+    FamilyPlan plan(family_);
     if (needsAxisForces()) plan.addAxisNodes(static_cast<int>(axisForceGrid(family_).size()));
     const int round = std::min(kRound, arguments_.members - count());
     if (round <= 0) return plan;
@@ -119,7 +124,7 @@ class FamilyPreparation {
   }
 
   FamilyPlan read(const std::string& file) const {
-    FamilyPlan plan(family_, count());
+    FamilyPlan plan(family_);
     plan.load(file);
     return plan;
   }
@@ -182,11 +187,17 @@ class FamilyPreparation {
     data_.save(path_);
   }
 
-  void addMember(const Eigen::VectorXd& coordinates, const PathStore& store) {
+  /// Whether the member is in the data, or was left out.
+  bool has(const Eigen::VectorXd& coordinates) const {
     const Eigen::MatrixXd known = data_.knownPoints();
     for (Eigen::Index i = 0; i < known.cols(); ++i) {
-      if (known.col(i) == coordinates) return;
+      if (known.col(i) == coordinates) return true;
     }
+    return false;
+  }
+
+  void addMember(const Eigen::VectorXd& coordinates, const PathStore& store) {
+    if (has(coordinates)) return;
     try {
       Eigen::MatrixXf displacements;
       const FamilyMember member = fitMember(family_, coordinates, store.loadAll(), displacements);

@@ -35,7 +35,7 @@ def parse_arguments():
     what.add_argument('--host', help='name of this host in the file')
     what.add_argument('--ssh', action='store_true', help='start the nodes of all hosts from here, by ssh')
     what.add_argument('--list', action='store_true', help='only print which node runs where')
-    parser.add_argument('--check-only', action='store_true', help='with --host: check, start nothing')
+    parser.add_argument('--check-only', action='store_true', help='with --host: check, start nothing; the master\'s host only answers')
     parser.add_argument('--launch', default='session.launch', help='of cell_microinjection (default %(default)s)')
     parser.add_argument('arguments', nargs='*', metavar='ARGUMENT:=VALUE')
     arguments = parser.parse_args()
@@ -46,9 +46,14 @@ def parse_arguments():
 
 
 def digest(arguments):
-    """Of what all hosts must have in common."""
-    text = arguments.hosts.read_text(encoding='utf-8') + arguments.launch + ' '.join(sorted(arguments.arguments))
-    return hashlib.md5(text.encode()).hexdigest()
+    """Of what all hosts must have in common: the arguments, and the contents of the files that they name."""
+    parts = [arguments.hosts.read_bytes(), arguments.launch.encode()]
+    for argument in sorted(arguments.arguments):
+        parts.append(argument.encode())
+        path = Path(argument.partition(':=')[2])
+        if path.is_file():
+            parts.append(path.read_bytes())
+    return hashlib.md5(b'\0'.join(parts)).hexdigest()
 
 
 def launch_files(arguments):
@@ -73,6 +78,9 @@ def assign(config, hosts, here):
     for node in config.nodes:
         host = hosts.of_node(node.name)
         node.machine_name = None if host == hosts.master else host.name
+    # The loader has assigned machines before, and does so only once.
+    config._assign_machines_complete = False
+    config.assign_machines()
 
 
 def load(arguments):
@@ -192,8 +200,10 @@ def run(arguments):
     try:
         if arguments.ssh:
             check_by_ssh(arguments, hosts)
-        if not arguments.check_only:
-            launch(arguments, hosts, None if arguments.ssh else here)
+        if arguments.check_only:
+            print(f'session_on_hosts: {here.name}: answers the checks of the others; Ctrl-C ends it', flush=True)
+            threading.Event().wait()
+        launch(arguments, hosts, None if arguments.ssh else here)
     finally:
         server.close()
 

@@ -9,9 +9,10 @@ sys.path.insert(0, workflow.basedir)
 import programs
 
 FAMILY = programs.required("family", config, "FILE")
-OUT = programs.required("out", config, "FOLDER")
 PROGRAM = programs.find("prepare", config)
 MEMBERS = int(config.get("members", 30))
+# Plans of another number of members are others.
+OUT = programs.required("out", config, "FOLDER") / f"members_{MEMBERS}"
 BLOCK = int(config.get("block", 8))
 
 
@@ -39,6 +40,7 @@ rule family:
 
 checkpoint plan:
     input:
+        FAMILY,
         lambda wildcards: [f"{OUT}/round_{int(wildcards.round) - 1}/gathered"] if int(wildcards.round) > 0 else [],
     output:
         f"{OUT}/round_{{round}}/plan.csv",

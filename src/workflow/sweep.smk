@@ -3,6 +3,7 @@
 
 import subprocess
 import sys
+import yaml
 from pathlib import Path
 
 sys.path.insert(0, workflow.basedir)
@@ -12,6 +13,8 @@ SWEEP = programs.required("sweep", config, "FILE")
 OUT = programs.required("out", config, "FOLDER")
 PROGRAM = programs.find("sweep", config)
 BLOCK = int(config.get("block", 1))
+# A change of either makes the jobs run again; tasks whose scene is the same return at once.
+FILES = [SWEEP, (SWEEP.parent / yaml.safe_load(SWEEP.read_text())["scene"]).resolve()]
 
 
 def first_tasks():
@@ -26,6 +29,7 @@ def first_tasks():
 
 rule table:
     input:
+        FILES,
         expand(f"{OUT}/blocks/{BLOCK}/{{first}}", first=first_tasks()),
     output:
         f"{OUT}/sweep.csv",
@@ -35,7 +39,7 @@ rule table:
 
 rule block:
     input:
-        ancient(SWEEP),
+        FILES,
     output:
         touch(f"{OUT}/blocks/{BLOCK}/{{first}}"),
     shell:

@@ -129,11 +129,14 @@ class LiveChain:
             loops = {name: status.message for name, status in self.diagnostics.items() if status.level}
             raise AssertionError(f"{error}; {loops}; {self.nodes.report()}") from None
 
-    def close(self):
+    def end_processes(self):
         self.hand.end()
         self.nodes.stop()
         self._frame.kill()
         self._frame.wait()
+
+    def close(self):
+        self.end_processes()
         for subscriber in self._subscribers:
             subscriber.unregister()
         self.nodes.forget()

@@ -18,11 +18,12 @@ DELAY, LOSS = 0.02, 0.05  # s one way; share of the frames
 ADDRESSES = {"rig": "10.88.0.1", "haptic": "10.88.0.2", "solver": "10.88.0.3"}
 PORT = 11311
 PLACES = {"haptic_bridge": "haptic", "cell_simulator": "solver"}  # the other nodes are at the rig
-STILL = 20e-9       # m: the noise of the encoder, and no motion
+STILL = 2e-9        # m
 STOP_TIME = 0.5     # s that the controller, the needle and the news of it take
 OBSERVED = 1.5      # s
 MASTER_FROZEN = 5.0  # s, as the page says; 0.5 for a dead one
-FAULTS = [(how, who) for who in ("hand", "haptic_bridge", "injection_controller", "cell_simulator", "micromanipulator")
+# Without the micromanipulator nothing says where the needle is.
+FAULTS = [(how, who) for who in ("hand", "haptic_bridge", "injection_controller", "cell_simulator")
           for how in ("killed", "frozen")] + [("pulled", host) for host in ADDRESSES] + [("frozen", "master")]
 
 
@@ -65,7 +66,16 @@ class RemoteHand:
 
 class ThreeHosts:
     def __init__(self, delay=DELAY, loss=LOSS):
-        self.hosts = {name: HostNamespace(address) for name, address in ADDRESSES.items()}
+        self.hosts, self.switch, self.chain, self._master = {}, None, None, None
+        try:
+            self._start(delay, loss)
+        except BaseException:
+            self.close()
+            raise
+
+    def _start(self, delay, loss):
+        for name, address in ADDRESSES.items():
+            self.hosts[name] = HostNamespace(address)
         self.switch = LossySwitch(list(self.hosts.values()), delay, loss)
         # The test is on the rig's host from here on, and so is what it starts.
         lossy_network.enter(self.hosts["rig"])
@@ -79,18 +89,16 @@ class ThreeHosts:
         RemoteHand.place = self.hosts["haptic"]
         enter = {node: [*self.hosts[host].enter, "env", f"ROS_IP={ADDRESSES[host]}"] for node, host in PLACES.items()}
         self.chain = LiveChain({}, hand=RemoteHand, enter=enter)
-        try:
-            self.chain.check_follows()
-        except BaseException:
-            self.close()
-            raise
+        self.chain.check_follows()
 
     def close(self):
-        self.chain.hand.end()
-        self.chain.nodes.stop()
-        self._master.kill()
-        self._master.wait()
-        self.switch.close()
+        if self.chain:
+            self.chain.end_processes()
+        if self._master:
+            self._master.kill()
+            self._master.wait()
+        if self.switch:
+            self.switch.close()
         for host in self.hosts.values():
             host.close()
 

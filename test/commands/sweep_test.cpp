@@ -6,14 +6,6 @@
 namespace microinjection {
 namespace {
 
-constexpr char kScene[] = R"(cell:
-  diameter: 56e-6
-  material: {model: neo_hookean, young_modulus: 17.9e3, poisson_ratio: 0.49}
-  biomembrane: {thickness: 5e-6, dimple_radius: 10e-6}
-holding_pipette: {contact_radius: 10e-6}
-needle:
-  tip: {shape: disc, radius: 3e-6}
-)";
 constexpr char kSweep[] = R"(scene: scene.yaml
 design: random
 samples: 40
@@ -29,12 +21,14 @@ class SweepTest : public CommandTest {
 
   void SetUp() override {
     CommandTest::SetUp();
-    write("scene.yaml", kScene);
+    write("scene.yaml", scene_);
     write("sweep.yaml", kSweep);
   }
 
   void write(const std::string& name, const std::string& text) const { std::ofstream(directory_ + name) << text; }
   std::string table(const std::string& folder) const { return read(directory_ + folder + "/sweep.csv"); }
+
+  const std::string scene_ = read(MICROINJECTION_SOURCE_DIR "/test/commands/membrane.yaml");
 };
 
 TEST_F(SweepTest, TheTableIsTheSameBytesWhoeverSolvedTheTasks) {
@@ -59,7 +53,7 @@ TEST_F(SweepTest, RowsAreTheForcesOfIndent) {
         "scene: scene.yaml\nkeys: [{key: cell/material/young_modulus, values: [12e3]}]\n"
         "indentation: {depths: [2e-6], model: membrane}\n");
   ASSERT_EQ(run("--file one.yaml --out one").status, 0);
-  std::string scene = kScene;
+  std::string scene = scene_;
   scene.replace(scene.find("17.9e3"), 6, "12e3");
   write("twelve.yaml", scene);
   const std::string command = std::string("cd ") + directory_ + " && " + MICROINJECTION_INDENT +

@@ -12,7 +12,9 @@ constexpr double kAlarm = 4;         ///< allowances of the cumulative sum
 }  // namespace
 
 ForceNoise::ForceNoise(int samples, double floor, double change)
-    : wanted_(static_cast<std::size_t>(samples)), floor_(floor), change_(change) {}
+    : wanted_(static_cast<std::size_t>(samples)), floor_(floor), change_(change) {
+  samples_.reserve(wanted_);  // the samples come at the loop's rate
+}
 
 void ForceNoise::count(double force) {
   ++counted_;

@@ -11,7 +11,10 @@ command_setup() {
       install_list benchmark/peers/dependencies.txt 1
       touch "$ROOT/benchmark/peers/CMakeLists.txt"  # the next build looks for Bullet again
       ;;
-    --cluster) install_list src/workflow/dependencies.txt "$(package_column)" ;;
+    --cluster)
+      [[ $(package_column) == 1 ]] || fail "the profiles in config/workflow need Snakemake 7.8 or later: take it from its makers"
+      install_list src/workflow/dependencies.txt 1
+      ;;
   esac
 }
 
