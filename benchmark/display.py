@@ -43,6 +43,7 @@ def parse_arguments():
     parser.add_argument('--seconds', type=float, default=30, help='that are measured, with and without (default 30)')
     parser.add_argument('--rate', type=int, default=30, help='Hz, of surfaces and of rviz (default 30)')
     parser.add_argument('--triangles', type=int, default=10000, help='of the surface, about (default 10000)')
+    parser.add_argument('--size', type=int, default=700, help='px, width and height of the view (default %(default)s)')
     parser.add_argument('--cell', default='mouse_oocyte_pipette', help='name in config/cells (default %(default)s)')
     parser.add_argument('--cut', action='store_true', help='the display node cuts the surface open')
     return parser.parse_args()
@@ -196,7 +197,7 @@ def draw(session, arguments, logs, counts):
     node = view = None
     try:
         node = DisplayNode(arguments.rate, arguments.cut, logs)
-        view = RvizView(ROOT / 'config' / 'session.rviz', logs, arguments.rate)
+        view = RvizView(ROOT / 'config' / 'session.rviz', logs, arguments.rate, (arguments.size, arguments.size))
         if not wait_until(lambda: frames(counts) or not view.running(), realtime.RVIZ_TIMEOUT, period=0.5):
             raise SessionError('Mesa counts no frames of rviz')
         if not wait_until(lambda: node.drawn > 0, realtime.RVIZ_TIMEOUT, period=0.5):

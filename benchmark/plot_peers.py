@@ -53,13 +53,13 @@ def draw_equal(axes, rows, colour):
 
 def draw_converged(axes, rows, colour):
     """Each force over ours, with both errors."""
-    rows = [row for row in rows if row['study'] == 'converged' and math.isfinite(number(row, 'converged_N'))]
+    rows = [row for row in rows if row['study'] == 'converged' and math.isfinite(number(row, 'converged_N'))
+            and math.isfinite(number(row, 'law_effect'))]
     places = list(dict.fromkeys((row['scene'], row['depth_um']) for row in rows))
     for row in rows:
         name = row['program'].split(' ')[0]
         shift = 0.2 * list(colour).index(name) - 0.3
-        effect = number(row, 'law_effect')
-        force = number(row, 'force_N') / (1 + (effect if math.isfinite(effect) else 0))
+        force = number(row, 'force_N') / (1 + number(row, 'law_effect'))
         axes.errorbar(100 * (force / number(row, 'converged_N') - 1), places.index((row['scene'], row['depth_um'])) + shift,
                       xerr=100 * number(row, 'error_estimate'), color=colour[name], marker=MARKERS.get(row['element'], 'x'),
                       markersize=5, capsize=2, label=name)

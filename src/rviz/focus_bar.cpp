@@ -2,8 +2,10 @@
 
 #include <QHBoxLayout>
 #include <cmath>
+#include <vector>
 
 #include "rviz/session_clock.h"
+#include "rviz/session_parameters.h"
 
 namespace microinjection {
 namespace {
@@ -41,10 +43,11 @@ void FocusBar::start() {
 void FocusBar::onPosition(const sensor_msgs::JointState& message) {
   if (message.position.empty() || !std::isfinite(message.position[0])) return;
   // The range is set before the virtual microscope starts; other motors have none that is known here.
-  std::vector<double> range;
-  if (!focus_.position && ros::param::get("/microscope/focus/range", range) && range.size() == 2) {
-    focus_.lowest = range[0];
-    focus_.highest = range[1];
+  if (!focus_.position || sessionNow() - heard_at_ > kSilence) {
+    const std::vector<double> range = SessionParameters("/microscope").numbers("focus/range");
+    const FocusView unlimited;
+    focus_.lowest = range.size() == 2 ? range[0] : unlimited.lowest;
+    focus_.highest = range.size() == 2 ? range[1] : unlimited.highest;
   }
   focus_.position = message.position[0];
   heard_at_ = sessionNow();

@@ -1,6 +1,7 @@
 #include "rviz/link_box.h"
 
 #include <QGridLayout>
+#include <string>
 
 #include "rviz/offer_row.h"
 
@@ -21,7 +22,12 @@ void LinkBox::start() {
   if (node_) return;
   node_.emplace();
   node_->setCallbackQueue(&queue_);
-  publisher_ = node_->advertise<std_msgs::Bool>("link/plugged", 1);
+  const auto counts = [this](int change) {
+    return [this, change](const ros::SingleSubscriberPublisher& subscriber) {
+      if (subscriber.getSubscriberName() == "/link_emulator") emulators_ += change;
+    };
+  };
+  publisher_ = node_->advertise<std_msgs::Bool>("link/plugged", 1, counts(1), counts(-1));
   subscriber_ = node_->subscribe<std_msgs::Bool>("link/plugged", 1,
                                                  boost::function<void(const std_msgs::Bool::ConstPtr&)>(
                                                      [this](const auto& message) { plugged_ = message->data; }));
@@ -36,10 +42,10 @@ void LinkBox::plug(bool in) {
 void LinkBox::refresh() {
   if (!node_) return;
   queue_.callAvailable(ros::WallDuration(0));
-  // One subscriber is this box itself.
-  setVisible(publisher_.getNumSubscribers() > 1);
-  unplug_->display(plugged_, plugged_ ? "the emulated network's cable" : "the network is unplugged");
-  plug_in_->display(!plugged_, plugged_ ? "the network is plugged in" : "the emulated network's cable");
+  setVisible(emulators_ > 0);
+  const bool can_unplug = plugged_.value_or(true), can_plug_in = !plugged_.value_or(false);
+  unplug_->display(can_unplug, can_unplug ? "the emulated network's cable" : "the network is unplugged");
+  plug_in_->display(can_plug_in, can_plug_in ? "the emulated network's cable" : "the network is plugged in");
 }
 
 }  // namespace microinjection

@@ -28,7 +28,8 @@ class LinkBox : public QWidget {
   void plug(bool in);
 
   std::unique_ptr<OfferRow> unplug_, plug_in_;
-  bool plugged_ = true;  ///< as the last message said
+  std::optional<bool> plugged_;  ///< as the last message said; before the first it is not known
+  int emulators_ = 0;            ///< connections of link_emulator to publisher_
   ros::CallbackQueue queue_;
   std::optional<ros::NodeHandle> node_;
   ros::Publisher publisher_;

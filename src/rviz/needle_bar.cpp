@@ -41,16 +41,16 @@ void NeedleBar::start() {
       "needle/operating_state", 1,
       boost::function<void(const cell_microinjection::OperatingState::ConstPtr&)>([this](const auto& message) {
         needle_.state = operatingStateOf(message->state);
-        busy_ = message->is_busy;
+        needle_.busy = message->is_busy;
       }));
 }
 
 NeedleView NeedleBar::view() {
+  if (!needle_.busy && sessionNow() - sent_at_ > kBegins) needle_.goal.reset();
   NeedleView view = needle_;
   // A latched state outlives its node.
   if (states_.getNumPublishers() == 0) view.state.reset();
   if (const auto pose = pose_()) view.tip = pose->translation();
-  if (!busy_ && sessionNow() - sent_at_ > kBegins) view.goal.reset();
   view.calibrating = calibration_ && calibration_->active();
   return view;
 }
@@ -79,7 +79,10 @@ void NeedleBar::press(std::size_t button) {
 }
 
 void NeedleBar::stop() {
-  if (!node_ || !view().goal) return;
+  if (!node_) return;
+  // Whether a step is under way is known from messages that may have waited while rviz drew.
+  queue_.callAvailable(ros::WallDuration(0));
+  if (!view().goal) return;
   cell_microinjection::StringStamped message;
   message.header.stamp = ros::Time::now();
   message.string = "stop";

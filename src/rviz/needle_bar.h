@@ -42,7 +42,6 @@ class NeedleBar : public QWidget {
   std::function<std::optional<Eigen::Isometry3d>()> pose_;
   JogRow* row_;
   NeedleView needle_;
-  bool busy_ = false;      ///< the micromanipulator, with a move
   double sent_at_ = -1e9;  ///< s, sessionNow()
   ros::CallbackQueue queue_;
   std::optional<ros::NodeHandle> node_;

@@ -16,6 +16,23 @@ std::optional<double> SessionParameters::number(const std::string& key) {
   return std::nullopt;
 }
 
+std::vector<double> SessionParameters::numbers(const std::string& key) {
+  XmlRpc::XmlRpcValue list;
+  if (!ros::param::get(node_ + "/" + key, list) || list.getType() != XmlRpc::XmlRpcValue::TypeArray) return {};
+  std::vector<double> values;
+  for (int i = 0; i < list.size(); ++i) {
+    XmlRpc::XmlRpcValue& item = list[i];
+    std::optional<double> value;
+    if (item.getType() == XmlRpc::XmlRpcValue::TypeDouble) value = static_cast<double>(item);
+    if (item.getType() == XmlRpc::XmlRpcValue::TypeInt) value = static_cast<int>(item);
+    if (item.getType() == XmlRpc::XmlRpcValue::TypeString)
+      value = parameterNumber(node_, key, static_cast<std::string>(item), error_);
+    if (!value) return {};
+    values.push_back(*value);
+  }
+  return values;
+}
+
 std::string SessionParameters::text(const std::string& key) const {
   std::string value;
   ros::param::get(node_ + "/" + key, value);

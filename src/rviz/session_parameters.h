@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace microinjection {
 
@@ -15,6 +16,8 @@ class SessionParameters {
 
   /// Empty: it is not set, or no number. The second is an error().
   std::optional<double> number(const std::string& key);
+  /// Empty: it is not set, or one of them is no number. The second is an error().
+  std::vector<double> numbers(const std::string& key);
   /// Empty: it is not set.
   std::string text(const std::string& key) const;
   /// The values that are no numbers; empty: none.

@@ -11,11 +11,12 @@ from screen import Screen
 PICTURE_RATE = 2  # Hz; who looks at a virtual display wants one picture, and rendering in software costs a core
 
 
-def _at_rate(rate, config, folder):
-    """Returns a copy of an rviz configuration that draws at `rate` (Hz)."""
+def _changed(config, folder, rate, size):
+    """Returns a copy of an rviz configuration that draws at `rate` (Hz) in a window of `size` (px)."""
+    text = re.sub(r'Frame Rate: \d+', f'Frame Rate: {rate}', config.read_text(encoding='utf-8'))
+    text = re.sub(r'(Window Geometry:\n) *Height: \d+\n *Width: \d+', fr'\1  Height: {size[1]}\n  Width: {size[0]}', text)
     copy = folder / config.name
-    copy.write_text(re.sub(r'Frame Rate: \d+', f'Frame Rate: {rate}', config.read_text(encoding='utf-8')),
-                    encoding='utf-8')
+    copy.write_text(text, encoding='utf-8')
     return copy
 
 
@@ -30,11 +31,12 @@ class RvizError(Exception):
 class RvizView:
     """rviz with a configuration; close it before the program ends."""
 
-    def __init__(self, config, logs, virtual_rate=PICTURE_RATE):
+    def __init__(self, config, logs, virtual_rate=PICTURE_RATE, virtual_size=(1280, 960)):
         """@param virtual_rate  Hz, that a virtual display is drawn at
+        @param virtual_size  px, width and height of a virtual display, which the window fills
         @raises RvizError when there is no display to be had."""
         try:
-            self._screen = Screen(logs / 'xvfb.log')
+            self._screen = Screen(logs / 'xvfb.log', virtual_size)
         except (OSError, RuntimeError) as error:
             raise RvizError(f'there is no display, and no virtual one: {error}') from error
         self.virtual = self._screen.virtual
@@ -43,7 +45,7 @@ class RvizView:
         # title has an asterisk once the view was changed.
         self._windows = ('root',) if self.virtual else (f'{config.name} - RViz', f'{config.name}* - RViz')
         # Rendering in software takes a whole core; the nodes at 1 kHz come first by their real-time priority.
-        shown = _at_rate(virtual_rate, config, logs) if self.virtual else config
+        shown = _changed(config, logs, virtual_rate, virtual_size) if self.virtual else config
         command = ['nice', '-n', '10', 'rviz', '-d', str(shown)] + (['--fullscreen'] if self.virtual else [])
         try:
             self._rviz = Child(command, logs / 'rviz.log', self.environment)

@@ -20,6 +20,7 @@ constexpr Colour kText{0.92f, 0.94f, 0.97f, 1};
 constexpr Colour kAlarm{1.00f, 0.45f, 0.35f, 1};
 
 constexpr float kMembrane = 0.25f;                          // opacity, of a cell with struts and cables inside
+constexpr std::size_t kMostWithEdges = 5000;                // triangles; edges double the work of rviz
 constexpr double kForceAbove = 0.2;                         // display units, from the tip to a force's arrow
 constexpr double kHole = 0.03;                              // display units; not to scale
 constexpr double kStrutWidth = 0.016, kCableWidth = 0.006;  // display units; not to scale
@@ -141,7 +142,7 @@ void DisplayScene::drawSkin(const DisplayedState& state, const std::optional<Dis
   const std::string frame = "viz/" + state.cell_frame;
   TriangleSoup skin = colouredSurface(surface, values, scale_, config_.enlargement);
   LineList mesh;
-  if (config_.edges) mesh = edges(surface, 0.0015, config_.enlargement);
+  if (config_.edges && surface.triangles.size() <= kMostWithEdges) mesh = edges(surface, 0.0015, config_.enlargement);
   std::vector<Eigen::Vector3d> contact = pointsAt(surface, surface.contact_vertices, config_.enlargement);
   // Members are inside of a membrane that is seen through, as it is.
   if (!state.members.kinds.empty()) {

@@ -15,10 +15,14 @@ CommandOffer offerNeedleStep(const NeedleView& needle, const SessionView& sessio
     result.refusal = "no node micromanipulator";
   } else if (led) {
     result.refusal = std::string(toText(*session.operating)) + ": press Disable first";
+  } else if (session.listens && !session.operating) {
+    result.refusal = "the controller is silent";
   } else if (needle.calibrating) {
     result.refusal = "the calibration moves the needle";
   } else if (needle.state != OperatingState::kEnabled) {
     result.refusal = std::string("the micromanipulator is ") + toText(*needle.state);
+  } else if (needle.busy && !needle.goal) {
+    result.refusal = "the needle is on its way";
   } else if (!needle.tip) {
     result.refusal = "the needle's position is not known";
   } else {

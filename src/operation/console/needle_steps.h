@@ -12,6 +12,7 @@ struct NeedleView {
   std::optional<Eigen::Vector3d> tip;   ///< m, in `world`; empty: not known, or not for too long
   std::optional<Eigen::Vector3d> goal;  ///< m, of the last step, while the needle may be on its way
   std::optional<OperatingState> state;  ///< of the micromanipulator; empty: none was heard
+  bool busy = false;                    ///< it moves, by a step or by another node's command
   bool calibrating = false;             ///< the action /calibration/calibrate moves it
 };
 
@@ -19,7 +20,8 @@ struct NeedleView {
 Eigen::Vector3d needleGoal(const NeedleView& needle, const Eigen::Vector3d& step);
 
 /// What the buttons of the steps do now. One node at a time may command the needle: the controller has to be DISABLED,
-/// or absent. The micromanipulator has refusals of its own, as of travel and obstacles, which its lamp shows.
+/// or absent; one that is silent may go on at any time. The micromanipulator has refusals of its own, as of travel and
+/// obstacles, which its lamp shows.
 CommandOffer offerNeedleStep(const NeedleView& needle, const SessionView& session);
 
 }  // namespace microinjection

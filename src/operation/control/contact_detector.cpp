@@ -6,8 +6,8 @@
 namespace microinjection {
 namespace {
 
-/// An allowance below the offset's uncertainty would let the sum grow without bound.
-constexpr double kSmallestAllowance = 0.15;
+constexpr double kSmallestAllowance = 0.15;  ///< also for the error of an offset that follows the drift
+constexpr double kOffsetErrors = 2.6;        ///< standard errors of the offset at rest
 
 constexpr int kDelay = 128;             ///< samples, see ContactDetector
 constexpr double kFollow = 1e-3;        ///< weight of a sample in the offset
@@ -31,12 +31,15 @@ double limitFor(double k, double false_rate) {
   return std::max(high, normalQuantile(false_rate) - k);
 }
 
+/// An allowance below the offset's uncertainty would let the sum grow without bound.
+double smallestAllowance(int samples) { return std::max(kSmallestAllowance, kOffsetErrors / std::sqrt(samples)); }
+
 }  // namespace
 
 ContactDetector::ContactDetector(const ForceNoise& noise, double force, double false_rate)
     : offset_(noise.offset()),
       deviation_(noise.deviation()),
-      allowance_(std::max(kSmallestAllowance, 0.5 * force / noise.deviation())),
+      allowance_(std::max(smallestAllowance(noise.samples()), 0.5 * force / noise.deviation())),
       limit_(limitFor(allowance_, false_rate)),
       recent_(kDelay) {
   start_offset_ = offset_;

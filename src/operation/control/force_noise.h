@@ -16,6 +16,7 @@ class ForceNoise {
 
   void add(double force);  ///< N; adds a sample at rest, ignored when ready()
   bool ready() const { return ready_; }
+  int samples() const { return counted_; }  ///< that count
 
   double offset() const { return mean_; }  ///< N
   /// N, standard deviation, increased by two of its own standard errors to be on the safe side.

@@ -88,6 +88,7 @@ void InjectionController::engage(const Eigen::Vector3d& needle, const Eigen::Vec
 std::optional<Eigen::Vector3d> InjectionController::step(const Input& input, double dt) {
   const bool needle_valid = isValid(input.needle);
   needle_valid_ = needle_valid_ || needle_valid;
+  if (needle_valid && isValid(input.force)) guard_force_ = input.force->dot(input.axis);
   if (state_ == OperatingState::kDisabled || state_ == OperatingState::kFault) {
     // Something else may have moved the needle out of the cell.
     if (needle_valid && monitor_.touched() && !isInside(*input.needle, input.axis)) monitor_.reset();
@@ -138,7 +139,6 @@ bool InjectionController::rigIsAtFault(const Eigen::Vector3d& needle, double dt)
 
 void InjectionController::observe(const Input& input, bool force_valid, double dt) {
   if (force_valid) {
-    guard_force_ = input.force->dot(input.axis);
     monitor_.step(*input.needle, input.axis, *input.force);
   } else {
     monitor_.skip();

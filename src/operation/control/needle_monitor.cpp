@@ -84,7 +84,7 @@ void NeedleMonitor::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis
 void NeedleMonitor::confirmContact(double axial) {
   confirmation_sum_ += axial - offset();
   if (++confirmation_samples_ < config_.confirm_samples) return;
-  const double uncertainty = noise_.deviation() * std::sqrt(1.0 / confirmation_samples_ + 1.0 / config_.noise_samples);
+  const double uncertainty = noise_.deviation() * std::sqrt(1.0 / confirmation_samples_ + 1.0 / noise_.samples());
   confirmed_ = confirmation_sum_ / confirmation_samples_ > normalQuantile(kFalselyConfirmed) * uncertainty;
 }
 

@@ -18,13 +18,19 @@ bool indicesFit(const std::vector<int>& indices, std::size_t size) {
                      [size](int index) { return index >= 0 && static_cast<std::size_t>(index) < size; });
 }
 
-/// Sums of the triangles' normals at each vertex, as long as their areas.
-std::vector<Eigen::Vector3d> flatNormals(const std::vector<Eigen::Vector3d>& vertices,
-                                         const std::vector<std::array<int, 3>>& triangles) {
+/// Sums of the triangles' normals at each vertex (1/m^2), weighted after N. Max, Weights for computing vertex normals
+/// from facet normals, Journal of Graphics Tools 4(2), 1999: exact where the vertices around it lie on a sphere.
+std::vector<Eigen::Vector3d> spheresNormals(const std::vector<Eigen::Vector3d>& vertices,
+                                            const std::vector<std::array<int, 3>>& triangles) {
   std::vector<Eigen::Vector3d> normals(vertices.size(), Eigen::Vector3d::Zero());
-  for (const auto& [a, b, c] : triangles) {
-    const Eigen::Vector3d area = (vertices[b] - vertices[a]).cross(vertices[c] - vertices[a]);
-    for (const int vertex : {a, b, c}) normals[vertex] += area;
+  for (const auto& triangle : triangles) {
+    for (int k = 0; k < 3; ++k) {
+      const Eigen::Vector3d& at = vertices[triangle[k]];
+      const Eigen::Vector3d to_next = vertices[triangle[(k + 1) % 3]] - at,
+                            to_last = vertices[triangle[(k + 2) % 3]] - at;
+      const double lengths = to_next.squaredNorm() * to_last.squaredNorm();
+      if (lengths > 0) normals[triangle[k]] += to_next.cross(to_last) / lengths;
+    }
   }
   return normals;
 }
@@ -51,8 +57,8 @@ std::string CellSurface::defect() const {
 std::vector<Eigen::Vector3d> vertexNormals(const CellSurface& surface) {
   const std::vector<QuadraticFacet> facets = quadraticFacets(surface.triangles);
   std::vector<Eigen::Vector3d> normals =
-      facets.empty() ? flatNormals(surface.vertices, surface.triangles) : quadraticNormals(surface.vertices, facets);
-  // stableNormalize, because areas of square micrometres are below the threshold of normalize.
+      facets.empty() ? spheresNormals(surface.vertices, surface.triangles) : quadraticNormals(surface.vertices, facets);
+  // stableNormalize, because the facets' areas of square micrometres are below the threshold of normalize.
   for (Eigen::Vector3d& normal : normals) normal.stableNormalize();
   return normals;
 }

@@ -26,7 +26,7 @@ struct CellSurface {
 };
 
 /// Outward unit normals at the vertices; zero at a vertex without triangles. They are those of the curved facets of
-/// second order where the surface is made of them (quadraticFacets()), else the triangles' weighted by their areas.
+/// second order where the surface is made of them (quadraticFacets()), else of the sphere through the neighbours.
 std::vector<Eigen::Vector3d> vertexNormals(const CellSurface& surface);
 
 /// The surface coloured by a value at each vertex, in display units. The colours include light from

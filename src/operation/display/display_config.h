@@ -10,7 +10,7 @@ namespace microinjection {
 
 struct DisplayConfig {
   double rate = 30;                     ///< Hz of wall time, of the markers, at most 60
-  bool edges = true;                    ///< draw the edges of the cell's mesh
+  bool edges = true;                    ///< draw the edges of the cell's mesh, where it is coarse
   std::string colour = "displacement";  ///< of the cell's surface at the start, one of surfaceQuantities()
   double colour_range = 0;              ///< m, displacement at the end of the colour scale; 0: the largest so far
   double stress_range = 0;              ///< Pa, stress or pressure there; 0: the largest so far

@@ -47,6 +47,7 @@ TEST(NeedleSteps, AddUpWhileTheNeedleIsOnItsWay) {
 /// The second node that commands the needle would be a fault of the rig.
 TEST(NeedleSteps, LeaveTheNeedleToTheControllerUnlessItIsDisabled) {
   SessionView session;
+  session.listens = false;
   EXPECT_EQ(offerNeedleStep(restingNeedle(), session).refusal, "");
   EXPECT_EQ(offerNeedleStep(restingNeedle(), session).effect, "at 1.0, -2.0, 80.0 um");
   session.operating = OperatingState::kDisabled;
@@ -55,6 +56,25 @@ TEST(NeedleSteps, LeaveTheNeedleToTheControllerUnlessItIsDisabled) {
     session.operating = state;
     EXPECT_EQ(offerNeedleStep(restingNeedle(), session).refusal, std::string(toText(state)) + ": press Disable first");
   }
+}
+
+/// A controller that does not report may go on at any time, with its old set-point.
+TEST(NeedleSteps, WaitForAControllerThatIsSilent) {
+  SessionView session;
+  session.listens = true;
+  EXPECT_EQ(offerNeedleStep(restingNeedle(), session).refusal, "the controller is silent");
+  session.operating = OperatingState::kDisabled;
+  EXPECT_EQ(offerNeedleStep(restingNeedle(), session).refusal, "");
+}
+
+TEST(NeedleSteps, WaitForAnotherNodesMove) {
+  SessionView session;
+  session.operating = OperatingState::kDisabled;
+  NeedleView needle = restingNeedle();
+  needle.busy = true;
+  EXPECT_EQ(offerNeedleStep(needle, session).refusal, "the needle is on its way");
+  needle.goal = Eigen::Vector3d(0, 0, 90e-6);
+  EXPECT_EQ(offerNeedleStep(needle, session).refusal, "");
 }
 
 TEST(NeedleSteps, NeedAnEnabledNeedleThatNobodyElseMoves) {

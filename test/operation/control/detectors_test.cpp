@@ -54,6 +54,20 @@ TEST_F(DetectorsTest, AForceThatRisesEndsTheMeasurementAtRest) {
   EXPECT_NEAR(pushed.deviation(), kNoise, 0.7 * kNoise);
 }
 
+/// A force that rises at once leaves 20 samples of rest: the error of their mean is no contact.
+TEST_F(DetectorsTest, AShortMeasurementAtRestCausesNoFalseContact) {
+  int alarms = 0;
+  for (int run = 0; run < 100; ++run) {
+    ForceNoise brief(20, 1e-12, kChange);
+    while (!brief.ready()) brief.add(sample());
+    ContactDetector detector(brief, 1e-9, 1e-7);
+    bool alarm = false;
+    for (int i = 0; i < 1000 && !alarm; ++i) alarm = detector.step(sample());
+    alarms += static_cast<int>(alarm);
+  }
+  EXPECT_LE(alarms, 1);
+}
+
 TEST(NormalQuantile, KnownValues) {
   EXPECT_NEAR(normalQuantile(0.05), 1.6448536, 1e-6);
   EXPECT_NEAR(normalQuantile(1e-3), 3.0902323, 1e-6);

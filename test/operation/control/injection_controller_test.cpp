@@ -49,6 +49,10 @@ TEST_F(InjectionControllerTest, NamesTheForceThatItsGuardCompares) {
   input_.force.reset();
   run(1);
   EXPECT_EQ(controller_.guardForce(), 2e-6);
+  controller_.command("disable");
+  input_.force = Eigen::Vector3d(0, 0, 0.5e-6);
+  run(1);
+  EXPECT_EQ(controller_.guardForce(), 0.5e-6);
 }
 
 TEST_F(InjectionControllerTest, FollowsTheTargetWithinTheSpeedLimit) {
