@@ -3,15 +3,19 @@
 import socket
 import sys
 import tempfile
+import threading
 import time
 import unittest
+from http.server import BaseHTTPRequestHandler, HTTPServer
 from pathlib import Path
+from unittest import mock
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / 'src' / 'tools'))
 
 import host_check  # noqa: E402
 import hosts_file  # noqa: E402
+import session_on_hosts  # noqa: E402
 
 VERSIONS = {'msg/A': '1', 'msg/B': '2'}
 HERE = '127.0.0.1'
@@ -45,8 +49,40 @@ class HostsFile(unittest.TestCase):
         self.refused('{master: c, clock_limit: 0.5, hosts: {a: {address: 1.1.1.1, nodes: [x]}, b: {address: 1.1.1.1, '
                      'nodes: [x]}}}', 'master = c: must be one of the hosts: a, b', 'clock_limit = 0.5: must be above 0',
                      'x: two hosts run it', '1.1.1.1: two hosts have it')
+        self.refused('{master: a, hosts: {a: {address: 1.1.1.1, nodes: 5}, b: {address: 1.1.1.2, nodes: [7]}}}',
+                     'hosts/a/nodes = 5: must be of type list', 'hosts/b/nodes: 7: must be the name of a node')
         self.refused('[]', 'must be a YAML map')
         self.refused('{master: [', 'while parsing')
+
+
+    def test_by_ssh_every_other_host_needs_a_loader(self):
+        text = '{master: a, hosts: {a: {address: 1.1.1.1}, b: {address: 1.1.1.2%s}}}'
+        with self.assertRaisesRegex(hosts_file.HostsError, '^hosts/b/env_loader is missing'):
+            self.load(text % '').require_env_loaders()
+        hosts = self.load(text % ', env_loader: /opt/my lab/env.sh')
+        hosts.require_env_loaders()
+        self.assertEqual(session_on_hosts.loader(hosts.named('b')),
+                         "env -u ROS_HOSTNAME ROS_IP=1.1.1.2 '/opt/my lab/env.sh'")
+
+
+class Addresses(unittest.TestCase):
+    """192.0.2.1 is kept for documents: no host has it."""
+
+    def hosts(self, address):
+        host, master = hosts_file.Host('b', address), hosts_file.Host('a', HERE)
+        return hosts_file.Hosts(master, LIMIT, {'a': master, 'b': host}), host
+
+    def test_an_address_of_another_host(self):
+        with self.assertRaisesRegex(hosts_file.HostsError, 'hosts/b/address = 192.0.2.1: this host cannot listen there: .*have that address'):
+            session_on_hosts.checked(*self.hosts('192.0.2.1'))
+
+    def test_a_port_that_is_in_use(self):
+        taken = socket.create_server((HERE, 0))
+        self.addCleanup(taken.close)
+        with self.assertRaises(OSError) as caught:
+            host_check.CheckServer(HERE, taken.getsockname()[1])
+        error = session_on_hosts.cannot_listen(hosts_file.Host('a', HERE), caught.exception, host_check.PORT)
+        self.assertRegex(str(error), 'hosts/a/address = 127.0.0.1, port 11312: .*in use; does a session run here already')
 
 
 class HostCheck(unittest.TestCase):
@@ -76,6 +112,38 @@ class HostCheck(unittest.TestCase):
     def test_ways_that_are_closed(self):
         self.assertRegex(self.check(server=False)[0], 'here does not reach 127.0.0.1:.*refused')
         self.assertRegex(self.check(door=False)[0], 'the master\'s host does not reach here at 127.0.0.1')
+
+    def test_a_way_back_that_is_filtered(self):
+        """No answer comes at all: the server gives up after PATIENCE, and the client waits for that."""
+        connects = host_check.connects
+
+        def filtered(address, port):
+            if port != self.filtered:
+                return connects(address, port)
+            time.sleep(host_check.PATIENCE + 0.1)
+            return 'timed out'
+
+        listener = socket.create_server((HERE, 0))
+        self.addCleanup(listener.close)
+        self.filtered = listener.getsockname()[1]
+        with mock.patch.multiple(host_check, PATIENCE=0.2, connects=filtered):
+            answer = host_check.CheckServer(HERE, 0, versions=VERSIONS)
+            self.addCleanup(answer.close)
+            errors = host_check.check((HERE, answer.port), 'here', hosts_file.Host('here', HERE), self.filtered, LIMIT,
+                                      versions=VERSIONS)
+        self.assertEqual(len(errors), 1)
+        self.assertRegex(errors[0], 'the master\'s host does not reach here at 127.0.0.1:[0-9]+: timed out')
+
+    def test_another_service_on_the_port(self):
+        for answer in (b'HTTP/1.0 404 Not Found\r\n\r\n', b'HTTP/1.0 200 OK\r\nContent-Type: text/xml\r\n\r\nno XML', b'SSH-2.0\r\n'):
+            server = HTTPServer((HERE, 0), type('Other', (BaseHTTPRequestHandler,), {
+                'handle': lambda self, answer=answer: (self.connection.recv(4096), self.connection.sendall(answer))}))
+            self.addCleanup(server.server_close)
+            self.addCleanup(server.shutdown)
+            threading.Thread(target=server.serve_forever, daemon=True).start()
+            errors = host_check.check(server.server_address, 'here', hosts_file.Host('here', HERE), 1, LIMIT, versions=VERSIONS)
+            self.assertEqual(len(errors), 1)
+            self.assertRegex(errors[0], 'here: the check with 127.0.0.1:[0-9]+ failed')
 
     def test_messages_of_another_version(self):
         errors = self.check(own_versions={'msg/A': '1', 'msg/B': '3', 'msg/C': '4'})

@@ -2,7 +2,7 @@
 """What is checked between two hosts before a session starts: the way in both directions, clocks, versions of messages.
 
 The master's host answers (CheckServer), each other host asks (check). Names need no check: nodes announce themselves by
-the address of their host, because ROS_IP is set.
+the address of their host, because session_on_hosts.py sets ROS_IP on each host, over ssh too.
 """
 import importlib
 import pkgutil
@@ -10,13 +10,16 @@ import socket
 import threading
 import time
 from contextlib import closing
+from http.client import HTTPException
 from socketserver import ThreadingMixIn
-from xmlrpc.client import Fault, ServerProxy, Transport
+from xml.parsers.expat import ExpatError
+from xmlrpc.client import Error, ServerProxy, Transport
 from xmlrpc.server import SimpleXMLRPCRequestHandler, SimpleXMLRPCServer
 
 PORT = 11312      # beside the master's
 EXCHANGES = 20    # of the clocks' readings; the fastest counts
 PATIENCE = 5      # s for a connection
+ANSWER = 5        # s more for an answer, which may itself wait for a connection
 PACKAGE = 'cell_microinjection'
 
 
@@ -53,7 +56,7 @@ class _Server(ThreadingMixIn, SimpleXMLRPCServer):
 class _ImpatientTransport(Transport):
     def make_connection(self, host):
         connection = super().make_connection(host)
-        connection.timeout = PATIENCE
+        connection.timeout = PATIENCE + ANSWER
         return connection
 
 
@@ -110,7 +113,7 @@ def check(server, name, host, own_port, limit, clock=time.time, versions=None):
                 errors.append(f'the clock of {name} is {-1e3 * offset:+.1f} ms from the master\'s (within '
                               f'{1e3 * uncertainty:.1f} ms), allowed {1e3 * limit:g} ms; does chrony or PTP run on both?')
             errors += _compare(name, versions or message_versions(), other.versions())
-    except (OSError, Fault) as error:
+    except (OSError, Error, HTTPException, ExpatError) as error:  # the last three: of another service on that port
         errors.append(f'{name}: the check with {address}:{port} failed: {error}')
     return errors
 

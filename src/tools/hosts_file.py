@@ -38,6 +38,12 @@ class Hosts:
             raise HostsError(f'--host = {name}: must be one of {", ".join(self.all)}')
         return self.all[name]
 
+    def require_env_loaders(self):
+        """Raises HostsError for each host but the master's without one: roslaunch would take a path of its own."""
+        missing = [name for name, host in self.all.items() if host != self.master and not host.env_loader]
+        if missing:
+            raise HostsError('\n'.join(f'hosts/{name}/env_loader is missing: --ssh needs it' for name in missing))
+
 
 def _check(where, values, keys, required):
     errors = [f'{where}{key}: unknown key; known here: {", ".join(keys)}' for key in values if key not in keys]
@@ -57,8 +63,8 @@ def _check_host(where, host):
             ipaddress.ip_address(address)
         except ValueError:
             errors.append(f'{where}address = {address}: must be an IP address, which no name server can change')
-    errors += [f'{where}nodes: {node}: must be the name of a node' for node in host.get('nodes') or []
-               if not isinstance(node, str)]
+    if isinstance(host.get('nodes'), list):
+        errors += [f'{where}nodes: {node}: must be the name of a node' for node in host['nodes'] if not isinstance(node, str)]
     return errors
 
 

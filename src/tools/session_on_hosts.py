@@ -9,8 +9,10 @@ The arguments are those of session.launch, the same on every host. A host does n
 ways, its clock is off, its messages are of another version, or the arguments differ.
 """
 import argparse
+import errno
 import hashlib
 import os
+import shlex
 import socket
 import subprocess
 import sys
@@ -62,6 +64,11 @@ def launch_files(arguments):
     return [(name, arguments.arguments) for name in roslaunch.rlutil.resolve_launch_arguments(names)]
 
 
+def loader(host):
+    """Returns the command of a shell, before the command that it runs on the host: roslaunch itself sets no ROS_IP there."""
+    return f'env -u ROS_HOSTNAME ROS_IP={host.address} {shlex.quote(host.env_loader)}'
+
+
 def assign(config, hosts, here):
     """Leaves the nodes of the host `here` in a roslaunch configuration; with None, all, each with the machine of its host."""
     if here:
@@ -74,7 +81,7 @@ def assign(config, hosts, here):
     from roslaunch.core import Machine
     for host in hosts.all.values():
         if host != hosts.master:
-            config.add_machine(Machine(host.name, host.address, host.env_loader or None, user=host.user or None))
+            config.add_machine(Machine(host.name, host.address, loader(host), user=host.user or None))
     for node in config.nodes:
         host = hosts.of_node(node.name)
         node.machine_name = None if host == hosts.master else host.name
@@ -134,9 +141,20 @@ class Door:
         self._socket.close()
 
 
+def cannot_listen(here, error, port=None):
+    """Returns a HostsError: the address is not one of this host, or the port is in use."""
+    at = f', port {port}' if port else ''
+    question = 'does a session run here already?' if error.errno == errno.EADDRINUSE else 'does this host have that address?'
+    return hosts_file.HostsError(f'hosts/{here.name}/address = {here.address}{at}: this host cannot listen there: '
+                                 f'{error.strerror or error}; {question}')
+
+
 def checked(hosts, here):
     """Returns the errors of this host."""
-    door = Door(here.address)
+    try:
+        door = Door(here.address)
+    except OSError as error:
+        raise cannot_listen(here, error) from None
     try:
         return host_check.check((hosts.master.address, host_check.PORT), here.name, here, door.port, hosts.clock_limit)
     finally:
@@ -177,8 +195,8 @@ def check_by_ssh(arguments, hosts):
         if host == hosts.master:
             continue
         target = f'{host.user}@{host.address}' if host.user else host.address
-        command = [host.env_loader or 'env', 'rosrun', 'cell_microinjection', 'session_on_hosts.py', '--hosts', '/dev/stdin',
-                   '--host', host.name, '--check-only']
+        command = [loader(host), 'rosrun', 'cell_microinjection', 'session_on_hosts.py', '--hosts', '/dev/stdin',
+                   '--host', shlex.quote(host.name), '--check-only']
         done = subprocess.run(['ssh', '-o', 'BatchMode=yes', target, *command], text=True, capture_output=True,
                               input=arguments.hosts.read_text(encoding='utf-8'))
         if done.returncode:
@@ -187,6 +205,8 @@ def check_by_ssh(arguments, hosts):
 
 def run(arguments):
     hosts = hosts_file.load(arguments.hosts)
+    if arguments.ssh:
+        hosts.require_env_loaders()
     if arguments.list:
         for node in load(arguments).nodes:
             print(f'{hosts.of_node(node.name).name}: {node.name}')
@@ -196,7 +216,10 @@ def run(arguments):
     os.environ.pop('ROS_HOSTNAME', None)
     if here != hosts.master:
         return join(arguments, hosts, here)
-    server = host_check.CheckServer(here.address)
+    try:
+        server = host_check.CheckServer(here.address)
+    except OSError as error:
+        raise cannot_listen(here, error, host_check.PORT) from None
     try:
         if arguments.ssh:
             check_by_ssh(arguments, hosts)

@@ -46,7 +46,7 @@ class AssignTest(Files):
         config = self.config()
         session_on_hosts.assign(config, self.hosts, None)
         machines = {node.name: (node.machine.address, node.machine.user, node.machine.env_loader) for node in config.nodes}
-        self.assertEqual(machines["cell_simulator"], ("10.88.0.2", "lab", "/opt/env.sh"))
+        self.assertEqual(machines["cell_simulator"], ("10.88.0.2", "lab", "env -u ROS_HOSTNAME ROS_IP=10.88.0.2 /opt/env.sh"))
         self.assertEqual(machines["micromanipulator"][0], "localhost")
         self.assertTrue(config.has_remote_nodes())
 
