@@ -133,7 +133,8 @@ void ConfigReader::texts(const std::string& key, std::vector<std::string>& value
   std::vector<std::string> read;
   for (std::size_t i = 0; node.IsSequence() && i < node.size() && node[i].IsScalar(); ++i)
     read.push_back(node[i].Scalar());
-  if (read.empty() || read.size() != node.size()) return error(key, "must be a list of one or more values");
+  if (read.empty() || read.size() != node.size())
+    return error(key, "must be a list of one or more scalars, not of lists or maps");
   values = read;
 }
 

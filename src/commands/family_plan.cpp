@@ -13,6 +13,7 @@ namespace microinjection {
 namespace {
 
 constexpr char kColumns[] = "task,kind,coordinates,piece";
+constexpr char kChecksum[] = ", checksum ";
 constexpr char kAxis[] = "axis", kPath[] = "path";
 
 std::vector<std::string> split(const std::string& text, char separator) {
@@ -53,8 +54,11 @@ void FamilyPlan::addMember(const Eigen::VectorXd& coordinates, std::size_t paths
   for (std::size_t i = 0; i < paths; ++i) tasks_.push_back({coordinates, static_cast<int>(i)});
 }
 
+std::string FamilyPlan::headStart() const { return "# a round of prepare --family " + name_ + " --members "; }
+
 std::string FamilyPlan::head(const std::string& body) const {
-  return "# a round of prepare --family " + name_ + ", checksum " + contentHash(family_ + body);
+  const std::string wanted = std::to_string(wanted_);
+  return headStart() + wanted + kChecksum + contentHash(family_ + wanted + body);
 }
 
 void FamilyPlan::save(const std::string& file) const {
@@ -75,6 +79,9 @@ void FamilyPlan::load(const std::string& file) {
   if (!in || !std::getline(in, first)) throw ConfigError(file + ": cannot be read; make it with --list");
   std::ostringstream rest;
   rest << in.rdbuf();
+  const std::size_t start = headStart().size(), end = std::min(first.rfind(kChecksum), first.size());
+  const auto wanted = end > start ? parseNumber<int>(first.substr(start, end - start)) : std::nullopt;
+  wanted_ = wanted.value_or(0);
   if (first != head(rest.str())) {
     throw ConfigError(file + ": is damaged, or of another family; make it with --list");
   }

@@ -110,9 +110,6 @@ void interpret(const OptionTexts& texts, IndentArguments& arguments) {
   arguments.indenting.hold = parsePositive("hold", texts.hold, " (s)", true);
   parseChoice("model", texts.model, indentModels());
   arguments.setModel(texts.model);
-  if ((arguments.live || arguments.membrane) && !texts.withdraw.empty()) {
-    throw ConfigError("--withdraw = " + texts.withdraw + ": must be left out with --model " + texts.model);
-  }
   parseChoice("element", texts.element, elementNames());
   arguments.converged.element = elementKind(texts.element);
   arguments.tolerance_given = !texts.tolerance.empty();
@@ -179,8 +176,8 @@ std::optional<IndentArguments> parseIndentArguments(int argc, char** argv) {
   }
   if (values.count("scene") == 0) throw ConfigError("--scene is missing: a scene file, see --help");
   if (values.count("depths") == 0) throw ConfigError("--depths is missing: for example 1e-6,2e-6 (m), see --help");
-  for (const std::string option : {"tolerance", "element", "time"}) {
-    if (values.count(option) != 0 && !values[option].defaulted()) arguments.converged_options.push_back("--" + option);
+  for (const auto& [name, value] : values) {
+    if (!value.defaulted()) arguments.given[name] = value.as<std::string>();
   }
   interpret(texts, arguments);
   return arguments;

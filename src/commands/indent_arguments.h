@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,7 +10,7 @@
 
 namespace microinjection {
 
-/// Command line of `indent`.
+/// What is to be computed: the command line of `indent`, or the indentation of a sweep file.
 struct IndentArguments {
   std::string scene;  ///< file
   Indenting indenting;
@@ -17,11 +18,15 @@ struct IndentArguments {
   bool membrane = false;  ///< use the scene's biomembrane instead
   ConvergedForceConfig converged;
   bool tolerance_given = false;
-  std::vector<std::string> converged_options;  ///< given options that apply to a converged solution only
-  std::string csv = "-";                       ///< file, or - for the standard output
+  std::map<std::string, std::string> given;  ///< texts of the options that the user gave, by name
+  std::string prefix = "--";                 ///< of an option's name in messages
+  std::string csv = "-";                     ///< file, or - for the standard output
 
   /// One of indentModels().
   void setModel(const std::string& name);
+  /// Throws ConfigError when the scene does not have the model, or when the model would ignore an
+  /// option that was given. Its message names each option with its value and what is allowed.
+  void requireFit(const Scene& scene) const;
 };
 
 /// auto, axisymmetric, spatial, live and membrane; see --help of `indent`.

@@ -7,7 +7,6 @@
 #include <memory>
 #include <string>
 
-#include "base/errors.h"
 #include "cell/model/biomembrane.h"
 #include "cell/model/indentation.h"
 #include "cell/model/p1_cell.h"
@@ -60,14 +59,7 @@ std::vector<ForcePoint> live(const Scene& scene, const Indenting& indenting, con
   return points;
 }
 
-std::vector<ForcePoint> tensegrity(const Scene& scene, const IndentArguments& arguments, const Report& report) {
-  const Indenting& indenting = arguments.indenting;
-  std::vector<std::string> options = arguments.converged_options, errors;
-  if (!indenting.withdrawal.empty()) options.push_back("--withdraw");
-  for (const std::string& option : options) {
-    errors.push_back(option + ": must be left out for a scene of cell/model = tensegrity");
-  }
-  if (!errors.empty()) throw ConfigError(errors);
+std::vector<ForcePoint> tensegrity(const Scene& scene, const Indenting& indenting, const Report& report) {
   const auto cell = std::make_shared<const TensegrityCell>(scene);
   const std::unique_ptr<TensegrityIndentation> path = cell->indentation(tipPatch(*cell, report));
   const auto solve = [&](const Eigen::Vector3d& target) {
@@ -93,20 +85,7 @@ std::vector<ForcePoint> tensegrity(const Scene& scene, const IndentArguments& ar
   return points;
 }
 
-void requireMembraneScene(const Scene& scene, const Indenting& indenting) {
-  scene.requireContinuum("--model membrane");
-  std::vector<std::string> errors;
-  if (!scene.cell.biomembrane) errors.push_back("cell/biomembrane is missing: thickness and dimple_radius, m");
-  if (!scene.needle.offset.isZero(0)) errors.push_back("needle/offset: must be 0 with --model membrane");
-  if (!indenting.lateral.isZero(0)) errors.push_back("--lateral: must be 0 with --model membrane");
-  if (indenting.speed || indenting.hold > 0) {
-    errors.push_back("--speed, --hold: must be left out with --model membrane, which has no time");
-  }
-  if (!errors.empty()) throw ConfigError(errors);
-}
-
 std::vector<ForcePoint> membrane(const Scene& scene, const Indenting& indenting, const Report& report) {
-  requireMembraneScene(scene, indenting);
   const MaterialConfig& material = scene.cell.material();
   const Biomembrane model(material.young_modulus, material.poisson_ratio, scene.needle.tip.radius,
                           *scene.cell.biomembrane);
@@ -143,9 +122,10 @@ std::vector<ForcePoint> converged(const Scene& scene, const IndentArguments& arg
 void printProgress(const std::string& line) { std::fprintf(stderr, "indent: %s\n", line.c_str()); }
 
 std::vector<ForcePoint> solveIndentation(const Scene& scene, const IndentArguments& arguments, const Report& report) {
+  arguments.requireFit(scene);
   if (arguments.membrane) return membrane(scene, arguments.indenting, report);
   const bool default_model = arguments.live || arguments.converged.model == ConvergedForceConfig::Model::kAuto;
-  if (scene.cell.tensegrity && default_model) return tensegrity(scene, arguments, report);
+  if (scene.cell.tensegrity && default_model) return tensegrity(scene, arguments.indenting, report);
   return arguments.live ? live(scene, arguments.indenting, report) : converged(scene, arguments, report);
 }
 

@@ -16,7 +16,7 @@ using Report = std::function<void(const std::string& line)>;
 void printProgress(const std::string& line);
 
 /// Forces of the scene at the depths of the arguments, by the model that they name. Throws
-/// ConfigError when the scene does not have that model.
+/// ConfigError as IndentArguments::requireFit does.
 std::vector<ForcePoint> solveIndentation(const Scene& scene, const IndentArguments& arguments,
                                          const Report& report = printProgress);
 

@@ -47,6 +47,16 @@ void requireAtLeast(const std::string& option, int value, int least) {
   throw ConfigError("--" + option + " = " + std::to_string(value) + ": must be " + std::to_string(least) + " or more");
 }
 
+/// `task`: whether --task was given.
+void requirePlan(const PrepareArguments& arguments, bool task) {
+  const bool plan = !arguments.family.plan.empty();
+  if (plan && !arguments.family.list.empty()) throw ConfigError("--list and --plan: only one may be given");
+  if (task && arguments.gather) throw ConfigError("--task and --gather: only one may be given");
+  if (!plan && task) throw ConfigError("--task needs --plan: a file that --list has written");
+  if (!plan && arguments.gather) throw ConfigError("--gather needs --plan: a file that --list has written");
+  if (plan && !task && !arguments.gather) throw ConfigError("--plan needs one of --task and --gather");
+}
+
 }  // namespace
 
 PrepareArguments parsePrepareArguments(int argc, char** argv) {
@@ -92,8 +102,8 @@ PrepareArguments parsePrepareArguments(int argc, char** argv) {
   arguments.show_help = values.count("help") != 0;
   if (arguments.show_help) return arguments;
   if (arguments.scene.empty() == family.file.empty()) throw ConfigError("one of --scene and --family must be given");
-  if (family.plan.empty() != !(arguments.gather != (values.count("task") != 0)))
-    throw ConfigError("--plan needs one of --task and --gather");
+  requirePlan(arguments, values.count("task") != 0);
+  family.members_given = !values["members"].defaulted();
   if (family.file.empty() && !(family.plan + family.list).empty()) throw ConfigError("--list and --plan need --family");
   if (values.count("task") != 0) requireAtLeast("task", arguments.task, 0);
   requireAtLeast("count", arguments.count, 1);

@@ -45,8 +45,9 @@ class FamilyPreparation {
 
   void run() {
     if (arguments_.refit) {
-      std::printf("prepare: %d members fitted anew\n", data_.refit());
-      store();
+      const int refitted = data_.refit();
+      std::printf("prepare: %d members fitted anew\n", refitted);
+      store(refitted > 0);
     }
     for (FamilyPlan plan = next(); !plan.tasks().empty(); plan = next()) {
       solve(plan);
@@ -86,6 +87,7 @@ class FamilyPreparation {
       throw ConfigError(file + ": " + std::to_string(missing) + " of " + std::to_string(plan.tasks().size()) +
                         " tasks are missing");
     }
+    arguments_.members = plan.wanted();  // the data name it, and are the same bytes as without a plan
     gather(plan);
     report();
   }
@@ -105,7 +107,7 @@ class FamilyPreparation {
 
   /// The next round's tasks; none when the family is complete.
   FamilyPlan next() const {
-    FamilyPlan plan(family_);
+    FamilyPlan plan(family_, arguments_.members);
     if (needsAxisForces()) plan.addAxisNodes(static_cast<int>(axisForceGrid(family_).size()));
     const int round = std::min(kRound, arguments_.members - count());
     if (round <= 0) return plan;
@@ -126,6 +128,10 @@ class FamilyPreparation {
   FamilyPlan read(const std::string& file) const {
     FamilyPlan plan(family_);
     plan.load(file);
+    if (arguments_.members_given && arguments_.members != plan.wanted()) {
+      throw ConfigError("--members = " + std::to_string(arguments_.members) + ": must be " +
+                        std::to_string(plan.wanted()) + ", as of " + file + ", or left out");
+    }
     return plan;
   }
 
@@ -164,24 +170,33 @@ class FamilyPreparation {
   void gather(const FamilyPlan& plan) {
     SymmetricSolver::useOneThread();  // the fit is the same bytes on any number of cores
     reload();                         // another process may have added members
-    for (const Eigen::VectorXd& member : plan.members()) addMember(member, storeOf(family_, member));
-    store();
+    bool added = false;
+    for (const Eigen::VectorXd& member : plan.members()) added |= addMember(member, storeOf(family_, member));
+    store(added);
     const ExpectedError error = data_.leaveOneOutError();
     std::printf("prepare: %zu members, %zu left out: each from the others: median %.2g %%, nine of ten below %.2g %%\n",
                 data_.members().size(), data_.failed().size(), 100 * error.median, 100 * error.common);
     std::fflush(stdout);
   }
 
-  void store() {
+  /// Whether the data did not have them before, and now have them.
+  bool addAxisForces() {
     const AxisStore axis(family_);
-    if (!data_.hasAxisCurves() && axis.missing().empty()) {
-      const Eigen::MatrixXd forces = axis.loadAll();
-      if (forces.size() > 0) {
-        data_.setAxisForces(forces);
-      } else {
-        std::printf("prepare: some members have no solution on the axis: its force is interpolated between members\n");
-      }
+    if (data_.hasAxisCurves() || !axis.missing().empty()) return false;
+    const Eigen::MatrixXd forces = axis.loadAll();
+    if (forces.size() > 0) {
+      data_.setAxisForces(forces);
+    } else if (!axis_reported_) {
+      axis_reported_ = true;
+      std::printf("prepare: some members have no solution on the axis: its force is interpolated between members\n");
     }
+    return forces.size() > 0;
+  }
+
+  /// Data that did not change keep their measured errors, which update() forgets.
+  void store(bool changed) {
+    changed |= addAxisForces();
+    if (!changed) return;
     data_.update();
     data_.setProvenance(provenance());
     data_.save(path_);
@@ -196,8 +211,9 @@ class FamilyPreparation {
     return false;
   }
 
-  void addMember(const Eigen::VectorXd& coordinates, const PathStore& store) {
-    if (has(coordinates)) return;
+  /// Also adds it to those that are left out. False when it is known.
+  bool addMember(const Eigen::VectorXd& coordinates, const PathStore& store) {
+    if (has(coordinates)) return false;
     try {
       Eigen::MatrixXf displacements;
       const FamilyMember member = fitMember(family_, coordinates, store.loadAll(), displacements);
@@ -210,6 +226,7 @@ class FamilyPreparation {
       data_.addFailed(coordinates);
       std::printf("prepare: the member at %s is left out: %s\n", text(coordinates).c_str(), error.what());
     }
+    return true;
   }
 
   std::string provenance() const {
@@ -231,6 +248,7 @@ class FamilyPreparation {
   Family family_;
   std::string path_;
   FamilyData data_;
+  bool axis_reported_ = false;
 };
 
 }  // namespace

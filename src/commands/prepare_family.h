@@ -7,7 +7,8 @@ namespace microinjection {
 struct FamilyArguments {
   std::string file;  ///< of the family, YAML
   int jobs = 1;
-  int members = 30;       ///< to have at the end
+  int members = 30;  ///< to have at the end
+  bool members_given = false;
   int check = 0;          ///< members to draw and solve, instead
   bool refit = false;     ///< first fits the members anew to the forces that the data keep
   bool record = false;    ///< the check's errors become those that the family expects
@@ -21,7 +22,8 @@ struct FamilyArguments {
 /// Solves members of a family until there are so many, and stores the family's data beside its file
 /// (.data for .yaml). Continues from members and paths that are there; several processes share the
 /// work. With `list` it only lists the tasks of the next round; with `plan` it adds the members of a
-/// round whose tasks are done. Throws ConfigError, WriteError and std::runtime_error with messages for the user.
+/// round whose tasks are done. Data to which nothing is added stay as they are. Throws ConfigError, WriteError and
+/// std::runtime_error with messages for the user.
 void prepareFamily(const FamilyArguments& arguments);
 
 /// Solves tasks of arguments.plan from `first` on. Exit status: 0, or kBusyStatus when another

@@ -24,14 +24,10 @@ namespace {
 constexpr int kDone = 0, kBadUsage = 2, kFailed = 3;
 
 void list(const SweepFile& sweep) {
-  std::string table = "task";
-  for (const std::string& key : sweep.keys()) table += "," + key;
-  std::cout << table << '\n';
+  std::cout << sweep.columns() << '\n';
   for (std::size_t task = 0; task < sweep.design().size(); ++task) {
     sweep.task(task);  // which throws when it is not valid
-    std::cout << task;
-    for (const std::string& value : sweep.design().values(task)) std::cout << ',' << value;
-    std::cout << '\n';
+    std::cout << sweep.columns(task) << '\n';
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "base/cache_file.h"
 #include "base/config_reader.h"
+#include "base/csv_field.h"
 #include "base/errors.h"
 #include "cell/sweep/scene_variation.h"
 
@@ -14,7 +15,7 @@ namespace microinjection {
 namespace {
 
 constexpr auto kRequired = ConfigReader::kRequired;
-constexpr char kFormat[] = "sweep 1";
+constexpr char kFormat[] = "sweep 2";
 
 void readIndentation(ConfigReader reader, IndentArguments& arguments) {
   Indenting& indenting = arguments.indenting;
@@ -54,12 +55,41 @@ SweepFile::SweepFile(const std::string& path) : path_(path) {
   reader.finish();
   scene_ = loadYamlMap((std::filesystem::path(path).parent_path() / scene).string());
   indentation_text_ = flow(file["indentation"]);
+  indentation_.prefix = "indentation/";
+  for (const auto& option : file["indentation"]) indentation_.given[option.first.Scalar()] = flow(option.second);
+  requireSomeTaskFits();
+}
+
+/// The keys may vary whether a scene has the model, so one task that has it is enough. It is nearly always the first.
+void SweepFile::requireSomeTaskFits() const {
+  std::string first;
+  for (std::size_t number = 0; number < design_.size(); ++number) {
+    const Task each = task(number);
+    try {
+      return each.indentation.requireFit(each.scene);
+    } catch (const ConfigError& error) {
+      if (number == 0) first = error.what();
+    }
+  }
+  throw ConfigError(path_ + ": " + first);
 }
 
 std::vector<std::string> SweepFile::keys() const {
   std::vector<std::string> names;
   for (const SweptKey& key : design_.keys()) names.push_back(key.key);
   return names;
+}
+
+std::string SweepFile::columns() const {
+  std::string result = "task";
+  for (const std::string& key : keys()) result += "," + csvField(key);
+  return result;
+}
+
+std::string SweepFile::columns(std::size_t task) const {
+  std::string result = std::to_string(task);
+  for (const std::string& value : design_.values(task)) result += "," + csvField(value);
+  return result;
 }
 
 SweepFile::Task SweepFile::task(std::size_t number) const {

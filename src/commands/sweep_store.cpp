@@ -4,6 +4,10 @@
 #include <cstdio>
 #include <exception>
 #include <limits>
+#include <new>
+#include <sstream>
+#include <stdexcept>
+#include <system_error>
 
 #include "base/atomic_file.h"
 #include "base/errors.h"
@@ -14,21 +18,45 @@ namespace {
 
 std::string quoted(const std::string& text) {
   std::string result = "\"";
-  for (const char each : text) result += each == '"' ? "'" : std::string(1, each == '\n' ? ' ' : each);
+  for (const char each : text) result += each == '"' ? "'" : std::string(1, each == '\n' || each == '\r' ? ' ' : each);
   return result + "\"";
 }
 
-std::string rows(const std::string& start, const std::vector<ForcePoint>& points) {
+/// Without the task's number and its keys' values: another sweep may have the same scene by other keys.
+std::string rows(const std::vector<ForcePoint>& points) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   std::string result;
   for (const ForcePoint& point : points) {
     const Eigen::Vector3d force = point.converged ? point.force : Eigen::Vector3d::Constant(kNan);
     char row[160];
-    std::snprintf(row, sizeof row, ",%.9g,%.9g,%.9g,%.9g,%d,%.3g,", point.depth, force.x(), force.y(), force.z(),
+    std::snprintf(row, sizeof row, "%.9g,%.9g,%.9g,%.9g,%d,%.3g,", point.depth, force.x(), force.y(), force.z(),
                   point.converged ? 1 : 0, point.error_estimate);
-    result += start + row + (point.reason.empty() ? "" : quoted(point.reason)) + "\n";
+    result += row + (point.reason.empty() ? "" : quoted(point.reason)) + "\n";
   }
   return result;
+}
+
+/// A scene that cannot be solved is a result, and the tasks after it are solved. What another machine would not meet,
+/// no space or no memory, is thrown, because results must not depend on the machine.
+std::vector<ForcePoint> solveOrSayWhyNot(const SweepFile::Task& task, std::size_t number) {
+  const std::string name = "task " + std::to_string(number) + ": ";
+  try {
+    return solveIndentation(task.scene, task.indentation, [](const std::string&) {});
+  } catch (const WriteError&) {
+    throw;
+  } catch (const std::system_error& error) {
+    throw std::runtime_error(name + error.what());
+  } catch (const std::bad_alloc&) {
+    throw std::runtime_error(name + "there is not enough memory");
+  } catch (const std::exception& error) {
+    const Indenting& indenting = task.indentation.indenting;
+    std::vector<ForcePoint> points(indenting.count());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      points[i].depth = indenting.depth(i);
+      points[i].reason = error.what();
+    }
+    return points;
+  }
 }
 
 }  // namespace
@@ -46,10 +74,7 @@ CacheRead<std::string> SweepStore::load(std::size_t task) const {
 void SweepStore::solve(std::size_t number) const {
   const SweepFile::Task task = sweep_.task(number);
   if (readCacheFile(file(number), task.description)) return;
-  std::string start = std::to_string(number);
-  for (const std::string& value : sweep_.design().values(number)) start += "," + value;
-  const auto ignore = [](const std::string&) {};
-  writeCacheFile(file(number), task.description, rows(start, solveIndentation(task.scene, task.indentation, ignore)));
+  writeCacheFile(file(number), task.description, rows(solveOrSayWhyNot(task, number)));
 }
 
 std::vector<std::size_t> SweepStore::missing(std::size_t first, std::size_t count) const {
@@ -64,14 +89,13 @@ std::vector<std::size_t> SweepStore::missing(std::size_t first, std::size_t coun
 }
 
 std::string SweepStore::table() const {
-  std::string result = "task";
-  for (const std::string& key : sweep_.keys()) result += "," + key;
-  result += ",depth_m,force_x_N,force_y_N,force_z_N,converged,error_estimate,reason\n";
+  std::string result = sweep_.columns() + ",depth_m,force_x_N,force_y_N,force_z_N,converged,error_estimate,reason\n";
   std::size_t missing = 0, first = 0;
   for (std::size_t task = 0; task < sweep_.design().size(); ++task) {
     const CacheRead<std::string> read = load(task);
     if (read) {
-      result += *read.content;
+      std::istringstream rows(*read.content);
+      for (std::string row; std::getline(rows, row);) result += sweep_.columns(task) + "," + row + "\n";
     } else if (missing++ == 0) {
       first = task;
     }

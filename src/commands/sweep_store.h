@@ -15,7 +15,9 @@ class SweepStore {
  public:
   SweepStore(const SweepFile& sweep, const std::string& folder) : sweep_(sweep), folder_(folder) {}
 
-  /// Solves a task and stores its rows, unless they are there.
+  /// Solves a task and stores its rows, unless they are there. A task without a solution has rows with
+  /// the reason. Throws WriteError when they cannot be stored, and std::runtime_error that names the
+  /// task when the machine has no memory or no space for its solution.
   void solve(std::size_t task) const;
   /// Of the `count` tasks from `first` on, those without a usable file; damaged ones are reported on stderr.
   std::vector<std::size_t> missing(std::size_t first, std::size_t count) const;

@@ -223,18 +223,29 @@ class ConsoleAlarmsTest(ConsoleUser, unittest.TestCase):
         self.shows(lambda seen: seen.headline == ["green"], "a needle that is free again")
 
     def test_7b_the_cable_of_an_emulated_network(self):
-        """The test is that network: without one there are no such buttons."""
-        def places():
-            return {place for row in console_eye.rows_of_offered(self.picture, 1) for place in row} if self.look() else set()
-        self.shows(lambda seen: seen.headline == ["green"], "a session at rest")
+        """Without such a network there are no such buttons."""
+        top = self.shows(lambda seen: seen.headline == ["green"], "a session at rest").place["Enable"][1]
+
+        def places():  # below the strip of steps, whose present one looks like an offered button
+            rows = console_eye.rows_of_offered(self.picture, 1) if self.look() else []
+            return {place for row in rows for place in row if place[1] >= top}
         before = places()
         said = []
-        network = rospy.Subscriber("/link/plugged", Bool, lambda message: said.append(message.data))
-        for wanted in ([False], [False, True]):  # the greyed one of the two is offered next
-            place = self.until(lambda: (sorted(places() - before) or [None])[0], "another offered button")
+        heard = rospy.Subscriber("/link/plugged", Bool, lambda message: said.append(message.data))
+        network = Child(["rosrun", "cell_microinjection", "link_emulator"], Path(self.folder.name) / "link_emulator.log")
+        # A console that has just started does not know whether the cable is plugged in. The upper one is Unplug.
+        for offered, wanted in ((2, [False]), (1, [False, True]), (1, [False, True, False])):
+            place = self.until(lambda offered=offered: self.uppermost(places() - before, offered), f"{offered} more buttons")
             self.click(place)
             self.until(lambda wanted=wanted: said == wanted, f"{wanted} on /link/plugged")
-        network.unregister()
+        network.stop(5)
+        self.until(lambda: places() == before, "no buttons of a network that is gone")
+        heard.unregister()
+
+    @staticmethod
+    def uppermost(places, number):
+        """Returns the uppermost of so many places, None where there are fewer or more."""
+        return min(places, key=lambda place: place[1]) if len(places) == number else None
 
     def test_8_a_controller_that_hangs(self):
         with self.frozen("injection_controller"):

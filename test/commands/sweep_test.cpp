@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include "commands/command_test.h"
@@ -81,6 +82,78 @@ TEST_F(SweepTest, WhatIsMissingOrDamagedIsNamedAndSolvedAgain) {
   std::string other = kSweep;
   write("other.yaml", other.replace(other.find("20e3"), 4, "30e3"));
   EXPECT_EQ(run("--file other.yaml --out out --gather").status, 2);
+}
+
+/// Their tasks have the same numbers and scenes, and other columns.
+TEST_F(SweepTest, ASweepWithOtherKeysOverTheSameScenesHasItsOwnColumns) {
+  const std::string modulus = "{key: cell/material/young_modulus, values: [17.9e3, 20e3]}";
+  const std::string tip = "{key: needle/tip/radius, values: [3e-6]}";  // as in the scene
+  const std::string end = "]\nindentation: {depths: [1e-6, 2e-6], model: membrane}\n";
+  write("both.yaml", "scene: scene.yaml\nkeys: [" + modulus + ", " + tip + end);
+  write("turned.yaml", "scene: scene.yaml\nkeys: [" + tip + ", " + modulus + end);
+  write("one.yaml", "scene: scene.yaml\nkeys: [" + modulus + end);
+  for (const std::string name : {"both", "turned", "one"}) {
+    ASSERT_EQ(run("--file " + name + ".yaml --out shared").status, 0);
+    ASSERT_EQ(run("--file " + name + ".yaml --out " + name).status, 0);
+    EXPECT_EQ(table("shared"), table(name)) << name;
+  }
+  EXPECT_NE(table("turned").find("\n1,3e-6,20e3,1e-06,"), std::string::npos) << table("turned");
+  EXPECT_NE(table("one").find("\n1,20e3,1e-06,"), std::string::npos) << table("one");
+}
+
+TEST_F(SweepTest, ATaskWithoutSolutionHasItsReasonAndEndsNoOther) {
+  write("scene.yaml", scene_ + "  offset: [0, 0]\n");
+  write("offset.yaml",
+        "scene: scene.yaml\nkeys: [{key: needle/offset/0, values: [0, 1e-6, 0.0]}]\n"
+        "indentation: {depths: [1e-6, 2e-6], model: membrane}\n");
+  const Outcome outcome = run("--file offset.yaml --out out --jobs 1");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const std::string rows = table("out");
+  for (const char* depth : {"1e-06", "2e-06"}) {
+    const std::string row = std::string("\n1,1e-6,") + depth + ",nan,nan,nan,0,nan,\"needle/offset: must be 0 with";
+    EXPECT_NE(rows.find(row), std::string::npos) << rows;
+    for (const char* solved : {"\n0,0,", "\n2,0.0,"})
+      EXPECT_NE(rows.find(std::string(solved) + depth + ",0,0,"), std::string::npos) << rows;
+  }
+}
+
+/// Only the mesh finds that the needle is too far out.
+TEST_F(SweepTest, ATaskWithoutMeshHasItsReason) {
+  write("scene.yaml", scene_ + "  offset: [23.5e-6, 0]\n");
+  write("far.yaml",
+        "scene: scene.yaml\nkeys: [{key: needle/offset/0, values: [23.5e-6]}]\nindentation: {depths: [1e-6]}\n");
+  const Outcome outcome = run("--file far.yaml --out out");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(table("out").find("\n0,23.5e-6,1e-06,nan,nan,nan,0,nan,\"needle/offset (its length) = 2.35e-05"),
+            std::string::npos)
+      << table("out");
+}
+
+TEST_F(SweepTest, WhatNoTaskCanDoIsRefusedWhenTheFileIsRead) {
+  const std::string keys = "keys: [{key: needle/tip/radius, values: [2e-6, 3e-6]}]\n";
+  write("tensegrity.yaml",
+        "cell: {model: tensegrity, diameter: 56e-6, membrane: {divisions: 3},"
+        " actin: {count: 10, prestrain: 0.05}, microtubules: {count: 4000},"
+        " intermediate_filaments: {count: 10, prestrain: 0.05}}\n"
+        "needle: {tip: {shape: disc, radius: 3e-6}}\n");
+  const std::vector<std::array<std::string, 3>> cases = {
+      {"scene", "model: membrane, withdraw: [0]",
+       "bad.yaml: indentation/withdraw = [0]: must be left out with indentation/model = membrane"},
+      {"scene", "model: live, withdraw: [0]", "must be left out with indentation/model = live"},
+      {"scene", "model: membrane, hold: 2", "indentation/hold = 2: must be left out with indentation/model = membrane"},
+      {"scene", "model: membrane, lateral: [1e-6, 0]", "indentation/lateral = [1e-6, 0]: must be 0 with"},
+      {"scene", "withdraw: [0, 1e-6]", "withdrawal: 1e-06 m must be below the depth before"},
+      {"scene", "model: axisymmetric, lateral: [1e-6, 0]", "lateral must be 0"},
+      {"tensegrity", "tolerance: 0.01, element: p2",
+       "indentation/element = p2: must be left out for a scene of cell/model = tensegrity"},
+      {"tensegrity", "tolerance: 0.01", "indentation/tolerance = 0.01: must be left out"},
+      {"tensegrity", "model: spatial", "cell/model = tensegrity: must be continuum"}};
+  for (const auto& [scene, options, message] : cases) {
+    write("bad.yaml", "scene: " + scene + ".yaml\n" + keys + "indentation: {depths: [1e-6], " + options + "}\n");
+    const Outcome outcome = run("--file bad.yaml --list");
+    EXPECT_EQ(outcome.status, 2) << options;
+    EXPECT_NE(outcome.err.find(message), std::string::npos) << outcome.err;
+  }
 }
 
 TEST_F(SweepTest, BadUsageIsNamed) {

@@ -86,7 +86,7 @@ int FamilyData::refit() {
     member = refitMember(family_, member);
     ++count;
   }
-  update();
+  if (count > 0) update();
   return count;
 }
 

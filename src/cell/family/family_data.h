@@ -54,7 +54,8 @@ class FamilyData {
   void setAxisForces(const Eigen::MatrixXd& forces) { log_axis_forces_ = forces.array().log(); }
   bool hasAxisForces() const { return log_axis_forces_.size() > 0; }
   bool hasAxisCurves() const { return log_axis_forces_.cols() == kAxisDepths; }
-  /// Fits all members anew whose paths are known, and returns their number. A second for each.
+  /// Fits all members anew whose paths are known, and returns their number. A second for each. Without
+  /// any, measured errors stay.
   int refit();
   /// Chooses the covariance and estimates the errors anew. Call it after the last add(). Measured
   /// errors are forgotten.

@@ -221,7 +221,9 @@ TEST_F(FamilyOfSprings, FittingAnewNeedsNoNewSolutions) {
   const FamilyMember& again = read.content->members().front();
   EXPECT_EQ(again.field, once.field);
   EXPECT_EQ(again.energy, once.energy);
+  data_.setMeasuredError({0.004, 0.015}, {x});
   EXPECT_EQ(data_.refit(), 0) << "the paths of made-up members are not known";
+  EXPECT_EQ(data_.measuredError().members, 1) << "nothing changed";
 }
 
 TEST_F(FamilyOfSprings, DataOfAnotherFamilyAreNotRead) {

@@ -80,6 +80,8 @@ TEST(SweepDesign, ErrorsNameTheKey) {
             std::string::npos);
   EXPECT_NE(error("{keys: [{key: a, from: 0, to: 1}]}").find("keys/0/count is missing"), std::string::npos);
   EXPECT_NE(error("{keys: [{key: a, values: []}]}").find("keys/0/values = []: must be a list"), std::string::npos);
+  EXPECT_NE(error("{keys: [{key: a, values: [1, [2, 3]]}]}").find("scalars, not of lists or maps"), std::string::npos);
+  EXPECT_NE(error("{keys: [{key: a, values: [{b: 1}]}]}").find("scalars, not of lists or maps"), std::string::npos);
   EXPECT_NE(error("{keys: [{key: a, values: [1]}, {key: a, values: [2]}]}").find("keys/1/key = a: is there twice"),
             std::string::npos);
   EXPECT_NE(error("{keys: [{key: a, values: [1], step: 2}]}").find("keys/0/step: unknown key"), std::string::npos);
@@ -101,6 +103,15 @@ TEST(SceneVariation, SetsValuesAndLeavesTheRest) {
   EXPECT_THROW(varied(scene, {"cell/layers/2/e"}, {"1"}), ConfigError);
   EXPECT_THROW(varied(scene, {"cell/d/e"}, {"1"}), ConfigError);
   EXPECT_THROW(varied(scene, {"cell/layers"}, {"1"}), ConfigError);
+}
+
+TEST(SceneVariation, AnAliasKeepsItsValue) {
+  const YAML::Node scene = YAML::Load("{a: &a {e: 1, l: [2, 3]}, b: *a, c: &c 4, d: *c}");
+  const YAML::Node changed = varied(scene, {"a/e", "b/l/0", "c"}, {"7", "8", "9"});
+  YAML::Emitter out;
+  out << YAML::Flow << changed;
+  EXPECT_STREQ(out.c_str(), "{a: {e: 7, l: [2, 3]}, b: {e: 1, l: [8, 3]}, c: 9, d: 4}");
+  EXPECT_THROW(varied(YAML::Load("{a: &a [1, *a]}"), {"b"}, {"1"}), ConfigError) << "it is in itself";
 }
 
 }  // namespace
