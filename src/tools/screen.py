@@ -34,8 +34,6 @@ class Screen:
         if self.virtual:
             name = self._start_server(log, size)
             self.environment['LIBGL_ALWAYS_SOFTWARE'] = '1'
-            # Drawing in rviz's own thread takes less processor time than in threads that wait for each other.
-            self.environment['LP_NUM_THREADS'] = os.environ.get('LP_NUM_THREADS', '0')
         self.environment['DISPLAY'] = name
 
     def _start_server(self, log, size):
