@@ -88,6 +88,7 @@ class EmulatedRig {
 };
 
 inline void expectNear(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double tolerance) {
+  EXPECT_TRUE(a.allFinite() && b.allFinite()) << a.transpose() << " and " << b.transpose();
   EXPECT_LE((a - b).cwiseAbs().maxCoeff(), tolerance) << a.transpose() << " and " << b.transpose();
 }
 

@@ -91,6 +91,7 @@ class Fuzz {
       const auto reading = rig_.driver().reading();
       if (!reading) continue;
       const double off = (reading->joints - rig_.place()).cwiseAbs().maxCoeff();
+      EXPECT_TRUE(reading->joints.allFinite());  // std::max() overlooks NaN
       worst_ = std::max(worst_, off);
       if (rig_.time() - moved_ < kRest) continue;
       worst_at_rest_ = std::max(worst_at_rest_, off);
