@@ -42,6 +42,7 @@ void LinkBox::plug(bool in) {
 void LinkBox::refresh() {
   if (!node_) return;
   queue_.callAvailable(ros::WallDuration(0));
+  if (emulators_ == 0) plugged_.reset();  // the next one starts plugged in
   setVisible(emulators_ > 0);
   const bool can_unplug = plugged_.value_or(true), can_plug_in = !plugged_.value_or(false);
   unplug_->display(can_unplug, can_unplug ? "the emulated network's cable" : "the network is unplugged");

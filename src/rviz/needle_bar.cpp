@@ -11,7 +11,8 @@
 namespace microinjection {
 namespace {
 
-constexpr double kBegins = 0.5;  // s after a step, in which the micromanipulator reports that it moves
+constexpr double kBegins = 0.5;   // s after a step, in which the micromanipulator reports that it moves
+constexpr double kForgotten = 5;  // s after a step without a motion: a later motion is another one's
 
 }  // namespace
 
@@ -41,13 +42,18 @@ void NeedleBar::start() {
       "needle/operating_state", 1,
       boost::function<void(const cell_microinjection::OperatingState::ConstPtr&)>([this](const auto& message) {
         needle_.state = operatingStateOf(message->state);
+        const bool ended = needle_.busy && !message->is_busy && sessionNow() - sent_at_ > kBegins;
+        if (ended) needle_.goal.reset();
         needle_.busy = message->is_busy;
       }));
 }
 
 NeedleView NeedleBar::view() {
-  if (!needle_.busy && sessionNow() - sent_at_ > kBegins) needle_.goal.reset();
+  const double since = needle_.busy ? 0 : sessionNow() - sent_at_;
+  if (since > kForgotten) needle_.goal.reset();
   NeedleView view = needle_;
+  // Kept in needle_: a report of the motion that comes late makes it count again, for STOP.
+  if (since > kBegins) view.goal.reset();
   // A latched state outlives its node.
   if (states_.getNumPublishers() == 0) view.state.reset();
   if (const auto pose = pose_()) view.tip = pose->translation();

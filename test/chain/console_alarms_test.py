@@ -229,10 +229,11 @@ class ConsoleAlarmsTest(ConsoleUser, unittest.TestCase):
         def places():  # below the strip of steps, whose present one looks like an offered button
             rows = console_eye.rows_of_offered(self.picture, 1) if self.look() else []
             return {place for row in rows for place in row if place[1] >= top}
-        before = places()
+        before = self.until(places, "buttons")
         said = []
         heard = rospy.Subscriber("/link/plugged", Bool, lambda message: said.append(message.data))
         network = Child(["rosrun", "cell_microinjection", "link_emulator"], Path(self.folder.name) / "link_emulator.log")
+        self.addCleanup(network.stop, 5)
         # A console that has just started does not know whether the cable is plugged in. The upper one is Unplug.
         for offered, wanted in ((2, [False]), (1, [False, True]), (1, [False, True, False])):
             place = self.until(lambda offered=offered: self.uppermost(places() - before, offered), f"{offered} more buttons")
