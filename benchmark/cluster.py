@@ -105,7 +105,7 @@ class Bench:
     def snakemake(self):
         sweep = self.sweep_file('seconds.yaml', self.arguments.tasks,
                                 ROOT / 'config/cells/mouse_oocyte_pipette.yaml', '[2e-6, 5e-6]', 'axisymmetric',
-                                ', tolerance: 0.003')
+                                ', tolerance: 0.002')
         overheads, seconds, tables = [], [], set()
         for repeat in range(self.arguments.repeats):
             alone, engine = self.folder / f'alone_{repeat}', self.folder / f'engine_{repeat}'
