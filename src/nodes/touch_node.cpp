@@ -189,6 +189,7 @@ void TouchNode::finish(bool success, std::string message) {  // NOLINT(performan
     result.travel = search_->touchTravel();
     result.interval = search_->interval();
     result.depth = search_->travel() - search_->touchTravel();
+    result.force = search_->restingForce().value_or(std::nan(""));
   }
   search_.reset();
   active_ = false;

@@ -14,6 +14,7 @@ from geometry_msgs.msg import PoseStamped
 
 PATIENCE = 300  # s
 ALLOWED = 0.5e-6  # m, of the touch from the cell's surface
+ALLOWED_FORCE = 3e-9  # N, of the force from the cell's
 RADIUS = 38e-6  # m, of mouse_oocyte_zona
 ABOVE = 6e-6  # m over the cell, where the approaches begin
 FARTHEST = 3.5e-6  # m, past the touch
@@ -88,10 +89,11 @@ class TouchTest(unittest.TestCase):
         result = self.find()
         self.assertTrue(result.success, result.message)
         print(f"{result.message}; contact {1e6 * result.contact[2]:.3f} um, truth {1e6 * RADIUS:.3f} um, "
-              f"{1e6 * result.depth:.2f} um past it, {1e9 * result.force:.1f} nN")
+              f"{1e6 * result.depth:.2f} um past it, {1e9 * result.force:.1f} nN, truth {1e9 * self.seen['/cell/state'].force.z:.1f} nN")
         self.assertAlmostEqual(result.contact[2], RADIUS, delta=ALLOWED)
         self.assertLess(result.interval, 0.5e-6)
-        self.assertGreater(result.force, 0)  # the second witness
+        self.assertAlmostEqual(result.force, self.seen["/cell/state"].force.z, delta=ALLOWED_FORCE)  # the second witness
+        self.assertGreater(result.force, 2 * ALLOWED_FORCE)
         self.assertGreater(self.lowest, RADIUS - FARTHEST)
         self.assertTrue(self.seen["/cell/state"].in_contact)
 

@@ -15,6 +15,7 @@ constexpr double kAside = 1e-6;           // m, across the approach: the needle 
 constexpr double kLeastDeviation = 0.05;  // px: no image is better
 constexpr std::size_t kLeastGaps = 5;     // that tell where the tip meets the outline
 constexpr double kStray = 3;              // px, of an uncertain tip from its place by the travel
+constexpr int kLeastForces = 20;          // readings of a rest; white noise of a tenth of uN is then 20 nN
 constexpr int kRobustIterations = 15;
 constexpr std::size_t kNewest = 40;  // samples of the fit: older ones cost time and add little
 
@@ -59,6 +60,7 @@ std::optional<Eigen::Vector3d> TouchSearch::step(const Input& input) {
   const Eigen::Vector3d setpoint = stream_.advance(start_ + travel_ * direction_, config_.speed * duration);
   const bool arrived = stream_.arrived(*input.position, input.now);
   if (travel_ < goal_) return setpoint;
+  if (arrived && force_at_start_) rest_.add(*input.force);
   const double elapsed = input.now - since_;
   if (!arrived) {
     waits_for_ = "the needle does not follow";
@@ -76,6 +78,8 @@ bool TouchSearch::look(const Input& input) {
     waits_for_ = input.blind.empty() ? "a fresh image" : input.blind;
   } else if (!input.sight->certain && !gapLine()) {
     waits_for_ = "a certain cell and tip";
+  } else if (force_at_start_ && rest_.count < kLeastForces) {
+    waits_for_ = "more readings of the force at rest";
   } else {
     take(*input.sight, input.now);
     return true;
@@ -119,6 +123,11 @@ void TouchSearch::take(const Sight& sight, double now) {
   if (samples_.empty() && sight.gap <= 0) {
     failure_ = "the tip is at the cell's outline already: begin above it";
     return;
+  }
+  if (force_at_start_) {
+    if (samples_.empty()) force_at_start_ = rest_.value();
+    resting_force_ = rest_.value() - *force_at_start_;
+    rest_ = {};
   }
   const double gap = trustedGap(sight);
   displacement_ = sight.displacement;

@@ -33,7 +33,9 @@ struct TouchSearchConfig {
 /// Lowers the needle step by step along its axis and watches the outline of the cell beside it, until
 /// findTouch sees that it gives way. A stream of set-points for a controller that follows them.
 ///
-/// An image counts when it was exposed at rest, settle_time after the needle has arrived. Each image
+/// An image counts when it was exposed at rest, settle_time after the needle has arrived. A known force
+/// is averaged over this rest, twenty readings at least: at a touch one reading is no more than a sensor's
+/// noise. Each image
 /// also has the tip's gap to the undisturbed outline. A needle before or behind the cell crosses the
 /// outline too, which then stays where it is: only the displacement shows a touch, and the gap is its
 /// second witness. Where an uncertain tip is not where the
@@ -82,10 +84,20 @@ class TouchSearch {
   /// m, from the start: where the tip meets the undisturbed outline in the image; none before five images.
   std::optional<double> outlineTravel() const;
   Eigen::Vector3d contact() const { return start_ + report_.height * direction_; }  ///< m; once done
-  std::optional<double> force() const { return force_; }                            ///< N, above that at the start
+  std::optional<double> force() const { return force_; }  ///< N, the newest reading, above that at the start
+  /// N, mean of the rest at the last image, above that of the first rest; none: the force is not known.
+  std::optional<double> restingForce() const { return resting_force_; }
   const std::string& text() const { return report_.text; }
 
  private:
+  /// Of a force while the needle rests.
+  struct Mean {
+    double sum = 0;  ///< N
+    int count = 0;
+    void add(double value) { sum += value, ++count; }
+    double value() const { return sum / count; }
+  };
+
   void watch(const Input& input);
   bool look(const Input& input);
   double trustedGap(const Sight& sight) const;
@@ -98,7 +110,8 @@ class TouchSearch {
   Eigen::Vector3d start_;
   SetpointStream stream_;
   Eigen::Vector3d direction_;
-  std::optional<double> force_at_start_, force_;
+  std::optional<double> force_at_start_, force_, resting_force_;
+  Mean rest_;                     ///< of the force since the needle has arrived at the present step
   double travel_ = 0, goal_ = 0;  ///< m, of the set-point
   double stepped_, since_;        ///< s, of the last step(), and of the present step of the needle
   double displacement_ = 0;

@@ -30,7 +30,7 @@ class Rig {
         rested_ = now_;
       }
       const double depth = std::max(0.0, start_.z() - position_.z() - gap_);
-      if (force_) force_ = 0.1e-6 + stiffness_ * depth;
+      if (force_) force_ = kOffset + kBit * std::round((stiffness_ * depth + force_noise_(random_)) / kBit);
       deepest_ = std::max(deepest_, depth);
       if (frozen_ || now_ - exposed_ < 0.033) continue;
       exposed_ = now_;
@@ -45,14 +45,15 @@ class Rig {
   double gap_, now_ = 10, rested_ = 9, exposed_ = 0, late_ = 0, stiffness_ = 0.1, deepest_ = 0;
   double give_ = 0.8, seen_lower_ = 0, certain_from_ = -1, astray_ = 0;  ///< 1, m, m above the outline, px
   bool known_ = true, stuck_ = false, frozen_ = false;
-  std::optional<double> force_ = 0.1e-6;
+  std::optional<double> force_ = kOffset;
   std::optional<TouchSearch::Sight> sight_;
   std::string blind_;
 
  private:
-  static constexpr double kPixels = 4e6, kNoise = 0.2;  // px/m, px
+  static constexpr double kPixels = 4e6, kNoise = 0.2;        // px/m, px
+  static constexpr double kOffset = 0.1e-6, kBit = 0.015e-6;  // N
   std::mt19937 random_{5};
-  std::normal_distribution<double> noise_{0, kNoise};
+  std::normal_distribution<double> noise_{0, kNoise}, force_noise_{0, 10e-9};  // px, N
 };
 
 TouchSearch searchOf(const Rig& rig, const TouchSearchConfig& config = {}) {
@@ -68,8 +69,31 @@ TEST(TouchSearch, FindsTheTouchAndStopsThere) {
     EXPECT_NEAR(search.touchTravel(), gap, 0.3e-6);
     EXPECT_NEAR(search.contact().z(), rig.start_.z() - gap, 0.3e-6);
     EXPECT_LT(rig.deepest_, 2.5e-6);
-    EXPECT_NEAR(*search.force(), rig.stiffness_ * rig.deepest_, 1e-9);
   }
+}
+
+// One reading of such a sensor is 30 nN off, and the force of a touch is not larger.
+TEST(TouchSearch, TheForceIsTheMeanOfTheRest) {
+  for (const double gap : {4.1e-6, 8.3e-6, 12.7e-6}) {
+    Rig rig(gap);
+    rig.stiffness_ = 0.015;
+    TouchSearch search = searchOf(rig);
+    rig.run(search);
+    ASSERT_TRUE(search.done()) << search.failure();
+    EXPECT_NEAR(*search.restingForce(), rig.stiffness_ * rig.deepest_, 10e-9);
+  }
+}
+
+TEST(TouchSearch, WaitsForReadingsOfTheForce) {
+  Rig rig(4e-6);
+  TouchSearchConfig config;
+  config.settle_time = 0;
+  TouchSearch search = searchOf(rig, config);
+  const double began = rig.now_;
+  rig.run(search);
+  ASSERT_TRUE(search.done()) << search.failure();
+  const double steps = std::round(search.travel() / config.step);
+  EXPECT_GE(rig.now_ - began, 20 * 0.005 * steps);
 }
 
 TEST(TouchSearch, ANeedleBeforeOrBehindTheCellIsHeld) {
