@@ -23,6 +23,7 @@
 #include "rviz/guard_row.h"
 #include "rviz/hand_box.h"
 #include "rviz/injection_box.h"
+#include "rviz/injector_bar.h"
 #include "rviz/lamp_row.h"
 #include "rviz/needle_bar.h"
 #include "rviz/score_box.h"
@@ -72,6 +73,7 @@ ConsolePanel::ConsolePanel(QWidget* parent)
   box(ConsolePart::kHand) = hand_ = new HandBox(this);
   box(ConsolePart::kAxes) = axes_ = new AxesBox(this);
   box(ConsolePart::kDevices) = makeDevices();
+  box(ConsolePart::kInjector) = injector_bar_ = new InjectorBar(this);
   box(ConsolePart::kAutomatic) = injection_ = new InjectionBox([this] { return newest(); }, this);
   box(ConsolePart::kCell) = makeCell();
   box(ConsolePart::kGuards) = makeGuards();
@@ -86,8 +88,9 @@ ConsolePanel::ConsolePanel(QWidget* parent)
   middle->addWidget(box(ConsolePart::kCommands), 1);
   auto* right = new QVBoxLayout;
   right->setSpacing(8);
-  for (const ConsolePart part : {ConsolePart::kHand, ConsolePart::kAxes, ConsolePart::kDevices, ConsolePart::kAutomatic,
-                                 ConsolePart::kCell, ConsolePart::kGuards, ConsolePart::kSensor}) {
+  for (const ConsolePart part :
+       {ConsolePart::kHand, ConsolePart::kAxes, ConsolePart::kDevices, ConsolePart::kInjector, ConsolePart::kAutomatic,
+        ConsolePart::kCell, ConsolePart::kGuards, ConsolePart::kSensor}) {
     right->addWidget(box(part));
   }
   right->addStretch(1);
@@ -210,6 +213,7 @@ void ConsolePanel::showParts(const std::string& words) {
   if (parts_.has(ConsolePart::kCalibration)) calibration_->start();
   if (parts_.has(ConsolePart::kSensor)) sensor_->start();
   if (parts_.has(ConsolePart::kNeedle)) needle_->start();
+  if (parts_.has(ConsolePart::kInjector)) injector_bar_->start();
   if (parts_.has(ConsolePart::kAutomatic)) injection_->start();
   if (parts_.has(ConsolePart::kScore)) score_->start(*link_);
 }
@@ -264,6 +268,7 @@ void ConsolePanel::showState() {
   axes_->refresh();
   needle_->refresh(session);
   injection_->refresh(session);
+  injector_bar_->refresh(link_->injector());
 
   ForcePlot::Limits limits;
   if (session.settings.force_limit) limits.force = *session.settings.force_limit * 1e6;

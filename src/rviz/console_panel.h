@@ -20,6 +20,7 @@ class ForcePlot;
 class GuardRow;
 class HandBox;
 class InjectionBox;
+class InjectorBar;
 class LampRow;
 class NeedleBar;
 class ScoreBox;
@@ -81,6 +82,7 @@ class ConsolePanel : public rviz::Panel {
   AxesBox* axes_ = nullptr;
   NeedleBar* needle_ = nullptr;
   InjectionBox* injection_ = nullptr;
+  InjectorBar* injector_bar_ = nullptr;
   std::array<LampRow*, kDevices.size()> devices_{};
   ElidedLabel *served_ = nullptr, *puncture_ = nullptr;
   LampRow *estimate_ = nullptr, *injector_ = nullptr;

@@ -63,6 +63,9 @@ def _check_host(where, host):
             ipaddress.ip_address(address)
         except ValueError:
             errors.append(f'{where}address = {address}: must be an IP address, which no name server can change')
+    loader = host.get('env_loader')
+    if isinstance(loader, str) and not loader.startswith('/'):
+        errors.append(f'{where}env_loader = {loader}: must begin with /, for nothing expands it there')
     if isinstance(host.get('nodes'), list):
         errors += [f'{where}nodes: {node}: must be the name of a node' for node in host['nodes'] if not isinstance(node, str)]
     return errors

@@ -9,10 +9,12 @@ import unittest
 import actionlib
 import rospy
 import rostest
-from cell_microinjection.msg import InjectAction, InjectFeedback, InjectResult
+from cell_microinjection.msg import InjectAction, InjectFeedback, InjectorState, InjectResult
+from sensor_msgs.msg import FluidPressure
+from std_srvs.srv import Trigger, TriggerResponse
 
 import console_eye
-from console_user import START_PATIENCE, ConsoleUser
+from console_user import PATIENCE, START_PATIENCE, ConsoleUser
 from live_chain import Master
 from shown_controller import ShownController
 
@@ -109,7 +111,43 @@ class ConsoleClicksTest(ConsoleUser, unittest.TestCase):
         lamp("green")
         self.controller.change("DISABLED")
 
-    def test_5_nothing_is_offered_before_the_controller_listens(self):
+    def test_5_the_injector_is_set_and_reset(self):
+        rospy.set_param("/injector/balance", 545)
+        balances, resets = [], []
+        state = rospy.Publisher("/injector/state", InjectorState, queue_size=1)
+        timer = rospy.Timer(rospy.Duration(0.1), lambda _: state.publish(InjectorState()))
+        self.addCleanup(timer.shutdown)
+        listener = rospy.Subscriber("/injector/set_balance", FluidPressure, balances.append)
+        self.addCleanup(listener.unregister)
+
+        def reset(_):
+            resets.append(True)
+            return TriggerResponse(success=True)
+        service = rospy.Service("/injector/reset", Trigger, reset)
+        self.addCleanup(service.shutdown)
+
+        def row():
+            rows = console_eye.rows_of_offered(self.picture, 2) if self.look() else []
+            return rows[0][-2:] if rows else None
+        set_button, reset_button = self.until(row, "two buttons of the injector")
+        self.click(set_button)
+        self.until(lambda: balances, "a balance pressure")
+        self.assertEqual(balances[0].fluid_pressure, 545)
+        x, y = set_button
+        self.click((x - 80, y))
+        self.do("key", "ctrl+a")
+        self.do("type", "605")
+        self.do("key", "Return")
+        self.click(set_button)
+        self.until(lambda: len(balances) == 2, "another balance pressure")
+        self.assertEqual(balances[1].fluid_pressure, 605)
+        self.assertAlmostEqual(balances[1].header.stamp.to_sec(), rospy.Time.now().to_sec(), delta=PATIENCE)
+        self.click(reset_button)
+        self.until(lambda: resets, "a reset")
+        timer.shutdown()
+        self.until(lambda: self.look() and not console_eye.rows_of_offered(self.picture, 2), "greyed buttons of a silent injector")
+
+    def test_6_nothing_is_offered_before_the_controller_listens(self):
         """What is sent before is lost."""
         self.listener.unregister()
         self.controller.deafen()

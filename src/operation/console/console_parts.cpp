@@ -5,7 +5,7 @@
 namespace microinjection {
 
 const char* toText(ConsolePart part) {
-  constexpr const char* kWords[] = {"commands", "hand",  "axes",   "devices", "automatic",   "cell",
+  constexpr const char* kWords[] = {"commands", "hand",  "axes",   "devices", "injector",    "automatic", "cell",
                                     "guards",   "score", "sensor", "needle",  "calibration", "plots"};
   return kWords[static_cast<std::size_t>(part)];
 }

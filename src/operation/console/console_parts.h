@@ -11,6 +11,7 @@ enum class ConsolePart {
   kHand,
   kAxes,
   kDevices,
+  kInjector,
   kAutomatic,
   kCell,
   kGuards,
@@ -20,10 +21,11 @@ enum class ConsolePart {
   kCalibration,
   kPlots
 };
-constexpr std::array<ConsolePart, 12> kConsoleParts = {
-    ConsolePart::kCommands,  ConsolePart::kHand,   ConsolePart::kAxes,        ConsolePart::kDevices,
-    ConsolePart::kAutomatic, ConsolePart::kCell,   ConsolePart::kGuards,      ConsolePart::kScore,
-    ConsolePart::kSensor,    ConsolePart::kNeedle, ConsolePart::kCalibration, ConsolePart::kPlots};
+constexpr std::array<ConsolePart, 13> kConsoleParts = {
+    ConsolePart::kCommands, ConsolePart::kHand,      ConsolePart::kAxes,   ConsolePart::kDevices,
+    ConsolePart::kInjector, ConsolePart::kAutomatic, ConsolePart::kCell,   ConsolePart::kGuards,
+    ConsolePart::kScore,    ConsolePart::kSensor,    ConsolePart::kNeedle, ConsolePart::kCalibration,
+    ConsolePart::kPlots};
 /// The word for a part in a task's file (config/console).
 const char* toText(ConsolePart part);
 
