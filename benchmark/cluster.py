@@ -104,7 +104,7 @@ class Bench:
 
     def snakemake(self):
         sweep = self.sweep_file('seconds.yaml', self.arguments.tasks,
-                                ROOT / 'config/cells/mouse_oocyte_pipette.yaml', '[2e-6, 4e-6, 6e-6, 8e-6, 10e-6]', 'axisymmetric',
+                                ROOT / 'config/cells/mouse_oocyte_pipette.yaml', '[2e-6, 4e-6, 6e-6, 8e-6]', 'axisymmetric',
                                 ', tolerance: 0.002')
         overheads, seconds, tables = [], [], set()
         for repeat in range(self.arguments.repeats):

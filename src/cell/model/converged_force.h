@@ -42,7 +42,9 @@ struct ConvergedForceConfig {
   ElementKind element = ElementKind::kP2P0;
   double tolerance = 0.005;  ///< required relative error of the force
   double finest = 6;         ///< last level of refinement that may be tried, see scene_mesh.h
-  double time = 600;         ///< s of wall time after which no third or finer level is started
+  /// s of wall time after which no third or finer level is started. Infinite: a mesh that does not fit into the memory
+  /// is an error, for the forces must not depend on the machine. Else the forces of the coarser ones are kept.
+  double time = 600;
 };
 
 /// Force at one depth.
@@ -80,7 +82,7 @@ class ConvergedForce {
   ConvergedForce(const Scene& scene, const Indenting& indenting, const ConvergedForceConfig& config);
 
   /// `report` is called after each mesh. Throws ConfigError when the needle is too far from the
-  /// axis for a mesh in space.
+  /// axis for a mesh in space, and bad_alloc as said at ConvergedForceConfig::time.
   std::vector<ForcePoint> solve(const std::function<void(const LevelReport&)>& report = {});
 
   bool axisymmetric() const { return axisymmetric_; }
