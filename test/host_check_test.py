@@ -51,8 +51,9 @@ class HostsFile(unittest.TestCase):
                      'x: two hosts run it', '1.1.1.1: two hosts have it')
         self.refused('{master: a, hosts: {a: {address: 1.1.1.1, nodes: 5}, b: {address: 1.1.1.2, nodes: [7]}}}',
                      'hosts/a/nodes = 5: must be of type list', 'hosts/b/nodes: 7: must be the name of a node')
-        self.refused('{master: a, hosts: {a: {address: 1.1.1.1, env_loader: ~lab/env.sh}}}',
-                     'hosts/a/env_loader = ~lab/env.sh: must begin with /')
+        for loader in ('~lab/env.sh', 'env.sh'):
+            self.refused('{master: a, hosts: {a: {address: 1.1.1.1, env_loader: %s}}}' % loader,
+                         f'hosts/a/env_loader = {loader}: must be an absolute path')
         self.refused('[]', 'must be a YAML map')
         self.refused('{master: [', 'while parsing')
 

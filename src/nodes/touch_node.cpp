@@ -95,6 +95,7 @@ void TouchNode::onForce(const geometry_msgs::WrenchStamped& message) {
   const std::optional<Eigen::Vector3d> force = finiteForce(&message);
   if (message.header.stamp.isZero() || age > parameters_.force_timeout || !force) return;
   force_ = force->z();
+  force_stamp_ = message.header.stamp.toSec();
   force_received_ = ros::SteadyTime::now();
 }
 
@@ -103,7 +104,8 @@ TouchSearch::Input TouchNode::input() const {
   const auto fresh = [&](const ros::SteadyTime& received, double timeout) {
     return secondsBetween(received, now) <= timeout;
   };
-  TouchSearch::Input input{ros::Time::now().toSec(), watch_.position(), watch_.restedSince(), sight_, blind_, force_};
+  TouchSearch::Input input{
+      ros::Time::now().toSec(), watch_.position(), watch_.restedSince(), sight_, blind_, force_, force_stamp_};
   if (!fresh(sight_received_, parameters_.input_timeout)) input.sight.reset();
   if (!fresh(force_received_, parameters_.force_timeout)) input.force.reset();
   return input;

@@ -62,6 +62,7 @@ class TouchNode {
   ros::SteadyTime sight_received_;
   std::string blind_ = "no image was received";
   std::optional<double> force_;  ///< N along the needle
+  double force_stamp_ = 0;       ///< s
   ros::SteadyTime force_received_;
   std::string outcome_ = "no goal yet";
   ros::Publisher setpoints_;  ///< while a goal is active, so that a hand finds the topic free

@@ -12,8 +12,8 @@
 namespace microinjection {
 
 /// The buttons, each with its effect or the reason why it is greyed, and the stop button, which the
-/// space bar presses wherever the focus is in the window. In a text field the space bar writes a
-/// space.
+/// space bar presses wherever the focus is in the window. In a text field, but not in a field
+/// for a number, the space bar writes a space.
 class CommandsWidget : public QWidget {
  public:
   /// Called with the button that was pressed and its command.

@@ -73,7 +73,7 @@ ConsolePanel::ConsolePanel(QWidget* parent)
   box(ConsolePart::kHand) = hand_ = new HandBox(this);
   box(ConsolePart::kAxes) = axes_ = new AxesBox(this);
   box(ConsolePart::kDevices) = makeDevices();
-  box(ConsolePart::kInjector) = injector_bar_ = new InjectorBar(this);
+  box(ConsolePart::kInjector) = injector_bar_ = new InjectorBar([this] { return newestInjector(); }, this);
   box(ConsolePart::kAutomatic) = injection_ = new InjectionBox([this] { return newest(); }, this);
   box(ConsolePart::kCell) = makeCell();
   box(ConsolePart::kGuards) = makeGuards();
@@ -110,6 +110,11 @@ QSize ConsolePanel::sizeHint() const { return {640, 700}; }
 SessionView ConsolePanel::newest() {
   if (link_) grown_ = link_->poll() || grown_;
   return link_ ? link_->session() : SessionView();
+}
+
+std::optional<InjectorView> ConsolePanel::newestInjector() {
+  newest();
+  return link_ ? link_->injector() : std::nullopt;
 }
 
 QWidget* ConsolePanel::makeCommands() {

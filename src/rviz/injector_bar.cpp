@@ -3,38 +3,45 @@
 #include <sensor_msgs/FluidPressure.h>
 #include <std_srvs/Trigger.h>
 
-#include <QDoubleSpinBox>
-#include <QHBoxLayout>
+#include <QGridLayout>
 #include <QLabel>
+#include <utility>
 
 #include "rviz/session_parameters.h"
 
 namespace microinjection {
 namespace {
 
-constexpr double kLargest = 1e6;  // Pa, that can be entered; the node refuses what is beyond its range
+constexpr double kLargest = 100e3;  // Pa, that can be entered; the node refuses what is beyond its range
+
+std::string callReset() {
+  std_srvs::Trigger reset;
+  if (!ros::service::call("/injector/reset", reset)) return "/injector/reset does not answer";
+  return reset.response.success ? "" : reset.response.message;
+}
 
 }  // namespace
 
-InjectorBar::InjectorBar(QWidget* parent) : QWidget(parent), pressure_(new QDoubleSpinBox(this)) {
-  auto* layout = new QHBoxLayout(this);
+InjectorBar::InjectorBar(std::function<std::optional<InjectorView>()> newest, QWidget* parent)
+    : QWidget(parent),
+      newest_(std::move(newest)),
+      pressure_(new NumberField(kLargest, 0, this)),
+      text_(new ElidedLabel(1, this)) {
+  auto* layout = new QGridLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->setSpacing(4);
-  layout->addWidget(new QLabel("Balance, Pa", this));
-  pressure_->setRange(-kLargest, kLargest);
-  pressure_->setDecimals(0);
+  layout->setColumnStretch(1, 1);
+  layout->addWidget(new QLabel("Balance, Pa", this), 0, 0);
   pressure_->setToolTip("Gauge pressure between pulses");
-  // A field that keeps the focus would keep the space bar from STOP.
-  pressure_->setFocusPolicy(Qt::ClickFocus);
-  QObject::connect(pressure_, &QDoubleSpinBox::editingFinished, pressure_, &QWidget::clearFocus);
-  layout->addWidget(pressure_, 1);
-  set_ = new OfferButton("Set", this, [this] { setBalance(); });
-  reset_ = new OfferButton("Reset", this, [this] { reset(); });
-  reset_->setToolTip("Clears the injector's fault and its volume");
-  for (OfferButton* button : {set_, reset_}) {
+  layout->addWidget(pressure_, 0, 1);
+  int column = 2;
+  for (const InjectorTask task : kInjectorTasks) {
+    OfferButton*& button = buttons_[static_cast<std::size_t>(task)];
+    button = new OfferButton(QString::fromStdString(offer(task, {}).label), this, [this, task] { press(task); });
     button->setFixedSize(56, 26);
-    layout->addWidget(button);
+    layout->addWidget(button, 0, column++);
   }
+  layout->addWidget(text_, 1, 0, 1, column);
 }
 
 InjectorBar::~InjectorBar() = default;
@@ -46,32 +53,39 @@ void InjectorBar::start() {
   setVisible(false);
 }
 
-void InjectorBar::setBalance() {
-  if (!node_ || !there_) return;
+InjectorTasksView InjectorBar::view(const std::optional<InjectorView>& injector) const {
+  return {injector, commands_.getNumSubscribers() > 0, call_.running(), refusal_};
+}
+
+/// The parameter is that of the start: a pressure that was set since is in the state only, and a pulse's, too.
+void InjectorBar::appear(const InjectorView& injector) {
+  const auto balance = SessionParameters("/injector").number("balance");
+  pressure_->setValue(balance.value_or(injector.busy ? 0 : injector.pressure));
+  setVisible(true);
+}
+
+void InjectorBar::press(InjectorTask task) {
+  if (!node_) return;
+  // The number that was typed, also without Enter.
+  pressure_->clearFocus();
+  if (!offer(task, view(newest_())).refusal.empty()) return;
+  refusal_.clear();
+  if (task == InjectorTask::kReset) return call_.start(callReset);
   sensor_msgs::FluidPressure message;
   message.header.stamp = ros::Time::now();
   message.fluid_pressure = pressure_->value();
   commands_.publish(message);
 }
 
-void InjectorBar::reset() {
-  if (!node_ || !there_ || call_.running()) return;
-  call_.start([]() -> std::string {
-    std_srvs::Trigger reset;
-    return ros::service::call("/injector/reset", reset) ? reset.response.message : "/injector/reset does not answer";
-  });
-}
-
 void InjectorBar::refresh(const std::optional<InjectorView>& injector) {
   if (!node_) return;
-  call_.take();  // a fault that stays is in the injector's state, and its lamp shows it
-  const bool was_there = std::exchange(there_, injector.has_value());
-  if (there_ && !was_there) {
-    if (const auto balance = SessionParameters("/injector").number("balance")) pressure_->setValue(*balance);
-    setVisible(true);
+  if (const auto refusal = call_.take()) refusal_ = *refusal;
+  if (injector && isHidden()) appear(*injector);
+  const InjectorTasksView shown = view(injector);
+  for (const InjectorTask task : kInjectorTasks) {
+    buttons_[static_cast<std::size_t>(task)]->offer(offer(task, shown).refusal.empty());
   }
-  set_->offer(there_ && commands_.getNumSubscribers() > 0);
-  reset_->offer(there_ && !call_.running());
+  text_->setText(QString::fromStdString(injectorTasksText(shown)));
 }
 
 }  // namespace microinjection

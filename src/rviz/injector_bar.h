@@ -3,42 +3,45 @@
 #include <ros/ros.h>
 
 #include <QWidget>
+#include <array>
+#include <functional>
 #include <optional>
 #include <string>
-#include <utility>
 
-#include "operation/console/cell_lines.h"
+#include "operation/console/injector_tasks.h"
 #include "rviz/background_call.h"
+#include "rviz/elided_label.h"
+#include "rviz/number_field.h"
 #include "rviz/offer_button.h"
-
-class QDoubleSpinBox;
 
 namespace microinjection {
 
-/// The injector's pressure between pulses, and a button that clears its fault and its volume. It appears with an
-/// injector, whose lamp has what it refuses.
+/// The injector's pressure between pulses, and a button that clears its fault and its volume, with what it does or why
+/// they are greyed. It appears with the first state of an injector, whose lamp has what it refuses.
 ///
 /// Out: injector/set_balance (FluidPressure, Pa, gauge); service /injector/reset, called as BackgroundCall.
-/// At first the field has the node's parameter `balance`.
 class InjectorBar : public QWidget {
  public:
-  explicit InjectorBar(QWidget* parent = nullptr);
+  /// `newest`: the injector's state at the moment of a press; none: it is silent.
+  explicit InjectorBar(std::function<std::optional<InjectorView>()> newest, QWidget* parent = nullptr);
   ~InjectorBar() override;
   /// Connects to the session: other consoles do not send the command.
   void start();
-  /// `injector`: its newest state; none: it is silent.
   void refresh(const std::optional<InjectorView>& injector);
 
  private:
-  void setBalance();
-  void reset();
+  InjectorTasksView view(const std::optional<InjectorView>& injector) const;
+  void appear(const InjectorView& injector);
+  void press(InjectorTask task);
 
-  QDoubleSpinBox* pressure_;  ///< Pa
-  OfferButton *set_, *reset_;
-  bool there_ = false;
+  std::function<std::optional<InjectorView>()> newest_;
+  NumberField* pressure_;  ///< Pa
+  std::array<OfferButton*, kInjectorTasks.size()> buttons_{};
+  ElidedLabel* text_;
   std::optional<ros::NodeHandle> node_;
   ros::Publisher commands_;
-  BackgroundCall<std::string> call_;
+  std::string refusal_;
+  BackgroundCall<std::string> call_;  ///< the reason for a refusal
 };
 
 }  // namespace microinjection

@@ -2,7 +2,6 @@
 
 #include <std_srvs/Trigger.h>
 
-#include <QDoubleSpinBox>
 #include <QGridLayout>
 #include <QHBoxLayout>
 #include <QLabel>
@@ -15,16 +14,6 @@ namespace {
 using cell_microinjection::CalibrateForce;
 
 constexpr double kLargest = 1000;  // uN, that can be entered; the node refuses what is beyond its range
-
-QDoubleSpinBox* forceField(QWidget* parent) {
-  auto* field = new QDoubleSpinBox(parent);
-  field->setRange(-kLargest, kLargest);
-  field->setDecimals(1);
-  // A field that keeps the focus would keep the space bar from STOP.
-  field->setFocusPolicy(Qt::ClickFocus);
-  QObject::connect(field, &QDoubleSpinBox::editingFinished, field, &QWidget::clearFocus);
-  return field;
-}
 
 std::string call(SensorTask task, double along, double across) {
   if (task == SensorTask::kTare) {
@@ -47,8 +36,8 @@ std::string call(SensorTask task, double along, double across) {
 SensorBox::SensorBox(QWidget* parent)
     : QWidget(parent),
       diagnostics_("force_sensor: sensor", [this](const auto& status) { read(status); }),
-      along_(forceField(this)),
-      across_(forceField(this)),
+      along_(new NumberField(kLargest, 1, this)),
+      across_(new NumberField(kLargest, 1, this)),
       report_(new LampRow("", 2, this)) {
   auto* layout = new QGridLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);

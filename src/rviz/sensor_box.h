@@ -10,9 +10,8 @@
 #include "rviz/background_call.h"
 #include "rviz/lamp_row.h"
 #include "rviz/node_diagnostics.h"
+#include "rviz/number_field.h"
 #include "rviz/offer_row.h"
-
-class QDoubleSpinBox;
 
 namespace microinjection {
 
@@ -38,7 +37,7 @@ class SensorBox : public QWidget {
   SensorView sensor_;
   BackgroundCall<std::string> call_;  ///< the reason for a refusal
   std::vector<OfferRow> rows_;
-  QDoubleSpinBox *along_, *across_;  ///< uN
+  NumberField *along_, *across_;  ///< uN
   LampRow* report_;
 };
 

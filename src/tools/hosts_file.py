@@ -64,8 +64,8 @@ def _check_host(where, host):
         except ValueError:
             errors.append(f'{where}address = {address}: must be an IP address, which no name server can change')
     loader = host.get('env_loader')
-    if isinstance(loader, str) and not loader.startswith('/'):
-        errors.append(f'{where}env_loader = {loader}: must begin with /, for nothing expands it there')
+    if isinstance(loader, str) and loader and not loader.startswith('/'):
+        errors.append(f'{where}env_loader = {loader}: must be an absolute path: the remote shell does not expand ~')
     if isinstance(host.get('nodes'), list):
         errors += [f'{where}nodes: {node}: must be the name of a node' for node in host['nodes'] if not isinstance(node, str)]
     return errors

@@ -14,12 +14,33 @@ from sensor_msgs.msg import FluidPressure
 from std_srvs.srv import Trigger, TriggerResponse
 
 import console_eye
-from console_user import PATIENCE, START_PATIENCE, ConsoleUser
+from console_user import START_PATIENCE, ConsoleUser
 from live_chain import Master
 from shown_controller import ShownController
 
 CLICKS = 40
 SEED = 7
+
+
+class ShownInjector:
+    """The messages and the service of an injector."""
+
+    def __init__(self):
+        self.balances, self.resets, self.busy = [], [], False
+        state = rospy.Publisher("/injector/state", InjectorState, queue_size=1)
+        listener = rospy.Subscriber("/injector/set_balance", FluidPressure,
+                                    lambda message: self.balances.append(message.fluid_pressure))
+        service = rospy.Service("/injector/reset", Trigger, self._reset)
+        timer = rospy.Timer(rospy.Duration(0.1), lambda _: state.publish(InjectorState(busy=self.busy)))
+        self._ends = [timer.shutdown, listener.unregister, service.shutdown]
+
+    def _reset(self, _):
+        self.resets.append(True)
+        return TriggerResponse(success=True)
+
+    def close(self):
+        while self._ends:
+            self._ends.pop(0)()
 
 
 class ConsoleClicksTest(ConsoleUser, unittest.TestCase):
@@ -113,39 +134,46 @@ class ConsoleClicksTest(ConsoleUser, unittest.TestCase):
 
     def test_5_the_injector_is_set_and_reset(self):
         rospy.set_param("/injector/balance", 545)
-        balances, resets = [], []
-        state = rospy.Publisher("/injector/state", InjectorState, queue_size=1)
-        timer = rospy.Timer(rospy.Duration(0.1), lambda _: state.publish(InjectorState()))
-        self.addCleanup(timer.shutdown)
-        listener = rospy.Subscriber("/injector/set_balance", FluidPressure, balances.append)
-        self.addCleanup(listener.unregister)
+        injector = ShownInjector()
+        self.addCleanup(injector.close)
 
-        def reset(_):
-            resets.append(True)
-            return TriggerResponse(success=True)
-        service = rospy.Service("/injector/reset", Trigger, reset)
-        self.addCleanup(service.shutdown)
+        def offered(count):
+            """The injector's buttons, of which so many are offered."""
+            def check():
+                console = self.look()
+                rows = console_eye.rows_of_offered(self.picture, 1) if console else []
+                places = [place for row in rows for place in row if place[0] > console.stop_right]
+                return (places,) if len(places) == count else None
+            return self.until(check, f"{count} offered buttons of the injector")[0]
 
-        def row():
-            rows = console_eye.rows_of_offered(self.picture, 2) if self.look() else []
-            return rows[0][-2:] if rows else None
-        set_button, reset_button = self.until(row, "two buttons of the injector")
+        def sets(pressure):
+            self.until(lambda: injector.balances, "a balance pressure")
+            self.assertEqual(injector.balances.pop(), pressure)
+        set_button, reset_button = offered(2)
         self.click(set_button)
-        self.until(lambda: balances, "a balance pressure")
-        self.assertEqual(balances[0].fluid_pressure, 545)
+        sets(545)
         x, y = set_button
         self.click((x - 80, y))
         self.do("key", "ctrl+a")
         self.do("type", "605")
-        self.do("key", "Return")
-        self.click(set_button)
-        self.until(lambda: len(balances) == 2, "another balance pressure")
-        self.assertEqual(balances[1].fluid_pressure, 605)
-        self.assertAlmostEqual(balances[1].header.stamp.to_sec(), rospy.Time.now().to_sec(), delta=PATIENCE)
+        offered(2)
+        self.click(set_button)  # without Enter
+        sets(605)
+        offered(2)
         self.click(reset_button)
-        self.until(lambda: resets, "a reset")
-        timer.shutdown()
-        self.until(lambda: self.look() and not console_eye.rows_of_offered(self.picture, 2), "greyed buttons of a silent injector")
+        self.until(lambda: injector.resets, "a reset")
+        injector.busy = True
+        self.assertEqual(offered(1), [set_button])
+        injector.busy = False
+        offered(2)
+        # The space bar stops while the field has the focus.
+        before = len(self.sent)
+        self.click((x - 80, y))
+        self.do("type", "7")
+        self.do("key", "space")
+        self.until(lambda: len(self.sent) > before, "a command of the space bar")
+        injector.close()
+        offered(0)
 
     def test_6_nothing_is_offered_before_the_controller_listens(self):
         """What is sent before is lost."""

@@ -15,7 +15,8 @@ constexpr double kAside = 1e-6;           // m, across the approach: the needle 
 constexpr double kLeastDeviation = 0.05;  // px: no image is better
 constexpr std::size_t kLeastGaps = 5;     // that tell where the tip meets the outline
 constexpr double kStray = 3;              // px, of an uncertain tip from its place by the travel
-constexpr int kLeastForces = 20;          // readings of a rest; white noise of a tenth of uN is then 20 nN
+constexpr int kLeastForces = 20;          // readings of a rest
+constexpr char kMoreForces[] = "more readings of the force at rest";
 constexpr int kRobustIterations = 15;
 constexpr std::size_t kNewest = 40;  // samples of the fit: older ones cost time and add little
 
@@ -60,26 +61,34 @@ std::optional<Eigen::Vector3d> TouchSearch::step(const Input& input) {
   const Eigen::Vector3d setpoint = stream_.advance(start_ + travel_ * direction_, config_.speed * duration);
   const bool arrived = stream_.arrived(*input.position, input.now);
   if (travel_ < goal_) return setpoint;
-  if (arrived && force_at_start_) rest_.add(*input.force);
+  averageForce(input, arrived);
   const double elapsed = input.now - since_;
   if (!arrived) {
     waits_for_ = "the needle does not follow";
     if (elapsed > config_.move_time + config_.step / config_.speed) failure_ = waits_for_;
   } else if (!look(input)) {
-    if (elapsed > config_.move_time + config_.image_time) failure_ = "no fresh image of cell and tip: " + waits_for_;
+    if (elapsed > config_.move_time + config_.image_time) failure_ = noStep() + waits_for_;
   }
   return failure_.empty() && !done() ? std::optional(setpoint) : std::nullopt;
 }
 
+/// Each reading counts once, and only when it was taken at this rest.
+void TouchSearch::averageForce(const Input& input, bool arrived) {
+  if (!arrived) rest_ = {};
+  if (!arrived || !force_at_start_ || input.force_stamp <= std::max(force_stamp_, restedSince(input))) return;
+  rest_.add(*input.force);
+  force_stamp_ = input.force_stamp;
+}
+
 /// Takes the newest image if it counts; else sets what it waits for.
 bool TouchSearch::look(const Input& input) {
-  const double rested = std::max(input.rested_since, since_) + config_.settle_time;
+  const double rested = restedSince(input) + config_.settle_time;
   if (!input.sight || input.sight->stamp <= rested || input.sight->stamp > input.now) {
     waits_for_ = input.blind.empty() ? "a fresh image" : input.blind;
   } else if (!input.sight->certain && !gapLine()) {
     waits_for_ = "a certain cell and tip";
   } else if (force_at_start_ && rest_.count < kLeastForces) {
-    waits_for_ = "more readings of the force at rest";
+    waits_for_ = kMoreForces;
   } else {
     take(*input.sight, input.now);
     return true;
@@ -92,6 +101,11 @@ double TouchSearch::trustedGap(const Sight& sight) const {
   const std::optional<Eigen::Vector2d> line = sight.certain ? std::nullopt : gapLine();
   const bool stray = line && std::abs(line->x() + 1e6 * travel_ * line->y() - sight.gap) > kStray;
   return stray ? std::nan("") : sight.gap;
+}
+
+/// Begins the sentence that names what a step has waited for in vain.
+std::string TouchSearch::noStep() const {
+  return waits_for_ == kMoreForces ? "the needle does not go on without " : "no fresh image of cell and tip: ";
 }
 
 /// What must hold at all times.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,13 +34,12 @@ struct TouchSearchConfig {
 /// Lowers the needle step by step along its axis and watches the outline of the cell beside it, until
 /// findTouch sees that it gives way. A stream of set-points for a controller that follows them.
 ///
-/// An image counts when it was exposed at rest, settle_time after the needle has arrived. A known force
-/// is averaged over this rest, twenty readings at least: at a touch one reading is no more than a sensor's
-/// noise. Each image
-/// also has the tip's gap to the undisturbed outline. A needle before or behind the cell crosses the
-/// outline too, which then stays where it is: only the displacement shows a touch, and the gap is its
-/// second witness. Where an uncertain tip is not where the
-/// travel has it, by the gaps of earlier images, the image counts with its displacement only.
+/// An image counts when it was exposed at rest, settle_time after the needle has arrived, and when
+/// twenty readings of a known force were taken at this rest. Their mean is the force of the step: one
+/// reading may be off by as much as the force of a touch. Each image also has the tip's gap to the undisturbed outline.
+/// A needle before or behind the cell crosses the outline too, which then stays where it is: only the displacement
+/// shows a touch, and the gap is its second witness. Where an uncertain tip is not where the travel has it, by the gaps
+/// of earlier images, the image counts with its displacement only.
 ///
 /// The search fails, and its set-points end, when
 /// - the needle does not arrive, leaves its line, or its position or the force is lost;
@@ -64,6 +64,7 @@ class TouchSearch {
     std::optional<Sight> sight;               ///< of the newest image; none: it does not show cell and tip
     std::string blind;                        ///< why not
     std::optional<double> force;              ///< N along the needle; none: not known now
+    double force_stamp = 0;                   ///< s, of that reading
   };
 
   /// `start`: where the needle rests; `direction`: unit vector of the approach; `now`: s. A force that
@@ -99,7 +100,10 @@ class TouchSearch {
   };
 
   void watch(const Input& input);
+  void averageForce(const Input& input, bool arrived);
+  double restedSince(const Input& input) const { return std::max(input.rested_since, since_); }
   bool look(const Input& input);
+  std::string noStep() const;
   double trustedGap(const Sight& sight) const;
   void take(const Sight& sight, double now);
   void compareWithOutline();
@@ -112,6 +116,7 @@ class TouchSearch {
   Eigen::Vector3d direction_;
   std::optional<double> force_at_start_, force_, resting_force_;
   Mean rest_;                     ///< of the force since the needle has arrived at the present step
+  double force_stamp_ = 0;        ///< s, of the newest reading in it
   double travel_ = 0, goal_ = 0;  ///< m, of the set-point
   double stepped_, since_;        ///< s, of the last step(), and of the present step of the needle
   double displacement_ = 0;
