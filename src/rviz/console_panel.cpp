@@ -73,7 +73,11 @@ ConsolePanel::ConsolePanel(QWidget* parent)
   box(ConsolePart::kHand) = hand_ = new HandBox(this);
   box(ConsolePart::kAxes) = axes_ = new AxesBox(this);
   box(ConsolePart::kDevices) = makeDevices();
-  box(ConsolePart::kInjector) = injector_bar_ = new InjectorBar([this] { return newestInjector(); }, this);
+  const auto newest_injector = [this] {
+    newest();
+    return link_ ? link_->injector() : std::nullopt;
+  };
+  box(ConsolePart::kInjector) = injector_bar_ = new InjectorBar(newest_injector, this);
   box(ConsolePart::kAutomatic) = injection_ = new InjectionBox([this] { return newest(); }, this);
   box(ConsolePart::kCell) = makeCell();
   box(ConsolePart::kGuards) = makeGuards();
@@ -110,11 +114,6 @@ QSize ConsolePanel::sizeHint() const { return {640, 700}; }
 SessionView ConsolePanel::newest() {
   if (link_) grown_ = link_->poll() || grown_;
   return link_ ? link_->session() : SessionView();
-}
-
-std::optional<InjectorView> ConsolePanel::newestInjector() {
-  newest();
-  return link_ ? link_->injector() : std::nullopt;
 }
 
 QWidget* ConsolePanel::makeCommands() {

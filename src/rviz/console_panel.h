@@ -55,7 +55,6 @@ class ConsolePanel : public rviz::Panel {
   QWidget* makePlots();
   QWidget*& box(ConsolePart part) { return boxes_[static_cast<std::size_t>(part)]; }
   SessionView newest();
-  std::optional<InjectorView> newestInjector();
   void showParts(const std::string& words);
   std::optional<Eigen::Isometry3d> needle(double largest_age) const;
   std::optional<SessionLink::Pose> pipette() const;
