@@ -113,8 +113,9 @@ class ForceReceiverTest(unittest.TestCase):
         heard = [rospy.Subscriber(topic, Bool, lambda message, topic=topic: self.set_.update({topic: message.data}))
                  for topic in SETTINGS]
         until(self.newest_followed, "a hand that is followed")
-        self.assertEqual(self.set_, {topic: True for topic in SETTINGS})
-        self.assertGreater(len(self.forces), 0)
+        # Position, settings and force come through connections of their own, in no certain order.
+        until(lambda: self.set_ == {topic: True for topic in SETTINGS}, "both settings, true")
+        until(lambda: self.forces, "a force")
         force.unregister()
         self.subscribers.extend(heard)
 
