@@ -62,7 +62,8 @@ class CameraTest(unittest.TestCase):
 
     def test_plays_in_order_and_again(self):
         self.play(loop=True)
-        self.until(lambda: len(self.images) > 3 * len(LEVELS), "three loops")
+        # Images and what belongs to them come through connections of their own.
+        self.until(lambda: len(self.images) > 3 * len(LEVELS) and self.infos, "three loops")
         pixels = [np.frombuffer(image.data, np.uint8).reshape(image.height, image.width, -1) for image in self.images]
         self.assertIn(self.images[0].encoding, ("bgra8", "bgr8"))
         self.assertEqual(pixels[0].shape[:2], (30, 40))
