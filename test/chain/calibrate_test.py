@@ -132,7 +132,8 @@ class CalibrateTest(unittest.TestCase):
         self.assertTrue(result.success, result.message)
         self.assertLess(result.distance, 1)
         arrived = rospy.Time.now()
-        self.until(lambda: self.seen["/vision/state"].header.stamp > arrived and self.tip_is_seen(), "an image at the goal")
+        self.until(lambda: self.seen["/vision/state"].header.stamp > arrived and self.tip_is_seen(),
+                   "an image at the goal")
         tip = self.seen["/vision/state"].injection_pipette
         self.assertLess(np.hypot(tip.x - target.x, tip.y - target.y), 2)
         needle = rospy.wait_for_message("/needle/measured_cp", PoseStamped, PATIENCE).pose.position

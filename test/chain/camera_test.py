@@ -58,7 +58,7 @@ class CameraTest(unittest.TestCase):
         self.addCleanup(end)
 
     def camera_status(self):
-        return next((status for name, status in self.status.items() if name.startswith("camera")), None)
+        return next((status for name, status in list(self.status.items()) if name.startswith("camera")), None)
 
     def test_plays_in_order_and_again(self):
         self.play(loop=True)
