@@ -78,6 +78,9 @@ class CalibrateTest(unittest.TestCase):
         self.command(self.needle, "/needle/operating_state", "enable", "ENABLED")
         self.until(self.tip_is_seen, "the tip")
         self.until(lambda: self.places, "the needle")
+        # Those of the needle are heard by the manipulator and by the calibration, which ends with them.
+        self.until(lambda: self.needle.get_num_connections() >= 2 and self.controller.get_num_connections(),
+                   "listeners to the commands")
 
     def tip_is_seen(self):
         state = self.seen.get("/vision/state")
@@ -128,6 +131,9 @@ class CalibrateTest(unittest.TestCase):
         result = go()
         self.assertTrue(result.success, result.message)
         self.assertLess(result.distance, 1)
+        arrived = rospy.Time.now()
+        self.until(lambda: self.seen["/vision/state"].header.stamp > arrived and self.tip_is_seen(),
+                   "an image at the goal")
         tip = self.seen["/vision/state"].injection_pipette
         self.assertLess(np.hypot(tip.x - target.x, tip.y - target.y), 2)
         needle = rospy.wait_for_message("/needle/measured_cp", PoseStamped, PATIENCE).pose.position

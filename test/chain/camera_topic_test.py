@@ -32,7 +32,7 @@ def converted(image, encoding):
 class CameraTopicTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.states, cls.encoding, cls.cut = [], "mono8", False
+        cls.states, cls.encoding, cls.cut, cls.cut_stamps = [], "mono8", False, []
         cls.state = sphere(RADIUS)
         cls.cell = rospy.Publisher("/cell/state", CellState, queue_size=1)
         cls.needle = rospy.Publisher("/needle/measured_cp", PoseStamped, queue_size=1)
@@ -61,6 +61,7 @@ class CameraTopicTest(unittest.TestCase):
         sent = converted(image, cls.encoding)
         if cls.cut:
             sent.data = sent.data[:-1]
+            cls.cut_stamps.append(image.header.stamp)
         cls.driver.publish(sent)
 
     def until(self, condition, what):
@@ -83,16 +84,17 @@ class CameraTopicTest(unittest.TestCase):
 
     def test_a_short_image_is_not_read(self):
         self.until(lambda: self.states, "the first image")
+        heard = []
+        counter = rospy.Subscriber("/driver/image", Image, heard.append, queue_size=1, buff_size=1 << 24)
+        self.addCleanup(counter.unregister)
         type(self).cut = True
         self.addCleanup(setattr, type(self), "cut", False)
-        sent = []
-        counter = rospy.Subscriber("/driver/image", Image, sent.append, queue_size=1, buff_size=1 << 24)
-        self.addCleanup(counter.unregister)
-        self.until(lambda: len(sent) > 3, "images of the driver")  # what was under way has been answered by now
-        begin = len(sent)
-        answered = len(self.states)
-        self.until(lambda: len(sent) > begin + 5, "images of the driver")
-        self.assertEqual(len(self.states), answered)
+        self.until(lambda: len(self.cut_stamps) > 8 and heard and heard[-1].header.stamp >= self.cut_stamps[8],
+                   "short images of the driver")
+        type(self).cut = False
+        # Vision reads the images in their order, and its answer has the stamp of the image.
+        self.until(lambda: self.states[-1].header.stamp > self.cut_stamps[-1], "the answer to a whole image")
+        self.assertEqual({state.header.stamp for state in self.states} & set(self.cut_stamps), set())
 
 
 if __name__ == "__main__":

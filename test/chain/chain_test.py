@@ -106,10 +106,10 @@ class ChainTest(unittest.TestCase):
         self.chain.run(1500, messages)
         np.testing.assert_allclose(self.needle(), held, atol=1e-9)
         np.testing.assert_array_equal(self.hand_force(), 0)
-        level, text = self.chain.status("haptic_bridge: loop")
+        level, text = self.chain.run_to_status("haptic_bridge: loop", 0, messages)
         self.assertNotEqual(level, 0)
         self.assertIn(why, text)
-        level, text = self.chain.status("injection_controller: control")
+        level, text = self.chain.run_to_status("injection_controller: control", 0, messages)
         self.assertNotEqual(level, 0)
         self.assertIn("needle held", text)
         for topic, part in (("/haptic/loop_state", why), ("/controller/loop_state", "")):

@@ -22,7 +22,7 @@ class PlacedHand(Hand):
     """Is at `place` (m, of the device)."""
 
     def __init__(self):
-        self.place = (0.0, 0.0, 0.0)
+        self.place, self.published = (0.0, 0.0, 0.0), 0
         super().__init__()
 
     def _run(self):
@@ -31,6 +31,7 @@ class PlacedHand(Hand):
             message.header.stamp = rospy.Time.now()
             self._publisher.publish(message)
             self._clutch.publish(Joy(header=message.header, buttons=[0]))
+            self.published += 1
             rospy.rostime.wallsleep(1 / RATE)
 
 
@@ -88,7 +89,8 @@ class ConsoleAxesTest(ConsoleUser, unittest.TestCase):
         for place, count in (((0, -REACH, 0), 3), ((REACH, -REACH, 0), 3), ((REACH, -REACH, REACH), 2)):
             self.assertIsNone(self.written())
             self.hand.place = place
-            rospy.rostime.wallsleep(0.2)
+            before = self.hand.published
+            self.until(lambda before=before: self.hand.published > before + 0.2 * RATE, "a hand that is there")
             text = self.step(text, count)
         self.until(lambda: self.written() == "-y x z", "the axes in the file")
         self.click(self.offers(2)[0][1])

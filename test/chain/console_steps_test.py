@@ -119,7 +119,7 @@ class ConsoleStepsTest(ConsoleUser, unittest.TestCase):
             self.click(buttons[5])
         self.until(lambda: len(self.rig.moves) == 8, "two moves")
         np.testing.assert_allclose(position(self.rig.moves[-1]), at + [0, 0, 10e-6], atol=1e-12)
-        self.click(self.look().stop)
+        self.click(self.shows(lambda seen: True, "its buttons").stop)
         self.until(lambda: self.rig.states == ["stop"], "a stop of the needle")
         self.rig.report()
 
@@ -148,7 +148,7 @@ class ConsoleStepsTest(ConsoleUser, unittest.TestCase):
         self.do("click", 5)
         self.do("keyup", "ctrl")
         self.until(lambda: len(self.rig.steps) == before + 2, "two steps of the wheel")
-        self.assertAlmostEqual(self.rig.focus, -1e-6, 12)
+        self.assertAlmostEqual(self.rig.steps[-1], -1e-6, 12)
         # The range ends before the next step: the button down is greyed.
         time.sleep(1.5)
         self.rows(0, 2)

@@ -2,6 +2,7 @@
 """An injection from the console alone, by mouse and space bar, and what the console shows of it."""
 
 import subprocess
+import threading
 import time
 import unittest
 
@@ -57,8 +58,14 @@ class ConsoleTest(ConsoleUser, unittest.TestCase):
             return status.state == state and status.waits
         self.until(waits, f"waiting in {state}")
 
-    def needle(self):
+    def needle_at(self, stamp):
+        """Where it is at this time of the session or right after it."""
+        self.until(lambda: self.seen["/needle/measured_cp"].header.stamp >= stamp, "a pose of the needle")
         return position(self.seen["/needle/measured_cp"])
+
+    def sent_last(self, *commands):
+        """What is sent and what comes of it have connections of their own."""
+        self.until(lambda: tuple(self.sent[-len(commands):]) == commands, f"{commands} at last")
 
     def test_1_a_whole_injection_by_mouse(self):
         console = self.shows(lambda seen: seen.offered["Enable"], "Enable", START_PATIENCE)
@@ -94,31 +101,35 @@ class ConsoleTest(ConsoleUser, unittest.TestCase):
         self.assertEqual(self.cancelled, [])
         self.click(console.stop)
         self.operating("PAUSED")
+        paused = self.seen["/controller/operating_state"].header.stamp
         # A calibration would move the needle on: it runs while the controller is DISABLED.
         self.until(lambda: self.cancelled, "a cancel of the calibration")
         self.assertEqual(self.cancelled[0].id, "")
         self.shows(lambda seen: seen.headline == ["yellow"], "a yellow headline")
-        at = self.needle()
-        time.sleep(0.5)
-        np.testing.assert_allclose(self.needle(), at, atol=0.1e-6)
+        at = self.needle_at(paused + rospy.Duration(0.5))
+        np.testing.assert_allclose(self.needle_at(paused + rospy.Duration(1)), at, atol=0.1e-6)
         self.press("Enable")  # it is Resume now
         self.operating("ENABLED")
-        self.assertEqual(self.sent[-2:], ["pause", "resume"])
+        self.sent_last("pause", "resume")
+        # The space bar disables for as long as the console knows of the pause only.
+        self.shows(lambda seen: seen.offered["Disable"] and not seen.offered["Enable"], "an enabled controller")
         self.do("key", "space")
         self.operating("PAUSED")
         self.shows(lambda seen: seen.headline == ["yellow"], "a yellow headline")
         self.do("key", "space")
         self.operating("DISABLED")
-        self.assertEqual(self.sent[-2:], ["pause", "disable"])
+        self.sent_last("pause", "disable")
         self.shows(lambda seen: seen.headline == ["grey"], "a grey headline")
 
     def test_3_the_lamps_of_the_devices(self):
-        console = self.shows(lambda seen: len(seen.lamps) == len(console_eye.ROWS["inject"]), "all lamps")
-        self.assertEqual((console.lamps["Camera"], console.lamps["Hand"], console.lamps["Estimate"]), ("grey",) * 3)
-        self.assertIn(console.lamps["Sensor"], ("green", "yellow"))
+        def all_lamps(seen):
+            grey = {name for name, colour in seen.lamps.items() if colour == "grey"}
+            return (len(seen.lamps) == len(console_eye.ROWS["inject"]) and grey >= {"Camera", "Hand", "Estimate"}
+                    and seen.lamps["Sensor"] in ("green", "yellow"))
+        self.shows(all_lamps, "all lamps, that of the sensor green or yellow")
         subprocess.run(["rosnode", "kill", "/force_sensor"], check=True, timeout=60, stdout=subprocess.DEVNULL)
-        console = self.shows(lambda seen: seen.lamps.get("Sensor") == "red", "a red lamp of the sensor")
-        self.assertNotEqual(console.lamps["Rig"], "red")
+        self.shows(lambda seen: seen.lamps.get("Sensor") == "red" and seen.lamps["Rig"] != "red",
+                   "a red lamp of the sensor and none of the rig")
 
     def test_4_the_microscope_appears_with_its_first_image(self):
         self.shows(lambda seen: True, "its buttons")
@@ -146,6 +157,17 @@ class ConsoleTest(ConsoleUser, unittest.TestCase):
         rospy.set_param("/injection_controller/mode", "manual")
         image = Image(width=64, height=48, encoding="rgb8", step=3 * 64, data=bytes(COLOUR) * (64 * 48))
         images = rospy.Publisher("/microscope/image_raw", Image, queue_size=1)
+        ended = threading.Event()
+
+        def show_images():
+            """Whatever a look at the screen takes: a console without an image for 2 s forgets what was clicked."""
+            while not ended.wait(0.1):
+                image.header.stamp = rospy.Time.now()
+                images.publish(image)
+        camera = threading.Thread(target=show_images)
+        camera.start()
+        self.addCleanup(camera.join)
+        self.addCleanup(ended.set)
         # As the controller does: its operating state comes at a change only.
         operating = rospy.Publisher("/controller/operating_state", OperatingState, queue_size=1, latch=True)
         operating.publish(OperatingState(state="ENABLED"))
@@ -165,8 +187,6 @@ class ConsoleTest(ConsoleUser, unittest.TestCase):
         server.start()
 
         def offered_below_image():
-            image.header.stamp = rospy.Time.now()
-            images.publish(image)
             if not self.look():
                 return None
             try:

@@ -7,6 +7,7 @@ import unittest
 import rospy
 import rostest
 from cell_microinjection.msg import InjectionStatus, OperatingState, StringStamped
+from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseStamped, WrenchStamped
 
 from killable_nodes import KillableNodes, parameters
@@ -20,9 +21,13 @@ class ControllerCommandsTest(unittest.TestCase):
     def setUp(self):
         self.commands = rospy.Publisher("/controller/state_command", StringStamped, queue_size=10, latch=True)
         self.nodes, self.world = None, None
+        self.said = set()  # by all reports, because only one has what has just been refused
+        self.diagnostics = rospy.Subscriber("/diagnostics", DiagnosticArray, lambda message: self.said.update(
+            status.message for status in message.status))
 
     def tearDown(self):
         self.nodes.stop()
+        self.diagnostics.unregister()
         self.world.unsubscribe()
         self.nodes.forget()
         self.world.close()
@@ -61,7 +66,7 @@ class ControllerCommandsTest(unittest.TestCase):
 
     def until_refused(self, word):
         said = f"state command {word} refused: it has no stamp and its publisher latches"
-        self.run_until(lambda: any(said in status.message for status in self.world.diagnostics.values()), said)
+        self.run_until(lambda: any(said in message for message in list(self.said)), said)
 
     def check_is_obeyed_when_said_again(self, word):
         self.say(word)

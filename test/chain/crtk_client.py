@@ -77,6 +77,12 @@ class CrtkClient:
     def is_busy(self):
         return self._state.is_busy
 
+    def state_stamp(self):
+        return self._state.header.stamp
+
+    def has_setpoint_since(self, stamp):
+        return self._setpoint.header.stamp >= stamp
+
     def setpoint_cp(self):
         """@returns position (m); raises RuntimeWarning where none comes."""
         with self._changed:

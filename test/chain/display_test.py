@@ -104,7 +104,8 @@ class DisplayTest(unittest.TestCase):
             self.set_view.publish(view)
             return title in self.texts.values()
         self.until(shown, f"the legend of {title}")
-        self.until(lambda: self.view is not None and self.view.section == view.section, "the view")
+        self.until(lambda: self.view is not None and self.view.section == view.section and
+                   self.view.colour == view.colour, "the view")
 
     def test_colour_is_that_of_the_stress(self):
         self.show(DisplayView(colour="von_mises_stress"), "von Mises stress")

@@ -46,6 +46,7 @@ class FreezeChainTest(unittest.TestCase):
         return way
 
     def test_each_node(self):
+        until(lambda: "/needle/true_cp" in self.chain.newest, "a true place of the needle")
         for node in NODES:
             with case(node):
                 self.chain.check_follows()

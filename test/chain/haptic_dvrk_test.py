@@ -66,6 +66,7 @@ class DvrkTest(HapticTest):
         self.assertIsNone(self.before_its_settings)
 
     def test_both_switches_are_set(self):
+        self.until(lambda: len(self.set_) == len(SETTINGS), self.arm, "not both settings")
         self.assertEqual(self.set_, dict.fromkeys(SETTINGS, True))
 
     def test_position_and_frame(self):

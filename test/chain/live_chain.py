@@ -126,7 +126,7 @@ class LiveChain:
         try:
             until(lambda: abs(self.needle()[2] - begin) > 0.5e-6, "a needle that follows the hand")
         except AssertionError as error:
-            loops = {name: status.message for name, status in self.diagnostics.items() if status.level}
+            loops = {name: status.message for name, status in list(self.diagnostics.items()) if status.level}
             raise AssertionError(f"{error}; {loops}; {self.nodes.report()}") from None
 
     def end_processes(self):
