@@ -31,7 +31,7 @@ PACKETS = {"haptic_bridge": ["link/hand/received:=link/rig/sent"],
 AFTER = CONTROLLER["motion"]["stop_time"]  # s, from a set-point that rests to a needle that rests
 HAND_TIMEOUT, CONTROLLER_TIMEOUT = BRIDGE["timeouts"]["hand"], CONTROLLER["input_timeout"]
 START = 32e-6  # m, 4 um above the cell
-# s, for begin(): its words are no part of the lock step, and may be late by as many ticks as the machine does meanwhile.
+# s, for begin(): its words are no part of the lock step, and late by as many ticks as the machine does meanwhile.
 START_DELAY = 0.6
 
 # Seconds, where the hand has got to (m of the needle), phase.

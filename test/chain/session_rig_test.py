@@ -48,7 +48,7 @@ class SessionRigTest(unittest.TestCase):
             self.enable.publish(StringStamped(string="enable"))
 
     def send(self, goal):
-        """Again and again: a driver lets go of a move in which the emulator was silent for long, on a machine that stalls."""
+        """Again and again: on a machine that stalls a driver ends a move in which the emulator was silent for long."""
         self.recover()
         message = pose(*goal)
         message.header.stamp = rospy.Time.now()

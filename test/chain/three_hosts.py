@@ -129,8 +129,8 @@ class ThreeHosts:
             self.chain.nodes.thaw(who)
 
     def observe(self, seconds):
-        """Returns the largest distance between the needle's places in that time, m. The poses' stamps count, which are of
-        this host's clock: on a machine that stalls they may come late."""
+        """Returns the largest distance between the needle's places in that time, m. The poses' stamps count, which are
+        of this host's clock: on a machine that stalls they may come late."""
         begin = rospy.Time.now()
         end = begin + rospy.Duration(seconds)
         self._poses.clear()
