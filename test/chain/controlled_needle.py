@@ -64,13 +64,22 @@ class ControlledNeedle(unittest.TestCase):
             return False
         self.until(reached, state)
 
+    def has_ended(self, sent):
+        """Whether the move that was sent then is over: an older state of the rig knows nothing of it."""
+        state = self.seen.get("/needle/operating_state")
+        return state and state.header.stamp >= sent and not state.is_busy
+
     def move_to(self, place):
         """With the controller disabled: two must not command the needle."""
         self.command("disable", "DISABLED")
-        time.sleep(0.5)  # its last set-point grows stale
+        self.until(self.moves.get_num_connections, "the micromanipulator")
+        disabled = rospy.Time.now()
+        # The controller's last set-point grows stale, by the time of the micromanipulator, which may have stood still.
+        self.until(lambda: "/needle/measured_cp" in self.seen and self.seen["/needle/measured_cp"].header.stamp >
+                   disabled + rospy.Duration(0.5), "half a second of the needle at rest")
         target = pose(*place)
         target.header.stamp = rospy.Time.now()
         self.moves.publish(target)
         self.until(lambda: np.allclose(self.needle(), place, atol=5e-8), f"the needle at {place}")
-        self.until(lambda: not self.seen["/needle/operating_state"].is_busy, "the end of the move")
+        self.until(lambda: self.has_ended(target.header.stamp), "the end of the move")
         self.command("enable", "ENABLED")

@@ -49,6 +49,8 @@ class ImageTwinTest(ControlledNeedle):
         self.until(lambda: abs(self.served_height() - HEIGHT) < EXACT, "the place of the cell")
         self.client.send_goal(InjectGoal(puncture=False, layers=1, depth=DEPTH, hold_time=0.5))
         self.assertTrue(self.client.wait_for_result(rospy.Duration(PATIENCE)))
+        ended = rospy.Time.now()
+        self.until(lambda: self.seen["/cell/estimate"].header.stamp > ended, "an estimate after the indentation")
         result, estimate = self.client.get_result(), self.seen["/cell/estimate"]
         self.assertEqual((self.client.get_state(), result.outcome, result.reason), (GoalStatus.SUCCEEDED, "indented", ""))
         self.assertAlmostEqual(estimate.served_height, HEIGHT, delta=EXACT)

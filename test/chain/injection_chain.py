@@ -42,6 +42,9 @@ class InjectionChainTest(unittest.TestCase):
     def status(self):
         return self.chain.seen["/controller/injection_state"]
 
+    def rig(self):
+        return self.chain.seen["/needle/operating_state"]
+
     def tick_until(self, condition, what, ticks=30000):
         for _ in range(ticks):
             if condition():
@@ -82,4 +85,6 @@ class InjectionChainTest(unittest.TestCase):
                 self.moves.publish(target)
                 self.tick_until(lambda: np.allclose(self.needle(), aside, atol=1e-8), "the move aside")
                 # Enabled while it still moves, the controller would be a second node that commands it.
-                self.tick_until(lambda: not self.chain.seen["/needle/operating_state"].is_busy, "the end of the move")
+                # An older state knows nothing of this move.
+                self.tick_until(lambda: self.rig().header.stamp > target.header.stamp and not self.rig().is_busy,
+                                "the end of the move")

@@ -52,6 +52,7 @@ class KillOwnTest(KillCase):
         self.session.until(lambda: self.session.says("/controller/injection_state", "state", "idle"), "the way out",
                            ticks=10000)
         self.session.chain.run(100)
+        self.session.catch_up(NEEDLE)
         times, places = self.session.series(NEEDLE, position)
         heights = places[times > killed][:, 2]
         self.assertGreater(np.diff(heights).min(), -STILL, "never deeper")
@@ -67,6 +68,7 @@ class KillOwnTest(KillCase):
 
     def check_rests(self, killed):
         """All the time since, and in the cell."""
+        self.session.catch_up(NEEDLE)
         times, places = self.session.series(NEEDLE, position)
         self.assertLess(np.ptp(places[times > killed][:, 2]), STILL)
         self.assertLess(places[-1][2], 28e-6)
@@ -88,7 +90,6 @@ class KillOwnTest(KillCase):
         self.by_itself()
         self.in_state("inject", 100)
         killed = self.kill("injector")
-        self.session.catch_up(NEEDLE)
         self.check_rests(killed)
 
 

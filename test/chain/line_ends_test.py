@@ -79,7 +79,8 @@ class LineEndsTest(unittest.TestCase):
         parameters["serial"].update(path=line.path, balance=[{"send": "C{pressure_Pa}", "expect": "OK"}])
         process = self.start("injector", "named_injector", parameters)
         try:
-            self.assertEqual(line.read_until(lambda heard: len(heard) >= 5), b"C545\r")
+            # Nobody answers: when this test stands still, the injector sends it again.
+            self.assertEqual(line.read_until(lambda heard: len(heard) >= 5)[:5], b"C545\r")
         finally:
             process.terminate()
             process.communicate()

@@ -39,12 +39,15 @@ class MeasureAndInjectTest(ControlledNeedle):
         """Of the needle at rest: both are found in it."""
         since = rospy.Time.now()
 
+        state = None
+
         def found():
+            nonlocal state
             state = self.seen.get("/vision/state")
             return (state and state.header.stamp > since and state.cell.verdict == CellInImage.FOUND
                     and state.injection_pipette.verdict == state.injection_pipette.FOUND)
         self.until(found, "cell and tip")
-        return self.seen["/vision/state"]
+        return state
 
     def measured(self):
         answer = None
@@ -91,6 +94,8 @@ class MeasureAndInjectTest(ControlledNeedle):
         changes.publish(CellParameters(name=["young_modulus"], value=[TRUE_MODULUS]))
         self.until(lambda: self.true_modulus() == TRUE_MODULUS, "the stiffer cell")
         self.run_goal("indented", puncture=False, layers=1, depth=6e-6, hold_time=0.5)
+        ended = rospy.Time.now()
+        self.until(lambda: self.seen["/cell/estimate"].header.stamp > ended, "an estimate after the touch")
         self.assertAlmostEqual(self.seen["/cell/estimate"].served_modulus / TRUE_MODULUS, 1, delta=0.03)
 
     def true_modulus(self):
@@ -98,6 +103,7 @@ class MeasureAndInjectTest(ControlledNeedle):
         return state and dict(zip(state.parameter_names, state.parameter_values))["young_modulus"]
 
     def check_score(self, result):
+        self.until(lambda: "/cell/puncture_score" in self.seen, "the score")
         score = self.seen["/cell/puncture_score"]
         self.assertAlmostEqual(score.force / result.puncture_force, 1, delta=0.1)
         self.assertLess(score.predicted.force_low, score.force)
@@ -123,9 +129,9 @@ class MeasureAndInjectTest(ControlledNeedle):
         felt, true = self.forces["/cell/predicted_cf"], self.forces["/true_cell/predicted_cf"]
         stamps = sorted(set(felt) & set(true))
         pairs = np.array([(felt[stamp], true[stamp]) for stamp in stamps])
-        peak = int(np.argmin(pairs[:, 1] < 0.98 * PUNCTURE))
-        pairs = pairs[:peak]
-        pairs = pairs[pairs[:, 1] > 0.2 * PUNCTURE]
+        # The membrane fails behind the largest force: on a machine that stalls nothing may be heard of the last 2 %.
+        pairs = pairs[:int(np.argmax(pairs[:, 1])) + 1]
+        pairs = pairs[(pairs[:, 1] > 0.2 * PUNCTURE) & (pairs[:, 1] < 0.98 * PUNCTURE)]
         self.assertGreater(len(pairs), 10)
         np.testing.assert_allclose(pairs[:, 0] / pairs[:, 1], 1, atol=0.03)
 

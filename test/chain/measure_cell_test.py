@@ -72,15 +72,17 @@ class MeasureCellTest(unittest.TestCase):
             time.sleep(0.01)
 
     def force(self, topic):
-        """The force at rest, N along the needle."""
-        last = []
+        """The force at rest, N along the needle: of ten messages, each of a pose from now on, whose stamp it has."""
+        begin, forces = rospy.Time.now(), {}
 
         def steady():
             message = self.seen.get(topic)
-            last.append(0 if not message or message.header.stamp.is_zero() else message.wrench.force.z)
-            return len(last) > 10 and last[-1] > 0 and max(last[-10:]) - min(last[-10:]) < 1e-3 * last[-1]
+            if message and message.header.stamp > begin:
+                forces[message.header.stamp] = message.wrench.force.z
+            last = list(forces.values())[-10:]
+            return len(last) == 10 and last[-1] > 0 and max(last) - min(last) < 1e-3 * last[-1]
         self.until(steady, f"a steady force on {topic}")
-        return last[-1]
+        return list(forces.values())[-1]
 
     def found(self):
         state = self.seen.get("/vision/state")
@@ -97,9 +99,14 @@ class MeasureCellTest(unittest.TestCase):
         return answer
 
     def test_measured_and_served(self):
-        self.until(self.found, "the cell")
-        state = self.seen["/vision/state"]
-        self.assertEqual(state.injection_pipette.verdict, state.injection_pipette.FOUND, state.injection_pipette.reason)
+        state = None
+
+        def both_found():  # there is no needle in an image that was begun while this node stood still
+            nonlocal state
+            state = self.seen.get("/vision/state")
+            return (state and state.cell.verdict == CellInImage.FOUND
+                    and state.injection_pipette.verdict == state.injection_pipette.FOUND)
+        self.until(both_found, "cell and tip")
         tip = np.array([state.injection_pipette.x, state.injection_pipette.y])
         self.assertLess(np.hypot(*(tip - ORIGIN + [0, CLEAR / PIXEL])), 1)
         cell = state.cell
@@ -117,16 +124,16 @@ class MeasureCellTest(unittest.TestCase):
         self.drive(PRESSED)
         felt, true = self.force("/cell/predicted_cf"), self.force("/truth/predicted_cf")
         self.assertAlmostEqual(felt / true, 1, delta=0.03)
-        self.assertIn("overlay", self.seen)
+        self.until(lambda: "overlay" in self.seen, "an overlay")
         self.drive(CLEAR)
         self.check_record()
 
     def check_record(self):
         folder = pathlib.Path(rospy.get_param("/image_recorder/output_dir"))
-        for state in ("approach", "../approach"):  # the second is no name of a file
+        self.until(self.injection.get_num_connections, "the recorder")
+        for number, state in enumerate(("approach", "../approach"), 1):  # the second is no name of a file
             self.injection.publish(InjectionStatus(state=state))
-            time.sleep(0.2)
-        self.until(lambda: len(list(folder.glob("snapshot_*.png"))) == 2, "two snapshots")
+            self.until(lambda: len(list(folder.glob("snapshot_*.png"))) == number, f"snapshot {number}")
         self.assertEqual([path.name for path in sorted(folder.glob("snapshot_*"))],
                          ["snapshot_000_approach.png", "snapshot_001_state.png"])
         rows = (folder / "overlay.avi.csv").read_text().splitlines()
@@ -137,7 +144,7 @@ class MeasureCellTest(unittest.TestCase):
         self.assertGreater((folder / "overlay.avi").stat().st_size, 1e4 * len(stamps))
 
     def test_an_impossible_scene_file_changes_nothing(self):
-        self.until(self.found, "the cell")
+        self.until(lambda: self.found() and "/cell/state" in self.seen, "the cell")
         before = dict(zip(self.seen["/cell/state"].parameter_names, self.seen["/cell/state"].parameter_values))
         answer = self.measured(serve=True, scene="/proc/nowhere/scene.yaml")
         self.assertFalse(answer.success)
@@ -146,6 +153,11 @@ class MeasureCellTest(unittest.TestCase):
         self.until(lambda: (self.seen["/cell/state"].header.stamp - answered).to_sec() > 0.2, "later states of the cell")
         self.assertEqual(before["diameter"], dict(zip(self.seen["/cell/state"].parameter_names,
                                                       self.seen["/cell/state"].parameter_values))["diameter"])
+
+    def serving(self):
+        """Level of the diagnostics; none before they have come."""
+        status = self.seen.get("vision: served cell")
+        return status and status.level
 
     def test_images_are_served_while_cell_simulator_hangs(self):
         self.until(self.found, "the cell")
@@ -159,10 +171,10 @@ class MeasureCellTest(unittest.TestCase):
         self.assertIn("does not answer within", answer.message)
         after = self.seen["/vision/state"].header.stamp
         self.assertGreater((after - before).to_sec(), 0.5 * rospy.get_param("/vision/serve_timeout"))
-        self.until(lambda: self.seen["vision: served cell"].level == DiagnosticStatus.ERROR, "an error on diagnostics")
+        self.until(lambda: self.serving() == DiagnosticStatus.ERROR, "an error on diagnostics")
         self.assertIn("has not answered an earlier request", self.measured(serve=True).message)
         os.kill(hung, signal.SIGCONT)
-        self.until(lambda: self.seen["vision: served cell"].level == DiagnosticStatus.OK, "the end of the error")
+        self.until(lambda: self.serving() == DiagnosticStatus.OK, "the end of the error")
         answer = self.measured(serve=True)
         self.assertTrue(answer.success, answer.message)
 

@@ -51,9 +51,10 @@ class MicroscopeTest(unittest.TestCase):
             time.sleep(0.02)
 
     def newest(self):
-        """The second image from now on: the first may be under way."""
+        """An image that was begun from now on: several older ones may be under way."""
         self.images.clear()
-        self.until(lambda: len(self.images) > 1, "an image")
+        begin = rospy.Time.now()
+        self.until(lambda: self.images and self.images[-1].header.stamp > begin, "an image")
         image = self.images[-1]
         self.assertEqual((image.encoding, image.header.frame_id), ("mono8", "microscope_optical_frame"))
         return np.frombuffer(image.data, np.uint8).reshape(image.height, image.width).astype(float)
@@ -61,6 +62,7 @@ class MicroscopeTest(unittest.TestCase):
     def test_needle_and_cell_are_where_they_are_said_to_be(self):
         self.tip[:] = [20e-6, 0, 60e-6]
         image = self.newest()
+        self.until(lambda: self.infos, "the camera's info")
         info = self.infos[-1]
         self.assertEqual((info.width, info.height), image.shape[::-1])
         column, row = (CENTRE + [self.tip[0] / PIXEL, -self.tip[2] / PIXEL]).round().astype(int)
@@ -76,6 +78,7 @@ class MicroscopeTest(unittest.TestCase):
 
     def test_focus_moves_and_blurs(self):
         sharp = self.newest()
+        self.until(lambda: self.focus and self.command.get_num_connections(), "the focus")
         self.command.publish(JointState(name=["focus"], position=[20e-6]))
         self.until(lambda: abs(self.focus[-1].position[0] - 20e-6) < 1e-12, "the focus' motion")
         blurred = self.newest()
@@ -83,20 +86,24 @@ class MicroscopeTest(unittest.TestCase):
         self.assertLess(np.abs(np.diff(blurred[rim].mean(axis=0))).max(), np.abs(np.diff(sharp[rim].mean(axis=0))).max())
         for wrong in ([1.0], [float("nan")], []):  # beyond the range, not finite, not one number
             self.command.publish(JointState(name=["focus"], position=wrong))
-        begin = len(self.focus)
-        self.until(lambda: len(self.focus) > begin + 20, "the focus' state")
+        self.pass_time(0.7)
         self.assertAlmostEqual(self.focus[-1].position[0], 20e-6, delta=1e-12)
         self.command.publish(JointState(name=["focus"], position=[0]))
         self.until(lambda: self.focus[-1].position[0] == 0, "the focus' way back")
 
+    def pass_time(self, duration):
+        """That the microscope is past, whose state of the focus has the stamp of its step. @returns the end"""
+        end = rospy.Time.now() + rospy.Duration(duration)
+        self.until(lambda: self.focus and self.focus[-1].header.stamp > end, "the microscope's next steps")
+        return end
+
     def silent(self):
-        """Waits for a second after the last image that may be under way."""
-        begin = len(self.focus)
-        self.until(lambda: len(self.focus) > begin + 60, "the microscope's next steps")
-        self.images.clear()
-        begin = len(self.focus)
-        self.until(lambda: len(self.focus) > begin + 30, "the microscope's next steps")
-        return not self.images
+        """Whether no image is begun in a second, after one in which the cell's last state grows stale. It may have come
+        late: the microscope counts from its arrival."""
+        self.pass_time(2)
+        begin = self.pass_time(1)
+        self.pass_time(1)
+        return not any(image.header.stamp > begin for image in self.images)
 
     def test_no_image_of_a_cell_that_is_silent_or_not_finite(self):
         self.newest()

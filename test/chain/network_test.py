@@ -46,7 +46,7 @@ class Neighbour:
         run(*self._enter, "ip", "link", "set", "end", "up")
 
     def reaches(self, port):
-        code = f"import socket; socket.create_connection(('{ADDRESS}', {port}), 2)"
+        code = f"import socket; socket.create_connection(('{ADDRESS}', {port}), {PATIENCE})"
         return subprocess.run([*self._enter, sys.executable, "-c", code], stderr=subprocess.DEVNULL).returncode == 0
 
     def unplug(self):

@@ -56,12 +56,17 @@ class RecorderTest(unittest.TestCase):
         rospy.delete_param("/session_recorder")
         self.folder.cleanup()
 
+    def messages(self):
+        # The height tells the time, and no two messages are alike.
+        return {"/needle/measured_cp": pose(0, 0, 1e-6 * self.world.now.to_sec()),
+                "/cell/predicted_cf": wrench(0, 0, 1e-6), "/force_sensor/measured_cf": wrench(0, 0, 1e-6)}
+
     def run_for(self, seconds):
-        def messages():
-            # The height tells the time, and no two messages are alike.
-            return {"/needle/measured_cp": pose(0, 0, 1e-6 * self.world.now.to_sec()),
-                    "/cell/predicted_cf": wrench(0, 0, 1e-6), "/force_sensor/measured_cf": wrench(0, 0, 1e-6)}
-        self.world.run(round(seconds * 1e3), messages)
+        self.world.run(round(seconds * 1e3), self.messages)
+
+    def status_after(self, seconds):
+        """(level, text) of diagnostics that are of later: they come once a second over a connection of their own."""
+        return self.world.run_to_status("session_recorder: files", round(seconds * 1e3), self.messages)
 
     def end(self):
         """@returns exit status and what it said."""
@@ -104,23 +109,21 @@ class RecorderTest(unittest.TestCase):
         self.run_for(0.5)
         before = (self.out / "force_depth.csv.active").stat().st_size
         self.grow_to(before + 1000)
-        self.run_for(4)
-        level, text = self.world.status("session_recorder: files")
+        level, text = self.status_after(4)
         self.assertEqual(level, ERROR)
         for name in ("force_depth.csv.active", "session.bag.active"):
             self.assertIn(f"{self.out}/{name}: cannot be written: ", text)
         self.assertIn("File too large", text)
         self.assertIsNone(self.recorder.poll())
         lost = self.values()["rows lost"]
-        self.assertGreater(lost, 550)  # of the 800 of this time, as of a second ago at the most
+        self.assertGreater(lost, 550)  # of the 800 of this time
         self.grow_to(None)
-        self.run_for(2.2)
+        self.status_after(2.2)
         later = self.values()
         self.assertLess(later["rows lost"] - lost, 210, "those of the second until the diagnostics of before")
-        self.run_for(1)
+        level, text = self.status_after(1)
         self.assertEqual(self.values()["rows lost"], later["rows lost"])
         self.assertGreater(self.values()["rows written"], later["rows written"] + 150)
-        level, text = self.world.status("session_recorder: files")
         self.assertEqual(level, ERROR, "the bag is not whole")
         self.assertNotIn("force_depth.csv.active", text)
         status, said = self.end()
@@ -147,8 +150,7 @@ class RecorderTest(unittest.TestCase):
 
     def test_where_nothing_is_wrong_nothing_is_said(self):
         self.begin(bag=True)
-        self.run_for(1.5)
-        self.assertEqual(self.world.status("session_recorder: files"), (0, "the session is written"))
+        self.assertEqual(self.status_after(1.5), (0, "the session is written"))
         status, said = self.end()
         self.assertEqual(status, 0, said)
         self.assertEqual(sorted(path.name for path in self.out.iterdir()),

@@ -42,10 +42,14 @@ class SessionRigTest(unittest.TestCase):
     def says(self, topic, state):
         return topic in self.seen and self.seen[topic].state == state
 
-    def send(self, goal):
-        """Again and again: a driver lets go of a move in which the emulator was silent for long, on a machine that stalls."""
+    def recover(self):
+        """From a fault that the machine caused."""
         if self.says("/needle/operating_state", "FAULT"):
             self.enable.publish(StringStamped(string="enable"))
+
+    def send(self, goal):
+        """Again and again: on a machine that stalls a driver ends a move in which the emulator was silent for long."""
+        self.recover()
         message = pose(*goal)
         message.header.stamp = rospy.Time.now()
         self.moves.publish(message)
@@ -60,8 +64,8 @@ class SessionRigTest(unittest.TestCase):
 
     def test_it_gets_where_it_is_sent_and_the_cell_is_beside_it(self):
         self.until(self.moves.get_num_connections, "the micromanipulator")
-        self.until(lambda: self.needle() is not None, "a place of the needle")
-        self.until(lambda: self.says("/needle/operating_state", "ENABLED"), "ENABLED")
+        self.until(lambda: self.needle() is not None, "a place of the needle", self.recover)
+        self.until(lambda: self.says("/needle/operating_state", "ENABLED"), "ENABLED", self.recover)
         # It holds the needle where it is.
         self.until(lambda: self.says("/controller/operating_state", "ENABLED"), "the controller")
         self.until(self.words.get_num_connections, "its ear for words")

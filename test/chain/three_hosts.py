@@ -9,10 +9,12 @@ import time
 
 import numpy as np
 import rospy
+from geometry_msgs.msg import PoseStamped
 
 import lossy_network
 from live_chain import TIMEOUT, LiveChain, until
 from lossy_network import HostNamespace, LossySwitch
+from messages import position
 
 DELAY, LOSS = 0.02, 0.05  # s one way; share of the frames
 ADDRESSES = {"rig": "10.88.0.1", "haptic": "10.88.0.2", "solver": "10.88.0.3"}
@@ -67,6 +69,7 @@ class RemoteHand:
 class ThreeHosts:
     def __init__(self, delay=DELAY, loss=LOSS):
         self.hosts, self.switch, self.chain, self._master = {}, None, None, None
+        self._poses = []
         try:
             self._start(delay, loss)
         except BaseException:
@@ -89,6 +92,7 @@ class ThreeHosts:
         RemoteHand.place = self.hosts["haptic"]
         enter = {node: [*self.hosts[host].enter, "env", f"ROS_IP={ADDRESSES[host]}"] for node, host in PLACES.items()}
         self.chain = LiveChain({}, hand=RemoteHand, enter=enter)
+        self._subscriber = rospy.Subscriber("/needle/measured_cp", PoseStamped, self._poses.append)
         self.chain.check_follows()
 
     def close(self):
@@ -125,12 +129,13 @@ class ThreeHosts:
             self.chain.nodes.thaw(who)
 
     def observe(self, seconds):
-        """Returns the largest distance between the needle's places in that time, m. Without news of it, it has not moved."""
-        places = []
-        end = time.monotonic() + seconds
-        while time.monotonic() < end:
-            places.append(self.chain.needle())
-            time.sleep(0.005)
+        """Returns the largest distance between the needle's places in that time, m. The poses' stamps count, which are
+        of this host's clock: on a machine that stalls they may come late."""
+        begin = rospy.Time.now()
+        end = begin + rospy.Duration(seconds)
+        self._poses.clear()
+        until(lambda: self._poses and self._poses[-1].header.stamp > end, "poses of the needle")
+        places = [position(message) for message in list(self._poses) if message.header.stamp >= begin]
         return float(np.ptp(places, axis=0).max())
 
     def measure(self, how, who):

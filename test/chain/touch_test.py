@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """The action touch/find stops the needle where it touches the cell, by the image; what may not be lowered stays."""
 
+import copy
 import time
 import unittest
 
@@ -61,7 +62,7 @@ class TouchTest(unittest.TestCase):
         self.until(lambda: "needle" in self.seen, "the needle")
         self.command("disable", "DISABLED")
         goal = PoseStamped()
-        goal.header.frame_id, goal.pose = "world", self.seen["needle"].pose
+        goal.header.frame_id, goal.pose = "world", copy.deepcopy(self.seen["needle"].pose)
         goal.pose.position.z = RADIUS + ABOVE
 
         def arrived():
@@ -89,7 +90,8 @@ class TouchTest(unittest.TestCase):
         result = self.find()
         self.assertTrue(result.success, result.message)
         ended = rospy.Time.now()
-        self.until(lambda: self.seen["/cell/state"].header.stamp > ended, "a state of the cell after the end")
+        self.until(lambda: "/cell/state" in self.seen and self.seen["/cell/state"].header.stamp > ended,
+                   "a state of the cell after the end")
         cell = self.seen["/cell/state"]
         print(f"{result.message}; contact {1e6 * result.contact[2]:.3f} um, truth {1e6 * RADIUS:.3f} um, "
               f"{1e6 * result.depth:.2f} um past it, {1e9 * result.force:.1f} nN, truth {1e9 * cell.force.z:.1f} nN")

@@ -92,8 +92,14 @@ class AxesTest(TrustTest):
         self.assertTrue(self.world.seen["/teleop/servo_cp"].header.stamp.is_zero())
 
     def written(self, answer):
+        """The file of the answer, which a thread of the node's own writes, when it has its axes."""
         self.world.run(200, self.at((0, 0, 0)))
-        return yaml.safe_load(pathlib.Path(answer.file).read_text(encoding="utf-8"))
+        path = pathlib.Path(answer.file)
+        for _ in range(3000):
+            if path.exists() and f"device_axes: {answer.device_axes}" in path.read_text(encoding="utf-8"):
+                break
+            rospy.rostime.wallsleep(0.01)
+        return yaml.safe_load(path.read_text(encoding="utf-8"))
 
     def test_a_whole_calibration_and_its_undo(self):
         self.force_after((0, 0, 0))

@@ -34,6 +34,12 @@ class StopGuardTest : public testing::Test {
   void SetUp() override {
     ASSERT_GE(line_, 0);
     ASSERT_EQ(guard_.begin(line_, kStop), "");
+    watch();
+    step();
+    // Where the machine held this program up since the guard began, the guard was right.
+    heard_.clear();
+    interventions_.clear();
+    held_up_ = false;
   }
   void TearDown() override {
     close(line_);
@@ -46,9 +52,8 @@ class StopGuardTest : public testing::Test {
   }
 
   Wire::GuardReport step() {
-    const auto last = std::chrono::steady_clock::now();
     sleepFor(1);
-    held_up_ = held_up_ || std::chrono::steady_clock::now() - last > std::chrono::milliseconds(100);
+    noteHoldUps();
     Wire::GuardReport report = guard_.heartbeat();
     if (!report.intervention.empty()) interventions_ += report.intervention + ".";
     heard_ += terminal_.read();
@@ -64,11 +69,36 @@ class StopGuardTest : public testing::Test {
       sleepFor(1);
       heard_ += terminal_.read();
     }
+    watch();
     return done();
   }
+  /// From here on both go on: neither rests on purpose.
+  void watch() {
+    stepped_ = ticked_ = Clock::now();
+    waits_ = guardsWaits();
+  }
+  /// The guard waits at the end of each of its ticks.
+  long guardsWaits() const {
+    std::ifstream status("/proc/" + std::to_string(guard_.process()) + "/status");
+    for (std::string word; status >> word;) {
+      long waits = 0;
+      if (word == "voluntary_ctxt_switches:" && status >> waits) return waits;
+    }
+    return -1;
+  }
+  void noteHoldUps() {
+    constexpr std::chrono::milliseconds kLong(100);
+    const Clock::time_point now = Clock::now();
+    const long waits = guardsWaits();
+    if (waits != waits_ || guard_.process() < 0) ticked_ = now;
+    held_up_ = held_up_ || now - stepped_ > kLong || now - ticked_ > kLong;
+    waits_ = waits;
+    stepped_ = now;
+  }
   bool hasStopped() const { return heard_.find(kStop) != std::string::npos; }
-  /// Unless the machine let the guard run and this program not, so that the guard was right.
-  void expectUndisturbed() const {
+  /// Unless the machine let one of the two run and the other not, so that the one was right.
+  void expectUndisturbed() {
+    noteHoldUps();
     if (held_up_) return;
     EXPECT_EQ(interventions_, "");
     EXPECT_EQ(heard_, "");
@@ -81,14 +111,18 @@ class StopGuardTest : public testing::Test {
   StopGuard guard_;
   pid_t driver_ = -1;  // a program of its own
   std::string heard_, interventions_;
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point stepped_, ticked_;  // when this program stepped last, and the guard was last seen to have
+  long waits_ = 0;
   bool held_up_ = false;
 };
 
 TEST_F(StopGuardTest, SendsNothingWhileTheProgramGoesOn) {
   for (int i = 0; i < 600; ++i) EXPECT_EQ(step().missing, "");
+  noteHoldUps();
   const pid_t process = guard_.process();
   guard_.end();
-  EXPECT_FALSE(lives(process));
+  EXPECT_FALSE(process > 0 && lives(process));
   heard_ += terminal_.read();
   expectUndisturbed();
 }
@@ -127,8 +161,13 @@ TEST_F(StopGuardTest, AKilledGuardIsNoticedAndReplaced) {
   const pid_t first = guard_.process();
   kill(first, SIGKILL);
   bool unguarded = false;
-  ASSERT_TRUE(stepUntil([&] { return unguarded = guard_.process() != first, !interventions_.empty(); }));
-  EXPECT_EQ(interventions_, "the stop guard ended.");
+  ASSERT_TRUE(stepUntil([&] {
+    unguarded = guard_.process() != first;
+    return interventions_.find("the stop guard ended") != std::string::npos;
+  }));
+  if (!held_up_) {
+    EXPECT_EQ(interventions_, "the stop guard ended.");
+  }
   EXPECT_TRUE(unguarded);
   ASSERT_TRUE(stepUntil([&] { return step().missing.empty(); }));
   EXPECT_NE(guard_.process(), first);
@@ -229,9 +268,11 @@ TEST_F(StopGuardTest, GuardsThatCannotBeStartedAreReported) {
 TEST_F(StopGuardTest, AMachineThatStandsStillAsAWholeIsNotTakenForAFrozenProgram) {
   step();
   sleepFor(60);  // it has heard that
+  noteHoldUps();
   kill(guard_.process(), SIGSTOP);
   for (int i = 0; i < 30; ++i) sleepFor(20);  // neither the guard nor this program
   kill(guard_.process(), SIGCONT);
+  watch();
   for (int i = 0; i < 300; ++i) step();
   expectUndisturbed();
 }
