@@ -15,9 +15,8 @@ namespace microinjection {
 namespace {
 
 constexpr char kImageTopic[] = "microscope/image_raw";
-constexpr double kPeriod = 0.02;     // s of wall time, of a step
-constexpr double kClockSkew = 0.05;  // s, by which a stamp may be ahead
-constexpr double kFarWindow = 1;     // px, of the window from the tip
+constexpr double kPeriod = 0.02;  // s of wall time, of a step
+constexpr double kFarWindow = 1;  // px, of the window from the tip
 constexpr int kQueue = 1;
 
 }  // namespace
@@ -68,13 +67,8 @@ FocusNode::FocusNode(ros::NodeHandle node, ros::NodeHandle private_node)
 
 void FocusNode::run() { ros::spin(); }
 
-bool FocusNode::isOld(const ros::Time& stamp) const {
-  const double age = secondsBetween(stamp, ros::Time::now());
-  return age > parameters_.image_timeout || age < -kClockSkew;
-}
-
 std::optional<double> FocusNode::position() const {
-  if (secondsBetween(focus_received_, ros::SteadyTime::now()) > parameters_.image_timeout) return std::nullopt;
+  if (isOld(focus_arrival_)) return std::nullopt;
   return focus_;
 }
 
@@ -82,22 +76,23 @@ void FocusNode::onFocus(const sensor_msgs::JointState& message) {
   focus_.reset();
   if (message.position.size() != 1 || !std::isfinite(message.position[0]))
     return MessageRefusals::ofProcess().add("/focus/measured_js", "position must be one finite number");
-  if (isOld(message.header.stamp)) return MessageRefusals::ofProcess().add("/focus/measured_js", "it is old");
+  focus_arrival_ = Arrival(message.header.stamp);
+  if (isOld(focus_arrival_)) return MessageRefusals::ofProcess().add("/focus/measured_js", "it is old");
   focus_ = message.position[0];
-  focus_received_ = ros::SteadyTime::now();
 }
 
 void FocusNode::onNeedle(const geometry_msgs::PoseStamped& message) {
   const auto pose = validPose(&message);
   needle_ = pose ? std::optional<Eigen::Vector3d>(pose->translation()) : std::nullopt;
-  needle_received_ = ros::SteadyTime::now();
+  needle_arrival_ = Arrival(message.header.stamp);
 }
 
 void FocusNode::onVision(const cell_microinjection::VisionState& message) {
   tip_.reset();
   const auto& seen = message.injection_pipette;
-  tip_reason_ = isOld(message.header.stamp) ? "the image is old, or stamped ahead" : seen.reason;
-  if (isOld(message.header.stamp) || seen.verdict == seen.NOT_FOUND) return;
+  tip_arrival_ = Arrival(message.header.stamp);
+  tip_reason_ = isOld(tip_arrival_) ? "the image is old, or stamped ahead" : seen.reason;
+  if (isOld(tip_arrival_) || seen.verdict == seen.NOT_FOUND) return;
   const Tip tip{message.header.stamp.toSec(), seen.verdict == seen.FOUND,
                 TipWindow{{seen.x, seen.y}, seen.direction, parameters_.core}};
   tip_reason_ = "the tip's place is not finite";
@@ -109,7 +104,8 @@ void FocusNode::onVision(const cell_microinjection::VisionState& message) {
 void FocusNode::onImage(const sensor_msgs::Image& message) {
   reading_.reset();
   blind_ = imageDefect(message);
-  if (blind_.empty() && isOld(message.header.stamp)) blind_ = "the image is old, or stamped ahead";
+  reading_arrival_ = Arrival(message.header.stamp);
+  if (blind_.empty() && isOld(reading_arrival_)) blind_ = "the image is old, or stamped ahead";
   if (blind_.empty() && message.data == last_data_) blind_ = "the camera repeats its last image";
   if (!blind_.empty()) return MessageRefusals::ofProcess().add(kImageTopic, blind_);
   last_data_ = message.data;
@@ -118,7 +114,6 @@ void FocusNode::onImage(const sensor_msgs::Image& message) {
   blind_ = frame.refusal();
   if (!blind_.empty()) return;
   reading_ = FocusSearch::Reading{message.header.stamp.toSec(), coreSharpness(frame, window_)};
-  reading_received_ = ros::SteadyTime::now();
 }
 
 void FocusNode::onGoal() {
@@ -126,9 +121,10 @@ void FocusNode::onGoal() {
   stopSearch();
   const std::optional<double> start = position();
   if (!start) return end(false, "the focus axis does not answer: /focus/measured_js is silent, old or invalid");
-  if (!tip_ || isOld(ros::Time(tip_->stamp))) return end(false, "the tip is not seen: " + tip_reason_);
+  if (!tip_ || isOld(tip_arrival_))
+    return end(false, "the tip is not seen: " + (tip_ ? "the image is old" : tip_reason_));
   // Without any manipulator nothing moves the needle.
-  const bool known = needle_ && secondsBetween(needle_received_, ros::SteadyTime::now()) <= parameters_.image_timeout;
+  const bool known = needle_ && !isOld(needle_arrival_);
   if (subscribers_.back().getNumPublishers() > 0 && !known)
     return end(false, "/needle/measured_cp is silent or invalid: it is not known whether the needle rests");
   start_ = *start;
@@ -161,14 +157,13 @@ void FocusNode::step() {
   diagnostics_.update();
   endIfOrphaned(master_);
   if (!search_) return;
-  const bool silent = secondsBetween(needle_received_, ros::SteadyTime::now()) > parameters_.image_timeout;
-  if (needle_at_start_ && (silent || !needle_)) return end(false, "the needle's position is not known any more");
+  if (needle_at_start_ && (!needle_ || isOld(needle_arrival_)))
+    return end(false, "the needle's position is not known any more");
   if (needle_ && needle_at_start_ && (*needle_ - *needle_at_start_).norm() > parameters_.largest_motion)
     return end(false, "the needle moves: it must rest during the search");
   const double now = ros::Time::now().toSec();
   if (rough_) return verify(now);
-  const bool fresh = secondsBetween(reading_received_, ros::SteadyTime::now()) <= parameters_.image_timeout;
-  const auto goal = search_->step({now, position(), fresh ? reading_ : std::nullopt, blind_});
+  const auto goal = search_->step({now, position(), isOld(reading_arrival_) ? std::nullopt : reading_, blind_});
   if (goal) move(*goal);
   if (!search_->failure().empty()) {
     rough_ = repeated_ ? std::nullopt : search_->sharpest();

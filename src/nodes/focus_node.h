@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "nodes/imaging/arrival.h"
 #include "nodes/runtime/master_monitor.h"
 #include "vision/measurement/core_sharpness.h"
 #include "vision/measurement/focus_search.h"
@@ -57,7 +58,7 @@ class FocusNode {
   void onVision(const cell_microinjection::VisionState& message);
   void onFocus(const sensor_msgs::JointState& message);
   void onNeedle(const geometry_msgs::PoseStamped& message);
-  bool isOld(const ros::Time& stamp) const;
+  bool isOld(const Arrival& arrival) const { return arrival.isOld(parameters_.image_timeout); }
   std::optional<double> position() const;
   void step();
   void verify(double now);  ///< the tip in the best plane
@@ -77,14 +78,15 @@ class FocusNode {
   std::optional<double> verified_since_;                     ///< s, when the focus was in the best plane
   std::size_t planes_ = 0;                                   ///< of an earlier search of this goal
   std::optional<Eigen::Vector3d> needle_, needle_at_start_;  ///< m; none: not known
-  ros::SteadyTime needle_received_;
+  Arrival needle_arrival_;
 
   std::optional<double> focus_;  ///< m
-  ros::SteadyTime focus_received_;
+  Arrival focus_arrival_;
   std::optional<Tip> tip_;
+  Arrival tip_arrival_;
   std::string tip_reason_ = "no image was received";
   std::optional<FocusSearch::Reading> reading_;
-  ros::SteadyTime reading_received_;
+  Arrival reading_arrival_;
   std::string blind_;                     ///< why the newest image is not usable; empty: it is
   std::vector<unsigned char> last_data_;  ///< of the last image: a frozen camera repeats it
   std::string outcome_ = "no goal yet";

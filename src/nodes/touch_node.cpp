@@ -12,10 +12,9 @@
 namespace microinjection {
 namespace {
 
-constexpr double kPatience = 10;     // s, for the controller to connect
-constexpr double kEngaging = 0.5;    // s: the controller counts a hand's targets from the first that it has received
-constexpr double kPeriod = 0.005;    // s of wall time: the controller takes a target of 0.05 s ago for stale
-constexpr double kClockSkew = 0.05;  // s, by which a stamp may be ahead
+constexpr double kPatience = 10;   // s, for the controller to connect
+constexpr double kEngaging = 0.5;  // s: the controller counts a hand's targets from the first that it has received
+constexpr double kPeriod = 0.005;  // s of wall time: the controller takes a target of 0.05 s ago for stale
 constexpr char kSetpoints[] = "/teleop/servo_cp";
 
 }  // namespace
@@ -72,9 +71,9 @@ void TouchNode::onVision(const cell_microinjection::VisionState& message) {
   const auto& tip = message.injection_pipette;
   const auto& cell = message.cell;
   const auto& beside = message.indentation;
-  const double age = secondsBetween(message.header.stamp, ros::Time::now());
+  sight_arrival_ = Arrival(message.header.stamp);
   blind_ = "the image is old, or stamped ahead";
-  if (age > parameters_.input_timeout || age < -kClockSkew) return;
+  if (sight_arrival_.isOld(parameters_.input_timeout)) return;
   blind_ = "the cell is not found: " + cell.reason;
   if (cell.verdict == cell.NOT_FOUND) return;
   blind_ = "the tip is not found: " + tip.reason;
@@ -86,28 +85,23 @@ void TouchNode::onVision(const cell_microinjection::VisionState& message) {
   if (!std::isfinite(sight.displacement + sight.deviation + sight.gap)) return;
   blind_.clear();
   sight_ = sight;
-  sight_received_ = ros::SteadyTime::now();
 }
 
 /// An invalid reading is as none: force_timeout after the last valid one the search fails.
 void TouchNode::onForce(const geometry_msgs::WrenchStamped& message) {
-  const double age = secondsBetween(message.header.stamp, ros::Time::now());
+  const Arrival arrival(message.header.stamp);
   const std::optional<Eigen::Vector3d> force = finiteForce(&message);
-  if (message.header.stamp.isZero() || age > parameters_.force_timeout || !force) return;
+  if (message.header.stamp.isZero() || arrival.isOld(parameters_.force_timeout) || !force) return;
   force_ = force->z();
   force_stamp_ = message.header.stamp.toSec();
-  force_received_ = ros::SteadyTime::now();
+  force_arrival_ = arrival;
 }
 
 TouchSearch::Input TouchNode::input() const {
-  const ros::SteadyTime now = ros::SteadyTime::now();
-  const auto fresh = [&](const ros::SteadyTime& received, double timeout) {
-    return secondsBetween(received, now) <= timeout;
-  };
   TouchSearch::Input input{
       ros::Time::now().toSec(), watch_.position(), watch_.restedSince(), sight_, blind_, force_, force_stamp_};
-  if (!fresh(sight_received_, parameters_.input_timeout)) input.sight.reset();
-  if (!fresh(force_received_, parameters_.force_timeout)) input.force.reset();
+  if (sight_arrival_.isOld(parameters_.input_timeout)) input.sight.reset();
+  if (force_arrival_.isOld(parameters_.force_timeout)) input.force.reset();
   return input;
 }
 

@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 
+#include "nodes/imaging/arrival.h"
 #include "nodes/imaging/tip_watch.h"
 #include "nodes/runtime/master_monitor.h"
 #include "vision/measurement/touch_search.h"
@@ -59,11 +60,11 @@ class TouchNode {
   ros::SteadyTime accepted_, began_;     ///< of the goal, and of the connection to the controller
   std::unique_ptr<TouchSearch> search_;  ///< null: the controller has not engaged yet
   std::optional<TouchSearch::Sight> sight_;
-  ros::SteadyTime sight_received_;
+  Arrival sight_arrival_;
   std::string blind_ = "no image was received";
   std::optional<double> force_;  ///< N along the needle
   double force_stamp_ = 0;       ///< s
-  ros::SteadyTime force_received_;
+  Arrival force_arrival_;
   std::string outcome_ = "no goal yet";
   ros::Publisher setpoints_;  ///< while a goal is active, so that a hand finds the topic free
   ros::Subscriber others_;    ///< counts the publishers of the set-points

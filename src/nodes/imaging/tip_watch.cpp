@@ -10,8 +10,9 @@ namespace microinjection {
 namespace {
 
 constexpr double kResolution = 0.2e-6;  // m, within which a needle rests
-constexpr double kClockSkew = 0.05;     // s, by which a stamp may be ahead
-constexpr double kSilent = 1;           // s, after which what simulator and controller said is not known any more
+// s of this node's running time, after which what simulator and controller said is not known any more.
+constexpr double kSilent = 1;
+constexpr double kPeriod = 0.05;  // s, in which that time is counted
 
 /// Empty, or why the tip is not above the cell: it must be farther out along the shaft than the cell reaches.
 std::string besideCell(const cell_microinjection::CellInImage& cell, const cell_microinjection::PipetteInImage& tip) {
@@ -42,21 +43,20 @@ TipWatch::TipWatch(const ros::NodeHandle& node, double timeout) : timeout_(timeo
           node, "/cell/state", kQueue,
           [this](const cell_microinjection::CellState& message, const std::string&) {
             touches_ = message.in_contact || message.inside;
-            touch_received_ = ros::SteadyTime::now();
+            touch_received_ = awake_.seconds();
           }),
       subscribeGuarded<cell_microinjection::InjectionStatus>(
           node, "/controller/injection_state", kQueue,
           [this](const cell_microinjection::InjectionStatus& message, const std::string&) {
             injects_ = message.state != "idle" && message.state != "approach" && message.state != "fault";
-            injection_received_ = ros::SteadyTime::now();
+            injection_received_ = awake_.seconds();
           })};
+  timer_ = node.createSteadyTimer(ros::WallDuration(kPeriod),
+                                  [this](const ros::SteadyTimerEvent&) { awake_.step(ros::SteadyTime::now()); });
 }
 
 std::string TipWatch::cellInTheWay() const {
-  const ros::SteadyTime now = ros::SteadyTime::now();
-  const auto silent = [&](const ros::SteadyTime& received) {
-    return !received.isZero() && secondsBetween(received, now) > kSilent;
-  };
+  const auto silent = [&](double received) { return received >= 0 && awake_.seconds() - received > kSilent; };
   if (silent(injection_received_)) return "/controller/injection_state is silent: the needle may be in the cell";
   if (silent(touch_received_)) return "/cell/state is silent: the needle may touch the cell";
   if (injects_) return "the needle is at the cell or in it, by the controller: withdraw it";
@@ -72,30 +72,25 @@ std::string TipWatch::cellOnTheWay(const Eigen::Vector2d& pixel) const {
   return (from - share * way).norm() > cell_->radius ? "" : "the straight way to the pixel is through the cell";
 }
 
-/// The older of stamp and arrival counts: a relay that repeats an old message must not keep it fresh.
-bool TipWatch::isOld(const ros::Time& stamp) const {
-  const double age = secondsBetween(stamp, ros::Time::now());
-  return age > timeout_ || age < -kClockSkew;
-}
-
 std::optional<Eigen::Vector3d> TipWatch::position() const {
-  if (!position_ || secondsBetween(position_received_, ros::SteadyTime::now()) > timeout_) return std::nullopt;
+  if (position_arrival_.isOld(timeout_)) return std::nullopt;
   return position_;
 }
 
 std::optional<SeenTip> TipWatch::tip() const {
-  if (!tip_ || secondsBetween(tip_received_, ros::SteadyTime::now()) > timeout_) return std::nullopt;
+  if (tip_arrival_.isOld(timeout_)) return std::nullopt;
   return tip_;
 }
 
 void TipWatch::onNeedle(const geometry_msgs::PoseStamped& message) {
   const std::optional<Eigen::Isometry3d> pose = validPose(&message);
   const bool followed = position().has_value();
+  const Arrival arrival(message.header.stamp);
   position_.reset();
-  if (!pose || isOld(message.header.stamp)) return;
+  if (!pose || arrival.isOld(timeout_)) return;
   position_ = pose->translation();
   orientation_ = Eigen::Quaterniond(pose->linear());
-  position_received_ = ros::SteadyTime::now();
+  position_arrival_ = arrival;
   if (followed && (*position_ - resting_place_).norm() <= kResolution) return;
   resting_place_ = *position_;
   rested_ = ros::Time::now().toSec();
@@ -104,10 +99,11 @@ void TipWatch::onNeedle(const geometry_msgs::PoseStamped& message) {
 
 void TipWatch::onVision(const cell_microinjection::VisionState& message) {
   tip_.reset();
-  tip_received_ = ros::SteadyTime::now();
+  tip_arrival_ = Arrival(message.header.stamp);
   const auto& tip = message.injection_pipette;
-  tip_reason_ = isOld(message.header.stamp) ? "the image is old, or stamped ahead" : tip.reason;
-  if (isOld(message.header.stamp)) return;
+  const bool old = tip_arrival_.isOld(timeout_);
+  tip_reason_ = old ? "the image is old, or stamped ahead" : tip.reason;
+  if (old) return;
   image_centre_ = Eigen::Vector2d(message.width - 1.0, message.height - 1.0) / 2;
   // Beside a cell the tip is often uncertain. What was known stays until an image shows the needle again.
   if (tip.verdict != tip.NOT_FOUND) beside_ = besideCell(message.cell, tip);

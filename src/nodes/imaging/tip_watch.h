@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "nodes/imaging/arrival.h"
+#include "nodes/runtime/awake_time.h"
 #include "vision/calibration/calibration_run.h"
 
 namespace microinjection {
@@ -30,7 +32,8 @@ class TipWatch {
     return Eigen::Translation3d(position) * orientation_;
   }
   std::optional<SeenTip> tip() const;  ///< none: not found in the newest image, or that is old
-  const std::string& tipReason() const { return tip_reason_; }
+  /// Why there is no tip.
+  std::string tipReason() const { return tip_ ? "the image is old" : tip_reason_; }
   /// s of ROS time, since when the needle has been at one place within 0.2 um.
   double restedSince() const { return rested_; }
   Eigen::Vector2d imageCentre() const { return image_centre_; }  ///< px
@@ -51,13 +54,12 @@ class TipWatch {
 
  private:
   void onNeedle(const geometry_msgs::PoseStamped& message);
-  bool isOld(const ros::Time& stamp) const;
   void onVision(const cell_microinjection::VisionState& message);
 
   double timeout_;
   std::optional<Eigen::Vector3d> position_;
   Eigen::Quaterniond orientation_ = Eigen::Quaterniond::Identity();
-  ros::SteadyTime position_received_, tip_received_;
+  Arrival position_arrival_, tip_arrival_;
   Eigen::Vector3d resting_place_ = Eigen::Vector3d::Zero();  ///< m
   double rested_ = 0;
   std::optional<SeenTip> tip_;
@@ -68,11 +70,13 @@ class TipWatch {
     Eigen::Vector2d centre{0, 0};  ///< px
     double radius = 0;             ///< px
   };
-  std::optional<SeenCell> cell_;            ///< in the newest image that shows one
-  bool touches_ = false, injects_ = false;  ///< by cell_simulator and by the controller
-  ros::SteadyTime touch_received_, injection_received_;
+  std::optional<SeenCell> cell_;                          ///< in the newest image that shows one
+  bool touches_ = false, injects_ = false;                ///< by cell_simulator and by the controller
+  double touch_received_ = -1, injection_received_ = -1;  ///< s of awake_; below 0: never
+  AwakeTime awake_;
   cell_microinjection::OperatingState needle_state_, controller_state_;
   std::vector<ros::Subscriber> subscribers_;
+  ros::SteadyTimer timer_;
 };
 
 }  // namespace microinjection

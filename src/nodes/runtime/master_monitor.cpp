@@ -53,9 +53,11 @@ struct MasterMonitor::Shared {
     std::unique_lock<std::mutex> lock(mutex);
     while (!changed.wait_for(lock, kPeriod, [this] { return ending; })) {
       lock.unlock();
+      // The time of the question: a thread that stands still behind the answer must not make it fresh.
+      const Clock::time_point asked = Clock::now();
       const bool registered = isRegistered();
       refused = !registered;
-      if (registered) last_reply = Clock::now();
+      if (registered) last_reply = asked;
       away = registered ? 0 : away + kPeriod.count();
       if (registered && ++replies % kRepliesPerLinkCheck == 0) {
         lost_publishers.check();
