@@ -126,7 +126,7 @@ void TouchNode::begin(double travel) {
   const std::optional<Eigen::Vector3d> position = watch_.position();
   if (!position) throw ConfigError("/needle/measured_cp is silent or invalid");
   const auto sight = input().sight;
-  if (!sight) throw ConfigError("the image does not show the touch: " + blind_);
+  if (!sight) throw ConfigError("the image does not show the touch: " + (blind_.empty() ? "the image is old" : blind_));
   if (forces_.getNumPublishers() > 0 && !input().force)
     throw ConfigError("/force_sensor/measured_cf is silent or invalid: the force could not be watched");
   if (!sight->certain) throw ConfigError("the cell or the tip is uncertain in the image");

@@ -99,7 +99,9 @@ class Program {
   std::array<int, 2> progress_{}, orders_{};
 };
 
-TEST(ConsoleRelay, PassesOnWhatIsWrittenInItsOrder) {
+/// Returns whether the machine let the relay end in time. Else the rest comes behind what is written next, or around
+/// it.
+bool passesOnInTime() {
   const std::string end = "end\n";
   const Program program([](const Program& self) {
     std::chrono::steady_clock::time_point ends;
@@ -111,7 +113,7 @@ TEST(ConsoleRelay, PassesOnWhatIsWrittenInItsOrder) {
       }
       ends = std::chrono::steady_clock::now();
     }
-    // The relay waits for 0.5 s, then the rest comes behind what is written next, or around it.
+    // It waits for 0.5 s at the most.
     self.say(std::chrono::steady_clock::now() - ends < std::chrono::milliseconds(450) ? 'i' : 'l');
     std::printf("end\n");
     std::fflush(stdout);
@@ -121,12 +123,20 @@ TEST(ConsoleRelay, PassesOnWhatIsWrittenInItsOrder) {
   for (int i = 0; i < 1000; ++i) expected += "out " + std::to_string(i) + "\nerr " + std::to_string(i) + "\n";
   std::string text = program.output(expected.size() + end.size());
   const std::size_t at = text.find(end);
-  ASSERT_NE(at, std::string::npos) << text;
-  const bool in_time = program.next() == 'i';
-  if (in_time) {
+  const char step = program.next();
+  EXPECT_NE(step, 0) << "the program hangs";
+  if (step == 'i') {
     EXPECT_EQ(at, expected.size());
   }
-  EXPECT_EQ(text.erase(at, end.size()), expected);
+  if (at != std::string::npos) text.erase(at, end.size());
+  EXPECT_EQ(text, expected);
+  return step == 'i';
+}
+
+TEST(ConsoleRelay, PassesOnWhatIsWrittenInItsOrder) {
+  bool in_time = false;
+  for (int run = 0; run < 5 && !in_time && !HasFailure(); ++run) in_time = passesOnInTime();
+  EXPECT_TRUE(in_time) << "the relay never ended within 0.45 s";
 }
 
 TEST(ConsoleRelay, StoppedTerminalHoldsNobodyUpAndWhatIsMissingIsCounted) {

@@ -111,7 +111,7 @@ class ConsoleTest(ConsoleUser, unittest.TestCase):
         self.press("Enable")  # it is Resume now
         self.operating("ENABLED")
         self.sent_last("pause", "resume")
-        # The space bar disables for as long as the console knows of the pause only.
+        # While the console still shows PAUSED, the space bar disables instead.
         self.shows(lambda seen: seen.offered["Disable"] and not seen.offered["Enable"], "an enabled controller")
         self.do("key", "space")
         self.operating("PAUSED")

@@ -137,7 +137,7 @@ class HostileTest(unittest.TestCase):
     def check_closes_again(self, topics):
         """By itself; or it says what it waits for, and closes when it was enabled again."""
         self.check_lives(topics)
-        for _ in range(5):  # who was only held up follows later, and says nothing
+        for _ in range(2):  # who was only held up by the machine follows later, and says nothing
             if self.follows():
                 return
             said = self.waits_for()

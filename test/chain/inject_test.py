@@ -179,8 +179,8 @@ class InjectTest(InjectPulseTest):
         self.tick_until(lambda: self.status().state == "indent" and self.status().depth > 1e-6, "an indentation")
         self.assertGreater(self.chain.seen["/cell/state"].force.z, 0)
         self.client.cancel_goal()
-        # How many ticks the word is under way depends on the machine.
-        self.tick_until(lambda: self.status().state == "withdraw", "the withdrawal")
+        # How many ticks the word is under way depends on the machine; seconds it is not.
+        self.tick_until(lambda: self.status().state == "withdraw", "the withdrawal", ticks=5000)
         lowest = at = self.needle()[2]
         for _ in range(200):
             self.chain.tick()

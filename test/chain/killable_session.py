@@ -123,8 +123,8 @@ class Session:
         self._moves.publish(goal)
         self.until(self.at_start, "the way to the start")
         self.commands.publish(StringStamped(string="enable"))
-        # The lock step does not wait for this topic. Who looks at the injection's state knows the very tick in which it
-        # began, and would come too late for it here.
+        # The lock step does not wait for this topic, which may come late. A test that looks at the injection's state needs
+        # its first tick, and could miss it here.
         if "/controller/injection_state" not in self._seen:
             self.until(lambda: self.says("/controller/operating_state", "state", "ENABLED"), "ENABLED")
 

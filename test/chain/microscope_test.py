@@ -61,14 +61,18 @@ class MicroscopeTest(unittest.TestCase):
 
     def test_needle_and_cell_are_where_they_are_said_to_be(self):
         self.tip[:] = [20e-6, 0, 60e-6]
-        image = self.newest()
+        column, row = (CENTRE + [self.tip[0] / PIXEL, -self.tip[2] / PIXEL]).round().astype(int)
+        image = None
+
+        def shown():  # not in an image that was begun before the microscope had read a pose of now
+            nonlocal image
+            image = self.newest()
+            contrast = image[:, column - 60:column + 60].std(axis=1)  # of the needle's walls, above its tip
+            return contrast[row - 30:row - 10].min() > 3 * contrast[row + 15:row + 30].max()
+        self.until(shown, "the needle where it is said to be")
         self.until(lambda: self.infos, "the camera's info")
         info = self.infos[-1]
         self.assertEqual((info.width, info.height), image.shape[::-1])
-        column, row = (CENTRE + [self.tip[0] / PIXEL, -self.tip[2] / PIXEL]).round().astype(int)
-        strip = image[:, column - 60:column + 60]
-        contrast = strip.std(axis=1)  # of the needle's walls, above its tip
-        self.assertGreater(contrast[row - 30:row - 10].min(), 3 * contrast[row + 15:row + 30].max())
         # The ooplasm's dark rim reaches outwards from the border, on both sides of the cell.
         profile = image[int(CENTRE[1]) - 3:int(CENTRE[1]) + 4].mean(axis=0)
         for side in (-1, 1):

@@ -120,7 +120,7 @@ class RecorderTest(unittest.TestCase):
         self.grow_to(None)
         self.status_after(2.2)
         later = self.values()
-        self.assertLess(later["rows lost"] - lost, 210, "those of the second until the diagnostics of before")
+        self.assertLess(later["rows lost"] - lost, 210, "at most those of one more second, which are written together")
         level, text = self.status_after(1)
         self.assertEqual(self.values()["rows lost"], later["rows lost"])
         self.assertGreater(self.values()["rows written"], later["rows written"] + 150)

@@ -12,6 +12,7 @@ namespace {
 constexpr double kResolution = 0.2e-6;  // m, within which a needle rests
 // s of this node's running time, after which what simulator and controller said is not known any more.
 constexpr double kSilent = 1;
+constexpr double kForgotten = 5;  // s, the same, by the wall: after this even a node that stood still knows nothing
 constexpr double kPeriod = 0.05;  // s, in which that time is counted
 
 /// Empty, or why the tip is not above the cell: it must be farther out along the shaft than the cell reaches.
@@ -43,22 +44,25 @@ TipWatch::TipWatch(const ros::NodeHandle& node, double timeout) : timeout_(timeo
           node, "/cell/state", kQueue,
           [this](const cell_microinjection::CellState& message, const std::string&) {
             touches_ = message.in_contact || message.inside;
-            touch_received_ = awake_.seconds();
+            touch_heard_ = {awake_.seconds(), ros::SteadyTime::now()};
           }),
       subscribeGuarded<cell_microinjection::InjectionStatus>(
           node, "/controller/injection_state", kQueue,
           [this](const cell_microinjection::InjectionStatus& message, const std::string&) {
             injects_ = message.state != "idle" && message.state != "approach" && message.state != "fault";
-            injection_received_ = awake_.seconds();
+            injection_heard_ = {awake_.seconds(), ros::SteadyTime::now()};
           })};
   timer_ = node.createSteadyTimer(ros::WallDuration(kPeriod),
                                   [this](const ros::SteadyTimerEvent&) { awake_.step(ros::SteadyTime::now()); });
 }
 
 std::string TipWatch::cellInTheWay() const {
-  const auto silent = [&](double received) { return received >= 0 && awake_.seconds() - received > kSilent; };
-  if (silent(injection_received_)) return "/controller/injection_state is silent: the needle may be in the cell";
-  if (silent(touch_received_)) return "/cell/state is silent: the needle may touch the cell";
+  const auto silent = [&](const Heard& heard) {
+    return heard.awake >= 0 && (awake_.seconds() - heard.awake > kSilent ||
+                                secondsBetween(heard.time, ros::SteadyTime::now()) > kForgotten);
+  };
+  if (silent(injection_heard_)) return "/controller/injection_state is silent: the needle may be in the cell";
+  if (silent(touch_heard_)) return "/cell/state is silent: the needle may touch the cell";
   if (injects_) return "the needle is at the cell or in it, by the controller: withdraw it";
   if (touches_) return "the needle touches the cell, by cell_simulator: withdraw it";
   return beside_;

@@ -70,9 +70,14 @@ class TipWatch {
     Eigen::Vector2d centre{0, 0};  ///< px
     double radius = 0;             ///< px
   };
-  std::optional<SeenCell> cell_;                          ///< in the newest image that shows one
-  bool touches_ = false, injects_ = false;                ///< by cell_simulator and by the controller
-  double touch_received_ = -1, injection_received_ = -1;  ///< s of awake_; below 0: never
+  std::optional<SeenCell> cell_;            ///< in the newest image that shows one
+  bool touches_ = false, injects_ = false;  ///< by cell_simulator and by the controller
+  /// When a message arrived: s of awake_, below 0: never; and by the wall.
+  struct Heard {
+    double awake = -1;
+    ros::SteadyTime time;
+  };
+  Heard touch_heard_, injection_heard_;
   AwakeTime awake_;
   cell_microinjection::OperatingState needle_state_, controller_state_;
   std::vector<ros::Subscriber> subscribers_;

@@ -9,7 +9,7 @@
 namespace microinjection {
 
 /// The time for which this node has been running. While a node stands still it hears nobody, so that
-/// time says nothing about the silence of others. After it, waiting messages arrive some steps later.
+/// time says nothing about the silence of others. Messages that waited meanwhile arrive some steps later.
 class AwakeTime {
  public:
   /// Must be called at least every kLongestStep.

@@ -22,8 +22,8 @@ using Clock = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
 constexpr Seconds kPeriod(0.5);  ///< from a reply to the next request
-/// Without a reply. Long, since real-time nodes that need all of the processor delay this thread
-/// and the master; a dead master refuses at once.
+/// Since the last request that was answered. Long, since real-time nodes that need all of the processor delay this
+/// thread and the master; a dead master refuses at once.
 constexpr Seconds kTimeout(5);
 constexpr unsigned kRepliesPerLinkCheck = 2;  ///< 1 s between checks for lost publishers
 
@@ -60,8 +60,9 @@ struct MasterMonitor::Shared {
       if (registered) last_reply = asked;
       away = registered ? 0 : away + kPeriod.count();
       if (registered && ++replies % kRepliesPerLinkCheck == 0) {
+        const Clock::time_point checked = Clock::now();
         lost_publishers.check();
-        last_reply = Clock::now();  // the check waited for replies, too
+        last_reply = checked;  // the check waited for replies, too
       }
       if (away > orphan_timeout && !polled) ros::requestShutdown();
       lock.lock();

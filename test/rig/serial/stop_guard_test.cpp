@@ -17,6 +17,7 @@
 #include <string>
 #include <thread>
 
+#include "rig/serial/hold_ups.h"
 #include "rig/serial/pseudo_terminal.h"
 #include "rig/serial/serial_port.h"
 
@@ -34,12 +35,11 @@ class StopGuardTest : public testing::Test {
   void SetUp() override {
     ASSERT_GE(line_, 0);
     ASSERT_EQ(guard_.begin(line_, kStop), "");
-    watch();
     step();
     // Where the machine held this program up since the guard began, the guard was right.
     heard_.clear();
     interventions_.clear();
-    held_up_ = false;
+    hold_ups_ = HoldUps(guard_.process());
   }
   void TearDown() override {
     close(line_);
@@ -53,7 +53,7 @@ class StopGuardTest : public testing::Test {
 
   Wire::GuardReport step() {
     sleepFor(1);
-    noteHoldUps();
+    hold_ups_.note(guard_.process());
     Wire::GuardReport report = guard_.heartbeat();
     if (!report.intervention.empty()) interventions_ += report.intervention + ".";
     heard_ += terminal_.read();
@@ -69,39 +69,21 @@ class StopGuardTest : public testing::Test {
       sleepFor(1);
       heard_ += terminal_.read();
     }
-    watch();
+    hold_ups_.restart(guard_.process());
     return done();
-  }
-  /// From here on both go on: neither rests on purpose.
-  void watch() {
-    stepped_ = ticked_ = Clock::now();
-    waits_ = guardsWaits();
-  }
-  /// The guard waits at the end of each of its ticks.
-  long guardsWaits() const {
-    std::ifstream status("/proc/" + std::to_string(guard_.process()) + "/status");
-    for (std::string word; status >> word;) {
-      long waits = 0;
-      if (word == "voluntary_ctxt_switches:" && status >> waits) return waits;
-    }
-    return -1;
-  }
-  void noteHoldUps() {
-    constexpr std::chrono::milliseconds kLong(100);
-    const Clock::time_point now = Clock::now();
-    const long waits = guardsWaits();
-    if (waits != waits_ || guard_.process() < 0) ticked_ = now;
-    held_up_ = held_up_ || now - stepped_ > kLong || now - ticked_ > kLong;
-    waits_ = waits;
-    stepped_ = now;
   }
   bool hasStopped() const { return heard_.find(kStop) != std::string::npos; }
   /// Unless the machine let one of the two run and the other not, so that the one was right.
   void expectUndisturbed() {
-    noteHoldUps();
-    if (held_up_) return;
+    hold_ups_.note(guard_.process());
+    if (hold_ups_.any()) return;
     EXPECT_EQ(interventions_, "");
     EXPECT_EQ(heard_, "");
+  }
+  /// To the guard, of which there must be one: -1 would be every process.
+  void signalGuard(int signal) {
+    ASSERT_GT(guard_.process(), 0);
+    kill(guard_.process(), signal);
   }
   static bool lives(pid_t process) { return kill(process, 0) == 0; }
 
@@ -111,20 +93,19 @@ class StopGuardTest : public testing::Test {
   StopGuard guard_;
   pid_t driver_ = -1;  // a program of its own
   std::string heard_, interventions_;
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point stepped_, ticked_;  // when this program stepped last, and the guard was last seen to have
-  long waits_ = 0;
-  bool held_up_ = false;
+  HoldUps hold_ups_{-1};
 };
 
 TEST_F(StopGuardTest, SendsNothingWhileTheProgramGoesOn) {
-  for (int i = 0; i < 600; ++i) EXPECT_EQ(step().missing, "");
-  noteHoldUps();
+  std::string missing;
+  for (int i = 0; i < 600; ++i) missing += step().missing;
+  hold_ups_.note(guard_.process());
   const pid_t process = guard_.process();
   guard_.end();
   EXPECT_FALSE(process > 0 && lives(process));
   heard_ += terminal_.read();
   expectUndisturbed();
+  if (!hold_ups_.any()) EXPECT_EQ(missing, "");
 }
 
 TEST_F(StopGuardTest, ACycleThatDoesNotStepIsStoppedAndLearnsWhy) {
@@ -159,19 +140,19 @@ TEST_F(StopGuardTest, AStopThatALineDoesNotTakeYetIsSentToItsEnd) {
 TEST_F(StopGuardTest, AKilledGuardIsNoticedAndReplaced) {
   step();
   const pid_t first = guard_.process();
-  kill(first, SIGKILL);
+  signalGuard(SIGKILL);
   bool unguarded = false;
   ASSERT_TRUE(stepUntil([&] {
     unguarded = guard_.process() != first;
     return interventions_.find("the stop guard ended") != std::string::npos;
   }));
-  if (!held_up_) {
+  if (!hold_ups_.any()) {
     EXPECT_EQ(interventions_, "the stop guard ended.");
   }
   EXPECT_TRUE(unguarded);
   ASSERT_TRUE(stepUntil([&] { return step().missing.empty(); }));
   EXPECT_NE(guard_.process(), first);
-  if (!held_up_) EXPECT_EQ(heard_, "");  // its driver sends the stop
+  if (!hold_ups_.any()) EXPECT_EQ(heard_, "");  // its driver sends the stop
   heard_.clear();
   ASSERT_TRUE(restUntil([&] { return hasStopped(); }));
 }
@@ -179,7 +160,7 @@ TEST_F(StopGuardTest, AKilledGuardIsNoticedAndReplaced) {
 TEST_F(StopGuardTest, AFrozenGuardIsKilledAndReplaced) {
   step();
   const pid_t first = guard_.process();
-  kill(first, SIGSTOP);
+  signalGuard(SIGSTOP);
   ASSERT_TRUE(stepUntil([&] { return !interventions_.empty(); }));
   EXPECT_EQ(interventions_, "the stop guard stood still for more than 0.2 s.");
   ASSERT_TRUE(stepUntil([&] { return step(), !lives(first); }));
@@ -256,7 +237,7 @@ TEST_F(StopGuardTest, GuardsThatCannotBeStartedAreReported) {
   ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &limit), 0);
   const rlimit none{0, limit.rlim_max};
   ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &none), 0);
-  kill(guard_.process(), SIGKILL);
+  signalGuard(SIGKILL);
   const bool tried = stepUntil([&] { return step().missing.find("open files") != std::string::npos; });
   ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &limit), 0);
   ASSERT_TRUE(tried);
@@ -268,11 +249,11 @@ TEST_F(StopGuardTest, GuardsThatCannotBeStartedAreReported) {
 TEST_F(StopGuardTest, AMachineThatStandsStillAsAWholeIsNotTakenForAFrozenProgram) {
   step();
   sleepFor(60);  // it has heard that
-  noteHoldUps();
-  kill(guard_.process(), SIGSTOP);
+  hold_ups_.note(guard_.process());
+  signalGuard(SIGSTOP);
   for (int i = 0; i < 30; ++i) sleepFor(20);  // neither the guard nor this program
-  kill(guard_.process(), SIGCONT);
-  watch();
+  signalGuard(SIGCONT);
+  hold_ups_.restart(guard_.process());
   for (int i = 0; i < 300; ++i) step();
   expectUndisturbed();
 }
