@@ -15,6 +15,7 @@ from geometry_msgs.msg import PoseStamped
 from sensor_msgs.msg import JointState
 from tf2_msgs.msg import TFMessage
 
+from links import await_links
 from specimen import sphere, transform
 
 PATIENCE = 300  # s
@@ -39,6 +40,7 @@ class FocusTest(unittest.TestCase):
         cls.addClassCleanup(world.join)
         cls.addClassCleanup(cls.ended.set)
         assert cls.action.wait_for_server(rospy.Duration(PATIENCE))
+        await_links(PATIENCE)  # what this test has heard, the node may not hear yet
 
     @classmethod
     def publish(cls):
