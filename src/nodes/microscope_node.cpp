@@ -81,12 +81,11 @@ void MicroscopeNode::onState(const cell_microinjection::CellState& message) {
 
 void MicroscopeNode::onNeedle(const geometry_msgs::PoseStamped& message) {
   specimen_.needle = validPose(&message);
-  if (secondsBetween(message.header.stamp, ros::Time::now()) > parameters_.state_timeout) specimen_.needle.reset();
-  needle_received_ = ros::SteadyTime::now();
+  needle_arrival_ = Arrival(message.header.stamp);
 }
 
 bool MicroscopeNode::needleIsFresh() const {
-  return specimen_.needle && secondsBetween(needle_received_, ros::SteadyTime::now()) <= parameters_.state_timeout;
+  return specimen_.needle && !needle_arrival_.isOld(parameters_.state_timeout);
 }
 
 void MicroscopeNode::onFocus(const sensor_msgs::JointState& message) {

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <string>
 
+#include "nodes/imaging/arrival.h"
 #include "nodes/imaging/image_output.h"
 #include "nodes/runtime/frames.h"
 #include "nodes/runtime/master_monitor.h"
@@ -64,7 +65,8 @@ class MicroscopeNode {
   Specimen specimen_;       ///< vertices in cell_frame_
   std::string cell_frame_;  ///< of the last state
   std::string defect_;      ///< of the last state; empty: it can be drawn
-  ros::SteadyTime received_, needle_received_, stepped_, reported_;
+  ros::SteadyTime received_, stepped_, reported_;
+  Arrival needle_arrival_;
   std::uint64_t frame_ = 0;    ///< number of images, which seeds their noise
   unsigned rendered_ = 0;      ///< since reported_
   double longest_render_ = 0;  ///< s, since reported_
