@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <fstream>
 
+#include "base/atomic_file.h"
 #include "base/errors.h"
 #include "base/operating_state.h"
 #include "base/user_data.h"
@@ -42,16 +43,17 @@ std::string ownFile(const std::string& path) {
 
 }  // namespace
 
-AxesService::AxesService(Cycle& cycle, ros::NodeHandle private_node, const std::string& axes, bool springs_back,
-                         const std::string& file)
-    : calibration_(axes, springs_back), file_(ownFile(file.empty() ? userDataFile("device_axes.yaml") : file)) {
+AxesService::AxesService(Cycle& cycle, const std::string& axes, bool springs_back, const std::string& file)
+    : calibration_(axes, springs_back),
+      file_(ownFile(file.empty() ? userDataFile("device_axes.yaml") : file)),
+      in_background_(cycle.bus().isVirtual() ? nullptr : std::make_unique<BackgroundFile>(file_)) {
   using State = cell_microinjection::OperatingState;
   controller_ =
-      subscribeGuarded<State>(cycle.node(), "controller/operating_state", 10,
+      subscribeGuarded<State>(cycle.bus(), "controller/operating_state", 10,
                               [this](const State& message, const std::string&) { controller_state_ = message.state; });
-  // The service is executed right before a step, in the node's own thread.
-  private_node.setCallbackQueue(cycle.node().getCallbackQueue());
-  server_ = private_node.advertiseService("calibrate_axes", &AxesService::answer, this);
+  server_ = cycle.bus().advertiseService<Service>(
+      "~calibrate_axes",
+      [this](Service::Request& request, Service::Response& response) { return answer(request, response); });
 }
 
 void AxesService::observe(const std::optional<Eigen::Vector3d>& hand, bool followed) {
@@ -95,7 +97,7 @@ bool AxesService::answer(Service::Request& request, Service::Response& response)
   response.device_axes = calibration_.axes();
   response.angle_to_axis = calibration_.fit().angleToAxis();
   response.angle_to_square = calibration_.fit().angleToSquare();
-  response.file = file_.path();
+  response.file = file_;
   write();
   return true;
 }
@@ -104,17 +106,26 @@ void AxesService::write() {
   if (kept_changes_ == calibration_.changes()) return;
   kept_changes_ = calibration_.changes();
   const DeviceAxesFit& fit = calibration_.fit();
-  file_.write(
+  const std::string content =
       "# Axes of the haptic device, by the service calibrate_axes of the node haptic_bridge. A session takes\n"
       "# them with overrides:=FILE.\nhaptic_bridge:\n  device_axes: " +
-      calibration_.axes() + (fit.complete() ? "  # " + residualOf(fit) : "") + "\n");
+      calibration_.axes() + (fit.complete() ? "  # " + residualOf(fit) : "") + "\n";
+  if (in_background_) return in_background_->write(content);
+  try {
+    writeFileAtomically(file_, content);
+    write_error_.clear();
+  } catch (const WriteError& error) {
+    write_error_ = error.what();
+  }
 }
 
+std::string AxesService::writeError() const { return in_background_ ? in_background_->error() : write_error_; }
+
 void AxesService::report(diagnostic_updater::DiagnosticStatusWrapper& status) const {
-  const std::string unwritten = file_.error();
+  const std::string unwritten = writeError();
   status.add("device axes", calibration_.axes());
   if (calibration_.fit().complete()) status.add("calibration of the axes", residualOf(calibration_.fit()));
-  if (calibration_.changes() > 0) status.add("file of the axes", unwritten.empty() ? file_.path() : unwritten);
+  if (calibration_.changes() > 0) status.add("file of the axes", unwritten.empty() ? file_ : unwritten);
 }
 
 }  // namespace microinjection

@@ -2,9 +2,9 @@
 
 #include <cell_microinjection/CalibrateAxes.h>
 #include <diagnostic_updater/DiagnosticStatusWrapper.h>
-#include <ros/ros.h>
 
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -22,8 +22,7 @@ namespace microinjection {
 class AxesService {
  public:
   /// `axes`, `springs_back`: of DeviceAxesCalibration. `file`: path; empty: device_axes.yaml of userDataFile().
-  AxesService(Cycle& cycle, ros::NodeHandle private_node, const std::string& axes, bool springs_back,
-              const std::string& file);
+  AxesService(Cycle& cycle, const std::string& axes, bool springs_back, const std::string& file);
 
   /// What the last step has seen: the hand (m, the device's axes; empty: invalid), and whether the
   /// needle follows it.
@@ -40,15 +39,18 @@ class AxesService {
   std::string act(int action);
   std::string followsReason() const;
   void write();
+  std::string writeError() const;
 
   DeviceAxesCalibration calibration_;
-  BackgroundFile file_;
+  std::string file_;                               ///< path
+  std::unique_ptr<BackgroundFile> in_background_;  ///< null: in virtual time, written at once
+  std::string write_error_;                        ///< of the last writing at once
   std::optional<Eigen::Vector3d> hand_;
   bool followed_ = false;
   std::string controller_state_;  ///< empty: not heard of
   int kept_changes_ = 0;          ///< of the calibration, that are in the file
-  ros::ServiceServer server_;
-  ros::Subscriber controller_;
+  BusHandle server_;
+  Subscription controller_;
 };
 
 }  // namespace microinjection

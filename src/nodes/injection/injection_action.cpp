@@ -42,12 +42,11 @@ cell_microinjection::InjectResult toMessage(const InjectionResult& result) {
 
 }  // namespace
 
-InjectionAction::InjectionAction(const ros::NodeHandle& node, InjectionController& controller,
-                                 const InjectionGoal& configured)
+InjectionAction::InjectionAction(Bus& bus, InjectionController& controller, const InjectionGoal& configured)
     : controller_(controller),
       configured_(configured),
       server_(
-          node, [this](GoalHandle goal, const std::string& refusal) { receive(goal, refusal); },
+          bus, "controller/inject", [this](GoalHandle goal, const std::string& refusal) { receive(goal, refusal); },
           [this](GoalHandle goal) { cancel(goal); }) {}
 
 void InjectionAction::receive(GoalHandle goal, const std::string& refusal) {
