@@ -47,7 +47,8 @@ class DuplicateSearch {
     if (endless_) return;
     if (depth > kDepth || ++values_ > kValues) {
       endless_ = true;
-      errors_.push_back(origin_ + lineOf(node.Mark()) + ": " + path + " has too many values; does an alias contain itself?");
+      errors_.push_back(origin_ + lineOf(node.Mark()) + ": " + path +
+                        " has too many values; does an alias contain itself?");
       return;
     }
     if (node.IsSequence()) {
@@ -63,8 +64,9 @@ class DuplicateSearch {
       const std::string key = item.first.IsScalar() ? item.first.Scalar() : "";
       const auto [first, is_new] = seen.emplace(key, item.first.Mark());
       if (!is_new) {
-        errors_.push_back(origin_ + lineOf(item.first.Mark()) + ": " + path + visible(key) + ": is there twice, first in line " +
-                          std::to_string(first->second.line + 1) + "; must be there once");
+        errors_.push_back(origin_ + lineOf(item.first.Mark()) + ": " + path + visible(key) +
+                          ": is there twice, first in line " + std::to_string(first->second.line + 1) +
+                          "; must be there once");
       }
       visit(item.second, path + key + "/", depth + 1);
     }
@@ -287,8 +289,8 @@ void ConfigReader::finish() {
     std::set<std::string> seen;
     for (const auto& item : level->map) {
       const std::string key = item.first.IsScalar() ? item.first.Scalar() : "";
-      const std::string where =
-          shared_->origin + (shared_->of_file ? lineOf(item.first.Mark()) : "") + ": " + level->path + visible(key) + ": ";
+      const std::string where = shared_->origin + (shared_->of_file ? lineOf(item.first.Mark()) : "") + ": " +
+                                level->path + visible(key) + ": ";
       if (!seen.insert(key).second && !shared_->of_file) errors.push_back(where + "is there twice");
       if (level->known.count(key)) continue;
       errors.push_back(where + "unknown key; known here: " + join({level->known.begin(), level->known.end()}, ", "));

@@ -79,8 +79,8 @@ class ConfigReader {
   std::shared_ptr<Level> level_;
 };
 
-/// Loads a YAML map; ConfigError names the file when it is absent, malformed (with line), not a map, or when a key is in
-/// one of its maps twice (with both lines), which YAML forbids and yaml-cpp passes over.
+/// Loads a YAML map; ConfigError names the file when it is absent, malformed (with line), not a map, or when a key is
+/// in one of its maps twice (with both lines), which YAML forbids and yaml-cpp passes over.
 YAML::Node loadYamlMap(const std::string& path);
 
 }  // namespace microinjection

@@ -176,8 +176,8 @@ TEST(ConfigReader, OfAFileNamesTheLineOfEachError) {
   rig.text("port", port);
   rig.number("speed", speed, Range::closed(0, 1));
   rig.number("mass", mass, Range::finite(), ConfigReader::kRequired);
-  EXPECT_EQ(errorsOf([&] { reader.finish(); }), path + ", line 2: name = lathe: must be one of: sim, zaber\n" +
-                                                    path + ", line 4: rig/port = [1]: must be text\n" + path +
+  EXPECT_EQ(errorsOf([&] { reader.finish(); }), path + ", line 2: name = lathe: must be one of: sim, zaber\n" + path +
+                                                    ", line 4: rig/port = [1]: must be text\n" + path +
                                                     ", line 5: rig/speed = 3: must be a number in [0, 1]\n" + path +
                                                     ", line 4: rig/mass is missing\n" + path +
                                                     ", line 6: rig/sped: unknown key; known here: mass, port, speed");
