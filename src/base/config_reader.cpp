@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <sstream>
 
 #include "base/errors.h"
@@ -24,6 +25,73 @@ std::string visible(const std::string& text) {
   return shown;
 }
 
+std::string lineOf(const YAML::Mark& mark) {
+  return mark.is_null() ? std::string() : ", line " + std::to_string(mark.line + 1);
+}
+
+/// Finds keys that are in one map twice, and values without an end: an alias can contain itself.
+class DuplicateSearch {
+ public:
+  explicit DuplicateSearch(const std::string& origin) : origin_(origin) {}
+
+  std::vector<std::string> search(const YAML::Node& node) {
+    visit(node, "", 0);
+    return errors_;
+  }
+  bool endless() const { return endless_; }
+
+ private:
+  static constexpr int kDepth = 64, kValues = 100000;
+
+  void visit(const YAML::Node& node, const std::string& path, int depth) {
+    if (endless_) return;
+    if (depth > kDepth || ++values_ > kValues) {
+      endless_ = true;
+      errors_.push_back(origin_ + lineOf(node.Mark()) + ": " + path +
+                        " has too many values; does an alias contain itself?");
+      return;
+    }
+    if (node.IsSequence()) {
+      for (std::size_t i = 0; i < node.size(); ++i) visit(node[i], path + std::to_string(i) + "/", depth + 1);
+    } else if (node.IsMap()) {
+      visitMap(node, path, depth);
+    }
+  }
+
+  void visitMap(const YAML::Node& map, const std::string& path, int depth) {
+    std::map<std::string, YAML::Mark> seen;
+    for (const auto& item : map) {
+      const std::string key = item.first.IsScalar() ? item.first.Scalar() : "";
+      const auto [first, is_new] = seen.emplace(key, item.first.Mark());
+      if (!is_new) {
+        errors_.push_back(origin_ + lineOf(item.first.Mark()) + ": " + path + visible(key) +
+                          ": is there twice, first in line " + std::to_string(first->second.line + 1) +
+                          "; must be there once");
+      }
+      visit(item.second, path + key + "/", depth + 1);
+    }
+  }
+
+  std::string origin_;
+  std::vector<std::string> errors_;
+  int values_ = 0;
+  bool endless_ = false;
+};
+
+YAML::Node loadMap(const std::string& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) throw ConfigError(path + ": is a directory; must be a YAML file");
+  try {
+    YAML::Node node = YAML::LoadFile(path);
+    if (!node.IsMap()) throw ConfigError(path + ": must be a YAML map");
+    return node;
+  } catch (const YAML::BadFile&) {
+    throw ConfigError(path + ": cannot be read");
+  } catch (const YAML::ParserException& exception) {
+    throw ConfigError(path + ": " + exception.what());
+  }
+}
+
 }  // namespace
 
 struct ConfigReader::Level {
@@ -32,17 +100,45 @@ struct ConfigReader::Level {
   std::set<std::string> known;
 };
 
-ConfigReader::ConfigReader(const YAML::Node& map, const std::string& origin)
-    : ConfigReader(map, origin, "", std::make_shared<std::vector<std::string>>(),
-                   std::make_shared<std::vector<std::shared_ptr<Level>>>()) {}
+struct ConfigReader::Shared {
+  std::string origin;
+  bool of_file = false;  ///< messages name lines, and keys that are there twice have been found
+  std::vector<std::string> errors;
+  std::vector<std::shared_ptr<Level>> levels;
+};
 
-ConfigReader::ConfigReader(const YAML::Node& map, const std::string& origin, const std::string& path,
-                           std::shared_ptr<std::vector<std::string>> errors,
-                           std::shared_ptr<std::vector<std::shared_ptr<Level>>> levels)
-    : origin_(origin), errors_(std::move(errors)), levels_(std::move(levels)), level_(std::make_shared<Level>()) {
+ConfigReader::ConfigReader(const YAML::Node& map, const std::string& origin)
+    : ConfigReader(map, "", std::make_shared<Shared>()) {
+  shared_->origin = origin;
+}
+
+ConfigReader::ConfigReader(const YAML::Node& map, const std::string& path, std::shared_ptr<Shared> shared)
+    : shared_(std::move(shared)), level_(std::make_shared<Level>()) {
   level_->map.reset(map);
   level_->path = path;
-  levels_->push_back(level_);
+  shared_->levels.push_back(level_);
+}
+
+ConfigReader ConfigReader::ofFile(const std::string& path) {
+  ConfigReader reader(loadMap(path), path);
+  reader.shared_->of_file = true;
+  DuplicateSearch search(path);
+  reader.shared_->errors = search.search(reader.level_->map);
+  if (search.endless()) throw ConfigError(reader.shared_->errors);  // no message could show it
+  return reader;
+}
+
+void ConfigReader::add(const std::string& place, const std::string& message) {
+  shared_->errors.push_back(place + ": " + level_->path + message);
+}
+
+std::string ConfigReader::place(const std::string& key) const {
+  if (!shared_->of_file) return shared_->origin;
+  if (level_->map.IsMap()) {
+    for (const auto& item : level_->map)
+      if (item.first.IsScalar() && item.first.Scalar() == key) return shared_->origin + lineOf(item.first.Mark());
+  }
+  return shared_->origin + lineOf(level_->map.Mark());
 }
 
 bool ConfigReader::has(const std::string& key) const {
@@ -53,9 +149,11 @@ bool ConfigReader::has(const std::string& key) const {
 const YAML::Node ConfigReader::find(const std::string& key, Presence presence) {
   level_->known.insert(key);
   if (has(key)) return static_cast<const YAML::Node&>(level_->map)[key];
-  if (presence == kRequired) errors_->push_back(origin_ + ": " + level_->path + key + " is missing");
+  if (presence == kRequired) add(place(key), key + " is missing");
   return YAML::Node(YAML::NodeType::Undefined);
 }
+
+YAML::Node ConfigReader::any(const std::string& key) { return find(key, kOptional); }
 
 std::string ConfigReader::valueText(const std::string& key) const {
   if (!has(key)) return "";
@@ -65,7 +163,7 @@ std::string ConfigReader::valueText(const std::string& key) const {
 }
 
 void ConfigReader::error(const std::string& key, const std::string& message) {
-  errors_->push_back(origin_ + ": " + level_->path + key + valueText(key) + ": " + message);
+  add(place(key), key + valueText(key) + ": " + message);
 }
 
 void ConfigReader::number(const std::string& key, double& value, const Range& range, Presence presence) {
@@ -159,7 +257,7 @@ YAML::Node ConfigReader::map(const std::string& key, Presence presence) {
 }
 
 ConfigReader ConfigReader::section(const std::string& key, Presence presence) {
-  return ConfigReader(map(key, presence), origin_, level_->path + key + "/", errors_, levels_);
+  return ConfigReader(map(key, presence), level_->path + key + "/", shared_);
 }
 
 std::vector<ConfigReader> ConfigReader::sections(const std::string& key, Presence presence) {
@@ -171,46 +269,41 @@ std::vector<ConfigReader> ConfigReader::sections(const std::string& key, Presenc
     return readers;
   }
   for (std::size_t i = 0; i < list.size(); ++i) {
-    const std::string path = level_->path + key + "/" + std::to_string(i);
+    const std::string name = key + "/" + std::to_string(i);
     if (list[i].IsMap()) {
-      readers.push_back(ConfigReader(list[i], origin_, path + "/", errors_, levels_));
+      readers.push_back(ConfigReader(list[i], level_->path + name + "/", shared_));
     } else {
-      errors_->push_back(origin_ + ": " + path + ": must be a map");
+      add(place(key), name + ": must be a map");
     }
   }
   return readers;
 }
 
 void ConfigReader::finish() {
-  for (const auto& level : *levels_) {
+  std::vector<std::string>& errors = shared_->errors;
+  for (const auto& level : shared_->levels) {
     if (!level->map.IsMap()) {
-      errors_->push_back(origin_ + ": " + level->path + " must be a map");
+      errors.push_back(shared_->origin + ": " + level->path + " must be a map");
       continue;
     }
     std::set<std::string> seen;
     for (const auto& item : level->map) {
-      const std::string key = item.first.Scalar();
-      if (!seen.insert(key).second) errors_->push_back(origin_ + ": " + level->path + key + ": is there twice");
+      const std::string key = item.first.IsScalar() ? item.first.Scalar() : "";
+      const std::string where = shared_->origin + (shared_->of_file ? lineOf(item.first.Mark()) : "") + ": " +
+                                level->path + visible(key) + ": ";
+      if (!seen.insert(key).second && !shared_->of_file) errors.push_back(where + "is there twice");
       if (level->known.count(key)) continue;
-      errors_->push_back(origin_ + ": " + level->path + key +
-                         ": unknown key; known here: " + join({level->known.begin(), level->known.end()}, ", "));
+      errors.push_back(where + "unknown key; known here: " + join({level->known.begin(), level->known.end()}, ", "));
     }
   }
-  if (!errors_->empty()) throw ConfigError(*errors_);
+  if (!errors.empty()) throw ConfigError(errors);
 }
 
 YAML::Node loadYamlMap(const std::string& path) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) throw ConfigError(path + ": is a directory; must be a YAML file");
-  try {
-    YAML::Node node = YAML::LoadFile(path);
-    if (!node.IsMap()) throw ConfigError(path + ": must be a YAML map");
-    return node;
-  } catch (const YAML::BadFile&) {
-    throw ConfigError(path + ": cannot be read");
-  } catch (const YAML::ParserException& exception) {
-    throw ConfigError(path + ": " + exception.what());
-  }
+  YAML::Node map = loadMap(path);
+  const std::vector<std::string> errors = DuplicateSearch(path).search(map);
+  if (!errors.empty()) throw ConfigError(errors);
+  return map;
 }
 
 }  // namespace microinjection

@@ -29,6 +29,9 @@ class ConfigReader {
 
   /// `origin` names the file or the parameter namespace in messages.
   ConfigReader(const YAML::Node& map, const std::string& origin);
+  /// Reader of a YAML file whose messages name the line, too: "lab.yaml, line 3: rig/name = lathe: ...". A key that is
+  /// anywhere in the file twice is an error. Throws ConfigError when the file cannot be read.
+  static ConfigReader ofFile(const std::string& path);
 
   bool has(const std::string& key) const;
   void number(const std::string& key, double& value, const Range& range = Range::finite(), Presence = kOptional);
@@ -52,28 +55,32 @@ class ConfigReader {
   /// Messages name them key/0, key/1 and so on.
   std::vector<ConfigReader> sections(const std::string& key, Presence = kOptional);
 
+  /// The value under `key`, whatever it is; undefined when it is absent. The caller checks it.
+  YAML::Node any(const std::string& key);
+
   /// Adds an error about `key`: "origin: cell/diameter = 3: MESSAGE".
   void error(const std::string& key, const std::string& message);
+  /// Where `key` is: the file, and the line of a reader made by ofFile.
+  std::string place(const std::string& key) const;
 
   /// Throws ConfigError when there was an error here or in a section, or a key that was never read.
   void finish();
 
  private:
   struct Level;
-  ConfigReader(const YAML::Node& map, const std::string& origin, const std::string& path,
-               std::shared_ptr<std::vector<std::string>> errors, std::shared_ptr<std::vector<std::shared_ptr<Level>>>);
+  struct Shared;  ///< by all sections of a reader
+  ConfigReader(const YAML::Node& map, const std::string& path, std::shared_ptr<Shared> shared);
+  void add(const std::string& place, const std::string& message);
   const YAML::Node find(const std::string& key, Presence presence);
   YAML::Node map(const std::string& key, Presence presence);  ///< empty when it is absent
   std::string valueText(const std::string& key) const;
 
-  std::string origin_;
-  std::shared_ptr<std::vector<std::string>> errors_;
-  std::shared_ptr<std::vector<std::shared_ptr<Level>>> levels_;
+  std::shared_ptr<Shared> shared_;
   std::shared_ptr<Level> level_;
 };
 
-/// Loads a YAML map; ConfigError names the file when it is absent, malformed (with line) or not a
-/// map.
+/// Loads a YAML map; ConfigError names the file when it is absent, malformed (with line), not a map, or when a key is
+/// in one of its maps twice (with both lines), which YAML forbids and yaml-cpp passes over.
 YAML::Node loadYamlMap(const std::string& path);
 
 }  // namespace microinjection

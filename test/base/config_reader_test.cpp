@@ -159,6 +159,53 @@ TEST(Range, KnowsItsEnds) {
   EXPECT_EQ(Range::nonNegative().text(), "[0, inf)");
 }
 
+std::string file(const std::string& text) {
+  const std::string path = testing::TempDir() + "config_reader_test.yaml";
+  std::ofstream(path) << text;
+  return path;
+}
+
+TEST(ConfigReader, OfAFileNamesTheLineOfEachError) {
+  const std::string path = file("# a session\nname: lathe\nrig:\n  port: [1]\n  speed: 3\n  sped: 3\n");
+  ConfigReader reader = ConfigReader::ofFile(path);
+  std::string name, port;
+  double speed = 0, mass = 0;
+  EXPECT_EQ(reader.place("name"), path + ", line 2");
+  reader.choice("name", name, {"sim", "zaber"});
+  ConfigReader rig = reader.section("rig");
+  rig.text("port", port);
+  rig.number("speed", speed, Range::closed(0, 1));
+  rig.number("mass", mass, Range::finite(), ConfigReader::kRequired);
+  EXPECT_EQ(errorsOf([&] { reader.finish(); }), path + ", line 2: name = lathe: must be one of: sim, zaber\n" + path +
+                                                    ", line 4: rig/port = [1]: must be text\n" + path +
+                                                    ", line 5: rig/speed = 3: must be a number in [0, 1]\n" + path +
+                                                    ", line 4: rig/mass is missing\n" + path +
+                                                    ", line 6: rig/sped: unknown key; known here: mass, port, speed");
+}
+
+TEST(ConfigReader, OfAFileFindsKeysThatAreThereTwiceWhereverTheyAre) {
+  const std::string path = file("a: 1\nb:\n  - {c: 1, d: {e: 1}}\n  - c: 1\n    c: 2\na: 2\n");
+  const std::string twice = path + ", line 5: b/1/c: is there twice, first in line 4; must be there once\n" + path +
+                            ", line 6: a: is there twice, first in line 1; must be there once";
+  EXPECT_EQ(errorsOf([&] { loadYamlMap(path); }), twice);
+  ConfigReader reader = ConfigReader::ofFile(path);
+  reader.any("a");
+  EXPECT_TRUE(reader.any("b").IsSequence());
+  EXPECT_FALSE(reader.any("nothing").IsDefined());
+  EXPECT_EQ(errorsOf([&] { reader.finish(); }), twice);
+}
+
+TEST(ConfigReader, OfAFileRefusesValuesWithoutAnEnd) {
+  const std::string bomb =
+      "a: &a [1,1,1,1,1,1,1,1,1,1]\nb: &b [*a,*a,*a,*a,*a,*a,*a,*a,*a,*a]\nc: &c [*b,*b,*b,*b,*b,*b,*b,*b,*b,*b]\n"
+      "d: &d [*c,*c,*c,*c,*c,*c,*c,*c,*c,*c]\ne: &e [*d,*d,*d,*d,*d,*d,*d,*d,*d,*d]\nf: [*e,*e,*e,*e,*e,*e,*e,*e,*e]\n";
+  for (const std::string& text : {std::string("a: &a {b: *a}\n"), bomb}) {
+    const std::string path = file(text);
+    EXPECT_NE(errorsOf([&] { ConfigReader::ofFile(path); }).find("has too many values"), std::string::npos) << text;
+    EXPECT_NE(errorsOf([&] { loadYamlMap(path); }).find("has too many values"), std::string::npos) << text;
+  }
+}
+
 TEST(LoadYamlMap, NamesTheFile) {
   EXPECT_NE(errorsOf([] { loadYamlMap("/no/such.yaml"); }).find("/no/such.yaml: cannot be read"), std::string::npos);
   const std::string path = testing::TempDir() + "bad.yaml";

@@ -1,0 +1,16 @@
+#include "session/rounded.h"
+
+#include <cstdio>
+#include <cstdlib>
+
+namespace microinjection {
+
+std::string shortNumber(double value, int digits) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.*g", digits, value);
+  return text;
+}
+
+double rounded(double value) { return std::strtod(shortNumber(value).c_str(), nullptr); }
+
+}  // namespace microinjection

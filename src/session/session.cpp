@@ -1,0 +1,280 @@
+#include "session/session.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <sstream>
+
+#include "base/errors.h"
+#include "session/package_folder.h"
+#include "session/parameter_tree.h"
+#include "session/session_check.h"
+#include "session/session_choices.h"
+#include "session/session_paths.h"
+#include "session/session_reader.h"
+
+namespace microinjection {
+namespace {
+
+constexpr char kSessions[] = "config/sessions", kArgument[] = "argument";
+
+std::string workingFolder() {
+  std::error_code ignored;
+  const std::string folder = std::filesystem::current_path(ignored).string();
+  return folder.empty() ? "/" : folder;
+}
+
+/// The value of an argument. What is no YAML is a text.
+YAML::Node argumentValue(const std::string& text) {
+  try {
+    const YAML::Node value = YAML::Load(text);
+    return value.IsNull() ? YAML::Node(text) : value;
+  } catch (const YAML::Exception&) {
+    return YAML::Node(text);
+  }
+}
+
+/// The key, or one that it is part of, has a value.
+bool isThere(const YAML::Node& keys, const std::string& key) {
+  if (parameterAt(keys, key).IsDefined()) return true;
+  for (std::size_t slash = key.find('/'); slash != std::string::npos; slash = key.find('/', slash + 1)) {
+    const YAML::Node outer = parameterAt(keys, key.substr(0, slash));
+    if (outer.IsDefined() && !outer.IsMap()) return true;
+  }
+  return false;
+}
+
+/// Reads a session's files, the base before what it is the base of, and then the arguments.
+class Loader {
+ public:
+  explicit Loader(const std::string& package) : draft_(package) {}
+
+  Session load(const std::string& file_or_name, const std::vector<std::string>& arguments) {
+    const std::string path = pathOfFileOrName(file_or_name, workingFolder(), draft_.session.package, kSessions);
+    draft_.session.places.source = path;
+    if (isFile(path)) {
+      readFile(path);
+    } else {
+      errors_.push_back("session = " + file_or_name + ": " + noSuchSession(path));
+    }
+    readArguments(arguments);
+    if (!errors_.empty()) throw ConfigError(errors_);
+    Session session = resolved(draft_);
+    checkSession(session);
+    return session;
+  }
+
+ private:
+  std::string noSuchSession(const std::string& path) const {
+    return "no such file: " + path + "; must be a path, or a name of " + kSessions + ": " +
+           join(namesIn(draft_.session.package, kSessions), ", ");
+  }
+
+  void readFile(const std::string& path) {
+    open_.push_back(path);
+    try {
+      ConfigReader reader = ConfigReader::ofFile(path);
+      draft_.session.files.push_back(path);
+      const std::string folder = std::filesystem::path(path).parent_path().string();
+      readVersion(reader);
+      readBase(reader, folder);
+      readSessionKeys(reader, folder, draft_);
+      reader.finish();
+    } catch (const ConfigError& error) {
+      errors_.push_back(error.what());
+    }
+    open_.pop_back();
+  }
+
+  static void readVersion(ConfigReader& reader) {
+    int version = Session::kVersion;
+    reader.integer("version", version, Range::finite(), ConfigReader::kRequired);
+    if (version != Session::kVersion)
+      reader.error("version",
+                   "must be " + std::to_string(Session::kVersion) +
+                       (version > Session::kVersion ? ": the file is for a newer version of this program"
+                                                    : ", of which config/sessions/default.yaml has all keys"));
+  }
+
+  void readBase(ConfigReader& reader, const std::string& folder) {
+    std::string base;
+    reader.text("base", base);
+    if (base.empty()) return;
+    const std::string path = pathOfFileOrName(base, folder, draft_.session.package, kSessions);
+    const auto first = std::find(open_.begin(), open_.end(), path);
+    if (first != open_.end()) {
+      reader.error("base", "is its own base: " + join({first, open_.end()}, " -> ") + " -> " + path);
+    } else if (isFile(path)) {
+      readFile(path);
+    } else {
+      reader.error("base", noSuchSession(path));
+    }
+  }
+
+  void readArguments(const std::vector<std::string>& arguments) {
+    YAML::Node keys(YAML::NodeType::Map);
+    for (const std::string& argument : arguments) {
+      const std::size_t end = argument.find(":=");
+      std::string key = argument.substr(0, end);
+      if (end == std::string::npos || key.empty()) {
+        errors_.push_back(std::string(kArgument) + " " + argument +
+                          ": must be KEY:=VALUE, such as hand.device:=keyboard");
+        continue;
+      }
+      if (end + 2 == argument.size()) continue;  // not given
+      std::replace(key.begin(), key.end(), '.', '/');
+      if (isThere(keys, key)) {
+        errors_.push_back(std::string(kArgument) + " " + argument + ": is there twice; must be there once");
+      } else {
+        setParameter(keys, key, argumentValue(argument.substr(end + 2)));
+      }
+    }
+    ConfigReader reader(keys, kArgument);
+    readSessionKeys(reader, workingFolder(), draft_);
+    try {
+      reader.finish();
+    } catch (const ConfigError& error) {
+      errors_.push_back(error.what());
+    }
+  }
+
+  SessionDraft draft_;
+  std::vector<std::string> open_;  // files that are being read, the newest last
+  std::vector<std::string> errors_;
+};
+
+/// A group of keys of a file.
+class Group {
+ public:
+  explicit Group(int indent) : indent_(indent, ' ') {}
+  Group& text(const std::string& key, const std::string& value) { return add(key, textValue(value)); }
+  Group& flag(const std::string& key, bool value) { return add(key, booleanValue(value)); }
+  Group& number(const std::string& key, double value) { return add(key, numberValue(value)); }
+  Group& raw(const std::string& key, const std::string& value) {
+    text_ += indent_ + key + ":" + value;
+    return *this;
+  }
+  const std::string& lines() const { return text_; }
+
+ private:
+  Group& add(const std::string& key, const YAML::Node& value) { return raw(key, " " + scalarText(value) + "\n"); }
+
+  std::string indent_, text_;
+};
+
+std::string handText(const Session::Hand& hand) {
+  const std::string topics = Group(4)
+                                 .text("namespace", hand.topics.name_space)
+                                 .text("force", hand.topics.force)
+                                 .text("clutch", hand.topics.clutch)
+                                 .text("operator_present", hand.topics.operator_present)
+                                 .lines();
+  return "\n" + Group(2)
+                    .text("device", hand.device)
+                    .text("config", hand.config.empty() ? "auto" : hand.config)
+                    .raw("topics", "\n" + topics)
+                    .text("position_type", hand.position_type)
+                    .flag("require_operator", hand.require_operator)
+                    .text("motion", hand.motion)
+                    .flag("wait_for_go", hand.wait_for_go)
+                    .lines();
+}
+
+std::string sensorText(const Session::Sensor& sensor) {
+  std::vector<std::string> mounting;
+  for (const double value : sensor.mounting) mounting.push_back(numberText(value));
+  return "\n" + Group(2).text("source", sensor.source).raw("mounting", " [" + join(mounting, ", ") + "]\n").lines();
+}
+
+}  // namespace
+
+std::string SessionPlaces::at(const std::string& key) const {
+  const auto found = of.find(key);
+  return found == of.end() ? source : found->second;
+}
+
+const std::vector<std::string>& overridableNodes() {
+  static const std::vector<std::string> nodes = {"rig",
+                                                 "calibration",
+                                                 "camera",
+                                                 "cell_estimator",
+                                                 "cell_simulator",
+                                                 "display",
+                                                 "focus",
+                                                 "force_sensor",
+                                                 "force_watchdog",
+                                                 "haptic_bridge",
+                                                 "haptic_device",
+                                                 "image_recorder",
+                                                 "injection_controller",
+                                                 "injector",
+                                                 "keyboard_hand",
+                                                 "link_emulator",
+                                                 "micromanipulator",
+                                                 "microscope",
+                                                 "notebook",
+                                                 "operator",
+                                                 "session_recorder",
+                                                 "teleoperation_follower",
+                                                 "touch",
+                                                 "true_cell",
+                                                 "vision",
+                                                 "visual_servo"};
+  return nodes;
+}
+
+Session Session::load(const std::string& file_or_name, const std::vector<std::string>& arguments,
+                      const std::string& package) {
+  return Loader(package.empty() ? packageFolder() : package).load(file_or_name, arguments);
+}
+
+std::string Session::text() const {
+  Group keys(0);
+  keys.raw("version", " " + std::to_string(kVersion) + "\n");
+  keys.text("cell", cell).text("hidden", hidden).text("model", model).flag("twin", twin);
+  keys.raw("rig", "\n" + Group(2)
+                             .text("name", rig.name)
+                             .text("port", rig.port)
+                             .text("config", rig.config)
+                             .text("urdf", rig.urdf)
+                             .flag("allow_network", rig.allow_network)
+                             .lines());
+  keys.raw("sensor", sensorText(sensor)).text("injector", injector).raw("hand", handText(hand));
+  keys.raw("force", "\n" + Group(2).text("controller", force.controller).text("hand", force.hand).lines());
+  keys.raw("injection", "\n" + Group(2)
+                                   .text("mode", injection.mode)
+                                   .flag("auto_enable", injection.auto_enable)
+                                   .flag("start_when_enabled", injection.start_when_enabled)
+                                   .raw("layers", " " + std::to_string(injection.layers) + "\n")
+                                   .lines());
+  keys.raw("link", "\n" + Group(2)
+                              .text("scheme", link.scheme)
+                              .number("delay", link.delay)
+                              .number("jitter", link.jitter)
+                              .number("loss", link.loss)
+                              .flag("emulated", link.emulated)
+                              .lines());
+  keys.raw("camera", "\n" + Group(2)
+                                .text("source", camera.source)
+                                .text("config", camera.config)
+                                .text("path", camera.path)
+                                .text("topic", camera.topic)
+                                .lines());
+  keys.raw("display", "\n" + Group(2)
+                                 .flag("markers", display.markers)
+                                 .flag("rviz", display.rviz)
+                                 .text("console", display.console)
+                                 .lines());
+  keys.raw("record", "\n" + Group(2)
+                                .text("folder", record.folder)
+                                .flag("bag", record.bag)
+                                .flag("end_when_done", record.end_when_done)
+                                .text("trainee", record.trainee)
+                                .text("history", record.history)
+                                .text("training", record.training)
+                                .lines());
+  keys.text("notebook", notebook);
+  keys.raw("overrides", overrides.size() == 0 ? " {}\n" : "\n" + parameterText(overrides, 2));
+  return keys.lines();
+}
+
+}  // namespace microinjection

@@ -1,0 +1,128 @@
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace microinjection {
+
+/// Where each key of a session was set: a file and its line, or an argument.
+struct SessionPlaces {
+  std::string source;  ///< the session's file
+  std::map<std::string, std::string> of;
+
+  /// Of a key such as "rig/name", or "overrides/display/enlargement"; of one at its default, the session's file.
+  std::string at(const std::string& key) const;
+};
+
+/// A session: what takes part in it, and what of it is to differ from its configuration. It is the content of a file
+/// config/sessions/NAME.yaml, whose keys are the members here; config/sessions/default.yaml describes each. Once
+/// loaded, all paths are absolute, all values go together, and `auto` is left only where a comment names it.
+struct Session {
+  static constexpr int kVersion = 1;  ///< of the files
+
+  struct Rig {
+    std::string name = "sim";   ///< sim, a name of config/rigs, or emulated_NAME
+    std::string port = "auto";  ///< auto: that of config, or the emulator's
+    std::string config;         ///< path of the device's parameters
+    std::string urdf;           ///< path
+    bool allow_network = true;
+
+    bool simulated() const { return name == "sim"; }
+    bool emulated() const { return name.rfind("emulated_", 0) == 0; }
+    bool real() const { return !simulated() && !emulated(); }
+    std::string device() const { return emulated() ? name.substr(9) : name; }  ///< sim, or a name of config/rigs
+  };
+  struct Sensor {
+    std::string source = "simulated";                        ///< simulated, serial, topic, none
+    std::array<double, 6> mounting = {0, 0, 0.04, 0, 0, 0};  ///< in needle_tip: x y z (m) yaw pitch roll (rad)
+  };
+  /// Of the device's driver. auto: as the file of the device says; of `external`, see there.
+  struct Topics {
+    std::string name_space = "auto";        ///< external: /haptic
+    std::string force = "auto";             ///< of external only: servo_cf in that namespace
+    std::string clutch = "auto";            ///< external: clutch in that namespace
+    std::string operator_present = "auto";  ///< external: operator_present in that namespace
+  };
+  struct Hand {
+    std::string device = "operator";  ///< operator, none or a name of config/haptic
+    std::string config;               ///< path of the device's parameters; empty with operator and none
+    Topics topics;
+    std::string position_type = "auto";  ///< pose or transform; auto: that of config
+    bool require_operator = true;
+    std::string motion;        ///< path, of the virtual hand
+    bool wait_for_go = false;  ///< the virtual hand rests until it is told to begin
+
+    bool present() const { return device != "none"; }
+    bool isOperator() const { return device == "operator"; }
+  };
+  struct Force {
+    std::string controller = "predicted";  ///< predicted or measured
+    std::string hand = "predicted";        ///< predicted, measured or blend
+  };
+  struct Injection {
+    std::string mode = "manual";  ///< manual, automatic or semi_automatic
+    bool auto_enable = true;
+    bool start_when_enabled = true;
+    int layers = 1;  ///< membranes to puncture
+  };
+  struct Link {
+    std::string scheme = "none";             ///< none or wave
+    double delay = 0, jitter = 0, loss = 0;  ///< s, s, share of packets
+    bool emulated = false;
+  };
+  struct Camera {
+    std::string source = "none";  ///< none, sim, device, folder, video, topic
+    std::string config;           ///< path, of a device
+    std::string path;             ///< of a folder or video
+    std::string topic = "/camera/image_raw";
+  };
+  struct Display {
+    bool markers = true, rviz = false;
+    std::string console = "none";  ///< none or a name of config/console
+  };
+  struct Record {
+    std::string folder;  ///< path; empty: nothing is recorded
+    bool bag = true, end_when_done = false;
+    std::string trainee;   ///< empty: no score
+    std::string history;   ///< path
+    std::string training;  ///< path of the score's references
+  };
+
+  std::string package;  ///< folder with config and urdf
+  std::string cell;     ///< path of the scene that the session believes in
+  std::string hidden;   ///< path of the scene under the needle; empty: that of `cell`
+  std::string model = "auto";
+  bool twin = false;
+  Rig rig;
+  Sensor sensor;
+  std::string injector = "simulated";
+  Hand hand;
+  Force force;
+  Injection injection;
+  Link link;
+  Camera camera;
+  Display display;
+  Record record;
+  std::string notebook;  ///< path; empty: none
+  YAML::Node overrides;  ///< {NODE: {KEY: VALUE}}, and {rig: {start_height: ...}}
+
+  SessionPlaces places;
+  std::vector<std::string> files;  ///< that were read: the session's, its bases, and those of overrides
+
+  /// Loads a session file, or NAME of config/sessions, and sets the keys of `arguments` ("hand.device:=keyboard", whose
+  /// value is YAML; one without a value is passed over). A path in a file is relative to that file, one in an argument
+  /// to the working directory. Throws ConfigError with all errors.
+  static Session load(const std::string& file_or_name, const std::vector<std::string>& arguments = {},
+                      const std::string& package = "");
+  /// All keys, as a file that loads as this session.
+  std::string text() const;
+};
+
+/// Nodes whose parameters a session may override, and rig, whose values are heights and sizes of the URDF, in m.
+const std::vector<std::string>& overridableNodes();
+
+}  // namespace microinjection

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace microinjection {
+
+/// The allowed values of the keys of a session. Devices are those that have a file in the package.
+struct SessionChoices {
+  std::vector<std::string> models, rigs, sensors, injectors, hands, position_types, controller_forces, hand_forces,
+      modes, schemes, cameras, consoles;
+
+  explicit SessionChoices(const std::string& package);
+};
+
+/// The names of package/`below`/NAME.yaml, in order.
+std::vector<std::string> namesIn(const std::string& package, const std::string& below);
+
+}  // namespace microinjection
