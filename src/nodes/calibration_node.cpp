@@ -16,8 +16,8 @@
 namespace microinjection {
 namespace {
 
-constexpr double kPeriod = 0.02;  // s, of a step
-constexpr double kFar = 1;        // m, a border that the micromanipulator's own limits come before
+constexpr double kCalibrationPeriod = 0.02;  // s, of a step
+constexpr double kFar = 1;                   // m, a border that the micromanipulator's own limits come before
 
 }  // namespace
 
@@ -38,7 +38,7 @@ CalibrationNode::Parameters CalibrationNode::Parameters::read(const Bus& bus) {
 }
 
 CalibrationNode::CalibrationNode(Bus& bus)
-    : GoalNode(bus, "calibration/calibrate", "calibration", kPeriod),
+    : GoalNode(bus, "calibration/calibrate", "calibration", kCalibrationPeriod),
       parameters_(Parameters::read(bus)),
       watch_(bus, parameters_.input_timeout),
       drift_(parameters_.calibration.drift),
@@ -167,7 +167,7 @@ CalibrationNode::Result CalibrationNode::end(bool success) {
 /// The next set-point on the way to the goal. Without one for command_timeout the needle stops.
 void CalibrationNode::stream(const ros::Time& now) {
   const Eigen::Vector3d way = goal_ - setpoint_;
-  const double reach = parameters_.calibration.pattern.speed * kPeriod;
+  const double reach = parameters_.calibration.pattern.speed * kCalibrationPeriod;
   setpoint_ = way.norm() <= reach ? goal_ : Eigen::Vector3d(setpoint_ + reach * way.normalized());
   setpoints_.publish(toPose(watch_.poseAt(setpoint_), now, kWorldFrame));
 }

@@ -12,11 +12,11 @@
 namespace microinjection {
 namespace {
 
-constexpr double kReportPeriod = 0.2;    // s of wall time
-constexpr double kRepeated = 0.005;      // s, after a frame that was repeated
-constexpr double kEndPatience = 1;       // s, at the end, for a read that is under way
-constexpr double kRetry = 0.5;           // s, before a device is opened again
-constexpr double kLargestExposure = 10;  // s ago; a larger difference means that the driver has another clock
+constexpr double kCameraReportPeriod = 0.2;  // s of wall time
+constexpr double kRepeated = 0.005;          // s, after a frame that was repeated
+constexpr double kEndPatience = 1;           // s, at the end, for a read that is under way
+constexpr double kRetry = 0.5;               // s, before a device is opened again
+constexpr double kLargestExposure = 10;      // s ago; a larger difference means that the driver has another clock
 
 FrameSourceConfig readSource(ConfigReader& reader, double& silence) {
   reader.number("silence", silence, Range::positive());
@@ -40,7 +40,7 @@ CameraNode::CameraNode(Bus& bus) : bus_(bus), images_(bus), reported_(bus.steady
   stream_ = std::make_unique<CameraStream>(config, [config] { return makeFrameSource(config); });
   diagnostics_.add("frames", this, &CameraNode::report);
   published_ = static_cast<std::int64_t>(reported_.toNSec());
-  timer_ = bus.timer(kReportPeriod, [this] { diagnostics_.update(); });
+  timer_ = bus.timer(kCameraReportPeriod, [this] { diagnostics_.update(); });
   if (bus.isVirtual()) {
     frames_ = bus.timer(stream_->period(), [this] {
       if (stream_->state().ended) return;

@@ -6,6 +6,7 @@
 
 #include "base/errors.h"
 #include "nodes/imaging/image_input.h"
+#include "nodes/imaging/image_topic.h"
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/message_guard.h"
 #include "nodes/runtime/node_parameters.h"
@@ -13,10 +14,9 @@
 namespace microinjection {
 namespace {
 
-constexpr char kImageTopic[] = "microscope/image_raw";
-constexpr double kPeriod = 0.02;  // s, of a step
-constexpr double kFarWindow = 1;  // px, of the window from the tip
-constexpr int kQueue = 1;
+constexpr double kFocusPeriod = 0.02;  // s, of a step
+constexpr double kFarWindow = 1;       // px, of the window from the tip
+constexpr int kFocusQueue = 1;
 
 }  // namespace
 
@@ -37,17 +37,17 @@ FocusNode::Parameters FocusNode::Parameters::read(const Bus& bus) {
 }
 
 FocusNode::FocusNode(Bus& bus)
-    : GoalNode(bus, "focus/find", "focus", kPeriod),
+    : GoalNode(bus, "focus/find", "focus", kFocusPeriod),
       parameters_(Parameters::read(bus)),
       command_(bus.advertise<sensor_msgs::JointState>("/focus/move_jp", 1)),
       vision_(subscribeGuarded<cell_microinjection::VisionState>(
-          bus, "vision/state", kQueue,
+          bus, "vision/state", kFocusQueue,
           [this](const cell_microinjection::VisionState& message, const std::string&) { onVision(message); })),
       focus_state_(subscribeGuarded<sensor_msgs::JointState>(
-          bus, "/focus/measured_js", kQueue,
+          bus, "/focus/measured_js", kFocusQueue,
           [this](const sensor_msgs::JointState& message, const std::string&) { onFocus(message); })),
       needle_state_(subscribeGuarded<geometry_msgs::PoseStamped>(
-          bus, "/needle/measured_cp", kQueue,
+          bus, "/needle/measured_cp", kFocusQueue,
           [this](const geometry_msgs::PoseStamped& message, const std::string&) { onNeedle(message); })) {
   cv::setNumThreads(1);  // the other cores belong to the nodes at 1 kHz
 }
@@ -79,7 +79,7 @@ void FocusNode::onVision(const cell_microinjection::VisionState& message) {
   tip_reason_ = isOld(tip_receipt_) ? "the image is old, or stamped ahead" : seen.reason;
   if (isOld(tip_receipt_) || seen.verdict == seen.NOT_FOUND) return;
   const Tip tip{message.header.stamp.toSec(), seen.verdict == seen.FOUND,
-                TipWindow{{seen.x, seen.y}, seen.direction, parameters_.core}};
+                TipInImage{{seen.x, seen.y}, seen.direction, parameters_.core}};
   tip_reason_ = "the tip's place is not finite";
   if (!std::isfinite(seen.x + seen.y + seen.direction)) return;
   tip_reason_ = seen.reason;
@@ -115,7 +115,8 @@ void FocusNode::begin(const Goal&) {
   planes_ = 0;
   needle_at_start_ = needle_;
   beginSearch(*start, *tip_);
-  images_ = subscribeImages(bus_, kImageTopic, kQueue, [this](const sensor_msgs::Image& message) { onImage(message); });
+  images_ =
+      subscribeImages(bus_, kImageTopic, kFocusQueue, [this](const sensor_msgs::Image& message) { onImage(message); });
 }
 
 void FocusNode::beginSearch(double start, const Tip& tip) {

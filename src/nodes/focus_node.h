@@ -38,7 +38,7 @@ class FocusNode : public GoalNode<cell_microinjection::FindFocusAction> {
   struct Parameters {
     double image_timeout = 0.5;      ///< s
     double largest_motion = 0.5e-6;  ///< m, of the needle during the search
-    int core = 3;                    ///< px, see TipWindow
+    int core = 3;                    ///< px, see TipInImage
     FocusSearchConfig search;
 
     static Parameters read(const Bus& bus);
@@ -46,7 +46,7 @@ class FocusNode : public GoalNode<cell_microinjection::FindFocusAction> {
   struct Tip {
     double stamp = 0;  ///< s
     bool found = false;
-    TipWindow window;
+    TipInImage window;
   };
 
   void begin(const Goal& goal) override;
@@ -69,7 +69,7 @@ class FocusNode : public GoalNode<cell_microinjection::FindFocusAction> {
 
   Parameters parameters_;
   std::unique_ptr<FocusSearch> search_;                      ///< null: no goal is active
-  TipWindow window_;                                         ///< of the search
+  TipInImage window_;                                         ///< of the search
   double start_ = 0;                                         ///< m, position of the focus at the start of the goal
   bool repeated_ = false;                                    ///< the planes are seen for the second time
   std::optional<double> rough_;                              ///< m, plane about which the search begins again

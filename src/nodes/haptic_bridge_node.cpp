@@ -10,7 +10,7 @@
 namespace microinjection {
 namespace {
 
-constexpr int kLastForces = 5;  // several, since messages can be dropped
+constexpr int kLastHandForces = 5;  // several, since messages can be dropped
 
 /// A time-out (s) of 0 in the parameters means for ever.
 double orForEver(double timeout) { return timeout > 0 ? timeout : std::numeric_limits<double>::infinity(); }
@@ -84,7 +84,7 @@ HapticBridgeNode::HapticBridgeNode(Bus& bus)
 
 /// Ends with zero force, for a driver that holds the last one.
 void HapticBridgeNode::publishZeroForce() {
-  for (int i = 0; i < kLastForces; ++i) {
+  for (int i = 0; i < kLastHandForces; ++i) {
     const ros::Time now = cycle_.bus().now();
     hand_force_.publish(toWrench(Eigen::Vector3d::Zero(), now, hand_frame_));
     rig_->withdraw(now);

@@ -16,9 +16,9 @@
 namespace microinjection {
 namespace {
 
-constexpr char kImageTopic[] = "vision/image_overlay";
-constexpr double kReportPeriod = 0.2;  // s
-constexpr int kQueue = 10;
+constexpr char kOverlayTopic[] = "vision/image_overlay";
+constexpr double kRecorderReportPeriod = 0.2;  // s
+constexpr int kRecordedImagesQueue = 10;
 
 }  // namespace
 
@@ -35,16 +35,17 @@ ImageRecorderNode::ImageRecorderNode(Bus& bus) : diagnostics_(bus) {
   requireWritableFolder(folder_);
   video_ = std::make_unique<VideoFile>(folder_ + "/overlay.avi", rate_);
   states_ = subscribeGuarded<cell_microinjection::InjectionStatus>(
-      bus, "/controller/injection_state", kQueue,
+      bus, "/controller/injection_state", kRecordedImagesQueue,
       [this](const cell_microinjection::InjectionStatus& message, const std::string&) { onState(message); });
-  images_ = subscribeImages(bus, kImageTopic, kQueue, [this](const sensor_msgs::Image& message) { onImage(message); });
+  images_ = subscribeImages(bus, kOverlayTopic, kRecordedImagesQueue,
+                            [this](const sensor_msgs::Image& message) { onImage(message); });
   diagnostics_.add("recording", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
     status.summary(diagnostic_msgs::DiagnosticStatus::OK, video_->frames() > 0 ? "recording" : "waits for an image");
     if (!error_.empty()) status.mergeSummary(diagnostic_msgs::DiagnosticStatus::ERROR, error_);
     status.add("frames", video_->frames());
     status.add("snapshots", snapshots_);
   });
-  timer_ = bus.timer(kReportPeriod, [this] { diagnostics_.update(); });
+  timer_ = bus.timer(kRecorderReportPeriod, [this] { diagnostics_.update(); });
 }
 
 void ImageRecorderNode::onState(const cell_microinjection::InjectionStatus& message) {

@@ -13,10 +13,10 @@
 namespace microinjection {
 namespace {
 
-constexpr char kStateTopic[] = "controller/state_command";
+constexpr char kControllerCommandTopic[] = "controller/state_command";
 
 /// Commands that stop or withdraw the needle are executed with any stamp.
-bool stops(const std::string& command) {
+bool stopsOrWithdraws(const std::string& command) {
   return command == "disable" || command == "pause" || command == "home" || command == "unhome" ||
          command == "withdraw";
 }
@@ -60,7 +60,7 @@ InjectionControllerNode::InjectionControllerNode(Bus& bus)
       injection_(cycle_.output<cell_microinjection::InjectionStatus>("controller/injection_state", true)),
       loop_state_(bus, "controller/loop_state"),
       action_(bus, model_, parameters_.model.goal),
-      repeated_(bus, kStateTopic),
+      repeated_(bus, kControllerCommandTopic),
       log_(bus) {
   if (parameters_.model.mode == "manual") {
     target_ =
@@ -84,14 +84,14 @@ InjectionControllerNode::InjectionControllerNode(Bus& bus)
 void InjectionControllerNode::subscribeCommands() {
   using cell_microinjection::StringStamped;
   if (cycle_.deterministic() && parameters_.commands_in_lockstep) {
-    auto& input =
-        cycle_.input<StringStamped>(kStateTopic, InputPhase::kSampled, std::numeric_limits<double>::infinity());
+    auto& input = cycle_.input<StringStamped>(kControllerCommandTopic, InputPhase::kSampled,
+                                              std::numeric_limits<double>::infinity());
     input.stamp_rule = StampRule::kAny;
     input.onMessage([this](const StringStamped& message, const ros::Time&) { receiveCommand(message, false, false); });
     return;
   }
   commands_ = subscribeCommand<StringStamped>(
-      cycle_.bus(), kStateTopic,
+      cycle_.bus(), kControllerCommandTopic,
       [this](const StringStamped& message, const CommandSource& source) {
         receiveCommand(message, source.latched, repeated_.mayBe(source));
       },
@@ -106,9 +106,9 @@ void InjectionControllerNode::receiveCommand(const cell_microinjection::StringSt
   const std::string& command = message.string;
   state_command_received_ = true;
   const ros::Time &stamp = message.header.stamp, now = cycle_.bus().now();
-  if (!stops(command) && !isTimely(cycle_.bus().refusals(), kStateTopic, message, now)) return;
+  if (!stopsOrWithdraws(command) && !isTimely(cycle_.bus().refusals(), kControllerCommandTopic, message, now)) return;
   const bool stale = !stamp.isZero() && secondsBetween(stamp, now) > kOldestCommand;
-  const bool begins = !stops(command) || (moves(command) && latched);
+  const bool begins = !stopsOrWithdraws(command) || (moves(command) && latched);
   if (begins && stale) return log_.addResult("state command " + command, "it is stale");
   if (begins && repeated) {
     return log_.addResult("state command " + command, std::string(kUnstampedLatched) + "; send it again");

@@ -13,7 +13,7 @@
 namespace microinjection {
 namespace {
 
-constexpr double kLongestWait = 0.2;  // s, largest counted part of a wait
+constexpr double kLongestCountedWait = 0.2;  // s, largest counted part of a wait
 
 }  // namespace
 
@@ -84,7 +84,7 @@ void LockstepClockNode::waitForAll() {
       warned = now;
       ROS_WARN_STREAM("the clock stands at " << tick_ << " s and waits for:" << missingNames());
     }
-    waiting_time += std::min(secondsBetween(before, now), kLongestWait);
+    waiting_time += std::min(secondsBetween(before, now), kLongestCountedWait);
     before = now;
     if (tick_.isZero() || waiting_time < frozen_after_) continue;
     for (const std::string& name : std::set<std::string>(missing_)) leave(name, "does not acknowledge");

@@ -13,8 +13,8 @@
 namespace microinjection {
 namespace {
 
-constexpr int kQueue = 50;
-constexpr double kReportPeriod = 0.2;  // s of steady time
+constexpr int kNotebookQueue = 50;
+constexpr double kNotebookReportPeriod = 0.2;  // s of steady time
 
 /// Idle and approach are before the touch; the needle may leave the cell in any other state.
 bool inCell(const std::string& state) {
@@ -43,16 +43,16 @@ NotebookNode::NotebookNode(Bus& bus) : bus_(bus), diagnostics_(bus) {
   requireWritableFolder(folderOf(file_));
   using namespace cell_microinjection;
   subscriptions_ = {
-      subscribeGuarded<InjectionStatus>(bus, "controller/injection_state", kQueue,
+      subscribeGuarded<InjectionStatus>(bus, "controller/injection_state", kNotebookQueue,
                                         [this](const InjectionStatus& message, const auto&) { onStatus(message); }),
-      subscribeGuarded<CellEstimate>(bus, "cell/estimate", kQueue,
+      subscribeGuarded<CellEstimate>(bus, "cell/estimate", kNotebookQueue,
                                      [this](const CellEstimate& message, const auto&) { onEstimate(message); }),
-      subscribeGuarded<PunctureScore>(bus, "cell/puncture_score", kQueue,
+      subscribeGuarded<PunctureScore>(bus, "cell/puncture_score", kNotebookQueue,
                                       [this](const PunctureScore& message, const auto&) { onScore(message); }),
       subscribeGuarded<CellState>(bus, "cell/state", 1,
                                   [this](const CellState& message, const auto&) { onCell(message); })};
   diagnostics_.add("notebook", [this](auto& status) { report(status); });
-  timer_ = bus.timer(kReportPeriod, [this] { diagnostics_.update(); });
+  timer_ = bus.timer(kNotebookReportPeriod, [this] { diagnostics_.update(); });
   bus.onEnd([this] { finish(); });
 }
 

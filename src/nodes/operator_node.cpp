@@ -8,7 +8,6 @@
 namespace microinjection {
 namespace {
 
-constexpr char kHapticFrame[] = "haptic";
 constexpr double kGoPeriod = 0.1;      // s
 constexpr char kCommand[] = "inject";  ///< the phase that is also a command to the controller
 

@@ -21,7 +21,7 @@ namespace microinjection {
 namespace {
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
-constexpr double kRate = 100;                          // Hz, live
+constexpr double kRecorderRate = 100;                  // Hz, live
 constexpr Nanoseconds kMaxDelay = 2000000000;          // largest delay of a message
 constexpr Nanoseconds kMaxDelayInLockstep = 50000000;  // none is late, but the cell has its own rate for contacts
 
@@ -81,7 +81,7 @@ SessionRecorderNode::Parameters SessionRecorderNode::Parameters::read(const Bus&
 
 SessionRecorderNode::SessionRecorderNode(Bus& bus)
     : parameters_(Parameters::read(bus)),
-      cycle_(bus, kRate),
+      cycle_(bus, kRecorderRate),
       files_(parameters_.output_dir, SessionTable::kHeader, parameters_.bag),
       table_(std::llround(1e9 * parameters_.row_period), cycle_.deterministic() ? kMaxDelayInLockstep : kMaxDelay,
              [this](const std::string& line) { files_.rows().append(line); }),

@@ -10,7 +10,7 @@
 namespace microinjection {
 namespace {
 
-constexpr double kPeriod = 0.005;  // s: the controller takes a target of 0.05 s ago for stale
+constexpr double kTouchPeriod = 0.005;  // s: the controller takes a target of 0.05 s ago for stale
 
 }  // namespace
 
@@ -30,7 +30,7 @@ TouchNode::Parameters TouchNode::Parameters::read(const Bus& bus) {
 }
 
 TouchNode::TouchNode(Bus& bus)
-    : GoalNode(bus, "touch/find", "touch", kPeriod),
+    : GoalNode(bus, "touch/find", "touch", kTouchPeriod),
       parameters_(Parameters::read(bus)),
       watch_(bus, parameters_.input_timeout),
       setpoints_(bus, watch_),

@@ -13,6 +13,7 @@
 #include "cell/family/family_cell.h"
 #include "cell/model/scene.h"
 #include "nodes/imaging/image_input.h"
+#include "nodes/imaging/image_topic.h"
 #include "nodes/imaging/vision_messages.h"
 #include "nodes/runtime/message_guard.h"
 #include "nodes/runtime/node_parameters.h"
@@ -21,15 +22,12 @@
 namespace microinjection {
 namespace {
 
-constexpr char kImageTopic[] = "microscope/image_raw";
-constexpr double kReportPeriod = 0.2;  // s
-constexpr int kQueue = 1;              // an image that waited is of no use
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kVisionReportPeriod = 0.2;  // s
+constexpr int kVisionQueue = 1;              // an image that waited is of no use
 
 void fill(const std::optional<MeasuredLength>& length, double& value, double& interval) {
-  value = length ? length->value : kNone;
-  interval = length ? length->interval : kNone;
+  value = length ? length->value : kNotMeasured;
+  interval = length ? length->interval : kNotMeasured;
 }
 
 }  // namespace
@@ -63,8 +61,9 @@ VisionNode::VisionNode(Bus& bus)
   diagnostics_.add("images", this, &VisionNode::report);
   diagnostics_.add("served cell",
                    [this](diagnostic_updater::DiagnosticStatusWrapper& status) { served_.report(status); });
-  images_ = subscribeImages(bus, kImageTopic, kQueue, [this](const sensor_msgs::Image& message) { onImage(message); });
-  timer_ = bus.timer(kReportPeriod, [this] {
+  images_ =
+      subscribeImages(bus, kImageTopic, kVisionQueue, [this](const sensor_msgs::Image& message) { onImage(message); });
+  timer_ = bus.timer(kVisionReportPeriod, [this] {
     readPixelSize();
     diagnostics_.update();
   });
@@ -116,7 +115,7 @@ void VisionNode::onImage(const sensor_msgs::Image& message) {
     const bool paused = !received_.isZero() && secondsBetween(received_, now) > parameters_.vision.image_timeout;
     if (paused) readings_ = CellReadings(static_cast<std::size_t>(parameters_.vision.measured_images));
     // By the dimple, or by a tip within the outline where the needle hides the dimple.
-    const Indentation& indentation = tracker_.view().indentation;
+    const Dimple& indentation = tracker_.view().indentation;
     const BorderDisplacement& beside = indentation.displacement;
     pressed_ = indentation.finding.isFound() || (beside.finding.hasValues() && beside.gap < 0);
     if (!pressed_) readings_.add(tracker_.view());

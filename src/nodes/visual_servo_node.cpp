@@ -12,9 +12,9 @@
 namespace microinjection {
 namespace {
 
-constexpr double kPeriod = 0.005;        // s: the controller takes a target of 0.05 s ago for stale
-constexpr double kForgotten = 60;        // s, after a click
-constexpr double kProposalPeriod = 0.2;  // s
+constexpr double kApproachPeriod = 0.005;  // s: the controller takes a target of 0.05 s ago for stale
+constexpr double kProposalForgotten = 60;  // s, after a click
+constexpr double kProposalPeriod = 0.2;    // s
 
 }  // namespace
 
@@ -34,7 +34,7 @@ VisualServoNode::Parameters VisualServoNode::Parameters::read(const Bus& bus) {
 }
 
 VisualServoNode::VisualServoNode(Bus& bus)
-    : GoalNode(bus, "visual_servo/go_to_pixel", "approach", kPeriod),
+    : GoalNode(bus, "visual_servo/go_to_pixel", "approach", kApproachPeriod),
       parameters_(Parameters::read(bus)),
       watch_(bus, parameters_.input_timeout),
       setpoints_(bus, watch_),
@@ -62,7 +62,7 @@ std::optional<Eigen::Vector3d> VisualServoNode::proposedPoint() const {
 
 void VisualServoNode::publishProposal() {
   const ros::SteadyTime now = bus_.steady();
-  if (proposal_ && secondsBetween(proposal_->received, now) > kForgotten) proposal_.reset();
+  if (proposal_ && secondsBetween(proposal_->received, now) > kProposalForgotten) proposal_.reset();
   const std::optional<Eigen::Vector3d> place = proposedPoint();
   if (!place && !proposal_published_) return;
   if (place && secondsBetween(proposal_published_at_, now) < kProposalPeriod) return;

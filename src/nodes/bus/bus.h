@@ -121,12 +121,12 @@ class Bus {
   template <typename Message, typename Handler>
   Subscription subscribe(const std::string& topic, std::uint32_t queue, Handler handler,
                          Serving serving = Serving::kSampled) {
-    return Subscription(subscribeRaw(messageType<Message>(), topic, queue,
-                                     [handler](const RawDelivery& raw) {
-                                       handler(Delivery<Message>{
-                                           boost::static_pointer_cast<const Message>(raw.message), raw});
-                                     },
-                                     serving));
+    return Subscription(subscribeRaw(
+        messageType<Message>(), topic, queue,
+        [handler](const RawDelivery& raw) {
+          handler(Delivery<Message>{boost::static_pointer_cast<const Message>(raw.message), raw});
+        },
+        serving));
   }
   /// Images of a camera, by the transport that the parameter ~image_transport names.
   virtual Subscription subscribeImages(const std::string& topic, std::uint32_t queue, RawHandler handler) = 0;
@@ -136,12 +136,12 @@ class Bus {
   BusHandle advertiseService(const std::string& service, Answer answer, Serving serving = Serving::kSampled) {
     using Request = typename Service::Request;
     using Response = typename Service::Response;
-    return advertiseServiceRaw(serviceType<Service>(), service,
-                               [answer](void* request, void* response) {
-                                 return static_cast<bool>(answer(*static_cast<Request*>(request),
-                                                                 *static_cast<Response*>(response)));
-                               },
-                               serving);
+    return advertiseServiceRaw(
+        serviceType<Service>(), service,
+        [answer](void* request, void* response) {
+          return static_cast<bool>(answer(*static_cast<Request*>(request), *static_cast<Response*>(response)));
+        },
+        serving);
   }
   /// Calls a service in `call`, which has the response afterwards. False: there is no such service, or
   /// it fails. It waits as long as the server takes. Of any thread.

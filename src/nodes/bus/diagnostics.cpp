@@ -12,8 +12,9 @@ Diagnostics::Diagnostics(Bus& bus)
     : bus_(bus), publisher_(bus.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 10)) {
   const YAML::Node period = bus.parameter("~diagnostic_period");
   if (!period.IsNull() && !YAML::convert<double>::decode(period, period_)) period_ = 0;
-  if (!(period_ > 0)) throw ConfigError(bus.name() + ": diagnostic_period = " + period.as<std::string>("") +
-                                        ": must be a number above 0");
+  if (!(period_ > 0))
+    throw ConfigError(bus.name() + ": diagnostic_period = " + period.as<std::string>("") +
+                      ": must be a number above 0");
 }
 
 diagnostic_updater::DiagnosticStatusWrapper Diagnostics::run(const DiagnosticTaskInternal& task) const {

@@ -11,7 +11,10 @@
 
 namespace microinjection {
 
-LocalNetwork::LocalNetwork(const ros::Time& start) { setTime(start); }
+LocalNetwork::LocalNetwork(const ros::Time& start) {
+  ros::Time::init();  // else ros::Time::now() throws once the network is gone
+  setTime(start);
+}
 LocalNetwork::~LocalNetwork() = default;
 
 void LocalNetwork::setTime(const ros::Time& now) {
@@ -57,8 +60,8 @@ void LocalNetwork::send(LocalTopic& topic, std::uint64_t publisher, bool latched
   for (std::size_t i = 0; i < topic.subscriptions.size(); ++i) {
     const auto subscription = topic.subscriptions[i].lock();
     if (subscription)
-      subscription->bus.receive(subscription, {passage.message, passage.sender, now_, latched,
-                                               subscription->connection(publisher)});
+      subscription->bus.receive(subscription,
+                                {passage.message, passage.sender, now_, latched, subscription->connection(publisher)});
   }
 }
 

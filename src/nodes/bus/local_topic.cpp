@@ -7,7 +7,8 @@ namespace microinjection {
 std::size_t LocalPublisher::subscribers() const {
   if (!topic_) return 0;
   const auto& all = topic_->subscriptions;
-  return static_cast<std::size_t>(std::count_if(all.begin(), all.end(), [](const auto& one) { return !one.expired(); }));
+  return static_cast<std::size_t>(
+      std::count_if(all.begin(), all.end(), [](const auto& one) { return !one.expired(); }));
 }
 
 bool LocalPublisher::isSubscribedBy(const std::string& node) const {

@@ -25,8 +25,7 @@ struct LocalTopic {
 
 class LocalSubscription : public RawSubscription {
  public:
-  LocalSubscription(LocalBus& owner, LocalTopic& subscribed, std::uint32_t queue, RawHandler receive,
-                    Serving how)
+  LocalSubscription(LocalBus& owner, LocalTopic& subscribed, std::uint32_t queue, RawHandler receive, Serving how)
       : bus(owner), topic(subscribed), limit(queue), handler(std::move(receive)), serving(how) {}
   ~LocalSubscription() override;
 

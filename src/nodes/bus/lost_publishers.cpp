@@ -15,8 +15,8 @@
 namespace microinjection {
 namespace {
 
-constexpr bool kWait = false;  ///< for an absent master
-constexpr int kTries = 3;      ///< a killed publisher stays registered at the master
+constexpr bool kWaitForMaster = false;  ///< for an absent master
+constexpr int kTries = 3;               ///< a killed publisher stays registered at the master
 
 }  // namespace
 
@@ -24,7 +24,7 @@ std::map<std::string, std::vector<std::string>> publishersAtMaster() {
   XmlRpc::XmlRpcValue request, response, state;
   request[0] = ros::this_node::getName();
   std::map<std::string, std::vector<std::string>> result;
-  if (!ros::master::execute("getSystemState", request, response, state, kWait)) return result;
+  if (!ros::master::execute("getSystemState", request, response, state, kWaitForMaster)) return result;
   XmlRpc::XmlRpcValue& publishers = state[0];  // [topic, [name, ...]] each
   for (int i = 0; i < publishers.size(); ++i) {
     std::vector<std::string>& names = result[publishers[i][0]];
@@ -44,7 +44,7 @@ bool LostPublishers::connect(const std::string& topic, const std::vector<std::st
     request[0] = ros::this_node::getName();
     request[1] = name;
     // The list must be complete: roscpp drops the connections to publishers that are not in it.
-    if (!ros::master::execute("lookupNode", request, reply, uri, kWait)) return false;
+    if (!ros::master::execute("lookupNode", request, reply, uri, kWaitForMaster)) return false;
     uris[uris.size()] = uri;
   }
   update[0] = "/master";

@@ -21,10 +21,10 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
-constexpr Seconds kPeriod(0.5);  ///< from a reply to the next request
+constexpr Seconds kQuestionPeriod(0.5);  ///< from a reply to the next request
 /// Since the last request that was answered. Long, since real-time nodes that need all of the processor delay this
 /// thread and the master; a dead master refuses at once.
-constexpr Seconds kTimeout(5);
+constexpr Seconds kReplyTimeout(5);
 constexpr unsigned kRepliesPerLinkCheck = 2;  ///< 1 s between checks for lost publishers
 
 bool isRegistered() {
@@ -51,14 +51,14 @@ struct MasterMonitor::Shared {
 
   void monitor() {
     std::unique_lock<std::mutex> lock(mutex);
-    while (!changed.wait_for(lock, kPeriod, [this] { return ending; })) {
+    while (!changed.wait_for(lock, kQuestionPeriod, [this] { return ending; })) {
       lock.unlock();
       // The time of the question: a thread that stands still behind the answer must not make it fresh.
       const Clock::time_point asked = Clock::now();
       const bool registered = isRegistered();
       refused = !registered;
       if (registered) last_reply = asked;
-      away = registered ? 0 : away + kPeriod.count();
+      away = registered ? 0 : away + kQuestionPeriod.count();
       if (registered && ++replies % kRepliesPerLinkCheck == 0) {
         const Clock::time_point checked = Clock::now();
         lost_publishers.check();
@@ -95,7 +95,7 @@ MasterMonitor::~MasterMonitor() {
 
 bool MasterMonitor::lost() const {
   if (shared_->refused.load(std::memory_order_relaxed)) return true;
-  return timed_ && Clock::now() - shared_->last_reply.load(std::memory_order_relaxed) > kTimeout;
+  return timed_ && Clock::now() - shared_->last_reply.load(std::memory_order_relaxed) > kReplyTimeout;
 }
 
 bool MasterMonitor::masterLostForLong() const {

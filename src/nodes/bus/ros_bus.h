@@ -79,8 +79,8 @@ class RosBus : public Bus {
   Lane& ownThread();
 
   MasterMonitor master_;
-  Lane waking_;   ///< wakes the node's loop up
-  Lane sampled_;  ///< read before a step: to wake up for it would cost more than the step
+  Lane waking_;        ///< wakes the node's loop up
+  Lane sampled_;       ///< read before a step: to wake up for it would cost more than the step
   double period_ = 0;  ///< s; 0: the node has no steps
   std::function<void(const ros::Time&)> step_;
   std::function<void()> loop_, end_;

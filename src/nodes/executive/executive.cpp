@@ -71,7 +71,9 @@ LocalBus& Executive::bus(const std::string& name) {
   return *found.bus;
 }
 
-bool Executive::runs(const std::string& name) const { return const_cast<Executive*>(this)->member(name).node != nullptr; }
+bool Executive::runs(const std::string& name) const {
+  return const_cast<Executive*>(this)->member(name).node != nullptr;
+}
 
 void Executive::freeze(const std::string& name) { member(name).frozen = true; }
 void Executive::thaw(const std::string& name) { member(name).frozen = false; }
@@ -168,7 +170,8 @@ void Executive::runInstant() {
   network_.deliverDue();
   bool any = true;
   for (int pass = 0; any; ++pass) {
-    if (pass == kMostPasses) throw ConfigError("at " + std::to_string(time()) + " s nodes answer each other without end");
+    if (pass == kMostPasses)
+      throw ConfigError("at " + std::to_string(time()) + " s nodes answer each other without end");
     if (sorted_ != network_.changes()) sort();
     any = false;
     const std::vector<Member*> order = order_;

@@ -7,10 +7,9 @@
 namespace microinjection {
 namespace {
 
-constexpr char kHapticFrame[] = "haptic";
 constexpr double kButtonPeriod = 0.02;   // s
 constexpr double kSilencePeriod = 0.02;  // s
-constexpr int kLastForces = 5;           // several, since messages can be dropped
+constexpr int kLastDeviceForces = 5;     // several, since messages can be dropped
 
 sensor_msgs::Joy button(const ros::Time& now, bool pressed) {
   sensor_msgs::Joy message;
@@ -103,7 +102,7 @@ void HapticDeviceNode::publishCommands(const ros::Time& now) {
 }
 
 void HapticDeviceNode::publishZeroForce() {
-  for (int i = 0; i < kLastForces; ++i) {
+  for (int i = 0; i < kLastDeviceForces; ++i) {
     const ros::Time now = cycle_.bus().now();
     adapter_->render(Eigen::Vector3d::Zero(), {now, cycle_.period()});
     position_.publishInvalid(toPose(Eigen::Vector3d::Zero(), now, kHapticFrame));

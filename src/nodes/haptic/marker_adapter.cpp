@@ -14,7 +14,7 @@ namespace microinjection {
 namespace {
 
 constexpr char kFrame[] = "viz/world";
-constexpr double kTimeout = 0.2;                // s, of needle and its target
+constexpr double kDragTimeout = 0.2;            // s, of needle and its target
 constexpr double kLongStart = 1.5;              // s, from drag to control; includes a network's round trip
 constexpr double kLongHold = 0.5;               // s
 constexpr double kShowPeriod = 1.0 / 15;        // s
@@ -62,8 +62,8 @@ MarkerAdapter::MarkerAdapter(Cycle& cycle, const MarkerConfig& config)
     : config_(config),
       hand_(config.hand),
       session_(cycle),
-      needle_(cycle.input<geometry_msgs::PoseStamped>("needle/measured_cp", InputPhase::kSampled, kTimeout)),
-      target_(cycle.input<geometry_msgs::PoseStamped>("teleop/servo_cp", InputPhase::kSampled, kTimeout)),
+      needle_(cycle.input<geometry_msgs::PoseStamped>("needle/measured_cp", InputPhase::kSampled, kDragTimeout)),
+      target_(cycle.input<geometry_msgs::PoseStamped>("teleop/servo_cp", InputPhase::kSampled, kDragTimeout)),
       server_(cycle.bus(), "hand_marker", markerWithMenu(), [this](const Feedback& feedback) { onFeedback(feedback); }),
       force_(cycle.bus().advertise<visualization_msgs::MarkerArray>("hand_marker/force", 1, true)) {
   controller_ = subscribeGuarded<cell_microinjection::OperatingState>(

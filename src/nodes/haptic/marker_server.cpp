@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kKeepAlivePeriod = 0.5;  // s
 constexpr double kClientTimeout = 1;      // s, without feedback of a client until another one may drag
-constexpr std::uint32_t kQueue = 100;
+constexpr std::uint32_t kMarkerQueue = 100;
 
 }  // namespace
 
@@ -18,9 +18,9 @@ MarkerServer::MarkerServer(Bus& bus, const std::string& topic, const visualizati
     : bus_(bus),
       marker_(marker),
       handler_(std::move(handler)),
-      init_(bus.advertise<Init>(topic + "/update_full", kQueue, true)),
-      update_(bus.advertise<Update>(topic + "/update", kQueue)),
-      feedback_(bus.subscribe<Feedback>(topic + "/feedback", kQueue,
+      init_(bus.advertise<Init>(topic + "/update_full", kMarkerQueue, true)),
+      update_(bus.advertise<Update>(topic + "/update", kMarkerQueue)),
+      feedback_(bus.subscribe<Feedback>(topic + "/feedback", kMarkerQueue,
                                         [this](const Delivery<Feedback>& delivery) { receive(*delivery.message); })),
       keep_alive_(bus.timer(kKeepAlivePeriod, [this] { publish(Update()); })) {
   Update update;

@@ -6,12 +6,13 @@
 
 #include <stdexcept>
 
+#include "nodes/imaging/image_topic.h"
+
 namespace microinjection {
 namespace {
 
-constexpr char kImageTopic[] = "microscope/image_raw";
 constexpr char kImageFrame[] = "microscope_optical_frame";
-constexpr int kQueue = 2;
+constexpr int kImageOutputQueue = 2;
 
 }  // namespace
 
@@ -35,9 +36,9 @@ std::string imageEncoding(const cv::Mat& image) {
 }
 
 ImageOutput::ImageOutput(Bus& bus)
-    : images_(bus.advertiseImages(kImageTopic, kQueue)),
+    : images_(bus.advertiseImages(kImageTopic, kImageOutputQueue)),
       infos_(bus.advertise<sensor_msgs::CameraInfo>(image_transport::getCameraInfoTopic(bus.resolve(kImageTopic)),
-                                                    kQueue)) {}
+                                                    kImageOutputQueue)) {}
 
 void ImageOutput::publish(const cv::Mat& image, const ros::Time& stamp) {
   const std::string encoding = imageEncoding(image);

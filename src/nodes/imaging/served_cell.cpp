@@ -9,7 +9,7 @@ namespace microinjection {
 namespace {
 
 constexpr char kService[] = "/cell_simulator/set_cell_parameters";
-constexpr double kPeriod = 0.01;  // s, of looking whether the answer has come
+constexpr double kAnswerCheckPeriod = 0.01;  // s, of looking whether the answer has come
 
 }  // namespace
 
@@ -60,7 +60,8 @@ void ServedCell::callInThread(const std::shared_ptr<Call>& call) {
     call_ = call;
   }
   thread_ = std::thread([this, call] { call->make(bus_); });
-  while (!call->done && bus_.isRunning() && secondsBetween(call->begin, bus_.steady()) < timeout_) bus_.pause(kPeriod);
+  while (!call->done && bus_.isRunning() && secondsBetween(call->begin, bus_.steady()) < timeout_)
+    bus_.pause(kAnswerCheckPeriod);
 }
 
 void ServedCell::report(diagnostic_updater::DiagnosticStatusWrapper& status) const {

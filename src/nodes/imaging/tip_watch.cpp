@@ -12,8 +12,9 @@ namespace {
 constexpr double kResolution = 0.2e-6;  // m, within which a needle rests
 // s of this node's running time, after which what simulator and controller said is not known any more.
 constexpr double kSilent = 1;
-constexpr double kForgotten = 5;  // s, the same, of steady time: after this even a node that stood still knows nothing
-constexpr double kPeriod = 0.05;  // s, in which that time is counted
+constexpr double kStateForgotten =
+    5;  // s, the same, of steady time: after this even a node that stood still knows nothing
+constexpr double kAwakePeriod = 0.05;  // s, in which that time is counted
 
 /// Empty, or why the tip is not above the cell: it must be farther out along the shaft than the cell reaches.
 std::string besideCell(const cell_microinjection::CellInImage& cell, const cell_microinjection::PipetteInImage& tip) {
@@ -52,13 +53,13 @@ TipWatch::TipWatch(Bus& bus, double timeout) : bus_(bus), timeout_(timeout) {
             injects_ = message.state != "idle" && message.state != "approach" && message.state != "fault";
             injection_heard_ = {awake_.seconds(), bus_.steady()};
           })};
-  timer_ = bus.timer(kPeriod, [this] { awake_.step(bus_.steady()); });
+  timer_ = bus.timer(kAwakePeriod, [this] { awake_.step(bus_.steady()); });
 }
 
 std::string TipWatch::cellInTheWay() const {
   const auto silent = [&](const Heard& heard) {
     return heard.awake >= 0 &&
-           (awake_.seconds() - heard.awake > kSilent || secondsBetween(heard.time, bus_.steady()) > kForgotten);
+           (awake_.seconds() - heard.awake > kSilent || secondsBetween(heard.time, bus_.steady()) > kStateForgotten);
   };
   if (silent(injection_heard_)) return "/controller/injection_state is silent: the needle may be in the cell";
   if (silent(touch_heard_)) return "/cell/state is silent: the needle may touch the cell";

@@ -10,10 +10,10 @@
 namespace microinjection {
 namespace {
 
-constexpr char kStateTopic[] = "needle/state_command";
+constexpr char kNeedleCommandTopic[] = "needle/state_command";
 
 /// Commands that stop something are executed with any stamp and in any state.
-bool stops(const std::string& command) {
+bool stopsNeedle(const std::string& command) {
   return command == "stop" || command == "disable" || command == "pause" || command == "unhome";
 }
 
@@ -27,7 +27,7 @@ NeedleCommands::NeedleCommands(Cycle& cycle, const MicromanipulatorConfig& confi
       model_(model),
       servo_(cycle.input<geometry_msgs::PoseStamped>("needle/servo_cp", InputPhase::kDrives, config.command_timeout)),
       trace_(cycle.output<sensor_msgs::TimeReference>("needle/setpoint_trace")),
-      repeated_(cycle.bus(), kStateTopic),
+      repeated_(cycle.bus(), kNeedleCommandTopic),
       log_(cycle.bus()) {
   if (!rig.inject && !allow_network) network_ = std::make_unique<NetworkMonitor>();
   subscribe();
@@ -48,7 +48,7 @@ void NeedleCommands::subscribe() {
       subscribeCommand<PoseStamped>(bus, "needle/move_cp",
                                     [this](const auto& message, const auto& source) { onMove(message, source); }),
       subscribeCommand<cell_microinjection::StringStamped>(
-          bus, kStateTopic, [this](const auto& message, const auto& source) { onState(message, source); },
+          bus, kNeedleCommandTopic, [this](const auto& message, const auto& source) { onState(message, source); },
           StampRule::kAny)};
   if (rig_.inject) subscribeFaults();
 }
@@ -129,7 +129,7 @@ void NeedleCommands::onState(const cell_microinjection::StringStamped& message, 
   const bool moved = model_.busy();
   const std::string refusal = executeState(message, source);
   log_.addResult("state_command " + message.string, refusal);
-  if (moved && stops(message.string))
+  if (moved && stopsNeedle(message.string))
     log_.addOverride("move_cp of " + mover_, "by " + message.string + " of " + source.sender);
 }
 
@@ -137,14 +137,14 @@ std::string NeedleCommands::executeState(const cell_microinjection::StringStampe
                                          const CommandSource& source) {
   const bool old = repeated_.mayBe(source);
   const std::string& name = message.string;
-  if (stops(name)) model_.stop();
+  if (stopsNeedle(name)) model_.stop();
   if (name == "stop") return "";
   const auto command = stateCommandOf(name);
   if (!command) {
     return "\"" + name + "\" is no command here; allowed: enable, disable, pause, resume, home, unhome, stop";
   }
-  if (!stops(name)) {
-    if (!isTimely(cycle_.bus().refusals(), kStateTopic, message, now_)) return "its stamp is ahead";
+  if (!stopsNeedle(name)) {
+    if (!isTimely(cycle_.bus().refusals(), kNeedleCommandTopic, message, now_)) return "its stamp is ahead";
     if (!source.unstamped && age(message.header.stamp) > kOldestCommand) return "it is stale";
     if (old) return std::string(kUnstampedLatched) + "; send it again";
   }

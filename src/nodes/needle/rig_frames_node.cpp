@@ -66,8 +66,7 @@ RigFramesNode::RigFramesNode(Bus& bus)
   message.transforms = fixed_;
   static_frames_.publish(message);
   joints_ = subscribeGuarded<sensor_msgs::JointState>(
-      bus, "joint_states", 10,
-      [this](const sensor_msgs::JointState& joints, const std::string&) { onJoints(joints); });
+      bus, "joint_states", 10, [this](const sensor_msgs::JointState& joints, const std::string&) { onJoints(joints); });
 }
 
 void RigFramesNode::onJoints(const sensor_msgs::JointState& message) {
@@ -82,8 +81,7 @@ void RigFramesNode::onJoints(const sensor_msgs::JointState& message) {
     } else {
       pose.rotate(Eigen::AngleAxisd(message.position[i], axis));
     }
-    frames.transforms.push_back(
-        transform(joint->parent_link_name, joint->child_link_name, pose, message.header.stamp));
+    frames.transforms.push_back(transform(joint->parent_link_name, joint->child_link_name, pose, message.header.stamp));
   }
   moving_frames_.publish(frames);
 }

@@ -2,7 +2,6 @@
 
 #include <vector>
 
-
 namespace microinjection {
 namespace {
 
@@ -21,7 +20,8 @@ bool RepeatedCommands::mayBe(const CommandSource& command) {
   const auto last = last_.find(command.sender);
   const bool first = last == last_.end() || last->second.connection != command.connection;
   const bool repeated = last != last_.end() && last->second.number == command.number;
-  const bool older = last == last_.end() && older_.count(command.sender) > 0 && secondsBetween(begun_, bus_.steady()) < kConnecting;
+  const bool older =
+      last == last_.end() && older_.count(command.sender) > 0 && secondsBetween(begun_, bus_.steady()) < kConnecting;
   last_[command.sender] = {command.connection, command.number};
   return command.unstamped && command.latched && first && (repeated || older);
 }

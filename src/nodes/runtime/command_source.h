@@ -19,11 +19,11 @@ constexpr double kOldestCommand = 3;
 /// Origin of a command. CRTK allows commands without a stamp; the released crtk_python_client
 /// (1.4.0) sends such.
 struct CommandSource {
-  std::string sender;                           ///< node
-  bool unstamped = false;                       ///< stamp 0
-  bool latched = false;                         ///< by its publisher
-  std::uint32_t number = 0;                     ///< header.seq, the publisher's message counter
-  boost::shared_ptr<const void> connection;     ///< the same for all messages of a connection
+  std::string sender;                        ///< node
+  bool unstamped = false;                    ///< stamp 0
+  bool latched = false;                      ///< by its publisher
+  std::uint32_t number = 0;                  ///< header.seq, the publisher's message counter
+  boost::shared_ptr<const void> connection;  ///< the same for all messages of a connection
 };
 
 /// Detects old commands that a latching publisher repeats: to a restarted node, or after a broken

@@ -19,14 +19,14 @@ constexpr double kWait = 0.1;          // s
 
 bool LockstepPacing::hasInputOf(bool of_this_tick, const ros::Time& stamp) const {
   return std::all_of(ports_.inputs.begin(), ports_.inputs.end(), [&](const auto& input) {
-    return (input->phase == InputPhase::kDrives) != of_this_tick || hasDeparted(input->publisher_name) || input->hasInputOf(stamp);
+    return (input->phase == InputPhase::kDrives) != of_this_tick || hasDeparted(input->publisher_name) ||
+           input->hasInputOf(stamp);
   });
 }
 
 bool LockstepPacing::isReady() const {
   const bool first = stepped_tick_.isZero();  // nothing was published before it
-  return tick_ != stepped_tick_ && hasInputOf(true, tick_) &&
-         (first || hasInputOf(false, stepped_tick_));
+  return tick_ != stepped_tick_ && hasInputOf(true, tick_) && (first || hasInputOf(false, stepped_tick_));
 }
 
 std::string LockstepPacing::inputsWithoutPublisher() const {
@@ -97,7 +97,8 @@ void LockstepPacing::waitForPublishers() {
 void LockstepPacing::stepTick() {
   const ros::Time now = tick_, before = stepped_tick_;
   for (auto& input : ports_.inputs) {
-    runGuarded(bus_.refusals(), input->topic, [&] { input->receiveTick(input->phase == InputPhase::kDrives ? now : before, now); });
+    runGuarded(bus_.refusals(), input->topic,
+               [&] { input->receiveTick(input->phase == InputPhase::kDrives ? now : before, now); });
   }
   for (auto& output : ports_.outputs) output->beginTick(now);
   bus_.serveSampled();
@@ -106,8 +107,7 @@ void LockstepPacing::stepTick() {
   stepped_tick_ = now;
   // A topic may connect later than its greeting. The acknowledgement waits until this node has the
   // first message or silence of each input: publishers latch only the newest.
-  while (before.isZero() && shouldContinue() && !hasInputOf(false, now))
-    bus_.serveWaking(kWait);
+  while (before.isZero() && shouldContinue() && !hasInputOf(false, now)) bus_.serveWaking(kWait);
   acknowledge(now);
 }
 

@@ -200,8 +200,8 @@ class OutputPort {
 
   const std::string topic;
   Publisher<std_msgs::Header> silent_publisher;  ///< null when live
-  std::atomic<unsigned> count{0};     ///< published messages, for the diagnostics
-  std::atomic<unsigned> withheld{0};  ///< messages with numbers that are not finite, for the diagnostics
+  std::atomic<unsigned> count{0};                ///< published messages, for the diagnostics
+  std::atomic<unsigned> withheld{0};             ///< messages with numbers that are not finite, for the diagnostics
 
  protected:
   ros::Time tick_;  ///< zero when live

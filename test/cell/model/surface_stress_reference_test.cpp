@@ -12,16 +12,10 @@
 #include "cell/material/surface_stress_field.h"
 #include "cell/model/cell_problem.h"
 #include "cell/model/scene_mesh.h"
+#include "cell/model/test_scenes.h"
 
 namespace microinjection {
 namespace {
-
-Scene pipette() {
-  Scene scene;
-  scene.cell.material() = {"neo_hookean", 17.9e3, 0.49};
-  scene.needle.tip.shape = "hemisphere";
-  return scene;
-}
 
 /// F of a section's element at a point with these barycentric coordinates, in the directions (r, theta, z).
 Eigen::Matrix3d deformationAt(const LayeredBody<2>& body, const Eigen::VectorXd& state, int element,
@@ -165,7 +159,7 @@ void print(const char* where, const Errors& errors) {
 /// At 8 um the largest errors are 1.5 % and 0.5 %, half a tip's radius beside the contact; 1.0 % and 0.4 % on a mesh of
 /// a quarter of the size (level 3).
 TEST(SurfaceStressReference, IsThatOfTheElementsOnTheFreeSurface) {
-  const Scene scene = pipette();
+  const Scene scene = pipetteScene();
   const double depth = 8e-6, radius = scene.needle.tip.radius;
   CellProblem<2> problem(scene, makeSceneMesh<2>(scene, 1), ElementKind::kP2P1);
   ASSERT_TRUE(problem.solve({0, 0, -depth}).converged);
@@ -185,7 +179,7 @@ TEST(SurfaceStressReference, IsThatOfTheElementsOnTheFreeSurface) {
 /// The true pressure falls from 22 kPa in the middle of the contact to none at its edge, where the surface sticks and
 /// is sheared. Of the mean, 13 kPa, no more than the order of magnitude is right.
 TEST(SurfaceStressReference, UnderTheTipItIsThatOfTheMeanPressure) {
-  const Scene scene = pipette();
+  const Scene scene = pipetteScene();
   const double depth = 8e-6, radius = scene.needle.tip.radius;
   CellProblem<2> problem(scene, makeSceneMesh<2>(scene, 1), ElementKind::kP2P1);
   const IndentationSolution solution = problem.solve({0, 0, -depth});

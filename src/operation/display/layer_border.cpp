@@ -1,11 +1,11 @@
-#include "operation/display/cell_border.h"
+#include "operation/display/layer_border.h"
 
 #include <algorithm>
 #include <cstddef>
 
 namespace microinjection {
 
-bool CellBorder::drawable() const {
+bool LayerBorder::drawable() const {
   const int size = static_cast<int>(vertices.size());
   const auto fits = [size](const std::array<int, 3>& triangle) {
     return std::all_of(triangle.begin(), triangle.end(), [size](int vertex) { return vertex >= 0 && vertex < size; });
@@ -14,11 +14,11 @@ bool CellBorder::drawable() const {
          std::all_of(vertices.begin(), vertices.end(), [](const auto& vertex) { return vertex.allFinite(); });
 }
 
-CellBorder borderBelow(const CellSurface& surface, const std::vector<Eigen::Vector3d>& columns, double thickness) {
+LayerBorder borderBelow(const CellSurface& surface, const std::vector<Eigen::Vector3d>& columns, double thickness) {
   CellSurface rest = surface;
   rest.vertices = surface.at_rest;
   const std::vector<Eigen::Vector3d> normals = vertexNormals(rest);
-  CellBorder border;
+  LayerBorder border;
   border.triangles = surface.triangles;
   border.estimated = true;
   for (std::size_t i = 0; i < surface.vertices.size(); ++i) {
@@ -28,8 +28,8 @@ CellBorder borderBelow(const CellSurface& surface, const std::vector<Eigen::Vect
   return border;
 }
 
-CellBorder borderAtRest(const CellSurface& surface, int layer, double share, const Eigen::Vector3d& centre) {
-  CellBorder border;
+LayerBorder borderAtRest(const CellSurface& surface, int layer, double share, const Eigen::Vector3d& centre) {
+  LayerBorder border;
   border.layer = layer;
   border.triangles = surface.triangles;
   border.estimated = true;

@@ -7,7 +7,7 @@ namespace microinjection {
 /// Accepts a position if it is near the expected one, or if four successive readings agree. So a
 /// reply damaged on the line moves nothing. Four are needed, because a digit lost three times makes
 /// the same wrong number.
-class ReadingFilter {
+class PositionFilter {
  public:
   /// Returns whether `reading` is accepted. `tolerance`: largest difference of any coordinate from
   /// `expected`. `agreement`: largest difference from the previous doubtful reading. All in one

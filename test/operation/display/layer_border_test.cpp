@@ -1,4 +1,4 @@
-#include "operation/display/cell_border.h"
+#include "operation/display/layer_border.h"
 
 #include <gtest/gtest.h>
 
@@ -20,32 +20,32 @@ CellSurface pressed() {
   return surface;
 }
 
-TEST(CellBorder, BelowALayerItFollowsTheColumns) {
+TEST(LayerBorder, BelowALayerItFollowsTheColumns) {
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   std::vector<Eigen::Vector3d> columns(6, Eigen::Vector3d::Constant(unknown));
   columns[4] = {0, 0, 0.5};  // compressed to half its thickness
-  const CellBorder border = borderBelow(pressed(), columns, 2e-6);
+  const LayerBorder border = borderBelow(pressed(), columns, 2e-6);
   EXPECT_TRUE(border.estimated);
   EXPECT_TRUE(border.drawable());
   EXPECT_NEAR((border.vertices[4] - Eigen::Vector3d(0, 0, 10e-6 / 1.5 - 1e-6)).norm(), 0, 1e-12);
   EXPECT_NEAR((border.vertices[0] - Eigen::Vector3d(8e-6, 0, 0)).norm(), 0, 1e-12) << "as thick as at rest";
 }
 
-TEST(CellBorder, AtRestIsASmallerCell) {
+TEST(LayerBorder, AtRestIsASmallerCell) {
   const Eigen::Vector3d centre(0, 0, 1e-6);
-  const CellBorder border = borderAtRest(pressed(), 2, 0.3, centre);
+  const LayerBorder border = borderAtRest(pressed(), 2, 0.3, centre);
   EXPECT_EQ(border.layer, 2);
   EXPECT_NEAR((border.vertices[4] - (centre + Eigen::Vector3d(0, 0, 0.3 * 9e-6))).norm(), 0, 1e-12);
 }
 
-TEST(CellBorder, WhatDoesNotFitIsNotDrawn) {
-  CellBorder border = borderAtRest(pressed(), 1, 0.5, Eigen::Vector3d::Zero());
+TEST(LayerBorder, WhatDoesNotFitIsNotDrawn) {
+  LayerBorder border = borderAtRest(pressed(), 1, 0.5, Eigen::Vector3d::Zero());
   border.triangles[0][1] = 6;
   EXPECT_FALSE(border.drawable());
   border.triangles[0][1] = 1;
   border.vertices[2].x() = std::numeric_limits<double>::infinity();
   EXPECT_FALSE(border.drawable());
-  EXPECT_FALSE(CellBorder().drawable());
+  EXPECT_FALSE(LayerBorder().drawable());
 }
 
 }  // namespace
