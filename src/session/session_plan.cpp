@@ -15,7 +15,6 @@ namespace {
 constexpr int kImages = 10, kMoves = 5;  // nice: nodes of images, and those that move the needle by them
 constexpr char kFemtojetCode[] = "901";  // invented for the emulator: that of the device is not published
 
-YAML::Node emptyMap() { return YAML::Node(YAML::NodeType::Map); }
 
 class Planner {
  public:

@@ -79,7 +79,9 @@ BusHandle LocalBus::advertiseServiceRaw(const ServiceType& type, const std::stri
 /// As a server that is killed or frozen answers: not at all.
 bool LocalBus::callRaw(const ServiceType& type, const std::string& service, void* call) {
   const auto found = network_.services_.find(resolve(service));
-  if (!connected_ || found == network_.services_.end() || !found->second.owner->connected_) return false;
+  if (!connected_ || found == network_.services_.end()) return false;
+  const LocalBus& server = *found->second.owner;
+  if (!server.connected_ || server.frozen_) return false;
   if (std::strcmp(found->second.type->md5, type.md5) != 0) return false;
   const RawAnswer answer = found->second.answer;
   found->second.owner->serve();  // what was sent before
@@ -163,7 +165,7 @@ bool LocalBus::stepIfDue() {
     deadline_ = now + (triggered_ ? period_ + durationOf(period_.toSec() / 2) : period_);
   } else {
     deadline_ += period_;
-    if ((now - deadline_).toSec() > 10 * period_.toSec()) deadline_ = now;  // after a delay: do not catch up
+    if (deadline_ <= now) deadline_ = now + period_;  // after a delay: do not catch up
   }
   triggered_ = false;
   stepped_ = now;
@@ -173,7 +175,7 @@ bool LocalBus::stepIfDue() {
 }
 
 bool LocalBus::run() {
-  if (stopped_ || !connected_ || now() < held_until_) return false;
+  if (stopped_ || frozen_ || !connected_ || now() < held_until_) return false;
   const bool ticked = runTimers();
   if (step_) return stepIfDue() || ticked;
   return serve() || ticked;
@@ -181,7 +183,7 @@ bool LocalBus::run() {
 
 ros::Time LocalBus::due() const {
   ros::Time due = ros::TIME_MAX;
-  if (stopped_ || !connected_) return due;
+  if (stopped_ || frozen_ || !connected_) return due;
   if (step_) due = triggered_ && stepped_ != now() ? now() : deadline_;
   if (!step_ && !waiting_.empty()) due = now();
   for (const auto& weak : timers_) {

@@ -48,6 +48,8 @@ class LocalBus : public Bus {
   void end();
   /// Cuts the node off as if its process had been killed: nothing that it does is heard any more.
   void disconnect() { connected_ = false; }
+  /// As if its process were stopped: it neither steps nor answers, and what arrives waits.
+  void setFrozen(bool frozen) { frozen_ = frozen; }
   void setLost(bool lost) { lost_ = lost; }
   bool isBusy() const { return busy_; }
   /// The node does not step before this time, as if the machine had delayed it.
@@ -99,7 +101,7 @@ class LocalBus : public Bus {
   ros::Time deadline_, held_until_, stepped_;
   unsigned driving_ = 0;  ///< subscriptions that start steps
   bool triggered_ = false;
-  bool connected_ = true, stopped_ = false, busy_ = false, lost_ = false;
+  bool connected_ = true, frozen_ = false, stopped_ = false, busy_ = false, lost_ = false;
 };
 
 }  // namespace microinjection

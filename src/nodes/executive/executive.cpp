@@ -43,7 +43,6 @@ void Executive::add(const std::string& name, NodeFactory factory, const YAML::No
 
 void Executive::construct(Member& member) {
   ros::console::setFixedFilterToken("node", "/" + member.name);
-  member.frozen = false;
   member.bus = network_.connect("/" + member.name, member.parameters, member.remaps);
   try {
     member.node = member.factory(*member.bus);
@@ -75,8 +74,8 @@ bool Executive::runs(const std::string& name) const {
   return const_cast<Executive*>(this)->member(name).node != nullptr;
 }
 
-void Executive::freeze(const std::string& name) { member(name).frozen = true; }
-void Executive::thaw(const std::string& name) { member(name).frozen = false; }
+void Executive::freeze(const std::string& name) { bus(name).setFrozen(true); }
+void Executive::thaw(const std::string& name) { bus(name).setFrozen(false); }
 
 void Executive::kill(const std::string& name) {
   bus(name).disconnect();
@@ -93,6 +92,11 @@ void Executive::restart(const std::string& name) {
   if (again.node) kill(name);
   failures_.erase(name);
   construct(again);
+}
+
+void Executive::restart(const std::string& name, const YAML::Node& parameters) {
+  member(name).parameters = parameters;
+  restart(name);
 }
 
 void Executive::delay(const std::string& name, double seconds) {
@@ -152,7 +156,7 @@ void Executive::sort() {
 }
 
 bool Executive::run(Member& member) {
-  if (!member.node || member.frozen) return false;
+  if (!member.node) return false;
   ros::console::setFixedFilterToken("node", "/" + member.name);
   try {
     const bool any = member.bus->run();
@@ -182,7 +186,7 @@ void Executive::runInstant() {
 bool Executive::advance(const ros::Time& limit) {
   ros::Time next = network_.nextArrival().value_or(ros::TIME_MAX);
   for (const auto& member : members_) {
-    if (member->node && !member->frozen) next = std::min(next, member->bus->due());
+    if (member->node) next = std::min(next, member->bus->due());
   }
   if (next > limit) return false;
   network_.setTime(std::max(next, network_.now()));

@@ -53,7 +53,8 @@ class Executive {
   void thaw(const std::string& name);                   ///< as SIGCONT
   void kill(const std::string& name);                   ///< as SIGKILL: the others hear nothing of its end
   void end(const std::string& name);                    ///< as SIGTERM: in good order
-  void restart(const std::string& name);                ///< constructs it again, with its first parameters
+  void restart(const std::string& name);  ///< constructs it again, with the same parameters
+  void restart(const std::string& name, const YAML::Node& parameters);
   void delay(const std::string& name, double seconds);  ///< it steps `seconds` late, once
   void loseMaster(bool lost);                           ///< of all nodes
   /// Ends all nodes in good order, the last added first.
@@ -72,7 +73,6 @@ class Executive {
     std::map<std::string, std::string> remaps;
     std::unique_ptr<LocalBus> bus;
     std::shared_ptr<void> node;  ///< null: it has ended; destroyed before its bus
-    bool frozen = false;
   };
 
   Member& member(const std::string& name);
