@@ -5,7 +5,7 @@
 namespace microinjection {
 namespace {
 
-constexpr double kNear = 1.6;  // over the cell's radius: of a tip this near the gap or the dimple is measured
+constexpr double kNearCell = 1.6;  // over the cell's radius: of a tip this near the gap or the dimple is measured
 
 PipetteDetectorConfig readPipette(ConfigReader& reader, const std::string& kind, double direction) {
   PipetteDetectorConfig config = PipetteDetectorConfig::read(reader);
@@ -47,7 +47,7 @@ Indentation indentationOf(const Frame& frame, const SpecimenView& view) {
   }
   const CellBorder& outer = view.cell.outer();
   const cv::Point2d away = view.injection.end - view.cell.centre;
-  if (std::hypot(away.x, away.y) > kNear * 0.5 * outer.ellipse.meanDiameter()) {
+  if (std::hypot(away.x, away.y) > kNearCell * 0.5 * outer.ellipse.meanDiameter()) {
     none.finding = Finding::notFound("the needle is not at the cell");
     return none;
   }
