@@ -13,7 +13,8 @@
 namespace microinjection {
 namespace {
 
-constexpr char kIndentHelp[] = R"(indent: quasi-static force on a needle tip pushed into a cell, solved to a given tolerance.
+constexpr char kIndentHelp[] =
+    R"(indent: quasi-static force on a needle tip pushed into a cell, solved to a given tolerance.
 
 Usage: indent --scene FILE --depths D1,D2,... [--tolerance T] [--lateral X,Y] [--csv FILE] [...]
 

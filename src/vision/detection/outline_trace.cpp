@@ -14,7 +14,7 @@ constexpr double kFacing = 1.45;                        // rad, half of the sect
 constexpr double kDeepestDimple = 0.4;                  // of the radius, a dimple
 constexpr double kAbove = 0.06;                         // of the radius, that the ellipse may be too low
 constexpr double kElsewhere = 4;                        // px, from the ellipse beside this sector
-constexpr double kOutwardsPerPixel = 0.012;                     // strength of a place over one that is 1 px deeper
+constexpr double kOutwardsPerPixel = 0.012;             // strength of a place over one that is 1 px deeper
 constexpr double kFullContrast = 0.6;                   // of the border's contrast, that counts as a full border
 constexpr int kMostChange = 7;                          // columns from ray to ray
 constexpr double kAcrossStep = 0.5, kAcrossBlur = 1.2;  // px, across the path

@@ -137,7 +137,7 @@ struct Errors {
 
 /// @param where  whether a node of the arc counts
 template <typename Where>
-Errors errorsOf(const std::vector<ArcNode>& arc, const SurfaceStressField& field, const Where& where) {
+Errors stressErrors(const std::vector<ArcNode>& arc, const SurfaceStressField& field, const Where& where) {
   Errors errors;
   for (std::size_t i = 1; i + 1 < arc.size(); ++i) {  // the poles have no triangles of their own
     if (!where(arc[i])) continue;
@@ -169,7 +169,7 @@ TEST(SurfaceStressReference, IsThatOfTheElementsOnTheFreeSurface) {
     return !held && (node.deformed - Eigen::Vector2d(0, scene.radius() - depth + radius)).norm() > 1.5 * radius;
   };
   const SurfaceStressField field = surfaceStress(turned(arc), *problem.body().materials()[0], 0);
-  const Errors errors = errorsOf(arc, field, isFree);
+  const Errors errors = stressErrors(arc, field, isFree);
   print("free surface", errors);
   EXPECT_GT(errors.peak, 3e3);
   EXPECT_LT(errors.von_mises, 0.02);
@@ -194,7 +194,7 @@ TEST(SurfaceStressReference, UnderTheTipItIsThatOfTheMeanPressure) {
   const auto isTouched = [&](const ArcNode& node) {
     return (node.deformed - Eigen::Vector2d(0, scene.radius() - depth + radius)).norm() < 1.001 * radius;
   };
-  const Errors errors = errorsOf(arc, field, isTouched);
+  const Errors errors = stressErrors(arc, field, isTouched);
   print("under the tip", errors);
   double largest = 0;
   for (const ArcNode& node : arc) largest = std::max(largest, isTouched(node) ? node.pressure : 0);

@@ -10,11 +10,11 @@ namespace microinjection {
 namespace {
 
 RateInputConfig rateInputConfig() {
-  RateInputConfig rateInputConfig;
+  RateInputConfig config;
   config.axes = {1, 0, 3};
   config.deflection = {-0.01, 0.02, 0.03};
   config.dead_man = 1;
-  return rateInputConfig;
+  return config;
 }
 
 const std::vector<int> kHeld{0, 1}, kLoose{1, 0};
