@@ -40,6 +40,12 @@ void writeLaunchFile(SessionPlan plan, const SessionArguments& arguments) {
   writeFileAtomically(arguments.launch, text);
 }
 
+void writeView(const SessionPlan& plan, const std::string& path) {
+  const std::string view = rvizView(plan);
+  if (view.empty()) throw ConfigError("--view = " + path + ": must be with a console (display.console)");
+  writeFileAtomically(path, view);
+}
+
 void run(const SessionArguments& arguments) {
   const Session session = Session::load(arguments.session, arguments.keys);
   if (arguments.clock == "lockstep") requireLockstep(session);
@@ -51,6 +57,7 @@ void run(const SessionArguments& arguments) {
   } else if (!arguments.only.empty()) {
     plan.keepOnly(arguments.only);
   }
+  if (!arguments.view.empty()) writeView(plan, arguments.view);
   if (arguments.print) std::cout << session.text();
   if (arguments.nodes) std::cout << join(plan.names(), "\n") << '\n';
   flushStandardOutput();

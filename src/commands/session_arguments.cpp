@@ -13,11 +13,11 @@ namespace {
 
 constexpr char kHelp[] = R"(session: checks a session file, prints it, and writes what roslaunch needs to start it.
 
-Usage: session [SESSION] [KEY:=VALUE ...] [--print | --nodes | --launch OUT] [--only "NODE ..."]
+Usage: session [SESSION] [KEY:=VALUE ...] [--print | --nodes | --launch OUT | --view OUT] [--only "NODE ..."]
 
 SESSION is a file, or a name of config/sessions (default). KEY:=VALUE, or KEY=VALUE, sets one of its keys, such as
-hand.device:=keyboard; the value is YAML. A key without a value is passed over. config/sessions/default.yaml describes all keys. A path in a file is relative
-to that file, one in KEY:=VALUE to the working directory.
+hand.device:=keyboard; a list or a map is YAML. A key without a value is passed over. config/sessions/default.yaml describes
+all keys. A path in a file is relative to that file, one in KEY:=VALUE to the working directory.
 
 Without an option it only checks. What is wrong is told with file, line, key, value and what is allowed, all at once.
 
@@ -58,6 +58,7 @@ std::optional<SessionArguments> parseSessionArguments(int argc, char** argv) {
   add("nodes", po::bool_switch(&arguments.nodes), "prints the names of its nodes, one a line");
   add("launch", po::value(&arguments.launch)->value_name("OUT"),
       "writes a roslaunch file, and prints a digest of all files that the session is made from");
+  add("view", po::value(&arguments.view)->value_name("OUT"), "writes the configuration of the session's rviz");
   add("only", po::value(&only)->value_name("NODES"), "names separated by spaces: nothing else takes part; empty: all");
   add("clock", po::value(&arguments.clock)->value_name("CLOCK"),
       "wall: live; lockstep: with the participants of a lock step; external: on the time of /clock");

@@ -9,7 +9,7 @@ namespace microinjection {
 struct SessionArguments {
   std::string session = "default";    ///< a file, or a name of config/sessions
   std::vector<std::string> keys;      ///< KEY:=VALUE
-  std::string launch;                 ///< file to write; empty: none
+  std::string launch, view;           ///< files to write; empty: none
   bool print = false, nodes = false;  ///< prints the session, its nodes
   std::vector<std::string> only;      ///< nodes; empty: all
   std::string clock = "wall";         ///< wall, lockstep, external

@@ -23,11 +23,11 @@ std::string workingFolder() {
   return folder.empty() ? "/" : folder;
 }
 
-/// The value of an argument. What is no YAML is a text.
+/// The value of an argument: YAML where it begins as a list, a map or a text in quotes, otherwise as it is.
 YAML::Node argumentValue(const std::string& text) {
+  if (std::string("[{\"'").find(text.front()) == std::string::npos) return YAML::Node(text);
   try {
-    const YAML::Node value = YAML::Load(text);
-    return value.IsNull() ? YAML::Node(text) : value;
+    return YAML::Load(text);
   } catch (const YAML::Exception&) {
     return YAML::Node(text);
   }

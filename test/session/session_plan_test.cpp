@@ -21,10 +21,7 @@ class SessionPlanTest : public SessionFiles {
     for (const NodePlan& node : plan.nodes) names.push_back(node.name);
     return names;
   }
-  static bool takesPart(const SessionPlan& plan, const std::string& name) {
-    const Names names = plan.names();
-    return std::count(names.begin(), names.end(), name) == 1;
-  }
+  static bool takesPart(const SessionPlan& plan, const std::string& name) { return plan.takesPart(name); }
   /// A parameter as text; "-" when it is not set.
   static std::string at(const SessionPlan& plan, const std::string& node, const std::string& path) {
     const NodePlan* found = plan.node(node);
@@ -248,6 +245,10 @@ TEST_F(SessionPlanTest, KeepsOnlyWhatIsWanted) {
   SessionPlan session = plan({"display.rviz:=true"});
   session.keepOnly({"display", "rviz", "force_sensor_frame"});
   EXPECT_EQ(session.names(), (Names{"display", "force_sensor_frame", "rviz"}));
+  EXPECT_EQ(session.parameters.size(), 0u);
+  SessionPlan rig = plan();
+  rig.keepOnly({"micromanipulator"});
+  EXPECT_EQ(rig.parameters.size(), 1u);
   EXPECT_NE(
       refusalOf([&] {
         session.keepOnly({"haptic_bride", "display"});
