@@ -136,9 +136,9 @@ class User:
         return sent - pressed, max(moving, default=sent) - pressed
 
 
-def session_arguments(cell):
-    return {'cell': cell, 'layers': 2 if cell == 'mouse_oocyte_injection' else 1, 'rig': 'sim', 'haptic': 'none',
-            'mode': 'semi_automatic', 'clock': 'wall'}
+def session_keys(cell):
+    return {'cell': cell, 'injection.layers': 2 if cell == 'mouse_oocyte_injection' else 1, 'hand.device': 'none',
+            'injection.mode': 'semi_automatic'}
 
 
 def run(arguments):
@@ -149,7 +149,7 @@ def run(arguments):
     screen = Screen(logs / 'xvfb.log', (1280, 800))
     os.environ.update(screen.environment)
     begin = time.monotonic()
-    session = DemoSession(ROOT / 'launch' / 'session.launch', logs, {**session_arguments(arguments.cell), 'console': 'inject'})
+    session = DemoSession(ROOT / 'launch' / 'session.launch', logs, {**session_keys(arguments.cell), 'display.console': 'inject'})
     user = None
     try:
         session.wait_ready()
@@ -210,7 +210,7 @@ def main():
         sys.exit(0 if good else 1)
     try:
         if arguments.only in console_faults.FAULTS:
-            result = console_faults.run(arguments.out, session_arguments(arguments.cell), arguments.only, arguments.seconds)
+            result = console_faults.run(arguments.out, session_keys(arguments.cell), arguments.only, arguments.seconds)
         else:
             result = run(arguments)
         print(json.dumps(result))

@@ -219,8 +219,8 @@ def run(arguments, folder):
     counts.mkdir()
     realtime.write_motion(motion, 2 * (arguments.seconds + realtime.SETTLE) + realtime.RVIZ_TIMEOUT)
     session = DemoSession(ROOT / 'launch' / 'session.launch', logs, {
-        'cell': arguments.cell, 'model': 'prepared', 'rig': 'sim', 'haptic': 'operator', 'clock': 'wall', 'rviz': 'false',
-        'display': 'false', 'motion': motion, 'record': folder / 'record', 'bag': 'false'})
+        'cell': arguments.cell, 'model': 'prepared', 'display.markers': 'false', 'hand.motion': motion,
+        'record.folder': folder / 'record', 'record.bag': 'false'})
     try:
         session.wait_ready()
         session.monitor.go()

@@ -25,7 +25,7 @@ from demo_session import DemoSession, SessionError  # noqa: E402
 from processes import Child, wait_until  # noqa: E402
 from realtime import SETTLE, Histograms, difference, write_motion  # noqa: E402
 
-HAPTIC = {'crtk': 'external', 'omni': 'omni', 'geomagic': 'geomagic'}  # kind of device -> haptic:= of the session
+HAPTIC = {'crtk': 'external', 'omni': 'omni', 'geomagic': 'geomagic'}  # kind of device -> hand.device of the session
 ALLOWED = 2e-3  # s, 99 % of the round trips
 SOURCES = {'device to bridge': 'emulated_haptic: device to bridge',
            'device to device': 'emulated_haptic: device to device',
@@ -68,8 +68,8 @@ def measure(kind, arguments, folder):
     motion = folder / 'motion.yaml'
     write_motion(motion, arguments.seconds + SETTLE + 30)
     session = DemoSession(ROOT / 'launch' / 'session.launch', logs, {
-        'cell': arguments.cell, 'model': arguments.model, 'rig': 'sim', 'haptic': HAPTIC[kind], 'clock': 'wall',
-        'rviz': 'false', 'record': folder / f'record_{kind}', 'bag': 'false'})
+        'cell': arguments.cell, 'model': arguments.model, 'hand.device': HAPTIC[kind],
+        'record.folder': folder / f'record_{kind}', 'record.bag': 'false'})
     device = None
     try:
         session.wait_ready()

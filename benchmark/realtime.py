@@ -21,13 +21,11 @@ import yaml
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / 'src' / 'tools'))
-sys.path.insert(0, str(ROOT / 'launch'))
 
-import console_config  # noqa: E402
 import full_solution  # noqa: E402
 from demo_session import DemoSession, SessionError  # noqa: E402
 from processes import wait_until  # noqa: E402
-from rviz_view import RvizError, RvizView  # noqa: E402
+from rviz_view import RvizError, RvizView, write_console  # noqa: E402
 
 SOURCES = {'cell_simulator': 'cell_simulator: cycle', 'bare_timer_loop': 'session_recorder: bare timer loop'}
 PERIOD = 1e-3     # s
@@ -111,7 +109,7 @@ def start_rviz(session, logs, console, rate):
         config = ROOT / 'config' / 'session.rviz'
         if console:
             config = logs / f'console_{console}.rviz'
-            config.write_text(console_config.configuration(console), encoding='utf-8')
+            write_console(console, config)
         view = RvizView(config, logs, rate)
     except RvizError as error:
         say(f'without rviz: {error}')
@@ -150,8 +148,8 @@ def run(arguments, folder):
     motion = folder / 'motion.yaml'
     write_motion(motion, arguments.seconds + SETTLE + 30)
     session = DemoSession(ROOT / 'launch' / 'session.launch', logs, {
-        'cell': arguments.cell, 'model': arguments.model, 'rig': 'sim', 'haptic': 'operator', 'clock': 'wall',
-        'rviz': 'false', 'motion': motion, 'record': folder / 'record', 'bag': 'false'})
+        'cell': arguments.cell, 'model': arguments.model, 'hand.motion': motion, 'record.folder': folder / 'record',
+        'record.bag': 'false'})
     view = None
     try:
         session.wait_ready()

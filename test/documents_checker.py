@@ -120,6 +120,8 @@ class Checker(FormChecker):
             return
         if words[2] not in self.project.programs:
             return self.report(f'there is no program {words[2]}')
+        if words[2] == 'session':
+            self.check_keys(word.replace(':=', '=') for word in words[3:] if '=' in word and not PLACEHOLDER.search(word.split('=')[0]))
         known = self.project.programs[words[2]] | {'--help'}
         for word in words[3:]:
             if word.startswith('--') and word not in known:
@@ -137,8 +139,17 @@ class Checker(FormChecker):
                 continue
             if name not in self.project.launch[words[2]]:
                 self.report(f'{words[2]} has no argument {name}')
+            elif name == 'set':
+                self.check_keys(value.split())
             else:
                 self.check_value(name, value, [words[2]])
+
+    def check_keys(self, words):
+        """KEY=VALUE of a session file."""
+        for word in words:
+            key = word.split('=', 1)[0]
+            if key not in self.project.session_keys and not key.startswith('overrides.'):
+                self.report(f'a session has no key {key}')
 
     def check_value(self, name, value, files):
         """A word that an argument takes is a file of that name, or is in what the launch file says of the argument."""
@@ -147,8 +158,10 @@ class Checker(FormChecker):
         if name == 'cell':
             good = f'config/cells/{value}.yaml' in self.project.files
         elif name == 'haptic':
-            good = f'launch/haptic/{value}.launch' in self.project.files
-        elif name in ('operator', 'record', 'history', 'scene', 'motion'):
+            good = f'config/haptic/{value}.yaml' in self.project.files or value in ('operator', 'none')
+        elif name == 'session':
+            good = f'config/sessions/{value}.yaml' in self.project.files
+        elif name in ('record', 'only'):
             good = True
         else:
             said = ' '.join(self.project.launch[file].get(name, '') for file in files)
@@ -176,7 +189,7 @@ class Checker(FormChecker):
 
     def check_token(self, token):
         token = token.strip()
-        if token in OTHERS or not re.search(r'[A-Za-z]', token):
+        if token in OTHERS or token in self.project.session_keys or not re.search(r'[A-Za-z]', token):
             return
         first = token.split()[0]
         either = re.fullmatch(r'([\w/]+\.)\{(\w+),(\w+)\}', token)
@@ -187,6 +200,8 @@ class Checker(FormChecker):
             self.check_command(token)
         elif token.startswith('./dev') or token.startswith('test/') and token in self.project.files:
             pass
+        elif token.startswith('set:='):
+            self.check_argument(*token.split(':=', 1))
         elif ':=' in token:
             for word in token.split():
                 if ':=' in word:
@@ -213,6 +228,8 @@ class Checker(FormChecker):
             return self.check_word(name[1:].split('/')[-1])
         if name not in self.project.arguments:
             return self.report(f'no launch file has an argument {name}')
+        if name == 'set':
+            return self.check_keys(value.strip('"').split())
         return self.check_value(name, value, [file for file in self.project.launch if name in self.project.launch[file]])
 
     def check_name(self, token):

@@ -67,6 +67,7 @@ class Project:
         self.read_nodes()
         self.keys = {key for path, text in self.code.items() if path.endswith('.yaml') for key in keys_of(text)}
         self.keys |= set(re.findall(r'<param[^>]* name="([a-z_/]+)"', self.sources('launch/*', 'launch/haptic/*')))
+        self.keys |= set(re.findall(r'"([a-z_]+(?:/[a-z_]+)+)"', self.sources('src/session/session_plan.cpp')))
 
     def text(self, path):
         return (self.root / path).read_text(errors='replace')
@@ -97,6 +98,9 @@ class Project:
                 self.defaults[path[len('launch/'):]] = {
                     arg.get('name'): arg.get('default') for arg in tree.iter('arg') if arg.get('default') is not None}
         self.arguments = {name for arguments in self.launch.values() for name in arguments}
+        default = 'config/sessions/default.yaml'
+        keys = flatten(yaml.compose(self.text(default))) if default in self.files else ()
+        self.session_keys = {key.replace('/', '.') for key, _ in keys} | {'overrides'}
 
     def read_programs(self):
         """{program: the options it knows}; empty for a node."""

@@ -74,11 +74,13 @@ def check_nodes(project, text):
 
 
 def check_arguments(project, text):
-    """The table of session.launch has its arguments, and their defaults where the table gives one value."""
+    """The table of session.launch has its arguments, and the keys that they set or their defaults where the table gives one."""
     rows, arguments = table_rows(text, 'session.launch'), project.launch['session.launch']
     problems = [f'session.launch: {name} is not in the table' for name in arguments if name not in rows]
     problems += [f'session.launch: the table has {name}, the file has not' for name in rows if name not in arguments]
     for name, default in project.defaults['session.launch'].items():
+        key = re.match(r'([a-z_.]+): ', arguments[name])
+        default = key.group(1) if key and key.group(1) in project.session_keys else default
         told = re.fullmatch(r'`([^`]*)`', rows[name][1]) if name in rows else None
         if told and told.group(1) not in (default, default.replace(f'$(find {PACKAGE})/', '')) and '$(e' not in default:
             problems.append(f'session.launch: {name} = {default} is not in the table')
@@ -89,8 +91,8 @@ def check_commands(project, text):
     """Every ./dev command and option of our programs is in commands.md."""
     problems = check_arguments(project, text)
     problems += [f'./dev {name} is not in the table' for name in project.dev if f'`./dev {name}' not in text]
-    for program in ('indent', 'prepare', 'trajectory_error', 'emulate', 'measure_cell'):
-        hidden = {'--help', '--ray', '--at', '--member', '--axis'}
+    for program in ('indent', 'prepare', 'trajectory_error', 'emulate', 'measure_cell', 'session'):
+        hidden = {'--help', '--ray', '--at', '--member', '--axis', '--check'}
         rows = table_rows(text, program)
         problems += [f'{program} {option} is not in the table' for option in sorted(project.programs[program] - hidden)
                      if option not in rows]

@@ -70,7 +70,9 @@ case "$*" in
   "test --help") echo 'usage: ./dev test [--core]' ;;
 esac
 """,
-        'launch/session.launch': '<launch><arg name="rig" default="sim" doc="sim or zaber"/><arg name="fixed" value="1"/></launch>',
+        'launch/session.launch': '<launch><arg name="rig" default="sim" doc="sim or zaber"/><arg name="fixed" value="1"/><arg name="set" default="" doc="keys"/></launch>',
+        'src/commands/session.cpp': 'int main() {}\n',
+        'config/sessions/default.yaml': 'rig:\n  name: sim\noverrides: {}\n',
         'config/bridge.yaml': 'rate: 1000   # Hz\nlimits: {force: 3.0}\n# serial:\n#   baud: 9600   # bit/s\n',
         'src/nodes/bridge_node.cpp': 'cycle.output<Wrench>("haptic/servo_cf"); node.advertiseService<A, B>("tare");\n',
         'src/nodes/clock.cpp': 'int main() {}\n',
@@ -89,6 +91,8 @@ See [other](doc/guide/other.md#how-its-rate-is-mostly), `config/bridge.yaml`, `s
     ./dev test --core cell/model
     ./dev bench accuracy -- --draws 3
     rosrun cell_microinjection indent --depths 1
+    rosrun cell_microinjection session lab.yaml rig.name:=sim
+    roslaunch cell_microinjection session.launch set:="rig.name=sim overrides.bridge.rate=1"
     rostopic echo /haptic/servo_cf          # the force
 """
 
@@ -122,7 +126,7 @@ See [other](doc/guide/other.md#how-its-rate-is-mostly), `config/bridge.yaml`, `s
                 '`launch/NAME.urdf`': 'no file, topic or key', '`torque_gain`': 'nothing of that name',
                 '`/haptic/servo_cx`': 'no node has a topic', '`/bridge/reset`': 'no node has a topic', '`--deep`': 'no program has an option',
                 '`speed:=1`': 'no launch file has an argument', '`fixed:=1`': 'no launch file has an argument',
-                '`rig:=lathe`': 'knows no lathe', '`./dev demo`': '', '`./dev walk --far`': 'no command walk',
+                '`rig:=lathe`': 'knows no lathe', '`set:=rig.speed=1`': 'no key rig.speed', '`./dev demo`': '', '`./dev walk --far`': 'no command walk',
                 '`./dev test --bore`': 'no option --bore', '`limits: {torque: 1}`': 'nothing of that name'}.items():
             with self.subTest(wrong=wrong):
                 found = self.problems(f'# Page\n\nSee {wrong}.\n')
@@ -139,6 +143,8 @@ See [other](doc/guide/other.md#how-its-rate-is-mostly), `config/bridge.yaml`, `s
                 'roslaunch cell_microinjection other.launch': 'no launch file', 'rostopic echo /haptic/none': 'no node has a topic',
                 'roslaunch cell_microinjection session.launch rig:=lathe': 'knows no lathe',
                 'roslaunch cell_microinjection session.launch speed:=1': 'no argument speed',
+                'roslaunch cell_microinjection session.launch set:="rig.speed=1"': 'no key rig.speed',
+                'rosrun cell_microinjection session lab.yaml rig.speed:=1': 'no key rig.speed',
                 'rostopic pub -1 /haptic/servo_cf cell_microinjection/Nothing': 'no message', 'python3 src/none.py': 'no file src/none.py',
                 'cp config/none.yaml mine.yaml': 'no file config/none.yaml'}.items():
             for block in (f'    {wrong}\n', f'```\n{wrong}\n```\n'):
@@ -174,8 +180,12 @@ See [other](doc/guide/other.md#how-its-rate-is-mostly), `config/bridge.yaml`, `s
         self.assertEqual(check_nodes(project, '| `/haptic/servo_cf` | `Wrench` | `bridge` |\n'), [])
         self.assertIn('does not know', check_nodes(project, '| `/haptic/other` | `Wrench` | `bridge` |\n')[0])
         self.assertIn('bridge publishes it', check_nodes(project, '| `/haptic/servo_cf` | `Wrench` | you |\n')[0])
-        self.assertIn('rig = sim', check_arguments(project, '## session.launch\n| `rig` | `zaber` | |\n')[0])
-        self.assertIn('rig is not', check_arguments(project, '## session.launch\n| `mode` | | |\n')[0])
+        self.assertIn('rig = sim', '\n'.join(check_arguments(project, '## session.launch\n| `rig` | `zaber` | |\n')))
+        self.assertIn('rig is not', '\n'.join(check_arguments(project, '## session.launch\n| `mode` | | |\n')))
+        self.write('launch/session.launch', '<launch><arg name="rig" default="" doc="rig.name: sim or zaber"/></launch>')
+        project = Project(self.root)
+        self.assertEqual(check_arguments(project, '## session.launch\n| `rig` | `rig.name` | |\n'), [])
+        self.assertIn('rig = rig.name', check_arguments(project, '## session.launch\n| `rig` | `rig` | |\n')[0])
         self.assertIn('the key stretch', check_scene_keys(project, '`mesh/size`')[0])
 
     def test_finds_documents_that_no_link_leads_to(self):

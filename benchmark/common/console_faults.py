@@ -48,12 +48,12 @@ def injection(session, view, fault, seconds):
     return {'fault': fault, 'before': before, 'during': during, 'outcome': operator.status.outcome}
 
 
-def run(out, arguments, fault, seconds):
-    """`arguments`: of session.launch. @raises SessionError"""
+def run(out, keys, fault, seconds):
+    """`keys`: of the session. @raises SessionError"""
     logs = out / 'console_log' / fault
     logs.mkdir(parents=True, exist_ok=True)
     session = DemoSession(Path(realtime.ROOT) / 'launch' / 'session.launch', logs,
-                          {**arguments, 'rviz': 'false', 'record': logs / 'record', 'bag': 'false'})
+                          {**keys, 'record.folder': logs / 'record', 'record.bag': 'false'})
     view = None
     try:
         session.wait_ready()

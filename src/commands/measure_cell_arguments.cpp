@@ -26,7 +26,7 @@ It prints, a line each:
 offset: of the cell's centre from the axis of the holding pipette, positive to the right, seen from shaft to mouth.
 
 --out writes the scene of --scene with the measured lengths. Materials, needle and holding pipette stay those of --scene.
-`indent --scene` and `session.launch scene:=` take the file.
+`indent --scene` and `session.launch cell:=` take the file.
 
 Example:
   measure_cell stack/ --pixel-size 0.25e-6 --scene config/cells/mouse_oocyte_zona.yaml --out measured.yaml

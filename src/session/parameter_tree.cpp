@@ -1,5 +1,6 @@
 #include "session/parameter_tree.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <regex>
@@ -40,9 +41,37 @@ std::string withPointAndSign(const std::string& mantissa, const std::string& exp
   return text + "e" + (has_sign ? "" : "+") + exponent.substr(1);
 }
 
+/// A word or path, which is nothing but a text without quotes, too.
+bool isPlainWord(const std::string& text) {
+  static const std::regex plain("[A-Za-z_/][A-Za-z_0-9/.-]*");
+  return std::regex_match(text, plain) && !isBoolean(text) && text != "null" && text != "Null" && text != "NULL";
+}
+
+std::string textOf(const std::string& text) { return isPlainWord(text) ? text : quoted(text); }
+
+/// Several lines as they are, such as a URDF.
+bool isBlock(const YAML::Node& node) {
+  if (!node.IsScalar()) return false;
+  const std::string& text = node.Scalar();
+  const auto is_control = [](char each) {
+    return each != '\n' && (static_cast<unsigned char>(each) < 0x20 || each == 0x7f);
+  };
+  const bool begins_well = !text.empty() && text.front() != ' ' && text.front() != '\n';
+  return begins_well && text.find('\n') != std::string::npos && std::none_of(text.begin(), text.end(), is_control);
+}
+
+std::string blockText(const std::string& text, int indent) {
+  const bool ends_line = text.back() == '\n', ends_empty = ends_line && text[text.size() - 2] == '\n';
+  std::string result = ends_empty ? "|+\n" : ends_line ? "|\n" : "|-\n";
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);)
+    result += (line.empty() ? "" : std::string(indent, ' ') + line) + "\n";
+  return result;
+}
+
 std::string keyText(const std::string& key) {
   static const std::regex plain("[A-Za-z_][A-Za-z_0-9]*");
-  return std::regex_match(key, plain) && !isBoolean(key) && key != "null" ? key : quoted(key);
+  return std::regex_match(key, plain) ? textOf(key) : quoted(key);
 }
 
 std::string listText(const YAML::Node& list);
@@ -133,11 +162,11 @@ std::string scalarText(const YAML::Node& scalar) {
   static const std::regex not_finite("[-+]?\\.(?:inf|Inf|INF)|\\.(?:nan|NaN|NAN)");
   if (!scalar.IsScalar()) return "null";
   const std::string& text = scalar.Scalar();
-  if (isQuoted(scalar)) return quoted(text);
+  if (isQuoted(scalar)) return textOf(text);
   std::smatch parts;
   if (isBoolean(text) || std::regex_match(text, integer) || std::regex_match(text, not_finite)) return text;
   if (std::regex_match(text, parts, number)) return withPointAndSign(parts[1], parts[2]);
-  return quoted(text);
+  return textOf(text);
 }
 
 std::string parameterText(const YAML::Node& parameters, int indent) {
@@ -146,6 +175,8 @@ std::string parameterText(const YAML::Node& parameters, int indent) {
     text += std::string(indent, ' ') + keyText(item.first.Scalar()) + ":";
     if (item.second.IsMap() && item.second.size() > 0) {
       text += "\n" + parameterText(item.second, indent + 2);
+    } else if (isBlock(item.second)) {
+      text += " " + blockText(item.second.Scalar(), indent + 2);
     } else {
       text += " " + flowText(item.second) + "\n";
     }

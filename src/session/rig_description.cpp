@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
 #include <limits>
 #include <sstream>
 #include <utility>
@@ -77,9 +78,8 @@ bool RigDescription::Sizes::operator==(const Sizes& other) const {
 RigDescription::RigDescription(const std::string& path)
     : path_(path), document_(std::make_unique<tinyxml2::XMLDocument>()) {
   std::ifstream in(path);
-  std::ostringstream content;
-  if (!in || !(content << in.rdbuf())) throw ConfigError(path + ": cannot be read");
-  file_ = content.str();
+  if (!in) throw ConfigError(path + ": cannot be read");
+  file_.assign(std::istreambuf_iterator<char>(in), {});
   if (document_->Parse(file_.c_str()) != tinyxml2::XML_SUCCESS)
     throw ConfigError(path + ": is no URDF: " + document_->ErrorStr());
   sizes_.start_height = heightOf(joint(kStart));

@@ -23,11 +23,11 @@ std::string workingFolder() {
   return folder.empty() ? "/" : folder;
 }
 
-/// The value of an argument. What is no YAML is a text.
+/// The value of an argument: YAML where it begins as a list, a map or a text in quotes, otherwise as it is.
 YAML::Node argumentValue(const std::string& text) {
+  if (std::string("[{\"'").find(text.front()) == std::string::npos) return YAML::Node(text);
   try {
-    const YAML::Node value = YAML::Load(text);
-    return value.IsNull() ? YAML::Node(text) : value;
+    return YAML::Load(text);
   } catch (const YAML::Exception&) {
     return YAML::Node(text);
   }
@@ -113,19 +113,20 @@ class Loader {
   void readArguments(const std::vector<std::string>& arguments) {
     YAML::Node keys(YAML::NodeType::Map);
     for (const std::string& argument : arguments) {
-      const std::size_t end = argument.find(":=");
-      std::string key = argument.substr(0, end);
-      if (end == std::string::npos || key.empty()) {
+      const std::size_t equals = argument.find('=');
+      const bool has_colon = equals != std::string::npos && equals > 0 && argument[equals - 1] == ':';
+      std::string key = equals == std::string::npos ? "" : argument.substr(0, equals - (has_colon ? 1 : 0));
+      if (key.empty()) {
         errors_.push_back(std::string(kArgument) + " " + argument +
                           ": must be KEY:=VALUE, such as hand.device:=keyboard");
         continue;
       }
-      if (end + 2 == argument.size()) continue;  // not given
+      if (equals + 1 == argument.size()) continue;  // not given
       std::replace(key.begin(), key.end(), '.', '/');
       if (isThere(keys, key)) {
         errors_.push_back(std::string(kArgument) + " " + argument + ": is there twice; must be there once");
       } else {
-        setParameter(keys, key, argumentValue(argument.substr(end + 2)));
+        setParameter(keys, key, argumentValue(argument.substr(equals + 1)));
       }
     }
     ConfigReader reader(keys, kArgument);

@@ -113,9 +113,10 @@ struct Session {
   SessionPlaces places;
   std::vector<std::string> files;  ///< that were read: the session's, its bases, and those of overrides
 
-  /// Loads a session file, or NAME of config/sessions, and sets the keys of `arguments` ("hand.device:=keyboard", whose
-  /// value is YAML; one without a value is passed over). A path in a file is relative to that file, one in an argument
-  /// to the working directory. Throws ConfigError with all errors.
+  /// Loads a session file, or NAME of config/sessions, and sets the keys of `arguments`: "hand.device:=keyboard" or
+  /// "hand.device=keyboard". A value that is a list, a map or a text in quotes is YAML; a key without a value is passed
+  /// over. A path in a file is relative to that file, one in an argument to the working directory. Throws ConfigError
+  /// with all errors.
   static Session load(const std::string& file_or_name, const std::vector<std::string>& arguments = {},
                       const std::string& package = "");
   /// All keys, as a file that loads as this session.

@@ -401,17 +401,23 @@ std::vector<std::string> SessionPlan::names() const {
   return names;
 }
 
+bool SessionPlan::takesPart(const std::string& name) const {
+  const std::vector<std::string> all = names();
+  return std::find(all.begin(), all.end(), name) != all.end();
+}
+
 void SessionPlan::keepOnly(const std::vector<std::string>& wanted) {
-  const std::vector<std::string> there = names();
   std::vector<std::string> errors;
   for (const std::string& name : wanted) {
-    if (std::find(there.begin(), there.end(), name) == there.end())
-      errors.push_back("only = " + name + ": this session has no such node; must be one of: " + join(there, ", "));
+    if (!takesPart(name))
+      errors.push_back("only = " + name + ": this session has no such node; must be one of: " + join(names(), ", "));
   }
   if (!errors.empty()) throw ConfigError(errors);
   keep(nodes, wanted);
   keep(frames, wanted);
   keep(processes, wanted);
+  const bool has_reader = takesPart("micromanipulator") || takesPart("robot_state_publisher");
+  if (!has_reader) parameters.remove("robot_description");
 }
 
 SessionPlan planOf(const Session& session, SessionClock clock) { return Planner(session, clock).plan(); }

@@ -51,7 +51,8 @@ struct SessionPlan {
 
   const NodePlan* node(const std::string& name) const;  ///< nullptr when it does not take part
   std::vector<std::string> names() const;               ///< of nodes, frames and processes
-  /// Leaves only these. Throws ConfigError when one does not take part.
+  bool takesPart(const std::string& name) const;        ///< a node, frame or process
+  /// Leaves only these, and the parameters that they read. Throws ConfigError when one does not take part.
   void keepOnly(const std::vector<std::string>& names);
 };
 

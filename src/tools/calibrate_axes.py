@@ -57,7 +57,7 @@ def require(answer):
 def report(answer, written):
     print(f"device_axes: {answer.device_axes}")
     written.require(answer.file)
-    print(f"the next session takes them with overrides:={answer.file}")
+    print(f"the next session takes them with set:=overrides={answer.file}")
 
 
 def residual(answer):

@@ -7,43 +7,43 @@ from pathlib import Path
 import screenshot
 from demo_session import DemoSession, SessionError
 from processes import Child, wait_until
+from rviz_view import RvizError, write_console
 from screen import Screen
 from session_operator import SessionOperator
 
 ROOT = Path(os.environ.get('MICROINJECTION_ROOT') or Path(__file__).resolve().parents[2])
-sys.path.insert(0, str(ROOT / 'launch'))
-
-import console_config  # noqa: E402
-
 SIZES = ((1280, 800), (1920, 1080))  # px
 PATIENCE = 100  # s of wall time, for rviz to come up, and for the moment of the picture
 SETTLE = 6      # s of wall time, for rviz to draw it
 SLOWER = 0.3    # real-time factor, so that a machine which draws in software shows it
-STEPPED = {'haptic': 'none', 'mode': 'semi_automatic'}
-BY_HAND = {'haptic': 'operator', 'motion': ROOT / 'config/hand_motions/puncture_and_inject.yaml'}
+STEPPED = {'hand.device': 'none', 'injection.mode': 'semi_automatic'}
+BY_HAND = {'hand.device': 'operator', 'hand.motion': ROOT / 'config/hand_motions/puncture_and_inject.yaml'}
+CAMERA = {'camera.source': 'sim'}
+CONSOLES = {'inject': {**STEPPED, **CAMERA}, 'teleoperate': {**BY_HAND, **CAMERA}, 'train': BY_HAND, 'axes': BY_HAND,
+            'paper': STEPPED, 'calibrate': {'hand.device': 'none', 'injection.mode': 'manual', **CAMERA}}
 # Without a hand the clock of a lock step would wait for what leads the needle by images.
-CONSOLES = {'inject': {**STEPPED, 'camera': 'sim'}, 'teleoperate': {**BY_HAND, 'camera': 'sim'}, 'train': BY_HAND,
-            'axes': BY_HAND, 'paper': STEPPED, 'calibrate': {'haptic': 'none', 'mode': 'manual', 'camera': 'sim', 'clock': 'wall'}}
+LIVE = ('calibrate',)
 
 
-def await_moment(session, arguments):
+def await_moment(session, keys):
     """Until there is something to see. @raises SessionError"""
     session.monitor.go()  # first: in lock step nothing comes before the hand
     operator = SessionOperator(PATIENCE)
-    if arguments['haptic'] == 'operator':
+    if keys['hand.device'] == 'operator':
         operator.wait(lambda: session.monitor.phase == 'hold', "the hand's rest in the cell")
-    elif arguments['mode'] == 'semi_automatic':
+    elif keys['injection.mode'] == 'semi_automatic':
         for command, state in (('approach', 'contact'), ('indent', 'punctured')):
             operator.say(command, lambda state=state: operator.waits_in(state))
     session.check()
 
 
 def start_rviz(name, size, logs, environment):
-    config = console_config.configuration(name)
+    path = logs / f'{name}.rviz'
+    write_console(name, path)
+    config = path.read_text(encoding='utf-8')
     for key, value in zip(('Width', 'Height'), size):
         before = {'Width': 1280, 'Height': 800}[key]
         config = config.replace(f'  {key}: {before}\n', f'  {key}: {value}\n')
-    path = logs / f'{name}.rviz'
     path.write_text(config, encoding='utf-8')
     return Child(['nice', '-n', '5', 'rviz', '-d', str(path)], logs / 'rviz.log', {**os.environ, **environment})
 
@@ -52,19 +52,19 @@ def picture(name, size, out, logs):
     """@raises SessionError"""
     logs = logs / f'{name}_{size[0]}'
     logs.mkdir(parents=True)
-    arguments = {'clock': 'lockstep', 'real_time_factor': SLOWER, 'display': 'true', 'cell': 'mouse_oocyte_injection', 'layers': 2,
-                 **CONSOLES[name]}
+    keys = {'cell': 'mouse_oocyte_injection', 'injection.layers': 2, **CONSOLES[name]}
     if name == 'train':
-        arguments.update(record=logs / 'record', bag='false', operator='ada', history=logs / 'training.csv')
+        keys.update({'record.folder': logs / 'record', 'record.bag': 'false', 'record.trainee': 'ada',
+                     'record.history': logs / 'training.csv'})
     screen = Screen(logs / 'xvfb.log', size)
     session = view = None
     try:
-        session = DemoSession(ROOT / 'launch/session.launch', logs, arguments)
+        session = DemoSession(ROOT / 'launch/session.launch', logs, keys, 'wall' if name in LIVE else 'lockstep', SLOWER)
         session.wait_ready()
         view = start_rviz(name, size, logs, screen.environment)
         if not wait_until(lambda: session.monitor.has_subscriber('/viz/markers'), PATIENCE):
             raise SessionError(f'rviz does not start; {view.log} ends with\n{view.tail(8)}')
-        await_moment(session, arguments)
+        await_moment(session, keys)
         time.sleep(SETTLE)
         path = out / f'{name}_{size[0]}x{size[1]}.png'
         if not screenshot.take(path, env={**os.environ, **screen.environment}):
@@ -84,7 +84,7 @@ def main():
     os.environ.pop('DISPLAY', None)
     try:
         print(picture(name, (int(width), int(height)), Path(out), Path(logs)))
-    except (SessionError, RuntimeError, OSError) as error:
+    except (SessionError, RvizError, RuntimeError, OSError) as error:
         print(f'{name}: {error}', file=sys.stderr)
         return 1
     return 0

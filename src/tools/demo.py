@@ -111,9 +111,9 @@ class Demo:
     def start(self):
         say(f'starting the session; its log is in {self._logs}')
         self._session = DemoSession(ROOT / 'launch' / 'session.launch', self._logs, {
-            'scene': self._scene(), 'model': self._arguments.model, 'rig': self._arguments.rig, 'rviz': 'false',
-            'haptic': self._arguments.haptic, 'motion': self._arguments.motion.resolve(),
-            'clock': self._arguments.clock, 'record': self._out, 'operator': self._arguments.operator})
+            'cell': self._scene(), 'model': self._arguments.model, 'rig.name': self._arguments.rig,
+            'hand.device': self._arguments.haptic, 'hand.motion': self._arguments.motion.resolve(),
+            'record.folder': self._out, 'record.trainee': self._arguments.operator}, clock=self._arguments.clock)
         self._session.wait_ready()
         if not self._arguments.no_rviz:
             self._start_rviz()

@@ -1,6 +1,7 @@
 """The nodes of a session with a ROS master of their own, started and watched from outside."""
 import os
 import re
+import shlex
 import xmlrpc.client
 
 from processes import Child, free_port, wait_until
@@ -17,18 +18,21 @@ class SessionError(Exception):
 class DemoSession:
     """session.launch, whose hand rests until monitor.go()."""
 
-    def __init__(self, launch_file, logs, arguments):
-        """@param arguments  of session.launch, name -> value."""
-        self._lockstep = arguments['clock'] == 'lockstep'
-        self._recorded = 'record' in arguments
+    def __init__(self, launch_file, logs, keys, clock='wall', real_time_factor=0):
+        """@param keys  of a session file (config/sessions/default.yaml), such as {'hand.device': 'none'}
+        @param clock  wall or lockstep; real_time_factor: of the latter."""
+        self._lockstep = clock == 'lockstep'
+        self._recorded = 'record.folder' in keys
         port = free_port()
         # By address, so that it does not matter what this machine's name resolves to.
         os.environ.pop('ROS_HOSTNAME', None)
         os.environ.update(ROS_MASTER_URI=f'http://127.0.0.1:{port}', ROS_IP='127.0.0.1', ROS_LOG_DIR=str(logs))
         # By its path: a search by name would follow catkin_ws's link to the repository round and round.
-        command = ['roslaunch', '-p', str(port), str(launch_file), 'wait_for_go:=true']
-        command += [f'{name}:={value}' for name, value in arguments.items()]
-        self._launch = Child(command, logs / 'session.log')
+        changes = {'hand.wait_for_go': 'true', **keys}
+        self._launch = Child(['roslaunch', '-p', str(port), str(launch_file), f'clock:={clock}',
+                              f'real_time_factor:={real_time_factor}',
+                              'set:=' + ' '.join(shlex.quote(f'{key}={value}') for key, value in changes.items())],
+                             logs / 'session.log')
         self.monitor = None
 
     def wait_ready(self):

@@ -24,7 +24,7 @@ SIZE = (1280, 800)    # px
 MENU = 62             # px above the panels
 SLOWER = 0.15         # real-time factor, so that a machine which draws in software shows all of it
 PERIOD = 0.3          # s of wall time between two frames, at least
-SLOW = 'injection_controller:\n  motion: {stab_speed: 2.0e-5, retract_speed: 8.0e-5}\n'  # m/s, or nobody sees the stab
+SLOW = {'stab_speed': 2.0e-5, 'retract_speed': 8.0e-5}  # m/s, or nobody sees the stab
 LARGEST = 3e6         # bytes, of the animation
 PAUSE = '200'         # hundredths of a second, of its last frame
 STEPS = ('approach', 'indent', 'inject', 'withdraw')
@@ -132,16 +132,17 @@ def record(session, recording):
 def console(out, logs):
     say('a session with the console')
     os.environ.pop('DISPLAY', None)
-    (logs / 'slow.yaml').write_text(SLOW, encoding='utf-8')
     screen = Screen(logs / 'xvfb.log', SIZE)
     session = view = None
     try:
         session = DemoSession(ROOT / 'launch/session.launch', logs, {
-            'clock': 'lockstep', 'real_time_factor': SLOWER, 'haptic': 'none', 'mode': 'semi_automatic', 'camera': 'sim',
-            'display': 'false', 'cell': 'mouse_oocyte_injection', 'overrides': logs / 'slow.yaml'})
+            'hand.device': 'none', 'injection.mode': 'semi_automatic', 'camera.source': 'sim', 'display.markers': 'false',
+            'cell': 'mouse_oocyte_injection',
+            **{f'overrides.injection_controller.motion.{key}': value for key, value in SLOW.items()}}, 'lockstep', SLOWER)
         session.wait_ready()
-        view = Child(['roslaunch', str(ROOT / 'launch/display.launch'), 'console:=inject'], logs / 'rviz.log',
-                     {**os.environ, **screen.environment})
+        # clock:=external: the time stays that of the session.
+        view = Child(['roslaunch', str(ROOT / 'launch/session.launch'), 'clock:=external', 'console:=inject',
+                      'only:=display rviz'], logs / 'rviz.log', {**os.environ, **screen.environment})
         if not wait_until(lambda: session.monitor.has_subscriber('/viz/markers'), PATIENCE):
             raise PicturesError(f'rviz does not start; {view.log} ends with\n{view.tail(8)}')
         session.monitor.go()

@@ -2,6 +2,7 @@
 import os
 import re
 import signal
+import subprocess
 
 import screenshot
 from processes import Child
@@ -26,6 +27,14 @@ PICTURE_SHARE = -12  # same while a picture is taken, for which the others can w
 
 class RvizError(Exception):
     """What went wrong, for the user."""
+
+
+def write_console(name, path):
+    """Writes the rviz configuration of an operator's console. @raises RvizError"""
+    command = ['rosrun', 'cell_microinjection', 'session', f'display.console:={name}', '--view', str(path)]
+    done = subprocess.run(command, text=True, capture_output=True)
+    if done.returncode:
+        raise RvizError(f'console {name}: {done.stderr.strip()}')
 
 
 class RvizView:

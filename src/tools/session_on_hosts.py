@@ -5,8 +5,8 @@
     session_on_hosts.py --hosts FILE --ssh [ARGUMENT:=VALUE ...]         on the master's host: roslaunch starts the others
     session_on_hosts.py --hosts FILE --list [ARGUMENT:=VALUE ...]        prints which node runs where
 
-The arguments are those of session.launch, the same on every host. A host does not start when it cannot be reached both
-ways, its clock is off, its messages are of another version, or the arguments differ.
+The arguments are those of session.launch but `only`, the same on every host: session:=FILE names the session. A host does
+not start when it cannot be reached both ways, its clock is off, its messages are of another version, or the session differs.
 """
 import argparse
 import errno
@@ -26,7 +26,8 @@ import host_check  # noqa: E402
 import hosts_file  # noqa: E402
 
 MASTER_PORT = 11311
-DIGEST = '/hosts/session'  # parameter: of the file and the arguments
+DIGEST = '/hosts/session'  # parameter: of the hosts file and the session
+SESSION_DIGEST = '/session/digest'  # parameter that session.launch sets: of all files that the session is made from
 PATIENCE = 120             # s for the master's host to start
 
 
@@ -38,30 +39,29 @@ def parse_arguments():
     what.add_argument('--ssh', action='store_true', help='start the nodes of all hosts from here, by ssh')
     what.add_argument('--list', action='store_true', help='only print which node runs where')
     parser.add_argument('--check-only', action='store_true', help='with --host: check, start nothing; the master\'s host only answers')
-    parser.add_argument('--launch', default='session.launch', help='of cell_microinjection (default %(default)s)')
     parser.add_argument('arguments', nargs='*', metavar='ARGUMENT:=VALUE')
     arguments = parser.parse_args()
     wrong = [text for text in arguments.arguments if ':=' not in text]
     if wrong:
         parser.error(f'{wrong[0]}: must be ARGUMENT:=VALUE')
+    if any(text.startswith('only:=') for text in arguments.arguments):
+        parser.error('only: must be left out, because the hosts file says which node runs where')
     return arguments
 
 
-def digest(arguments):
-    """Of what all hosts must have in common: the arguments, and the contents of the files that they name."""
-    parts = [arguments.hosts.read_bytes(), arguments.launch.encode()]
-    for argument in sorted(arguments.arguments):
-        parts.append(argument.encode())
-        path = Path(argument.partition(':=')[2])
-        if path.is_file():
-            parts.append(path.read_bytes())
+def digest(arguments, config):
+    """Of what all hosts must have in common: the hosts file, the arguments and all files that the session is made from."""
+    parts = [arguments.hosts.read_bytes(), *(text.encode() for text in sorted(arguments.arguments)),
+             str(config.params[SESSION_DIGEST].value).strip().encode()]
     return hashlib.md5(b'\0'.join(parts)).hexdigest()
 
 
-def launch_files(arguments):
+def launch_files(arguments, only=()):
+    """Of the nodes `only`; without, of all."""
     import roslaunch.rlutil
-    names = ['cell_microinjection', arguments.launch, *arguments.arguments]
-    return [(name, arguments.arguments) for name in roslaunch.rlutil.resolve_launch_arguments(names)]
+    words = [*arguments.arguments, *([f'only:={" ".join(only)}'] if only else [])]
+    names = roslaunch.rlutil.resolve_launch_arguments(['cell_microinjection', 'session.launch', *words])
+    return [(name, words) for name in names]
 
 
 def loader(host):
@@ -69,15 +69,16 @@ def loader(host):
     return f'env -u ROS_HOSTNAME ROS_IP={host.address} {shlex.quote(host.env_loader)}'
 
 
-def assign(config, hosts, here):
-    """Leaves the nodes of the host `here` in a roslaunch configuration; with None, all, each with the machine of its host."""
-    if here:
-        config.nodes = [node for node in config.nodes if hosts.of_node(node.name) == here]
-        if here != hosts.master:
-            config.params = {}  # the master's host has set them
-            config.clear_params = []
-            config.executables = []
-        return
+def nodes_of(config, hosts, here):
+    """Returns the names of the nodes of the host `here` in a roslaunch configuration. Raises HostsError without one."""
+    names = [node.name for node in config.nodes if hosts.of_node(node.name) == here]
+    if not names:
+        raise hosts_file.HostsError(f'hosts/{here.name}/nodes: this session has none of them: nothing runs on this host')
+    return names
+
+
+def assign(config, hosts):
+    """Gives each node of a roslaunch configuration the machine of its host."""
     from roslaunch.core import Machine
     for host in hosts.all.values():
         if host != hosts.master:
@@ -101,23 +102,25 @@ def unknown_nodes(config, hosts):
     return [node for host in hosts.all.values() for node in host.nodes if node not in names]
 
 
-def launch(arguments, hosts, here):
+def launch(arguments, hosts, here, config):
+    """Starts the nodes of the host `here`; with None, those of all. `config`: of the whole session."""
     import roslaunch.parent
     import rospy
 
     class Launch(roslaunch.parent.ROSLaunchParent):
         def _load_config(self):
             super()._load_config()
-            for node in unknown_nodes(self.config, hosts):
-                print(f'session_on_hosts: {node}: this session has no such node', file=sys.stderr)
-            assign(self.config, hosts, here)
+            if here is None:
+                assign(self.config, hosts)
 
+    for node in unknown_nodes(config, hosts):
+        print(f'session_on_hosts: {node}: this session has no such node', file=sys.stderr)
     uuid = roslaunch.rlutil.get_or_generate_uuid(None, here is not None and here != hosts.master)
     roslaunch.configure_logging(uuid)
-    parent = Launch(uuid, launch_files(arguments), is_core=False)
+    parent = Launch(uuid, launch_files(arguments, nodes_of(config, hosts, here) if here else ()), is_core=False)
     parent.start(auto_terminate=False)
     if here is None or here == hosts.master:
-        rospy.set_param(DIGEST, digest(arguments))
+        rospy.set_param(DIGEST, digest(arguments, config))
     print(f'session_on_hosts: {here.name if here else "all hosts"}: started', flush=True)
     parent.spin()
 
@@ -161,15 +164,15 @@ def checked(hosts, here):
         door.close()
 
 
-def wait_for_session(arguments):
+def wait_for_session(arguments, config):
     """Returns an error, or an empty text when the master's host has started the same session."""
     import rosgraph
     master, end = rosgraph.Master('/session_on_hosts'), time.monotonic() + PATIENCE
     while time.monotonic() < end:
         try:
             if master.hasParam(DIGEST):
-                same = master.getParam(DIGEST) == digest(arguments)
-                return '' if same else 'the master\'s host has another hosts file, or other arguments'
+                same = master.getParam(DIGEST) == digest(arguments, config)
+                return '' if same else 'the master\'s host has another hosts file, another session or other arguments'
         except OSError:
             pass
         time.sleep(0.2)
@@ -177,16 +180,17 @@ def wait_for_session(arguments):
 
 
 def join(arguments, hosts, here):
-    errors = checked(hosts, here)
+    errors, config = checked(hosts, here), None
     if not errors and not arguments.check_only:
-        error = wait_for_session(arguments)
+        config = load(arguments)
+        error = wait_for_session(arguments, config)
         errors = [error] if error else []
     if errors:
         raise hosts_file.HostsError('\n'.join(errors))
     if arguments.check_only:
         print(f'session_on_hosts: {here.name}: reaches the master\'s host and is reached; clocks and messages agree')
         return
-    launch(arguments, hosts, here)
+    launch(arguments, hosts, here, config)
 
 
 def check_by_ssh(arguments, hosts):
@@ -226,7 +230,7 @@ def run(arguments):
         if arguments.check_only:
             print(f'session_on_hosts: {here.name}: answers the checks of the others; Ctrl-C ends it', flush=True)
             threading.Event().wait()
-        launch(arguments, hosts, None if arguments.ssh else here)
+        launch(arguments, hosts, None if arguments.ssh else here, load(arguments))
     finally:
         server.close()
 

@@ -180,7 +180,7 @@ def main():
     arguments.out = arguments.out.resolve()
     arguments.out.mkdir(parents=True, exist_ok=True)
     session = DemoSession(ROOT / 'launch/session.launch', arguments.out,
-                          {'clock': 'wall', 'haptic': arguments.hand, 'cell': arguments.cell})
+                          {'hand.device': arguments.hand, 'cell': arguments.cell})
     try:
         run(arguments, session)
     except (SessionError, RvizError, MouseError) as error:

@@ -28,8 +28,8 @@ PATH = [("approach", 2.0, -19.2e-3, False), ("approach", 0.2, -19.2e-3, True), (
 
 
 def run_session(folder, training):
-    """A lock-step session on a master of its own; returns the bytes of its force_depth.csv. `training`: arguments of
-    session.launch."""
+    """A lock-step session on a master of its own; returns the bytes of its force_depth.csv. `training`: keys of the
+    session."""
     motion = pathlib.Path(folder) / "motion.yaml"
     motion.write_text(yaml.safe_dump({"path": [dict(zip(("phase", "duration", "z", "clutch"), waypoint))
                                                for waypoint in PATH]}))
@@ -37,8 +37,8 @@ def run_session(folder, training):
     out = pathlib.Path(folder) / "out"
     subprocess.run(
         ["roslaunch", "-p", str(port), str(ROOT / "launch/session.launch"), "clock:=lockstep", "display:=false",
-         f"scene:={ROOT}/test/chain/injected_oocyte.yaml", "model:=live", f"motion:={motion}", f"record:={out}",
-         "bag:=false", "end_when_done:=true", *training],
+         f"cell:={ROOT}/test/chain/injected_oocyte.yaml", "model:=live", f"record:={out}",
+         f"set:=hand.motion={motion} record.bag=false record.end_when_done=true {training}"],
         check=True, timeout=PATIENCE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
         env={**os.environ, "ROS_MASTER_URI": f"http://127.0.0.1:{port}", "ROS_IP": "127.0.0.1"})
     return (out / "force_depth.csv").read_bytes()
@@ -90,7 +90,7 @@ class RepeatTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as a, tempfile.TemporaryDirectory() as b:
             task = pathlib.Path(a) / "training.yaml"
             task.write_text(yaml.safe_dump({"force": "measured", "task": TASK}), encoding="utf-8")
-            training = ("operator:=ada", f"history:={a}/history.csv", f"training:={task}")
+            training = f"record.trainee=ada record.history={a}/history.csv record.training={task}"
             cls.first, cls.second = (run_session(folder, training) for folder in (a, b))
             cls.told = yaml.safe_load((pathlib.Path(b) / "out/training.yaml").read_text(encoding="utf-8"))
             cls.history = (pathlib.Path(a) / "history.csv").read_text(encoding="utf-8")

@@ -18,7 +18,7 @@ from in_folder import InFolder  # noqa: E402
 
 TOOL = ROOT / "src/tools/session_on_hosts.py"
 PATIENCE = 60  # s of wall time; only what hangs takes that long
-ARGUMENTS = ("haptic:=none", "inject:=false", "display:=false")
+ARGUMENTS = ("haptic:=none", "display:=false", "set:=injection.start_when_enabled=false")
 HOSTS = """master: rig
 hosts:
   rig: {address: 10.88.0.1}
@@ -44,28 +44,42 @@ class AssignTest(Files):
 
     def test_by_ssh_each_node_has_its_hosts_machine(self):
         config = self.config()
-        session_on_hosts.assign(config, self.hosts, None)
+        session_on_hosts.assign(config, self.hosts)
         machines = {node.name: (node.machine.address, node.machine.user, node.machine.env_loader) for node in config.nodes}
         self.assertEqual(machines["cell_simulator"], ("10.88.0.2", "lab", "env -u ROS_HOSTNAME ROS_IP=10.88.0.2 /opt/env.sh"))
         self.assertEqual(machines["micromanipulator"][0], "localhost")
         self.assertTrue(config.has_remote_nodes())
 
-    def test_a_host_has_its_own_nodes_and_the_masters_host_the_parameters(self):
-        for name, nodes, parameters in (("rig", ["micromanipulator"], True), ("solver", ["cell_simulator"], False)):
-            config = self.config()
-            session_on_hosts.assign(config, self.hosts, self.hosts.named(name))
-            self.assertEqual([node.name for node in config.nodes], nodes)
-            self.assertEqual("/a" in config.params, parameters)
+    def test_a_host_has_its_own_nodes(self):
+        for name, nodes in (("rig", ["micromanipulator"]), ("solver", ["cell_simulator"])):
+            self.assertEqual(session_on_hosts.nodes_of(self.config(), self.hosts, self.hosts.named(name)), nodes)
+        idle = hosts_file.Host("idle", "10.88.0.3", ("nobody",))
+        with self.assertRaisesRegex(hosts_file.HostsError, "hosts/idle/nodes: this session has none of them"):
+            session_on_hosts.nodes_of(self.config(), self.hosts, idle)
 
-    def test_files_that_arguments_name_have_to_be_the_same(self):
-        scene = self.write("scene.yaml", "a: 1")
+    def test_a_host_starts_only_its_own_nodes_with_their_parameters(self):
+        import roslaunch.config
 
         class Given:
-            hosts, launch, arguments = self.file, "session.launch", [f"scene:={scene}"]
-        before = session_on_hosts.digest(Given)
-        self.assertEqual(session_on_hosts.digest(Given), before)
-        self.write("scene.yaml", "a: 2")
-        self.assertNotEqual(session_on_hosts.digest(Given), before)
+            hosts, arguments = self.file, list(ARGUMENTS)
+        files = session_on_hosts.launch_files(Given, ["cell_simulator"])
+        config = roslaunch.config.load_config_default(files, None, assign_machines=False)
+        self.assertEqual([node.name for node in config.nodes], ["cell_simulator"])
+        self.assertIn("/cell_simulator/scene", config.params)
+        self.assertFalse([name for name in config.params if name.startswith(("/injector/", "/robot_description"))])
+
+    def test_files_that_the_session_is_made_from_have_to_be_the_same(self):
+        scene = self.write("scene.yaml", (ROOT / "test/chain/coarse_oocyte.yaml").read_text())
+
+        class Given:
+            hosts, arguments = self.file, [f"cell:={scene}"]
+
+        def digest():
+            return session_on_hosts.digest(Given, session_on_hosts.load(Given))
+        before = digest()
+        self.assertEqual(digest(), before)
+        self.write("scene.yaml", scene.read_text() + "# another\n")
+        self.assertNotEqual(digest(), before)
 
 
 @unittest.skipUnless(lossy_network.possible(), "no network namespaces: needs root, /dev/net/tun and a system that allows them")
@@ -109,7 +123,7 @@ class SessionTest(Files):
     def test_two_hosts_start_one_session(self):
         self.refused("solver", "solver does not reach 10.88.0.1:11312", *ARGUMENTS)
         self.until_said(*self.start("rig", *ARGUMENTS), "session_on_hosts: rig: started")
-        self.refused("solver", "has another hosts file, or other arguments", "haptic:=none")
+        self.refused("solver", "has another hosts file, another session or other arguments", "haptic:=none")
         self.until_said(*self.start("solver", *ARGUMENTS), "session_on_hosts: solver: started")
         environment = {**os.environ, "ROS_MASTER_URI": "http://10.88.0.1:11311", "ROS_IP": "10.88.0.1"}
         # The force that the controller needs comes from the other host.

@@ -261,7 +261,10 @@ TEST_F(SessionTest, ArgumentsAreKeysWithValues) {
   EXPECT_EQ(session.hand.topics.force, "/b");
   EXPECT_EQ(session.places.at("hand/device"), "argument");
   EXPECT_EQ(parameterAt(session.overrides, "injection_controller/motion/stab_speed").as<double>(), 5e-6);
-  EXPECT_NE(refused({"device=keyboard"}).find("argument device=keyboard: must be KEY:=VALUE"), std::string::npos);
+  EXPECT_NE(refused({"keyboard"}).find("argument keyboard: must be KEY:=VALUE"), std::string::npos);
+  EXPECT_EQ(this->session({"hand.device=keyboard"}).hand.device, "keyboard");  // roslaunch takes no := in a value
+  EXPECT_EQ(this->session({"record.folder=/a=b", "hand.topics.namespace:=/c:=d"}).record.folder, "/a=b");
+  EXPECT_NE(refused({"=a"}).find("must be KEY:=VALUE"), std::string::npos);
   EXPECT_NE(refused({":=a"}).find("must be KEY:=VALUE"), std::string::npos);
   EXPECT_NE(refused({"twin:=true", "twin:=false"}).find("argument twin:=false: is there twice"), std::string::npos);
   EXPECT_NE(refused({"rig:=zaber", "rig.port:=/dev/a"}).find("argument rig.port:=/dev/a: is there twice"),
