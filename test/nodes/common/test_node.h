@@ -21,9 +21,9 @@ template <typename Message>
 class Probe {
  public:
   explicit Probe(Bus& bus, const std::string& topic) {
-    subscription_ = bus.subscribe<Message>(topic, 0, [this, &bus](const Delivery<Message>& delivery) {
+    subscription_ = bus.subscribe<Message>(topic, 0, [this](const Delivery<Message>& delivery) {
       all_.push_back(delivery.message);
-      arrivals_.push_back(bus.now());
+      arrivals_.push_back(delivery.raw.received);
       senders_.push_back(delivery.raw.sender);
     });
   }
@@ -96,6 +96,13 @@ class TestNode {
   template <typename Message>
   void repeat(const std::string& topic, const Message& message) {
     repeat<Message>(topic, [message]() -> std::optional<Message> { return message; });
+  }
+  /// From now on in each step a message with stamp 0, which withdraws the last one (CRTK).
+  template <typename Message>
+  void repeatInvalid(const std::string& topic, Message message = {}) {
+    publisher<Message>(topic, false);
+    message.header.stamp = ros::Time();
+    repeated_[topic] = [this, topic, message] { say(topic, message); };
   }
   /// Repeats it no more.
   void silence(const std::string& topic) { repeated_.erase(topic); }
