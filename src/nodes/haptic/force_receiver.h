@@ -13,8 +13,7 @@ namespace microinjection {
 /// must be connected to the force's topic. Other subscriptions do not count, since a watchdog, a
 /// recorder or `rostopic echo` renders nothing.
 ///
-/// It is not required in virtual time, nor in lock step, where the order of the connections would depend on
-/// the machine.
+/// It is not required in lock step over topics, where the order of the connections would depend on the machine.
 class ForceReceiver {
  public:
   /// `required`: false for a device that renders no force.
@@ -23,7 +22,7 @@ class ForceReceiver {
       : bus_(cycle.bus()),
         topic_(force.topic()),
         is_subscribed_([force](const std::string& node) { return force.isSubscribedBy(node); }),
-        required_(required && !cycle.deterministic()) {}
+        required_(required && !(cycle.deterministic() && !cycle.bus().isVirtual())) {}
   ForceReceiver(const ForceReceiver&) = delete;
 
   /// Sets the topic of the hand's position.
