@@ -104,13 +104,6 @@ class TestNode {
     message.header.stamp = ros::Time();
     repeated_[topic] = [this, topic, message] { say(topic, message); };
   }
-  /// From now on in each step a message with stamp 0, which withdraws the last one.
-  template <typename Message>
-  void repeatInvalid(const std::string& topic, Message message = {}) {
-    message.header.stamp = ros::Time();
-    publisher<Message>(topic);
-    repeated_[topic] = [this, topic, message] { say(topic, message); };
-  }
   /// Repeats it no more.
   void silence(const std::string& topic) { repeated_.erase(topic); }
   /// Ends the publication, as of a node that is gone.
