@@ -4,6 +4,7 @@
 
 #include "base/errors.h"
 #include "base/user_data.h"
+#include "nodes/runtime/background_writing.h"
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/frames.h"
 #include "nodes/runtime/message_guard.h"
@@ -63,7 +64,7 @@ ForceSensorNode::ForceSensorNode(Bus& bus)
       raw_(cycle_.output<geometry_msgs::WrenchStamped>("force_sensor/raw_cf")) {
   if (!parameters_.file.empty() && source_->size() == 2) {
     if (std::filesystem::exists(parameters_.file)) readout_.restore(readSensorCalibration(parameters_.file));
-    file_.emplace(parameters_.file);
+    file_.emplace(parameters_.file, writingOn(bus));
   }
   advertiseServices();
   watchController();

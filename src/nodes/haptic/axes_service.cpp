@@ -8,10 +8,10 @@
 #include <cstdio>
 #include <fstream>
 
-#include "base/atomic_file.h"
 #include "base/errors.h"
 #include "base/operating_state.h"
 #include "base/user_data.h"
+#include "nodes/runtime/background_writing.h"
 #include "nodes/runtime/message_guard.h"
 
 namespace microinjection {
@@ -45,8 +45,7 @@ std::string ownFile(const std::string& path) {
 
 AxesService::AxesService(Cycle& cycle, const std::string& axes, bool springs_back, const std::string& file)
     : calibration_(axes, springs_back),
-      file_(ownFile(file.empty() ? userDataFile("device_axes.yaml") : file)),
-      in_background_(cycle.bus().isVirtual() ? nullptr : std::make_unique<BackgroundFile>(file_)) {
+      file_(ownFile(file.empty() ? userDataFile("device_axes.yaml") : file), writingOn(cycle.bus())) {
   using State = cell_microinjection::OperatingState;
   controller_ =
       subscribeGuarded<State>(cycle.bus(), "controller/operating_state", 10,
@@ -97,7 +96,7 @@ bool AxesService::answer(Service::Request& request, Service::Response& response)
   response.device_axes = calibration_.axes();
   response.angle_to_axis = calibration_.fit().angleToAxis();
   response.angle_to_square = calibration_.fit().angleToSquare();
-  response.file = file_;
+  response.file = file_.path();
   write();
   return true;
 }
@@ -106,26 +105,17 @@ void AxesService::write() {
   if (kept_changes_ == calibration_.changes()) return;
   kept_changes_ = calibration_.changes();
   const DeviceAxesFit& fit = calibration_.fit();
-  const std::string content =
+  file_.write(
       "# Axes of the haptic device, by the service calibrate_axes of the node haptic_bridge. A session takes\n"
       "# them with overrides:=FILE.\nhaptic_bridge:\n  device_axes: " +
-      calibration_.axes() + (fit.complete() ? "  # " + residualOf(fit) : "") + "\n";
-  if (in_background_) return in_background_->write(content);
-  try {
-    writeFileAtomically(file_, content);
-    write_error_.clear();
-  } catch (const WriteError& error) {
-    write_error_ = error.what();
-  }
+      calibration_.axes() + (fit.complete() ? "  # " + residualOf(fit) : "") + "\n");
 }
 
-std::string AxesService::writeError() const { return in_background_ ? in_background_->error() : write_error_; }
-
 void AxesService::report(diagnostic_updater::DiagnosticStatusWrapper& status) const {
-  const std::string unwritten = writeError();
+  const std::string unwritten = file_.error();
   status.add("device axes", calibration_.axes());
   if (calibration_.fit().complete()) status.add("calibration of the axes", residualOf(calibration_.fit()));
-  if (calibration_.changes() > 0) status.add("file of the axes", unwritten.empty() ? file_ : unwritten);
+  if (calibration_.changes() > 0) status.add("file of the axes", unwritten.empty() ? file_.path() : unwritten);
 }
 
 }  // namespace microinjection

@@ -4,7 +4,6 @@
 #include <diagnostic_updater/DiagnosticStatusWrapper.h>
 
 #include <Eigen/Core>
-#include <memory>
 #include <optional>
 #include <string>
 
@@ -39,12 +38,9 @@ class AxesService {
   std::string act(int action);
   std::string followsReason() const;
   void write();
-  std::string writeError() const;
 
   DeviceAxesCalibration calibration_;
-  std::string file_;                               ///< path
-  std::unique_ptr<BackgroundFile> in_background_;  ///< null: in virtual time, written at once
-  std::string write_error_;                        ///< of the last writing at once
+  BackgroundFile file_;
   std::optional<Eigen::Vector3d> hand_;
   bool followed_ = false;
   std::string controller_state_;  ///< empty: not heard of
