@@ -4,7 +4,7 @@
 #include <actionlib_msgs/GoalID.h>
 #include <actionlib_msgs/GoalStatusArray.h>
 
-#include <algorithm>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -12,7 +12,7 @@
 
 namespace microinjection {
 
-/// Who asks for an action, by messages of the test's node, with any identity and stamp.
+/// A test's client of an action. What it tells is of the last goal that it sent.
 template <typename Action>
 class ActionClient {
  public:
@@ -28,19 +28,18 @@ class ActionClient {
     node.publisher<actionlib_msgs::GoalID>(action + "/cancel");
   }
 
-  /// From now on this goal is the own one. @returns its identity
-  std::string send(const Goal& goal) { return own_ = send(goal, "goal " + std::to_string(++sent_), node_.bus().now()); }
-  /// A goal of somebody else.
-  std::string send(const Goal& goal, const std::string& id, const ros::Time& stamp) {
+  void send(const Goal& goal) { send(goal, node_.bus().now()); }
+  /// With a stamp, and an id (empty: one of its own), that need not be sound.
+  void send(const Goal& goal, const ros::Time& stamp, const std::string& id = "") {
     ActionGoal message;
-    message.goal_id.id = id;
+    message.header.stamp = node_.bus().now();
     message.goal_id.stamp = stamp;
+    message.goal_id.id = id_ = id.empty() ? "goal " + std::to_string(++sent_) : id;
     message.goal = goal;
     node_.say(action_ + "/goal", message);
-    return id;
   }
-  /// Of the own goal.
-  void cancel() { cancel(own_, ros::Time()); }
+  void cancel() { cancel(id_, ros::Time()); }
+  /// Of actionlib: all goals up to the stamp, and the one with the id; stamp 0 and no id: all goals.
   void cancel(const std::string& id, const ros::Time& stamp) {
     actionlib_msgs::GoalID message;
     message.id = id;
@@ -48,38 +47,48 @@ class ActionClient {
     node_.say(action_ + "/cancel", message);
   }
 
-  /// How the own goal has ended; null: it has not.
-  const ActionResult* ended() const { return ended(own_); }
-  const ActionResult* ended(const std::string& id) const {
-    for (const auto& result : results_.all()) {
-      if (result->status.goal_id.id == id) return result.get();
+  const std::string& id() const { return id_; }
+  /// Null: the goal has not ended.
+  const Result* result() const {
+    const ActionResult* ended = end();
+    return ended ? &ended->result : nullptr;
+  }
+  bool ended() const { return end() != nullptr; }
+  /// A state of actionlib_msgs/GoalStatus; PENDING of a goal that the server does not know.
+  int state() const {
+    if (const ActionResult* ended = end()) return ended->status.status;
+    if (status_.newest()) {
+      for (const auto& status : status_.newest()->status_list) {
+        if (status.goal_id.id == id_) return status.status;
+      }
+    }
+    return actionlib_msgs::GoalStatus::PENDING;
+  }
+  std::vector<Feedback> feedback() const {
+    std::vector<Feedback> all;
+    for (const auto& message : feedback_.all()) {
+      if (message->status.goal_id.id == id_) all.push_back(message->feedback);
+    }
+    return all;
+  }
+  /// Of all goals, of other clients, too.
+  const Probe<ActionResult>& results() const { return results_; }
+  const Probe<actionlib_msgs::GoalStatusArray>& status() const { return status_; }
+
+ private:
+  const ActionResult* end() const {
+    for (const auto& message : results_.all()) {
+      if (message->status.goal_id.id == id_) return message.get();
     }
     return nullptr;
   }
-  /// Of all goals, in the order of their ends.
-  const std::vector<boost::shared_ptr<const ActionResult>>& results() const { return results_.all(); }
-  /// Of the own goal.
-  std::vector<Feedback> feedback() const {
-    std::vector<Feedback> own;
-    for (const auto& message : feedback_.all()) {
-      if (message->status.goal_id.id == own_) own.push_back(message->feedback);
-    }
-    return own;
-  }
-  /// Whether the newest status has this goal.
-  bool knows(const std::string& id) const {
-    const auto* const newest = status_.newest();
-    return newest && std::any_of(newest->status_list.begin(), newest->status_list.end(),
-                                 [&](const auto& status) { return status.goal_id.id == id; });
-  }
 
- private:
   TestNode& node_;
-  std::string action_, own_;
+  std::string action_, id_;
   int sent_ = 0;
-  Probe<ActionResult>& results_;
-  Probe<ActionFeedback>& feedback_;
-  Probe<actionlib_msgs::GoalStatusArray>& status_;
+  const Probe<ActionResult>& results_;
+  const Probe<ActionFeedback>& feedback_;
+  const Probe<actionlib_msgs::GoalStatusArray>& status_;
 };
 
 }  // namespace microinjection
