@@ -81,7 +81,7 @@ class VirtualSession {
   const Session& session() const { return session_; }
   /// A folder that ends with the session.
   const std::filesystem::path& folder() const { return folders_.path(); }
-  ros::Time now() const { return executive_.network().now(); }
+  ros::Time now() const { return world_->bus().now(); }
 
   /// Fails the test when a node ends by an error that was not expected, see expectFailure().
   void run(double seconds);
