@@ -57,7 +57,7 @@ class CameraTopicTest : public testing::Test {
     ASSERT_TRUE(state) << image.encoding;
     EXPECT_EQ(state->header.stamp, image.header.stamp) << image.encoding;
     EXPECT_TRUE(cellIsFound(state)) << image.encoding << ": " << state->cell.reason;
-    EXPECT_NEAR(SmallCamera::kPixel * state->cell.diameter, 2 * kRadius, 1e-6) << image.encoding;
+    EXPECT_NEAR(camera_.pixel * state->cell.diameter, 2 * kRadius, 1e-6) << image.encoding;
   }
 
   SmallCamera camera_;

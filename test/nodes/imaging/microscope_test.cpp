@@ -90,13 +90,13 @@ TEST_F(MicroscopeTest, NeedleAndCellAreWhereTheyAreSaidToBe) {
   EXPECT_GT(least_above, 3 * most_below);
   // The ooplasm's dark rim reaches outwards from the border, on both sides of the cell.
   const cv::Mat levels = profile(image);
-  const int reach = static_cast<int>(kRadius / SmallCamera::kPixel);
+  const int reach = static_cast<int>(kRadius / camera_.pixel);
   for (const int side : {-1, 1}) {
     const int centre = static_cast<int>(std::lround(camera_.origin.x() + side * reach));
     cv::Point darkest;
     cv::minMaxLoc(levels.colRange(centre - 20, centre + 20), nullptr, nullptr, &darkest);
     const double rim = centre - 20 + darkest.x - camera_.origin.x();
-    EXPECT_NEAR(std::abs(rim) * SmallCamera::kPixel, kRadius, 2e-6);
+    EXPECT_NEAR(std::abs(rim) * camera_.pixel, kRadius, 2e-6);
   }
 }
 

@@ -19,22 +19,21 @@
 
 namespace microinjection {
 
-/// The part of the microscope's picture that a test needs, at the shipped pixel size: rendering and detection cost
-/// time for each pixel.
+/// A camera for the part of the picture that a test needs: rendering and detection cost time for each pixel.
 struct SmallCamera {
-  int width = 480, height = 496;             ///< px
-  Eigen::Vector2d origin{239.5, 359.5};      ///< px, of the world's origin
-  static constexpr double kPixel = 0.25e-6;  ///< m
+  int width = 480, height = 496;         ///< px
+  Eigen::Vector2d origin{239.5, 359.5};  ///< px, of the world's origin
+  double pixel = 0.25e-6;                ///< m, as shipped
 
   /// Changes of the microscope's parameters. `rate`: images a second.
   std::string parameters(double rate, const std::string& more = "") const {
     std::ostringstream text;
-    text << "{rate: " << rate << ", camera: {width: " << width << ", height: " << height << ", pixel_size: " << kPixel
+    text << "{rate: " << rate << ", camera: {width: " << width << ", height: " << height << ", pixel_size: " << pixel
          << ", origin: [" << origin.x() << ", " << origin.y() << "]}" << (more.empty() ? "" : ", " + more) << "}";
     return text.str();
   }
   /// px, of a place in the world (m)
-  Eigen::Vector2d pixelOf(double x, double z) const { return origin + Eigen::Vector2d(x, -z) / kPixel; }
+  Eigen::Vector2d pixelOf(double x, double z) const { return origin + Eigen::Vector2d(x, -z) / pixel; }
 };
 
 /// The state of a round cell (m) in the frame cell.
