@@ -1,0 +1,148 @@
+#include "hand_session.h"
+
+namespace microinjection {
+namespace {
+
+/// A hand leads the needle. Whichever node is killed or frozen: within the time-outs of config/ the needle rests and
+/// the force on the hand is zero. The way back is the same to every time-out, since nobody knows of the hand's phases.
+struct HandFault {
+  Fault fault;
+  const char* phase;
+  double into;  // s
+};
+void PrintTo(const HandFault& fault, std::ostream* out) {
+  *out << (fault.fault == Fault::kKill ? "kill" : "freeze") << " in " << fault.phase;
+}
+
+class DeadByHand : public testing::TestWithParam<HandFault> {
+ protected:
+  static constexpr double kRecord = 0.24;  // s, after the strike
+
+  /// A session in which the node is struck.
+  void strike(const std::string& node, const HandSession::Options& options = {}, double record = kRecord) {
+    session_ = std::make_unique<HandSession>(options);
+    session_->runIntoPhase(GetParam().phase, GetParam().into);
+    struck_ = session_->strike(node, GetParam().fault);
+    session_->session().run(record);
+  }
+  void expectNeedleRests(double within) { HandSession::expectRests(session_->needle(), struck_, within); }
+  /// In the approach it was never felt.
+  void expectForceEnds(double within, double earlier = 0) {
+    if (std::string(GetParam().phase) == "approach") return HandSession::expectNoForce(session_->force());
+    HandSession::expectForceEnds(session_->force(), struck_, within, earlier);
+  }
+
+  std::unique_ptr<HandSession> session_;
+  double struck_ = 0;
+};
+
+TEST_P(DeadByHand, Hand) {
+  strike("operator");
+  expectNeedleRests(HandSession::kInputs + HandSession::kStopTime);
+  expectForceEnds(HandSession::kInputs);
+}
+
+TEST_P(DeadByHand, Bridge) {
+  strike("haptic_bridge");
+  expectNeedleRests(HandSession::kInputs + HandSession::kStopTime);
+}
+
+TEST_P(DeadByHand, Controller) {
+  strike("injection_controller", {}, 0.4);
+  expectNeedleRests(HandSession::kCommands + HandSession::kStopTime);
+  expectForceEnds(HandSession::kController, 0.1);  // its state comes each 0.1 s
+}
+
+TEST_P(DeadByHand, Micromanipulator) {
+  strike("micromanipulator");
+  HandSession::expectRests(session_->setpoint(), struck_, HandSession::kInputs);
+  expectForceEnds(HandSession::kInputs);
+}
+
+TEST_P(DeadByHand, CellSimulator) {
+  strike("cell_simulator");
+  expectNeedleRests(HandSession::kInputs + HandSession::kStopTime);
+  expectForceEnds(HandSession::kInputs);
+}
+
+TEST_P(DeadByHand, ForceSensor) {
+  HandSession::Options options;
+  options.sensor = true;
+  options.source = "measured";
+  if (std::string(GetParam().phase) == "approach") return;  // a sensor's noise is felt there, too
+  strike("force_sensor", options);
+  expectNeedleRests(HandSession::kInputs + HandSession::kStopTime);
+  expectForceEnds(HandSession::kInputs);
+}
+
+INSTANTIATE_TEST_SUITE_P(InAnyPhase, DeadByHand,
+                         testing::Values(HandFault{Fault::kKill, "approach", 0.06},
+                                         HandFault{Fault::kKill, "indent", 0.2},
+                                         HandFault{Fault::kFreeze, "indent", 0.2}));
+
+/// Faults in one place of the motion.
+class FaultByHand : public testing::TestWithParam<Fault> {};
+
+TEST_P(FaultByHand, BridgeLeavesNoForceOnTheHand) {
+  HandSession session({});
+  session.runIntoPhase("hold", 0.06);
+  const double struck = session.strike("haptic_bridge", GetParam());
+  session.session().run(0.24);
+  const Track hand = session.hand();
+  const auto at = std::find_if(hand.times.rbegin(), hand.times.rend(), [&](double time) { return time <= struck; });
+  const double pressed = hand.values[static_cast<std::size_t>(hand.times.rend() - at) - 1].z() - -8e-3;
+  EXPECT_GT(pressed, 1e-4) << "the hand does not yield to the force";
+  // Its acceleration leaps when the force does; else it changes little from step to step.
+  double largest = 0, leap = 0;
+  for (std::size_t i = 3; i < hand.times.size(); ++i) {
+    if (hand.times[i] < struck + 0.005 || hand.times[i] > struck + 0.1) continue;
+    const auto z = [&](std::size_t back) { return hand.values[i - back].z(); };
+    const double third = std::abs(z(0) - 3 * z(1) + 3 * z(2) - z(3));
+    if (third > largest) leap = hand.times[i] - struck;
+    largest = std::max(largest, third);
+  }
+  EXPECT_NEAR(leap, 0.05, 2 * HandSession::kTick) << "force_timeout of the virtual hand";
+  EXPECT_NEAR(hand.values.back().z(), -8e-3, 0.1 * pressed);
+}
+
+TEST_P(FaultByHand, WhatTheLoopDoesNotNeedLeavesItAsItIs) {
+  HandSession::Options options;
+  options.sensor = options.injector = true;
+  HandSession session(options);
+  session.runIntoPhase("indent", 0.05);
+  for (const char* node : {"force_sensor", "injector"}) {
+    SCOPED_TRACE(node);
+    const double struck = session.strike(node, GetParam());
+    session.session().run(0.11);
+    session.expectGoesOn(struck);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(KillAndFreeze, FaultByHand, testing::Values(Fault::kKill, Fault::kFreeze));
+
+/// A node that wakes up finds old messages and knows what was when it was frozen.
+class ThawedNode : public testing::TestWithParam<const char*> {};
+
+TEST_P(ThawedNode, ActsOnNothingOldAndFollowsFromWhereItIs) {
+  HandSession session({});
+  session.runIntoPhase("approach", 0.06);
+  session.strike(GetParam(), Fault::kFreeze);
+  session.session().run(0.3);  // in the indentation now
+  const double rests = session.needle().values.back().z();
+  const double thawed = session.session().now().toSec();
+  session.session().executive().thaw(GetParam());
+  session.session().run(0.005);
+  EXPECT_LT(session.needle().since(thawed).span(), HandSession::kStill) << "at once";
+  EXPECT_NEAR(session.needle().values.back().z(), rests, HandSession::kStill);
+  session.session().run(0.05);
+  // The hand goes on by 17 um/s.
+  const double way = rests - session.needle().values.back().z();
+  EXPECT_GT(way, 0.5e-6);
+  EXPECT_LT(way, 1.0e-6);
+}
+
+INSTANTIATE_TEST_SUITE_P(OfTheLoop, ThawedNode,
+                         testing::Values("injection_controller", "micromanipulator", "haptic_bridge"));
+
+}  // namespace
+}  // namespace microinjection
