@@ -1,11 +1,13 @@
-// What every rig must keep to behind Micromanipulator, as test/chain/rig_contract_test.py asks it of the node: as
-// delivered, with answers that come 18 ms later, and (Zaber) as a chain of devices with alerts and info lines.
+// What every rig must keep to behind Micromanipulator; test/nodes/needle/rig_node_test.cpp asks it of the node: the
+// simulated one, and real ones as delivered, with answers that come 18 ms later, and (Zaber) as a chain of devices with
+// alerts and info lines.
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 
@@ -13,7 +15,9 @@
 #include "rig/devices/needle_loop.h"
 #include "rig/devices/rig_registry.h"
 #include "rig/manipulator/micromanipulator.h"
+#include "rig/manipulator/simulated_manipulator.h"
 #include "rig/serial/emulated_wire.h"
+#include "rig/serial/fault.h"
 
 namespace microinjection {
 namespace {
@@ -29,7 +33,7 @@ struct Variant {
 };
 
 std::vector<Variant> variants() {
-  std::vector<Variant> all{{"zaber", "chain", 0, true}, {"zaber", "slow_chain", 18e-3, true}};
+  std::vector<Variant> all{{"sim", "plain"}, {"zaber", "chain", 0, true}, {"zaber", "slow_chain", 18e-3, true}};
   for (const Rig& rig : rigs()) {
     all.push_back({rig.name, "plain"});
     all.push_back({rig.name, "slow", 18e-3});
@@ -40,9 +44,30 @@ std::vector<Variant> variants() {
 class ContractTest : public testing::TestWithParam<Variant> {
  protected:
   void SetUp() override {
+    simulated() ? makeSimulated() : makeEmulated();
+    needle_ = std::make_unique<Micromanipulator>(geometry_, CollisionGuard(rigUrdf(), geometry_, 2e-6),
+                                                 MicromanipulatorConfig(), *device_);
+    ASSERT_TRUE(until([&] { return ready(); })) << device_->reason();
+    near_ = 1.5 * std::max(device_->abilities().resolution, 1e-9) + 1e-9;
+    goTo(kStart);
+  }
+
+  bool simulated() const { return GetParam().rig == "sim"; }
+  static YAML::Node rigFile() {
+    return loadYamlMap(MICROINJECTION_SOURCE_DIR "/config/rigs/" + GetParam().rig + ".yaml");
+  }
+  void makeSimulated() {
+    ConfigReader reader(rigFile(), "sim");
+    auto simulated = std::make_unique<SimulatedManipulator>(geometry_, SimulatedManipulatorConfig::read(reader));
+    reader.finish();
+    inject_ = [device = simulated.get()](const std::string& fault) { device->injectFault(fault); };
+    device_ = std::move(simulated);
+  }
+  void makeEmulated() {
     const Rig& rig = findRig(GetParam().rig);
-    YAML::Node config = loadYamlMap(MICROINJECTION_SOURCE_DIR "/config/rigs/" + rig.name + ".yaml");
+    YAML::Node config = rigFile();
     const auto emulator = rig.make_emulator();
+    inject_ = [emulator](const std::string& fault) { emulator->inject(parseFault(fault)); };
     if (GetParam().chained) {
       config["devices"] = std::vector<int>{1, 2, 3};
       config["axes"] = std::vector<int>{1, 1, 1};
@@ -54,22 +79,14 @@ class ContractTest : public testing::TestWithParam<Variant> {
     auto wire = std::make_unique<EmulatedWire>(emulator, rig.default_baud, GetParam().held);
     wire_ = wire.get();
     device_ = rig.make_driver(reader, std::move(wire));
-    needle_ = std::make_unique<Micromanipulator>(geometry_, CollisionGuard(rigUrdf(), geometry_, 2e-6),
-                                                 MicromanipulatorConfig(), *device_);
-    ASSERT_TRUE(until([&] { return ready(); })) << device_->reason();
-    near_ = 1.5 * std::max(device_->abilities().resolution, 1e-9) + 1e-9;
-    goTo(kStart);
   }
 
   void tick(const std::function<void()>& command = nullptr) {
     if (command) command();
     needle_->step(time_ += kStep, kStep);
   }
-  void run(double duration, const std::function<void()>& each = nullptr) {
-    for (int i = 0; i < std::lround(duration / kStep); ++i) {
-      tick();
-      if (each) each();
-    }
+  void run(double duration, const std::function<void()>& command = nullptr) {
+    for (int i = 0; i < std::lround(duration / kStep); ++i) tick(command);
   }
   bool until(const std::function<bool()>& done, const std::function<void()>& command = nullptr) {
     for (int i = 0; i < 20000; ++i) {
@@ -93,10 +110,13 @@ class ContractTest : public testing::TestWithParam<Variant> {
     ASSERT_EQ(needle_->movePosition(pose(target)), "");
     ASSERT_TRUE(until([&] { return isAt(target) && !busy(); })) << device_->reason() << needle_->abortReason();
   }
-  void expectStands(double duration = 0.5) {
+  void expectStands(double duration = 0.5, const std::function<void()>& command = nullptr) {
     const Eigen::Vector3d held = place();
     double off = 0;
-    run(duration, [&] { off = std::max(off, (place() - held).cwiseAbs().maxCoeff()); });
+    for (int i = 0; i < std::lround(duration / kStep); ++i) {
+      tick(command);
+      off = std::max(off, (place() - held).cwiseAbs().maxCoeff());
+    }
     EXPECT_LE(off, 2 * near_);
   }
   /// The end is a true reading: what was carried on until then may be a little beside it.
@@ -110,7 +130,8 @@ class ContractTest : public testing::TestWithParam<Variant> {
   }
 
   ManipulatorGeometry geometry_ = ManipulatorGeometry::fromUrdf(rigUrdf(), 0);
-  EmulatedWire* wire_ = nullptr;
+  EmulatedWire* wire_ = nullptr;  ///< null: the simulated rig has none
+  std::function<void(const std::string& fault)> inject_;
   std::unique_ptr<ManipulatorDevice> device_;
   std::unique_ptr<Micromanipulator> needle_;
   double time_ = 0;  // s
@@ -118,7 +139,11 @@ class ContractTest : public testing::TestWithParam<Variant> {
 };
 
 TEST_P(ContractTest, MovesArriveAndStayAndTheNewestWins) {
-  for (const Eigen::Vector3d& target : {Eigen::Vector3d(20e-6, -15e-6, 90e-6), {200e-6, 100e-6, 300e-6}, kStart}) {
+  for (const Eigen::Vector3d& target : {Eigen::Vector3d(20e-6, 0, 60e-6),
+                                        {20e-6, -15e-6, 90e-6},
+                                        {-3e-6, 4e-6, 50e-6},
+                                        {200e-6, 100e-6, 300e-6},
+                                        kStart}) {
     goTo(target);
     expectStands(0.3);
     EXPECT_TRUE(isAt(target));
@@ -129,6 +154,24 @@ TEST_P(ContractTest, MovesArriveAndStayAndTheNewestWins) {
   }
   ASSERT_TRUE(until([&] { return isAt({70e-6, 0, 60e-6}) && !busy(); }));
   expectStands();
+  EXPECT_TRUE(isAt({70e-6, 0, 60e-6}));
+}
+
+TEST_P(ContractTest, RefusesWhatItCannotDoAndStays) {
+  const std::pair<Eigen::Vector3d, std::string> refused[] = {
+      {{1, 0, 0}, "manipulator_x = 1 m, allowed"}, {{0, 0, -1e-3}, "manipulator_z"}, {{NAN, 0, 0}, "not finite"}};
+  const auto expectRefused = [&](const std::string& refusal, const std::string& why) {
+    ASSERT_NE(refusal.find(why), std::string::npos) << refusal;
+  };
+  for (const auto& [target, why] : refused) {
+    SCOPED_TRACE(why);
+    expectRefused(needle_->movePosition(pose(target)), why);
+    run(0.2, [&, &goal = target, &reason = why] { expectRefused(needle_->servoPosition(pose(goal)), reason); });
+    EXPECT_LE((place() - kStart).cwiseAbs().maxCoeff(), near_);
+  }
+  expectRefused(needle_->servoVelocity({1, 0, 0}, time_), "velocity = 1");
+  run(0.2);
+  EXPECT_LE((place() - kStart).cwiseAbs().maxCoeff(), near_);
 }
 
 TEST_P(ContractTest, FollowsAsCloselyAsItSays) {
@@ -148,6 +191,8 @@ TEST_P(ContractTest, FollowsAsCloselyAsItSays) {
   EXPECT_LE(behind, allowed);
   EXPECT_LE(ahead, 2 * near_ + kCommandedSpeed * 0.02);
   ASSERT_TRUE(until([&] { return isAt({0, 0, z}) && !device_->moving(); }, command));
+  run(0.5, command);  // what was carried on becomes a true reading
+  EXPECT_TRUE(isAt({0, 0, z}));
   ASSERT_TRUE(until([&] { return !busy(); }));
   expectStands();
   EXPECT_TRUE(isAt({0, 0, z}));
@@ -185,7 +230,58 @@ TEST_P(ContractTest, StaleCommandsHold) {
   expectHoldsAfterSilence();
 }
 
+TEST_P(ContractTest, AStreamThatGoesOnAfterAStopMovesNothing) {
+  double z = kStart.z();
+  const auto stream = [&] { needle_->servoPosition(pose({0, 0, z += kCommandedSpeed * kStep})); };
+  run(0.7, stream);
+  EXPECT_GT(place().z(), kStart.z() + 2e-6);
+  needle_->stop();
+  run(1.5, stream);  // to come to rest
+  expectStands(1, stream);
+  run(kStale + 0.05);
+  EXPECT_TRUE(until(
+      [&] {
+        return isAt({0, 0, z});
+      },
+      [&] {
+        needle_->servoPosition(pose({0, 0, z}));
+      }))
+      << "after a pause it is a new stream";
+}
+
+/// Faults of a rig, and whether it waits for clearFault(); it may get over the others by itself.
+std::map<std::string, bool> faultsOf(const std::string& rig) {
+  if (rig == "sim") return {{"error:4", true}};
+  if (rig == "zaber") return {{"silence:1.5", false}, {"silence:4", true}, {"error:BADDATA", true}, {"error:FS", true}};
+  return {{"silence:1.5", false}, {"silence:4", true}, {"error:4", false}};
+}
+
+TEST_P(ContractTest, AFaultWaitsOrIsGotOverAndNothingGoesOn) {
+  const Eigen::Vector3d target(30e-6, 0, 60e-6), later(60e-6, 0, 60e-6);  // m
+  for (const auto& [fault, stays] : faultsOf(GetParam().rig)) {
+    SCOPED_TRACE(fault);
+    goTo(kStart);
+    inject_(fault);
+    needle_->movePosition(pose(target));
+    ASSERT_TRUE(until([&] { return !ready() || (isAt(target) && !busy()); }));
+    if (stays) {  // a device that is silent is disconnected first
+      ASSERT_TRUE(until([&] { return device_->state() == ManipulatorDevice::State::kFault; })) << device_->reason();
+    }
+    if (!ready()) {
+      EXPECT_NE(needle_->movePosition(pose(later)), "");
+      run(5);  // longer than any silence
+      EXPECT_TRUE(!stays || device_->state() == ManipulatorDevice::State::kFault) << "it waits for no one";
+      needle_->clearFault();
+      ASSERT_TRUE(until([&] { return ready(); })) << device_->reason();
+    }
+    expectStands();
+    EXPECT_LE(place().x(), target.x() + 2 * near_) << "what was refused was done";
+    goTo({10e-6, 0, 70e-6});
+  }
+}
+
 TEST_P(ContractTest, APulledCableEndsInARest) {
+  if (!wire_) return;  // the simulated rig has no cable
   needle_->movePosition(pose({500e-6, 0, 60e-6}));
   ASSERT_TRUE(until([&] { return needle_->tipPose() && place().x() > 5e-6; }));
   wire_->disconnectCable();

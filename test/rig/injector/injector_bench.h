@@ -82,6 +82,7 @@ class InjectorBench {
   bool real() const { return emulator_ != nullptr; }
   bool stops() const { return stops_; }
   double balance() const { return model_.balance; }
+  Eigen::Vector2d range() const { return model_.limits.pressure_range; }  ///< Pa
   double time() const { return time_; }
 
   // The truth.

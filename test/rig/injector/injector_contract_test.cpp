@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <set>
+#include <sstream>
 
 #include "base/errors.h"
 #include "rig/injector/femtojet_emulator.h"
@@ -88,14 +90,45 @@ TEST_P(InjectorContract, RefusesWhatItCannotDo) {
 TEST_P(InjectorContract, AnotherBalancePressureIsSetOrRefused) {
   bench.run(1);
   const double wanted = bench.balance() + 200;
-  const bool obeys = device().setBalance(wanted).empty();
+  const std::string refusal = device().setBalance(wanted);
+  const bool obeys = refusal.empty();
   EXPECT_EQ(obeys, GetParam() != "relay");
+  EXPECT_EQ(refusal.find("set by hand") != std::string::npos, !obeys) << refusal;
   bench.run(1);
   EXPECT_NEAR(bench.pressure(), obeys ? wanted : bench.balance(), 1e-6);
   expectBalanced();
   expectWorks(5);
   EXPECT_NEAR(bench.pressure(), obeys ? wanted : bench.balance(), 1e-6);
   expectBalanced();
+}
+
+/// A message of ROS gives it as absolute. Such a number is beyond the limits of most; a FemtoJet's are wider.
+TEST_P(InjectorContract, TheBalanceIsGaugeAndReachesBothEnds) {
+  constexpr double kAtmosphere = 101300;  // Pa
+  bench.run(1);
+  const double lowest = bench.range()[0], highest = bench.range()[1];
+  for (const double beyond : {lowest - 100, highest + 1000, kAtmosphere + highest}) {
+    std::ostringstream why;
+    why << "balance pressure = " << beyond << " Pa, allowed [" << lowest << ", " << highest << "] Pa";
+    EXPECT_EQ(device().setBalance(beyond), why.str());
+    bench.run(0.5);
+    EXPECT_NEAR(bench.pressure(), bench.balance(), 1e-6);
+    expectBalanced();
+  }
+  if (GetParam() == "relay") return;
+  const double absolute = kAtmosphere + 100 * std::round(bench.balance() / 100);
+  EXPECT_EQ(device().setBalance(absolute).empty(), GetParam() == "femtojet");
+  for (const double pressure : {lowest, highest, bench.balance()}) {
+    EXPECT_EQ(device().setBalance(pressure), "");
+    bench.run(1);
+    EXPECT_NEAR(bench.pressure(), pressure, 1e-3);
+    expectBalanced();
+  }
+  EXPECT_EQ(device().fault(), "");
+  if (GetParam() != "femtojet") return;
+  EXPECT_EQ(device().setBalance(absolute), "");
+  bench.run(1);
+  EXPECT_NEAR(bench.pressure(), absolute, 1e-3) << "nothing takes the atmosphere's off";
 }
 
 TEST_P(InjectorContract, AStopEndsAPulseOrIsRefused) {
