@@ -18,6 +18,8 @@ import rospy
 import rostest
 from geometry_msgs.msg import WrenchStamped
 
+from cell_microinjection.msg import InjectionPulse, InjectorState
+
 NODES = pathlib.Path(sys.argv[0]).parent  # this program is found beside them
 PATIENCE = 60  # s of wall time; only what hangs takes that long
 
@@ -108,6 +110,30 @@ class LineEndsTest(unittest.TestCase):
                 each.terminate()
                 each.communicate()
             line.close()
+
+    def test_a_femtojet_injects_once(self):
+        """With the patterns of its file as the parameter server keeps them, and an emulated device."""
+        parameters = {"source": "serial", "emulated": "femtojet", **rospy.get_param("/femtojet")}
+        parameters["serial"]["codes"]["inject"] = "901"
+        process = self.start("injector", "emulated_femtojet", parameters)
+        try:
+            states = []
+            subscriber = rospy.Subscriber("/injector/state", InjectorState, states.append)
+            publisher = rospy.Publisher("/injector/pulse", InjectionPulse, queue_size=1)
+            end = time.monotonic() + PATIENCE
+            while not (states and states[-1].last_id == 5) and time.monotonic() < end:
+                # Again and again: one that comes late is refused as stale, and one that was obeyed is known.
+                pulse = InjectionPulse(id=5, pressure=20e3, duration=0.5)
+                pulse.header.stamp = rospy.Time.now()
+                if states and not states[-1].fault:
+                    publisher.publish(pulse)
+                time.sleep(0.1)
+            self.assertTrue(states, "no state of the injector")
+            self.assertEqual((states[-1].last_id, states[-1].pulses, states[-1].fault), (5, 1, ""))
+            subscriber.unregister()
+        finally:
+            process.terminate()
+            process.communicate()
 
     def test_a_femtojet_needs_the_number_that_is_not_published(self):
         parameters = {"source": "serial", **rospy.get_param("/femtojet")}
