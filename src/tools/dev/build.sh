@@ -6,13 +6,15 @@ readonly CORE_BUILD="$ROOT/build/core"
 readonly SANITIZERS="address thread"
 
 command_build() {
-  [[ $* == "" || $* == --core ]] || misuse "build takes nothing or --core, not '$*'"
+  [[ $* == "" || $* == --tests || $* == --benchmarks || $* == --core ]] ||
+    misuse "build takes nothing, --tests, --benchmarks or --core, not '$*'"
   setup
-  if [[ $* == --core ]]; then
-    build_core
-  else
-    build_workspace
-  fi
+  case $* in
+    --tests) build_tests ;;
+    --benchmarks) build_targets benchmarks ;;
+    --core) build_core ;;
+    *) build_workspace ;;
+  esac
 }
 
 command_clean() {
@@ -37,19 +39,37 @@ link_package() {
   install -C -m 644 "$ROOT/package.xml" "$package/package.xml"
 }
 
-# Makes the given targets (by default everything but the tests, installed), then takes the workspace's environment on.
+# Builds and installs all but tests and benchmarks, then takes the workspace's environment on.
 build_workspace() {
+  # An installation never forgets by itself a file that has since been renamed.
+  rm -rf "$WORKSPACE"/install/share/cell_microinjection/{launch,config,urdf}
+  build_targets install
+  source_workspace
+}
+
+# What all tests need: the workspace, the tests of the rooms and the programs of the chain, installed beside the nodes.
+build_tests() {
+  build_workspace
+  build_targets tests
+  install_component tests
+  install_component emulated_haptic
+}
+
+# What is installed on request only.
+install_component() {
+  cmake --install "$WORKSPACE/build" --component "$1" >/dev/null || fail "'$1' could not be installed"
+}
+
+# Makes targets of the workspace.
+build_targets() {
   [[ $ROOT != *" "* ]] || fail "catkin cannot build below a path with a space in it: $ROOT"
   forget_moved_build "$WORKSPACE/build" "$WORKSPACE/devel" "$WORKSPACE/install"
   link_package
   # catkin keeps the environment of its tests from the first configuration, and leaves out folders that are not there yet.
   mkdir -p "$WORKSPACE/devel/lib/python3/dist-packages"
-  # An installation never forgets by itself a file that has since been renamed.
-  [[ $# -gt 0 ]] || rm -rf "$WORKSPACE"/install/share/cell_microinjection/{launch,config,urdf}
-  say "build: catkin_make in catkin_ws ($(jobs) jobs)"
+  say "build: catkin_make $* in catkin_ws ($(jobs) jobs)"
   catkin_make -C "$WORKSPACE" -j"$(jobs)" -DPYTHON_EXECUTABLE=/usr/bin/python3 -DCMAKE_BUILD_TYPE=RelWithDebInfo \
-    -DCMAKE_EXPORT_COMPILE_COMMANDS=ON -DCMAKE_CXX_COMPILER_LAUNCHER="$COMPILER_LAUNCHER" "${@:-install}" || fail "the build failed (messages above)"
-  source_workspace
+    -DCMAKE_EXPORT_COMPILE_COMMANDS=ON -DCMAKE_CXX_COMPILER_LAUNCHER="$COMPILER_LAUNCHER" "$@" || fail "the build failed (messages above)"
 }
 
 # build_core [SANITIZER [TARGET...]]: into build/core/plain, or build/core/SANITIZER; all targets when none is given.

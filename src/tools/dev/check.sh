@@ -23,7 +23,6 @@ cpp_files() { find "$ROOT"/{src,benchmark,test} -name '*.cpp' -print0 -o -name '
 command_lint() {
   [[ $# -le 1 && (${1:---quick} == --quick || $1 != -*) ]] || misuse "lint takes --quick or one regular expression, not '$*'"
   setup
-  [[ ${1:-} == --quick ]] || build_workspace
   local failed=()
   format_code --check || failed+=(clang-format)
   check_python || failed+=(Python)
@@ -54,11 +53,21 @@ check_package() {
 }
 
 run_clang_tidy() {
-  local pattern="^$WORKSPACE/src/cell_microinjection/(src|benchmark)/.*$1" database="$WORKSPACE/build"
+  local pattern="^$ROOT/(src|benchmark)/.*$1" database="$ROOT/build/lint"
   say "lint: clang-tidy of the files below src/ and benchmark/ that match '$1' (takes long for all)"
+  configure_lint "$database" || return 1
   # Without this, a mistyped pattern would pass. Not grep -q, which ends before sed has written all.
   grep -E '"file":' "$database/compile_commands.json" | sed -e 's/.*: "//' | grep -E "$pattern" >/dev/null ||
     { echo "no file matches"; return 1; }
   /usr/bin/run-clang-tidy -quiet -p "$database" -j "$(jobs)" "$pattern" 2>&1 |
     sed -e '/^clang-tidy/d; /warnings\{0,1\} generated\.$/d'
+}
+
+# clang-tidy wants the command of each file, which the workspace's build compiles in groups. Nothing is compiled here: the
+# files need the messages' headers only.
+configure_lint() {
+  forget_moved_build "$1"
+  cmake -S "$ROOT" -B "$1" -DMICROINJECTION_UNITY_BUILD=OFF -DCATKIN_DEVEL_PREFIX="$1/devel" -DCATKIN_ENABLE_TESTING=OFF \
+    -DPYTHON_EXECUTABLE=/usr/bin/python3 -DCMAKE_BUILD_TYPE=RelWithDebInfo >/dev/null &&
+    cmake --build "$1" --parallel "$(jobs)" --target cell_microinjection_generate_messages_cpp >/dev/null
 }

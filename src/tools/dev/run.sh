@@ -28,8 +28,7 @@ command_bench() {
   [[ ${1:-} != -- ]] || shift
   [[ " $(bench_names | xargs) " == *" $name "* ]] || misuse "no benchmark '$name'; there are: $(bench_names | xargs)"
   setup
-  build_workspace
-  use_private_master
+  build_bench "$name"
   mkdir -p "$folder"
   rm -f "$folder/$name.csv" "$folder/$name.png"
   say "bench: $name"
@@ -45,6 +44,23 @@ command_bench() {
   fi
   say "bench: results are in"
   ls "$folder/$name".*
+}
+
+# A program of its own, or what a script runs: the workspace and more, where CMake has a target of that name.
+build_bench() {
+  if [[ -f $ROOT/benchmark/$1.cpp ]]; then
+    build_targets "bench_$1"
+    return
+  fi
+  build_workspace
+  case $1 in
+    latency)
+      build_targets bench_latency
+      install_component emulated_haptic
+      ;;
+    peers) build_targets bench_peers ;;
+  esac
+  use_private_master
 }
 
 bench_names() {
@@ -71,7 +87,7 @@ bench_program() {
 command_paper() {
   [[ ${1:-} != -- ]] || shift
   setup
-  build_workspace
+  build_targets paper
   say "paper: benchmark/paper/report.py $*"
   exec /usr/bin/python3 -B "$ROOT/benchmark/paper/report.py" --programs "$WORKSPACE/devel/lib" --out "$ROOT/out/paper" "$@"
 }

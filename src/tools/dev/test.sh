@@ -30,16 +30,31 @@ command_test() {
 }
 
 test_ros() {
-  build_workspace
-  build_workspace tests
-  cmake --install "$WORKSPACE/build" --component tests >/dev/null || fail "the tests of the chain could not be installed"
+  if [[ $# -eq 0 || " $* " == *" chain "* ]]; then
+    build_tests
+  else
+    # shellcheck disable=SC2046
+    build_targets $(test_targets "$@")
+  fi
   use_private_master
   run_tests ros "$WORKSPACE/build" "$WORKSPACE/build/test_results" "$@"
 }
 
 test_core() {
-  build_core
+  # shellcheck disable=SC2046
+  build_core "" $(test_targets "$@")
   run_core core "$(core_folder)" "$@"
+}
+
+# The gtest programs of the named folders of test/, one for each room.
+test_targets() {
+  local rooms room folder
+  rooms=$(sed -n -e 's/^microinjection_room(\([a-z/]*\).*/\1/p' "$ROOT/src/CMakeLists.txt")
+  for folder in "$@"; do
+    for room in $rooms benchmark commands nodes; do
+      [[ $room != "$folder" && $room != "$folder"/* ]] || echo "${room//\//_}_test"
+    done
+  done
 }
 
 # run_core KIND BUILD_FOLDER [TEST_FOLDER...]
@@ -51,17 +66,13 @@ run_core() {
 
 # test_sanitized SANITIZER [TEST_FOLDER...]: builds only the tests that it runs, because that takes long.
 test_sanitized() {
-  local sanitizer=$1 folder targets=()
+  local sanitizer=$1 targets
   shift
-  for folder in "$@"; do
-    for folder in "$folder" $(cd "$ROOT/test" && printf '%s ' "$folder"/*/); do
-      folder=${folder%/}
-      ! compgen -G "$ROOT/test/$folder/*_test.cpp" >/dev/null || targets+=("${folder//\//_}_test")
-    done
-  done
-  [[ $# -eq 0 || ${#targets[@]} -gt 0 ]] || misuse "no tests of the core in: $*"
+  targets=$(test_targets "$@")
+  [[ $# -eq 0 || -n $targets ]] || misuse "no tests of the core in: $*"
   setup
-  build_core "$sanitizer" "${targets[@]}"
+  # shellcheck disable=SC2086
+  build_core "$sanitizer" $targets
   "use_${sanitizer}_sanitizer"
   # A sanitized program takes several times as long.
   TEST_TIMEOUT=14400 run_core "core-$sanitizer" "$(core_folder "$sanitizer")" "$@"
