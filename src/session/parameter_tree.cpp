@@ -94,6 +94,8 @@ std::string listText(const YAML::Node& list) {
 
 }  // namespace
 
+YAML::Node emptyMap() { return YAML::Node(YAML::NodeType::Map); }
+
 YAML::Node parameterAt(const YAML::Node& parameters, const std::string& path) {
   YAML::Node node;
   node.reset(parameters);

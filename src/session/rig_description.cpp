@@ -14,7 +14,7 @@
 
 #include "base/errors.h"
 #include "session/parameter_tree.h"
-#include "session/rounded.h"
+#include "session/rounded_parameter.h"
 
 namespace microinjection {
 namespace {
@@ -114,9 +114,9 @@ void RigDescription::scale(double factor, double mouth_radius) {
   cell_factor_ = factor;
   if (factor != 1) {
     for (const Member size : {&S::start_height, &S::mouth_height, &S::floor_height, &S::travel, &S::pipette_length})
-      sizes_.*size = rounded(factor * sizes_.*size);
+      sizes_.*size = roundedParameter(factor * sizes_.*size);
   }
-  if (mouth_radius > 0) sizes_.pipette_radius = rounded(kMouthFactor * mouth_radius);
+  if (mouth_radius > 0) sizes_.pipette_radius = roundedParameter(kMouthFactor * mouth_radius);
 }
 
 void RigDescription::override(const YAML::Node& values, std::vector<std::string>& errors) {
@@ -178,7 +178,7 @@ std::string RigDescription::fittedText() const {
   for (; visual; visual = visual->NextSiblingElement("visual")) {
     XMLElement* sphere = child(visual, {"geometry", "sphere"});
     if (sphere)
-      sphere->SetAttribute("radius", numberText(rounded(cell_factor_ * sphere->DoubleAttribute("radius"))).c_str());
+      sphere->SetAttribute("radius", numberText(roundedParameter(cell_factor_ * sphere->DoubleAttribute("radius"))).c_str());
   }
   for (const char* part : {"visual", "collision"}) {
     XMLElement* body = child(named(fitted, "link", "holding_pipette"), {part});

@@ -12,7 +12,7 @@
 #include "session/cell_facts.h"
 #include "session/parameter_tree.h"
 #include "session/rig_description.h"
-#include "session/rounded.h"
+#include "session/rounded_parameter.h"
 
 namespace microinjection {
 namespace {
@@ -49,8 +49,6 @@ const SpeedKey kSpeeds[] = {{"micromanipulator", "servo_speed_limit"},
                             {kController, "motion/stab_speed"},
                             {"haptic_bridge", "rate_mode/speed_limit"}};
 
-YAML::Node emptyMap() { return YAML::Node(YAML::NodeType::Map); }
-
 class Fit {
  public:
   Fit(const Session& session, const YAML::Node& device)
@@ -70,7 +68,7 @@ class Fit {
   SessionFit run() {
     rig_.scale(cell_.lengthScale(), cell_.mouth_radius);
     scaleAll();
-    if (cell_.puncture_force > 0) set(kController, "force_limit", rounded(kGuard * cell_.puncture_force));
+    if (cell_.puncture_force > 0) set(kController, "force_limit", roundedParameter(kGuard * cell_.puncture_force));
     followScene();
     for (const SpeedKey& speed : kSpeeds)
       if (has(speed.node, speed.path))
@@ -112,7 +110,7 @@ class Fit {
     scaleKeys(kPerForce, 1 / force);
     const std::string threshold =
         "detection/contact_force";  // no smaller: a sensor's noise does not shrink with the cell
-    set(kController, threshold, rounded(read(kController, threshold) * std::max(1.0, force)));
+    set(kController, threshold, roundedParameter(read(kController, threshold) * std::max(1.0, force)));
   }
 
   void scaleKeys(const Keys& keys, double factor) {
@@ -122,7 +120,7 @@ class Fit {
         if (has(node, path)) setParameter(changed_, node + "/" + path, scaled(get(node, path), factor));
   }
   static YAML::Node scaled(const YAML::Node& value, double factor) {
-    if (!value.IsSequence()) return numberValue(rounded(factor * value.as<double>()));
+    if (!value.IsSequence()) return numberValue(roundedParameter(factor * value.as<double>()));
     YAML::Node list(YAML::NodeType::Sequence);
     for (std::size_t i = 0; i < value.size(); ++i) list.push_back(scaled(value[i], factor));
     return list;
@@ -141,7 +139,7 @@ class Fit {
     if (!(radius > 0)) return;
     const double ratio = read(node, pipette + second) / read(node, pipette + first);
     set(node, pipette + first, radius);
-    set(node, pipette + second, rounded(radius * ratio));
+    set(node, pipette + second, roundedParameter(radius * ratio));
   }
 
   /// The pixel size of the virtual microscope is known, and its calibration is not that of a real camera.

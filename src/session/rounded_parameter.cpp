@@ -1,4 +1,4 @@
-#include "session/rounded.h"
+#include "session/rounded_parameter.h"
 
 #include <cstdio>
 #include <cstdlib>
@@ -11,6 +11,6 @@ std::string shortNumber(double value, int digits) {
   return text;
 }
 
-double rounded(double value) { return std::strtod(shortNumber(value).c_str(), nullptr); }
+double roundedParameter(double value) { return std::strtod(shortNumber(value).c_str(), nullptr); }
 
 }  // namespace microinjection
