@@ -15,7 +15,7 @@ namespace microinjection {
 namespace {
 
 int images = 40;
-std::uint64_t seed = 100001;
+std::uint64_t first_seed = 100001;
 std::string only;
 bool pipettes_only = false;
 
@@ -86,7 +86,7 @@ std::string table() {
     if (std::isfinite(row.time)) summary.times.push_back(row.time);
   };
   for (const VisionCondition& condition : visionConditions()) {
-    if (only.empty() || condition.name == only) renderedRows(condition, seed, images, pipettes_only, take);
+    if (only.empty() || condition.name == only) renderedRows(condition, first_seed, images, pipettes_only, take);
   }
   if (only.empty() || only == "real") realRows(take);
   printSummary(all);
@@ -102,7 +102,7 @@ int main(int argc, char** argv) {
   more.add_options()("images", po::value(&microinjection::images)->default_value(40),
                      "rendered images of each condition")("only", po::value(&microinjection::only),
                                                           "one set: the name of a condition as in the table, or real")(
-      "seed", po::value(&microinjection::seed)->default_value(100001),
+      "seed", po::value(&microinjection::first_seed)->default_value(100001),
       "of the first image; constants are chosen with seeds below 100000")(
       "pipettes", po::bool_switch(&microinjection::pipettes_only), "rendered images: measures the pipettes only");
   return microinjection::benchMain(argc, argv,

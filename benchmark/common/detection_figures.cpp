@@ -63,7 +63,7 @@ void falseTouches(const DetectionConfig& config) {
 /// ms, half of all and nine of ten; "missed" counts those above `longest` (steps).
 template <typename Felt>
 void latencies(const DetectionConfig& config, const char* what, double before, double after, const Felt& felt) {
-  constexpr int kLongest = 1000;
+  constexpr int kMostSteps = 1000;
   std::vector<int> steps;
   int missed = 0;
   for (int trial = 1; trial <= kTrials; ++trial) {
@@ -72,8 +72,8 @@ void latencies(const DetectionConfig& config, const char* what, double before, d
     int count = 0;
     do {
       feeler.step(after);
-    } while (++count < kLongest && !felt(feeler.monitor()));
-    missed += count == kLongest;
+    } while (++count < kMostSteps && !felt(feeler.monitor()));
+    missed += count == kMostSteps;
     steps.push_back(count);
   }
   std::sort(steps.begin(), steps.end());

@@ -15,7 +15,7 @@
 namespace microinjection {
 namespace {
 
-constexpr double kTip = 2, kVesicle = 1.5, kMouth = 3, kFocus = 1, kScale = 5.38;
+constexpr double kMarkedTip = 2, kVesicle = 1.5, kMarkedMouth = 3, kFocus = 1, kScale = 5.38;
 constexpr double kOutline = 0.02;  // of the diameter
 
 /// A line of GROUND_TRUTH.csv.
@@ -78,7 +78,7 @@ VisionRow pipetteRow(const std::string& set, const Reading& reading, const cv::M
   const double begin = threadCpuTime();
   const PipetteDetection found = PipetteDetector(config).detect(Frame(image));
   return judged(set, reading, found.finding, std::hypot(found.end.x - reading.x, found.end.y - reading.y),
-                config.kind == "holding" ? kMouth : kTip, threadCpuTime() - begin);
+                config.kind == "holding" ? kMarkedMouth : kMarkedTip, threadCpuTime() - begin);
 }
 
 VisionRow cellRow(const std::string& set, const Reading& reading, cv::Mat image) {

@@ -152,7 +152,7 @@ void seenRows(const ImageRows& rows, const SeenCell& seen, const SceneTruth& tru
            kCentre, reading + seen.following);
   if (!truth.cell->dimple_depth) return;
   const double depth = *truth.cell->dimple_depth;
-  const Indentation& found = seen.found.indentation;
+  const Dimple& found = seen.found.indentation;
   rows.add("dimple_depth", found.finding, std::abs(found.depth - depth), depth, kDimple, seen.indentation);
 }
 

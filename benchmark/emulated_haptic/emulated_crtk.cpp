@@ -25,7 +25,7 @@ class EmulatedCrtk : public EmulatedDriver {
       : position_(cycle.output<geometry_msgs::PoseStamped>("haptic/measured_cp")),
         clutch_(cycle.output<sensor_msgs::Joy>("haptic/clutch", true)),
         present_(cycle.output<sensor_msgs::Joy>("haptic/operator_present", true)) {
-    cycle.input<WrenchStamped>("haptic/servo_cf", InputPhase::kPreviousTick, kForEver)
+    cycle.input<WrenchStamped>("haptic/servo_cf", InputPhase::kSampled, kForEver)
         .onMessage([this, handler](const WrenchStamped& message, const ros::Time& received) {
           force_ = toVector(message.wrench.force);
           handler(force_, received);
@@ -77,7 +77,7 @@ class EmulatedCisst : public EmulatedDriver {
     } else {
       pose_ = &cycle.output<geometry_msgs::PoseStamped>(position);
     }
-    cycle.input<WrenchStamped>(device.device + "/body/servo_cf", InputPhase::kPreviousTick, kForEver)
+    cycle.input<WrenchStamped>(device.device + "/body/servo_cf", InputPhase::kSampled, kForEver)
         .onMessage([this, handler](const WrenchStamped& message, const ros::Time& received) {
           force_ = toVector(message.wrench.force);
           freed_ = true;
@@ -138,8 +138,9 @@ class EmulatedCisst : public EmulatedDriver {
   }
 
   void subscribe(Cycle& cycle, const std::string& topic, bool& value) {
-    subscribers_.push_back(cycle.node().subscribe<std_msgs::Bool>(
-        device_.device + topic, 1, [&value](const std_msgs::BoolConstPtr& message) { value = message->data; }));
+    subscriptions_.push_back(cycle.bus().subscribe<std_msgs::Bool>(
+        device_.device + topic, 1,
+        [&value](const Delivery<std_msgs::Bool>& delivery) { value = delivery.message->data; }));
   }
 
   CisstDevice device_;
@@ -147,7 +148,7 @@ class EmulatedCisst : public EmulatedDriver {
   Output<geometry_msgs::TransformStamped>* transform_ = nullptr;
   Output<cell_microinjection::OperatingState>* state_ = nullptr;  // null: not published
   Output<sensor_msgs::Joy>&clutch_, &present_;
-  std::vector<ros::Subscriber> subscribers_;
+  std::vector<Subscription> subscriptions_;
   EmulatedRate rate_;
   std::optional<Eigen::Vector3d> held_;              // m, the view's axes
   Eigen::Vector3d force_ = Eigen::Vector3d::Zero();  // N, as received
@@ -163,7 +164,7 @@ class EmulatedFalcon : public EmulatedDriver {
   EmulatedFalcon(Cycle& cycle, const Handler& handler)
       : position_(cycle.output<geometry_msgs::PoseStamped>("falcon/measured_cp", true)),
         joy_(cycle.output<sensor_msgs::Joy>("falcon/joy", true)) {
-    cycle.input<WrenchStamped>("falcon/servo_cf", InputPhase::kPreviousTick, kForEver)
+    cycle.input<WrenchStamped>("falcon/servo_cf", InputPhase::kSampled, kForEver)
         .onMessage([this, handler](const WrenchStamped& message, const ros::Time& received) {
           handler(toVector(message.wrench.force), received);
           if (message.header.frame_id.empty() || message.header.frame_id == kFrame)

@@ -1,13 +1,13 @@
 #pragma once
 
-#include <ros/callback_queue.h>
-#include <ros/ros.h>
 #include <sensor_msgs/Joy.h>
 
 #include <Eigen/Core>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "nodes/runtime/cycle.h"
@@ -78,30 +78,28 @@ class UnstampedForce {
  public:
   using Handler = std::function<void(const Message& message, const ros::Time& received)>;
 
-  UnstampedForce(const Cycle& cycle, const std::string& topic, const Handler& handler)
-      : lockstep_(cycle.deterministic()) {
-    using Event = ros::MessageEvent<const Message>;
-    const auto receive = [this, handler](const Event& event) {
-      ++count_;
-      handler(*event.getConstMessage(), event.getReceiptTime());
-    };
-    node_.setCallbackQueue(&queue_);
-    subscriber_ = node_.subscribe<Message, const Event&>(topic, 100, receive, {}, ros::TransportHints().tcpNoDelay());
-  }
+  UnstampedForce(Cycle& cycle, const std::string& topic, const Handler& handler)
+      : bus_(cycle.bus()),
+        lockstep_(cycle.deterministic() && !bus_.isVirtual()),
+        handler_(handler),
+        subscription_(bus_.subscribe<Message>(topic, 100, [this](const Delivery<Message>& delivery) {
+          waiting_.emplace_back(delivery.message, delivery.raw.received);
+        })) {}
 
   void process() {
-    const unsigned before = count_;
-    queue_.callAvailable();
-    if (!lockstep_ || ++steps_ <= 2) return;
-    while (ros::ok() && count_ == before) queue_.callAvailable(ros::WallDuration(0.1));
+    constexpr double kForEver = std::numeric_limits<double>::infinity();
+    if (lockstep_ && ++steps_ > 2) bus_.waitUntil([this] { return !waiting_.empty(); }, kForEver);
+    for (const auto& [message, received] : waiting_) handler_(*message, received);
+    waiting_.clear();
   }
 
  private:
+  Bus& bus_;
   bool lockstep_;
-  unsigned count_ = 0, steps_ = 0;
-  ros::CallbackQueue queue_;
-  ros::NodeHandle node_;
-  ros::Subscriber subscriber_;
+  unsigned steps_ = 0;
+  Handler handler_;
+  std::vector<std::pair<boost::shared_ptr<const Message>, ros::Time>> waiting_;  ///< and when they arrived
+  Subscription subscription_;
 };
 
 }  // namespace microinjection

@@ -5,7 +5,6 @@
 
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/node_parameters.h"
-#include "nodes/runtime/run_node.h"
 
 namespace microinjection {
 
@@ -16,9 +15,9 @@ const char* const EmulatedHapticNode::kHelp =
     "required), ~start_delay (s), ~mass (kg),\n"
     "~damping (N s/m), ~stiffness (N/m), ~rate (Hz).\n";
 
-EmulatedHapticNode::Parameters EmulatedHapticNode::Parameters::read(const ros::NodeHandle& private_node) {
+EmulatedHapticNode::Parameters EmulatedHapticNode::Parameters::read(const Bus& bus) {
   Parameters parameters;
-  ConfigReader reader = parameterReader(private_node);
+  ConfigReader reader = parameterReader(bus);
   reader.choice("kind", parameters.kind, emulatedDrivers());
   reader.text("motion", parameters.motion, ConfigReader::kRequired);
   reader.number("start_delay", parameters.start_delay, Range::nonNegative());
@@ -28,24 +27,25 @@ EmulatedHapticNode::Parameters EmulatedHapticNode::Parameters::read(const ros::N
   return parameters;
 }
 
-EmulatedHapticNode::EmulatedHapticNode(ros::NodeHandle node, ros::NodeHandle private_node)
-    : parameters_(Parameters::read(private_node)),
+EmulatedHapticNode::EmulatedHapticNode(Bus& bus)
+    : parameters_(Parameters::read(bus)),
       motion_(HandMotion::load(parameters_.motion)),
       hand_(parameters_.hand, motion_.at(0).position),
-      cycle_(node, parameters_.rate),
-      meter_(cycle_.node()),
+      cycle_(bus, parameters_.rate),
+      meter_(bus),
       driver_(makeEmulatedDriver(
           parameters_.kind, cycle_,
           [this](const auto& force, const ros::Time& received) { meter_.addForce(force, received); })),
       force_(cycle_.output<geometry_msgs::WrenchStamped>("emulated_haptic/measured_cf")),
       phase_(cycle_.output<cell_microinjection::StringStamped>("operator/phase", true)) {
   if (cycle_.deterministic() && driver_->hasUnstampedButtons()) {
-    present_ = &cycle_.input<sensor_msgs::Joy>("haptic/operator_present", InputPhase::kPreviousTick,
+    present_ = &cycle_.input<sensor_msgs::Joy>("haptic/operator_present", InputPhase::kSampled,
                                                std::numeric_limits<double>::infinity());
   }
   at_.position = hand_.position();
   report("device to bridge", meter_.atBridge());
   report("device to device", meter_.atDevice());
+  cycle_.onStep([this](const Cycle::Tick& tick) { step(tick); });
 }
 
 void EmulatedHapticNode::report(const std::string& name, const IntervalHistogram& trips) {
@@ -54,10 +54,6 @@ void EmulatedHapticNode::report(const std::string& name, const IntervalHistogram
     CycleDiagnostics::reportIntervals(trips, status);
     status.add("longest (s)", trips.largest());
   });
-}
-
-void EmulatedHapticNode::run() {
-  cycle_.run([this](const Cycle::Tick& tick) { step(tick); });
 }
 
 bool EmulatedHapticNode::buttonHasArrived(const ros::Time& now) const {
@@ -95,7 +91,3 @@ void EmulatedHapticNode::publishPhase(const ros::Time& now, const std::string& p
 }
 
 }  // namespace microinjection
-
-int main(int argc, char** argv) {
-  return microinjection::runNode<microinjection::EmulatedHapticNode>(argc, argv, "emulated_haptic");
-}

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <geometry_msgs/WrenchStamped.h>
-#include <ros/ros.h>
 #include <sensor_msgs/Joy.h>
 
 #include <memory>
@@ -21,7 +20,7 @@ namespace microinjection {
 ///
 /// The hand holds the dead-man switch down from half the start_delay on, except in the phase
 /// `away`. In the phase `inject` it presses the inject button, if the device has one. In lock step
-/// the motion waits until a button outside of the lock step has arrived.
+/// and in virtual time the motion waits until a button outside of the lock step has arrived.
 ///
 /// Topics of the kind, see emulated_driver.h, and
 /// In:  /haptic/servo_cf, /needle/setpoint_trace, /haptic/force_trace
@@ -33,8 +32,7 @@ class EmulatedHapticNode {
  public:
   static const char* const kHelp;
   /// @throws ConfigError
-  EmulatedHapticNode(ros::NodeHandle node, ros::NodeHandle private_node);
-  void run();
+  explicit EmulatedHapticNode(Bus& bus);
 
  private:
   struct Parameters {
@@ -43,7 +41,7 @@ class EmulatedHapticNode {
     double start_delay = 1;
     double rate = 1000;
     VirtualHandConfig hand;
-    static Parameters read(const ros::NodeHandle& private_node);
+    static Parameters read(const Bus& bus);
   };
 
   void step(const Cycle::Tick& tick);

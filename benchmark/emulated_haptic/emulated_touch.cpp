@@ -25,7 +25,7 @@ class EmulatedOmni : public EmulatedDriver {
  public:
   EmulatedOmni(Cycle& cycle, const Handler& handler)
       : state_(cycle.output<OmniState>("phantom/state")),
-        button_(cycle.node().advertise<OmniButtonEvent>("phantom/button", 100)),
+        button_(cycle.bus().advertise<OmniButtonEvent>("phantom/button", 100)),
         messages_(cycle, "phantom/force_feedback", [this, handler](const OmniFeedback& message, const auto& received) {
           force_ = toVector(message.force) - damping_;
           handler(toVector(message.force), received);
@@ -55,7 +55,7 @@ class EmulatedOmni : public EmulatedDriver {
 
  private:
   Output<OmniState>& state_;
-  ros::Publisher button_;
+  Publisher<OmniButtonEvent> button_;
   UnstampedForce<OmniFeedback> messages_;
   OmniState last_published_;
   OmniButtonEvent buttons_;
@@ -69,17 +69,15 @@ class EmulatedOmni : public EmulatedDriver {
 class EmulatedGeomagic : public EmulatedDriver {
  public:
   EmulatedGeomagic(Cycle& cycle, const Handler& handler)
-      : pose_(cycle.output<geometry_msgs::PoseStamped>("Geomagic/pose")),
+      : bus_(cycle.bus()),
+        pose_(cycle.output<geometry_msgs::PoseStamped>("Geomagic/pose")),
         joy_(cycle.output<sensor_msgs::Joy>("Geomagic/joy")),
         messages_(cycle, "Geomagic/force_feedback",
                   [this, handler](const DeviceFeedback& message, const auto& received) {
                     receive(message);
                     handler(toVector(message.force), received);
-                  }) {
-    double rate = 100;
-    ros::param::get("/publish_rate", rate);
-    rate_ = EmulatedRate(1 / rate);
-  }
+                  }),
+        rate_(1 / bus_.parameter("/publish_rate").as<double>(100)) {}
 
   void process(const EmulatedHand& hand) override {
     position_ = toDevice(hand.position) / kMillimetre;
@@ -116,17 +114,18 @@ class EmulatedGeomagic : public EmulatedDriver {
   void receive(const DeviceFeedback& message) {
     if (message.lock.size() < 3) {
       ROS_FATAL("the driver would read past the end of `lock`");
-      return ros::shutdown();
+      return bus_.stop();
     }
     force_ = toVector(message.force) - damping_;
     lock_position_ = toVector(message.position);
     lock_ = message.lock;
   }
 
+  Bus& bus_;
   Output<geometry_msgs::PoseStamped>& pose_;
   Output<sensor_msgs::Joy>& joy_;
   UnstampedForce<DeviceFeedback> messages_;
-  EmulatedRate rate_{0.01};
+  EmulatedRate rate_;
   std::optional<Eigen::Vector3d> last_published_;            // mm
   Eigen::Vector3d position_ = Eigen::Vector3d::Zero();       // mm
   Eigen::Vector3d damping_ = Eigen::Vector3d::Zero();        // N

@@ -19,16 +19,16 @@ void discardBefore(std::map<ros::Time, Value>& entries, const ros::Time& time) {
 
 }  // namespace
 
-RoundTripMeter::RoundTripMeter(ros::NodeHandle& node) {
+RoundTripMeter::RoundTripMeter(Bus& bus) {
   using Trace = sensor_msgs::TimeReference;
   using geometry_msgs::WrenchStamped;
   setpoints_ = subscribeGuarded<Trace>(
-      node, "needle/setpoint_trace", 100,
+      bus, "needle/setpoint_trace", 100,
       [this](const Trace& trace, const std::string&) { hand_of_needle_[trace.header.stamp] = trace.time_ref; });
-  traces_ = subscribeGuarded<Trace>(node, "haptic/force_trace", 100, [this](const Trace& trace, const std::string&) {
+  traces_ = subscribeGuarded<Trace>(bus, "haptic/force_trace", 100, [this](const Trace& trace, const std::string&) {
     needle_of_force_[trace.header.stamp] = trace.time_ref;
   });
-  forces_ = subscribeGuarded<WrenchStamped>(node, "haptic/servo_cf", 100,
+  forces_ = subscribeGuarded<WrenchStamped>(bus, "haptic/servo_cf", 100,
                                             [this](const WrenchStamped& message, const std::string&) {
                                               rendered_[message.header.stamp] = toVector(message.wrench.force);
                                             });

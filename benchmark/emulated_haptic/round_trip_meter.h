@@ -1,13 +1,13 @@
 #pragma once
 
 #include <geometry_msgs/WrenchStamped.h>
-#include <ros/ros.h>
 #include <sensor_msgs/TimeReference.h>
 
 #include <Eigen/Core>
 #include <map>
 
 #include "base/interval_histogram.h"
+#include "nodes/bus/bus.h"
 
 namespace microinjection {
 
@@ -18,7 +18,7 @@ namespace microinjection {
 /// other than zero count.
 class RoundTripMeter {
  public:
-  explicit RoundTripMeter(ros::NodeHandle& node);
+  explicit RoundTripMeter(Bus& bus);
 
   /// Adds a force (N) that the device received.
   void addForce(const Eigen::Vector3d& force, const ros::Time& received);
@@ -37,7 +37,7 @@ class RoundTripMeter {
   std::map<ros::Time, Eigen::Vector3d> received_;   ///< N, by time of arrival
   ros::Time last_hand_;                             ///< newest counted sample of the hand
   IntervalHistogram at_bridge_, at_device_;
-  ros::Subscriber setpoints_, forces_, traces_;
+  Subscription setpoints_, forces_, traces_;
 };
 
 }  // namespace microinjection

@@ -7,9 +7,12 @@
 
 namespace microinjection {
 
-BackgroundFile::BackgroundFile(std::string path) : path_(std::move(path)), thread_([this] { run(); }) {}
+BackgroundFile::BackgroundFile(std::string path, Writing writing) : path_(std::move(path)) {
+  if (writing == Writing::kInBackground) thread_ = std::thread([this] { run(); });
+}
 
 BackgroundFile::~BackgroundFile() {
+  if (!thread_.joinable()) return;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     ended_ = true;
@@ -21,6 +24,10 @@ BackgroundFile::~BackgroundFile() {
 void BackgroundFile::write(std::string content) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
+    if (!thread_.joinable()) {
+      error_ = save(content);
+      return;
+    }
     content_ = std::move(content);
   }
   changed_.notify_one();
@@ -31,6 +38,15 @@ std::string BackgroundFile::error() const {
   return error_;
 }
 
+std::string BackgroundFile::save(const std::string& content) const {
+  try {
+    writeFileAtomically(path_, content);
+  } catch (const std::exception& failure) {
+    return failure.what();
+  }
+  return "";
+}
+
 void BackgroundFile::run() {
   std::unique_lock<std::mutex> lock(mutex_);
   while (true) {
@@ -38,12 +54,7 @@ void BackgroundFile::run() {
     if (!content_) return;
     const std::string content = *std::exchange(content_, std::nullopt);
     lock.unlock();
-    std::string error;
-    try {
-      writeFileAtomically(path_, content);
-    } catch (const std::exception& failure) {
-      error = failure.what();
-    }
+    std::string error = save(content);
     lock.lock();
     error_ = std::move(error);
   }

@@ -8,10 +8,13 @@
 
 namespace microinjection {
 
-/// Writes a file from a thread of its own, for a loop that must not wait for the disk.
+/// Writes a file from a thread of its own, for a loop that must not wait for the disk. In virtual time it has no
+/// thread: each run of a session must find the same file at the same time.
 class BackgroundFile {
  public:
-  explicit BackgroundFile(std::string path);
+  enum class Writing { kInBackground, kAtOnce };
+
+  explicit BackgroundFile(std::string path, Writing writing = Writing::kInBackground);
   /// Waits until the last content is written.
   ~BackgroundFile();
   BackgroundFile(const BackgroundFile&) = delete;
@@ -25,6 +28,8 @@ class BackgroundFile {
 
  private:
   void run();
+  /// Writes the file. @returns why it failed; empty: it did not
+  std::string save(const std::string& content) const;
 
   std::string path_;
   mutable std::mutex mutex_;
@@ -32,7 +37,7 @@ class BackgroundFile {
   std::optional<std::string> content_;  ///< that waits
   std::string error_;
   bool ended_ = false;
-  std::thread thread_;
+  std::thread thread_;  ///< none: write() writes by itself
 };
 
 }  // namespace microinjection

@@ -48,7 +48,7 @@ bool isSameFile(int one, int other) {
   return fstat(one, &a) == 0 && fstat(other, &b) == 0 && a.st_dev == b.st_dev && a.st_ino == b.st_ino;
 }
 
-void writeAll(int file, const std::string& text) {
+void relay(int file, const std::string& text) {
   std::size_t done = 0;
   while (done < text.size()) {
     const ssize_t count = write(file, text.data() + done, text.size() - done);
@@ -151,7 +151,7 @@ void ConsoleRelay::Shared::write() {
     const Chunk chunk = std::move(waiting.front());
     waiting.pop_front();
     lock.unlock();
-    writeAll(real_outputs[chunk.stream], chunk.text);
+    relay(real_outputs[chunk.stream], chunk.text);
     lock.lock();
     waiting_bytes -= std::min(waiting_bytes, chunk.text.size());
   }

@@ -28,7 +28,7 @@ FamilyData loadData(const Family& family, const std::string& file) {
   return std::move(*read.content);
 }
 
-PathStore storeOf(const Family& family, const Eigen::VectorXd& coordinates, int seed) {
+PathStore storeOfDrawnMotions(const Family& family, const Eigen::VectorXd& coordinates, int seed) {
   return {family.member(coordinates), drawMotions(family, coordinates, seed)};
 }
 
@@ -70,7 +70,8 @@ class FamilyCheck {
 
   void solve(const std::vector<int>& batch) {
     std::vector<PathStore> stores;
-    for (const int member : batch) stores.push_back(storeOf(family_, members_[member], arguments_.seed + member));
+    for (const int member : batch)
+      stores.push_back(storeOfDrawnMotions(family_, members_[member], arguments_.seed + member));
     const std::string title = "prepare: members " + std::to_string(batch.front() + 1) + " to " +
                               std::to_string(batch.back() + 1) + " of " + std::to_string(arguments_.check) +
                               ", never solved for";
@@ -139,7 +140,7 @@ void checkFamily(const FamilyArguments& arguments) { FamilyCheck(arguments).run(
 int solveCheckPath(const FamilyArguments& arguments, int member, int ray) {
   const Family family = Family::load(arguments.file);
   const Eigen::VectorXd coordinates = drawMembers(family, arguments.check, arguments.seed).at(member);
-  const PathStore store = storeOf(family, coordinates, arguments.seed + member);
+  const PathStore store = storeOfDrawnMotions(family, coordinates, arguments.seed + member);
   return store.solve(ray) == PathStore::Outcome::kBusy ? kBusyStatus : 0;
 }
 

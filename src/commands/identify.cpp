@@ -15,6 +15,7 @@
 #include "cell/identification/family_law.h"
 #include "cell/identification/identified_scene.h"
 #include "cell/identification/point_identification.h"
+#include "commands/exit_status.h"
 #include "commands/identify_arguments.h"
 #include "commands/identify_report.h"
 #include "commands/scene_law.h"
@@ -22,7 +23,7 @@
 namespace microinjection {
 namespace {
 
-constexpr int kFits = 0, kBadUsage = 2, kFailed = 3, kInconsistent = 4;
+constexpr int kFits = 0, kInconsistent = 4;
 
 /// Geometry of the scene, with what the options say.
 FormulaGeometry geometryOf(const std::optional<Scene>& scene, const FormulaGeometry& given) {

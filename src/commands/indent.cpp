@@ -12,13 +12,14 @@
 #include "base/errors.h"
 #include "base/standard_output.h"
 #include "cell/model/scene.h"
+#include "commands/exit_status.h"
 #include "commands/indent_arguments.h"
 #include "commands/indent_models.h"
 
 namespace microinjection {
 namespace {
 
-constexpr int kConverged = 0, kBadUsage = 2, kNotConverged = 3, kNotAccurate = 4;
+constexpr int kConverged = 0, kNotConverged = 3, kNotAccurate = 4;
 
 void report(const ForcePoint& point, double tolerance) {
   if (!point.converged) {

@@ -13,7 +13,8 @@
 namespace microinjection {
 namespace {
 
-constexpr char kHelp[] = R"(indent: quasi-static force on a needle tip pushed into a cell, solved to a given tolerance.
+constexpr char kIndentHelp[] =
+    R"(indent: quasi-static force on a needle tip pushed into a cell, solved to a given tolerance.
 
 Usage: indent --scene FILE --depths D1,D2,... [--tolerance T] [--lateral X,Y] [--csv FILE] [...]
 
@@ -145,7 +146,7 @@ std::optional<IndentArguments> parseIndentArguments(int argc, char** argv) {
   namespace po = boost::program_options;
   IndentArguments arguments;
   OptionTexts texts;
-  po::options_description options(kHelp, 118);
+  po::options_description options(kIndentHelp, 118);
   options.add_options()("help", "this text")("scene", po::value(&arguments.scene),
                                              "scene file (YAML, SI units), for example config/cells/mouse_oocyte.yaml")(
       "depths", po::value(&texts.depths), "depths of the tip, m, separated by commas; each >= 0")(

@@ -15,6 +15,7 @@
 #include "base/standard_output.h"
 #include "cell/family/family_cell.h"
 #include "cell/model/scene.h"
+#include "commands/exit_status.h"
 #include "commands/measure_cell_arguments.h"
 #include "vision/camera/folder_source.h"
 #include "vision/camera/image_file.h"
@@ -29,7 +30,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kFound = 0, kBadUsage = 2, kNotFound = 3;
+constexpr int kFound = 0, kNotFound = 3;
 constexpr double kDegrees = 180 / M_PI, kNormal95 = 1.96;  // standard deviations, of the half width of an interval
 constexpr double kAnyRate = 30;                            // 1/s: the time of a frame does not matter here
 

@@ -20,6 +20,7 @@
 #include "cell/model/similarity.h"
 #include "cell/surrogate/surrogate_data.h"
 #include "cell/surrogate/training_ray.h"
+#include "commands/exit_status.h"
 #include "commands/path_store.h"
 #include "commands/prepare_arguments.h"
 #include "commands/prepare_family.h"
@@ -28,8 +29,6 @@
 
 namespace microinjection {
 namespace {
-
-constexpr int kDone = 0, kBadUsage = 2, kFailed = 3;
 
 class Preparing {
  public:

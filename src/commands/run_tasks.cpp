@@ -7,11 +7,11 @@
 
 #include "base/errors.h"
 #include "base/worker_processes.h"
+#include "commands/exit_status.h"
 
 namespace microinjection {
 namespace {
 
-constexpr int kBadUsage = 2;
 constexpr auto kWait = std::chrono::seconds(5);
 
 /// What is done of a number of tasks, and the time left.

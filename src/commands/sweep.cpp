@@ -12,6 +12,7 @@
 #include "base/errors.h"
 #include "base/standard_output.h"
 #include "base/worker_processes.h"
+#include "commands/exit_status.h"
 #include "commands/run_tasks.h"
 #include "commands/sweep_arguments.h"
 #include "commands/sweep_file.h"
@@ -20,8 +21,6 @@
 
 namespace microinjection {
 namespace {
-
-constexpr int kDone = 0, kBadUsage = 2, kFailed = 3;
 
 void list(const SweepFile& sweep) {
   std::cout << sweep.columns() << '\n';

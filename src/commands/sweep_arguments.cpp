@@ -10,7 +10,7 @@
 namespace microinjection {
 namespace {
 
-constexpr char kHelp[] =
+constexpr char kSweepHelp[] =
     R"(sweep: the force of many scenes, each a task of its own, on this machine or on a cluster.
 
 Usage: sweep --file FILE --list                        prints the tasks and the values of their keys
@@ -50,7 +50,7 @@ SweepArguments parseSweepArguments(int argc, char** argv) {
   po::store(po::command_line_parser(argc, argv).options(all).positional({}).run(), values);
   po::notify(values);
   std::ostringstream help;
-  help << kHelp << visible;
+  help << kSweepHelp << visible;
   arguments.help = help.str();
   arguments.show_help = values.count("help") != 0;
   if (arguments.show_help) return arguments;

@@ -17,6 +17,7 @@
 #include "cell/model/cell_problem.h"
 #include "cell/model/contact_frame.h"
 #include "cell/model/scene_mesh.h"
+#include "commands/exit_status.h"
 #include "commands/trajectory.h"
 
 namespace microinjection {
@@ -24,7 +25,6 @@ namespace {
 
 namespace po = boost::program_options;
 
-constexpr int kBadUsage = 2, kFailed = 3;
 constexpr char kHelp[] =
     R"(trajectory_error: difference between a session's predicted force and the full solution. Reads the indentation of
 a recorded session (force_depth.csv), moves the tip of the converging model (P2-P0 tetrahedra in space) along the same

@@ -10,25 +10,14 @@
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/message_guard.h"
 #include "nodes/runtime/node_parameters.h"
-#include "nodes/runtime/orphan.h"
-#include "nodes/runtime/run_node.h"
 #include "vision/calibration/calibration_file.h"
 #include "vision/calibration/calibration_path.h"
 
 namespace microinjection {
 namespace {
 
-constexpr double kPeriod = 0.02;  // s of wall time, of a step
-constexpr double kFar = 1;        // m, a border that the micromanipulator's own limits come before
-
-std::string utcNow() {
-  const std::time_t now = std::time(nullptr);
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  char text[sizeof "YYYY-MM-DDTHH:MM:SSZ"];
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
-  return text;
-}
+constexpr double kCalibrationPeriod = 0.02;  // s, of a step
+constexpr double kFar = 1;                   // m, a border that the micromanipulator's own limits come before
 
 }  // namespace
 
@@ -37,9 +26,9 @@ const char* const CalibrationNode::kHelp =
     "In: vision/state, /needle/measured_cp, /needle/operating_state, /controller/operating_state.\n"
     "Out: /needle/servo_cp; action calibration/calibrate, services calibration/rezero and calibration/undo.\n";
 
-CalibrationNode::Parameters CalibrationNode::readParameters(const ros::NodeHandle& private_node) {
+CalibrationNode::Parameters CalibrationNode::Parameters::read(const Bus& bus) {
   Parameters parameters;
-  ConfigReader reader = parameterReader(private_node);
+  ConfigReader reader = parameterReader(bus);
   reader.text("file", parameters.file);
   reader.number("input_timeout", parameters.input_timeout, Range::positive());
   parameters.calibration = CalibrationConfig::read(reader);
@@ -48,19 +37,18 @@ CalibrationNode::Parameters CalibrationNode::readParameters(const ros::NodeHandl
   return parameters;
 }
 
-CalibrationNode::CalibrationNode(ros::NodeHandle node, ros::NodeHandle private_node)
-    : parameters_(readParameters(private_node)),
-      watch_(node, parameters_.input_timeout),
+CalibrationNode::CalibrationNode(Bus& bus)
+    : GoalNode(bus, "calibration/calibrate", "calibration", kCalibrationPeriod),
+      parameters_(Parameters::read(bus)),
+      watch_(bus, parameters_.input_timeout),
       drift_(parameters_.calibration.drift),
-      setpoints_(node.advertise<geometry_msgs::PoseStamped>("/needle/servo_cp", 1)),
+      setpoints_(bus.advertise<geometry_msgs::PoseStamped>("/needle/servo_cp", 1)),
       commands_(subscribeGuarded<cell_microinjection::StringStamped>(
-          node, "/needle/state_command", 10,
+          bus, "/needle/state_command", 10,
           [this](const cell_microinjection::StringStamped& message, const std::string&) {
             commanded_ = message.string;
           },
-          StampRule::kAny)),
-      action_(node, "calibration/calibrate", false),
-      diagnostics_(node, private_node) {
+          StampRule::kAny)) {
   if (std::filesystem::exists(parameters_.file)) take(readCalibration(parameters_.file));
   watch_.on_motion = [this](const Eigen::Vector3d& position, bool followed) {
     if (!calibration_) return;
@@ -72,19 +60,25 @@ CalibrationNode::CalibrationNode(ros::NodeHandle node, ros::NodeHandle private_n
     }
   };
   watch_.on_tip = [this](const SeenTip& tip) { watchDrift(tip); };
-  rezero_ = node.advertiseService("calibration/rezero", &CalibrationNode::rezero, this);
-  undo_ = node.advertiseService("calibration/undo", &CalibrationNode::undo, this);
-  action_.registerGoalCallback([this] { onGoal(); });
-  action_.registerPreemptCallback([this] {
-    if (run_) fail("cancelled");
+  using std_srvs::Trigger;
+  rezero_ = bus.advertiseService<Trigger>("calibration/rezero", [this](Trigger::Request&, Trigger::Response& response) {
+    rezero(response);
+    return true;
   });
-  action_.start();
-  diagnostics_.setHardwareID("none");
-  diagnostics_.add("calibration", this, &CalibrationNode::report);
-  timer_ = node.createSteadyTimer(ros::WallDuration(kPeriod), [this](const ros::SteadyTimerEvent&) { step(); });
+  undo_ = bus.advertiseService<Trigger>("calibration/undo", [this](Trigger::Request&, Trigger::Response& response) {
+    undo(response);
+    return true;
+  });
 }
 
-void CalibrationNode::run() { ros::spin(); }
+std::string CalibrationNode::utcNow() const {
+  const std::time_t now = bus_.isVirtual() ? bus_.now().sec : std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  char text[sizeof "YYYY-MM-DDTHH:MM:SSZ"];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text;
+}
 
 void CalibrationNode::watchDrift(const SeenTip& tip) {
   if (!calibration_ || !play_ || !play_->known(0) || !play_->known(2) || run_) return;
@@ -93,7 +87,7 @@ void CalibrationNode::watchDrift(const SeenTip& tip) {
 }
 
 CalibrationInput CalibrationNode::input() const {
-  return {ros::Time::now().toSec(), watch_.position(), setpoint_ != goal_, watch_.tip()};
+  return {bus_.now().toSec(), watch_.position(), setpoint_ != goal_, watch_.tip()};
 }
 
 std::string CalibrationNode::interruption() const {
@@ -109,105 +103,71 @@ std::string CalibrationNode::refusal() const {
   if (!watch_.position()) return "/needle/measured_cp is silent, old or invalid";
   if (const std::string reason = interruption(); !reason.empty()) return reason;
   if (!watch_.tip()) return "the tip is not seen: " + watch_.tipReason();
-  const double rest = ros::Time::now().toSec() - watch_.restedSince();
+  const double rest = bus_.now().toSec() - watch_.restedSince();
   if (watch_.needle().is_busy || rest < parameters_.calibration.pattern.settle_time) return "the needle is moving";
   return "";
 }
 
-void CalibrationNode::onGoal() {
-  const auto goal = action_.acceptNewGoal();
-  std::string reason = refusal();  // a run under way was preempted
+void CalibrationNode::begin(const Goal& goal) {
+  if (const std::string reason = refusal(); !reason.empty()) throw ConfigError(reason);
   CalibrationPatternConfig pattern = parameters_.calibration.pattern;
-  if (goal->field_x != 0) pattern.field.x() = goal->field_x;
-  if (goal->field_z != 0) pattern.field.y() = goal->field_z;
-  CalibrationPlan plan;
-  if (reason.empty()) {
-    try {
-      pattern.validate();
-      const Eigen::Vector3d start = *watch_.position();
-      const Eigen::Vector3d centre = start + Eigen::Vector3d(0, 0, 0.5 * pattern.field.y() + pattern.take_up);
-      // Rounding must not put the lowest waypoint below the start.
-      const TravelBox above{{-kFar, -kFar, start.z() - 1e-9}, {kFar, kFar, kFar}};
-      plan = planCalibration(pattern, centre, start, above);
-      for (const std::string& each : plan.refusals) reason += (reason.empty() ? "" : "; ") + each;
-      // Away from the cell before it goes across.
-      plan.waypoints.insert(plan.waypoints.begin(), {start + pattern.take_up * Eigen::Vector3d::UnitZ(), false, false});
-    } catch (const ConfigError& error) {
-      reason = error.what();
-    }
-  }
-  if (!reason.empty()) {
-    cell_microinjection::CalibrateResult result;
-    result.message = reason;
-    action_.setAborted(result, reason);
-    return;
-  }
-  setpoint_ = goal_ = *watch_.position();
+  if (goal.field_x != 0) pattern.field.x() = goal.field_x;
+  if (goal.field_z != 0) pattern.field.y() = goal.field_z;
+  pattern.validate();
+  const Eigen::Vector3d start = *watch_.position();
+  const Eigen::Vector3d centre = start + Eigen::Vector3d(0, 0, 0.5 * pattern.field.y() + pattern.take_up);
+  // Rounding must not put the lowest waypoint below the start.
+  const TravelBox above{{-kFar, -kFar, start.z() - 1e-9}, {kFar, kFar, kFar}};
+  CalibrationPlan plan = planCalibration(pattern, centre, start, above);
+  if (!plan.refusals.empty()) throw ConfigError(join(plan.refusals, "; "));
+  // Away from the cell before it goes across.
+  plan.waypoints.insert(plan.waypoints.begin(), {start + pattern.take_up * Eigen::Vector3d::UnitZ(), false, false});
+  setpoint_ = goal_ = start;
   commanded_.clear();
   run_ = std::make_unique<CalibrationRun>(pattern, plan);
 }
 
 void CalibrationNode::step() {
-  diagnostics_.update();
-  endIfOrphaned(master_);
-  if (!run_) return;
-  if (const std::string reason = interruption(); !reason.empty()) return fail(reason);
-  if (!commanded_.empty()) return fail("the needle had the command " + commanded_);
+  if (!isActive()) return;
+  if (const std::string reason = interruption(); !reason.empty()) return finish(false, reason);
+  if (!commanded_.empty()) return finish(false, "the needle had the command " + commanded_);
   if (const auto goal = run_->step(input())) goal_ = *goal;
-  if (!run_->failure().empty()) return fail(run_->failure());
-  stream(ros::Time::now());
-  cell_microinjection::CalibrateFeedback feedback;
+  if (!run_->failure().empty()) return finish(false, run_->failure());
+  stream(bus_.now());
+  Feedback feedback;
   feedback.waypoint = static_cast<int>(run_->waypoint());
   feedback.waypoints = static_cast<int>(run_->waypoints());
   feedback.seen = run_->seen();
-  action_.publishFeedback(feedback);
-  if (run_->done()) end();
+  publishFeedback(feedback);
+  if (run_->done()) complete();
 }
 
-void CalibrationNode::end() {
+void CalibrationNode::complete() {
   const CalibrationSetup setup{utcNow(), watch_.imageCentre(),
                                calibration_ ? calibration_->tips : std::vector<TipRecord>()};
   const CalibrationOutcome outcome = calibrate(run_->observations(), parameters_.calibration.limits, setup);
-  cell_microinjection::CalibrateResult result;
-  if (!outcome.calibration) {
-    for (const std::string& each : outcome.refusals) result.message += (result.message.empty() ? "" : "; ") + each;
-    run_.reset();
-    action_.setAborted(result, result.message);
-    return;
-  }
-  const CameraCalibration& found = *outcome.calibration;
-  result = toResult(found);
-  if (!outcome.warning.empty()) result.message += "; " + outcome.warning;
+  if (!outcome.calibration) return finish(false, join(outcome.refusals, "; "));
   try {
-    store(found);
+    store(*outcome.calibration);
   } catch (const std::exception& error) {
-    fail(error.what());
-    return;
+    return finish(false, error.what());
   }
-  take(found);
+  take(*outcome.calibration);
   if (play_) {
     for (const TipObservation& observation : run_->observations()) play_->moveTo(observation.position);
   }
-  run_.reset();
-  result.success = 1;
-  action_.setSucceeded(result, result.message);
+  finish(true, describe(*calibration_) + (outcome.warning.empty() ? "" : "; " + outcome.warning));
 }
 
-void CalibrationNode::fail(const std::string& reason) {
+CalibrationNode::Result CalibrationNode::end(bool success) {
   run_.reset();
-  cell_microinjection::CalibrateResult result;
-  result.message = reason;
-  if (action_.isPreemptRequested()) {
-    action_.setPreempted(result, reason);
-  } else {
-    action_.setAborted(result, reason);
-  }
+  return success ? toResult(*calibration_) : Result();
 }
 
 /// The next set-point on the way to the goal. Without one for command_timeout the needle stops.
 void CalibrationNode::stream(const ros::Time& now) {
   const Eigen::Vector3d way = goal_ - setpoint_;
-  const double reach = parameters_.calibration.pattern.speed * kPeriod;
+  const double reach = parameters_.calibration.pattern.speed * kCalibrationPeriod;
   setpoint_ = way.norm() <= reach ? goal_ : Eigen::Vector3d(setpoint_ + reach * way.normalized());
   setpoints_.publish(toPose(watch_.poseAt(setpoint_), now, kWorldFrame));
 }
@@ -225,7 +185,7 @@ void CalibrationNode::take(const CameraCalibration& calibration) {
   if (const auto position = watch_.position()) play_.emplace(calibration.backlash(), *position);
 }
 
-bool CalibrationNode::rezero(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+void CalibrationNode::rezero(std_srvs::Trigger::Response& response) {
   const CalibrationInput present = input();
   if (!calibration_) {
     response.message = "there is no calibration: run calibration/calibrate first";
@@ -242,7 +202,7 @@ bool CalibrationNode::rezero(std_srvs::Trigger::Request&, std_srvs::Trigger::Res
     const RezeroResult result = microinjection::rezero(*calibration_, tip, *play_, utcNow());
     response.message = result.calibration ? "the tip's place is new; the axes stay" : result.refusal;
     if (!result.warning.empty()) response.message += "; " + result.warning;
-    if (!result.calibration) return true;
+    if (!result.calibration) return;
     try {
       store(*result.calibration);
       calibration_ = *result.calibration;
@@ -252,17 +212,16 @@ bool CalibrationNode::rezero(std_srvs::Trigger::Request&, std_srvs::Trigger::Res
       response.message = error.what();
     }
   }
-  return true;
 }
 
-bool CalibrationNode::undo(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+void CalibrationNode::undo(std_srvs::Trigger::Response& response) {
   if (run_) {
     response.message = "a calibration is under way";
-    return true;
+    return;
   }
   if (!replaced_) {
     response.message = "this session has replaced no calibration";
-    return true;
+    return;
   }
   try {
     const CameraCalibration again = *replaced_;
@@ -273,7 +232,6 @@ bool CalibrationNode::undo(std_srvs::Trigger::Request&, std_srvs::Trigger::Respo
   } catch (const std::exception& error) {
     response.message = error.what();
   }
-  return true;
 }
 
 void CalibrationNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
@@ -281,7 +239,7 @@ void CalibrationNode::report(diagnostic_updater::DiagnosticStatusWrapper& status
   if (run_) status.summary(diagnostic_msgs::DiagnosticStatus::OK, "calibrating");
   if (drift_report_.verdict == DriftVerdict::kDrifted)
     status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "the tip has drifted: calibrate or rezero");
-  MessageRefusals::ofProcess().report(status);
+  bus_.refusals().report(status);
   status.add("file", parameters_.file);
   if (calibration_) status.add("date", calibration_->date);
   if (calibration_) status.add("calibration", describe(*calibration_));
@@ -289,8 +247,3 @@ void CalibrationNode::report(diagnostic_updater::DiagnosticStatusWrapper& status
 }
 
 }  // namespace microinjection
-
-int main(int argc, char** argv) {
-  return microinjection::runNode<microinjection::CalibrationNode>(argc, argv, "calibration",
-                                                                  microinjection::Priority::kOrdinary);
-}

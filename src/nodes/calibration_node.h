@@ -1,17 +1,15 @@
 #pragma once
 
-#include <actionlib/server/simple_action_server.h>
 #include <cell_microinjection/CalibrateAction.h>
-#include <diagnostic_updater/diagnostic_updater.h>
-#include <ros/ros.h>
+#include <geometry_msgs/PoseStamped.h>
 #include <std_srvs/Trigger.h>
 
 #include <memory>
 #include <optional>
 #include <string>
 
+#include "nodes/bus/goal_node.h"
 #include "nodes/imaging/tip_watch.h"
-#include "nodes/runtime/master_monitor.h"
 #include "vision/calibration/calibrate.h"
 #include "vision/calibration/calibration_run.h"
 #include "vision/calibration/drift_watch.h"
@@ -30,37 +28,39 @@ namespace microinjection {
 /// micromanipulator keeps its limits and obstacles. A run needs a needle that is ENABLED and clear of
 /// the cell, and a controller that is DISABLED: two nodes must not command it. Any command to the
 /// needle from elsewhere ends the run.
-class CalibrationNode {
+class CalibrationNode : public GoalNode<cell_microinjection::CalibrateAction> {
  public:
   static const char* const kHelp;
   /// @throws ConfigError when a parameter is unknown or out of range, or the file of the last
   /// calibration cannot be read.
-  CalibrationNode(ros::NodeHandle node, ros::NodeHandle private_node);
-  void run();
+  explicit CalibrationNode(Bus& bus);
 
  private:
   struct Parameters {
     std::string file;            ///< of the calibration; empty: in $XDG_DATA_HOME
     double input_timeout = 0.5;  ///< s
     CalibrationConfig calibration;
-  };
-  static Parameters readParameters(const ros::NodeHandle& private_node);
 
-  void onGoal();
+    static Parameters read(const Bus& bus);
+  };
+
+  void begin(const Goal& goal) override;
+  Result end(bool success) override;
+  void step() override;
+  void report(diagnostic_updater::DiagnosticStatusWrapper& status) override;
+
   std::string refusal() const;       ///< why no run may begin; empty: it may
   std::string interruption() const;  ///< why a run must not go on; empty: it may
-  void step();
   CalibrationInput input() const;
-  void end();
-  void fail(const std::string& reason);
+  void complete();
   void stream(const ros::Time& now);
   /// Writes a calibration that replaces the present one. @throws WriteError, and nothing has changed
   void store(const CameraCalibration& calibration);
   void take(const CameraCalibration& calibration);
-  bool rezero(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
-  bool undo(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+  std::string utcNow() const;  ///< the date and time for files; in virtual time those of the bus
+  void rezero(std_srvs::Trigger::Response& response);
+  void undo(std_srvs::Trigger::Response& response);
   void watchDrift(const SeenTip& tip);
-  void report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   Parameters parameters_;
   TipWatch watch_;
@@ -73,13 +73,9 @@ class CalibrationNode {
   Eigen::Vector3d setpoint_ = Eigen::Vector3d::Zero(), goal_ = Eigen::Vector3d::Zero();  ///< m, of the run
   std::string commanded_;  ///< to the needle, from elsewhere, during the run
 
-  MasterMonitor master_{true};
-  ros::Publisher setpoints_;
-  ros::Subscriber commands_;
-  ros::ServiceServer rezero_, undo_;
-  actionlib::SimpleActionServer<cell_microinjection::CalibrateAction> action_;
-  diagnostic_updater::Updater diagnostics_;
-  ros::SteadyTimer timer_;
+  Publisher<geometry_msgs::PoseStamped> setpoints_;
+  Subscription commands_;
+  BusHandle rezero_, undo_;
 };
 
 }  // namespace microinjection

@@ -1,14 +1,12 @@
 #pragma once
 
-#include <diagnostic_updater/diagnostic_updater.h>
-#include <ros/ros.h>
-
 #include <atomic>
+#include <cstdint>
 #include <memory>
 #include <thread>
 
+#include "nodes/bus/diagnostics.h"
 #include "nodes/imaging/image_output.h"
-#include "nodes/runtime/master_monitor.h"
 #include "vision/camera/camera_stream.h"
 
 namespace microinjection {
@@ -20,31 +18,34 @@ namespace microinjection {
 /// Parameters: config/camera.yaml
 ///
 /// The stamp is the time of exposure where the driver tells it (V4L2), else that of arrival. Frames
-/// that a stopped driver repeats are not published.
+/// that a stopped driver repeats are not published. In virtual time there are only recordings.
 class CameraNode {
  public:
   static const char* const kHelp;
-  /// @throws ConfigError when a parameter is unknown or out of range, or the source cannot be opened.
-  CameraNode(ros::NodeHandle node, ros::NodeHandle private_node);
+  /// @throws ConfigError when a parameter is unknown or out of range, the source cannot be opened, or
+  /// is a device in virtual time.
+  explicit CameraNode(Bus& bus);
   /// Ends the process when the device's read still blocks after a second: nothing can interrupt it.
   ~CameraNode();
   CameraNode(const CameraNode&) = delete;
   CameraNode& operator=(const CameraNode&) = delete;
-  void run();
 
  private:
   void grab();  ///< in its own thread, because a device blocks
+  void publish(const CameraFrame& frame);
+  ros::Time exposureTime(const CameraFrame& frame) const;
   void report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
+  Bus& bus_;
   double silence_ = 1;  ///< s without a frame that are an error
   std::unique_ptr<CameraStream> stream_;
   ImageOutput images_;
-  MasterMonitor master_{true};
   std::atomic<std::int64_t> published_{0};  ///< ns of the steady clock, of the last frame
   unsigned reported_frames_ = 0;
   ros::SteadyTime reported_;
-  diagnostic_updater::Updater diagnostics_;
-  ros::SteadyTimer timer_;
+  Diagnostics diagnostics_;
+  BusHandle timer_;
+  BusHandle frames_;  ///< timer of a recording, in virtual time
   std::atomic<bool> stop_{false}, stopped_{false};
   std::thread thread_;
 };

@@ -11,7 +11,6 @@
 #include "nodes/cell/cell_state_reader.h"
 #include "nodes/cell/estimate_messages.h"
 #include "nodes/runtime/conversions.h"
-#include "nodes/runtime/run_node.h"
 
 namespace microinjection {
 namespace {
@@ -36,15 +35,15 @@ const char* const CellEstimatorNode::kHelp =
     "In: /needle/measured_cp, /force_sensor/measured_cf, /controller/injection_state, /cell/state, /vision/state.\n"
     "Out: /cell/estimate, /cell/set_parameters, /cell/puncture_score.\n";
 
-CellEstimatorNode::CellEstimatorNode(ros::NodeHandle node, ros::NodeHandle private_node)
-    : parameters_(CellEstimatorParameters::read(private_node)),
-      cycle_(node, parameters_.rate),
-      needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", InputPhase::kPreviousTick,
+CellEstimatorNode::CellEstimatorNode(Bus& bus)
+    : parameters_(CellEstimatorParameters::read(bus)),
+      cycle_(bus, parameters_.rate),
+      needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", InputPhase::kSampled,
                                                        parameters_.needle_timeout)),
-      force_(cycle_.input<geometry_msgs::WrenchStamped>("force_sensor/measured_cf", InputPhase::kTrigger,
+      force_(cycle_.input<geometry_msgs::WrenchStamped>("force_sensor/measured_cf", InputPhase::kWakes,
                                                         parameters_.force_timeout)),
-      controller_(cycle_.input<cell_microinjection::InjectionStatus>(
-          "controller/injection_state", InputPhase::kPreviousTick, parameters_.controller_timeout)),
+      controller_(cycle_.input<cell_microinjection::InjectionStatus>("controller/injection_state", InputPhase::kSampled,
+                                                                     parameters_.controller_timeout)),
       estimate_(cycle_.output<cell_microinjection::CellEstimate>("cell/estimate")),
       change_(cycle_.output<cell_microinjection::CellParameters>("cell/set_parameters")),
       score_(cycle_.output<cell_microinjection::PunctureScore>("cell/puncture_score", true)),
@@ -60,13 +59,14 @@ CellEstimatorNode::CellEstimatorNode(ros::NodeHandle node, ros::NodeHandle priva
     throw ConfigError(parameters_.scene + ": the twin needs a cell of a family, and this is of none" +
                       (reason.empty() ? "" : ": " + reason));
   }
-  if (parameters_.images) dimples_ = std::make_unique<DimpleReader>(cycle_.node(), parameters_.image);
+  if (parameters_.images) dimples_ = std::make_unique<DimpleReader>(bus, parameters_.image);
   take(scene, std::move(*member));
   cell_ = subscribeGuarded<cell_microinjection::CellState>(
-      cycle_.node(), "cell/state", 1,
+      bus, "cell/state", 1,
       [this](const cell_microinjection::CellState& message, const std::string&) { onCell(message); });
   force_.onMessage([this](const geometry_msgs::WrenchStamped& message, const ros::Time&) { followForce(message); });
   cycle_.diagnostics().add("cell under the needle", [this](auto& status) { report(status); });
+  cycle_.onStep([this](const Cycle::Tick& tick) { step(tick); });
 }
 
 /// Everything of another cell; the present one stays when that fails.
@@ -109,10 +109,6 @@ void CellEstimatorNode::onCell(const cell_microinjection::CellState& message) {
   take(next, std::move(*member));
   other_cell_ = true;
   ROS_INFO_STREAM("another cell is served; nothing is known of it yet: " << member_.description);
-}
-
-void CellEstimatorNode::run() {
-  cycle_.run([this](const Cycle::Tick& tick) { step(tick); });
 }
 
 std::string CellEstimatorNode::interruption(const ros::Time& now) const {
@@ -197,7 +193,7 @@ void CellEstimatorNode::step(const Cycle::Tick& tick) {
   if (dimples_ && !indentation_.punctured()) estimator_->seeContact(dimples_->height());
   if (held_.empty() && estimator_->update().samples > 0) indentation_.learn(estimator_->estimate().depth);
   if (!indentation_.punctured()) predict();
-  const double taken = threadCpuTime() - start;
+  const double taken = cycle_.bus().isVirtual() ? 0 : threadCpuTime() - start;  // differs in each run
   serve(tick.now);
   publish(tick.now, taken);
 }
@@ -277,7 +273,3 @@ void CellEstimatorNode::report(diagnostic_updater::DiagnosticStatusWrapper& stat
 }
 
 }  // namespace microinjection
-
-int main(int argc, char** argv) {
-  return microinjection::runNode<microinjection::CellEstimatorNode>(argc, argv, "cell_estimator");
-}

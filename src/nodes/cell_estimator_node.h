@@ -7,7 +7,6 @@
 #include <cell_microinjection/PunctureScore.h>
 #include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/WrenchStamped.h>
-#include <ros/ros.h>
 
 #include <memory>
 #include <optional>
@@ -38,8 +37,7 @@ class CellEstimatorNode {
  public:
   static const char* const kHelp;
   /// @throws ConfigError, also when no family contains the scene's cell
-  CellEstimatorNode(ros::NodeHandle node, ros::NodeHandle private_node);
-  void run();
+  explicit CellEstimatorNode(Bus& bus);
 
  private:
   void take(const Scene& scene, FamilyCell member);
@@ -70,7 +68,7 @@ class CellEstimatorNode {
   Output<cell_microinjection::CellEstimate>& estimate_;
   Output<cell_microinjection::CellParameters>& change_;
   Output<cell_microinjection::PunctureScore>& score_;
-  ros::Subscriber cell_;
+  Subscription cell_;
   std::string held_;
   std::string foreign_;                 ///< why the served cell is none of the family; empty: it is one
   std::vector<double> foreign_values_;  ///< its parameters

@@ -6,7 +6,6 @@
 #include "base/errors.h"
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/node_parameters.h"
-#include "nodes/runtime/run_node.h"
 
 namespace microinjection {
 
@@ -15,9 +14,9 @@ const char* const CellSimulatorNode::kHelp =
     "In: /needle/measured_cp or /needle/true_cp, /cell/set_parameters. Out: /cell/predicted_cf, /cell/state.\n"
     "Service: ~set_cell_parameters.\n";
 
-CellSimulatorNode::Parameters CellSimulatorNode::Parameters::read(const ros::NodeHandle& private_node) {
+CellSimulatorNode::Parameters CellSimulatorNode::Parameters::read(const Bus& bus) {
   Parameters parameters;
-  ConfigReader reader = parameterReader(private_node);
+  ConfigReader reader = parameterReader(bus);
   reader.text("scene", parameters.scene, ConfigReader::kRequired);
   reader.choice("model", parameters.model, {"auto", "prepared", "live", "explicit"});
   reader.text("families", parameters.models.families);
@@ -31,10 +30,10 @@ CellSimulatorNode::Parameters CellSimulatorNode::Parameters::read(const ros::Nod
   return parameters;
 }
 
-CellSimulatorNode::CellSimulatorNode(ros::NodeHandle node, ros::NodeHandle private_node)
-    : parameters_(Parameters::read(private_node)),
-      cycle_(node, parameters_.rate),
-      needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/" + parameters_.needle + "_cp", InputPhase::kThisTick,
+CellSimulatorNode::CellSimulatorNode(Bus& bus)
+    : parameters_(Parameters::read(bus)),
+      cycle_(bus, parameters_.rate),
+      needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/" + parameters_.needle + "_cp", InputPhase::kDrives,
                                                        parameters_.needle_timeout)),
       force_(cycle_.output<geometry_msgs::WrenchStamped>("cell/predicted_cf")),
       state_(cycle_.output<cell_microinjection::CellState>("cell/state", true)) {
@@ -46,9 +45,10 @@ CellSimulatorNode::CellSimulatorNode(ros::NodeHandle node, ros::NodeHandle priva
   using Thread = CellStatePublisher::Thread;
   const auto thread = cycle_.deterministic() ? Thread::kOfTheStep : Thread::kOwn;
   state_publisher_ = std::make_unique<CellStatePublisher>(*cell_, scene, state_, parameters_.state_rate, thread);
-  parameter_server_ = std::make_unique<CellParameterServer>(chosen_.change.get(), chosen_.unchangeable, *cell_,
-                                                            scene.radius(), cycle_, private_node);
+  parameter_server_ =
+      std::make_unique<CellParameterServer>(chosen_.change.get(), chosen_.unchangeable, *cell_, scene.radius(), cycle_);
   cycle_.diagnostics().add("solver", [this](auto& status) { report(status); });
+  cycle_.onStep([this](const Cycle::Tick& tick) { step(tick); });
 }
 
 ChosenCellModel CellSimulatorNode::makeCell(const Scene& scene) const {
@@ -59,10 +59,6 @@ ChosenCellModel CellSimulatorNode::makeCell(const Scene& scene) const {
     ROS_WARN_STREAM(served.description);
   }
   return served;
-}
-
-void CellSimulatorNode::run() {
-  cycle_.run([this](const Cycle::Tick& tick) { step(tick); });
 }
 
 void CellSimulatorNode::step(const Cycle::Tick& tick) {
@@ -85,12 +81,19 @@ void CellSimulatorNode::step(const Cycle::Tick& tick) {
   state_publisher_->step(moment(tick.now, force));
 }
 
+/// In virtual time without its processor time, which differs in each run.
+std::optional<CellModel::Solution> CellSimulatorNode::solution(const ros::Time& now) const {
+  auto solution = cell_->solution(now.toSec());
+  if (solution && cycle_.bus().isVirtual()) solution->cpu_time = 0;
+  return solution;
+}
+
 CellMoment CellSimulatorNode::moment(const ros::Time& now, const TipForce& force) const {
   CellMoment moment;
   moment.now = now;
   moment.force = force;
   moment.contact = cell_->contact();
-  moment.solution = cell_->solution(now.toSec());
+  moment.solution = solution(now);
   moment.insertion = cell_->insertion();
   moment.setReason(invalid_reason_);
   return moment;
@@ -103,16 +106,13 @@ void CellSimulatorNode::report(diagnostic_updater::DiagnosticStatusWrapper& stat
                          : cell_->contact()        ? "in contact"
                                                    : "free")
                       : invalid_reason_);
-  status.add("served cell", chosen_.description);
-  if (const auto solution = cell_->solution(ros::Time::now().toSec())) {
-    status.add("Newton iterations", solution->newton_iterations);
-    status.add("solution time (s of CPU)", solution->cpu_time);
-    status.add("smallest det F", solution->smallest_jacobian);
+  // It has measured times of the models, which differ in each run.
+  if (!cycle_.bus().isVirtual()) status.add("served cell", chosen_.description);
+  if (const auto solved = solution(cycle_.bus().now())) {
+    status.add("Newton iterations", solved->newton_iterations);
+    status.add("solution time (s of CPU)", solved->cpu_time);
+    status.add("smallest det F", solved->smallest_jacobian);
   }
 }
 
 }  // namespace microinjection
-
-int main(int argc, char** argv) {
-  return microinjection::runNode<microinjection::CellSimulatorNode>(argc, argv, "cell_simulator");
-}

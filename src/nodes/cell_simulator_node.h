@@ -2,9 +2,9 @@
 
 #include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/WrenchStamped.h>
-#include <ros/ros.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "cell/choice/make_cell_model.h"
@@ -28,8 +28,7 @@ class CellSimulatorNode {
  public:
   static const char* const kHelp;
   /// Meshes the cell, which may take seconds the first time. @throws ConfigError
-  CellSimulatorNode(ros::NodeHandle node, ros::NodeHandle private_node);
-  void run();
+  explicit CellSimulatorNode(Bus& bus);
 
  private:
   struct Parameters {
@@ -40,11 +39,12 @@ class CellSimulatorNode {
     double state_rate = 60;
     double needle_timeout = 0.05;
     CellModelConfig models;
-    static Parameters read(const ros::NodeHandle& private_node);
+    static Parameters read(const Bus& bus);
   };
 
   ChosenCellModel makeCell(const Scene& scene) const;
   void step(const Cycle::Tick& tick);
+  std::optional<CellModel::Solution> solution(const ros::Time& now) const;
   CellMoment moment(const ros::Time& now, const TipForce& force) const;
   void report(diagnostic_updater::DiagnosticStatusWrapper& status);
 

@@ -1,7 +1,5 @@
 #include "nodes/display_node.h"
 
-#include <visualization_msgs/MarkerArray.h>
-
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -13,14 +11,12 @@
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/message_guard.h"
 #include "nodes/runtime/node_parameters.h"
-#include "nodes/runtime/orphan.h"
-#include "nodes/runtime/run_node.h"
 
 namespace microinjection {
 namespace {
 
-constexpr double kFixedPeriod = 1;  // s of wall time; a late rviz has the whole scene by then
-constexpr double kStaleAge = 1;     // s of wall time
+constexpr double kFixedPeriod = 1;  // s of steady time; a late rviz has the whole scene by then
+constexpr double kStaleAge = 1;     // s of steady time
 
 CellMembers toMembers(const cell_microinjection::CellState& message) {
   CellMembers members;
@@ -60,8 +56,8 @@ bool isDrawable(const cell_microinjection::PuncturePrediction& puncture) {
          0 < puncture.depth_high && puncture.depth_high < kDeepest && std::abs(puncture.force) < kLargestForce;
 }
 
-DisplayConfig readConfig(const ros::NodeHandle& private_node) {
-  ConfigReader reader = parameterReader(private_node);
+DisplayConfig readConfig(const Bus& bus) {
+  ConfigReader reader = parameterReader(bus);
   const DisplayConfig config = DisplayConfig::read(reader);
   reader.finish();
   return config;
@@ -77,10 +73,11 @@ const char* const DisplayNode::kHelp =
     "Also viz/set_view (DisplayView).\n"
     "Out: viz/markers viz/still (MarkerArray), viz/view, tf below viz/world.\n";
 
-DisplayNode::DisplayNode(ros::NodeHandle node, ros::NodeHandle private_node)
-    : config_(readConfig(private_node)),
+DisplayNode::DisplayNode(Bus& bus)
+    : bus_(bus),
+      config_(readConfig(bus)),
       scene_(config_),
-      frames_(node, {"cell", "holding_pipette", "manipulator_base"}, config_.enlargement),
+      frames_(bus, {"cell", "holding_pipette", "manipulator_base"}, config_.enlargement),
       trail_(config_.trail),
       inputs_{{{"/cell/state", true},
                {"/force_sensor/measured_cf", true},
@@ -88,40 +85,37 @@ DisplayNode::DisplayNode(ros::NodeHandle node, ros::NodeHandle private_node)
                {"/controller/injection_state", false},
                {"/cell/estimate", false},
                {"/visual_servo/proposed_point", false}}},
-      reported_(ros::WallTime::now()),
-      diagnostics_(node, private_node) {
+      reported_(bus.steady()),
+      diagnostics_(bus) {
   state_.readout.state = "waiting for the cell";
-  markers_ = node.advertise<visualization_msgs::MarkerArray>("viz/markers", 5);
-  fixed_markers_ = node.advertise<visualization_msgs::MarkerArray>("viz/still", 1, true);
-  view_ = node.advertise<cell_microinjection::DisplayView>("viz/view", 1, true);
+  markers_ = bus.advertise<visualization_msgs::MarkerArray>("viz/markers", 5);
+  fixed_markers_ = bus.advertise<visualization_msgs::MarkerArray>("viz/still", 1, true);
+  view_ = bus.advertise<cell_microinjection::DisplayView>("viz/view", 1, true);
   state_.colour = *surfaceQuantity(config_.colour);
   state_.section = config_.section;
   publishView();
   const auto receiveView = [this](const auto& message, const std::string&) { onView(message); };
-  subscribers_.push_back(subscribeGuarded<cell_microinjection::DisplayView>(node, "viz/set_view", 1, receiveView));
-  subscribe(node, kState, &DisplayNode::onState);
-  subscribe(node, kMeasured, &DisplayNode::onMeasuredForce);
-  subscribe(node, kHand, &DisplayNode::onHand);
-  subscribe(node, kInjection, &DisplayNode::onInjection);
-  subscribe(node, kEstimate, &DisplayNode::onEstimate);
-  subscribe(node, kProposed, &DisplayNode::onProposed);
-  diagnostics_.setHardwareID("none");
+  subscriptions_.push_back(subscribeGuarded<cell_microinjection::DisplayView>(bus, "viz/set_view", 1, receiveView));
+  subscribe(kState, &DisplayNode::onState);
+  subscribe(kMeasured, &DisplayNode::onMeasuredForce);
+  subscribe(kHand, &DisplayNode::onHand);
+  subscribe(kInjection, &DisplayNode::onInjection);
+  subscribe(kEstimate, &DisplayNode::onEstimate);
+  subscribe(kProposed, &DisplayNode::onProposed);
   diagnostics_.add("drawing", this, &DisplayNode::reportDrawing);
   diagnostics_.add("inputs", this, &DisplayNode::reportInputs);
-  timer_ = node.createWallTimer(ros::WallDuration(1 / config_.rate), [this](const ros::WallTimerEvent&) { draw(); });
+  timer_ = bus.timer(1 / config_.rate, [this] { draw(); });
 }
 
 template <typename Message>
-void DisplayNode::subscribe(const ros::NodeHandle& node, InputId input, void (DisplayNode::*handler)(const Message&)) {
+void DisplayNode::subscribe(InputId input, void (DisplayNode::*handler)(const Message&)) {
   constexpr int kQueue = 1;  // only the latest message is drawn
   const auto receive = [this, handler](const Message& message, const std::string&) { (this->*handler)(message); };
-  subscribers_.push_back(subscribeGuarded<Message>(node, inputs_[input].topic, kQueue, receive));
+  subscriptions_.push_back(subscribeGuarded<Message>(bus_, inputs_[input].topic, kQueue, receive));
 }
 
-void DisplayNode::run() { ros::spin(); }
-
 void DisplayNode::count(InputId input, bool drawn) {
-  inputs_[input].received = ros::WallTime::now();
+  inputs_[input].received = bus_.steady();
   if (!drawn) ++inputs_[input].refused;
 }
 
@@ -211,7 +205,7 @@ void DisplayNode::onMeasuredForce(const geometry_msgs::WrenchStamped& message) {
 }
 
 void DisplayNode::draw() {
-  const ros::WallTime start = ros::WallTime::now();
+  const ros::SteadyTime start = bus_.steady();
   frames_.update();
   findTipTransform();
   if (secondsBetween(inputs_[kEstimate].received, start) > kStaleAge) state_.readout.puncture = std::nullopt;
@@ -220,7 +214,7 @@ void DisplayNode::draw() {
     frames_.publishNeedleTip(*state_.tip);
     if (config_.trail > 0) trail_.add(start.toSec(), state_.tip->translation());
   }
-  if (markers_.getNumSubscribers() > 0) {
+  if (markers_.subscribers() > 0) {
     visualization_msgs::MarkerArray markers;
     if (state_.section) state_.tip_in_cell = frames_.find(state_.cell_frame, "needle_tip");
     if (cell_changed_) scene_.drawCell(state_, markers);
@@ -229,22 +223,21 @@ void DisplayNode::draw() {
     scene_.drawMoving(state_, markers);
     markers_.publish(markers);
   }
-  if (fixed_markers_.getNumSubscribers() > 0 &&
-      (scene_.fixedChanged() || start - fixed_drawn_ > ros::WallDuration(kFixedPeriod))) {
+  if (fixed_markers_.subscribers() > 0 &&
+      (scene_.fixedChanged() || fixed_drawn_.isZero() || secondsBetween(fixed_drawn_, start) > kFixedPeriod)) {
     state_.holding_from_cell = frames_.find("holding_pipette", state_.cell_frame);
     visualization_msgs::MarkerArray markers;
     scene_.drawFixed(state_, markers);
     fixed_markers_.publish(markers);
     fixed_drawn_ = start;
   }
-  endIfOrphaned(master_);
   ++drawings_;
-  longest_drawing_ = std::max(longest_drawing_, secondsBetween(start, ros::WallTime::now()));
+  longest_drawing_ = std::max(longest_drawing_, secondsBetween(start, bus_.steady()));
   diagnostics_.update();
 }
 
 void DisplayNode::reportDrawing(diagnostic_updater::DiagnosticStatusWrapper& status) {
-  const ros::WallTime now = ros::WallTime::now();
+  const ros::SteadyTime now = bus_.steady();
   const double rate = drawings_ / std::max(1e-9, secondsBetween(reported_, now));
   const std::vector<std::string> missing = frames_.missing();
   status.summary(diagnostic_msgs::DiagnosticStatus::OK, "drawing");
@@ -262,7 +255,7 @@ void DisplayNode::reportDrawing(diagnostic_updater::DiagnosticStatusWrapper& sta
 }
 
 void DisplayNode::reportInputs(diagnostic_updater::DiagnosticStatusWrapper& status) {
-  const ros::WallTime now = ros::WallTime::now();
+  const ros::SteadyTime now = bus_.steady();
   status.summary(diagnostic_msgs::DiagnosticStatus::OK, "inputs are fresh");
   for (const Input& input : inputs_) {
     const bool silent = input.received.isZero();
@@ -280,8 +273,3 @@ void DisplayNode::reportInputs(diagnostic_updater::DiagnosticStatusWrapper& stat
 }
 
 }  // namespace microinjection
-
-int main(int argc, char** argv) {
-  return microinjection::runNode<microinjection::DisplayNode>(argc, argv, "display",
-                                                              microinjection::Priority::kOrdinary);
-}

@@ -4,19 +4,18 @@
 #include <cell_microinjection/CellState.h>
 #include <cell_microinjection/DisplayView.h>
 #include <cell_microinjection/InjectionStatus.h>
-#include <diagnostic_updater/diagnostic_updater.h>
 #include <geometry_msgs/PointStamped.h>
 #include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/WrenchStamped.h>
-#include <ros/ros.h>
+#include <visualization_msgs/MarkerArray.h>
 
 #include <array>
 #include <string>
 #include <vector>
 
+#include "nodes/bus/diagnostics.h"
 #include "nodes/display/display_frames.h"
 #include "nodes/display/display_scene.h"
-#include "nodes/runtime/master_monitor.h"
 #include "operation/display/tip_trail.h"
 
 namespace microinjection {
@@ -32,24 +31,23 @@ namespace microinjection {
 ///
 /// Parameters: config/display.yaml
 ///
-/// It uses wall time, unlike the nodes that control, so that the frame rate does not depend on a
+/// It uses steady time, unlike the nodes that control, so that the frame rate does not depend on a
 /// simulated clock. Input that is not finite, invalid (stamp 0) or in an unknown frame is not
 /// drawn; the diagnostics count it.
 class DisplayNode {
  public:
   static const char* const kHelp;
   /// @throws ConfigError when a parameter is unknown or out of range.
-  DisplayNode(ros::NodeHandle node, ros::NodeHandle private_node);
-  void run();
+  explicit DisplayNode(Bus& bus);
 
  private:
   enum InputId { kState, kMeasured, kHand, kInjection, kEstimate, kProposed, kInputs };
   struct Input {
     Input(const std::string& input_topic, bool is_needed) : topic(input_topic), needed(is_needed) {}
     std::string topic;
-    bool needed;             ///< its absence causes a warning
-    ros::WallTime received;  ///< of the last message, drawn or not; zero: none yet
-    unsigned refused = 0;    ///< messages that were not drawn
+    bool needed;               ///< its absence causes a warning
+    ros::SteadyTime received;  ///< of the last message, drawn or not; zero: none yet
+    unsigned refused = 0;      ///< messages that were not drawn
   };
 
   void onState(const cell_microinjection::CellState& message);
@@ -61,7 +59,7 @@ class DisplayNode {
   void publishView();
   void onMeasuredForce(const geometry_msgs::WrenchStamped& message);
   template <typename Message>
-  void subscribe(const ros::NodeHandle& node, InputId input, void (DisplayNode::*handler)(const Message&));
+  void subscribe(InputId input, void (DisplayNode::*handler)(const Message&));
   void findTipTransform();
   void count(InputId input, bool drawn);
 
@@ -69,24 +67,25 @@ class DisplayNode {
   void reportDrawing(diagnostic_updater::DiagnosticStatusWrapper& status);
   void reportInputs(diagnostic_updater::DiagnosticStatusWrapper& status);
 
+  Bus& bus_;
   DisplayConfig config_;  // read-only after construction
   DisplayScene scene_;
   DisplayFrames frames_;
   DisplayedState state_;  ///< the latest input
   TipTrail trail_;
-  MasterMonitor master_{true};
   bool cell_changed_ = false;  ///< since the cell was drawn
   std::array<Input, kInputs> inputs_;
 
-  ros::WallTime fixed_drawn_;  ///< last time of the fixed markers
-  ros::WallTime reported_;
+  ros::SteadyTime fixed_drawn_;  ///< last time of the fixed markers; zero: draw them
+  ros::SteadyTime reported_;
   unsigned drawings_ = 0;       ///< since reported_
-  double longest_drawing_ = 0;  ///< s of wall time, since reported_
+  double longest_drawing_ = 0;  ///< s, since reported_
 
-  ros::Publisher markers_, fixed_markers_, view_;
-  std::vector<ros::Subscriber> subscribers_;
-  diagnostic_updater::Updater diagnostics_;
-  ros::WallTimer timer_;
+  Publisher<visualization_msgs::MarkerArray> markers_, fixed_markers_;
+  Publisher<cell_microinjection::DisplayView> view_;
+  std::vector<Subscription> subscriptions_;
+  Diagnostics diagnostics_;
+  BusHandle timer_;
 };
 
 }  // namespace microinjection

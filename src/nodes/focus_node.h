@@ -1,12 +1,9 @@
 #pragma once
 
-#include <actionlib/server/simple_action_server.h>
 #include <cell_microinjection/FindFocusAction.h>
 #include <cell_microinjection/VisionState.h>
-#include <diagnostic_updater/diagnostic_updater.h>
 #include <geometry_msgs/PoseStamped.h>
-#include <image_transport/image_transport.h>
-#include <ros/ros.h>
+#include <sensor_msgs/Image.h>
 #include <sensor_msgs/JointState.h>
 
 #include <memory>
@@ -14,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "nodes/imaging/arrival.h"
-#include "nodes/runtime/master_monitor.h"
+#include "nodes/bus/goal_node.h"
+#include "nodes/imaging/receipt.h"
 #include "vision/measurement/core_sharpness.h"
 #include "vision/measurement/focus_search.h"
 
@@ -31,73 +28,69 @@ namespace microinjection {
 ///
 /// The sharpness is taken in one window in all planes, at the tip as it is seen at the start. In the
 /// best plane the tip must be found; where the window was beside it, the planes are seen once more.
-class FocusNode {
+class FocusNode : public GoalNode<cell_microinjection::FindFocusAction> {
  public:
   static const char* const kHelp;
   /// @throws ConfigError when a parameter is unknown or out of range.
-  FocusNode(ros::NodeHandle node, ros::NodeHandle private_node);
-  void run();
+  explicit FocusNode(Bus& bus);
 
  private:
   struct Parameters {
     double image_timeout = 0.5;      ///< s
     double largest_motion = 0.5e-6;  ///< m, of the needle during the search
-    int core = 3;                    ///< px, see TipWindow
+    int core = 3;                    ///< px, see TipInImage
     FocusSearchConfig search;
+
+    static Parameters read(const Bus& bus);
   };
-  static Parameters readParameters(const ros::NodeHandle& private_node);
   struct Tip {
     double stamp = 0;  ///< s
     bool found = false;
-    TipWindow window;
+    TipInImage window;
   };
 
-  void onGoal();
-  void begin(double start, const Tip& tip);
+  void begin(const Goal& goal) override;
+  Result end(bool success) override;
+  void step() override;
+  void report(diagnostic_updater::DiagnosticStatusWrapper& status) override;
+
+  void beginSearch(double start, const Tip& tip);
   void onImage(const sensor_msgs::Image& message);
   void onVision(const cell_microinjection::VisionState& message);
   void onFocus(const sensor_msgs::JointState& message);
   void onNeedle(const geometry_msgs::PoseStamped& message);
-  bool isOld(const Arrival& arrival) const { return arrival.isOld(parameters_.image_timeout); }
+  Receipt receive(const ros::Time& stamp) const { return {stamp, bus_.steady()}; }
+  bool isOld(const Receipt& receipt) const {
+    return receipt.isOld(parameters_.image_timeout, bus_.now(), bus_.steady());
+  }
   std::optional<double> position() const;
-  void step();
   void verify(double now);  ///< the tip in the best plane
   void move(double position);
-  void end(bool success, std::string message);
-  void stopSearch();
-  void report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   Parameters parameters_;
-  ros::NodeHandle node_;
-  image_transport::ImageTransport transport_;
   std::unique_ptr<FocusSearch> search_;                      ///< null: no goal is active
-  TipWindow window_;                                         ///< of the search
+  TipInImage window_;                                         ///< of the search
   double start_ = 0;                                         ///< m, position of the focus at the start of the goal
   bool repeated_ = false;                                    ///< the planes are seen for the second time
   std::optional<double> rough_;                              ///< m, plane about which the search begins again
   std::optional<double> verified_since_;                     ///< s, when the focus was in the best plane
   std::size_t planes_ = 0;                                   ///< of an earlier search of this goal
   std::optional<Eigen::Vector3d> needle_, needle_at_start_;  ///< m; none: not known
-  Arrival needle_arrival_;
+  Receipt needle_receipt_;
 
   std::optional<double> focus_;  ///< m
-  Arrival focus_arrival_;
+  Receipt focus_receipt_;
   std::optional<Tip> tip_;
-  Arrival tip_arrival_;
+  Receipt tip_receipt_;
   std::string tip_reason_ = "no image was received";
   std::optional<FocusSearch::Reading> reading_;
-  Arrival reading_arrival_;
+  Receipt reading_receipt_;
   std::string blind_;                     ///< why the newest image is not usable; empty: it is
   std::vector<unsigned char> last_data_;  ///< of the last image: a frozen camera repeats it
-  std::string outcome_ = "no goal yet";
 
-  MasterMonitor master_{true};
-  ros::Publisher command_;
-  image_transport::Subscriber images_;
-  std::vector<ros::Subscriber> subscribers_;
-  actionlib::SimpleActionServer<cell_microinjection::FindFocusAction> action_;
-  diagnostic_updater::Updater diagnostics_;
-  ros::SteadyTimer timer_;
+  Publisher<sensor_msgs::JointState> command_;
+  Subscription images_;  ///< while a goal is active
+  Subscription vision_, focus_state_, needle_state_;
 };
 
 }  // namespace microinjection

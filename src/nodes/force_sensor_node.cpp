@@ -1,15 +1,14 @@
 #include "nodes/force_sensor_node.h"
 
-#include <diagnostic_msgs/DiagnosticArray.h>
-
 #include <filesystem>
 
+#include "base/errors.h"
 #include "base/user_data.h"
+#include "nodes/runtime/background_writing.h"
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/frames.h"
 #include "nodes/runtime/message_guard.h"
 #include "nodes/runtime/node_parameters.h"
-#include "nodes/runtime/run_node.h"
 
 namespace microinjection {
 
@@ -26,9 +25,9 @@ const char* const ForceSensorNode::kHelp =
     "Out: /force_sensor/measured_cf (needle_tip: z along, x across) /force_sensor/raw_cf (the sensor's frame).\n"
     "Services: ~tare ~reset ~calibrate.\n";
 
-ForceSensorNode::Parameters ForceSensorNode::Parameters::read(const ros::NodeHandle& private_node) {
+ForceSensorNode::Parameters ForceSensorNode::Parameters::read(const Bus& bus) {
   Parameters parameters;
-  ConfigReader reader = parameterReader(private_node);
+  ConfigReader reader = parameterReader(bus);
   reader.choice("source", parameters.source, {"simulated", "serial", "topic"});
   reader.number("rate", parameters.rate, Range::closed(50, 5000));
   reader.number("input_timeout", parameters.input_timeout, Range::positive());
@@ -56,56 +55,62 @@ ForceSensorNode::Parameters ForceSensorNode::Parameters::read(const ros::NodeHan
   return parameters;
 }
 
-ForceSensorNode::ForceSensorNode(ros::NodeHandle node, ros::NodeHandle private_node)
-    : parameters_(Parameters::read(private_node)),
-      cycle_(node, parameters_.rate),
+ForceSensorNode::ForceSensorNode(Bus& bus)
+    : parameters_(Parameters::read(bus)),
+      cycle_(bus, parameters_.rate),
       source_(makeSource()),
       readout_(source_->range(), parameters_.averaging),
       measured_(cycle_.output<geometry_msgs::WrenchStamped>("force_sensor/measured_cf")),
       raw_(cycle_.output<geometry_msgs::WrenchStamped>("force_sensor/raw_cf")) {
   if (!parameters_.file.empty() && source_->size() == 2) {
     if (std::filesystem::exists(parameters_.file)) readout_.restore(readSensorCalibration(parameters_.file));
-    file_.emplace(parameters_.file);
+    file_.emplace(parameters_.file, writingOn(bus));
   }
-  advertiseServices(private_node);
+  advertiseServices();
   watchController();
-  reports_ = node.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 10);
   cycle_.diagnostics().add(kStatus, [this](auto& status) { report(status); });
+  cycle_.onStep([this](const Cycle::Tick& tick) { step(tick); });
 }
 
 std::unique_ptr<ForceSource> ForceSensorNode::makeSource() {
   const Parameters& p = parameters_;
+  if (p.source == "serial" && cycle_.bus().isVirtual()) {
+    throw ConfigError("source = serial: the sensor on " + p.port.path +
+                      " cannot run in virtual time, it measures on while time stands");
+  }
   if (p.source == "topic") return std::make_unique<TopicForceSource>(cycle_, p.input_timeout, p.overload);
-  tip_from_sensor_ = waitForFrame(kTipFrame, p.frame, p.frame_timeout);
+  tip_from_sensor_ = waitForFrame(cycle_.bus(), kTipFrame, p.frame, p.frame_timeout);
   if (p.source == "serial") {
     return std::make_unique<SerialForceSource>(p.port, p.voltages, p.overload, p.input_timeout, p.frame);
   }
   return std::make_unique<SimulatedForceSource>(cycle_, p.input_timeout, p.simulated, p.frame, tip_from_sensor_);
 }
 
-void ForceSensorNode::advertiseServices(ros::NodeHandle private_node) {
-  using Trigger = std_srvs::Trigger;
-  // Services are executed right before a step, in the node's own thread.
-  private_node.setCallbackQueue(cycle_.node().getCallbackQueue());
-  tare_ = private_node.advertiseService<Trigger::Request, Trigger::Response>(
-      "tare", [this](Trigger::Request&, Trigger::Response& response) {
-        const std::string reason = inUseReason().empty() ? notReadyReason() : inUseReason();
-        const std::string refusal = reason.empty() ? readout_.beginTare() : reason;
-        response.success = refusal.empty();
-        response.message = refusal.empty() ? readout_.outcome() : refusal;
+void ForceSensorNode::advertiseServices() {
+  using cell_microinjection::CalibrateForce;
+  using std_srvs::Trigger;
+  Bus& bus = cycle_.bus();
+  tare_ = bus.advertiseService<Trigger>("~tare", [this](Trigger::Request&, Trigger::Response& response) {
+    const std::string reason = inUseReason().empty() ? notReadyReason() : inUseReason();
+    const std::string refusal = reason.empty() ? readout_.beginTare() : reason;
+    response.success = refusal.empty();
+    response.message = refusal.empty() ? readout_.outcome() : refusal;
+    return true;
+  });
+  reset_ = bus.advertiseService<Trigger>("~reset", [this](Trigger::Request&, Trigger::Response& response) {
+    response.success = true;
+    response.message = source_->overloaded() ? "was overloaded: check the sensor, then tare" : "there was no fault";
+    source_->reset();
+    return true;
+  });
+  calibrate_ = bus.advertiseService<CalibrateForce>(
+      "~calibrate", [this](CalibrateForce::Request& request, CalibrateForce::Response& response) {
+        calibrate(request, response);
         return true;
       });
-  reset_ = private_node.advertiseService<Trigger::Request, Trigger::Response>(
-      "reset", [this](Trigger::Request&, Trigger::Response& response) {
-        response.success = true;
-        response.message = source_->overloaded() ? "was overloaded: check the sensor, then tare" : "there was no fault";
-        source_->reset();
-        return true;
-      });
-  calibrate_ = private_node.advertiseService("calibrate", &ForceSensorNode::calibrate, this);
 }
 
-bool ForceSensorNode::calibrate(cell_microinjection::CalibrateForce::Request& request,
+void ForceSensorNode::calibrate(const cell_microinjection::CalibrateForce::Request& request,
                                 cell_microinjection::CalibrateForce::Response& response) {
   const std::string refusal = source_->size() == 2 ? act(request) : "a wrench is calibrated where it is measured";
   response.success = refusal.empty();
@@ -114,7 +119,6 @@ bool ForceSensorNode::calibrate(cell_microinjection::CalibrateForce::Request& re
   response.gain.assign(by_columns.data(), by_columns.data() + by_columns.size());
   response.residual = readout_.residual();
   response.points = static_cast<std::uint32_t>(readout_.points());
-  return true;
 }
 
 std::string ForceSensorNode::act(const cell_microinjection::CalibrateForce::Request& request) {
@@ -146,10 +150,10 @@ void ForceSensorNode::watchController() {
   using Operating = cell_microinjection::OperatingState;
   using Injection = cell_microinjection::InjectionStatus;
   controller_.push_back(subscribeGuarded<Operating>(
-      cycle_.node(), "controller/operating_state", 10,
+      cycle_.bus(), "controller/operating_state", 10,
       [this](const Operating& message, const std::string&) { controller_state_ = message.state; }));
   controller_.push_back(subscribeGuarded<Injection>(
-      cycle_.node(), "controller/injection_state", 1,
+      cycle_.bus(), "controller/injection_state", 1,
       [this](const Injection& message, const std::string&) { injection_state_ = message.state; }));
 }
 
@@ -170,26 +174,15 @@ void ForceSensorNode::keepCalibration() {
 }
 
 /// The operator waits for the end of an average: it must not wait for the next report of a second.
-void ForceSensorNode::reportOutcome(const ros::Time& now) {
+void ForceSensorNode::reportOutcome() {
   if (reported_outcome_ == readout_.outcome()) return;
   reported_outcome_ = readout_.outcome();
-  diagnostic_updater::DiagnosticStatusWrapper status;
-  status.name = ros::this_node::getName().substr(1) + ": " + kStatus;
-  status.hardware_id = "none";
-  report(status);
-  diagnostic_msgs::DiagnosticArray message;
-  message.header.stamp = now;
-  message.status.push_back(status);
-  reports_.publish(message);
-}
-
-void ForceSensorNode::run() {
-  cycle_.run([this](const Cycle::Tick& tick) { step(tick); });
+  cycle_.diagnostics().publish(kStatus);
 }
 
 void ForceSensorNode::step(const Cycle::Tick& tick) {
   keepCalibration();
-  reportOutcome(tick.now);
+  reportOutcome();
   const auto signal = source_->read(tick);
   if (!source_->invalidReason().empty() || source_->overloaded()) return publishInvalid(tick);
   if (!signal) return;
@@ -234,8 +227,3 @@ void ForceSensorNode::report(diagnostic_updater::DiagnosticStatusWrapper& status
 }
 
 }  // namespace microinjection
-
-int main(int argc, char** argv) {
-  return microinjection::runNode<microinjection::ForceSensorNode>(argc, argv, "force_sensor",
-                                                                  microinjection::Priority::kPrompt);
-}

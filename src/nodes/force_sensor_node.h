@@ -4,7 +4,6 @@
 #include <cell_microinjection/InjectionStatus.h>
 #include <cell_microinjection/OperatingState.h>
 #include <geometry_msgs/WrenchStamped.h>
-#include <ros/ros.h>
 #include <std_srvs/Trigger.h>
 
 #include <memory>
@@ -40,8 +39,7 @@ class ForceSensorNode {
  public:
   static const char* const kHelp;
   /// @throws ConfigError, also when tf does not have the sensor's frame in time
-  ForceSensorNode(ros::NodeHandle node, ros::NodeHandle private_node);
-  void run();
+  explicit ForceSensorNode(Bus& bus);
 
  private:
   struct Parameters {
@@ -56,15 +54,15 @@ class ForceSensorNode {
     SerialPortConfig port;
     VoltReadingConfig voltages;
     Eigen::Vector2d overload{2e-3, 4e-3};  ///< N, of a real sensor, (axial, lateral)
-    static Parameters read(const ros::NodeHandle& private_node);
+    static Parameters read(const Bus& bus);
   };
 
   std::unique_ptr<ForceSource> makeSource();
-  void advertiseServices(ros::NodeHandle private_node);
+  void advertiseServices();
   void step(const Cycle::Tick& tick);
   void publishInvalid(const Cycle::Tick& tick);
   geometry_msgs::WrenchStamped atTip(const Eigen::VectorXd& force, const ros::Time& stamp) const;
-  bool calibrate(cell_microinjection::CalibrateForce::Request& request,
+  void calibrate(const cell_microinjection::CalibrateForce::Request& request,
                  cell_microinjection::CalibrateForce::Response& response);
   std::string act(const cell_microinjection::CalibrateForce::Request& request);
   std::string notReadyReason() const;
@@ -72,7 +70,7 @@ class ForceSensorNode {
   std::string inUseReason() const;
   void watchController();
   void keepCalibration();
-  void reportOutcome(const ros::Time& now);
+  void reportOutcome();
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
   Parameters parameters_;
@@ -84,11 +82,10 @@ class ForceSensorNode {
   Output<geometry_msgs::WrenchStamped>& raw_;
   std::optional<BackgroundFile> file_;
   unsigned kept_changes_ = 0;     ///< of the readout, that are in the file
-  ros::Publisher reports_;        ///< of an outcome, at once
   std::string reported_outcome_;  ///< of the readout
-  ros::ServiceServer tare_, calibrate_, reset_;
+  BusHandle tare_, calibrate_, reset_;
   std::string controller_state_, injection_state_;  ///< empty: there is no controller
-  std::vector<ros::Subscriber> controller_;
+  std::vector<Subscription> controller_;
 };
 
 }  // namespace microinjection

@@ -1,7 +1,6 @@
 #include "nodes/force_watchdog_node.h"
 
 #include "nodes/runtime/node_parameters.h"
-#include "nodes/runtime/run_node.h"
 #include "nodes/runtime/stamps.h"
 
 namespace microinjection {
@@ -18,12 +17,12 @@ const char* const ForceWatchdogNode::kHelp =
     "  ~timeout     s without a force of another node, default 0.05\n"
     "  ~rate        Hz, of checks and of zero force, default 200\n";
 
-ForceWatchdogNode::Parameters ForceWatchdogNode::Parameters::read(const ros::NodeHandle& node,
-                                                                  const ros::NodeHandle& private_node) {
+ForceWatchdogNode::Parameters ForceWatchdogNode::Parameters::read(const Bus& bus) {
   Parameters parameters;
-  ConfigReader reader = parameterReader(private_node);
+  ConfigReader reader = parameterReader(bus);
   reader.choice("kind", parameters.kind, {"crtk", "omni", "geomagic"});
-  if (parameters.kind != "crtk") node.getParam("haptic_device/device", parameters.device);
+  const YAML::Node device = bus.parameter("haptic_device/device");
+  if (parameters.kind != "crtk" && device.IsScalar()) parameters.device = device.Scalar();
   reader.text("device", parameters.device);
   reader.text("force", parameters.force);
   reader.boolean("from_start", parameters.from_start);
@@ -34,23 +33,18 @@ ForceWatchdogNode::Parameters ForceWatchdogNode::Parameters::read(const ros::Nod
   return parameters;
 }
 
-ForceWatchdogNode::ForceWatchdogNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node)
-    : parameters_(Parameters::read(node, private_node)),
-      force_(MonitoredForce::make(parameters_.kind, parameters_.device, parameters_.force, node,
-                                  [this] { last_received_ = ros::Time::now(); })) {}
+ForceWatchdogNode::ForceWatchdogNode(Bus& bus)
+    : bus_(bus),
+      parameters_(Parameters::read(bus)),
+      force_(MonitoredForce::make(parameters_.kind, parameters_.device, parameters_.force, bus,
+                                  [this] { last_received_ = bus_.now(); })) {
+  // No Cycle: it must also work when nothing else does. Forces that have arrived are heard before a step.
+  bus.setStep(1 / parameters_.rate, [this](const ros::Time& now) { check(now); });
+}
 
-void ForceWatchdogNode::run() {
-  // Uses wall time: it must also work when nothing else does.
-  for (ros::WallRate rate(parameters_.rate); ros::ok() && !master_.masterLostForLong(); rate.sleep()) {
-    ros::spinOnce();
-    const ros::Time now = ros::Time::now();
-    if (last_received_.isZero() && !parameters_.from_start) continue;
-    if (secondsBetween(last_received_, now) >= parameters_.timeout) force_->publishZeroForce(now);
-  }
+void ForceWatchdogNode::check(const ros::Time& now) {
+  if (last_received_.isZero() && !parameters_.from_start) return;
+  if (secondsBetween(last_received_, now) >= parameters_.timeout) force_->publishZeroForce(now);
 }
 
 }  // namespace microinjection
-
-int main(int argc, char** argv) {
-  return microinjection::runNode<microinjection::ForceWatchdogNode>(argc, argv, "force_watchdog");
-}

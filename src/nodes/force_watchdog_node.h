@@ -1,12 +1,10 @@
 #pragma once
 
-#include <ros/ros.h>
-
 #include <memory>
 #include <string>
 
+#include "nodes/bus/bus.h"
 #include "nodes/haptic/monitored_force.h"
-#include "nodes/runtime/master_monitor.h"
 
 namespace microinjection {
 
@@ -21,8 +19,7 @@ class ForceWatchdogNode {
  public:
   static const char* const kHelp;
   /// @throws ConfigError
-  ForceWatchdogNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node);
-  void run();
+  explicit ForceWatchdogNode(Bus& bus);
 
  private:
   struct Parameters {
@@ -30,10 +27,12 @@ class ForceWatchdogNode {
     bool from_start = true;
     double timeout = 0.05;  // s
     double rate = 200;      // Hz
-    static Parameters read(const ros::NodeHandle& node, const ros::NodeHandle& private_node);
+    static Parameters read(const Bus& bus);
   };
 
-  const MasterMonitor master_{true};
+  void check(const ros::Time& now);
+
+  Bus& bus_;
   Parameters parameters_;
   ros::Time last_received_;  ///< arrival of another node's last force
   std::unique_ptr<MonitoredForce> force_;

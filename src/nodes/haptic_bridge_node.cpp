@@ -5,14 +5,12 @@
 #include "nodes/haptic/local_rig.h"
 #include "nodes/link/remote_rig.h"
 #include "nodes/runtime/conversions.h"
-#include "nodes/runtime/ending.h"
 #include "nodes/runtime/node_parameters.h"
-#include "nodes/runtime/run_node.h"
 
 namespace microinjection {
 namespace {
 
-constexpr int kLastForces = 5;  // several, since messages can be dropped
+constexpr int kLastHandForces = 5;  // several, since messages can be dropped
 
 /// A time-out (s) of 0 in the parameters means for ever.
 double orForEver(double timeout) { return timeout > 0 ? timeout : std::numeric_limits<double>::infinity(); }
@@ -40,9 +38,9 @@ HapticBridgeNode::Timeouts HapticBridgeNode::Timeouts::read(ConfigReader reader)
   return timeouts;
 }
 
-HapticBridgeNode::Parameters HapticBridgeNode::Parameters::read(const ros::NodeHandle& private_node) {
+HapticBridgeNode::Parameters HapticBridgeNode::Parameters::read(const Bus& bus) {
   Parameters parameters;
-  ConfigReader reader = parameterReader(private_node);
+  ConfigReader reader = parameterReader(bus);
   reader.number("rate", parameters.rate, Range::closed(50, 5000));
   reader.boolean("force_feedback", parameters.force_feedback);
   reader.text("axes_file", parameters.axes_file);
@@ -54,22 +52,22 @@ HapticBridgeNode::Parameters HapticBridgeNode::Parameters::read(const ros::NodeH
   return parameters;
 }
 
-HapticBridgeNode::HapticBridgeNode(ros::NodeHandle node, ros::NodeHandle private_node)
-    : parameters_(Parameters::read(private_node)),
+HapticBridgeNode::HapticBridgeNode(Bus& bus)
+    : parameters_(Parameters::read(bus)),
       model_(parameters_.model),
-      cycle_(node, parameters_.rate),
-      hand_(cycle_.input<geometry_msgs::PoseStamped>("haptic/measured_cp", InputPhase::kThisTick,
+      cycle_(bus, parameters_.rate),
+      hand_(cycle_.input<geometry_msgs::PoseStamped>("haptic/measured_cp", InputPhase::kDrives,
                                                      parameters_.timeouts.hand)),
-      clutch_(cycle_.input<sensor_msgs::Joy>("haptic/clutch", InputPhase::kPreviousTick,
+      clutch_(cycle_.input<sensor_msgs::Joy>("haptic/clutch", InputPhase::kSampled,
                                              orForEver(parameters_.timeouts.clutch))),
       hand_force_(cycle_.output<geometry_msgs::WrenchStamped>("haptic/servo_cf")),
       trace_(cycle_.output<sensor_msgs::TimeReference>("haptic/force_trace")),
-      loop_state_(cycle_.node(), "haptic/loop_state"),
+      loop_state_(bus, "haptic/loop_state"),
       receiver_(cycle_, hand_force_.publisher, parameters_.force_feedback),
-      axes_(cycle_, private_node, parameters_.model.frame.device_axes, parameters_.model.motion.mode == "rate",
+      axes_(cycle_, parameters_.model.frame.device_axes, parameters_.model.motion.mode == "rate",
             parameters_.axes_file) {
   if (parameters_.model.require_operator) {
-    operator_present_ = &cycle_.input<sensor_msgs::Joy>("haptic/operator_present", InputPhase::kPreviousTick,
+    operator_present_ = &cycle_.input<sensor_msgs::Joy>("haptic/operator_present", InputPhase::kSampled,
                                                         orForEver(parameters_.timeouts.operator_present));
   }
   receiver_.monitor(hand_);
@@ -80,26 +78,17 @@ HapticBridgeNode::HapticBridgeNode(ros::NodeHandle node, ros::NodeHandle private
     rig_ = std::make_unique<LocalRig>(cycle_, parameters_.timeouts.rig, model.force, trace_);
   }
   cycle_.diagnostics().add("loop", [this](auto& status) { report(status); });
-}
-
-void HapticBridgeNode::run() {
-  cycle_.run([this](const Cycle::Tick& tick) {
-    if (shutdownRequested()) {
-      cycle_.stop();
-    } else {
-      step(tick);
-    }
-  });
-  publishZeroForce();
+  bus.onEnd([this] { publishZeroForce(); });
+  cycle_.onStep([this](const Cycle::Tick& tick) { step(tick); });
 }
 
 /// Ends with zero force, for a driver that holds the last one.
 void HapticBridgeNode::publishZeroForce() {
-  for (int i = 0; i < kLastForces && ros::ok(); ++i) {
-    const ros::Time now = ros::Time::now();
+  for (int i = 0; i < kLastHandForces; ++i) {
+    const ros::Time now = cycle_.bus().now();
     hand_force_.publish(toWrench(Eigen::Vector3d::Zero(), now, hand_frame_));
     rig_->withdraw(now);
-    ros::WallDuration(0.01).sleep();
+    cycle_.bus().pause(0.01);
   }
 }
 
@@ -160,8 +149,3 @@ void HapticBridgeNode::report(diagnostic_updater::DiagnosticStatusWrapper& statu
 }
 
 }  // namespace microinjection
-
-int main(int argc, char** argv) {
-  using namespace microinjection;
-  return runNode<HapticBridgeNode>(argc, argv, "haptic_bridge", Priority::kRealTime, ShutdownMode::kInGoodOrder);
-}

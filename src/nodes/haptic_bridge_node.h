@@ -2,7 +2,6 @@
 
 #include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/WrenchStamped.h>
-#include <ros/ros.h>
 #include <sensor_msgs/Joy.h>
 #include <sensor_msgs/TimeReference.h>
 
@@ -42,8 +41,7 @@ class HapticBridgeNode {
  public:
   static const char* const kHelp;
   /// @throws ConfigError
-  HapticBridgeNode(ros::NodeHandle node, ros::NodeHandle private_node);
-  void run();
+  explicit HapticBridgeNode(Bus& bus);
 
  private:
   struct Timeouts {  // s
@@ -60,7 +58,7 @@ class HapticBridgeNode {
     Timeouts timeouts;
     HapticBridgeConfig model;
     LinkConfig link;
-    static Parameters read(const ros::NodeHandle& private_node);
+    static Parameters read(const Bus& bus);
   };
 
   void step(const Cycle::Tick& tick);

@@ -9,17 +9,16 @@
 
 #include "base/atomic_file.h"
 #include "base/errors.h"
+#include "nodes/imaging/image_input.h"
 #include "nodes/runtime/message_guard.h"
 #include "nodes/runtime/node_parameters.h"
-#include "nodes/runtime/orphan.h"
-#include "nodes/runtime/run_node.h"
 
 namespace microinjection {
 namespace {
 
-constexpr char kImageTopic[] = "vision/image_overlay";
-constexpr double kReportPeriod = 0.2;  // s of wall time
-constexpr int kQueue = 10;
+constexpr char kOverlayTopic[] = "vision/image_overlay";
+constexpr double kRecorderReportPeriod = 0.2;  // s
+constexpr int kRecordedImagesQueue = 10;
 
 }  // namespace
 
@@ -28,34 +27,26 @@ const char* const ImageRecorderNode::kHelp =
     "In: vision/image_overlay /controller/injection_state.\n"
     "Out: overlay.avi, overlay.avi.csv and snapshots in output_dir.\n";
 
-ImageRecorderNode::ImageRecorderNode(ros::NodeHandle node, ros::NodeHandle private_node)
-    : transport_(node), diagnostics_(node, private_node) {
-  ConfigReader reader = parameterReader(private_node);
+ImageRecorderNode::ImageRecorderNode(Bus& bus) : diagnostics_(bus) {
+  ConfigReader reader = parameterReader(bus);
   reader.text("output_dir", folder_, ConfigReader::kRequired);
   reader.number("rate", rate_, Range::closed(1, 1000));
   reader.finish();
   requireWritableFolder(folder_);
   video_ = std::make_unique<VideoFile>(folder_ + "/overlay.avi", rate_);
   states_ = subscribeGuarded<cell_microinjection::InjectionStatus>(
-      node, "/controller/injection_state", kQueue,
+      bus, "/controller/injection_state", kRecordedImagesQueue,
       [this](const cell_microinjection::InjectionStatus& message, const std::string&) { onState(message); });
-  images_ = transport_.subscribe(kImageTopic, kQueue, [this](const sensor_msgs::ImageConstPtr& message) {
-    runGuarded(kImageTopic, [&] { onImage(*message); });
-  });
-  diagnostics_.setHardwareID("none");
+  images_ = subscribeImages(bus, kOverlayTopic, kRecordedImagesQueue,
+                            [this](const sensor_msgs::Image& message) { onImage(message); });
   diagnostics_.add("recording", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
     status.summary(diagnostic_msgs::DiagnosticStatus::OK, video_->frames() > 0 ? "recording" : "waits for an image");
     if (!error_.empty()) status.mergeSummary(diagnostic_msgs::DiagnosticStatus::ERROR, error_);
     status.add("frames", video_->frames());
     status.add("snapshots", snapshots_);
   });
-  timer_ = node.createSteadyTimer(ros::WallDuration(kReportPeriod), [this](const ros::SteadyTimerEvent&) {
-    diagnostics_.update();
-    endIfOrphaned(master_);
-  });
+  timer_ = bus.timer(kRecorderReportPeriod, [this] { diagnostics_.update(); });
 }
-
-void ImageRecorderNode::run() { ros::spin(); }
 
 void ImageRecorderNode::onState(const cell_microinjection::InjectionStatus& message) {
   if (message.state == state_) return;
@@ -88,8 +79,3 @@ void ImageRecorderNode::saveSnapshot(const cv::Mat& image, const std::string& ev
 }
 
 }  // namespace microinjection
-
-int main(int argc, char** argv) {
-  return microinjection::runNode<microinjection::ImageRecorderNode>(argc, argv, "image_recorder",
-                                                                    microinjection::Priority::kOrdinary);
-}

@@ -1,15 +1,13 @@
 #pragma once
 
 #include <cell_microinjection/InjectionStatus.h>
-#include <diagnostic_updater/diagnostic_updater.h>
-#include <image_transport/image_transport.h>
-#include <ros/ros.h>
+#include <sensor_msgs/Image.h>
 
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "nodes/runtime/master_monitor.h"
+#include "nodes/bus/diagnostics.h"
 #include "vision/camera/video_file.h"
 
 namespace microinjection {
@@ -25,8 +23,7 @@ class ImageRecorderNode {
  public:
   static const char* const kHelp;
   /// @throws ConfigError, WriteError when the folder cannot be written
-  ImageRecorderNode(ros::NodeHandle node, ros::NodeHandle private_node);
-  void run();
+  explicit ImageRecorderNode(Bus& bus);
 
  private:
   void onImage(const sensor_msgs::Image& message);
@@ -40,12 +37,9 @@ class ImageRecorderNode {
   std::vector<std::string> events_;  ///< whose snapshots are to be taken of the next image
   int snapshots_ = 0;
   std::string error_;  ///< of the last image; empty: written
-  MasterMonitor master_{true};
-  image_transport::ImageTransport transport_;
-  image_transport::Subscriber images_;
-  ros::Subscriber states_;
-  diagnostic_updater::Updater diagnostics_;
-  ros::SteadyTimer timer_;
+  Subscription states_, images_;
+  Diagnostics diagnostics_;
+  BusHandle timer_;
 };
 
 }  // namespace microinjection

@@ -9,15 +9,14 @@
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/force_topic.h"
 #include "nodes/runtime/node_parameters.h"
-#include "nodes/runtime/run_node.h"
 
 namespace microinjection {
 namespace {
 
-constexpr char kStateTopic[] = "controller/state_command";
+constexpr char kControllerCommandTopic[] = "controller/state_command";
 
 /// Commands that stop or withdraw the needle are executed with any stamp.
-bool stops(const std::string& command) {
+bool stopsOrWithdraws(const std::string& command) {
   return command == "disable" || command == "pause" || command == "home" || command == "unhome" ||
          command == "withdraw";
 }
@@ -35,9 +34,9 @@ const char* const InjectionControllerNode::kHelp =
     "inject, withdraw). Action: /controller/inject. Out: /needle/servo_cp /controller/operating_state\n"
     "/controller/injection_state /injector/pulse /injector/stop.\n";
 
-InjectionControllerNode::Parameters InjectionControllerNode::Parameters::read(const ros::NodeHandle& private_node) {
+InjectionControllerNode::Parameters InjectionControllerNode::Parameters::read(const Bus& bus) {
   Parameters parameters;
-  ConfigReader reader = parameterReader(private_node);
+  ConfigReader reader = parameterReader(bus);
   reader.number("rate", parameters.rate, Range::closed(50, 5000));
   reader.number("input_timeout", parameters.input_timeout, Range::positive());
   reader.choice("force_source", parameters.force_source, {"predicted", "measured"});
@@ -49,49 +48,50 @@ InjectionControllerNode::Parameters InjectionControllerNode::Parameters::read(co
   return parameters;
 }
 
-InjectionControllerNode::InjectionControllerNode(ros::NodeHandle node, ros::NodeHandle private_node)
-    : parameters_(Parameters::read(private_node)),
+InjectionControllerNode::InjectionControllerNode(Bus& bus)
+    : parameters_(Parameters::read(bus)),
       model_(parameters_.model),
-      cycle_(node, parameters_.rate),
-      needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", InputPhase::kPreviousTick,
+      cycle_(bus, parameters_.rate),
+      needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", InputPhase::kSampled,
                                                        parameters_.input_timeout)),
-      force_(cycle_.input<geometry_msgs::WrenchStamped>(forceTopic(parameters_.force_source), InputPhase::kPreviousTick,
+      force_(cycle_.input<geometry_msgs::WrenchStamped>(forceTopic(parameters_.force_source), InputPhase::kSampled,
                                                         parameters_.input_timeout)),
       setpoint_(cycle_.output<geometry_msgs::PoseStamped>("needle/servo_cp")),
       injection_(cycle_.output<cell_microinjection::InjectionStatus>("controller/injection_state", true)),
-      loop_state_(cycle_.node(), "controller/loop_state"),
-      action_(cycle_.node(), model_, parameters_.model.goal),
-      repeated_(cycle_.node().resolveName(kStateTopic)) {
+      loop_state_(bus, "controller/loop_state"),
+      action_(bus, model_, parameters_.model.goal),
+      repeated_(bus, kControllerCommandTopic),
+      log_(bus) {
   if (parameters_.model.mode == "manual") {
     target_ =
-        &cycle_.input<geometry_msgs::PoseStamped>("teleop/servo_cp", InputPhase::kThisTick, parameters_.input_timeout);
+        &cycle_.input<geometry_msgs::PoseStamped>("teleop/servo_cp", InputPhase::kDrives, parameters_.input_timeout);
   }
   if (parameters_.injector) injector_ = std::make_unique<InjectorLink>(cycle_, parameters_.input_timeout);
-  state_ = cycle_.node().advertise<cell_microinjection::OperatingState>("controller/operating_state", 10, true);
+  state_ = bus.advertise<cell_microinjection::OperatingState>("controller/operating_state", 10, true);
   subscribeCommands();
   using cell_microinjection::ManipulatorAbilities;
   abilities_ = subscribeGuarded<ManipulatorAbilities>(
-      cycle_.node(), "needle/abilities", 1,
+      bus, "needle/abilities", 1,
       [this](const ManipulatorAbilities& message, const std::string&) { adaptTo(message); });
   using cell_microinjection::CellEstimate;
   estimates_ = subscribeGuarded<CellEstimate>(
-      cycle_.node(), "cell/estimate", 1,
-      [this](const CellEstimate& message, const std::string&) { receiveEstimate(message); });
+      bus, "cell/estimate", 1, [this](const CellEstimate& message, const std::string&) { receiveEstimate(message); });
   cycle_.diagnostics().add("control", [this](auto& status) { report(status); });
   if (parameters_.auto_enable) execute("enable");
+  cycle_.onStep([this](const Cycle::Tick& tick) { step(tick); });
 }
 
 void InjectionControllerNode::subscribeCommands() {
   using cell_microinjection::StringStamped;
   if (cycle_.deterministic() && parameters_.commands_in_lockstep) {
-    auto& input =
-        cycle_.input<StringStamped>(kStateTopic, InputPhase::kPreviousTick, std::numeric_limits<double>::infinity());
+    auto& input = cycle_.input<StringStamped>(kControllerCommandTopic, InputPhase::kSampled,
+                                              std::numeric_limits<double>::infinity());
     input.stamp_rule = StampRule::kAny;
     input.onMessage([this](const StringStamped& message, const ros::Time&) { receiveCommand(message, false, false); });
     return;
   }
   commands_ = subscribeCommand<StringStamped>(
-      cycle_.node(), kStateTopic,
+      cycle_.bus(), kControllerCommandTopic,
       [this](const StringStamped& message, const CommandSource& source) {
         receiveCommand(message, source.latched, repeated_.mayBe(source));
       },
@@ -105,19 +105,15 @@ void InjectionControllerNode::receiveCommand(const cell_microinjection::StringSt
                                              bool repeated) {
   const std::string& command = message.string;
   state_command_received_ = true;
-  const ros::Time &stamp = message.header.stamp, now = ros::Time::now();
-  if (!stops(command) && !isTimely(kStateTopic, message, now)) return;
+  const ros::Time &stamp = message.header.stamp, now = cycle_.bus().now();
+  if (!stopsOrWithdraws(command) && !isTimely(cycle_.bus().refusals(), kControllerCommandTopic, message, now)) return;
   const bool stale = !stamp.isZero() && secondsBetween(stamp, now) > kOldestCommand;
-  const bool begins = !stops(command) || (moves(command) && latched);
+  const bool begins = !stopsOrWithdraws(command) || (moves(command) && latched);
   if (begins && stale) return log_.addResult("state command " + command, "it is stale");
   if (begins && repeated) {
     return log_.addResult("state command " + command, std::string(kUnstampedLatched) + "; send it again");
   }
   execute(command);
-}
-
-void InjectionControllerNode::run() {
-  cycle_.run([this](const Cycle::Tick& tick) { step(tick); });
 }
 
 void InjectionControllerNode::execute(const std::string& command) {
@@ -128,7 +124,7 @@ void InjectionControllerNode::execute(const std::string& command) {
   if (!refusal.empty()) return;
   ROS_INFO_STREAM("state command " << command << ": " << toText(model_.state()));
   if (ran && !model_.running()) log_.addOverride("the injection", "by " + command);
-  if (moves(command)) busy_.accept(static_cast<std::int64_t>(ros::Time::now().toNSec()));
+  if (moves(command)) busy_.accept(static_cast<std::int64_t>(cycle_.bus().now().toNSec()));
 }
 
 void InjectionControllerNode::adaptTo(const cell_microinjection::ManipulatorAbilities& rig) {
@@ -247,7 +243,3 @@ void InjectionControllerNode::report(diagnostic_updater::DiagnosticStatusWrapper
 }
 
 }  // namespace microinjection
-
-int main(int argc, char** argv) {
-  return microinjection::runNode<microinjection::InjectionControllerNode>(argc, argv, "injection_controller");
-}

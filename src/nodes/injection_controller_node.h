@@ -2,10 +2,10 @@
 
 #include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/WrenchStamped.h>
-#include <ros/ros.h>
 
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "base/busy_report.h"
@@ -41,8 +41,7 @@ class InjectionControllerNode {
  public:
   static const char* const kHelp;
   /// @throws ConfigError
-  InjectionControllerNode(ros::NodeHandle node, ros::NodeHandle private_node);
-  void run();
+  explicit InjectionControllerNode(Bus& bus);
 
  private:
   struct Parameters {
@@ -53,7 +52,7 @@ class InjectionControllerNode {
     bool injector = true;
     bool commands_in_lockstep = false;
     InjectionControllerConfig model;
-    static Parameters read(const ros::NodeHandle& private_node);
+    static Parameters read(const Bus& bus);
   };
 
   void subscribeCommands();
@@ -83,12 +82,11 @@ class InjectionControllerNode {
   CommandLog log_;
   BusyReport busy_;
   bool state_command_received_ = false;
-  ros::Subscriber commands_;
-  ros::Subscriber abilities_, estimates_;
+  Subscription commands_, abilities_, estimates_;
   std::optional<ExpectedPuncture> expected_;  ///< by the twin
   ros::Time estimated_;                       ///< its time
   bool adapted_ = false;                      ///< to a rig's abilities
-  ros::Publisher state_;
+  Publisher<cell_microinjection::OperatingState> state_;
   cell_microinjection::OperatingState last_published_state_;
   cell_microinjection::InjectionStatus last_published_injection_;
   std::string logged_notice_;  ///< the last notice in the log

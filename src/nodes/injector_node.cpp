@@ -3,8 +3,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/errors.h"
 #include "nodes/runtime/node_parameters.h"
-#include "nodes/runtime/run_node.h"
 #include "rig/injector/injector_registry.h"
 #include "rig/injector/serial_injector.h"
 #include "rig/serial/emulated_wire.h"
@@ -16,9 +16,9 @@ const char* const InjectorNode::kHelp =
     "In: /injector/pulse /injector/stop /injector/set_balance. Out: /injector/state. Services: ~reset ~clog "
     "(simulated).\n";
 
-InjectorNode::Parameters InjectorNode::Parameters::read(const ros::NodeHandle& private_node) {
+InjectorNode::Parameters InjectorNode::Parameters::read(const Bus& bus) {
   Parameters parameters;
-  ConfigReader reader = parameterReader(private_node);
+  ConfigReader reader = parameterReader(bus);
   reader.choice("source", parameters.source, {"simulated", "serial"});
   reader.number("rate", parameters.rate, Range::closed(20, 5000));
   reader.number("command_timeout", parameters.command_timeout, Range::positive());
@@ -40,23 +40,23 @@ InjectorNode::Parameters InjectorNode::Parameters::read(const ros::NodeHandle& p
   return parameters;
 }
 
-InjectorNode::InjectorNode(ros::NodeHandle node, ros::NodeHandle private_node)
-    : parameters_(Parameters::read(private_node)),
-      cycle_(node, parameters_.rate),
-      state_(cycle_.output<cell_microinjection::InjectorState>("injector/state")) {
-  private_node.setCallbackQueue(cycle_.node().getCallbackQueue());
-  makeDevice(private_node);
+InjectorNode::InjectorNode(Bus& bus)
+    : parameters_(Parameters::read(bus)),
+      cycle_(bus, parameters_.rate),
+      state_(cycle_.output<cell_microinjection::InjectorState>("injector/state")),
+      log_(bus) {
+  makeDevice();
   // The handler receives every command, also several between two steps.
-  cycle_.input<cell_microinjection::InjectionPulse>("injector/pulse", InputPhase::kPreviousTick, INFINITY)
+  cycle_.input<cell_microinjection::InjectionPulse>("injector/pulse", InputPhase::kSampled, INFINITY)
       .onMessage([this](const auto& message, const ros::Time&) { onPulse(message); });
-  auto& stop = cycle_.input<cell_microinjection::StringStamped>("injector/stop", InputPhase::kPreviousTick, INFINITY);
+  auto& stop = cycle_.input<cell_microinjection::StringStamped>("injector/stop", InputPhase::kSampled, INFINITY);
   stop.stamp_rule = StampRule::kAny;
   stop.onMessage([this](const auto& message, const ros::Time&) { onStop(message); });
   balance_ = subscribeGuarded<sensor_msgs::FluidPressure>(
-      cycle_.node(), "injector/set_balance", 100,
+      bus, "injector/set_balance", 100,
       [this](const sensor_msgs::FluidPressure& message, const std::string&) { onBalance(message); });
-  reset_ = private_node.advertiseService<std_srvs::Trigger::Request, std_srvs::Trigger::Response>(
-      "reset", [this](std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+  reset_ = bus.advertiseService<std_srvs::Trigger>(
+      "~reset", [this](std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
         device_->reset();
         log_.addResult("reset", "");
         response.success = device_->fault().empty();
@@ -64,6 +64,7 @@ InjectorNode::InjectorNode(ros::NodeHandle node, ros::NodeHandle private_node)
         return true;
       });
   cycle_.diagnostics().add("injector", [this](auto& status) { report(status); });
+  cycle_.onStep([this](const Cycle::Tick& tick) { step(tick); });
 }
 
 std::unique_ptr<Wire> InjectorNode::makeWire() const {
@@ -71,10 +72,14 @@ std::unique_ptr<Wire> InjectorNode::makeWire() const {
     if (injector.name != parameters_.emulated) continue;
     return std::make_unique<EmulatedWire>(injector.make_emulator(), parameters_.port.baud);
   }
+  if (cycle_.bus().isVirtual()) {
+    throw ConfigError("source = serial: the injector on " + parameters_.port.path +
+                      " cannot run in virtual time, it injects on while time stands");
+  }
   return std::make_unique<SerialPort>(parameters_.port);
 }
 
-void InjectorNode::makeDevice(ros::NodeHandle& private_node) {
+void InjectorNode::makeDevice() {
   if (parameters_.source == "serial") {
     device_ = std::make_unique<SerialInjector>(makeWire(), parameters_.protocol, parameters_.model);
     return;
@@ -82,8 +87,8 @@ void InjectorNode::makeDevice(ros::NodeHandle& private_node) {
   auto model = std::make_unique<InjectorModel>(parameters_.model);
   InjectorModel* const simulated = model.get();  // owned by device_, which outlives the service
   device_ = std::move(model);
-  clog_ = private_node.advertiseService<std_srvs::SetBool::Request, std_srvs::SetBool::Response>(
-      "clog", [this, simulated](std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response) {
+  clog_ = cycle_.bus().advertiseService<std_srvs::SetBool>(
+      "~clog", [this, simulated](std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response) {
         clogged_ = request.data;
         simulated->clog(clogged_ ? parameters_.clog_factor : 1);
         response.success = true;
@@ -91,13 +96,9 @@ void InjectorNode::makeDevice(ros::NodeHandle& private_node) {
       });
 }
 
-void InjectorNode::run() {
-  cycle_.run([this](const Cycle::Tick& tick) { step(tick); });
-}
-
 std::string InjectorNode::stampError(const std_msgs::Header& header) const {
   if (header.stamp.isZero()) return "its stamp is 0";
-  const double age = secondsBetween(header.stamp, ros::Time::now());
+  const double age = secondsBetween(header.stamp, cycle_.bus().now());
   if (age > parameters_.command_timeout) return "it is stale";
   return age < -parameters_.command_timeout ? "it is from the future" : "";
 }
@@ -148,7 +149,7 @@ void InjectorNode::endAbandonedPulse(const ros::Time& now) {
 void InjectorNode::step(const Cycle::Tick& tick) {
   endAbandonedPulse(tick.now);
   device_->step(tick.now.toSec());
-  cycle_.setBusy(device_->reading().busy);
+  cycle_.bus().setBusy(device_->reading().busy);
   const InjectorReading& reading = device_->reading();
   cell_microinjection::InjectorState state;
   state.header.stamp = tick.now;
@@ -183,8 +184,3 @@ void InjectorNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) c
 }
 
 }  // namespace microinjection
-
-int main(int argc, char** argv) {
-  return microinjection::runNode<microinjection::InjectorNode>(argc, argv, "injector",
-                                                               microinjection::Priority::kPrompt);
-}

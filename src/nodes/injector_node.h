@@ -1,6 +1,5 @@
 #pragma once
 
-#include <ros/ros.h>
 #include <sensor_msgs/FluidPressure.h>
 #include <std_srvs/SetBool.h>
 #include <std_srvs/Trigger.h>
@@ -38,8 +37,7 @@ class InjectorNode {
  public:
   static const char* const kHelp;
   /// @throws ConfigError
-  InjectorNode(ros::NodeHandle node, ros::NodeHandle private_node);
-  void run();
+  explicit InjectorNode(Bus& bus);
 
  private:
   struct Parameters {
@@ -52,11 +50,11 @@ class InjectorNode {
     SerialPortConfig port;
     InjectorProtocol protocol;
     std::string emulated = "none";
-    static Parameters read(const ros::NodeHandle& private_node);
+    static Parameters read(const Bus& bus);
   };
 
   std::unique_ptr<Wire> makeWire() const;
-  void makeDevice(ros::NodeHandle& private_node);
+  void makeDevice();
   void onPulse(const cell_microinjection::InjectionPulse& message);
   void onStop(const cell_microinjection::StringStamped& message);
   void onBalance(const sensor_msgs::FluidPressure& message);
@@ -73,8 +71,8 @@ class InjectorNode {
   std::uint64_t held_ = 0;     ///< id of the held pulse under way; 0: none
   ros::Time last_repetition_;  ///< stamp of its last message
   bool master_lost_ = false;
-  ros::Subscriber balance_;
-  ros::ServiceServer reset_, clog_;
+  Subscription balance_;
+  BusHandle reset_, clog_;
   unsigned repeated_ = 0;
   bool clogged_ = false;
   CommandLog log_;

@@ -4,7 +4,6 @@
 #include <string>
 
 #include "nodes/runtime/node_parameters.h"
-#include "nodes/runtime/run_node.h"
 
 namespace microinjection {
 namespace {
@@ -12,8 +11,8 @@ namespace {
 constexpr double kRate = 1000;              // Hz
 constexpr unsigned kOtherDirection = 1000;  // added to the seed
 
-LinkConditions readConditions(const ros::NodeHandle& private_node) {
-  ConfigReader reader = parameterReader(private_node);
+LinkConditions readConditions(const Bus& bus) {
+  ConfigReader reader = parameterReader(bus);
   const LinkConditions conditions = LinkConditions::read(reader);
   reader.finish();
   return conditions;
@@ -35,38 +34,32 @@ const char* const LinkEmulatorNode::kHelp =
     "  ~loss    share of the packets, 0 to 1\n"
     "  ~seed    of the random numbers\n";
 
-LinkEmulatorNode::LinkEmulatorNode(ros::NodeHandle node, ros::NodeHandle private_node)
-    : conditions_(readConditions(private_node)),
-      cycle_(node, kRate),
+LinkEmulatorNode::LinkEmulatorNode(Bus& bus)
+    : conditions_(readConditions(bus)),
+      cycle_(bus, kRate),
       to_rig_(conditions_),
       to_hand_(otherDirection(conditions_)),
       rig_received_(cycle_.output<Message>("link/rig/received")),
       hand_received_(cycle_.output<Message>("link/hand/received")) {
   const auto relay = [this](const std::string& topic, LinkEmulator<Message>& link) {
-    cycle_.input<Message>(topic, InputPhase::kPreviousTick, std::numeric_limits<double>::infinity())
+    cycle_.input<Message>(topic, InputPhase::kSampled, std::numeric_limits<double>::infinity())
         .onMessage([&link](const Message& message, const ros::Time& now) { link.send(message, now.toSec()); });
   };
   plug_ = subscribeGuarded<std_msgs::Bool>(
-      cycle_.node(), "link/plugged", 10,
-      [this](const std_msgs::Bool& plugged, const std::string&) { plugged_ = plugged.data; });
+      bus, "link/plugged", 10, [this](const std_msgs::Bool& plugged, const std::string&) { plugged_ = plugged.data; });
   relay("link/hand/sent", to_rig_);
   relay("link/rig/sent", to_hand_);
+  cycle_.onStep([this](const Cycle::Tick& tick) { step(tick); });
 }
 
-void LinkEmulatorNode::run() {
-  cycle_.run([this](const Cycle::Tick& tick) {
-    if (!plugged_) {
-      to_rig_.receive(tick.now.toSec());
-      to_hand_.receive(tick.now.toSec());
-      return;
-    }
-    for (const Message& message : to_rig_.receive(tick.now.toSec())) rig_received_.publish(message);
-    for (const Message& message : to_hand_.receive(tick.now.toSec())) hand_received_.publish(message);
-  });
+void LinkEmulatorNode::step(const Cycle::Tick& tick) {
+  if (!plugged_) {
+    to_rig_.receive(tick.now.toSec());
+    to_hand_.receive(tick.now.toSec());
+    return;
+  }
+  for (const Message& message : to_rig_.receive(tick.now.toSec())) rig_received_.publish(message);
+  for (const Message& message : to_hand_.receive(tick.now.toSec())) hand_received_.publish(message);
 }
 
 }  // namespace microinjection
-
-int main(int argc, char** argv) {
-  return microinjection::runNode<microinjection::LinkEmulatorNode>(argc, argv, "link_emulator");
-}

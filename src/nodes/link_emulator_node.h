@@ -1,6 +1,5 @@
 #pragma once
 
-#include <ros/ros.h>
 #include <std_msgs/Bool.h>
 
 #include "cell_microinjection/LinkPacket.h"
@@ -21,16 +20,17 @@ class LinkEmulatorNode {
  public:
   static const char* const kHelp;
   /// @throws ConfigError
-  LinkEmulatorNode(ros::NodeHandle node, ros::NodeHandle private_node);
-  void run();
+  explicit LinkEmulatorNode(Bus& bus);
 
  private:
   using Message = cell_microinjection::LinkPacket;
 
+  void step(const Cycle::Tick& tick);
+
   LinkConditions conditions_;
   Cycle cycle_;
   LinkEmulator<Message> to_rig_, to_hand_;
-  ros::Subscriber plug_;
+  Subscription plug_;
   bool plugged_ = true;
   Output<Message>&rig_received_, &hand_received_;
 };

@@ -7,14 +7,13 @@
 
 #include "base/errors.h"
 #include "nodes/runtime/lockstep.h"
-#include "nodes/runtime/message_guard.h"
 #include "nodes/runtime/node_parameters.h"
-#include "nodes/runtime/run_node.h"
+#include "nodes/runtime/stamps.h"
 
 namespace microinjection {
 namespace {
 
-constexpr double kLongestWait = 0.2;  // s, largest counted part of a wait
+constexpr double kLongestCountedWait = 0.2;  // s, largest counted part of a wait
 
 }  // namespace
 
@@ -26,9 +25,9 @@ const char* const LockstepClockNode::kHelp =
     "  ~warn_after        s of wall time without an acknowledgement until a warning, default 5\n"
     "  ~frozen_after      s of wall time without an acknowledgement until a node leaves, default 60\n";
 
-LockstepClockNode::LockstepClockNode(ros::NodeHandle node, ros::NodeHandle private_node)
-    : participants_(lockstepParticipants()) {
-  ConfigReader reader = parameterReader(private_node);
+LockstepClockNode::LockstepClockNode(Bus& bus)
+    : bus_(dynamic_cast<RosBus&>(bus)), participants_(lockstepParticipants()) {
+  ConfigReader reader = parameterReader(bus);
   reader.number("step", step_, Range::closed(1e-6, 1));
   reader.number("real_time_factor", real_time_factor_, Range::nonNegative());
   reader.number("warn_after", warn_after_, Range::positive());
@@ -36,6 +35,7 @@ LockstepClockNode::LockstepClockNode(ros::NodeHandle node, ros::NodeHandle priva
   reader.finish();
   if (participants_.empty()) throw ConfigError("/lockstep/participants must be a list of at least one node's name");
   missing_ = participants_;
+  ros::NodeHandle node;
   node.setCallbackQueue(&queue_);
   departed_ = node.advertise<std_msgs::String>(kLeftTopic, 10, true);
   clock_ = node.advertise<rosgraph_msgs::Clock>(
@@ -44,10 +44,14 @@ LockstepClockNode::LockstepClockNode(ros::NodeHandle node, ros::NodeHandle priva
       {}, true);
   acknowledgements_ = node.subscribe(kAcknowledgementTopic, 100, &LockstepClockNode::onAcknowledgement, this,
                                      ros::TransportHints().tcpNoDelay());
-  leave_ = subscribeGuarded<std_msgs::String>(node, kLeaveTopic, 10,
-                                              [this](const std_msgs::String& name, const std::string& sender) {
-                                                leave(name.data, "is frozen, reported by " + sender);
-                                              });
+  using Name = ros::MessageEvent<const std_msgs::String>;
+  leave_ = node.subscribe<std_msgs::String, const Name&>(
+      kLeaveTopic, 10,
+      [this](const Name& name) {
+        leave(name.getConstMessage()->data, "is frozen, reported by " + name.getPublisherName());
+      },
+      {}, ros::TransportHints().tcpNoDelay());
+  bus_.runInstead([this] { run(); });
 }
 
 void LockstepClockNode::onAcknowledgement(const std_msgs::HeaderConstPtr& header) {
@@ -64,8 +68,6 @@ void LockstepClockNode::leave(const std::string& name, const std::string& reason
   departed_.publish(message);
 }
 
-bool LockstepClockNode::shouldContinue() const { return ros::ok() && !master_.masterLostForLong(); }
-
 std::string LockstepClockNode::missingNames() const {
   std::string names;
   for (const std::string& name : missing_) names += " " + name;
@@ -75,14 +77,14 @@ std::string LockstepClockNode::missingNames() const {
 void LockstepClockNode::waitForAll() {
   ros::SteadyTime before = ros::SteadyTime::now(), warned = before;
   double waiting_time = 0;  // s, without times in which this node itself was frozen
-  while (shouldContinue() && !missing_.empty()) {
+  while (bus_.shouldContinue() && !missing_.empty()) {
     queue_.callAvailable(ros::WallDuration(0.1));
     const ros::SteadyTime now = ros::SteadyTime::now();
     if (secondsBetween(warned, now) >= warn_after_) {
       warned = now;
       ROS_WARN_STREAM("the clock stands at " << tick_ << " s and waits for:" << missingNames());
     }
-    waiting_time += std::min(secondsBetween(before, now), kLongestWait);
+    waiting_time += std::min(secondsBetween(before, now), kLongestCountedWait);
     before = now;
     if (tick_.isZero() || waiting_time < frozen_after_) continue;
     for (const std::string& name : std::set<std::string>(missing_)) leave(name, "does not acknowledge");
@@ -99,7 +101,7 @@ void LockstepClockNode::pace(const ros::SteadyTime& began) const {
 void LockstepClockNode::run() {
   waitForAll();
   const ros::SteadyTime began = ros::SteadyTime::now();
-  while (shouldContinue() && !participants_.empty()) {
+  while (bus_.shouldContinue() && !participants_.empty()) {
     tick_ += ros::Duration(step_);
     missing_ = participants_;
     rosgraph_msgs::Clock message;
@@ -111,8 +113,3 @@ void LockstepClockNode::run() {
 }
 
 }  // namespace microinjection
-
-int main(int argc, char** argv) {
-  return microinjection::runNode<microinjection::LockstepClockNode>(argc, argv, "lockstep_clock",
-                                                                    microinjection::Priority::kOrdinary);
-}

@@ -7,7 +7,7 @@
 #include <set>
 #include <string>
 
-#include "nodes/runtime/master_monitor.h"
+#include "nodes/bus/ros_bus.h"
 
 namespace microinjection {
 
@@ -18,7 +18,7 @@ namespace microinjection {
 /// - when it is frozen: no acknowledgement for `frozen_after`, or named on /lockstep/leave.
 ///
 /// Time then continues without it, and the others' time-outs run. When all have left, this node
-/// ends.
+/// ends. It needs a RosBus, and uses roscpp, which reports subscribers that leave.
 ///
 /// In:  /lockstep/acknowledgement (std_msgs/Header of each participant), /lockstep/leave
 ///      (std_msgs/String)
@@ -29,17 +29,17 @@ class LockstepClockNode {
  public:
   static const char* const kHelp;
   /// @throws ConfigError when a parameter is unknown or out of range, or there are no participants.
-  LockstepClockNode(ros::NodeHandle node, ros::NodeHandle private_node);
-  void run();
+  explicit LockstepClockNode(Bus& bus);
 
  private:
+  void run();
   void onAcknowledgement(const std_msgs::HeaderConstPtr& header);
   void leave(const std::string& name, const std::string& reason);
   std::string missingNames() const;
-  bool shouldContinue() const;
   void waitForAll();
   void pace(const ros::SteadyTime& began) const;
 
+  RosBus& bus_;
   double step_ = 1e-3;           ///< s
   double real_time_factor_ = 0;  ///< 0: as fast as possible
   double warn_after_ = 5;        ///< s of wall time
@@ -47,7 +47,6 @@ class LockstepClockNode {
   std::set<std::string> participants_;
   std::set<std::string> missing_;  ///< participants without an acknowledgement of the present tick
   ros::Time tick_;
-  MasterMonitor master_{false};
   ros::CallbackQueue queue_;
   ros::Publisher clock_;
   ros::Publisher departed_;

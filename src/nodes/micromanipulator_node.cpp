@@ -2,17 +2,16 @@
 
 #include "base/errors.h"
 #include "nodes/runtime/node_parameters.h"
-#include "nodes/runtime/run_node.h"
 
 namespace microinjection {
 namespace {
 
-std::string urdfFromParameter() {
-  std::string urdf;
-  if (!ros::param::get("/robot_description", urdf)) {
+std::string urdfFromParameter(const Bus& bus) {
+  const YAML::Node urdf = bus.parameter("/robot_description");
+  if (!urdf.IsScalar()) {
     throw ConfigError("/robot_description is missing: it must hold the rig's URDF (urdf/rig.urdf)");
   }
-  return urdf;
+  return urdf.Scalar();
 }
 
 }  // namespace
@@ -34,28 +33,24 @@ MicromanipulatorNode::Parameters MicromanipulatorNode::Parameters::read(ConfigRe
   return parameters;
 }
 
-MicromanipulatorNode::MicromanipulatorNode(ros::NodeHandle node, ros::NodeHandle private_node)
-    : MicromanipulatorNode(node, parameterReader(private_node)) {}
+MicromanipulatorNode::MicromanipulatorNode(Bus& bus) : MicromanipulatorNode(bus, parameterReader(bus)) {}
 
-MicromanipulatorNode::MicromanipulatorNode(const ros::NodeHandle& node, ConfigReader reader)
+MicromanipulatorNode::MicromanipulatorNode(Bus& bus, ConfigReader reader)
     : parameters_(Parameters::read(reader)),
-      geometry_(ManipulatorGeometry::fromUrdf(urdfFromParameter(), parameters_.model.pipette_tilt)),
+      geometry_(ManipulatorGeometry::fromUrdf(urdfFromParameter(bus), parameters_.model.pipette_tilt)),
       rig_(makeRigDevice(parameters_.rig, parameters_.emulated, geometry_, reader.section("device"),
                          reader.section("emulator"))),
-      model_(geometry_, CollisionGuard(urdfFromParameter(), geometry_, parameters_.model.collision_margin),
+      model_(geometry_, CollisionGuard(urdfFromParameter(bus), geometry_, parameters_.model.collision_margin),
              parameters_.model, *rig_.device),
-      cycle_(node, parameters_.rate),
+      cycle_(bus, parameters_.rate),
       commands_(cycle_, parameters_.model, rig_, model_, parameters_.allow_network),
       publisher_(cycle_, geometry_, rig_, model_, parameters_.joint_states_rate) {
   if (cycle_.deterministic() && !rig_.inject) {
     throw ConfigError("rig = " + parameters_.rig +
-                      ": a real rig cannot take part in lock step, it moves on while time stands");
+                      ": a real rig cannot take part in lock step or virtual time, it moves on while time stands");
   }
   cycle_.diagnostics().add("commands", [this](auto& status) { commands_.report(status); });
-}
-
-void MicromanipulatorNode::run() {
-  cycle_.run([this](const Cycle::Tick& tick) { step(tick); });
+  cycle_.onStep([this](const Cycle::Tick& tick) { step(tick); });
 }
 
 void MicromanipulatorNode::step(const Cycle::Tick& tick) {
@@ -65,7 +60,7 @@ void MicromanipulatorNode::step(const Cycle::Tick& tick) {
   commands_.endStep();
   publisher_.publish(tick.now);
   publishState(tick);
-  cycle_.setBusy(commands_.moves());
+  cycle_.bus().setBusy(commands_.moves());
 }
 
 void MicromanipulatorNode::publishState(const Cycle::Tick& tick) {
@@ -80,7 +75,3 @@ void MicromanipulatorNode::publishState(const Cycle::Tick& tick) {
 }
 
 }  // namespace microinjection
-
-int main(int argc, char** argv) {
-  return microinjection::runNode<microinjection::MicromanipulatorNode>(argc, argv, "micromanipulator");
-}

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <ros/ros.h>
-
 #include <string>
 
 #include "nodes/needle/needle_commands.h"
@@ -40,8 +38,7 @@ class MicromanipulatorNode {
  public:
   static const char* const kHelp;
   /// @throws ConfigError
-  MicromanipulatorNode(ros::NodeHandle node, ros::NodeHandle private_node);
-  void run();
+  explicit MicromanipulatorNode(Bus& bus);
 
  private:
   struct Parameters {
@@ -54,7 +51,7 @@ class MicromanipulatorNode {
     static Parameters read(ConfigReader& reader);
   };
 
-  explicit MicromanipulatorNode(const ros::NodeHandle& node, ConfigReader reader);
+  MicromanipulatorNode(Bus& bus, ConfigReader reader);
   void step(const Cycle::Tick& tick);
   void publishState(const Cycle::Tick& tick);
 

@@ -8,8 +8,6 @@
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/message_guard.h"
 #include "nodes/runtime/node_parameters.h"
-#include "nodes/runtime/orphan.h"
-#include "nodes/runtime/run_node.h"
 
 namespace microinjection {
 
@@ -20,9 +18,9 @@ const char* const MicroscopeNode::kHelp =
     "the plane in focus, m).\n"
     "Out: microscope/image_raw microscope/camera_info /focus/measured_js.\n";
 
-MicroscopeNode::Parameters MicroscopeNode::readParameters(const ros::NodeHandle& private_node) {
+MicroscopeNode::Parameters MicroscopeNode::Parameters::read(const Bus& bus) {
   Parameters parameters;
-  ConfigReader reader = parameterReader(private_node);
+  ConfigReader reader = parameterReader(bus);
   reader.number("rate", parameters.rate, Range::closed(1, 120));
   reader.choice("needle", parameters.needle, {"measured", "true"});
   reader.number("state_timeout", parameters.state_timeout, Range::positive());
@@ -35,40 +33,37 @@ MicroscopeNode::Parameters MicroscopeNode::readParameters(const ros::NodeHandle&
   return parameters;
 }
 
-MicroscopeNode::MicroscopeNode(ros::NodeHandle node, ros::NodeHandle private_node)
-    : parameters_(readParameters(private_node)),
+MicroscopeNode::MicroscopeNode(Bus& bus)
+    : bus_(bus),
+      parameters_(Parameters::read(bus)),
       microscope_(parameters_.microscope),
       focus_(parameters_.focus),
-      frames_(node),
-      images_(node),
-      stepped_(ros::SteadyTime::now()),
+      frames_(bus),
+      images_(bus),
+      stepped_(bus.steady()),
       reported_(stepped_),
-      focus_state_(node.advertise<sensor_msgs::JointState>("/focus/measured_js", 1)),
-      diagnostics_(node, private_node) {
+      focus_state_(bus.advertise<sensor_msgs::JointState>("/focus/measured_js", 1)),
+      diagnostics_(bus) {
   cv::setNumThreads(1);  // the other cores belong to the nodes at 1 kHz
   constexpr int kQueue = 1;
   state_ = subscribeGuarded<cell_microinjection::CellState>(
-      node, "/cell/state", kQueue,
+      bus, "/cell/state", kQueue,
       [this](const cell_microinjection::CellState& message, const std::string&) { onState(message); });
   needle_ = subscribeGuarded<geometry_msgs::PoseStamped>(
-      node, parameters_.needle == "true" ? "/needle/true_cp" : "/needle/measured_cp", kQueue,
+      bus, parameters_.needle == "true" ? "/needle/true_cp" : "/needle/measured_cp", kQueue,
       [this](const geometry_msgs::PoseStamped& message, const std::string&) { onNeedle(message); });
   focus_command_ = subscribeGuarded<sensor_msgs::JointState>(
-      node, "/focus/move_jp", kQueue,
+      bus, "/focus/move_jp", kQueue,
       [this](const sensor_msgs::JointState& message, const std::string&) { onFocus(message); }, StampRule::kCommand);
-  diagnostics_.setHardwareID("none");
   diagnostics_.add("images", this, &MicroscopeNode::report);
-  timer_ =
-      node.createSteadyTimer(ros::WallDuration(1 / parameters_.rate), [this](const ros::SteadyTimerEvent&) { step(); });
+  timer_ = bus.timer(1 / parameters_.rate, [this] { step(); });
 }
-
-void MicroscopeNode::run() { ros::spin(); }
 
 void MicroscopeNode::onState(const cell_microinjection::CellState& message) {
   CellSurface surface = toSurface(message);
   defect_ = surface.defect();
   if (!defect_.empty()) {
-    MessageRefusals::ofProcess().add("/cell/state", defect_);
+    bus_.refusals().add("/cell/state", defect_);
     return;
   }
   cell_frame_ = message.header.frame_id.empty() ? "cell" : message.header.frame_id;
@@ -76,23 +71,23 @@ void MicroscopeNode::onState(const cell_microinjection::CellState& message) {
   specimen_.triangles = std::move(surface.triangles);
   specimen_.radius = 0.5 * cellParameter(message, "diameter").value_or(0);
   specimen_.shell_thickness = cellParameter(message, "shell_thickness").value_or(0);
-  received_ = ros::SteadyTime::now();
+  received_ = bus_.steady();
 }
 
 void MicroscopeNode::onNeedle(const geometry_msgs::PoseStamped& message) {
   specimen_.needle = validPose(&message);
-  needle_arrival_ = Arrival(message.header.stamp);
+  needle_receipt_ = {message.header.stamp, bus_.steady()};
 }
 
 bool MicroscopeNode::needleIsFresh() const {
-  return specimen_.needle && !needle_arrival_.isOld(parameters_.state_timeout);
+  return specimen_.needle && !needle_receipt_.isOld(parameters_.state_timeout, bus_.now(), bus_.steady());
 }
 
 void MicroscopeNode::onFocus(const sensor_msgs::JointState& message) {
   const Eigen::Vector2d& range = parameters_.focus.range;
   if (message.position.size() != 1 || !focus_.allows(message.position[0])) {
-    MessageRefusals::ofProcess().add("/focus/move_jp", "position must be one number from " + std::to_string(range.x()) +
-                                                           " to " + std::to_string(range.y()) + " m");
+    bus_.refusals().add("/focus/move_jp", "position must be one number from " + std::to_string(range.x()) + " to " +
+                                              std::to_string(range.y()) + " m");
     return;
   }
   focus_.moveTo(message.position[0]);
@@ -101,16 +96,16 @@ void MicroscopeNode::onFocus(const sensor_msgs::JointState& message) {
 std::string MicroscopeNode::missingInput() const {
   if (!defect_.empty()) return "/cell/state: " + defect_;
   if (received_.isZero()) return "/cell/state is silent";
-  if (secondsBetween(received_, ros::SteadyTime::now()) > parameters_.state_timeout) return "/cell/state is stale";
+  if (secondsBetween(received_, bus_.steady()) > parameters_.state_timeout) return "/cell/state is stale";
   if (!frames_.find("world", cell_frame_)) return "tf has no transform world -> " + cell_frame_;
   return "";
 }
 
 void MicroscopeNode::step() {
-  const ros::SteadyTime start = ros::SteadyTime::now();
+  const ros::SteadyTime start = bus_.steady();
   focus_.step(std::max(0.0, secondsBetween(stepped_, start)));
   stepped_ = start;
-  const ros::Time now = ros::Time::now();
+  const ros::Time now = bus_.now();
   publishFocus(now);
   if (images_.wanted() && missingInput().empty()) {
     Specimen specimen = specimen_;
@@ -118,14 +113,13 @@ void MicroscopeNode::step() {
     const Eigen::Isometry3d cell = *frames_.find("world", cell_frame_);
     for (Eigen::Vector3d& vertex : specimen.vertices) vertex = cell * vertex;
     specimen.holder = frames_.find("world", "holding_pipette");
-    runGuarded("microscope/image_raw", [&] {
+    runGuarded(bus_.refusals(), "microscope/image_raw", [&] {
       const MicroscopeScene scene = specimenScene(parameters_.specimen, specimen);
       images_.publish(microscope_.render(scene, focus_.position(), ++frame_), now);
       ++rendered_;
     });
-    longest_render_ = std::max(longest_render_, secondsBetween(start, ros::SteadyTime::now()));
+    longest_render_ = std::max(longest_render_, secondsBetween(start, bus_.steady()));
   }
-  endIfOrphaned(master_);
   diagnostics_.update();
 }
 
@@ -139,7 +133,7 @@ void MicroscopeNode::publishFocus(const ros::Time& now) {
 }
 
 void MicroscopeNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
-  const ros::SteadyTime now = ros::SteadyTime::now();
+  const ros::SteadyTime now = bus_.steady();
   const double rate = rendered_ / std::max(1e-9, secondsBetween(reported_, now));
   const std::string missing = missingInput();
   status.summary(diagnostic_msgs::DiagnosticStatus::OK, images_.wanted() ? "rendering" : "nobody reads the images");
@@ -150,7 +144,7 @@ void MicroscopeNode::report(diagnostic_updater::DiagnosticStatusWrapper& status)
     status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "no needle: its pose is silent, old or invalid");
   if (!frames_.find("world", "holding_pipette"))
     status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "no holding pipette: tf lacks it");
-  MessageRefusals::ofProcess().report(status);
+  bus_.refusals().report(status);
   status.add("rate (Hz)", rate);
   status.add("rate wanted (Hz)", parameters_.rate);
   status.add("longest image (ms)", 1e3 * longest_render_);
@@ -161,8 +155,3 @@ void MicroscopeNode::report(diagnostic_updater::DiagnosticStatusWrapper& status)
 }
 
 }  // namespace microinjection
-
-int main(int argc, char** argv) {
-  return microinjection::runNode<microinjection::MicroscopeNode>(argc, argv, "microscope",
-                                                                 microinjection::Priority::kOrdinary);
-}

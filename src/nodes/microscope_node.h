@@ -1,18 +1,16 @@
 #pragma once
 
 #include <cell_microinjection/CellState.h>
-#include <diagnostic_updater/diagnostic_updater.h>
 #include <geometry_msgs/PoseStamped.h>
-#include <ros/ros.h>
 #include <sensor_msgs/JointState.h>
 
 #include <cstdint>
 #include <string>
 
-#include "nodes/imaging/arrival.h"
+#include "nodes/bus/diagnostics.h"
 #include "nodes/imaging/image_output.h"
+#include "nodes/imaging/receipt.h"
 #include "nodes/runtime/frames.h"
-#include "nodes/runtime/master_monitor.h"
 #include "vision/microscope/focus_axis.h"
 #include "vision/microscope/microscope.h"
 #include "vision/microscope/specimen.h"
@@ -27,25 +25,25 @@ namespace microinjection {
 ///
 /// Parameters: config/microscope.yaml
 ///
-/// It uses wall time, as a camera does. While /cell/state is stale or not finite it publishes no
+/// It keeps its rate in steady time, as a camera does. While /cell/state is stale or not finite it publishes no
 /// image: a picture of the past must not look like a new one.
 class MicroscopeNode {
  public:
   static const char* const kHelp;
   /// @throws ConfigError when a parameter is unknown or out of range.
-  MicroscopeNode(ros::NodeHandle node, ros::NodeHandle private_node);
-  void run();
+  explicit MicroscopeNode(Bus& bus);
 
  private:
   struct Parameters {
-    double rate = 30;  ///< Hz of wall time
+    double rate = 30;  ///< Hz of steady time
     std::string needle = "measured";
-    double state_timeout = 0.5;  ///< s of wall time, of /cell/state
+    double state_timeout = 0.5;  ///< s of steady time, of /cell/state
     FocusAxisConfig focus;
     SpecimenConfig specimen;
     MicroscopeConfig microscope;
+
+    static Parameters read(const Bus& bus);
   };
-  static Parameters readParameters(const ros::NodeHandle& private_node);
 
   void onState(const cell_microinjection::CellState& message);
   void onNeedle(const geometry_msgs::PoseStamped& message);
@@ -56,25 +54,25 @@ class MicroscopeNode {
   void publishFocus(const ros::Time& now);
   void report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
+  Bus& bus_;
   Parameters parameters_;
   Microscope microscope_;
   FocusAxis focus_;
   FrameListener frames_;
   ImageOutput images_;
-  MasterMonitor master_{true};
   Specimen specimen_;       ///< vertices in cell_frame_
   std::string cell_frame_;  ///< of the last state
   std::string defect_;      ///< of the last state; empty: it can be drawn
   ros::SteadyTime received_, stepped_, reported_;
-  Arrival needle_arrival_;
+  Receipt needle_receipt_;
   std::uint64_t frame_ = 0;    ///< number of images, which seeds their noise
   unsigned rendered_ = 0;      ///< since reported_
   double longest_render_ = 0;  ///< s, since reported_
 
-  ros::Publisher focus_state_;
-  ros::Subscriber state_, needle_, focus_command_;
-  diagnostic_updater::Updater diagnostics_;
-  ros::SteadyTimer timer_;
+  Publisher<sensor_msgs::JointState> focus_state_;
+  Subscription state_, needle_, focus_command_;
+  Diagnostics diagnostics_;
+  BusHandle timer_;
 };
 
 }  // namespace microinjection

@@ -1,29 +1,20 @@
 #include "nodes/notebook_node.h"
 
+#include <ros/console.h>
+
 #include <algorithm>
-#include <ctime>
 
 #include "base/atomic_file.h"
 #include "nodes/cell/cell_state_reader.h"
+#include "nodes/recording/local_time.h"
 #include "nodes/runtime/message_guard.h"
 #include "nodes/runtime/node_parameters.h"
-#include "nodes/runtime/orphan.h"
-#include "nodes/runtime/run_node.h"
 
 namespace microinjection {
 namespace {
 
-constexpr int kQueue = 50;
-constexpr double kReportPeriod = 0.2;  // s of wall time
-
-std::string localTime() {
-  const std::time_t now = std::time(nullptr);
-  std::tm parts{};
-  localtime_r(&now, &parts);
-  char text[40];
-  std::strftime(text, sizeof(text), "%Y-%m-%dT%H:%M:%S", &parts);
-  return text;
-}
+constexpr int kNotebookQueue = 50;
+constexpr double kNotebookReportPeriod = 0.2;  // s of steady time
 
 /// Idle and approach are before the touch; the needle may leave the cell in any other state.
 bool inCell(const std::string& state) {
@@ -44,33 +35,29 @@ const char* const NotebookNode::kHelp =
     "  ~file  path of the CSV file, required; an existing notebook is continued\n"
     "  ~cell  name of the cell in its rows\n";
 
-NotebookNode::NotebookNode(ros::NodeHandle node, ros::NodeHandle private_node) : diagnostics_(node, private_node) {
-  ConfigReader reader = parameterReader(private_node);
+NotebookNode::NotebookNode(Bus& bus) : bus_(bus), diagnostics_(bus) {
+  ConfigReader reader = parameterReader(bus);
   reader.text("file", file_, ConfigReader::kRequired);
   reader.text("cell", cell_);
   reader.finish();
   requireWritableFolder(folderOf(file_));
   using namespace cell_microinjection;
-  subscribers_ = {
-      subscribeGuarded<InjectionStatus>(node, "controller/injection_state", kQueue,
+  subscriptions_ = {
+      subscribeGuarded<InjectionStatus>(bus, "controller/injection_state", kNotebookQueue,
                                         [this](const InjectionStatus& message, const auto&) { onStatus(message); }),
-      subscribeGuarded<CellEstimate>(node, "cell/estimate", kQueue,
+      subscribeGuarded<CellEstimate>(bus, "cell/estimate", kNotebookQueue,
                                      [this](const CellEstimate& message, const auto&) { onEstimate(message); }),
-      subscribeGuarded<PunctureScore>(node, "cell/puncture_score", kQueue,
+      subscribeGuarded<PunctureScore>(bus, "cell/puncture_score", kNotebookQueue,
                                       [this](const PunctureScore& message, const auto&) { onScore(message); }),
-      subscribeGuarded<CellState>(node, "cell/state", 1,
+      subscribeGuarded<CellState>(bus, "cell/state", 1,
                                   [this](const CellState& message, const auto&) { onCell(message); })};
-  diagnostics_.setHardwareID("none");
   diagnostics_.add("notebook", [this](auto& status) { report(status); });
-  timer_ = node.createSteadyTimer(ros::WallDuration(kReportPeriod), [this](const ros::SteadyTimerEvent&) {
-    diagnostics_.update();
-    endIfOrphaned(master_);
-  });
+  timer_ = bus.timer(kNotebookReportPeriod, [this] { diagnostics_.update(); });
+  bus.onEnd([this] { finish(); });
 }
 
 /// A session that ends with the needle in a cell has a row of it, too.
-void NotebookNode::run() {
-  ros::spin();
+void NotebookNode::finish() {
   if (!touched_) return;
   last_.outcome = "session_ended";
   write(last_);
@@ -107,7 +94,7 @@ void NotebookNode::onCell(const cell_microinjection::CellState& message) {
 }
 
 void NotebookNode::write(const cell_microinjection::InjectionStatus& message) {
-  entry_.time = localTime();
+  entry_.time = localTime(bus_);
   entry_.cell = cell_;
   entry_.outcome = message.outcome == "none" ? "by_hand" : message.outcome;
   entry_.reason = message.reason;
@@ -135,7 +122,3 @@ void NotebookNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) c
 }
 
 }  // namespace microinjection
-
-int main(int argc, char** argv) {
-  return microinjection::runNode<microinjection::NotebookNode>(argc, argv, "notebook");
-}

@@ -4,14 +4,11 @@
 #include <cell_microinjection/CellState.h>
 #include <cell_microinjection/InjectionStatus.h>
 #include <cell_microinjection/PunctureScore.h>
-#include <diagnostic_updater/diagnostic_updater.h>
-#include <ros/ros.h>
 
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "nodes/runtime/master_monitor.h"
+#include "nodes/bus/diagnostics.h"
 #include "operation/record/injection_notebook.h"
 
 namespace microinjection {
@@ -27,8 +24,7 @@ class NotebookNode {
  public:
   static const char* const kHelp;
   /// @throws ConfigError
-  NotebookNode(ros::NodeHandle node, ros::NodeHandle private_node);
-  void run();
+  explicit NotebookNode(Bus& bus);
 
  private:
   void onStatus(const cell_microinjection::InjectionStatus& message);
@@ -36,18 +32,19 @@ class NotebookNode {
   void onScore(const cell_microinjection::PunctureScore& message);
   void onCell(const cell_microinjection::CellState& message);
   void write(const cell_microinjection::InjectionStatus& message);
+  void finish();
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
+  const Bus& bus_;
   std::string file_, cell_;
   NotebookEntry entry_;  ///< of the present cell
   bool touched_ = false;
   cell_microinjection::InjectionStatus last_;  ///< newest in a cell
   unsigned written_ = 0;
   std::string error_;
-  std::vector<ros::Subscriber> subscribers_;
-  MasterMonitor master_{true};
-  diagnostic_updater::Updater diagnostics_;
-  ros::SteadyTimer timer_;
+  std::vector<Subscription> subscriptions_;
+  Diagnostics diagnostics_;
+  BusHandle timer_;
 };
 
 }  // namespace microinjection

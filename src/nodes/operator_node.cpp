@@ -4,12 +4,11 @@
 
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/node_parameters.h"
-#include "nodes/runtime/run_node.h"
 
 namespace microinjection {
 namespace {
 
-constexpr char kHapticFrame[] = "haptic";
+constexpr double kGoPeriod = 0.1;      // s
 constexpr char kCommand[] = "inject";  ///< the phase that is also a command to the controller
 
 }  // namespace
@@ -19,9 +18,9 @@ const char* const OperatorNode::kHelp =
     "In: /haptic/servo_cf. Out: /haptic/measured_cp /haptic/clutch /operator/phase\n"
     "/controller/state_command (inject).\n";
 
-OperatorNode::Parameters OperatorNode::Parameters::read(const ros::NodeHandle& private_node) {
+OperatorNode::Parameters OperatorNode::Parameters::read(const Bus& bus) {
   Parameters parameters;
-  ConfigReader reader = parameterReader(private_node);
+  ConfigReader reader = parameterReader(bus);
   reader.text("motion", parameters.motion, ConfigReader::kRequired);
   reader.number("start_delay", parameters.start_delay, Range::nonNegative());
   reader.boolean("wait_for_go", parameters.wait_for_go);
@@ -32,32 +31,31 @@ OperatorNode::Parameters OperatorNode::Parameters::read(const ros::NodeHandle& p
   return parameters;
 }
 
-OperatorNode::OperatorNode(ros::NodeHandle node, ros::NodeHandle private_node)
-    : parameters_(Parameters::read(private_node)),
+OperatorNode::OperatorNode(Bus& bus)
+    : parameters_(Parameters::read(bus)),
       motion_(HandMotion::load(parameters_.motion)),
       hand_(parameters_.hand, motion_.at(0).position),
-      cycle_(node, parameters_.rate),
-      force_(cycle_.input<geometry_msgs::WrenchStamped>("haptic/servo_cf", InputPhase::kPreviousTick,
+      cycle_(bus, parameters_.rate),
+      force_(cycle_.input<geometry_msgs::WrenchStamped>("haptic/servo_cf", InputPhase::kSampled,
                                                         parameters_.force_timeout)),
       position_(cycle_.output<geometry_msgs::PoseStamped>("haptic/measured_cp")),
       clutch_(cycle_.output<sensor_msgs::Joy>("haptic/clutch", true)),
       phase_(cycle_.output<cell_microinjection::StringStamped>("operator/phase", true)),
-      command_output_(cycle_.output<cell_microinjection::StringStamped>("controller/state_command")) {}
-
-void OperatorNode::waitForGo() const {
-  bool go = !parameters_.wait_for_go;
-  while (ros::ok() && !go) {
-    ros::WallDuration(0.1).sleep();
-    ros::param::get("/session/go", go);
-  }
+      command_output_(cycle_.output<cell_microinjection::StringStamped>("controller/state_command")),
+      go_(!parameters_.wait_for_go) {
+  cycle_.onStep([this](const Cycle::Tick& tick) { step(tick); });
 }
 
-void OperatorNode::run() {
-  waitForGo();
-  cycle_.run([this](const Cycle::Tick& tick) { step(tick); });
+bool OperatorNode::mayMove() {
+  const Bus& bus = cycle_.bus();
+  if (go_ || secondsBetween(asked_, bus.steady()) < kGoPeriod) return go_;
+  go_ = bus.parameter("/session/go").as<bool>(false);
+  asked_ = bus.steady();
+  return go_;
 }
 
 void OperatorNode::step(const Cycle::Tick& tick) {
+  if (!mayMove()) return;
   elapsed_ += tick.dt;
   const double time = std::max(0.0, elapsed_ - parameters_.start_delay);
   const HandMotion::Sample intended = motion_.at(time);
@@ -88,7 +86,3 @@ void OperatorNode::publishPhase(const ros::Time& now, const std::string& phase) 
 }
 
 }  // namespace microinjection
-
-int main(int argc, char** argv) {
-  return microinjection::runNode<microinjection::OperatorNode>(argc, argv, "operator");
-}

@@ -2,7 +2,6 @@
 
 #include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/WrenchStamped.h>
-#include <ros/ros.h>
 #include <sensor_msgs/Joy.h>
 
 #include <optional>
@@ -27,8 +26,7 @@ class OperatorNode {
  public:
   static const char* const kHelp;
   /// @throws ConfigError
-  OperatorNode(ros::NodeHandle node, ros::NodeHandle private_node);
-  void run();
+  explicit OperatorNode(Bus& bus);
 
  private:
   struct Parameters {
@@ -38,10 +36,10 @@ class OperatorNode {
     double rate = 1000;
     double force_timeout = 0.05;
     VirtualHandConfig hand;
-    static Parameters read(const ros::NodeHandle& private_node);
+    static Parameters read(const Bus& bus);
   };
 
-  void waitForGo() const;
+  bool mayMove();
   void step(const Cycle::Tick& tick);
   void publishClutch(const ros::Time& now, bool pressed);
   void publishPhase(const ros::Time& now, const std::string& phase);
@@ -55,7 +53,9 @@ class OperatorNode {
   Output<sensor_msgs::Joy>& clutch_;
   Output<cell_microinjection::StringStamped>& phase_;
   Output<cell_microinjection::StringStamped>& command_output_;
-  double elapsed_ = 0;  ///< s of steps; a stall of the machine pauses the hand
+  bool go_;                ///< moves, and does not wait for the parameter /session/go
+  ros::SteadyTime asked_;  ///< for it
+  double elapsed_ = 0;     ///< s of steps; a stall of the machine pauses the hand
   std::optional<bool> clutch_published_;
   std::string phase_published_;
 };

@@ -4,9 +4,7 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <ctime>
 #include <filesystem>
-#include <iomanip>
 #include <iostream>
 #include <limits>
 #include <sstream>
@@ -15,15 +13,15 @@
 #include "base/atomic_file.h"
 #include "base/worker_processes.h"
 #include "cell_microinjection/OperatingState.h"
+#include "nodes/recording/local_time.h"
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/node_parameters.h"
-#include "nodes/runtime/run_node.h"
 
 namespace microinjection {
 namespace {
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
-constexpr double kRate = 100;                          // Hz, live
+constexpr double kRecorderRate = 100;                  // Hz, live
 constexpr Nanoseconds kMaxDelay = 2000000000;          // largest delay of a message
 constexpr Nanoseconds kMaxDelayInLockstep = 50000000;  // none is late, but the cell has its own rate for contacts
 
@@ -42,13 +40,6 @@ void putForce(const Message& message, const std::optional<Value>& value, Timelin
   } else {
     line.withdraw();
   }
-}
-
-std::string localTime() {
-  const std::time_t now = std::time(nullptr);
-  std::ostringstream text;
-  text << std::put_time(std::localtime(&now), "%FT%T");
-  return text.str();
 }
 
 void writeIntervals(std::ostream& out, const std::string& name, const IntervalHistogram& intervals) {
@@ -71,9 +62,9 @@ const char* const SessionRecorderNode::kHelp =
     "                  operator (name), history (CSV file) and the keys of config/training.yaml; default: no score\n"
     "  ~end_when_done  write the files and end in the operator's phase done, default false\n";
 
-SessionRecorderNode::Parameters SessionRecorderNode::Parameters::read(const ros::NodeHandle& private_node) {
+SessionRecorderNode::Parameters SessionRecorderNode::Parameters::read(const Bus& bus) {
   Parameters parameters;
-  ConfigReader reader = parameterReader(private_node);
+  ConfigReader reader = parameterReader(bus);
   reader.text("output_dir", parameters.output_dir, ConfigReader::kRequired);
   reader.number("row_period", parameters.row_period, Range::positive());
   reader.boolean("hand", parameters.hand);
@@ -88,40 +79,44 @@ SessionRecorderNode::Parameters SessionRecorderNode::Parameters::read(const ros:
   return parameters;
 }
 
-SessionRecorderNode::SessionRecorderNode(ros::NodeHandle node, ros::NodeHandle private_node)
-    : parameters_(Parameters::read(private_node)),
-      cycle_(node, kRate),
+SessionRecorderNode::SessionRecorderNode(Bus& bus)
+    : parameters_(Parameters::read(bus)),
+      cycle_(bus, kRecorderRate),
       files_(parameters_.output_dir, SessionTable::kHeader, parameters_.bag),
       table_(std::llround(1e9 * parameters_.row_period), cycle_.deterministic() ? kMaxDelayInLockstep : kMaxDelay,
              [this](const std::string& line) { files_.rows().append(line); }),
-      predicted_(cycle_.input<geometry_msgs::WrenchStamped>("cell/predicted_cf", InputPhase::kPreviousTick, 0.05)),
-      needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", InputPhase::kPreviousTick, 0.05)),
-      measured_(
-          cycle_.input<geometry_msgs::WrenchStamped>("force_sensor/measured_cf", InputPhase::kPreviousTick, 0.05)),
-      cell_(cycle_.input<cell_microinjection::CellState>("cell/state", InputPhase::kPreviousTick, kForever)),
-      injection_(cycle_.input<cell_microinjection::InjectionStatus>("controller/injection_state",
-                                                                    InputPhase::kPreviousTick, kForever)) {
+      predicted_(cycle_.input<geometry_msgs::WrenchStamped>("cell/predicted_cf", InputPhase::kSampled, 0.05)),
+      needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", InputPhase::kSampled, 0.05)),
+      measured_(cycle_.input<geometry_msgs::WrenchStamped>("force_sensor/measured_cf", InputPhase::kSampled, 0.05)),
+      cell_(cycle_.input<cell_microinjection::CellState>("cell/state", InputPhase::kSampled, kForever)),
+      injection_(cycle_.input<cell_microinjection::InjectionStatus>("controller/injection_state", InputPhase::kSampled,
+                                                                    kForever)) {
   if (parameters_.injector) {
-    injector_ = &cycle_.input<cell_microinjection::InjectorState>("injector/state", InputPhase::kPreviousTick, 0.05);
+    injector_ = &cycle_.input<cell_microinjection::InjectorState>("injector/state", InputPhase::kSampled, 0.05);
   }
   if (parameters_.hand) {
-    hand_ = &cycle_.input<geometry_msgs::PoseStamped>("haptic/measured_cp", InputPhase::kPreviousTick, kForever);
-    clutch_ = &cycle_.input<sensor_msgs::Joy>("haptic/clutch", InputPhase::kPreviousTick, kForever);
-    hand_force_ = &cycle_.input<geometry_msgs::WrenchStamped>("haptic/servo_cf", InputPhase::kPreviousTick, 0.05);
-    phase_ = &cycle_.input<cell_microinjection::StringStamped>("operator/phase", InputPhase::kPreviousTick, kForever);
+    hand_ = &cycle_.input<geometry_msgs::PoseStamped>("haptic/measured_cp", InputPhase::kSampled, kForever);
+    clutch_ = &cycle_.input<sensor_msgs::Joy>("haptic/clutch", InputPhase::kSampled, kForever);
+    hand_force_ = &cycle_.input<geometry_msgs::WrenchStamped>("haptic/servo_cf", InputPhase::kSampled, 0.05);
+    phase_ = &cycle_.input<cell_microinjection::StringStamped>("operator/phase", InputPhase::kSampled, kForever);
   }
-  began_ = localTime();
+  began_ = localTime(bus);
   if (parameters_.training) training_ = std::make_unique<TrainingLog>(*parameters_.training);
   if (training_) table_.onRow([this](const SessionTable::Row& row) { training_->add(row); });
   using cell_microinjection::CycleStatistics;
   statistics_ = subscribeGuarded<CycleStatistics>(
-      cycle_.node(), "/cycle_statistics", 100,
+      bus, "/cycle_statistics", 100,
       [this](const CycleStatistics& message, const std::string&) { nodes_[message.node] = message; });
   fillTable();
   if (files_.bag()) recordBag(*files_.bag());
   cycle_.diagnostics().add("files", [this](auto& status) { files_.report(status); });
-  if (cycle_.deterministic()) return;
-  latency_ = std::make_unique<LatencyMeter>(cycle_.node());
+  if (!cycle_.deterministic()) measureMachine();
+  bus.onEnd([this] { finish(); });
+  cycle_.onStep([this](const Cycle::Tick& tick) { step(tick); });
+}
+
+void SessionRecorderNode::measureMachine() {
+  latency_ = std::make_unique<LatencyMeter>(cycle_.bus());
   timer_loop_ = std::make_unique<BareTimerLoop>();
   cycle_.diagnostics().add("bare timer loop", [this](auto& status) {
     status.summary(diagnostic_msgs::DiagnosticStatus::OK, "this machine's limit for a loop at 1 kHz");
@@ -183,18 +178,17 @@ void SessionRecorderNode::recordBag(SessionBag& bag) {
     bag.record(*hand_force_);
     bag.record(*phase_);
   }
-  bag.record<tf2_msgs::TFMessage>(cycle_.node(), "/tf");
-  bag.record<tf2_msgs::TFMessage>(cycle_.node(), "/tf_static");
-  bag.record<diagnostic_msgs::DiagnosticArray>(cycle_.node(), "/diagnostics");
-  bag.record<cell_microinjection::CycleStatistics>(cycle_.node(), "/cycle_statistics");
+  bag.record<tf2_msgs::TFMessage>(cycle_.bus(), "/tf");
+  bag.record<tf2_msgs::TFMessage>(cycle_.bus(), "/tf_static");
+  bag.record<diagnostic_msgs::DiagnosticArray>(cycle_.bus(), "/diagnostics");
+  bag.record<cell_microinjection::CycleStatistics>(cycle_.bus(), "/cycle_statistics");
   for (const char* topic : {"/controller/loop_state", "/haptic/loop_state", "/link/rig/loop_state"}) {
-    bag.record<cell_microinjection::LoopState>(cycle_.node(), topic);
+    bag.record<cell_microinjection::LoopState>(cycle_.bus(), topic);
   }
-  bag.record<cell_microinjection::OperatingState>(cycle_.node(), "/controller/operating_state");
+  bag.record<cell_microinjection::OperatingState>(cycle_.bus(), "/controller/operating_state");
 }
 
-void SessionRecorderNode::run() {
-  cycle_.run([this](const Cycle::Tick& tick) { step(tick); });
+void SessionRecorderNode::finish() {
   table_.finish();
   std::vector<std::string> errors = files_.finish();
   const auto attempt = [&errors](const auto& write) {
@@ -232,7 +226,7 @@ void SessionRecorderNode::step(const Cycle::Tick& tick) {
   withdrawInvalid();
   table_.advance(stampOf(tick.now));
   files_.step(tick.now);
-  if (table_.done() && parameters_.end_when_done) cycle_.stop();
+  if (table_.done() && parameters_.end_when_done) cycle_.bus().stop();
 }
 
 /// In lock step an invalid value arrives as silence, not as a message.
@@ -245,7 +239,8 @@ void SessionRecorderNode::withdrawInvalid() {
 
 std::string SessionRecorderNode::summary() const {
   std::ostringstream out;
-  out << "clock: " << (cycle_.deterministic() ? "lockstep" : "wall") << '\n';
+  const char* const clock = cycle_.bus().isVirtual() ? "virtual" : cycle_.deterministic() ? "lockstep" : "wall";
+  out << "clock: " << clock << '\n';
   out << "duration_s: " << table_.duration() << '\n';
   out << "layers: [";
   for (std::size_t i = 0; i < layers_.size(); ++i) out << (i > 0 ? ", " : "") << layers_[i];
@@ -262,8 +257,3 @@ std::string SessionRecorderNode::summary() const {
 }
 
 }  // namespace microinjection
-
-int main(int argc, char** argv) {
-  return microinjection::runNode<microinjection::SessionRecorderNode>(argc, argv, "session_recorder",
-                                                                      microinjection::Priority::kPrompt);
-}

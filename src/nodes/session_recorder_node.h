@@ -3,7 +3,6 @@
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/WrenchStamped.h>
-#include <ros/ros.h>
 #include <sensor_msgs/Joy.h>
 
 #include <Eigen/Core>
@@ -51,8 +50,7 @@ class SessionRecorderNode {
  public:
   static const char* const kHelp;
   /// @throws ConfigError
-  SessionRecorderNode(ros::NodeHandle node, ros::NodeHandle private_node);
-  void run();
+  explicit SessionRecorderNode(Bus& bus);
 
  private:
   struct Parameters {
@@ -63,12 +61,14 @@ class SessionRecorderNode {
     bool bag = true;
     bool end_when_done = false;
     std::optional<TrainingConfig> training;
-    static Parameters read(const ros::NodeHandle& private_node);
+    static Parameters read(const Bus& bus);
   };
+  void measureMachine();
   void fillTable();
   void recordBag(SessionBag& bag);
   void step(const Cycle::Tick& tick);
   void withdrawInvalid();
+  void finish();
   std::string summary() const;
   void score(std::vector<std::string>& errors) const;
 
@@ -86,11 +86,11 @@ class SessionRecorderNode {
   Input<sensor_msgs::Joy>* clutch_ = nullptr;                      ///< null without a hand
   Input<geometry_msgs::WrenchStamped>* hand_force_ = nullptr;      ///< null without a hand
   Input<cell_microinjection::StringStamped>* phase_ = nullptr;     ///< null without a hand
-  ros::Subscriber statistics_;
+  Subscription statistics_;
   std::string began_;                          ///< local date and time, ISO 8601
   std::unique_ptr<TrainingLog> training_;      ///< null without training
-  std::unique_ptr<LatencyMeter> latency_;      ///< null in lock step, where wall time has no meaning
-  std::unique_ptr<BareTimerLoop> timer_loop_;  ///< null in lock step
+  std::unique_ptr<LatencyMeter> latency_;      ///< null where wall time has no meaning
+  std::unique_ptr<BareTimerLoop> timer_loop_;  ///< null where wall time has no meaning
 
   Eigen::Matrix3d tip_orientation_ = Eigen::Matrix3d::Identity();      ///< newest, in world
   std::vector<std::string> layers_;                                    ///< of the cell, outermost first

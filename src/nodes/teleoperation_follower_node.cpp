@@ -5,7 +5,6 @@
 #include "nodes/link/link_messages.h"
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/node_parameters.h"
-#include "nodes/runtime/run_node.h"
 
 namespace microinjection {
 
@@ -17,10 +16,10 @@ const char* const TeleoperationFollowerNode::kHelp =
     "Beside those below: ~rate, ~timeouts/needle, predicted and measured, ~force_source and ~measured_share, as in\n"
     "config/haptic_bridge.yaml.\n";
 
-TeleoperationFollowerNode::Parameters TeleoperationFollowerNode::Parameters::read(const ros::NodeHandle& private_node) {
+TeleoperationFollowerNode::Parameters TeleoperationFollowerNode::Parameters::read(const Bus& bus) {
   Parameters parameters;
   parameters.link.scheme = "wave";
-  ConfigReader reader = parameterReader(private_node);
+  ConfigReader reader = parameterReader(bus);
   reader.number("rate", parameters.rate, Range::closed(50, 5000));
   ConfigReader timeouts = reader.section("timeouts");
   parameters.timeouts.read(timeouts);
@@ -30,25 +29,22 @@ TeleoperationFollowerNode::Parameters TeleoperationFollowerNode::Parameters::rea
   return parameters;
 }
 
-TeleoperationFollowerNode::TeleoperationFollowerNode(ros::NodeHandle node, ros::NodeHandle private_node)
-    : parameters_(Parameters::read(private_node)),
+TeleoperationFollowerNode::TeleoperationFollowerNode(Bus& bus)
+    : parameters_(Parameters::read(bus)),
       model_(parameters_.link),
-      cycle_(node, parameters_.rate),
+      cycle_(bus, parameters_.rate),
       rig_(cycle_, parameters_.timeouts, parameters_.force),
       sent_(cycle_.output<cell_microinjection::LinkPacket>("link/rig/sent")),
       target_(cycle_.output<geometry_msgs::PoseStamped>("teleop/servo_cp")),
-      loop_state_(cycle_.node(), "link/rig/loop_state") {
+      loop_state_(bus, "link/rig/loop_state") {
   cycle_
-      .input<cell_microinjection::LinkPacket>("link/rig/received", InputPhase::kPreviousTick,
+      .input<cell_microinjection::LinkPacket>("link/rig/received", InputPhase::kSampled,
                                               std::numeric_limits<double>::infinity())
       .onMessage([this](const auto& message, const ros::Time&) {
-        if (isPlausible("link/rig/received", message)) model_.receive(toPacket(message));
+        if (isPlausible(cycle_.bus(), "link/rig/received", message)) model_.receive(toPacket(message));
       });
   cycle_.diagnostics().add("link", [this](auto& status) { report(status); });
-}
-
-void TeleoperationFollowerNode::run() {
-  cycle_.run([this](const Cycle::Tick& tick) { step(tick); });
+  cycle_.onStep([this](const Cycle::Tick& tick) { step(tick); });
 }
 
 void TeleoperationFollowerNode::step(const Cycle::Tick& tick) {
@@ -78,7 +74,3 @@ void TeleoperationFollowerNode::report(diagnostic_updater::DiagnosticStatusWrapp
 }
 
 }  // namespace microinjection
-
-int main(int argc, char** argv) {
-  return microinjection::runNode<microinjection::TeleoperationFollowerNode>(argc, argv, "teleoperation_follower");
-}

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <geometry_msgs/PoseStamped.h>
-#include <ros/ros.h>
 
 #include "cell_microinjection/LinkPacket.h"
 #include "nodes/haptic/rig_inputs.h"
@@ -25,8 +24,7 @@ class TeleoperationFollowerNode {
  public:
   static const char* const kHelp;
   /// @throws ConfigError
-  TeleoperationFollowerNode(ros::NodeHandle node, ros::NodeHandle private_node);
-  void run();
+  explicit TeleoperationFollowerNode(Bus& bus);
 
  private:
   struct Parameters {
@@ -34,7 +32,7 @@ class TeleoperationFollowerNode {
     RigTimeouts timeouts;
     ForceSourceConfig force;
     LinkConfig link;
-    static Parameters read(const ros::NodeHandle& private_node);
+    static Parameters read(const Bus& bus);
   };
 
   void step(const Cycle::Tick& tick);

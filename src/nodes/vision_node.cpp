@@ -13,25 +13,21 @@
 #include "cell/family/family_cell.h"
 #include "cell/model/scene.h"
 #include "nodes/imaging/image_input.h"
+#include "nodes/imaging/image_topic.h"
 #include "nodes/imaging/vision_messages.h"
 #include "nodes/runtime/message_guard.h"
 #include "nodes/runtime/node_parameters.h"
-#include "nodes/runtime/orphan.h"
-#include "nodes/runtime/run_node.h"
 #include "vision/measurement/measured_scene.h"
 
 namespace microinjection {
 namespace {
 
-constexpr char kImageTopic[] = "microscope/image_raw";
-constexpr double kReportPeriod = 0.2;  // s of wall time
-constexpr int kQueue = 1;              // an image that waited is of no use
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kVisionReportPeriod = 0.2;  // s
+constexpr int kVisionQueue = 1;              // an image that waited is of no use
 
 void fill(const std::optional<MeasuredLength>& length, double& value, double& interval) {
-  value = length ? length->value : kNone;
-  interval = length ? length->interval : kNone;
+  value = length ? length->value : kNotMeasured;
+  interval = length ? length->interval : kNotMeasured;
 }
 
 }  // namespace
@@ -41,9 +37,9 @@ const char* const VisionNode::kHelp =
     "In: microscope/image_raw.\n"
     "Out: vision/state vision/image_overlay, service vision/measure_cell.\n";
 
-VisionNode::Parameters VisionNode::readParameters(const ros::NodeHandle& private_node) {
+VisionNode::Parameters VisionNode::Parameters::read(const Bus& bus) {
   Parameters parameters;
-  ConfigReader reader = parameterReader(private_node);
+  ConfigReader reader = parameterReader(bus);
   reader.text("scene", parameters.scene);
   reader.text("families", parameters.families);
   parameters.vision = VisionConfig::read(reader);
@@ -51,37 +47,35 @@ VisionNode::Parameters VisionNode::readParameters(const ros::NodeHandle& private
   return parameters;
 }
 
-VisionNode::VisionNode(ros::NodeHandle node, ros::NodeHandle private_node)
-    : parameters_(readParameters(private_node)),
+VisionNode::VisionNode(Bus& bus)
+    : bus_(bus),
+      parameters_(Parameters::read(bus)),
       tracker_(parameters_.vision.tracker),
-      served_(node, parameters_.vision.serve_timeout),
-      transport_(node),
-      state_(node.advertise<cell_microinjection::VisionState>("vision/state", 1)),
-      overlay_(transport_.advertise("vision/image_overlay", 1)),
+      served_(bus, parameters_.vision.serve_timeout),
+      state_(bus.advertise<cell_microinjection::VisionState>("vision/state", 1)),
+      overlay_(bus.advertiseImages("vision/image_overlay", 1)),
       readings_(static_cast<std::size_t>(parameters_.vision.measured_images)),
-      reported_(ros::SteadyTime::now()),
-      diagnostics_(node, private_node),
-      service_thread_(1, &service_queue_) {
+      reported_(bus.steady()),
+      diagnostics_(bus) {
   cv::setNumThreads(1);  // the other cores belong to the nodes at 1 kHz
-  diagnostics_.setHardwareID("none");
   diagnostics_.add("images", this, &VisionNode::report);
   diagnostics_.add("served cell",
                    [this](diagnostic_updater::DiagnosticStatusWrapper& status) { served_.report(status); });
-  images_ = transport_.subscribe(kImageTopic, kQueue, [this](const sensor_msgs::ImageConstPtr& message) {
-    runGuarded(kImageTopic, [&] { onImage(*message); });
-  });
-  timer_ = node.createSteadyTimer(ros::WallDuration(kReportPeriod), [this](const ros::SteadyTimerEvent&) {
+  images_ =
+      subscribeImages(bus, kImageTopic, kVisionQueue, [this](const sensor_msgs::Image& message) { onImage(message); });
+  timer_ = bus.timer(kVisionReportPeriod, [this] {
     readPixelSize();
     diagnostics_.update();
-    endIfOrphaned(master_);
   });
-  ros::NodeHandle service_node(node);
-  service_node.setCallbackQueue(&service_queue_);
-  measure_ = service_node.advertiseService("vision/measure_cell", &VisionNode::measureCell, this);
-  service_thread_.start();
+  using cell_microinjection::MeasureCell;
+  measure_ = bus.advertiseService<MeasureCell>(
+      "vision/measure_cell",
+      [this](MeasureCell::Request& request, MeasureCell::Response& response) {
+        measureCell(request, response);
+        return true;
+      },
+      Serving::kOwnThread);
 }
-
-void VisionNode::run() { ros::spin(); }
 
 std::string VisionNode::refusalOf(const sensor_msgs::Image& message, const ros::Time& now) const {
   const ros::Time& stamp = message.header.stamp;
@@ -101,14 +95,14 @@ void VisionNode::onImage(const sensor_msgs::Image& message) {
     const std::lock_guard<std::mutex> lock(mutex_);
     refusal_ = reason;
   };
-  const std::string refusal = refusalOf(message, ros::Time::now());
+  const std::string refusal = refusalOf(message, bus_.now());
   refuse(refusal);
   if (!refusal.empty()) {
-    MessageRefusals::ofProcess().add(kImageTopic, refusal);
+    bus_.refusals().add(kImageTopic, refusal);
     return;
   }
   refuse("its format or length is wrong");  // until it was read: cv_bridge throws
-  const double start = threadCpuTime();
+  const double start = processingTime();
   const Frame frame(pixelsOf(message));
   refuse("");
   tracker_.next(frame);
@@ -116,21 +110,25 @@ void VisionNode::onImage(const sensor_msgs::Image& message) {
   last_data_ = message.data;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    const ros::SteadyTime now = ros::SteadyTime::now();
+    const ros::SteadyTime now = bus_.steady();
     // Behind a pause may be another cell, and a needle makes the cell that it presses wider.
     const bool paused = !received_.isZero() && secondsBetween(received_, now) > parameters_.vision.image_timeout;
     if (paused) readings_ = CellReadings(static_cast<std::size_t>(parameters_.vision.measured_images));
     // By the dimple, or by a tip within the outline where the needle hides the dimple.
-    const Indentation& indentation = tracker_.view().indentation;
+    const Dimple& indentation = tracker_.view().indentation;
     const BorderDisplacement& beside = indentation.displacement;
     pressed_ = indentation.finding.isFound() || (beside.finding.hasValues() && beside.gap < 0);
     if (!pressed_) readings_.add(tracker_.view());
     received_ = now;
   }
   ++accepted_;
-  const double time = threadCpuTime() - start;
+  const double time = processingTime() - start;
   longest_ = std::max(longest_, time);
   publish(message.header, frame, time);
+}
+
+double VisionNode::processingTime() const {
+  return bus_.isVirtual() ? 1e-9 * static_cast<double>(bus_.steady().toNSec()) : threadCpuTime();
 }
 
 /// A calibration may come, or change, while images do.
@@ -150,7 +148,7 @@ void VisionNode::publish(const std_msgs::Header& header, const Frame& frame, dou
   state.pixel_size = pixel_size_;
   state.processing_time = processing_time;
   state_.publish(state);
-  if (!parameters_.vision.overlay || overlay_.getNumSubscribers() == 0) return;
+  if (!parameters_.vision.overlay || overlay_.subscribers() == 0) return;
   const cv::Mat overlay = drawOverlay(frame, tracker_.view().overlay());
   overlay_.publish(cv_bridge::CvImage(header, "bgr8", overlay).toImageMsg());
 }
@@ -158,7 +156,7 @@ void VisionNode::publish(const std_msgs::Header& header, const Frame& frame, dou
 CellMeasurement VisionNode::measure() const {
   const double pixel_size = parameters_.vision.pixelSize();
   const std::lock_guard<std::mutex> lock(mutex_);
-  const double age = received_.isZero() ? -1 : secondsBetween(received_, ros::SteadyTime::now());
+  const double age = received_.isZero() ? -1 : secondsBetween(received_, bus_.steady());
   if (age < 0 || age > parameters_.vision.image_timeout)
     throw ConfigError("there is no new image" + (refusal_.empty() ? "" : ": " + refusal_));
   if (pressed_) throw ConfigError("the needle presses the cell, which is wider then: withdraw it");
@@ -182,7 +180,7 @@ std::string VisionNode::serve(const CellMeasurement& cell) {
   return served_.change({"diameter", "shell_thickness"}, {cell.diameter.value, cell.zona_thickness->value});
 }
 
-bool VisionNode::measureCell(cell_microinjection::MeasureCell::Request& request,
+void VisionNode::measureCell(const cell_microinjection::MeasureCell::Request& request,
                              cell_microinjection::MeasureCell::Response& response) {
   try {
     fill(std::nullopt, response.zona_thickness, response.zona_thickness_interval);
@@ -208,11 +206,10 @@ bool VisionNode::measureCell(cell_microinjection::MeasureCell::Request& request,
     response.success = 0;
     response.message += (response.message.empty() ? "" : "; ") + std::string(error.what());
   }
-  return true;
 }
 
 void VisionNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
-  const ros::SteadyTime now = ros::SteadyTime::now();
+  const ros::SteadyTime now = bus_.steady();
   const double age = received_.isZero() ? -1 : secondsBetween(received_, now);
   status.summary(diagnostic_msgs::DiagnosticStatus::OK, "images are fresh");
   if (age < 0 || age > parameters_.vision.image_timeout)
@@ -226,7 +223,7 @@ void VisionNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   add("injection pipette", view.injection.finding);
   add("holding pipette", view.holding.finding);
   add("indentation", view.indentation.finding);
-  MessageRefusals::ofProcess().report(status);
+  bus_.refusals().report(status);
   status.add("rate (Hz)", accepted_ / std::max(1e-9, secondsBetween(reported_, now)));
   status.add("longest image (ms of processor time)", 1e3 * longest_);
   reported_ = now;
@@ -235,7 +232,3 @@ void VisionNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
 }
 
 }  // namespace microinjection
-
-int main(int argc, char** argv) {
-  return microinjection::runNode<microinjection::VisionNode>(argc, argv, "vision", microinjection::Priority::kOrdinary);
-}

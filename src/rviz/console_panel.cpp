@@ -34,7 +34,7 @@
 namespace microinjection {
 namespace {
 
-constexpr int kPeriod = 16;      // ms: the plot at 60 Hz
+constexpr int kPlotPeriod = 16;  // ms: the plot at 60 Hz
 constexpr int kStatePeriod = 6;  // ticks: the texts at 10 Hz, which nobody reads faster
 
 constexpr double kOldPose = 0.5;    // s, of the needle that is moved by steps
@@ -191,7 +191,7 @@ QWidget* ConsolePanel::makePlots() {
 void ConsolePanel::onInitialize() {
   link_ = std::make_unique<SessionLink>([this] { return pipette(); });
   connect(timer_, &QTimer::timeout, this, [this] { tick(); });
-  timer_->start(kPeriod);
+  timer_->start(kPlotPeriod);
   showParts(words_);
 }
 

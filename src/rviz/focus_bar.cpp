@@ -10,8 +10,8 @@
 namespace microinjection {
 namespace {
 
-constexpr double kSilence = 1;   // s, of a motor that has reported
-constexpr double kOnItsWay = 1;  // s after a step; then the place that the motor reports counts again
+constexpr double kMotorSilence = 1;  // s, of a motor that has reported
+constexpr double kOnItsWay = 1;      // s after a step; then the place that the motor reports counts again
 
 }  // namespace
 
@@ -43,7 +43,7 @@ void FocusBar::start() {
 void FocusBar::onPosition(const sensor_msgs::JointState& message) {
   if (message.position.empty() || !std::isfinite(message.position[0])) return;
   // The range is set before the virtual microscope starts; other motors have none that is known here.
-  if (!focus_.position || sessionNow() - heard_at_ > kSilence) {
+  if (!focus_.position || sessionNow() - heard_at_ > kMotorSilence) {
     const std::vector<double> range = SessionParameters("/microscope").numbers("focus/range");
     const FocusView unlimited;
     focus_.lowest = range.size() == 2 ? range[0] : unlimited.lowest;
@@ -56,7 +56,7 @@ void FocusBar::onPosition(const sensor_msgs::JointState& message) {
 
 FocusView FocusBar::view() const {
   FocusView view = focus_;
-  if (sessionNow() - heard_at_ > kSilence) view.position.reset();
+  if (sessionNow() - heard_at_ > kMotorSilence) view.position.reset();
   if (sessionNow() - sent_at_ > kOnItsWay) view.goal.reset();
   view.searched = search_ && search_->active();
   return view;

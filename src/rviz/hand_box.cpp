@@ -11,7 +11,7 @@
 namespace microinjection {
 namespace {
 
-constexpr double kSilence = 3;  // s, of haptic_bridge, whose state comes with each change and each second
+constexpr double kBridgeSilence = 3;  // s, of haptic_bridge, whose state comes with each change and each second
 
 bool firstButton(const sensor_msgs::Joy& message) { return !message.buttons.empty() && message.buttons[0] != 0; }
 
@@ -44,7 +44,7 @@ void HandBox::start() {
       "haptic/loop_state", 1,
       boost::function<void(const cell_microinjection::LoopState::ConstPtr&)>([this](const auto& message) {
         const double now = ros::SteadyTime::now().toSec();
-        if (!heard_at_ || now - *heard_at_ > kSilence) readSettings();
+        if (!heard_at_ || now - *heard_at_ > kBridgeSilence) readSettings();
         heard_at_ = now;
         hand_.has_bridge = true;
         hand_.hold_reason = message->follows ? "" : message->hold_reason;
@@ -77,7 +77,7 @@ void HandBox::refresh() {
   if (!node_) return;
   queue_.callAvailable(ros::WallDuration(0));
   HandView shown = hand_;
-  if (!heard_at_ || ros::SteadyTime::now().toSec() - *heard_at_ > kSilence) shown.hold_reason.reset();
+  if (!heard_at_ || ros::SteadyTime::now().toSec() - *heard_at_ > kBridgeSilence) shown.hold_reason.reset();
   follows_->display(followsLamp(shown));
   clutch_->display(clutchLamp(shown));
   present_->display(presentLamp(shown));

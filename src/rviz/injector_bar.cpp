@@ -12,7 +12,7 @@
 namespace microinjection {
 namespace {
 
-constexpr double kLargest = 100e3;  // Pa, that can be entered; the node refuses what is beyond its range
+constexpr double kLargestPressure = 100e3;  // Pa, that can be entered; the node refuses what is beyond its range
 
 std::string callReset() {
   std_srvs::Trigger reset;
@@ -25,7 +25,7 @@ std::string callReset() {
 InjectorBar::InjectorBar(std::function<std::optional<InjectorView>()> newest, QWidget* parent)
     : QWidget(parent),
       newest_(std::move(newest)),
-      pressure_(new NumberField(kLargest, 0, this)),
+      pressure_(new NumberField(kLargestPressure, 0, this)),
       text_(new ElidedLabel(1, this)) {
   auto* layout = new QGridLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);

@@ -22,8 +22,8 @@
 namespace microinjection {
 namespace {
 
-constexpr int kPeriod = 66;      // ms: 15 Hz, as the scene
-constexpr float kScene = 0.85F;  // of the window's height, that the scene has without an image
+constexpr int kImagePeriod = 66;  // ms: 15 Hz, as the scene
+constexpr float kScene = 0.85F;   // of the window's height, that the scene has without an image
 
 template <typename Widget>
 Widget* parentOf(QWidget* widget) {
@@ -72,7 +72,7 @@ void MicroscopePanel::onInitialize() {
   goal_->start();
   focus_->start();
   connect(timer_, &QTimer::timeout, this, [this] { tick(); });
-  timer_->start(kPeriod);
+  timer_->start(kImagePeriod);
 }
 
 /// rviz docks panels on the left. The places of a window that the user has saved come after this.

@@ -11,8 +11,8 @@
 namespace microinjection {
 namespace {
 
-constexpr double kBegins = 0.5;   // s after a step, in which the micromanipulator reports that it moves
-constexpr double kForgotten = 5;  // s after a step without a motion: a later motion is another one's
+constexpr double kBegins = 0.5;         // s after a step, in which the micromanipulator reports that it moves
+constexpr double kMotionForgotten = 5;  // s after a step without a motion: a later motion is another one's
 
 }  // namespace
 
@@ -50,7 +50,7 @@ void NeedleBar::start() {
 
 NeedleView NeedleBar::view() {
   const double since = needle_.busy ? 0 : sessionNow() - sent_at_;
-  if (since > kForgotten) needle_.goal.reset();
+  if (since > kMotionForgotten) needle_.goal.reset();
   NeedleView view = needle_;
   // Kept in needle_: a report of the motion that comes late makes it count again, for STOP.
   if (since > kBegins) view.goal.reset();

@@ -7,7 +7,7 @@
 namespace microinjection {
 namespace {
 
-constexpr double kSilence = 3.5;  // s
+constexpr double kDiagnosticsSilence = 3.5;  // s
 
 }  // namespace
 
@@ -27,7 +27,7 @@ void NodeDiagnostics::start() {
 
 void NodeDiagnostics::poll() { queue_.callAvailable(ros::WallDuration(0)); }
 
-bool NodeDiagnostics::isFresh() const { return heard_at_ && sessionNow() - *heard_at_ < kSilence; }
+bool NodeDiagnostics::isFresh() const { return heard_at_ && sessionNow() - *heard_at_ < kDiagnosticsSilence; }
 
 void NodeDiagnostics::read(const diagnostic_msgs::DiagnosticArray& message) {
   for (const auto& status : message.status) {

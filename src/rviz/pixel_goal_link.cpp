@@ -15,8 +15,7 @@ using cell_microinjection::GoToPixelFeedback;
 using cell_microinjection::GoToPixelGoal;
 using cell_microinjection::GoToPixelResult;
 
-constexpr double kSilence = 1;     // s, of the controller, which publishes ten times a second
-constexpr double kForgotten = 60;  // s, after a click
+constexpr double kClickForgotten = 60;  // s, after a click
 
 std::string textOf(const GoToPixelFeedback& at) {
   const std::string far = figure(at.distance, 1, 1) + " px away";
@@ -58,10 +57,12 @@ void PixelGoalLink::poll() {
     runner_->forget();
     end(false, "visual_servo has ended");
   }
-  if (sessionNow() - proposed_at_ > kForgotten) discard();
+  if (sessionNow() - proposed_at_ > kClickForgotten) discard();
 }
 
-SessionView PixelGoalLink::session() const { return sessionNow() - heard_at_ < kSilence ? session_ : SessionView(); }
+SessionView PixelGoalLink::session() const {
+  return sessionNow() - heard_at_ < kControllerSilence ? session_ : SessionView();
+}
 
 CommandOffer PixelGoalLink::offered() const { return offer(goal_, session(), runner_->there()); }
 
@@ -113,7 +114,7 @@ void PixelGoalLink::onOperating(const cell_microinjection::OperatingState& messa
 /// The mode is a parameter that is set before the controller starts. To read it waits for the master,
 /// which is why it is done only when a controller appears.
 void PixelGoalLink::onInjection() {
-  if (sessionNow() - heard_at_ > kSilence) {
+  if (sessionNow() - heard_at_ > kControllerSilence) {
     session_.settings.mode = SessionParameters("/injection_controller").text("mode");
   }
   heard_at_ = sessionNow();

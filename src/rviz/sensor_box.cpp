@@ -13,7 +13,7 @@ namespace {
 
 using cell_microinjection::CalibrateForce;
 
-constexpr double kLargest = 1000;  // uN, that can be entered; the node refuses what is beyond its range
+constexpr double kLargestForce = 1000;  // uN, that can be entered; the node refuses what is beyond its range
 
 std::string call(SensorTask task, double along, double across) {
   if (task == SensorTask::kTare) {
@@ -36,8 +36,8 @@ std::string call(SensorTask task, double along, double across) {
 SensorBox::SensorBox(QWidget* parent)
     : QWidget(parent),
       diagnostics_("force_sensor: sensor", [this](const auto& status) { read(status); }),
-      along_(new NumberField(kLargest, 1, this)),
-      across_(new NumberField(kLargest, 1, this)),
+      along_(new NumberField(kLargestForce, 1, this)),
+      across_(new NumberField(kLargestForce, 1, this)),
       report_(new LampRow("", 2, this)) {
   auto* layout = new QGridLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);

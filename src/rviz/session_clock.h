@@ -13,4 +13,7 @@ inline double sessionNow() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+/// Silence (s) after which the controller counts as gone: it publishes ten times a second.
+constexpr double kControllerSilence = 1;
+
 }  // namespace microinjection

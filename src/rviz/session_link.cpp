@@ -13,10 +13,9 @@
 namespace microinjection {
 namespace {
 
-constexpr double kSilence = 1;     // s, of the controller, which publishes ten times a second
-constexpr double kFresh = 0.2;     // s, of a measured force in the plot
-constexpr double kOld = 2;         // s, of what is shown of twin and injector
-constexpr double kLargest = 1e-2;  // N and m: what is beyond is no force or depth of a cell
+constexpr double kFresh = 0.2;         // s, of a measured force in the plot
+constexpr double kOld = 2;             // s, of what is shown of twin and injector
+constexpr double kImplausible = 1e-2;  // N and m: what is beyond is no force or depth of a cell
 
 constexpr char kController[] = "/injection_controller";
 
@@ -24,7 +23,7 @@ constexpr const char* kStoppedActions[] = {"calibration/calibrate", "focus/find"
                                            "visual_servo/go_to_pixel"};
 
 std::optional<double> plausible(double value) {
-  return std::abs(value) < kLargest ? std::optional(value) : std::nullopt;
+  return std::abs(value) < kImplausible ? std::optional(value) : std::nullopt;
 }
 
 Eigen::Vector3d toVector(const geometry_msgs::Vector3& vector) { return {vector.x, vector.y, vector.z}; }
@@ -95,7 +94,7 @@ void SessionLink::readSettings() {
 SessionView SessionLink::session() const {
   SessionView view = session_;
   view.listens = listening_ > 0;
-  if (heard_at_ && sessionNow() - *heard_at_ < kSilence) return view;
+  if (heard_at_ && sessionNow() - *heard_at_ < kControllerSilence) return view;
   view.operating.reset();
   view.injection.reset();
   return view;
@@ -123,7 +122,7 @@ void SessionLink::onOperating(const cell_microinjection::OperatingState& message
 }
 
 void SessionLink::onInjection(const cell_microinjection::InjectionStatus& message) {
-  if (!heard_at_ || sessionNow() - *heard_at_ > kSilence) readSettings();
+  if (!heard_at_ || sessionNow() - *heard_at_ > kControllerSilence) readSettings();
   heard_at_ = sessionNow();
   session_.injection = injectionStateOf(message.state);
   session_.waits = message.waits;

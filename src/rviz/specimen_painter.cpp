@@ -16,14 +16,14 @@ using Eigen::Vector2d;
 
 constexpr QRgb kCellColour = 0xff50dc50, kZonaColour = 0xffffa03c, kNeedleColour = 0xffff5a5a,
                kHoldingColour = 0xff50ffff, kDimpleColour = 0xffffffff, kGoalColour = 0xffff50ff, kShade = 0xb0101418;
-constexpr double kCross = 6;       // px of the widget
-constexpr double kGoalRadius = 9;  // px of the widget
-constexpr double kAxis = 60;       // px of the widget, of a pipette's axis
-constexpr double kLargest = 1e6;   // px: what is beyond is no place in an image
+constexpr double kCross = 6;            // px of the widget
+constexpr double kGoalRadius = 9;       // px of the widget
+constexpr double kAxis = 60;            // px of the widget, of a pipette's axis
+constexpr double kFarthestPixel = 1e6;  // px: what is beyond is no place in an image
 
 QPointF toPoint(const Vector2d& place) { return {place.x(), place.y()}; }
 
-bool isPlace(double x, double y) { return std::abs(x) < kLargest && std::abs(y) < kLargest; }
+bool isPlace(double x, double y) { return std::abs(x) < kFarthestPixel && std::abs(y) < kFarthestPixel; }
 
 template <typename Message>
 FindingView toView(const Message& message) {
@@ -52,7 +52,7 @@ void paintCell(QPainter& painter, const ImageView& view, const CellInImage& cell
   painter.setPen(penOf(kCellColour, found));
   painter.drawLine(centre - QPointF(kCross, 0), centre + QPointF(kCross, 0));
   painter.drawLine(centre - QPointF(0, kCross), centre + QPointF(0, kCross));
-  if (!(cell.diameter > 0 && cell.diameter < kLargest)) return;
+  if (!(cell.diameter > 0 && cell.diameter < kFarthestPixel)) return;
   painter.setPen(penOf(kCellColour, found && std::isfinite(cell.diameter_deviation)));
   const double radius = cell.diameter / 2 * view.scale();
   painter.drawEllipse(centre, radius, radius);

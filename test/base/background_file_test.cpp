@@ -15,6 +15,12 @@ class BackgroundFileTest : public ::testing::Test {
   BackgroundFileTest() { std::filesystem::create_directories(folder); }
   ~BackgroundFileTest() override { std::filesystem::remove_all(folder); }
 
+  std::string content() const {
+    std::ostringstream text;
+    text << std::ifstream(path).rdbuf();
+    return text.str();
+  }
+
   const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "background_file_test";
   const std::string path = folder / "file.yaml";
 };
@@ -24,9 +30,19 @@ TEST_F(BackgroundFileTest, HasTheNewestContentWhenItIsClosed) {
     BackgroundFile file(path);
     for (int i = 0; i < 50; ++i) file.write(std::to_string(i));
   }
-  std::ostringstream content;
-  content << std::ifstream(path).rdbuf();
-  EXPECT_EQ(content.str(), "49");
+  EXPECT_EQ(content(), "49");
+}
+
+TEST_F(BackgroundFileTest, AtOnceEachContentIsThereWhenItIsWritten) {
+  BackgroundFile file(path, BackgroundFile::Writing::kAtOnce);
+  for (const char* text : {"1", "2"}) {
+    file.write(text);
+    EXPECT_EQ(content(), text);
+  }
+  std::filesystem::remove(path);
+  std::filesystem::create_directory(path);
+  file.write("3");
+  EXPECT_NE(file.error().find(path), std::string::npos);
 }
 
 TEST_F(BackgroundFileTest, ReportsWhyItCannotBeWritten) {

@@ -16,16 +16,16 @@ constexpr char kUntouched[] = "the needle has not touched the cell";
 constexpr char kOnlySeen[] = "images show the contact only: without a force nothing is known of the modulus";
 
 constexpr int kIterations = 6;
-constexpr double kOutlier = 3;   ///< residual over its deviation from which a sample loses weight
-constexpr double kStep = 5e-9;   ///< m, of the contact's height, for the derivative
-constexpr double kSmall = 1e-3;  ///< change of the state, in deviations, that ends the fit
+constexpr double kOutlier = 3;        ///< residual over its deviation from which a sample loses weight
+constexpr double kHeightStep = 5e-9;  ///< m, of the contact's height, for the derivative
+constexpr double kSmall = 1e-3;       ///< change of the state, in deviations, that ends the fit
 constexpr double kDeviations95 = 1.96;
 constexpr double kDeviationOfMedian = 1.4826;
-constexpr double kLearned = 0.5;    ///< of the prior's variance: with more left, nothing was learned
-constexpr double kConflict = 3;     ///< of the prior's deviations, from what was learned of a cell before
-constexpr int kPersistent = 3;      ///< updates in a row that must contradict
-constexpr double kSignificant = 4;  ///< of a smooth residual, over what noise leaves of it
-constexpr double kApproach = 1.0;   ///< s before the contact that are kept, for the offset
+constexpr double kLearned = 0.5;          ///< of the prior's variance: with more left, nothing was learned
+constexpr double kConflict = 3;           ///< of the prior's deviations, from what was learned of a cell before
+constexpr int kContradictingUpdates = 3;  ///< updates in a row that must contradict
+constexpr double kSignificant = 4;        ///< of a smooth residual, over what noise leaves of it
+constexpr double kApproach = 1.0;         ///< s before the contact that are kept, for the offset
 
 }  // namespace
 
@@ -135,7 +135,7 @@ void CellEstimator::linearise(const State& state, Fit& fit, Eigen::MatrixXd& jac
   const double shift = config_.contact_deviation * state[1];
   const double factor = modulusOf(state) / scene_modulus_;
   path_.predict(samples, shift, fit.points);
-  shifted_.predict(samples, shift + kStep, shifted_points_);
+  shifted_.predict(samples, shift + kHeightStep, shifted_points_);
   const double noise = this->noise();
   const auto count = static_cast<Eigen::Index>(samples.size());
   fit.state = state;
@@ -156,7 +156,7 @@ void CellEstimator::linearise(const State& state, Fit& fit, Eigen::MatrixXd& jac
     fit.residuals[i] = (samples[k].force - force - config_.offset_deviation * state[2]) / deviation;
     jacobian(i, 0) = prior_deviation_ * force / deviation;
     jacobian(i, 1) =
-        config_.contact_deviation * factor * (shifted_points_[k].force - fit.points[k].force) / kStep / deviation;
+        config_.contact_deviation * factor * (shifted_points_[k].force - fit.points[k].force) / kHeightStep / deviation;
     jacobian(i, 2) = config_.offset_deviation / deviation;
   }
 }
@@ -222,18 +222,18 @@ const CellEstimate& CellEstimator::update() {
 
 void CellEstimator::judge(const Fit& fit) {
   // A contradiction stays until the next indentation: the served cell must not go to and fro.
-  if (contradictions_ == kPersistent) return;
+  if (contradictions_ == kContradictingUpdates) return;
   const std::string reason = drift(fit);
   if (!reason.empty()) return setPrior(EstimateVerdict::kPrior, reason);
   const Misfit misfit = misfitOf(fit.points, modulusOf(fit.state) / scene_modulus_,
                                  fit.residuals.cwiseProduct(fit.deviations), fit.deviations);
   contradictions_ = contradicts(misfit) ? contradictions_ + 1 : 0;
-  if (contradictions_ < kPersistent) {
+  if (contradictions_ < kContradictingUpdates) {
     estimate_ = estimateOf(fit, misfit);
     const std::string& better = watch_.follow(
         history_.samples(), noise(), {estimate_.modulus, estimate_.contact, estimate_.offset, estimate_.depth});
     if (better.empty()) return;
-    contradictions_ = kPersistent;
+    contradictions_ = kContradictingUpdates;
     return setPrior(EstimateVerdict::kInconsistent, "another cell has this force rather than this model: " + better);
   }
   char text[120];

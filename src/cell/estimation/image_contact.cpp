@@ -9,8 +9,8 @@
 namespace microinjection {
 namespace {
 
-constexpr double kBeside = 0.5;                // of the radius, of a tip that does not press from above
-constexpr double kDeviationOfMedian = 1.2533;  // over that of the mean
+constexpr double kBeside = 0.5;            // of the radius, of a tip that does not press from above
+constexpr double kErrorOfMedian = 1.2533;  // over that of the mean
 
 }  // namespace
 
@@ -46,7 +46,7 @@ std::optional<ImageContact::Height> ImageContact::height() const {
   std::vector<double> away;
   for (const double each : heights) away.push_back(std::abs(each - height));
   const double scatter = std::max(upperMedian(deviations), 1.4826 * upperMedian(away));
-  const double mean = kDeviationOfMedian * scatter / std::sqrt(static_cast<double>(heights.size()));
+  const double mean = kErrorOfMedian * scatter / std::sqrt(static_cast<double>(heights.size()));
   return Height{height, std::hypot(mean, config_.shared_error)};
 }
 

@@ -9,7 +9,7 @@
 namespace microinjection {
 namespace {
 
-constexpr int kFewest = 24;  // samples in contact, of a misfit
+constexpr int kFewestInContact = 24;  // samples in contact, of a misfit
 constexpr int kBlocks = 8;
 constexpr double kOfMedian = 1.25;  // deviation of a median over that of a mean
 constexpr int kFewestFree = 12;     // samples before contact, of a drift
@@ -26,7 +26,7 @@ Misfit misfitOf(const std::vector<ForcePath::Point>& points, double factor, cons
     inside.push_back(residuals[static_cast<Eigen::Index>(i)]);
     spread.push_back(deviations[static_cast<Eigen::Index>(i)]);
   }
-  if (inside.size() < kFewest || !(largest > 0)) return {};
+  if (inside.size() < kFewestInContact || !(largest > 0)) return {};
   const auto length = static_cast<std::ptrdiff_t>(inside.size() / kBlocks);
   double squares = 0, expected = 0;
   for (int block = 0; block < kBlocks; ++block) {

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kPoints = 128;
 constexpr int kDraws = 1000;
-constexpr int kFewest = 25;  ///< draws that are left: with fewer, the cell should have failed
+constexpr int kFewestDraws = 25;  ///< draws that are left: with fewer, the cell should have failed
 
 double quantile(std::vector<double>& values, double share) {
   const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1) + 0.5);
@@ -77,7 +77,7 @@ std::optional<PuncturePrediction> PuncturePredictor::predict(double modulus, dou
     depths.push_back(fails);
     forces.push_back(factor * forceAt(fails));
   }
-  if (static_cast<int>(depths.size()) < kFewest) return std::nullopt;
+  if (static_cast<int>(depths.size()) < kFewestDraws) return std::nullopt;
   const double low = 0.5 * (1 - share), high = 0.5 * (1 + share);
   PuncturePrediction result;
   result.beyond = beyond / static_cast<double>(depths.size());

@@ -6,10 +6,10 @@
 namespace microinjection {
 namespace {
 
-constexpr double kStep = 0.5e-6;   ///< m, from one comparison to the next
-constexpr double kFirst = 2e-6;    ///< m: before it, the shape of the force is not known
-constexpr double kNearAxis = 0.1;  ///< of the cell's radius
-constexpr int kPersistent = 2;     ///< comparisons in a row
+constexpr double kComparisonStep = 0.5e-6;    ///< m, from one comparison to the next
+constexpr double kFirst = 2e-6;               ///< m: before it, the shape of the force is not known
+constexpr double kNearAxis = 0.1;             ///< of the cell's radius
+constexpr int kContradictingComparisons = 2;  ///< comparisons in a row
 
 AxisShape shapeOf(const SurrogateData& cell, double modulus) {
   ForceField::Local local;
@@ -40,12 +40,12 @@ void RivalWatch::reset() {
 
 const std::string& RivalWatch::follow(const std::vector<SampleHistory::Sample>& samples, double noise,
                                       const Estimate& estimate) {
-  if (!believed_ || !better_.empty() || estimate.depth < kFirst || estimate.depth < compared_ + kStep) {
+  if (!believed_ || !better_.empty() || estimate.depth < kFirst || estimate.depth < compared_ + kComparisonStep) {
     return better_;
   }
   compared_ = estimate.depth;
   contradictions_ = compare(samples, noise, estimate) ? contradictions_ + 1 : 0;
-  if (contradictions_ >= kPersistent) better_ = last_;
+  if (contradictions_ >= kContradictingComparisons) better_ = last_;
   return better_;
 }
 

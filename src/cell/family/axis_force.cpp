@@ -11,10 +11,10 @@
 namespace microinjection {
 namespace {
 
-constexpr int kPoints = 6;       ///< of a coordinate
-constexpr double kAt = 0.5;      ///< of the range's depth
-constexpr double kGrowth = 3;    ///< power of s with which a round tip's force grows at first (Hertz)
-constexpr int kLeastDepths = 6;  ///< that the section must reach: half of the range's depth
+constexpr int kPointsOfCoordinate = 6;  ///< of a coordinate
+constexpr double kAt = 0.5;             ///< of the range's depth
+constexpr double kGrowth = 3;           ///< power of s with which a round tip's force grows at first (Hertz)
+constexpr int kLeastDepths = 6;         ///< that the section must reach: half of the range's depth
 /// Weights of Floater and Hormann's rational interpolation of degree 3 at the ends of equal steps; 8 in between
 /// (Numerische Mathematik 107 (2007) 315).
 constexpr double kEndWeights[] = {1, 4, 7};
@@ -30,7 +30,7 @@ double interpolationWeight(int index) {
 
 }  // namespace
 
-ChebyshevGrid axisForceGrid(const Family& family) { return {family.dimension(), kPoints}; }
+ChebyshevGrid axisForceGrid(const Family& family) { return {family.dimension(), kPointsOfCoordinate}; }
 
 Eigen::VectorXd solveAxisForces(const Family& family, const Eigen::VectorXd& coordinates) {
   const Scene member = family.member(coordinates);

@@ -12,8 +12,8 @@
 namespace microinjection {
 namespace {
 
-constexpr double kRounding = 1e-9;
-constexpr double kSteepness = 2.5;  ///< of the depth as a function of the tip's radius
+constexpr double kRoundingOfRange = 1e-9;
+constexpr double kDepthExponent = 2.5;  ///< of the depth as a function of the tip's radius
 
 /// Reads `key: {ratio: [low, high], ...}`.
 void readParameters(ConfigReader& file, const std::string& key, int layers,
@@ -96,11 +96,13 @@ std::optional<Eigen::VectorXd> Family::coordinatesOf(const Scene& scene) const {
   return coordinates;
 }
 
-bool Family::contains(const Eigen::VectorXd& coordinates) { return coordinates.cwiseAbs().maxCoeff() <= 1 + kRounding; }
+bool Family::contains(const Eigen::VectorXd& coordinates) {
+  return coordinates.cwiseAbs().maxCoeff() <= 1 + kRoundingOfRange;
+}
 
 PreparationRange Family::range(const Scene& member) const {
   const double depth =
-      rounded(deepest_ / (1 + std::pow(half_depth_tip_ / member.needle.tip.radius, kSteepness)) * member.radius());
+      rounded(deepest_ / (1 + std::pow(half_depth_tip_ / member.needle.tip.radius, kDepthExponent)) * member.radius());
   return familyRange(angle_, depth);
 }
 

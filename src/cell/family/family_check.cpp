@@ -11,11 +11,11 @@
 namespace microinjection {
 namespace {
 
-constexpr int kMotions = 5, kPoints = 2;
+constexpr int kMotions = 5, kPointsOfMotion = 2;
 constexpr double kLargestAngle = 56 * M_PI / 180;
 constexpr double kDeepest = 0.3, kSideways = 0.08;  ///< over the diameter
 constexpr double kShallowest = 0.15;                ///< over the depth of the range
-constexpr double kSteepness = 0.5;                  ///< least depth over lateral motion
+constexpr double kLeastSlope = 0.5;                 ///< least depth over lateral motion
 /// Change from the fine mesh to the limit, over that from the coarse to the fine one. `./dev bench mesh_limit` has 0.2
 /// at small depths and on the axis, and 0.5 deep beside it.
 constexpr double kExtrapolation = 0.5;
@@ -109,9 +109,9 @@ Preparation drawMotions(const Family& family, const Eigen::VectorXd& coordinates
     const bool in_plane = count > 0 || seed % 2 == 0;
     const double away = in_plane ? (turn < M_PI / 2 ? 1 : -1) : std::cos(turn);
     const Eigen::Vector3d end(side * away, in_plane ? 0 : side * std::sin(turn), -depth);
-    if (depth < kSteepness * side || overlap(member.needle.tip.radius, angle, end) < kOverlap) continue;
+    if (depth < kLeastSlope * side || overlap(member.needle.tip.radius, angle, end) < kOverlap) continue;
     ++count;
-    for (const double level : {kFineLevel, kCoarseLevel}) motions.rays.push_back({angle, end, kPoints, level});
+    for (const double level : {kFineLevel, kCoarseLevel}) motions.rays.push_back({angle, end, kPointsOfMotion, level});
   }
   const std::vector<TrainingRay> shallow = shallowMotions(motions.rays, kShallow * member.needle.tip.radius);
   motions.rays.insert(motions.rays.end(), shallow.begin(), shallow.end());

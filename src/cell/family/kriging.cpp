@@ -7,7 +7,7 @@
 namespace microinjection {
 namespace {
 
-constexpr double kRounding = 1e-10;  ///< smallest noise
+constexpr double kLeastNoise = 1e-10;  ///< smallest noise
 
 }  // namespace
 
@@ -18,7 +18,7 @@ Kriging::Kriging(const Eigen::MatrixXd& points, const Eigen::VectorXd& lengths, 
   Eigen::MatrixXd system = Eigen::MatrixXd::Zero(count + drift_, count + drift_);
   for (Eigen::Index i = 0; i < count; ++i) system.row(i) = basis(points.col(i)).transpose();
   system.bottomLeftCorner(drift_, count) = system.topRightCorner(count, drift_).transpose();
-  system.diagonal().head(count).array() += std::max(noise, kRounding);
+  system.diagonal().head(count).array() += std::max(noise, kLeastNoise);
   inverse_ = system.fullPivLu().inverse();
 }
 

@@ -6,14 +6,14 @@
 namespace microinjection {
 namespace {
 
-constexpr int kSteps = 96;
+constexpr int kTableSteps = 96;
 
 }  // namespace
 
 AxisShape::AxisShape(const std::function<double(double)>& force, double deepest) : deepest_(deepest) {
-  values_.resize(kSteps + 1);
-  for (int i = 1; i <= kSteps; ++i) {
-    const double root = static_cast<double>(i) / kSteps;
+  values_.resize(kTableSteps + 1);
+  for (int i = 1; i <= kTableSteps; ++i) {
+    const double root = static_cast<double>(i) / kTableSteps;
     values_[static_cast<std::size_t>(i)] = force(root * root * deepest) / std::pow(root, 3);
   }
   values_[0] = values_[1];  // a force over no depth is lost in rounding
@@ -22,9 +22,9 @@ AxisShape::AxisShape(const std::function<double(double)>& force, double deepest)
 ElasticLaw::Value AxisShape::at(double depth) const {
   if (!(depth > 0)) return {};
   const double inside = std::min(depth, deepest_), root = std::sqrt(inside / deepest_);
-  const auto i = std::min(static_cast<std::size_t>(root * kSteps), static_cast<std::size_t>(kSteps - 1));
-  const double slope = (values_[i + 1] - values_[i]) * kSteps;
-  const double value = values_[i] + slope * (root - static_cast<double>(i) / kSteps);
+  const auto i = std::min(static_cast<std::size_t>(root * kTableSteps), static_cast<std::size_t>(kTableSteps - 1));
+  const double slope = (values_[i + 1] - values_[i]) * kTableSteps;
+  const double value = values_[i] + slope * (root - static_cast<double>(i) / kTableSteps);
   const double force = root * root * root * value;
   const double stiffness = (3 * root * value + root * root * slope) / (2 * deepest_);
   return {force + stiffness * (depth - inside), stiffness};

@@ -14,11 +14,10 @@ namespace {
 
 constexpr std::size_t kSamples = 400;  ///< are enough to guess
 constexpr int kCandidates = 80;
-constexpr double kPower = 1.5;        ///< of the depth
-constexpr double kLeastSize = 6;      ///< of the force at the deepest sample, over the noise of a mean of ten
-constexpr double kLeastGain = 0.5;    ///< of the squared residual, against a straight line
-constexpr double kLeastNoise = 1e-5;  ///< over the record's range: a record without noise is divided by it
-constexpr std::size_t kFilter = 2;    ///< neighbours on each side, of a median that removes outliers
+constexpr double kPower = 1.5;      ///< of the depth
+constexpr double kLeastSize = 6;    ///< of the force at the deepest sample, over the noise of a mean of ten
+constexpr double kLeastGain = 0.5;  ///< of the squared residual, against a straight line
+constexpr std::size_t kFilter = 2;  ///< neighbours on each side, of a median that removes outliers
 
 struct Fit {
   double contact = 0, squares = std::numeric_limits<double>::infinity();
@@ -56,7 +55,7 @@ Fit fitAt(const ForceCurve& curve, double contact, bool drift) {
 }
 
 /// Deviation of a sample from its neighbours: no force of the cell changes it.
-double noiseOf(const ForceCurve& curve) {
+double noiseOfNeighbours(const ForceCurve& curve) {
   std::vector<double> differences;
   for (std::size_t i = 1; i + 1 < curve.size(); ++i) {
     differences.push_back(std::abs(curve.force[i] - 0.5 * (curve.force[i - 1] + curve.force[i + 1])));
@@ -77,7 +76,7 @@ ContactGuess guessContact(const ForceCurve& whole, bool drift) {
   }
   ContactGuess guess;
   const auto [least, most] = std::minmax_element(whole.force.begin(), whole.force.end());
-  guess.noise = std::max(noiseOf(whole), kLeastNoise * (*most - *least));
+  guess.noise = std::max(noiseOfNeighbours(whole), kLeastRelativeNoise * (*most - *least));
   if (!std::isfinite(best.squares)) {
     guess.reason = "no contact: the force grows with no depth";
     return guess;

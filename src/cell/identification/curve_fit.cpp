@@ -14,8 +14,7 @@
 namespace microinjection {
 namespace {
 
-constexpr double kOutlier = 3;         ///< residual over noise from which a sample loses weight
-constexpr double kLeastNoise = 1e-5;   ///< over the record's range: a record without noise is divided by it
+constexpr double kCauchyScale = 3;     ///< residual over noise from which a sample loses weight
 constexpr double kNoiseFactor = 1.05;  ///< a noise that changes less is kept
 
 /// The model's forces and derivatives, once for all samples: a member of a family takes milliseconds.
@@ -68,7 +67,7 @@ Eigen::MatrixXd covarianceOf(const Predictions& at, const ForceCurve& curve, dou
   Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(count, count);
   for (Eigen::Index i = 0; i < at.force.size(); ++i) {
     const double residual = (at.force[i] - curve.force[static_cast<std::size_t>(i)]) / noise;
-    const double weight = 1 / (1 + std::pow(residual / kOutlier, 2));
+    const double weight = 1 / (1 + std::pow(residual / kCauchyScale, 2));
     Eigen::VectorXd row(count);
     for (Eigen::Index p = 0; p < count; ++p) row[p] = at.jacobian(i, indices[static_cast<std::size_t>(p)]) / noise;
     normal += weight * row * row.transpose();
@@ -90,13 +89,13 @@ double robustDeviation(std::vector<double> residuals) {
 }
 
 /// The larger one of both sides of the contact: samples that a model cannot follow are no outliers.
-double noiseOf(const ForceCurve& curve, double contact, const Eigen::VectorXd& force) {
+double noiseBesideContact(const ForceCurve& curve, double contact, const Eigen::VectorXd& force) {
   std::vector<double> before, behind;
   for (std::size_t i = 0; i < curve.size(); ++i) {
     (curve.position[i] < contact ? before : behind).push_back(curve.force[i] - force[static_cast<Eigen::Index>(i)]);
   }
   const auto [least, most] = std::minmax_element(curve.force.begin(), curve.force.end());
-  return std::max({robustDeviation(before), robustDeviation(behind), kLeastNoise * (*most - *least)});
+  return std::max({robustDeviation(before), robustDeviation(behind), kLeastRelativeNoise * (*most - *least)});
 }
 
 }  // namespace
@@ -109,7 +108,7 @@ CurveFit fitCurve(CurveModel& model, const Eigen::VectorXd& start, double noise,
   std::vector<double*> blocks;
   for (Eigen::Index p = 0; p < start.size(); ++p) blocks.push_back(&predictions.internal[p]);
   const ForceCurve& curve = model.curve();
-  auto* loss = new ceres::CauchyLoss(kOutlier);  // the problem owns it
+  auto* loss = new ceres::CauchyLoss(kCauchyScale);  // the problem owns it
   for (std::size_t i = 0; i < curve.size(); ++i) {
     problem.AddResidualBlock(new SampleResidual(predictions, static_cast<Eigen::Index>(i), curve.force[i], noise), loss,
                              blocks);
@@ -154,8 +153,8 @@ CurveFit fitCurveAndNoise(CurveModel& model, double noise) {
     Eigen::MatrixXd jacobian;
     model.predict(fit.internal, force, jacobian);
     const int contact = model.index("contact");
-    const double found =
-        noiseOf(model.curve(), model.unknowns()[static_cast<std::size_t>(contact)].si(fit.internal[contact]), force);
+    const double found = noiseBesideContact(
+        model.curve(), model.unknowns()[static_cast<std::size_t>(contact)].si(fit.internal[contact]), force);
     const double change = std::max(found / fit.noise, fit.noise / found);
     if (round > 0 && change < kNoiseFactor) break;
     fit = fitCurve(model, fit.internal, found);

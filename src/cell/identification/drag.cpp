@@ -8,10 +8,10 @@
 namespace microinjection {
 namespace {
 
-constexpr double kFar = 0.5;         // of the way, where there is no cell
-constexpr std::size_t kFewest = 30;  // samples of each part
+constexpr double kFar = 0.5;               // of the way, where there is no cell
+constexpr std::size_t kFewestOfPart = 30;  // samples of each part
 constexpr double kDeviations = 3;
-constexpr double kDeviationOfMedian = 1.2533;  // over that of the mean
+constexpr double kErrorOfMedian = 1.2533;  // over that of the mean
 
 /// Median of the forces of some samples, with its deviation and their mean time.
 struct Part {
@@ -31,7 +31,7 @@ Part partOf(const ForceCurve& curve, const std::vector<std::size_t>& samples, st
   }
   part.force = upperMedian(forces);
   const double noise = 1.4826 / std::sqrt(2.0) * upperMedian(steps);
-  part.deviation = kDeviationOfMedian * noise / std::sqrt(static_cast<double>(part.count));
+  part.deviation = kErrorOfMedian * noise / std::sqrt(static_cast<double>(part.count));
   return part;
 }
 
@@ -48,7 +48,9 @@ double dragOf(const ForceCurve& whole) {
   }
   const Part first = partOf(whole, in, 0, in.size() / 2), second = partOf(whole, in, in.size() / 2, in.size());
   const Part back = partOf(whole, out, 0, out.size());
-  if (first.count < kFewest || second.count < kFewest || back.count < kFewest || second.time <= first.time) return 0;
+  if (first.count < kFewestOfPart || second.count < kFewestOfPart || back.count < kFewestOfPart ||
+      second.time <= first.time)
+    return 0;
   // The drift of the way in goes on.
   const double ahead = (back.time - second.time) / (second.time - first.time);
   const double expected = second.force + ahead * (second.force - first.force);

@@ -16,8 +16,8 @@
 namespace microinjection {
 namespace {
 
-constexpr std::size_t kFewest = 20;  ///< samples
-constexpr double kBent = 0.1;        ///< of its rise: a straighter record is in contact from its begin
+constexpr std::size_t kFewestSamples = 20;  ///< samples
+constexpr double kBent = 0.1;               ///< of its rise: a straighter record is in contact from its begin
 
 /// A title may have a comma, a number of some countries has one.
 char separatorOf(const std::string& titles) {
@@ -76,7 +76,7 @@ void keepFirst(ForceCurve& curve, std::size_t count) {
 /// the median stands for it.
 std::vector<double> withoutSpikes(const std::vector<double>& values) {
   constexpr std::size_t kBeside = 2;
-  constexpr double kFar = 3;  ///< steps
+  constexpr double kSpike = 3;  ///< steps
   std::vector<double> medians;
   double step = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -85,7 +85,7 @@ std::vector<double> withoutSpikes(const std::vector<double>& values) {
     if (i > 0) step = std::max(step, std::abs(medians[i] - medians[i - 1]));
   }
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (std::abs(values[i] - medians[i]) <= kFar * step) medians[i] = values[i];
+    if (std::abs(values[i] - medians[i]) <= kSpike * step) medians[i] = values[i];
   }
   return medians;
 }
@@ -154,9 +154,10 @@ ForceCurve readForceCurve(const std::string& path, const ForceCurveConfig& confi
   }
   if (titles.empty()) throw ConfigError(path + ": is empty");
   if (dropped > 0) curve.notes.push_back(std::to_string(dropped) + " rows without numbers are left out");
-  if (curve.size() < kFewest) {
+  if (curve.size() < kFewestSamples) {
     throw ConfigError(path + ": " + std::to_string(curve.size()) + " rows of numbers: must be at least " +
-                      std::to_string(kFewest) + (separator == ',' ? "" : "; the decimal sign is a point, not a comma"));
+                      std::to_string(kFewestSamples) +
+                      (separator == ',' ? "" : "; the decimal sign is a point, not a comma"));
   }
   if (!curve.timed) curve.notes.emplace_back("there is no column of the time: a drift is one a sample");
   orient(curve);
@@ -165,7 +166,7 @@ ForceCurve readForceCurve(const std::string& path, const ForceCurveConfig& confi
   for (std::size_t i = 0; i < curve.size(); ++i) curve.position[i] -= sign * deflections[i];
   curve.drag = dragOf(curve);
   if (!config.whole) cutRetract(curve);
-  if (curve.size() < kFewest) throw ConfigError(path + ": has no way in: its first samples are its deepest");
+  if (curve.size() < kFewestSamples) throw ConfigError(path + ": has no way in: its first samples are its deepest");
   orientForce(curve);
   return curve;
 }

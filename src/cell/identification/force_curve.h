@@ -18,6 +18,9 @@ struct ForceCurve {
   std::size_t size() const { return force.size(); }
 };
 
+/// Least noise over the range of a record's forces: a record without noise is divided by it.
+constexpr double kLeastRelativeNoise = 1e-5;
+
 struct ForceCurveConfig {
   /// Column (name or number from 1) and unit of time, position, deflection and force, as "name:unit".
   /// What is not named is searched by its name; see readForceCurve.

@@ -9,10 +9,10 @@
 namespace microinjection {
 namespace {
 
-constexpr std::size_t kFewest = 10;      ///< equal readings in a row
-constexpr std::size_t kLastFewest = 25;  ///< the same, at the end of a record
-constexpr double kJump = 4;              ///< behind them, over the median step from reading to reading
-constexpr double kSteps = 3;             ///< same, over the converter's step
+constexpr std::size_t kFewestEqual = 10;  ///< equal readings in a row
+constexpr std::size_t kLastFewest = 25;   ///< the same, at the end of a record
+constexpr double kJump = 4;               ///< behind them, over the median step from reading to reading
+constexpr double kConverterSteps = 3;     ///< same, over the converter's step
 
 /// Median of the steps between readings that differ, and the smallest of them.
 struct Steps {
@@ -48,11 +48,11 @@ ForceCurve withoutFrozenReadings(const ForceCurve& curve) {
     end = begin + 1;
     while (end < curve.size() && curve.force[end] == curve.force[begin]) ++end;
     const double jump = end < curve.size() ? std::abs(curve.force[end] - curve.force[begin]) : 0;
-    const bool jumps = jump > std::max(kJump * steps.median, kSteps * steps.least);
+    const bool jumps = jump > std::max(kJump * steps.median, kConverterSteps * steps.least);
     // A record that ends with a sensor that hangs has no jump. Elsewhere it had noise, and the tip still moves.
     const double moved = std::abs(curve.position[end - 1] - curve.position[begin]);
     const bool ends = end == curve.size() && end - begin >= kLastFewest && moved > 0 && end - begin < curve.size();
-    const bool hung = end - begin >= kFewest && (jumps || (ends && !isCoarse(curve.force, begin)));
+    const bool hung = end - begin >= kFewestEqual && (jumps || (ends && !isCoarse(curve.force, begin)));
     const std::size_t kept = hung ? begin + 1 : end;
     removed += end - kept;
     for (std::size_t i = begin; i < kept; ++i) {

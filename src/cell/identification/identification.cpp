@@ -17,7 +17,6 @@ namespace microinjection {
 namespace {
 
 constexpr std::size_t kMostSamples = 2000;
-constexpr double kChiSquared95 = 3.841;  ///< one degree of freedom
 constexpr double kDeviations95 = 1.96;
 constexpr double kTrimmed = 0.02;
 constexpr double kInseparable = 0.97;  ///< correlation of two unknowns

@@ -6,7 +6,7 @@
 namespace microinjection {
 namespace {
 
-constexpr int kSteps = 12;
+constexpr int kMostFits = 12;
 constexpr double kExact = 0.03;   ///< relative, of the rise's root
 constexpr double kFarthest = 40;  ///< deviations: beyond it the record does not bound the unknown
 
@@ -24,7 +24,7 @@ ProfileInterval profileInterval(CurveModel& model, const CurveFit& best, int unk
     double distance = std::min(1.96 * deviation, std::abs(end - centre));
     Eigen::VectorXd start = best.internal;
     bool open = false;
-    for (int step = 0; step < kSteps; ++step) {
+    for (int step = 0; step < kMostFits; ++step) {
       start[unknown] = centre + side * distance;
       const CurveFit held = fitCurve(model, start, best.noise, {unknown});
       open = !held.converged;

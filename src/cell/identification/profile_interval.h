@@ -4,6 +4,9 @@
 
 namespace microinjection {
 
+/// What chi^2 with one degree of freedom stays below with probability 95 %.
+constexpr double kChiSquared95 = 3.841;
+
 /// Interval of an unknown, internal units.
 struct ProfileInterval {
   double low = 0, high = 0;

@@ -4,21 +4,21 @@
 #include <cmath>
 
 #include "cell/identification/curve_fit.h"
+#include "cell/identification/profile_interval.h"
 
 namespace microinjection {
 namespace {
 
-constexpr int kSteps = 12;               ///< of Gauss and Newton
-constexpr double kRatios = 2;            ///< that a rival has free
-constexpr double kLawShape = 0.25;       ///< of a law's error, what fitted modulus and contact leave of it
-constexpr double kChiSquared95 = 3.841;  ///< one degree of freedom
+constexpr int kNewtonSteps = 12;    ///< of Gauss and Newton
+constexpr double kRatios = 2;       ///< that a rival has free
+constexpr double kLawShape = 0.25;  ///< of a law's error, what fitted modulus and contact leave of it
 
 }  // namespace
 
 RivalComparison compareWithRivals(const BelievedCell& believed, const std::vector<RivalCell>& rivals,
                                   const AxisSamples& samples, const ShapeFitConfig& config, const ShapeFit& start) {
   RivalComparison result;
-  result.own = fitShape(believed.shape, samples, config, start, kSteps);
+  result.own = fitShape(believed.shape, samples, config, start, kNewtonSteps);
   result.modulus_low = result.modulus_high = result.own.modulus;
   std::vector<ShapeFit> fits;
   const double depth = samples.travel.maxCoeff() - result.own.contact;
@@ -26,7 +26,7 @@ RivalComparison compareWithRivals(const BelievedCell& believed, const std::vecto
   for (const RivalCell& rival : rivals) {
     ShapeFit from = result.own;
     from.modulus *= force / rival.shape.at(depth).force;
-    fits.push_back(fitShape(rival.shape, samples, config, from, kSteps));
+    fits.push_back(fitShape(rival.shape, samples, config, from, kNewtonSteps));
   }
   const auto best = std::min_element(fits.begin(), fits.end(),
                                      [](const ShapeFit& a, const ShapeFit& b) { return a.square < b.square; });

@@ -6,9 +6,9 @@
 namespace microinjection {
 namespace {
 
-constexpr double kOutlier = 3;    ///< residual over its deviation from which a sample loses weight
-constexpr double kLength = 1e-7;  ///< m, of a step of the contact
-constexpr double kForce = 1e-8;   ///< N, of a step of offset and drift
+constexpr double kOutlier = 3;          ///< residual over its deviation from which a sample loses weight
+constexpr double kContactScale = 1e-7;  ///< m, of a step of the contact
+constexpr double kForce = 1e-8;         ///< N, of a step of offset and drift
 
 using Unknowns = Eigen::Vector4d;  ///< ln(modulus), contact, offset, drift over the record
 
@@ -42,12 +42,12 @@ Equations equationsOf(const AxisShape& shape, const AxisSamples& samples, const 
   for (Eigen::Index i = 0; i < samples.force.size(); ++i) {
     const ElasticLaw::Value value = shape.at(samples.travel[i] - fit.contact);
     const double since = samples.time[i] - samples.time[0], force = fit.modulus * value.force;
-    const Unknowns row(force, -kLength * fit.modulus * value.stiffness, kForce,
+    const Unknowns row(force, -kContactScale * fit.modulus * value.stiffness, kForce,
                        config.drift ? kForce * since / duration : 0);
     const double residual = samples.force[i] - force - fit.offset - fit.drift * since;
     equations.add(row / samples.deviation[i], residual / samples.deviation[i]);
   }
-  equations.addPrior(1, kLength, fit.contact - config.contact, config.contact_deviation);
+  equations.addPrior(1, kContactScale, fit.contact - config.contact, config.contact_deviation);
   equations.addPrior(2, kForce, fit.offset, config.offset_deviation);
   return equations;
 }
@@ -69,7 +69,7 @@ ShapeFit fitShape(const AxisShape& shape, const AxisSamples& samples, const Shap
     if (!change.allFinite()) break;
     ShapeFit next = fit;
     next.modulus *= std::exp(std::max(-kLargest, std::min(kLargest, change[0])));
-    next.contact += kLength * change[1];
+    next.contact += kContactScale * change[1];
     next.offset += kForce * change[2];
     if (config.drift) next.drift += kForce * change[3] / durationOf(samples);
     const Equations at = equationsOf(shape, samples, config, next);

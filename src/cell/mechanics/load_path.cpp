@@ -8,13 +8,13 @@
 namespace microinjection {
 namespace {
 
-constexpr double kTolerance = 1e-8;     ///< of the residual, relative to the reaction
-constexpr double kRounding = 1e-13;     ///< of the residual, relative to stiffness times length
-constexpr double kWorkMismatch = 1e-3;  ///< of the energy, relative to the work of the step
-constexpr double kSlow = 0.2;           ///< contraction above which an old factorisation is discarded
-constexpr double kFar = 0.05;           ///< residual, relative to the reaction, above which an old one is not tried
-constexpr int kMaximumIterations = 15;  ///< a step that needs more is shortened
-constexpr int kMaximumHalvings = 8;     ///< of a line search
+constexpr double kResidualTolerance = 1e-8;  ///< of the residual, relative to the reaction
+constexpr double kRounding = 1e-13;          ///< of the residual, relative to stiffness times length
+constexpr double kWorkMismatch = 1e-3;       ///< of the energy, relative to the work of the step
+constexpr double kSlow = 0.2;                ///< contraction above which an old factorisation is discarded
+constexpr double kFar = 0.05;            ///< residual, relative to the reaction, above which an old one is not tried
+constexpr int kMaximumIterations = 15;   ///< a step that needs more is shortened
+constexpr int kMaximumStepHalvings = 8;  ///< of a line search
 
 }  // namespace
 
@@ -132,7 +132,7 @@ bool LoadPath::balance(State& trial, int& iterations, std::string& reason, bool 
   double last = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kMaximumIterations; ++i) {
     const double norm = residual_.norm();
-    if (norm <= std::max(kTolerance * trial.reaction.norm(), force_floor_)) return true;
+    if (norm <= std::max(kResidualTolerance * trial.reaction.norm(), force_floor_)) return true;
     const bool far = i == 0 && (other_contact || norm > kFar * trial.reaction.norm());  // it has another contact
     if ((!factorised_ || far || norm > kSlow * last) && !improveTangent(trial)) {
       reason = "no stable equilibrium: the tangent along the step is not positive definite";
@@ -158,7 +158,7 @@ bool LoadPath::correct(State& trial) {
   double before = 0, after = 0;
   system_.energy(trial.x, before);
   double scale = 1;
-  for (int i = 0; i < kMaximumHalvings; ++i, scale /= 2) {
+  for (int i = 0; i < kMaximumStepHalvings; ++i, scale /= 2) {
     candidate_ = trial.x;
     system_.addTo(candidate_, scale * direction, Eigen::Vector3d::Zero());
     if (!system_.residual(candidate_, candidate_residual_, trial.reaction)) continue;

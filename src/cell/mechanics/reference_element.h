@@ -45,5 +45,9 @@ const ReferenceElement& referenceElement(ElementKind kind);
 /// six nodes).
 template <int Dim>
 const ReferenceElement& referenceFacet();
+template <>
+const ReferenceElement& referenceFacet<2>();
+template <>
+const ReferenceElement& referenceFacet<3>();
 
 }  // namespace microinjection

@@ -7,12 +7,12 @@
 namespace microinjection {
 namespace {
 
-constexpr double kTolerance = 1e-10;     ///< of the last step of Newton's method, relative to the length
-constexpr double kSmallestShift = 1e-4;  ///< larger than zero
+constexpr double kStepTolerance = 1e-10;  ///< of the last step of Newton's method, relative to the length
+constexpr double kSmallestShift = 1e-4;   ///< larger than zero
 constexpr double kLargestShift = 1e10;
 constexpr double kShiftFactor = 4;
-constexpr double kDecrease = 1e-4;    ///< of the energy, relative to the decrease that the slope predicts
-constexpr int kMaximumHalvings = 20;  ///< of a line search
+constexpr double kDecrease = 1e-4;         ///< of the energy, relative to the decrease that the slope predicts
+constexpr int kMaximumShareHalvings = 20;  ///< of a line search
 constexpr int kInverseIterations = 20;
 
 double raised(double shift) { return std::max(kSmallestShift, kShiftFactor * shift); }
@@ -46,7 +46,7 @@ Relaxation::Result Relaxation::relax(Eigen::VectorXd& state) {
     if (stationary) shift_ = 0;  // checks stability
     if (!system_.assemble(state) || !factorise(result)) break;
     Eigen::VectorXd direction = -solver_.solve(gradient_);
-    result.converged = shift_ == 0 && direction.cwiseAbs().maxCoeff() <= kTolerance * config_.length;
+    result.converged = shift_ == 0 && direction.cwiseAbs().maxCoeff() <= kStepTolerance * config_.length;
     const bool unstable = stationary && shift_ > 0;
     if (unstable) direction = softestDirection();
     const double share = descend(state, direction);
@@ -89,7 +89,7 @@ bool Relaxation::factorise(Result& result) {
 
 /// Whether the residual is negligible.
 bool Relaxation::isStationary() const {
-  return gradient_.cwiseQuotient(diagonal_).cwiseAbs().maxCoeff() <= kTolerance * config_.length;
+  return gradient_.cwiseQuotient(diagonal_).cwiseAbs().maxCoeff() <= kStepTolerance * config_.length;
 }
 
 /// Direction of the fastest decrease of the energy from a stationary state that is not stable, by
@@ -119,7 +119,7 @@ double Relaxation::descend(Eigen::VectorXd& state, const Eigen::VectorXd& direct
   double share = std::min(1.0, config_.length / direction.cwiseAbs().maxCoeff());
   const double slope = std::min(0.0, gradient_.dot(direction));
   Eigen::VectorXd step = Eigen::VectorXd::Zero(system_.freeSize());
-  for (int i = 0; i < kMaximumHalvings; ++i, share /= 2) {
+  for (int i = 0; i < kMaximumShareHalvings; ++i, share /= 2) {
     Eigen::VectorXd candidate = state;
     double energy = 0;
     step.head(direction.size()) = share * direction;

@@ -10,10 +10,10 @@ namespace microinjection {
 namespace {
 
 /// The thinnest layer over the radius of the cell. Thinner ones need millions of elements.
-constexpr double kThinnestLayer = 1.0 / 100;
+constexpr double kThinnestShell = 1.0 / 100;
 
 /// The smallest element over the radius of the cell: OpenCASCADE's tolerance is 1e-7.
-constexpr double kSmallestSize = 1e-5;
+constexpr double kSmallestTetrahedron = 1e-5;
 
 /// Largest stretch. Beyond it gmsh would mesh a nearly flat disc.
 constexpr double kMostStretched = 4;
@@ -50,7 +50,7 @@ void checkRefinement(ConfigErrors& errors, const CellMeshConfig& config, std::si
                    "positive, and with the centre's distance from the z axis below the cell's radius");
   }
   errors.require(isSide(refinement.side), key("side"), refinement.side, "", "+1 or -1");
-  errors.require(std::isfinite(refinement.size) && refinement.size >= kSmallestSize * cell, key("size"),
+  errors.require(std::isfinite(refinement.size) && refinement.size >= kSmallestTetrahedron * cell, key("size"),
                  refinement.size, "", "at least 1e-5 of the cell's radius");
 }
 
@@ -59,7 +59,8 @@ void checkImprint(ConfigErrors& errors, const CellMeshConfig& config, std::size_
   const CellMeshConfig::Circle& circle = config.imprints[i];
   const double reach = circle.centre.norm() + circle.radius;
   errors.require(Range::positive().contains(circle.radius) &&
-                     circle.radius > 10 * kSmallestSize * config.radii.front() && reach < kSteep * config.radii.front(),
+                     circle.radius > 10 * kSmallestTetrahedron * config.radii.front() &&
+                     reach < kSteep * config.radii.front(),
                  keyOf("imprints", i, "radius"), circle.radius, "",
                  "above 1e-4 and with the centre's distance from the z axis below 0.95 of the cell's radius");
   errors.require(isSide(circle.side), keyOf("imprints", i, "side"), circle.side, "", "+1 or -1");
@@ -76,8 +77,9 @@ void CellMeshConfig::validate() const {
   errors.require(Range::positive(), "size", size);
   errors.require(Range{0, 1, true, false}, "growth", growth);
   errors.require(Range::closed(1, kMostStretched), "stretch", stretch);
-  if (requireLayerRadii(radii, kThinnestLayer, errors)) {
-    errors.require(!(size < kSmallestSize * radii.front()), "size", size, "", "at least 1e-5 of the cell's radius");
+  if (requireLayerRadii(radii, kThinnestShell, errors)) {
+    errors.require(!(size < kSmallestTetrahedron * radii.front()), "size", size, "",
+                   "at least 1e-5 of the cell's radius");
     for (std::size_t i = 0; i < refinements.size(); ++i) checkRefinement(errors, *this, i);
     for (std::size_t i = 0; i < imprints.size(); ++i) checkImprint(errors, *this, i);
   }

@@ -88,7 +88,7 @@ void addTetrahedra(int volume, std::vector<std::array<std::size_t, 4>>& tetrahed
 }
 
 /// `volumes`: outermost first.
-TetMesh collectMesh(const std::vector<int>& volumes, const Vertices& vertices) {
+TetMesh collectTetrahedra(const std::vector<int>& volumes, const Vertices& vertices) {
   std::vector<std::array<std::size_t, 4>> tetrahedra;
   TetMesh mesh;
   for (std::size_t layer = 0; layer < volumes.size(); ++layer) {
@@ -140,7 +140,7 @@ TetMesh makeUnitMesh(const UnitCell& cell, const Size& size) {
     gmsh::model::mesh::setSizeCallback(
         [&](int, int, double x, double y, double z) { return width * size(Eigen::Vector3d(x, y, cell.stretch * z)); });
     gmsh::model::mesh::generate(3);
-    mesh = collectMesh(volumes, exactVertices(cell.radii, cell.circles, cell.stretch));
+    mesh = collectTetrahedra(volumes, exactVertices(cell.radii, cell.circles, cell.stretch));
   });
   return mesh;
 }

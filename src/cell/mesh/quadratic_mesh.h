@@ -38,6 +38,10 @@ struct QuadraticMesh {
 /// Corners of the edge on whose middle each midpoint of an element lies.
 template <int Dim>
 const std::vector<std::array<int, 2>>& elementEdges();
+template <>
+const std::vector<std::array<int, 2>>& elementEdges<2>();
+template <>
+const std::vector<std::array<int, 2>>& elementEdges<3>();
 
 /// `radii`: outer radius of each layer, m, outermost first. A facet is a face between elements of
 /// two layers, or a face of one element only that is not on the axis.

@@ -11,8 +11,8 @@ namespace microinjection {
 namespace {
 
 /// Thickness of the thinnest layer and size of the smallest element, over the radius of the cell.
-constexpr double kThinnestLayer = 1.0 / 1000;
-constexpr double kSmallestSize = 1e-6;
+constexpr double kThinnestRing = 1.0 / 1000;
+constexpr double kSmallestTriangle = 1e-6;
 
 /// Points of an arc within this angle are the same point, rad.
 constexpr double kSamePoint = 1e-9;
@@ -27,8 +27,9 @@ void checkGaps(ConfigErrors& errors, const SectionMeshConfig& config) {
   const std::vector<Eigen::Vector2d> points = namedPoints(config, 0);
   for (std::size_t i = 1; i < points.size(); ++i) {
     const double apart = (points[i] - points[i - 1]).norm();
-    errors.require(apart >= kSmallestSize * config.radii.front(), "distance of neighbouring points on the outer arc",
-                   apart, "", "0 or at least 1e-6 of the cell's radius, also from the axis");
+    errors.require(apart >= kSmallestTriangle * config.radii.front(),
+                   "distance of neighbouring points on the outer arc", apart, "",
+                   "0 or at least 1e-6 of the cell's radius, also from the axis");
   }
 }
 
@@ -63,10 +64,10 @@ void SectionMeshConfig::validate() const {
   ConfigErrors errors("section mesh");
   errors.require(Range::positive(), "size", size);
   errors.require(Range{0, 1, true, false}, "growth", growth);
-  if (requireLayerRadii(radii, kThinnestLayer, errors)) {
+  if (requireLayerRadii(radii, kThinnestRing, errors)) {
     const double cell = radii.front();
     const auto checkSize = [&](const std::string& key, double value) {
-      errors.require(std::isfinite(value) && value >= kSmallestSize * cell, key, value, "",
+      errors.require(std::isfinite(value) && value >= kSmallestTriangle * cell, key, value, "",
                      "at least 1e-6 of the cell's radius");
     };
     if (Range::positive().contains(size)) checkSize("size", size);

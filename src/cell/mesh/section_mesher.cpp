@@ -16,9 +16,6 @@
 namespace microinjection {
 namespace {
 
-/// Elements along each arc. One of the nine is a margin for rounding.
-constexpr int kSegments = 9;
-
 /// Longest arc, rad: gmsh's arcs are shorter than half a circle.
 constexpr double kLongestArc = 2.5;
 
@@ -43,7 +40,7 @@ class SectionSizes {
     const double from_centre = point.norm();
     double size = std::min(config_.size, layers_.at(from_centre));
     for (double radius : config_.radii) {
-      size = std::min(size, M_PI * radius / kSegments + config_.growth * std::abs(from_centre - radius));
+      size = std::min(size, M_PI * radius / kElementsOfArc + config_.growth * std::abs(from_centre - radius));
     }
     for (const Zone& zone : zones_) {
       const double outside = std::max(0.0, (point - zone.centre).norm() - zone.reach);
@@ -129,12 +126,12 @@ Section buildSection(const SectionMeshConfig& config) {
   return section;
 }
 
-using Vertices = std::map<std::size_t, Eigen::Vector2d>;  // by gmsh's tag, m
+using SectionVertices = std::map<std::size_t, Eigen::Vector2d>;  // by gmsh's tag, m
 
 /// Adds the vertices in the open entities of a dimension, each moved by `project`; entity -1: of
 /// all of them.
-void addVertices(int dimension, int entity, double unit, Vertices& vertices,
-                 const std::function<Eigen::Vector2d(const Eigen::Vector2d&)>& project) {
+void addSectionVertices(int dimension, int entity, double unit, SectionVertices& vertices,
+                        const std::function<Eigen::Vector2d(const Eigen::Vector2d&)>& project) {
   std::vector<std::size_t> tags;
   std::vector<double> coordinates, parameters;
   gmsh::model::mesh::getNodes(tags, coordinates, parameters, dimension, entity, false, false);
@@ -145,26 +142,28 @@ void addVertices(int dimension, int entity, double unit, Vertices& vertices,
 
 /// All vertices; those of the axis, the arcs and the points are projected onto them to the last
 /// bit.
-Vertices exactVertices(const Section& section) {
+SectionVertices exactSectionVertices(const Section& section) {
   const double unit = section.arcs.front().radius;
-  Vertices vertices;
-  addVertices(2, -1, unit, vertices, [](const Eigen::Vector2d& point) { return point; });
+  SectionVertices vertices;
+  addSectionVertices(2, -1, unit, vertices, [](const Eigen::Vector2d& point) { return point; });
   for (int line : section.axis) {
-    addVertices(1, line, unit, vertices, [](const Eigen::Vector2d& point) { return Eigen::Vector2d(0, point.y()); });
+    addSectionVertices(1, line, unit, vertices,
+                       [](const Eigen::Vector2d& point) { return Eigen::Vector2d(0, point.y()); });
   }
   for (const Arc& arc : section.arcs) {
     for (int curve : arc.curves) {
-      addVertices(1, curve, unit, vertices,
-                  [&](const Eigen::Vector2d& point) { return Eigen::Vector2d(arc.radius * point.normalized()); });
+      addSectionVertices(1, curve, unit, vertices, [&](const Eigen::Vector2d& point) {
+        return Eigen::Vector2d(arc.radius * point.normalized());
+      });
     }
   }
   for (const auto& vertex : section.vertices) {
-    addVertices(0, vertex.first, unit, vertices, [&](const Eigen::Vector2d&) { return vertex.second; });
+    addSectionVertices(0, vertex.first, unit, vertices, [&](const Eigen::Vector2d&) { return vertex.second; });
   }
   return vertices;
 }
 
-TriangleMesh collectMesh(const Section& section, const Vertices& vertices) {
+TriangleMesh collectTriangles(const Section& section, const SectionVertices& vertices) {
   constexpr int kTriangle = 2;  // gmsh's element type
   TriangleMesh mesh;
   std::vector<std::size_t> all_corners;
@@ -199,7 +198,7 @@ TriangleMesh makeSectionMesh(const SectionMeshConfig& config) {
     gmsh::model::mesh::setSizeCallback(
         [&](int, int, double x, double y, double) { return size(unit * Eigen::Vector2d(x, y)) / unit; });
     gmsh::model::mesh::generate(2);
-    mesh = collectMesh(section, exactVertices(section));
+    mesh = collectTriangles(section, exactSectionVertices(section));
   });
   return mesh;
 }

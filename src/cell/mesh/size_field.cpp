@@ -11,9 +11,6 @@ namespace {
 constexpr double kSizeOverThickness = 1.25;
 constexpr double kSizeOverRadius = 2.0 / 3;
 
-/// Elements along an imprinted circle. One of the nine is a margin for rounding.
-constexpr int kSegments = 9;
-
 }  // namespace
 
 LayerSizes::LayerSizes(const std::vector<double>& radii, double growth) : growth_(growth) {
@@ -45,7 +42,7 @@ SizeField::SizeField(const CellMeshConfig& config)
   }
   for (const CellMeshConfig::Circle& circle : config.imprints) {
     circles_.emplace_back(CircleOnSphere(circle.centre, circle.radius, circle.side, radius),
-                          2 * M_PI * circle.radius / kSegments);
+                          2 * M_PI * circle.radius / kElementsOfArc);
   }
 }
 

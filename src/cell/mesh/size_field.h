@@ -9,6 +9,9 @@
 
 namespace microinjection {
 
+/// Elements along an arc or an imprinted circle. One of the nine is a margin for rounding.
+constexpr int kElementsOfArc = 9;
+
 /// Element size for concentric layers, as a function of the distance from their centre. In a layer
 /// it is about the thickness; in the innermost ball below other layers it is two thirds of its
 /// radius. It grows with the distance from the layer.

@@ -29,7 +29,7 @@ double largestModulus(const Scene& scene) {
   }
   return result;
 }
-constexpr double kOnCircle = 1 + 1e-9;
+constexpr double kWithinCircle = 1 + 1e-9;
 
 SymmetricSolver::Method method(ElementKind element, int dimension) {
   if (hasContinuousPressure(element)) return SymmetricSolver::Method::kIndefinite;
@@ -54,7 +54,7 @@ std::vector<int> nodesWithin(const LayeredBody<Dim>& body, const Eigen::Vector2d
     bool all = facet.layer == 0;
     for (int corner = 0; corner < Dim; ++corner) {
       const auto& x = mesh.nodes[facet.nodes[corner]];
-      all = all && side * x[Dim - 1] > 0 && distanceFromLine(x, line) <= kOnCircle * radius;
+      all = all && side * x[Dim - 1] > 0 && distanceFromLine(x, line) <= kWithinCircle * radius;
     }
     for (int node : facet.nodes) inside[node] |= all;
   }

@@ -14,7 +14,7 @@ constexpr double kDensity = 1000;     // kg/m^3, Table I of the paper
 constexpr double kShare = 0.5;        // of the step to the bound of the undeformed cell, which stiffens when pressed
 constexpr double kLongestGap = 0.01;  // s, past which the dynamics leaves time out
 
-void checkScene(const Scene& scene) {
+void requireHomogeneous(const Scene& scene) {
   std::vector<std::string> errors = P1Cell::refusals(scene);
   if (scene.cell.layers.size() != 1) {
     errors.push_back("cell/layers: must be one (explicit dynamics is for a homogeneous cell)");
@@ -37,7 +37,7 @@ ExplicitCellModelConfig ExplicitCellModelConfig::read(ConfigReader& reader) {
 }
 
 ExplicitCellModel::ExplicitCellModel(const Scene& scene, const ExplicitCellModelConfig& config) {
-  checkScene(scene);
+  requireHomogeneous(scene);
   cell_ = std::make_shared<const P1Cell>(scene);
   const MaterialConfig& material = scene.cell.layers.front().material;
   ExplicitStepConfig dynamics;

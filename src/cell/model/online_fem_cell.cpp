@@ -22,9 +22,9 @@ constexpr double kPiece = 0.25;
 /// Displacement, over a rounded tip's radius, for which a contact is prepared: at first contact the
 /// cell has no stiffness yet.
 constexpr double kPrepared = 0.1;
-constexpr double kUpright = 0.999;   ///< cosine: within 2.5 degrees
-constexpr double kSamePoint = 0.1;   ///< over the tip's radius: the same contact point
-constexpr double kOnCircle = 1.001;  ///< over the holding circle's radius
+constexpr double kUpright = 0.999;  ///< cosine: within 2.5 degrees
+constexpr double kSamePoint = 0.1;  ///< over the tip's radius: the same contact point
+constexpr double kHeldRim = 1.001;  ///< over the holding circle's radius
 
 bool isViscoelastic(const Scene& scene) {
   const auto& layers = scene.cell.layers;
@@ -115,7 +115,7 @@ OnlineFemCell::OnlineFemCell(const Scene& scene) : scene_(scene) {
   } catch (const std::invalid_argument& error) {
     throw ConfigError(std::string("the cell cannot be solved live: ") + error.what());
   }
-  const double held = kOnCircle * scene.holding_pipette.contact_radius;
+  const double held = kHeldRim * scene.holding_pipette.contact_radius;
   for (std::size_t i = 0; i < surface_.vertices.size(); ++i) {
     const Eigen::Vector3d& x = surface_.vertices[i];
     if (x.z() < 0 && x.head<2>().norm() <= held) surface_.held.push_back(static_cast<std::uint32_t>(i));

@@ -8,17 +8,15 @@
 namespace microinjection {
 namespace {
 
-constexpr auto kRequired = ConfigReader::kRequired;
-
 void readLayer(ConfigReader reader, bool outermost, PunctureConfig::Layer& layer) {
-  reader.text("name", layer.name, kRequired);
+  reader.text("name", layer.name, ConfigReader::kRequired);
   readQuantity(reader, "force", layer.force, Range::positive(), "N");
   readQuantity(reader, "depth", layer.depth, Range::positive(), "m");
   readQuantity(reader, "strain", layer.strain, Range::positive(), "");
   const int criteria = reader.has("force") + reader.has("depth") + reader.has("strain");
   if (criteria != 1) reader.error("name", "must have one of force (N), depth (m), strain");
   if (reader.has("strain")) {
-    readQuantity(reader, "dimple_radius", layer.dimple_radius, Range::positive(), "m", kRequired);
+    readQuantity(reader, "dimple_radius", layer.dimple_radius, Range::positive(), "m", ConfigReader::kRequired);
   } else if (reader.has("dimple_radius")) {
     reader.error("dimple_radius", "must be left out: it belongs to strain only");
   }
@@ -28,7 +26,7 @@ void readLayer(ConfigReader reader, bool outermost, PunctureConfig::Layer& layer
     }
   }
   if (outermost) return;
-  readQuantity(reader, "stiffness", layer.stiffness, Range::positive(), "N/m", kRequired);
+  readQuantity(reader, "stiffness", layer.stiffness, Range::positive(), "N/m", ConfigReader::kRequired);
   readQuantity(reader, "gap", layer.gap, Range::nonNegative(), "m");
 }
 
@@ -40,8 +38,8 @@ void readShaft(const ConfigReader& reader, PunctureConfig::Shaft& shaft) {
   readQuantity(reader, "lateral_stiffness", shaft.lateral_stiffness, Range::nonNegative(), "N/m");
 }
 
-void checkLayer(const PunctureConfig::Layer& layer, const std::string& path, bool outermost, double tip_radius,
-                ConfigErrors& errors) {
+void checkMembrane(const PunctureConfig::Layer& layer, const std::string& path, bool outermost, double tip_radius,
+                   ConfigErrors& errors) {
   errors.require(layer.force > 0, path + "force", layer.force, " N", "positive (N)");
   errors.require(layer.depth > 0, path + "depth", layer.depth, " m", "positive (m)");
   errors.require(layer.strain > 0, path + "strain", layer.strain, "", "positive");
@@ -91,7 +89,7 @@ void PunctureConfig::check(double tip_radius, ConfigErrors& errors) const {
     const std::string at = path + "layers/" + std::to_string(i) + "/";
     errors.require(!layers[i].name.empty() && names.insert(layers[i].name).second, at + "name", layers[i].name, "",
                    "a name that no other layer has");
-    checkLayer(layers[i], at, i == 0, tip_radius, errors);
+    checkMembrane(layers[i], at, i == 0, tip_radius, errors);
   }
   errors.require(Range::nonNegative(), path + "shaft/friction", shaft.friction, " N");
   errors.require(Range::nonNegative(), path + "shaft/adhesion", shaft.adhesion, " N/m");

@@ -14,6 +14,10 @@ double edgeSize(const Scene& scene, double level);
 /// Mesh of the section (Dim 2; ignores the needle's offset), or in space (Dim 3): see sweepSection.
 template <int Dim>
 QuadraticMesh<Dim> makeSceneMesh(const Scene& scene, double level);
+template <>
+QuadraticMesh<2> makeSceneMesh<2>(const Scene& scene, double level);
+template <>
+QuadraticMesh<3> makeSceneMesh<3>(const Scene& scene, double level);
 
 /// The half y >= 0 of the mesh in space of a scene whose contact point is on the x axis: see
 /// CellProblem's Symmetry. Its nodes and their mirror images are those of the whole mesh.

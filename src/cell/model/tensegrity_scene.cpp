@@ -5,17 +5,15 @@
 namespace microinjection {
 namespace {
 
-constexpr auto kRequired = ConfigReader::kRequired;
-
 void readFilaments(ConfigReader& reader, FilamentConfig& value) {
   readQuantity(reader, "young_modulus", value.young_modulus, Range::positive(), "Pa");
   readQuantity(reader, "bending_stiffness", value.bending_stiffness, Range::positive(), "N m^2");
-  reader.integer("count", value.count, {1, 1e8, false, false}, kRequired);
+  reader.integer("count", value.count, {1, 1e8, false, false}, ConfigReader::kRequired);
 }
 
 void readCable(ConfigReader reader, CableConfig& value) {
   readFilaments(reader, value.filaments);
-  readQuantity(reader, "prestrain", value.prestrain, Range::nonNegative(), "", kRequired);
+  readQuantity(reader, "prestrain", value.prestrain, Range::nonNegative(), "", ConfigReader::kRequired);
   readQuantity(reader, "retardation_time", value.retardation_time, Range::nonNegative(), "s");
 }
 
@@ -41,12 +39,12 @@ void readMembrane(ConfigReader reader, MembraneConfig& value) {
 
 void readTensegrity(ConfigReader& cell, TensegrityConfig& value) {
   double diameter = 2 * value.radius;
-  readQuantity(cell, "diameter", diameter, Range::positive(), "m", kRequired);
+  readQuantity(cell, "diameter", diameter, Range::positive(), "m", ConfigReader::kRequired);
   value.radius = diameter / 2;
   cell.choice("orientation", value.orientation, tensegrityOrientations());
-  readCable(cell.section("actin", kRequired), value.actin);
-  readCable(cell.section("intermediate_filaments", kRequired), value.intermediate);
-  readStrut(cell.section("microtubules", kRequired), value.microtubules);
+  readCable(cell.section("actin", ConfigReader::kRequired), value.actin);
+  readCable(cell.section("intermediate_filaments", ConfigReader::kRequired), value.intermediate);
+  readStrut(cell.section("microtubules", ConfigReader::kRequired), value.microtubules);
   readMembrane(cell.section("membrane"), value.membrane);
   if (cell.has("cut")) {
     value.cut = {0};

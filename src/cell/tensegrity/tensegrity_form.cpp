@@ -11,11 +11,11 @@
 namespace microinjection {
 namespace {
 
-constexpr double kTolerance = 1e-9;         ///< residual, over the prestress
-constexpr double kRounding = 2e-15;         ///< of a strut's stress, over Young's modulus
-constexpr int kFactorisations = 80;         ///< of a relaxation, before the prestress is applied in smaller steps
-constexpr int kMostWorseSteps = 6;          ///< successive Newton steps without improvement before it stops
-constexpr double kSmallestStep = 1.0 / 64;  ///< of the prestress
+constexpr double kTolerance = 1e-9;  ///< residual, over the prestress
+constexpr double kRounding = 2e-15;  ///< of a strut's stress, over Young's modulus
+constexpr int kFactorisations = 80;  ///< of a relaxation, before the prestress is applied in smaller steps
+constexpr int kMostWorseSteps = 6;   ///< successive Newton steps without improvement before it stops
+constexpr double kSmallestPrestressStep = 1.0 / 64;  ///< of the prestress
 
 }  // namespace
 
@@ -46,7 +46,7 @@ void TensegrityStructure::findForm() {
       continue;
     }
     step /= 2;
-    if (step >= kSmallestStep) continue;
+    if (step >= kSmallestPrestressStep) continue;
     char text[120];
     std::snprintf(text, sizeof(text), "the tensegrity cell has no stable equilibrium beyond %.3g of its prestress",
                   done);

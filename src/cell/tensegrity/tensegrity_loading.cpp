@@ -9,7 +9,8 @@
 namespace microinjection {
 namespace {
 
-constexpr double kFirstStep = 1.0 / 128, kLargestStep = 1.0 / 32, kSmallestStep = 1e-4;  ///< of the diameter
+constexpr double kFirstIndentation = 1.0 / 128, kLargestIndentation = 1.0 / 32,
+                 kSmallestIndentation = 1e-4;  ///< of the diameter
 constexpr int kEasy = 8;                  ///< iterations: cables that become slack need some in steps of any length
 constexpr int kMostFactorisations = 300;  ///< in a snap
 constexpr double kSnapStep = 2e-3;        ///< of the diameter
@@ -27,9 +28,9 @@ TensegrityLoading::TensegrityLoading(std::shared_ptr<const TensegrityStructure> 
 LoadPathConfig TensegrityLoading::pathConfig() const {
   LoadPathConfig config;
   config.length = 2 * structure_->config().radius;
-  config.first_step = kFirstStep * config.length;
-  config.largest_step = kLargestStep * config.length;
-  config.smallest_step = kSmallestStep * config.length;
+  config.first_step = kFirstIndentation * config.length;
+  config.largest_step = kLargestIndentation * config.length;
+  config.smallest_step = kSmallestIndentation * config.length;
   config.easy = kEasy;
   config.smooth = false;  // cables become slack and taut
   return config;

@@ -4,9 +4,9 @@
 
 namespace microinjection {
 
-CellEstimatorParameters CellEstimatorParameters::read(const ros::NodeHandle& private_node) {
+CellEstimatorParameters CellEstimatorParameters::read(const Bus& bus) {
   CellEstimatorParameters parameters;
-  ConfigReader reader = parameterReader(private_node);
+  ConfigReader reader = parameterReader(bus);
   reader.text("scene", parameters.scene, ConfigReader::kRequired);
   reader.text("families", parameters.families, ConfigReader::kRequired);
   reader.number("rate", parameters.rate, Range::closed(50, 5000));

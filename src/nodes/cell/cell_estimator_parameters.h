@@ -1,12 +1,11 @@
 #pragma once
 
-#include <ros/ros.h>
-
 #include <string>
 
 #include "cell/estimation/cell_estimator.h"
 #include "cell/estimation/cell_follower.h"
 #include "cell/estimation/image_contact.h"
+#include "nodes/bus/bus.h"
 
 namespace microinjection {
 
@@ -29,7 +28,7 @@ struct CellEstimatorParameters {
   ImageContactConfig image;
 
   /// @throws ConfigError
-  static CellEstimatorParameters read(const ros::NodeHandle& private_node);
+  static CellEstimatorParameters read(const Bus& bus);
 };
 
 }  // namespace microinjection

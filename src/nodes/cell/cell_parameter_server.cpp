@@ -8,7 +8,6 @@
 
 #include "base/errors.h"
 #include "nodes/runtime/message_guard.h"
-#include "nodes/runtime/real_time.h"
 
 namespace microinjection {
 namespace {
@@ -54,36 +53,35 @@ std::string describeHeight(double height) {
 }  // namespace
 
 CellParameterServer::CellParameterServer(MemberChange* change, const std::string& unchangeable, PlacedCell& place,
-                                         double radius, Cycle& cycle, ros::NodeHandle private_node)
-    : change_(change), unchangeable_(unchangeable), place_(place), highest_(PlacedCell::kHighest * radius) {
-  ros::NodeHandle node = cycle.node();
-  if (!cycle.deterministic()) node.setCallbackQueue(&queue_);
-  private_node.setCallbackQueue(node.getCallbackQueue());
-  subscriber_ = subscribeGuarded<cell_microinjection::CellParameters>(
-      node, "cell/set_parameters", 1,
-      [this](const cell_microinjection::CellParameters& message, const std::string&) { receive(message); });
-  service_ = private_node.advertiseService("set_cell_parameters", &CellParameterServer::call, this);
+                                         double radius, Cycle& cycle)
+    : bus_(cycle.bus()),
+      change_(change),
+      unchangeable_(unchangeable),
+      place_(place),
+      highest_(PlacedCell::kHighest * radius) {
+  using cell_microinjection::CellParameters;
+  using cell_microinjection::SetCellParameters;
+  const Serving serving = cycle.deterministic() ? Serving::kSampled : Serving::kOwnThread;
+  subscription_ = subscribeGuarded<CellParameters>(
+      cycle.bus(), "cell/set_parameters", 1,
+      [this](const CellParameters& message, const std::string&) { receive(message); }, StampRule::kTimely, serving);
+  service_ = cycle.bus().advertiseService<SetCellParameters>(
+      "~set_cell_parameters",
+      [this](const SetCellParameters::Request& request, SetCellParameters::Response& response) {
+        call(request, response);
+        return true;
+      },
+      serving);
   cycle.diagnostics().add("cell parameters", [this](auto& status) { report(status); });
-  if (!cycle.deterministic()) thread_ = std::thread([this] { run(); });
-}
-
-CellParameterServer::~CellParameterServer() {
-  stop_ = true;
-  if (thread_.joinable()) thread_.join();
-}
-
-void CellParameterServer::run() {
-  preferForThread(Priority::kOrdinary);
-  while (!stop_) queue_.callAvailable(ros::WallDuration(0.1));
 }
 
 void CellParameterServer::receive(const cell_microinjection::CellParameters& message) {
-  const double age = message.header.stamp.isZero() ? 0 : secondsBetween(message.header.stamp, ros::Time::now());
+  const double age = message.header.stamp.isZero() ? 0 : secondsBetween(message.header.stamp, bus_.now());
   if (age > kLargestAge) throw ConfigError("its stamp is " + std::to_string(age) + " s old; must be at most 1 s");
   change(message.name, message.value);
 }
 
-bool CellParameterServer::call(cell_microinjection::SetCellParameters::Request& request,
+void CellParameterServer::call(const cell_microinjection::SetCellParameters::Request& request,
                                cell_microinjection::SetCellParameters::Response& response) {
   try {
     response.message = change(request.name, request.value);
@@ -92,7 +90,6 @@ bool CellParameterServer::call(cell_microinjection::SetCellParameters::Request& 
     response.success = false;
     response.message = error.what();
   }
-  return true;
 }
 
 std::string CellParameterServer::change(const std::vector<std::string>& names, const std::vector<double>& values) {

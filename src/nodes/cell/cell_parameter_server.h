@@ -2,14 +2,9 @@
 
 #include <cell_microinjection/CellParameters.h>
 #include <cell_microinjection/SetCellParameters.h>
-#include <ros/callback_queue.h>
-#include <ros/ros.h>
 
-#include <atomic>
-#include <memory>
 #include <mutex>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "cell/choice/make_cell_model.h"
@@ -19,7 +14,7 @@
 namespace microinjection {
 
 /// Changes parameters of the cell while it is served, see MemberChange and PlacedCell. Live it makes the new cell
-/// in its own thread of ordinary priority, so that no step is delayed. In lock step it does so
+/// in a thread of its own, so that no step is delayed. In lock step and in virtual time it does so
 /// right before a step, so that all runs are the same.
 ///
 /// In:      /cell/set_parameters (CellParameters)
@@ -30,33 +25,30 @@ class CellParameterServer {
   /// `unchangeable`.
   /// `place` takes the height, with any model; `radius` (m) bounds it.
   CellParameterServer(MemberChange* change, const std::string& unchangeable, PlacedCell& place, double radius,
-                      Cycle& cycle, ros::NodeHandle private_node);
-  ~CellParameterServer();
+                      Cycle& cycle);
   CellParameterServer(const CellParameterServer&) = delete;
   CellParameterServer& operator=(const CellParameterServer&) = delete;
 
  private:
-  void run();
   void receive(const cell_microinjection::CellParameters& message);
-  bool call(cell_microinjection::SetCellParameters::Request& request,
+  void call(const cell_microinjection::SetCellParameters::Request& request,
             cell_microinjection::SetCellParameters::Response& response);
   std::string change(const std::vector<std::string>& names, const std::vector<double>& values);
   void report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   std::string changeCell(const std::vector<CellParameter>& parameters);
 
+  const Bus& bus_;
   MemberChange* change_;
   std::string unchangeable_;
   PlacedCell& place_;
-  double highest_;  ///< m, of the cell above its place in the scene
-  ros::CallbackQueue queue_;
-  ros::Subscriber subscriber_;
-  ros::ServiceServer service_;
+  double highest_;        ///< m, of the cell above its place in the scene
   std::mutex mutex_;      ///< of what follows; the thread that steps never waits for it
   unsigned changes_ = 0;  ///< since the start
   std::string outcome_;   ///< of the last one
-  std::atomic<bool> stop_{false};
-  std::thread thread_;  ///< last member: starts after the others are initialised
+  // Last members: their thread uses the others.
+  Subscription subscription_;
+  BusHandle service_;
 };
 
 }  // namespace microinjection

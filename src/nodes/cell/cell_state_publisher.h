@@ -1,6 +1,6 @@
 #pragma once
 
-#include <ros/ros.h>
+#include <ros/time.h>
 
 #include <array>
 #include <atomic>
@@ -30,8 +30,8 @@ struct CellMoment {
 };
 
 /// Publishes /cell/state with the surface at its own rate from the results of the steps. Live it
-/// uses its own thread of ordinary priority, so that no step is delayed. In lock step it publishes
-/// in the step that is due, so that all runs are the same.
+/// uses its own thread of ordinary priority, so that no step is delayed. In lock step and
+/// in virtual time it publishes in the step that is due, so that all runs are the same.
 class CellStatePublisher {
  public:
   enum class Thread { kOwn, kOfTheStep };
@@ -57,7 +57,7 @@ class CellStatePublisher {
   Output<cell_microinjection::CellState>& output_;
   double period_;                              ///< s
   cell_microinjection::CellState undeformed_;  ///< the constant part of every message
-  ros::Time sent_;                             ///< in lock step
+  ros::Time sent_;                             ///< without a thread
   LatestValue<CellMoment> moment_;
   std::atomic<bool> stop_{false};
   std::thread thread_;  ///< last member: starts after the others are initialised

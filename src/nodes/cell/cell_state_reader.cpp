@@ -29,8 +29,8 @@ CellSurface toSurface(const cell_microinjection::CellState& message) {
   return surface;
 }
 
-std::vector<CellBorder> toBorders(const cell_microinjection::CellState& message) {
-  std::map<int, CellBorder> borders;
+std::vector<LayerBorder> toBorders(const cell_microinjection::CellState& message) {
+  std::map<int, LayerBorder> borders;
   for (std::size_t i = 0; i < message.border_layers.size() && 3 * i + 2 < message.border_triangles.size(); ++i) {
     const auto* t = &message.border_triangles[3 * i];
     const int layer = static_cast<int>(message.border_layers[i]);
@@ -38,7 +38,7 @@ std::vector<CellBorder> toBorders(const cell_microinjection::CellState& message)
     if (layer < 0 || layer >= kMostBorders) continue;
     borders[layer].triangles.push_back({static_cast<int>(t[0]), static_cast<int>(t[1]), static_cast<int>(t[2])});
   }
-  std::vector<CellBorder> result;
+  std::vector<LayerBorder> result;
   for (auto& [layer, border] : borders) {
     border.layer = layer;
     for (const auto& p : message.border_vertices) border.vertices.push_back(toVector(p));

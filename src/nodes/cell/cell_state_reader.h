@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "operation/display/cell_border.h"
 #include "operation/display/cell_surface.h"
+#include "operation/display/layer_border.h"
 
 namespace microinjection {
 
@@ -15,7 +15,7 @@ namespace microinjection {
 CellSurface toSurface(const cell_microinjection::CellState& message);
 
 /// The borders between layers that the message has and that can be drawn.
-std::vector<CellBorder> toBorders(const cell_microinjection::CellState& message);
+std::vector<LayerBorder> toBorders(const cell_microinjection::CellState& message);
 
 /// Value (SI) of a parameter of the felt cell; empty when the message has no such name, or its value
 /// is not finite.

@@ -34,10 +34,10 @@ std::optional<Depth> depthIn(const cell_microinjection::VisionState& message) {
 
 }  // namespace
 
-DimpleReader::DimpleReader(const ros::NodeHandle& node, const ImageContactConfig& config)
+DimpleReader::DimpleReader(Bus& bus, const ImageContactConfig& config)
     : config_(config), contact_(config, 1), places_(kPlaces) {
   using cell_microinjection::VisionState;
-  states_ = subscribeGuarded<VisionState>(node, "vision/state", 1,
+  states_ = subscribeGuarded<VisionState>(bus, "vision/state", 1,
                                           [this](const VisionState& message, const std::string&) { onState(message); });
 }
 

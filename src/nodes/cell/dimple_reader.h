@@ -1,13 +1,13 @@
 #pragma once
 
 #include <cell_microinjection/VisionState.h>
-#include <ros/ros.h>
 
 #include <Eigen/Core>
 #include <boost/circular_buffer.hpp>
 #include <optional>
 
 #include "cell/estimation/image_contact.h"
+#include "nodes/bus/bus.h"
 
 namespace microinjection {
 
@@ -16,7 +16,7 @@ namespace microinjection {
 /// known, and the needle was slow and its place known at the time of exposure.
 class DimpleReader {
  public:
-  DimpleReader(const ros::NodeHandle& node, const ImageContactConfig& config);
+  DimpleReader(Bus& bus, const ImageContactConfig& config);
 
   /// Another cell, or the needle has been clear of this one. `radius`: m.
   void startCell(double radius);
@@ -36,7 +36,7 @@ class DimpleReader {
   ImageContactConfig config_;
   ImageContact contact_;
   boost::circular_buffer<Place> places_;
-  ros::Subscriber states_;
+  Subscription states_;
 };
 
 }  // namespace microinjection

@@ -37,11 +37,11 @@ LineList dashed(const LineList& lines) {
 
 }  // namespace
 
-std::vector<CellBorder> bordersOf(const CellSurface& surface, const std::vector<CellBorder>& solved,
-                                  const std::optional<DisplayedSolid>& solid,
-                                  const std::optional<DisplayedStress>& stress) {
+std::vector<LayerBorder> bordersOf(const CellSurface& surface, const std::vector<LayerBorder>& solved,
+                                   const std::optional<DisplayedSolid>& solid,
+                                   const std::optional<DisplayedStress>& stress) {
   if (!solved.empty() || !solid || surface.at_rest.empty()) return solved;
-  std::vector<CellBorder> borders;
+  std::vector<LayerBorder> borders;
   const std::vector<double>& radii = solid->layer_radii;
   const auto drawn = std::min<std::size_t>(radii.size(), kMostLayers);
   const auto positive = [](double radius) { return std::isfinite(radius) && radius > 0; };
@@ -54,7 +54,7 @@ std::vector<CellBorder> bordersOf(const CellSurface& surface, const std::vector<
   return borders;
 }
 
-void drawSection(const std::string& frame, const CellSurface& surface, const std::vector<CellBorder>& borders,
+void drawSection(const std::string& frame, const CellSurface& surface, const std::vector<LayerBorder>& borders,
                  const CutPlane& plane, double enlargement, visualization_msgs::MarkerArray& markers) {
   struct Face {
     Curve curve;
@@ -62,7 +62,7 @@ void drawSection(const std::string& frame, const CellSurface& surface, const std
   };
   std::array<Face, kMostLayers> faces;
   faces[0].curve = outline(surface.vertices, surface.triangles, plane);
-  for (const CellBorder& border : borders) {
+  for (const LayerBorder& border : borders) {
     if (border.layer < kMostLayers)
       faces[border.layer] = {outline(border.vertices, border.triangles, plane), border.estimated};
   }

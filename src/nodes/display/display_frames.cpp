@@ -1,7 +1,6 @@
 #include "nodes/display/display_frames.h"
 
-#include <geometry_msgs/TransformStamped.h>
-#include <ros/time.h>
+#include <algorithm>
 
 #include "nodes/runtime/conversions.h"
 #include "operation/display/display_scale.h"
@@ -26,8 +25,13 @@ geometry_msgs::TransformStamped enlarged(const std::string& frame, const Eigen::
 
 }  // namespace
 
-DisplayFrames::DisplayFrames(const ros::NodeHandle& node, const std::vector<std::string>& fixed, double enlargement)
-    : fixed_(fixed), enlargement_(enlargement), frames_(node) {}
+DisplayFrames::DisplayFrames(Bus& bus, const std::vector<std::string>& fixed, double enlargement)
+    : bus_(bus),
+      fixed_(fixed),
+      enlargement_(enlargement),
+      frames_(bus),
+      tf_(bus.advertise<tf2_msgs::TFMessage>("/tf", 100)),
+      static_tf_(bus.advertise<tf2_msgs::TFMessage>("/tf_static", 100, true)) {}
 
 std::optional<Eigen::Isometry3d> DisplayFrames::find(const std::string& parent, const std::string& frame) const {
   return frames_.find(parent, frame);
@@ -39,16 +43,30 @@ void DisplayFrames::update() {
     if (!pose) continue;
     const auto last = published_.find(frame);
     if (last != published_.end() && last->second.matrix() == pose->matrix()) continue;
-    static_broadcaster_.sendTransform(enlarged(frame, *pose, enlargement_, ros::Time::now()));
+    publishFixed(enlarged(frame, *pose, enlargement_, bus_.now()));
     published_[frame] = *pose;
   }
 }
 
+void DisplayFrames::publishFixed(const geometry_msgs::TransformStamped& transform) {
+  auto& all = fixed_message_.transforms;
+  const auto last = std::find_if(all.begin(), all.end(),
+                                 [&](const auto& each) { return each.child_frame_id == transform.child_frame_id; });
+  if (last != all.end()) {
+    *last = transform;
+  } else {
+    all.push_back(transform);
+  }
+  static_tf_.publish(fixed_message_);
+}
+
 void DisplayFrames::publishNeedleTip(const Eigen::Isometry3d& tip) {
   // tf refuses two transforms with the same stamp, as while a simulated clock stands still.
-  const ros::Time now = ros::Time::now();
+  const ros::Time now = bus_.now();
   if (now.toSec() == tip_stamp_) return;
-  broadcaster_.sendTransform(enlarged("needle_tip", tip, enlargement_, now));
+  tf2_msgs::TFMessage message;
+  message.transforms.push_back(enlarged("needle_tip", tip, enlargement_, now));
+  tf_.publish(message);
   tip_stamp_ = now.toSec();
 }
 

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <ros/node_handle.h>
-#include <tf2_ros/static_transform_broadcaster.h>
-#include <tf2_ros/transform_broadcaster.h>
+#include <tf2_msgs/TFMessage.h>
 
 #include <Eigen/Geometry>
 #include <map>
@@ -18,7 +16,7 @@ namespace microinjection {
 class DisplayFrames {
  public:
   /// @param fixed  frames of tf that rarely move; republished as static transforms
-  DisplayFrames(const ros::NodeHandle& node, const std::vector<std::string>& fixed, double enlargement);
+  DisplayFrames(Bus& bus, const std::vector<std::string>& fixed, double enlargement);
 
   /// Republishes changed frames; call it regularly.
   void update();
@@ -33,11 +31,14 @@ class DisplayFrames {
   std::vector<std::string> missing() const;
 
  private:
+  void publishFixed(const geometry_msgs::TransformStamped& transform);
+
+  Bus& bus_;
   std::vector<std::string> fixed_;
   double enlargement_;
   FrameListener frames_;
-  tf2_ros::StaticTransformBroadcaster static_broadcaster_;
-  tf2_ros::TransformBroadcaster broadcaster_;
+  Publisher<tf2_msgs::TFMessage> tf_, static_tf_;
+  tf2_msgs::TFMessage fixed_message_;                   ///< the last one: a late subscriber needs all fixed frames
   std::map<std::string, Eigen::Isometry3d> published_;  ///< fixed frames in world (m), as last published
   double tip_stamp_ = 0;                                ///< s, of the last viz/needle_tip
 };

@@ -23,8 +23,8 @@ struct DisplayedState {
   CellIdentity cell;
   std::optional<CellSurface> surface;
   std::optional<DisplayedSolid> solid;
-  std::vector<CellBorder> borders;  ///< that the model has solved
-  bool section = false;             ///< wanted
+  std::vector<LayerBorder> borders;  ///< that the model has solved
+  bool section = false;              ///< wanted
   CellMembers members;
   std::vector<Eigen::Vector3d> holes;                  ///< m, punctures of the outermost layer
   std::string cell_frame = "cell";                     ///< of surface, members and holes

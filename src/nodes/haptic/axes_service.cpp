@@ -11,6 +11,7 @@
 #include "base/errors.h"
 #include "base/operating_state.h"
 #include "base/user_data.h"
+#include "nodes/runtime/background_writing.h"
 #include "nodes/runtime/message_guard.h"
 
 namespace microinjection {
@@ -42,16 +43,16 @@ std::string ownFile(const std::string& path) {
 
 }  // namespace
 
-AxesService::AxesService(Cycle& cycle, ros::NodeHandle private_node, const std::string& axes, bool springs_back,
-                         const std::string& file)
-    : calibration_(axes, springs_back), file_(ownFile(file.empty() ? userDataFile("device_axes.yaml") : file)) {
+AxesService::AxesService(Cycle& cycle, const std::string& axes, bool springs_back, const std::string& file)
+    : calibration_(axes, springs_back),
+      file_(ownFile(file.empty() ? userDataFile("device_axes.yaml") : file), writingOn(cycle.bus())) {
   using State = cell_microinjection::OperatingState;
   controller_ =
-      subscribeGuarded<State>(cycle.node(), "controller/operating_state", 10,
+      subscribeGuarded<State>(cycle.bus(), "controller/operating_state", 10,
                               [this](const State& message, const std::string&) { controller_state_ = message.state; });
-  // The service is executed right before a step, in the node's own thread.
-  private_node.setCallbackQueue(cycle.node().getCallbackQueue());
-  server_ = private_node.advertiseService("calibrate_axes", &AxesService::answer, this);
+  server_ = cycle.bus().advertiseService<Service>(
+      "~calibrate_axes",
+      [this](Service::Request& request, Service::Response& response) { return answer(request, response); });
 }
 
 void AxesService::observe(const std::optional<Eigen::Vector3d>& hand, bool followed) {

@@ -2,7 +2,6 @@
 
 #include <cell_microinjection/CalibrateAxes.h>
 #include <diagnostic_updater/DiagnosticStatusWrapper.h>
-#include <ros/ros.h>
 
 #include <Eigen/Core>
 #include <optional>
@@ -22,8 +21,7 @@ namespace microinjection {
 class AxesService {
  public:
   /// `axes`, `springs_back`: of DeviceAxesCalibration. `file`: path; empty: device_axes.yaml of userDataFile().
-  AxesService(Cycle& cycle, ros::NodeHandle private_node, const std::string& axes, bool springs_back,
-              const std::string& file);
+  AxesService(Cycle& cycle, const std::string& axes, bool springs_back, const std::string& file);
 
   /// What the last step has seen: the hand (m, the device's axes; empty: invalid), and whether the
   /// needle follows it.
@@ -47,8 +45,8 @@ class AxesService {
   bool followed_ = false;
   std::string controller_state_;  ///< empty: not heard of
   int kept_changes_ = 0;          ///< of the calibration, that are in the file
-  ros::ServiceServer server_;
-  ros::Subscriber controller_;
+  BusHandle server_;
+  Subscription controller_;
 };
 
 }  // namespace microinjection

@@ -45,18 +45,18 @@ CrtkAdapter::CrtkAdapter(Cycle& cycle, const CrtkConfig& config)
       clutch_(subscribe(cycle, config.clutch)),
       operator_present_(subscribe(cycle, config.operator_present)),
       force_(cycle.output<geometry_msgs::WrenchStamped>(deviceTopic(config.device, config.force))),
-      settings_(cycle.node(), config.device, config.settings),
+      settings_(cycle.bus(), config.device, config.settings),
       receiver_(cycle, force_.publisher) {
   if (!config.state.empty()) {
     state_ = &cycle.input<cell_microinjection::OperatingState>(deviceTopic(config.device, config.state),
-                                                               InputPhase::kPreviousTick, kForEver);
+                                                               InputPhase::kSampled, kForEver);
   }
   const std::string topic = deviceTopic(config.device, "measured_cp");
   if (config.position_type == "pose") {
-    pose_ = &cycle.input<geometry_msgs::PoseStamped>(topic, InputPhase::kThisTick, config.timeout);
+    pose_ = &cycle.input<geometry_msgs::PoseStamped>(topic, InputPhase::kDrives, config.timeout);
     receiver_.monitor(*pose_);
   } else {
-    transform_ = &cycle.input<geometry_msgs::TransformStamped>(topic, InputPhase::kThisTick, config.timeout);
+    transform_ = &cycle.input<geometry_msgs::TransformStamped>(topic, InputPhase::kDrives, config.timeout);
     receiver_.monitor(*transform_);
   }
 }
@@ -64,7 +64,7 @@ CrtkAdapter::CrtkAdapter(Cycle& cycle, const CrtkConfig& config)
 Input<sensor_msgs::Joy>* CrtkAdapter::subscribe(Cycle& cycle, const CrtkButton& button) const {
   if (button.topic.empty()) return nullptr;
   const double timeout = config_.button_timeout > 0 ? config_.button_timeout : kForEver;
-  return &cycle.input<sensor_msgs::Joy>(deviceTopic(config_.device, button.topic), InputPhase::kPreviousTick, timeout);
+  return &cycle.input<sensor_msgs::Joy>(deviceTopic(config_.device, button.topic), InputPhase::kSampled, timeout);
 }
 
 std::optional<CrtkAdapter::Position> CrtkAdapter::position(const ros::Time& now) const {

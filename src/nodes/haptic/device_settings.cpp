@@ -1,10 +1,9 @@
 #include "nodes/haptic/device_settings.h"
 
-#include <std_msgs/Bool.h>
+#include <ros/console.h>
 
 #include <algorithm>
 
-#include "nodes/haptic/force_receiver.h"
 #include "nodes/runtime/stamps.h"
 
 namespace microinjection {
@@ -29,10 +28,9 @@ std::vector<DeviceSetting> DeviceSetting::readAll(ConfigReader& reader, const st
   return settings;
 }
 
-DeviceSettings::DeviceSettings(ros::NodeHandle& node, const std::string& device,
-                               const std::vector<DeviceSetting>& settings) {
+DeviceSettings::DeviceSettings(Bus& bus, const std::string& device, const std::vector<DeviceSetting>& settings) {
   for (const DeviceSetting& setting : settings) {
-    published_.push_back({setting, node.advertise<std_msgs::Bool>(deviceTopic(device, setting.topic), 1, true)});
+    published_.push_back({setting, bus.advertise<std_msgs::Bool>(deviceTopic(device, setting.topic), 1, true)});
     std_msgs::Bool message;
     message.data = setting.value;
     published_.back().publisher.publish(message);
@@ -41,8 +39,8 @@ DeviceSettings::DeviceSettings(ros::NodeHandle& node, const std::string& device,
 
 bool DeviceSettings::received(const std::string& driver, const ros::Time& now) {
   const auto missing = std::find_if(published_.begin(), published_.end(),
-                                    [&](const Published& entry) { return !isSubscribed(entry.publisher, driver); });
-  missing_ = missing == published_.end() ? "" : missing->publisher.getTopic();
+                                    [&](const Published& entry) { return !entry.publisher.isSubscribedBy(driver); });
+  missing_ = missing == published_.end() ? "" : missing->publisher.topic();
   if (missing != published_.end()) {
     since_ = ros::Time();
     logged_ = false;
@@ -52,7 +50,7 @@ bool DeviceSettings::received(const std::string& driver, const ros::Time& now) {
   if (secondsBetween(since_, now) < kSettle && !published_.empty()) return false;
   for (const Published& entry : published_) {
     if (!logged_)
-      ROS_INFO_STREAM("sent to " << driver << ": " << entry.publisher.getTopic() << " = " << entry.setting.value);
+      ROS_INFO_STREAM("sent to " << driver << ": " << entry.publisher.topic() << " = " << entry.setting.value);
   }
   logged_ = true;
   return true;

@@ -1,11 +1,12 @@
 #pragma once
 
-#include <ros/ros.h>
+#include <std_msgs/Bool.h>
 
 #include <string>
 #include <vector>
 
 #include "base/config_reader.h"
+#include "nodes/bus/bus.h"
 
 namespace microinjection {
 
@@ -21,7 +22,7 @@ struct DeviceSetting {
 /// latched, so a driver that starts later or restarts receives them, too.
 class DeviceSettings {
  public:
-  DeviceSettings(ros::NodeHandle& node, const std::string& device, const std::vector<DeviceSetting>& settings);
+  DeviceSettings(Bus& bus, const std::string& device, const std::vector<DeviceSetting>& settings);
 
   /// Whether `driver` has been connected to all of them for 0.2 s. It then has received each before
   /// the first force, which arrives on another connection.
@@ -32,7 +33,7 @@ class DeviceSettings {
  private:
   struct Published {
     DeviceSetting setting;
-    ros::Publisher publisher;
+    Publisher<std_msgs::Bool> publisher;
   };
 
   std::vector<Published> published_;

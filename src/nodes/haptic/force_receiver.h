@@ -1,7 +1,8 @@
 #pragma once
 
-#include <ros/ros.h>
+#include <ros/time.h>
 
+#include <functional>
 #include <string>
 
 #include "nodes/runtime/cycle.h"
@@ -12,12 +13,16 @@ namespace microinjection {
 /// must be connected to the force's topic. Other subscriptions do not count, since a watchdog, a
 /// recorder or `rostopic echo` renders nothing.
 ///
-/// It is not required in lock step, where the order of the connections would depend on the machine.
+/// It is not required in lock step over topics, where the order of the connections would depend on the machine.
 class ForceReceiver {
  public:
   /// `required`: false for a device that renders no force.
-  ForceReceiver(const Cycle& cycle, const ros::Publisher& force, bool required = true)
-      : force_(force), required_(required && !cycle.deterministic()) {}
+  template <typename Message>
+  ForceReceiver(const Cycle& cycle, const Publisher<Message>& force, bool required = true)
+      : bus_(cycle.bus()),
+        topic_(force.topic()),
+        is_subscribed_([force](const std::string& node) { return force.isSubscribedBy(node); }),
+        required_(required && !(cycle.deterministic() && !cycle.bus().isVirtual())) {}
   ForceReceiver(const ForceReceiver&) = delete;
 
   /// Sets the topic of the hand's position.
@@ -34,14 +39,13 @@ class ForceReceiver {
   const std::string& driver() const { return driver_; }
 
  private:
-  ros::Publisher force_;
+  const Bus& bus_;
+  std::string topic_;  ///< of the force
+  std::function<bool(const std::string& node)> is_subscribed_;
   bool required_;
   std::string driver_, checked_driver_;
   ros::SteadyTime checked_, connected_;  ///< times of the last check and connection; a new driver resets connected_
   std::string reason_;
 };
-
-/// Whether a node is connected to a topic that this process publishes.
-bool isSubscribed(const ros::Publisher& publisher, const std::string& node);
 
 }  // namespace microinjection

@@ -1,6 +1,5 @@
 #include "nodes/haptic/geomagic_adapter.h"
 
-#include "nodes/haptic/geomagic_messages.h"
 #include "nodes/runtime/conversions.h"
 
 namespace microinjection {
@@ -31,9 +30,9 @@ GeomagicConfig GeomagicConfig::read(ConfigReader& reader) {
 
 GeomagicAdapter::GeomagicAdapter(Cycle& cycle, const GeomagicConfig& config)
     : config_(config),
-      pose_(cycle.input<geometry_msgs::PoseStamped>(config.device + "/pose", InputPhase::kThisTick, config.timeout)),
-      buttons_(cycle.input<sensor_msgs::Joy>(config.device + "/joy", InputPhase::kPreviousTick, config.timeout)),
-      force_(cycle.node().advertise<DeviceFeedback>(config.device + "/force_feedback", 10)),
+      pose_(cycle.input<geometry_msgs::PoseStamped>(config.device + "/pose", InputPhase::kDrives, config.timeout)),
+      buttons_(cycle.input<sensor_msgs::Joy>(config.device + "/joy", InputPhase::kSampled, config.timeout)),
+      force_(cycle.bus().advertise<DeviceFeedback>(config.device + "/force_feedback", 10)),
       receiver_(cycle, force_) {
   receiver_.monitor(pose_);
 }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "nodes/haptic/force_receiver.h"
+#include "nodes/haptic/geomagic_messages.h"
 #include "nodes/haptic/haptic_adapter.h"
 
 namespace microinjection {
@@ -36,7 +37,7 @@ class GeomagicAdapter : public HapticAdapter {
   GeomagicConfig config_;
   Input<geometry_msgs::PoseStamped>& pose_;
   Input<sensor_msgs::Joy>& buttons_;
-  ros::Publisher force_;
+  Publisher<DeviceFeedback> force_;
   ForceReceiver receiver_;
 };
 

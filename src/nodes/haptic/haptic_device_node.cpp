@@ -1,18 +1,15 @@
 #include "nodes/haptic/haptic_device_node.h"
 
 #include "cell_microinjection/OperatingState.h"
-#include "cell_microinjection/StringStamped.h"
 #include "nodes/runtime/conversions.h"
-#include "nodes/runtime/ending.h"
 #include "nodes/runtime/node_parameters.h"
 
 namespace microinjection {
 namespace {
 
-constexpr char kHapticFrame[] = "haptic";
 constexpr double kButtonPeriod = 0.02;   // s
 constexpr double kSilencePeriod = 0.02;  // s
-constexpr int kLastForces = 5;           // several, since messages can be dropped
+constexpr int kLastDeviceForces = 5;     // several, since messages can be dropped
 
 sensor_msgs::Joy button(const ros::Time& now, bool pressed) {
   sensor_msgs::Joy message;
@@ -40,40 +37,31 @@ HapticDeviceNode::Parameters::Parameters(ConfigReader& reader, const std::string
   if (kind.empty()) reader.finish();  // reports that it is missing
 }
 
-HapticDeviceNode::HapticDeviceNode(ros::NodeHandle node, ros::NodeHandle private_node, const std::string& default_kind)
-    : reader_(parameterReader(private_node)),
+HapticDeviceNode::HapticDeviceNode(Bus& bus, const std::string& default_kind)
+    : reader_(parameterReader(bus)),
       parameters_(reader_, default_kind),
       kind_(findHapticKind(parameters_.kind)),
-      cycle_(node, parameters_.rate),
+      cycle_(bus, parameters_.rate),
       // Rendered on arrival, except where that would make bridge and device trigger each other.
-      force_(cycle_.input<geometry_msgs::WrenchStamped>("haptic/servo_cf",
-                                                        kind_.paced ? InputPhase::kTrigger : InputPhase::kPreviousTick,
-                                                        parameters_.force_timeout)),
+      force_(cycle_.input<geometry_msgs::WrenchStamped>(
+          "haptic/servo_cf", kind_.paced ? InputPhase::kWakes : InputPhase::kSampled, parameters_.force_timeout)),
       position_(cycle_.output<geometry_msgs::PoseStamped>("haptic/measured_cp")),
       clutch_(cycle_.output<sensor_msgs::Joy>("haptic/clutch")),
       operator_present_(cycle_.output<sensor_msgs::Joy>("haptic/operator_present")),
-      commands_(cycle_.node().advertise<cell_microinjection::StringStamped>("controller/state_command", 10)),
+      commands_(bus.advertise<cell_microinjection::StringStamped>("controller/state_command", 10)),
       adapter_(kind_.make(cycle_, reader_)) {
   using cell_microinjection::OperatingState;
   controller_ = subscribeGuarded<OperatingState>(
-      cycle_.node(), "controller/operating_state", 10,
+      bus, "controller/operating_state", 10,
       [this](const OperatingState& message, const std::string&) { paused_ = message.state == "PAUSED"; },
       StampRule::kAny);
   cycle_.diagnostics().add("device", [this](auto& status) { report(status); });
-}
-
-void HapticDeviceNode::run() {
-  cycle_.run([this](const Cycle::Tick& tick) {
-    if (shutdownRequested() || adapter_->wantsToEnd()) {
-      cycle_.stop();
-    } else {
-      step(tick);
-    }
-  });
-  publishZeroForce();
+  bus.onEnd([this] { publishZeroForce(); });
+  cycle_.onStep([this](const Cycle::Tick& tick) { step(tick); });
 }
 
 void HapticDeviceNode::step(const Cycle::Tick& tick) {
+  if (adapter_->wantsToEnd()) return cycle_.bus().stop();
   const std::optional<HandReading> hand = adapter_->read(tick);
   const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
   adapter_->render(hand ? finiteForce(force_.get(tick.now)).value_or(zero) : zero, tick);
@@ -114,12 +102,12 @@ void HapticDeviceNode::publishCommands(const ros::Time& now) {
 }
 
 void HapticDeviceNode::publishZeroForce() {
-  for (int i = 0; i < kLastForces && ros::ok(); ++i) {
-    const ros::Time now = ros::Time::now();
+  for (int i = 0; i < kLastDeviceForces; ++i) {
+    const ros::Time now = cycle_.bus().now();
     adapter_->render(Eigen::Vector3d::Zero(), {now, cycle_.period()});
     position_.publishInvalid(toPose(Eigen::Vector3d::Zero(), now, kHapticFrame));
     operator_present_.publish(button(now, false));
-    ros::WallDuration(0.01).sleep();
+    cycle_.bus().pause(0.01);
   }
 }
 

@@ -2,13 +2,13 @@
 
 #include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/WrenchStamped.h>
-#include <ros/ros.h>
 #include <sensor_msgs/Joy.h>
 
 #include <memory>
 #include <optional>
 #include <string>
 
+#include "cell_microinjection/StringStamped.h"
 #include "nodes/haptic/haptic_registry.h"
 #include "nodes/runtime/cycle.h"
 
@@ -27,8 +27,7 @@ class HapticDeviceNode {
  public:
   static const char* const kHelp;
   /// @throws ConfigError
-  HapticDeviceNode(ros::NodeHandle node, ros::NodeHandle private_node, const std::string& default_kind = "");
-  void run();
+  explicit HapticDeviceNode(Bus& bus, const std::string& default_kind = "");
 
  private:
   struct Parameters {
@@ -53,8 +52,8 @@ class HapticDeviceNode {
   Output<geometry_msgs::PoseStamped>& position_;
   Output<sensor_msgs::Joy>& clutch_;
   Output<sensor_msgs::Joy>& operator_present_;
-  ros::Publisher commands_;
-  ros::Subscriber controller_;
+  Publisher<cell_microinjection::StringStamped> commands_;
+  Subscription controller_;
   bool paused_ = false;  ///< the controller is PAUSED
   std::unique_ptr<HapticAdapter> adapter_;
   std::optional<HandReading> last_;  ///< what was published last

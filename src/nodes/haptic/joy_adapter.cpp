@@ -19,7 +19,7 @@ JoyConfig JoyConfig::read(ConfigReader& reader) {
 JoyAdapter::JoyAdapter(Cycle& cycle, const JoyConfig& config)
     : config_(config),
       stick_(config.stick),
-      joy_(cycle.input<sensor_msgs::Joy>(config.topic, InputPhase::kPreviousTick, config.timeout)) {
+      joy_(cycle.input<sensor_msgs::Joy>(config.topic, InputPhase::kSampled, config.timeout)) {
   joy_.onMessage([this](const sensor_msgs::Joy& joy, const ros::Time&) { receive(joy); });
 }
 

@@ -1,7 +1,6 @@
 #include "nodes/haptic/marker_adapter.h"
 
-#include <ros/callback_queue.h>
-#include <visualization_msgs/MarkerArray.h>
+#include <ros/console.h>
 
 #include <cstdio>
 
@@ -15,13 +14,33 @@ namespace microinjection {
 namespace {
 
 constexpr char kFrame[] = "viz/world";
-constexpr double kTimeout = 0.2;                // s, of needle and its target
+constexpr double kDragTimeout = 0.2;            // s, of needle and its target
 constexpr double kLongStart = 1.5;              // s, from drag to control; includes a network's round trip
 constexpr double kLongHold = 0.5;               // s
 constexpr double kShowPeriod = 1.0 / 15;        // s
 constexpr double kLeastMotion = 5e-4;           // display units, smallest motion of the needle that moves the handle
 constexpr double kTextHeight = 0.04;            // display units
 const Eigen::Vector3d kTextOffset{0, 0, 0.22};  // display units, of the text from the handle
+
+/// Titles of the menu's entries, and the commands.
+const std::vector<std::pair<std::string, std::string>>& menu() {
+  static const std::vector<std::pair<std::string, std::string>> all{
+      {"Enable", "enable"}, {"Inject", "inject"}, {"Withdraw (home)", "home"}, {"Disable", "disable"}};
+  return all;
+}
+
+/// An entry's id is its number in menu(), from 1 on.
+visualization_msgs::InteractiveMarker markerWithMenu() {
+  visualization_msgs::InteractiveMarker marker = handMarker(kFrame);
+  for (const auto& [title, command] : menu()) {
+    visualization_msgs::MenuEntry entry;
+    entry.id = static_cast<std::uint32_t>(marker.menu_entries.size() + 1);
+    entry.title = title;
+    entry.command_type = visualization_msgs::MenuEntry::FEEDBACK;
+    marker.menu_entries.push_back(entry);
+  }
+  return marker;
+}
 
 geometry_msgs::Pose toPoseInDisplay(const Eigen::Vector3d& position, double enlargement) {
   return toPose(toDisplay(position, enlargement), ros::Time(), kFrame).pose;
@@ -43,38 +62,32 @@ MarkerAdapter::MarkerAdapter(Cycle& cycle, const MarkerConfig& config)
     : config_(config),
       hand_(config.hand),
       session_(cycle),
-      needle_(cycle.input<geometry_msgs::PoseStamped>("needle/measured_cp", InputPhase::kPreviousTick, kTimeout)),
-      target_(cycle.input<geometry_msgs::PoseStamped>("teleop/servo_cp", InputPhase::kPreviousTick, kTimeout)),
-      force_(cycle.node().advertise<visualization_msgs::MarkerArray>("hand_marker/force", 1, true)) {
+      needle_(cycle.input<geometry_msgs::PoseStamped>("needle/measured_cp", InputPhase::kSampled, kDragTimeout)),
+      target_(cycle.input<geometry_msgs::PoseStamped>("teleop/servo_cp", InputPhase::kSampled, kDragTimeout)),
+      server_(cycle.bus(), "hand_marker", markerWithMenu(), [this](const Feedback& feedback) { onFeedback(feedback); }),
+      force_(cycle.bus().advertise<visualization_msgs::MarkerArray>("hand_marker/force", 1, true)) {
   controller_ = subscribeGuarded<cell_microinjection::OperatingState>(
-      cycle.node(), "controller/operating_state", 10,
+      cycle.bus(), "controller/operating_state", 10,
       [this](const cell_microinjection::OperatingState& message, const std::string&) {
         const bool homes = message.state == "ENABLED" && message.is_busy;
         controller_state_ = homes ? "homing" : message.state == "ENABLED" ? "" : message.state;
       });
-  const std::vector<std::pair<std::string, std::string>> commands{
-      {"Enable", "enable"}, {"Inject", "inject"}, {"Withdraw (home)", "home"}, {"Disable", "disable"}};
-  for (const auto& [title, command] : commands) {
-    menu_.insert(title, [this, command = command](const Feedback&) { commands_.push_back(command); });
-  }
-  server_.insert(handMarker(kFrame), [this](const Feedback& feedback) { onFeedback(feedback); });
-  menu_.apply(server_, kHandMarker);
-  server_.applyChanges();
 }
 
 void MarkerAdapter::onFeedback(const Feedback& feedback) {
-  using Event = visualization_msgs::InteractiveMarkerFeedback;
-  const auto event = feedback->event_type;
-  if (event == Event::MOUSE_UP) return endDrag();
-  if (event != Event::MOUSE_DOWN && event != Event::POSE_UPDATE && event != Event::KEEP_ALIVE) return;
-  const Eigen::Vector3d to = fromDisplay(toVector(feedback->pose.position), config_.enlargement);
-  if (feedback->header.frame_id != kFrame || !to.allFinite() || to.norm() > kLargestNeedleDistance) {
+  const auto event = feedback.event_type;
+  if (event == Feedback::MENU_SELECT && feedback.menu_entry_id >= 1 && feedback.menu_entry_id <= menu().size())
+    commands_.push_back(menu()[feedback.menu_entry_id - 1].second);
+  if (event == Feedback::MOUSE_UP) return endDrag();
+  if (event != Feedback::MOUSE_DOWN && event != Feedback::POSE_UPDATE && event != Feedback::KEEP_ALIVE) return;
+  const Eigen::Vector3d to = fromDisplay(toVector(feedback.pose.position), config_.enlargement);
+  if (feedback.header.frame_id != kFrame || !to.allFinite() || to.norm() > kLargestNeedleDistance) {
     ROS_WARN_THROTTLE(5, "the handle cannot be dragged in frame '%s': set rviz's fixed frame to %s",
-                      feedback->header.frame_id.c_str(), kFrame);
+                      feedback.header.frame_id.c_str(), kFrame);
     return endDrag();
   }
   handle_ = to;  // also after a lost drag, to move the handle back
-  if (event == Event::MOUSE_DOWN) beginDrag();
+  if (event == Feedback::MOUSE_DOWN) beginDrag();
   if (dragged_) hand_.stay();
 }
 
@@ -113,7 +126,6 @@ void MarkerAdapter::moveHand(const Cycle::Tick& tick) {
 std::optional<HandReading> MarkerAdapter::read(const Cycle::Tick& tick) {
   const auto needle = validPose(needle_.get(tick.now));
   tip_ = needle ? std::optional<Eigen::Vector3d>(needle->translation()) : std::nullopt;
-  ros::getGlobalCallbackQueue()->callAvailable();  // the server's queue
   moveHand(tick);
   HandReading reading;
   reading.position = hand_.step(tick.dt);
@@ -135,7 +147,7 @@ void MarkerAdapter::followNeedle() {
   const Eigen::Vector3d position = *tip_ + config_.handle_offset;
   if (config_.enlargement * (position - handle_).norm() < kLeastMotion) return;
   handle_ = position;
-  server_.setPose(kHandMarker, toPoseInDisplay(handle_, config_.enlargement));
+  server_.setPose(toPoseInDisplay(handle_, config_.enlargement));
   server_.applyChanges();
 }
 

@@ -1,14 +1,14 @@
 #pragma once
 
 #include <geometry_msgs/PoseStamped.h>
-#include <interactive_markers/interactive_marker_server.h>
-#include <interactive_markers/menu_handler.h>
+#include <visualization_msgs/MarkerArray.h>
 
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "nodes/haptic/haptic_adapter.h"
+#include "nodes/haptic/marker_server.h"
 #include "nodes/haptic/session_state.h"
 #include "operation/display/display_scale.h"
 #include "operation/teleoperation/goal_hand.h"
@@ -44,7 +44,7 @@ class MarkerAdapter : public HapticAdapter {
   std::vector<std::string> takeCommands() override { return std::exchange(commands_, {}); }
 
  private:
-  using Feedback = visualization_msgs::InteractiveMarkerFeedbackConstPtr;
+  using Feedback = MarkerServer::Feedback;
   void onFeedback(const Feedback& feedback);
   void beginDrag();
   void endDrag();
@@ -57,10 +57,9 @@ class MarkerAdapter : public HapticAdapter {
   GoalHand hand_;
   SessionState session_;
   Input<geometry_msgs::PoseStamped>&needle_, &target_;
-  interactive_markers::InteractiveMarkerServer server_{"hand_marker"};
-  interactive_markers::MenuHandler menu_;
-  ros::Subscriber controller_;
-  ros::Publisher force_;
+  MarkerServer server_;
+  Subscription controller_;
+  Publisher<visualization_msgs::MarkerArray> force_;
   std::vector<std::string> commands_;
   std::optional<Eigen::Vector3d> tip_;                   ///< m, `world`
   Eigen::Vector3d handle_ = Eigen::Vector3d::Zero();     ///< m, `world`, as shown

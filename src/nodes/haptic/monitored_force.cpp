@@ -23,35 +23,35 @@ geometry_msgs::WrenchStamped zeroLike(const geometry_msgs::WrenchStamped& last, 
 template <typename Message>
 class TopicForce : public MonitoredForce {
  public:
-  TopicForce(const std::string& topic, ros::NodeHandle node, Handler handler)
-      : handler_(std::move(handler)),
-        publisher_(node.advertise<Message>(topic, 10)),
-        subscriber_(node.subscribe<Message, const Event&>(
-            topic, 100, [this](const Event& event) { process(event); }, {}, ros::TransportHints().tcpNoDelay())) {}
+  TopicForce(const std::string& topic, Bus& bus, Handler handler)
+      : bus_(bus),
+        handler_(std::move(handler)),
+        publisher_(bus.advertise<Message>(topic, 10)),
+        subscription_(
+            bus.subscribe<Message>(topic, 100, [this](const Delivery<Message>& delivery) { process(delivery); })) {}
 
   void publishZeroForce(const ros::Time& now) override { publisher_.publish(zeroLike(last_, now)); }
 
  private:
-  using Event = ros::MessageEvent<const Message>;
-
-  void process(const Event& event) {
-    if (event.getPublisherName() == ros::this_node::getName()) return;
-    last_ = *event.getConstMessage();
+  void process(const Delivery<Message>& delivery) {
+    if (delivery.raw.sender == bus_.name()) return;
+    last_ = *delivery.message;
     handler_();
   }
 
+  const Bus& bus_;
   Handler handler_;
   Message last_;
-  ros::Publisher publisher_;
-  ros::Subscriber subscriber_;
+  Publisher<Message> publisher_;
+  Subscription subscription_;
 };
 
 }  // namespace
 
 std::unique_ptr<MonitoredForce> MonitoredForce::make(const std::string& kind, const std::string& device,
-                                                     const std::string& force, ros::NodeHandle node, Handler handler) {
+                                                     const std::string& force, Bus& bus, Handler handler) {
   const auto on = [&](auto message, const std::string& topic) -> std::unique_ptr<MonitoredForce> {
-    return std::make_unique<TopicForce<decltype(message)>>(deviceTopic(device, topic), node, std::move(handler));
+    return std::make_unique<TopicForce<decltype(message)>>(deviceTopic(device, topic), bus, std::move(handler));
   };
   if (kind == "crtk") return on(geometry_msgs::WrenchStamped(), force);
   if (kind == "omni") return on(OmniFeedback(), "force_feedback");

@@ -1,10 +1,12 @@
 #pragma once
 
-#include <ros/ros.h>
+#include <ros/time.h>
 
 #include <functional>
 #include <memory>
 #include <string>
+
+#include "nodes/bus/bus.h"
 
 namespace microinjection {
 
@@ -18,7 +20,7 @@ class MonitoredForce {
   ///                sessions remap
   /// @param force   for crtk: topic of the force, below device
   static std::unique_ptr<MonitoredForce> make(const std::string& kind, const std::string& device,
-                                              const std::string& force, ros::NodeHandle node, Handler handler);
+                                              const std::string& force, Bus& bus, Handler handler);
   virtual ~MonitoredForce() = default;
   virtual void publishZeroForce(const ros::Time& now) = 0;
 };

@@ -26,11 +26,11 @@ OmniConfig OmniConfig::read(ConfigReader& reader) {
 
 OmniAdapter::OmniAdapter(Cycle& cycle, const OmniConfig& config)
     : config_(config),
-      state_(cycle.input<OmniState>(config.device + "/state", InputPhase::kThisTick, config.timeout)),
-      force_(cycle.node().advertise<OmniFeedback>(config.device + "/force_feedback", 10)),
+      state_(cycle.input<OmniState>(config.device + "/state", InputPhase::kDrives, config.timeout)),
+      force_(cycle.bus().advertise<OmniFeedback>(config.device + "/force_feedback", 10)),
       receiver_(cycle, force_) {
   receiver_.monitor(state_);
-  buttons_ = subscribeGuarded<OmniButtonEvent>(cycle.node(), config.device + "/button", 10,
+  buttons_ = subscribeGuarded<OmniButtonEvent>(cycle.bus(), config.device + "/button", 10,
                                                [this](const OmniButtonEvent& event, const std::string&) {
                                                  clutch_ = pressed(event, config_.clutch_button);
                                                  operator_present_ = pressed(event, config_.operator_button);

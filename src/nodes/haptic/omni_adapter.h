@@ -35,8 +35,8 @@ class OmniAdapter : public HapticAdapter {
  private:
   OmniConfig config_;
   Input<OmniState>& state_;
-  ros::Subscriber buttons_;
-  ros::Publisher force_;
+  Subscription buttons_;
+  Publisher<OmniFeedback> force_;
   ForceReceiver receiver_;
   bool clutch_ = false;
   bool operator_present_ = false;

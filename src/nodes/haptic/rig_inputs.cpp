@@ -12,18 +12,17 @@ void RigTimeouts::read(ConfigReader& timeouts) {
 }
 
 RigInputs::RigInputs(Cycle& cycle, const RigTimeouts& timeouts, const ForceSourceConfig& source)
-    : needle_(
-          cycle.input<geometry_msgs::PoseStamped>("needle/measured_cp", InputPhase::kPreviousTick, timeouts.needle)) {
+    : needle_(cycle.input<geometry_msgs::PoseStamped>("needle/measured_cp", InputPhase::kSampled, timeouts.needle)) {
   using geometry_msgs::WrenchStamped;
   if (source.usesPredicted()) {
-    predicted_ = &cycle.input<WrenchStamped>("cell/predicted_cf", InputPhase::kPreviousTick, timeouts.predicted);
+    predicted_ = &cycle.input<WrenchStamped>("cell/predicted_cf", InputPhase::kSampled, timeouts.predicted);
   }
   if (source.usesMeasured()) {
-    measured_ = &cycle.input<WrenchStamped>("force_sensor/measured_cf", InputPhase::kPreviousTick, timeouts.measured);
+    measured_ = &cycle.input<WrenchStamped>("force_sensor/measured_cf", InputPhase::kSampled, timeouts.measured);
   }
   if (timeouts.controller > 0) {
-    controller_ = &cycle.input<cell_microinjection::InjectionStatus>("controller/injection_state",
-                                                                     InputPhase::kPreviousTick, timeouts.controller);
+    controller_ = &cycle.input<cell_microinjection::InjectionStatus>("controller/injection_state", InputPhase::kSampled,
+                                                                     timeouts.controller);
   }
 }
 

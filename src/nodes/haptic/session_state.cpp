@@ -27,9 +27,9 @@ SessionState::SessionState(Cycle& cycle) {
   using cell_microinjection::LoopState;
   using cell_microinjection::OperatingState;
   controller_ = subscribeGuarded<OperatingState>(
-      cycle.node(), "controller/operating_state", 10,
+      cycle.bus(), "controller/operating_state", 10,
       [this](const OperatingState& message, const std::string&) { state_ = message.state; });
-  injection_ = subscribeGuarded<InjectionStatus>(cycle.node(), "controller/injection_state", 1,
+  injection_ = subscribeGuarded<InjectionStatus>(cycle.bus(), "controller/injection_state", 1,
                                                  [this](const InjectionStatus& message, const std::string&) {
                                                    injection_text_ = describe(message);
                                                    notice_ = message.notice;
@@ -38,7 +38,7 @@ SessionState::SessionState(Cycle& cycle) {
       {"link/rig/loop_state", &rig_}, {"haptic/loop_state", &bridge_}, {"controller/loop_state", &controller_reason_}};
   for (const auto& [topic, reason] : loops) {
     loop_states_.push_back(subscribeGuarded<LoopState>(
-        cycle.node(), topic, 1,
+        cycle.bus(), topic, 1,
         [reason = reason](const LoopState& message, const std::string&) { *reason = message.hold_reason; }));
   }
 }

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <ros/ros.h>
-
 #include <string>
 #include <vector>
 
@@ -27,8 +25,8 @@ class SessionState {
   const std::string& notice() const { return notice_; }
 
  private:
-  ros::Subscriber controller_, injection_;
-  std::vector<ros::Subscriber> loop_states_;
+  Subscription controller_, injection_;
+  std::vector<Subscription> loop_states_;
   std::string state_ = "no controller";
   std::string injection_text_;
   std::string notice_;

@@ -3,7 +3,7 @@
 #include <cv_bridge/cv_bridge.h>
 #include <sensor_msgs/image_encodings.h>
 
-#include <cstdint>
+#include "nodes/runtime/message_guard.h"
 
 namespace microinjection {
 namespace {
@@ -11,6 +11,14 @@ namespace {
 constexpr std::uint32_t kLargestSide = 16384;  // px
 
 }  // namespace
+
+Subscription subscribeImages(Bus& bus, const std::string& topic, std::uint32_t queue,
+                             const std::function<void(const sensor_msgs::Image&)>& handler) {
+  return bus.subscribeImages(topic, queue, [&bus, topic, handler](const RawDelivery& delivery) {
+    runGuarded(bus.refusals(), topic,
+               [&] { handler(*static_cast<const sensor_msgs::Image*>(delivery.message.get())); });
+  });
+}
 
 /// cv_bridge compares the length in 32 bits, and would read beyond a short one.
 std::string imageDefect(const sensor_msgs::Image& message) {

@@ -1,17 +1,18 @@
 #include "nodes/imaging/image_output.h"
 
 #include <cv_bridge/cv_bridge.h>
-#include <sensor_msgs/CameraInfo.h>
+#include <image_transport/camera_common.h>
 #include <sensor_msgs/image_encodings.h>
 
 #include <stdexcept>
 
+#include "nodes/imaging/image_topic.h"
+
 namespace microinjection {
 namespace {
 
-constexpr char kImageTopic[] = "microscope/image_raw";
 constexpr char kImageFrame[] = "microscope_optical_frame";
-constexpr int kQueue = 2;
+constexpr int kImageOutputQueue = 2;
 
 }  // namespace
 
@@ -34,8 +35,10 @@ std::string imageEncoding(const cv::Mat& image) {
   }
 }
 
-ImageOutput::ImageOutput(ros::NodeHandle& node)
-    : transport_(node), publisher_(transport_.advertiseCamera(kImageTopic, kQueue)) {}
+ImageOutput::ImageOutput(Bus& bus)
+    : images_(bus.advertiseImages(kImageTopic, kImageOutputQueue)),
+      infos_(bus.advertise<sensor_msgs::CameraInfo>(image_transport::getCameraInfoTopic(bus.resolve(kImageTopic)),
+                                                    kImageOutputQueue)) {}
 
 void ImageOutput::publish(const cv::Mat& image, const ros::Time& stamp) {
   const std::string encoding = imageEncoding(image);
@@ -43,11 +46,12 @@ void ImageOutput::publish(const cv::Mat& image, const ros::Time& stamp) {
   std_msgs::Header header;
   header.stamp = stamp;
   header.frame_id = kImageFrame;
-  auto info = boost::make_shared<sensor_msgs::CameraInfo>();
+  const auto info = boost::make_shared<sensor_msgs::CameraInfo>();
   info->header = header;
   info->width = static_cast<std::uint32_t>(image.cols);
   info->height = static_cast<std::uint32_t>(image.rows);
-  publisher_.publish(cv_bridge::CvImage(header, encoding, image).toImageMsg(), info);
+  images_.publish(cv_bridge::CvImage(header, encoding, image).toImageMsg());
+  infos_.publish(info);
 }
 
 }  // namespace microinjection

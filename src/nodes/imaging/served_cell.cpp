@@ -9,22 +9,27 @@ namespace microinjection {
 namespace {
 
 constexpr char kService[] = "/cell_simulator/set_cell_parameters";
-constexpr double kPeriod = 0.01;  // s, of looking whether the answer has come
+constexpr double kAnswerCheckPeriod = 0.01;  // s, of looking whether the answer has come
 
 }  // namespace
 
 struct ServedCell::Call {
   cell_microinjection::SetCellParameters parameters;
-  ros::SteadyTime begin = ros::SteadyTime::now();
+  ros::SteadyTime begin;
   bool answered = false;
   std::atomic<bool> done{false};  ///< what is above is complete
+
+  void make(Bus& bus) {
+    answered = bus.call(kService, parameters);
+    done = true;
+  }
 };
 
-ServedCell::ServedCell(ros::NodeHandle node, double timeout) : node_(node), timeout_(timeout) {}
+ServedCell::ServedCell(Bus& bus, double timeout) : bus_(bus), timeout_(timeout) {}
 
 ServedCell::~ServedCell() {
-  // Ends a call that waits. The node is ending, so that nothing else needs ROS any more.
-  if (isPending()) ros::shutdown();
+  // Ends a call that waits. The node is ending, so that nothing else needs the bus any more.
+  if (isPending()) bus_.leave();
   if (thread_.joinable()) thread_.join();
 }
 
@@ -35,21 +40,11 @@ bool ServedCell::isPending() const {
 
 std::string ServedCell::change(const std::vector<std::string>& names, const std::vector<double>& values) {
   if (isPending()) throw ConfigError("cell_simulator has not answered an earlier request yet");
-  if (thread_.joinable()) thread_.join();
   const auto call = std::make_shared<Call>();
   call->parameters.request.name = names;
   call->parameters.request.value = values;
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    call_ = call;
-  }
-  thread_ = std::thread([node = node_, call]() mutable {
-    auto client = node.serviceClient<cell_microinjection::SetCellParameters>(kService);
-    call->answered = client.call(call->parameters);
-    call->done = true;
-  });
-  while (!call->done && ros::ok() && secondsBetween(call->begin, ros::SteadyTime::now()) < timeout_)
-    ros::WallDuration(kPeriod).sleep();
+  call->begin = bus_.steady();
+  bus_.isVirtual() ? call->make(bus_) : callInThread(call);
   if (!call->done)
     throw ConfigError("cell_simulator does not answer within " + std::to_string(timeout_) +
                       " s; it may still take the change over");
@@ -58,10 +53,21 @@ std::string ServedCell::change(const std::vector<std::string>& names, const std:
   return call->parameters.response.message;
 }
 
+void ServedCell::callInThread(const std::shared_ptr<Call>& call) {
+  if (thread_.joinable()) thread_.join();
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    call_ = call;
+  }
+  thread_ = std::thread([this, call] { call->make(bus_); });
+  while (!call->done && bus_.isRunning() && secondsBetween(call->begin, bus_.steady()) < timeout_)
+    bus_.pause(kAnswerCheckPeriod);
+}
+
 void ServedCell::report(diagnostic_updater::DiagnosticStatusWrapper& status) const {
   const std::lock_guard<std::mutex> lock(mutex_);
   const bool pending = call_ && !call_->done;
-  const double age = pending ? secondsBetween(call_->begin, ros::SteadyTime::now()) : 0;
+  const double age = pending ? secondsBetween(call_->begin, bus_.steady()) : 0;
   if (age > timeout_) {
     status.summary(diagnostic_msgs::DiagnosticStatus::ERROR, "cell_simulator does not answer");
   } else {

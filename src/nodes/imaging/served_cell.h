@@ -2,7 +2,6 @@
 
 #include <cell_microinjection/SetCellParameters.h>
 #include <diagnostic_updater/diagnostic_updater.h>
-#include <ros/ros.h>
 
 #include <memory>
 #include <mutex>
@@ -10,14 +9,17 @@
 #include <thread>
 #include <vector>
 
+#include "nodes/bus/bus.h"
+
 namespace microinjection {
 
 /// Has cell_simulator serve another cell, with a time limit. A call of a service has none in roscpp:
-/// a server that hangs keeps its connection open. So the call has its own thread.
+/// a server that hangs keeps its connection open. So the call has its own thread, but in virtual time,
+/// where a server answers at once or not at all.
 class ServedCell {
  public:
-  /// `timeout`: s of wall time, in which an answer must come.
-  ServedCell(ros::NodeHandle node, double timeout);
+  /// `timeout`: s of steady time, in which an answer must come.
+  ServedCell(Bus& bus, double timeout);
   ~ServedCell();
   ServedCell(const ServedCell&) = delete;
   ServedCell& operator=(const ServedCell&) = delete;
@@ -32,8 +34,9 @@ class ServedCell {
  private:
   struct Call;
   bool isPending() const;
+  void callInThread(const std::shared_ptr<Call>& call);
 
-  ros::NodeHandle node_;
+  Bus& bus_;
   double timeout_;
   mutable std::mutex mutex_;    ///< of call_
   std::shared_ptr<Call> call_;  ///< the last one

@@ -12,8 +12,9 @@ namespace {
 constexpr double kResolution = 0.2e-6;  // m, within which a needle rests
 // s of this node's running time, after which what simulator and controller said is not known any more.
 constexpr double kSilent = 1;
-constexpr double kForgotten = 5;  // s, the same, by the wall: after this even a node that stood still knows nothing
-constexpr double kPeriod = 0.05;  // s, in which that time is counted
+constexpr double kStateForgotten =
+    5;  // s, the same, of steady time: after this even a node that stood still knows nothing
+constexpr double kAwakePeriod = 0.05;  // s, in which that time is counted
 
 /// Empty, or why the tip is not above the cell: it must be farther out along the shaft than the cell reaches.
 std::string besideCell(const cell_microinjection::CellInImage& cell, const cell_microinjection::PipetteInImage& tip) {
@@ -24,42 +25,41 @@ std::string besideCell(const cell_microinjection::CellInImage& cell, const cell_
 
 }  // namespace
 
-TipWatch::TipWatch(const ros::NodeHandle& node, double timeout) : timeout_(timeout) {
+TipWatch::TipWatch(Bus& bus, double timeout) : bus_(bus), timeout_(timeout) {
   constexpr int kQueue = 1;
   using cell_microinjection::OperatingState;
   using cell_microinjection::VisionState;
-  subscribers_ = {
+  subscriptions_ = {
       subscribeGuarded<geometry_msgs::PoseStamped>(
-          node, "/needle/measured_cp", kQueue,
+          bus, "/needle/measured_cp", kQueue,
           [this](const geometry_msgs::PoseStamped& message, const std::string&) { onNeedle(message); }),
-      subscribeGuarded<VisionState>(node, "vision/state", kQueue,
+      subscribeGuarded<VisionState>(bus, "vision/state", kQueue,
                                     [this](const VisionState& message, const std::string&) { onVision(message); }),
       subscribeGuarded<OperatingState>(
-          node, "/needle/operating_state", kQueue,
+          bus, "/needle/operating_state", kQueue,
           [this](const OperatingState& message, const std::string&) { needle_state_ = message; }),
       subscribeGuarded<OperatingState>(
-          node, "/controller/operating_state", kQueue,
+          bus, "/controller/operating_state", kQueue,
           [this](const OperatingState& message, const std::string&) { controller_state_ = message; }),
       subscribeGuarded<cell_microinjection::CellState>(
-          node, "/cell/state", kQueue,
+          bus, "/cell/state", kQueue,
           [this](const cell_microinjection::CellState& message, const std::string&) {
             touches_ = message.in_contact || message.inside;
-            touch_heard_ = {awake_.seconds(), ros::SteadyTime::now()};
+            touch_heard_ = {awake_.seconds(), bus_.steady()};
           }),
       subscribeGuarded<cell_microinjection::InjectionStatus>(
-          node, "/controller/injection_state", kQueue,
+          bus, "/controller/injection_state", kQueue,
           [this](const cell_microinjection::InjectionStatus& message, const std::string&) {
             injects_ = message.state != "idle" && message.state != "approach" && message.state != "fault";
-            injection_heard_ = {awake_.seconds(), ros::SteadyTime::now()};
+            injection_heard_ = {awake_.seconds(), bus_.steady()};
           })};
-  timer_ = node.createSteadyTimer(ros::WallDuration(kPeriod),
-                                  [this](const ros::SteadyTimerEvent&) { awake_.step(ros::SteadyTime::now()); });
+  timer_ = bus.timer(kAwakePeriod, [this] { awake_.step(bus_.steady()); });
 }
 
 std::string TipWatch::cellInTheWay() const {
   const auto silent = [&](const Heard& heard) {
-    return heard.awake >= 0 && (awake_.seconds() - heard.awake > kSilent ||
-                                secondsBetween(heard.time, ros::SteadyTime::now()) > kForgotten);
+    return heard.awake >= 0 &&
+           (awake_.seconds() - heard.awake > kSilent || secondsBetween(heard.time, bus_.steady()) > kStateForgotten);
   };
   if (silent(injection_heard_)) return "/controller/injection_state is silent: the needle may be in the cell";
   if (silent(touch_heard_)) return "/cell/state is silent: the needle may touch the cell";
@@ -77,35 +77,35 @@ std::string TipWatch::cellOnTheWay(const Eigen::Vector2d& pixel) const {
 }
 
 std::optional<Eigen::Vector3d> TipWatch::position() const {
-  if (position_arrival_.isOld(timeout_)) return std::nullopt;
+  if (isOld(position_receipt_)) return std::nullopt;
   return position_;
 }
 
 std::optional<SeenTip> TipWatch::tip() const {
-  if (tip_arrival_.isOld(timeout_)) return std::nullopt;
+  if (isOld(tip_receipt_)) return std::nullopt;
   return tip_;
 }
 
 void TipWatch::onNeedle(const geometry_msgs::PoseStamped& message) {
   const std::optional<Eigen::Isometry3d> pose = validPose(&message);
   const bool followed = position().has_value();
-  const Arrival arrival(message.header.stamp);
+  const Receipt receipt = receive(message.header.stamp);
   position_.reset();
-  if (!pose || arrival.isOld(timeout_)) return;
+  if (!pose || isOld(receipt)) return;
   position_ = pose->translation();
   orientation_ = Eigen::Quaterniond(pose->linear());
-  position_arrival_ = arrival;
+  position_receipt_ = receipt;
   if (followed && (*position_ - resting_place_).norm() <= kResolution) return;
   resting_place_ = *position_;
-  rested_ = ros::Time::now().toSec();
+  rested_ = bus_.now().toSec();
   if (on_motion) on_motion(*position_, followed);
 }
 
 void TipWatch::onVision(const cell_microinjection::VisionState& message) {
   tip_.reset();
-  tip_arrival_ = Arrival(message.header.stamp);
+  tip_receipt_ = receive(message.header.stamp);
   const auto& tip = message.injection_pipette;
-  const bool old = tip_arrival_.isOld(timeout_);
+  const bool old = isOld(tip_receipt_);
   tip_reason_ = old ? "the image is old, or stamped ahead" : tip.reason;
   if (old) return;
   image_centre_ = Eigen::Vector2d(message.width - 1.0, message.height - 1.0) / 2;

@@ -5,7 +5,6 @@
 #include <cell_microinjection/OperatingState.h>
 #include <cell_microinjection/VisionState.h>
 #include <geometry_msgs/PoseStamped.h>
-#include <ros/ros.h>
 
 #include <Eigen/Geometry>
 #include <functional>
@@ -13,7 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "nodes/imaging/arrival.h"
+#include "nodes/bus/bus.h"
+#include "nodes/imaging/receipt.h"
 #include "nodes/runtime/awake_time.h"
 #include "vision/calibration/calibration_run.h"
 
@@ -24,7 +24,7 @@ namespace microinjection {
 class TipWatch {
  public:
   /// `timeout` (s): older values count as unknown.
-  TipWatch(const ros::NodeHandle& node, double timeout);
+  TipWatch(Bus& bus, double timeout);
 
   std::optional<Eigen::Vector3d> position() const;  ///< m, `world`; none: silent or invalid
   /// A pose of the needle at another position (m), with the measured orientation.
@@ -55,11 +55,14 @@ class TipWatch {
  private:
   void onNeedle(const geometry_msgs::PoseStamped& message);
   void onVision(const cell_microinjection::VisionState& message);
+  Receipt receive(const ros::Time& stamp) const { return {stamp, bus_.steady()}; }
+  bool isOld(const Receipt& receipt) const { return receipt.isOld(timeout_, bus_.now(), bus_.steady()); }
 
+  Bus& bus_;
   double timeout_;
   std::optional<Eigen::Vector3d> position_;
   Eigen::Quaterniond orientation_ = Eigen::Quaterniond::Identity();
-  Arrival position_arrival_, tip_arrival_;
+  Receipt position_receipt_, tip_receipt_;
   Eigen::Vector3d resting_place_ = Eigen::Vector3d::Zero();  ///< m
   double rested_ = 0;
   std::optional<SeenTip> tip_;
@@ -72,7 +75,7 @@ class TipWatch {
   };
   std::optional<SeenCell> cell_;            ///< in the newest image that shows one
   bool touches_ = false, injects_ = false;  ///< by cell_simulator and by the controller
-  /// When a message arrived: s of awake_, below 0: never; and by the wall.
+  /// When a message arrived: s of awake_, below 0: never; and of steady time.
   struct Heard {
     double awake = -1;
     ros::SteadyTime time;
@@ -80,8 +83,8 @@ class TipWatch {
   Heard touch_heard_, injection_heard_;
   AwakeTime awake_;
   cell_microinjection::OperatingState needle_state_, controller_state_;
-  std::vector<ros::Subscriber> subscribers_;
-  ros::SteadyTimer timer_;
+  std::vector<Subscription> subscriptions_;
+  BusHandle timer_;
 };
 
 }  // namespace microinjection

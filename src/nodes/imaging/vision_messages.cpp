@@ -8,8 +8,6 @@
 namespace microinjection {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
 template <typename Message>
 void setFinding(const Finding& finding, Message& message) {
   message.verdict = finding.verdict == Verdict::kFound       ? Message::FOUND
@@ -31,14 +29,14 @@ cell_microinjection::CellInImage toMessage(const CellDetection& cell) {
   message.y = cell.centre.y;
   setCovariance(cell.centre_covariance, message);
   message.diameter = cell.outer().ellipse.meanDiameter();
-  message.diameter_deviation = cell.size.isFound() ? std::sqrt(cell.outer().covariance(2, 2)) : kNone;
+  message.diameter_deviation = cell.size.isFound() ? std::sqrt(cell.outer().covariance(2, 2)) : kNotMeasured;
   if (cell.finding.isFound()) message.reason = cell.size.reason;
   const std::optional<ZonaThickness> zona = zonaThickness(cell);
-  message.zona_thickness = zona ? zona->thickness : kNone;
-  message.zona_thickness_deviation = zona ? zona->deviation : kNone;
+  message.zona_thickness = zona ? zona->thickness : kNotMeasured;
+  message.zona_thickness_deviation = zona ? zona->deviation : kNotMeasured;
   const PolarBody& body = cell.polar_body;
-  message.polar_body_angle = body.finding.isFound() ? body.angle : kNone;
-  message.polar_body_angle_deviation = body.finding.isFound() ? body.deviation : kNone;
+  message.polar_body_angle = body.finding.isFound() ? body.angle : kNotMeasured;
+  message.polar_body_angle_deviation = body.finding.isFound() ? body.deviation : kNotMeasured;
   message.others = static_cast<std::uint32_t>(cell.others.size());
   return message;
 }
@@ -56,13 +54,13 @@ cell_microinjection::PipetteInImage toMessage(const PipetteDetection& pipette) {
   return message;
 }
 
-cell_microinjection::IndentationInImage toMessage(const Indentation& indentation) {
+cell_microinjection::IndentationInImage toMessage(const Dimple& indentation) {
   cell_microinjection::IndentationInImage message;
   setFinding(indentation.finding, message);
   const BorderDisplacement& beside = indentation.displacement;
-  message.gap = beside.finding.hasValues() ? beside.gap : kNone;
-  message.displacement = beside.finding.hasValues() ? beside.depth : kNone;
-  message.displacement_deviation = beside.finding.hasValues() ? beside.deviation : kNone;
+  message.gap = beside.finding.hasValues() ? beside.gap : kNotMeasured;
+  message.displacement = beside.finding.hasValues() ? beside.depth : kNotMeasured;
+  message.displacement_deviation = beside.finding.hasValues() ? beside.deviation : kNotMeasured;
   if (!indentation.finding.hasValues()) return message;
   message.x = indentation.deepest.x;
   message.y = indentation.deepest.y;

@@ -42,12 +42,11 @@ cell_microinjection::InjectResult toMessage(const InjectionResult& result) {
 
 }  // namespace
 
-InjectionAction::InjectionAction(const ros::NodeHandle& node, InjectionController& controller,
-                                 const InjectionGoal& configured)
+InjectionAction::InjectionAction(Bus& bus, InjectionController& controller, const InjectionGoal& configured)
     : controller_(controller),
       configured_(configured),
       server_(
-          node, [this](GoalHandle goal, const std::string& refusal) { receive(goal, refusal); },
+          bus, "controller/inject", [this](GoalHandle goal, const std::string& refusal) { receive(goal, refusal); },
           [this](GoalHandle goal) { cancel(goal); }) {}
 
 void InjectionAction::receive(GoalHandle goal, const std::string& refusal) {
@@ -67,7 +66,7 @@ void InjectionAction::cancel(GoalHandle goal) {
 /// Cancels the waiting goal, if there is one.
 void InjectionAction::recall(const std::string& reason) {
   if (!next_.isValid()) return;
-  cell_microinjection::InjectResult result = toMessage({});
+  cell_microinjection::InjectResult result = toMessage(InjectionResult());
   result.outcome = toText(InjectionOutcome::kPreempted);
   result.reason = reason;
   next_.setCanceled(result, reason);
@@ -76,7 +75,7 @@ void InjectionAction::recall(const std::string& reason) {
 
 void InjectionAction::refuse(GoalHandle goal, const std::string& refusal) {
   ROS_WARN_STREAM("injection refused: " << refusal);
-  cell_microinjection::InjectResult result = toMessage({});
+  cell_microinjection::InjectResult result = toMessage(InjectionResult());
   result.outcome = "refused";
   result.reason = refusal;
   goal.setAccepted();

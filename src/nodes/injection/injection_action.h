@@ -1,17 +1,15 @@
 #pragma once
 
-#include <ros/ros.h>
-
 #include <string>
 
 #include "cell_microinjection/InjectAction.h"
-#include "nodes/injection/inject_server.h"
+#include "nodes/bus/action_server.h"
 #include "operation/control/injection_controller.h"
 
 namespace microinjection {
 
 /// The action /controller/inject (Inject.action) of an InjectionController. It has no thread: its
-/// messages are received with the node handle's, and step() executes them.
+/// messages are received with the bus's, and step() executes them.
 /// - A goal that is cancelled or replaced by a newer one ends with a withdrawal; the newer one
 ///   begins when the needle is out. Of two waiting goals the newer one stays.
 /// - An implausible goal (InjectionGoal::problems(), a stamp ahead of the time) is refused on
@@ -19,13 +17,13 @@ namespace microinjection {
 class InjectionAction {
  public:
   /// `controller` outlives this; `configured`: the goal of its configuration.
-  InjectionAction(const ros::NodeHandle& node, InjectionController& controller, const InjectionGoal& configured);
+  InjectionAction(Bus& bus, InjectionController& controller, const InjectionGoal& configured);
 
   /// Call after each step of the controller.
   void step(const ros::Time& now);
 
  private:
-  using GoalHandle = InjectServer::GoalHandle;
+  using GoalHandle = ActionServer<cell_microinjection::InjectAction>::GoalHandle;
 
   void receive(GoalHandle goal, const std::string& refusal);
   void cancel(GoalHandle goal);
@@ -41,7 +39,7 @@ class InjectionAction {
   bool end_requested_ = false;  ///< the current goal shall end
   bool withdrawn_ = false;      ///< the controller has the command
   ros::Time fed_back_;
-  InjectServer server_;
+  ActionServer<cell_microinjection::InjectAction> server_;
 };
 
 }  // namespace microinjection

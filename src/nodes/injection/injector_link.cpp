@@ -10,7 +10,7 @@ constexpr double kRepetition = 0.05;  // s
 }  // namespace
 
 InjectorLink::InjectorLink(Cycle& cycle, double timeout)
-    : state_(cycle.input<cell_microinjection::InjectorState>("injector/state", InputPhase::kPreviousTick, timeout)),
+    : state_(cycle.input<cell_microinjection::InjectorState>("injector/state", InputPhase::kSampled, timeout)),
       pulse_(cycle.output<cell_microinjection::InjectionPulse>("injector/pulse")),
       stop_(cycle.output<cell_microinjection::StringStamped>("injector/stop")) {}
 

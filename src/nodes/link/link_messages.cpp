@@ -5,7 +5,6 @@
 
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/finite_message.h"
-#include "nodes/runtime/message_refusals.h"
 #include "nodes/runtime/stamps.h"
 
 namespace microinjection {
@@ -29,14 +28,15 @@ bool isWithin(const Vector& vector, double largest) {
 
 }  // namespace
 
-bool isPlausible(const std::string& topic, const cell_microinjection::LinkPacket& message) {
-  // Epochs count from the wall time (ns) at the start of the hand's side. A later one would lock
-  // all others out.
-  const std::uint64_t latest = ros::WallTime::now().toNSec() + static_cast<std::uint64_t>(1e9 * kLargestLead);
+std::uint64_t epochTime(const Bus& bus) { return bus.isVirtual() ? bus.now().toNSec() : ros::WallTime::now().toNSec(); }
+
+bool isPlausible(Bus& bus, const std::string& topic, const cell_microinjection::LinkPacket& message) {
+  // Epochs count from the time at the start of the hand's side. A later one would lock all others out.
+  const std::uint64_t latest = epochTime(bus) + static_cast<std::uint64_t>(1e9 * kLargestLead);
   const bool good = message.epoch <= latest && isFinite(message) && isWithin(message.wave, kLargestOfLink) &&
                     std::abs(message.energy) <= kLargestOfLink && std::abs(message.position_scale) <= kLargestOfLink &&
                     std::abs(message.force_gain) <= kLargestOfLink && isWithin(message.needle, kLargestNeedleDistance);
-  if (!good) MessageRefusals::ofProcess().add(topic, "its numbers are beyond the limits of a hand and a rig");
+  if (!good) bus.refusals().add(topic, "its numbers are beyond the limits of a hand and a rig");
   return good;
 }
 

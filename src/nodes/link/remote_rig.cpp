@@ -6,16 +6,15 @@
 
 namespace microinjection {
 
-// A restarted bridge must continue the count of epochs: wall time, also in lock step.
 RemoteRig::RemoteRig(Cycle& cycle, const LinkConfig& link, const HapticBridgeConfig& bridge)
-    : model_(link, bridge.motion.position_scale, bridge.force_gain, ros::WallTime::now().toNSec()),
+    : model_(link, bridge.motion.position_scale, bridge.force_gain, epochTime(cycle.bus())),
       force_gain_(bridge.force_gain),
       sent_(cycle.output<cell_microinjection::LinkPacket>("link/hand/sent")) {
   cycle
-      .input<cell_microinjection::LinkPacket>("link/hand/received", InputPhase::kPreviousTick,
+      .input<cell_microinjection::LinkPacket>("link/hand/received", InputPhase::kSampled,
                                               std::numeric_limits<double>::infinity())
-      .onMessage([this](const auto& message, const ros::Time&) {
-        if (isPlausible("link/hand/received", message)) model_.receive(toPacket(message));
+      .onMessage([this, &bus = cycle.bus()](const auto& message, const ros::Time&) {
+        if (isPlausible(bus, "link/hand/received", message)) model_.receive(toPacket(message));
       });
 }
 

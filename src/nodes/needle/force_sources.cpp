@@ -21,8 +21,8 @@ SimulatedForceSource::SimulatedForceSource(Cycle& cycle, double timeout, const F
       range_(config.range),
       frame_(std::move(frame)),
       sensor_from_tip_(tip_from_sensor.linear().transpose()),
-      force_(cycle.input<geometry_msgs::WrenchStamped>("cell/predicted_cf", InputPhase::kThisTick, timeout)),
-      needle_(cycle.input<geometry_msgs::PoseStamped>("needle/measured_cp", InputPhase::kPreviousTick, timeout)) {}
+      force_(cycle.input<geometry_msgs::WrenchStamped>("cell/predicted_cf", InputPhase::kDrives, timeout)),
+      needle_(cycle.input<geometry_msgs::PoseStamped>("needle/measured_cp", InputPhase::kSampled, timeout)) {}
 
 std::optional<ForceSource::Signal> SimulatedForceSource::read(const Cycle::Tick& tick) {
   const auto pose = validPose(needle_.get(tick.now));
@@ -58,9 +58,9 @@ void SerialForceSource::report(diagnostic_updater::DiagnosticStatusWrapper& stat
 }
 
 TopicForceSource::TopicForceSource(Cycle& cycle, double timeout, const Eigen::Vector2d& overload)
-    : frames_(cycle.node()),
+    : frames_(cycle.bus()),
       overload_(overload),
-      wrench_(cycle.input<geometry_msgs::WrenchStamped>("force_sensor/device_cf", InputPhase::kThisTick, timeout)) {}
+      wrench_(cycle.input<geometry_msgs::WrenchStamped>("force_sensor/device_cf", InputPhase::kDrives, timeout)) {}
 
 std::optional<ForceSource::Signal> TopicForceSource::read(const Cycle::Tick& tick) {
   const auto message = wrench_.takeUpdates();

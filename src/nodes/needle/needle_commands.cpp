@@ -10,10 +10,10 @@
 namespace microinjection {
 namespace {
 
-constexpr char kStateTopic[] = "needle/state_command";
+constexpr char kNeedleCommandTopic[] = "needle/state_command";
 
 /// Commands that stop something are executed with any stamp and in any state.
-bool stops(const std::string& command) {
+bool stopsNeedle(const std::string& command) {
   return command == "stop" || command == "disable" || command == "pause" || command == "unhome";
 }
 
@@ -25,9 +25,10 @@ NeedleCommands::NeedleCommands(Cycle& cycle, const MicromanipulatorConfig& confi
       config_(config),
       rig_(rig),
       model_(model),
-      servo_(cycle.input<geometry_msgs::PoseStamped>("needle/servo_cp", InputPhase::kThisTick, config.command_timeout)),
+      servo_(cycle.input<geometry_msgs::PoseStamped>("needle/servo_cp", InputPhase::kDrives, config.command_timeout)),
       trace_(cycle.output<sensor_msgs::TimeReference>("needle/setpoint_trace")),
-      repeated_(cycle.node().resolveName(kStateTopic)) {
+      repeated_(cycle.bus(), kNeedleCommandTopic),
+      log_(cycle.bus()) {
   if (!rig.inject && !allow_network) network_ = std::make_unique<NetworkMonitor>();
   subscribe();
 }
@@ -40,22 +41,22 @@ void NeedleCommands::subscribe() {
   });
   using geometry_msgs::PoseStamped;
   using geometry_msgs::TwistStamped;
-  ros::NodeHandle& node = cycle_.node();
-  subscribers_ = {
-      subscribeCommand<TwistStamped>(node, "needle/servo_cv",
+  Bus& bus = cycle_.bus();
+  subscriptions_ = {
+      subscribeCommand<TwistStamped>(bus, "needle/servo_cv",
                                      [this](const auto& message, const auto& source) { onVelocity(message, source); }),
-      subscribeCommand<PoseStamped>(node, "needle/move_cp",
+      subscribeCommand<PoseStamped>(bus, "needle/move_cp",
                                     [this](const auto& message, const auto& source) { onMove(message, source); }),
       subscribeCommand<cell_microinjection::StringStamped>(
-          node, kStateTopic, [this](const auto& message, const auto& source) { onState(message, source); },
+          bus, kNeedleCommandTopic, [this](const auto& message, const auto& source) { onState(message, source); },
           StampRule::kAny)};
   if (rig_.inject) subscribeFaults();
 }
 
 void NeedleCommands::subscribeFaults() {
   using cell_microinjection::StringStamped;
-  subscribers_.push_back(subscribeGuarded<StringStamped>(
-      cycle_.node(), "needle/emulated_fault", 10,
+  subscriptions_.push_back(subscribeGuarded<StringStamped>(
+      cycle_.bus(), "needle/emulated_fault", 10,
       [this](const StringStamped& message, const std::string&) { onFault(message.string); }));
 }
 
@@ -72,7 +73,7 @@ void NeedleCommands::onFault(const std::string& fault) {
 /// it is the largest possible age.
 double NeedleCommands::age(const ros::Time& stamp) const {
   const ros::Time since = stamp.isZero() ? cycle_.earliestArrival() : stamp;
-  return since.isZero() ? 0 : secondsBetween(since, std::max(now_, ros::Time::now()));
+  return since.isZero() ? 0 : secondsBetween(since, std::max(now_, cycle_.bus().now()));
 }
 
 /// Executes a valid motion command if motion is allowed, and logs the result.
@@ -88,7 +89,7 @@ void NeedleCommands::command(const std::string& name, const std::string& sender,
 void NeedleCommands::onVelocity(const geometry_msgs::TwistStamped& message, const CommandSource& source) {
   if (source.unstamped && source.latched) return log_.addResult("servo_cv", kUnstampedLatched);
   geometry_msgs::TwistStamped stamped = message;
-  if (source.unstamped) stamped.header.stamp = ros::Time::now();
+  if (source.unstamped) stamped.header.stamp = cycle_.bus().now();
   const auto velocity = validVelocity(&stamped);
   if (!velocity) return log_.addResult("servo_cv", "not a valid velocity in world");
   const double old = std::max(0.0, age(message.header.stamp));
@@ -100,14 +101,14 @@ void NeedleCommands::onVelocity(const geometry_msgs::TwistStamped& message, cons
 void NeedleCommands::onMove(const geometry_msgs::PoseStamped& message, const CommandSource& source) {
   if (source.unstamped && source.latched) return log_.addResult("move_cp", kUnstampedLatched);
   geometry_msgs::PoseStamped stamped = message;
-  if (source.unstamped) stamped.header.stamp = ros::Time::now();
+  if (source.unstamped) stamped.header.stamp = cycle_.bus().now();
   const auto pose = validPose(&stamped);
   if (!pose) return log_.addResult("move_cp", "not a valid pose in world");
   if (age(message.header.stamp) > kOldestCommand) return log_.addResult("move_cp", "it is stale");
   authorize(source.sender);
   command("move_cp", source.sender, [&] {
     std::string refusal = model_.movePosition(*pose);
-    if (refusal.empty()) busy_.accept(static_cast<std::int64_t>(ros::Time::now().toNSec()));
+    if (refusal.empty()) busy_.accept(static_cast<std::int64_t>(cycle_.bus().now().toNSec()));
     return refusal;
   });
   if (log_.refusal().empty()) mover_ = source.sender;
@@ -128,7 +129,7 @@ void NeedleCommands::onState(const cell_microinjection::StringStamped& message, 
   const bool moved = model_.busy();
   const std::string refusal = executeState(message, source);
   log_.addResult("state_command " + message.string, refusal);
-  if (moved && stops(message.string))
+  if (moved && stopsNeedle(message.string))
     log_.addOverride("move_cp of " + mover_, "by " + message.string + " of " + source.sender);
 }
 
@@ -136,14 +137,14 @@ std::string NeedleCommands::executeState(const cell_microinjection::StringStampe
                                          const CommandSource& source) {
   const bool old = repeated_.mayBe(source);
   const std::string& name = message.string;
-  if (stops(name)) model_.stop();
+  if (stopsNeedle(name)) model_.stop();
   if (name == "stop") return "";
   const auto command = stateCommandOf(name);
   if (!command) {
     return "\"" + name + "\" is no command here; allowed: enable, disable, pause, resume, home, unhome, stop";
   }
-  if (!stops(name)) {
-    if (!isTimely(kStateTopic, message, now_)) return "its stamp is ahead";
+  if (!stopsNeedle(name)) {
+    if (!isTimely(cycle_.bus().refusals(), kNeedleCommandTopic, message, now_)) return "its stamp is ahead";
     if (!source.unstamped && age(message.header.stamp) > kOldestCommand) return "it is stale";
     if (old) return std::string(kUnstampedLatched) + "; send it again";
   }
@@ -168,7 +169,7 @@ void NeedleCommands::change(StateCommand command, bool fault) {
       model_.allowStreams();
       break;
     case StateCommand::kHome:  // the axes are referenced, so there is no search
-      busy_.accept(static_cast<std::int64_t>(ros::Time::now().toNSec()));
+      busy_.accept(static_cast<std::int64_t>(cycle_.bus().now().toNSec()));
       model_.allowStreams();
       break;
     case StateCommand::kPause:

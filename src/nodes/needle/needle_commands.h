@@ -2,7 +2,6 @@
 
 #include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/TwistStamped.h>
-#include <ros/ros.h>
 #include <sensor_msgs/TimeReference.h>
 
 #include <memory>
@@ -75,7 +74,7 @@ class NeedleCommands {
   Input<geometry_msgs::PoseStamped>& servo_;
   Output<sensor_msgs::TimeReference>& trace_;
   RepeatedCommands repeated_;
-  std::vector<ros::Subscriber> subscribers_;
+  std::vector<Subscription> subscriptions_;
   NeedleState state_;
   CommandAuthority authority_;
   CommandLog log_;

@@ -27,10 +27,10 @@ NeedlePublisher::NeedlePublisher(Cycle& cycle, const ManipulatorGeometry& geomet
       setpoint_(cycle.output<geometry_msgs::PoseStamped>("needle/setpoint_cp")),
       velocity_(cycle.output<geometry_msgs::TwistStamped>("needle/measured_cv")) {
   if (rig.true_joints) true_ = &cycle.output<geometry_msgs::PoseStamped>("needle/true_cp");
-  joint_states_ = cycle.node().advertise<sensor_msgs::JointState>("joint_states", 10);
-  state_ = cycle.node().advertise<cell_microinjection::OperatingState>("needle/operating_state", 10, true);
-  abilities_ = cycle.node().advertise<cell_microinjection::ManipulatorAbilities>("needle/abilities", 10, true);
-  publishAbilities(ros::Time::now());
+  joint_states_ = cycle.bus().advertise<sensor_msgs::JointState>("joint_states", 10);
+  state_ = cycle.bus().advertise<cell_microinjection::OperatingState>("needle/operating_state", 10, true);
+  abilities_ = cycle.bus().advertise<cell_microinjection::ManipulatorAbilities>("needle/abilities", 10, true);
+  publishAbilities(cycle.bus().now());
 }
 
 void NeedlePublisher::publish(const ros::Time& now) {

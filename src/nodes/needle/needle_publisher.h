@@ -2,7 +2,6 @@
 
 #include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/TwistStamped.h>
-#include <ros/ros.h>
 #include <sensor_msgs/JointState.h>
 
 #include "cell_microinjection/ManipulatorAbilities.h"
@@ -41,9 +40,9 @@ class NeedlePublisher {
   Output<geometry_msgs::PoseStamped>& setpoint_;
   Output<geometry_msgs::TwistStamped>& velocity_;
   Output<geometry_msgs::PoseStamped>* true_ = nullptr;  ///< null when the true pose is unknown
-  ros::Publisher joint_states_;
-  ros::Publisher state_;
-  ros::Publisher abilities_;
+  Publisher<sensor_msgs::JointState> joint_states_;
+  Publisher<cell_microinjection::OperatingState> state_;
+  Publisher<cell_microinjection::ManipulatorAbilities> abilities_;
   cell_microinjection::OperatingState last_published_state_;
   cell_microinjection::ManipulatorAbilities last_published_abilities_;
   ros::Time joint_states_sent_;

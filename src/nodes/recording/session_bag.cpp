@@ -1,5 +1,7 @@
 #include "nodes/recording/session_bag.h"
 
+#include <ros/console.h>
+
 #include <cerrno>
 #include <cstdio>
 #include <cstring>

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <ros/ros.h>
 #include <rosbag/bag.h>
 
 #include <cerrno>
@@ -31,13 +30,12 @@ class SessionBag {
     input.onMessage([this, topic](const Message& message, const ros::Time& now) { write(topic, now, message); });
   }
 
-  /// Writes every message of a topic that is no input from now on, in the thread that serves
-  /// `node`.
+  /// Writes every message of a topic that is no input from now on.
   template <typename Message>
-  void record(ros::NodeHandle& node, const std::string& topic) {
-    subscribers_.push_back(node.subscribe<Message>(
-        topic, 100,
-        [this, topic](const boost::shared_ptr<const Message>& message) { write(topic, ros::Time::now(), *message); }));
+  void record(Bus& bus, const std::string& topic) {
+    subscriptions_.push_back(bus.subscribe<Message>(topic, 100, [this, &bus, topic](const Delivery<Message>& delivery) {
+      write(topic, bus.now(), *delivery.message);
+    }));
   }
 
   /// Completes the file; later messages are not written. Returns empty, or why the bag is
@@ -64,7 +62,7 @@ class SessionBag {
   std::string path_;
   std::unique_ptr<rosbag::Bag> bag_;  ///< null when it is closed
   std::string error_text_;
-  std::vector<ros::Subscriber> subscribers_;
+  std::vector<Subscription> subscriptions_;
 };
 
 }  // namespace microinjection

@@ -1,5 +1,7 @@
 #include "nodes/recording/session_files.h"
 
+#include <ros/console.h>
+
 #include <algorithm>
 
 namespace microinjection {

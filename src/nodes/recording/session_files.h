@@ -1,7 +1,6 @@
 #pragma once
 
 #include <diagnostic_updater/diagnostic_updater.h>
-#include <ros/ros.h>
 
 #include <cstdint>
 #include <memory>

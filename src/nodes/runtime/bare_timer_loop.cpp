@@ -7,7 +7,7 @@
 namespace microinjection {
 namespace {
 
-constexpr long kPeriod = 1000000;  // ns
+constexpr long kTimerPeriod = 1000000;  // ns
 
 double seconds(const timespec& time) {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
@@ -29,12 +29,12 @@ const IntervalHistogram& BareTimerLoop::intervals() {
 
 void BareTimerLoop::run() {
   preferForThread(Priority::kRealTime);
-  IntervalHistogram intervals(2e-9 * kPeriod);  // the limit marks wake-ups late by more than a period
+  IntervalHistogram intervals(2e-9 * kTimerPeriod);  // the limit marks wake-ups late by more than a period
   timespec due, woke;
   clock_gettime(CLOCK_MONOTONIC, &due);
   double before = seconds(due);
   while (!stop_) {
-    due.tv_nsec += kPeriod;
+    due.tv_nsec += kTimerPeriod;
     if (due.tv_nsec >= 1000000000) {
       due.tv_nsec -= 1000000000;
       ++due.tv_sec;

@@ -1,6 +1,6 @@
 #include "nodes/runtime/command_log.h"
 
-#include <ros/ros.h>
+#include <ros/console.h>
 
 #include <utility>
 
@@ -12,7 +12,7 @@ void CommandLog::addResult(const std::string& command, const std::string& refusa
   ++refused_;
   new_refusal_ = refusal_;
   // A refused stream would log the same line a thousand times a second.
-  const double now = ros::SteadyTime::now().toSec();
+  const double now = bus_.steady().toSec();
   if (refusal_ == logged_ && now - logged_at_ < 1) return;
   logged_ = refusal_;
   logged_at_ = now;

@@ -4,11 +4,16 @@
 
 #include <string>
 
+#include "nodes/bus/bus.h"
+
 namespace microinjection {
 
 /// Refused commands and overridden motions, for the log and the diagnostics.
 class CommandLog {
  public:
+  /// `bus` outlives it.
+  explicit CommandLog(const Bus& bus) : bus_(bus) {}
+
   /// `refusal`: why the command was refused; empty: it was accepted.
   void addResult(const std::string& command, const std::string& refusal);
   /// An accepted motion ends early for a reason.
@@ -23,6 +28,7 @@ class CommandLog {
   void addCounts(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
  private:
+  const Bus& bus_;
   std::string refusal_;
   std::string new_refusal_, new_override_;  ///< since the last report
   std::string logged_;                      ///< the last logged refusal

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <ros/message_event.h>
-#include <ros/ros.h>
-
 #include <cstdint>
 #include <map>
 #include <set>
@@ -11,15 +8,6 @@
 #include "nodes/runtime/message_guard.h"
 
 namespace microinjection {
-
-/// Whether the publisher of a message latches: it sends its last message, of any age, to each new
-/// subscriber.
-template <typename Message>
-bool isLatched(const ros::MessageEvent<const Message>& event) {
-  const auto& header = event.getConnectionHeader();
-  const auto latching = header.find("latching");
-  return latching != header.end() && latching->second == "1";
-}
 
 /// Why an unstamped motion command of a publisher that latches is refused.
 constexpr char kUnstampedLatched[] = "it has no stamp and its publisher latches: it may be an old one";
@@ -31,11 +19,11 @@ constexpr double kOldestCommand = 3;
 /// Origin of a command. CRTK allows commands without a stamp; the released crtk_python_client
 /// (1.4.0) sends such.
 struct CommandSource {
-  std::string sender;                           ///< node
-  bool unstamped = false;                       ///< stamp 0
-  bool latched = false;                         ///< by its publisher
-  std::uint32_t number = 0;                     ///< header.seq, the publisher's message counter
-  boost::shared_ptr<ros::M_string> connection;  ///< the same for all messages of a connection
+  std::string sender;                        ///< node
+  bool unstamped = false;                    ///< stamp 0
+  bool latched = false;                      ///< by its publisher
+  std::uint32_t number = 0;                  ///< header.seq, the publisher's message counter
+  boost::shared_ptr<const void> connection;  ///< the same for all messages of a connection
 };
 
 /// Detects old commands that a latching publisher repeats: to a restarted node, or after a broken
@@ -43,33 +31,34 @@ struct CommandSource {
 /// publisher existed before this node subscribed, or sent the same number on an earlier connection.
 class RepeatedCommands {
  public:
-  /// Requests the topic's present publishers from the master. Call before subscribing.
-  explicit RepeatedCommands(const std::string& topic);
+  /// Asks for the topic's present publishers. Call before subscribing.
+  RepeatedCommands(const Bus& bus, const std::string& topic);
   bool mayBe(const CommandSource& command);
 
  private:
   struct Last {
-    boost::shared_ptr<ros::M_string> connection;
+    boost::shared_ptr<const void> connection;
     std::uint32_t number = 0;
   };
+  const Bus& bus_;
+  ros::SteadyTime begun_;             ///< about when this node subscribed
   std::set<std::string> older_;       ///< nodes that published the topic before this node subscribed
   std::map<std::string, Last> last_;  ///< by node
 };
 
 /// Like subscribeGuarded, for commands: calls `handler` with the message and its CommandSource.
 template <typename Message, typename Handler>
-ros::Subscriber subscribeCommand(ros::NodeHandle node, const std::string& topic, Handler handler,
-                                 StampRule rule = StampRule::kTimely) {
-  using Event = ros::MessageEvent<const Message>;
-  const auto receive = [topic, handler, rule](const Event& event) {
-    runGuarded(topic, [&] {
-      const Message& message = *event.getConstMessage();
-      if (rule == StampRule::kTimely && !isTimely(topic, message, ros::Time::now())) return;
-      handler(message, CommandSource{event.getPublisherName(), message.header.stamp.isZero(), isLatched(event),
-                                     message.header.seq, event.getConnectionHeaderPtr()});
+Subscription subscribeCommand(Bus& bus, const std::string& topic, Handler handler,
+                              StampRule rule = StampRule::kTimely) {
+  const auto receive = [&bus, topic, handler, rule](const Delivery<Message>& delivery) {
+    runGuarded(bus.refusals(), topic, [&] {
+      const Message& message = *delivery.message;
+      if (rule == StampRule::kTimely && !isTimely(bus.refusals(), topic, message, bus.now())) return;
+      handler(message, CommandSource{delivery.raw.sender, message.header.stamp.isZero(), delivery.raw.latched,
+                                     message.header.seq, delivery.raw.connection});
     });
   };
-  return node.subscribe<Message, const Event&>(topic, 10, receive, {}, ros::TransportHints().tcpNoDelay());
+  return bus.subscribe<Message>(topic, 10, receive);
 }
 
 }  // namespace microinjection

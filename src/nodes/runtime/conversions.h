@@ -12,6 +12,7 @@ namespace microinjection {
 
 constexpr char kWorldFrame[] = "world";
 constexpr char kTipFrame[] = "needle_tip";
+constexpr char kHapticFrame[] = "haptic";  ///< of a device without a frame of its own
 
 // A finite number can still be unusable: the square of 1e160 is not finite. Values that no rig,
 // hand or sensor reaches are invalid.

@@ -1,42 +1,27 @@
 #include "nodes/runtime/cycle.h"
 
+#include <ros/console.h>
+
 #include <algorithm>
+#include <utility>
 
 #include "nodes/runtime/lockstep.h"
 
 namespace microinjection {
 
-Cycle::Cycle(const ros::NodeHandle& node, double rate)
-    : period_(1 / rate),
-      ports_(node),
-      live_(ports_, period_),
-      lockstep_(takesPartInLockstep() ? std::make_unique<LockstepPacing>(ports_) : nullptr),
-      diagnostics_(rate),
-      master_(!deterministic()) {}
+Cycle::Cycle(Bus& bus, double rate)
+    : bus_(bus),
+      period_(1 / rate),
+      lockstep_(!bus.isVirtual() && takesPartInLockstep() ? std::make_unique<LockstepPacing>(ports_, bus) : nullptr),
+      diagnostics_(bus, rate) {}
 
-bool Cycle::shouldContinue() {
-  if (master_.masterLostForLong() && !busy_) {
-    ROS_ERROR("the ROS master has been away for too long, and nothing moves: this node ends");
-    stopped_ = true;
-  }
-  if (lockstep_ && lockstep_->hasLeft()) {
-    ROS_ERROR("the lock step goes on without this node, which was frozen: it ends");
-    stopped_ = true;
-  }
-  return ros::ok() && !stopped_;
-}
-
-void Cycle::run(const std::function<void(const Tick&)>& step) {
-  step_ = step;
-  // The first line of a node's log waits for a parameter of rosout from the master, so log it
-  // before stepping.
-  ROS_INFO_STREAM("steps " << (lockstep_ ? "in lock step" : "live") << ", nominally each " << period_ << " s");
-  const CycleSteps steps{[this] { return shouldContinue(); }, [this](const ros::Time& now) { this->step(now); }};
-  lockstep_ ? lockstep_->run(steps) : live_.run(steps);
+void Cycle::onStep(std::function<void(const Tick&)> step) {
+  step_ = std::move(step);
+  const auto step_at = [this](const ros::Time& now) { this->step(now); };
+  lockstep_ ? lockstep_->takeOver(step_at) : bus_.setStep(period_, step_at);
 }
 
 void Cycle::step(const ros::Time& now) {
-  ports_.sampled_queue.callAvailable();
   ports_.stalls.step(now);
   if (now.isZero()) return;  // the simulated clock has not started
   if (now < last_step_) {    // the clock was set back: all received messages are invalid
@@ -53,7 +38,7 @@ void Cycle::step(const ros::Time& now) {
 }
 
 void Cycle::checkMaster() {
-  const bool lost = master_.lost();
+  const bool lost = bus_.isLost();
   if (lost == master_lost_) return;
   master_lost_ = lost;
   for (auto& input : ports_.inputs) input->disconnected = lost;

@@ -1,25 +1,19 @@
 #pragma once
 
-#include <ros/ros.h>
-
 #include <functional>
 #include <memory>
 #include <string>
 
+#include "nodes/bus/bus.h"
 #include "nodes/runtime/cycle_diagnostics.h"
 #include "nodes/runtime/cycle_ports.h"
-#include "nodes/runtime/live_pacing.h"
 #include "nodes/runtime/lockstep_pacing.h"
-#include "nodes/runtime/master_monitor.h"
 
 namespace microinjection {
 
-/// Decides when a node steps, and with which inputs. All callbacks and steps run in the thread that
-/// calls run(). LivePacing decides, or LockstepPacing if the parameter /lockstep/participants
-/// contains this node.
-///
-/// While the master is lost (nodes/runtime/master_monitor.h) no input is fresh. When the master is
-/// lost for long (MasterMonitor::masterLostForLong) and the node is at rest, run() ends.
+/// The steps of a node, and the inputs and outputs that they read and write. The bus decides when the
+/// node steps. All callbacks and steps run in the thread of the bus. While the bus is lost, no input is
+/// fresh.
 class Cycle {
  public:
   struct Tick {
@@ -28,8 +22,9 @@ class Cycle {
                     ///< nothing jumps after a stall of the machine
   };
 
-  /// `rate` in Hz.
-  Cycle(const ros::NodeHandle& node, double rate);
+  /// `rate` in Hz. `bus` outlives the cycle.
+  Cycle(Bus& bus, double rate);
+  Cycle(const Cycle&) = delete;
 
   /// References are valid for the life of the cycle. `timeout`: age (s) past which the input is
   /// stale.
@@ -38,51 +33,62 @@ class Cycle {
   template <typename Message>
   Output<Message>& output(const std::string& topic, bool latch = false);
 
-  /// A node handle for topics outside of the lock step: its callbacks run in this thread right
-  /// before a step.
-  ros::NodeHandle& node() { return ports_.sampled_node; }
+  Bus& bus() { return bus_; }
+  const Bus& bus() const { return bus_; }
   CycleDiagnostics& diagnostics() { return diagnostics_; }
-  /// In lock step: nothing may depend on wall time or on the order of connections.
-  bool deterministic() const { return lockstep_ != nullptr; }
+  /// Nothing may depend on wall time or on the order of connections.
+  bool deterministic() const { return lockstep_ || bus_.isVirtual(); }
   bool masterLost() const { return master_lost_; }  ///< in this step
   double period() const { return period_; }         ///< s
   /// Earliest arrival of a message that is received now; see StallMonitor.
   ros::Time earliestArrival() const { return ports_.stalls.earliest(); }
 
-  /// Steps until ROS shuts down or stop() is called.
-  void run(const std::function<void(const Tick&)>& step);
-  void stop() { stopped_ = true; }
-  /// Whether something moves or flows that this node must monitor even when the master is lost for
-  /// long; default false.
-  void setBusy(bool busy) { busy_ = busy; }
+  /// Steps from now on.
+  void onStep(std::function<void(const Tick&)> step);
 
  private:
-  bool shouldContinue();
+  template <typename Message>
+  void subscribe(Input<Message>& port);
   void checkMaster();
   void step(const ros::Time& now);
 
+  Bus& bus_;
   double period_;
-  bool stopped_ = false;
-  bool busy_ = false;
   CyclePorts ports_;
-  LivePacing live_;
-  std::unique_ptr<LockstepPacing> lockstep_;  // null: live
+  std::unique_ptr<LockstepPacing> lockstep_;  // null: live, or in virtual time
   CycleDiagnostics diagnostics_;
   std::function<void(const Tick&)> step_;
   ros::Time last_step_;
   bool master_lost_ = false;
-  MasterMonitor master_;
 };
+
+/// Length of the message queues: five seconds without the processor, since the recorder must receive
+/// each message.
+constexpr int kBacklog = 5000;
 
 template <typename Message>
 Input<Message>& Cycle::input(const std::string& topic, InputPhase phase, double timeout) {
-  if (phase == InputPhase::kTrigger) phase = deterministic() ? InputPhase::kPreviousTick : InputPhase::kThisTick;
-  auto owned = std::make_unique<Input<Message>>(topic, phase, timeout);
+  auto owned = std::make_unique<Input<Message>>(topic, phase, timeout, bus_.refusals());
   Input<Message>& port = *owned;
   ports_.inputs.push_back(std::move(owned));
   diagnostics_.monitor(port);
-  lockstep_ ? lockstep_->subscribe(port) : live_.subscribe(port);
+  lockstep_ ? lockstep_->subscribe(port) : subscribe(port);
   return port;
+}
+
+template <typename Message>
+void Cycle::subscribe(Input<Message>& port) {
+  const auto receive = [this, &port](const Delivery<Message>& delivery) {
+    const ros::Time received = delivery.raw.received, earliest = ports_.stalls.earliest();
+    const Arrival arrival{received, earliest.isZero() ? received : std::min(received, earliest), delivery.raw.sender,
+                          delivery.raw.latched};
+    // The handlers of an input are the node's own code and may throw.
+    runGuarded(port.refusals, port.topic, [&] { port.receive(delivery.message, arrival); });
+  };
+  const Serving serving = port.phase == InputPhase::kDrives  ? Serving::kDrives
+                          : port.phase == InputPhase::kWakes ? Serving::kWakes
+                                                             : Serving::kSampled;
+  ports_.subscriptions.push_back(bus_.subscribe<Message>(port.topic, kBacklog, receive, serving));
 }
 
 template <typename Message>
@@ -91,7 +97,11 @@ Output<Message>& Cycle::output(const std::string& topic, bool latch) {
   Output<Message>& port = *owned;
   ports_.outputs.push_back(std::move(owned));
   diagnostics_.monitor(port);
-  lockstep_ ? lockstep_->advertise(port) : live_.advertise(port, latch);
+  if (lockstep_) {
+    lockstep_->advertise(port);
+  } else {
+    port.publisher = bus_.advertise<Message>(topic, 10, latch);
+  }
   return port;
 }
 

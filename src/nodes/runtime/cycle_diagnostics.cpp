@@ -7,47 +7,40 @@
 #include <cstdio>
 #include <string>
 
-#include "cell_microinjection/CycleStatistics.h"
-
 namespace microinjection {
 
 using diagnostic_msgs::DiagnosticStatus;
 using diagnostic_updater::DiagnosticStatusWrapper;
 
-CycleDiagnostics::CycleDiagnostics(double rate)
-    : rate_(rate),
+CycleDiagnostics::CycleDiagnostics(Bus& bus, double rate)
+    : bus_(bus),
+      rate_(rate),
+      diagnostics_(bus),
       intervals_(2 / rate),
-      statistics_(ros::NodeHandle().advertise<cell_microinjection::CycleStatistics>("/cycle_statistics", 10)) {}
-
-void CycleDiagnostics::add(const std::string& name, const std::function<void(DiagnosticStatusWrapper&)>& report) {
-  extra_.emplace_back(name, report);
+      statistics_(bus.advertise<cell_microinjection::CycleStatistics>("/cycle_statistics", 10)) {
+  diagnostics_.add("cycle", [this](DiagnosticStatusWrapper& status) { reportCycle(status); });
+  diagnostics_.add("inputs", [this](DiagnosticStatusWrapper& status) { reportInputs(status); });
 }
 
-void CycleDiagnostics::start() {
-  updater_ = std::make_unique<diagnostic_updater::Updater>();
-  updater_->setHardwareID("none");
-  updater_->add("cycle", [this](DiagnosticStatusWrapper& status) { reportCycle(status); });
-  updater_->add("inputs", [this](DiagnosticStatusWrapper& status) { reportInputs(status); });
-  for (const auto& task : extra_) updater_->add(task.first, task.second);
-  began_ = reported_ = now_;
+void CycleDiagnostics::add(const std::string& name, const std::function<void(DiagnosticStatusWrapper&)>& report) {
+  diagnostics_.add(name, report);
 }
 
 void CycleDiagnostics::beginStep() {
-  const ros::SteadyTime now = ros::SteadyTime::now();
+  const ros::SteadyTime now = bus_.steady();
   if (!step_began_.isZero()) intervals_.add(secondsBetween(step_began_, now));
   step_began_ = now;
 }
 
 void CycleDiagnostics::endStep(const ros::Time& now) {
-  const double took = secondsBetween(step_began_, ros::SteadyTime::now());
+  const double took = secondsBetween(step_began_, bus_.steady());
   ++steps_;
   ++all_steps_;
   step_time_ += took;
   longest_step_ = std::max(longest_step_, took);
   now_ = now;
-  if (!updater_) start();
-  if (secondsBetween(reported_, now) < updater_->getPeriod()) return;
-  updater_->force_update();
+  if (began_.isZero()) began_ = reported_ = now;
+  if (!diagnostics_.update()) return;
   publishStatistics();
   reported_ = now;
   steps_ = 0;
@@ -57,7 +50,7 @@ void CycleDiagnostics::endStep(const ros::Time& now) {
 void CycleDiagnostics::publishStatistics() {
   cell_microinjection::CycleStatistics statistics;
   statistics.header.stamp = now_;
-  statistics.node = ros::this_node::getName().substr(1);
+  statistics.node = bus_.name().substr(1);
   if (!outputs_.empty()) statistics.topic = "/" + outputs_.front()->topic;
   statistics.steps = all_steps_;
   statistics.mean_rate = static_cast<double>(all_steps_ - 1) / std::max(1e-9, secondsBetween(began_, now_));
@@ -120,7 +113,7 @@ void CycleDiagnostics::reportInputs(DiagnosticStatusWrapper& status) {
       status.mergeSummary(DiagnosticStatus::WARN, input->topic + (input->valid() ? " is stale" : " has nothing valid"));
     }
   }
-  MessageRefusals::ofProcess().report(status);
+  bus_.refusals().report(status);
 }
 
 }  // namespace microinjection

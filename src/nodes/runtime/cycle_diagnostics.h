@@ -1,24 +1,23 @@
 #pragma once
 
-#include <diagnostic_updater/diagnostic_updater.h>
-#include <ros/ros.h>
-
 #include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "base/interval_histogram.h"
+#include "cell_microinjection/CycleStatistics.h"
+#include "nodes/bus/diagnostics.h"
 #include "nodes/runtime/ports.h"
 
 namespace microinjection {
 
 /// The diagnostics of each cyclic node: rate, step time, the age of every input, and the node's own
-/// tasks. Published each `~diagnostic_period` of ROS time (of diagnostic_updater); default 1 s.
+/// tasks. Published each period of Diagnostics.
 /// With them go statistics for other programs, /cycle_statistics (CycleStatistics).
 class CycleDiagnostics {
  public:
-  explicit CycleDiagnostics(double rate);
+  CycleDiagnostics(Bus& bus, double rate);
 
   void monitor(const InputPort& port) { inputs_.push_back(&port); }
   void monitor(const OutputPort& port) { outputs_.push_back(&port); }
@@ -31,19 +30,20 @@ class CycleDiagnostics {
 
   void beginStep();
   void endStep(const ros::Time& now);
+  /// Publishes one task at once, for a result that must not wait for the next report.
+  void publish(const std::string& name) { diagnostics_.publish(name); }
 
  private:
-  void start();
   void publishStatistics();
   void reportCycle(diagnostic_updater::DiagnosticStatusWrapper& status);
   void reportInputs(diagnostic_updater::DiagnosticStatusWrapper& status);
   void reportOutputs(diagnostic_updater::DiagnosticStatusWrapper& status);
 
+  Bus& bus_;
   double rate_;  ///< Hz, nominal
   std::vector<const InputPort*> inputs_;
   std::vector<const OutputPort*> outputs_;
-  std::vector<std::pair<std::string, std::function<void(diagnostic_updater::DiagnosticStatusWrapper&)>>> extra_;
-  std::unique_ptr<diagnostic_updater::Updater> updater_;  ///< created in the first step, when time runs
+  Diagnostics diagnostics_;
   ros::Time now_;
   ros::Time reported_;
   ros::SteadyTime step_began_;
@@ -54,7 +54,7 @@ class CycleDiagnostics {
   unsigned withheld_ = 0;        ///< messages up to the last report
   ros::Time began_;
   IntervalHistogram intervals_;  ///< of wall time between steps, since the start
-  ros::Publisher statistics_;
+  Publisher<cell_microinjection::CycleStatistics> statistics_;
 };
 
 }  // namespace microinjection

@@ -9,15 +9,13 @@ constexpr std::size_t kCapacity = 200;  // traced needle poses, two seconds of t
 
 }  // namespace
 
-LatencyMeter::LatencyMeter(ros::NodeHandle& node)
-    : setpoints_(subscribe(node, "needle/setpoint_trace", &LatencyMeter::onSetpoint)),
-      forces_(subscribe(node, "haptic/force_trace", &LatencyMeter::onForce)) {}
+LatencyMeter::LatencyMeter(Bus& bus)
+    : setpoints_(subscribe(bus, "needle/setpoint_trace", &LatencyMeter::onSetpoint)),
+      forces_(subscribe(bus, "haptic/force_trace", &LatencyMeter::onForce)) {}
 
-ros::Subscriber LatencyMeter::subscribe(ros::NodeHandle& node, const std::string& topic,
-                                        void (LatencyMeter::*handler)(const Trace&)) {
-  return subscribeGuarded<Trace>(node, topic, 100, [this, topic, handler](const Trace& trace, const std::string&) {
-    if (isAhead(trace.time_ref, ros::Time::now()))
-      return MessageRefusals::ofProcess().add(topic, "its time_ref is ahead");
+Subscription LatencyMeter::subscribe(Bus& bus, const std::string& topic, void (LatencyMeter::*handler)(const Trace&)) {
+  return subscribeGuarded<Trace>(bus, topic, 100, [this, &bus, topic, handler](const Trace& trace, const std::string&) {
+    if (isAhead(trace.time_ref, bus.now())) return bus.refusals().add(topic, "its time_ref is ahead");
     (this->*handler)(trace);
   });
 }

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <ros/ros.h>
 #include <sensor_msgs/TimeReference.h>
 
 #include <map>
 #include <string>
 
 #include "base/interval_histogram.h"
+#include "nodes/bus/bus.h"
 
 namespace microinjection {
 
@@ -29,13 +29,12 @@ inline sensor_msgs::TimeReference toTrace(const ros::Time& done, const ros::Time
 /// because of the cost of messages at 1 kHz.
 class LatencyMeter {
  public:
-  explicit LatencyMeter(ros::NodeHandle& node);
+  explicit LatencyMeter(Bus& bus);
   const IntervalHistogram& latencies() const { return latencies_; }  ///< s
 
  private:
   using Trace = sensor_msgs::TimeReference;
-  ros::Subscriber subscribe(ros::NodeHandle& node, const std::string& topic,
-                            void (LatencyMeter::*handler)(const Trace&));
+  Subscription subscribe(Bus& bus, const std::string& topic, void (LatencyMeter::*handler)(const Trace&));
   void onSetpoint(const Trace& trace);
   void onForce(const Trace& trace);
 
@@ -43,7 +42,7 @@ class LatencyMeter {
   std::map<ros::Time, ros::Time> force_waiting_;   ///< time of rendering, by needle pose without a setpoint trace yet
   ros::Time last_hand_;                            ///< newest counted sample of the hand
   IntervalHistogram latencies_;
-  ros::Subscriber setpoints_, forces_;
+  Subscription setpoints_, forces_;
 };
 
 }  // namespace microinjection

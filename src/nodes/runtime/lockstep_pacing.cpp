@@ -4,6 +4,7 @@
 #include <std_msgs/String.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "nodes/runtime/lockstep.h"
 
@@ -12,20 +13,20 @@ namespace {
 
 constexpr double kWarnPeriod = 5;      // s
 constexpr double kGreetingPeriod = 1;  // s
-const ros::WallDuration kWait(0.1);
+constexpr double kWait = 0.1;          // s
 
 }  // namespace
 
-bool LockstepPacing::hasInputOf(InputPhase phase, const ros::Time& stamp) const {
+bool LockstepPacing::hasInputOf(bool of_this_tick, const ros::Time& stamp) const {
   return std::all_of(ports_.inputs.begin(), ports_.inputs.end(), [&](const auto& input) {
-    return input->phase != phase || hasDeparted(input->publisher_name) || input->hasInputOf(stamp);
+    return (input->phase == InputPhase::kDrives) != of_this_tick || hasDeparted(input->publisher_name) ||
+           input->hasInputOf(stamp);
   });
 }
 
 bool LockstepPacing::isReady() const {
   const bool first = stepped_tick_.isZero();  // nothing was published before it
-  return tick_ != stepped_tick_ && hasInputOf(InputPhase::kThisTick, tick_) &&
-         (first || hasInputOf(InputPhase::kPreviousTick, stepped_tick_));
+  return tick_ != stepped_tick_ && hasInputOf(true, tick_) && (first || hasInputOf(false, stepped_tick_));
 }
 
 std::string LockstepPacing::inputsWithoutPublisher() const {
@@ -40,20 +41,33 @@ bool LockstepPacing::hasDeparted(const std::string& participant) const {
   return !departed_.empty() && (' ' + departed_).find(' ' + participant + ' ') != std::string::npos;
 }
 
-void LockstepPacing::run(const CycleSteps& steps) {
-  const ros::Subscriber clock = ports_.node.subscribe<rosgraph_msgs::Clock>(
-      "/clock", 10, [this](const rosgraph_msgs::ClockConstPtr& message) { tick_ = message->clock; }, {},
-      ros::TransportHints().tcpNoDelay());
-  const ros::Subscriber left = ports_.node.subscribe<std_msgs::String>(
-      kLeftTopic, 10, [this](const std_msgs::StringConstPtr& message) { departed_ = message->data; });
-  acknowledgement_ = ports_.node.advertise<std_msgs::Header>(kAcknowledgementTopic, 10, true);
+LockstepPacing::LockstepPacing(CyclePorts& ports, Bus& bus) : ports_(ports), bus_(dynamic_cast<RosBus&>(bus)) {}
+
+void LockstepPacing::takeOver(std::function<void(const ros::Time&)> step) {
+  step_ = std::move(step);
+  bus_.runInstead([this] { run(); });
+}
+
+bool LockstepPacing::shouldContinue() const {
+  if (hasLeft()) ROS_ERROR("the lock step goes on without this node, which was frozen: it ends");
+  return bus_.shouldContinue() && !hasLeft();
+}
+
+void LockstepPacing::run() {
+  const Subscription clock = bus_.subscribe<rosgraph_msgs::Clock>(
+      "/clock", 10, [this](const Delivery<rosgraph_msgs::Clock>& delivery) { tick_ = delivery.message->clock; },
+      Serving::kDrives);
+  const Subscription left = bus_.subscribe<std_msgs::String>(
+      kLeftTopic, 10, [this](const Delivery<std_msgs::String>& delivery) { departed_ = delivery.message->data; },
+      Serving::kDrives);
+  acknowledgement_ = bus_.advertise<std_msgs::Header>(kAcknowledgementTopic, 10, true);
   greet(false);
-  waitForPublishers(steps);
+  waitForPublishers();
   ROS_INFO("ready for the first tick");
   greet(true);
-  while (steps.should_continue()) {
-    ports_.queue.callAvailable(kWait);
-    if (isReady()) stepTick(steps);
+  while (shouldContinue()) {
+    bus_.serveWaking(kWait);
+    if (isReady()) stepTick();
     if (tick_.isZero()) greetAgain(true);
   }
 }
@@ -68,11 +82,11 @@ void LockstepPacing::greetAgain(bool ready) {
   if (secondsBetween(greeted_, ros::SteadyTime::now()) >= kGreetingPeriod) greet(ready);
 }
 
-void LockstepPacing::waitForPublishers(const CycleSteps& steps) {
+void LockstepPacing::waitForPublishers() {
   ros::SteadyTime warned = ros::SteadyTime::now();
   std::string missing;
-  while (steps.should_continue() && !(missing = inputsWithoutPublisher()).empty()) {
-    ports_.queue.callAvailable(kWait);
+  while (shouldContinue() && !(missing = inputsWithoutPublisher()).empty()) {
+    bus_.serveWaking(kWait);
     greetAgain(false);
     if (secondsBetween(warned, ros::SteadyTime::now()) < kWarnPeriod) continue;
     warned = ros::SteadyTime::now();
@@ -80,26 +94,27 @@ void LockstepPacing::waitForPublishers(const CycleSteps& steps) {
   }
 }
 
-void LockstepPacing::stepTick(const CycleSteps& steps) {
+void LockstepPacing::stepTick() {
   const ros::Time now = tick_, before = stepped_tick_;
   for (auto& input : ports_.inputs) {
-    runGuarded(input->topic, [&] { input->receiveTick(input->phase == InputPhase::kThisTick ? now : before, now); });
+    runGuarded(bus_.refusals(), input->topic,
+               [&] { input->receiveTick(input->phase == InputPhase::kDrives ? now : before, now); });
   }
   for (auto& output : ports_.outputs) output->beginTick(now);
-  steps.step(now);
+  bus_.serveSampled();
+  step_(now);
   for (auto& output : ports_.outputs) output->endTick();
   stepped_tick_ = now;
   // A topic may connect later than its greeting. The acknowledgement waits until this node has the
   // first message or silence of each input: publishers latch only the newest.
-  while (before.isZero() && steps.should_continue() && !hasInputOf(InputPhase::kPreviousTick, now))
-    ports_.queue.callAvailable(kWait);
+  while (before.isZero() && shouldContinue() && !hasInputOf(false, now)) bus_.serveWaking(kWait);
   acknowledge(now);
 }
 
 void LockstepPacing::acknowledge(const ros::Time& now) {
   std_msgs::Header header;
   header.stamp = now;
-  header.frame_id = ros::this_node::getName();
+  header.frame_id = bus_.name();
   acknowledgement_.publish(header);
 }
 

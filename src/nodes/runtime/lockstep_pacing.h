@@ -1,12 +1,12 @@
 #pragma once
 
-#include <ros/ros.h>
 #include <std_msgs/Header.h>
 
+#include <functional>
 #include <string>
 
+#include "nodes/bus/ros_bus.h"
 #include "nodes/runtime/cycle_ports.h"
-#include "nodes/runtime/pacing.h"
 
 namespace microinjection {
 
@@ -15,61 +15,64 @@ namespace microinjection {
 /// publisher has left the lock step: that input becomes stale.
 class LockstepPacing {
  public:
-  explicit LockstepPacing(CyclePorts& ports) : ports_(ports) {}
+  LockstepPacing(CyclePorts& ports, Bus& bus);
 
   template <typename Message>
   void subscribe(Input<Message>& port);
   /// Every topic is latched: a late subscriber still receives the message of the waiting tick.
   template <typename Message>
   void advertise(Output<Message>& port) {
-    port.publisher = ports_.node.advertise<Message>(port.topic, 10, true);
-    port.silent_publisher = ports_.node.advertise<std_msgs::Header>(silentTopic(port.topic), 10, true);
+    port.publisher = bus_.advertise<Message>(port.topic, 10, true);
+    port.silent_publisher = bus_.advertise<std_msgs::Header>(silentTopic(port.topic), 10, true);
   }
-  void run(const CycleSteps& steps);
+  /// Has the bus run this instead of its own steps.
+  void takeOver(std::function<void(const ros::Time&)> step);
   /// Whether the others go on without this node, because it was frozen.
-  bool hasLeft() const { return hasDeparted(ros::this_node::getName()); }
+  bool hasLeft() const { return hasDeparted(bus_.name()); }
 
  private:
   /// Follows the topic's remapping.
-  std::string silentTopic(const std::string& topic) const { return ports_.node.resolveName(topic) + kNoMessageSuffix; }
-  /// Whether each input of that phase has a message or silence for the tick `stamp`.
-  bool hasInputOf(InputPhase phase, const ros::Time& stamp) const;
+  std::string silentTopic(const std::string& topic) const { return bus_.resolve(topic) + kNoMessageSuffix; }
+  /// Whether each input of that kind (of this tick, or of the last one) has a message or silence for the tick `stamp`.
+  bool hasInputOf(bool of_this_tick, const ros::Time& stamp) const;
   bool isReady() const;
   bool hasDeparted(const std::string& participant) const;
   /// Topics whose publishers have not sent their greeting yet, each with a space before it.
   std::string inputsWithoutPublisher() const;
-  void waitForPublishers(const CycleSteps& steps);
+  void waitForPublishers();
   /// Publishes what others wait for before the first tick: the greetings of all outputs and, when
   /// this node is ready, the acknowledgement of tick 0.
   void greet(bool ready);
   /// Once a second until the first tick: roscpp keeps a message for later subscribers only after it
   /// has sent it, so one that connects in between gets neither.
   void greetAgain(bool ready);
-  void stepTick(const CycleSteps& steps);
+  void stepTick();
   void acknowledge(const ros::Time& now);
 
+  bool shouldContinue() const;
+  void run();
+
   CyclePorts& ports_;
+  RosBus& bus_;
+  std::function<void(const ros::Time&)> step_;
   ros::Time tick_;          // the clock's newest
   ros::Time stepped_tick_;  // the last acknowledged one
   std::string departed_;    // as on kLeftTopic
   ros::SteadyTime greeted_;
-  ros::Publisher acknowledgement_;
+  Publisher<std_msgs::Header> acknowledgement_;
 };
 
 template <typename Message>
 void LockstepPacing::subscribe(Input<Message>& port) {
-  using Event = ros::MessageEvent<const Message>;
-  using Silence = ros::MessageEvent<const std_msgs::Header>;
-  const auto hints = ros::TransportHints().tcpNoDelay();
-  const auto queue = [this, &port](const Event& event) {
-    port.queue(event.getConstMessage(), tick_, event.getPublisherName());
+  const auto queue = [this, &port](const Delivery<Message>& delivery) {
+    port.queue(delivery.message, tick_, delivery.raw.sender);
   };
-  const auto receive_silence = [&port](const Silence& event) {
-    port.queueSilence(*event.getConstMessage(), event.getPublisherName());
+  const auto receive_silence = [&port](const Delivery<std_msgs::Header>& delivery) {
+    port.queueSilence(*delivery.message, delivery.raw.sender);
   };
-  ports_.subscribers.push_back(ports_.node.subscribe<Message, const Event&>(port.topic, 10, queue, {}, hints));
-  ports_.subscribers.push_back(
-      ports_.node.subscribe<std_msgs::Header, const Silence&>(silentTopic(port.topic), 10, receive_silence, {}, hints));
+  ports_.subscriptions.push_back(bus_.subscribe<Message>(port.topic, 10, queue, Serving::kDrives));
+  ports_.subscriptions.push_back(
+      bus_.subscribe<std_msgs::Header>(silentTopic(port.topic), 10, receive_silence, Serving::kDrives));
 }
 
 }  // namespace microinjection

@@ -1,10 +1,9 @@
 #pragma once
 
-#include <ros/ros.h>
-
 #include <string>
 
 #include "cell_microinjection/LoopState.h"
+#include "nodes/bus/bus.h"
 #include "nodes/runtime/stamps.h"
 
 namespace microinjection {
@@ -13,8 +12,8 @@ namespace microinjection {
 /// 0.1 s, and each second.
 class LoopStatePublisher {
  public:
-  LoopStatePublisher(ros::NodeHandle& node, const std::string& topic)
-      : publisher_(node.advertise<cell_microinjection::LoopState>(topic, 1, true)) {}
+  LoopStatePublisher(Bus& bus, const std::string& topic)
+      : publisher_(bus.advertise<cell_microinjection::LoopState>(topic, 1, true)) {}
 
   /// `reason`: why the node holds; empty: it follows.
   void step(const std::string& reason, const ros::Time& now) {
@@ -27,7 +26,7 @@ class LoopStatePublisher {
   }
 
  private:
-  ros::Publisher publisher_;
+  Publisher<cell_microinjection::LoopState> publisher_;
   cell_microinjection::LoopState last_;
 };
 

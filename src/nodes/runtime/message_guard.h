@@ -1,14 +1,12 @@
 #pragma once
 
-#include <ros/message_event.h>
 #include <ros/message_traits.h>
-#include <ros/ros.h>
 
 #include <cstdint>
 #include <exception>
 #include <string>
 
-#include "nodes/runtime/message_refusals.h"
+#include "nodes/bus/bus.h"
 #include "nodes/runtime/stamps.h"
 
 namespace microinjection {
@@ -16,21 +14,20 @@ namespace microinjection {
 /// Whether a message's stamp is plausible. A stamp farther ahead than kLargestLead is refused and
 /// reported. Messages without a header are always timely.
 template <typename Message>
-bool isTimely(const std::string& topic, const Message& message, const ros::Time& now) {
+bool isTimely(MessageRefusals& refusals, const std::string& topic, const Message& message, const ros::Time& now) {
   const ros::Time* stamp = ros::message_traits::TimeStamp<Message>::pointer(message);
   if (!stamp || !isAhead(*stamp, now)) return true;
-  MessageRefusals::ofProcess().add(topic,
-                                   "its stamp is " + std::to_string(secondsBetween(now, *stamp)) + " s ahead of now");
+  refusals.add(topic, "its stamp is " + std::to_string(secondsBetween(now, *stamp)) + " s ahead of now");
   return false;
 }
 
 /// Runs a callback and reports its exceptions, which would otherwise end the node.
 template <typename Callback>
-void runGuarded(const std::string& topic, const Callback& callback) {
+void runGuarded(MessageRefusals& refusals, const std::string& topic, const Callback& callback) {
   try {
     callback();
   } catch (const std::exception& error) {
-    MessageRefusals::ofProcess().add(topic, error.what());
+    refusals.add(topic, error.what());
   }
 }
 
@@ -38,21 +35,18 @@ void runGuarded(const std::string& topic, const Callback& callback) {
 /// commands of a stream: without a stamp, the time of arrival counts.
 enum class StampRule { kTimely, kAny, kCommand };
 
-/// Like NodeHandle::subscribe, for topics that are no Input of a Cycle: refuses messages whose
-/// stamp is ahead, and reports the exceptions of `handler`, which receives the message and the name
-/// of its sender.
+/// Like Bus::subscribe, for topics that are no Input of a Cycle: refuses messages whose stamp is ahead,
+/// and reports the exceptions of `handler`, which receives the message and the name of its sender.
 template <typename Message, typename Handler>
-ros::Subscriber subscribeGuarded(ros::NodeHandle node, const std::string& topic, std::uint32_t queue_size,
-                                 Handler handler, StampRule rule = StampRule::kTimely) {
-  using Event = ros::MessageEvent<const Message>;
-  const auto receive = [topic, handler, rule](const Event& event) {
-    runGuarded(topic, [&] {
-      const Message& message = *event.getConstMessage();
-      if (rule == StampRule::kTimely && !isTimely(topic, message, ros::Time::now())) return;
-      handler(message, event.getPublisherName());
+Subscription subscribeGuarded(Bus& bus, const std::string& topic, std::uint32_t queue_size, Handler handler,
+                              StampRule rule = StampRule::kTimely, Serving serving = Serving::kSampled) {
+  const auto receive = [&bus, topic, handler, rule](const Delivery<Message>& delivery) {
+    runGuarded(bus.refusals(), topic, [&] {
+      if (rule == StampRule::kTimely && !isTimely(bus.refusals(), topic, *delivery.message, bus.now())) return;
+      handler(*delivery.message, delivery.raw.sender);
     });
   };
-  return node.subscribe<Message, const Event&>(topic, queue_size, receive, {}, ros::TransportHints().tcpNoDelay());
+  return bus.subscribe<Message>(topic, queue_size, receive, serving);
 }
 
 }  // namespace microinjection

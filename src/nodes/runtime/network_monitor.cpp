@@ -12,7 +12,7 @@
 namespace microinjection {
 namespace {
 
-constexpr std::chrono::seconds kPeriod(1);
+constexpr std::chrono::seconds kInterfaceCheckPeriod(1);
 
 /// Returns empty for another family than IP.
 std::string addressOf(const ifaddrs& interface) {
@@ -46,7 +46,7 @@ NetworkMonitor::NetworkMonitor() {
   thread_ = std::thread([this] {
     preferForThread(Priority::kOrdinary);
     std::unique_lock<std::mutex> lock(mutex_);
-    while (!changed_.wait_for(lock, kPeriod, [this] { return ending_; })) {
+    while (!changed_.wait_for(lock, kInterfaceCheckPeriod, [this] { return ending_; })) {
       lock.unlock();
       check();
       lock.lock();

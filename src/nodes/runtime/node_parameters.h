@@ -1,17 +1,12 @@
 #pragma once
 
-#include <ros/node_handle.h>
-#include <yaml-cpp/yaml.h>
-
 #include "base/config_reader.h"
+#include "nodes/bus/bus.h"
 
 namespace microinjection {
 
-/// The private parameters of a node as a YAML map, for strict reading by ConfigReader.
-/// `diagnostic_period`, which belongs to diagnostic_updater, is left out.
-YAML::Node privateParameters(const ros::NodeHandle& private_node);
-
-/// A reader of a node's private parameters; its messages name the node.
-ConfigReader parameterReader(const ros::NodeHandle& private_node);
+/// A strict reader of a node's own parameters; its messages name the node. `diagnostic_period`, which
+/// belongs to Diagnostics, is left out.
+ConfigReader parameterReader(const Bus& bus);
 
 }  // namespace microinjection

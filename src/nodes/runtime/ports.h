@@ -1,6 +1,5 @@
 #pragma once
 
-#include <ros/ros.h>
 #include <std_msgs/Header.h>
 
 #include <boost/make_shared.hpp>
@@ -21,10 +20,10 @@
 
 namespace microinjection {
 
-/// The message that an input waits for in lock step: that of the same tick (from a node upstream)
-/// or of the last tick (feedback). Live, the arrival of a kThisTick input starts a step. kTrigger:
-/// kThisTick when live, kPreviousTick in lock step, for feedback that shall start a step.
-enum class InputPhase { kThisTick, kPreviousTick, kTrigger };
+/// What an input is for its node. kDrives: it comes from upstream, and its arrival starts a step. kWakes:
+/// feedback that starts a step live; in virtual time the next step reads it. kSampled: the next step
+/// reads it.
+enum class InputPhase { kDrives, kWakes, kSampled };
 
 /// Each topic T in lock step has a second topic T + kNoMessageSuffix. On it the publisher reports
 /// every tick without a message ("silence"), so that nobody waits for one. frame_id "invalid" also
@@ -35,8 +34,8 @@ constexpr char kNoMessageSuffix[] = "/silent";
 /// A subscribed topic, as used by Cycle.
 class InputPort {
  public:
-  InputPort(const std::string& name, InputPhase input_phase, double input_timeout)
-      : topic(name), phase(input_phase), timeout(input_timeout) {}
+  InputPort(const std::string& name, InputPhase input_phase, double input_timeout, MessageRefusals& node_refusals)
+      : topic(name), phase(input_phase), timeout(input_timeout), refusals(node_refusals) {}
   virtual ~InputPort() = default;
 
   /// Lock step: whether the message or silence of the tick with this stamp has arrived.
@@ -63,6 +62,7 @@ class InputPort {
   /// kAny: handlers also receive messages stamped ahead, which are never fresh. kCommand: live, a
   /// message without a stamp gets that of its arrival, unless its publisher latches.
   StampRule stamp_rule = StampRule::kTimely;
+  MessageRefusals& refusals;
 };
 
 /// Arrival of a message, live.
@@ -145,14 +145,14 @@ class Input : public InputPort {
   };
 
   void receiveUnstamped(const Message& message, const Arrival& arrival) {
-    if (arrival.latched) return MessageRefusals::ofProcess().add(topic, kUnstampedLatched);
+    if (arrival.latched) return refusals.add(topic, kUnstampedLatched);
     const auto stamped = boost::make_shared<Message>(message);
     stamped->header.stamp = arrival.earliest;
     notify(*stamped, arrival.time);
     accept(stamped, arrival.time);
   }
   bool refuses(const Message& message, const ros::Time& now) const {
-    if (stamp_rule != StampRule::kAny) return !isTimely(topic, message, now);
+    if (stamp_rule != StampRule::kAny) return !isTimely(refusals, topic, message, now);
     if (!isAhead(message.header.stamp, now)) return false;
     notify(message, now);
     return true;
@@ -180,6 +180,7 @@ class OutputPort {
   explicit OutputPort(const std::string& name) : topic(name) {}
   virtual ~OutputPort() = default;
 
+  virtual bool isSubscribedBy(const std::string& node) const = 0;
   /// Lock step: see kNoMessageSuffix.
   void announce() { silent_publisher.publish(std_msgs::Header()); }
 
@@ -198,10 +199,9 @@ class OutputPort {
   }
 
   const std::string topic;
-  ros::Publisher publisher;
-  ros::Publisher silent_publisher;    ///< null when live
-  std::atomic<unsigned> count{0};     ///< published messages, for the diagnostics
-  std::atomic<unsigned> withheld{0};  ///< messages with numbers that are not finite, for the diagnostics
+  Publisher<std_msgs::Header> silent_publisher;  ///< null when live
+  std::atomic<unsigned> count{0};                ///< published messages, for the diagnostics
+  std::atomic<unsigned> withheld{0};             ///< messages with numbers that are not finite, for the diagnostics
 
  protected:
   ros::Time tick_;  ///< zero when live
@@ -213,6 +213,8 @@ template <typename Message>
 class Output : public OutputPort {
  public:
   using OutputPort::OutputPort;
+
+  bool isSubscribedBy(const std::string& node) const override { return publisher.isSubscribedBy(node); }
 
   /// The header's stamp is that of the message's measurement; see beginTick for lock step. A
   /// message with a number that is not finite is replaced by an invalid one. Live, another thread
@@ -240,6 +242,8 @@ class Output : public OutputPort {
     invalid_ = true;
     ++count;
   }
+
+  Publisher<Message> publisher;
 };
 
 }  // namespace microinjection

@@ -8,17 +8,18 @@
 #include <string>
 
 #include "base/console_relay.h"
-#include "nodes/runtime/ending.h"
+#include "nodes/bus/ending.h"
+#include "nodes/bus/ros_bus.h"
 #include "nodes/runtime/lockstep.h"
 #include "nodes/runtime/parameter_texts.h"
 #include "nodes/runtime/real_time.h"
 
 namespace microinjection {
 
-/// The `main` of a node: starts ROS, constructs Node(node, private_node) and runs it until
-/// shutdown. A node with wrong parameters does not start: exceptions of its constructor are logged
-/// and the exit status is 1. `priority` applies to live sessions, where the system allows it. With
-/// ShutdownMode::kInGoodOrder the first signal only requests the end (ending.h).
+/// The `main` of a node: starts ROS, constructs Node(bus) on a RosBus and runs the bus until shutdown. A
+/// node with wrong parameters does not start: exceptions of its constructor are logged and the exit
+/// status is 1. `priority` applies where the system allows it. With ShutdownMode::kInGoodOrder the first
+/// signal only requests the end (ending.h).
 enum class ShutdownMode { kAtOnce, kInGoodOrder };
 template <typename Node>
 int runNode(int argc, char** argv, const std::string& name, Priority priority = Priority::kRealTime,
@@ -36,16 +37,18 @@ int runNode(int argc, char** argv, const std::string& name, Priority priority = 
   ros::init(argc, argv, name, ending == ShutdownMode::kInGoodOrder ? ros::init_options::NoSigintHandler : 0);
   // roscpp handles only SIGINT. The other signals, too, must stop a device before the end.
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) std::signal(number, [](int) { ros::requestShutdown(); });
-  if (!takesPartInLockstep()) {
+  const bool live = !takesPartInLockstep();
+  if (live) {
     prefer(priority);
     // In lock step a node that waits for its tick could not publish any more.
     if (ending == ShutdownMode::kInGoodOrder) endInGoodOrder();
   }
-  // The handles outlive the try block: the end of the last one shuts ROS and its log down.
-  const ros::NodeHandle node_handle, private_node_handle("~");
+  // The handle outlives the try block: the end of the last one shuts ROS and its log down.
+  const ros::NodeHandle handle;
   try {
-    Node node(node_handle, private_node_handle);
-    node.run();
+    RosBus bus(live);
+    Node node(bus);
+    bus.run();
   } catch (const std::exception& error) {
     ROS_FATAL_STREAM(error.what());
     return 1;

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <ros/duration.h>
 #include <ros/time.h>
 
+#include <cmath>
 #include <cstdint>
 
 namespace microinjection {
@@ -16,6 +18,12 @@ constexpr double kLargestLead = 1;
 template <typename Time>
 double secondsBetween(const Time& from, const Time& to) {
   return 1e-9 * static_cast<double>(static_cast<std::int64_t>(to.toNSec()) - static_cast<std::int64_t>(from.toNSec()));
+}
+
+/// A duration of whole nanoseconds.
+inline ros::Duration durationOf(double seconds) {
+  ros::Duration duration;
+  return duration.fromNSec(std::llround(1e9 * seconds));
 }
 
 /// Whether a stamp is implausibly far in the future.

@@ -72,7 +72,7 @@ void TrainingSession::addGap() {
   if (state_ != InjectionState::kIdle || used_ > 0) ++left_out_;
 }
 
-void TrainingSession::add(const TrainingSample& sample) {
+void TrainingSession::add(const TraineeSample& sample) {
   if (!std::isfinite(sample.time) || !sample.tip.allFinite() || !sample.axis.allFinite() || !sample.force.allFinite() ||
       (sample.depth && !std::isfinite(*sample.depth))) {
     addGap();
@@ -88,7 +88,7 @@ void TrainingSession::add(const TrainingSample& sample) {
 }
 
 /// Adds the punctures and the volume since the last sample.
-void TrainingSession::count(const TrainingSample& sample) {
+void TrainingSession::count(const TraineeSample& sample) {
   if (punctures_) measured_.punctures += sample.punctures - (sample.punctures < *punctures_ ? 0 : *punctures_);
   punctures_ = sample.punctures;
   if (!std::isfinite(sample.volume)) return;
@@ -98,7 +98,7 @@ void TrainingSession::count(const TrainingSample& sample) {
 }
 
 /// Measures the time from the needle's start to its last work.
-void TrainingSession::follow(const TrainingSample& sample) {
+void TrainingSession::follow(const TraineeSample& sample) {
   if (state_ == InjectionState::kIdle) return;
   if (!start_) start_ = sample.tip;
   moving_ = moving_ || (sample.tip - *start_).norm() > kStarted;
@@ -106,7 +106,7 @@ void TrainingSession::follow(const TrainingSample& sample) {
   if (state_ != InjectionState::kApproach) measured_.time = sample.time - began_;
 }
 
-void TrainingSession::measureDepth(const TrainingSample& sample) {
+void TrainingSession::measureDepth(const TraineeSample& sample) {
   if (!sample.depth) {
     entry_.reset();
     return;

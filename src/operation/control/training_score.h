@@ -25,7 +25,7 @@ struct TrainingTask {
 };
 
 /// A sample of a session.
-struct TrainingSample {
+struct TraineeSample {
   double time = 0;                                  ///< s, not decreasing
   Eigen::Vector3d tip = Eigen::Vector3d::Zero();    ///< m
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< of the pipette, out of the cell
@@ -76,7 +76,7 @@ struct TrainingScore {
 class TrainingSession {
  public:
   /// Leaves out samples that are not finite, and counts them.
-  void add(const TrainingSample& sample);
+  void add(const TraineeSample& sample);
   /// Counts a sample with an invalid needle or force.
   void addGap();
   TrainingScore score(const TrainingTask& task) const;
@@ -84,9 +84,9 @@ class TrainingSession {
   int leftOut() const { return left_out_; }  ///< samples since the needle was ready
 
  private:
-  void count(const TrainingSample& sample);
-  void follow(const TrainingSample& sample);
-  void measureDepth(const TrainingSample& sample);
+  void count(const TraineeSample& sample);
+  void follow(const TraineeSample& sample);
+  void measureDepth(const TraineeSample& sample);
   void computeScore(TrainingScore& score) const;
 
   TrainingScore measured_;

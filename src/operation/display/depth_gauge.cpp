@@ -7,7 +7,7 @@
 
 namespace microinjection {
 
-DepthGauge depthGauge(const Eigen::Vector3d& top, double height, const ExpectedPuncture& puncture,
+DepthGauge depthGauge(const Eigen::Vector3d& top, double height, const PunctureDepth& puncture,
                       const std::optional<double>& indentation) {
   constexpr int kTicks = 4;
   constexpr double kTick = 0.02, kLabel = -0.09;  // display units beside the scale

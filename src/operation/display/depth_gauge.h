@@ -10,7 +10,7 @@
 namespace microinjection {
 
 /// Where the outermost layer is expected to fail.
-struct ExpectedPuncture {
+struct PunctureDepth {
   double depth = 0, low = 0, high = 0;  ///< m, past the contact: median and interval of 95 %
   double force = 0;                     ///< N, median
   bool beyond = false;                  ///< deeper than the model reaches: `low` is all that is known
@@ -28,7 +28,7 @@ struct DepthGauge {
 
 /// @param top  upper end, depth 0, display units
 /// @param indentation  m, of the needle
-DepthGauge depthGauge(const Eigen::Vector3d& top, double height, const ExpectedPuncture& puncture,
+DepthGauge depthGauge(const Eigen::Vector3d& top, double height, const PunctureDepth& puncture,
                       const std::optional<double>& indentation);
 
 }  // namespace microinjection

@@ -67,7 +67,7 @@ std::vector<ReadoutLine> lines(const Readout& readout) {
   addForce(result, About::kPredicted, "predicted", readout.predicted);
   addForce(result, About::kMeasured, "measured", readout.measured);
   if (readout.puncture) {
-    const ExpectedPuncture& puncture = *readout.puncture;
+    const PunctureDepth& puncture = *readout.puncture;
     if (puncture.beyond) {
       result.push_back({About::kMotion, "puncture below " + micro(puncture.low, 3) + " um"});
     } else {

@@ -24,7 +24,7 @@ struct Readout {
   std::optional<ForceParts> predicted;
   std::optional<ForceParts> measured;
   std::optional<Eigen::Vector3d> hand;  ///< m, position of the haptic device
-  std::optional<ExpectedPuncture> puncture;
+  std::optional<PunctureDepth> puncture;
   std::string state;      ///< for example "in contact"
   std::string injection;  ///< for example "indent"; empty: unknown
 };

@@ -11,7 +11,7 @@
 namespace microinjection {
 namespace {
 
-std::string quoted(const std::string& text) {
+std::string csvQuoted(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string result = "\"";
   for (const char c : text) {
@@ -24,7 +24,7 @@ std::string quoted(const std::string& text) {
 class Line {
  public:
   Line() { out_.precision(6); }
-  void add(const std::string& text) { out_ << separator() << quoted(text); }
+  void add(const std::string& text) { out_ << separator() << csvQuoted(text); }
   void add(double value) { out_ << separator() << value; }
   void add(unsigned value) { out_ << separator() << value; }
   void add(const std::optional<double>& value) { value ? add(*value) : add(std::string()); }

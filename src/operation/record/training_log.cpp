@@ -14,7 +14,7 @@ namespace {
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 /// Quotes a text for YAML: in a double-quoted line only `"` and `\` must be escaped.
-std::string quoted(const std::string& text) {
+std::string yamlQuoted(const std::string& text) {
   std::string result = "\"";
   for (const char letter : text)
     result += (letter == '"' || letter == '\\') ? std::string("\\") + letter : std::string(1, letter);
@@ -24,9 +24,9 @@ std::string quoted(const std::string& text) {
 std::string toYaml(const TrainingConfig& config, const std::string& session, const TrainingScore& score, int left_out) {
   std::ostringstream out;
   out.precision(9);
-  out << "operator: " << quoted(config.operator_name) << "\nsession: " << quoted(session)
-      << "\noutcome: " << toText(score.outcome) << "\nreason: " << quoted(score.reason) << "\nscore: " << score.score()
-      << "\nmoments_left_out: " << left_out << "\nmeasures:\n";
+  out << "operator: " << yamlQuoted(config.operator_name) << "\nsession: " << yamlQuoted(session)
+      << "\noutcome: " << toText(score.outcome) << "\nreason: " << yamlQuoted(score.reason)
+      << "\nscore: " << score.score() << "\nmoments_left_out: " << left_out << "\nmeasures:\n";
   const double* points = score.points.data();
   for (const TrainingMeasure& measure : score.measures(config.task)) {
     out << "  " << measure.key << ": {value: " << measure.value << ", reference: " << measure.reference
@@ -92,7 +92,7 @@ void TrainingLog::add(const SessionTable::Row& row) {
   }
   const int punctures = puncturesOf(row);
   if (!row.needle || !force) return session_.addGap();
-  TrainingSample sample;
+  TraineeSample sample;
   sample.time = row.time;
   sample.tip = row.needle->tip;
   sample.axis = row.needle->axis;

@@ -7,7 +7,7 @@
 
 #include "rig/devices/joint_axes.h"
 #include "rig/devices/origin_monitor.h"
-#include "rig/devices/reading_filter.h"
+#include "rig/devices/position_filter.h"
 #include "rig/devices/reply_times.h"
 #include "rig/devices/serial_manipulator.h"
 #include "rig/serial/serial_port.h"
@@ -91,7 +91,7 @@ class MoveByMove : public SerialManipulator {
   bool detectNewOrigin(const Eigen::Vector3d& position, double outside, bool new_zero, double margin);
 
   const MoveByMoveConfig common_;
-  ReadingFilter filter_;
+  PositionFilter filter_;
   ReplyTimes reply_times_;
   double answer_time_;  ///< s, measured, at least that of the file
   OriginMonitor origin_monitor_;

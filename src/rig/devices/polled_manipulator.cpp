@@ -8,9 +8,9 @@
 namespace microinjection {
 namespace {
 
-constexpr double kLongestExtrapolation = 0.1;  // s, of motion by which an extrapolated position may be wrong
-constexpr int kSetupTries = 6;                 // for a setup line, which needs two equal replies
-constexpr std::size_t kLongestLine = 80;
+constexpr double kExtrapolatedMotion = 0.1;  // s, of motion by which an extrapolated position may be wrong
+constexpr int kSetupTries = 6;               // for a setup line, which needs two equal replies
+constexpr std::size_t kLongestReply = 80;
 
 std::string printable(const std::string& text) {
   std::string result;
@@ -36,7 +36,7 @@ PolledManipulator::PolledManipulator(const PolledManipulatorConfig& config, std:
                  dialect.longest_move),
       reading_margin_(config.reading_margin),
       dialect_(dialect),
-      lines_("\r", kLongestLine) {}
+      lines_("\r", kLongestReply) {}
 
 ManipulatorAbilities PolledManipulator::abilities() const {
   const double reading = dialect_.longest_reading * common_.byteTime() + answer_time_;
@@ -172,7 +172,7 @@ void PolledManipulator::updatePosition(const Eigen::Vector3d& position) {
   const Eigen::Vector3d nowhere = Eigen::Vector3d::Constant(std::nan(""));
   const Eigen::Vector3d expected = position_ && settled_ ? extrapolatedPosition(time()) : nowhere;
   const double speed = move_ ? (move_->to - move_->from).norm() / std::max(move_->duration, 1e-3) : 0;  // counts/s
-  const double under_way = reading_margin_ / count() + kLongestExtrapolation * speed;
+  const double under_way = reading_margin_ / count() + kExtrapolatedMotion * speed;
   // At rest, or before rest is confirmed, only four equal readings can change the position.
   const double tolerance = move_ ? under_way : kSame;
   if (!filter_.accept(position, expected, tolerance, tolerance) || !reply_times_.measured()) return;  // requested again

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kParameters = BellFit::kParameters;
 constexpr double kFarthest = 1000, kNarrowest = 0.2, kWidest = 1000;  ///< planes, of middle and width
-constexpr double kOutlierChance = 1e-4;
+constexpr double kOutlyingPlane = 1e-4;
 
 struct BellCost {
   BellPoint point;
@@ -33,7 +33,7 @@ double errorOf(const BellPoint& point, const Bell& bell) {
 }
 
 /// Fits the used points; returns whether it converged.
-bool fit(const std::vector<BellPoint>& points, double loss, Bell& bell) {
+bool fitUsed(const std::vector<BellPoint>& points, double loss, Bell& bell) {
   ceres::Problem problem;
   for (const BellPoint& point : points) {
     if (!point.used) continue;
@@ -87,13 +87,13 @@ BellFit fitBell(std::vector<BellPoint>& points, double width) {
   BellFit result;
   result.bell << 0, 1, 0, std::log(width);
   constexpr double kStartLoss = 0.1;
-  if (!fit(points, kStartLoss, result.bell)) return result;
+  if (!fitUsed(points, kStartLoss, result.bell)) return result;
   const auto freedom = static_cast<double>(points.size()) - kParameters;
-  const double limit = studentLimit(1 - kOutlierChance, freedom) * robustScale(points, result.bell);
+  const double limit = studentLimit(1 - kOutlyingPlane, freedom) * robustScale(points, result.bell);
   for (BellPoint& point : points) point.used = std::abs(errorOf(point, result.bell)) <= limit;
   if (std::count_if(points.begin(), points.end(), [](const BellPoint& p) { return p.used; }) < kParameters + 2)
     return result;
-  if (!fit(points, 0, result.bell)) return result;
+  if (!fitUsed(points, 0, result.bell)) return result;
   finish(points, result);
   return result;
 }

@@ -12,7 +12,7 @@ namespace {
 constexpr int kRounds = 10;  ///< of fit and flags, until the flags stay
 
 /// Returns whether a fit was found.
-bool fit(CalibrationFit& problem) {
+bool fitAndFlag(CalibrationFit& problem) {
   if (!problem.solve(true)) return false;
   problem.flagOutliers();
   for (int i = 0; i < kRounds; ++i) {
@@ -93,7 +93,7 @@ CalibrationOutcome calibrate(const std::vector<TipObservation>& waypoints, const
   const std::optional<CalibrationStart> start = linearStart(data);
   if (!start) return refuse("the observations do not determine the axes: the pixel does not follow every axis");
   CalibrationFit problem(data, *start);
-  if (!fit(problem)) return refuse("the fit did not converge: pixels and positions do not belong together");
+  if (!fitAndFlag(problem)) return refuse("the fit did not converge: pixels and positions do not belong together");
   outcome.outliers = outliersOf(data, problem);
   ConfigErrors errors;
   checkCounts(data, problem, limits, errors);

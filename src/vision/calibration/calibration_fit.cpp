@@ -11,11 +11,9 @@
 namespace microinjection {
 namespace {
 
-constexpr double kOutlier = 4.5;            ///< deviations; 4 of 100 000 good tips lie beyond
-constexpr double kLeastLimit = 1e-3;        ///< stated deviations, an outlier of observations without noise
-constexpr double kOutlierChance = 1e-5;     ///< of a good focus reading
-constexpr double kRayleighMedian = 1.1774;  ///< of the norm of two standard normal values
-constexpr double kLoss = 2;                 ///< deviations, scale of Cauchy's loss
+constexpr double kLeastLimit = 1e-3;       ///< stated deviations, an outlier of observations without noise
+constexpr double kOutlyingReading = 1e-5;  ///< of a good focus reading
+constexpr double kLoss = 2;                ///< deviations, scale of Cauchy's loss
 
 bool isPositive(int parameter) { return parameter == kPixelSize || parameter == kAxisRatio; }
 
@@ -196,12 +194,12 @@ bool CalibrationFit::flagOutliers() {
   for (std::size_t k = 0; k < focus.size(); ++k) readings.push_back(focusNorm(k));
   // The parameters take up a part of the residuals, as in an unbiased variance.
   const double share = 2.0 * countOf(use_pixel_) / std::max(1, freedom());
-  const double limit = kOutlier * medianOf(norms) / kRayleighMedian * std::sqrt(share);
+  const double limit = kOutlierDeviations * medianOf(norms) / kRayleighMedian * std::sqrt(share);
   for (std::size_t k = 0; k < pixels.size(); ++k) pixels[k] = norms[k] <= std::max(kLeastLimit, limit);
   if (!readings.empty() && focusFreedom() > 0) {
     const double focus_share = static_cast<double>(countOf(use_focus_)) / focusFreedom();
     const double deviation = 1.4826 * medianOf(readings) * std::sqrt(focus_share);
-    const double focus_limit = studentLimit(1 - kOutlierChance, focusFreedom()) * deviation;
+    const double focus_limit = studentLimit(1 - kOutlyingReading, focusFreedom()) * deviation;
     for (std::size_t k = 0; k < focus.size(); ++k) focus[k] = readings[k] <= std::max(kLeastLimit, focus_limit);
   }
   const bool changed = pixels != use_pixel_ || focus != use_focus_;

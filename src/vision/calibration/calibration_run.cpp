@@ -6,11 +6,11 @@
 namespace microinjection {
 namespace {
 
-constexpr double kArrived = 1e-6;  // m, from the target: motors differ from a command by their resolution
-constexpr double kSlow = 4;        // times the planned duration of a move, before it counts as failed
-constexpr double kPatience = 3;    // s, on top: a device needs time to begin and to report
-constexpr int kMostUnseen = 10;    // points in a row: one side of a pattern may lie outside of the image
-constexpr double kUnseen = 5;      // times observation_time, in which a tip that was not seen may still come
+constexpr double kAtWaypoint = 1e-6;  // m, from the target: motors differ from a command by their resolution
+constexpr double kSlow = 4;           // times the planned duration of a move, before it counts as failed
+constexpr double kPatience = 3;       // s, on top: a device needs time to begin and to report
+constexpr int kMostUnseen = 10;       // points in a row: one side of a pattern may lie outside of the image
+constexpr double kUnseen = 5;         // times observation_time, in which a tip that was not seen may still come
 
 }  // namespace
 
@@ -18,7 +18,7 @@ CalibrationRun::CalibrationRun(const CalibrationPatternConfig& config, const Cal
     : config_(config), plan_(plan) {}
 
 bool CalibrationRun::arrived(const CalibrationInput& input) const {
-  return !input.busy && input.position && (*input.position - plan_.waypoints[next_].position).norm() < kArrived;
+  return !input.busy && input.position && (*input.position - plan_.waypoints[next_].position).norm() < kAtWaypoint;
 }
 
 std::optional<Eigen::Vector3d> CalibrationRun::step(const CalibrationInput& input) {

@@ -8,8 +8,6 @@
 namespace microinjection {
 namespace {
 
-constexpr double kConfidence = 0.95;
-
 bool isOfFocus(int parameter) { return parameter >= kFocusX || parameter == kBacklashY; }
 
 std::string refusalOf(const NewTip& tip, const Play& play, const std::string& date, bool needs_y) {
@@ -31,7 +29,7 @@ std::string refusalOf(const NewTip& tip, const Play& play, const std::string& da
 
 Interval CameraCalibration::interval(CalibrationParameter parameter) const {
   const double deviation = std::sqrt(covariance(parameter, parameter));
-  const double half = studentLimit(kConfidence, isOfFocus(parameter) ? focus_freedom : freedom) * deviation;
+  const double half = studentLimit(kIntervalConfidence, isOfFocus(parameter) ? focus_freedom : freedom) * deviation;
   return {value[parameter] - half, value[parameter] + half};
 }
 

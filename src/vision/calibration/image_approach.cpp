@@ -9,7 +9,7 @@ namespace microinjection {
 namespace {
 
 constexpr double kLongest = 0.05;     // s, that the set-point advances in a step: a stall must not become a jump
-constexpr double kArrived = 0.5e-6;   // m, of the motors from their goal
+constexpr double kAtGoal = 0.5e-6;    // m, of the motors from their goal
 constexpr double kBeyondPlay = 3e-6;  // m, by which a motion is longer than the backlash that it takes up
 
 }  // namespace
@@ -31,7 +31,7 @@ ImageApproach::ImageApproach(const ImageApproachConfig& config, const CameraCali
       pixel_(target),
       images_(config.target),
       play_(calibration.backlash(), position),
-      stream_(position, kArrived, now),
+      stream_(position, kAtGoal, now),
       setpoint_(position),
       goal_(position),
       began_(now),

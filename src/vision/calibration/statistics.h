@@ -13,6 +13,13 @@ struct Interval {
   double half() const { return 0.5 * (high - low); }
 };
 
+/// Confidence of the intervals that are stated.
+constexpr double kIntervalConfidence = 0.95;
+/// Robust deviations beyond which a tip is an outlier; 4 of 100 000 good tips lie beyond.
+constexpr double kOutlierDeviations = 4.5;
+/// Median of the norm of two standard normal values.
+constexpr double kRayleighMedian = 1.1774;
+
 /// The t that |T| stays below with probability `confidence`, T of Student's distribution with
 /// `freedom` (>= 1) degrees of freedom.
 double studentLimit(double confidence, double freedom);

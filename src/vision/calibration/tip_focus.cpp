@@ -11,7 +11,6 @@ namespace {
 
 constexpr int kLeastPlanes = 7;  ///< that a fit needs
 constexpr int kMostApart = 8;    ///< planes, of the peaks of a transparent tip
-constexpr double kConfidence = 0.95;
 
 std::string refusalOf(const std::vector<FocusSample>& samples) {
   if (samples.size() < kLeastPlanes) {
@@ -184,7 +183,7 @@ FocusReport findFocus(std::vector<FocusSample> samples, const TipFocusConfig& co
   report.verdict = FocusVerdict::kUnsure;
   report.text = "no bell fits the planes beside the sharpest";
   if (!result.good) return report;
-  const double half = studentLimit(kConfidence, result.freedom()) * stack.step * result.deviation;
+  const double half = studentLimit(kIntervalConfidence, result.freedom()) * stack.step * result.deviation;
   report.height = middle;
   report.interval = {middle - half, middle + half};
   report.text = doubtsOf(stack, report, config);

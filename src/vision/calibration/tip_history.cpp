@@ -10,9 +10,9 @@
 namespace microinjection {
 namespace {
 
-constexpr std::size_t kLeastTips = 4;   ///< below, the spread says nothing
-constexpr double kLeastSpread = 10e-6;  ///< m, what one holder and equal pipettes leave
-constexpr double kConfidence = 0.995;   ///< two-sided, of each coordinate
+constexpr std::size_t kLeastTips = 4;        ///< below, the spread says nothing
+constexpr double kLeastSpread = 10e-6;       ///< m, what one holder and equal pipettes leave
+constexpr double kRegionConfidence = 0.995;  ///< two-sided, of each coordinate
 
 }  // namespace
 
@@ -25,7 +25,7 @@ std::optional<TipRegion> tipRegion(const std::vector<TipRecord>& history) {
   TipRegion region;
   region.count = static_cast<int>(history.size());
   const double n = region.count;
-  const double reach = studentLimit(kConfidence, n - 1) * std::sqrt(1 + 1 / n);
+  const double reach = studentLimit(kRegionConfidence, n - 1) * std::sqrt(1 + 1 / n);
   for (int i = 0; i < 2; ++i) {
     std::vector<double> values;
     for (const TipRecord& tip : history) values.push_back(tip.place[i]);

@@ -13,10 +13,8 @@ namespace {
 
 constexpr int kRobustSteps = 3;  ///< touches tried between two heights, of the robust fit
 constexpr int kRobustIterations = 15;
-constexpr int kSteps = 25;                                          ///< and of the profile
-constexpr double kOutlier = 4.5;                                    ///< robust deviations
-constexpr double kNormalMedian = 0.6745, kRayleighMedian = 1.1774;  ///< of a distance in one and in two coordinates
-constexpr double kConfidence = 0.95;
+constexpr int kSteps = 25;                ///< and of the profile
+constexpr double kNormalMedian = 0.6745;  ///< of the size of a standard normal value
 
 /// The samples along the approach, in micrometres, so that the columns are of one size.
 struct Series {
@@ -70,7 +68,7 @@ Series withoutOutliers(const Series& series) {
   }
   const double median = medianOf({best_distance.data(), best_distance.data() + best_distance.size()});
   const double deviation = median / (series.coordinates() == 1 ? kNormalMedian : kRayleighMedian);
-  const double limit = kOutlier * deviation * std::sqrt(series.measured() / series.freedom());
+  const double limit = kOutlierDeviations * deviation * std::sqrt(series.measured() / series.freedom());
   std::vector<Eigen::Index> kept;
   for (Eigen::Index i = 0; i < series.way.size(); ++i) {
     if (best_distance[i] <= limit) kept.push_back(i);
@@ -103,7 +101,7 @@ Profile profileOf(const Series& series) {
     profile.squares = squares.back();
     profile.touch = touch;
   }
-  const double limit = profile.squares * (1 + fisherLimit(kConfidence, 1, series.freedom()) / series.freedom());
+  const double limit = profile.squares * (1 + fisherLimit(kIntervalConfidence, 1, series.freedom()) / series.freedom());
   profile.interval = {profile.touch, profile.touch};
   for (std::size_t i = 0; i < touches.size(); ++i) {
     if (squares[i] > limit) continue;

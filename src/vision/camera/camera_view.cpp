@@ -8,7 +8,7 @@ namespace microinjection {
 namespace {
 
 constexpr double kLargestSide = 16384;  // px
-const Range kSide = Range::closed(1, kLargestSide);
+const Range kViewSide = Range::closed(1, kLargestSide);
 // From an electron microscope to a magnifying glass.
 const Range kPixelSize = Range::closed(1e-9, 1e-3);       // m
 const Range kAngle = Range::closed(-2 * M_PI, 2 * M_PI);  // rad
@@ -18,8 +18,8 @@ const Range kOrigin = Range::closed(-1e6, 1e6);           // px
 
 CameraView CameraView::read(ConfigReader& reader) {
   CameraView view;
-  reader.integer("width", view.width, kSide);
-  reader.integer("height", view.height, kSide);
+  reader.integer("width", view.width, kViewSide);
+  reader.integer("height", view.height, kViewSide);
   reader.number("pixel_size", view.pixel_size, kPixelSize);
   reader.number("angle", view.angle, kAngle);
   reader.boolean("mirrored", view.mirrored);
@@ -30,8 +30,8 @@ CameraView CameraView::read(ConfigReader& reader) {
 
 void CameraView::validate() const {
   ConfigErrors errors("camera view");
-  errors.require(kSide, "width", width, " px");
-  errors.require(kSide, "height", height, " px");
+  errors.require(kViewSide, "width", width, " px");
+  errors.require(kViewSide, "height", height, " px");
   errors.require(kPixelSize, "pixel_size", pixel_size, " m");
   errors.require(kAngle, "angle", angle, " rad");
   errors.require(kOrigin, "origin x", origin.x(), " px");

@@ -15,7 +15,7 @@ constexpr double kSettingTolerance = 0.01;  // of the value: devices round to th
 
 constexpr char kInPipeline[] = "is a pipeline: its size, format, rate, exposure and gain belong in its text";
 
-const Range kSide = Range::closed(0, 16384);  // px
+const Range kAskedSide = Range::closed(0, 16384);  // px
 
 bool isIndex(const std::string& device) {
   return !device.empty() && device.size() < 4 &&
@@ -59,8 +59,8 @@ std::unique_ptr<cv::VideoCapture> openDevice(const DeviceSourceConfig& config) {
 DeviceSourceConfig DeviceSourceConfig::read(ConfigReader& reader) {
   DeviceSourceConfig config;
   reader.text("device", config.device);
-  reader.integer("width", config.width, kSide);
-  reader.integer("height", config.height, kSide);
+  reader.integer("width", config.width, kAskedSide);
+  reader.integer("height", config.height, kAskedSide);
   reader.text("format", config.format);
   reader.number("rate", config.rate, Range::nonNegative());
   for (auto [key, value] : {std::pair("exposure", &config.exposure), std::pair("gain", &config.gain)}) {
@@ -78,8 +78,8 @@ DeviceSourceConfig DeviceSourceConfig::read(ConfigReader& reader) {
 void DeviceSourceConfig::validate() const {
   ConfigErrors errors("camera device");
   errors.require(!device.empty(), "device", device, "", "an index, a path or a pipeline");
-  errors.require(kSide, "width", width, " px");
-  errors.require(kSide, "height", height, " px");
+  errors.require(kAskedSide, "width", width, " px");
+  errors.require(kAskedSide, "height", height, " px");
   errors.require((width == 0) == (height == 0), "width", width, " px", "set together with height");
   errors.require(format.size() <= 4, "format", format, "", "of at most 4 characters");
   errors.require(Range::nonNegative(), "rate", rate, " 1/s");

@@ -8,7 +8,7 @@ namespace microinjection {
 namespace {
 
 const std::vector<std::string> kSources = {"device", "folder", "video"};
-const Range kRate = Range::closed(0, 1e5);  // 1/s
+const Range kAskedRate = Range::closed(0, 1e5);  // 1/s
 
 }  // namespace
 
@@ -21,7 +21,7 @@ FrameSourceConfig FrameSourceConfig::read(ConfigReader& reader) {
     return config;
   }
   reader.text("path", config.path, ConfigReader::kRequired);
-  reader.number("rate", config.rate, kRate);
+  reader.number("rate", config.rate, kAskedRate);
   reader.boolean("loop", config.loop);
   if (config.source == "folder" && config.rate == 0) reader.error("rate", "must be above 0 for a folder");
   return config;
@@ -30,7 +30,7 @@ FrameSourceConfig FrameSourceConfig::read(ConfigReader& reader) {
 void FrameSourceConfig::validate() const {
   ConfigErrors errors("camera");
   errors.requireOneOf(kSources, "source", source);
-  errors.require(kRate, "rate", rate, " 1/s");
+  errors.require(kAskedRate, "rate", rate, " 1/s");
   errors.require(source != "folder" || rate > 0, "rate", rate, " 1/s", "above 0 for a folder");
   errors.require(source == "device" || !path.empty(), "path", path, "", "set");
   errors.throwAny();

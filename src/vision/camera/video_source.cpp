@@ -6,14 +6,14 @@
 namespace microinjection {
 namespace {
 
-const Range kRate = Range::closed(1e-3, 1e5);  // 1/s; files without a rate claim 0 or a time base
+const Range kFileRate = Range::closed(1e-3, 1e5);  // 1/s; files without a rate claim 0 or a time base
 
 }  // namespace
 
 VideoSource::VideoSource(const std::string& path, double rate, bool loop) : path_(path), loop_(loop) {
   if (!capture_.open(path)) throw ConfigError(path + ": is no video that can be opened");
   if (rate == 0) rate = capture_.get(cv::CAP_PROP_FPS);
-  if (!kRate.contains(rate)) throw ConfigError(path + ": has no frame rate of its own: set rate");
+  if (!kFileRate.contains(rate)) throw ConfigError(path + ": has no frame rate of its own: set rate");
   period_ = 1 / rate;
 }
 

@@ -4,6 +4,12 @@
 
 namespace microinjection {
 
+/// What shows a pipette's axis: the strip behind its end.
+constexpr int kAxisRows = 160;      ///< px behind the end, whose symmetry gives the axis
+constexpr double kAxisMargin = 24;  ///< px beside an outline, that shows the symmetry
+constexpr double kAxisBlur = 1.5;   ///< px, of the derivative across the axis
+constexpr int kAxisShift = 8;       ///< columns, that the axis may be off
+
 /// A straight axis in a strip, by the symmetry of its rows.
 struct AxisFit {
   bool valid = false;

@@ -6,15 +6,13 @@
 namespace microinjection {
 namespace {
 
-constexpr int kRounds = 3;
-constexpr int kRun = 45;                         // share 1 / n of the border: the shortest dent
-constexpr double kLeastDent = 0.7, kDent = 3;    // px; of the median distance: what is off the ellipse
-constexpr double kLeastRest = 0.45;              // of the points, that an ellipse needs
-constexpr double kBeside[] = {0.17, 0.4, 0.65};  // rad to both sides of a dent, that it may reach
-constexpr double kBetter = 0.6;                  // of the residual, that leaving dents out must leave at most
-constexpr double kAsGood = 1.15;                 // of the smallest residual, one that is as good
-
-double angleBetween(double a, double b) { return std::abs(std::remainder(a - b, 2 * M_PI)); }
+constexpr int kMostDents = 3;
+constexpr int kRun = 45;                             // share 1 / n of the border: the shortest dent
+constexpr double kLeastDent = 0.7, kOffEllipse = 3;  // px; of the median distance: what is off the ellipse
+constexpr double kLeastRest = 0.45;                  // of the points, that an ellipse needs
+constexpr double kDentFlanks[] = {0.17, 0.4, 0.65};  // rad to both sides of a dent, that it may reach
+constexpr double kBetter = 0.6;                      // of the residual, that leaving dents out must leave at most
+constexpr double kAsGood = 1.15;                     // of the smallest residual, one that is as good
 
 double directionOf(const cv::Point2d& point, const Ellipse& ellipse) {
   return std::atan2(point.y - ellipse.centre.y, point.x - ellipse.centre.x);
@@ -57,14 +55,14 @@ EllipseFit withoutDents(const std::vector<cv::Point2d>& points, const EllipseFit
   EllipseFit best = fit;
   std::vector<bool> left_out(points.size(), false);
   bool any = false;
-  for (int round = 0; round < kRounds; ++round) {
-    const double limit = std::max(kLeastDent, kDent * medianDistance(points, best.ellipse));
+  for (int round = 0; round < kMostDents; ++round) {
+    const double limit = std::max(kLeastDent, kOffEllipse * medianDistance(points, best.ellipse));
     Dent dent;
     if (!findDent(points, left_out, best.ellipse, limit, dent)) break;
     std::vector<EllipseFit> fits;
     std::vector<std::vector<bool>> masks;
     std::vector<double> residuals;
-    for (const double beside : kBeside) {
+    for (const double beside : kDentFlanks) {
       std::vector<bool> mask = left_out;
       std::vector<cv::Point2d> rest;
       for (std::size_t i = 0; i < points.size(); ++i) {

@@ -7,23 +7,24 @@
 #include <optional>
 #include <vector>
 
+#include "vision/detection/robust_loss.h"
+
 namespace microinjection {
 namespace {
 
-constexpr double kBeside = 3;    // px, from the needle's edge to the first line
-constexpr double kWidest = 0.6;  // of the radius: the last line
-constexpr int kRounds = 8;
-constexpr double kBlur = 1.5;     // px, standard deviation along the needle
-constexpr double kMargin = 6;     // px, that a depth may leave what the tip's place allows
-constexpr double kCoarse = 0.25;  // px, steps of the depth in the search
-constexpr double kWindow = 2.5;   // px, around the best depth, for the steepest place of a line
-constexpr double kTukey = 4.685;
-constexpr double kTied = 3;  // neighbouring lines that the smoothing ties together
+constexpr double kFirstLine = 3;   // px, from the needle's edge to the first line
+constexpr double kLastLine = 0.6;  // of the radius: the last line
+constexpr int kReweightings = 8;
+constexpr double kBlurAlongNeedle = 1.5;  // px, standard deviation along the needle
+constexpr double kDepthMargin = 6;        // px, that a depth may leave what the tip's place allows
+constexpr double kDepthStep = 0.25;       // px, steps of the depth in the search
+constexpr double kSteepestWindow = 2.5;   // px, around the best depth, for the steepest place of a line
+constexpr double kTied = 3;               // neighbouring lines that the smoothing ties together
 constexpr std::size_t kLeastLines = 12;
-constexpr int kFirstRow = 10, kLastRow = 30;  // px behind the tip, where the needle's width is measured
-constexpr int kWidestNeedle = 60;             // px, half of it
-constexpr double kClearEdge = 0.35;           // of the clearest edge
-constexpr double kEdgeOverNoise = 0.5;        // of a pixel's noise: the mean of the rows has a fifth of it
+constexpr int kFirstWidthRow = 10, kLastWidthRow = 30;  // px behind the tip, where the needle's width is measured
+constexpr int kWidestNeedle = 60;                       // px, half of it
+constexpr double kClearEdge = 0.35;                     // of the clearest edge
+constexpr double kEdgeOverNoise = 0.5;                  // of a pixel's noise: the mean of the rows has a fifth of it
 
 /// Lines parallel to a needle, in its frame: `across` and `along` (px) from the tip, along towards the shaft.
 class Lines {
@@ -50,14 +51,15 @@ class Lines {
     for (int i = 0; i < rows; ++i) {
       const std::optional<double> place = crossing(across[i]);
       const cv::Point2d start = tip_ + across[i] * v() + (place.value_or(0) + low) * u_;
-      seen_[i] = place && frame_.contains(start, kMargin) && frame_.contains(start + (columns - 1) * u_, kMargin);
+      seen_[i] =
+          place && frame_.contains(start, kDepthMargin) && frame_.contains(start + (columns - 1) * u_, kDepthMargin);
       for (int k = 0; k < columns; ++k) {
         x.at<float>(i, k) = static_cast<float>(start.x + k * u_.x);
         y.at<float>(i, k) = static_cast<float>(start.y + k * u_.y);
       }
     }
     cv::remap(frame_.grey(), grey, x, y, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
-    cv::GaussianBlur(grey, grey, cv::Size(11, 3), kBlur, 0.7, cv::BORDER_REPLICATE);
+    cv::GaussianBlur(grey, grey, cv::Size(11, 3), kBlurAlongNeedle, 0.7, cv::BORDER_REPLICATE);
     cv::Sobel(grey, slope_, CV_32F, 1, 0, 1, 0.5, 0, cv::BORDER_REPLICATE);
     if (border_.polarity == Polarity::kFalling) slope_ = -slope_;
     if (border_.polarity == Polarity::kEither) slope_ = cv::abs(slope_);
@@ -73,12 +75,12 @@ class Lines {
     const float* row = slope_.ptr<float>(static_cast<int>(i));
     return row[k] + (column - k) * (row[k + 1] - row[k]);
   }
-  /// Displacement at the steepest place within kWindow of another one; none: it is at the end.
+  /// Displacement at the steepest place within kSteepestWindow of another one; none: it is at the end.
   std::optional<double> steepest(std::size_t i, double displacement) const {
     const float* row = slope_.ptr<float>(static_cast<int>(i));
     const double middle = columnOf(displacement);
-    const int first = std::max(1, static_cast<int>(std::ceil(middle - kWindow)));
-    const int last = std::min(slope_.cols - 2, static_cast<int>(std::floor(middle + kWindow)));
+    const int first = std::max(1, static_cast<int>(std::ceil(middle - kSteepestWindow)));
+    const int last = std::min(slope_.cols - 2, static_cast<int>(std::floor(middle + kSteepestWindow)));
     int best = -1;
     for (int k = first; k <= last; ++k) {
       if (row[k] > 0 && row[k] >= row[k - 1] && row[k] >= row[k + 1] && (best < 0 || row[k] > row[best])) best = k;
@@ -106,10 +108,10 @@ class Lines {
 /// Displacement at a distance from the axis over that under the tip.
 double shape(double half_width, double across) { return M_2_PI * std::asin(half_width / std::abs(across)); }
 
-/// px, the depth from -kMargin to `deepest` at which the outline is steepest.
+/// px, the depth from -kDepthMargin to `deepest` at which the outline is steepest.
 double steepestDepth(const Lines& lines, double half_width, double deepest) {
   double depth = 0, most = 0;
-  for (double d = -kMargin; d <= deepest; d += kCoarse) {
+  for (double d = -kDepthMargin; d <= deepest; d += kDepthStep) {
     double sum = 0;
     for (std::size_t i = 0; i < lines.size(); ++i) {
       if (lines.isSeen(i)) sum += lines.steepness(i, d * shape(half_width, lines.across(i)));
@@ -130,14 +132,14 @@ struct Reading {
 
 /// Depth, place and slant by least squares with Tukey's weights; false when they cannot be told apart.
 bool fit(const std::vector<Reading>& readings, double scale, Eigen::Vector3d& solution, double& deviation) {
-  double spread = kWindow;
+  double spread = kSteepestWindow;
   Eigen::Matrix3d matrix;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kReweightings; ++round) {
     matrix.setZero();
     Eigen::Vector3d right(0, 0, 0);
     for (const Reading& reading : readings) {
       const Eigen::Vector3d row = reading.row(scale);
-      const double d = (reading.displacement - row.dot(solution)) / (kTukey * spread);
+      const double d = (reading.displacement - row.dot(solution)) / (RobustLoss::kTukey * spread);
       const double weight = std::abs(d) < 1 ? (1 - d * d) * (1 - d * d) : 0;
       matrix += weight * row * row.transpose();
       right += weight * reading.displacement * row;
@@ -173,12 +175,12 @@ double symmetricEdge(const cv::Mat& slope, double noise) {
 
 double needleHalfWidth(const Frame& frame, const cv::Point2d& tip, double direction) {
   const cv::Point2d u(std::cos(direction), std::sin(direction)), v(-u.y, u.x);
-  constexpr int kColumns = 2 * kWidestNeedle + 1, kRows = kLastRow - kFirstRow + 1;
+  constexpr int kColumns = 2 * kWidestNeedle + 1, kRows = kLastWidthRow - kFirstWidthRow + 1;
   cv::Mat x(kRows, kColumns, CV_32F), y(kRows, kColumns, CV_32F), grey, mean, slope;
   for (int row = 0; row < kRows; ++row) {
     for (int k = 0; k < kColumns; ++k) {
       const cv::Point2d point =
-          tip + static_cast<double>(kFirstRow + row) * u + static_cast<double>(k - kWidestNeedle) * v;
+          tip + static_cast<double>(kFirstWidthRow + row) * u + static_cast<double>(k - kWidestNeedle) * v;
       if (!frame.contains(point)) return 0;
       x.at<float>(row, k) = static_cast<float>(point.x);
       y.at<float>(row, k) = static_cast<float>(point.y);
@@ -201,14 +203,14 @@ BorderDisplacement findDisplacement(const Frame& frame, const CellBorder& border
   const double half_width = needleHalfWidth(frame, tip, direction);
   result.finding = Finding::notFound("the needle's edges are not clear");
   if (half_width <= 0) return result;
-  const double radius = 0.5 * border.ellipse.meanDiameter(), last = kWidest * radius;
+  const double radius = 0.5 * border.ellipse.meanDiameter(), last = kLastLine * radius;
   std::vector<double> across;
-  for (double s = half_width + kBeside; s <= last; ++s) across.insert(across.end(), {-s, s});
+  for (double s = half_width + kFirstLine; s <= last; ++s) across.insert(across.end(), {-s, s});
   std::sort(across.begin(), across.end());
   result.finding = Finding::notFound("the outline beside the needle is not clear");
   if (across.size() < kLeastLines) return result;
-  const double deepest = std::max(0.0, *crossing) + kMargin;
-  lines.read(across, -deepest - kMargin, 2 * kMargin);
+  const double deepest = std::max(0.0, *crossing) + kDepthMargin;
+  lines.read(across, -deepest - kDepthMargin, 2 * kDepthMargin);
   const double depth = steepestDepth(lines, half_width, deepest);
   std::vector<Reading> readings;
   for (std::size_t i = 0; i < lines.size(); ++i) {

@@ -9,10 +9,10 @@
 namespace microinjection {
 namespace {
 
-constexpr double kNear = 1.1, kNearStrength = 0.75;
-constexpr double kLeastCoverage = 0.55, kLeastConsistency = 0.6, kLeastStrength = 0.55;  // of a second border
-constexpr double kRingSignificance = 4, kRingCoverage = 0.45;                            // of a faint ring
-constexpr double kFaintCoverage = 0.8;                                                   // of a border in noise
+constexpr double kNextBorder = 1.1, kNextStrength = 0.75;
+constexpr double kSecondCoverage = 0.55, kSecondConsistency = 0.6, kSecondStrength = 0.55;  // of a second border
+constexpr double kRingSignificance = 4, kRingCoverage = 0.45;                               // of a faint ring
+constexpr double kFaintCoverage = 0.8;                                                      // of a border in noise
 constexpr double kBesideRing = 8;      // px, to both sides of a faint ring
 constexpr double kFaintSmoothing = 2;  // px
 constexpr double kFreeGain = 0.07;     // of strength, what a freer path must be better by
@@ -60,8 +60,8 @@ CellBorder bestBorder(const Frame& frame, const PolarMap& map, const std::string
 }
 
 bool isSecondBorder(const CellBorder& border) {
-  return border.finding.hasValues() && border.coverage >= kLeastCoverage && border.consistency >= kLeastConsistency &&
-         border.strength >= kLeastStrength && border.outside < 0.5;
+  return border.finding.hasValues() && border.coverage >= kSecondCoverage && border.consistency >= kSecondConsistency &&
+         border.strength >= kSecondStrength && border.outside < 0.5;
 }
 
 CellBorder searchBand(const Frame& frame, const CellBorder& main, double low, double high, const std::string& look,
@@ -101,13 +101,13 @@ std::vector<CellBorder> bordersOutside(const Frame& frame, const CellBorder& mai
     if (!isSecondBorder(next) || next.significance < kBorderSignificance) {
       // Near a zona's border that was found, a ring is its halo.
       const CellBorder& inner = found.empty() ? main : found.back();
-      next = faintBorder(frame, inner, found.empty() ? kBorderGap : kNear, limit * radiusOf(main), look);
+      next = faintBorder(frame, inner, found.empty() ? kBorderGap : kNextBorder, limit * radiusOf(main), look);
       if (next.finding.hasValues()) found.push_back(next);
       break;
     }
     // Near another border a halo of it may look like one.
-    const bool near = radiusOf(next) < kNear * radiusOf(found.empty() ? main : found.back());
-    if (near && next.strength < kNearStrength) break;
+    const bool near = radiusOf(next) < kNextBorder * radiusOf(found.empty() ? main : found.back());
+    if (near && next.strength < kNextStrength) break;
     found.push_back(settled(frame, next, found.empty() ? radiusOf(main) : radiusOf(found.back())));
     low = radiusOf(next) / radiusOf(main) + 0.03;
   }

@@ -6,8 +6,8 @@
 namespace microinjection {
 namespace {
 
-constexpr int kRays = 96, kColumns = 110;
-constexpr double kSmoothing = 1.2;  // columns
+constexpr int kRimRays = 96, kRimColumns = 110;
+constexpr double kRimSmoothing = 1.2;  // columns
 
 /// Median grey value of each column over the rays within the image.
 std::vector<double> medianGrey(const PolarMap& map) {
@@ -36,7 +36,7 @@ constexpr int kRingColumns = 8;
 
 bool isBlack(const Frame& frame, const Ellipse& border) {
   const double radius = 0.5 * border.meanDiameter();
-  const PolarMap map(frame, border, {(kBlackFrom - 1) * radius, (kBlackTo - 1) * radius, kRingColumns, kRays}, 0);
+  const PolarMap map(frame, border, {(kBlackFrom - 1) * radius, (kBlackTo - 1) * radius, kRingColumns, kRimRays}, 0);
   int seen = 0, black = 0;
   for (int ray = 0; ray < map.rays(); ++ray) {
     double sum = 0;
@@ -48,13 +48,13 @@ bool isBlack(const Frame& frame, const Ellipse& border) {
     seen += valid ? 1 : 0;
     black += valid && sum < kBlack * frame.background() * map.columns() ? 1 : 0;
   }
-  return seen > kRays / 8 && black > kBlackShare * seen;
+  return seen > kRimRays / 8 && black > kBlackShare * seen;
 }
 
 bool isBubble(const Frame& frame, const CellLayers& layers) {
   const Ellipse& main = layers.main.ellipse;
   const double radius = 0.5 * main.meanDiameter();
-  const PolarMap map(frame, main, {-0.9 * radius, 0.2 * radius, kColumns, kRays}, kSmoothing);
+  const PolarMap map(frame, main, {-0.9 * radius, 0.2 * radius, kRimColumns, kRimRays}, kRimSmoothing);
   const std::vector<double> grey = medianGrey(map);
   const auto columnOf = [&](double ratio) { return static_cast<int>((ratio - 0.1) / 1.1 * (map.columns() - 1)); };
   const double outside = *std::max_element(grey.begin() + columnOf(1.02), grey.end());

@@ -10,9 +10,9 @@ namespace microinjection {
 namespace {
 
 constexpr double kFullBorder = 6;  // of the slopes' scale, a slope that counts as a full border
-constexpr int kClimb = 8;          // columns
+constexpr int kMostClimb = 8;      // columns
 constexpr double kBorder = 0.5;    // strength of a ray that sees a border
-constexpr double kLeastCoverage = 0.3;
+constexpr double kFoundCoverage = 0.3;
 constexpr int kIndependentRays = 3;  // neighbours that the smoothing ties together
 
 void forbid(const PolarMap& map, const BorderBand& band, cv::Mat& strength) {
@@ -35,7 +35,7 @@ double steepness(const PolarMap& map, int ray, int column, Polarity polarity) {
 /// Column of the steepest slope uphill from a column, or -1 when that leads out of the map: the foot
 /// of a border that is outside of it.
 int climb(const PolarMap& map, int ray, int column, Polarity polarity) {
-  for (int round = 0; round < kClimb; ++round) {
+  for (int round = 0; round < kMostClimb; ++round) {
     if (column < 1 || column + 1 >= map.columns()) return -1;
     const double here = steepness(map, ray, column, polarity);
     const double low = steepness(map, ray, column - 1, polarity), high = steepness(map, ray, column + 1, polarity);
@@ -143,7 +143,7 @@ CellBorder findBorder(const Frame& frame, const PolarMap& map, Polarity polarity
   const double seen = std::max<double>(points.seen, 0.3 * map.rays());
   border.coverage = static_cast<double>(inliers) / seen;
   weigh(map, border);
-  if (border.coverage >= kLeastCoverage) border.finding = Finding::found();
+  if (border.coverage >= kFoundCoverage) border.finding = Finding::found();
   return border;
 }
 

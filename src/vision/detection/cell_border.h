@@ -10,6 +10,9 @@
 
 namespace microinjection {
 
+/// A centre is sure below this standard deviation, px.
+constexpr double kSureCentre = 0.3;
+
 /// A closed border of a cell: its ellipse, and where it was seen.
 struct CellBorder {
   Finding finding;

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kSmallestRadius = 12;  // px in the reduced frame, whose pixels then blur a border by a tenth of it
 constexpr double kBinRatio = 1.12;
-constexpr double kLeastShare = 0.12;
+constexpr double kLeastVotes = 0.12;
 constexpr double kEdgeNoise = 4;  // of the gradient's noise, the least gradient of an edge
 
 struct Edge {
@@ -76,7 +76,7 @@ void addMaxima(const cv::Mat& share, double radius, std::vector<CellCandidate>& 
   for (int y = 0; y < share.rows; ++y) {
     for (int x = 0; x < share.cols; ++x) {
       const float value = share.at<float>(y, x);
-      if (value < kLeastShare || value < highest.at<float>(y, x)) continue;
+      if (value < kLeastVotes || value < highest.at<float>(y, x)) continue;
       found.push_back({cv::Point2d(x, y), radius, value});
     }
   }

@@ -12,10 +12,9 @@ namespace {
 constexpr int kCandidates = 6;
 constexpr double kThinnestOoplasm = 0.55;  // of the outer border's diameter
 constexpr double kMostOutside = 0.4, kLeastOutside = 0.02;
-constexpr double kSureCentre = 0.3;     // px, standard deviation
 constexpr double kMostElongated = 1.5;  // ratio of a cell's axes
 const char* const kBubble = "a round thing is a bubble: its rim is wide and black";
-constexpr double kLeastStrength = 0.6, kLeastConsistency = 0.6, kLeastSignificance = 3;
+constexpr double kClearStrength = 0.6, kClearConsistency = 0.6, kClearSignificance = 3;
 
 /// What overlaps the cell that was found is a part of it.
 bool isWithin(const CellDetection& found, const Ellipse& other) {
@@ -123,8 +122,8 @@ void CellDetector::doubtOneOfTwo(CellDetection& detection) {
 }
 
 bool CellDetector::isClear(const CellBorder& border) const {
-  return border.finding.hasValues() && border.strength >= kLeastStrength && border.consistency >= kLeastConsistency &&
-         border.coverage >= config_.least_coverage && border.significance > kLeastSignificance &&
+  return border.finding.hasValues() && border.strength >= kClearStrength && border.consistency >= kClearConsistency &&
+         border.coverage >= config_.least_coverage && border.significance > kClearSignificance &&
          border.ellipse.semi_axes[0] < kMostElongated * border.ellipse.semi_axes[1];
 }
 

@@ -12,22 +12,22 @@ namespace microinjection {
 namespace {
 
 constexpr int kFineRays = 180;
-constexpr double kOutermost = 1.65;                               // of the ooplasm's radius, a zona's outer border
-constexpr double kFaded = 0.25;                                   // of a border's contrast, when it is lost
-constexpr double kInside = 0.93;                                  // ratio of a border inside of the main one, at most
-constexpr double kLeastCoverage = 0.55, kLeastConsistency = 0.6;  // of a border that is followed, and of a clear ring
-constexpr double kRingContrast = 0.2;                             // of the border inside, of a clear ring
-constexpr double kClear = 0.8;       // of the main border's strength: an inner border as clear as the main one
-constexpr double kZonaPlace = 0.5;   // of the zona's outer border in its dark rim, see refineBorder()
-constexpr double kInnerPlace = 0.5;  // of the zona's inner border
-constexpr double kWhole = 0.92;      // coverage of a border without a dent
-constexpr double kOff = 0.8;         // px, of a border from where it was searched
-constexpr double kApart = 2;         // px, from the rim, that is another border
-constexpr double kSharpRim = 6;      // px, line of a zona in focus, at most
+constexpr double kOutermost = 1.65;                                 // of the ooplasm's radius, a zona's outer border
+constexpr double kFaded = 0.25;                                     // of a border's contrast, when it is lost
+constexpr double kLargestInside = 0.93;                             // ratio of a border inside of the main one, at most
+constexpr double kFollowedCoverage = 0.55, kRingConsistency = 0.6;  // of a border that is followed, and of a clear ring
+constexpr double kRingContrast = 0.2;                               // of the border inside, of a clear ring
+constexpr double kAsClearAsMain = 0.8;  // of the main border's strength: an inner border as clear as the main one
+constexpr double kZonaPlace = 0.5;      // of the zona's outer border in its dark rim, see refineBorder()
+constexpr double kInnerPlace = 0.5;     // of the zona's inner border
+constexpr double kWhole = 0.92;         // coverage of a border without a dent
+constexpr double kOff = 0.8;            // px, of a border from where it was searched
+constexpr double kBesideRim = 2;        // px, from the rim, that is another border
+constexpr double kSharpRim = 6;         // px, line of a zona in focus, at most
 constexpr double kLeastResidual = 0.5, kMostResidual = 0.0025;  // px; of the diameter: of a sure ellipse
 constexpr double kOoplasmPlace = 1.0;                           // of the ooplasm's: the rim is refracted beside it
 constexpr double kMixedLines = 0.23;                            // see linesOutside()
-constexpr double kWidestRim = 0.2;                              // of the radius
+constexpr double kWidestOoplasmRim = 0.2;                       // of the radius
 
 /// @param rim  px, widest dark rim
 CellBorder refined(const Frame& frame, const CellBorder& border, double place, double rim) {
@@ -56,7 +56,7 @@ CellBorder innerBorder(const Frame& frame, const CellLayers& layers, const Ellip
     const PolarMap map = mapAbout(frame, layers.zona_outer.ellipse, std::max(0.6, inner / outer - 0.05), 0.97);
     border = bestBorder(frame, map, look, outer, {rim, {}, 0, kFreeChange});
   }
-  if (isSecondBorder(border) && radiusOf(border) > inner + layers.ooplasm.shift + kApart)
+  if (isSecondBorder(border) && radiusOf(border) > inner + layers.ooplasm.shift + kBesideRim)
     border = refined(frame, border, kInnerPlace, 0.25 * (outer - inner));
   else
     border = findZonaInner(frame, layers.zona_outer, layers.ooplasm);
@@ -96,7 +96,7 @@ void doubtWithinRing(const Frame& frame, const std::string& look, CellBorder& ou
   const bool trusted = outer.finding.isFound() || (outer.centred && outer.rim == 0);
   if (!trusted || limit < kBorderGap + 0.03) return;
   const CellBorder beyond = searchBand(frame, outer, kBorderGap, limit, look, kOutwards);
-  const bool clear = beyond.consistency > kLeastConsistency && beyond.contrast > kRingContrast * outer.contrast;
+  const bool clear = beyond.consistency > kRingConsistency && beyond.contrast > kRingContrast * outer.contrast;
   if (!isRing(beyond) || !clear || beyond.polarity == Polarity::kFalling) return;
   outer.finding = Finding::uncertain("a ring is seen outside of the border: it may be the zona's inner one");
   outer.centred = false;
@@ -137,20 +137,21 @@ CellLayers findLayers(const Frame& frame, const CellBorder& main, const std::str
   layers.main = main;
   const double limit = std::min(kOutermost, largest / main.ellipse.meanDiameter());
   const std::vector<CellBorder> outside = bordersOutside(frame, main, limit, look);
-  const CellBorder inside = searchBand(frame, main, 0.6, kInside, look);
+  const CellBorder inside = searchBand(frame, main, 0.6, kLargestInside, look);
   const CellBorder beyond =
       outside.empty() ? searchBand(frame, main, kBorderGap, limit, look, kOutwards) : CellBorder();
   CellBorder ooplasm = main;
   if (!outside.empty()) {
     layers.zona_outer = outside.back();
-  } else if (isSecondBorder(inside) && inside.polarity == main.polarity && inside.strength > kClear * main.strength) {
+  } else if (isSecondBorder(inside) && inside.polarity == main.polarity &&
+             inside.strength > kAsClearAsMain * main.strength) {
     layers.zona_outer = main;
     ooplasm = inside;
   }
   if (!layers.zona_outer.finding.hasValues() && isRing(inside)) {
     CellLayers within = layers;
     within.zona_outer = refined(frame, main, kZonaPlace, 0.35 * (radiusOf(main) - radiusOf(inside)));
-    within.ooplasm = refined(frame, inside, kOoplasmPlace, kWidestRim * radiusOf(inside));
+    within.ooplasm = refined(frame, inside, kOoplasmPlace, kWidestOoplasmRim * radiusOf(inside));
     if (fitLayersTo(frame, look, within) && within.ooplasm.finding.isFound()) {
       doubtOuter(frame, look, within.zona_outer, largest);
       return within;
@@ -170,7 +171,7 @@ CellLayers findLayers(const Frame& frame, const CellBorder& main, const std::str
     return layers;
   }
   const double gap = radiusOf(layers.zona_outer) - radiusOf(ooplasm);
-  layers.ooplasm = refined(frame, ooplasm, kOoplasmPlace, std::min(kWidestRim * radiusOf(ooplasm), 0.8 * gap));
+  layers.ooplasm = refined(frame, ooplasm, kOoplasmPlace, std::min(kWidestOoplasmRim * radiusOf(ooplasm), 0.8 * gap));
   layers.zona_outer = refined(frame, layers.zona_outer, kZonaPlace, 0.35 * gap);
   warn(layers);
   if (!fitLayersTo(frame, look, layers)) layers.zona_inner = innerBorder(frame, layers, ooplasm.ellipse, look);
@@ -180,8 +181,8 @@ CellLayers findLayers(const Frame& frame, const CellBorder& main, const std::str
 
 namespace {
 
-CellBorder follow(const Frame& frame, const CellBorder& previous, const cv::Point2d& moved, double room, double place,
-                  double rim) {
+CellBorder followBorder(const Frame& frame, const CellBorder& previous, const cv::Point2d& moved, double room,
+                        double place, double rim) {
   if (!previous.finding.hasValues()) return {};
   CellBorder base = previous;
   base.ellipse = previous.line;
@@ -193,7 +194,7 @@ CellBorder follow(const Frame& frame, const CellBorder& previous, const cv::Poin
                      2.0);
   const CellBorder found = findBorder(frame, map, previous.polarity, {}, scaleOf(frame, map), toleranceFor(radius));
   const bool faded = found.contrast < kFaded * previous.contrast;
-  if (!found.finding.hasValues() || found.coverage < kLeastCoverage || faded) return {};
+  if (!found.finding.hasValues() || found.coverage < kFollowedCoverage || faded) return {};
   CellBorder fine = refined(frame, found, place, rim);
   fine.strength = previous.strength;
   fine.contrast = previous.contrast;
@@ -208,8 +209,8 @@ CellLayers followLayers(const Frame& frame, const CellLayers& previous, const st
   const bool zona = previous.zona_outer.finding.hasValues();
   const double gap = zona ? radiusOf(previous.zona_outer) - radiusOf(previous.ooplasm) : 0;
   const double place = zona ? kOoplasmPlace : 0;
-  const double rim = zona ? std::min(kWidestRim * radiusOf(previous.ooplasm), 0.8 * gap) : 0;
-  layers.ooplasm = follow(frame, previous.ooplasm, {0, 0}, reach + 4, place, rim);
+  const double rim = zona ? std::min(kWidestOoplasmRim * radiusOf(previous.ooplasm), 0.8 * gap) : 0;
+  layers.ooplasm = followBorder(frame, previous.ooplasm, {0, 0}, reach + 4, place, rim);
   if (!layers.ooplasm.finding.hasValues()) return layers;
   // What was doubtful in the frame before is so here.
   if (previous.ooplasm.finding.verdict == Verdict::kUncertain) {
@@ -219,7 +220,7 @@ CellLayers followLayers(const Frame& frame, const CellLayers& previous, const st
   layers.main = layers.ooplasm;
   // The clearest border tells how far the cell moved; the others are then near.
   const cv::Point2d moved = layers.ooplasm.line.centre - previous.ooplasm.line.centre;
-  layers.zona_outer = follow(frame, previous.zona_outer, moved, 6, kZonaPlace, 0.35 * gap);
+  layers.zona_outer = followBorder(frame, previous.zona_outer, moved, 6, kZonaPlace, 0.35 * gap);
   requireSameLine(zona ? previous.zona_outer : previous.ooplasm, zona ? layers.zona_outer : layers.ooplasm);
   warn(layers);
   if (!zona || !layers.zona_outer.finding.hasValues()) return layers;

@@ -10,8 +10,8 @@
 namespace microinjection {
 namespace {
 
-constexpr double kOther = 0.05;     // relative change of the diameter: another cell
-constexpr double kNormal95 = 1.96;  // standard deviations, of the half width of a 95 % interval
+constexpr double kOtherCell = 0.05;  // relative change of the diameter: another cell
+constexpr double kNormal95 = 1.96;   // standard deviations, of the half width of a 95 % interval
 
 MeasuredLength combine(const std::vector<MeasuredLength>& readings) {
   std::vector<double> values, differences;
@@ -39,7 +39,7 @@ void CellSizeReadings::add(const CellDetection& cell) {
   reading.diameter = {cell.outer().ellipse.meanDiameter(), std::sqrt(cell.outer().covariance(2, 2))};
   if (const auto zona = zonaThickness(cell)) reading.zona = MeasuredLength{zona->thickness, zona->deviation};
   if (!readings_.empty() &&
-      std::abs(reading.diameter.value - readings_.back().diameter.value) > kOther * reading.diameter.value) {
+      std::abs(reading.diameter.value - readings_.back().diameter.value) > kOtherCell * reading.diameter.value) {
     lost_ = "the cell has changed its size";
     readings_.clear();
   }

@@ -8,16 +8,15 @@
 #include "vision/detection/robust_loss.h"
 
 namespace microinjection {
+namespace dented {
 namespace {
 
-using namespace dented;
-
-constexpr double kStartWidths[] = {0.12, 0.25, 0.4};  // of the radius
-constexpr double kNarrowest = 0.02, kWidest = 0.6;    // of the radius
-constexpr double kDeepest = 0.7;                      // of the radius
+constexpr double kStartWidths[] = {0.12, 0.25, 0.4};        // of the radius
+constexpr double kNarrowestDent = 0.02, kWidestDent = 0.6;  // of the radius
+constexpr double kDeepestDent = 0.7;                        // of the radius
 constexpr double kLeastTail = 1e-3, kUsualTail = 0.1, kTailDeviation = 0.3;
 constexpr double kCauchy = 1, kLeastScale = 0.08;  // px
-constexpr int kRounds = 3, kSteps = 20, kAttempts = 6;
+constexpr int kTukeyRounds = 3, kSteps = 20, kAttempts = 6;
 constexpr double kSmallestGain = 1e-5;  // of the cost, of a step that goes on
 constexpr std::size_t kLeastPoints = 40;
 
@@ -52,7 +51,7 @@ class Fitter {
     double least = 1e300;
     const auto start = [&](double depth, double width, double tail) {
       Vector p = first_;
-      p.tail<kDent>() << std::clamp(depth, 0.0, kDeepest), std::log(width), tail;
+      p.tail<kDent>() << std::clamp(depth, 0.0, kDeepestDent), std::log(width), tail;
       const double cost = solve(p, {kCauchy / local_.unit, false});
       if (!(cost < least)) return;
       least = cost;
@@ -64,7 +63,7 @@ class Fitter {
       for (const double width : kStartWidths) start(heightAt(first_, tip_.x()) - tip_.y(), width, kUsualTail);
     }
     if (least > 1e299) return result;
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < kTukeyRounds; ++round) {
       if (solve(best, {RobustLoss::kTukey * scaleOf(best), true}) > 1e299) return result;
     }
     describe(best, scaleOf(best), count, result);
@@ -110,8 +109,8 @@ class Fitter {
     return now;
   }
   static Vector limited(Vector p) {
-    p[kDepth] = std::clamp(p[kDepth], -0.1, kDeepest);
-    p[kLogWidth] = std::clamp(p[kLogWidth], std::log(kNarrowest), std::log(kWidest));
+    p[kDepth] = std::clamp(p[kDepth], -0.1, kDeepestDent);
+    p[kLogWidth] = std::clamp(p[kLogWidth], std::log(kNarrowestDent), std::log(kWidestDent));
     p[kTail] = std::clamp(p[kTail], kLeastTail, 1.0);
     return p;
   }
@@ -181,6 +180,7 @@ class Fitter {
 };
 
 }  // namespace
+}  // namespace dented
 
 cv::Point2d NeedleAxis::along() const { return {std::cos(direction), std::sin(direction)}; }
 cv::Point2d NeedleAxis::across() const { return {-std::sin(direction), std::cos(direction)}; }
@@ -192,19 +192,19 @@ double DentedEllipse::displacement(const NeedleAxis& axis, double across) const 
   const auto fade = [&](double s) {
     const cv::Point2d from = axis.tip + s * axis.across();
     const cv::Point2d place = from + ellipse.exit(from, axis.direction).value_or(0) * axis.along();
-    return fadeAt((place - ellipse.centre).dot(axis.along()) / radius);
+    return dented::fadeAt((place - ellipse.centre).dot(axis.along()) / radius);
   };
   const double ratio = across / width;
-  return depth / std::max(fade(0), 0.1) * fade(across) * bell(ratio * ratio, tail);
+  return depth / std::max(fade(0), 0.1) * fade(across) * dented::bell(ratio * ratio, tail);
 }
 
 DentedEllipse fitDentedEllipse(const std::vector<BorderPoint>& points, const NeedleAxis& axis, const Ellipse& start) {
-  return Fitter(points, axis, start).fit(points.size(), {});
+  return dented::Fitter(points, axis, start).fit(points.size(), {});
 }
 
 DentedEllipse fitDentedEllipse(const std::vector<BorderPoint>& points, const NeedleAxis& axis,
                                const DentedEllipse& start) {
-  return Fitter(points, axis, start.ellipse).fit(points.size(), start);
+  return dented::Fitter(points, axis, start.ellipse).fit(points.size(), start);
 }
 
 }  // namespace microinjection

@@ -5,13 +5,13 @@
 #include <cmath>
 
 #include "base/median.h"
+#include "vision/detection/robust_loss.h"
 
 namespace microinjection {
 namespace {
 
-constexpr int kRounds = 12;
-constexpr double kTukey = 4.685;  // 95 % efficiency for normal residuals
-constexpr std::size_t kFewest = 12;
+constexpr int kFitRounds = 12;
+constexpr std::size_t kFewestPoints = 12;
 
 /// Centre and the symmetric square root of the ellipse's matrix, x right and y down: |R (x - c)| =
 /// 1. Unlike axes and angle it is smooth at the circle.
@@ -78,7 +78,7 @@ Normal normalOf(const Shape& shape, const std::vector<cv::Point2d>& points, doub
     Parameters slope;
     const double residual = distanceOf(shape, point, slope);
     normal.residuals.push_back(residual);
-    const double relative = residual / (kTukey * scale);
+    const double relative = residual / (RobustLoss::kTukey * scale);
     if (std::abs(relative) >= 1) continue;
     const double weight = (1 - relative * relative) * (1 - relative * relative);
     normal.matrix += weight * slope * slope.transpose();
@@ -147,14 +147,14 @@ double Ellipse::distance(const cv::Point2d& point) const {
 
 EllipseFit fitEllipse(const std::vector<cv::Point2d>& points, const Ellipse& start, double tolerance, bool circle) {
   EllipseFit fit;
-  if (points.size() < kFewest || !(start.semi_axes.minCoeff() > 0)) return fit;
+  if (points.size() < kFewestPoints || !(start.semi_axes.minCoeff() > 0)) return fit;
   Shape shape = shapeOf(start);
   const Eigen::MatrixXd free = directions(circle);
   Normal normal = normalOf(shape, points, 1e9);
   double scale = scaleOf(normal.residuals);
   Eigen::MatrixXd reduced;
-  for (int round = 0; round < kRounds; ++round) {
-    scale = std::max(scaleOf(normal.residuals), 0.25 * tolerance / kTukey);
+  for (int round = 0; round < kFitRounds; ++round) {
+    scale = std::max(scaleOf(normal.residuals), 0.25 * tolerance / RobustLoss::kTukey);
     normal = normalOf(shape, points, scale);
     reduced = free.transpose() * normal.matrix * free;
     const Eigen::LDLT<Eigen::MatrixXd> solver(reduced);
@@ -175,7 +175,7 @@ EllipseFit fitEllipse(const std::vector<cv::Point2d>& points, const Ellipse& sta
     square += residual * residual;
     ++count;
   }
-  if (count < static_cast<int>(kFewest)) return fit;
+  if (count < static_cast<int>(kFewestPoints)) return fit;
   fit.residual = std::sqrt(square / count);
   const Eigen::MatrixXd parameters = free * reduced.inverse() * free.transpose();
   const Eigen::Matrix<double, 3, 5> slope = outputSlope(shape);

@@ -1,11 +1,15 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <vector>
 
 namespace microinjection {
+
+/// Angle between two directions, 0 to pi (rad).
+inline double angleBetween(double a, double b) { return std::abs(std::remainder(a - b, 2 * M_PI)); }
 
 /// An ellipse in the image (px, rad). semi_axes: longer, shorter; angle of the longer from x towards y.
 struct Ellipse {

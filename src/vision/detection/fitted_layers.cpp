@@ -9,20 +9,19 @@
 namespace microinjection {
 namespace {
 
-constexpr double kSharpBlur = 1.8;     // px, of a cell in focus
+constexpr double kInFocusBlur = 1.8;   // px, of a cell in focus
 constexpr double kLeastUsed = 0.5;     // share of the directions
 constexpr double kSureRadius = 0.45;   // px, standard deviation of a radius that is sure
 constexpr double kSeenRadius = 1;      // px, of one that is seen at all
-constexpr double kSureCentre = 0.3;    // px, of a centre
 constexpr double kOuterMisfit = 0.03;  // of the contrast, see LayerFit
 constexpr double kOoplasmMisfit = 0.017;
-constexpr double kLeastLead = 2;                               // of chi^2, of the inner border over the next best place
-constexpr double kOnEllipse = 0.4, kNearEllipse = 0.8;         // px, of a border's points
-constexpr double kMore = 0.04, kLeastOn = 0.5, kFewest = 0.4;  // shares of the points
-constexpr double kAgree = 1;                                   // px, of two measurements of a radius
-constexpr double kApart = 3;                                   // px, of the zona's line from the ooplasm's rim
-constexpr double kSameSize = 0.01;                             // of the radius, from frame to frame
-constexpr double kFarthest = 0.05;  // of the radius, that the fit may be from the first borders
+constexpr double kLeastLead = 2;                        // of chi^2, of the inner border over the next best place
+constexpr double kOnEllipse = 0.4, kNearEllipse = 0.8;  // px, of a border's points
+constexpr double kMore = 0.04, kLeastOn = 0.5, kLeastNear = 0.4;  // shares of the points
+constexpr double kSameRadius = 1;                                 // px, of two measurements of a radius
+constexpr double kClearOfRim = 3;                                 // px, of the zona's line from the ooplasm's rim
+constexpr double kSameSize = 0.01;                                // of the radius, from frame to frame
+constexpr double kMostDeparture = 0.05;  // of the radius, that the fit may be from the first borders
 
 double radiusOf(const Ellipse& ellipse) { return 0.5 * ellipse.meanDiameter(); }
 
@@ -38,14 +37,14 @@ double centreDeviation(const LayerFit::Border& fit) { return std::sqrt(fit.covar
 bool describesOuter(const LayerFit& fit, const CellLayers& layers) {
   const double first = radiusOf(layers.zona_outer.ellipse);
   return fit.valid && fit.outer.line < 0 && fit.used >= kLeastUsed && fit.outer.deviation() < kSureRadius &&
-         fit.outer.misfit < kOuterMisfit && std::abs(radiusOf(fit.outer.ellipse) - first) < kFarthest * first;
+         fit.outer.misfit < kOuterMisfit && std::abs(radiusOf(fit.outer.ellipse) - first) < kMostDeparture * first;
 }
 
 /// @return true: the fit describes the ooplasm's border roughly at least
 bool takeOoplasm(const LayerFit& fit, const std::string& look, bool leads, CellLayers& layers) {
   const bool sure = fit.ooplasm.line < 0 && fit.ooplasm.deviation() < kSureRadius &&
                     fit.ooplasm.misfit < kOoplasmMisfit && centreDeviation(fit.ooplasm) < 2 * kSureRadius;
-  const bool agree = std::abs(radiusOf(fit.ooplasm.ellipse) - radiusOf(layers.ooplasm.ellipse)) < kAgree;
+  const bool agree = std::abs(radiusOf(fit.ooplasm.ellipse) - radiusOf(layers.ooplasm.ellipse)) < kSameRadius;
   // In phase contrast the ooplasm is about as dark as its rim: one measurement alone may be a rim off.
   // Without a clear inner line of the zona the fit's rim and that line stand for each other.
   const bool own = layers.ooplasm.finding.isFound() && agree && !leads && look != "dic";
@@ -65,7 +64,7 @@ void takeInner(const LayerFit& fit, bool leads, bool described, CellLayers& laye
   // Where the ooplasm's border is not sure, only a line that is well outside of it is.
   const double apart = radiusOf(fit.inner.ellipse) - radiusOf(fit.ooplasm.ellipse) - fit.ooplasm.width -
                        cv::norm(fit.ooplasm.ellipse.centre - fit.inner.ellipse.centre);
-  const bool clear = described || apart > kApart;
+  const bool clear = described || apart > kClearOfRim;
   const bool sure = leads && clear && fit.inner.line < 0 && fit.inner.deviation() < kSureRadius;
   take(layers.zona_inner, fit.inner,
        sure ? Finding::found() : Finding::uncertain("the zona's inner line is faint beside the ooplasm's rim"));
@@ -82,7 +81,7 @@ void takeInner(const LayerFit& fit, bool leads, bool described, CellLayers& laye
   layers.zona_inner.coverage = fit.used;
 }
 
-bool isSharp(const LayerFit& fit) { return fit.valid && fit.blur < kSharpBlur; }
+bool isSharp(const LayerFit& fit) { return fit.valid && fit.blur < kInFocusBlur; }
 
 double shareOn(const std::vector<cv::Point2d>& points, const Ellipse& ellipse) {
   const auto on = std::count_if(points.begin(), points.end(), [&](const cv::Point2d& point) {
@@ -102,7 +101,7 @@ void settleOuter(const LayerFit& fit, CellBorder& border) {
   const double before = shareOn(border.points, border.ellipse);
   const EllipseFit again = fitEllipse(near, fit.outer.ellipse, kOnEllipse);
   double most = before;
-  if (again.valid && near.size() > kFewest * border.points.size() &&
+  if (again.valid && near.size() > kLeastNear * border.points.size() &&
       shareOn(border.points, again.ellipse) > most + kMore) {
     most = shareOn(border.points, again.ellipse);
     border.ellipse = again.ellipse;
@@ -129,8 +128,8 @@ bool takeSharp(const LayerFit& fit, const std::string& look, bool leads, CellLay
 /// keeps it where the fit agrees.
 void doubtAll(const LayerFit& fit, CellLayers& layers) {
   const auto agrees = [&](const CellBorder& border, const LayerFit::Border& measured) {
-    return std::abs(radiusOf(border.ellipse) - radiusOf(measured.ellipse)) < kAgree &&
-           cv::norm(border.ellipse.centre - measured.ellipse.centre) < kAgree;
+    return std::abs(radiusOf(border.ellipse) - radiusOf(measured.ellipse)) < kSameRadius &&
+           cv::norm(border.ellipse.centre - measured.ellipse.centre) < kSameRadius;
   };
   const bool outer = isSharp(fit) && fit.outer.line < 0 && agrees(layers.zona_outer, fit.outer);
   const bool ooplasm = outer && fit.ooplasm.line < 0 && agrees(layers.ooplasm, fit.ooplasm);

@@ -7,7 +7,7 @@
 namespace microinjection {
 namespace {
 
-constexpr int kSmallest = 32;             // px, of a side
+constexpr int kSmallestSide = 32;         // px, of a side
 constexpr double kMostSaturated = 0.95;   // of the pixels
 constexpr double kLeastContrast = 0.004;  // of full scale, between the 0.5th and the 99.5th percentile
 constexpr int kStride = 7;                // of the pixels that the statistics look at
@@ -67,7 +67,7 @@ Frame::Frame(const cv::Mat& image) {
     refusal_ = "the frame is empty";
   } else if (!isFormat(image)) {
     refusal_ = "the frame's format is not known: 8 or 16 bit or float with 1, 3 or 4 channels";
-  } else if (std::min(image.rows, image.cols) < kSmallest) {
+  } else if (std::min(image.rows, image.cols) < kSmallestSide) {
     refusal_ = "the frame is truncated: a side has fewer than 32 pixels";
   }
   if (!refusal_.empty()) return;

@@ -8,22 +8,22 @@
 namespace microinjection {
 namespace {
 
-constexpr int kAngles = 13, kFineAngles = 31;
+constexpr int kArcAngles = 13, kFineAngles = 31;
 constexpr double kFirstAngle = 0.1, kLastAngle = 2.0;  // rad, of an arc, from the wall to beyond its outermost place
 constexpr double kSmallestLip = 0.04, kLargestLip = 0.42;  // of the half width, radius
 constexpr double kLipStep = 0.04;
-constexpr int kShaftRows = 24, kShaftGap = 8;    // behind the lip, that show the walls
-constexpr double kFineAngle = 0.3;               // rad, first of the refined ones
-constexpr double kNearStep = 0.5, kFaint = 0.3;  // px; of the wall
-constexpr double kNear = 3.5;                    // px along the normal, of a refined place
-constexpr double kLeastScore = 0.35, kSureScore = 0.96;
-constexpr double kMostUneven = 0.06;   // slant of a mouth that is certain
-constexpr double kWallOff = 10;        // px, that a wall may be off the given width
-constexpr double kClearWall = 0.5;     // of the clearest edge near it
-constexpr double kTowardsShaft = 1.6;  // what looks like walls may go on beyond a mouth, into a cell
-constexpr int kWidest = 24;            // px, of an edge
-constexpr double kWidestSure = 6.5;    // px, an edge of a pipette in focus
-constexpr double kSoft = 1.5;          // px, prior of radius and width
+constexpr int kShaftRows = 24, kShaftGap = 8;       // behind the lip, that show the walls
+constexpr double kFineAngle = 0.3;                  // rad, first of the refined ones
+constexpr double kRefinedStep = 0.5, kFaint = 0.3;  // px; of the wall
+constexpr double kRefinedReach = 3.5;               // px along the normal, of a refined place
+constexpr double kLeastArcScore = 0.35, kSureArcScore = 0.96;
+constexpr double kMostUneven = 0.06;      // slant of a mouth that is certain
+constexpr double kWallOff = 10;           // px, that a wall may be off the given width
+constexpr double kClearWall = 0.5;        // of the clearest edge near it
+constexpr double kTowardsShaft = 1.6;     // what looks like walls may go on beyond a mouth, into a cell
+constexpr int kWidestEdge = 24;           // px, of an edge
+constexpr double kWidestSharpEdge = 6.5;  // px, an edge of a pipette in focus
+constexpr double kSoft = 1.5;             // px, prior of radius and width
 
 struct Arc {
   double apex, radius, half_width;  ///< row; columns
@@ -74,7 +74,7 @@ double edgeWidth(const PipetteStrip& strip, double row, double half_width) {
     const double peak = wallAt(strip, side, row, half_width);
     double sum = 0;
     for (const double step : {-0.5, 0.5}) {
-      for (int i = 0; i < 2 * kWidest; ++i) {
+      for (int i = 0; i < 2 * kWidestEdge; ++i) {
         const double ratio = wallAt(strip, side, row, half_width + step * (i + (step > 0 ? 0 : 1))) / peak;
         if (!(ratio > 0.1)) break;
         sum += 0.5 * ratio;
@@ -99,16 +99,16 @@ double scoreOf(const PipetteStrip& strip, const Walls& walls, const Arc& arc) {
   double worst = 1;
   for (const int side : {-1, 1}) {
     double sum = 0;
-    for (int i = 0; i < kAngles; ++i) {
-      const double angle = kFirstAngle + (kLastAngle - kFirstAngle) * i / (kAngles - 1);
-      sum += walls.relative(slopeAt(strip, arc, side, angle, 0), side) / kAngles;
+    for (int i = 0; i < kArcAngles; ++i) {
+      const double angle = kFirstAngle + (kLastAngle - kFirstAngle) * i / (kArcAngles - 1);
+      sum += walls.relative(slopeAt(strip, arc, side, angle, 0), side) / kArcAngles;
     }
     worst = std::min(worst, sum);
   }
   return worst;
 }
 
-struct Lip {
+struct RefinedLip {
   bool valid = false;
   double apex = 0, deviation = 0;
 };
@@ -119,22 +119,22 @@ double steepestOff(const PipetteStrip& strip, const Walls& walls, const Arc& arc
     const double ratio = slopeAt(strip, arc, side, angle, off) / walls.size[side > 0 ? 1 : 0];
     return walls.is_signed ? ratio : std::abs(ratio);
   };
-  double best = kFaint, place = kNear;
-  for (double off = -kNear; off <= kNear; off += kNearStep) {
+  double best = kFaint, place = kRefinedReach;
+  for (double off = -kRefinedReach; off <= kRefinedReach; off += kRefinedStep) {
     const double value = size(off);
     if (value <= best) continue;
     best = value;
     place = off;
   }
-  if (std::abs(place) > kNear - 0.1) return std::nan("");
-  const double a = size(place - kNearStep), c = size(place + kNearStep), bend = a - 2 * best + c;
-  return bend < 0 ? place + kNearStep * std::clamp(0.5 * (a - c) / bend, -0.5, 0.5) : place;
+  if (std::abs(place) > kRefinedReach - 0.1) return std::nan("");
+  const double a = size(place - kRefinedStep), c = size(place + kRefinedStep), bend = a - 2 * best + c;
+  return bend < 0 ? place + kRefinedStep * std::clamp(0.5 * (a - c) / bend, -0.5, 0.5) : place;
 }
 
 /// Moves an arc to the steepest places along its normals: centre and radius by least squares, the
 /// radius and the width only as far as the arc determines them.
-Lip refinedLip(const PipetteStrip& strip, const Walls& walls, Arc arc, int side) {
-  Lip lip;
+RefinedLip refinedLip(const PipetteStrip& strip, const Walls& walls, Arc arc, int side) {
+  RefinedLip lip;
   for (int round = 0; round < 3; ++round) {
     Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
     Eigen::Vector3d right(0, 0, 0);
@@ -187,19 +187,19 @@ HoldingMouth findMouth(const PipetteStrip& strip, double coarse, double reach, d
       }
     }
   }
-  if (mouth.score < kLeastScore) return mouth;
-  const Lip left = refinedLip(strip, walls, best, -1), right = refinedLip(strip, walls, best, 1);
+  if (mouth.score < kLeastArcScore) return mouth;
+  const RefinedLip left = refinedLip(strip, walls, best, -1), right = refinedLip(strip, walls, best, 1);
   if (!left.valid || !right.valid) return mouth;
   mouth.row = 0.5 * (left.apex + right.apex);
   mouth.slant = (right.apex - left.apex) / (2 * (best.half_width - best.radius));
   mouth.deviation = 0.5 * std::hypot(left.deviation, right.deviation);
   mouth.valid = true;
   mouth.half_width = half_width;
-  if (edgeWidth(strip, shaft, half_width) > kWidestSure)
+  if (edgeWidth(strip, shaft, half_width) > kWidestSharpEdge)
     mouth.doubt = "the pipette is out of focus: its mouth is displaced";
   // In DIC an edge is a line, whose steepest slope lies beside it.
   if (!walls.is_signed) mouth.doubt = "the walls are shaded from one side: the mouth is displaced";
-  if (mouth.score < kSureScore) mouth.doubt = "the lips of the mouth are not clear";
+  if (mouth.score < kSureArcScore) mouth.doubt = "the lips of the mouth are not clear";
   if (std::abs(mouth.slant) > kMostUneven) mouth.doubt = "the lips are not at the same place of the axis";
   return mouth;
 }

@@ -11,16 +11,12 @@
 namespace microinjection {
 namespace {
 
-constexpr double kCoarseLength = 430;   // rows of the strip that shows a whole pipette
-constexpr int kCoarseShift = 8;         // columns of it, that the axis may be off
-constexpr int kBehindMouth = 8;         // rows of it, that a mouth must leave before the frame's other border
-constexpr double kNarrowest = 12;       // px, half width
-constexpr double kLeastSymmetry = 0.5;  // of the edges of a whole pipette
-constexpr double kStep = 2;             // px, of the strip that gives the axis
-constexpr int kAxisRows = 160;          // px behind the end, whose symmetry gives the axis
-constexpr double kAxisMargin = 24;      // px beside an outline, that shows the symmetry
-constexpr double kAcross = 1.5;         // px, blur of the derivative across the axis
-constexpr int kShift = 8;               // columns, that the axis may be off
+constexpr double kCoarseLength = 430;       // rows of the strip that shows a whole pipette
+constexpr int kCoarseShift = 8;             // columns of it, that the axis may be off
+constexpr int kBehindMouth = 8;             // rows of it, that a mouth must leave before the frame's other border
+constexpr double kNarrowestPipette = 12;    // px, half width
+constexpr double kLeastEdgeSymmetry = 0.5;  // of the edges of a whole pipette
+constexpr double kAxisStripStep = 2;        // px, of the strip that gives the axis
 constexpr double kNearMouth = 8, kMouthRows = 36, kMouthBlur = 1.3;  // px, of the strip that shows the mouth
 constexpr double kWitnessReach = 14;                                 // px beside lips that are not clear
 constexpr int kMouthMargin = 18;                                     // px beside the walls
@@ -43,14 +39,14 @@ PipetteDetection refineHolding(const Frame& frame, PipetteAxis axis, const cv::P
   for (int round = 0; round < rounds; ++round) {
     const double half_width = std::max(4.0, axis.outlineAt(place));
     PipetteStrip::Shape shape;
-    shape.step = kStep;
+    shape.step = kAxisStripStep;
     shape.direction = axis.direction;
     shape.origin = place;
-    shape.rows = static_cast<int>(kAxisRows / kStep) + 2;
+    shape.rows = static_cast<int>(kAxisRows / kAxisStripStep) + 2;
     const double wide = 1.25 * half_width + kAxisMargin;
-    shape.half = static_cast<int>(wide / kStep) + kShift + 2;
-    const PipetteStrip strip(frame, shape, kAcross / kStep, 0.7);
-    fit = fitAxis(strip, 2, shape.rows, wide / kStep, kShift);
+    shape.half = static_cast<int>(wide / kAxisStripStep) + kAxisShift + 2;
+    const PipetteStrip strip(frame, shape, kAxisBlur / kAxisStripStep, 0.7);
+    fit = fitAxis(strip, 2, shape.rows, wide / kAxisStripStep, kAxisShift);
     if (!fit.valid) return found;
     axis.point = strip.point(2, fit.offset);
     axis.direction += std::atan(fit.slant);
@@ -76,7 +72,7 @@ PipetteDetection refineHolding(const Frame& frame, PipetteAxis axis, const cv::P
   found.taper = axis.taper;
   found.symmetry = fit.symmetry;
   found.clearness = mouth.score;
-  found.setCovariance(mouth.deviation, fit.offset_deviation * kStep);
+  found.setCovariance(mouth.deviation, fit.offset_deviation * kAxisStripStep);
   found.finding = mouth.doubt.empty() ? Finding::found() : Finding::uncertain(mouth.doubt);
   if (!frame.contains(found.end, 2)) found.finding = Finding::notFound("no pipette: its end is out of the image");
   return found;
@@ -97,7 +93,7 @@ PipetteDetection measureHolding(const Frame& frame, PipetteAxis axis, double wid
     shape.origin =
         border - (shape.rows - 1) * shape.step * cv::Point2d(std::cos(axis.direction), std::sin(axis.direction));
     const PipetteStrip strip(frame, shape, 1.0, 1.5);
-    outline = findOutline(strip, kNarrowest / shape.step);
+    outline = findOutline(strip, kNarrowestPipette / shape.step);
     none.finding = Finding::notFound("no pipette: an axis without two walls in the image");
     if (!outline.valid || outline.last < kBehindMouth) return none;
     const AxisFit fit =
@@ -111,7 +107,7 @@ PipetteDetection measureHolding(const Frame& frame, PipetteAxis axis, double wid
     break;
   }
   none.finding = Finding::notFound("no pipette: its walls are not symmetric");
-  if (outline.symmetry < kLeastSymmetry) return none;
+  if (outline.symmetry < kLeastEdgeSymmetry) return none;
   axis.half_width = outline.at(outline.last) * shape.step;
   axis.taper = outline.growth;
   return refineHolding(frame, axis, axis.point, 0.5 * axis.half_width + 24, 2);

@@ -8,17 +8,16 @@
 namespace microinjection {
 namespace {
 
-constexpr double kOutside = 4;                            // px, of the tip from the border, that may still touch it
-constexpr double kThinnest = 7, kThickest = 30;           // px, half of the needle's width near its tip
-constexpr double kFirstWindow = 4, kWindow = 3;           // px, to both sides of a flank
-constexpr int kTraces = 2;                                // along the fitted outline
-constexpr double kTipDeviation = 0.4, kUncertainTip = 1;  // px, at least, along a needle before a cell
-constexpr double kHiddenDeviation = 0.2;                  // of what the needle hides of the dent's shape
-constexpr double kAgree = 1.5;                            // px, of both depths, and up to kAgreeDeviations
-constexpr double kAgreeDeviations = 3;
-constexpr double kSureDeviation = 0.55;  // px
-constexpr double kSureUsed = 0.8;        // of the border's points
-constexpr double kSureCentre = 0.3;      // px
+constexpr double kMayTouch = 4;                              // px, of the tip from the border, that may still touch it
+constexpr double kThinnestNeedle = 7, kThickestNeedle = 30;  // px, half of the needle's width near its tip
+constexpr double kFirstWindow = 4, kLaterWindow = 3;         // px, to both sides of a flank
+constexpr int kTraces = 2;                                   // along the fitted outline
+constexpr double kTipDeviation = 0.4, kUncertainTip = 1;     // px, at least, along a needle before a cell
+constexpr double kHiddenDeviation = 0.2;                     // of what the needle hides of the dent's shape
+constexpr double kDepthsAgree = 1.5;                         // px, of both depths, and up to kDepthsAgreeDeviations
+constexpr double kDepthsAgreeDeviations = 3;
+constexpr double kSureDepthDeviation = 0.55;  // px
+constexpr double kSureUsed = 0.8;             // of the border's points
 
 /// The border with its dent: traced along the clearest path first, then along what was fitted.
 DentedEllipse fitOutline(const Frame& frame, const CellBorder& border, const NeedleShadow& needle,
@@ -26,7 +25,7 @@ DentedEllipse fitOutline(const Frame& frame, const CellBorder& border, const Nee
   points = traceOutline(frame, border, needle, findOutline(frame, border, needle), 0, kFirstWindow);
   DentedEllipse dented = fitDentedEllipse(points, needle.axis, border.ellipse);
   for (int i = 0; i < kTraces && dented.valid; ++i) {
-    points = traceOutline(frame, border, needle, outlineOf(dented, needle.axis), border.shift, kWindow);
+    points = traceOutline(frame, border, needle, outlineOf(dented, needle.axis), border.shift, kLaterWindow);
     dented = fitDentedEllipse(points, needle.axis, dented);
   }
   return dented;
@@ -53,13 +52,13 @@ Depth mean(const Depth& a, const Depth& b) {
   return {(wa * a.value + wb * b.value) / (wa + wb), 1 / std::sqrt(wa + wb)};
 }
 
-Indentation indentationBy(const Frame& frame, const CellBorder& border, const NeedleShadow& needle,
+Dimple indentationBy(const Frame& frame, const CellBorder& border, const NeedleShadow& needle,
                           double tip_deviation) {
-  Indentation result;
+  Dimple result;
   result.finding = Finding::notFound("there is no outline of a cell");
   if (!border.finding.hasValues()) return result;
   result.finding = Finding::notFound("the tip is outside of the cell's outline: there is no dimple");
-  if (border.ellipse.distance(needle.axis.tip) > kOutside) return result;
+  if (border.ellipse.distance(needle.axis.tip) > kMayTouch) return result;
   result.at_cell = true;
   std::vector<BorderPoint> points;
   const DentedEllipse dented = fitOutline(frame, border, needle, points);
@@ -72,7 +71,8 @@ Indentation indentationBy(const Frame& frame, const CellBorder& border, const Ne
   }
   const Depth of_tip = depthOfTip(dented, needle, tip_deviation), of_dent = depthOfDent(dented, needle);
   const double apart = std::abs(of_tip.value - of_dent.value);
-  const bool touches = apart < std::max(kAgree, kAgreeDeviations * std::hypot(of_tip.deviation, of_dent.deviation));
+  const bool touches =
+      apart < std::max(kDepthsAgree, kDepthsAgreeDeviations * std::hypot(of_tip.deviation, of_dent.deviation));
   const Depth depth = touches ? mean(of_tip, of_dent) : of_dent;
   result.depth = std::max(0.0, depth.value);
   result.deviation = depth.deviation;
@@ -85,7 +85,7 @@ Indentation indentationBy(const Frame& frame, const CellBorder& border, const Ne
     result.finding = Finding::uncertain("the outline under the needle is not at the tip: it may not touch");
   else if (!described)
     result.finding = Finding::uncertain("a part of the outline is not that of a cell with a dimple");
-  else if (result.deviation > kSureDeviation)
+  else if (result.deviation > kSureDepthDeviation)
     result.finding = Finding::uncertain("the outline beside the needle is not clear");
   else
     result.finding = border.finding;
@@ -94,16 +94,16 @@ Indentation indentationBy(const Frame& frame, const CellBorder& border, const Ne
 
 }  // namespace
 
-Indentation findIndentation(const Frame& frame, const CellBorder& border, const cv::Point2d& tip, double direction,
+Dimple findIndentation(const Frame& frame, const CellBorder& border, const cv::Point2d& tip, double direction,
                             double width) {
   return indentationBy(frame, border, {{tip, direction}, 0.5 * width, 0}, 0);
 }
 
-Indentation findIndentation(const Frame& frame, const CellBorder& border, const PipetteDetection& needle) {
-  Indentation result;
+Dimple findIndentation(const Frame& frame, const CellBorder& border, const PipetteDetection& needle) {
+  Dimple result;
   result.finding = Finding::notFound("there is no needle that could indent the cell");
   if (!needle.finding.hasValues()) return result;
-  const double half_width = std::clamp(needle.half_width, kThinnest, kThickest);
+  const double half_width = std::clamp(needle.half_width, kThinnestNeedle, kThickestNeedle);
   const NeedleShadow shadow{{needle.end, needle.direction}, half_width, std::max(0.0, needle.taper)};
   const Eigen::Vector2d along(std::cos(needle.direction), std::sin(needle.direction));
   const double deviation = std::sqrt(along.dot(needle.covariance * along));

@@ -13,7 +13,7 @@
 namespace microinjection {
 
 /// The outline of a cell where a needle presses on it.
-struct Indentation {
+struct Dimple {
   Finding finding;
   double depth = 0;            ///< px, along the needle, from the undisturbed outline to the deepest place
   double deviation = 0;        ///< px, standard deviation
@@ -33,12 +33,12 @@ struct Indentation {
 /// @param tip        px
 /// @param direction  rad, from the tip towards the shaft, from x towards y
 /// @param width      px, of the needle near its tip
-Indentation findIndentation(const Frame& frame, const CellBorder& border, const cv::Point2d& tip, double direction,
+Dimple findIndentation(const Frame& frame, const CellBorder& border, const cv::Point2d& tip, double direction,
                             double width);
 
 /// The same under a needle that was found: kNotFound without one, and at most kUncertain under one
 /// that is uncertain. The deviation includes that of the tip. The displacement is measured above the
 /// cell too.
-Indentation findIndentation(const Frame& frame, const CellBorder& border, const PipetteDetection& needle);
+Dimple findIndentation(const Frame& frame, const CellBorder& border, const PipetteDetection& needle);
 
 }  // namespace microinjection

@@ -13,38 +13,35 @@ namespace microinjection {
 namespace {
 
 constexpr double kLeastClearness = 3;                      // of the shared edges at the end
-constexpr int kAxisRows = 160;                             // px behind the end, whose symmetry gives the axis
-constexpr double kAcross = 1.5;                            // px, blur of the derivative across the axis
 constexpr double kEdgesEnded = 0.15, kSharedEnded = 0.25;  // see coarseEnd()
 constexpr double kEmpty = 8;                               // clearness of a tip before an empty background
-constexpr double kAxisMargin = 24;                         // px beside an outline, that shows the symmetry
 constexpr double kWidestPoint = 14;                        // px from the axis, that a tip is looked for in
 constexpr double kTube = 0.1;                              // widening of a tube whose profile stays the same, at most
-constexpr double kAgree = 6;                               // px, between two ways to see a tip's end
-constexpr double kApart = 0.25;  // standard deviation of an end over the distance between two ways to see it
-constexpr double kThinnest = 4, kWidestTip = 40, kWidestSure = 26;  // px, half widths
-constexpr double kAhead = 48;                // px behind the end, whose half width is that of the strips
-constexpr int kFirstShift = 24, kShift = 8;  // px, that an axis may be off
-constexpr double kMargin = 6;                // px beside an outline
-constexpr double kSureClearness = 9;         // of a tip
-constexpr double kSureSymmetry = 0.93;       // of the edges near a tip
-constexpr int kRounds = 3;
+constexpr double kEndsAgree = 6;                           // px, between two ways to see a tip's end
+constexpr double kDeviationPerGap = 0.25;  // standard deviation of an end over the distance between two ways to see it
+constexpr double kThinnestTip = 4, kWidestTip = 40, kWidestSure = 26;  // px, half widths
+constexpr double kAhead = 48;           // px behind the end, whose half width is that of the strips
+constexpr int kFirstShift = 24;         // px, that the first axis may be off
+constexpr double kOutlineMargin = 6;    // px beside an outline
+constexpr double kSureClearness = 9;    // of a tip
+constexpr double kSureSymmetry = 0.93;  // of the edges near a tip
+constexpr int kRefinements = 3;
 constexpr double kFitBehind = 48;  // px before an end, in the strip of its fit
 constexpr int kFitBefore = 18;     // px of the background that the fit needs
 constexpr int kFitShaft = 14;      // px of the shaft
 constexpr int kFitRows = 110, kFitHalf = 24;
-constexpr double kFitBlur = 0.4;            // px
-constexpr double kPlain = 0.5;              // misfit of a fit before a plain background, at most
-constexpr double kFitAgrees = 2;            // px, of a fit and an edge before another background
-constexpr double kSureDeviation = 0.6;      // px, of an end
-constexpr double kSureCompressed = 0.25;    // px, the same of an end in a compressed image
-constexpr double kFar = 3, kSureFar = 0.4;  // px, from where the edges end, and the deviation of an end that far
-constexpr double kUnclear = 2;              // px, standard deviation of an end before nothing else
-constexpr double kNothingElse = 40;         // clearness of an end before nothing else
-constexpr double kWallsKept = 0.15;         // of the walls' edges, that are left near an end
-constexpr double kShaded = 0.2;             // of walls that are not alike, as in DIC
-constexpr double kThinShaded = 7;           // px, half width of a profile that such walls displace
-constexpr double kOneSided = 0.8;           // shading of what is on one side of a needle only
+constexpr double kFitBlur = 0.4;                  // px
+constexpr double kPlain = 0.5;                    // misfit of a fit before a plain background, at most
+constexpr double kFitAgrees = 2;                  // px, of a fit and an edge before another background
+constexpr double kSureEnd = 0.6;                  // px, of an end
+constexpr double kSureCompressed = 0.25;          // px, the same of an end in a compressed image
+constexpr double kFarEnd = 3, kSureFarEnd = 0.4;  // px, from where the edges end, and the deviation of an end that far
+constexpr double kUnclear = 2;                    // px, standard deviation of an end before nothing else
+constexpr double kNothingElse = 40;               // clearness of an end before nothing else
+constexpr double kWallsKept = 0.15;               // of the walls' edges, that are left near an end
+constexpr double kShaded = 0.2;                   // of walls that are not alike, as in DIC
+constexpr double kThinShaded = 7;                 // px, half width of a profile that such walls displace
+constexpr double kOneSided = 0.8;                 // shading of what is on one side of a needle only
 
 std::vector<double> outlines(const PipetteStrip& strip, const PipetteAxis& axis, double factor, double margin) {
   std::vector<double> half;
@@ -57,7 +54,7 @@ std::vector<double> outlines(const PipetteStrip& strip, const PipetteAxis& axis,
 /// A cut tube ends at half of its profile. A point, or a tube that widens quickly, has no profile
 /// that stays the same; it ends where its edges do. How far both are apart tells how certain each is.
 PipetteEnd tipIn(const PipetteStrip& strip, int row, double reach, double half_width) {
-  const int half = static_cast<int>(std::min(0.6 * half_width + kMargin, kWidestPoint));
+  const int half = static_cast<int>(std::min(0.6 * half_width + kOutlineMargin, kWidestPoint));
   const PipetteEnd point = pointNear(strip, row, reach, half);
   if (!point.valid || point.clearness < kEmpty) {
     const PipetteEnd tube = tubeNear(strip, row, reach, half);
@@ -66,9 +63,9 @@ PipetteEnd tipIn(const PipetteStrip& strip, int row, double reach, double half_w
   }
   const PipetteEnd cut = tipNear(strip, point.row, half);
   if (!cut.valid) return point;
-  const bool tube = widening(strip, point.row, 2 * half) < kTube && std::abs(cut.row - point.row) < kAgree;
+  const bool tube = widening(strip, point.row, 2 * half) < kTube && std::abs(cut.row - point.row) < kEndsAgree;
   PipetteEnd end = tube ? cut : point;
-  end.deviation = std::hypot(end.deviation, kApart * (cut.row - point.row));
+  end.deviation = std::hypot(end.deviation, kDeviationPerGap * (cut.row - point.row));
   return end;
 }
 
@@ -101,7 +98,7 @@ void fitEnd(const Frame& frame, const PipetteAxis& axis, const TipOutline& outli
     found.finding = Finding::uncertain("in focus and out of focus the tip has other places");
     return;
   }
-  const double most = std::abs(fit.row - kFitBehind) > kFar ? kSureFar : kSureDeviation;
+  const double most = std::abs(fit.row - kFitBehind) > kFarEnd ? kSureFarEnd : kSureEnd;
   found.finding = fit.deviation > most ? Finding::uncertain("the tip fades into its background") : Finding::found();
 }
 
@@ -131,14 +128,14 @@ PipetteDetection refineInjection(const Frame& frame, PipetteAxis axis, const cv:
   for (int round = 0; round < rounds; ++round) {
     const double back = reach + 24;
     double half_width = std::max(
-        kThinnest, axis.outlineAt(place + kAhead * cv::Point2d(std::cos(axis.direction), std::sin(axis.direction))));
+        kThinnestTip, axis.outlineAt(place + kAhead * cv::Point2d(std::cos(axis.direction), std::sin(axis.direction))));
     PipetteStrip::Shape shape;
     shape.direction = axis.direction;
     shape.origin = place - back * cv::Point2d(std::cos(axis.direction), std::sin(axis.direction));
     shape.rows = static_cast<int>(back) + kAxisRows + 40;
-    const int most = round == 0 ? kFirstShift : kShift;
+    const int most = round == 0 ? kFirstShift : kAxisShift;
     shape.half = static_cast<int>(std::min(0.5 * widest, 1.25 * half_width + kAxisMargin)) + most + 2;
-    const PipetteStrip strip(frame, shape, kAcross, 1.0);
+    const PipetteStrip strip(frame, shape, kAxisBlur, 1.0);
     const int row = static_cast<int>(back);
     fit = fitAxis(strip, row + 4, kAxisRows, 1.25 * half_width + kAxisMargin, most);
     if (!fit.valid) return found;
@@ -148,10 +145,10 @@ PipetteDetection refineInjection(const Frame& frame, PipetteAxis axis, const cv:
     PipetteStrip::Shape straight = shape;
     straight.direction = axis.direction;
     straight.origin = axis.point - (back + 4) * cv::Point2d(std::cos(axis.direction), std::sin(axis.direction));
-    const PipetteStrip aligned(frame, straight, kAcross, 1.0);
+    const PipetteStrip aligned(frame, straight, kAxisBlur, 1.0);
     // Lines of a whole shaft do not show how thin it is at its end.
     const TipOutline before = measureOutline(aligned, row, kWidestTip);
-    if (before.valid) half_width = std::max(kThinnest, before.half_width + kAhead * before.growth);
+    if (before.valid) half_width = std::max(kThinnestTip, before.half_width + kAhead * before.growth);
     last = tipIn(aligned, row, round == 0 ? reach : 30, half_width);
     if (!last.valid) return found;
     place = aligned.point(last.row, 0);
@@ -169,7 +166,7 @@ PipetteDetection refineInjection(const Frame& frame, PipetteAxis axis, const cv:
   found.clearness = last.clearness;
   found.setCovariance(last.deviation, fit.offset_deviation);
   found.finding = Finding::found();
-  const double unclear = found.clearness < kNothingElse ? kSureDeviation : kUnclear;
+  const double unclear = found.clearness < kNothingElse ? kSureEnd : kUnclear;
   if (last.deviation > unclear) found.finding = Finding::uncertain("the pipette's end is not clear");
   if (found.clearness < kSureClearness)
     found.finding = Finding::uncertain("the tip is not clear before its background");
@@ -195,13 +192,13 @@ PipetteDetection measureInjection(const Frame& frame, const PipetteAxis& axis, d
   shape.half = static_cast<int>(std::min(0.5 * widest, 1.2 * axis.outlineAt(border) + 16) / shape.step);
   const PipetteStrip strip(frame, shape, 1.0, 2.5);
   // Before an empty background all edges end; before a cell those that are symmetric to the axis.
-  const std::vector<double> half = outlines(strip, axis, 1.2, kMargin);
+  const std::vector<double> half = outlines(strip, axis, 1.2, kOutlineMargin);
   PipetteEnd end = coarseEnd(strip, allEdges(strip, half), kEdgesEnded);
   if (!end.valid || end.clearness < kLeastClearness) end = coarseEnd(strip, sharedEdges(strip, half), kSharedEnded);
   PipetteDetection none;
   none.finding = Finding::notFound("no pipette: an axis without an end in the image");
   if (!end.valid || end.clearness < kLeastClearness) return none;
-  return refineInjection(frame, axis, strip.point(end.row, 0), 60, widest, kRounds);
+  return refineInjection(frame, axis, strip.point(end.row, 0), 60, widest, kRefinements);
 }
 
 }  // namespace microinjection

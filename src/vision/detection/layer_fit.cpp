@@ -10,20 +10,20 @@
 namespace microinjection {
 namespace {
 
-constexpr int kSectors = 72, kCoarse = 3, kTrackedSectors = 36;
-constexpr double kInside = 13, kOutside = 10;  // px, of the samples, beyond ooplasm and zona
-constexpr double kThinnestZona = 4;            // px
+constexpr int kSectors = 72, kCoarseEvery = 3, kTrackedSectors = 36;
+constexpr double kSamplesInside = 13, kSamplesOutside = 10;  // px, of the samples, beyond ooplasm and zona
+constexpr double kThinnestZona = 4;                          // px
 constexpr int kCoarseSteps = 6, kTrialSteps = 5, kFineSteps = 4, kTrackedSteps = 3;
 constexpr double kOtherPlaces[] = {-8, -5, 5};  // px, of the ooplasm, when the first one is not described
 constexpr std::size_t kTrials = 3;              // places of the inner border that are refined
-constexpr double kSamePlace = 1;                // px
+constexpr double kSameBorder = 1;               // px
 constexpr double kPoorFit = 0.06;               // misfit over the line's contrast: the first borders may be others
 
 using Vector = Eigen::VectorXd;
 
 /// The ellipse whose border is `place(harmonics)` px from the base.
 template <typename Place>
-Ellipse ellipseOf(const Ellipse& base, const Place& place) {
+Ellipse ellipseAlong(const Ellipse& base, const Place& place) {
   std::vector<cv::Point2d> points;
   for (int i = 0; i < kSectors; ++i) {
     const double angle = 2 * M_PI * i / kSectors, radius = base.radius(angle) + place(angle);
@@ -70,7 +70,7 @@ Trial searchInner(LayerSolver& solver, const LayerModel& model, const Vector& st
     solver.iterate(model, trial, kTrialSteps, false);
     const double chi2 = solver.chi2(model, trial);
     const bool same = best.parameters.size() > 0 &&
-                      std::abs(trial[LayerModel::kThickness] - best.parameters[LayerModel::kThickness]) < kSamePlace;
+                      std::abs(trial[LayerModel::kThickness] - best.parameters[LayerModel::kThickness]) < kSameBorder;
     if (!same) second = std::min(second, std::max(chi2, best.chi2));
     if (chi2 < best.chi2) {
       if (!same && best.chi2 < 1e299) second = best.chi2;
@@ -94,10 +94,10 @@ bool isPoor(const LayerSolver& solver, const LayerModel& model, const Vector& p)
 }
 
 /// The places of all borders by every third sector.
-bool search(const LayerSamples& samples, const LayerGuess& guess, const std::string& look, const LayerModel& with,
-            Vector& parameters, LayerFit& result) {
+bool searchBorders(const LayerSamples& samples, const LayerGuess& guess, const std::string& look,
+                   const LayerModel& with, Vector& parameters, LayerFit& result) {
   const LayerModel without(look, false);
-  LayerSolver coarse(samples, guess.ooplasm, guess.rim, kCoarse);
+  LayerSolver coarse(samples, guess.ooplasm, guess.rim, kCoarseEvery);
   Vector start = coarseFit(coarse, without, 0);
   double cost = coarse.cost();
   if (isPoor(coarse, without, start)) {
@@ -119,7 +119,7 @@ bool search(const LayerSamples& samples, const LayerGuess& guess, const std::str
   if (best.parameters.size() == 0) return false;
   parameters = best.parameters;
   const double gain = std::max(chi_without - best.chi2, 1e-9);
-  result.inner_gain = kCoarse * gain / coarse.correlated();
+  result.inner_gain = kCoarseEvery * gain / coarse.correlated();
   result.rival = second < 1e299 ? std::max(0.0, (chi_without - second) / gain) : 0;
   return true;
 }
@@ -128,12 +128,12 @@ void describe(LayerSolver& solver, const LayerModel& model, const Vector& p, con
               LayerFit& result) {
   const Eigen::MatrixXd covariance = solver.covariance(model, p);
   const auto outerAt = [&](const LayerModel::Harmonics& h) { return h.sum(p, LayerModel::kOuter, 5); };
-  result.outer.ellipse = ellipseOf(guess.outer, [&](double a) { return outerAt(LayerModel::Harmonics(a)); });
-  result.inner.ellipse = ellipseOf(guess.outer, [&](double a) {
+  result.outer.ellipse = ellipseAlong(guess.outer, [&](double a) { return outerAt(LayerModel::Harmonics(a)); });
+  result.inner.ellipse = ellipseAlong(guess.outer, [&](double a) {
     const LayerModel::Harmonics h(a);
     return outerAt(h) - h.sum(p, LayerModel::kThickness, 3);
   });
-  result.ooplasm.ellipse = ellipseOf(guess.outer, [&](double a) {
+  result.ooplasm.ellipse = ellipseAlong(guess.outer, [&](double a) {
     return guess.ooplasm.reach(guess.outer.centre, a) - guess.outer.radius(a) +
            LayerModel::Harmonics(a).sum(p, LayerModel::kOoplasm, 5);
   });
@@ -163,7 +163,8 @@ LayerFit fitLayers(const Frame& frame, const LayerGuess& guess, const std::strin
     low = std::min(low, guess.ooplasm.reach(guess.outer.centre, angle) - guess.outer.radius(angle));
   }
   const bool known = guess.thickness > 0;
-  const LayerSamples samples(frame, guess.outer, low - kInside, kOutside, known ? kTrackedSectors : kSectors);
+  const LayerSamples samples(frame, guess.outer, low - kSamplesInside, kSamplesOutside,
+                             known ? kTrackedSectors : kSectors);
   const LayerModel with(look, true);
   Vector parameters;
   if (known) {
@@ -176,7 +177,7 @@ LayerFit fitLayers(const Frame& frame, const LayerGuess& guess, const std::strin
     describe(solver, with, parameters, guess, result);
     return result;
   }
-  if (!search(samples, guess, look, with, parameters, result)) return result;
+  if (!searchBorders(samples, guess, look, with, parameters, result)) return result;
   LayerSolver solver(samples, guess.ooplasm, guess.rim, 1, parameters);
   solver.iterate(with, parameters, kFineSteps, true);
   describe(solver, with, parameters, guess, result);

@@ -11,7 +11,7 @@ constexpr double kShadedLine = 1;    // px, half the width of a line of DIC befo
 constexpr double kRampLength = 10;   // px, on which the ooplasm darkens by a ramp's amplitude
 constexpr double kTiltLength = 100;  // px, on which the illumination changes by a tilt's amplitude
 constexpr int kPerBlur = 128;        // entries of the table of a blurred edge
-constexpr double kFar = 5;           // blurs, beyond which an edge is its limit
+constexpr double kTableReach = 5;    // blurs, beyond which an edge is its limit
 
 void placeBorders(const Eigen::VectorXd& p, const LayerModel::Sample& sample, double* distance) {
   const double outer = sample.harmonics.sum(p, LayerModel::kOuter, 5) - sample.place;
@@ -84,17 +84,17 @@ double LayerModel::usualAmplitude(int term) const {
 /// A step that is blurred by a Gaussian, from a table: the error function took most of a fit's time.
 LayerModel::Edge LayerModel::edgeAt(double distance, double blur) {
   static const auto table = [] {
-    std::array<Edge, 2 * static_cast<std::size_t>(kFar * kPerBlur) + 2> entries;
+    std::array<Edge, 2 * static_cast<std::size_t>(kTableReach * kPerBlur) + 2> entries;
     for (std::size_t i = 0; i < entries.size(); ++i) {
-      const double u = static_cast<double>(i) / kPerBlur - kFar;
+      const double u = static_cast<double>(i) / kPerBlur - kTableReach;
       entries[i] = {0.5 * std::erfc(-u * M_SQRT1_2), std::exp(-0.5 * u * u) / std::sqrt(2 * M_PI)};
     }
     return entries;
   }();
   const double u = distance / blur;
-  if (u >= kFar) return {1, 0};
-  if (u <= -kFar) return {0, 0};
-  const double place = (u + kFar) * kPerBlur;
+  if (u >= kTableReach) return {1, 0};
+  if (u <= -kTableReach) return {0, 0};
+  const double place = (u + kTableReach) * kPerBlur;
   const auto i = static_cast<std::size_t>(place);
   const double t = place - static_cast<double>(i);
   const Edge &a = table[i], &b = table[i + 1];

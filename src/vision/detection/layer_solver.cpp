@@ -5,20 +5,20 @@
 #include <cmath>
 
 #include "base/median.h"
+#include "vision/detection/robust_loss.h"
+#include "vision/detection/zona_inner.h"
 
 namespace microinjection {
 namespace {
 
-constexpr double kInside = 12;       // px, of the samples inside of the ooplasm
-constexpr double kTukey = 4.685;     // 95 % efficiency for normal residuals
+constexpr double kUsedInside = 12;   // px, of the samples inside of the ooplasm
 constexpr double kOddSector = 2.2;   // of the median residual of a sector: something else is there
-constexpr double kMostResidual = 6;  // deviations, that one sample counts in its sector
-constexpr double kTilt = 0.006;      // of the radius, standard deviation of a zona's change of thickness
+constexpr double kMostOfSample = 6;  // deviations, that one sample counts in its sector
 constexpr double kUsualWidth = 2, kUsualBlur = 1.3, kWidthShare = 0.5;  // px; standard deviation over the value
-constexpr double kSameWidth = 0.4;                     // px, standard deviation of the difference of the zona's lines
-constexpr double kLeastWidth = 0.5, kLeastBlur = 0.7;  // px
-constexpr double kNear = 8;                            // px, of samples that show a border
-constexpr double kSmallestStep = 2e-3;                 // px, of the borders, that goes on
+constexpr double kSameWidth = 0.4;  // px, standard deviation of the difference of the zona's lines
+constexpr double kLeastLineWidth = 0.5, kLeastLineBlur = 0.7;  // px
+constexpr double kShowsBorder = 8;                             // px, of samples that show a border
+constexpr double kSmallestStep = 2e-3;                         // px, of the borders, that goes on
 
 /// Tukey's biweight.
 double tukey(double d) { return std::abs(d) < 1 ? (1 - d * d) * (1 - d * d) : 0; }
@@ -28,7 +28,7 @@ bool isFar(const Eigen::VectorXd& p, const LayerModel::Sample& sample) {
   const double outer = sample.harmonics.sum(p, LayerModel::kOuter, 5) - sample.place;
   const double inner = outer - sample.harmonics.sum(p, LayerModel::kThickness, 3);
   const double ooplasm = sample.ooplasm + sample.harmonics.sum(p, LayerModel::kOoplasm, 5) - sample.place;
-  return outer > kNear && std::abs(inner) > kNear && ooplasm < -kNear - p[LayerModel::kRim];
+  return outer > kShowsBorder && std::abs(inner) > kShowsBorder && ooplasm < -kShowsBorder - p[LayerModel::kRim];
 }
 
 }  // namespace
@@ -42,7 +42,7 @@ LayerSolver::LayerSolver(const LayerSamples& samples, const Ellipse& ooplasm, do
     const double direction = samples.direction(s);
     const double place = ooplasm.reach(samples.base().centre, direction) - samples.radius(s);
     for (int i = 0; i < samples.columns(); ++i) {
-      if (!samples.valid(s, i) || samples.place(i) < place - kInside) continue;
+      if (!samples.valid(s, i) || samples.place(i) < place - kUsedInside) continue;
       const LayerModel::Sample sample{LayerModel::Harmonics(direction), samples.place(i), samples.radius(s), place};
       if (near.size() > 0 && isFar(near, sample)) continue;
       points_.push_back({sample, samples.grey(s, i), s, samples.place(i) < place});
@@ -105,7 +105,7 @@ void LayerSolver::reweigh() {
   scale_[1] = std::max(1.4826 * upperMedian(std::move(in)), scale_[0]);
   std::vector<double> sum(sectors_, 0.0), count(sectors_, 0.0), rms(sectors_, 1e9), seen;
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    const double r = std::min(std::abs(residual_[i]) / scale_[points_[i].inside ? 1 : 0], kMostResidual);
+    const double r = std::min(std::abs(residual_[i]) / scale_[points_[i].inside ? 1 : 0], kMostOfSample);
     sum[points_[i].sector] += r * r;
     count[points_[i].sector] += 1;
   }
@@ -123,7 +123,7 @@ void LayerSolver::reweigh() {
   used_ = static_cast<double>(counted) / std::max<double>(1, static_cast<double>(seen.size()));
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const double scale = scale_[points_[i].inside ? 1 : 0];
-    weight_[i] = rms[points_[i].sector] * tukey(residual_[i] / (kTukey * scale)) / (scale * scale);
+    weight_[i] = rms[points_[i].sector] * tukey(residual_[i] / (RobustLoss::kTukey * scale)) / (scale * scale);
   }
 }
 
@@ -143,8 +143,8 @@ double LayerSolver::step(const LayerModel& model, Eigen::VectorXd& parameters, d
     Eigen::MatrixXd damped = matrix_;
     damped.diagonal() *= 1 + damping;
     Eigen::VectorXd next = parameters + damped.ldlt().solve(right_);
-    for (int i = LayerModel::kOuterLine; i < LayerModel::kBlur; ++i) next[i] = std::max(next[i], kLeastWidth);
-    next[LayerModel::kBlur] = std::max(next[LayerModel::kBlur], kLeastBlur);
+    for (int i = LayerModel::kOuterLine; i < LayerModel::kBlur; ++i) next[i] = std::max(next[i], kLeastLineWidth);
+    next[LayerModel::kBlur] = std::max(next[LayerModel::kBlur], kLeastLineBlur);
     rest(model, next, trial_);
     if (weighted(trial_) + prior(model, next) < chi_) {
       const double change = (next - parameters).head(LayerModel::kOuterLine).norm();
@@ -225,7 +225,7 @@ double LayerSolver::priorWeight(const LayerModel& model, int index) const {
   else if (index >= LayerModel::kOuterLine)
     deviation = kWidthShare * widths_[index - LayerModel::kOuterLine];
   else if (index == LayerModel::kThickness + 1 || index == LayerModel::kThickness + 2)
-    deviation = kTilt * radius_;
+    deviation = kZonaTilt * radius_;
   else if (index == LayerModel::kThickness && !model.hasInner())
     deviation = 1;
   return deviation > 0 ? 1 / (deviation * deviation) : 1e-9;

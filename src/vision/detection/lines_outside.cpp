@@ -10,39 +10,39 @@
 namespace microinjection {
 namespace {
 
-constexpr int kSectors = 12, kRaysOfSector = 15;
-constexpr int kBeside = 3;       // px, that the line of a border is wide, to both sides
-constexpr int kLeastReach = 15;  // px
-constexpr double kReach = 0.1;   // of the radius
+constexpr int kOwnLine = 3;             // px, that the line of a border is wide, to both sides
+constexpr int kLeastReach = 15;         // px
+constexpr double kReachOfRadius = 0.1;  // of the radius
 constexpr int kThird = 2;
-constexpr double kSmoothing = 1;  // px
+constexpr double kSlopeSmoothing = 1;  // px
 
 /// Size of a sector's mean slope at a column.
-double slopeAt(const PolarMap& map, int sector, int column) {
+double slopeOfSector(const PolarMap& map, int sector, int column) {
   double sum = 0;
-  for (int ray = sector * kRaysOfSector; ray < (sector + 1) * kRaysOfSector; ++ray)
+  for (int ray = sector * kRaysOfAveragedSector; ray < (sector + 1) * kRaysOfAveragedSector; ++ray)
     sum += map.slope().at<float>(ray, column);
-  return std::abs(sum) / kRaysOfSector;
+  return std::abs(sum) / kRaysOfAveragedSector;
 }
 
 double largestSlope(const PolarMap& map, int sector, int first, int last) {
   double largest = 0;
-  for (int column = first; column < last; ++column) largest = std::max(largest, slopeAt(map, sector, column));
+  for (int column = first; column < last; ++column) largest = std::max(largest, slopeOfSector(map, sector, column));
   return largest;
 }
 
 }  // namespace
 
 double linesOutside(const Frame& frame, const Ellipse& border) {
-  const int reach = std::max(kLeastReach, static_cast<int>(kReach * 0.5 * border.meanDiameter()));
-  const int columns = kBeside + reach + 1;
-  const PolarMap map(frame, border, {-kBeside, static_cast<double>(reach), columns, kSectors * kRaysOfSector},
-                     kSmoothing);
+  const int reach = std::max(kLeastReach, static_cast<int>(kReachOfRadius * 0.5 * border.meanDiameter()));
+  const int columns = kOwnLine + reach + 1;
+  const PolarMap map(frame, border,
+                     {-kOwnLine, static_cast<double>(reach), columns, kAveragedSectors * kRaysOfAveragedSector},
+                     kSlopeSmoothing);
   double own = 0;
-  std::array<double, kSectors> outside{};
-  for (int sector = 0; sector < kSectors; ++sector) {
-    own = std::max(own, largestSlope(map, sector, 0, 2 * kBeside + 1));
-    outside[sector] = largestSlope(map, sector, 3 * kBeside, columns);
+  std::array<double, kAveragedSectors> outside{};
+  for (int sector = 0; sector < kAveragedSectors; ++sector) {
+    own = std::max(own, largestSlope(map, sector, 0, 2 * kOwnLine + 1));
+    outside[sector] = largestSlope(map, sector, 3 * kOwnLine, columns);
   }
   std::nth_element(outside.begin(), outside.begin() + kThird, outside.end(), std::greater<>());
   return own > 0 ? outside[kThird] / own : 0;

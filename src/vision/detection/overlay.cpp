@@ -8,16 +8,17 @@ namespace microinjection {
 namespace {
 
 constexpr double kDegrees = 180 / M_PI;
-constexpr int kShift = 4;  // fractional bits of the drawn places
+constexpr int kFractionalBits = 4;  // fractional bits of the drawn places
 const cv::Scalar kOoplasm(80, 220, 80), kZona(60, 160, 255), kInner(255, 180, 60), kNeedle(80, 80, 255),
     kHolding(255, 255, 80), kText(255, 255, 255);
 
 cv::Point fixed(const cv::Point2d& point) {
-  return {cv::saturate_cast<int>(point.x * (1 << kShift)), cv::saturate_cast<int>(point.y * (1 << kShift))};
+  return {cv::saturate_cast<int>(point.x * (1 << kFractionalBits)),
+          cv::saturate_cast<int>(point.y * (1 << kFractionalBits))};
 }
 
 void line(cv::Mat& image, const cv::Point2d& a, const cv::Point2d& b, const cv::Scalar& colour) {
-  cv::line(image, fixed(a), fixed(b), colour, 1, cv::LINE_AA, kShift);
+  cv::line(image, fixed(a), fixed(b), colour, 1, cv::LINE_AA, kFractionalBits);
 }
 
 void text(cv::Mat& image, const std::string& words, const cv::Point2d& place, const cv::Scalar& colour) {

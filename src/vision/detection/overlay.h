@@ -14,7 +14,7 @@ struct OverlayContent {
   const CellDetection* cell = nullptr;
   const PipetteDetection* holding = nullptr;
   const PipetteDetection* injection = nullptr;
-  const Indentation* indentation = nullptr;
+  const Dimple* indentation = nullptr;
 };
 
 /// Draws what was found on the frame with thin lines, values in px, and the verdicts with their

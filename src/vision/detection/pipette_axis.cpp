@@ -8,10 +8,10 @@
 namespace microinjection {
 namespace {
 
-constexpr int kLongSide = 360;  // px, at most, of the reduced frame
-constexpr int kAngles = 180;    // of lines, over half a turn
+constexpr int kLongSide = 360;    // px, at most, of the reduced frame
+constexpr int kLineAngles = 180;  // of lines, over half a turn
 constexpr int kLines = 32;
-constexpr double kEdgeNoise = 5;                           // of the gradient's noise
+constexpr double kLineOverNoise = 5;                       // of the gradient's noise
 constexpr double kLeastNoise = 1.2e-3;                     // of the range, of a gradient; compression has its own
 constexpr double kLeastLength = 18;                        // px in the reduced frame
 constexpr double kLeastLengthAtBorder = 7;                 // the same, of a needle that has just come into it
@@ -45,9 +45,9 @@ class LineVotes {
  public:
   LineVotes(const cv::Size& size, const AxisSearch& search)
       : search_(search), shift_(std::ceil(std::hypot(size.width, size.height)) + 1) {
-    votes_ = cv::Mat::zeros(kAngles, 2 * static_cast<int>(shift_) + 1, CV_32F);
-    for (int row = 0; row < kAngles; ++row) {
-      const double a = (row + 0.5) * M_PI / kAngles;
+    votes_ = cv::Mat::zeros(kLineAngles, 2 * static_cast<int>(shift_) + 1, CV_32F);
+    for (int row = 0; row < kLineAngles; ++row) {
+      const double a = (row + 0.5) * M_PI / kLineAngles;
       cosine_[row] = std::cos(a);
       sine_[row] = std::sin(a);
     }
@@ -60,7 +60,7 @@ class LineVotes {
     cv::Sobel(smooth, gx, CV_32F, 1, 0, 3, 0.125);
     cv::Sobel(smooth, gy, CV_32F, 0, 1, 3, 0.125);
     cv::magnitude(gx, gy, size);
-    const double least = kEdgeNoise * noise;
+    const double least = kLineOverNoise * noise;
     for (int y = 2; y < image.rows - 2; ++y) {
       for (int x = 2; x < image.cols - 2; ++x) {
         const double g = size.at<float>(y, x);
@@ -89,9 +89,9 @@ class LineVotes {
   void addEdge(int x, int y, double normal, float weight) {
     const double angle = halfTurn(normal);
     if (std::abs(turn(angle - M_PI / 2, search_.direction)) > search_.tolerance + search_.steepest_taper) return;
-    const int middle = static_cast<int>(angle / M_PI * kAngles);
+    const int middle = static_cast<int>(angle / M_PI * kLineAngles);
     for (int k = -2; k <= 2; ++k) {
-      const int row = (middle + k + kAngles) % kAngles;
+      const int row = (middle + k + kLineAngles) % kLineAngles;
       const int column = static_cast<int>(std::lround(x * cosine_[row] + y * sine_[row] + shift_));
       votes_.at<float>(row, column) += weight;
     }
@@ -100,7 +100,7 @@ class LineVotes {
   AxisSearch search_;
   cv::Mat votes_;  ///< angles x offsets
   double shift_;   ///< of the offsets
-  std::array<double, kAngles> cosine_, sine_;
+  std::array<double, kLineAngles> cosine_, sine_;
 };
 
 std::vector<Line> linesOf(const LineVotes& accumulator, double least_length) {
@@ -113,7 +113,7 @@ std::vector<Line> linesOf(const LineVotes& accumulator, double least_length) {
     for (int column = 0; column < votes.cols; ++column) {
       const float value = votes.at<float>(row, column);
       if (value < 0.3 * least_length || value < highest.at<float>(row, column)) continue;
-      lines.push_back({(row + 0.5) * M_PI / kAngles, column - accumulator.shift(), value});
+      lines.push_back({(row + 0.5) * M_PI / kLineAngles, column - accumulator.shift(), value});
     }
   }
   std::sort(lines.begin(), lines.end(), [](const Line& a, const Line& b) { return a.weight > b.weight; });

@@ -8,9 +8,9 @@
 namespace microinjection {
 namespace {
 
-constexpr double kHalf = 0.45;         // of the edges in the rows that follow, at a point
+constexpr double kShareOfNext = 0.45;  // of the edges in the rows that follow, at a point
 constexpr int kRise = 9;               // of these rows
-constexpr double kClear = 3;           // of the background's edges, at a point
+constexpr double kOverBackground = 3;  // of the background's edges, at a point
 constexpr int kReference = 50;         // rows, whose median is before the end
 constexpr int kLeastShaft = 8;         // rows in the frame, of a pipette that is seen
 constexpr int kBehind = 16;            // rows behind the end that have none
@@ -20,9 +20,9 @@ constexpr int kRampRows = 10;          // rows before a tip that show how its co
 constexpr double kLeastRamp = 0.12;    // of the contrast in these rows, a fading end at least
 constexpr double kFirst = 0.6;         // of the strongest edge along a column, the first that counts
 constexpr int kWideningRows = 16;
-constexpr double kWall = 0.35;  // of the half width, the outer part of a mouth that is wall
+constexpr double kMouthWall = 0.35;  // of the half width, the outer part of a mouth that is wall
 
-double meanOf(const std::vector<double>& values, int first, int last) {
+double meanOfRows(const std::vector<double>& values, int first, int last) {
   double sum = 0;
   first = std::max(first, 0);
   last = std::min(last, static_cast<int>(values.size()));
@@ -40,7 +40,7 @@ PipetteEnd coarseEnd(const PipetteStrip& strip, const std::vector<double>& edges
     if (!strip.inside(row - kBehind)) break;
     const int until = std::min(last + 1, row + kReference);
     const double before = upperMedian({edges.begin() + row, edges.begin() + until});
-    const double behind = meanOf(edges, row - kBehind, row);
+    const double behind = meanOfRows(edges, row - kBehind, row);
     if (behind > ended * before || edges[row] > 0.5 * before) continue;
     end.valid = true;
     end.row = row;
@@ -61,9 +61,10 @@ PipetteEnd pointNear(const PipetteStrip& strip, double coarse, double reach, int
   const double background = upperMedian({edges.begin() + low, edges.begin() + low + behind});
   for (int row = low + behind; row <= high; ++row) {
     const double next = *std::max_element(edges.begin() + row, edges.begin() + row + kRise);
-    if (edges[row] < kClear * background || edges[row] < kHalf * next) continue;
+    if (edges[row] < kOverBackground * background || edges[row] < kShareOfNext * next) continue;
     const double step = std::max(edges[row] - edges[row - 1], 1e-9);
-    end.row = row - std::clamp((edges[row] - std::max(kHalf * next, kClear * background)) / step, 0.0, 1.0);
+    end.row =
+        row - std::clamp((edges[row] - std::max(kShareOfNext * next, kOverBackground * background)) / step, 0.0, 1.0);
     end.deviation = std::hypot(0.5, next / (4 * step));
     end.clearness = *std::max_element(edges.begin() + row, edges.end()) / std::max(background, 1e-9);
     end.valid = true;
@@ -97,7 +98,7 @@ PipetteEnd tubeNear(const PipetteStrip& strip, double coarse, double reach, int 
   std::vector<double> like(strip.rows(), 0.0);
   for (int row = std::max(0, low - kBehind); row <= high; ++row) like[row] = likeness(strip, row, half);
   for (int row = high; row > low; --row) {
-    if (like[row] >= 0.5 || meanOf(like, row - kBehind, row + 1) > kUnlike) continue;
+    if (like[row] >= 0.5 || meanOfRows(like, row - kBehind, row + 1) > kUnlike) continue;
     const double step = std::max(like[row + 1] - like[row], 1e-3);
     end.row = row + std::clamp((0.5 - like[row]) / step, 0.0, 1.0);
     double noise = 0;
@@ -196,19 +197,19 @@ double firstEdge(const PipetteStrip& strip, int column, int low, int high) {
   return -1;
 }
 
-struct Lip {
+struct MouthLip {
   bool valid = false;
   double row = 0, column = 0, spread = 0;
 };
 
 /// Where the lip of one side ends: the outermost of the edges, without the outliers.
-Lip lipOf(const PipetteStrip& strip, int side, int inner, int outer, int low, int high) {
+MouthLip lipOf(const PipetteStrip& strip, int side, int inner, int outer, int low, int high) {
   std::vector<double> rows;
   for (int t = inner; t <= std::min(outer, strip.half() - 1); ++t) {
     const double row = firstEdge(strip, side * t + strip.half(), low, high);
     if (row > 0) rows.push_back(row);
   }
-  Lip lip;
+  MouthLip lip;
   if (rows.size() < 4) return lip;
   std::sort(rows.begin(), rows.end());
   const std::size_t from = rows.size() / 10, to = std::max(from + 3, rows.size() * 4 / 10);
@@ -223,10 +224,10 @@ Lip lipOf(const PipetteStrip& strip, int side, int inner, int outer, int low, in
 
 PipetteEnd mouthNear(const PipetteStrip& strip, double coarse, double half_width, double reach, double& slant) {
   PipetteEnd end;
-  const int outer = static_cast<int>(half_width - 3), inner = static_cast<int>((1 - kWall) * half_width);
+  const int outer = static_cast<int>(half_width - 3), inner = static_cast<int>((1 - kMouthWall) * half_width);
   const int low = std::max(1, static_cast<int>(coarse - reach));
   const int high = std::min(strip.rows() - 2, static_cast<int>(coarse + reach));
-  const Lip left = lipOf(strip, -1, inner, outer, low, high), right = lipOf(strip, 1, inner, outer, low, high);
+  const MouthLip left = lipOf(strip, -1, inner, outer, low, high), right = lipOf(strip, 1, inner, outer, low, high);
   if (!left.valid || !right.valid) return end;
   end.row = 0.5 * (left.row + right.row);
   slant = (right.row - left.row) / (right.column - left.column);

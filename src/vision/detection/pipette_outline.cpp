@@ -9,14 +9,14 @@ namespace {
 constexpr int kBlock = 3;             // rows whose edges are averaged
 constexpr double kMostGrowth = 0.03;  // columns per row
 constexpr double kGrowthStep = 0.005;
-constexpr double kSeen = 0.25;  // of a block's strongest edge, that a wall has at least
+constexpr double kSeenWall = 0.25;  // of a block's strongest edge, that a wall has at least
 constexpr std::size_t kReferenceBlocks = 8;
-constexpr int kGap = 2;                // blocks without a wall that end it
-constexpr double kNearlyAsLong = 0.8;  // of the longest pair of lines, a wider pair is the outline
-constexpr double kBeside = 1.5;        // of the half width, what is compared with its mirror image
+constexpr int kGap = 2;                 // blocks without a wall that end it
+constexpr double kNearlyAsLong = 0.8;   // of the longest pair of lines, a wider pair is the outline
+constexpr double kMirroredWidth = 1.5;  // of the half width, what is compared with its mirror image
 
 /// Mean derivative across, of the rows of a block; both sides by distance from the axis.
-struct Block {
+struct EdgeBlock {
   double row = 0;
   std::vector<double> left, right, shared;
   double strongest = 0;
@@ -35,12 +35,12 @@ double largest(const std::vector<double>& values, int i) {
 double wider(const std::vector<double>& values, int i) { return std::abs(largest(values, i)); }
 
 /// From the frame's border inwards.
-std::vector<Block> blocksOf(const PipetteStrip& strip) {
-  std::vector<Block> blocks;
+std::vector<EdgeBlock> blocksOf(const PipetteStrip& strip) {
+  std::vector<EdgeBlock> blocks;
   int last = strip.rows() - 1;
   while (last > 0 && !strip.inside(last)) --last;
   for (int row = last - kBlock + 1; row >= 0 && strip.inside(row); row -= kBlock) {
-    Block block;
+    EdgeBlock block;
     block.row = row + 0.5 * (kBlock - 1);
     while (block.most < strip.half() && strip.contains(row, block.most + 1) && strip.contains(row, -block.most - 1) &&
            strip.contains(row + kBlock - 1, block.most + 1) && strip.contains(row + kBlock - 1, -block.most - 1)) {
@@ -66,7 +66,7 @@ std::vector<Block> blocksOf(const PipetteStrip& strip) {
 
 /// Number of blocks from the border on that have both walls on the line. A wall keeps the sign of its
 /// edge; what comes after it may not.
-int lengthOf(const std::vector<Block>& blocks, double reference, double half_width, double growth) {
+int lengthOf(const std::vector<EdgeBlock>& blocks, double reference, double half_width, double growth) {
   int length = 0, gap = 0;
   double left = 0, right = 0;
   for (std::size_t i = 0; i < blocks.size() && gap < kGap; ++i) {
@@ -75,7 +75,7 @@ int lengthOf(const std::vector<Block>& blocks, double reference, double half_wid
     // The border of the image may cut a wall off before the axis.
     if (column >= blocks[i].most) continue;
     const double here_left = largest(blocks[i].left, column), here_right = largest(blocks[i].right, column);
-    if (blocks[i].shared[column] < kSeen * reference || here_left * left < 0 || here_right * right < 0) {
+    if (blocks[i].shared[column] < kSeenWall * reference || here_left * left < 0 || here_right * right < 0) {
       ++gap;
       continue;
     }
@@ -90,10 +90,10 @@ int lengthOf(const std::vector<Block>& blocks, double reference, double half_wid
 }
 
 /// Edges that have a mirror image, over all.
-double symmetryOf(const std::vector<Block>& blocks, const PipetteOutline& outline, int length) {
+double symmetryOf(const std::vector<EdgeBlock>& blocks, const PipetteOutline& outline, int length) {
   double shared = 0, all = 0;
   for (int i = 0; i < length; ++i) {
-    const int most = static_cast<int>(std::min(kBeside * outline.at(blocks[i].row), blocks[i].most - 1.0));
+    const int most = static_cast<int>(std::min(kMirroredWidth * outline.at(blocks[i].row), blocks[i].most - 1.0));
     for (int t = 1; t <= most; ++t) {
       const double left = std::abs(blocks[i].left[t]), right = std::abs(blocks[i].right[t]);
       shared += std::min(left, wider(blocks[i].right, t)) + std::min(right, wider(blocks[i].left, t));
@@ -107,10 +107,10 @@ double symmetryOf(const std::vector<Block>& blocks, const PipetteOutline& outlin
 
 PipetteOutline findOutline(const PipetteStrip& strip, double narrowest) {
   PipetteOutline best;
-  const std::vector<Block> blocks = blocksOf(strip);
+  const std::vector<EdgeBlock> blocks = blocksOf(strip);
   if (blocks.size() < 3) return best;
   std::vector<double> strongest;
-  for (const Block& block : blocks) {
+  for (const EdgeBlock& block : blocks) {
     // What is farther from the border may be a cell.
     if (block.strongest > 0 && strongest.size() < kReferenceBlocks) strongest.push_back(block.strongest);
   }

@@ -8,21 +8,21 @@
 namespace microinjection {
 namespace {
 
-constexpr double kSmallest = 0.08, kLargest = 0.165;  // of the zona's inner radius, a polar body's radius
+constexpr double kSmallestBody = 0.08, kLargestBody = 0.165;  // of the zona's inner radius, a polar body's radius
 constexpr int kDirections = 180, kPoints = 24;
-constexpr int kClimb = 4;
+constexpr int kClimbRounds = 4;
 constexpr double kTurn = 0.012;                   // rad
 constexpr double kRadiusStep = 2, kRoomStep = 3;  // px
-constexpr double kBlur = 1.2;                     // px, of the grey values' derivative
+constexpr double kDerivativeBlur = 1.2;           // px, of the grey values' derivative
 constexpr double kFullEdge = 4;                   // of the median derivative between ooplasm and zona: a full edge
 constexpr double kRoom = 6;                       // px inside of the zona, where a polar body may end
-constexpr double kOther = 0.5;                    // rad, of another polar body
-constexpr double kLeastScore = 0.45, kSureScore = 0.75;
+constexpr double kOtherBody = 0.5;                // rad, of another polar body
+constexpr double kLeastCircleScore = 0.45, kSureCircleScore = 0.75;
 constexpr double kSureLead = 0.32, kSureLeadOfOtherLooks = 0.35;  // over another direction
 constexpr double kShade = M_PI / 2;                               // makes the score of a fully shaded border 1
-constexpr double kReach = 4;                                      // px, of the points that refine the circle
+constexpr double kRefiningBand = 4;                               // px, of the points that refine the circle
 constexpr double kFollowed = 0.25;                                // rad, that it may turn from frame to frame
-constexpr double kSureDeviation = 0.02;                           // rad
+constexpr double kSureDirection = 0.02;                           // rad
 
 struct Circle {
   double direction = 0, away = 0, radius = 0, score = -1;
@@ -33,7 +33,7 @@ class Gradient {
  public:
   Gradient(const Frame& frame, const cv::Rect& region) : origin_(region.tl()) {
     cv::Mat smooth;
-    cv::GaussianBlur(frame.grey()(region), smooth, cv::Size(5, 5), kBlur);
+    cv::GaussianBlur(frame.grey()(region), smooth, cv::Size(5, 5), kDerivativeBlur);
     cv::Sobel(smooth, x_, CV_32F, 1, 0, 1, 0.5);
     cv::Sobel(smooth, y_, CV_32F, 0, 1, 1, 0.5);
   }
@@ -66,8 +66,8 @@ class Search {
     limit_ = known ? layers.zona_inner.ellipse : scaled(outer, 0.99);
     const double inner = 0.5 * limit_.meanDiameter(), ooplasm = 0.5 * layers.ooplasm.ellipse.meanDiameter();
     room_ = known ? kRoom : std::max(kRoom, inner - ooplasm - 2);
-    smallest_ = std::max(5.0, kSmallest * ooplasm);
-    largest_ = kLargest * inner;
+    smallest_ = std::max(5.0, kSmallestBody * ooplasm);
+    largest_ = kLargestBody * inner;
     const auto reach = static_cast<int>(outer.semi_axes[0]) + 4;
     const cv::Rect box(static_cast<int>(centre_.x) - reach, static_cast<int>(centre_.y) - reach, 2 * reach, 2 * reach);
     region_ = box & cv::Rect(0, 0, frame.grey().cols, frame.grey().rows);
@@ -90,10 +90,10 @@ class Search {
     const Circle first = climb(gradient, *std::max_element(best.begin(), best.end(), more));
     double second = 0;
     for (const Circle& other : best) {
-      if (std::abs(std::remainder(other.direction - first.direction, 2 * M_PI)) > kOther)
+      if (std::abs(std::remainder(other.direction - first.direction, 2 * M_PI)) > kOtherBody)
         second = std::max(second, other.score);
     }
-    if (first.score < kLeastScore) return body;
+    if (first.score < kLeastCircleScore) return body;
     const EllipseFit fit = refined(gradient, first);
     if (!fit.valid) return body;
     const cv::Point2d away = fit.ellipse.centre - centre_;
@@ -101,7 +101,7 @@ class Search {
     body.angle = std::atan2(away.y, away.x);
     const Eigen::Vector2d across(-std::sin(body.angle), std::cos(body.angle));
     body.deviation = std::sqrt(across.dot(fit.covariance.topLeftCorner<2, 2>() * across)) / cv::norm(away);
-    const bool sure = first.score > kSureScore && first.score - second > lead_ && body.deviation < kSureDeviation;
+    const bool sure = first.score > kSureCircleScore && first.score - second > lead_ && body.deviation < kSureDirection;
     const bool zona = layers_.zona_inner.finding.isFound() || layers_.ooplasm.finding.isFound();
     // In phase contrast the halo of a border looks like that of a small circle.
     body.finding = sure && zona && !haloed_ ? Finding::found()
@@ -146,7 +146,7 @@ class Search {
 
   /// The best circle near a coarse one.
   Circle climb(const Gradient& gradient, Circle circle) const {
-    for (int round = 0; round < kClimb; ++round) {
+    for (int round = 0; round < kClimbRounds; ++round) {
       const Circle before = circle;
       for (const double turn : {-kTurn, 0.0, kTurn}) {
         for (const double away : {-1.0, 0.0, 1.0}) {
@@ -196,7 +196,7 @@ class Search {
       const double angle = M_PI * i / kPoints;
       const cv::Point2d along(std::cos(angle), std::sin(angle));
       double best = 0, at = 0;
-      for (double change = -kReach; change <= kReach; change += 0.5) {
+      for (double change = -kRefiningBand; change <= kRefiningBand; change += 0.5) {
         const cv::Point2d point = centre + (circle.radius + change) * along;
         const double strength = gradient.contains(point) ? edge(gradient.fall(point, along)) : 0;
         if (strength > best) {
@@ -204,7 +204,7 @@ class Search {
           at = change;
         }
       }
-      if (best > kLeastScore) points.push_back(centre + (circle.radius + at) * along);
+      if (best > kLeastCircleScore) points.push_back(centre + (circle.radius + at) * along);
     }
     return fitEllipse(points, {centre, {circle.radius, circle.radius}, 0}, 1.0, true);
   }
@@ -218,7 +218,8 @@ class Search {
   cv::Rect region_;
 };
 
-PolarBody search(const Frame& frame, const CellLayers& layers, const std::string& look, double towards, double within) {
+PolarBody searchBody(const Frame& frame, const CellLayers& layers, const std::string& look, double towards,
+                     double within) {
   if (!layers.zona_outer.finding.hasValues()) {
     PolarBody none;
     none.finding = Finding::notFound("a polar body is searched inside of a zona only");
@@ -230,13 +231,13 @@ PolarBody search(const Frame& frame, const CellLayers& layers, const std::string
 }  // namespace
 
 PolarBody findPolarBody(const Frame& frame, const CellLayers& layers, const std::string& look) {
-  return search(frame, layers, look, 0, 4);
+  return searchBody(frame, layers, look, 0, 4);
 }
 
 PolarBody followPolarBody(const Frame& frame, const CellLayers& layers, const std::string& look,
                           const PolarBody& previous) {
   if (!previous.finding.isFound()) return previous;
-  return search(frame, layers, look, previous.angle, kFollowed);
+  return searchBody(frame, layers, look, previous.angle, kFollowed);
 }
 
 }  // namespace microinjection

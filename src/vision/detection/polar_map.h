@@ -47,6 +47,9 @@ class PolarMap {
   cv::Mat grey_, slope_, valid_;
 };
 
+/// A faint line is averaged over the rays of a sector: the sectors of a map, and the rays of each.
+constexpr int kAveragedSectors = 12, kRaysOfAveragedSector = 15;
+
 /// A closed path around the centre: one column for each ray.
 struct ClosedPath {
   std::vector<int> column;

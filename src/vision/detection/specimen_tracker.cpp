@@ -5,7 +5,7 @@
 namespace microinjection {
 namespace {
 
-constexpr double kNear = 1.6;  // over the cell's radius: of a tip this near the gap or the dimple is measured
+constexpr double kNearCell = 1.6;  // over the cell's radius: of a tip this near the gap or the dimple is measured
 
 PipetteDetectorConfig readPipette(ConfigReader& reader, const std::string& kind, double direction) {
   PipetteDetectorConfig config = PipetteDetectorConfig::read(reader);
@@ -39,25 +39,25 @@ bool belongsTo(const PipetteDetection& pipette, const Ellipse& thing) {
   return away.dot(axis) > 0 && std::abs(away.cross(axis)) < pipette.half_width;
 }
 
-Indentation indentationOf(const Frame& frame, const SpecimenView& view) {
-  Indentation none;
+Dimple indentationOf(const Frame& frame, const SpecimenView& view) {
+  Dimple none;
   if (!view.cell.finding.hasValues() || !view.injection.finding.hasValues()) {
     none.finding = Finding::notFound(view.cell.finding.hasValues() ? "no tip was found" : "no cell was found");
     return none;
   }
   const CellBorder& outer = view.cell.outer();
   const cv::Point2d away = view.injection.end - view.cell.centre;
-  if (std::hypot(away.x, away.y) > kNear * 0.5 * outer.ellipse.meanDiameter()) {
+  if (std::hypot(away.x, away.y) > kNearCell * 0.5 * outer.ellipse.meanDiameter()) {
     none.finding = Finding::notFound("the needle is not at the cell");
     return none;
   }
-  Indentation found = findIndentation(frame, outer, view.injection);
+  Dimple found = findIndentation(frame, outer, view.injection);
   if (found.finding.isFound() && !view.cell.finding.isFound()) found.finding = view.cell.finding;
   return found;
 }
 
 /// See measureIndentation().
-void takeUndisturbed(const Indentation& indentation, CellDetection& cell) {
+void takeUndisturbed(const Dimple& indentation, CellDetection& cell) {
   if (!indentation.at_cell) return;
   if (indentation.outline_found) {
     cell.centre = indentation.outline.centre;

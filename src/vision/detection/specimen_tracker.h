@@ -21,7 +21,7 @@ struct SpecimenTrackerConfig {
 struct SpecimenView {
   CellDetection cell;
   PipetteDetection injection, holding;
-  Indentation indentation;
+  Dimple indentation;
 
   OverlayContent overlay() const { return {&cell, &holding, &injection, &indentation}; }
 };

@@ -8,9 +8,9 @@
 namespace microinjection {
 namespace {
 
-constexpr double kFringeStep = 0.2;
+constexpr double kFringesPerTable = 0.2;
 constexpr int kTables = 15;          // of fringes 0 to kMostFringes
-constexpr double kStep = 0.05;       // of |s| / sqrt|variance|
+constexpr double kTableStep = 0.05;  // of |s| / sqrt|variance|
 constexpr double kNegligible = 7.6;  // the kernel has fallen to exp(-7.6) at the end of a table
 constexpr int kSubsteps = 4;
 
@@ -21,10 +21,10 @@ Table tableOf(double fringes) {
   const double argument = std::atan(fringes);
   const std::complex<double> variance = std::polar(1.0, argument);
   const auto kernel = [&](double v) { return std::exp(-v * v / (2.0 * variance)) / std::sqrt(2 * M_PI * variance); };
-  const int steps = static_cast<int>(std::sqrt(2 * kNegligible / std::cos(argument)) / kStep) + 1;
+  const int steps = static_cast<int>(std::sqrt(2 * kNegligible / std::cos(argument)) / kTableStep) + 1;
   Table table(1, 0);
   std::complex<double> sum = 0;
-  const double h = kStep / kSubsteps;
+  const double h = kTableStep / kSubsteps;
   for (int i = 0; i < steps * kSubsteps; ++i) {
     sum += h * kernel((i + 0.5) * h);
     if (i % kSubsteps == kSubsteps - 1) table.emplace_back(sum);
@@ -36,16 +36,16 @@ Table tableOf(double fringes) {
 const Table& tableFor(double fringes) {
   static const std::array<Table, kTables> tables = [] {
     std::array<Table, kTables> all;
-    for (int i = 0; i < kTables; ++i) all[i] = tableOf(i * kFringeStep);
+    for (int i = 0; i < kTables; ++i) all[i] = tableOf(i * kFringesPerTable);
     return all;
   }();
-  return tables[std::clamp(static_cast<int>(std::lround(fringes / kFringeStep)), 0, kTables - 1)];
+  return tables[std::clamp(static_cast<int>(std::lround(fringes / kFringesPerTable)), 0, kTables - 1)];
 }
 
 }  // namespace
 
 TipEdge::TipEdge(double blur, double fringes)
-    : table_(&tableFor(fringes)), to_table_(1 / (kStep * blur * std::pow(1 + fringes * fringes, 0.25))) {}
+    : table_(&tableFor(fringes)), to_table_(1 / (kTableStep * blur * std::pow(1 + fringes * fringes, 0.25))) {}
 
 std::complex<float> TipEdge::at(double s) const {
   const auto& table = *table_;

@@ -14,22 +14,22 @@ struct Extent {
 };
 
 /// The window in which all models are compared, and the rows that an end may be off.
-struct Place {
+struct SearchWindow {
   Extent extent;
   double reach;
 };
 
-constexpr Place kUsual{{18, 20, 16}, 8}, kTight{{11, 16, 14}, 3};
+constexpr SearchWindow kUsual{{18, 20, 16}, 8}, kTight{{11, 16, 14}, 3};
 constexpr double kMostSure = 2.5;              // fringes; more of them stand for something else
-constexpr double kFarthest = 14;               // rows, that an end may move in all
-constexpr double kApart = 0.8;                 // rows, between two ends that are not the same
+constexpr double kMostMove = 14;               // rows, that an end may move in all
+constexpr double kOtherEnd = 0.8;              // rows, between two ends that are not the same
 constexpr double kAmbiguousUndescribed = 1.5;  // the same, where neither describes the image
 constexpr double kClearlyBetter = 1.115;       // what a tube in focus may leave over what one out of focus leaves
 constexpr double kAmbiguous = 1.03;            // beside that, what does not tell them apart
 constexpr double kBesideEdges = 9;             // rows, of a second start
 constexpr double kDescribed = 0.5;             // misfit of an end that needs none
 constexpr double kDescribedBeside = 0.42;      // from another start
-constexpr double kOther = 2;                   // misfit of what is not an end before a plain background
+constexpr double kNoEnd = 2;                   // misfit of what is not an end before a plain background
 constexpr double kHopeless = 3;                // the same on the coarse grid, where no refinement helps
 constexpr double kWitness = 1.5;               // rows
 constexpr double kLocalReach = 1.5;            // rows, of the likelihood
@@ -98,12 +98,12 @@ double describedVariance(double range, double noise) {
 
 constexpr TipKind kKinds[] = {TipKind::kSharp, TipKind::kFringed, TipKind::kBlurred};
 
-TipFit fitNear(const Tube& tube, const Place& place, double coarse, double noise) {
+TipFit fitNear(const Tube& tube, const SearchWindow& place, double coarse, double noise) {
   TipFit fit;
   TipTrial kinds[3];
   double about = coarse;
   for (int round = 0; round < 2; ++round) {
-    if (!fits(tube, place.extent, about, place.reach) || std::abs(about - coarse) > kFarthest) return fit;
+    if (!fits(tube, place.extent, about, place.reach) || std::abs(about - coarse) > kMostMove) return fit;
     const TipWindow window = windowAt(tube, place.extent, about, place.reach);
     std::vector<TipTrial> trials[3];
     TipTrial first;
@@ -114,7 +114,7 @@ TipFit fitNear(const Tube& tube, const Place& place, double coarse, double noise
     }
     const double misfit = first.rest / describedVariance(window.range(), noise);
     if (misfit > kHopeless) {
-      fit.valid = std::abs(first.end - coarse) < kFarthest;
+      fit.valid = std::abs(first.end - coarse) < kMostMove;
       fit.row = first.end;
       fit.misfit = misfit;
       return fit;
@@ -140,14 +140,14 @@ TipFit fitNear(const Tube& tube, const Place& place, double coarse, double noise
   if (!fits(tube, extent, best.end, kLocalReach)) return fit;
   const TipWindow window = windowAt(tube, extent, best.end, kLocalReach);
   const Likelihood found = likelihoodOf(window, refined(window, best, kind), kind, noise);
-  fit.valid = std::abs(found.mean - coarse) < kFarthest && best.model.fringes < kMostSure;
+  fit.valid = std::abs(found.mean - coarse) < kMostMove && best.model.fringes < kMostSure;
   fit.row = found.mean;
   fit.deviation = std::hypot(found.deviation, kModelError, kModelErrorOfBlur * best.model.blur);
   fit.misfit = found.variance / describedVariance(found.range, noise);
   const double alike = fit.misfit < kDescribed && !isCompressed(noise) ? kAmbiguous : kAmbiguousUndescribed;
   // Neither describes a background that is not plain.
-  fit.ambiguous =
-      std::abs(apart) > kApart && fit.misfit < kOther && std::abs(std::log(rival / kClearlyBetter)) < std::log(alike);
+  fit.ambiguous = std::abs(apart) > kOtherEnd && fit.misfit < kNoEnd &&
+                  std::abs(std::log(rival / kClearlyBetter)) < std::log(alike);
   return fit;
 }
 
@@ -160,7 +160,7 @@ TipFit fitTip(const PipetteStrip& strip, const TipOutline& outline, double coars
   TipFit best = fitNear(tube, kUsual, coarse, noise);
   // The edges of a tube out of focus may end far before or behind its end.
   for (const double beside : {-kBesideEdges, kBesideEdges}) {
-    if (isCompressed(noise) || (best.valid && (best.misfit < kDescribed || best.misfit > kOther))) break;
+    if (isCompressed(noise) || (best.valid && (best.misfit < kDescribed || best.misfit > kNoEnd))) break;
     const TipFit fit = fitNear(tube, kUsual, coarse + beside, noise);
     if (fit.valid && fit.misfit < (best.valid ? std::min(kDescribedBeside, best.misfit) : kDescribedBeside)) best = fit;
   }
@@ -170,7 +170,7 @@ TipFit fitTip(const PipetteStrip& strip, const TipOutline& outline, double coars
   const double apart = std::abs(tight.row - coarse);
   if (tight.valid && tight.misfit < kDescribedBeside && apart < kTight.reach) return tight;
   // Before a cell no fit is good. One that finds the end of the edges again is a witness of it.
-  const bool before_other = !best.valid || best.misfit > kOther;
+  const bool before_other = !best.valid || best.misfit > kNoEnd;
   return before_other && tight.valid && apart < kWitness ? tight : best;
 }
 

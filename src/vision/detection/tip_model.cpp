@@ -11,12 +11,12 @@ namespace microinjection {
 namespace {
 
 constexpr int kMostRows = TipWindow::kMostRows, kMostTerms = 4, kMostShared = 4;
-constexpr int kLanes = 8;        // sums that a processor makes at a time
-constexpr double kScale = 12;    // rows, in which powers of s are of the size of 1
-constexpr int kNarrower = 3;     // columns
-constexpr double kThinnest = 2;  // columns, half width of an outline
-constexpr int kFaceRows = 6;     // behind the end, that show the outline
-constexpr double kWall = 0.2;    // size of the profile at a wall over its largest, at least
+constexpr int kLanes = 8;               // sums that a processor makes at a time
+constexpr double kScale = 12;           // rows, in which powers of s are of the size of 1
+constexpr int kNarrower = 3;            // columns
+constexpr double kThinnestOutline = 2;  // columns, half width of an outline
+constexpr int kFaceRows = 6;            // behind the end, that show the outline
+constexpr double kLeastWall = 0.2;      // size of the profile at a wall over its largest, at least
 constexpr double kWidestWall = 0.5, kLeastRim = 0.9, kFaceBlur = 1.5;  // of the radius; rows; of the blur
 
 double stepAt(double s) { return 0.5 * std::erfc(-s / std::sqrt(2.0)); }
@@ -138,7 +138,7 @@ TipWindow::TipWindow(const PipetteStrip& strip, int first, int last, int columns
     : first_(first), rows_(std::min(last - first, kMostRows)), columns_(columns) {
   double mean = 0;
   grey_.assign(static_cast<std::size_t>(columns_) * kMostRows, 0.0F);
-  const double growth = outline.valid ? outline.growth / std::max(outline.half_width, kThinnest) : 0;
+  const double growth = outline.valid ? outline.growth / std::max(outline.half_width, kThinnestOutline) : 0;
   for (int i = 0; i < rows_; ++i) {
     const float* grey = strip.grey().ptr<float>(first_ + i) + strip.half();
     const double widening = 1 + growth * std::max(0.0, first_ + i - end);
@@ -188,7 +188,7 @@ EndFace::EndFace(const TipWindow& window, double end, double blur) {
   }
   // The outline is where the profile, seen from outside, has half of its size at the wall. A bright core may be far
   // larger than that.
-  const double least = kWall * *std::max_element(size.begin(), size.end());
+  const double least = kLeastWall * *std::max_element(size.begin(), size.end());
   int wall = window.columns() - 1;
   while (wall > 0 && (size[wall] < least || size[wall - 1] > size[wall])) --wall;
   const double half = 0.5 * size[wall];

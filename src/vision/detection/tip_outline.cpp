@@ -8,9 +8,9 @@ namespace microinjection {
 namespace {
 
 constexpr int kFirstRow = 5, kRows = 48, kEachRow = 3;  // behind the end
-constexpr double kMostGrowth = 0.24, kGrowthStep = 0.02;
-constexpr double kLeast = 1, kStep = 0.5;  // columns, of half widths that are tried
-constexpr double kNearlyAsClear = 0.25;    // of the clearest pair of lines
+constexpr double kMostTipGrowth = 0.24, kTipGrowthStep = 0.02;
+constexpr double kLeastHalfWidth = 1, kHalfWidthStep = 0.5;  // columns, of half widths that are tried
+constexpr double kNearlyAsClear = 0.25;                      // of the clearest pair of lines
 
 /// Size of the edge that both sides of a row have at each distance from the axis, over the largest of the row.
 struct Row {
@@ -52,11 +52,11 @@ TipOutline measureOutline(const PipetteStrip& strip, double end, double most) {
   TipOutline outline;
   const std::vector<Row> rows = rowsOf(strip, end);
   if (rows.size() < 4) return outline;
-  const int widths = static_cast<int>((std::min(most, strip.half() - 2.0) - kLeast) / kStep) + 1;
+  const int widths = static_cast<int>((std::min(most, strip.half() - 2.0) - kLeastHalfWidth) / kHalfWidthStep) + 1;
   std::vector<double> clear(std::max(0, widths), 0.0), growths(clear);
   for (int i = 0; i < widths; ++i) {
-    for (double growth = 0; growth <= kMostGrowth; growth += kGrowthStep) {
-      const double value = clearness(rows, kLeast + kStep * i, growth);
+    for (double growth = 0; growth <= kMostTipGrowth; growth += kTipGrowthStep) {
+      const double value = clearness(rows, kLeastHalfWidth + kHalfWidthStep * i, growth);
       if (value <= clear[i]) continue;
       clear[i] = value;
       growths[i] = growth;
@@ -67,7 +67,7 @@ TipOutline measureOutline(const PipetteStrip& strip, double end, double most) {
   int i = widths - 2;
   while (i > 0 && (clear[i] < least || clear[i] < clear[i - 1] || clear[i] < clear[i + 1])) --i;
   outline.valid = true;
-  outline.half_width = kLeast + kStep * i;
+  outline.half_width = kLeastHalfWidth + kHalfWidthStep * i;
   outline.growth = growths[i];
   return outline;
 }

@@ -7,15 +7,15 @@
 namespace microinjection {
 namespace {
 
-constexpr int kHalf = 14;   // px, of the window across the axis
-constexpr int kBefore = 6;  // px of the window beyond the tip
+constexpr int kHalfWindow = 14;  // px, of the window across the axis
+constexpr int kBefore = 6;       // px of the window beyond the tip
 
 }  // namespace
 
 double tipSharpness(const Frame& frame, const cv::Point2d& tip, double direction, double length) {
   PipetteStrip::Shape shape;
   shape.direction = direction;
-  shape.half = kHalf;
+  shape.half = kHalfWindow;
   shape.rows = static_cast<int>(length) + kBefore;
   shape.origin = tip - kBefore * cv::Point2d(std::cos(direction), std::sin(direction));
   const PipetteStrip strip(frame, shape, 0.8, 0.8);

@@ -13,9 +13,10 @@ const std::vector<double> kSharpBlurs = {1.0, 1.3, 1.6}, kBlurs = {1.3, 1.7, 2.3
 const std::vector<double> kFringes = {0.8, 1.6, 2.4}, kNoRim = {0}, kFewRims = {0, 1.2, 2.8};
 constexpr double kSharpReach = 5, kFringedReach = 8;  // rows, that an end may be off
 constexpr double kStepOfBlur = 0.45;                  // rows between ends that are tried
-constexpr double kBlurRatio = 1.12, kRimRatio = 1.25, kFringeStep = 0.2;
+constexpr double kBlurRatio = 1.12, kRimRatio = 1.25, kFringeChange = 0.2;
 constexpr double kFirstRim = 0.7, kLastRim = 6;  // rows
-constexpr double kWidestBlur = 7, kLeastBlur = 0.8, kSharpBlur = 1.8, kSharpFringes = 0.1, kLeastFringes = 0.5;
+constexpr double kWidestBlur = 7, kNarrowestBlur = 0.8, kWidestSharpBlur = 1.8, kSharpFringes = 0.1,
+                 kLeastFringes = 0.5;
 constexpr int kStarts = 2;  // of each kind of model, that are refined
 constexpr int kMostRounds = 8;
 constexpr double kFirstStep = 0.6, kLastStep = 0.3;  // rows
@@ -41,15 +42,15 @@ std::vector<double> endsAbout(double end, double reach, double step) {
 bool isOf(TipKind kind, const TipModel& model) {
   if (model.blur > kWidestBlur || model.fringes > TipEdge::kMostFringes + 1e-6) return false;
   if (kind == TipKind::kFringed) return model.fringes > kLeastFringes;
-  return std::abs(model.fringes) < kSharpFringes && (model.blur < kSharpBlur) == (kind == TipKind::kSharp);
+  return std::abs(model.fringes) < kSharpFringes && (model.blur < kWidestSharpBlur) == (kind == TipKind::kSharp);
 }
 
 /// Models beside that of a trial, of its kind.
 std::vector<TipModel> modelsBeside(const TipModel& model, TipKind kind) {
   std::vector<TipModel> models;
   for (const double ratio : {1 / kBlurRatio, 1.0, kBlurRatio}) {
-    for (const double step : {-kFringeStep, 0.0, kFringeStep}) {
-      const TipModel each{std::max(kLeastBlur, model.blur * ratio), model.fringes + step};
+    for (const double step : {-kFringeChange, 0.0, kFringeChange}) {
+      const TipModel each{std::max(kNarrowestBlur, model.blur * ratio), model.fringes + step};
       if (isOf(kind, each)) models.push_back(each);
     }
   }

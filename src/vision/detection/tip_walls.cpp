@@ -9,12 +9,12 @@
 namespace microinjection {
 namespace {
 
-constexpr int kHalf = 24, kBackground = 2;              // px from the axis; columns at each side that show no needle
-constexpr int kNear = 3, kFar = 12, kTogether = 4;      // rows behind the end
-constexpr int kProfile = 5, kProfileRows = 10;          // the same of the profile
-constexpr int kWallColumns = 22, kProfileColumns = 20;  // px from the axis
-constexpr double kBlur = 1;                             // px
-constexpr double kSeen = 0.15;                          // of the profile's largest value
+constexpr int kHalfStrip = 24, kBackground = 2;           // px from the axis; columns at each side that show no needle
+constexpr int kNearRow = 3, kFarRow = 12, kTogether = 4;  // rows behind the end
+constexpr int kProfile = 5, kProfileRows = 10;            // the same of the profile
+constexpr int kWallColumns = 22, kProfileColumns = 20;    // px from the axis
+constexpr double kStripBlur = 1;                          // px
+constexpr double kSeenProfile = 0.15;                     // of the profile's largest value
 
 /// Product of the derivatives at mirrored places: positive where a wall on one side has its image on the other.
 double sharedBy(const PipetteStrip& strip, int first) {
@@ -27,8 +27,8 @@ double sharedBy(const PipetteStrip& strip, int first) {
 }
 
 /// Mean of some rows, less the background beside the needle; the middle value is on the axis.
-std::vector<double> profileOf(const PipetteStrip& strip) {
-  std::vector<double> profile(2 * kHalf + 1, 0.0);
+std::vector<double> profileAcross(const PipetteStrip& strip) {
+  std::vector<double> profile(2 * kHalfStrip + 1, 0.0);
   for (int row = kProfile; row < kProfile + kProfileRows; ++row) {
     const float* grey = strip.grey().ptr<float>(row);
     for (std::size_t i = 0; i < profile.size(); ++i) profile[i] += grey[i] / kProfileRows;
@@ -43,8 +43,8 @@ std::vector<double> profileOf(const PipetteStrip& strip) {
 double oddOverEven(const std::vector<double>& profile) {
   double odd = 0, even = 0;
   for (int t = 1; t <= kProfileColumns; ++t) {
-    odd += std::pow(profile[kHalf + t] - profile[kHalf - t], 2);
-    even += std::pow(profile[kHalf + t] + profile[kHalf - t], 2);
+    odd += std::pow(profile[kHalfStrip + t] - profile[kHalfStrip - t], 2);
+    even += std::pow(profile[kHalfStrip + t] + profile[kHalfStrip - t], 2);
   }
   return std::sqrt(odd / std::max(even, 1e-12));
 }
@@ -52,7 +52,7 @@ double oddOverEven(const std::vector<double>& profile) {
 double halfWidthOf(const std::vector<double>& profile) {
   double most = 0;
   for (const double value : profile) most = std::max(most, std::abs(value));
-  const auto seen = [&](double value) { return std::abs(value) > kSeen * most; };
+  const auto seen = [&](double value) { return std::abs(value) > kSeenProfile * most; };
   const auto first = std::find_if(profile.begin(), profile.end(), seen);
   const auto last = std::find_if(profile.rbegin(), profile.rend(), seen).base();
   return 0.5 * static_cast<double>(std::max<std::ptrdiff_t>(last - first - 1, 0));
@@ -64,13 +64,13 @@ TipWalls measureTipWalls(const Frame& frame, const cv::Point2d& end, double dire
   PipetteStrip::Shape shape;
   shape.direction = direction;
   shape.origin = end;
-  shape.rows = kFar + kTogether + 1;
-  shape.half = kHalf;
-  const PipetteStrip strip(frame, shape, kBlur, kBlur);
+  shape.rows = kFarRow + kTogether + 1;
+  shape.half = kHalfStrip;
+  const PipetteStrip strip(frame, shape, kStripBlur, kStripBlur);
   TipWalls walls;
-  const double far = sharedBy(strip, kFar);
-  walls.kept = far > 0 ? sharedBy(strip, kNear) / far : 0;
-  const std::vector<double> profile = profileOf(strip);
+  const double far = sharedBy(strip, kFarRow);
+  walls.kept = far > 0 ? sharedBy(strip, kNearRow) / far : 0;
+  const std::vector<double> profile = profileAcross(strip);
   walls.shading = oddOverEven(profile);
   walls.half_width = halfWidthOf(profile);
   return walls;

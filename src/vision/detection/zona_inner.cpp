@@ -5,19 +5,20 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "vision/detection/robust_loss.h"
+
 namespace microinjection {
 namespace {
 
-constexpr int kRays = 240;
-constexpr double kStep = 0.5, kBlur = 1.2;                    // px, along the rays
-constexpr double kRimMargin = 0.5;                            // px outside of the ooplasm's rim
-constexpr double kOuterMargin = 5;                            // px inside of the outer border, that its own line takes
-constexpr double kFullLine = 5;                               // of the scale, a curvature that counts as a full line
-constexpr double kLeastShare = 0.12, kSureShare = 0.2;        // of the rays, that show the line
-constexpr double kLeastStrength = 0.3, kSureStrength = 0.45;  // mean over them
-constexpr double kBestRatio = 1.25;                           // of the strength to that of the next best thickness
-constexpr double kNeighbour = 4;                              // px, thicknesses that are the same line
-constexpr double kTilt = 0.006;  // of the radius, standard deviation of a zona's change of thickness
+constexpr int kZonaRays = 240;
+constexpr double kRayStep = 0.5, kRayBlur = 1.2;           // px, along the rays
+constexpr double kRimMargin = 0.5;                         // px outside of the ooplasm's rim
+constexpr double kOuterMargin = 5;                         // px inside of the outer border, that its own line takes
+constexpr double kFullLine = 5;                            // of the scale, a curvature that counts as a full line
+constexpr double kLeastRayShare = 0.12, kSureShare = 0.2;  // of the rays, that show the line
+constexpr double kLeastLineStrength = 0.3, kSureStrength = 0.45;  // mean over them
+constexpr double kBestRatio = 1.25;                               // of the strength to that of the next best thickness
+constexpr double kNeighbour = 4;                                  // px, thicknesses that are the same line
 
 /// Curvature of the grey value along the rays, positive on a dark line, relative to its usual size
 /// and cut; 0 where the ooplasm's rim covers it.
@@ -59,21 +60,21 @@ void columnMeans(const cv::Mat& strength, const cv::Mat& visible, std::vector<do
   }
 }
 
-struct Place {
+struct LinePlace {
   double direction, column;
 };
 
 /// The line's place on each ray that shows it within `half` columns.
-std::vector<Place> placesOf(const PolarMap& map, const cv::Mat& strength, const cv::Mat& visible, int column,
-                            int half) {
-  std::vector<Place> places;
+std::vector<LinePlace> placesOf(const PolarMap& map, const cv::Mat& strength, const cv::Mat& visible, int column,
+                                int half) {
+  std::vector<LinePlace> places;
   for (int ray = 0; ray < map.rays(); ++ray) {
     int best = -1;
     for (int i = std::max(1, column - half); i <= std::min(map.columns() - 2, column + half); ++i) {
       if (visible.at<unsigned char>(ray, i - 1) == 0) continue;
       if (best < 0 || strength.at<float>(ray, i) > strength.at<float>(ray, best)) best = i;
     }
-    if (best < 0 || strength.at<float>(ray, best) < kLeastStrength) continue;
+    if (best < 0 || strength.at<float>(ray, best) < kLeastLineStrength) continue;
     const double a = strength.at<float>(ray, best - 1), b = strength.at<float>(ray, best),
                  c = strength.at<float>(ray, best + 1), bend = a - 2 * b + c;
     if (a > b || c > b) continue;
@@ -92,7 +93,7 @@ struct ThicknessFit {
   double at(double direction) const { return value.dot(Eigen::Vector3d(1, std::cos(direction), std::sin(direction))); }
 };
 
-ThicknessFit fitThickness(const std::vector<Place>& places, double column, double tilt) {
+ThicknessFit fitThickness(const std::vector<LinePlace>& places, double column, double tilt) {
   ThicknessFit fit;
   if (places.size() < 12) return fit;
   fit.value[0] = column;
@@ -102,9 +103,9 @@ ThicknessFit fitThickness(const std::vector<Place>& places, double column, doubl
     Eigen::Vector3d right(0, 0, 0);
     matrix(1, 1) = matrix(2, 2) = scale * scale / (tilt * tilt);
     std::vector<double> rest;
-    for (const Place& place : places) {
+    for (const LinePlace& place : places) {
       const Eigen::Vector3d row(1, std::cos(place.direction), std::sin(place.direction));
-      const double error = place.column - row.dot(fit.value), d = error / (4.685 * scale);
+      const double error = place.column - row.dot(fit.value), d = error / (RobustLoss::kTukey * scale);
       rest.push_back(std::abs(error));
       const double weight = std::abs(d) < 1 ? (1 - d * d) * (1 - d * d) : 0;
       matrix += weight * row * row.transpose();
@@ -125,13 +126,13 @@ ThicknessFit fitThickness(const std::vector<Place>& places, double column, doubl
 /// The strongest column, and the strength of the next best one.
 int bestColumn(const std::vector<double>& mean, const std::vector<double>& share, double& next) {
   int best = -1;
-  const auto weight = [&](std::size_t i) { return share[i] < kLeastShare ? 0 : mean[i] * std::sqrt(share[i]); };
+  const auto weight = [&](std::size_t i) { return share[i] < kLeastRayShare ? 0 : mean[i] * std::sqrt(share[i]); };
   for (std::size_t i = 0; i < mean.size(); ++i) {
     if (weight(i) > (best < 0 ? 0 : weight(static_cast<std::size_t>(best)))) best = static_cast<int>(i);
   }
   next = 0;
   for (std::size_t i = 0; best >= 0 && i < mean.size(); ++i) {
-    if (std::abs(static_cast<int>(i) - best) * kStep > kNeighbour) next = std::max(next, weight(i));
+    if (std::abs(static_cast<int>(i) - best) * kRayStep > kNeighbour) next = std::max(next, weight(i));
   }
   if (best >= 0) next /= weight(static_cast<std::size_t>(best));
   return best;
@@ -145,36 +146,37 @@ CellBorder findZonaInner(const Frame& frame, const CellBorder& outer, const Cell
   const double radius = 0.5 * outer.ellipse.meanDiameter(), inner = 0.5 * ooplasm.ellipse.meanDiameter();
   const double low = inner - radius - 4, high = -kOuterMargin;
   if (high - low < 6) return border;
-  const int columns = static_cast<int>((high - low) / kStep) + 1;
-  const PolarMap map(frame, outer.ellipse, {low, low + (columns - 1) * kStep, columns, kRays}, kBlur / kStep);
+  const int columns = static_cast<int>((high - low) / kRayStep) + 1;
+  const PolarMap map(frame, outer.ellipse, {low, low + (columns - 1) * kRayStep, columns, kZonaRays},
+                     kRayBlur / kRayStep);
   cv::Mat visible;
   const cv::Mat strength = lineStrength(frame, map, ooplasm, visible);
   std::vector<double> mean, share;
   columnMeans(strength, visible, mean, share);
   double next = 0;
   const int column = bestColumn(mean, share, next);
-  if (column < 0 || mean[column] < kLeastStrength) return border;
-  const std::vector<Place> places = placesOf(map, strength, visible, column, static_cast<int>(3 / kStep));
-  const ThicknessFit fit = fitThickness(places, column, kTilt * radius / kStep);
+  if (column < 0 || mean[column] < kLeastLineStrength) return border;
+  const std::vector<LinePlace> places = placesOf(map, strength, visible, column, static_cast<int>(3 / kRayStep));
+  const ThicknessFit fit = fitThickness(places, column, kZonaTilt * radius / kRayStep);
   if (!fit.valid) return border;
-  const double change = low + kStep * fit.value[0];
+  const double change = low + kRayStep * fit.value[0];
   border.ellipse = outer.ellipse;
-  border.ellipse.centre += kStep * cv::Point2d(fit.value[1], fit.value[2]);
+  border.ellipse.centre += kRayStep * cv::Point2d(fit.value[1], fit.value[2]);
   border.ellipse.semi_axes.array() += change;
-  border.covariance.diagonal() << 2, 2, 4 * fit.covariance(0, 0) * kStep * kStep;
+  border.covariance.diagonal() << 2, 2, 4 * fit.covariance(0, 0) * kRayStep * kRayStep;
   border.covariance.topLeftCorner<2, 2>() =
-      kStep * kStep * fit.covariance.bottomRightCorner<2, 2>() + outer.covariance.topLeftCorner<2, 2>();
+      kRayStep * kRayStep * fit.covariance.bottomRightCorner<2, 2>() + outer.covariance.topLeftCorner<2, 2>();
   border.covariance(2, 2) += outer.covariance(2, 2);
   border.polarity = outer.polarity;
-  border.residual = fit.residual * kStep;
-  border.coverage = static_cast<double>(places.size()) / kRays;
+  border.residual = fit.residual * kRayStep;
+  border.coverage = static_cast<double>(places.size()) / kZonaRays;
   border.strength = mean[column];
-  border.consistency = std::min(1.0, static_cast<double>(places.size()) / std::max(1.0, share[column] * kRays));
-  for (const Place& place : places) {
-    const double r = outer.ellipse.radius(place.direction) + low + kStep * place.column;
+  border.consistency = std::min(1.0, static_cast<double>(places.size()) / std::max(1.0, share[column] * kZonaRays));
+  for (const LinePlace& place : places) {
+    const double r = outer.ellipse.radius(place.direction) + low + kRayStep * place.column;
     border.points.push_back(outer.ellipse.centre +
                             r * cv::Point2d(std::cos(place.direction), std::sin(place.direction)));
-    border.inlier.push_back(std::abs(place.column - fit.at(place.direction)) < 3 / kStep);
+    border.inlier.push_back(std::abs(place.column - fit.at(place.direction)) < 3 / kRayStep);
   }
   const bool sure = share[column] > kSureShare && mean[column] > kSureStrength && next * kBestRatio < 1;
   border.finding =

@@ -6,9 +6,9 @@
 namespace microinjection {
 namespace {
 
-constexpr int kStep = 2;         // px, of the differences
-constexpr double kMargin = 8;    // px inside of the border, which has a rim
-constexpr double kLeast = 0.25;  // of the border's radius, that is left inside of the margin
+constexpr int kCurvatureStep = 2;  // px, of the differences
+constexpr double kMargin = 8;      // px inside of the border, which has a rim
+constexpr double kLeast = 0.25;    // of the border's radius, that is left inside of the margin
 
 }  // namespace
 
@@ -17,15 +17,19 @@ double cellSharpness(const Frame& frame, const CellDetection& cell) {
   const Ellipse& border = cell.ooplasm.ellipse;
   const double margin = std::min(kMargin, (1 - kLeast) * border.semi_axes[1]);
   const cv::Mat& grey = frame.grey();
-  const auto within = [](double value, int size) { return std::clamp(static_cast<int>(value), kStep, size - kStep); };
+  const auto within = [](double value, int size) {
+    return std::clamp(static_cast<int>(value), kCurvatureStep, size - kCurvatureStep);
+  };
   const double reach = border.semi_axes[0];
   double sum = 0;
   long count = 0;
   for (int y = within(border.centre.y - reach, grey.rows); y < within(border.centre.y + reach, grey.rows); ++y) {
-    const float *above = grey.ptr<float>(y - kStep), *here = grey.ptr<float>(y), *below = grey.ptr<float>(y + kStep);
+    const float *above = grey.ptr<float>(y - kCurvatureStep), *here = grey.ptr<float>(y),
+                *below = grey.ptr<float>(y + kCurvatureStep);
     for (int x = within(border.centre.x - reach, grey.cols); x < within(border.centre.x + reach, grey.cols); ++x) {
       if (border.distance(cv::Point2d(x, y)) > -margin) continue;
-      const double across = here[x - kStep] - 2 * here[x] + here[x + kStep], along = above[x] - 2 * here[x] + below[x];
+      const double across = here[x - kCurvatureStep] - 2 * here[x] + here[x + kCurvatureStep],
+                   along = above[x] - 2 * here[x] + below[x];
       sum += across * across + along * along;
       ++count;
     }

@@ -9,16 +9,16 @@ namespace microinjection {
 namespace {
 
 constexpr double kFirst = 4, kRows = 40;  // px behind the tip: the end itself has fringes, too
-constexpr int kStep = 2;                  // px, of the differences
+constexpr int kBendStep = 2;              // px, of the differences
 constexpr double kBlur = 0.8;             // px
 
 }  // namespace
 
-double coreSharpness(const Frame& frame, const TipWindow& window) {
+double coreSharpness(const Frame& frame, const TipInImage& window) {
   const int half = std::max(1, window.core);
   PipetteStrip::Shape shape;
   shape.direction = window.direction;
-  shape.half = half + kStep + 1;
+  shape.half = half + kBendStep + 1;
   shape.rows = static_cast<int>(kRows);
   shape.origin = window.tip + kFirst * cv::Point2d(std::cos(window.direction), std::sin(window.direction));
   const PipetteStrip strip(frame, shape, kBlur, kBlur);
@@ -28,7 +28,7 @@ double coreSharpness(const Frame& frame, const TipWindow& window) {
     if (!strip.inside(row)) continue;
     const float* grey = strip.grey().ptr<float>(row) + strip.grey().cols / 2;
     for (int i = -half; i <= half; ++i, ++count) {
-      const double bend = grey[i - kStep] - 2 * grey[i] + grey[i + kStep];
+      const double bend = grey[i - kBendStep] - 2 * grey[i] + grey[i + kBendStep];
       sum += bend * bend;
     }
   }

@@ -7,7 +7,7 @@
 namespace microinjection {
 
 /// Where a needle's tip is in an image.
-struct TipWindow {
+struct TipInImage {
   cv::Point2d tip;       ///< px
   double direction = 0;  ///< rad, from the tip towards the shaft, from x towards y
   int core = 3;          ///< px, half width of the bright core: about 0.3 of the tip's outer radius
@@ -19,6 +19,6 @@ struct TipWindow {
 /// The walls are left out. They absorb and shift the phase, and the phase's fringes change their sign
 /// in the focus: with the walls (tipSharpness) the sharpest plane of a tip in bright field is 1.3 um
 /// beside its focus. The core has no such fringes. 0 for a window outside of the image.
-double coreSharpness(const Frame& frame, const TipWindow& window);
+double coreSharpness(const Frame& frame, const TipInImage& window);
 
 }  // namespace microinjection

@@ -7,7 +7,7 @@
 namespace microinjection {
 namespace {
 
-constexpr double kArrived = 0.1e-6;  // m, from the plane
+constexpr double kAtPlane = 0.1e-6;  // m, from the plane
 constexpr double kRounding = 1e-3;   // steps
 
 std::string micrometres(double value) {
@@ -67,7 +67,7 @@ std::optional<double> FocusSearch::step(const Input& input) {
     return std::nullopt;
   }
   const double goal = targets_.front().height;
-  const bool arrived = std::abs(*input.position - goal) < kArrived;
+  const bool arrived = std::abs(*input.position - goal) < kAtPlane;
   switch (phase_) {
     case Phase::kCommand:
       since_ = input.now;

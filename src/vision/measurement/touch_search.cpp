@@ -10,7 +10,7 @@ namespace microinjection {
 namespace {
 
 constexpr double kLongest = 0.05;         // s, that the set-point advances in a step: a stall must not become a jump
-constexpr double kArrived = 0.1e-6;       // m, of the needle from its set-point
+constexpr double kAtSetpoint = 0.1e-6;    // m, of the needle from its set-point
 constexpr double kAside = 1e-6;           // m, across the approach: the needle left its line
 constexpr double kLeastDeviation = 0.05;  // px: no image is better
 constexpr std::size_t kLeastGaps = 5;     // that tell where the tip meets the outline
@@ -42,7 +42,7 @@ TouchSearch::TouchSearch(const TouchSearchConfig& config, const Eigen::Vector3d&
                          const Eigen::Vector3d& direction, const Input& input)
     : config_(config),
       start_(start),
-      stream_(start, kArrived, input.now),
+      stream_(start, kAtSetpoint, input.now),
       direction_(direction),
       force_at_start_(input.force),
       stepped_(input.now),

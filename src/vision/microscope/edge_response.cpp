@@ -7,7 +7,7 @@ namespace {
 
 constexpr int kRows = 60;                  // arguments of the variance, 0 to kLargestArgument
 constexpr double kLargestArgument = 1.47;  // rad; the ratio 10
-constexpr double kStep = 0.04;             // of |u| / sqrt|variance|
+constexpr double kTableStep = 0.04;        // of |u| / sqrt|variance|
 constexpr double kNegligible = 7.6;        // the kernel has fallen to exp(-7.6) = 5e-4 at the end of a row
 constexpr int kSubsteps = 8;               // of the quadrature in a step
 
@@ -15,13 +15,13 @@ constexpr int kSubsteps = 8;               // of the quadrature in a step
 std::vector<std::complex<float>> rowOf(double argument) {
   const std::complex<double> variance = std::polar(1.0, argument);
   const auto kernel = [&](double v) { return std::exp(-v * v / (2.0 * variance)) / std::sqrt(2 * M_PI * variance); };
-  const int steps = static_cast<int>(std::sqrt(2 * kNegligible / std::cos(argument)) / kStep) + 1;
+  const int steps = static_cast<int>(std::sqrt(2 * kNegligible / std::cos(argument)) / kTableStep) + 1;
   std::vector<std::complex<float>> row(1, 0);
   std::complex<double> sum = 0;
-  const double h = kStep / kSubsteps;
+  const double h = kTableStep / kSubsteps;
   for (int i = 0; i < steps; ++i) {
     for (int j = 0; j < kSubsteps; ++j) {
-      const double v = i * kStep + j * h;
+      const double v = i * kTableStep + j * h;
       sum += h / 6 * (kernel(v) + 4.0 * kernel(v + h / 2) + kernel(v + h));
     }
     row.emplace_back(sum);
@@ -58,9 +58,9 @@ EdgeResponse::Depth EdgeResponse::depth(double blur, double diffraction) const {
   depth.far_ = rows_[row + 1].data();
   depth.share_ = static_cast<float>(place - row);
   depth.sign_ = diffraction < 0 ? -1.0F : 1.0F;
-  depth.to_table_ = static_cast<float>(1 / (kStep * std::sqrt(std::hypot(blur, diffraction))));
+  depth.to_table_ = static_cast<float>(1 / (kTableStep * std::sqrt(std::hypot(blur, diffraction))));
   const double argument = kLargestArgument * (row + 1) / (kRows - 1);
-  const auto end = std::sqrt(2 * kNegligible / std::cos(argument)) / kStep;
+  const auto end = std::sqrt(2 * kNegligible / std::cos(argument)) / kTableStep;
   depth.last_ = static_cast<float>(std::min<double>(end, static_cast<double>(rows_[row].size()) - 2));
   return depth;
 }

@@ -9,7 +9,7 @@ namespace {
 constexpr double kAiry = 0.21;
 constexpr double kPixelVariance = 1.0 / 12;  // px^2, of the light gathered by a square pixel
 // A body's phase is that of its border in bright field. DIC shows the whole of it (rad).
-constexpr double kPathPerPhase = 2.5;
+constexpr double kBodyPathPerPhase = 2.5;
 constexpr double kPathPerDome = 20;       // rad per absorption
 constexpr double kAbsorptionInDic = 0.4;  // its aperture is open, so that borders turn away less light
 
@@ -67,7 +67,7 @@ BorderProfile::BorderProfile(const Optics& optics, double defocus, const std::ve
       const auto u = static_cast<float>(distance - step.inside);
       const EdgeResponse::Value value = depth.at(u);
       change -= (dic ? kAbsorptionInDic : 1) * step.absorption * value.real();
-      path += kPathPerPhase * step.phase * value.real();
+      path += kBodyPathPerPhase * step.phase * value.real();
       if (has_halo) change -= step.phase * (value.real() - halo.at(u).real());
       if (!has_halo) change -= (dic ? 1 : 2) * step.phase * value.imag();
     }

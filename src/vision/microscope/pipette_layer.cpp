@@ -8,14 +8,14 @@ namespace microinjection {
 namespace {
 
 constexpr float kStationsPerPixel = 2;
-constexpr float kPathPerPhase = 1.5F;   // rad of the path per phase of the optics, dic
-constexpr double kFading = 0.25;        // of the wall's thickness
-constexpr float kMiddle = 0.45F;        // darkness of the wall's middle over that of its outside
-constexpr double kCoreWidth = 0.5;      // rms half width over the half width of the core
-constexpr double kHoldingRim = 1.5e-6;  // m
-constexpr double kLeastGrowth = 1e-3;   // px
-constexpr float kSteepest = 0.97F;      // sine of the largest angle of a round lip
-constexpr float kRim = 0.5F;            // darkness of the end face's rim over that of the wall
+constexpr float kWallPathPerPhase = 1.5F;  // rad of the path per phase of the optics, dic
+constexpr double kFading = 0.25;           // of the wall's thickness
+constexpr float kMiddle = 0.45F;           // darkness of the wall's middle over that of its outside
+constexpr double kCoreWidth = 0.5;         // rms half width over the half width of the core
+constexpr double kHoldingRim = 1.5e-6;     // m
+constexpr double kLeastGrowth = 1e-3;      // px
+constexpr float kSteepest = 0.97F;         // sine of the largest angle of a round lip
+constexpr float kRim = 0.5F;               // darkness of the end face's rim over that of the wall
 
 using Value = EdgeResponse::Value;
 
@@ -113,7 +113,7 @@ Change changeAt(const Station& station, Optics::Look look, float r, const End& e
   } else {
     change.transmission -= station.phase * (2.0F * outer - inner).imag();
   }
-  change.path = kPathPerPhase * station.phase * (outer - 0.5F * inner).real();
+  change.path = kWallPathPerPhase * station.phase * (outer - 0.5F * inner).real();
   return change;
 }
 

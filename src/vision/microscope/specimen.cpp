@@ -9,12 +9,12 @@
 namespace microinjection {
 namespace {
 
-constexpr double kLeastInImage = 0.1;  // of an axis: its share in the image plane
-constexpr double kField = 300e-6;      // m, side of the square with the dust
+constexpr double kLeastDirection = 0.1;  // of an axis: its share in the image plane
+constexpr double kField = 300e-6;        // m, side of the square with the dust
 
 std::optional<Eigen::Vector2d> inImage(const Eigen::Vector3d& axis) {
   const Eigen::Vector2d seen(axis.x(), axis.z());
-  if (seen.norm() < kLeastInImage) return std::nullopt;
+  if (seen.norm() < kLeastDirection) return std::nullopt;
   return seen.normalized();
 }
 

@@ -9,7 +9,7 @@ namespace {
 constexpr int kSide = 512;              // tile pixels
 constexpr double kTilePixel = 0.25e-6;  // m
 constexpr std::uint64_t kTileSeed = 20;
-constexpr double kStep = 0.12;      // relative, between blurs
+constexpr double kBlurStep = 0.12;  // relative, between blurs
 constexpr double kLeastBlur = 0.3;  // tile pixels; less changes nothing
 
 cv::Mat whiteNoise(std::uint64_t seed) {
@@ -47,10 +47,10 @@ Texture::Texture() {
 }
 
 const cv::Mat& Texture::blurredTile(double blur) {
-  const int step = static_cast<int>(std::lround(std::log(std::max(blur, kLeastBlur)) / std::log1p(kStep)));
+  const int step = static_cast<int>(std::lround(std::log(std::max(blur, kLeastBlur)) / std::log1p(kBlurStep)));
   auto found = blurred_.find(step);
   if (found == blurred_.end())
-    found = blurred_.emplace(step, blurPeriodic(tile_, std::exp(step * std::log1p(kStep)))).first;
+    found = blurred_.emplace(step, blurPeriodic(tile_, std::exp(step * std::log1p(kBlurStep)))).first;
   return found->second;
 }
 

@@ -19,12 +19,12 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kRadius = 3e-6;  // m
+constexpr double kRoundedRadius = 3e-6;  // m
 
 const std::vector<RoundedTip>& tips() {
-  static const std::vector<RoundedTip> all = {RoundedTip::make("hemisphere", kRadius),
-                                              RoundedTip::make("rounded_flat", kRadius, 1e-6),
-                                              RoundedTip::make("rounded_flat", kRadius, 0.05e-6)};
+  static const std::vector<RoundedTip> all = {RoundedTip::make("hemisphere", kRoundedRadius),
+                                              RoundedTip::make("rounded_flat", kRoundedRadius, 1e-6),
+                                              RoundedTip::make("rounded_flat", kRoundedRadius, 0.05e-6)};
   return all;
 }
 
@@ -35,14 +35,14 @@ class Points {
  public:
   Vector3d in(Region region, const RoundedTip& tip, double deep) {
     const double c = tip.coreRadius(), e = tip.edgeRadius();
-    const double distance = between(-deep, kRadius);
+    const double distance = between(-deep, kRoundedRadius);
     double rho = 0, z = 0;
     if (region == Region::kFlat) {
       rho = between(0.01, 0.99) * c;
       z = -distance;
     } else if (region == Region::kShaft) {
       rho = c + e + distance;
-      z = e + between(0.01, 3) * kRadius;
+      z = e + between(0.01, 3) * kRoundedRadius;
     } else {
       const double angle = between(0.02, 0.98) * kPi / 2;  // from downwards
       rho = c + (e + distance) * std::sin(angle);
@@ -60,7 +60,7 @@ class Points {
 void expectDerivatives(const RoundedTip& tip, const Vector3d& point) {
   const Gap gap = tip.gap(point);
   const double step = 1e-5 * tip.edgeRadius();
-  EXPECT_NEAR(gap.distance, tip.distance(point), 1e-15 * kRadius);
+  EXPECT_NEAR(gap.distance, tip.distance(point), 1e-15 * kRoundedRadius);
   EXPECT_NEAR(gap.normal.norm(), 1, 1e-14);
   const auto distance = [&](const Eigen::VectorXd& at) {
     return Eigen::VectorXd(Eigen::VectorXd::Constant(1, tip.distance(at)));
@@ -68,7 +68,7 @@ void expectDerivatives(const RoundedTip& tip, const Vector3d& point) {
   const auto normal = [&](const Eigen::VectorXd& at) { return Eigen::VectorXd(tip.gap(at).normal); };
   EXPECT_LT(derivativeError(distance, point, gap.normal.transpose(), step), 1e-7) << point.transpose();
   EXPECT_LT(derivativeError(normal, point, gap.curvature, step), 1e-6) << point.transpose();
-  EXPECT_LT((gap.curvature * gap.normal).norm() * kRadius, 1e-9);
+  EXPECT_LT((gap.curvature * gap.normal).norm() * kRoundedRadius, 1e-9);
 }
 
 TEST(RoundedTip, DerivativesAreThoseOfTheDistanceInEveryRegion) {
@@ -83,18 +83,18 @@ TEST(RoundedTip, DerivativesAreThoseOfTheDistanceInEveryRegion) {
 
 TEST(RoundedTip, DerivativesInTheCoreAreThoseOfTheNearestFace) {
   Points points;
-  const RoundedTip tip = RoundedTip::make("rounded_flat", kRadius, 1e-6);  // core of 2 um
+  const RoundedTip tip = RoundedTip::make("rounded_flat", kRoundedRadius, 1e-6);  // core of 2 um
   for (int i = 0; i < 50; ++i) {
     const double turn = points.between(0, 2 * kPi), depth = points.between(1.05e-6, 2e-6);
     const Vector3d outward(std::cos(turn), std::sin(turn), 0);
-    const Vector3d near_flat = points.between(0.02, 0.95) * (kRadius - depth) * outward + Vector3d(0, 0, depth);
-    const Vector3d near_shaft = (kRadius - depth) * outward + Vector3d(0, 0, points.between(1.05, 3) * depth);
+    const Vector3d near_flat = points.between(0.02, 0.95) * (kRoundedRadius - depth) * outward + Vector3d(0, 0, depth);
+    const Vector3d near_shaft = (kRoundedRadius - depth) * outward + Vector3d(0, 0, points.between(1.05, 3) * depth);
     expectDerivatives(tip, near_flat);
     expectDerivatives(tip, near_shaft);
     EXPECT_EQ(tip.gap(near_flat).normal, -Vector3d::UnitZ());
     EXPECT_LT((tip.gap(near_shaft).normal - outward).norm(), 1e-12);
-    EXPECT_NEAR(tip.distance(near_flat), -depth, 1e-12 * kRadius);
-    EXPECT_NEAR(tip.distance(near_shaft), -depth, 1e-12 * kRadius);
+    EXPECT_NEAR(tip.distance(near_flat), -depth, 1e-12 * kRoundedRadius);
+    EXPECT_NEAR(tip.distance(near_shaft), -depth, 1e-12 * kRoundedRadius);
   }
 }
 
@@ -109,17 +109,17 @@ TEST(RoundedTip, DistanceIsThatToTheNearestPointOfTheSurface) {
       const double s = static_cast<double>(i) / kPoints, angle = s * kPi / 2;
       profile.emplace_back(s * c, 0);
       profile.emplace_back(c + e * std::sin(angle), e * (1 - std::cos(angle)));
-      profile.emplace_back(kRadius, e + s * 5 * kRadius);
+      profile.emplace_back(kRoundedRadius, e + s * 5 * kRoundedRadius);
     }
     for (int i = 0; i < 200; ++i) {
-      const Vector2d at(points.between(0, 2) * kRadius, points.between(-1, 4) * kRadius);
+      const Vector2d at(points.between(0, 2) * kRoundedRadius, points.between(-1, 4) * kRoundedRadius);
       double nearest = std::numeric_limits<double>::infinity();
       for (const Vector2d& point : profile) nearest = std::min(nearest, (point - at).norm());
       const double distance = tip.distance({at.x(), 0, at.y()});
-      EXPECT_NEAR(std::abs(distance), nearest, 3e-3 * kRadius) << at.transpose();
+      EXPECT_NEAR(std::abs(distance), nearest, 3e-3 * kRoundedRadius) << at.transpose();
       const bool above_end =
           at.y() > (at.x() <= c ? 0 : e - std::sqrt(std::max(0.0, e * e - (at.x() - c) * (at.x() - c))));
-      EXPECT_EQ(distance < 0, at.x() < kRadius && above_end) << at.transpose();
+      EXPECT_EQ(distance < 0, at.x() < kRoundedRadius && above_end) << at.transpose();
     }
   }
 }
@@ -134,10 +134,10 @@ TEST(RoundedTip, IsSmoothAcrossTheBordersOfItsRegions) {
       EXPECT_LT((one.normal - two.normal).norm(), 1e-5);
       EXPECT_LT((tip.gap(border).normal - one.normal).norm(), 1e-5);
     };
-    for (const double distance : {-0.8 * e, 0.0, 0.5 * e, 2 * kRadius}) {
-      if (c > 0) expectSmooth({0, c, -distance}, Vector3d::UnitY());   // flat to edge
-      expectSmooth({-(kRadius + distance), 0, e}, Vector3d::UnitZ());  // edge to shaft
-      if (c == 0) expectSmooth({0, 0, -distance}, Vector3d::UnitX());  // across the axis
+    for (const double distance : {-0.8 * e, 0.0, 0.5 * e, 2 * kRoundedRadius}) {
+      if (c > 0) expectSmooth({0, c, -distance}, Vector3d::UnitY());          // flat to edge
+      expectSmooth({-(kRoundedRadius + distance), 0, e}, Vector3d::UnitZ());  // edge to shaft
+      if (c == 0) expectSmooth({0, 0, -distance}, Vector3d::UnitX());         // across the axis
     }
   }
 }
@@ -146,8 +146,8 @@ TEST(RoundedTip, IsFiniteOnTheAxisAndOnTheCoresCorner) {
   for (const RoundedTip& tip : tips()) {
     const double c = tip.coreRadius(), e = tip.edgeRadius();
     for (const Vector3d& point :
-         {Vector3d(0, 0, -2e-6), Vector3d(0, 0, 0), Vector3d(0, 0, 0.5 * e), Vector3d(0, 0, e), Vector3d(0, 0, kRadius),
-          Vector3d(0, 0, 20e-6), Vector3d(c, 0, e), Vector3d(-c, 0, e)}) {
+         {Vector3d(0, 0, -2e-6), Vector3d(0, 0, 0), Vector3d(0, 0, 0.5 * e), Vector3d(0, 0, e),
+          Vector3d(0, 0, kRoundedRadius), Vector3d(0, 0, 20e-6), Vector3d(c, 0, e), Vector3d(-c, 0, e)}) {
       const Gap gap = tip.gap(point);
       EXPECT_TRUE(std::isfinite(gap.distance));
       EXPECT_NEAR(gap.normal.norm(), 1, 1e-14) << point.transpose();
@@ -184,7 +184,7 @@ TEST(RoundedTip, TouchesTheSphereInOnePoint) {
 }
 
 TEST(RoundedTip, KnownTouchesAndTipsThatPassBy) {
-  const RoundedTip flat = RoundedTip::make("rounded_flat", kRadius, 1e-6);
+  const RoundedTip flat = RoundedTip::make("rounded_flat", kRoundedRadius, 1e-6);
   EXPECT_EQ(flat.touchHeight(28e-6, {2e-6, 0}), 28e-6);
   EXPECT_EQ(flat.touchPoint(28e-6, {1e-6, 1e-6}), Vector3d(0, 0, 28e-6));
   // Centres of the ball and of the sphere, 4 um + 1 um apart: 3 um aside and 4 um up.

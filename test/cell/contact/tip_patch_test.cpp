@@ -15,7 +15,7 @@ namespace {
 using Eigen::Vector3d;
 
 const CellMeshConfig kConfig = needleCell();
-const double kRadius = kConfig.radii[0];
+const double kCellRadius = kConfig.radii[0];
 
 class TipPatchTest : public testing::Test {
  protected:
@@ -24,12 +24,12 @@ class TipPatchTest : public testing::Test {
 };
 
 TEST_F(TipPatchTest, IsTheDiscWithItsRim) {
-  const TipPatch patch = findTipPatch(surface_, {0, 0, kRadius}, Vector3d::UnitZ(), kTipRadius);
+  const TipPatch patch = findTipPatch(surface_, {0, 0, kCellRadius}, Vector3d::UnitZ(), kTipRadius);
   int on_rim = 0;
   for (int v : patch.vertices) {
     const Vector3d& vertex = mesh_.vertices[v];
     EXPECT_GT(vertex.z(), 0);
-    EXPECT_NEAR(vertex.norm(), kRadius, 1e-15);
+    EXPECT_NEAR(vertex.norm(), kCellRadius, 1e-15);
     EXPECT_LE(vertex.head<2>().norm(), kTipRadius * (1 + 1e-6));
     if (vertex.head<2>().norm() > kTipRadius * (1 - 1e-9)) ++on_rim;
   }
@@ -39,13 +39,14 @@ TEST_F(TipPatchTest, IsTheDiscWithItsRim) {
 
 TEST_F(TipPatchTest, DependsOnTheLineOnly) {
   const Vector3d axis(0.1, 0.2, 1);
-  const TipPatch one = findTipPatch(surface_, {1e-6, 0, kRadius}, axis, 3e-6);
-  const TipPatch two = findTipPatch(surface_, Vector3d(1e-6, 0, kRadius) - 5e-6 * axis.normalized(), 7 * axis, 3e-6);
+  const TipPatch one = findTipPatch(surface_, {1e-6, 0, kCellRadius}, axis, 3e-6);
+  const TipPatch two =
+      findTipPatch(surface_, Vector3d(1e-6, 0, kCellRadius) - 5e-6 * axis.normalized(), 7 * axis, 3e-6);
   EXPECT_EQ(one.vertices, two.vertices);
 }
 
 TEST_F(TipPatchTest, FarSideIsAnotherPatch) {
-  const TipPatch patch = findTipPatch(surface_, {0, 0, kRadius}, -Vector3d::UnitZ(), 10e-6);
+  const TipPatch patch = findTipPatch(surface_, {0, 0, kCellRadius}, -Vector3d::UnitZ(), 10e-6);
   ASSERT_FALSE(patch.vertices.empty());
   for (int v : patch.vertices) EXPECT_LT(mesh_.vertices[v].z(), 0);
 }

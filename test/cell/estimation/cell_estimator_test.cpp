@@ -6,25 +6,16 @@
 #include <functional>
 #include <random>
 
+#include "cell/estimation/family_member.h"
 #include "cell/family/family_cell.h"
 #include "cell/surrogate/force_memory.h"
 
 namespace microinjection {
 namespace {
 
-constexpr char kFamilies[] = MICROINJECTION_SOURCE_DIR "/config/families";
-constexpr char kCell[] = MICROINJECTION_SOURCE_DIR "/config/cells/mouse_oocyte_injection.yaml";
-
-std::shared_ptr<const SurrogateData> memberOf(const Scene& scene) {
-  std::string reason;
-  const auto cell = findFamilyCell(kFamilies, scene, reason);
-  EXPECT_TRUE(cell) << reason;
-  return cell->data;
-}
-
 /// A session whose prior is another cell than the one under the needle.
 struct Session {
-  Scene prior = loadScene(kCell);
+  Scene prior = loadScene(kInjectedCell);
   double factor = 1;                            ///< true modulus over the prior's
   double surface = 0;                           ///< m
   double offset = 0, drift = 0, noise = 10e-9;  ///< N, N/s, N

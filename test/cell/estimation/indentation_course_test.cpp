@@ -6,9 +6,9 @@ namespace microinjection {
 namespace {
 
 using Event = IndentationCourse::Event;
-constexpr IndentationCourse::Cell kCell{28e-6, 33e-6};
+constexpr IndentationCourse::Cell kRoundCell{28e-6, 33e-6};
 
-Eigen::Vector3d at(double depth) { return {0, 0, kCell.surface - depth}; }
+Eigen::Vector3d at(double depth) { return {0, 0, kRoundCell.surface - depth}; }
 
 PuncturePrediction expected(double depth) {
   PuncturePrediction prediction;
@@ -20,7 +20,7 @@ PuncturePrediction expected(double depth) {
 Event lower(IndentationCourse& indentation, double depth, unsigned punctures) {
   Event event = Event::kNone;
   for (double reached = -10e-6; reached <= depth + 1e-9; reached += 0.1e-6) {
-    event = indentation.follow(at(reached), kCell, punctures);
+    event = indentation.follow(at(reached), kRoundCell, punctures);
     indentation.expect(expected(reached));
   }
   return event;
@@ -33,29 +33,29 @@ TEST(IndentationCourse, BeginsAtTheSurfaceAndEndsInTheClear) {
   EXPECT_TRUE(indentation.clear());
   EXPECT_TRUE(indentation.touched());
   EXPECT_NEAR(indentation.depth(), 4e-6, 0.2e-6);
-  EXPECT_EQ(indentation.follow(at(-2e-6), kCell, 0), Event::kNone);  // not clear yet
+  EXPECT_EQ(indentation.follow(at(-2e-6), kRoundCell, 0), Event::kNone);  // not clear yet
   EXPECT_NEAR(indentation.depth(), 4e-6, 0.2e-6);
-  EXPECT_EQ(indentation.follow(at(-6e-6), kCell, 0), Event::kEnded);
+  EXPECT_EQ(indentation.follow(at(-6e-6), kRoundCell, 0), Event::kEnded);
   EXPECT_FALSE(indentation.touched());
-  EXPECT_EQ(indentation.follow(at(-6e-6), kCell, 0), Event::kNone);
+  EXPECT_EQ(indentation.follow(at(-6e-6), kRoundCell, 0), Event::kNone);
 }
 
 TEST(IndentationCourse, APunctureCountsOnceAndOnlyInTheCell) {
   IndentationCourse indentation;
   EXPECT_EQ(lower(indentation, 4e-6, 3), Event::kNone);  // of earlier cells
-  EXPECT_EQ(indentation.follow(at(4e-6), kCell, 4), Event::kPunctured);
-  EXPECT_EQ(indentation.follow(at(4e-6), kCell, 5), Event::kNone);
-  indentation.follow(at(9e-6), kCell, 5);
+  EXPECT_EQ(indentation.follow(at(4e-6), kRoundCell, 4), Event::kPunctured);
+  EXPECT_EQ(indentation.follow(at(4e-6), kRoundCell, 5), Event::kNone);
+  indentation.follow(at(9e-6), kRoundCell, 5);
   EXPECT_NEAR(indentation.depth(), 4e-6, 0.2e-6);  // until the puncture
-  EXPECT_EQ(indentation.follow(at(-6e-6), kCell, 5), Event::kEnded);
+  EXPECT_EQ(indentation.follow(at(-6e-6), kRoundCell, 5), Event::kEnded);
   EXPECT_FALSE(indentation.punctured());
 }
 
 TEST(IndentationCourse, APunctureOfATipThatIsNotThereIsNone) {
   IndentationCourse indentation;
-  EXPECT_EQ(indentation.follow(at(-20e-6), kCell, 0), Event::kNone);
-  EXPECT_EQ(indentation.follow(at(-20e-6), kCell, 1), Event::kNone);
-  EXPECT_EQ(indentation.follow(at(2e-6), kCell, std::nullopt), Event::kNone);
+  EXPECT_EQ(indentation.follow(at(-20e-6), kRoundCell, 0), Event::kNone);
+  EXPECT_EQ(indentation.follow(at(-20e-6), kRoundCell, 1), Event::kNone);
+  EXPECT_EQ(indentation.follow(at(2e-6), kRoundCell, std::nullopt), Event::kNone);
 }
 
 TEST(IndentationCourse, KnowsWhatWasExpectedAtHalfOfItsDepth) {
@@ -79,7 +79,7 @@ TEST(IndentationCourse, AtRestNothingGrows) {
 
 TEST(IndentationCourse, TheLargestForceIsThatInContact) {
   IndentationCourse indentation;
-  indentation.follow(at(-20e-6), kCell, 0);
+  indentation.follow(at(-20e-6), kRoundCell, 0);
   indentation.addForce(5e-6);
   EXPECT_EQ(indentation.peak(), 0);
   lower(indentation, 4e-6, 0);

@@ -5,22 +5,14 @@
 #include <cmath>
 #include <random>
 
+#include "cell/estimation/family_member.h"
 #include "cell/family/family_cell.h"
 #include "cell/surrogate/surrogate_contact.h"
 
 namespace microinjection {
 namespace {
 
-constexpr char kFamilies[] = MICROINJECTION_SOURCE_DIR "/config/families";
-constexpr char kCell[] = MICROINJECTION_SOURCE_DIR "/config/cells/mouse_oocyte_injection.yaml";
-constexpr double kModulus = 17.9e3, kForce = 1.5e-6;  // Pa, N, of kCell
-
-std::shared_ptr<const SurrogateData> memberOf(const Scene& scene) {
-  std::string reason;
-  const auto cell = findFamilyCell(kFamilies, scene, reason);
-  EXPECT_TRUE(cell) << reason;
-  return cell->data;
-}
+constexpr double kModulus = 17.9e3, kForce = 1.5e-6;  // Pa, N, of kInjectedCell
 
 /// Depth (m) and force (N) at which this cell fails when a tip goes down in steps of 10 nm.
 std::pair<double, double> puncture(const Scene& scene) {
@@ -34,7 +26,7 @@ std::pair<double, double> puncture(const Scene& scene) {
 
 TEST(PuncturePrediction, OfAKnownCellIsWhereItFails) {
   for (const char* law : {"force", "depth", "strain"}) {
-    Scene scene = loadScene(kCell);
+    Scene scene = loadScene(kInjectedCell);
     PunctureConfig::Layer& layer = scene.cell.puncture.layers[0];
     if (law[0] != 'f') layer.force = std::numeric_limits<double>::infinity();
     if (law[0] == 'd') layer.depth = 9e-6;
@@ -52,7 +44,7 @@ TEST(PuncturePrediction, OfAKnownCellIsWhereItFails) {
 }
 
 TEST(PuncturePrediction, AStifferCellFailsEarlierByForceAndHarderByDepth) {
-  Scene scene = loadScene(kCell);
+  Scene scene = loadScene(kInjectedCell);
   const auto soft = PuncturePredictor(scene, memberOf(scene), 0.1).predict(kModulus, 0.02, 0);
   const auto stiff = PuncturePredictor(scene, memberOf(scene), 0.1).predict(2 * kModulus, 0.02, 0);
   EXPECT_LT(stiff->depth, soft->depth);
@@ -66,7 +58,7 @@ TEST(PuncturePrediction, AStifferCellFailsEarlierByForceAndHarderByDepth) {
 }
 
 TEST(PuncturePrediction, ACellThatHasNotFailedYetIsStrongerThanExpected) {
-  const Scene scene = loadScene(kCell);
+  const Scene scene = loadScene(kInjectedCell);
   const PuncturePredictor predictor(scene, memberOf(scene), 0.2);
   const auto before = predictor.predict(kModulus, 0.02, 0);
   const auto later = predictor.predict(kModulus, 0.02, before->depth);
@@ -82,7 +74,7 @@ TEST(PuncturePrediction, IntervalsCover) {
   int depths = 0, forces = 0;
   constexpr int kTrials = 60;
   for (int trial = 0; trial < kTrials; ++trial) {
-    Scene scene = loadScene(kCell);
+    Scene scene = loadScene(kInjectedCell);
     const PuncturePredictor predictor(scene, memberOf(scene), 0.15);
     const double known = kModulus * std::exp(0.05 * normal(random));  // an estimate of 5 %
     scene.cell.puncture.layers[0].force *= std::exp(0.15 * normal(random));
@@ -98,7 +90,7 @@ TEST(PuncturePrediction, IntervalsCover) {
 }
 
 TEST(PuncturePrediction, ACellWithoutAFailureLawHasNone) {
-  Scene scene = loadScene(kCell);
+  Scene scene = loadScene(kInjectedCell);
   scene.cell.puncture.layers.clear();
   EXPECT_FALSE(PuncturePredictor(scene, memberOf(scene), 0.1).predict(kModulus, 0.1, 0));
 }

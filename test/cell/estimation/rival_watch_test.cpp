@@ -5,13 +5,13 @@
 #include <random>
 
 #include "cell/estimation/cell_estimator.h"
+#include "cell/estimation/family_member.h"
 #include "cell/family/family_cell.h"
 #include "cell/surrogate/surrogate_contact.h"
 
 namespace microinjection {
 namespace {
 
-constexpr char kFamilies[] = MICROINJECTION_SOURCE_DIR "/config/families";
 constexpr char kZona[] = MICROINJECTION_SOURCE_DIR "/config/cells/mouse_oocyte_zona.yaml";
 
 Scene layered() { return loadScene(kZona); }
@@ -20,13 +20,6 @@ Scene homogeneous() {
   Scene scene = layered();
   scene.cell.layers.resize(1);
   return scene;
-}
-
-std::shared_ptr<const SurrogateData> memberOf(const Scene& scene) {
-  std::string reason;
-  const auto cell = findFamilyCell(kFamilies, scene, reason);
-  EXPECT_TRUE(cell) << reason;
-  return cell->data;
 }
 
 /// Indents `truth` to `depth` (m), `lateral` (m) beside its axis, as the twin of `believed` sees it at a sensor

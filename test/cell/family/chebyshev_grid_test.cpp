@@ -10,7 +10,7 @@ namespace {
 
 double function(const Eigen::VectorXd& x) { return std::exp(0.5 * x[0] - 0.3 * x[1] * x[0]) + std::sin(x[2]); }
 
-double largestError(int points) {
+double interpolationError(int points) {
   const ChebyshevGrid grid(3, points);
   Eigen::VectorXd values(grid.size());
   for (int i = 0; i < grid.size(); ++i) values[i] = function(grid.node(i));
@@ -34,9 +34,9 @@ TEST(ChebyshevGrid, HasTheValuesOfItsNodesAndTheBorders) {
 }
 
 TEST(ChebyshevGrid, ConvergesExponentially) {
-  EXPECT_LT(largestError(4), 0.02);
-  EXPECT_LT(largestError(6), 0.02 * largestError(4));
-  EXPECT_LT(largestError(10), 1e-3 * largestError(6));
+  EXPECT_LT(interpolationError(4), 0.02);
+  EXPECT_LT(interpolationError(6), 0.02 * interpolationError(4));
+  EXPECT_LT(interpolationError(10), 1e-3 * interpolationError(6));
 }
 
 }  // namespace

@@ -27,11 +27,11 @@ Eigen::VectorXd values(const Eigen::MatrixXd& at) {
   return result;
 }
 
-const Eigen::Vector2d kLengths(1.5, 2);
+const Eigen::Vector2d kUnequalLengths(1.5, 2);
 
 TEST(Kriging, ReturnsTheKnownValues) {
   const Eigen::MatrixXd known = points(12);
-  const Kriging kriging(known, kLengths, 0);
+  const Kriging kriging(known, kUnequalLengths, 0);
   for (Eigen::Index i = 0; i < known.cols(); ++i) {
     EXPECT_NEAR(kriging.weights(known.col(i)).dot(values(known)), smooth(known.col(i)), 1e-6);
     EXPECT_NEAR(kriging.deviation(known.col(i)), 0, 1e-4);
@@ -40,7 +40,7 @@ TEST(Kriging, ReturnsTheKnownValues) {
 
 TEST(Kriging, IsExactForLinearFunctionsWhateverTheNoise) {
   const Eigen::MatrixXd known = points(9);
-  const Kriging kriging(known, kLengths, 0.1);
+  const Kriging kriging(known, kUnequalLengths, 0.1);
   const Eigen::Vector2d slope(3, -2), at(0.3, -0.9);
   const Eigen::VectorXd linear = known.transpose() * slope + Eigen::VectorXd::Constant(9, 5);
   EXPECT_NEAR(kriging.weights(at).dot(linear), slope.dot(at) + 5, 1e-9);
@@ -52,7 +52,7 @@ TEST(Kriging, ConvergesToASmoothFunction) {
   double last = 2;
   for (const Eigen::Index count : {6, 12, 24}) {
     const Eigen::MatrixXd known = points(count);
-    const Kriging kriging(known, kLengths, 0);
+    const Kriging kriging(known, kUnequalLengths, 0);
     double error = 0;
     for (Eigen::Index i = 0; i < at.cols(); ++i) {
       error = std::max(error, std::abs(kriging.weights(at.col(i)).dot(values(known)) - smooth(at.col(i))));
@@ -65,20 +65,20 @@ TEST(Kriging, ConvergesToASmoothFunction) {
 
 /// With two points in one coordinate only a constant drift is determined.
 TEST(Kriging, OfFewPointsIsDefined) {
-  const Kriging one(Eigen::MatrixXd::Zero(2, 1), kLengths, 0);
+  const Kriging one(Eigen::MatrixXd::Zero(2, 1), kUnequalLengths, 0);
   EXPECT_NEAR(one.weights(Eigen::Vector2d(0.5, 0.5))[0], 1, 1e-9);
-  const Kriging two(points(2), kLengths, 0);
+  const Kriging two(points(2), kUnequalLengths, 0);
   EXPECT_NEAR(two.weights(Eigen::Vector2d(0.5, 0.5)).sum(), 1, 1e-9);
 }
 
 TEST(Kriging, LeavesOneOutWithoutSolvingAnew) {
   const Eigen::MatrixXd known = points(10);
   const double noise = 1e-3;
-  const Eigen::MatrixXd weights = Kriging(known, kLengths, noise).leaveOneOut();
+  const Eigen::MatrixXd weights = Kriging(known, kUnequalLengths, noise).leaveOneOut();
   for (Eigen::Index i = 0; i < known.cols(); ++i) {
     Eigen::MatrixXd others(2, known.cols() - 1);
     others << known.leftCols(i), known.rightCols(known.cols() - i - 1);
-    const double anew = Kriging(others, kLengths, noise).weights(known.col(i)).dot(values(others));
+    const double anew = Kriging(others, kUnequalLengths, noise).weights(known.col(i)).dot(values(others));
     EXPECT_NEAR(weights.row(i).dot(values(known)), anew, 1e-7);
     EXPECT_EQ(weights(i, i), 0);
   }

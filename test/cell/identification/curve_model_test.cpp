@@ -8,12 +8,6 @@
 namespace microinjection {
 namespace {
 
-std::shared_ptr<ElasticLaw> hertz() {
-  FormulaGeometry geometry;
-  geometry.tip_radius = 5e-6;
-  return makeFormulaLaw("hertz", geometry);
-}
-
 TEST(CurveModel, DerivativesAreThoseOfTheForce) {
   const ForceCurve curve = MadeUpRecord().make(*hertz());
   CurveModel model(curve, hertz(), {true, 2});

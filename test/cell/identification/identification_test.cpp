@@ -12,18 +12,10 @@
 #include "cell/identification/formula_law.h"
 #include "cell/identification/identified_scene.h"
 #include "made_up_record.h"
+#include "shipped_cells.h"
 
 namespace microinjection {
 namespace {
-
-constexpr char kFamilies[] = MICROINJECTION_SOURCE_DIR "/config/families";
-constexpr char kZona[] = MICROINJECTION_SOURCE_DIR "/config/cells/mouse_oocyte_zona.yaml";
-
-std::shared_ptr<ElasticLaw> hertz() {
-  FormulaGeometry geometry;
-  geometry.tip_radius = 5e-6;
-  return makeFormulaLaw("hertz", geometry);
-}
 
 std::shared_ptr<FamilyLaw> zona(const std::vector<std::string>& free = {}) {
   const Scene scene = loadScene(kZona);

@@ -1,13 +1,22 @@
 #pragma once
 
 #include <cmath>
+#include <memory>
 #include <random>
 #include <vector>
 
 #include "cell/identification/elastic_law.h"
 #include "cell/identification/force_curve.h"
+#include "cell/identification/formula_law.h"
 
 namespace microinjection {
+
+/// Hertz's law of a tip of 5 um.
+inline std::shared_ptr<ElasticLaw> hertz() {
+  FormulaGeometry geometry;
+  geometry.tip_radius = 5e-6;
+  return makeFormulaLaw("hertz", geometry);
+}
 
 /// A record of a needle that moves at 20 um/s from 3 um above a cell to 5 um below its surface, 1 kHz.
 struct MadeUpRecord {

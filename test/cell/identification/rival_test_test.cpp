@@ -9,12 +9,11 @@
 #include "cell/identification/family_law.h"
 #include "cell/identification/identification.h"
 #include "made_up_record.h"
+#include "shipped_cells.h"
 
 namespace microinjection {
 namespace {
 
-constexpr char kFamilies[] = MICROINJECTION_SOURCE_DIR "/config/families";
-constexpr char kZona[] = MICROINJECTION_SOURCE_DIR "/config/cells/mouse_oocyte_zona.yaml";
 constexpr double kModulus = 30e3;  // Pa
 
 /// 500 samples from 4 um above the surface to `depth` (m) below it, with a noise of `noise` (N).

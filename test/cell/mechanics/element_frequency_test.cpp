@@ -13,8 +13,6 @@
 namespace microinjection {
 namespace {
 
-constexpr double kDensity = 3;
-
 TEST(ElementFrequency, IsTheLargestEigenvalueOfTheElement) {
   const TetMesh mesh = linearMesh(irregularBlock<3>(2));
   for (const double poisson : {-0.9, -0.3, 0.0, 0.3, 0.49}) {

@@ -12,12 +12,12 @@
 namespace microinjection {
 namespace {
 
-constexpr double kYoung = 2, kPoisson = 0.3, kDensity = 3;
+constexpr double kBlockYoung = 2, kBlockPoisson = 0.3;
 
 /// The block, held below and pushed from above.
 ExplicitStepConfig pressedBlock(const TetMesh& mesh) {
   ExplicitStepConfig config;
-  config.lame = Lame::from(kYoung, kPoisson);
+  config.lame = Lame::from(kBlockYoung, kBlockPoisson);
   config.density = kDensity;
   for (int v = 0; v < static_cast<int>(mesh.vertices.size()); ++v) {
     if (mesh.vertices[v].z() == 0) config.held.push_back(v);
@@ -27,7 +27,7 @@ ExplicitStepConfig pressedBlock(const TetMesh& mesh) {
 }
 
 std::shared_ptr<LayeredBody<3>> body() {
-  return makeBody(irregularBlock<3>(3), ElementKind::kP1, "st_venant_kirchhoff", kPoisson);
+  return makeBody(irregularBlock<3>(3), ElementKind::kP1, "st_venant_kirchhoff", kBlockPoisson);
 }
 
 TEST(ExplicitStep, HighestFrequencyIsThatOfTheStiffness) {

@@ -11,16 +11,16 @@
 namespace microinjection {
 namespace {
 
-constexpr double kRadius = 28e-6;  // m
-constexpr double kYoung = 17.9e3;  // Pa
-const std::vector<double> kRadii = {kRadius, kRadius / 2};
+constexpr double kRadius = 28e-6;      // m
+constexpr double kCellYoung = 17.9e3;  // Pa
+const std::vector<double> kBallRadii = {kRadius, kRadius / 2};
 
 bool onSurface(const Eigen::Vector3d& x) { return x.norm() > 0.999 * kRadius; }
 
 struct Ball {
   Ball(ElementKind kind, const std::string& model, double poisson_ratio, Inversion inversion = Inversion::kAllowed) {
-    const auto layer = material(model, poisson_ratio, kYoung);
-    body = std::make_shared<LayeredBody<3>>(makeQuadratic(layeredBall(1, kRadii), kRadii), kind,
+    const auto layer = material(model, poisson_ratio, kCellYoung);
+    body = std::make_shared<LayeredBody<3>>(makeQuadratic(layeredBall(1, kBallRadii), kBallRadii), kind,
                                             LayeredBody<3>::Materials{layer, layer}, inversion);
   }
 

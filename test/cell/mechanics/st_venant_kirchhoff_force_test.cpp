@@ -13,11 +13,6 @@
 namespace microinjection {
 namespace {
 
-constexpr double kYoung = 2, kPoisson = 0.45;
-
-/// 162 elements: the last block of eight is not full.
-TetMesh irregularMesh() { return linearMesh(irregularBlock<3>(3)); }
-
 Eigen::VectorXd forceOf(StVenantKirchhoffForce& force, const Eigen::VectorXd& positions) {
   Eigen::VectorXd result = Eigen::VectorXd::Constant(positions.size(), std::numeric_limits<double>::quiet_NaN());
   force.evaluate(positions.data(), result.data());

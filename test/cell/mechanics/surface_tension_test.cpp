@@ -18,9 +18,9 @@
 namespace microinjection {
 namespace {
 
-constexpr double kTension = 0.4e-3;                   // N/m
-const std::vector<double> kRadii = {60e-6, 30e-6};    // m
-constexpr double kSphere = 4 * M_PI * 60e-6 * 60e-6;  // m^2, area of the outer surface
+constexpr double kTension = 0.4e-3;                      // N/m
+const std::vector<double> kTenseRadii = {60e-6, 30e-6};  // m
+constexpr double kSphere = 4 * M_PI * 60e-6 * 60e-6;     // m^2, area of the outer surface
 
 /// `fineness` doubles, edges halve.
 template <int Dim>
@@ -29,19 +29,19 @@ LayeredBody<Dim> ball(ElementKind kind, int fineness) {
   config.model = "neo_hookean";
   const LayeredBody<3>::Materials materials(2, std::shared_ptr<const Material>(makeMaterial(config)));
   if constexpr (Dim == 2) {
-    return {makeQuadratic(layeredHalfDisc(8 * fineness, kRadii), kRadii), kind, materials};
+    return {makeQuadratic(layeredHalfDisc(8 * fineness, kTenseRadii), kTenseRadii), kind, materials};
   } else {
     const int level = fineness == 1 ? 1 : fineness == 2 ? 2 : 3;
-    return {makeQuadratic(layeredBall(level, kRadii), kRadii), kind, materials};
+    return {makeQuadratic(layeredBall(level, kTenseRadii), kTenseRadii), kind, materials};
   }
 }
 
 template <int Dim>
-struct Problem {
+struct TensionProblem {
   using Vector = Eigen::Matrix<double, Dim, 1>;
 
-  explicit Problem(ElementKind kind, int fineness = 1, int layer = 0)
-      : body(ball<Dim>(kind, fineness)), surface(body, layer, kRadii[layer], kTension) {}
+  explicit TensionProblem(ElementKind kind, int fineness = 1, int layer = 0)
+      : body(ball<Dim>(kind, fineness)), surface(body, layer, kTenseRadii[layer], kTension) {}
 
   /// State of a deformation x(X); MINI's bubbles stay.
   Eigen::VectorXd state(const std::function<Vector(const Vector&)>& deform) const {
@@ -91,22 +91,22 @@ struct Case {
   static constexpr int kDim = Dim;
   static constexpr ElementKind kKind = Kind;
   static constexpr bool kCurved = Kind == ElementKind::kP2 || Kind == ElementKind::kP2P0 || Kind == ElementKind::kP2P1;
-  using Problem = microinjection::Problem<Dim>;
+  using Problem = TensionProblem<Dim>;
   using Vector = typename Problem::Vector;
 };
 
 template <typename Case>
 class SurfaceTensionTest : public testing::Test {};
 
-using Cases = testing::Types<Case<2, ElementKind::kP1>, Case<2, ElementKind::kP2P1>, Case<3, ElementKind::kP1>,
-                             Case<3, ElementKind::kMini>, Case<3, ElementKind::kP2>>;
-TYPED_TEST_SUITE(SurfaceTensionTest, Cases);
+using TensionCases = testing::Types<Case<2, ElementKind::kP1>, Case<2, ElementKind::kP2P1>, Case<3, ElementKind::kP1>,
+                                    Case<3, ElementKind::kMini>, Case<3, ElementKind::kP2>>;
+TYPED_TEST_SUITE(SurfaceTensionTest, TensionCases);
 
 TYPED_TEST(SurfaceTensionTest, DerivativesAreThoseOfTheEnergy) {
   for (int layer : {0, 1}) {
     const typename TypeParam::Problem problem(TypeParam::kKind, 1, layer);
-    const Eigen::VectorXd state = problem.random(0.02 * kRadii[layer]);
-    const double step = 1e-5 * kRadii[layer];
+    const Eigen::VectorXd state = problem.random(0.02 * kTenseRadii[layer]);
+    const double step = 1e-5 * kTenseRadii[layer];
     for (int f = 0; f < problem.surface.elementCount(); ++f) {
       const std::vector<int>& entries = problem.surface.entries(f);
       EXPECT_EQ(std::set<int>(entries.begin(), entries.end()).size(), entries.size());
@@ -120,12 +120,12 @@ TYPED_TEST(SurfaceTensionTest, UndeformedIsAtEquilibriumWithoutEnergy) {
   const Eigen::VectorXd at = Eigen::VectorXd::Zero(problem.body.stateSize());
   EXPECT_EQ(problem.energy(at), 0);
   EXPECT_EQ(problem.gradient(at).norm(), 0);
-  EXPECT_EQ(problem.surface.pressure(), 2 * kTension / kRadii[0]);
+  EXPECT_EQ(problem.surface.pressure(), 2 * kTension / kTenseRadii[0]);
 }
 
 TYPED_TEST(SurfaceTensionTest, AreaAndVolumeConvergeToTheSphere) {
   for (int layer : {0, 1}) {
-    const double R = kRadii[layer], area = 4 * M_PI * R * R;
+    const double R = kTenseRadii[layer], area = 4 * M_PI * R * R;
     double last[2] = {0, 0};
     for (int fineness : {1, 2, 4}) {
       const typename TypeParam::Problem problem(TypeParam::kKind, fineness, layer);
@@ -175,11 +175,11 @@ TYPED_TEST(SurfaceTensionTest, StretchHasTheEnergyOfTheSpheroid) {
 TYPED_TEST(SurfaceTensionTest, TranslationLeavesTheEnergy) {
   const typename TypeParam::Problem problem(TypeParam::kKind);
   typename TypeParam::Vector shift = TypeParam::Vector::Zero();
-  shift[TypeParam::kDim - 1] = 0.7 * kRadii[0];
-  if (TypeParam::kDim == 3) shift[0] = -0.4 * kRadii[0];
+  shift[TypeParam::kDim - 1] = 0.7 * kTenseRadii[0];
+  if (TypeParam::kDim == 3) shift[0] = -0.4 * kTenseRadii[0];
   const Eigen::VectorXd at = problem.state([&](const auto& X) { return typename TypeParam::Vector(X + shift); });
   EXPECT_NEAR(problem.energy(at) / (kTension * kSphere), 0, 1e-13);
-  EXPECT_LT(problem.gradient(at).norm(), 1e-12 * kTension * kRadii[0]);
+  EXPECT_LT(problem.gradient(at).norm(), 1e-12 * kTension * kTenseRadii[0]);
 }
 
 /// Area and volume are left exactly; what remains is the work of the dead load, which does not turn along.
@@ -188,7 +188,7 @@ TEST(SurfaceTension, RotationLeavesTheEnergyButForTheDeadLoad) {
   for (ElementKind kind : {ElementKind::kP1, ElementKind::kP2}) {
     double last = 0;
     for (int fineness : {1, 2, 4}) {
-      const Problem<3> problem(kind, fineness);
+      const TensionProblem<3> problem(kind, fineness);
       const Eigen::VectorXd at = problem.state([&](const Eigen::Vector3d& X) { return Eigen::Vector3d(Q * X); });
       const Eigen::VectorXd none = Eigen::VectorXd::Zero(at.size());
       EXPECT_NEAR(problem.surface.area(at) / problem.surface.area(none), 1, 1e-13);
@@ -205,11 +205,11 @@ TEST(SurfaceTension, RotationLeavesTheEnergyButForTheDeadLoad) {
 
 TEST(SurfaceTension, SectionAndSpaceAgree) {
   // An egg: not symmetric in z.
-  const double R = kRadii[0];
+  const double R = kTenseRadii[0];
   const auto stretch = [R](double z) { return 1 + 0.2 * z / R - 0.15 * z * z / (R * R); };
   for (int layer : {0, 1}) {
-    const Problem<2> section(ElementKind::kP2, 4, layer);
-    const Problem<3> space(ElementKind::kP2, 4, layer);
+    const TensionProblem<2> section(ElementKind::kP2, 4, layer);
+    const TensionProblem<3> space(ElementKind::kP2, 4, layer);
     const Eigen::VectorXd in_section = section.state([&](const Eigen::Vector2d& X) {
       return Eigen::Vector2d(stretch(X[1]) * X[0], 1.1 * X[1] + 0.1 * X[0] * X[0] / R);
     });
@@ -240,10 +240,10 @@ TYPED_TEST(SurfaceTensionTest, AFacetWithoutAreaHasNoEnergy) {
 TYPED_TEST(SurfaceTensionTest, RefusesWhatItCannotBe) {
   const auto body = ball<TypeParam::kDim>(TypeParam::kKind, 1);
   using Surface = SurfaceTension<TypeParam::kDim>;
-  EXPECT_THROW(Surface(body, 2, kRadii[0], kTension), std::invalid_argument);
+  EXPECT_THROW(Surface(body, 2, kTenseRadii[0], kTension), std::invalid_argument);
   EXPECT_THROW(Surface(body, 0, 0, kTension), std::invalid_argument);
-  EXPECT_THROW(Surface(body, 0, kRadii[0], -kTension), std::invalid_argument);
-  EXPECT_THROW(Surface(body, 0, kRadii[0], std::numeric_limits<double>::quiet_NaN()), std::invalid_argument);
+  EXPECT_THROW(Surface(body, 0, kTenseRadii[0], -kTension), std::invalid_argument);
+  EXPECT_THROW(Surface(body, 0, kTenseRadii[0], std::numeric_limits<double>::quiet_NaN()), std::invalid_argument);
 }
 
 }  // namespace

@@ -13,11 +13,8 @@ namespace microinjection {
 namespace {
 
 using Kind = TensorMassForce::Kind;
-constexpr double kYoung = 2, kPoisson = 0.45;
 
 const Lame kLame = Lame::from(kYoung, kPoisson);
-
-TetMesh irregularMesh() { return linearMesh(irregularBlock<3>(3)); }
 
 Eigen::VectorXd forceOf(const TetMesh& mesh, Kind kind, const Eigen::VectorXd& displacements) {
   Eigen::VectorXd result = Eigen::VectorXd::Constant(displacements.size(), std::numeric_limits<double>::quiet_NaN());

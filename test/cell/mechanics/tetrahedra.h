@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "cell/mechanics/bodies.h"
 #include "cell/mesh/quadratic_mesh.h"
 #include "cell/mesh/tet_mesh.h"
 
@@ -19,6 +20,14 @@ inline TetMesh linearMesh(const QuadraticMesh<3>& quadratic) {
   mesh.layers = quadratic.layers;
   return mesh;
 }
+
+/// Young's modulus (Pa) and Poisson's ratio of the forces that are compared.
+constexpr double kYoung = 2, kPoisson = 0.45;
+
+constexpr double kDensity = 3;  // kg/m^3
+
+/// 162 elements: the last block of eight is not full.
+inline TetMesh irregularMesh() { return linearMesh(irregularBlock<3>(3)); }
 
 /// Places of the vertices, xyz per vertex.
 inline Eigen::VectorXd places(const TetMesh& mesh) {

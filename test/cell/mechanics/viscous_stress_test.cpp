@@ -12,13 +12,10 @@
 #include "base/errors.h"
 #include "cell/mechanics/bodies.h"
 #include "cell/mechanics/term_derivatives.h"
+#include "cell/mechanics/viscous_cases.h"
 
 namespace microinjection {
 namespace {
-
-constexpr double kForever = std::numeric_limits<double>::infinity();
-const ViscoelasticityConfig kProny = {{{0.8, 0.1}, {1.5, 2.0}}};
-const ViscoelasticityConfig kAll = {{{0.8, 0.1}, {1.5, 2.0}}, 0.3};  // Pa s
 
 template <typename Case>
 class ViscousStressTest : public testing::Test {
@@ -36,10 +33,7 @@ class ViscousStressTest : public testing::Test {
   }
 };
 
-using Cases = testing::Types<ElementCase<2, ElementKind::kP1>, ElementCase<2, ElementKind::kP2P0>,
-                             ElementCase<2, ElementKind::kP2P1>, ElementCase<3, ElementKind::kP1>,
-                             ElementCase<3, ElementKind::kMini>, ElementCase<3, ElementKind::kP2P0>>;
-TYPED_TEST_SUITE(ViscousStressTest, Cases, ElementCaseName);
+TYPED_TEST_SUITE(ViscousStressTest, ViscousCases, ElementCaseName);
 
 TYPED_TEST(ViscousStressTest, DerivativesAreThoseOfTheEnergy) {
   for (const std::string model : {"linear", "neo_hookean", "corotated"}) {

@@ -15,8 +15,6 @@
 namespace microinjection {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 /// Made once for each needle.
 const TetMesh& needleMesh(const Eigen::Vector2d& offset) {
   static std::map<std::pair<double, double>, TetMesh> meshes;
@@ -36,7 +34,7 @@ class CellMesher : public testing::TestWithParam<Eigen::Vector2d> {
 };
 
 TEST_P(CellMesher, VolumeIsTheBallsLessTheFacets) {
-  const double ball = 4 * kPi * std::pow(radius_, 3) / 3;
+  const double ball = 4 * M_PI * std::pow(radius_, 3) / 3;
   const double deficit = ball - meshVolume(mesh_), expected = facetingDeficit(surface_, radius_);
   EXPECT_GT(deficit, 0);
   EXPECT_LT(deficit, 0.06 * ball);
@@ -96,7 +94,7 @@ TEST(CellMesherCircle, ElementsAlongItAreSmallAndGrowAway) {
   const TetMesh mesh = makeCellMesh(config);
   const SurfaceMesh surface = extractSurface(mesh);
   const std::vector<int> tip = onCircle(surface, {12e-6, 0}, kTipRadius, +1);
-  const double length = 2 * kPi * kTipRadius * (1 + 1 / std::cos(std::asin(12. / 28))) / 2;  // near an ellipse's
+  const double length = 2 * M_PI * kTipRadius * (1 + 1 / std::cos(std::asin(12. / 28))) / 2;  // near an ellipse's
   EXPECT_NEAR(tip.size() / (length / edge), 1, 0.08);
   EXPECT_TRUE(isClosedPolygon(surface, tip));
   EXPECT_LT(mesh.tetrahedra.size(), 10000u) << "a tenth of a micrometre all over the cell would be millions";
@@ -160,7 +158,7 @@ TEST(CellMesherPlain, NeedsNeitherRefinementsNorCircles) {
   config.radii = {28e-6};
   const TetMesh mesh = makeCellMesh(config);
   EXPECT_GT(worstRadiusRatio(mesh), 0.15);
-  EXPECT_NEAR(meshVolume(mesh) / (4 * kPi * std::pow(28e-6, 3) / 3), 0.95, 0.02);
+  EXPECT_NEAR(meshVolume(mesh) / (4 * M_PI * std::pow(28e-6, 3) / 3), 0.95, 0.02);
 }
 
 TEST(CellMesherDeterminism, SameConfigurationSameMesh) {

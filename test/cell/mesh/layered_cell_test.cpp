@@ -12,8 +12,6 @@
 namespace microinjection {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 struct Layered {
   std::vector<double> radii;  // m
   TetMesh mesh;
@@ -38,7 +36,7 @@ TEST(LayeredCell, VolumesAreTheBallsLessTheFacets) {
   for (const auto& [radii, mesh] : layeredCells()) {
     for (size_t k = 0; k < radii.size(); ++k) {
       const TetMesh part = fromLayer(mesh, static_cast<int>(k));
-      const double ball = 4 * kPi * std::pow(radii[k], 3) / 3, deficit = ball - meshVolume(part);
+      const double ball = 4 * M_PI * std::pow(radii[k], 3) / 3, deficit = ball - meshVolume(part);
       EXPECT_LT(deficit, 0.15 * ball);
       EXPECT_NEAR(deficit / facetingDeficit(extractSurface(part), radii[k]), 1, 0.25) << "from layer " << k;
     }
@@ -51,7 +49,7 @@ TEST(LayeredCell, VolumesConvergeToTheShells) {
     config.radii = {28e-6, 14e-6};
     config.size = size;
     const TetMesh mesh = makeCellMesh(config);
-    const double inner = meshVolume(fromLayer(mesh, 1)), ball = 4 * kPi * std::pow(14e-6, 3) / 3;
+    const double inner = meshVolume(fromLayer(mesh, 1)), ball = 4 * M_PI * std::pow(14e-6, 3) / 3;
     return std::pair(1 - inner / ball, 1 - (meshVolume(mesh) - inner) / (7 * ball));
   };
   const auto [coarse_core, coarse_shell] = errors(8e-6);

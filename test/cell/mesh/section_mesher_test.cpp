@@ -11,13 +11,12 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kRadius = 28e-6;  // m
+constexpr double kSectionRadius = 28e-6;  // m
 
 SectionMeshConfig layeredSection() {
   SectionMeshConfig config;
-  config.radii = {kRadius, 24e-6, 8e-6};
-  config.refinements = {{3e-6, +1, 0, kRadius / 5000}, {10e-6, -1, 0.2e-6, 0.1e-6}};
+  config.radii = {kSectionRadius, 24e-6, 8e-6};
+  config.refinements = {{3e-6, +1, 0, kSectionRadius / 5000}, {10e-6, -1, 0.2e-6, 0.1e-6}};
   config.vertices = {{3e-6, +1}, {10e-6, -1}, {27e-6, -1}};
   return config;
 }
@@ -34,13 +33,13 @@ double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y(
 double sweptVolume(const TriangleMesh& mesh, int triangle) {
   const std::array<int, 3>& corners = mesh.triangles[triangle];
   const double r = (mesh.vertices[corners[0]] + mesh.vertices[corners[1]] + mesh.vertices[corners[2]]).x() / 3;
-  return 2 * kPi * r * triangleArea(mesh, triangle);
+  return 2 * M_PI * r * triangleArea(mesh, triangle);
 }
 
 /// Smallest angle of one triangle, rad.
 double smallestAngle(const TriangleMesh& mesh, int triangle) {
   const std::array<int, 3>& corners = mesh.triangles[triangle];
-  double smallest = kPi;
+  double smallest = M_PI;
   for (int i = 0; i < 3; ++i) {
     const Vector2d& at = mesh.vertices[corners[i]];
     const Vector2d to = mesh.vertices[corners[(i + 1) % 3]] - at;
@@ -82,7 +81,7 @@ TEST(SectionMesher, EveryEdgeIsSharedOrOnTheBoundary) {
     for (int v : edge) ASSERT_NEAR(mesh.vertices[v].norm() / radii[inner], 1, 1e-15);
     ++on_arc[inner];
   }
-  EXPECT_NEAR(axis, 2 * kRadius, 1e-18);
+  EXPECT_NEAR(axis, 2 * kSectionRadius, 1e-18);
   for (int edges : on_arc) EXPECT_GE(edges, 8);
 }
 
@@ -107,11 +106,11 @@ TEST(SectionMesher, NamedPointsAreVertices) {
   const TriangleMesh& mesh = layeredMesh();
   const auto isVertex = [&](double r, double z) {
     return std::any_of(mesh.vertices.begin(), mesh.vertices.end(),
-                       [&](const Vector2d& v) { return v.x() == r && std::abs(v.y() - z) < 1e-15 * kRadius; });
+                       [&](const Vector2d& v) { return v.x() == r && std::abs(v.y() - z) < 1e-15 * kSectionRadius; });
   };
-  EXPECT_TRUE(isVertex(3e-6, std::sqrt(kRadius * kRadius - 9e-12)));
-  EXPECT_TRUE(isVertex(10e-6, -std::sqrt(kRadius * kRadius - 100e-12)));
-  EXPECT_TRUE(isVertex(27e-6, -std::sqrt(kRadius * kRadius - 729e-12)));
+  EXPECT_TRUE(isVertex(3e-6, std::sqrt(kSectionRadius * kSectionRadius - 9e-12)));
+  EXPECT_TRUE(isVertex(10e-6, -std::sqrt(kSectionRadius * kSectionRadius - 100e-12)));
+  EXPECT_TRUE(isVertex(27e-6, -std::sqrt(kSectionRadius * kSectionRadius - 729e-12)));
   for (double radius : layeredSection().radii) {
     EXPECT_TRUE(isVertex(0, radius));
     EXPECT_TRUE(isVertex(0, -radius));
@@ -120,8 +119,8 @@ TEST(SectionMesher, NamedPointsAreVertices) {
 
 TEST(SectionMesher, IsFineAndWellShapedAroundARefinement) {
   const TriangleMesh& mesh = layeredMesh();
-  const Vector2d edge = pointOnArc(3e-6, +1, kRadius);
-  double shortest = 1, smallest = kPi;
+  const Vector2d edge = pointOnArc(3e-6, +1, kSectionRadius);
+  double shortest = 1, smallest = M_PI;
   for (size_t t = 0; t < mesh.triangles.size(); ++t) {
     smallest = std::min(smallest, smallestAngle(mesh, static_cast<int>(t)));
     for (int v : mesh.triangles[t]) {
@@ -129,20 +128,20 @@ TEST(SectionMesher, IsFineAndWellShapedAroundARefinement) {
       if (distance > 0) shortest = std::min(shortest, distance);
     }
   }
-  EXPECT_NEAR(shortest / (kRadius / 5000), 1, 0.5);
-  EXPECT_GT(smallest, 15 * kPi / 180);
+  EXPECT_NEAR(shortest / (kSectionRadius / 5000), 1, 0.5);
+  EXPECT_GT(smallest, 15 * M_PI / 180);
   EXPECT_LT(mesh.triangles.size(), 10000u) << "graded, not fine all over";
 }
 
 TEST(SectionMesher, SweptVolumesConvergeToTheShells) {
   const auto errors = [](double size) {
     SectionMeshConfig config;
-    config.radii = {kRadius, 14e-6};
+    config.radii = {kSectionRadius, 14e-6};
     config.size = size;
     const TriangleMesh mesh = makeSectionMesh(config);
     double volumes[2] = {0, 0};
     for (size_t t = 0; t < mesh.triangles.size(); ++t) volumes[mesh.layers[t]] += sweptVolume(mesh, t);
-    const double ball = 4 * kPi * std::pow(14e-6, 3) / 3;
+    const double ball = 4 * M_PI * std::pow(14e-6, 3) / 3;
     return std::array{1 - volumes[0] / (7 * ball), 1 - volumes[1] / ball};
   };
   const auto coarse = errors(2e-6), fine = errors(1e-6);
@@ -154,11 +153,11 @@ TEST(SectionMesher, SweptVolumesConvergeToTheShells) {
 
 TEST(SectionMesher, ThinLayersAndExtremes) {
   SectionMeshConfig thin;
-  thin.radii = {kRadius, kRadius - 0.1e-6};
+  thin.radii = {kSectionRadius, kSectionRadius - 0.1e-6};
   SectionMeshConfig coarse;
   coarse.size = 1;
   SectionMeshConfig close;
-  close.vertices = {{3e-6, 1}, {3.001e-6, 1}, {0, 1}, {kRadius, 1}};
+  close.vertices = {{3e-6, 1}, {3.001e-6, 1}, {0, 1}, {kSectionRadius, 1}};
   SectionMeshConfig large;
   large.radii = {600e-6, 580e-6};
   large.size = 50e-6;
@@ -172,7 +171,7 @@ TEST(SectionMesher, ThinLayersAndExtremes) {
     }
     for (int vertices : on_arc) EXPECT_GE(vertices, 9);
     for (size_t t = 0; t < mesh.triangles.size(); ++t) {
-      EXPECT_GT(smallestAngle(mesh, static_cast<int>(t)), 15 * kPi / 180);
+      EXPECT_GT(smallestAngle(mesh, static_cast<int>(t)), 15 * M_PI / 180);
     }
   }
 }
@@ -190,7 +189,7 @@ TEST(TriangleMesh, MeasuresOfAKnownTriangle) {
   mesh.triangles = {{0, 1, 2}, {0, 2, 1}};
   EXPECT_NEAR(triangleArea(mesh, 0), 3, 1e-15);
   EXPECT_NEAR(triangleArea(mesh, 1), -3, 1e-15);
-  EXPECT_NEAR(sweptVolume(mesh, 0), kPi * 4 * 3 / 3, 1e-14);
+  EXPECT_NEAR(sweptVolume(mesh, 0), M_PI * 4 * 3 / 3, 1e-14);
   EXPECT_NEAR(smallestAngle(mesh, 0), std::atan2(2, 3), 1e-15);
 }
 

@@ -13,8 +13,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPi = 3.14159265358979323846;
-
 TEST(SizeField, GrowsFromABallOutwards) {
   CellMeshConfig config = needleCell();
   config.imprints.clear();
@@ -42,8 +40,8 @@ TEST(SizeField, ImprintsGetEightElements) {
   CellMeshConfig config;
   config.imprints = {{{5e-6, 0}, 0.5e-6, +1}};
   const double along = SizeField(config)(pointOnSphere({5.5e-6, 0}, +1, 28e-6));
-  EXPECT_LT(along, 2 * kPi * 0.5e-6 / 8);
-  EXPECT_GT(along, 2 * kPi * 0.5e-6 / 11);
+  EXPECT_LT(along, 2 * M_PI * 0.5e-6 / 8);
+  EXPECT_GT(along, 2 * M_PI * 0.5e-6 / 11);
 }
 
 TEST(SizeField, LayersLimitItToTheirThickness) {
@@ -84,7 +82,7 @@ TEST(CircleOnSphere, DistanceIsThatOfTheNearestPoint) {
     const Vector3d point(coordinate(generator), coordinate(generator), coordinate(generator));
     double nearest = 10;
     for (int j = 0; j < 20000; ++j) {
-      const double angle = 2 * kPi * j / 20000;
+      const double angle = 2 * M_PI * j / 20000;
       const Eigen::Vector2d xy(0.5 + 0.3 * std::cos(angle), -0.3 + 0.3 * std::sin(angle));
       nearest = std::min(nearest, (point - Vector3d(xy.x(), xy.y(), std::sqrt(1 - xy.squaredNorm()))).norm());
     }

@@ -10,7 +10,6 @@
 namespace microinjection {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kYoung = 17.9e3, kPoisson = 0.49, kTip = 3e-6, kThickness = 4e-6, kDimple = 20e-6;
 
 /// The same membrane by quadrature: no closed form is used but the balance of forces.
@@ -25,12 +24,12 @@ struct Numerical {
     for (int i = 0; i < kSteps; ++i) {
       const double r = tip + (i + 0.5) * step, slope = 1 / r - r / (a * a);
       shape += step * slope;
-      area += step * 2 * kPi * r * slope * slope / 2;
-      swept += step * kPi * r * r * slope;  // integrated by parts: the tip's share is in it
+      area += step * 2 * M_PI * r * slope * slope / 2;
+      swept += step * M_PI * r * r * slope;  // integrated by parts: the tip's share is in it
     }
-    const double s = depth / shape, annulus = kPi * (a * a - tip * tip);
+    const double s = depth / shape, annulus = M_PI * (a * a - tip * tip);
     const double strain = s * s * area / annulus / 2, tension = kYoung * kThickness / (1 - kPoisson) * strain;
-    force = s * 2 * kPi * tension;
+    force = s * 2 * M_PI * tension;
     energy = kYoung * kThickness / (1 - kPoisson) * strain * strain * annulus;
     volume = s * swept;
   }
@@ -50,7 +49,7 @@ TEST(Biomembrane, NeedleAndPressureDoTheMembranesWork) {
   constexpr double kDepth = 5e-6, kChange = 1e-9;
   const Biomembrane membrane(kYoung, kPoisson, kTip, {kThickness, kDimple});
   const Numerical before(kDepth - kChange, kTip, kDimple), after(kDepth + kChange, kTip, kDimple);
-  const double force = membrane.force(kDepth), pressure = force / (kPi * kDimple * kDimple);
+  const double force = membrane.force(kDepth), pressure = force / (M_PI * kDimple * kDimple);
   const double work = force * 2 * kChange - pressure * (after.volume - before.volume);
   EXPECT_NEAR(after.energy - before.energy, work, 1e-5 * work);
   EXPECT_LT(work, 0.9 * force * 2 * kChange);  // pressure matters
@@ -83,7 +82,7 @@ TEST(Biomembrane, NarrowRingsLimit) {
   EXPECT_NEAR(membrane.strain(kDepth), strain, 2e-3 * strain);
   // At the tip's edge the slope is the largest: F (1 - c^2/a^2) = 2 pi c T slope.
   const double tension = kYoung * kThickness / (1 - kPoisson) * strain;
-  const double force = 2 * kPi * kDimple * tension * slope / (2 * kWidth / kDimple);
+  const double force = 2 * M_PI * kDimple * tension * slope / (2 * kWidth / kDimple);
   EXPECT_NEAR(membrane.force(kDepth), force, 5e-3 * force);
 }
 

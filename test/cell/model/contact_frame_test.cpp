@@ -2,17 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include "cell/model/test_scenes.h"
+
 namespace microinjection {
 namespace {
 
-Scene pipette() {
-  Scene scene;
-  scene.needle.tip.shape = "hemisphere";
-  return scene;
-}
-
 TEST(ContactFrame, IsWhereTheTipMeetsTheCell) {
-  const Scene scene = pipette();
+  const Scene scene = pipetteScene();
   for (double angle : {0.0, 0.3, 1.0}) {
     const Eigen::Vector2d offset = ContactFrame::offsetFor(scene, angle);
     const auto place = ContactFrame::at(scene, offset);

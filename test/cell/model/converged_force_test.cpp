@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/errors.h"
+#include "cell/model/test_scenes.h"
 
 namespace microinjection {
 namespace {
@@ -14,13 +15,6 @@ namespace {
 Scene scene(const std::string& model = "linear", double poisson = 0.49) {
   Scene result;
   result.cell.material() = {model, 17.9e3, poisson};
-  return result;
-}
-
-Scene pipette(const std::string& mode) {
-  Scene result = scene("neo_hookean");
-  result.needle.tip.shape = "hemisphere";
-  result.needle.contact.mode = mode;
   return result;
 }
 
@@ -88,7 +82,7 @@ TEST(ConvergedForce, LayersOfOneMaterialAreOneCell) {
 }
 
 TEST(ConvergedForce, StickingHemisphereToThePunctureDepth) {
-  const auto points = push(pipette("sticking"), {1e-6, 5e-6, 10e-6, 20e-6, 45e-6}, 0.02);
+  const auto points = push(pipetteScene("sticking"), {1e-6, 5e-6, 10e-6, 20e-6, 45e-6}, 0.02);
   expectForce(points[0], 0.0442e-6, 0.02);
   expectForce(points[1], 0.3975e-6, 0.02);
   expectForce(points[2], 0.933e-6, 0.02);
@@ -97,17 +91,17 @@ TEST(ConvergedForce, StickingHemisphereToThePunctureDepth) {
 }
 
 TEST(ConvergedForce, SlidingHemisphere) {
-  const auto points = push(pipette("sliding"), {1e-6, 2e-6, 5e-6}, 0.01);
+  const auto points = push(pipetteScene("sliding"), {1e-6, 2e-6, 5e-6}, 0.01);
   expectForce(points[0], 0.0441e-6, 0.015);
   expectForce(points[1], 0.1153e-6, 0.015);
   expectForce(points[2], 0.3764e-6, 0.015);
 }
 
 TEST(ConvergedForce, MuchFrictionSticks) {
-  Scene rough = pipette("sliding");
+  Scene rough = pipetteScene("sliding");
   rough.needle.contact.friction = 3;
-  const double stuck = push(pipette("sticking"), {5e-6}, 0.02)[0].force.z();
-  const double smooth = push(pipette("sliding"), {5e-6}, 0.02)[0].force.z();
+  const double stuck = push(pipetteScene("sticking"), {5e-6}, 0.02)[0].force.z();
+  const double smooth = push(pipetteScene("sliding"), {5e-6}, 0.02)[0].force.z();
   EXPECT_LT(smooth, 0.97 * stuck);
   EXPECT_NEAR(push(rough, {5e-6}, 0.02)[0].force.z() / stuck, 1, 0.01);
 }

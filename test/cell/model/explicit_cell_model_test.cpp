@@ -9,23 +9,16 @@
 #include <string>
 
 #include "base/errors.h"
+#include "cell/model/lock_step.h"
+#include "cell/model/test_scenes.h"
 
 namespace microinjection {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kStep = 1e-3;    // s
-constexpr double kTouch = 28e-6;  // m, z of the pole
-const Vector3d kAxis = Vector3d::UnitZ();
+constexpr double kTouch = 28e-6;              // m, z of the pole
 const ExplicitCellModelConfig kConfig{1e-4};  // settles in a tenth of a second
-
-Scene coarseScene(const std::string& model = "st_venant_kirchhoff") {
-  Scene scene;
-  scene.cell.material() = {model, 17.9e3, 0.45};
-  scene.mesh.size = 20e-6;
-  return scene;
-}
 
 class ExplicitCellModelTest : public testing::Test {
  protected:
@@ -48,7 +41,7 @@ class ExplicitCellModelTest : public testing::Test {
     smallest_push_ = std::min(smallest_push_, force_.force.dot(kAxis));
   }
 
-  Scene scene_ = coarseScene();
+  Scene scene_ = coarseScene("st_venant_kirchhoff");
   ExplicitCellModel cell_{scene_, kConfig};
   double depth_ = -2e-6, time_ = 0, smallest_push_ = 0;
   int invalid_ = 0;

@@ -7,25 +7,19 @@
 #include "base/errors.h"
 #include "cell/model/online_cell.h"
 #include "cell/model/online_fem_cell.h"
+#include "cell/model/test_scenes.h"
 
 namespace microinjection {
 namespace {
 
-Scene pipette() {
-  Scene scene;
-  scene.cell.material() = {"neo_hookean", 17.9e3, 0.49};
-  scene.needle.tip.shape = "hemisphere";
-  return scene;
-}
-
 TEST(OnlineFemCell, RefusesACellThatIsNotStableAtRest) {
-  Scene scene = pipette();
+  Scene scene = pipetteScene();
   scene.cell.layers.front().surface_tension = -1;
   EXPECT_THROW(OnlineFemCell{scene}, ConfigError);
 }
 
 TEST(OnlineFemCell, RefusesAdhesionWhichItWouldNotShow) {
-  Scene scene = pipette();
+  Scene scene = pipetteScene();
   scene.needle.contact.adhesion_energy = 2e-3;
   scene.needle.contact.adhesion_range = 0.5e-6;
   scene.validate();  // it is a good scene
@@ -41,7 +35,7 @@ TEST(OnlineCell, IsOfLinearTetrahedraOnlyWhereThoseCan) {
   Scene disc;
   disc.mesh.size = 20e-6;
   EXPECT_NE(makeOnlineCell(disc)->description().find("P1"), std::string::npos);
-  EXPECT_NE(makeOnlineCell(pipette())->description().find("P2-P0"), std::string::npos);
+  EXPECT_NE(makeOnlineCell(pipetteScene())->description().find("P2-P0"), std::string::npos);
   Scene relaxing = disc;
   relaxing.cell.material().viscoelasticity.viscosity = 10;
   EXPECT_NE(makeOnlineCell(relaxing)->description().find("P2-P0"), std::string::npos);

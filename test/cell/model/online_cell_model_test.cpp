@@ -8,25 +8,17 @@
 #include <memory>
 
 #include "cell/model/indentation.h"
+#include "cell/model/lock_step.h"
 #include "cell/model/scene.h"
+#include "cell/model/test_scenes.h"
 
 namespace microinjection {
 namespace {
 
-constexpr double kStep = 1e-3;  // s
-const Eigen::Vector3d kAxis = Eigen::Vector3d::UnitZ();
-
-Scene coarseScene(const std::string& model) {
-  Scene scene;
-  scene.cell.material() = {model, 17.9e3, 0.45};
-  scene.mesh.size = 20e-6;
-  return scene;
-}
-
 /// Takes the tip along a straight line in lock step.
-class Driver {
+class ModelDriver {
  public:
-  explicit Driver(const Scene& scene) : cell(std::make_shared<const P1Cell>(scene)), tracker(cell, config()) {}
+  explicit ModelDriver(const Scene& scene) : cell(std::make_shared<const P1Cell>(scene)), tracker(cell, config()) {}
 
   static OnlineCellModelConfig config() {
     OnlineCellModelConfig config;
@@ -64,7 +56,7 @@ class Driver {
 };
 
 TEST(OnlineCellModel, FreeNeedleFeelsNothing) {
-  Driver drive(coarseScene("neo_hookean"));
+  ModelDriver drive(coarseScene("neo_hookean"));
   const TipForce force = drive.moveTo({0, 0, 28.1e-6}, 100e-6);
   EXPECT_TRUE(force.valid);
   EXPECT_EQ(force.force, Eigen::Vector3d::Zero().eval());
@@ -72,7 +64,7 @@ TEST(OnlineCellModel, FreeNeedleFeelsNothing) {
 }
 
 TEST(OnlineCellModel, ForceAgreesWithTheSolutionOnceItHasCaughtUp) {
-  Driver drive(coarseScene("neo_hookean"));
+  ModelDriver drive(coarseScene("neo_hookean"));
   drive.moveTo({0, 0, 24e-6}, 50e-6);
   const TipForce force = drive.rest(100);
   ASSERT_TRUE(drive.always_trusted) << drive.tracker.invalidReason();
@@ -87,7 +79,7 @@ TEST(OnlineCellModel, ForceAgreesWithTheSolutionOnceItHasCaughtUp) {
 }
 
 TEST(OnlineCellModel, ExtrapolatesBetweenSolutions) {
-  Driver drive(coarseScene("neo_hookean"));
+  ModelDriver drive(coarseScene("neo_hookean"));
   drive.moveTo({0, 0, 26e-6}, 50e-6);
   drive.rest(100);
   const double before = drive.force.force.z();
@@ -98,7 +90,7 @@ TEST(OnlineCellModel, ExtrapolatesBetweenSolutions) {
 }
 
 TEST(OnlineCellModel, RetractionReturnsTheForceToZeroAndNeverPulls) {
-  Driver drive(coarseScene("neo_hookean"));
+  ModelDriver drive(coarseScene("neo_hookean"));
   drive.moveTo({0, 0, 25e-6}, 50e-6);
   drive.rest(50);
   drive.moveTo({0, 0, 35e-6}, 50e-6);
@@ -111,7 +103,7 @@ TEST(OnlineCellModel, RetractionReturnsTheForceToZeroAndNeverPulls) {
 }
 
 TEST(OnlineCellModel, SamePathSameBits) {
-  Driver a(coarseScene("neo_hookean")), b(coarseScene("neo_hookean"));
+  ModelDriver a(coarseScene("neo_hookean")), b(coarseScene("neo_hookean"));
   for (const Eigen::Vector3d& goal : {Eigen::Vector3d(0, 0, 24e-6), Eigen::Vector3d(1e-6, 0, 24e-6)}) {
     EXPECT_EQ(a.moveTo(goal, 80e-6).force, b.moveTo(goal, 80e-6).force);
   }
@@ -121,7 +113,7 @@ TEST(OnlineCellModel, SamePathSameBits) {
 
 TEST(OnlineCellModel, APoseThatIsNoNumberIsNotTrustedAndForgotten) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  Driver drive(coarseScene("linear"));
+  ModelDriver drive(coarseScene("linear"));
   drive.moveTo({0, 0, 27e-6}, 50e-6);
   const TipForce before = drive.rest(100);
   ASSERT_TRUE(before.valid && before.force.z() > 0);
@@ -134,12 +126,12 @@ TEST(OnlineCellModel, APoseThatIsNoNumberIsNotTrustedAndForgotten) {
   }
   EXPECT_EQ(drive.rest(1).force, before.force);
   EXPECT_TRUE(drive.force.valid);
-  OnlineCellModel away(drive.cell, Driver::config());
+  OnlineCellModel away(drive.cell, ModelDriver::config());
   EXPECT_FALSE(away.step({0, 0, kNan}, kAxis, 0).valid);
 }
 
 TEST(OnlineCellModel, SaysSoWhereTheModelHasNoSolutionAndRecovers) {
-  Driver drive(coarseScene("st_venant_kirchhoff"));
+  ModelDriver drive(coarseScene("st_venant_kirchhoff"));
   drive.moveTo({0, 0, 27.5e-6}, 20e-6);
   ASSERT_TRUE(drive.always_trusted) << drive.tracker.invalidReason();
   drive.moveTo({0, 0, 8e-6}, 100e-6);
@@ -153,7 +145,7 @@ TEST(OnlineCellModel, SaysSoWhereTheModelHasNoSolutionAndRecovers) {
 }
 
 TEST(OnlineCellModel, ATipThatLeapsIsNotTrustedUntilTheSolverHasFollowed) {
-  Driver drive(coarseScene("neo_hookean"));
+  ModelDriver drive(coarseScene("neo_hookean"));
   drive.moveTo({0, 0, 27e-6}, 50e-6);
   drive.rest(100);
   EXPECT_FALSE(drive.moveTo({0, 0, 23e-6}, 1).valid);
@@ -162,7 +154,7 @@ TEST(OnlineCellModel, ATipThatLeapsIsNotTrustedUntilTheSolverHasFollowed) {
 }
 
 TEST(OnlineCellModel, ATremblingHandMakesNoOtherContact) {
-  Driver still(coarseScene("neo_hookean")), trembling(coarseScene("neo_hookean"));
+  ModelDriver still(coarseScene("neo_hookean")), trembling(coarseScene("neo_hookean"));
   still.moveTo({0, 0, 29e-6}, 50e-6);
   for (int i = 0; i < 200; ++i) trembling.moveTo({(i % 7 - 3) * 0.05e-6, (i % 5 - 2) * 0.05e-6, 29e-6}, 1);
   still.moveTo({0, 0, 26e-6}, 50e-6);
@@ -173,7 +165,7 @@ TEST(OnlineCellModel, ATremblingHandMakesNoOtherContact) {
 }
 
 TEST(OnlineCellModel, AContactThatTheSolverRefusesIsNotTrusted) {
-  Driver drive(coarseScene("neo_hookean"));
+  ModelDriver drive(coarseScene("neo_hookean"));
   TipForce force;
   for (int i = 0; i < 200; ++i) {
     force = drive.tracker.step({0, 0, -27e-6}, -kAxis, i * kStep);  // from below, onto the held vertices
@@ -184,7 +176,7 @@ TEST(OnlineCellModel, AContactThatTheSolverRefusesIsNotTrusted) {
 
 /// Beside the cell, below the height where it touched, there is nothing to be in contact with.
 TEST(OnlineCellModel, ATipThatLeapsAsideIsReleased) {
-  Driver drive(coarseScene("neo_hookean"));
+  ModelDriver drive(coarseScene("neo_hookean"));
   drive.moveTo({0, 0, 27e-6}, 50e-6);
   drive.rest(50);
   ASSERT_TRUE(drive.tracker.contact());
@@ -202,7 +194,7 @@ TEST(OnlineCellModel, ATipThatLeapsAsideIsReleased) {
 }
 
 TEST(OnlineCellModel, TouchesWhereTheNeedlesLineMeetsTheCell) {
-  Driver drive(coarseScene("neo_hookean"));
+  ModelDriver drive(coarseScene("neo_hookean"));
   drive.tip = {8e-6, 0, 40e-6};
   drive.moveTo({8e-6, 0, 25e-6}, 50e-6);
   drive.rest(100);

@@ -11,26 +11,20 @@
 #include "cell/model/cell_problem.h"
 #include "cell/model/contact_frame.h"
 #include "cell/model/converged_force.h"
+#include "cell/model/lock_step.h"
 #include "cell/model/online_cell_model.h"
 #include "cell/model/scene_mesh.h"
+#include "cell/model/test_scenes.h"
 
 namespace microinjection {
 namespace {
 
-constexpr double kStep = 1e-3;  // s
 const Eigen::Vector3d kUp = Eigen::Vector3d::UnitZ();
 
-Scene pipette() {
-  Scene scene;
-  scene.cell.material() = {"neo_hookean", 17.9e3, 0.49};
-  scene.needle.tip.shape = "hemisphere";
-  return scene;
-}
-
 /// Takes the tip along straight lines in lock step.
-class Driver {
+class TipDriver {
  public:
-  explicit Driver(const Scene& scene, const Eigen::Vector2d& line = Eigen::Vector2d::Zero())
+  explicit TipDriver(const Scene& scene, const Eigen::Vector2d& line = Eigen::Vector2d::Zero())
       : cell(std::make_shared<const OnlineFemCell>(scene)), tracker(cell, config()) {
     tip << line, 32e-6;
     force = tracker.step(tip, kUp, 0);
@@ -85,9 +79,9 @@ IndentationSolution direct(const Scene& scene, const Eigen::Vector2d& line, doub
 }
 
 TEST(OnlineFemCell, ServesTheForceOfTheFullSolution) {
-  const Scene scene = pipette();
+  const Scene scene = pipetteScene();
   for (const Eigen::Vector2d& line : {Eigen::Vector2d(0, 0), Eigen::Vector2d(-9e-6, 9e-6)}) {
-    Driver drive(scene, line);
+    TipDriver drive(scene, line);
     const Eigen::Vector3d touch = ContactFrame::at(scene, line)->origin;
     drive.moveTo(touch - 4e-6 * kUp, 15e-6);
     const TipForce force = drive.rest(70);
@@ -104,7 +98,7 @@ TEST(OnlineFemCell, ServesTheForceOfTheFullSolution) {
 
 /// Nearer to the truth than anything that locks.
 TEST(OnlineFemCell, IsWithinItsErrorOfTheConvergedForce) {
-  const Scene scene = pipette();
+  const Scene scene = pipetteScene();
   const IndentationSolution solution = direct(scene, {0, 0}, 5e-6);
   const std::vector<ForcePoint> truth = ConvergedForce(scene, {{5e-6}}, {}).solve();
   ASSERT_TRUE(truth[0].converged);
@@ -112,7 +106,7 @@ TEST(OnlineFemCell, IsWithinItsErrorOfTheConvergedForce) {
 }
 
 TEST(OnlineFemCell, FeelsTheTouchAtOnce) {
-  Driver drive(pipette());
+  TipDriver drive(pipetteScene());
   drive.moveTo({0, 0, 28e-6}, 20e-6);
   drive.rest(100);
   drive.moveTo({0, 0, 27.5e-6}, 1);  // one step: no solution of this contact yet
@@ -122,7 +116,7 @@ TEST(OnlineFemCell, FeelsTheTouchAtOnce) {
 }
 
 TEST(OnlineFemCell, ATipThatLeapsIsNotTrustedUntilTheSolverHasFollowed) {
-  Driver drive(pipette());
+  TipDriver drive(pipetteScene());
   drive.moveTo({0, 0, 27e-6}, 15e-6);
   drive.rest(100);
   ASSERT_TRUE(drive.always_trusted) << drive.tracker.invalidReason();
@@ -135,8 +129,8 @@ TEST(OnlineFemCell, ATipThatLeapsIsNotTrustedUntilTheSolverHasFollowed) {
 }
 
 TEST(OnlineFemCell, ReleasesAndTouchesAgainElsewhere) {
-  const Scene scene = pipette();
-  Driver drive(scene);
+  const Scene scene = pipetteScene();
+  TipDriver drive(scene);
   drive.moveTo({0, 0, 26e-6}, 15e-6);
   EXPECT_GT(drive.rest(100).force.z(), 0.05e-6);
   drive.moveTo({1e-6, 0, 29e-6}, 15e-6);
@@ -156,7 +150,7 @@ TEST(OnlineFemCell, ReleasesAndTouchesAgainElsewhere) {
 
 /// Moved off the cell sideways, below the height where it touched, it is free.
 TEST(OnlineFemCell, ATipThatLeavesSidewaysIsReleased) {
-  Driver drive(pipette());
+  TipDriver drive(pipetteScene());
   drive.moveTo({0, 0, 27.7e-6}, 15e-6);
   drive.moveTo({9e-6, 0, 27.7e-6}, 15e-6);
   drive.rest(300);
@@ -166,7 +160,7 @@ TEST(OnlineFemCell, ATipThatLeavesSidewaysIsReleased) {
 
 /// A disc is off where it is above the cell, beside it, or above where it touched; not where it only went sideways.
 TEST(OnlineFemCell, ADiscIsOffWhereTheCellIsNot) {
-  Scene scene = pipette();
+  Scene scene = pipetteScene();
   scene.needle.tip.shape = "disc";
   const OnlineFemCell cell(scene);
   const Eigen::Vector3d pole(0, 0, 28e-6);
@@ -178,8 +172,8 @@ TEST(OnlineFemCell, ADiscIsOffWhereTheCellIsNot) {
 }
 
 TEST(OnlineFemCell, SamePathSameBits) {
-  const Scene scene = pipette();
-  Driver a(scene), b(scene);
+  const Scene scene = pipetteScene();
+  TipDriver a(scene), b(scene);
   for (const Eigen::Vector3d& goal : {Eigen::Vector3d(0, 0, 26e-6), Eigen::Vector3d(1e-6, 0, 26e-6)}) {
     EXPECT_EQ(a.moveTo(goal, 20e-6).force, b.moveTo(goal, 20e-6).force);
   }
@@ -187,7 +181,7 @@ TEST(OnlineFemCell, SamePathSameBits) {
 }
 
 TEST(OnlineFemCell, ATiltedNeedleIsNotTrusted) {
-  Driver drive(pipette());
+  TipDriver drive(pipetteScene());
   const Eigen::Vector3d tilted = Eigen::Vector3d(0.2, 0, 1).normalized();
   EXPECT_FALSE(drive.tracker.step({0, 0, 26e-6}, tilted, 1).valid);
   EXPECT_NE(drive.tracker.invalidReason().find("upright"), std::string::npos);
@@ -195,10 +189,10 @@ TEST(OnlineFemCell, ATiltedNeedleIsNotTrusted) {
 
 /// Upside down it is refused where it is in the cell, and where it is not, it is no contact in any step.
 TEST(OnlineFemCell, ANeedleFromBelowIsNotTrustedInTheCellAndFreeAboveIt) {
-  Driver drive(pipette());
+  TipDriver drive(pipetteScene());
   EXPECT_FALSE(drive.tracker.step({0, 0, -20e-6}, -kUp, 1).valid);
   EXPECT_NE(drive.tracker.invalidReason().find("upright"), std::string::npos);
-  Driver above(pipette());
+  TipDriver above(pipetteScene());
   for (int i = 0; i < 5; ++i) {
     EXPECT_TRUE(above.tracker.step({0, 0, 40e-6}, -kUp, 1 + i * kStep).valid);
     EXPECT_EQ(above.tracker.invalidReason(), "") << "touched what it is not near";
@@ -207,12 +201,12 @@ TEST(OnlineFemCell, ANeedleFromBelowIsNotTrustedInTheCellAndFreeAboveIt) {
 
 /// A Prony cell pushed fast resists more, and relaxes to the elastic force.
 TEST(OnlineFemCell, AViscoelasticCellRelaxes) {
-  Scene scene = pipette();
+  Scene scene = pipetteScene();
   scene.cell.material().viscoelasticity.prony = {{1, 0.05}};
-  Driver drive(scene);
+  TipDriver drive(scene);
   const double fast = drive.moveTo({0, 0, 26e-6}, 15e-6).force.z();
   const double relaxed = drive.rest(400).force.z();
-  const IndentationSolution elastic = direct(pipette(), {0, 0}, 2e-6);
+  const IndentationSolution elastic = direct(pipetteScene(), {0, 0}, 2e-6);
   EXPECT_GT(fast, 1.2 * elastic.force.z());
   EXPECT_LT(fast, 2 * elastic.force.z());
   EXPECT_NEAR(relaxed, elastic.force.z(), 0.03 * elastic.force.z());
@@ -220,7 +214,7 @@ TEST(OnlineFemCell, AViscoelasticCellRelaxes) {
 
 /// What stuck and what relaxed in the last contact is forgotten.
 TEST(OnlineFemCell, ANewContactStartsFromTheUndeformedCell) {
-  Scene scene = pipette();
+  Scene scene = pipetteScene();
   scene.cell.material().viscoelasticity.prony = {{1, 0.05}};
   const OnlineFemCell cell(scene);
   const ContactPoint place = cell.contactAt(28e-6 * kUp, kUp);
@@ -234,7 +228,7 @@ TEST(OnlineFemCell, ANewContactStartsFromTheUndeformedCell) {
 }
 
 TEST(OnlineFemCell, ShowsTheSurfaceAsSolved) {
-  Driver drive(pipette(), {8e-6, 0});
+  TipDriver drive(pipetteScene(), {8e-6, 0});
   const auto triangles = drive.tracker.triangles();
   const CellModel::DeformedSurface free = drive.tracker.deformedSurface();
   EXPECT_FALSE(drive.tracker.held().empty());
@@ -242,14 +236,14 @@ TEST(OnlineFemCell, ShowsTheSurfaceAsSolved) {
     const Eigen::Vector3d &a = free.vertices[t[0]], &b = free.vertices[t[1]], &c = free.vertices[t[2]];
     ASSERT_GT((b - a).cross(c - a).dot(a + b + c), 0);
   }
-  const Eigen::Vector3d touch = ContactFrame::at(pipette(), {8e-6, 0})->origin;
+  const Eigen::Vector3d touch = ContactFrame::at(pipetteScene(), {8e-6, 0})->origin;
   drive.moveTo(touch - 4e-6 * kUp, 15e-6);
   drive.rest(70);
   const CellModel::DeformedSurface pressed = drive.tracker.deformedSurface();
   ASSERT_EQ(pressed.vertices.size(), free.vertices.size());
   for (std::size_t i = 0; i < pressed.vertices.size(); ++i) {
     ASSERT_NEAR((pressed.vertices[i] - pressed.at_rest[i]).norm(), pressed.displacement[i], 1e-12);
-    ASSERT_NEAR(pressed.at_rest[i].norm(), pipette().radius(), 1e-9) << "at rest it is a ball";
+    ASSERT_NEAR(pressed.at_rest[i].norm(), pipetteScene().radius(), 1e-9) << "at rest it is a ball";
   }
   const auto deepest = std::max_element(pressed.displacement.begin(), pressed.displacement.end());
   const Eigen::Vector3d there = pressed.vertices[deepest - pressed.displacement.begin()];
@@ -259,12 +253,12 @@ TEST(OnlineFemCell, ShowsTheSurfaceAsSolved) {
 }
 
 TEST(OnlineFemCell, ShowsTheBordersBetweenItsLayers) {
-  Scene scene = pipette();
+  Scene scene = pipetteScene();
   scene.cell.layers.push_back(scene.cell.layers.front());
   scene.cell.layers[1].name = "cytoplasm";
   scene.cell.layers[1].outer_radius = 22e-6;
   scene.cell.layers[1].material.young_modulus = 2e3;
-  Driver drive(scene);
+  TipDriver drive(scene);
   const auto borders = drive.tracker.borders();
   ASSERT_FALSE(borders.empty());
   const std::vector<Eigen::Vector3d> free = drive.tracker.deformedSurface().border_vertices;

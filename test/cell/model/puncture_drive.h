@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 
+#include "cell/model/lock_step.h"
 #include "cell/model/puncturable_cell.h"
 #include "cell/model/spring_cell.h"
 
@@ -12,7 +13,6 @@ namespace microinjection {
 
 constexpr double kRadius = 28e-6, kTop = kRadius, kStiffness = 0.1;  // m, m, N/m
 constexpr double kFriction = 0.05e-6;                                // N
-const Eigen::Vector3d kAxis = Eigen::Vector3d::UnitZ();
 
 inline Scene sceneOf(const PunctureConfig& puncture) {
   Scene scene;

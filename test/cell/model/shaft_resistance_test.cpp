@@ -5,12 +5,10 @@
 #include <cmath>
 
 #include "cell/model/fading_force.h"
+#include "cell/model/lock_step.h"
 
 namespace microinjection {
 namespace {
-
-const Eigen::Vector3d kAxis = Eigen::Vector3d::UnitZ();
-constexpr double kStep = 1e-3;  // s
 
 /// One there and back over `amplitude` m with `length` m in the cytoplasm: the work that it takes, J.
 double loop(ShaftResistance& shaft, double amplitude, double length, int steps = 4000) {

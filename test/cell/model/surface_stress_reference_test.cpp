@@ -12,16 +12,10 @@
 #include "cell/material/surface_stress_field.h"
 #include "cell/model/cell_problem.h"
 #include "cell/model/scene_mesh.h"
+#include "cell/model/test_scenes.h"
 
 namespace microinjection {
 namespace {
-
-Scene pipette() {
-  Scene scene;
-  scene.cell.material() = {"neo_hookean", 17.9e3, 0.49};
-  scene.needle.tip.shape = "hemisphere";
-  return scene;
-}
 
 /// F of a section's element at a point with these barycentric coordinates, in the directions (r, theta, z).
 Eigen::Matrix3d deformationAt(const LayeredBody<2>& body, const Eigen::VectorXd& state, int element,
@@ -143,7 +137,7 @@ struct Errors {
 
 /// @param where  whether a node of the arc counts
 template <typename Where>
-Errors errorsOf(const std::vector<ArcNode>& arc, const SurfaceStressField& field, const Where& where) {
+Errors stressErrors(const std::vector<ArcNode>& arc, const SurfaceStressField& field, const Where& where) {
   Errors errors;
   for (std::size_t i = 1; i + 1 < arc.size(); ++i) {  // the poles have no triangles of their own
     if (!where(arc[i])) continue;
@@ -165,7 +159,7 @@ void print(const char* where, const Errors& errors) {
 /// At 8 um the largest errors are 1.5 % and 0.5 %, half a tip's radius beside the contact; 1.0 % and 0.4 % on a mesh of
 /// a quarter of the size (level 3).
 TEST(SurfaceStressReference, IsThatOfTheElementsOnTheFreeSurface) {
-  const Scene scene = pipette();
+  const Scene scene = pipetteScene();
   const double depth = 8e-6, radius = scene.needle.tip.radius;
   CellProblem<2> problem(scene, makeSceneMesh<2>(scene, 1), ElementKind::kP2P1);
   ASSERT_TRUE(problem.solve({0, 0, -depth}).converged);
@@ -175,7 +169,7 @@ TEST(SurfaceStressReference, IsThatOfTheElementsOnTheFreeSurface) {
     return !held && (node.deformed - Eigen::Vector2d(0, scene.radius() - depth + radius)).norm() > 1.5 * radius;
   };
   const SurfaceStressField field = surfaceStress(turned(arc), *problem.body().materials()[0], 0);
-  const Errors errors = errorsOf(arc, field, isFree);
+  const Errors errors = stressErrors(arc, field, isFree);
   print("free surface", errors);
   EXPECT_GT(errors.peak, 3e3);
   EXPECT_LT(errors.von_mises, 0.02);
@@ -185,7 +179,7 @@ TEST(SurfaceStressReference, IsThatOfTheElementsOnTheFreeSurface) {
 /// The true pressure falls from 22 kPa in the middle of the contact to none at its edge, where the surface sticks and
 /// is sheared. Of the mean, 13 kPa, no more than the order of magnitude is right.
 TEST(SurfaceStressReference, UnderTheTipItIsThatOfTheMeanPressure) {
-  const Scene scene = pipette();
+  const Scene scene = pipetteScene();
   const double depth = 8e-6, radius = scene.needle.tip.radius;
   CellProblem<2> problem(scene, makeSceneMesh<2>(scene, 1), ElementKind::kP2P1);
   const IndentationSolution solution = problem.solve({0, 0, -depth});
@@ -200,7 +194,7 @@ TEST(SurfaceStressReference, UnderTheTipItIsThatOfTheMeanPressure) {
   const auto isTouched = [&](const ArcNode& node) {
     return (node.deformed - Eigen::Vector2d(0, scene.radius() - depth + radius)).norm() < 1.001 * radius;
   };
-  const Errors errors = errorsOf(arc, field, isTouched);
+  const Errors errors = stressErrors(arc, field, isTouched);
   print("under the tip", errors);
   double largest = 0;
   for (const ArcNode& node : arc) largest = std::max(largest, isTouched(node) ? node.pressure : 0);

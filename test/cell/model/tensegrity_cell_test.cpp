@@ -27,7 +27,7 @@ cell:
 needle: {tip: {shape: disc, radius: 3e-6}}
 )";
 
-Scene scene() { return parseScene(YAML::Load(kTensegrityScene), "scene.yaml"); }
+Scene tensegrityScene() { return parseScene(YAML::Load(kTensegrityScene), "scene.yaml"); }
 
 std::string errorsWith(const std::string& path, const std::string& key, const std::string& value) {
   YAML::Node node = YAML::Load(kTensegrityScene);
@@ -38,7 +38,7 @@ std::string errorsWith(const std::string& path, const std::string& key, const st
 }
 
 TEST(TensegrityScene, IsRead) {
-  const Scene read = scene();
+  const Scene read = tensegrityScene();
   ASSERT_TRUE(read.cell.tensegrity);
   EXPECT_EQ(read.cell.tensegrity->actin.filaments.count, 10);
   EXPECT_EQ(read.cell.tensegrity->microtubules.filaments.young_modulus, 1.2e9);
@@ -70,15 +70,15 @@ TEST(TensegrityScene, ErrorsNameKeyAndWhatIsAllowed) {
 }
 
 TEST(TensegrityScene, IsRefusedByModelsOfTheContinuum) {
-  EXPECT_THROW(P1Cell cell(scene()), ConfigError);
-  EXPECT_THROW(OnlineFemCell cell(scene()), ConfigError);
-  EXPECT_THROW(ConvergedForce(scene(), {}, {}), ConfigError);
+  EXPECT_THROW(P1Cell cell(tensegrityScene()), ConfigError);
+  EXPECT_THROW(OnlineFemCell cell(tensegrityScene()), ConfigError);
+  EXPECT_THROW(ConvergedForce(tensegrityScene(), {}, {}), ConfigError);
   EXPECT_THROW(TensegrityCell cell(parseScene(YAML::Load(kGood), "scene.yaml")), ConfigError);
 }
 
 /// On the surface of the cell, the strut ends are vertices of it, and three are held.
 TEST(TensegrityCell, NeedleMeetsTheMembraneAnywhere) {
-  const auto cell = std::make_shared<const TensegrityCell>(scene());
+  const auto cell = std::make_shared<const TensegrityCell>(tensegrityScene());
   EXPECT_EQ(cell->heldVertices().size(), 3u);
   EXPECT_EQ(cell->surface().vertices.size(), 10u * 4 * 4 + 2);
   const TensegrityGeometry& geometry = cell->structure().geometry();
@@ -105,7 +105,7 @@ TEST(TensegrityCell, NeedleMeetsTheMembraneAnywhere) {
 
 /// In lock step: a needle on a strut's end, with the tracker that serves every live cell.
 TEST(TensegrityCell, ServesAMovingNeedle) {
-  const auto cell = std::dynamic_pointer_cast<const TensegrityCell>(makeOnlineCell(scene()));
+  const auto cell = std::dynamic_pointer_cast<const TensegrityCell>(makeOnlineCell(tensegrityScene()));
   ASSERT_TRUE(cell);
   OnlineCellModelConfig config;
   config.fixed_period = true;
@@ -133,9 +133,9 @@ TEST(TensegrityCell, ServesAMovingNeedle) {
 
 /// Kelvin-Voigt cables: 1 um in a tenth of their time meets more than 1 um in ever so long, and rests to the same.
 TEST(TensegrityCell, ViscousCablesFeelTheTipsSpeed) {
-  Scene viscous = scene();
+  Scene viscous = tensegrityScene();
   viscous.cell.tensegrity->actin.retardation_time = viscous.cell.tensegrity->intermediate.retardation_time = 1;
-  const TensegrityCell cell(viscous), elastic(scene());
+  const TensegrityCell cell(viscous), elastic(tensegrityScene());
   const Eigen::Vector3d end = cell.structure().geometry().ends[3], way(0, 0, -1e-6), none = Eigen::Vector3d::Zero();
   const ContactPoint place = cell.contactAt(end, Eigen::Vector3d::UnitZ());
   const double rested = elastic.path(place)->follow({way, 0, 0.0, 1.0}).force.z();
@@ -155,7 +155,7 @@ TEST(TensegrityCell, ViscousCablesFeelTheTipsSpeed) {
 /// the force.
 TEST(TensegrityCell, ViscousCablesAreNotStifferBetweenSolutions) {
   constexpr double kSpeed = 10e-6, kDeepest = 2e-6;  // m/s, m
-  Scene viscous = scene();
+  Scene viscous = tensegrityScene();
   viscous.cell.tensegrity->actin.retardation_time = viscous.cell.tensegrity->intermediate.retardation_time = 0.05;
   const auto cell = std::make_shared<const TensegrityCell>(viscous);
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ(), end = cell->structure().geometry().ends[3];
@@ -180,7 +180,7 @@ TEST(TensegrityCell, ViscousCablesAreNotStifferBetweenSolutions) {
 
 /// The picture is the membrane's: the patch has moved with the tip, what is held has not.
 TEST(TensegrityCell, PictureMovesWithTheTip) {
-  const TensegrityCell cell(scene());
+  const TensegrityCell cell(tensegrityScene());
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ(), way(0, 0, -2e-6);
   const ContactPoint place = cell.contactAt({0, 0, 28e-6}, up);
   const auto path = cell.path(place);

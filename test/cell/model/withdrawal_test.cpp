@@ -13,8 +13,6 @@
 namespace microinjection {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 Scene adhesiveScene() {
   Scene scene;
   scene.cell.material().model = "neo_hookean";
@@ -30,7 +28,7 @@ Scene adhesiveScene() {
 TEST(Withdrawal, PullOffLiesBetweenItsLimits) {
   const Scene scene = adhesiveScene();
   const double radius = 1 / (1 / scene.needle.tip.radius + 1 / scene.radius());
-  const double unit = kPi * scene.needle.contact.adhesion_energy * radius;  // N
+  const double unit = M_PI * scene.needle.contact.adhesion_energy * radius;  // N
   CellProblem<2> problem(scene, makeSceneMesh<2>(scene, 0), ElementKind::kP2P0);
   const auto force = [&](double depth) {
     const IndentationSolution solution = problem.solve({0, 0, -depth});

@@ -14,9 +14,6 @@
 namespace microinjection {
 namespace {
 
-constexpr double kPeriod = 1e-3;
-const Eigen::Vector3d kUp = Eigen::Vector3d::UnitZ();
-
 Scene stiffer(double factor) {
   Scene scene = pipette();
   scene.cell.material().young_modulus *= factor;

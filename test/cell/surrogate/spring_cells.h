@@ -8,6 +8,9 @@
 
 namespace microinjection {
 
+constexpr double kPeriod = 1e-3;                       // s
+const Eigen::Vector3d kUp = Eigen::Vector3d::UnitZ();  // of the pipette
+
 inline Scene pipette() {
   Scene scene;
   scene.needle.tip.shape = "hemisphere";

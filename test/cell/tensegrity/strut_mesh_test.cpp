@@ -15,13 +15,13 @@ namespace microinjection {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kYoung = 1.2e9, kPoisson = 0.3, kLength = 50e-6;
+constexpr double kYoung = 1.2e9, kPoisson = 0.3, kStrutLength = 50e-6;
 
 /// Linear response of a strut hinged at both ends.
 struct Beam {
   Beam(double radius, ElementKind kind, int slices = 32)
       : section(kPi * radius * radius),
-        strut({kLength, section, slices, 0}, Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitX(),
+        strut({kStrutLength, section, slices, 0}, Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitX(),
               Eigen::Vector3d::UnitY()) {
     MaterialConfig material;
     material.model = "linear";
@@ -35,7 +35,7 @@ struct Beam {
     const std::array<int, 2> across = {strut.vertex(slices / 2, 0), strut.vertex(slices / 2, 2)};
     const double d = StrutMesh::circumradius(section);
     spin = std::make_shared<SpinStop>(std::vector<std::array<int, 2>>{across},
-                                      1e-6 * kYoung * StrutMesh::secondMoment(section) / (kLength * d * d), start);
+                                      1e-6 * kYoung * StrutMesh::secondMoment(section) / (kStrutLength * d * d), start);
   }
 
   Constraints constraints() const {
@@ -72,7 +72,7 @@ struct Beam {
     return system.stiffness()(2, 2);
   }
   int slices() const { return (static_cast<int>(strut.mesh.vertices.size()) - 2) / StrutMesh::kCorners - 1; }
-  double expectedBending() const { return 48 * kYoung * StrutMesh::secondMoment(section) / std::pow(kLength, 3); }
+  double expectedBending() const { return 48 * kYoung * StrutMesh::secondMoment(section) / std::pow(kStrutLength, 3); }
 
   double section;
   StrutMesh strut;
@@ -88,7 +88,7 @@ TEST(StrutMesh, HasTheSizeOfThePaper) {
     EXPECT_GT(tetrahedronVolume(beam.strut.mesh, static_cast<int>(t)), 0);
   }
   const double radius = StrutMesh::circumradius(beam.section);
-  EXPECT_NEAR(meshVolume(beam.strut.mesh) / (beam.section * (kLength - radius + radius / 3)), 1, 1e-9);
+  EXPECT_NEAR(meshVolume(beam.strut.mesh) / (beam.section * (kStrutLength - radius + radius / 3)), 1, 1e-9);
   EXPECT_NEAR(StrutMesh::secondMoment(beam.section) / (beam.section * beam.section / (4 * kPi)), 1.017, 1e-3);
 }
 
@@ -97,8 +97,8 @@ TEST(StrutMesh, HasTheSizeOfThePaper) {
 TEST(StrutMesh, AxialStiffnessIsThatOfTheBar) {
   for (const double radius : {0.1e-6, 0.8e-6}) {
     const Beam beam(radius, ElementKind::kP1);
-    const double bar = kYoung * beam.section / kLength;
-    const double caps = StrutMesh::circumradius(beam.section) / kLength;  // of both, of the length
+    const double bar = kYoung * beam.section / kStrutLength;
+    const double caps = StrutMesh::circumradius(beam.section) / kStrutLength;  // of both, of the length
     EXPECT_LT(beam.axial() / bar, 1.001);
     EXPECT_GT(beam.axial() / bar, 1 / (1 + 5 * caps));
   }

@@ -24,8 +24,8 @@ TrainingTask task() {
   return task;
 }
 
-TrainingSample at(double time, InjectionState state, double depth, double force, double x = 0) {
-  TrainingSample sample;
+TraineeSample at(double time, InjectionState state, double depth, double force, double x = 0) {
+  TraineeSample sample;
   sample.time = time;
   sample.state = state;
   sample.tip = {x, 0, 28e-6 - depth};
@@ -42,7 +42,7 @@ TrainingSession goodSession(double volume = 10e-15, int punctures = 1) {
   session.add(at(1, InjectionState::kApproach, -10.5e-6, 0));  // trembles, and does not set out
   session.add(at(3, InjectionState::kIndent, 1e-6, 0.1e-6, 5e-6));
   session.add(at(4, InjectionState::kIndent, 15e-6, -1e-6, 6e-6));
-  TrainingSample through = at(5, InjectionState::kPunctured, 18e-6, 0.3e-6, 6e-6);
+  TraineeSample through = at(5, InjectionState::kPunctured, 18e-6, 0.3e-6, 6e-6);
   through.punctures = punctures;
   session.add(through);
   through.time = 6;
@@ -114,7 +114,7 @@ TEST(TrainingScore, WhatIsNotANumberIsLeftOutAndCounted) {
   for (const bool long_session : {true, false}) {
     TrainingSession session = goodSession();
     for (int i = 0; long_session && i < 40; ++i) session.add(at(200 + i, InjectionState::kIdle, -10e-6, 0));
-    TrainingSample bad = at(300, InjectionState::kIndent, 15e-6, std::numeric_limits<double>::quiet_NaN());
+    TraineeSample bad = at(300, InjectionState::kIndent, 15e-6, std::numeric_limits<double>::quiet_NaN());
     session.add(bad);
     bad = at(301, InjectionState::kIndent, 60e-6, 9e-6);
     bad.tip.x() = std::numeric_limits<double>::infinity();
@@ -153,7 +153,7 @@ TEST(TrainingScore, PuncturesOfSeveralCellsAddUp) {
   TrainingSession session;
   int time = 0;
   for (const int felt : {0, 1, 1, 2, 0, 0, 1, 0}) {
-    TrainingSample sample = at(++time, InjectionState::kPunctured, 1e-6, 0);
+    TraineeSample sample = at(++time, InjectionState::kPunctured, 1e-6, 0);
     sample.punctures = felt;
     session.add(sample);
   }

@@ -81,7 +81,7 @@ TEST(Readout, PartsAForceAlongAndAcrossThePipette) {
 
 TEST(Readout, NamesTheExpectedPuncture) {
   Readout readout;
-  readout.puncture = ExpectedPuncture{9.71e-6, 7e-6, 13.6e-6, 1.5e-6};
+  readout.puncture = PunctureDepth{9.71e-6, 7e-6, 13.6e-6, 1.5e-6};
   const std::vector<ReadoutLine> shown = lines(readout);
   ASSERT_EQ(shown.size(), 7U);
   EXPECT_EQ(shown[5].text, "puncture at 9.71 um");

@@ -2,12 +2,11 @@
 
 #include "operation/link/link_follower.h"
 #include "operation/link/link_leader.h"
+#include "operation/link/link_loop.h"
 
 namespace microinjection {
 namespace {
 
-constexpr double kStep = 1e-3;   // s
-constexpr double kScale = 1e-3;  // 1
 const Eigen::Vector3d kNeedle(1e-6, 2e-6, 60e-6);
 
 /// Hand's and rig's end without a network between; the needle is where it is told to be at once.

@@ -6,12 +6,11 @@
 #include "operation/link/link_emulator.h"
 #include "operation/link/link_follower.h"
 #include "operation/link/link_leader.h"
+#include "operation/link/link_loop.h"
 
 namespace microinjection {
 namespace {
 
-constexpr double kStep = 1e-3;                   // s
-constexpr double kScale = 1e-3;                  // 1, metres of needle per metre of hand
 constexpr double kGain = 2e5;                    // 1, newtons at the hand per newton at the tip
 constexpr double kSpeed = 0.03;                  // m/s, of the hand
 constexpr double kMean = 0.06, kLatest = 0.075;  // s, one way

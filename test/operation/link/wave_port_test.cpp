@@ -6,11 +6,10 @@
 #include <cmath>
 
 #include "operation/link/link_emulator.h"
+#include "operation/link/link_loop.h"
 
 namespace microinjection {
 namespace {
-
-constexpr double kStep = 1e-3;  // s
 
 TeleoperationPacket packet(std::uint64_t sequence, double integral, double energy) {
   return {sequence, 0, Eigen::Vector3d(0, 0, integral), energy};

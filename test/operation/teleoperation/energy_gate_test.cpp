@@ -2,10 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include "operation/teleoperation/haptic_loop.h"
+
 namespace microinjection {
 namespace {
 
-constexpr double kStep = 1e-3;  // s
 const Eigen::Vector3d kForce(0, 0, 1);
 const Eigen::Vector3d kWith(0, 0, 0.05), kAgainst(0, 0, -0.05);  // m/s
 

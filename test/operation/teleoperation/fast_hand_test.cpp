@@ -6,14 +6,13 @@
 
 #include "operation/teleoperation/hand_motion.h"
 #include "operation/teleoperation/haptic_bridge.h"
+#include "operation/teleoperation/haptic_loop.h"
 #include "operation/teleoperation/virtual_hand.h"
 
 namespace microinjection {
 namespace {
 
-constexpr double kStep = 1e-3;        // s
-constexpr double kGravity = 9.81;     // m/s^2
-constexpr double kResolution = 2e-5;  // m, of the device's encoders
+constexpr double kGravity = 9.81;  // m/s^2
 
 /// A stylus let go `height` (m) above its rest, the force on it left out (what it feels slows it down), that bounces
 /// with half of its speed. Returns how far (m) the needle has gone down after 3 s.

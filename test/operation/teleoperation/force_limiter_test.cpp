@@ -2,10 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include "operation/teleoperation/haptic_loop.h"
+
 namespace microinjection {
 namespace {
 
-constexpr double kStep = 1e-3;  // s
 const Eigen::Vector3d kZero = Eigen::Vector3d::Zero();
 
 TEST(ForceLimiter, LimitsTheSizeAndKeepsTheDirection) {

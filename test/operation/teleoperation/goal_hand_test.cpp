@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kPeriod = 1e-3;  // s
 
-GoalHandConfig config() { return {0.02, 5e-3, 0.5}; }  // m/s, m, s
+GoalHandConfig goalHandConfig() { return {0.02, 5e-3, 0.5}; }  // m/s, m, s
 
 /// Steps of kPeriod for a time (s).
 void rest(GoalHand& hand, double time) {
@@ -17,7 +17,7 @@ void rest(GoalHand& hand, double time) {
 }
 
 TEST(GoalHand, GoesToItsGoalAtTheLimitedSpeedAndStays) {
-  GoalHand hand(config());
+  GoalHand hand(goalHandConfig());
   hand.stay();
   hand.moveTo({0.003, 0.004, 0});  // 5 mm: a quarter of a second
   Eigen::Vector3d before = hand.position();
@@ -31,7 +31,7 @@ TEST(GoalHand, GoesToItsGoalAtTheLimitedSpeedAndStays) {
 }
 
 TEST(GoalHand, StepsAddUpButNotBeyondTheLead) {
-  GoalHand hand(config());
+  GoalHand hand(goalHandConfig());
   hand.moveBy({0, 0, -1e-3});
   hand.moveBy({0, 0, -1e-3});
   rest(hand, 0.4);
@@ -42,7 +42,7 @@ TEST(GoalHand, StepsAddUpButNotBeyondTheLead) {
 }
 
 TEST(GoalHand, AnOperatorWhoIsSilentIsGoneAndTheHandRests) {
-  GoalHand hand(config());
+  GoalHand hand(goalHandConfig());
   EXPECT_FALSE(hand.present());
   hand.moveTo({1, 0, 0});
   EXPECT_FALSE(hand.present());
@@ -63,7 +63,7 @@ TEST(GoalHand, AnOperatorWhoIsSilentIsGoneAndTheHandRests) {
 }
 
 TEST(GoalHand, LettingGoStopsAtOnce) {
-  GoalHand hand(config());
+  GoalHand hand(goalHandConfig());
   hand.stay();
   hand.moveTo({1, 0, 0});
   rest(hand, 0.1);

@@ -4,12 +4,10 @@
 
 #include <limits>
 
+#include "operation/teleoperation/haptic_loop.h"
+
 namespace microinjection {
 namespace {
-
-constexpr double kStep = 1e-3;  // s
-const Eigen::Vector3d kNeedle(1e-6, 2e-6, 60e-6);
-const Eigen::Vector3d kHand(0.1, 0.0, 0.05);
 
 HapticBridge::Input trustedInput() {
   HapticBridge::Input input;

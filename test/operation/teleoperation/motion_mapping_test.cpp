@@ -5,10 +5,10 @@
 #include <cmath>
 #include <memory>
 
+#include "operation/teleoperation/haptic_loop.h"
+
 namespace microinjection {
 namespace {
-
-const Eigen::Vector3d kHand(0.1, 0, 0.05), kNeedle(1e-6, 2e-6, 60e-6);
 
 TEST(MotionMapping, PositionModeScalesFromTheAnchor) {
   MotionMapping mapping{{}};

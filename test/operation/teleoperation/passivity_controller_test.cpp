@@ -5,12 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "operation/teleoperation/haptic_loop.h"
 #include "operation/teleoperation/virtual_hand.h"
 
 namespace microinjection {
 namespace {
-
-constexpr double kStep = 1e-3;  // s
 
 /// A hand on a wall whose force is `law(depth, step)`; returns the least energy and how the hand ends.
 struct Outcome {

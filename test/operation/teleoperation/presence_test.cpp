@@ -3,12 +3,11 @@
 #include <string>
 
 #include "operation/teleoperation/haptic_bridge.h"
+#include "operation/teleoperation/haptic_loop.h"
 
 namespace microinjection {
 namespace {
 
-constexpr double kStep = 1e-3;  // s
-const Eigen::Vector3d kNeedle(1e-6, 2e-6, 60e-6);
 constexpr char kUnfelt[] = "the driver does not subscribe to the force";
 
 /// What may be wrong at once, and what the bridge says of it: the first that is true.

@@ -9,7 +9,7 @@
 namespace microinjection {
 namespace {
 
-RateInputConfig config() {
+RateInputConfig rateInputConfig() {
   RateInputConfig config;
   config.axes = {1, 0, 3};
   config.deflection = {-0.01, 0.02, 0.03};
@@ -20,14 +20,14 @@ RateInputConfig config() {
 const std::vector<int> kHeld{0, 1}, kLoose{1, 0};
 
 TEST(RateInput, AxesAreChosenScaledAndTurned) {
-  RateInput stick(config());
+  RateInput stick(rateInputConfig());
   const auto reading = stick.read({0.5F, 0.25F, 9.0F, -1.0F}, kHeld);
   ASSERT_TRUE(reading);
   EXPECT_TRUE(reading->position.isApprox(Eigen::Vector3d(-0.0025, 0.01, -0.03), 1e-12));
 }
 
 TEST(RateInput, TheOperatorIsPresentOnlyOnceTheHeldStickWasLetGo) {
-  RateInput stick(config());
+  RateInput stick(rateInputConfig());
   const std::vector<float> centre{0.05F, -0.05F, 0, 0}, deflected{0, 0, 0, 1};
   EXPECT_FALSE(stick.read(centre, kLoose)->operator_present);
   EXPECT_FALSE(stick.read(deflected, kHeld)->operator_present);  // taken up deflected
@@ -41,7 +41,7 @@ TEST(RateInput, TheOperatorIsPresentOnlyOnceTheHeldStickWasLetGo) {
 }
 
 TEST(RateInput, WithoutADeadManTheStickMustStillHaveBeenLetGo) {
-  RateInputConfig loose = config();
+  RateInputConfig loose = rateInputConfig();
   loose.dead_man = -1;
   RateInput stick(loose);
   EXPECT_FALSE(stick.read({0, 0, 0, 1}, {})->operator_present);
@@ -50,7 +50,7 @@ TEST(RateInput, WithoutADeadManTheStickMustStillHaveBeenLetGo) {
 }
 
 TEST(RateInput, WhatIsMissingOrNoNumberIsNoReading) {
-  RateInput stick(config());
+  RateInput stick(rateInputConfig());
   EXPECT_FALSE(stick.read({0, 0, 0}, kHeld));
   EXPECT_FALSE(stick.read({0, 0, 0, 0}, {0}));
   EXPECT_FALSE(stick.read({0, std::nanf(""), 0, 0}, kHeld));

@@ -5,11 +5,11 @@
 #include <string>
 
 #include "operation/teleoperation/haptic_bridge.h"
+#include "operation/teleoperation/haptic_loop.h"
 
 namespace microinjection {
 namespace {
 
-constexpr double kStep = 1e-3;  // s
 constexpr double kEnd = 15e-3;  // m, the stick's
 
 /// A stick on the bridge as config/haptic/joy.yaml has it, and a needle that goes where it is told.

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "operation/teleoperation/haptic_loop.h"
+
 namespace microinjection {
 namespace {
-
-constexpr double kStep = 1e-3;  // s
 
 /// What is energy_deficit (J) at most over 4 s, 0.3 mm of ripple at `frequency` (Hz) on a spring of 600 N/m pressed in
 /// by 2 mm, late by `late` (s).

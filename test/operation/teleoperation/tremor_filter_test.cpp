@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "operation/teleoperation/haptic_loop.h"
+
 namespace microinjection {
 namespace {
-
-constexpr double kStep = 1e-3;  // s
 
 TEST(TremorFilter, IsOffByDefaultToTheLastBit) {
   TremorFilter filter{{}};

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "operation/teleoperation/haptic_loop.h"
+
 namespace microinjection {
 namespace {
-
-constexpr double kStep = 1e-3, kResolution = 2e-5;  // s, m
 
 Eigen::Vector3d encoder(double z) { return {0, 0, std::round(z / kResolution) * kResolution}; }
 

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "../manipulator/rig_file.h"
+#include "rig/devices/needle_loop.h"
 #include "rig/devices/rig_registry.h"
 #include "rig/manipulator/micromanipulator.h"
 #include "rig/serial/emulated_wire.h"
@@ -17,9 +18,8 @@
 namespace microinjection {
 namespace {
 
-constexpr double kStep = 1e-3;              // s
 constexpr double kStale = 0.1;              // s, of MicromanipulatorConfig
-constexpr double kSpeed = 20e-6;            // m/s
+constexpr double kCommandedSpeed = 20e-6;   // m/s
 const Eigen::Vector3d kStart(0, 0, 60e-6);  // m
 
 struct Variant {
@@ -105,7 +105,7 @@ class ContractTest : public testing::TestWithParam<Variant> {
     const Eigen::Vector3d told = place();
     run(kStale + 0.05 + abilities.stop_time + abilities.reading_interval + kStep);
     EXPECT_LE((place() - told).norm(),
-              kSpeed * (kStale + 0.05 + abilities.stop_time + abilities.command_interval) + 2 * near_);
+              kCommandedSpeed * (kStale + 0.05 + abilities.stop_time + abilities.command_interval) + 2 * near_);
     expectStands();
   }
 
@@ -134,18 +134,19 @@ TEST_P(ContractTest, MovesArriveAndStayAndTheNewestWins) {
 TEST_P(ContractTest, FollowsAsCloselyAsItSays) {
   const ManipulatorAbilities abilities = device_->abilities();
   const double allowed =
-      kSpeed * (2 * abilities.command_interval + abilities.reading_interval + abilities.latency + 0.02) + 2 * near_;
+      kCommandedSpeed * (2 * abilities.command_interval + abilities.reading_interval + abilities.latency + 0.02) +
+      2 * near_;
   double z = kStart.z(), behind = 0, ahead = 0;  // m
   const auto command = [&] { needle_->servoPosition(pose({0, 0, z})); };
   for (int i = 0; i < 1500; ++i) {
-    z -= kSpeed * kStep;
+    z -= kCommandedSpeed * kStep;
     tick(command);
     ASSERT_TRUE(needle_->tipPose());
     behind = std::max(behind, place().z() - z);
     ahead = std::max(ahead, z - place().z());
   }
   EXPECT_LE(behind, allowed);
-  EXPECT_LE(ahead, 2 * near_ + kSpeed * 0.02);
+  EXPECT_LE(ahead, 2 * near_ + kCommandedSpeed * 0.02);
   ASSERT_TRUE(until([&] { return isAt({0, 0, z}) && !device_->moving(); }, command));
   ASSERT_TRUE(until([&] { return !busy(); }));
   expectStands();
@@ -171,13 +172,13 @@ TEST_P(ContractTest, StopsInTheTimeThatItSays) {
 TEST_P(ContractTest, StaleCommandsHold) {
   double z = kStart.z();
   for (int i = 0; i < 700; ++i) {
-    z += kSpeed * kStep;
+    z += kCommandedSpeed * kStep;
     tick([&] { needle_->servoPosition(pose({0, 0, z})); });
   }
   expectHoldsAfterSilence();
   goTo(kStart);
   for (int i = 0; i < 70; ++i) {
-    needle_->servoVelocity({kSpeed, 0, 0}, time_);
+    needle_->servoVelocity({kCommandedSpeed, 0, 0}, time_);
     run(0.01);
   }
   EXPECT_GT(place().x(), 2e-6);

@@ -14,13 +14,14 @@
 
 namespace microinjection {
 
+constexpr double kFuzzedSpeed = 0.1e-3;  // m/s
+
 /// 200,000 damaged or reordered replies to a driver at work: it must neither crash nor believe a position that is not
 /// so, and be in step again as soon as the line is sound.
 template <typename Driver, typename Config>
 class Fuzz {
   static constexpr int kReplies = 200000;
   static constexpr int kRepliesAtOnce = 2000;  // between two looks whether it is in step
-  static constexpr double kSpeed = 0.1e-3;     // m/s
   static constexpr double kStep = 2e-3;        // s
   static constexpr double kRest = 1;           // s at rest after which nothing that is told is carried on from a motion
 
@@ -66,7 +67,7 @@ class Fuzz {
   void command() {
     switch (std::uniform_int_distribution<int>(0, 999)(random_)) {
       case 0:
-        rig_.driver().moveTo(somewhere(), kSpeed);
+        rig_.driver().moveTo(somewhere(), kFuzzedSpeed);
         break;
       case 1:
         rig_.driver().follow(somewhere(), Eigen::Vector3d::Zero());
@@ -107,7 +108,7 @@ class Fuzz {
     rig_.driver().clearFault();
     ASSERT_TRUE(rig_.runUntilReady()) << rig_.driver().reason();
     const Eigen::Vector3d goal = somewhere();
-    rig_.driver().moveTo(goal, kSpeed);
+    rig_.driver().moveTo(goal, kFuzzedSpeed);
     ASSERT_TRUE(rig_.runUntilArrived(5)) << rig_.driver().reason();
     expectNear(rig_.place(), goal, near_);
     expectNear(rig_.read(), rig_.place(), told_);

@@ -11,8 +11,6 @@
 namespace microinjection {
 namespace {
 
-constexpr double kSpeed = 0.1e-3;  // m/s
-
 /// A number or now and then a flag in a well-formed reply becomes another one, with the checksum that belongs to it.
 std::string forgeZaber(const std::string& reply, std::mt19937& random) {
   static const std::array<std::string, 5> flags{"--", "WT", "WR", "NI", "FS"};
@@ -63,10 +61,11 @@ void fuzzZaber(bool checksum, bool forges) {
   ZaberConfig config;
   config.joints.origin.setConstant(-12.5e-3);
   config.checksum = config.reply_checksum = checksum;
-  config.speed = kSpeed;
+  config.speed = kFuzzedSpeed;
   // Between readings: three times a missed answer to a velocity that turns an axis round. Under way a false reading may
   // pass that lies where the axis might be: within the margin and what it moves in the longest guess, 0.2 s.
-  const double allowed = 2 * kSpeed * 3 * (config.reply_timeout + 5e-3) + config.reading_margin + kSpeed * 0.2;  // m
+  const double allowed =
+      2 * kFuzzedSpeed * 3 * (config.reply_timeout + 5e-3) + config.reading_margin + kFuzzedSpeed * 0.2;  // m
   // At rest: a microstep or two where a damaged number passes for a true one, nothing where none can.
   const double at_rest = checksum && !forges ? 1e-9 : 2.5 * 0.047625e-6;  // m
   std::function<std::string(const std::string&, std::mt19937&)> forge;

@@ -13,11 +13,9 @@
 namespace microinjection {
 namespace {
 
-constexpr double kSpeed = 0.1e-3;  // m/s
-
 TEST(Fuzz, Mp285) {
   Mp285Config config;
-  config.speed = kSpeed;
+  config.speed = kFuzzedSpeed;
   config.half_command_time = 0.03;  // s, so that it takes less virtual time
   config.reply_timeout = 0.05;      // s
   Mp285EmulatorConfig device;
@@ -28,7 +26,8 @@ TEST(Fuzz, Mp285) {
     return forged;
   };
   // It tells of no move but by its end. At rest: where it was stopped is known to some microsteps until it is read.
-  Fuzz<Mp285Driver, Mp285Config>(config, std::make_shared<Mp285Emulator>(device), forge, kSpeed * 0.2, 0.1e-6).run();
+  Fuzz<Mp285Driver, Mp285Config>(config, std::make_shared<Mp285Emulator>(device), forge, kFuzzedSpeed * 0.2, 0.1e-6)
+      .run();
 }
 
 /// Other digits in a reply that is well formed otherwise.
@@ -42,12 +41,12 @@ std::string forgeDigits(const std::string& reply, std::mt19937& random) {
 
 /// Under way a false reading may pass that lies where the needle might be: within the margin and 0.1 s of motion.
 double allowedUnderWay(const PolledManipulatorConfig& config) {
-  return std::sqrt(3.0) * (config.reading_margin + kSpeed * 0.1) + kSpeed * 0.2;
+  return std::sqrt(3.0) * (config.reading_margin + kFuzzedSpeed * 0.1) + kFuzzedSpeed * 0.2;
 }
 
 TEST(Fuzz, Eppendorf) {
   EppendorfConfig config;
-  config.speed = kSpeed;
+  config.speed = kFuzzedSpeed;
   config.reply_timeout = 0.05;  // s, so that it takes less virtual time
   // Where it was stopped is known to a count until it is read.
   const double count = 1e-6 + 1e-9, half_a_count = 0.5e-6 + 1e-9;
@@ -58,7 +57,7 @@ TEST(Fuzz, Eppendorf) {
 
 TEST(Fuzz, Scientifica) {
   ScientificaConfig config;
-  config.speed = kSpeed;
+  config.speed = kFuzzedSpeed;
   config.reply_timeout = 0.05;  // s
   const double half_a_count = 5e-9 + 1e-12;
   Fuzz<ScientificaDriver, ScientificaConfig>(config, std::make_shared<ScientificaEmulator>(), forgeDigits,

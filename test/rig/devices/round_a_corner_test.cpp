@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "../manipulator/rig_file.h"
+#include "rig/devices/needle_loop.h"
 #include "rig/devices/zaber/zaber_driver.h"
 #include "rig/devices/zaber/zaber_emulator.h"
 #include "rig/manipulator/micromanipulator.h"
@@ -10,9 +11,6 @@
 
 namespace microinjection {
 namespace {
-
-constexpr double kStep = 1e-3;    // s
-constexpr double kMargin = 2e-6;  // m
 
 class Needle {
  public:

@@ -6,7 +6,7 @@ namespace microinjection {
 namespace {
 
 constexpr char kQuery[] = "query: {send: '?', expect: '=([0-9.]+)'}\nquery_period: 0.5\npressure_unit: 100\n";
-constexpr char kTimed[] = R"yaml(
+constexpr char kTimedQuery[] = R"yaml(
 timed: true
 pulse: [{send: "N{pressure_hPa:1}", expect: OK}]
 balance: [{send: "C{pressure_hPa:1}", expect: OK}]
@@ -136,7 +136,7 @@ TEST_F(QueriedPressureTest, OfBeforeAStopWithoutReplyIsNotShownAfterIt) {
 
 class TimedQueryTest : public QueriedPressureTest {
  protected:
-  TimedQueryTest() : QueriedPressureTest(kTimed) { answers["N"] = answers["F"] = "OK"; }
+  TimedQueryTest() : QueriedPressureTest(kTimedQuery) { answers["N"] = answers["F"] = "OK"; }
 };
 
 /// Nothing is asked during a pulse that is timed from here.

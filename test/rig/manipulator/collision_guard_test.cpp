@@ -14,8 +14,6 @@
 namespace microinjection {
 namespace {
 
-constexpr double kMargin = 2e-6;  // m
-
 class RigGuard : public testing::Test {
  protected:
   /// Joint positions (m) for the tip at x, y, z (um) in world.

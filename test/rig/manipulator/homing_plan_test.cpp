@@ -9,7 +9,6 @@
 namespace microinjection {
 namespace {
 
-constexpr double kMargin = 2e-6;  // m
 constexpr double kEnd = 12.5e-3;  // m, of an axis' travel
 
 class HomingPlanTest : public testing::Test {

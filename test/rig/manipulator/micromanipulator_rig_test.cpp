@@ -12,8 +12,7 @@
 namespace microinjection {
 namespace {
 
-constexpr double kStep = 1e-3;    // s
-constexpr double kMargin = 2e-6;  // m
+constexpr double kStep = 1e-3;  // s
 
 /// Says what it was told, and is where and how the test wants it to be.
 class NotedDevice : public ManipulatorDevice {

@@ -7,11 +7,11 @@ namespace {
 
 using State = OperatingState;
 using Command = StateCommand;
-using Device = ManipulatorDevice::State;
+using DeviceState = ManipulatorDevice::State;
 
 class NeedleStateTest : public testing::Test {
  protected:
-  NeedleStateTest() { state_.setConditions({Device::kReady, true, "", ""}); }
+  NeedleStateTest() { state_.setConditions({DeviceState::kReady, true, "", ""}); }
   NeedleState state_;
 };
 
@@ -39,30 +39,30 @@ TEST_F(NeedleStateTest, IsDisabledUntilSomebodyEnables) {
 
 TEST_F(NeedleStateTest, AFaultEndsWhereItsCommandLeads) {
   EXPECT_EQ(state_.command(Command::kPause), "");
-  state_.setConditions({Device::kFault, true, "", ""});
+  state_.setConditions({DeviceState::kFault, true, "", ""});
   EXPECT_EQ(state_.state(), State::kFault);
   EXPECT_NE(state_.command(Command::kPause), "");
   EXPECT_NE(state_.command(Command::kResume), "");
   EXPECT_NE(state_.command(Command::kHome), "");
   EXPECT_EQ(state_.command(Command::kEnable), "");
   EXPECT_EQ(state_.state(), State::kFault);  // its cause is not gone yet
-  state_.setConditions({Device::kReady, true, "", ""});
+  state_.setConditions({DeviceState::kReady, true, "", ""});
   EXPECT_EQ(state_.state(), State::kEnabled);
-  state_.setConditions({Device::kReady, true, "two nodes", ""});
+  state_.setConditions({DeviceState::kReady, true, "two nodes", ""});
   EXPECT_EQ(state_.state(), State::kFault);
   EXPECT_EQ(state_.command(Command::kDisable), "");
-  state_.setConditions({Device::kReady, true, "", ""});
+  state_.setConditions({DeviceState::kReady, true, "", ""});
   EXPECT_EQ(state_.state(), State::kDisabled);
 }
 
 TEST_F(NeedleStateTest, WithoutADeviceOrBehindABarrierItIsDisabled) {
-  state_.setConditions({Device::kDisconnected, false, "", ""});
+  state_.setConditions({DeviceState::kDisconnected, false, "", ""});
   EXPECT_EQ(state_.state(), State::kDisabled);
   EXPECT_FALSE(state_.homed());
-  state_.setConditions({Device::kReady, true, "", "others can reach it"});
+  state_.setConditions({DeviceState::kReady, true, "", "others can reach it"});
   EXPECT_EQ(state_.state(), State::kDisabled);
   EXPECT_EQ(state_.unavailableReason(), "others can reach it");
-  state_.setConditions({Device::kReady, true, "", ""});
+  state_.setConditions({DeviceState::kReady, true, "", ""});
   EXPECT_EQ(state_.state(), State::kEnabled);
 }
 
@@ -72,9 +72,9 @@ TEST_F(NeedleStateTest, UnhomedItIsHeldUntilItIsHome) {
   EXPECT_EQ(state_.state(), State::kEnabled);
   EXPECT_FALSE(state_.homed());
   EXPECT_EQ(state_.unavailableReason(), "the needle is not homed; allowed after home");
-  state_.setConditions({Device::kReady, false, "", ""});
+  state_.setConditions({DeviceState::kReady, false, "", ""});
   EXPECT_NE(state_.command(Command::kHome), "");
-  state_.setConditions({Device::kReady, true, "", ""});
+  state_.setConditions({DeviceState::kReady, true, "", ""});
   EXPECT_EQ(state_.command(Command::kHome), "");
   EXPECT_TRUE(state_.homed());
   EXPECT_EQ(state_.unavailableReason(), "");

@@ -14,8 +14,6 @@
 namespace microinjection {
 namespace {
 
-constexpr double kMargin = 2e-6;  // m
-
 class RandomCommands : public testing::TestWithParam<double> {
  protected:
   double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }

@@ -10,7 +10,7 @@
 namespace microinjection {
 namespace {
 
-constexpr double kStep = 0.02;             // s
+constexpr double kRunStep = 0.02;          // s
 constexpr double kImagePeriod = 1 / 30.0;  // s
 constexpr int kBlind = 10000;              // steps of a run that waits for a tip at each waypoint
 
@@ -25,9 +25,9 @@ class Rig {
   }
   void command(const Eigen::Vector3d& goal) { goal_ = goal; }
   void step() {
-    now_ += kStep;
+    now_ += kRunStep;
     const Eigen::Vector3d way = goal_ - position_;
-    const double reach = stuck_ ? 0 : 100e-6 * kStep;
+    const double reach = stuck_ ? 0 : 100e-6 * kRunStep;
     position_ = way.norm() <= reach ? goal_ : Eigen::Vector3d(position_ + reach * way.normalized());
     if (position_ == goal_ && moved_to_ != goal_) {
       needle_.moveTo(goal_);

@@ -9,7 +9,7 @@
 namespace microinjection {
 namespace {
 
-constexpr double kStep = 0.01;  // s
+constexpr double kControlPeriod = 0.01;  // s
 
 /// A needle that follows set-points at once, and a camera with 25 images a second.
 class ImageApproachTest : public testing::Test {
@@ -27,7 +27,7 @@ class ImageApproachTest : public testing::Test {
     Eigen::Vector3d position = start_;
     std::optional<SeenTip> tip;
     double rested = 0;
-    for (double now = 0; now < duration && !approach.done() && approach.failure().empty(); now += kStep) {
+    for (double now = 0; now < duration && !approach.done() && approach.failure().empty(); now += kControlPeriod) {
       const auto setpoint = approach.step({now, position, rested, tip});
       if (setpoint && follows_ && *setpoint != position) {
         largest_step_ = std::max(largest_step_, (*setpoint - position).norm());
@@ -36,7 +36,7 @@ class ImageApproachTest : public testing::Test {
         needle_.moveTo(position);
         rested = now;
       }
-      if (std::fmod(now, 0.04) < kStep && sees_)
+      if (std::fmod(now, 0.04) < kControlPeriod && sees_)
         tip = SeenTip{now, needle_.seenPixel() + wrong_, 0.04 * Eigen::Matrix2d::Identity()};
     }
   }
@@ -70,7 +70,7 @@ TEST_F(ImageApproachTest, BringsTheTipToThePixel) {
   run(approach);
   ASSERT_TRUE(approach.done()) << approach.failure() << approach.waitsFor();
   EXPECT_LT((needle_.truePixel() - target).norm(), 2);
-  EXPECT_LE(largest_step_, config_.speed * kStep * (1 + 1e-9));  // a stream without jumps
+  EXPECT_LE(largest_step_, config_.speed * kControlPeriod * (1 + 1e-9));  // a stream without jumps
 }
 
 TEST_F(ImageApproachTest, WaitsForANeedleThatDoesNotFollow) {
@@ -85,7 +85,7 @@ TEST_F(ImageApproachTest, HoldsWithoutATip) {
   sees_ = false;
   run(approach);
   EXPECT_NE(approach.failure().find("not seen"), std::string::npos) << approach.failure();
-  EXPECT_EQ(lowest_, 60e-6 + config_.speed * kStep);  // it has moved away from the cell only
+  EXPECT_EQ(lowest_, 60e-6 + config_.speed * kControlPeriod);  // it has moved away from the cell only
 }
 
 TEST_F(ImageApproachTest, DoesNotFollowSomethingElse) {
@@ -98,9 +98,10 @@ TEST_F(ImageApproachTest, DoesNotFollowSomethingElse) {
 TEST_F(ImageApproachTest, HoldsWithoutAPosition) {
   ImageApproach approach = this->approach(needle_.truePixel());
   Eigen::Vector3d position = start_;
-  for (double now = 0; now < 0.2; now += kStep) position = approach.step({now, position, 0, std::nullopt}).value();
+  for (double now = 0; now < 0.2; now += kControlPeriod)
+    position = approach.step({now, position, 0, std::nullopt}).value();
   EXPECT_NE(position, start_);  // it is under way
-  for (double now = 0.2; now < 1; now += kStep)
+  for (double now = 0.2; now < 1; now += kControlPeriod)
     EXPECT_EQ(approach.step({now, std::nullopt, 0, std::nullopt}).value(), position);
   EXPECT_NE(approach.waitsFor().find("position"), std::string::npos);
 }

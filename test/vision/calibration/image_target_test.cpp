@@ -10,7 +10,7 @@
 namespace microinjection {
 namespace {
 
-const Eigen::Vector2d kGoal(900, 300);  // px
+const Eigen::Vector2d kGoalPixel(900, 300);  // px
 
 class ImageTargetTest : public ::testing::Test {
  protected:
@@ -21,7 +21,7 @@ class ImageTargetTest : public ::testing::Test {
   }
   TipFrame frame(std::uint64_t sequence, double stamp) { return {sequence, stamp, needle.truePixel()}; }
   ImageStep step(const TipFrame& each, double now, double rested = 0) {
-    return target.step(each, kGoal, calibration, *play, now, rested);
+    return target.step(each, kGoalPixel, calibration, *play, now, rested);
   }
   void follow(const ImageStep& step) {
     needle.moveTo(*step.position);
@@ -41,7 +41,7 @@ TEST_F(ImageTargetTest, BringsTheTipToTheTargetInStepsThatAreNotTooLong) {
     const Eigen::Vector3d before = needle.place();
     const ImageStep step = this->step(frame(i, time), time + 0.03, time - 0.01);
     if (step.arrived) {
-      EXPECT_LT((needle.truePixel() - kGoal).norm(), 0.7);
+      EXPECT_LT((needle.truePixel() - kGoalPixel).norm(), 0.7);
       EXPECT_GT(i, 5);
       return;
     }
@@ -49,7 +49,7 @@ TEST_F(ImageTargetTest, BringsTheTipToTheTargetInStepsThatAreNotTooLong) {
     follow(step);
     EXPECT_LT((needle.place() - before).norm(), 5e-6 * 1.02);
   }
-  FAIL() << "not arrived: " << (needle.truePixel() - kGoal).norm() << " px";
+  FAIL() << "not arrived: " << (needle.truePixel() - kGoalPixel).norm() << " px";
 }
 
 TEST_F(ImageTargetTest, ANearTargetIsApproachedByTheGain) {

@@ -15,9 +15,9 @@ constexpr double kPixel = 0.25e-6, kRadius = 38e-6, kTipRadius = 3e-6;  // m
 
 /// An oocyte that a flat tip indents by `depth` (m); a negative one is a tip above it. One that is not elastic stays
 /// as it is: the needle is before it.
-class Pressed {
+class PressedBall {
  public:
-  explicit Pressed(double depth, bool elastic = true) {
+  explicit PressedBall(double depth, bool elastic = true) {
     MicroscopeConfig config;
     config.camera.pixel_size = kPixel;
     MicroscopeScene scene;
@@ -52,11 +52,11 @@ class Pressed {
 };
 
 TEST(BorderDisplacement, IsThatOfTheOutline) {
-  const double rest = Pressed(-5e-6).find().depth;
+  const double rest = PressedBall(-5e-6).find().depth;
   EXPECT_NEAR(rest, 0, 1.5);
-  EXPECT_NEAR(Pressed(-1e-6).find().depth, rest, 0.5);  // what is not the needle's stays the same
+  EXPECT_NEAR(PressedBall(-1e-6).find().depth, rest, 0.5);  // what is not the needle's stays the same
   for (const double depth : {1e-6, 2e-6, 3e-6}) {
-    const BorderDisplacement found = Pressed(depth).find();
+    const BorderDisplacement found = PressedBall(depth).find();
     ASSERT_TRUE(found.finding.isFound()) << found.finding.reason;
     EXPECT_NEAR((found.depth - rest) * kPixel, depth, 0.35e-6 + 0.15 * depth);
     EXPECT_LT(found.deviation, 1);
@@ -65,22 +65,22 @@ TEST(BorderDisplacement, IsThatOfTheOutline) {
 
 TEST(BorderDisplacement, HasTheGapToTheUndisturbedOutline) {
   for (const double depth : {-5e-6, -1e-6, 2e-6}) {
-    EXPECT_NEAR(Pressed(depth).find().gap * kPixel, -depth, 0.3e-6) << depth;
+    EXPECT_NEAR(PressedBall(depth).find().gap * kPixel, -depth, 0.3e-6) << depth;
   }
 }
 
 TEST(BorderDisplacement, ANeedleBeforeTheCellDisplacesNothing) {
-  const double rest = Pressed(-5e-6).find().depth;
-  EXPECT_NEAR(Pressed(2e-6, false).find().depth, rest, 1);
+  const double rest = PressedBall(-5e-6).find().depth;
+  EXPECT_NEAR(PressedBall(2e-6, false).find().depth, rest, 1);
 }
 
 TEST(BorderDisplacement, KnowsTheNeedlesWidth) {
-  const Pressed scene(-5e-6);
+  const PressedBall scene(-5e-6);
   EXPECT_NEAR(needleHalfWidth(Frame(scene.image), scene.tip, -M_PI / 2), kTipRadius / kPixel + 1, 2);
 }
 
 TEST(BorderDisplacement, IsNotFoundWithoutNeedleOrCell) {
-  const Pressed scene(-5e-6);
+  const PressedBall scene(-5e-6);
   EXPECT_FALSE(scene.find(0).finding.hasValues());  // it does not point at the cell
   const Frame empty(cv::Mat(400, 400, CV_8U, cv::Scalar(120)) + scene.image(cv::Rect(0, 0, 400, 400)) * 0.01);
   CellBorder border;

@@ -26,12 +26,13 @@ SceneDrawConfig oneCell() {
   return draw;
 }
 
-struct Rendered {
+struct RenderedCell {
   cv::Mat image;
   SceneTruth truth;
 };
 
-Rendered render(const SceneDrawConfig& draw, std::uint64_t seed, MicroscopeConfig config = {}, double focus = 0) {
+RenderedCell renderCell(const SceneDrawConfig& draw, std::uint64_t seed, MicroscopeConfig config = {},
+                        double focus = 0) {
   Microscope microscope(config);
   const DrawnScene drawn = drawScene(draw, config.camera, seed);
   return {microscope.render(drawn.scene, focus, seed), drawn.truth};
@@ -46,7 +47,7 @@ void expectTruth(const CellDetection& cell, const CellTruth& truth, double toler
 
 TEST(CellDetector, MeasuresARenderedCell) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    const Rendered rendered = render(oneCell(), seed);
+    const RenderedCell rendered = renderCell(oneCell(), seed);
     expectTruth(CellDetector(forRendered()).detect(Frame(rendered.image)), *rendered.truth.cell, 0.3);
   }
 }
@@ -55,12 +56,12 @@ TEST(CellDetector, TurnedAndMirroredCamerasSeeTheSameCell) {
   MicroscopeConfig config;
   config.camera.angle = 1.1;
   config.camera.mirrored = true;
-  const Rendered rendered = render(oneCell(), 7, config);
+  const RenderedCell rendered = renderCell(oneCell(), 7, config);
   expectTruth(CellDetector(forRendered()).detect(Frame(rendered.image)), *rendered.truth.cell, 0.3);
 }
 
 TEST(CellDetector, ColourAndSixteenBitGiveTheSame) {
-  const Rendered rendered = render(oneCell(), 3);
+  const RenderedCell rendered = renderCell(oneCell(), 3);
   cv::Mat colour, deep;
   cv::cvtColor(rendered.image, colour, cv::COLOR_GRAY2BGR);
   rendered.image.convertTo(deep, CV_16U, 257);
@@ -77,7 +78,7 @@ TEST(CellDetector, ClaimsNothingWithoutACell) {
   SceneDrawConfig draw;
   draw.cell = 0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    const CellDetection cell = CellDetector(forRendered()).detect(Frame(render(draw, seed).image));
+    const CellDetection cell = CellDetector(forRendered()).detect(Frame(renderCell(draw, seed).image));
     EXPECT_FALSE(cell.finding.hasValues()) << seed;
     EXPECT_FALSE(cell.finding.reason.empty());
   }
@@ -127,7 +128,7 @@ TEST(CellDetector, RefusesUselessFramesWithAReason) {
 TEST(CellDetector, HalfACellIsNotOne) {
   SceneDrawConfig draw = oneCell();
   draw.centred = true;
-  const Rendered rendered = render(draw, 4);
+  const RenderedCell rendered = renderCell(draw, 4);
   const auto x = static_cast<int>(rendered.truth.cell->centre.x());
   const cv::Mat half = rendered.image.colRange(x, rendered.image.cols);
   EXPECT_FALSE(CellDetector(forRendered()).detect(Frame(half)).finding.isFound());
@@ -137,7 +138,7 @@ TEST(CellDetector, TwoCellsAreUncertain) {
   SceneDrawConfig draw = oneCell();
   draw.centred = true;
   draw.diameter = {80e-6, 80e-6};
-  const Rendered rendered = render(draw, 4);
+  const RenderedCell rendered = renderCell(draw, 4);
   cv::Mat both;
   const cv::Mat middle = rendered.image.colRange(500, 900);
   cv::hconcat(middle, middle, both);
@@ -155,7 +156,7 @@ TEST(CellDetector, TwoCellsAreUncertain) {
 TEST(CellDetector, OutOfFocusTheCentreMayBeSureAndTheDiameterIsNot) {
   int sure = 0;
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-    const Rendered rendered = render(oneCell(), seed, {}, 10e-6);
+    const RenderedCell rendered = renderCell(oneCell(), seed, {}, 10e-6);
     const CellDetection cell = CellDetector(forRendered()).detect(Frame(rendered.image));
     EXPECT_EQ(cell.size.verdict, Verdict::kUncertain) << seed;
     EXPECT_FALSE(cell.size.reason.empty());

@@ -94,13 +94,13 @@ TEST(DentedEllipse, NeedsPoints) {
 }
 
 /// A rendered cell with a needle in its dimple.
-struct Pressed {
+struct PressedCell {
   cv::Mat image;
   SceneTruth truth;
   CellDetection cell;
   PipetteDetection needle;  ///< as it is
 
-  explicit Pressed(std::uint64_t seed, double dimple = 1) {
+  explicit PressedCell(std::uint64_t seed, double dimple = 1) {
     SceneDrawConfig draw;
     draw.holding = draw.injection = 1;
     draw.dimple = dimple;
@@ -118,14 +118,14 @@ struct Pressed {
     needle.half_width = truth.injection->radius + 2;
     needle.covariance = 0.04 * Eigen::Matrix2d::Identity();
   }
-  Indentation find() const { return findIndentation(Frame(image), cell.outer(), needle); }
+  Dimple find() const { return findIndentation(Frame(image), cell.outer(), needle); }
   double depth() const { return *truth.cell->dimple_depth; }
 };
 
-TEST(Indentation, HasTheTrueDepth) {
+TEST(Dimple, HasTheTrueDepth) {
   for (const std::uint64_t seed : {3, 14, 16, 20, 21, 36}) {
-    const Pressed scene(seed);
-    const Indentation found = scene.find();
+    const PressedCell scene(seed);
+    const Dimple found = scene.find();
     ASSERT_TRUE(found.finding.hasValues()) << seed << ": " << found.finding.reason;
     EXPECT_NEAR(found.depth, scene.depth(), 0.6) << seed;
     EXPECT_LT(found.deviation, 0.5) << seed;
@@ -135,29 +135,29 @@ TEST(Indentation, HasTheTrueDepth) {
   }
 }
 
-TEST(Indentation, AWrongTipIsUncertainAndTheOutlineHasTheDepth) {
+TEST(Dimple, AWrongTipIsUncertainAndTheOutlineHasTheDepth) {
   for (const double off : {-12.0, 5.0}) {
-    Pressed scene(14);
+    PressedCell scene(14);
     scene.needle.end += off * cv::Point2d(std::cos(scene.needle.direction), std::sin(scene.needle.direction));
-    const Indentation found = scene.find();
+    const Dimple found = scene.find();
     EXPECT_EQ(found.finding.verdict, Verdict::kUncertain) << off;
     EXPECT_NEAR(found.depth, scene.depth(), 1) << off;
   }
 }
 
-TEST(Indentation, ANeedleBeforeTheCellDentsNothing) {
-  Pressed scene(14, 0);
+TEST(Dimple, ANeedleBeforeTheCellDentsNothing) {
+  PressedCell scene(14, 0);
   // The tip is thought to be in the cell, whose outline is round.
   scene.needle.end =
       scene.cell.centre + 0.85 * 0.5 * scene.cell.outer().ellipse.meanDiameter() *
                               cv::Point2d(std::cos(scene.needle.direction), std::sin(scene.needle.direction));
-  const Indentation found = scene.find();
+  const Dimple found = scene.find();
   EXPECT_FALSE(found.finding.isFound());
   if (found.finding.hasValues()) EXPECT_LT(found.depth, 1.5);
 }
 
-TEST(Indentation, IsNoSurerThanTheOutlineItIsMeasuredFrom) {
-  Pressed scene(14);
+TEST(Dimple, IsNoSurerThanTheOutlineItIsMeasuredFrom) {
+  PressedCell scene(14);
   scene.cell.zona_outer.finding = Finding::uncertain("a ring is seen outside of the border");
   EXPECT_FALSE(scene.find().finding.isFound());
   scene.cell.zona_outer.finding = scene.cell.ooplasm.finding = Finding::notFound("nothing");
@@ -165,7 +165,7 @@ TEST(Indentation, IsNoSurerThanTheOutlineItIsMeasuredFrom) {
 }
 
 /// What the cell is with the needle.
-CellDetection withNeedle(const Pressed& scene) {
+CellDetection withNeedle(const PressedCell& scene) {
   SpecimenView view;
   view.cell = scene.cell;
   view.injection = scene.needle;
@@ -173,14 +173,14 @@ CellDetection withNeedle(const Pressed& scene) {
   return view.cell;
 }
 
-double errorOf(const CellDetection& cell, const Pressed& scene) {
+double errorOf(const CellDetection& cell, const PressedCell& scene) {
   const Eigen::Vector2d& truth = scene.truth.cell->centre;
   return std::hypot(cell.centre.x - truth.x(), cell.centre.y - truth.y());
 }
 
-TEST(Indentation, TheCellHasTheCentreOfItsUndisturbedOutline) {
+TEST(Dimple, TheCellHasTheCentreOfItsUndisturbedOutline) {
   for (const std::uint64_t seed : {58, 235, 362}) {
-    const Pressed scene(seed);
+    const PressedCell scene(seed);
     EXPECT_GT(errorOf(scene.cell, scene), 1) << seed << ": the ellipse leans into the dimple";
     const CellDetection cell = withNeedle(scene);
     ASSERT_TRUE(cell.finding.isFound()) << seed << ": " << cell.finding.reason;
@@ -188,8 +188,8 @@ TEST(Indentation, TheCellHasTheCentreOfItsUndisturbedOutline) {
   }
 }
 
-TEST(Indentation, ACellWhoseUndisturbedOutlineIsNotFoundIsUncertain) {
-  const Pressed scene(39);
+TEST(Dimple, ACellWhoseUndisturbedOutlineIsNotFoundIsUncertain) {
+  const PressedCell scene(39);
   ASSERT_TRUE(scene.cell.finding.isFound());
   EXPECT_GT(errorOf(scene.cell, scene), 1) << "the ellipse leans into the dimple";
   const CellDetection cell = withNeedle(scene);
@@ -197,8 +197,8 @@ TEST(Indentation, ACellWhoseUndisturbedOutlineIsNotFoundIsUncertain) {
   EXPECT_EQ(cell.size.verdict, Verdict::kUncertain);
 }
 
-TEST(Indentation, ANeedleBesideTheCellTakesNothingFromIt) {
-  const Pressed scene(3, 0);
+TEST(Dimple, ANeedleBesideTheCellTakesNothingFromIt) {
+  const PressedCell scene(3, 0);
   ASSERT_TRUE(scene.cell.size.isFound());
   const CellDetection cell = withNeedle(scene);
   EXPECT_TRUE(cell.size.isFound());

@@ -11,14 +11,14 @@
 namespace microinjection {
 namespace {
 
-struct Rendered {
+struct RenderedPipettes {
   cv::Mat image;
   SceneTruth truth;
   double injection = 0, holding = 0;  ///< rad, directions of the shafts in the image
 };
 
-Rendered render(const SceneDrawConfig& draw, std::uint64_t seed, const MicroscopeConfig& config = {},
-                double focus = 0) {
+RenderedPipettes renderPipettes(const SceneDrawConfig& draw, std::uint64_t seed, const MicroscopeConfig& config = {},
+                                double focus = 0) {
   Microscope microscope(config);
   const DrawnScene drawn = drawScene(draw, config.camera, seed);
   const Eigen::Vector2d up = config.camera.imageDirection({0, 1});
@@ -35,7 +35,7 @@ SceneDrawConfig pipettesOnly() {
   return draw;
 }
 
-PipetteDetection detect(const Rendered& rendered, const std::string& kind) {
+PipetteDetection detect(const RenderedPipettes& rendered, const std::string& kind) {
   PipetteDetectorConfig config;
   config.kind = kind;
   config.direction = kind == "holding" ? rendered.holding : rendered.injection;
@@ -61,7 +61,7 @@ void expectTips(double focus, double rms, double worst, int sure) {
   double squares = 0;
   int count = 0;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
-    const Rendered rendered = render(draw, seed, {}, focus);
+    const RenderedPipettes rendered = renderPipettes(draw, seed, {}, focus);
     const PipetteDetection found = detect(rendered, "injection");
     if (!found.finding.isFound()) continue;
     const double error = errorOf(found, *rendered.truth.injection);
@@ -83,7 +83,7 @@ TEST(PipetteDetector, ABrightCoreDoesNotMoveTheTip) {
   draw.dimple = 0;
   draw.holding = draw.injection = 1;
   for (const std::uint64_t seed : {114, 296, 369, 394, 260, 378, 189}) {
-    const Rendered rendered = render(draw, seed);
+    const RenderedPipettes rendered = renderPipettes(draw, seed);
     const PipetteDetection found = detect(rendered, "injection");
     ASSERT_TRUE(found.finding.isFound()) << seed << ": " << found.finding.reason;
     EXPECT_LT(errorOf(found, *rendered.truth.injection), 0.35) << seed;
@@ -93,21 +93,21 @@ TEST(PipetteDetector, ABrightCoreDoesNotMoveTheTip) {
 TEST(PipetteDetector, FindsTheTip) {
   // A needle of less than 3 px in radius has hardly an end.
   for (const std::uint64_t seed : {1, 4, 5, 6, 9, 13}) {
-    const Rendered rendered = render(pipettesOnly(), seed);
+    const RenderedPipettes rendered = renderPipettes(pipettesOnly(), seed);
     expectEnd(detect(rendered, "injection"), *rendered.truth.injection, 0.6);
   }
 }
 
 TEST(PipetteDetector, FindsTheMouth) {
   for (const std::uint64_t seed : {6, 8, 11}) {
-    const Rendered rendered = render(pipettesOnly(), seed);
+    const RenderedPipettes rendered = renderPipettes(pipettesOnly(), seed);
     expectEnd(detect(rendered, "holding"), *rendered.truth.holding, 0.3);
   }
 }
 
 TEST(PipetteDetector, AMouthOutOfFocusIsUncertain) {
   for (const std::uint64_t seed : {6, 8, 11}) {
-    const Rendered rendered = render(pipettesOnly(), seed, {}, 15e-6);
+    const RenderedPipettes rendered = renderPipettes(pipettesOnly(), seed, {}, 15e-6);
     EXPECT_NE(detect(rendered, "holding").finding.verdict, Verdict::kFound) << seed;
   }
 }
@@ -120,7 +120,7 @@ TEST(PipetteDetector, AThinNeedleInDicIsUncertain) {
   draw.holding = draw.injection = 1;
   // Each is even about a place that is 1.1 px beside its axis.
   for (const std::uint64_t seed : {147, 163, 175, 388}) {
-    const Rendered rendered = render(draw, seed, config);
+    const RenderedPipettes rendered = renderPipettes(draw, seed, config);
     const PipetteDetection found = detect(rendered, "injection");
     ASSERT_TRUE(found.finding.hasValues()) << seed;
     EXPECT_FALSE(found.finding.isFound()) << seed << ": " << errorOf(found, *rendered.truth.injection) << " px off";
@@ -131,7 +131,7 @@ TEST(PipetteDetector, TheBordersUnderADimpleAreNoEnd) {
   SceneDrawConfig draw;
   draw.dimple = draw.holding = draw.injection = 1;
   for (const std::uint64_t seed : {106, 213, 342, 671}) {
-    const Rendered rendered = render(draw, seed);
+    const RenderedPipettes rendered = renderPipettes(draw, seed);
     PipetteDetectorConfig config;
     config.direction = rendered.injection;
     const PipetteDetector detector(config);
@@ -146,7 +146,7 @@ TEST(PipetteDetector, TurnedAndMirrored) {
   MicroscopeConfig config;
   config.camera.angle = 0.6;
   config.camera.mirrored = true;
-  const Rendered rendered = render(pipettesOnly(), 4, config);
+  const RenderedPipettes rendered = renderPipettes(pipettesOnly(), 4, config);
   expectEnd(detect(rendered, "injection"), *rendered.truth.injection, 0.6);
 }
 
@@ -154,7 +154,7 @@ TEST(PipetteDetector, ClaimsNothingWithoutAPipette) {
   SceneDrawConfig draw;
   draw.cell = draw.holding = draw.injection = 0;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-    const PipetteDetection found = detect(render(draw, seed), "injection");
+    const PipetteDetection found = detect(renderPipettes(draw, seed), "injection");
     EXPECT_FALSE(found.finding.hasValues()) << seed;
     EXPECT_FALSE(found.finding.reason.empty());
   }

@@ -8,13 +8,13 @@
 namespace microinjection {
 namespace {
 
-constexpr double kRadius = 38e-6;  // m
-constexpr double kPixel = 0.3e-6;  // m
+constexpr double kTrackedRadius = 38e-6;  // m
+constexpr double kTrackedPixel = 0.3e-6;  // m
 
 /// A held oocyte with a needle above it, as a session has them.
 MicroscopeScene heldOocyte(double tip_height) {
   MicroscopeScene scene;
-  scene.cells.push_back(CellScene::round({0, 0}, kRadius, 6e-6, 0));
+  scene.cells.push_back(CellScene::round({0, 0}, kTrackedRadius, 6e-6, 0));
   HoldingPipette holder;
   holder.mouth = {0, -37e-6};
   holder.outer_radius = 40e-6;
@@ -33,7 +33,7 @@ class SpecimenTrackerTest : public testing::Test {
 
   static MicroscopeConfig config() {
     MicroscopeConfig config;
-    config.camera.pixel_size = kPixel;
+    config.camera.pixel_size = kTrackedPixel;
     return config;
   }
   static SpecimenTrackerConfig tracking() {
@@ -60,9 +60,9 @@ TEST_F(SpecimenTrackerTest, FollowsASession) {
     const SpecimenView& view = see(heldOocyte(height));
     ASSERT_TRUE(view.cell.finding.isFound()) << view.cell.finding.reason;
     EXPECT_LT(cv::norm(view.cell.centre - pixel(0, 0)), 0.3);
-    EXPECT_NEAR(view.cell.outer().ellipse.meanDiameter() * kPixel, 2 * kRadius, 0.01 * kRadius);
+    EXPECT_NEAR(view.cell.outer().ellipse.meanDiameter() * kTrackedPixel, 2 * kTrackedRadius, 0.01 * kTrackedRadius);
     ASSERT_TRUE(zonaThickness(view.cell));
-    EXPECT_NEAR(zonaThickness(view.cell)->thickness * kPixel, 6e-6, 0.2e-6);
+    EXPECT_NEAR(zonaThickness(view.cell)->thickness * kTrackedPixel, 6e-6, 0.2e-6);
     ASSERT_TRUE(view.injection.finding.isFound()) << view.injection.finding.reason;
     EXPECT_LT(cv::norm(view.injection.end - pixel(0, height)), 0.5);
     ASSERT_TRUE(view.holding.finding.isFound()) << view.holding.finding.reason;
@@ -78,12 +78,12 @@ TEST_F(SpecimenTrackerTest, TheLipsOfAThickPipetteAreNoCells) {
 TEST_F(SpecimenTrackerTest, AnUncertainCellIsFollowedAndSometimesSearched) {
   const double focus = 10e-6;
   MicroscopeScene scene;
-  scene.cells.push_back(CellScene::round({-70e-6, 0}, kRadius, 6e-6, 0));
+  scene.cells.push_back(CellScene::round({-70e-6, 0}, kTrackedRadius, 6e-6, 0));
   const SpecimenView& view = tracker_.next(Frame(microscope_.render(scene, focus, 1)));
   ASSERT_TRUE(view.cell.finding.hasValues()) << view.cell.finding.reason;
   ASSERT_FALSE(view.cell.size.isFound());
   // A second cell is seen by a search of the whole frame only.
-  scene.cells.push_back(CellScene::round({70e-6, 0}, kRadius, 6e-6, 0));
+  scene.cells.push_back(CellScene::round({70e-6, 0}, kTrackedRadius, 6e-6, 0));
   const Frame both(microscope_.render(scene, focus, 2));
   for (int i = 1; i < SpecimenTracker::kSearchEvery; ++i) {
     tracker_.next(both);
@@ -99,14 +99,14 @@ TEST_F(SpecimenTrackerTest, AnEmptyFrameFindsNothingAndTheNextOneEverything) {
   EXPECT_FALSE(tracker_.view().injection.finding.hasValues());
   EXPECT_FALSE(see(MicroscopeScene()).cell.finding.hasValues());
   MicroscopeScene moved = heldOocyte(60e-6);
-  moved.cells[0] = CellScene::round({30e-6, 20e-6}, kRadius, 6e-6, 0);
+  moved.cells[0] = CellScene::round({30e-6, 20e-6}, kTrackedRadius, 6e-6, 0);
   EXPECT_LT(cv::norm(see(moved).cell.centre - pixel(30e-6, 20e-6)), 0.3);
 }
 
 TEST_F(SpecimenTrackerTest, AJumpIsSearchedInTheWholeFrame) {
   ASSERT_TRUE(see(heldOocyte(60e-6)).cell.finding.isFound());
   MicroscopeScene moved = heldOocyte(60e-6);
-  moved.cells[0] = CellScene::round({-60e-6, 10e-6}, kRadius, 6e-6, 0);
+  moved.cells[0] = CellScene::round({-60e-6, 10e-6}, kTrackedRadius, 6e-6, 0);
   const SpecimenView& view = see(moved);
   ASSERT_TRUE(view.cell.finding.isFound()) << view.cell.finding.reason;
   EXPECT_LT(cv::norm(view.cell.centre - pixel(-60e-6, 10e-6)), 0.3);

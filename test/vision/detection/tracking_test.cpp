@@ -75,12 +75,12 @@ TEST(Tracking, FollowsTheTip) {
   EXPECT_NEAR(next.end.y - first.end.y, 3.25, 0.2);
 }
 
-TEST(Indentation, MeasuresTheDimple) {
+TEST(Dimple, MeasuresTheDimple) {
   const Scene scene(1);
   const CellDetection cell = cells().detect(Frame(scene.image));
   ASSERT_TRUE(cell.finding.hasValues());
   const PipetteTruth& needle = *scene.truth.injection;
-  const Indentation found = findIndentation(Frame(scene.image), cell.outer(), {needle.end.x(), needle.end.y()},
+  const Dimple found = findIndentation(Frame(scene.image), cell.outer(), {needle.end.x(), needle.end.y()},
                                             std::atan2(needle.axis.y(), needle.axis.x()), 2 * needle.radius + 4);
   ASSERT_TRUE(found.finding.hasValues()) << found.finding.reason;
   EXPECT_NEAR(found.depth, *scene.truth.cell->dimple_depth, 0.6);

@@ -25,7 +25,7 @@ TEST(CoreSharpness, HasItsPeakInTheTipsFocus) {
       scene.injection = needle;
       scene.cells.push_back(CellScene::round({0, 0}, 28e-6, 0, 0));
       const Eigen::Vector2d pixel = config.camera.pixelOf({5e-6, 60e-6});
-      const TipWindow window{{pixel.x(), pixel.y()}, -M_PI / 2, 3};
+      const TipInImage window{{pixel.x(), pixel.y()}, -M_PI / 2, 3};
       std::vector<FocusSample> samples;
       for (int plane = -7; plane <= 9; ++plane) {
         const Frame frame(microscope.render(scene, 1e-6 * plane, 40 + plane));

@@ -10,9 +10,9 @@ namespace microinjection {
 namespace {
 
 /// A focus axis that moves at 50 um/s, and a camera that sees a tip in focus at `tip` (m).
-class Rig {
+class FocusRig {
  public:
-  explicit Rig(double tip, double start = 0) : tip_(tip), position_(start), goal_(start) {}
+  explicit FocusRig(double tip, double start = 0) : tip_(tip), position_(start), goal_(start) {}
 
   FocusSearch::Input input() const {
     return {now_, known_ ? std::optional(position_) : std::nullopt, reading_, blind_};
@@ -45,7 +45,7 @@ class Rig {
 };
 
 TEST(FocusSearch, EndsInTheBestPlane) {
-  Rig rig(2.3e-6);
+  FocusRig rig(2.3e-6);
   FocusSearch search({}, 0);
   rig.run(search);
   ASSERT_TRUE(search.done()) << search.failure();
@@ -56,7 +56,7 @@ TEST(FocusSearch, EndsInTheBestPlane) {
 
 TEST(FocusSearch, AddsPlanesOnTheSideOfThePeak) {
   for (const double tip : {13.4e-6, -11.6e-6}) {
-    Rig rig(tip, 1e-6);
+    FocusRig rig(tip, 1e-6);
     FocusSearch search({}, 1e-6);
     rig.run(search);
     ASSERT_TRUE(search.done()) << search.failure();
@@ -66,7 +66,7 @@ TEST(FocusSearch, AddsPlanesOnTheSideOfThePeak) {
 
 TEST(FocusSearch, StaysWithinItsReach) {
   for (const double tip : {100e-6, -100e-6}) {
-    Rig rig(tip);
+    FocusRig rig(tip);
     rig.contrast_ = 1e4;
     rig.tip_ = tip;
     FocusSearchConfig config;
@@ -85,7 +85,7 @@ TEST(FocusSearch, StaysWithinItsReach) {
 }
 
 TEST(FocusSearch, FindsNothingWhereNothingChanges) {
-  Rig rig(0);
+  FocusRig rig(0);
   rig.contrast_ = 0;
   FocusSearch search({}, 0);
   rig.run(search);
@@ -93,18 +93,18 @@ TEST(FocusSearch, FindsNothingWhereNothingChanges) {
 }
 
 TEST(FocusSearch, RefusesOldAndMissingImages) {
-  Rig late(0);
+  FocusRig late(0);
   late.late_ = 1e3;
   FocusSearch search({}, 0);
   late.run(search);
   EXPECT_NE(search.failure().find("the images are stale"), std::string::npos) << search.failure();
-  Rig frozen(0);
+  FocusRig frozen(0);
   for (int i = 0; i < 10; ++i) frozen.step();
   frozen.frozen_ = true;
   FocusSearch second({}, 0);
   frozen.run(second);
   EXPECT_NE(second.failure().find("the images are stale"), std::string::npos) << second.failure();
-  Rig blind(0);
+  FocusRig blind(0);
   blind.frozen_ = true;
   blind.blind_ = "it is black";
   FocusSearch third({}, 0);
@@ -114,7 +114,7 @@ TEST(FocusSearch, RefusesOldAndMissingImages) {
 
 TEST(FocusSearch, TakesNoImageOfAnotherPlane) {
   // Images come 0.2 s late: each must have been exposed after the focus has arrived.
-  Rig rig(2.3e-6);
+  FocusRig rig(2.3e-6);
   rig.late_ = 0.2;
   FocusSearch search({}, 0);
   rig.run(search);
@@ -123,12 +123,12 @@ TEST(FocusSearch, TakesNoImageOfAnotherPlane) {
 }
 
 TEST(FocusSearch, FailsWithoutAnAxis) {
-  Rig stuck(0);
+  FocusRig stuck(0);
   stuck.stuck_ = true;
   FocusSearch search({}, 0);
   stuck.run(search);
   EXPECT_NE(search.failure().find("does not answer"), std::string::npos) << search.failure();
-  Rig lost(0);
+  FocusRig lost(0);
   FocusSearch second({}, 0);
   second.step(lost.input());
   lost.known_ = false;
@@ -137,7 +137,7 @@ TEST(FocusSearch, FailsWithoutAnAxis) {
 }
 
 TEST(FocusSearch, FailsWhenAnotherCommandsTheFocus) {
-  Rig rig(0);
+  FocusRig rig(0);
   FocusSearch search({}, 0);
   for (int i = 0; i < 5000 && search.failure().empty(); ++i) {
     if (const auto goal = search.step(rig.input())) rig.command(*goal);
@@ -149,7 +149,7 @@ TEST(FocusSearch, FailsWhenAnotherCommandsTheFocus) {
 
 TEST(FocusSearch, RefusesWhatIsNotFinite) {
   EXPECT_FALSE(FocusSearch({}, std::numeric_limits<double>::quiet_NaN()).failure().empty());
-  Rig rig(0);
+  FocusRig rig(0);
   FocusSearch search({}, 0);
   for (int i = 0; i < 5000 && search.failure().empty(); ++i) {
     if (const auto goal = search.step(rig.input())) rig.command(*goal);

@@ -14,9 +14,9 @@
 namespace microinjection {
 namespace {
 
-constexpr double kPixel = 0.25e-6;    // m
-constexpr double kAllowed = 0.5e-6;   // m, of the touch
-constexpr double kFarthest = 3.5e-6;  // m past the touch
+constexpr double kPixelSize = 0.25e-6;  // m
+constexpr double kAllowed = 0.5e-6;     // m, of the touch
+constexpr double kFarthest = 3.5e-6;    // m past the touch
 
 /// A held cell with a needle above it, the needle `aside` (m) of its middle.
 struct Place {
@@ -61,7 +61,7 @@ class RenderedApproach {
  private:
   static MicroscopeConfig config() {
     MicroscopeConfig config;
-    config.camera.pixel_size = kPixel;
+    config.camera.pixel_size = kPixelSize;
     return config;
   }
 

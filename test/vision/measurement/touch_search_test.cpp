@@ -12,9 +12,9 @@ namespace {
 
 /// A needle that follows its set-points, a cell `gap` (m) below it, and a camera with noise. In the image the
 /// outline is `seen_lower_` (m) below the cell.
-class Rig {
+class TouchRig {
  public:
-  explicit Rig(double gap) : gap_(gap) {}
+  explicit TouchRig(double gap) : gap_(gap) {}
 
   TouchSearch::Input input() const {
     TouchSearch::Input input{now_, position_, rested_, sight_, blind_, force_, force_stamp_};
@@ -59,13 +59,13 @@ class Rig {
   std::normal_distribution<double> noise_{0, kNoise}, force_noise_{0, 10e-9};  // px, N
 };
 
-TouchSearch searchOf(const Rig& rig, const TouchSearchConfig& config = {}) {
+TouchSearch searchOf(const TouchRig& rig, const TouchSearchConfig& config = {}) {
   return {config, rig.start_, -Eigen::Vector3d::UnitZ(), rig.input()};
 }
 
 TEST(TouchSearch, FindsTheTouchAndStopsThere) {
   for (const double gap : {4.1e-6, 12.7e-6}) {
-    Rig rig(gap);
+    TouchRig rig(gap);
     TouchSearch search = searchOf(rig);
     rig.run(search);
     ASSERT_TRUE(search.done()) << search.failure();
@@ -78,7 +78,7 @@ TEST(TouchSearch, FindsTheTouchAndStopsThere) {
 // Of white noise of 10 nN in steps of 15 nN. One reading of it is 11 nN off, the difference of two means 3.5 nN.
 TEST(TouchSearch, TheForceIsTheMeanOfTheRest) {
   for (int i = 0; i < 10; ++i) {
-    Rig rig(4.1e-6 + 0.7e-6 * i);
+    TouchRig rig(4.1e-6 + 0.7e-6 * i);
     rig.stiffness_ = 0.015;
     TouchSearch search = searchOf(rig);
     rig.run(search);
@@ -88,7 +88,7 @@ TEST(TouchSearch, TheForceIsTheMeanOfTheRest) {
 }
 
 TEST(TouchSearch, EachReadingOfTheForceCountsOnce) {
-  Rig rig(4e-6);
+  TouchRig rig(4e-6);
   rig.force_period_ = 0.05;
   TouchSearch search = searchOf(rig);
   const double began = rig.now_;
@@ -99,7 +99,7 @@ TEST(TouchSearch, EachReadingOfTheForceCountsOnce) {
 }
 
 TEST(TouchSearch, AForceThatStaysTheSameReadingEndsIt) {
-  Rig rig(4e-6);
+  TouchRig rig(4e-6);
   rig.force_period_ = std::numeric_limits<double>::infinity();
   TouchSearch search = searchOf(rig);
   rig.run(search);
@@ -107,7 +107,7 @@ TEST(TouchSearch, AForceThatStaysTheSameReadingEndsIt) {
 }
 
 TEST(TouchSearch, WaitsForReadingsOfTheForce) {
-  Rig rig(4e-6);
+  TouchRig rig(4e-6);
   TouchSearchConfig config;
   config.settle_time = 0;
   TouchSearch search = searchOf(rig, config);
@@ -119,7 +119,7 @@ TEST(TouchSearch, WaitsForReadingsOfTheForce) {
 }
 
 TEST(TouchSearch, ANeedleBeforeOrBehindTheCellIsHeld) {
-  Rig rig(4e-6);
+  TouchRig rig(4e-6);
   rig.give_ = 0;
   rig.stiffness_ = 0.05;  // the depth ends it, not the force
   TouchSearch search = searchOf(rig);
@@ -130,7 +130,7 @@ TEST(TouchSearch, ANeedleBeforeOrBehindTheCellIsHeld) {
 }
 
 TEST(TouchSearch, ATouchFarFromTheOutlineIsAnotherContact) {
-  Rig rig(4e-6);
+  TouchRig rig(4e-6);
   rig.seen_lower_ = 6e-6;
   TouchSearch search = searchOf(rig);
   rig.run(search);
@@ -139,14 +139,14 @@ TEST(TouchSearch, ATouchFarFromTheOutlineIsAnotherContact) {
 }
 
 TEST(TouchSearch, AnUncertainTipCountsWhereTheTravelHasIt) {
-  Rig rig(4.1e-6);
+  TouchRig rig(4.1e-6);
   rig.certain_from_ = 2e-6;
   TouchSearch search = searchOf(rig);
   rig.run(search);
   ASSERT_TRUE(search.done()) << search.failure();
   EXPECT_NEAR(search.touchTravel(), rig.gap_, 0.3e-6);
   // What is seen in place of the tip has another gap.
-  Rig astray(4.1e-6);
+  TouchRig astray(4.1e-6);
   astray.certain_from_ = 2e-6;
   astray.astray_ = -23;
   TouchSearch second = searchOf(astray);
@@ -154,7 +154,7 @@ TEST(TouchSearch, AnUncertainTipCountsWhereTheTravelHasIt) {
   ASSERT_TRUE(second.done()) << second.failure();
   EXPECT_NEAR(second.touchTravel(), astray.gap_, 0.3e-6);
   EXPECT_NEAR(*second.outlineTravel(), astray.gap_, 0.3e-6);
-  Rig never(4.1e-6);
+  TouchRig never(4.1e-6);
   never.certain_from_ = 1;
   TouchSearch third = searchOf(never);
   never.run(third);
@@ -163,7 +163,7 @@ TEST(TouchSearch, AnUncertainTipCountsWhereTheTravelHasIt) {
 }
 
 TEST(TouchSearch, DoesNotBeginAtTheCell) {
-  Rig rig(4e-6);
+  TouchRig rig(4e-6);
   rig.seen_lower_ = -5e-6;
   TouchSearch search = searchOf(rig);
   rig.run(search);
@@ -172,7 +172,7 @@ TEST(TouchSearch, DoesNotBeginAtTheCell) {
 }
 
 TEST(TouchSearch, EndsWithItsTravel) {
-  Rig rig(100e-6);
+  TouchRig rig(100e-6);
   TouchSearchConfig config;
   config.largest_travel = 10e-6;
   TouchSearch search = searchOf(rig, config);
@@ -182,7 +182,7 @@ TEST(TouchSearch, EndsWithItsTravel) {
 }
 
 TEST(TouchSearch, EndsWithTheForce) {
-  Rig rig(4e-6);
+  TouchRig rig(4e-6);
   rig.stiffness_ = 10;
   TouchSearch search = searchOf(rig);
   rig.run(search);
@@ -192,7 +192,7 @@ TEST(TouchSearch, EndsWithTheForce) {
 }
 
 TEST(TouchSearch, EndsWhenAForceIsLost) {
-  Rig rig(4e-6);
+  TouchRig rig(4e-6);
   TouchSearch search = searchOf(rig);
   rig.force_.reset();
   rig.run(search);
@@ -200,12 +200,12 @@ TEST(TouchSearch, EndsWhenAForceIsLost) {
 }
 
 TEST(TouchSearch, EndsWithoutFreshImages) {
-  Rig late(4e-6), frozen(4e-6), blind(4e-6);
+  TouchRig late(4e-6), frozen(4e-6), blind(4e-6);
   late.late_ = 100;
   frozen.frozen_ = blind.frozen_ = true;
   frozen.sight_ = TouchSearch::Sight{9.9, 0, 0.2, 16};
   blind.blind_ = "the cell is not seen";
-  for (Rig* rig : {&late, &frozen, &blind}) {
+  for (TouchRig* rig : {&late, &frozen, &blind}) {
     TouchSearch search = searchOf(*rig);
     rig->run(search);
     EXPECT_NE(search.failure().find("no fresh image"), std::string::npos) << search.failure();
@@ -215,17 +215,17 @@ TEST(TouchSearch, EndsWithoutFreshImages) {
 }
 
 TEST(TouchSearch, EndsWhenTheNeedleDoesNotFollow) {
-  Rig rig(4e-6);
+  TouchRig rig(4e-6);
   rig.stuck_ = true;
   TouchSearch search = searchOf(rig);
   rig.run(search);
   EXPECT_NE(search.failure().find("does not follow"), std::string::npos) << search.failure();
-  Rig lost(4e-6);
+  TouchRig lost(4e-6);
   TouchSearch second = searchOf(lost);
   lost.known_ = false;
   lost.run(second);
   EXPECT_NE(second.failure().find("position is not known"), std::string::npos) << second.failure();
-  Rig aside(4e-6);
+  TouchRig aside(4e-6);
   TouchSearch third = searchOf(aside);
   aside.position_.x() += 2e-6;
   third.step(aside.input());
@@ -236,7 +236,7 @@ TEST(TouchSearch, RefusesWhatIsNotFinite) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   for (const TouchSearch::Sight& sight : {TouchSearch::Sight{11, kNan, 0.2, 16}, TouchSearch::Sight{11, 0, kNan, 16},
                                           TouchSearch::Sight{11, 0, 0.2, kNan}}) {
-    Rig rig(4e-6);
+    TouchRig rig(4e-6);
     rig.frozen_ = true;
     rig.sight_ = sight;
     TouchSearch search = searchOf(rig);

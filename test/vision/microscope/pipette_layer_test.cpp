@@ -13,7 +13,7 @@ namespace {
 /// Looks of a bar that absorbs half of the light between the inner walls, and nothing else.
 const PipetteOptics kBar{0, -0.5, 0.4, 0.5, 0, 1e-12};
 
-MicroscopeConfig smallConfig() {
+MicroscopeConfig pipetteConfig() {
   MicroscopeConfig config;
   config.camera.width = 300;
   config.camera.height = 240;
@@ -39,7 +39,7 @@ double lengthIn(const cv::Mat& transmission, const cv::Range& rows, const cv::Ra
 }
 
 TEST(PipetteLayer, TheTipIsWhereItIs) {
-  Microscope microscope(smallConfig());
+  Microscope microscope(pipetteConfig());
   for (const double shift : {0.0, 0.13, 0.5, 0.77}) {
     for (const double focus : {0.0, 5e-6}) {
       MicroscopeScene scene;
@@ -54,7 +54,7 @@ TEST(PipetteLayer, TheTipIsWhereItIs) {
 }
 
 TEST(PipetteLayer, FollowsItsAxisInATurnedAndMirroredView) {
-  MicroscopeConfig config = smallConfig();
+  MicroscopeConfig config = pipetteConfig();
   config.camera.angle = 0.5;
   config.camera.mirrored = true;
   Microscope microscope(config);
@@ -74,7 +74,7 @@ TEST(PipetteLayer, FollowsItsAxisInATurnedAndMirroredView) {
 }
 
 TEST(PipetteLayer, AnInclinedShaftLeavesTheFocus) {
-  MicroscopeConfig config = smallConfig();
+  MicroscopeConfig config = pipetteConfig();
   config.objective.condenser_aperture = 0.3;
   Microscope microscope(config);
   MicroscopeScene scene;
@@ -93,7 +93,7 @@ TEST(PipetteLayer, AnInclinedShaftLeavesTheFocus) {
 
 /// The mouth is where the round lips end: there half of the rim's light is gone, and none before.
 TEST(PipetteLayer, TheMouthIsTheEndOfTheLips) {
-  Microscope microscope(smallConfig());
+  Microscope microscope(pipetteConfig());
   MicroscopeScene scene;
   scene.holding = HoldingPipette{};
   scene.holding->mouth = {0, -2.5e-6};  // row 129.5
@@ -113,7 +113,7 @@ TEST(PipetteLayer, TheMouthIsTheEndOfTheLips) {
 
 TEST(PipetteLayer, WallsAreDarkAndTheCoreIsBright) {
   for (const char* look : {"bright_field", "phase", "dic"}) {
-    MicroscopeConfig config = smallConfig();
+    MicroscopeConfig config = pipetteConfig();
     config.look.kind = look;
     Microscope microscope(config);
     MicroscopeScene scene;

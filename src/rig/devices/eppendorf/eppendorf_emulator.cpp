@@ -12,7 +12,7 @@
 namespace microinjection {
 namespace {
 
-constexpr int kUnknown = 1, kNotRemote = 2, kParameters = 3, kBusy = 4;  // assumed
+constexpr int kUnknownCommand = 1, kNotRemote = 2, kParameters = 3, kBusy = 4;  // assumed
 
 /// Whole numbers, separated by spaces or by their signs; empty for any other text.
 std::optional<std::vector<long>> numbersIn(const std::string& text) {
@@ -54,7 +54,7 @@ void EppendorfEmulator::handleCommand(const std::string& command, double time) {
     goTo(six, name == "C007" ? "A007" : "");
     return name == "C012" ? reply("A012", time) : void();
   }
-  if (name != "C003" && name != "C004" && name != "C005" && name != "C008") return reply(error(kUnknown), time);
+  if (name != "C003" && name != "C004" && name != "C005" && name != "C008") return reply(error(kUnknownCommand), time);
   if (name != "C005" || config_.manual_stops) stop();
   if (name == "C003") position_.setZero();
   remote_ = name == "C004" || (remote_ && name != "C005");

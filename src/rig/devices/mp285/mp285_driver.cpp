@@ -6,11 +6,11 @@
 namespace microinjection {
 namespace {
 
-constexpr double kFineLimit = 1310;  // um/s
-constexpr double kBytePause = 0.04;  // s, longest pause between two bytes of a reply (USB adapters collect for 16 ms)
-constexpr double kCoarseStep = 5;    // microsteps, resolution of a coarse move
-constexpr double kMargin = 5e-6;     // m, from the ends of a move within which it may still be moving
-constexpr int kSlowest = 20;         // um/s, of a short move
+constexpr double kFineLimit = 1310;    // um/s
+constexpr double kBytePause = 0.04;    // s, longest pause between two bytes of a reply (USB adapters collect for 16 ms)
+constexpr double kCoarseStep = 5;      // microsteps, resolution of a coarse move
+constexpr double kMargin = 5e-6;       // m, from the ends of a move within which it may still be moving
+constexpr int kSlowestShortMove = 20;  // um/s, of a short move
 constexpr std::size_t kMoveBytes = 19;  // for a move, sometimes with a speed, including replies
 
 }  // namespace
@@ -222,7 +222,7 @@ Mp285Driver::Speed Mp285Driver::speedFor(const Eigen::Vector3d& displacement) co
   const double per_nominal = metresPerNominalMetre(displacement);
   int um_per_s =
       static_cast<int>(std::lround(std::min(requestedSpeed(displacement), config_.speed) / per_nominal * 1e6));
-  um_per_s = std::max(um_per_s, goal()->follows ? kSlowest : 1);
+  um_per_s = std::max(um_per_s, goal()->follows ? kSlowestShortMove : 1);
   int fastest = std::max(1, static_cast<int>(fastestAlong(displacement) / per_nominal * 1e6 + 1e-6));  // um/s
   const bool fine = std::min(um_per_s, fastest) <= kFineLimit ||
                     distance < 10 * kCoarseStep;  // the rest of a coarse move is a fine move

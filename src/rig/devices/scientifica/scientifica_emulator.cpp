@@ -11,7 +11,7 @@
 namespace microinjection {
 namespace {
 
-constexpr int kUnknown = 3;
+constexpr int kNotUnderstood = 3;
 
 /// Splits a command into words in capitals.
 std::vector<std::string> capitalWords(const std::string& command) {
@@ -61,7 +61,7 @@ void ScientificaEmulator::handleCommand(const std::string& command, double time)
     position_.setZero();
     return reply("A", time);
   }
-  if (!replyToQuery(words, time) && !set(words, time)) reply(error(kUnknown), time);
+  if (!replyToQuery(words, time) && !set(words, time)) reply(error(kNotUnderstood), time);
 }
 
 bool ScientificaEmulator::replyToQuery(const std::vector<std::string>& words, double time) {
@@ -112,11 +112,11 @@ void ScientificaEmulator::goTo(const std::vector<std::string>& words, bool relat
   Eigen::Vector3d end = position_;
   for (std::size_t i = 1; i < words.size(); ++i) {
     const auto number = parseNumber<long>(words[i]);
-    if (i > 3 || !number) return reply(error(kUnknown), time);
+    if (i > 3 || !number) return reply(error(kNotUnderstood), time);
     end[static_cast<Eigen::Index>(i) - 1] =
         (relative ? position_[static_cast<Eigen::Index>(i) - 1] : 0) + static_cast<double>(*number) * stepsPerCount();
   }
-  if (words.size() < 3) return reply(error(kUnknown), time);
+  if (words.size() < 3) return reply(error(kNotUnderstood), time);
   if (moves()) return;
   const double furthest = config_.travel * kStepsPerMetre;
   end_ = end.array().round().max(-furthest).min(furthest);

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "rig/devices/reading_filter.h"
+#include "rig/devices/position_filter.h"
 #include "rig/devices/reply_times.h"
 #include "rig/devices/serial_manipulator.h"
 #include "rig/devices/zaber/zaber_config.h"
@@ -71,7 +71,7 @@ class ZaberDriver : public SerialManipulator {
     double delivered_time, delivered_active_time;  // s of time() and of activeTime(), when the device has received all
   };
   struct Axis {
-    ReadingFilter filter;
+    PositionFilter filter;
     std::optional<double> position;          // m of the device, at `position_time`
     double position_time = 0;                // s
     double last_read = 0;                    // s of activeTime(), of the last accepted reading

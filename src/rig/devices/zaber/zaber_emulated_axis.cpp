@@ -10,9 +10,9 @@
 namespace microinjection {
 namespace {
 
-constexpr double kLongestStep = 0.5e-3;   // s, of the motion's integration
-constexpr double kSpeedData = 1.6384;     // for 1 microstep/s
-constexpr double kAccelData = 1.6384e-4;  // for 1 microstep/s^2
+constexpr double kIntegrationStep = 0.5e-3;  // s, of the motion's integration
+constexpr double kSpeedData = 1.6384;        // for 1 microstep/s
+constexpr double kAccelData = 1.6384e-4;     // for 1 microstep/s^2
 constexpr long long kLargestData = 2147483647;
 
 /// The order of the protocol manual of 2018.
@@ -72,8 +72,8 @@ std::vector<std::string> ZaberEmulatedAxis::flags() const {
 }
 
 void ZaberEmulatedAxis::advance(double time) {
-  for (double left = time; left > 0; left -= kLongestStep) {
-    if (busy()) step(std::min(kLongestStep, left));
+  for (double left = time; left > 0; left -= kIntegrationStep) {
+    if (busy()) step(std::min(kIntegrationStep, left));
     if (!homing_ || busy()) continue;
     homing_ = false;
     referenced_ = true;

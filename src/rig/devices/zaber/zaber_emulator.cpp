@@ -12,8 +12,8 @@
 namespace microinjection {
 namespace {
 
-constexpr double kLongestStep = 0.5e-3;   // s, between two checks whether an axis came to rest
-constexpr std::size_t kLongestLine = 80;  // characters
+constexpr double kRestCheckPeriod = 0.5e-3;  // s, between two checks whether an axis came to rest
+constexpr std::size_t kLongestRequest = 80;  // characters
 
 const std::vector<std::string>& rejections() {
   static const std::vector<std::string> names{"AGAIN",          "BADAXIS", "BADCOMMAND", "BADDATA",
@@ -115,7 +115,7 @@ void ZaberEmulator::shiftByHand(const Eigen::Vector3d& displacement) {
 
 void ZaberEmulator::advance(double time) {
   while (time_ < time) {
-    const double dt = std::min(kLongestStep, time - time_);
+    const double dt = std::min(kRestCheckPeriod, time - time_);
     time_ += dt;
     for (auto& [number, device] : devices_) {
       for (auto& [axis_number, axis] : device.axes) {
@@ -137,7 +137,7 @@ void ZaberEmulator::process(const std::string& bytes, double time) {
     } else if (each == '\n' || each == '\r') {
       if (!line_.empty()) handleCommand(line_.substr(1));
       line_.clear();
-    } else if (!line_.empty() && line_.size() < kLongestLine) {
+    } else if (!line_.empty() && line_.size() < kLongestRequest) {
       line_ += each;
     }
   }

@@ -34,7 +34,7 @@ std::optional<int> number(const std::string& word, std::size_t digits) {
   return value && *value >= 0 && word.size() <= digits ? std::make_optional(static_cast<int>(*value)) : std::nullopt;
 }
 
-bool printable(const std::string& text) {
+bool isPrintable(const std::string& text) {
   for (const char each : text) {
     if (each < ' ' || each > '~') return false;
   }
@@ -121,7 +121,7 @@ std::optional<ZaberMessage> ZaberParser::parse(std::string line) {
                  : line[0] == '#' ? ZaberMessage::Kind::kInfo
                                   : ZaberMessage::Kind::kAlert;
   line.erase(0, 1);
-  if (!printable(line)) return std::nullopt;
+  if (!isPrintable(line)) return std::nullopt;
   const bool has_checksum = line.size() > 3 && line[line.size() - 3] == ':';
   if (has_checksum) {
     const std::string received = line.substr(line.size() - 2);

@@ -12,7 +12,7 @@ namespace {
 constexpr double kVelocityHolds = 0.1;  // s, for which the velocity of a set-point is followed
 constexpr int kMoveTries = 2;
 constexpr long long kSlowestArrival = 16;  // units of speed, about 10 microsteps/s
-constexpr double kSlowest = 10;            // microsteps/s, of an axis in a move
+constexpr double kSlowestAxis = 10;        // microsteps/s, of an axis in a move
 constexpr double kShortestMove = 3;  // microsteps, of a velocity; for an axis that is ahead a shorter one may be none
 
 }  // namespace
@@ -123,7 +123,7 @@ long long ZaberDriver::moveSpeedData(int i) const {
   Eigen::Vector3d displacement;
   for (int k = 0; k < 3; ++k) displacement[k] = end[k] - expected(k, time());
   const double share = displacement.norm() > 0 ? std::abs(displacement[i]) / displacement.norm() : 1;
-  return std::max(1LL, speedData(i, std::max(goal()->speed * share, kSlowest / config_.microsteps_per_metre[i])));
+  return std::max(1LL, speedData(i, std::max(goal()->speed * share, kSlowestAxis / config_.microsteps_per_metre[i])));
 }
 
 /// Sends the speeds and ends of a move one by one, then monitors it. A move's own speed is not

@@ -9,23 +9,25 @@
 namespace microinjection {
 namespace {
 
-struct Client : LineClient {
-  explicit Client(const EppendorfEmulatorConfig& config = {}) : Client(std::make_shared<EppendorfEmulator>(config)) {}
+struct EppendorfClient : LineClient {
+  explicit EppendorfClient(const EppendorfEmulatorConfig& config = {})
+      : EppendorfClient(std::make_shared<EppendorfEmulator>(config)) {}
   std::shared_ptr<EppendorfEmulator> device;
 
  private:
-  explicit Client(const std::shared_ptr<EppendorfEmulator>& emulator) : LineClient(emulator, 19200), device(emulator) {}
+  explicit EppendorfClient(const std::shared_ptr<EppendorfEmulator>& emulator)
+      : LineClient(emulator, 19200), device(emulator) {}
 };
 
 TEST(EppendorfEmulator, HearsEveryEndOfALineAndSaysACarriageReturn) {
-  Client client;
+  EppendorfClient client;
   EXPECT_EQ(client.answers("C001\r"), "A001 5181 V1.08\r");
   EXPECT_EQ(client.answers("C001\n"), "A001 5181 V1.08\r");
   EXPECT_EQ(client.answers("C001\r\n"), "A001 5181 V1.08\r");
 }
 
 TEST(EppendorfEmulator, MovesUnderRemoteControlOnly) {
-  Client client;
+  EppendorfClient client;
   EXPECT_EQ(client.answers("C010\r"), "A010 0 0 0 0\r");
   for (const char* command : {"C008\r", "C012 100 0 0 1000 0 0\r", "C007 100 0 0 1000 0 0\r"}) {
     EXPECT_EQ(client.answers(command).substr(0, 4), "ERR=") << command;
@@ -38,7 +40,7 @@ TEST(EppendorfEmulator, MovesUnderRemoteControlOnly) {
 }
 
 TEST(EppendorfEmulator, AnswersAGoToAtItsBeginOrAtItsEnd) {
-  Client client;
+  EppendorfClient client;
   client.answers("C004\r");
   EXPECT_EQ(client.answers("C012 1000 0 0 1000 0 0\r", 0.3), "A012\r");
   EXPECT_TRUE(client.device->moves());
@@ -50,14 +52,14 @@ TEST(EppendorfEmulator, AnswersAGoToAtItsBeginOrAtItsEnd) {
 }
 
 TEST(EppendorfEmulator, AnAxisWithoutSpeedRests) {
-  Client client;
+  EppendorfClient client;
   client.answers("C004\r");
   client.answers("C012 100 100 100 1000 0 1000\r", 1);
   EXPECT_EQ(client.answers("C010\r"), "A010 100 0 100 0\r");
 }
 
 TEST(EppendorfEmulator, StopsAndTellsWhereItIs) {
-  Client client;
+  EppendorfClient client;
   client.answers("C004\r");
   client.answers("C012 1000 0 0 1000 0 0\r", 0.3);
   EXPECT_EQ(client.answers("C008\r"), "A008\r");
@@ -71,7 +73,7 @@ TEST(EppendorfEmulator, StopsAndTellsWhereItIs) {
 TEST(EppendorfEmulator, StandsAtALimitSwitchAndTellsIt) {
   EppendorfEmulatorConfig config;
   config.travel = 1e-3;
-  Client client(config);
+  EppendorfClient client(config);
   client.answers("C004\r");
   EXPECT_EQ(client.answers("C007 -2000 2000 0 5000 5000 0\r", 1), "A007 9\r");
   EXPECT_EQ(client.answers("C010\r"), "A010 -1000 1000 0 9\r");
@@ -80,14 +82,14 @@ TEST(EppendorfEmulator, StandsAtALimitSwitchAndTellsIt) {
 TEST(EppendorfEmulator, TellsPositionsInOtherForms) {
   EppendorfEmulatorConfig config;
   config.decimals = config.signs_separate = true;
-  Client client(config);
+  EppendorfClient client(config);
   client.answers("C004\r");
   client.answers("C012 100 -200 300 1000 1000 1000\r", 1);
   EXPECT_EQ(client.answers("C010\r"), "A010 100.00-200.00+300.00 0\r");
 }
 
 TEST(EppendorfEmulator, CountsFromZeroWhereItIsSwitchedOnAndIsNotUnderRemoteControl) {
-  Client client;
+  EppendorfClient client;
   client.answers("C004\r");
   client.answers("C012 1000 0 0 1000 0 0\r", 0.3);
   client.device->inject(parseFault("error:RESET"));
@@ -97,7 +99,7 @@ TEST(EppendorfEmulator, CountsFromZeroWhereItIsSwitchedOnAndIsNotUnderRemoteCont
 }
 
 TEST(EppendorfEmulator, RefusesWhatIsNoCommand) {
-  Client client;
+  EppendorfClient client;
   client.answers("C004\r");
   for (const char* command : {"C099\r", "C012 1 2 3\r", "C012 1 2 3 4 5 6 7\r", "C012 1,2,3,4,5,6\r", "C010 1\r", "x\r",
                               "C0101\r", "C012 1 2 3 4 5 6.5\r"}) {

@@ -11,8 +11,8 @@ namespace microinjection {
 namespace {
 
 /// Leaves a pause before what it sends.
-struct Client : LineClient {
-  explicit Client(std::shared_ptr<Mp285Emulator> emulator = std::make_shared<Mp285Emulator>())
+struct Mp285Client : LineClient {
+  explicit Mp285Client(std::shared_ptr<Mp285Emulator> emulator = std::make_shared<Mp285Emulator>())
       : LineClient(emulator, 9600), device(std::move(emulator)) {}
   std::shared_ptr<Mp285Emulator> device;
 };
@@ -28,14 +28,14 @@ std::string move(int x) {
 TEST(Mp285Emulator, TellsTheStatusOfARealOne) {
   const std::vector<int> real{64,  0,  2,  4,  7,  0, 99, 0, 99, 0, 20, 0, 136, 19, 1,  120,
                               112, 23, 16, 39, 80, 0, 0,  0, 25, 0, 4,  0, 200, 0,  84, 1};
-  const std::string said = Client().answers("s\r");
+  const std::string said = Mp285Client().answers("s\r");
   ASSERT_EQ(said.size(), 33u);
   for (std::size_t i = 0; i < real.size(); ++i) EXPECT_EQ(static_cast<unsigned char>(said[i]), real[i]) << i;
   EXPECT_EQ(said.back(), '\r');
 }
 
 TEST(Mp285Emulator, AnswersALineFeedByACarriageReturn) {
-  Client client;
+  Mp285Client client;
   EXPECT_EQ(client.answers("\n"), "\r");
   // Micro-Manager ends its commands with both, and expects two carriage returns; so does an error of it.
   EXPECT_EQ(client.answers("a\r\n"), "\r\r");
@@ -44,7 +44,7 @@ TEST(Mp285Emulator, AnswersALineFeedByACarriageReturn) {
 }
 
 TEST(Mp285Emulator, TellsErrorsAndTheirSumsAsCharacters) {
-  Client client;
+  Mp285Client client;
   EXPECT_EQ(client.answers("x"), "4\r");
   for (int code = 0; code < 8; ++code) {
     client.device->inject(parseFault("error:" + std::to_string(code)));
@@ -58,14 +58,14 @@ TEST(Mp285Emulator, TellsErrorsAndTheirSumsAsCharacters) {
 }
 
 TEST(Mp285Emulator, AnswersAStopAsItStoodOrMoved) {
-  Client client;
+  Mp285Client client;
   EXPECT_EQ(client.answers("\x03"), "\r");
   EXPECT_EQ(client.answers(move(25000)), "");  // 1 mm at 200 um/s
   EXPECT_EQ(client.answers("\x03"), "=\r");
 }
 
 TEST(Mp285Emulator, CountsFromZeroWhereItIsSwitchedOnWithTheSettingsOfDelivery) {
-  Client client;
+  Mp285Client client;
   const std::string delivered = client.answers("s\r");
   EXPECT_EQ(client.answers(std::string("V\x64\x80\r")), "\r");
   EXPECT_NE(client.answers("s\r"), delivered);
@@ -77,7 +77,7 @@ TEST(Mp285Emulator, CountsFromZeroWhereItIsSwitchedOnWithTheSettingsOfDelivery) 
 }
 
 TEST(Mp285Emulator, HearsNoCommandInThePauseAfterAnAnswer) {
-  Client client;
+  Mp285Client client;
   EXPECT_EQ(client.firstBytes("a\r"), "\r");
   EXPECT_EQ(client.answers("c\r", 0.2, 0), "");
   EXPECT_EQ(client.answers("c\r", 0.2, 3e-3).size(), 13u);

@@ -9,12 +9,13 @@
 namespace microinjection {
 namespace {
 
-struct Client : LineClient {
-  explicit Client(const std::string& version = "3.12") : Client(makeDevice(version), version < "3" ? 9600 : 38400) {}
+struct ScientificaClient : LineClient {
+  explicit ScientificaClient(const std::string& version = "3.12")
+      : ScientificaClient(makeDevice(version), version < "3" ? 9600 : 38400) {}
   std::shared_ptr<ScientificaEmulator> device;
 
  private:
-  Client(const std::shared_ptr<ScientificaEmulator>& emulator, double baud)
+  ScientificaClient(const std::shared_ptr<ScientificaEmulator>& emulator, double baud)
       : LineClient(emulator, baud), device(emulator) {}
   static std::shared_ptr<ScientificaEmulator> makeDevice(const std::string& version) {
     ScientificaEmulatorConfig config;
@@ -25,7 +26,7 @@ struct Client : LineClient {
 
 /// What acq4 asks when it connects.
 TEST(ScientificaEmulator, TellsWhatItIsInTheUnitsOfItsVersion) {
-  Client old("2.13"), card("3.12");
+  ScientificaClient old("2.13"), card("3.12");
   EXPECT_EQ(card.answers("scientifica\r"), "Y519\r");
   EXPECT_EQ(card.answers("ver\r"), "3.12\r");
   EXPECT_EQ(card.answers("type\r"), "3.05\r");
@@ -42,7 +43,7 @@ TEST(ScientificaEmulator, TellsWhatItIsInTheUnitsOfItsVersion) {
 
 TEST(ScientificaEmulator, MovesAndTellsItsMotion) {
   for (const char* version : {"2.13", "3.12"}) {
-    Client client(version);
+    ScientificaClient client(version);
     const int per_um = version[0] == '2' ? 10 : 100;
     EXPECT_EQ(client.answers("S\r"), "0\r");
     EXPECT_EQ(client.answers("ABS " + std::to_string(1000 * per_um) + " 0 0\r"), "A\r");
@@ -58,7 +59,7 @@ TEST(ScientificaEmulator, MovesAndTellsItsMotion) {
 
 /// Micro-Manager's stage moves x and y.
 TEST(ScientificaEmulator, TwoNumbersMoveTwoAxes) {
-  Client client("2.13");
+  ScientificaClient client("2.13");
   EXPECT_EQ(client.answers("ABS 1000 2000 3000\r", 2), "A\r");
   EXPECT_EQ(client.answers("abs 500 600\r", 2), "A\r");
   EXPECT_EQ(client.answers("POS\r"), "500\t600\t3000\r");
@@ -68,7 +69,7 @@ TEST(ScientificaEmulator, TwoNumbersMoveTwoAxes) {
 
 /// TOP 12800 of a version 2 card is 1 mm/s, ACC 500 is 19.5 mm/s^2.
 TEST(ScientificaEmulator, MovesAtItsSpeedWithItsRamps) {
-  Client client("2.13");
+  ScientificaClient client("2.13");
   client.answers("TOP 12800\r");
   client.answers("FIRST 1000\r");
   client.answers("ABS 20000 0 0\r", 0);
@@ -83,7 +84,7 @@ TEST(ScientificaEmulator, MovesAtItsSpeedWithItsRamps) {
 }
 
 TEST(ScientificaEmulator, CountsFromZeroWhereItIsSwitchedOnWithTheSettingsOfDelivery) {
-  Client client("2.13");
+  ScientificaClient client("2.13");
   for (const char* command : {"TOP 12800\r", "FIRST 1000\r", "ACC 700\r", "ABS 20000 0 0\r"}) {
     EXPECT_EQ(client.answers(command), "A\r");
   }
@@ -96,7 +97,7 @@ TEST(ScientificaEmulator, CountsFromZeroWhereItIsSwitchedOnWithTheSettingsOfDeli
 }
 
 TEST(ScientificaEmulator, RefusesWhatIsNoCommand) {
-  Client client;
+  ScientificaClient client;
   for (const char* command :
        {"APPROACH\r", "ABS\r", "ABS 1\r", "ABS 1 2 x\r", "ABS 1 2 3 4\r", "ABS 1.5 2 3\r", "FOO 1\r"}) {
     EXPECT_EQ(client.answers(command), "E,3\r") << command;

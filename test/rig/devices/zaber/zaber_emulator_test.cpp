@@ -5,15 +5,10 @@
 #include <gtest/gtest.h>
 
 #include "base/errors.h"
+#include "rig/devices/zaber/with_firmware.h"
 
 namespace microinjection {
 namespace {
-
-ZaberEmulatorConfig withFirmware(const std::string& version) {
-  ZaberEmulatorConfig config;
-  config.firmware = version;
-  return config;
-}
 
 ZaberEmulatorConfig chain() {
   ZaberEmulatorConfig config;

@@ -2,20 +2,16 @@
 
 #include "rig/devices/driver_fixture.h"
 
+#include "rig/devices/zaber/with_firmware.h"
+
 namespace microinjection {
 namespace {
 
-constexpr double kSpeed = 0.2e-3;  // m/s
-
-ZaberEmulatorConfig withFirmware(const std::string& version) {
-  ZaberEmulatorConfig config;
-  config.firmware = version;
-  return config;
-}
+constexpr double kFollowedSpeed = 0.2e-3;  // m/s
 
 class ZaberHorizonTest : public DriverTest<TestedZaber> {
  protected:
-  void follow(double duration, const Eigen::Vector3d& velocity = {kSpeed, 0, 0}) {
+  void follow(double duration, const Eigen::Vector3d& velocity = {kFollowedSpeed, 0, 0}) {
     rig_->run(duration, [&] {
       goal_ += velocity * 1e-3;
       rig_->driver().follow(goal_, velocity);
@@ -37,7 +33,7 @@ TEST_F(ZaberHorizonTest, APulledCableEndsTheMotion) {
   EXPECT_FALSE(rig_->device().moves());
   const double way = (rig_->place() - from).norm();
   EXPECT_GT(way, 0);
-  EXPECT_LT(way, kSpeed * TestedZaber::config().move_horizon);
+  EXPECT_LT(way, kFollowedSpeed * TestedZaber::config().move_horizon);
 }
 
 TEST_F(ZaberHorizonTest, ADeviceThatHearsNothingStops) {
@@ -47,7 +43,7 @@ TEST_F(ZaberHorizonTest, ADeviceThatHearsNothingStops) {
   const Eigen::Vector3d from = rig_->place();
   follow(2.9);
   EXPECT_FALSE(rig_->device().moves());
-  EXPECT_LT((rig_->place() - from).norm(), kSpeed * TestedZaber::config().move_horizon);
+  EXPECT_LT((rig_->place() - from).norm(), kFollowedSpeed * TestedZaber::config().move_horizon);
 }
 
 TEST_F(ZaberHorizonTest, OlderFirmwareFollowsByVelocitiesAndSaysThatTheyDoNotEnd) {
@@ -58,7 +54,7 @@ TEST_F(ZaberHorizonTest, OlderFirmwareFollowsByVelocitiesAndSaysThatTheyDoNotEnd
     goal_ = rig_->place();
     EXPECT_EQ(rig_->driver().abilities().device.find("7.25") == std::string::npos, ends);
     follow(1);
-    EXPECT_LT((rig_->place() - goal_).norm(), kSpeed * rig_->driver().abilities().latency);
+    EXPECT_LT((rig_->place() - goal_).norm(), kFollowedSpeed * rig_->driver().abilities().latency);
     EXPECT_EQ(rig_->device().movesBegun() > 0, ends);
     rig_->wire().disconnectCable();
     rig_->run(1);

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <ros/message_event.h>
+#include <ros/message_traits.h>
+#include <ros/ros.h>
+
+#include <boost/make_shared.hpp>
+#include <boost/shared_ptr.hpp>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <type_traits>
+
+namespace microinjection {
+
+/// A message as a bus delivers it to a subscription, its type erased.
+struct RawDelivery {
+  boost::shared_ptr<const void> message;
+  std::string sender;                        ///< node
+  ros::Time received;                        ///< arrival at the subscriber's process
+  bool latched = false;                      ///< the publisher latches: the message may be of any age
+  boost::shared_ptr<const void> connection;  ///< the same for all messages of a connection
+};
+using RawHandler = std::function<void(const RawDelivery&)>;
+
+/// What a bus has to know of a message type. Buses handle messages with their types erased, so that
+/// their interface can be virtual; these functions restore the type.
+struct MessageType {
+  const char* name;  ///< such as geometry_msgs/PoseStamped
+  const char* md5;   ///< of the definition; different ones do not connect
+
+  ros::Publisher (*advertise)(ros::NodeHandle& node, const std::string& topic, std::uint32_t queue, bool latch);
+  void (*publish)(const ros::Publisher& publisher, const void* message);
+  void (*publish_shared)(const ros::Publisher& publisher, const boost::shared_ptr<const void>& message);
+  ros::Subscriber (*subscribe)(ros::NodeHandle& node, const std::string& topic, std::uint32_t queue,
+                               const RawHandler& handler);
+  /// A copy whose header, if it has one, has this sequence number, as roscpp's publishers count.
+  boost::shared_ptr<const void> (*copy)(const void* message, std::uint32_t sequence);
+};
+
+namespace detail {
+
+template <typename Message>
+bool isLatched(const ros::MessageEvent<const Message>& event) {
+  const auto& header = event.getConnectionHeader();
+  const auto latching = header.find("latching");
+  return latching != header.end() && latching->second == "1";
+}
+
+template <typename Message>
+struct TypedMessage {
+  static ros::Publisher advertise(ros::NodeHandle& node, const std::string& topic, std::uint32_t queue, bool latch) {
+    return node.advertise<Message>(topic, queue, latch);
+  }
+  static void publish(const ros::Publisher& publisher, const void* message) {
+    publisher.publish(*static_cast<const Message*>(message));
+  }
+  static void publishShared(const ros::Publisher& publisher, const boost::shared_ptr<const void>& message) {
+    publisher.publish(boost::const_pointer_cast<Message>(boost::static_pointer_cast<const Message>(message)));
+  }
+  static ros::Subscriber subscribe(ros::NodeHandle& node, const std::string& topic, std::uint32_t queue,
+                                   const RawHandler& handler) {
+    using Event = ros::MessageEvent<const Message>;
+    const auto receive = [handler](const Event& event) {
+      handler({event.getConstMessage(), event.getPublisherName(), event.getReceiptTime(), isLatched(event),
+               event.getConnectionHeaderPtr()});
+    };
+    return node.subscribe<Message, const Event&>(topic, queue, receive, {}, ros::TransportHints().tcpNoDelay());
+  }
+  static boost::shared_ptr<const void> copy(const void* message, std::uint32_t sequence) {
+    const auto copied = boost::make_shared<Message>(*static_cast<const Message*>(message));
+    if constexpr (ros::message_traits::HasHeader<Message>::value) copied->header.seq = sequence;
+    return copied;
+  }
+};
+
+}  // namespace detail
+
+template <typename Message>
+const MessageType& messageType() {
+  using Typed = detail::TypedMessage<Message>;
+  static const MessageType type{ros::message_traits::DataType<Message>::value(),
+                                ros::message_traits::MD5Sum<Message>::value(),
+                                Typed::advertise,
+                                Typed::publish,
+                                Typed::publishShared,
+                                Typed::subscribe,
+                                Typed::copy};
+  return type;
+}
+
+}  // namespace microinjection

@@ -1,0 +1,92 @@
+#include <gtest/gtest.h>
+
+#include "placed_specimen.h"
+
+namespace microinjection {
+namespace {
+
+/// camera.source: topic. The test is another camera's driver, which has the pictures of the virtual microscope.
+class CameraTopicTest : public testing::Test {
+ protected:
+  static constexpr double kRadius = 30e-6;
+  static constexpr char kDriver[] = "/driver/image";
+
+  CameraTopicTest() {
+    YAML::Node microscope = YAML::LoadFile(MICROINJECTION_SOURCE_DIR "/config/microscope.yaml");
+    const YAML::Node camera = YAML::Load(camera_.parameters(5));
+    microscope["rate"] = camera["rate"];
+    microscope["camera"] = camera["camera"];
+    session_.add("microscope", "microscope", microscope, {{"/microscope/image_raw", "/rendered/image_raw"}});
+    session_.add("vision", "{pixel_size: 0.25e-6}");
+    session_.world().hear<sensor_msgs::Image>("/rendered/image_raw");
+    session_.world().publisher<sensor_msgs::Image>(kDriver);
+    states();
+    session_.run(0.1);
+  }
+
+  Probe<cell_microinjection::VisionState>& states() {
+    return session_.world().hear<cell_microinjection::VisionState>("/vision/state");
+  }
+  /// A new image of the microscope.
+  sensor_msgs::Image rendered() {
+    const auto& images = session_.world().hear<sensor_msgs::Image>("/rendered/image_raw");
+    const std::size_t before = images.count();
+    EXPECT_TRUE(session_.until([&] { return images.count() > before; }, 1));
+    return *images.newest();
+  }
+  void send(const sensor_msgs::Image& image) {
+    session_.world().say(kDriver, image);
+    session_.run(0.01);
+  }
+  /// In another format. A grey scene has the same mosaic as a grey image.
+  static sensor_msgs::Image converted(const sensor_msgs::Image& grey, const std::string& encoding, int bytes,
+                                      bool deep = false) {
+    sensor_msgs::Image image = grey;
+    image.encoding = encoding;
+    image.step = grey.width * static_cast<unsigned>(bytes);
+    image.data.clear();
+    for (const std::uint8_t level : grey.data) {
+      if (deep) image.data.push_back(0);  // little-endian: 256 times the level
+      image.data.insert(image.data.end(), static_cast<std::size_t>(deep ? 1 : bytes), level);
+    }
+    return image;
+  }
+  void expectTheCellIsSeen(const sensor_msgs::Image& image) {
+    send(image);
+    const auto* state = states().newest();
+    ASSERT_TRUE(state) << image.encoding;
+    EXPECT_EQ(state->header.stamp, image.header.stamp) << image.encoding;
+    EXPECT_TRUE(cellIsFound(state)) << image.encoding << ": " << state->cell.reason;
+    EXPECT_NEAR(camera_.pixel * state->cell.diameter, 2 * kRadius, 1e-6) << image.encoding;
+  }
+
+  SmallCamera camera_;
+  VirtualSession session_{{"camera.source:=topic", std::string("camera.topic:=") + kDriver, "hand.device:=none"}};
+  PlacedSpecimen specimen_{session_, kRadius};
+};
+
+TEST_F(CameraTopicTest, TheCellIsSeenInTheFormatsOfDrivers) {
+  expectTheCellIsSeen(converted(rendered(), "mono8", 1));
+  expectTheCellIsSeen(converted(rendered(), "rgb8", 3));
+  expectTheCellIsSeen(converted(rendered(), "bayer_rggb8", 1));
+  expectTheCellIsSeen(converted(rendered(), "bgra8", 4));
+  expectTheCellIsSeen(converted(rendered(), "mono16", 2, true));
+}
+
+TEST_F(CameraTopicTest, AShortImageIsNotRead) {
+  send(rendered());
+  ASSERT_EQ(states().count(), 1u);
+  for (int i = 0; i < 8; ++i) {
+    sensor_msgs::Image image = rendered();
+    image.data.pop_back();
+    send(image);
+  }
+  EXPECT_EQ(states().count(), 1u);
+  const sensor_msgs::Image whole = rendered();
+  send(whole);
+  ASSERT_EQ(states().count(), 2u);
+  EXPECT_EQ(states().newest()->header.stamp, whole.header.stamp);
+}
+
+}  // namespace
+}  // namespace microinjection

@@ -1,0 +1,103 @@
+#include <geometry_msgs/PointStamped.h>
+#include <gtest/gtest.h>
+
+#include "action_client.h"
+#include "cell_microinjection/GoToPixelAction.h"
+#include "controlled_needle.h"
+#include "placed_specimen.h"
+#include "vision/calibration/calibration_file.h"
+
+namespace microinjection {
+namespace {
+
+/// The tip is brought to a pixel, on a simulated rig with backlash.
+class VisualServoTest : public testing::Test {
+ protected:
+  static constexpr double kBacklash = 2e-6;  // m
+  // 14 um to the left of the needle and 20 um above it
+  static constexpr double kX = 164, kY = 200;  // px
+
+  VisualServoTest() {
+    writeCalibration(file_, calibration());
+    session_.add("micromanipulator", "{device: {backlash: 2.0e-6}}");
+    session_.add("cell_simulator");
+    session_.add("injection_controller");
+    session_.add("vision");
+    session_.add("visual_servo", "{calibration: " + file_ + "}");
+    session_.add("microscope", camera_.parameters(10));
+    session_.world().hear<geometry_msgs::PointStamped>("/visual_servo/proposed_point");
+    session_.world().hear<cell_microinjection::VisionState>("/vision/state");
+    session_.run(0.5);
+  }
+
+  /// That of the virtual microscope.
+  CameraCalibration calibration() const {
+    CameraCalibration exact;
+    exact.date = "2025-03-04T05:06:07Z";
+    exact.value[kPixelSize] = camera_.pixel;
+    exact.value[kAxisRatio] = 1;
+    exact.value[kBacklashX] = exact.value[kBacklashZ] = kBacklash;
+    exact.value[kTipU] = camera_.origin.x();
+    exact.value[kTipV] = camera_.origin.y();
+    for (const int parameter : {kPixelSize, kAngle, kSkew, kAxisRatio, kBacklashX, kBacklashZ, kTipU, kTipV})
+      exact.estimated[static_cast<std::size_t>(parameter)] = true;
+    exact.points = 32;
+    exact.tips = {exact.tipRecord(exact.date)};
+    return exact;
+  }
+  cell_microinjection::GoToPixelResult go() {
+    cell_microinjection::GoToPixelGoal goal;
+    goal.x = kX;
+    goal.y = kY;
+    action_.send(goal);
+    EXPECT_TRUE(session_.until([&] { return action_.ended(); }, 30));
+    return action_.ended() ? *action_.result() : cell_microinjection::GoToPixelResult();
+  }
+  /// Says that the tip is wanted at a pixel. @returns the answer
+  geometry_msgs::PointStamped propose(const ros::Time& stamp) {
+    geometry_msgs::PointStamped pixel;
+    pixel.header.stamp = stamp;
+    pixel.point.x = kX;
+    pixel.point.y = kY;
+    session_.world().say("/visual_servo/proposed_pixel", pixel);
+    session_.run(0.3);
+    const auto* point = session_.world().hear<geometry_msgs::PointStamped>("/visual_servo/proposed_point").newest();
+    EXPECT_TRUE(point);
+    return point ? *point : geometry_msgs::PointStamped();
+  }
+
+  SmallCamera camera_{440, 640, {219.5, 519.5}};
+  VirtualSession session_{{"camera.source:=sim", "hand.device:=none", "injection.mode:=manual",
+                           "injection.auto_enable:=false", "sensor.source:=none", "injector:=none"}};
+  std::string file_ = session_.folder() / "calibrated.yaml";
+  ControlledNeedle needle_{session_};
+  ActionClient<cell_microinjection::GoToPixelAction> action_{session_.world(), "/visual_servo/go_to_pixel"};
+};
+
+TEST_F(VisualServoTest, BringsTheTipToAPixel) {
+  needle_.enable();
+  const geometry_msgs::PointStamped proposed = propose(session_.now());
+  EXPECT_FALSE(proposed.header.stamp.isZero());
+  EXPECT_EQ(proposed.header.frame_id, "world");
+  EXPECT_TRUE(propose(ros::Time()).header.stamp.isZero());  // it is taken back
+  const auto result = go();
+  ASSERT_TRUE(result.success) << result.message;
+  EXPECT_LT(result.distance, 1);
+  session_.run(0.3);
+  const auto* state = session_.world().hear<cell_microinjection::VisionState>("/vision/state").newest();
+  ASSERT_TRUE(tipIsFound(state));
+  EXPECT_LT((seenTip(*state) - Eigen::Vector2d(kX, kY)).norm(), 2);
+  // The motors stand beside the tip by the backlash, at most.
+  EXPECT_LT((toVector(proposed.point) - needle_.place()).norm(), 1.5 * kBacklash);
+}
+
+TEST_F(VisualServoTest, RefusesADisabledController) {
+  const Eigen::Vector3d start = needle_.place();
+  const auto result = go();
+  EXPECT_FALSE(result.success);
+  EXPECT_NE(result.message.find("must be ENABLED"), std::string::npos) << result.message;
+  EXPECT_LT((needle_.place() - start).norm(), 1e-9);
+}
+
+}  // namespace
+}  // namespace microinjection
