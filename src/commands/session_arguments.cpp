@@ -16,7 +16,7 @@ constexpr char kHelp[] = R"(session: checks a session file, prints it, and write
 Usage: session [SESSION] [KEY:=VALUE ...] [--print | --nodes | --launch OUT | --view OUT] [--only "NODE ..."]
 
 SESSION is a file, or a name of config/sessions (default). KEY:=VALUE, or KEY=VALUE, sets one of its keys, such as
-hand.device:=keyboard; a list or a map is YAML. A key without a value is passed over. config/sessions/default.yaml describes
+hand.device:=keyboard; a list or a map is YAML. A key without a value is passed over. config/sessions/default.yaml has
 all keys. A path in a file is relative to that file, one in KEY:=VALUE to the working directory.
 
 Without an option it only checks. What is wrong is told with file, line, key, value and what is allowed, all at once.

@@ -11,8 +11,6 @@
 namespace microinjection {
 namespace {
 
-constexpr char kAuto[] = "auto";
-
 bool isOneOf(const LayerSection::Words& words, const std::string& value) {
   return std::find(words.begin(), words.end(), value) != words.end();
 }

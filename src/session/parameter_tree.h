@@ -9,6 +9,7 @@ namespace microinjection {
 /// Parameters of a node as a YAML map, and values in it by their path, such as "motion/travel_limit".
 
 YAML::Node emptyMap();
+
 /// Undefined when it is absent.
 YAML::Node parameterAt(const YAML::Node& parameters, const std::string& path);
 /// Makes the maps on the way.

@@ -5,6 +5,9 @@
 
 namespace microinjection {
 
+/// The value of a key whose default follows from other keys, or from a file.
+inline constexpr char kAuto[] = "auto";
+
 /// The allowed values of the keys of a session. Devices are those that have a file in the package.
 struct SessionChoices {
   std::vector<std::string> models, rigs, sensors, injectors, hands, position_types, controller_forces, hand_forces,

@@ -49,7 +49,6 @@ const SpeedKey kSpeeds[] = {{"micromanipulator", "servo_speed_limit"},
                             {kController, "motion/stab_speed"},
                             {"haptic_bridge", "rate_mode/speed_limit"}};
 
-
 class Fit {
  public:
   Fit(const Session& session, const YAML::Node& device)

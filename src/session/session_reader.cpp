@@ -8,7 +8,6 @@
 namespace microinjection {
 namespace {
 
-constexpr char kAuto[] = "auto";
 const std::vector<std::string> kAutomatic = {kAuto};
 const std::vector<std::string> kNone = {""};
 

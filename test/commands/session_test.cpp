@@ -28,10 +28,9 @@ TEST_F(SessionCommand, ReportsAllErrorsALineEach) {
   const Outcome result = run("lab.yaml twin:=perhaps hand.devise=omni --print");
   EXPECT_EQ(result.status, 2);
   EXPECT_EQ(result.out, "");
-  for (const char* part : {"session: "
-                           "/",
-                           "lab.yaml, line 2: rig/name = lathe: must be one of: sim", "lab.yaml, line 4: hand/motion",
-                           "\nsession: argument: twin = perhaps", "\nsession: argument: hand/devise: unknown key"})
+  for (const char* part :
+       {"session: /", "lab.yaml, line 2: rig/name = lathe: must be one of: sim", "lab.yaml, line 4: hand/motion",
+        "\nsession: argument: twin = perhaps", "\nsession: argument: hand/devise: unknown key"})
     EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
 }
 

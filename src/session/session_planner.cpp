@@ -1,0 +1,382 @@
+#include "session/session_plan.h"
+
+#include "base/config_reader.h"
+#include "base/errors.h"
+#include "session/console_view.h"
+#include "session/parameter_tree.h"
+#include "session/session_fit.h"
+#include "session/session_paths.h"
+
+namespace microinjection {
+namespace {
+
+constexpr int kImages = 10, kMoves = 5;  // nice: nodes of images, and those that move the needle by them
+constexpr char kFemtojetCode[] = "901";  // invented for the emulator: that of the device is not published
+
+class Planner {
+ public:
+  Planner(const Session& session, SessionClock clock) : session_(session), clock_(clock) {
+    plan_.files = session.files;
+    plan_.parameters = emptyMap();
+    device_ = session.hand.config.empty() ? emptyMap() : load(session.hand.config);
+  }
+
+  SessionPlan plan() {
+    const SessionFit fit = SessionFit::of(session_, device_);
+    plan_.files.push_back(session_.cell);
+    plan_.files.push_back(session_.rig.urdf);
+    addRig();
+    addSensor();
+    addCells();
+    addInjector();
+    addController();
+    addBridge();
+    addHand();
+    addDisplay();
+    addImages();
+    addRecorders();
+    for (NodePlan& node : plan_.nodes) {
+      const YAML::Node fitted = parameterAt(fit.parameters, node.name);
+      if (fitted.IsDefined()) mergeParameters(node.parameters, fitted);
+      addDeviceRemaps(node.remaps);
+    }
+    for (ForeignProcess& process : plan_.processes) addDeviceRemaps(process.remaps);
+    plan_.parameters["robot_description"] = textValue(fit.robot_description);
+    plan_.text = fit.text;
+    return std::move(plan_);
+  }
+
+ private:
+  using Remaps = std::map<std::string, std::string>;
+
+  YAML::Node load(const std::string& path) {
+    plan_.files.push_back(path);
+    return loadYamlMap(path);
+  }
+  std::string package(const std::string& file) const { return session_.package + "/" + file; }
+  bool live() const { return clock_ == SessionClock::kWall; }
+
+  /// With the parameters of config/PROGRAM.yaml.
+  NodePlan& addConfigured(const std::string& program) {
+    NodePlan& node = add(program, program);
+    mergeParameters(node.parameters, load(package("config/" + program + ".yaml")));
+    return node;
+  }
+  NodePlan& add(const std::string& name, const std::string& program) {
+    NodePlan node;
+    node.name = name;
+    node.program = program;
+    node.parameters = emptyMap();
+    plan_.nodes.push_back(node);
+    return plan_.nodes.back();
+  }
+  static void setText(NodePlan& node, const std::string& path, const std::string& value) {
+    setParameter(node.parameters, path, textValue(value));
+  }
+  static void setFlag(NodePlan& node, const std::string& path, bool value) {
+    setParameter(node.parameters, path, booleanValue(value));
+  }
+  /// Puts the device's file over the parameters of one of its nodes.
+  void mergeDevice(NodePlan& node) {
+    const YAML::Node of_device = parameterAt(device_, node.name);
+    if (of_device.IsDefined()) mergeParameters(node.parameters, of_device);
+  }
+
+  void addRig() {
+    const Session::Rig& rig = session_.rig;
+    const std::string terminal = runtimeFolder() + "/emulated_" + rig.device();
+    const bool is_process = rig.emulated() && live();
+    NodePlan& node = addConfigured("micromanipulator");
+    setParameter(node.parameters, "device", load(rig.config));
+    setText(node, "rig", rig.device());
+    setFlag(node, "allow_network", rig.allow_network);
+    setFlag(node, "emulated", rig.emulated() && !is_process);
+    if (rig.port != "auto") setText(node, "device/port/path", rig.port);
+    if (rig.port == "auto" && rig.emulated()) setText(node, "device/port/path", terminal);
+    if (is_process) {
+      ForeignProcess emulator;
+      emulator.name = rig.name;
+      emulator.package = "cell_microinjection";
+      emulator.program = "emulate";
+      emulator.arguments = {rig.device(), "--link", terminal};
+      plan_.processes.push_back(emulator);
+    }
+    ForeignProcess frames;
+    frames.name = frames.package = frames.program = "robot_state_publisher";
+    plan_.processes.push_back(frames);
+  }
+
+  void addSensor() {
+    if (session_.sensor.source == "none") return;
+    NodePlan& node = addConfigured("force_sensor");
+    setText(node, "source", session_.sensor.source);
+    if (!session_.hidden.empty()) node.remaps["/cell/predicted_cf"] = "/true_cell/predicted_cf";
+    // Not in the URDF: a publisher of frames that waits for the clock of a lock step would wait for the sensor, too.
+    plan_.frames.push_back({"force_sensor_frame", "needle_tip", "force_sensor", session_.sensor.mounting});
+  }
+
+  void addCell(const std::string& name, const std::string& scene, const std::string& model) {
+    NodePlan& node = add(name, "cell_simulator");
+    mergeParameters(node.parameters, load(package("config/cell_simulator.yaml")));
+    setText(node, "scene", scene);
+    setText(node, "model", model);
+    setText(node, "families", package("config/families"));
+    setText(node, "needle", needle());
+  }
+  /// The simulated rig tells the true pose of its needle.
+  std::string needle() const { return session_.rig.simulated() ? "true" : "measured"; }
+
+  void addCells() {
+    if (!session_.hidden.empty()) {
+      addCell("true_cell", session_.hidden, "auto");
+      for (const char* topic : {"predicted_cf", "state", "set_parameters"})
+        plan_.nodes.back().remaps[std::string("/cell/") + topic] = std::string("/true_cell/") + topic;
+      plan_.files.push_back(session_.hidden);
+    }
+    if (session_.twin) {
+      NodePlan& node = addConfigured("cell_estimator");
+      setText(node, "scene", session_.cell);
+      if (!servesEstimate()) setFlag(node, "serve", false);
+      setText(node, "families", package("config/families"));
+    }
+    addCell("cell_simulator", session_.cell, session_.model);
+  }
+  /// Otherwise the simulated cell would follow itself: what the sensor feels, or the image shows, is the served cell.
+  bool servesEstimate() const {
+    if (!session_.hidden.empty()) return true;
+    return session_.sensor.source == "none" ? session_.camera.source != "sim" : session_.sensor.source != "simulated";
+  }
+
+  void addInjector() {
+    const std::string& name = session_.injector;
+    if (name == "none") return;
+    const bool is_emulated = name.rfind("emulated_", 0) == 0;
+    const std::string device = is_emulated ? name.substr(9) : name;
+    NodePlan& node = addConfigured("injector");
+    const bool has_file = device != "simulated" && device != "serial";
+    if (has_file) mergeParameters(node.parameters, load(package("config/injectors/" + device + ".yaml")));
+    if (name == "emulated_femtojet") setText(node, "serial/codes/inject", kFemtojetCode);
+    setText(node, "source", device == "simulated" ? "simulated" : "serial");
+    setText(node, "emulated", is_emulated ? device : "none");
+  }
+
+  void addController() {
+    NodePlan& node = addConfigured("injection_controller");
+    setText(node, "mode", session_.injection.mode);
+    setText(node, "force_source", session_.force.controller);
+    setFlag(node, "auto_enable", session_.injection.auto_enable);
+    setFlag(node, "start_when_enabled", session_.injection.start_when_enabled);
+    setParameter(node.parameters, "goal/layers", integerValue(session_.injection.layers));
+    setFlag(node, "injector", session_.injector != "none");
+    setFlag(node, "commands_in_lockstep", session_.hand.isOperator());
+  }
+
+  void addBridge() {
+    if (!session_.hand.present()) return;
+    const Session::Link& link = session_.link;
+    const bool has_link = link.scheme != "none";
+    NodePlan& bridge = addConfigured("haptic_bridge");
+    setText(bridge, "force_source", session_.force.hand);
+    if (has_link) mergeParameters(bridge.parameters, load(package("config/link.yaml")));
+    setText(bridge, "link/scheme", link.scheme);
+    if (has_link && !link.emulated) bridge.remaps["/link/hand/received"] = "/link/rig/sent";
+    mergeDevice(bridge);
+    if (isCrtk() || isExternal()) setFlag(bridge, "require_operator", session_.hand.require_operator);
+    if (has_link) addLink();
+  }
+
+  void addLink() {
+    const Session::Link& link = session_.link;
+    NodePlan& follower = add("teleoperation_follower", "teleoperation_follower");
+    mergeParameters(follower.parameters, load(package("config/link.yaml")));
+    setText(follower, "force_source", session_.force.hand);
+    if (!link.emulated) {
+      follower.remaps["/link/rig/received"] = "/link/hand/sent";
+      return;
+    }
+    NodePlan& emulator = add("link_emulator", "link_emulator");
+    setParameter(emulator.parameters, "delay", numberValue(link.delay));
+    setParameter(emulator.parameters, "jitter", numberValue(link.jitter));
+    setParameter(emulator.parameters, "loss", numberValue(link.loss));
+    setParameter(emulator.parameters, "seed", integerValue(1));
+  }
+
+  bool isExternal() const { return session_.hand.device == "external"; }
+  /// Its driver speaks CRTK, and haptic_device adapts it.
+  bool isCrtk() const {
+    const YAML::Node kind = parameterAt(device_, "haptic_device/kind");
+    return kind.IsDefined() && kind.IsScalar() && kind.Scalar() == "crtk";
+  }
+
+  void addHand() {
+    if (session_.hand.isOperator()) {
+      NodePlan& node = addConfigured("operator");
+      setText(node, "motion", session_.hand.motion);
+      setFlag(node, "wait_for_go", session_.hand.wait_for_go);
+      plan_.files.push_back(session_.hand.motion);
+      return;
+    }
+    if (live() && parameterAt(device_, "force_watchdog").IsDefined()) addWatchdog();
+    if (parameterAt(device_, "haptic_device").IsDefined()) addAdapter();
+  }
+
+  /// Gives the device zero force in the place of a bridge or an adapter that was killed.
+  void addWatchdog() {
+    NodePlan& node = add("force_watchdog", "force_watchdog");
+    node.respawn = true;
+    mergeDevice(node);
+    if (isExternal()) return;
+    if (isCrtk()) {
+      setText(node, "device", deviceNamespace());
+    } else {
+      setParameter(node.parameters, "kind", parameterAt(device_, "haptic_device/kind"));
+    }
+  }
+
+  void addAdapter() {
+    const Session::Hand& hand = session_.hand;
+    NodePlan& node = add("haptic_device", "haptic_device");
+    node.respawn = true;
+    mergeDevice(node);
+    if (!isCrtk()) return;
+    setText(node, "device", deviceNamespace());
+    setButton(node, "clutch", hand.topics.clutch);
+    setButton(node, "operator_present", hand.topics.operator_present);
+    if (hand.position_type != "auto") setText(node, "position_type", hand.position_type);
+  }
+  static void setButton(NodePlan& node, const std::string& button, const std::string& topic) {
+    if (topic == "auto") return;
+    setText(node, button + "/topic", topic);
+    setParameter(node.parameters, button + "/index", integerValue(0));
+  }
+
+  std::string deviceNamespace() const {
+    if (session_.hand.topics.name_space != "auto") return session_.hand.topics.name_space;
+    const YAML::Node of_file = parameterAt(device_, "haptic_device/device");
+    return of_file.IsDefined() && of_file.IsScalar() ? of_file.Scalar() : "/haptic";
+  }
+  /// A device without an adapter has the topics of ours under names of its own.
+  void addDeviceRemaps(Remaps& remaps) const {
+    if (!isExternal()) return;
+    const Session::Topics& topics = session_.hand.topics;
+    const std::string space = deviceNamespace();
+    const auto named = [&](const std::string& topic, const char* otherwise) {
+      return topic == "auto" ? space + "/" + otherwise : topic;
+    };
+    remaps["/haptic/measured_cp"] = space + "/measured_cp";
+    remaps["/haptic/servo_cf"] = named(topics.force, "servo_cf");
+    remaps["/haptic/clutch"] = named(topics.clutch, "clutch");
+    remaps["/haptic/operator_present"] = named(topics.operator_present, "operator_present");
+  }
+
+  /// Another driver's images.
+  Remaps imageRemaps() const {
+    return session_.camera.source == "topic" ? Remaps{{"/microscope/image_raw", session_.camera.topic}} : Remaps{};
+  }
+
+  void addDisplay() {
+    const Session::Display& display = session_.display;
+    if (!display.markers) return;
+    NodePlan& node = addConfigured("display");
+    node.nice = kImages;
+    node.remaps = imageRemaps();
+    const bool has_console = display.console != "none";
+    if (!display.rviz && !has_console) return;
+    ForeignProcess rviz;
+    rviz.name = rviz.package = rviz.program = "rviz";
+    // The nodes at 1 kHz have priority; but a stop button must not wait for an idle processor.
+    rviz.prefix = has_console ? "nice -n 5" : "chrt --idle 0";
+    // rviz misreads numbers below 1 under locales with a decimal comma.
+    rviz.environment["LC_ALL"] = "C";
+    rviz.remaps = imageRemaps();
+    if (has_console) {
+      rviz.arguments = {"-d"};
+      rviz.view = consoleView(session_.package, display.console);
+    } else {
+      rviz.arguments = {"-d", package("config/session.rviz")};
+    }
+    plan_.processes.push_back(rviz);
+  }
+
+  void addImages() {
+    const std::string& source = session_.camera.source;
+    if (source == "none") return;
+    const std::size_t first = plan_.nodes.size();
+    addVision();
+    if (!session_.record.folder.empty()) {
+      NodePlan& recorder = addConfigured("image_recorder");
+      recorder.nice = kImages;
+      setText(recorder, "output_dir", session_.record.folder);
+    }
+    if (source == "sim") {
+      NodePlan& node = addConfigured("microscope");
+      node.nice = kImages;
+      setText(node, "needle", needle());
+    } else if (source != "topic") {
+      addCamera();
+    }
+    for (std::size_t i = first; i < plan_.nodes.size(); ++i) {
+      plan_.nodes[i].remaps = imageRemaps();
+      if (!session_.hidden.empty()) plan_.nodes[i].remaps["/cell/state"] = "/true_cell/state";
+    }
+  }
+
+  void addVision() {
+    NodePlan& vision = addConfigured("vision");
+    vision.nice = kImages;
+    setText(vision, "scene", session_.cell);
+    setText(vision, "families", package("config/families"));
+    addConfigured("calibration").nice = kMoves;
+    addConfigured("visual_servo").nice = kMoves;
+    addConfigured("focus").nice = kImages;
+    addConfigured("touch").nice = kMoves;
+  }
+
+  void addCamera() {
+    const Session::Camera& camera = session_.camera;
+    NodePlan& node = add("camera", "camera");
+    node.nice = kMoves;
+    if (camera.source == "device") {
+      mergeParameters(node.parameters, load(camera.config));
+      return;
+    }
+    setText(node, "source", camera.source);
+    setText(node, "path", camera.path);
+    // A video has a rate of its own.
+    setParameter(node.parameters, "rate", integerValue(camera.source == "folder" ? 10 : 0));  // 1/s
+    setFlag(node, "loop", true);
+  }
+
+  void addRecorders() {
+    if (!session_.notebook.empty()) {
+      NodePlan& notebook = add("notebook", "notebook");
+      const std::string name = session_.cell.substr(session_.cell.rfind('/') + 1);
+      setText(notebook, "file", session_.notebook);
+      setText(notebook, "cell", name.substr(0, name.find('.')));
+    }
+    const Session::Record& record = session_.record;
+    if (record.folder.empty()) return;
+    NodePlan& node = add("session_recorder", "session_recorder");
+    node.required = true;
+    setText(node, "output_dir", record.folder);
+    setFlag(node, "hand", session_.hand.present());
+    setFlag(node, "injector", session_.injector != "none");
+    setFlag(node, "bag", record.bag);
+    setFlag(node, "end_when_done", record.end_when_done);
+    if (record.trainee.empty()) return;
+    setParameter(node.parameters, "training", load(record.training));
+    setText(node, "training/operator", record.trainee);
+    setText(node, "training/history", record.history);
+  }
+
+  const Session& session_;
+  SessionClock clock_;
+  YAML::Node device_;  // the file of the hand's device
+  SessionPlan plan_;
+};
+
+}  // namespace
+
+SessionPlan planOf(const Session& session, SessionClock clock) { return Planner(session, clock).plan(); }
+
+}  // namespace microinjection
