@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "nodes/runtime/message_guard.h"
 #include "nodes/runtime/stamps.h"
@@ -44,29 +45,42 @@ DimpleReader::DimpleReader(Bus& bus, const ImageContactConfig& config)
 void DimpleReader::startCell(double radius) {
   contact_ = ImageContact(config_, radius);
   places_.clear();
+  waiting_.reset();
 }
 
 void DimpleReader::follow(const ros::Time& stamp, const Eigen::Vector3d& tip, bool learns) {
   if (!places_.empty()) {
     const double since = secondsBetween(places_.back().stamp, stamp);
-    if (since < 0) places_.clear();  // time was set back
+    if (since < 0) {  // time was set back
+      places_.clear();
+      waiting_.reset();
+    }
     if (since >= 0 && since < kSpacing) return;
   }
   places_.push_back({stamp, tip, learns});
+  if (waiting_ && waiting_->exposed <= stamp) add(*std::exchange(waiting_, std::nullopt));
 }
 
 void DimpleReader::onState(const cell_microinjection::VisionState& message) {
   const std::optional<Depth> depth = depthIn(message);
   if (!depth || !(message.pixel_size > 0)) return;
-  const ros::Time& exposed = message.header.stamp;
-  const auto after = std::find_if(places_.begin(), places_.end(), [&](const Place& p) { return p.stamp >= exposed; });
+  const Sight sight{message.header.stamp, message.pixel_size * depth->value, message.pixel_size * depth->deviation};
+  if (places_.empty() || places_.back().stamp < sight.exposed) {
+    waiting_ = sight;
+  } else {
+    add(sight);
+  }
+}
+
+void DimpleReader::add(const Sight& sight) {
+  const auto after =
+      std::find_if(places_.begin(), places_.end(), [&](const Place& p) { return p.stamp >= sight.exposed; });
   if (after == places_.begin() || after == places_.end()) return;
   const Place &next = *after, &last = *(after - 1);
   const double step = secondsBetween(last.stamp, next.stamp);
   if (step > kFarthest || !next.learns || !last.learns || (next.tip - last.tip).norm() > kFastest * step) return;
-  const double share = secondsBetween(last.stamp, exposed) / step;
-  contact_.add(last.tip + share * (next.tip - last.tip), message.pixel_size * depth->value,
-               message.pixel_size * depth->deviation);
+  const double share = secondsBetween(last.stamp, sight.exposed) / step;
+  contact_.add(last.tip + share * (next.tip - last.tip), sight.depth, sight.deviation);
 }
 
 }  // namespace microinjection
