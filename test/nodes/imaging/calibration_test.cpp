@@ -102,10 +102,12 @@ TEST_F(CalibrationTest, RefusesWhileTheControllerMayCommand) {
 }
 
 TEST_F(CalibrationTest, RefusesAFieldThatIsTooSmallOrNotFinite) {
-  for (const double field : {1e-6, -60e-6, static_cast<double>(NAN), 0.5}) {
+  const std::pair<double, const char*> cases[] = {
+      {1e-6, "field"}, {-60e-6, "field"}, {NAN, "field"}, {0.5, "duration"}};
+  for (const auto& [field, reason] : cases) {
     send(field);
     EXPECT_FALSE(result().success) << field;
-    EXPECT_NE(result().message.find("field"), std::string::npos) << field << ": " << result().message;
+    EXPECT_NE(result().message.find(reason), std::string::npos) << field << ": " << result().message;
   }
   EXPECT_FALSE(std::filesystem::exists(file_));
 }

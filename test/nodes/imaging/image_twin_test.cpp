@@ -1,6 +1,7 @@
 #include <actionlib_msgs/GoalStatus.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "action_client.h"
@@ -72,13 +73,16 @@ TEST_F(ImageTwinTest, TheImageMovesTheServedCell) {
   EXPECT_EQ(estimate().served_modulus, kModulus);
   EXPECT_NE(estimate().held.find("no valid force of the sensor"), std::string::npos) << estimate().held;
   const auto pairs = forces_.pairs();
+  const double largest = FeltForces::largest(pairs);
   std::size_t compared = 0;
+  double worst = 0;
   for (const ForcePair& pair : pairs) {
-    if (pair.truth <= 0.3 * FeltForces::largest(pairs)) continue;
+    if (pair.truth <= 0.3 * largest) continue;
     ++compared;
-    EXPECT_LT(std::abs(pair.error()), 0.1) << 1e9 * pair.truth << " nN";
+    worst = std::max(worst, std::abs(pair.error()));
   }
   EXPECT_GT(compared, 1000u);  // half a second at depth, and more
+  EXPECT_LT(worst, 0.1);
 }
 
 }  // namespace
