@@ -76,7 +76,7 @@ TEST_F(ZaberHorizonTest, ADeviceThatIsChangedForAnotherIsAskedAgain) {
   EXPECT_EQ(rig_->driver().state(), State::kReady) << rig_->driver().reason();
 }
 
-/// As the rigs' contract has it (test/chain/rig_contract_test.py), for what is told and for the truth.
+/// As the rigs' contract has it (contract_test.cpp), for what is told and for the truth.
 TEST_F(ZaberHorizonTest, IsNeverAheadNorFartherBehindThanItsAbilitiesSay) {
   for (const char* version : {"6.28", "7.25"}) {
     for (const double speed : {2e-6, 20e-6, 200e-6}) {
