@@ -30,9 +30,7 @@ class HapticWorld {
   void run(double seconds) { session_.run(seconds); }
 
   /// The bridge's force (N), from now on.
-  void force(double x, double y, double z) {
-    world().repeat("haptic/servo_cf", wrenchMessage(x, y, z, "haptic"));
-  }
+  void force(double x, double y, double z) { world().repeat("haptic/servo_cf", wrenchMessage(x, y, z, "haptic")); }
   void silenceForce() { world().silence("haptic/servo_cf"); }
 
   /// The hand (m) that the bridge is told.

@@ -28,7 +28,8 @@ class ScriptedNeedle {
   void publish(const geometry_msgs::PoseStamped& message) { session_.world().repeat(topic_, message); }
 
   /// Straight to a height (m) at `speed` (m/s), one pose each millisecond. `after`: is called after each of them.
-  void moveTo(double goal, double speed, const std::function<void()>& after = [] {}) {
+  void moveTo(
+      double goal, double speed, const std::function<void()>& after = [] {}) {
     const double start = z;
     const int steps = std::max(1, static_cast<int>(std::lround(1e3 * std::abs(goal - start) / speed)));
     for (int i = 1; i <= steps; ++i) {

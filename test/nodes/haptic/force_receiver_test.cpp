@@ -38,6 +38,7 @@ struct ReceivingDevice {
   const char* force;  // topic
   std::shared_ptr<void> (*listen_to_force)(TestNode&, const std::string&);
 };
+void PrintTo(const ReceivingDevice& device, std::ostream* out) { *out << device.kind; }
 template <typename Position, typename Force>
 ReceivingDevice receivingDevice(const char* kind, const char* position, const char* force) {
   return {kind, position, tell<Position>, force,
@@ -49,7 +50,9 @@ class FollowedDevice {
  public:
   explicit FollowedDevice(const ReceivingDevice& kind)
       : kind_(kind),
-        session_({std::string("hand.device:=") + kind.kind, isExternal() ? "hand.require_operator:=false" : ""}),
+        session_({std::string("hand.device:=") + kind.kind,
+                  // Of devices that may have no such button; for the others it is the default.
+                  std::string("hand.require_operator:=") + (isExternal() ? "false" : "true")}),
         device_(session_.addTestNode("device")),
         status_(isExternal() ? "haptic_bridge: loop" : "haptic_device: device"),
         other_(kind.listen_to_force(session_.world(), kind.force)) {

@@ -113,7 +113,7 @@ void HapticContractTest::expectThatTheDeadManLeads() {
   const double stroke = rest_.z() - needle().z();
   EXPECT_GT(stroke, 2e-6) << "the needle follows when the dead-man is held down first";
   EXPECT_LT(stroke, 6e-6);
-  session_.run(0.05);
+  session_.run(0.1);
   const Eigen::Vector3d held = needle();
   runTo("taken up");
   EXPECT_LT((needle() - held).norm(), 5e-9) << "let go, the needle stays";
