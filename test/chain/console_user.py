@@ -30,9 +30,8 @@ class ConsoleUser:
         cls.picture = logs / "screen.png"
         cls.screen = Screen(logs / "xvfb.log", SIZE)
         cls.environment = {**os.environ, **cls.screen.environment}
-        # clock:=external: the time stays that of the session which the test looks at.
-        cls.rviz = Child(["roslaunch", "cell_microinjection", "session.launch", "clock:=external", "cell:=mouse_oocyte",
-                          f"console:={name}", "only:=display rviz"], logs / "rviz.log", cls.environment)
+        cls.rviz = Child(["roslaunch", "cell_microinjection", "session.launch", "cell:=mouse_oocyte", f"console:={name}",
+                          "only:=display rviz"], logs / "rviz.log", cls.environment)
         cls.sent = []
         cls.listener = rospy.Subscriber("/controller/state_command", StringStamped,
                                         lambda message: cls.sent.append(message.string))

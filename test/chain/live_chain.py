@@ -2,7 +2,9 @@
 
 import math
 import os
+import signal
 import subprocess
+import sys
 import threading
 
 import rosgraph
@@ -46,16 +48,15 @@ class Master:
 
 
 def chain_parameters():
-    """{node: parameters} of the chain with a live cell and the simulated rig."""
+    """{node: parameters} of the chain with the cell of a family, which costs little, and the simulated rig."""
     patient = {key: TIMEOUT for key in ("hand", "needle", "predicted", "measured", "controller")}
-    scene = str(PACKAGE / "test/chain/coarse_oocyte.yaml")
+    cell = {"scene": str(PACKAGE / "config/cells/mouse_oocyte_pipette.yaml"), "families": str(PACKAGE / "config/families")}
     return {
         "haptic_bridge": parameters("haptic_bridge", rate=RATE, timeouts=patient),
         "injection_controller": parameters("injection_controller", rate=RATE, auto_enable=True, input_timeout=TIMEOUT),
         "micromanipulator": {**rig(), "rate": RATE, "command_timeout": TIMEOUT},
         "injector": parameters("injector"),
-        "cell_simulator": parameters("cell_simulator", rate=RATE, scene=scene, model="live", needle="true",
-                                     needle_timeout=TIMEOUT),
+        "cell_simulator": parameters("cell_simulator", rate=RATE, needle="true", needle_timeout=TIMEOUT, **cell),
         "force_sensor": parameters("force_sensor", rate=RATE, input_timeout=TIMEOUT)}
 
 
@@ -87,6 +88,43 @@ class Hand:
             self._publisher.publish(message)
             self._clutch.publish(Joy(header=message.header, buttons=[0]))
             rospy.rostime.wallsleep(1 / RATE)
+
+
+class HandProcess:
+    """A Hand that is a process of its own, so that it may be killed and frozen. It takes the force, too: the bridge leads no
+    needle without a device that does. `enter`: a command that runs another one in its place, as on another host;
+    `environment`: variables instead of those of the test."""
+
+    enter, environment = (), {}
+
+    def __init__(self):
+        self._start()
+
+    def _start(self, clock=0.0):
+        code = (f"import rospy; now = rospy.Time.now; rospy.Time.now = lambda: now() + rospy.Duration({clock});"
+                "from geometry_msgs.msg import WrenchStamped; from live_chain import Hand;"
+                "rospy.init_node('hand', anonymous=True); rospy.Subscriber('/haptic/servo_cf', WrenchStamped, lambda _: None);"
+                "Hand(); rospy.spin()")
+        environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), **self.environment}
+        self._process = subprocess.Popen([*self.enter, sys.executable, "-c", code], env=environment, stdin=subprocess.DEVNULL)
+
+    def fail(self, how):
+        self._process.send_signal(signal.SIGKILL if how == "killed" else signal.SIGSTOP)
+
+    def recover(self, how):
+        if how == "frozen":
+            return self._process.send_signal(signal.SIGCONT)
+        self._process.wait()
+        self._start()
+
+    def set_clock(self, ahead):
+        """Starts anew with a clock that is so many s ahead."""
+        self.end()
+        self._start(ahead)
+
+    def end(self):
+        self._process.kill()
+        self._process.wait()
 
 
 class LiveChain:

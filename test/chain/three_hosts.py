@@ -4,7 +4,6 @@ bridge) and solver (cell). Each fault of the page on time-outs, and pulled cable
 import os
 import signal
 import subprocess
-import sys
 import time
 
 import numpy as np
@@ -12,7 +11,7 @@ import rospy
 from geometry_msgs.msg import PoseStamped
 
 import lossy_network
-from live_chain import TIMEOUT, LiveChain, until
+from live_chain import TIMEOUT, HandProcess, LiveChain, until
 from lossy_network import HostNamespace, LossySwitch
 from messages import position
 
@@ -29,41 +28,10 @@ FAULTS = [(how, who) for who in ("hand", "haptic_bridge", "injection_controller"
           for how in ("killed", "frozen")] + [("pulled", host) for host in ADDRESSES] + [("frozen", "master")]
 
 
-class RemoteHand:
-    """live_chain.Hand in a process on the host `haptic`."""
+class RemoteHand(HandProcess):
+    """On the host `haptic`."""
 
-    place = None  # the host
-
-    def __init__(self):
-        self._start()
-
-    def _start(self, clock=0.0):
-        # `clock`: s that its host's clock is ahead. The bridge leads no needle without a device that takes the force.
-        code = (f"import rospy; now = rospy.Time.now; rospy.Time.now = lambda: now() + rospy.Duration({clock});"
-                "from geometry_msgs.msg import WrenchStamped; from live_chain import Hand;"
-                "rospy.init_node('hand', anonymous=True); rospy.Subscriber('/haptic/servo_cf', WrenchStamped, lambda _: None);"
-                "Hand(); rospy.spin()")
-        environment = {**os.environ, "ROS_IP": self.place.address, "PYTHONPATH": os.pathsep.join(sys.path)}
-        self._process = subprocess.Popen([*self.place.enter, sys.executable, "-c", code], env=environment,
-                                         stdin=subprocess.DEVNULL)
-
-    def fail(self, how):
-        self._process.send_signal(signal.SIGKILL if how == "killed" else signal.SIGSTOP)
-
-    def recover(self, how):
-        if how == "frozen":
-            return self._process.send_signal(signal.SIGCONT)
-        self._process.wait()
-        self._start()
-
-    def set_clock(self, ahead):
-        """Starts anew on a host whose clock is so many s ahead."""
-        self.end()
-        self._start(ahead)
-
-    def end(self):
-        self._process.kill()
-        self._process.wait()
+    environment = {"ROS_IP": ADDRESSES["haptic"]}
 
 
 class ThreeHosts:
@@ -89,8 +57,8 @@ class ThreeHosts:
         import rosgraph
         until(rosgraph.is_master_online, "a master")
         rospy.init_node("watcher_of_three_hosts")
-        RemoteHand.place = self.hosts["haptic"]
         enter = {node: [*self.hosts[host].enter, "env", f"ROS_IP={ADDRESSES[host]}"] for node, host in PLACES.items()}
+        RemoteHand.enter = self.hosts["haptic"].enter
         self.chain = LiveChain({}, hand=RemoteHand, enter=enter)
         self._subscriber = rospy.Subscriber("/needle/measured_cp", PoseStamped, self._poses.append)
         self.chain.check_follows()

@@ -16,7 +16,7 @@ WAY = np.array([3e-6, -2e-6, 5e-6])  # m
 RESOLUTION = 0.1e-6  # m: two steps of the coarser rig
 
 
-class SessionRigTest(unittest.TestCase):
+class RigLiveTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.seen = {}
@@ -81,4 +81,4 @@ class SessionRigTest(unittest.TestCase):
 
 if __name__ == "__main__":
     rospy.init_node("mover")
-    rostest.rosrun("cell_microinjection", "session_rig", SessionRigTest)
+    rostest.rosrun("cell_microinjection", "rig_live", RigLiveTest)

@@ -30,7 +30,7 @@ class StoppedTerminal:
         termios.tcflow(self.slave, termios.TCOOFF)
 
 
-class StoppedTerminalTest(unittest.TestCase):
+class TerminalTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.master = Master()
@@ -78,4 +78,4 @@ class StoppedTerminalTest(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    rostest.rosrun("cell_microinjection", "stopped_terminal", StoppedTerminalTest)
+    rostest.rosrun("cell_microinjection", "terminal", TerminalTest)

@@ -15,13 +15,12 @@ from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseStamped, WrenchStamped
 
 from cell_microinjection.msg import InjectionPulse, InjectorState
-from killable_nodes import PACKAGE, KillableNodes, parameters, rig
-from live_chain import Master, until
+from killable_nodes import KillableNodes
+from live_chain import RATE, Master, chain_parameters, until
 from messages import force, pose, position
 
 LOST = "the ROS master is lost"
 STILL = 2e-9  # m
-RATE = 200  # Hz
 
 
 class Heard:
@@ -42,7 +41,7 @@ class Hand:
     """Presses until it feels the cell, whenever the others are ready; then up and down in it, so that the needle never
     rests by itself."""
 
-    PRESSED = 0.3  # N
+    PRESSED = 0.15  # N
     SPEED, STROKE = 5e-3, 0.5e-3  # m/s, m
 
     def __init__(self, feels):
@@ -70,20 +69,12 @@ class Hand:
             rospy.rostime.wallsleep(1 / RATE)
 
 
-class KillMasterTest(unittest.TestCase):
+class MasterTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.master = Master()
         rospy.init_node("master_killer")
-        # A machine that stalls must not hold the needle here, nor nodes in real time keep the test from the processor.
-        patient = {key: 1.0 for key in ("hand", "needle", "predicted", "controller")}
-        scene = str(PACKAGE / "test/chain/coarse_oocyte.yaml")
-        cls.nodes = KillableNodes(
-            {"haptic_bridge": parameters("haptic_bridge", rate=RATE, timeouts=patient),
-             "injection_controller": parameters("injection_controller", rate=RATE, auto_enable=True, input_timeout=1.0),
-             "micromanipulator": {**rig(), "rate": RATE, "command_timeout": 1.0}, "injector": parameters("injector"),
-             "cell_simulator": parameters("cell_simulator", rate=RATE, scene=scene, model="live", needle="true",
-                                          needle_timeout=1.0)})
+        cls.nodes = KillableNodes({node: settings for node, settings in chain_parameters().items() if node != "force_sensor"})
         cls.felt, cls.needle = Heard("/haptic/servo_cf", WrenchStamped), Heard("/needle/measured_cp", PoseStamped)
         cls.injector = Heard("/injector/state", InjectorState)
         cls.diagnostics = Heard("/diagnostics", DiagnosticArray)
@@ -178,4 +169,4 @@ class KillMasterTest(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    rostest.rosrun("cell_microinjection", "kill_master", KillMasterTest)
+    rostest.rosrun("cell_microinjection", "master", MasterTest)
