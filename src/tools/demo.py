@@ -49,8 +49,9 @@ def parse_arguments():
     parser.add_argument('--model', choices=('auto', 'prepared', 'live', 'explicit'), default='auto',
                         help='prepared: converged force, of a family or made ready first (minutes, once); live: P1 tetrahedra, at '
                         'once; auto: prepared where the cell can be')
-    parser.add_argument('--clock', choices=('wall', 'lockstep'), default='wall',
-                        help='wall time, or a simulated clock that gives the same bits on any machine')
+    parser.add_argument('--clock', choices=('wall', 'virtual'), default='wall',
+                        help='wall: live nodes on wall time; virtual: all nodes in one process, many times faster, the same '
+                        'bytes in each run, without rviz')
     parser.add_argument('--rig', default='sim',
                         help='sim, a real one: eppendorf, mp285, scientifica, zaber; or emulated_ before its name (%(default)s)')
     parser.add_argument('--haptic', choices=('operator', 'external', 'none'), default='operator',
@@ -108,12 +109,21 @@ class Demo:
             say('the cell cannot be prepared (see above): it will be live')
             self._arguments.model = 'live'
 
+    def _keys(self):
+        """The session's keys that differ from config/sessions/default.yaml."""
+        return {'cell': self._scene(), 'model': self._arguments.model, 'rig.name': self._arguments.rig,
+                'hand.device': self._arguments.haptic, 'hand.motion': self._arguments.motion.resolve(),
+                'record.folder': self._out, 'record.trainee': self._arguments.operator}
+
+    def simulate(self):
+        say('simulating the session on virtual time')
+        if full_solution.simulate(self._keys()) != 0:
+            raise DemoError('the session did not end well, see above')
+        self._check_injection(demo_summary.injection(self._out / 'force_depth.csv'))
+
     def start(self):
         say(f'starting the session; its log is in {self._logs}')
-        self._session = DemoSession(ROOT / 'launch' / 'session.launch', self._logs, {
-            'cell': self._scene(), 'model': self._arguments.model, 'rig.name': self._arguments.rig,
-            'hand.device': self._arguments.haptic, 'hand.motion': self._arguments.motion.resolve(),
-            'record.folder': self._out, 'record.trainee': self._arguments.operator}, clock=self._arguments.clock)
+        self._session = DemoSession(ROOT / 'launch' / 'session.launch', self._logs, self._keys())
         self._session.wait_ready()
         if not self._arguments.no_rviz:
             self._start_rviz()
@@ -234,6 +244,13 @@ class Demo:
             self._session.stop()
 
 
+def simulate(demo, arguments):
+    """The same session on virtual time, by the program simulate."""
+    demo.prepare()
+    demo.simulate()
+    demo.report()
+
+
 def interrupt(number, _frame):
     raise KeyboardInterrupt(signal.Signals(number).name)
 
@@ -252,11 +269,12 @@ def run(demo, arguments):
 
 def main():
     arguments = parse_arguments()
+    arguments.no_rviz = arguments.no_rviz or arguments.clock == 'virtual'
     for number in (signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, interrupt)
     demo = Demo(arguments)
     try:
-        run(demo, arguments)
+        (run if arguments.clock == 'wall' else simulate)(demo, arguments)
     except (DemoError, SessionError, RvizError, full_solution.FullSolutionError, OSError) as error:
         sys.exit(f'demo: {error}')
     except KeyboardInterrupt:

@@ -1,4 +1,7 @@
-"""The closing summary of a demo from the recorder's summary.yaml."""
+"""The closing summary of a demo from the recorder's files."""
+import csv
+from types import SimpleNamespace
+
 import yaml
 
 
@@ -31,6 +34,14 @@ def layers(path):
         return yaml.safe_load(file).get('layers') or []
 
 
+def injection(path):
+    """What an injection came to, from the last row of force_depth.csv: as SessionMonitor has it of a live one."""
+    with open(path, encoding='utf-8') as file:
+        last = list(csv.DictReader(file))[-1]
+    return SimpleNamespace(punctures=int(last['layers_punctured']), volume=float(last['injected_volume_m3'] or 0),
+                           injection=last['injection_state'])
+
+
 def training(path):
     """Returns a training session's score as text for people."""
     with open(path, encoding='utf-8') as file:
@@ -48,7 +59,7 @@ def text(path):
     """Returns the summary as text for people."""
     with open(path, encoding='utf-8') as file:
         summary = yaml.safe_load(file)
-    clock = 'simulated time, in lock step' if summary['clock'] == 'lockstep' else 'wall time'
+    clock = {'wall': 'wall time', 'virtual': 'virtual time'}.get(summary['clock'], summary['clock'])
     lines = ['', f'Session of {_figure(summary["duration_s"])} s of {clock}. Steps that each node really did:']
     rows = [('node', 'topic', 'steps', 'rate (Hz)', 'median interval (ms)', '99 % (ms)')]
     for node in summary['nodes'] or []:

@@ -1,4 +1,4 @@
-"""The programs around a session that solve the scene in full: what makes it ready, and what judges it afterwards."""
+"""The programs around a session: what makes it ready, runs it on virtual time, and judges it afterwards."""
 import os
 import subprocess
 from pathlib import Path
@@ -21,6 +21,13 @@ def prepare(scene):
     it is prepared."""
     families = Path(__file__).resolve().parents[2] / 'config' / 'families'
     return subprocess.run([_program('prepare'), '--scene', str(scene), '--families', str(families)], check=False).returncode == 0
+
+
+def simulate(keys):
+    """Runs a session on virtual time, with progress. `keys`: those that differ from the default session's. @returns the exit
+    status."""
+    return subprocess.run([_program('simulate'), 'default', *(f'{key}:={value}' for key, value in keys.items() if value)],
+                          check=False).returncode
 
 
 def check_family(family, members, seed, kept, table):
