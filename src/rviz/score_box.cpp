@@ -48,7 +48,7 @@ ScoreBox::ScoreBox(QWidget* parent) : QWidget(parent), text_(new ElidedLabel(1, 
     rows_.push_back(new GuardRow(this, "deformation ", "00.00 of 00.00 uN "));
     layout->addWidget(rows_.back(), 1 + i / kColumns, i % kColumns);
   }
-  text_->setText("this session is not scored: start it with record:=FOLDER operator:=NAME");
+  text_->setText("this session is not scored: start it with record:=FOLDER set:=record.trainee=NAME");
 }
 
 void ScoreBox::start(SessionLink& link) {

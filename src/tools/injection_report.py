@@ -129,7 +129,7 @@ def page(rows, title):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split('\n')[0])
-    parser.add_argument('notebook', help='CSV file that a session has written (notebook:=)')
+    parser.add_argument('notebook', help='CSV file that a session has written (its key notebook)')
     parser.add_argument('--out', help='HTML file; default: beside the notebook')
     parser.add_argument('--day', help='YYYY-MM-DD; default: all rows')
     arguments = parser.parse_args()
