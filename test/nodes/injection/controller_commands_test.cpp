@@ -11,12 +11,12 @@ using cell_microinjection::InjectionStatus;
 using cell_microinjection::OperatingState;
 using geometry_msgs::PoseStamped;
 
-constexpr char kStatus[] = "injection_controller: control";
-
 /// A command without a stamp whose publisher latches comes again to a controller that starts anew: it moves nothing
 /// then. Said again it is obeyed, as those of CRTK clients are.
 class ControllerCommandsTest : public testing::Test {
  protected:
+  static constexpr char kStatus[] = "injection_controller: control";
+
   /// Without a stamp, by who latches.
   void say(const std::string& word) {
     cell_microinjection::StringStamped message;

@@ -19,12 +19,13 @@ using cell_microinjection::StringStamped;
 using geometry_msgs::PoseStamped;
 using geometry_msgs::WrenchStamped;
 
-constexpr char kStatus[] = "injection_controller: control";
 constexpr char kTarget[] = "teleop/servo_cp", kNeedle[] = "needle/measured_cp", kForce[] = "cell/predicted_cf";
 
 /// The controller alone. The test is the hand's bridge, a needle that is where it is sent, the cell and the injector.
 class ControllerTrustTest : public testing::Test {
  protected:
+  static constexpr char kStatus[] = "injection_controller: control";
+
   ControllerTrustTest() {
     world_.hear<PoseStamped>("needle/servo_cp");
     world_.hear<InjectionStatus>("controller/injection_state");

@@ -99,11 +99,11 @@ class InjectionChain {
  private:
   static std::vector<std::string> completed(std::vector<std::string> overrides) {
     // The ways through the air are shorter than by config.
+    const std::string motion = "overrides.injection_controller.motion.";
     for (const std::string& more :
          {std::string("hand.device:=none"), std::string("display.markers:=false"), std::string("model:=live"),
           "cell:=" + testFile("scenes/injected_oocyte.yaml"), std::string("injection.start_when_enabled:=false"),
-          std::string("overrides:={injection_controller: {motion: {stab_speed: 20e-6, approach_speed: 40e-6, "
-                      "retract_speed: 80e-6}}}")}) {
+          motion + "stab_speed:=20e-6", motion + "approach_speed:=40e-6", motion + "retract_speed:=80e-6"}) {
       overrides.push_back(more);
     }
     return overrides;

@@ -66,7 +66,7 @@ const std::vector<Bad> kBad = {
     {"cell_simulator", "{model: prepared}", {"model = prepared", "needle/tip/shape = disc"}},
     {"cell_simulator", "{model: prepared, scene: " + kRounded + "}", {"model = prepared", "prepare --scene"}},
     {"cell_simulator", "{model: guessed}", {"model = guessed", "auto, prepared, live, explicit"}},
-    {"cell_simulator", "{rate: 1e6}", {"rate = 1e+06", "[50, 5000]"}},
+    {"cell_simulator", "{rate: 1e6}", {"rate = 1e6", "[50, 5000]"}},
     {"cell_simulator", "{extrapolation_limit: 0.0}", {"extrapolation_limit = 0", "(0, inf)"}},
     {"display", "{rate: -1}", {"rate = -1"}},
     {"focus", "{step: 0}", {"step = 0"}},
@@ -91,7 +91,7 @@ const std::vector<Bad> kBad = {
     {"image_recorder", "{rate: 0}", {"rate = 0", "[1, 1000]"}},
     {"injection_controller", "{force_limit: -1e-6}", {"force_limit = -1", "(0, inf)"}},
     {"injection_controller", "{mode: moon, rate: 1}", {"mode = moon", "manual, semi_automatic, automatic", "rate = 1"}},
-    {"injector", "{pipette: {tip_radius: -1e-6}}", {"tip_radius = -1e-06", "(0, inf)"}},
+    {"injector", "{pipette: {tip_radius: -1e-6}}", {"tip_radius = -1e-6", "(0, inf)"}},
     {"injector", "{source: serial}", {"serial/path is missing", "serial/pulse is missing"}},
     {"link_emulator", "{loss: 2}", {"loss = 2"}},
     {"micromanipulator", "{collision_margin: -1}", {"collision_margin = -1", "[0, inf)"}},
@@ -118,7 +118,7 @@ const std::vector<Bad> kBad = {
      "{source: serial, serial: {path: /dev/tty7, matrix: [1e-4, 0, 0, 2e-4], offset: [2.5, 2.5]}}",
      {"source = serial", "/dev/tty7", "virtual time"}},
     {"injector",
-     "{source: serial, serial: {path: /dev/tty7, pulse_pressure: 20e3, pulse_duration: 0.5, "
+     "{source: serial, serial: {path: /dev/tty7, pulse_pressure: 20e3, pulse_duration: 0.5, refuse: NO, "
      "pulse: [{send: GO, expect: OK}]}}",
      {"source = serial", "/dev/tty7", "virtual time"}},
 };
@@ -200,7 +200,7 @@ TEST_P(OutOfRange, IsRefusedByName) {
   const auto& [node, changes, words] = GetParam();
   NodeParameters nodes;
   YAML::Node parameters = nodes.good(node);
-  for (const auto& entry : YAML::Load(changes)) parameters[entry.first] = entry.second;
+  for (const auto& entry : YAML::Load(changes)) parameters[entry.first.as<std::string>()] = entry.second;
   const std::string refusal = nodes.refusal(node, parameters);
   for (const std::string& word : words)
     EXPECT_NE(refusal.find(word), std::string::npos) << refusal << " has no " << word;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -40,6 +42,14 @@ inline std::string readFile(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in) throw std::runtime_error("there is no file " + path.string());
   return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// Of a cell of a table. @throws std::runtime_error when it has none
+inline double toNumber(const std::string& text) {
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != '\0') throw std::runtime_error("no number: " + text);
+  return value;
 }
 
 /// A table of a session, by the names of its columns.

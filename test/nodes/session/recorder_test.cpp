@@ -56,9 +56,9 @@ TEST_F(RecorderTest, WhereNothingIsWrongNothingIsSaid) {
   EXPECT_EQ(files(), (std::set<std::string>{"force_depth.csv", "session.bag", "summary.yaml"}));
   const auto rows = this->rows("force_depth.csv");
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    EXPECT_NEAR(std::stod(rows[i].at("time_s")), kPeriod * static_cast<double>(i), 1e-9);
+    EXPECT_NEAR(toNumber(rows[i].at("time_s")), kPeriod * static_cast<double>(i), 1e-9);
   }
-  EXPECT_NEAR(std::stod(rows.back().at("tip_z_m")) - std::stod(rows.front().at("tip_z_m")),
+  EXPECT_NEAR(toNumber(rows.back().at("tip_z_m")) - toNumber(rows.front().at("tip_z_m")),
               1e-6 * kPeriod * static_cast<double>(rows.size() - 1), 1e-12);
 }
 
@@ -68,8 +68,8 @@ TEST_F(RecorderTest, KilledItLeavesTheRowsUntilThen) {
   session_.executive().kill("session_recorder");
   const auto rows = this->rows("force_depth.csv.active");
   ASSERT_FALSE(rows.empty());
-  const double last = std::stod(rows.back().at("time_s"));
-  EXPECT_EQ(std::stod(rows.front().at("time_s")), 0);
+  const double last = toNumber(rows.back().at("time_s"));
+  EXPECT_EQ(toNumber(rows.front().at("time_s")), 0);
   EXPECT_GE(last, 1.5 - 0.06);  // of which 0.05 are the patience for messages
   EXPECT_EQ(rows.size(), static_cast<std::size_t>(std::lround(last / kPeriod)) + 1);
   EXPECT_FALSE(rows.back().at("tip_z_m").empty());

@@ -84,7 +84,7 @@ TEST_F(SimulationTest, ADurationEndsItWithoutAWordOfTheHand) {
   EXPECT_NEAR(result.simulated, 2, 1e-9);
   EXPECT_EQ(result.warnings, std::vector<std::string>());
   const auto rows = CsvRows(file("short", "force_depth.csv")).all();
-  EXPECT_NEAR(std::stod(rows.back().at("time_s")), 2, 0.011);
+  EXPECT_NEAR(toNumber(rows.back().at("time_s")), 2, 0.011);
   // Longer than the hand's way.
   config.duration = 3;
   EXPECT_NEAR(simulate(session("long", {{"approach", 0.5, -1e-3, false}}), config).simulated, 3, 1e-9);
@@ -118,7 +118,10 @@ TEST_F(SimulationTest, ANodeThatDoesNotStartIsNamed) {
 TEST_F(SimulationTest, ANodeThatEndsByAnErrorIsNamedAndEndsTheSession) {
   const std::vector<Waypoint> way = {{"approach", 0.5, -1e-3, false}};
   std::filesystem::create_directories(folders_.path() / "failing" / "summary.yaml");  // in the place of the file
-  const SimulationResult result = simulate(session("failing", way, {"record.end_when_done:=true"}), {});
+  SimulationConfig config;
+  config.duration = 5;
+  // The recorder ends with the hand, in a step.
+  const SimulationResult result = simulate(session("failing", way, {"record.end_when_done:=true"}), config);
   ASSERT_EQ(result.failures.size(), 1u);
   EXPECT_EQ(result.failures[0].find("session_recorder: "), 0u) << result.failures[0];
   EXPECT_NE(result.failures[0].find("summary.yaml: cannot be written"), std::string::npos) << result.failures[0];

@@ -26,7 +26,7 @@ inline std::vector<TrainingMeasure> trainingMeasures(const std::vector<CsvRows::
   using Row = CsvRows::Row;
   using Point = std::array<double, 3>;
   const auto number = [](const Row& row, const std::string& name) {
-    return row.at(name).empty() ? std::numeric_limits<double>::quiet_NaN() : std::stod(row.at(name));
+    return row.at(name).empty() ? std::numeric_limits<double>::quiet_NaN() : toNumber(row.at(name));
   };
   const auto tip = [&](const Row& row) {
     return Point{number(row, "tip_x_m"), number(row, "tip_y_m"), number(row, "tip_z_m")};

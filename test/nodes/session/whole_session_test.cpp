@@ -53,7 +53,7 @@ class WholeSessionTest : public testing::Test {
   static std::vector<double> numbers(const std::string& column, const std::set<std::string>& phases) {
     std::vector<double> values;
     for (const auto& row : rows()) {
-      if (phases.count(row.at("phase")) > 0 && !row.at(column).empty()) values.push_back(std::stod(row.at(column)));
+      if (phases.count(row.at("phase")) > 0 && !row.at(column).empty()) values.push_back(toNumber(row.at(column)));
     }
     return values;
   }
@@ -85,7 +85,7 @@ TEST_F(WholeSessionTest, TheNeedleTouchesIndentsAndComesOut) {
   const auto touched =
       std::find_if(rows().begin(), rows().end(), [](auto& row) { return row.at("in_contact") == "1"; });
   ASSERT_NE(touched, rows().end());
-  EXPECT_LT(std::abs(std::stod(touched->at("depth_m"))), 0.06e-6);  // of 10 um/s in the 5 ms of a row
+  EXPECT_LT(std::abs(toNumber(touched->at("depth_m"))), 0.06e-6);  // of 10 um/s in the 5 ms of a row
   const std::vector<double> depths = numbers("depth_m", {"indent", "hold"});
   const double deepest = *std::max_element(depths.begin(), depths.end());
   EXPECT_GT(deepest, 2.5e-6);  // of 4 um meant: the hand yields
@@ -114,8 +114,8 @@ TEST_F(WholeSessionTest, TheSummaryHasTheStepsOfEachNode) {
 TEST_F(WholeSessionTest, TheHandYields) {
   const auto held = std::find_if(rows().rbegin(), rows().rend(), [](auto& row) { return row.at("phase") == "hold"; });
   ASSERT_NE(held, rows().rend());
-  const double force = std::stod(held->at("hand_force_N")), depth = std::stod(held->at("depth_m"));
-  EXPECT_NEAR(force, 2e5 * std::stod(held->at("predicted_axial_N")), 0.02 * force);
+  const double force = toNumber(held->at("hand_force_N")), depth = toNumber(held->at("depth_m"));
+  EXPECT_NEAR(force, 2e5 * toNumber(held->at("predicted_axial_N")), 0.02 * force);
   const double yielded = force / 400 + force / 2000;  // m, of hand (N/m) and coupling
   EXPECT_NEAR(depth + 1e-3 * yielded, 4e-6, 0.03e-6);
 }
@@ -128,7 +128,7 @@ TEST_F(WholeSessionTest, TheHandInjects) {
     const std::string& state = row.at("injection_state");
     // By hand idle lasts one cycle, which a row each 5 ms may miss.
     if (!state.empty() && state != "idle" && (states.empty() || states.back() != state)) states.push_back(state);
-    if (state == "inject") volumes.push_back(std::stod(row.at("injected_volume_m3")));
+    if (state == "inject") volumes.push_back(toNumber(row.at("injected_volume_m3")));
   }
   const auto indent = std::find(states.begin(), states.end(), "indent");
   EXPECT_EQ(std::vector<std::string>(indent, states.end()),
@@ -157,7 +157,7 @@ TEST_F(WholeSessionTest, TheSessionIsScored) {
     SCOPED_TRACE(measure.name);
     const YAML::Node row = told["measures"][measure.name];
     EXPECT_NEAR(row["value"].as<double>() / measure.value, 1, 1e-5);
-    EXPECT_NEAR(std::stod(history[1].at(measure.name)) / measure.value, 1, 1e-5);
+    EXPECT_NEAR(toNumber(history[1].at(measure.name)) / measure.value, 1, 1e-5);
     const double ratio = measure.value / task[measure.task].as<double>();
     const double share = measure.is_met_exactly ? 1 - std::abs(ratio - 1) : std::min(1., 2 - ratio);
     EXPECT_GT(share, 0) << "a task that tells something";
