@@ -145,9 +145,9 @@ class SummaryTest(InFolder):
         for wanted in ('cell_simulator', '1234', '999.800', 'median 2.500 ms', 'max 40 ms', 'wall time'):
             self.assertIn(wanted, text)
 
-    def test_in_lock_step_it_has_none(self):
-        text = demo_summary.text(self.write('s.yaml', 'clock: lockstep\nduration_s: 12.5\n' + self.NODES))
-        self.assertIn('lock step', text)
+    def test_in_virtual_time_it_has_none(self):
+        text = demo_summary.text(self.write('s.yaml', 'clock: virtual\nduration_s: 12.5\n' + self.NODES))
+        self.assertIn('virtual time', text)
         self.assertNotIn('hand to force', text)
 
 

@@ -137,5 +137,5 @@ class Project:
                 self.services |= {f'/{node}/{name}' for name in re.findall(r'advertiseService[^;"]*\(\s*"(\w+)"', source)}
         self.topics |= self.services
         self.topics |= set(re.findall(r'<param name="(/[a-z_/]+)"', self.sources('launch/*')))
-        self.topics |= {'/use_sim_time', '/lockstep/participants'} & set(re.findall(r'/[a-z_/]+', self.sources('launch/*')))
+        self.topics |= {'/use_sim_time'} & set(re.findall(r'/[a-z_/]+', self.sources('launch/*')))
         self.parts = {part for name in self.topics for part in ('/'.join(name.split('/')[:n]) for n in range(2, 5))}

@@ -71,32 +71,24 @@ class EmulatedRate {
 /// A message with the states of two buttons.
 sensor_msgs::Joy toJoy(const ros::Time& now, bool first, bool second = false);
 
-/// Receives a force message without a header. Such a topic is outside of the lock step, so each
-/// step waits for the message of the last tick, from the third tick on, when all are connected.
+/// Receives a force message without a header.
 template <typename Message>
 class UnstampedForce {
  public:
   using Handler = std::function<void(const Message& message, const ros::Time& received)>;
 
   UnstampedForce(Cycle& cycle, const std::string& topic, const Handler& handler)
-      : bus_(cycle.bus()),
-        lockstep_(cycle.deterministic() && !bus_.isVirtual()),
-        handler_(handler),
-        subscription_(bus_.subscribe<Message>(topic, 100, [this](const Delivery<Message>& delivery) {
+      : handler_(handler),
+        subscription_(cycle.bus().subscribe<Message>(topic, 100, [this](const Delivery<Message>& delivery) {
           waiting_.emplace_back(delivery.message, delivery.raw.received);
         })) {}
 
   void process() {
-    constexpr double kForEver = std::numeric_limits<double>::infinity();
-    if (lockstep_ && ++steps_ > 2) bus_.waitUntil([this] { return !waiting_.empty(); }, kForEver);
     for (const auto& [message, received] : waiting_) handler_(*message, received);
     waiting_.clear();
   }
 
  private:
-  Bus& bus_;
-  bool lockstep_;
-  unsigned steps_ = 0;
   Handler handler_;
   std::vector<std::pair<boost::shared_ptr<const Message>, ros::Time>> waiting_;  ///< and when they arrived
   Subscription subscription_;

@@ -38,7 +38,7 @@ EmulatedHapticNode::EmulatedHapticNode(Bus& bus)
           [this](const auto& force, const ros::Time& received) { meter_.addForce(force, received); })),
       force_(cycle_.output<geometry_msgs::WrenchStamped>("emulated_haptic/measured_cf")),
       phase_(cycle_.output<cell_microinjection::StringStamped>("operator/phase", true)) {
-  if (cycle_.deterministic() && driver_->hasUnstampedButtons()) {
+  if (cycle_.bus().isVirtual() && driver_->hasUnstampedButtons()) {
     present_ = &cycle_.input<sensor_msgs::Joy>("haptic/operator_present", InputPhase::kSampled,
                                                std::numeric_limits<double>::infinity());
   }

@@ -11,7 +11,6 @@
 #include "base/standard_output.h"
 #include "commands/session_arguments.h"
 #include "session/launch_file.h"
-#include "session/lockstep.h"
 
 namespace microinjection {
 namespace {
@@ -26,18 +25,11 @@ std::string digest(const SessionPlan& plan, const SessionArguments& arguments) {
   return contentHash(all);
 }
 
-std::string participantsText(const SessionPlan& plan) {
-  return "  <rosparam param=\"/lockstep/participants\">[" + join(lockstepParticipants(plan), ", ") + "]</rosparam>\n";
-}
-
 void writeLaunchFile(SessionPlan plan, const SessionArguments& arguments) {
-  const std::string participants = arguments.clock == "lockstep" ? participantsText(plan) : "";
   if (!arguments.only.empty()) plan.keepOnly(arguments.only);
   const std::string view_file = arguments.launch + ".rviz", view = rvizView(plan);
   if (!view.empty()) writeFileAtomically(view_file, view);
-  std::string text = launchText(plan, view_file);
-  text.insert(text.find('\n') + 1, participants);
-  writeFileAtomically(arguments.launch, text);
+  writeFileAtomically(arguments.launch, launchText(plan, view_file));
 }
 
 void writeView(const SessionPlan& plan, const std::string& path) {
@@ -48,8 +40,7 @@ void writeView(const SessionPlan& plan, const std::string& path) {
 
 void run(const SessionArguments& arguments) {
   const Session session = Session::load(arguments.session, arguments.keys);
-  if (arguments.clock == "lockstep") requireLockstep(session);
-  SessionPlan plan = planOf(session, arguments.clock == "wall" ? SessionClock::kWall : SessionClock::kVirtual);
+  SessionPlan plan = planOf(session, SessionClock::kWall);
   const std::string text = plan.text;
   if (!arguments.launch.empty()) {
     writeLaunchFile(plan, arguments);

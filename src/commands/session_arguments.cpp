@@ -60,8 +60,6 @@ std::optional<SessionArguments> parseSessionArguments(int argc, char** argv) {
       "writes a roslaunch file, and prints a digest of all files that the session is made from");
   add("view", po::value(&arguments.view)->value_name("OUT"), "writes the configuration of the session's rviz");
   add("only", po::value(&only)->value_name("NODES"), "names separated by spaces: nothing else takes part; empty: all");
-  add("clock", po::value(&arguments.clock)->value_name("CLOCK"),
-      "wall: live; lockstep: with the participants of a lock step; external: on the time of /clock");
   po::variables_map given;
   try {
     po::positional_options_description first;
@@ -78,7 +76,6 @@ std::optional<SessionArguments> parseSessionArguments(int argc, char** argv) {
   }
   ConfigErrors errors;
   errors.require(positional.size() < 2, "SESSION", join(positional, " "), "", "one file or name");
-  errors.requireOneOf({"wall", "lockstep", "external"}, "--clock", arguments.clock);
   errors.require(given.count("launch") == 0 || !arguments.launch.empty(), "--launch", "", "", "the path of a file");
   errors.throwAny();
   if (!positional.empty() && !positional.front().empty()) arguments.session = positional.front();

@@ -12,7 +12,6 @@ struct SessionArguments {
   std::string launch, view;           ///< files to write; empty: none
   bool print = false, nodes = false;  ///< prints the session, its nodes
   std::vector<std::string> only;      ///< nodes; empty: all
-  std::string clock = "wall";         ///< wall, lockstep, external
 };
 
 /// Nothing after printing the help. Ignores the arguments that roslaunch adds. Throws ConfigError.

@@ -37,13 +37,13 @@ CellSimulatorNode::CellSimulatorNode(Bus& bus)
                                                        parameters_.needle_timeout)),
       force_(cycle_.output<geometry_msgs::WrenchStamped>("cell/predicted_cf")),
       state_(cycle_.output<cell_microinjection::CellState>("cell/state", true)) {
-  parameters_.models.online.fixed_period = cycle_.deterministic();
+  parameters_.models.online.fixed_period = cycle_.bus().isVirtual();
   const Scene scene = loadScene(parameters_.scene);
   chosen_ = makeCell(scene);
   cell_ = std::make_unique<PlacedCell>(*chosen_.cell);
   invalid_reason_.reserve(200);  // no allocation in a step
   using Thread = CellStatePublisher::Thread;
-  const auto thread = cycle_.deterministic() ? Thread::kOfTheStep : Thread::kOwn;
+  const auto thread = cycle_.bus().isVirtual() ? Thread::kOfTheStep : Thread::kOwn;
   state_publisher_ = std::make_unique<CellStatePublisher>(*cell_, scene, state_, parameters_.state_rate, thread);
   parameter_server_ =
       std::make_unique<CellParameterServer>(chosen_.change.get(), chosen_.unchangeable, *cell_, scene.radius(), cycle_);

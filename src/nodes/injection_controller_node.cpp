@@ -42,7 +42,6 @@ InjectionControllerNode::Parameters InjectionControllerNode::Parameters::read(co
   reader.choice("force_source", parameters.force_source, {"predicted", "measured"});
   reader.boolean("auto_enable", parameters.auto_enable);
   reader.boolean("injector", parameters.injector);
-  reader.boolean("commands_in_lockstep", parameters.commands_in_lockstep);
   parameters.model = InjectionControllerConfig::read(reader);
   reader.finish();
   return parameters;
@@ -83,13 +82,6 @@ InjectionControllerNode::InjectionControllerNode(Bus& bus)
 
 void InjectionControllerNode::subscribeCommands() {
   using cell_microinjection::StringStamped;
-  if (cycle_.deterministic() && parameters_.commands_in_lockstep) {
-    auto& input = cycle_.input<StringStamped>(kControllerCommandTopic, InputPhase::kSampled,
-                                              std::numeric_limits<double>::infinity());
-    input.stamp_rule = StampRule::kAny;
-    input.onMessage([this](const StringStamped& message, const ros::Time&) { receiveCommand(message, false, false); });
-    return;
-  }
   commands_ = subscribeCommand<StringStamped>(
       cycle_.bus(), kControllerCommandTopic,
       [this](const StringStamped& message, const CommandSource& source) {

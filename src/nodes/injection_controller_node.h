@@ -50,7 +50,6 @@ class InjectionControllerNode {
     std::string force_source = "predicted";
     bool auto_enable = false;
     bool injector = true;
-    bool commands_in_lockstep = false;
     InjectionControllerConfig model;
     static Parameters read(const Bus& bus);
   };

@@ -23,7 +23,7 @@ namespace microinjection {
 /// The injector: a pressure regulator behind the pipette, simulated or real, with the same topics.
 /// Each pulse is executed once, or refused with the reason in the state. A repeated id is ignored,
 /// an old message refused. A held pulse ends when its sender is stale, and any pulse when the ROS
-/// master is lost. In lock step the publisher of pulse and stop is a participant.
+/// master is lost.
 ///
 /// In:  /injector/pulse (InjectionPulse), /injector/stop (StringStamped, the reason; ends the pulse
 ///      at any age), /injector/set_balance (sensor_msgs/FluidPressure: fluid_pressure, Pa, gauge,

@@ -45,9 +45,9 @@ MicromanipulatorNode::MicromanipulatorNode(Bus& bus, ConfigReader reader)
       cycle_(bus, parameters_.rate),
       commands_(cycle_, parameters_.model, rig_, model_, parameters_.allow_network),
       publisher_(cycle_, geometry_, rig_, model_, parameters_.joint_states_rate) {
-  if (cycle_.deterministic() && !rig_.inject) {
+  if (cycle_.bus().isVirtual() && !rig_.inject) {
     throw ConfigError("rig = " + parameters_.rig +
-                      ": a real rig cannot take part in lock step or virtual time, it moves on while time stands");
+                      ": a real rig cannot run in virtual time, it moves on while time stands");
   }
   cycle_.diagnostics().add("commands", [this](auto& status) { commands_.report(status); });
   cycle_.onStep([this](const Cycle::Tick& tick) { step(tick); });

@@ -21,9 +21,9 @@ namespace microinjection {
 namespace {
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
-constexpr double kRecorderRate = 100;                  // Hz, live
-constexpr Nanoseconds kMaxDelay = 2000000000;          // largest delay of a message
-constexpr Nanoseconds kMaxDelayInLockstep = 50000000;  // none is late, but the cell has its own rate for contacts
+constexpr double kRecorderRate = 100;                     // Hz, live
+constexpr Nanoseconds kMaxDelay = 2000000000;             // largest delay of a message
+constexpr Nanoseconds kMaxDelayInVirtualTime = 50000000;  // none is late, but the cell has its own rate for contacts
 
 Nanoseconds stampOf(const ros::Time& time) { return static_cast<Nanoseconds>(time.toNSec()); }
 
@@ -83,7 +83,7 @@ SessionRecorderNode::SessionRecorderNode(Bus& bus)
     : parameters_(Parameters::read(bus)),
       cycle_(bus, kRecorderRate),
       files_(parameters_.output_dir, SessionTable::kHeader, parameters_.bag),
-      table_(std::llround(1e9 * parameters_.row_period), cycle_.deterministic() ? kMaxDelayInLockstep : kMaxDelay,
+      table_(std::llround(1e9 * parameters_.row_period), cycle_.bus().isVirtual() ? kMaxDelayInVirtualTime : kMaxDelay,
              [this](const std::string& line) { files_.rows().append(line); }),
       predicted_(cycle_.input<geometry_msgs::WrenchStamped>("cell/predicted_cf", InputPhase::kSampled, 0.05)),
       needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/measured_cp", InputPhase::kSampled, 0.05)),
@@ -110,7 +110,7 @@ SessionRecorderNode::SessionRecorderNode(Bus& bus)
   fillTable();
   if (files_.bag()) recordBag(*files_.bag());
   cycle_.diagnostics().add("files", [this](auto& status) { files_.report(status); });
-  if (!cycle_.deterministic()) measureMachine();
+  if (!cycle_.bus().isVirtual()) measureMachine();
   bus.onEnd([this] { finish(); });
   cycle_.onStep([this](const Cycle::Tick& tick) { step(tick); });
 }
@@ -229,7 +229,7 @@ void SessionRecorderNode::step(const Cycle::Tick& tick) {
   if (table_.done() && parameters_.end_when_done) cycle_.bus().stop();
 }
 
-/// In lock step an invalid value arrives as silence, not as a message.
+/// An input may become invalid without a message: by a clock that was set back.
 void SessionRecorderNode::withdrawInvalid() {
   if (!needle_.valid()) table_.needle.withdraw();
   if (!predicted_.valid()) table_.predicted.withdraw();
@@ -239,7 +239,7 @@ void SessionRecorderNode::withdrawInvalid() {
 
 std::string SessionRecorderNode::summary() const {
   std::ostringstream out;
-  const char* const clock = cycle_.bus().isVirtual() ? "virtual" : cycle_.deterministic() ? "lockstep" : "wall";
+  const char* const clock = cycle_.bus().isVirtual() ? "virtual" : "wall";
   out << "clock: " << clock << '\n';
   out << "duration_s: " << table_.duration() << '\n';
   out << "layers: [";

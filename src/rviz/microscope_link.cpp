@@ -9,7 +9,7 @@ namespace {
 // Images that come while rviz draws a frame: what was found belongs to one of them.
 constexpr std::uint32_t kQueue = 8;
 
-/// s. The nodes of the microscope live in wall time, in lock step too.
+/// s. The nodes of the microscope live in wall time.
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 }  // namespace

@@ -111,7 +111,6 @@ class Planner {
     NodePlan& node = addConfigured("force_sensor");
     setText(node, "source", session_.sensor.source);
     if (!session_.hidden.empty()) node.remaps["/cell/predicted_cf"] = "/true_cell/predicted_cf";
-    // Not in the URDF: a publisher of frames that waits for the clock of a lock step would wait for the sensor, too.
     plan_.frames.push_back({"force_sensor_frame", "needle_tip", "force_sensor", session_.sensor.mounting});
   }
 
@@ -168,7 +167,6 @@ class Planner {
     setFlag(node, "start_when_enabled", session_.injection.start_when_enabled);
     setParameter(node.parameters, "goal/layers", integerValue(session_.injection.layers));
     setFlag(node, "injector", session_.injector != "none");
-    setFlag(node, "commands_in_lockstep", session_.hand.isOperator());
   }
 
   void addBridge() {

@@ -14,20 +14,17 @@ from session_operator import SessionOperator
 ROOT = Path(os.environ.get('MICROINJECTION_ROOT') or Path(__file__).resolve().parents[2])
 SIZES = ((1280, 800), (1920, 1080))  # px
 PATIENCE = 100  # s of wall time, for rviz to come up, and for the moment of the picture
-SETTLE = 6      # s of wall time, for rviz to draw it
-SLOWER = 0.3    # real-time factor, so that a machine which draws in software shows it
+SETTLE = {'operator': 1.5, 'none': 6}  # s, for rviz to draw it: a hand does not rest for long
 STEPPED = {'hand.device': 'none', 'injection.mode': 'semi_automatic'}
 BY_HAND = {'hand.device': 'operator', 'hand.motion': ROOT / 'config/hand_motions/puncture_and_inject.yaml'}
 CAMERA = {'camera.source': 'sim'}
 CONSOLES = {'inject': {**STEPPED, **CAMERA}, 'teleoperate': {**BY_HAND, **CAMERA}, 'train': BY_HAND, 'axes': BY_HAND,
             'paper': STEPPED, 'calibrate': {'hand.device': 'none', 'injection.mode': 'manual', **CAMERA}}
-# Without a hand the clock of a lock step would wait for what leads the needle by images.
-LIVE = ('calibrate',)
 
 
 def await_moment(session, keys):
     """Until there is something to see. @raises SessionError"""
-    session.monitor.go()  # first: in lock step nothing comes before the hand
+    session.monitor.go()
     operator = SessionOperator(PATIENCE)
     if keys['hand.device'] == 'operator':
         operator.wait(lambda: session.monitor.phase == 'hold', "the hand's rest in the cell")
@@ -59,13 +56,13 @@ def picture(name, size, out, logs):
     screen = Screen(logs / 'xvfb.log', size)
     session = view = None
     try:
-        session = DemoSession(ROOT / 'launch/session.launch', logs, keys, 'wall' if name in LIVE else 'lockstep', SLOWER)
+        session = DemoSession(ROOT / 'launch/session.launch', logs, keys)
         session.wait_ready()
         view = start_rviz(name, size, logs, screen.environment)
         if not wait_until(lambda: session.monitor.has_subscriber('/viz/markers'), PATIENCE):
             raise SessionError(f'rviz does not start; {view.log} ends with\n{view.tail(8)}')
         await_moment(session, keys)
-        time.sleep(SETTLE)
+        time.sleep(SETTLE[keys['hand.device']])
         path = out / f'{name}_{size[0]}x{size[1]}.png'
         if not screenshot.take(path, env={**os.environ, **screen.environment}):
             raise SessionError('there is no picture of the screen')

@@ -18,10 +18,8 @@ class SessionError(Exception):
 class DemoSession:
     """session.launch, whose hand rests until monitor.go()."""
 
-    def __init__(self, launch_file, logs, keys, clock='wall', real_time_factor=0):
-        """@param keys  of a session file (config/sessions/default.yaml), such as {'hand.device': 'none'}
-        @param clock  wall or lockstep; real_time_factor: of the latter."""
-        self._lockstep = clock == 'lockstep'
+    def __init__(self, launch_file, logs, keys):
+        """@param keys  of a session file (config/sessions/default.yaml), such as {'hand.device': 'none'}"""
         self._recorded = 'record.folder' in keys
         port = free_port()
         # By address, so that it does not matter what this machine's name resolves to.
@@ -29,8 +27,7 @@ class DemoSession:
         os.environ.update(ROS_MASTER_URI=f'http://127.0.0.1:{port}', ROS_IP='127.0.0.1', ROS_LOG_DIR=str(logs))
         # By its path: a search by name would follow catkin_ws's link to the repository round and round.
         changes = {'hand.wait_for_go': 'true', **keys}
-        self._launch = Child(['roslaunch', '-p', str(port), str(launch_file), f'clock:={clock}',
-                              f'real_time_factor:={real_time_factor}',
+        self._launch = Child(['roslaunch', '-p', str(port), str(launch_file),
                               'set:=' + ' '.join(shlex.quote(f'{key}={value}') for key, value in changes.items())],
                              logs / 'session.log')
         self.monitor = None
@@ -39,10 +36,8 @@ class DemoSession:
         """Until the session can begin. @raises SessionError when it cannot within START_TIMEOUT."""
         self._wait(self._master_answers, 'the ROS master does not answer')
         self.monitor = SessionMonitor()
-        # In lock step nothing moves before the hand does, and nothing is lost by a node that comes late.
-        if not self._lockstep:
-            self._wait(lambda: self.monitor.state is not None, 'nothing came on /cell/state')
-        if self._recorded and not self._lockstep:
+        self._wait(lambda: self.monitor.state is not None, 'nothing came on /cell/state')
+        if self._recorded:
             # It is started last, and must not miss the beginning.
             self._wait(lambda: self.monitor.has_subscriber('/cell/predicted_cf', '/session_recorder'),
                        'the recorder does not listen')

@@ -22,7 +22,6 @@ from screen import Screen
 ROOT = Path(os.environ.get('MICROINJECTION_ROOT') or Path(__file__).resolve().parents[2])
 SIZE = (1280, 800)    # px
 MENU = 62             # px above the panels
-SLOWER = 0.15         # real-time factor, so that a machine which draws in software shows all of it
 PERIOD = 0.3          # s of wall time between two frames, at least
 SLOW = {'stab_speed': 2.0e-5, 'retract_speed': 8.0e-5}  # m/s, or nobody sees the stab
 LARGEST = 3e6         # bytes, of the animation
@@ -81,7 +80,7 @@ class Recording:
 
     def animate(self, path):
         """@raises PicturesError when the animation is too large or convert fails."""
-        period = (self._end - self._begin) * SLOWER / max(1, len(self.frames) - 1)
+        period = (self._end - self._begin) / max(1, len(self.frames) - 1)
         frames = [str(frame) for _, frame in self.frames]
         command = ['convert', '-loop', '0', '-delay', str(round(100 * period)), *frames[:-1], '-delay', PAUSE, frames[-1], '-crop',
                    f'{SIZE[0]}x{SIZE[1] - MENU - 20}+0+{MENU}', '+repage', '-resize', '68%', '+dither', '-colors', '48',
@@ -138,11 +137,9 @@ def console(out, logs):
         session = DemoSession(ROOT / 'launch/session.launch', logs, {
             'hand.device': 'none', 'injection.mode': 'semi_automatic', 'camera.source': 'sim', 'display.markers': 'false',
             'cell': 'mouse_oocyte_injection',
-            **{f'overrides.injection_controller.motion.{key}': value for key, value in SLOW.items()}}, 'lockstep', SLOWER)
+            **{f'overrides.injection_controller.motion.{key}': value for key, value in SLOW.items()}})
         session.wait_ready()
-        # clock:=external: the time stays that of the session.
-        view = Child(['roslaunch', str(ROOT / 'launch/session.launch'), 'clock:=external', 'console:=inject',
-                      'only:=display rviz'], logs / 'rviz.log', {**os.environ, **screen.environment})
+        view = Child(['roslaunch', str(ROOT / 'launch/session.launch'), 'console:=inject', 'only:=display rviz'], logs / 'rviz.log', {**os.environ, **screen.environment})
         if not wait_until(lambda: session.monitor.has_subscriber('/viz/markers'), PATIENCE):
             raise PicturesError(f'rviz does not start; {view.log} ends with\n{view.tail(8)}')
         session.monitor.go()

@@ -30,7 +30,7 @@ GOOD = {  # what each node cannot do without
     "operator": {"motion": PACKAGE / "config/hand_motions/indent_and_retract.yaml"},
     "session_recorder": {"output_dir": f"{FOLDER.name}/record"}, "teleoperation_follower": {}, "touch": {}, "vision": {},
     "visual_servo": {}}
-OTHERS = {"emulate", "emulated_haptic", "identify", "indent", "lockstep_clock", "measure_cell", "prepare", "ros_bus_contract",
+OTHERS = {"emulate", "emulated_haptic", "identify", "indent", "measure_cell", "prepare", "ros_bus_contract",
           "session", "simulate", "sweep", "trajectory_error"}  # programs that are no node
 SILENT = {"force_watchdog"}  # has no diagnostics
 AT_A_TIME = 2

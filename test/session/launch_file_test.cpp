@@ -5,7 +5,6 @@
 #include <regex>
 
 #include "base/config_reader.h"
-#include "session/lockstep.h"
 #include "session/parameter_tree.h"
 #include "session_files.h"
 
@@ -85,36 +84,6 @@ TEST_F(LaunchFileTest, KeepsTextsThatXmlOrYamlWouldRead) {
   EXPECT_EQ(YAML::Load(recorder->FirstChildElement("rosparam")->GetText())["training"]["operator"].Scalar(), name);
 }
 
-TEST_F(LaunchFileTest, TheParticipantsOfALockStepAreItsNodes) {
-  const auto participants = [](const std::vector<std::string>& arguments) {
-    std::vector<std::string> names = lockstepParticipants(planOf(session(arguments), SessionClock::kVirtual));
-    std::sort(names.begin(), names.end());
-    return names;
-  };
-  using Names = std::vector<std::string>;
-  EXPECT_EQ(participants({"hand.device:=none", "sensor.source:=none", "injector:=none"}),
-            (Names{"/cell_simulator", "/injection_controller", "/micromanipulator"}));
-  EXPECT_EQ(participants({"record.folder:=/out", "link.scheme:=wave", "link.delay:=0.1", "twin:=true",
-                          "hidden:=mouse_oocyte", "camera.source:=sim"}),
-            (Names{"/cell_estimator", "/cell_simulator", "/force_sensor", "/haptic_bridge", "/injection_controller",
-                   "/injector", "/link_emulator", "/micromanipulator", "/operator", "/session_recorder",
-                   "/teleoperation_follower", "/true_cell"}));
-}
-
-TEST_F(LaunchFileTest, ALockStepNeedsWhatKeepsItsTime) {
-  const auto refusal = [](const std::vector<std::string>& arguments) {
-    return refusalOf([&] { requireLockstep(session(arguments)); });
-  };
-  EXPECT_EQ(refusal({}), "");
-  EXPECT_EQ(refusal({"hand.device:=none"}), "");
-  EXPECT_EQ(refusal({"hand.device:=omni"}),
-            "argument: clock = lockstep with hand/device = omni: must be with operator or "
-            "none, which keep the clock's time");
-  EXPECT_NE(refusal({"twin:=true", "sensor.source:=none", "camera.source:=sim"})
-                .find("clock = lockstep with twin = true and sensor/source = none"),
-            std::string::npos);
-}
-
 /// launch/session.launch: each argument sets the key that its text names.
 TEST_F(LaunchFileTest, TheArgumentsOfSessionLaunchAreKeys) {
   ASSERT_EQ(document_.LoadFile((kPackage + "/launch/session.launch").c_str()), tinyxml2::XML_SUCCESS);
@@ -126,7 +95,7 @@ TEST_F(LaunchFileTest, TheArgumentsOfSessionLaunchAreKeys) {
   for (const XMLElement* arg = root->FirstChildElement("arg"); arg; arg = arg->NextSiblingElement("arg")) {
     std::smatch found;
     const std::string name = arg->Attribute("name"), doc = text(arg->Attribute("doc"));
-    if (!std::regex_match(doc, found, key_of) || name == "clock") continue;
+    if (!std::regex_match(doc, found, key_of)) continue;
     const std::string key = found[1];
     EXPECT_TRUE(parameterAt(keys, std::regex_replace(key, std::regex("\\."), "/")).IsDefined()) << name << ": " << key;
     EXPECT_NE(command.find(key + ":=$(arg " + name + ")"), std::string::npos) << name;
@@ -134,7 +103,7 @@ TEST_F(LaunchFileTest, TheArgumentsOfSessionLaunchAreKeys) {
     ++checked;
   }
   EXPECT_GE(checked, 14);
-  for (const char* name : {"session", "set", "only", "clock", "generated"})
+  for (const char* name : {"session", "set", "only", "generated"})
     EXPECT_NE(command.find(std::string("$(arg ") + name + ")"), std::string::npos) << name;
 }
 

@@ -19,7 +19,7 @@ struct OnlineCellModelConfig {
   double extrapolation_limit = 3e-6;  ///< m of tip travel from the last solution beyond which the force is invalid
   double solution_period = 0.03;      ///< s between solutions when `fixed_period`
   /// Uses every solution exactly solution_period after its request, and waits for it if necessary:
-  /// the results are the same on any machine (lock step).
+  /// the results are the same on any machine (virtual time).
   bool fixed_period = false;
 
   static OnlineCellModelConfig read(ConfigReader& reader);

@@ -200,11 +200,7 @@ void RosBus::run() {
   // The first line of a node's log waits for a parameter of rosout from the master, so log it before
   // stepping.
   ROS_INFO("runs");
-  if (loop_) {
-    loop_();
-  } else {
-    step_ ? runSteps() : serveOnly();
-  }
+  step_ ? runSteps() : serveOnly();
   if (end_) end_();
 }
 
@@ -224,9 +220,6 @@ void RosBus::runSteps() {
     step_(this->now());
   }
 }
-
-void RosBus::serveWaking(double timeout) { waking_.queue.callAvailable(ros::WallDuration(timeout)); }
-void RosBus::serveSampled() { sampled_.queue.callAvailable(); }
 
 void RosBus::serveOnly() {
   while (shouldContinue()) sampled_.queue.callAvailable(kLongestWait);

@@ -50,12 +50,6 @@ class RosBus : public Bus {
   /// onEnd().
   void run();
 
-  /// Has run() call this; for the lock step, which decides by itself when the node steps.
-  void runInstead(std::function<void()> loop) { loop_ = std::move(loop); }
-  bool shouldContinue();
-  void serveWaking(double timeout);  ///< s
-  void serveSampled();
-
  protected:
   std::shared_ptr<RawPublisher> advertiseRaw(const MessageType& type, const std::string& topic, std::uint32_t queue,
                                              bool latch) override;
@@ -73,6 +67,7 @@ class RosBus : public Bus {
     ros::NodeHandle node;
   };
 
+  bool shouldContinue();
   void runSteps();
   void serveOnly();
   /// The lane of a node's own thread, which starts with its first use.
@@ -83,7 +78,7 @@ class RosBus : public Bus {
   Lane sampled_;       ///< read before a step: to wake up for it would cost more than the step
   double period_ = 0;  ///< s; 0: the node has no steps
   std::function<void(const ros::Time&)> step_;
-  std::function<void()> loop_, end_;
+  std::function<void()> end_;
   bool driven_ = false;     ///< a subscription starts steps
   bool triggered_ = false;  ///< its message has arrived
   std::atomic<bool> stopped_{false};

@@ -61,7 +61,7 @@ CellParameterServer::CellParameterServer(MemberChange* change, const std::string
       highest_(PlacedCell::kHighest * radius) {
   using cell_microinjection::CellParameters;
   using cell_microinjection::SetCellParameters;
-  const Serving serving = cycle.deterministic() ? Serving::kSampled : Serving::kOwnThread;
+  const Serving serving = cycle.bus().isVirtual() ? Serving::kSampled : Serving::kOwnThread;
   subscription_ = subscribeGuarded<CellParameters>(
       cycle.bus(), "cell/set_parameters", 1,
       [this](const CellParameters& message, const std::string&) { receive(message); }, StampRule::kTimely, serving);

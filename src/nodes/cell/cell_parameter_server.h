@@ -14,7 +14,7 @@
 namespace microinjection {
 
 /// Changes parameters of the cell while it is served, see MemberChange and PlacedCell. Live it makes the new cell
-/// in a thread of its own, so that no step is delayed. In lock step and in virtual time it does so
+/// in a thread of its own, so that no step is delayed. In virtual time it does so
 /// right before a step, so that all runs are the same.
 ///
 /// In:      /cell/set_parameters (CellParameters)

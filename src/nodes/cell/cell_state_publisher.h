@@ -30,8 +30,8 @@ struct CellMoment {
 };
 
 /// Publishes /cell/state with the surface at its own rate from the results of the steps. Live it
-/// uses its own thread of ordinary priority, so that no step is delayed. In lock step and
-/// in virtual time it publishes in the step that is due, so that all runs are the same.
+/// uses its own thread of ordinary priority, so that no step is delayed. In virtual
+/// time it publishes in the step that is due, so that all runs are the same.
 class CellStatePublisher {
  public:
   enum class Thread { kOwn, kOfTheStep };

@@ -12,8 +12,6 @@ namespace microinjection {
 /// Checks that the device receives the hand's force: the node that publishes the hand's position
 /// must be connected to the force's topic. Other subscriptions do not count, since a watchdog, a
 /// recorder or `rostopic echo` renders nothing.
-///
-/// It is not required in lock step over topics, where the order of the connections would depend on the machine.
 class ForceReceiver {
  public:
   /// `required`: false for a device that renders no force.
@@ -22,7 +20,7 @@ class ForceReceiver {
       : bus_(cycle.bus()),
         topic_(force.topic()),
         is_subscribed_([force](const std::string& node) { return force.isSubscribedBy(node); }),
-        required_(required && !(cycle.deterministic() && !cycle.bus().isVirtual())) {}
+        required_(required) {}
   ForceReceiver(const ForceReceiver&) = delete;
 
   /// Sets the topic of the hand's position.

@@ -28,7 +28,7 @@ std::optional<InjectorReport> InjectorLink::report(const ros::Time& now) {
 void InjectorLink::setPulse(const std::optional<PulseGoal>& pulse, const ros::Time& now) {
   if (pulse && !requested_) {
     message_.header.stamp = now;
-    message_.id = pending_ = now.toNSec();  // unique, also after a restart of this node; reproducible in lock step
+    message_.id = pending_ = now.toNSec();  // unique, also after a restart of this node; reproducible in virtual time
     message_.pressure = pulse->pressure;
     message_.duration = pulse->duration;
     message_.held = true;

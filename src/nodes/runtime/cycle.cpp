@@ -5,20 +5,13 @@
 #include <algorithm>
 #include <utility>
 
-#include "nodes/runtime/lockstep.h"
-
 namespace microinjection {
 
-Cycle::Cycle(Bus& bus, double rate)
-    : bus_(bus),
-      period_(1 / rate),
-      lockstep_(!bus.isVirtual() && takesPartInLockstep() ? std::make_unique<LockstepPacing>(ports_, bus) : nullptr),
-      diagnostics_(bus, rate) {}
+Cycle::Cycle(Bus& bus, double rate) : bus_(bus), period_(1 / rate), diagnostics_(bus, rate) {}
 
 void Cycle::onStep(std::function<void(const Tick&)> step) {
   step_ = std::move(step);
-  const auto step_at = [this](const ros::Time& now) { this->step(now); };
-  lockstep_ ? lockstep_->takeOver(step_at) : bus_.setStep(period_, step_at);
+  bus_.setStep(period_, [this](const ros::Time& now) { this->step(now); });
 }
 
 void Cycle::step(const ros::Time& now) {

@@ -7,7 +7,6 @@
 #include "nodes/bus/bus.h"
 #include "nodes/runtime/cycle_diagnostics.h"
 #include "nodes/runtime/cycle_ports.h"
-#include "nodes/runtime/lockstep_pacing.h"
 
 namespace microinjection {
 
@@ -36,8 +35,6 @@ class Cycle {
   Bus& bus() { return bus_; }
   const Bus& bus() const { return bus_; }
   CycleDiagnostics& diagnostics() { return diagnostics_; }
-  /// Nothing may depend on wall time or on the order of connections.
-  bool deterministic() const { return lockstep_ || bus_.isVirtual(); }
   bool masterLost() const { return master_lost_; }  ///< in this step
   double period() const { return period_; }         ///< s
   /// Earliest arrival of a message that is received now; see StallMonitor.
@@ -55,7 +52,6 @@ class Cycle {
   Bus& bus_;
   double period_;
   CyclePorts ports_;
-  std::unique_ptr<LockstepPacing> lockstep_;  // null: live, or in virtual time
   CycleDiagnostics diagnostics_;
   std::function<void(const Tick&)> step_;
   ros::Time last_step_;
@@ -72,7 +68,7 @@ Input<Message>& Cycle::input(const std::string& topic, InputPhase phase, double 
   Input<Message>& port = *owned;
   ports_.inputs.push_back(std::move(owned));
   diagnostics_.monitor(port);
-  lockstep_ ? lockstep_->subscribe(port) : subscribe(port);
+  subscribe(port);
   return port;
 }
 
@@ -97,11 +93,7 @@ Output<Message>& Cycle::output(const std::string& topic, bool latch) {
   Output<Message>& port = *owned;
   ports_.outputs.push_back(std::move(owned));
   diagnostics_.monitor(port);
-  if (lockstep_) {
-    lockstep_->advertise(port);
-  } else {
-    port.publisher = bus_.advertise<Message>(topic, 10, latch);
-  }
+  port.publisher = bus_.advertise<Message>(topic, 10, latch);
   return port;
 }
 

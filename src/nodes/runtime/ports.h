@@ -1,13 +1,10 @@
 #pragma once
 
-#include <std_msgs/Header.h>
-
 #include <boost/make_shared.hpp>
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <deque>
 #include <functional>
 #include <memory>
 #include <string>
@@ -25,12 +22,6 @@ namespace microinjection {
 /// reads it.
 enum class InputPhase { kDrives, kWakes, kSampled };
 
-/// Each topic T in lock step has a second topic T + kNoMessageSuffix. On it the publisher reports
-/// every tick without a message ("silence"), so that nobody waits for one. frame_id "invalid" also
-/// withdraws the last message. Silence with stamp 0 is the publisher's greeting: a node starts when
-/// all its publishers have sent theirs.
-constexpr char kNoMessageSuffix[] = "/silent";
-
 /// A subscribed topic, as used by Cycle.
 class InputPort {
  public:
@@ -38,10 +29,6 @@ class InputPort {
       : topic(name), phase(input_phase), timeout(input_timeout), refusals(node_refusals) {}
   virtual ~InputPort() = default;
 
-  /// Lock step: whether the message or silence of the tick with this stamp has arrived.
-  virtual bool hasInputOf(const ros::Time& stamp) const = 0;
-  /// Lock step: makes it the present input at `now`.
-  virtual void receiveTick(const ros::Time& stamp, const ros::Time& now) = 0;
   virtual bool valid() const = 0;
   /// Discards the last message.
   virtual void invalidate() = 0;
@@ -54,11 +41,10 @@ class InputPort {
 
   const std::string topic;
   const InputPhase phase;
-  const double timeout;        ///< s of ROS time
-  ros::Time received;          ///< of the last message
-  std::string sender;          ///< node of the last message, also of a refused one
-  std::string publisher_name;  ///< lock step: node that sent its greeting; empty: none yet
-  bool disconnected = false;   ///< no message is fresh; see Cycle
+  const double timeout;       ///< s of ROS time
+  ros::Time received;         ///< of the last message
+  std::string sender;         ///< node of the last message, also of a refused one
+  bool disconnected = false;  ///< no message is fresh; see Cycle
   /// kAny: handlers also receive messages stamped ahead, which are never fresh. kCommand: live, a
   /// message without a stamp gets that of its arrival, unless its publisher latches.
   StampRule stamp_rule = StampRule::kTimely;
@@ -81,33 +67,7 @@ class Input : public InputPort {
   using InputPort::InputPort;
   using Pointer = boost::shared_ptr<const Message>;
 
-  bool hasInputOf(const ros::Time& stamp) const override {
-    const auto is_it = [&](const ros::Time& other) { return other == stamp; };
-    return std::any_of(silence_.begin(), silence_.end(), [&](const auto& header) { return is_it(header.stamp); }) ||
-           std::any_of(waiting_.begin(), waiting_.end(),
-                       [&](const Waiting& waiting) { return is_it(waiting.message->header.stamp); });
-  }
-
-  void receiveTick(const ros::Time& stamp, const ros::Time& now) override {
-    updated_ = false;
-    for (; !silence_.empty() && silence_.front().stamp <= stamp; silence_.pop_front()) {
-      if (silence_.front().frame_id == "invalid") newest_.reset();
-    }
-    // A message that is not due yet must not delay those behind it.
-    for (auto next = waiting_.begin(); next != waiting_.end();) {
-      if (next->message->header.stamp > stamp) {
-        ++next;
-        continue;
-      }
-      const Waiting due = std::move(*next);
-      next = waiting_.erase(next);
-      sender = due.sender;
-      notify(*due.message, now);
-      accept(due.message, now);
-    }
-  }
-
-  /// Live. Refuses a message whose stamp is ahead; the last one stays.
+  /// Refuses a message whose stamp is ahead; the last one stays.
   void receive(const Pointer& message, const Arrival& arrival) {
     sender = arrival.sender;
     if (message->header.stamp.isZero() && stamp_rule == StampRule::kCommand) return receiveUnstamped(*message, arrival);
@@ -116,16 +76,6 @@ class Input : public InputPort {
     accept(message->header.stamp.isZero() ? nullptr : message, arrival.time);
   }
   void invalidate() override { newest_.reset(); }
-  /// Lock step; see kNoMessageSuffix.
-  void queue(const Pointer& message, const ros::Time& tick, const std::string& from) {
-    if (message->header.stamp.isZero() || refuses(*message, tick)) return;
-    waiting_.push_back({message, from});
-  }
-  void queueSilence(const std_msgs::Header& header, const std::string& publisher) {
-    publisher_name = publisher;
-    if (!header.stamp.isZero()) silence_.push_back(header);
-  }
-
   /// Receives every message with its time of arrival, also those that a newer one replaces before
   /// the next step.
   using Handler = std::function<void(const Message&, const ros::Time& now)>;
@@ -139,11 +89,6 @@ class Input : public InputPort {
   Pointer takeUpdates() { return std::exchange(updated_, false) ? newest_ : nullptr; }
 
  private:
-  struct Waiting {
-    Pointer message;
-    std::string sender;
-  };
-
   void receiveUnstamped(const Message& message, const Arrival& arrival) {
     if (arrival.latched) return refusals.add(topic, kUnstampedLatched);
     const auto stamped = boost::make_shared<Message>(message);
@@ -170,8 +115,6 @@ class Input : public InputPort {
   Pointer newest_;
   bool updated_ = false;
   std::vector<Handler> handlers_;
-  std::deque<Waiting> waiting_;
-  std::deque<std_msgs::Header> silence_;
 };
 
 /// An advertised topic, as used by Cycle.
@@ -180,33 +123,9 @@ class OutputPort {
   explicit OutputPort(const std::string& name) : topic(name) {}
   virtual ~OutputPort() = default;
 
-  virtual bool isSubscribedBy(const std::string& node) const = 0;
-  /// Lock step: see kNoMessageSuffix.
-  void announce() { silent_publisher.publish(std_msgs::Header()); }
-
-  /// Lock step: every message is stamped with the tick in which it is published.
-  void beginTick(const ros::Time& now) { tick_ = now; }
-
-  /// Lock step: publishes the silence of a tick without a message.
-  void endTick() {
-    if (!published_) {
-      std_msgs::Header header;
-      header.stamp = tick_;
-      if (invalid_) header.frame_id = "invalid";
-      silent_publisher.publish(header);
-    }
-    published_ = invalid_ = false;
-  }
-
   const std::string topic;
-  Publisher<std_msgs::Header> silent_publisher;  ///< null when live
-  std::atomic<unsigned> count{0};                ///< published messages, for the diagnostics
-  std::atomic<unsigned> withheld{0};             ///< messages with numbers that are not finite, for the diagnostics
-
- protected:
-  ros::Time tick_;  ///< zero when live
-  bool published_ = false;
-  bool invalid_ = false;
+  std::atomic<unsigned> count{0};     ///< published messages, for the diagnostics
+  std::atomic<unsigned> withheld{0};  ///< messages with numbers that are not finite, for the diagnostics
 };
 
 template <typename Message>
@@ -214,19 +133,15 @@ class Output : public OutputPort {
  public:
   using OutputPort::OutputPort;
 
-  bool isSubscribedBy(const std::string& node) const override { return publisher.isSubscribedBy(node); }
-
-  /// The header's stamp is that of the message's measurement; see beginTick for lock step. A
-  /// message with a number that is not finite is replaced by an invalid one. Live, another thread
+  /// The header's stamp is that of the message's measurement. A
+  /// message with a number that is not finite is replaced by an invalid one. Another thread
   /// than the node's may call it, always the same one.
   void publish(Message message) {
     if (!isFinite(message)) {
       ++withheld;
       return publishInvalid(std::move(message));
     }
-    if (!tick_.isZero()) message.header.stamp = tick_;
     publisher.publish(message);
-    published_ = true;
     ++count;
   }
 
@@ -239,7 +154,6 @@ class Output : public OutputPort {
     }
     message.header.stamp = ros::Time();
     publisher.publish(message);
-    invalid_ = true;
     ++count;
   }
 

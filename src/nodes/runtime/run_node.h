@@ -10,7 +10,6 @@
 #include "base/console_relay.h"
 #include "nodes/bus/ending.h"
 #include "nodes/bus/ros_bus.h"
-#include "nodes/runtime/lockstep.h"
 #include "nodes/runtime/parameter_texts.h"
 #include "nodes/runtime/real_time.h"
 
@@ -37,16 +36,12 @@ int runNode(int argc, char** argv, const std::string& name, Priority priority = 
   ros::init(argc, argv, name, ending == ShutdownMode::kInGoodOrder ? ros::init_options::NoSigintHandler : 0);
   // roscpp handles only SIGINT. The other signals, too, must stop a device before the end.
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) std::signal(number, [](int) { ros::requestShutdown(); });
-  const bool live = !takesPartInLockstep();
-  if (live) {
-    prefer(priority);
-    // In lock step a node that waits for its tick could not publish any more.
-    if (ending == ShutdownMode::kInGoodOrder) endInGoodOrder();
-  }
+  prefer(priority);
+  if (ending == ShutdownMode::kInGoodOrder) endInGoodOrder();
   // The handle outlives the try block: the end of the last one shuts ROS and its log down.
   const ros::NodeHandle handle;
   try {
-    RosBus bus(live);
+    RosBus bus;
     Node node(bus);
     bus.run();
   } catch (const std::exception& error) {

@@ -15,7 +15,7 @@
 namespace microinjection {
 namespace {
 
-/// Takes the tip along a straight line in lock step.
+/// Takes the tip along a straight line in virtual time.
 class ModelDriver {
  public:
   explicit ModelDriver(const Scene& scene) : cell(std::make_shared<const P1Cell>(scene)), tracker(cell, config()) {}

@@ -21,7 +21,7 @@ namespace {
 
 const Eigen::Vector3d kUp = Eigen::Vector3d::UnitZ();
 
-/// Takes the tip along straight lines in lock step.
+/// Takes the tip along straight lines in virtual time.
 class TipDriver {
  public:
   explicit TipDriver(const Scene& scene, const Eigen::Vector2d& line = Eigen::Vector2d::Zero())

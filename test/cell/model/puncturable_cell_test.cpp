@@ -48,7 +48,7 @@ TEST(PuncturableCell, TheZonaFailsByForceDepthOrStrain) {
   }
 }
 
-/// A live cell in lock step: whole to the stated force, at rest after it, and touched again elsewhere.
+/// A live cell in virtual time: whole to the stated force, at rest after it, and touched again elsewhere.
 TEST(PuncturableCell, ServesALiveCell) {
   Scene scene = sceneOf(PunctureConfig::atForce(0.5e-6));
   scene.cell.material() = {"linear", 17.9e3, 0.45};

@@ -103,7 +103,7 @@ TEST(TensegrityCell, NeedleMeetsTheMembraneAnywhere) {
   EXPECT_THROW(cell->indentation(TipPatch{{cell->heldVertices()[0]}}), std::invalid_argument);
 }
 
-/// In lock step: a needle on a strut's end, with the tracker that serves every live cell.
+/// In virtual time: a needle on a strut's end, with the tracker that serves every live cell.
 TEST(TensegrityCell, ServesAMovingNeedle) {
   const auto cell = std::dynamic_pointer_cast<const TensegrityCell>(makeOnlineCell(tensegrityScene()));
   ASSERT_TRUE(cell);
