@@ -4,7 +4,7 @@ import re
 import shlex
 from pathlib import Path
 
-from documents_form import FormChecker
+from documents_links import LinkChecker
 
 HISTORY = {'CHANGELOG.md'}  # names what once was
 PACKAGE = 'cell_microinjection'
@@ -47,14 +47,13 @@ def commands_of(text):
         empty = not line.strip()
 
 
-class Checker(FormChecker):
+class Checker(LinkChecker):
     """Adds what they name that is not there."""
 
     def check(self):
         for path in self.project.documents:
             text = self.project.text(path)
             self.check_links(path, text)
-            self.check_form(path, text)
             if path in HISTORY:
                 continue
             for number, line in enumerate(text.splitlines(), 1):
@@ -120,7 +119,7 @@ class Checker(FormChecker):
             return
         if words[2] not in self.project.programs:
             return self.report(f'there is no program {words[2]}')
-        if words[2] == 'session':
+        if words[2] in ('session', 'simulate'):
             self.check_keys(word.replace(':=', '=') for word in words[3:] if '=' in word and not PLACEHOLDER.search(word.split('=')[0]))
         known = self.project.programs[words[2]] | {'--help'}
         for word in words[3:]:
@@ -226,6 +225,8 @@ class Checker(FormChecker):
     def check_argument(self, name, value):
         if name.startswith('_'):
             return self.check_word(name[1:].split('/')[-1])
+        if name in self.project.session_keys or name == 'KEY':
+            return None
         if name not in self.project.arguments:
             return self.report(f'no launch file has an argument {name}')
         if name == 'set':

@@ -105,13 +105,15 @@ class Project:
     def read_programs(self):
         """{program: the options it knows}; empty for a node."""
         self.programs = {Path(path).stem.removesuffix('_node'): set() for path in self.files
-                         if Path(path).match('src/nodes/*.cpp') or Path(path).match('benchmark/*/*_node.cpp')}
+                         if Path(path).match('src/nodes/programs/*.cpp') or Path(path).match('benchmark/*/*_node.cpp')}
         self.benches = {}
         for path, text in self.code.items():
             options = set(re.findall(r"""add_argument\(\s*['"](--[a-z-]+)""", text))
             options |= {f'--{name}' for name in OPTION.findall(text)}
             place = Path(path)
-            if place.parent.as_posix() == 'src/commands' and 'main(' in text:
+            if place.parent.as_posix() == 'src/nodes/programs' and options:
+                self.programs[place.stem] = options
+            elif place.parent.as_posix() == 'src/commands' and 'main(' in text:
                 shared = self.sources(f'src/commands/{place.stem}_*.cpp')
                 options |= {f'--{name}' for name in OPTION.findall(shared)}
                 self.programs[place.stem] = options
@@ -134,7 +136,7 @@ class Project:
                 node = Path(path).stem[:-len('_node')]
                 parts = re.findall(r'#include "(nodes/[^"]+)\.h"', source + self.code.get(f'{path[:-3]}h', ''))
                 source += ''.join(self.code.get(f'src/{part}.cpp', '') for part in parts)
-                self.services |= {f'/{node}/{name}' for name in re.findall(r'advertiseService[^;"]*\(\s*"(\w+)"', source)}
+                self.services |= {f'/{node}/{name}' for name in re.findall(r'advertiseService[^;"]*\(\s*"~(\w+)"', source)}
         self.topics |= self.services
         self.topics |= set(re.findall(r'<param name="(/[a-z_/]+)"', self.sources('launch/*')))
         self.topics |= {'/use_sim_time'} & set(re.findall(r'/[a-z_/]+', self.sources('launch/*')))

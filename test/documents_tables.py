@@ -42,7 +42,7 @@ def check_topics(project, text):
 
 def files_of(project, node):
     """The files that a node is made of: its own, and what these include of src/nodes and benchmark."""
-    found, waiting = set(), [f'src/nodes/{node}_node.cpp', f'src/nodes/{node}.cpp',
+    found, waiting = set(), [f'src/nodes/{node}_node.cpp', f'src/nodes/programs/{node}.cpp',
                                f'benchmark/{node}/{node}_node.cpp']
     waiting += [path for path in project.code if node == 'haptic_device' and path.endswith('_adapter.cpp')]
     while waiting:

@@ -15,7 +15,7 @@
 #include "cell/identification/family_law.h"
 #include "cell/identification/identified_scene.h"
 #include "cell/identification/point_identification.h"
-#include "commands/exit_status.h"
+#include "base/exit_status.h"
 #include "commands/identify_arguments.h"
 #include "commands/identify_report.h"
 #include "commands/scene_law.h"

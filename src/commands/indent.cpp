@@ -12,7 +12,7 @@
 #include "base/errors.h"
 #include "base/standard_output.h"
 #include "cell/model/scene.h"
-#include "commands/exit_status.h"
+#include "base/exit_status.h"
 #include "commands/indent_arguments.h"
 #include "commands/indent_models.h"
 

@@ -15,7 +15,7 @@
 #include "base/standard_output.h"
 #include "cell/family/family_cell.h"
 #include "cell/model/scene.h"
-#include "commands/exit_status.h"
+#include "base/exit_status.h"
 #include "commands/measure_cell_arguments.h"
 #include "vision/camera/folder_source.h"
 #include "vision/camera/image_file.h"

@@ -20,7 +20,7 @@
 #include "cell/model/similarity.h"
 #include "cell/surrogate/surrogate_data.h"
 #include "cell/surrogate/training_ray.h"
-#include "commands/exit_status.h"
+#include "base/exit_status.h"
 #include "commands/path_store.h"
 #include "commands/prepare_arguments.h"
 #include "commands/prepare_family.h"

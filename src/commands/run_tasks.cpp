@@ -7,7 +7,7 @@
 
 #include "base/errors.h"
 #include "base/worker_processes.h"
-#include "commands/exit_status.h"
+#include "base/exit_status.h"
 
 namespace microinjection {
 namespace {

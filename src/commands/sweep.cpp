@@ -12,7 +12,7 @@
 #include "base/errors.h"
 #include "base/standard_output.h"
 #include "base/worker_processes.h"
-#include "commands/exit_status.h"
+#include "base/exit_status.h"
 #include "commands/run_tasks.h"
 #include "commands/sweep_arguments.h"
 #include "commands/sweep_file.h"

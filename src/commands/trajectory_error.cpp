@@ -17,7 +17,7 @@
 #include "cell/model/cell_problem.h"
 #include "cell/model/contact_frame.h"
 #include "cell/model/scene_mesh.h"
-#include "commands/exit_status.h"
+#include "base/exit_status.h"
 #include "commands/trajectory.h"
 
 namespace microinjection {

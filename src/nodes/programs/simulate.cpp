@@ -8,7 +8,7 @@
 
 #include "base/errors.h"
 #include "base/standard_output.h"
-#include "commands/exit_status.h"
+#include "base/exit_status.h"
 #include "nodes/executive/simulation.h"
 
 namespace {

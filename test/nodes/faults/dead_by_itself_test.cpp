@@ -30,7 +30,8 @@ struct OwnFault {
   double into;  // s
 };
 void PrintTo(const OwnFault& fault, std::ostream* out) {
-  *out << (fault.fault == Fault::kKill ? "kill" : "freeze") << " in " << fault.state;
+  PrintTo(fault.fault, out);
+  *out << " in " << fault.state;
 }
 
 class DeadByItself : public testing::TestWithParam<OwnFault> {

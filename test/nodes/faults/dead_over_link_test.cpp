@@ -50,7 +50,7 @@ TEST_P(DeadOverLink, Bridge) {
 TEST_P(DeadOverLink, Hand) {
   strike("operator");
   expectNeedleRests(HandSession::kInputs);
-  expectForceEnds(HandSession::kInputs);
+  expectForceEnds(HandSession::kInputs, HandSession::sooner(GetParam()));
 }
 
 INSTANTIATE_TEST_SUITE_P(KillAndFreeze, DeadOverLink, testing::Values(Fault::kKill, Fault::kFreeze));

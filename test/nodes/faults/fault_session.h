@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,7 @@ enum class Fault {
   kKill,    ///< as by SIGKILL
   kFreeze,  ///< as by SIGSTOP; to the others it is as silent
 };
+inline void PrintTo(Fault fault, std::ostream* out) { *out << (fault == Fault::kKill ? "kill" : "freeze"); }
 
 /// Where a needle, a hand or a force was, by the time of arrival (s).
 struct Track {
@@ -108,7 +110,8 @@ class FaultSession {
     EXPECT_GT(high - low, 50e-9) << "it did not move before";
     EXPECT_LE(late, within + kTick) << "it moved for so long";
   }
-  /// It was zero for good as soon as the time-out had elapsed, or `earlier` (s) before.
+  /// It was zero for good as soon as the time-out had elapsed, or `earlier` (s) before. The 0.11 N of these sessions
+  /// take two steps to fall, by the bridge's force_rate_limit.
   static void expectForceEnds(const Track& force, double struck, double within, double earlier = 0) {
     ASSERT_FALSE(force.times.empty());
     ASSERT_GT(force.times.back(), struck + within + 0.1);
@@ -116,7 +119,7 @@ class FaultSession {
     for (std::size_t i = 0; i < force.times.size(); ++i) {
       if (force.values[i].norm() > 0) felt = force.times[i] - struck;
     }
-    EXPECT_LE(felt, within + kTick) << "it was felt for so long";
+    EXPECT_LT(felt, within + 2 * kTick) << "it was felt for so long";
     EXPECT_GE(felt, within - earlier - 2 * kTick) << "it was felt no longer";
   }
   static void expectNoForce(const Track& force) {

@@ -6,6 +6,8 @@
 #include <tuple>
 
 #include "nodes/injection/injection_chain.h"
+#include "rig/devices/rig_registry.h"
+#include "rig/injector/injector_registry.h"
 
 namespace microinjection {
 namespace {
@@ -66,17 +68,17 @@ TEST_P(WholeInjectionTest, GoesThroughTheZonaInjectsAndComesOut) {
   EXPECT_GT(done.volume, 0);
 }
 
+/// The simulated rig and each that is emulated, with the simulated injector; the simulated rig with each that is
+/// emulated.
+std::vector<Devices> allDevices() {
+  std::vector<Devices> all{{"sim", "simulated"}};
+  for (const Rig& rig : rigs()) all.push_back({"emulated_" + rig.name, "simulated"});
+  for (const Injector& injector : injectors()) all.push_back({"sim", "emulated_" + injector.name});
+  return all;
+}
 std::string nameOf(const testing::TestParamInfo<Devices>& info) { return info.param.rig + "_" + info.param.injector; }
 
-INSTANTIATE_TEST_SUITE_P(Rigs, WholeInjectionTest,
-                         testing::Values(Devices{"sim", "simulated"}, Devices{"emulated_eppendorf", "simulated"},
-                                         Devices{"emulated_mp285", "simulated"},
-                                         Devices{"emulated_scientifica", "simulated"},
-                                         Devices{"emulated_zaber", "simulated"}),
-                         nameOf);
-INSTANTIATE_TEST_SUITE_P(Injectors, WholeInjectionTest,
-                         testing::Values(Devices{"sim", "emulated_femtojet"}, Devices{"sim", "emulated_voltage"}),
-                         nameOf);
+INSTANTIATE_TEST_SUITE_P(Devices, WholeInjectionTest, testing::ValuesIn(allDevices()), nameOf);
 
 using CancelledInThePulseTest = WholeInjectionTest;
 
@@ -105,7 +107,7 @@ TEST_P(CancelledInThePulseTest, StopsThePulseAndWithdraws) {
   EXPECT_EQ(chain_.injector().pulses, before_.pulses);
 }
 
-INSTANTIATE_TEST_SUITE_P(Injectors, CancelledInThePulseTest,
+INSTANTIATE_TEST_SUITE_P(Devices, CancelledInThePulseTest,
                          testing::Values(Devices{"sim", "simulated"}, Devices{"sim", "emulated_voltage"}), nameOf);
 
 using TwoMembranesTest = WholeInjectionTest;
@@ -141,7 +143,7 @@ TEST_P(TwoMembranesTest, AreToldEachAndThePulseComesBehindTheLast) {
   })) << "layers only go up";
 }
 
-INSTANTIATE_TEST_SUITE_P(Rigs, TwoMembranesTest, testing::Values(Devices{"sim", "simulated"}), nameOf);
+INSTANTIATE_TEST_SUITE_P(Devices, TwoMembranesTest, testing::Values(Devices{"sim", "simulated"}), nameOf);
 
 }  // namespace
 }  // namespace microinjection
