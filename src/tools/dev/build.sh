@@ -52,7 +52,6 @@ build_tests() {
   build_workspace
   build_targets tests
   install_component tests
-  install_component emulated_haptic
 }
 
 # What is installed on request only.
