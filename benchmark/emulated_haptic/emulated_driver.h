@@ -4,7 +4,6 @@
 
 #include <Eigen/Core>
 #include <functional>
-#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -37,8 +36,6 @@ class EmulatedDriver {
   virtual Eigen::Vector3d render(const EmulatedHand&) { return Eigen::Vector3d::Zero(); }
   /// Publishes the driver's messages that are due now.
   virtual void publish(const EmulatedHand& hand, const ros::Time& now) = 0;
-  /// Whether its buttons are outside of the lock step and arrive at any time.
-  virtual bool hasUnstampedButtons() const { return false; }
 };
 
 /// @pre kind is one of emulatedDrivers()

@@ -1,7 +1,6 @@
 #include "benchmark/emulated_haptic/emulated_haptic_node.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/node_parameters.h"
@@ -38,10 +37,6 @@ EmulatedHapticNode::EmulatedHapticNode(Bus& bus)
           [this](const auto& force, const ros::Time& received) { meter_.addForce(force, received); })),
       force_(cycle_.output<geometry_msgs::WrenchStamped>("emulated_haptic/measured_cf")),
       phase_(cycle_.output<cell_microinjection::StringStamped>("operator/phase", true)) {
-  if (cycle_.bus().isVirtual() && driver_->hasUnstampedButtons()) {
-    present_ = &cycle_.input<sensor_msgs::Joy>("haptic/operator_present", InputPhase::kSampled,
-                                               std::numeric_limits<double>::infinity());
-  }
   at_.position = hand_.position();
   report("device to bridge", meter_.atBridge());
   report("device to device", meter_.atDevice());
@@ -56,14 +51,8 @@ void EmulatedHapticNode::report(const std::string& name, const IntervalHistogram
   });
 }
 
-bool EmulatedHapticNode::buttonHasArrived(const ros::Time& now) const {
-  if (!present_) return true;
-  const sensor_msgs::Joy* joy = present_->get(now);
-  return (joy && !joy->buttons.empty() && joy->buttons[0] == 1) == at_.present;
-}
-
 void EmulatedHapticNode::step(const Cycle::Tick& tick) {
-  if (buttonHasArrived(tick.now)) elapsed_ += tick.dt;
+  elapsed_ += tick.dt;
   const double time = std::max(0.0, elapsed_ - parameters_.start_delay);
   const HandMotion::Sample intended = motion_.at(time);
   driver_->process(at_);

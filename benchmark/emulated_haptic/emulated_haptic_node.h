@@ -1,7 +1,6 @@
 #pragma once
 
 #include <geometry_msgs/WrenchStamped.h>
-#include <sensor_msgs/Joy.h>
 
 #include <memory>
 #include <string>
@@ -19,8 +18,7 @@ namespace microinjection {
 /// measures the delay of all nodes from the device's pose to the resulting force (on /diagnostics).
 ///
 /// The hand holds the dead-man switch down from half the start_delay on, except in the phase
-/// `away`. In the phase `inject` it presses the inject button, if the device has one. In lock step
-/// and in virtual time the motion waits until a button outside of the lock step has arrived.
+/// `away`. In the phase `inject` it presses the inject button, if the device has one.
 ///
 /// Topics of the kind, see emulated_driver.h, and
 /// In:  /haptic/servo_cf, /needle/setpoint_trace, /haptic/force_trace
@@ -45,7 +43,6 @@ class EmulatedHapticNode {
   };
 
   void step(const Cycle::Tick& tick);
-  bool buttonHasArrived(const ros::Time& now) const;
   void publishPhase(const ros::Time& now, const std::string& phase);
   void report(const std::string& name, const IntervalHistogram& trips);
 
@@ -57,7 +54,6 @@ class EmulatedHapticNode {
   std::unique_ptr<EmulatedDriver> driver_;
   Output<geometry_msgs::WrenchStamped>& force_;
   Output<cell_microinjection::StringStamped>& phase_;
-  Input<sensor_msgs::Joy>* present_ = nullptr;  ///< dead-man switch as received; null: not waited for
   EmulatedHand at_;
   double elapsed_ = 0;  ///< s of steps; a stall of the machine pauses the hand
   std::string phase_published_;

@@ -36,7 +36,6 @@ class EmulatedOmni : public EmulatedDriver {
     messages_.process();
   }
   Eigen::Vector3d render(const EmulatedHand&) override { return force_; }
-  bool hasUnstampedButtons() const override { return true; }
 
   void publish(const EmulatedHand& hand, const ros::Time& now) override {
     last_published_.header.stamp = now;
