@@ -14,7 +14,6 @@ namespace microinjection {
 namespace {
 
 using geometry_msgs::WrenchStamped;
-constexpr double kHandScale = 1e-3;                // of the needle's motion over the hand's
 constexpr double kModelledSurface = 28e-6;         // m, of the cell that the session believes in
 constexpr double kHigher = 0.3e-6;                 // m, of the true one
 constexpr double kPrior = 17.9e3, kTrue = 53.7e3;  // Pa
@@ -45,8 +44,9 @@ class TwinTest : public testing::Test {
   /// The needle to a height (m) at a speed (m/s).
   std::vector<Row> moveTo(double height, double speed) {
     std::vector<Row> rows;
-    const double start = hand_.z, goal = start + (height - hand_.needle().z()) / kHandScale;
-    const int steps = std::max(1, static_cast<int>(std::lround(1e3 * std::abs(goal - start) * kHandScale / speed)));
+    const double start = hand_.z, goal = start + (height - hand_.needle().z()) / LedHand::kScale;
+    const int steps =
+        std::max(1, static_cast<int>(std::lround(1e3 * std::abs(goal - start) * LedHand::kScale / speed)));
     for (int i = 1; i <= steps; ++i) {
       hand_.z = start + (goal - start) * i / steps;
       session_.run(1e-3);
