@@ -17,62 +17,51 @@ void PrintTo(const HandFault& fault, std::ostream* out) {
 
 class DeadByHand : public testing::TestWithParam<HandFault> {
  protected:
-  static constexpr double kRecord = 0.24;  // s, after the strike
-
-  /// A session in which the node is struck.
-  void strike(const std::string& node, const HandSession::Options& options = {}, double record = kRecord) {
-    session_ = std::make_unique<HandSession>(options);
-    session_->runIntoPhase(GetParam().phase, GetParam().into);
-    struck_ = session_->strike(node, GetParam().fault);
-    session_->session().run(record);
+  /// `record`: s afterwards.
+  void strike(const std::string& node, double record = 0.24) {
+    session_.runIntoPhase(GetParam().phase, GetParam().into);
+    struck_ = session_.strike(node, GetParam().fault);
+    session_.session().run(record);
   }
-  void expectNeedleRests(double within) { HandSession::expectRests(session_->needle(), struck_, within); }
+  void expectNeedleRests(double within) {
+    HandSession::expectRests(session_.needle(), struck_, within + HandSession::kStopTime);
+  }
   /// In the approach it was never felt.
   void expectForceEnds(double within, double earlier = 0) {
-    if (std::string(GetParam().phase) == "approach") return HandSession::expectNoForce(session_->force());
-    HandSession::expectForceEnds(session_->force(), struck_, within, earlier);
+    if (std::string(GetParam().phase) == "approach") return HandSession::expectNoForce(session_.force());
+    HandSession::expectForceEnds(session_.force(), struck_, within, earlier);
   }
 
-  std::unique_ptr<HandSession> session_;
+  HandSession session_{{}};
   double struck_ = 0;
 };
 
 TEST_P(DeadByHand, Hand) {
   strike("operator");
-  expectNeedleRests(HandSession::kInputs + HandSession::kStopTime);
+  expectNeedleRests(0);
   expectForceEnds(HandSession::kInputs, HandSession::sooner(GetParam().fault));
 }
 
 TEST_P(DeadByHand, Bridge) {
   strike("haptic_bridge");
-  expectNeedleRests(HandSession::kInputs + HandSession::kStopTime);
+  expectNeedleRests(0);
 }
 
 TEST_P(DeadByHand, Controller) {
-  strike("injection_controller", {}, 0.4);
-  expectNeedleRests(HandSession::kCommands + HandSession::kStopTime);
+  strike("injection_controller", 0.4);
+  expectNeedleRests(0);
   expectForceEnds(HandSession::kController, 0.1);  // its state comes each 0.1 s
 }
 
 TEST_P(DeadByHand, Micromanipulator) {
   strike("micromanipulator");
-  HandSession::expectRests(session_->setpoint(), struck_, HandSession::kInputs);
+  HandSession::expectRests(session_.setpoint(), struck_, HandSession::kInputs);
   expectForceEnds(HandSession::kInputs);
 }
 
 TEST_P(DeadByHand, CellSimulator) {
   strike("cell_simulator");
-  expectNeedleRests(HandSession::kInputs + HandSession::kStopTime);
-  expectForceEnds(HandSession::kInputs);
-}
-
-TEST_P(DeadByHand, ForceSensor) {
-  HandSession::Options options;
-  options.sensor = true;
-  options.source = "measured";
-  if (std::string(GetParam().phase) == "approach") return;  // a sensor's noise is felt there, too
-  strike("force_sensor", options);
-  expectNeedleRests(HandSession::kInputs + HandSession::kStopTime);
+  expectNeedleRests(HandSession::kInputs);
   expectForceEnds(HandSession::kInputs);
 }
 
@@ -104,6 +93,18 @@ TEST_P(FaultByHand, BridgeLeavesNoForceOnTheHand) {
   }
   EXPECT_NEAR(leap, 0.05, 2 * HandSession::kTick) << "force_timeout of the virtual hand";
   EXPECT_NEAR(hand.values.back().z(), -8e-3, 0.1 * pressed);
+}
+
+TEST_P(FaultByHand, SensorWhoseForceIsUsed) {
+  HandSession::Options options;
+  options.sensor = true;
+  options.source = "measured";
+  HandSession session(options);
+  session.runIntoPhase("indent", 0.2);
+  const double struck = session.strike("force_sensor", GetParam());
+  session.session().run(0.24);
+  HandSession::expectRests(session.needle(), struck, HandSession::kInputs + HandSession::kStopTime);
+  HandSession::expectForceEnds(session.force(), struck, HandSession::kInputs);
 }
 
 TEST_P(FaultByHand, WhatTheLoopDoesNotNeedLeavesItAsItIs) {

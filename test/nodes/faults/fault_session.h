@@ -57,8 +57,7 @@ class FaultSession {
   static constexpr double kStill = 2e-9;     ///< m
   static constexpr double kStart = 32e-6;    ///< m, of the needle, 4 um above the cell
   static constexpr double kStopTime = 0.01;  ///< s, motion/stop_time: from a set-point that rests to such a needle
-  static constexpr double kInputs = 0.05;   ///< s, of the controller's inputs, and of hand, needle, force at the bridge
-  static constexpr double kCommands = 0.1;  ///< s, command_timeout of the rig
+  static constexpr double kInputs = 0.05;  ///< s, of the controller's inputs, and of hand, needle, force at the bridge
   static constexpr double kController = 0.25;  ///< s, timeouts/controller of bridge and follower
   static constexpr double kLink = 0.3;         ///< s, link/timeout
 
