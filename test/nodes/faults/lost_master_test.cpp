@@ -4,7 +4,7 @@
 namespace microinjection {
 namespace {
 
-/// Without the ROS master all rests; test/chain/own_master.test has how the nodes find out.
+/// Without the ROS master all rests; test/chain/master.test has how the nodes find out.
 class LostMasterTest : public testing::Test {
  protected:
   LostMasterTest() {
