@@ -6,7 +6,6 @@ import contextlib
 import unittest
 from pathlib import Path
 
-import numpy as np
 import rospy
 import rostest
 from cell_microinjection.msg import InjectionStatus, LoopState, OperatingState
@@ -16,8 +15,8 @@ from std_msgs.msg import Bool
 
 import console_eye
 from console_user import ConsoleUser
-from killable_nodes import PACKAGE, parameters
-from live_chain import RATE, TIMEOUT, Hand, LiveChain, Master, chain_parameters
+from killable_nodes import parameters
+from live_chain import RATE, TIMEOUT, Hand, LiveChain, Master
 from messages import pose
 from processes import Child
 

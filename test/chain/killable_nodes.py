@@ -39,26 +39,24 @@ def rig():
 
 
 class KillableNodes:
-    """{node: its parameters}. `participants` of the lock step; none: the session is live. `remaps`: {node: its
-    arguments}. `outputs`: {node: descriptor of its standard output and error} of those that do not write to a file. `enter`:
-    {node: a command that runs another one in its place, as on another host}."""
+    """{node: its parameters}. `outputs`: {node: descriptor of its standard output and error} of those that do not write to a
+    file. `enter`: {node: a command that runs another one in its place, as on another host}."""
 
-    def __init__(self, nodes, participants=(), remaps=None, outputs=None, enter=None):
+    def __init__(self, nodes, outputs=None, enter=None):
         self._enter = enter or {}
         rospy.set_param("/robot_description", (PACKAGE / "urdf/rig.urdf").read_text())
-        rospy.set_param("/lockstep/participants", list(participants))
         self._running, self._frozen, self._outputs = {}, {}, {}
-        self.begin(nodes, remaps, outputs)
+        self.begin(nodes, outputs)
 
-    def begin(self, nodes, remaps=None, outputs=None):
+    def begin(self, nodes, outputs=None):
         """Sets their parameters and starts them."""
         for node, settings in nodes.items():
             rospy.set_param(f"/{node}", settings)
-            self.start(node, *(remaps or {}).get(node, ()), output=(outputs or {}).get(node))
+            self.start(node, output=(outputs or {}).get(node))
 
-    def start(self, node, *arguments, output=None):
+    def start(self, node, output=None):
         self._outputs[node] = tempfile.TemporaryFile()
-        self._running[node] = subprocess.Popen([*self._enter.get(node, ()), PROGRAMS / node, *arguments], stdin=subprocess.DEVNULL,
+        self._running[node] = subprocess.Popen([*self._enter.get(node, ()), PROGRAMS / node], stdin=subprocess.DEVNULL,
                                                stdout=output or self._outputs[node], stderr=subprocess.STDOUT)
 
     def names(self):
@@ -97,11 +95,6 @@ class KillableNodes:
         """It goes on where it was."""
         self._running[node] = self._frozen.pop(node)
         self._running[node].send_signal(signal.SIGCONT)
-
-    def wake_up(self, node):
-        """@returns its exit status, as soon as it has ended."""
-        self._frozen[node].send_signal(signal.SIGCONT)
-        return self._frozen[node].wait(PATIENCE)
 
     def stop(self):
         # All at once: what outlives another has nothing to do any more.

@@ -9,7 +9,6 @@ import pty
 import select
 import subprocess
 import sys
-import tempfile
 import time
 import tty
 import unittest

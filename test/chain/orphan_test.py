@@ -59,7 +59,7 @@ class OrphanTest(unittest.TestCase):
 
     def test_2_all_that_run_end(self):
         chain = LiveChain({"display": {}, "force_watchdog": {}})
-        self.addCleanup(chain.nodes.stop)
+        self.addCleanup(chain.end_processes)
         chain.check_follows()
         nodes = chain.nodes.names()
         # Who tells diagnostics is past its constructor; the watchdog tells none.
@@ -69,7 +69,6 @@ class OrphanTest(unittest.TestCase):
         until(lambda: set(chain.nodes.dead()) == nodes, f"the end of {nodes}")
         statuses = {node: chain.nodes.status(node) for node in nodes}
         self.assertEqual(statuses, {node: EXIT_STATUS for node in nodes}, chain.nodes.report())
-        chain.hand.end()
 
 
 if __name__ == "__main__":

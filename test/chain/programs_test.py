@@ -7,7 +7,6 @@ import concurrent.futures
 import os
 import pty
 import subprocess
-import sys
 import tempfile
 import unittest
 

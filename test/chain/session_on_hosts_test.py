@@ -69,7 +69,7 @@ class AssignTest(Files):
         self.assertFalse([name for name in config.params if name.startswith(("/injector/", "/robot_description"))])
 
     def test_files_that_the_session_is_made_from_have_to_be_the_same(self):
-        scene = self.write("scene.yaml", (ROOT / "test/chain/coarse_oocyte.yaml").read_text())
+        scene = self.write("scene.yaml", (ROOT / "test/nodes/scenes/coarse_oocyte.yaml").read_text())
 
         class Given:
             hosts, arguments = self.file, [f"cell:={scene}"]
