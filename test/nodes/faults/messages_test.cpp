@@ -135,6 +135,22 @@ TEST_F(MessagesTest, ABridgeThatIsLateByMoreThanATimeOutIsHeldOnceAndFollowedFro
   expectFollows(run());
 }
 
+TEST_F(MessagesTest, AControllerThatIsLateIsMadeUpFor) {
+  for (const double late : {0.04, 0.06}) {
+    SCOPED_TRACE(late);
+    session().executive().delay("injection_controller", late);
+    expectFollows(run(), 200e-6 * 1e-3 + LedSession::kStill);  // speed_limit
+  }
+}
+
+TEST_F(MessagesTest, ARigThatIsLateIsWaitedFor) {
+  session().executive().delay("micromanipulator", 0.06);
+  const Track needle = run(0.3);
+  EXPECT_EQ(chain_.holdReasons("controller/loop_state", begin_), "the needle does not follow its set-point");
+  EXPECT_LT(leap(needle), 0.06 * kSpeed) << "farther than the set-point has gone";
+  expectFollows(run());
+}
+
 TEST_F(MessagesTest, TwoRigsOnOneSetPointAgree) {
   session().add("second_rig", "micromanipulator", session().parameters("micromanipulator"));
   session().run(0.5);
