@@ -10,12 +10,12 @@
 
 #include "base/atomic_file.h"
 #include "base/errors.h"
+#include "base/exit_status.h"
 #include "base/standard_output.h"
 #include "cell/identification/contact_guess.h"
 #include "cell/identification/family_law.h"
 #include "cell/identification/identified_scene.h"
 #include "cell/identification/point_identification.h"
-#include "base/exit_status.h"
 #include "commands/identify_arguments.h"
 #include "commands/identify_report.h"
 #include "commands/scene_law.h"

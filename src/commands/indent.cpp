@@ -10,9 +10,9 @@
 
 #include "base/atomic_file.h"
 #include "base/errors.h"
+#include "base/exit_status.h"
 #include "base/standard_output.h"
 #include "cell/model/scene.h"
-#include "base/exit_status.h"
 #include "commands/indent_arguments.h"
 #include "commands/indent_models.h"
 

@@ -12,10 +12,10 @@
 
 #include "base/atomic_file.h"
 #include "base/errors.h"
+#include "base/exit_status.h"
 #include "base/standard_output.h"
 #include "cell/family/family_cell.h"
 #include "cell/model/scene.h"
-#include "base/exit_status.h"
 #include "commands/measure_cell_arguments.h"
 #include "vision/camera/folder_source.h"
 #include "vision/camera/image_file.h"

@@ -6,8 +6,8 @@
 #include <thread>
 
 #include "base/errors.h"
-#include "base/worker_processes.h"
 #include "base/exit_status.h"
+#include "base/worker_processes.h"
 
 namespace microinjection {
 namespace {

@@ -10,9 +10,9 @@
 
 #include "base/atomic_file.h"
 #include "base/errors.h"
+#include "base/exit_status.h"
 #include "base/standard_output.h"
 #include "base/worker_processes.h"
-#include "base/exit_status.h"
 #include "commands/run_tasks.h"
 #include "commands/sweep_arguments.h"
 #include "commands/sweep_file.h"

@@ -12,12 +12,12 @@
 
 #include "base/atomic_file.h"
 #include "base/errors.h"
+#include "base/exit_status.h"
 #include "base/median.h"
 #include "base/standard_output.h"
 #include "cell/model/cell_problem.h"
 #include "cell/model/contact_frame.h"
 #include "cell/model/scene_mesh.h"
-#include "base/exit_status.h"
 #include "commands/trajectory.h"
 
 namespace microinjection {

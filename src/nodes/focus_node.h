@@ -69,7 +69,7 @@ class FocusNode : public GoalNode<cell_microinjection::FindFocusAction> {
 
   Parameters parameters_;
   std::unique_ptr<FocusSearch> search_;                      ///< null: no goal is active
-  TipInImage window_;                                         ///< of the search
+  TipInImage window_;                                        ///< of the search
   double start_ = 0;                                         ///< m, position of the focus at the start of the goal
   bool repeated_ = false;                                    ///< the planes are seen for the second time
   std::optional<double> rough_;                              ///< m, plane about which the search begins again

@@ -178,7 +178,8 @@ std::string RigDescription::fittedText() const {
   for (; visual; visual = visual->NextSiblingElement("visual")) {
     XMLElement* sphere = child(visual, {"geometry", "sphere"});
     if (sphere)
-      sphere->SetAttribute("radius", numberText(roundedParameter(cell_factor_ * sphere->DoubleAttribute("radius"))).c_str());
+      sphere->SetAttribute("radius",
+                           numberText(roundedParameter(cell_factor_ * sphere->DoubleAttribute("radius"))).c_str());
   }
   for (const char* part : {"visual", "collision"}) {
     XMLElement* body = child(named(fitted, "link", "holding_pipette"), {part});

@@ -49,10 +49,10 @@ class Executive {
   /// Runs until `done`, at the most for `limit` (s). @returns done()
   bool runUntil(const std::function<bool()>& done, double limit);
 
-  void freeze(const std::string& name);                 ///< as SIGSTOP: it neither steps nor serves, messages wait
-  void thaw(const std::string& name);                   ///< as SIGCONT
-  void kill(const std::string& name);                   ///< as SIGKILL: the others hear nothing of its end
-  void end(const std::string& name);                    ///< as SIGTERM: in good order
+  void freeze(const std::string& name);   ///< as SIGSTOP: it neither steps nor serves, messages wait
+  void thaw(const std::string& name);     ///< as SIGCONT
+  void kill(const std::string& name);     ///< as SIGKILL: the others hear nothing of its end
+  void end(const std::string& name);      ///< as SIGTERM: in good order
   void restart(const std::string& name);  ///< constructs it again, with the same parameters
   void restart(const std::string& name, const YAML::Node& parameters);
   void delay(const std::string& name, double seconds);  ///< it steps `seconds` late, once

@@ -23,11 +23,14 @@ class SessionWatch {
         "operator/phase", 10, [this](const auto& delivery) { hand_done_ = delivery.message->string == "done"; });
     injection_ = bus.subscribe<cell_microinjection::InjectionStatus>(
         "controller/injection_state", 10, [this](const auto& delivery) { status_ = *delivery.message; });
-    cell_ = bus.subscribe<cell_microinjection::CellState>(
-        "cell/state", 1, [this](const auto& delivery) { in_cell_ = delivery.message->in_contact || delivery.message->inside; });
+    cell_ = bus.subscribe<cell_microinjection::CellState>("cell/state", 1, [this](const auto& delivery) {
+      in_cell_ = delivery.message->in_contact || delivery.message->inside;
+    });
   }
 
-  bool done() const { return hand_done_ || (status_.state == "idle" && !status_.outcome.empty() && status_.outcome != "none"); }
+  bool done() const {
+    return hand_done_ || (status_.state == "idle" && !status_.outcome.empty() && status_.outcome != "none");
+  }
   const cell_microinjection::InjectionStatus& status() const { return status_; }
   bool inCell() const { return in_cell_; }
 
@@ -51,7 +54,8 @@ void requireSimulable(const Session& session) {
     refuse("sensor/source", session.sensor.source, "simulated or none");
   if (session.injector != "simulated" && session.injector != "none" && !emulated(session.injector))
     refuse("injector", session.injector, "simulated, emulated_NAME or none");
-  if (session.hand.present() && !session.hand.isOperator()) refuse("hand/device", session.hand.device, "operator or none");
+  if (session.hand.present() && !session.hand.isOperator())
+    refuse("hand/device", session.hand.device, "operator or none");
   if (session.hand.wait_for_go) refuse("hand/wait_for_go", "true", "false");
   if (session.injection.mode == "semi_automatic") refuse("injection/mode", "semi_automatic", "manual or automatic");
   if (session.camera.source == "device" || session.camera.source == "topic")

@@ -10,9 +10,9 @@
 namespace microinjection {
 
 struct SimulationConfig {
-  double duration = 0;   ///< s, after which the session ends; 0: when the hand or the injection is done
-  double limit = 600;    ///< s, in which hand or injection must be done
-  double settling = 0.5; ///< s after that, for what is still under way
+  double duration = 0;    ///< s, after which the session ends; 0: when the hand or the injection is done
+  double limit = 600;     ///< s, in which hand or injection must be done
+  double settling = 0.5;  ///< s after that, for what is still under way
 };
 
 struct SimulationResult {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/errors.h"
-#include "base/standard_output.h"
 #include "base/exit_status.h"
+#include "base/standard_output.h"
 #include "nodes/executive/simulation.h"
 
 namespace {
@@ -46,7 +46,8 @@ std::optional<Arguments> parse(int argc, char** argv) {
   add("help,h", "this text");
   add("session", po::value(&arguments.session)->value_name("FILE"), "the session; the option's name may be left out");
   add("record", po::value<std::string>()->value_name("FOLDER"), "the same as record.folder:=FOLDER");
-  add("duration", po::value(&arguments.config.duration)->value_name("S"), "s of the session; default: until it is done");
+  add("duration", po::value(&arguments.config.duration)->value_name("S"),
+      "s of the session; default: until it is done");
   add("limit", po::value(&arguments.config.limit)->value_name("S"), "s in which it must be done (600)");
   add("quiet,q", po::bool_switch(&arguments.quiet), "no progress");
   po::variables_map given;

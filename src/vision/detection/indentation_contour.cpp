@@ -52,8 +52,7 @@ Depth mean(const Depth& a, const Depth& b) {
   return {(wa * a.value + wb * b.value) / (wa + wb), 1 / std::sqrt(wa + wb)};
 }
 
-Dimple indentationBy(const Frame& frame, const CellBorder& border, const NeedleShadow& needle,
-                          double tip_deviation) {
+Dimple indentationBy(const Frame& frame, const CellBorder& border, const NeedleShadow& needle, double tip_deviation) {
   Dimple result;
   result.finding = Finding::notFound("there is no outline of a cell");
   if (!border.finding.hasValues()) return result;
@@ -95,7 +94,7 @@ Dimple indentationBy(const Frame& frame, const CellBorder& border, const NeedleS
 }  // namespace
 
 Dimple findIndentation(const Frame& frame, const CellBorder& border, const cv::Point2d& tip, double direction,
-                            double width) {
+                       double width) {
   return indentationBy(frame, border, {{tip, direction}, 0.5 * width, 0}, 0);
 }
 

@@ -34,7 +34,7 @@ struct Dimple {
 /// @param direction  rad, from the tip towards the shaft, from x towards y
 /// @param width      px, of the needle near its tip
 Dimple findIndentation(const Frame& frame, const CellBorder& border, const cv::Point2d& tip, double direction,
-                            double width);
+                       double width);
 
 /// The same under a needle that was found: kNotFound without one, and at most kUncertain under one
 /// that is uncertain. The deviation includes that of the tip. The displacement is measured above the

@@ -150,7 +150,8 @@ TYPED_TEST_P(BusContract, SeveralPublishersAndTheirEnds) {
 }
 
 TYPED_TEST_P(BusContract, EndedSubscriptionReceivesNothing) {
-  const auto received = this->record(this->pair_.second(), "force"), witness = this->record(this->pair_.second(), "force");
+  const auto received = this->record(this->pair_.second(), "force"),
+             witness = this->record(this->pair_.second(), "force");
   const auto publisher = this->pair_.first().template advertise<geometry_msgs::WrenchStamped>("force", 10);
   ASSERT_TRUE(this->connects(publisher));
   received->subscription.shutdown();
@@ -254,8 +255,7 @@ REGISTER_TYPED_TEST_SUITE_P(BusContract, MessageArrivesWithSenderTimeAndNumber, 
                             LateSubscriberReceivesTheLastMessageOfALatchingPublisherOnly,
                             FullQueueDropsItsOldestMessages, SeveralPublishersAndTheirEnds,
                             EndedSubscriptionReceivesNothing, ServiceAnswersUntilItEnds, ParametersAreYaml,
-                            NamesResolve, TimerCallsUntilItEnds,
-                            NodeStepsAtItsRateAndServesSampledMessagesBeforeAStep, DrivingMessageStartsAStep,
-                            NodeThatStopsEndsInGoodOrder);
+                            NamesResolve, TimerCallsUntilItEnds, NodeStepsAtItsRateAndServesSampledMessagesBeforeAStep,
+                            DrivingMessageStartsAStep, NodeThatStopsEndsInGoodOrder);
 
 }  // namespace microinjection

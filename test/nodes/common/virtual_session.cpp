@@ -138,7 +138,8 @@ TestNode& VirtualSession::addTestNode(const std::string& name, double period) {
 
 void VirtualSession::checkFailures() {
   if (failures_expected_) return;
-  for (const auto& [node, error] : executive_.failures()) ADD_FAILURE() << "the node " << node << " has ended: " << error;
+  for (const auto& [node, error] : executive_.failures())
+    ADD_FAILURE() << "the node " << node << " has ended: " << error;
 }
 
 void VirtualSession::run(double seconds) {

@@ -36,9 +36,8 @@ class ExecutiveTest : public testing::Test {
  protected:
   void addRelay(const std::string& name, const std::string& input, const std::string& output,
                 Serving serving = Serving::kSampled, double period = 0.001) {
-    executive_.add(name, [=](Bus& bus) {
-      return std::make_shared<RelayNode>(bus, input, output, serving, period, log_);
-    });
+    executive_.add(name,
+                   [=](Bus& bus) { return std::make_shared<RelayNode>(bus, input, output, serving, period, log_); });
   }
   void addThrower(const std::string& name, int steps) {
     executive_.add(name, [steps](Bus& bus) {
@@ -69,7 +68,8 @@ TEST_F(ExecutiveTest, FeedbackArrivesOneStepLater) {
   std::vector<std::string> forces;
   executive_.add("probe", [&](Bus& bus) {
     return std::make_shared<Subscription>(bus.subscribe<std_msgs::Header>(
-        "force", 10, [&](const Delivery<std_msgs::Header>& delivery) { forces.push_back(delivery.message->frame_id); }));
+        "force", 10,
+        [&](const Delivery<std_msgs::Header>& delivery) { forces.push_back(delivery.message->frame_id); }));
   });
   executive_.runFor(0.0015);
   EXPECT_EQ(forces, (std::vector<std::string>{"/pose/force", "/pose/force/pose/force"}));
@@ -111,7 +111,8 @@ TEST_F(ExecutiveTest, NodesWithoutStepsThatAnswerEachOtherWithoutEndAreRefused) 
     return [=](Bus& bus) {
       auto publisher = std::make_shared<Publisher<std_msgs::Header>>(bus.advertise<std_msgs::Header>(output, 10));
       auto subscription = std::make_shared<Subscription>(bus.subscribe<std_msgs::Header>(
-          input, 10, [publisher](const Delivery<std_msgs::Header>& delivery) { publisher->publish(*delivery.message); }));
+          input, 10,
+          [publisher](const Delivery<std_msgs::Header>& delivery) { publisher->publish(*delivery.message); }));
       return std::make_shared<std::pair<std::shared_ptr<void>, std::shared_ptr<void>>>(publisher, subscription);
     };
   };

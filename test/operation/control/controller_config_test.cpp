@@ -21,8 +21,7 @@ InjectionControllerConfig readConfig(const YAML::Node& map) {
 
 YAML::Node shipped() {
   YAML::Node map = loadYamlMap(MICROINJECTION_SOURCE_DIR "/config/injection_controller.yaml");
-  for (const char* of_the_node : {"rate", "input_timeout", "force_source", "injector"})
-    map.remove(of_the_node);
+  for (const char* of_the_node : {"rate", "input_timeout", "force_source", "injector"}) map.remove(of_the_node);
   return map;
 }
 

@@ -81,7 +81,7 @@ TEST(Dimple, MeasuresTheDimple) {
   ASSERT_TRUE(cell.finding.hasValues());
   const PipetteTruth& needle = *scene.truth.injection;
   const Dimple found = findIndentation(Frame(scene.image), cell.outer(), {needle.end.x(), needle.end.y()},
-                                            std::atan2(needle.axis.y(), needle.axis.x()), 2 * needle.radius + 4);
+                                       std::atan2(needle.axis.y(), needle.axis.x()), 2 * needle.radius + 4);
   ASSERT_TRUE(found.finding.hasValues()) << found.finding.reason;
   EXPECT_NEAR(found.depth, *scene.truth.cell->dimple_depth, 0.6);
 }
