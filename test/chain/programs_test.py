@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Each program of a node: with good parameters it comes alive and ends with status 0 when it is asked to; with a key that it
-does not know it ends with status 1 and is never known to the master. Which values a node refuses is in
+does not know it ends with status 1 and says why. Which values a node refuses is in
 test/nodes/session/node_parameters_test.cpp."""
 
 import concurrent.futures

@@ -107,7 +107,7 @@ void AxesService::write() {
   const DeviceAxesFit& fit = calibration_.fit();
   file_.write(
       "# Axes of the haptic device, by the service calibrate_axes of the node haptic_bridge. A session takes\n"
-      "# them with overrides:=FILE.\nhaptic_bridge:\n  device_axes: " +
+      "# them with set:=overrides=FILE.\nhaptic_bridge:\n  device_axes: " +
       calibration_.axes() + (fit.complete() ? "  # " + residualOf(fit) : "") + "\n");
 }
 
