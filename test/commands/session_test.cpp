@@ -57,14 +57,6 @@ TEST_F(SessionCommand, WritesALaunchFileAndADigestOfWhatItIsMadeFrom) {
   EXPECT_NE(run("lab.yaml --launch lab.launch").out, first.out);
 }
 
-TEST_F(SessionCommand, WritesTheParticipantsOfALockStep) {
-  EXPECT_EQ(run("default hand.device:=none --clock lockstep --only injector --launch a.launch").status, 0);
-  EXPECT_NE(read(directory_ + "a.launch")
-                .find("<rosparam param=\"/lockstep/participants\">[/micromanipulator, /force_sensor"),
-            std::string::npos);
-  EXPECT_EQ(run("default hand.device:=joy --clock lockstep").status, 2);
-}
-
 TEST_F(SessionCommand, PrintsNodesAndWritesAView) {
   const Outcome nodes = run("default --nodes --only \"display injector\"");
   EXPECT_EQ(nodes.out, "injector\ndisplay\n");
@@ -75,7 +67,6 @@ TEST_F(SessionCommand, PrintsNodesAndWritesAView) {
 TEST_F(SessionCommand, RefusesWrongUsage) {
   for (const auto& [arguments, what] : {std::pair<const char*, const char*>{"nobody", "no such file"},
                                         {"a.yaml b.yaml", "must be one file or name"},
-                                        {"--clock moon", "must be one of: wall, lockstep, external"},
                                         {"--far", "--far"},
                                         {"--only nobody", "has no such node"},
                                         {"--view a.rviz", "must be with a console"},
