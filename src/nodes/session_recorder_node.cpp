@@ -215,11 +215,17 @@ void SessionRecorderNode::score(std::vector<std::string>& errors) const {
   if (!result.in_history) return;
   const std::string picture = parameters_.output_dir + "/training.png";
   const std::string plot = std::filesystem::path(thisProgram()).parent_path() / "plot_training.py";
-  runWorkers({{plot, config.history, picture, "--operator", config.operator_name}}, 1, [&](std::size_t, int status) {
-    if (status == 0) std::cout << "compared with earlier sessions in " << picture << std::endl;
-    if (status != 0)
-      std::cerr << "no picture: " << plot << " has failed; the history is " << config.history << std::endl;
-  });
+  const auto tellNoPicture = [&](const std::string& reason) {
+    std::cerr << "no picture: " << reason << "; the history is " << config.history << std::endl;
+  };
+  try {
+    runWorkers({{plot, config.history, picture, "--operator", config.operator_name}}, 1, [&](std::size_t, int status) {
+      if (status == 0) std::cout << "compared with earlier sessions in " << picture << std::endl;
+      if (status != 0) tellNoPicture(plot + " has failed");
+    });
+  } catch (const std::exception& error) {  // the session's own files are complete without it
+    tellNoPicture(error.what());
+  }
 }
 
 void SessionRecorderNode::step(const Cycle::Tick& tick) {
