@@ -22,7 +22,8 @@ class LocalPair : public BusPair {
       if (second_->driving().empty()) second_->run();
     });
   }
-  bool runSecond(const std::function<bool()>& done) override {
+  bool runSecond(double period, const Step& step, const std::function<bool()>& done) override {
+    second_->setStep(period, step);
     return advance(done, [this] {
       if (second_->isRunning()) second_->run();
       if (!second_->isRunning()) second_->end();

@@ -1,6 +1,10 @@
 // The contract of a bus, on a RosBus: a program for a rostest, since it needs a master.
 #include <ros/ros.h>
 
+#include <chrono>
+#include <future>
+#include <thread>
+
 #include "bus_contract.h"
 #include "nodes/bus/ros_bus.h"
 
@@ -15,26 +19,43 @@ class RosPair : public BusPair {
   Bus& first() override { return *first_; }
   Bus& second() override { return *second_; }
   bool serve(const std::function<bool()>& done) override {
-    return until(done, [this] {
-      first_->waitUntil([] { return false; }, 0);
-      second_->waitUntil([] { return false; }, 0);
-    });
+    const auto end = std::chrono::steady_clock::now() + kPatience;
+    while (!done() && std::chrono::steady_clock::now() < end) {
+      first_->waitUntil(done, kServed);
+      second_->waitUntil(done, kServed);
+    }
+    return done();
   }
-  bool runSecond(const std::function<bool()>& done) override {
-    const BusHandle watch = second_->timer(0.01, [&] {
+  bool runSecond(double period, const Step& step, const std::function<bool()>& done) override {
+    second_->setStep(period, [this, step, done](const ros::Time& now) {
+      step(now);
       if (done()) second_->stop();
     });
+    Patience patience(*second_);
     second_->run();
     return done();
   }
 
  private:
-  /// A failure takes 30 s; nothing else depends on this time.
-  static bool until(const std::function<bool()>& done, const std::function<void()>& serve) {
-    const ros::SteadyTime end = ros::SteadyTime::now() + ros::WallDuration(30);
-    while (!done() && ros::SteadyTime::now() < end) serve();
-    return done();
-  }
+  static constexpr double kServed = 1e-3;               // s
+  static constexpr std::chrono::seconds kPatience{30};  // only what hangs takes that long
+
+  /// Stops a bus that goes on for longer than kPatience.
+  class Patience {
+   public:
+    explicit Patience(Bus& bus)
+        : thread_([this, &bus] {
+            if (ended_.get_future().wait_for(kPatience) != std::future_status::ready) bus.stop();
+          }) {}
+    ~Patience() {
+      ended_.set_value();
+      thread_.join();
+    }
+
+   private:
+    std::promise<void> ended_;
+    std::thread thread_;
+  };
 
   std::unique_ptr<RosBus> first_, second_;
 };

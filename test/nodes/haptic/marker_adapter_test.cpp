@@ -182,6 +182,9 @@ TEST_F(MarkerTest, AMouseThatIsSilentIsGone) {
   EXPECT_TRUE(present());
   device_.run(0.04);
   EXPECT_FALSE(present());
+  tell(Feedback::KEEP_ALIVE);
+  device_.run(0.02);
+  EXPECT_FALSE(present()) << "the handle must be taken hold of again";
 }
 
 TEST_F(MarkerTest, AnotherFrameAndWhatIsNoNumberEndTheDrag) {
