@@ -115,10 +115,13 @@ TYPED_TEST_P(BusContract, LateSubscriberReceivesTheLastMessageOfALatchingPublish
   const auto of_latched = this->record(second, "latched"), of_passing = this->record(second, "passing");
   ASSERT_TRUE(this->connects(passing));
   passing.publish(this->wrench(4));
-  ASSERT_TRUE(this->pair_.serve([&] { return !of_latched->forces.empty() && !of_passing->forces.empty(); }));
-  EXPECT_EQ(of_latched->forces, std::vector<double>{2});
-  EXPECT_TRUE(of_latched->raw[0].latched);
-  EXPECT_EQ(of_passing->forces, std::vector<double>{4});
+  // On a RosBus what was published just before may still be on its way.
+  const auto ends_with = [](const auto& record, double force) {
+    return !record->forces.empty() && record->forces.back() == force;
+  };
+  ASSERT_TRUE(this->pair_.serve([&] { return ends_with(of_latched, 2) && ends_with(of_passing, 4); }));
+  EXPECT_TRUE(of_latched->raw.back().latched);
+  EXPECT_FALSE(of_passing->raw.back().latched);
 }
 
 TYPED_TEST_P(BusContract, FullQueueDropsItsOldestMessages) {

@@ -79,6 +79,17 @@ TEST_F(LocalNetworkTest, TopicHasOneType) {
   EXPECT_EQ(sent(1), std::vector<double>{1});
 }
 
+TEST_F(LocalNetworkTest, LateSubscriberReceivesOnlyTheLastMessageOfALatchingPublisher) {
+  const auto latched = sender_->advertise<Wrench>("latched", 10, true);
+  latched.publish(wrench(1));
+  latched.publish(wrench(2));
+  std::vector<double> late;
+  const Subscription subscription = receiver_->subscribe<Wrench>(
+      "latched", 10, [&](const Delivery<Wrench>& delivery) { late.push_back(delivery.message->wrench.force.z); });
+  receiver_->run();
+  EXPECT_EQ(late, std::vector<double>{2});
+}
+
 TEST_F(LocalNetworkTest, MessageIsLost) {
   network_.alter("/force", [](const Passage&) { return std::vector<Passage>(); });
   EXPECT_EQ(sent(1), std::vector<double>{});
