@@ -31,6 +31,7 @@ MAY_BE_NAN = {"puncture_force", "puncture_depth"}
 FARTHER = 1.5 * TIMEOUT * Hand.SPEED * 1e-3  # m, of the needle, which is a thousandth of the hand
 PAUSE = 0.002  # s between two messages on a topic, so that none is lost in a queue
 warnings.simplefilter("ignore", SyntaxWarning)  # rospy's, of a publisher without a queue
+sys.setswitchinterval(1e-4)  # s, a fiftieth: who publishes waits for those that listen each time that it has written
 GROUP = 8  # topics that are attacked together; the loop is looked at after each group
 
 
